@@ -1,0 +1,11 @@
+//! strokefit turns a raster picture into an editable SVG made of strokes.
+
+pub mod coverage;
+mod error;
+pub mod fit;
+pub mod image;
+pub mod math;
+pub mod rng;
+pub mod scene;
+
+pub use error::{Error, ErrorKind, Result};
