@@ -227,8 +227,7 @@ fn planar(picture: DynamicImage) -> Result<Image> {
     let channels = usize::from(picture.color().channel_count());
     let bits8 = |v: u8| f32::from(v) / 255.0;
     let bits16 = |v: u16| f32::from(v) / 65535.0;
-    // NaN becomes 0: `max` returns the other one.
-    let float = |v: f32| v.max(0.0).min(1.0);
+    let float = |v: f32| if v.is_nan() { 0.0 } else { v.clamp(0.0, 1.0) };
     let (planes, alpha) = match &picture {
         DynamicImage::ImageLuma8(p) => split(p.as_raw(), channels, bits8),
         DynamicImage::ImageLumaA8(p) => split(p.as_raw(), channels, bits8),
@@ -267,7 +266,7 @@ fn split<T: Copy>(samples: &[T], channels: usize, value: impl Fn(T) -> f32) -> P
     } else {
         [plane(0), plane(1), plane(2)]
     };
-    let alpha = (channels % 2 == 0).then(|| plane(channels - 1));
+    let alpha = channels.is_multiple_of(2).then(|| plane(channels - 1));
     (planes, alpha)
 }
 
