@@ -5,8 +5,10 @@ mod error;
 pub mod fit;
 pub mod image;
 pub mod math;
+pub mod metrics;
 pub mod rng;
 pub mod scene;
 pub mod svg;
+pub mod verify;
 
 pub use error::{Error, ErrorKind, Result};
