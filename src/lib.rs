@@ -4,8 +4,11 @@ pub mod coverage;
 mod error;
 pub mod fit;
 pub mod image;
+pub mod loss;
 pub mod math;
+pub mod render;
 pub mod rng;
 pub mod scene;
+pub mod sdf;
 
 pub use error::{Error, ErrorKind, Result};

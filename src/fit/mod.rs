@@ -1,6 +1,7 @@
 //! The fit: stages of new strokes, then a joint polish.
 
 mod config;
+pub mod objective;
 mod observer;
 
 use std::time::Duration;
