@@ -6,9 +6,11 @@ pub mod fit;
 pub mod image;
 pub mod loss;
 pub mod math;
+pub mod optim;
 pub mod render;
 pub mod rng;
 pub mod scene;
 pub mod sdf;
+pub mod seed;
 
 pub use error::{Error, ErrorKind, Result};

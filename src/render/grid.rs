@@ -87,9 +87,8 @@ impl Grid {
 
     /// The tile, block and lane of a pixel.
     fn locate(&self, x: usize, y: usize) -> (usize, usize, usize) {
-        let tile = y / TILE * self.columns + x / TILE;
-        let block = y % TILE / BLOCK * TILE_BLOCKS + x % TILE / BLOCK;
-        (tile, block, y % BLOCK * BLOCK + x % BLOCK)
+        let (block, lane) = locate_in_tile(x % TILE, y % TILE);
+        (y / TILE * self.columns + x / TILE, block, lane)
     }
 
     /// The range of tile columns and rows that the box `x0..x1`, `y0..y1` (px) can touch; empty
@@ -108,6 +107,11 @@ impl Grid {
             range(y0, y1, self.height, self.rows),
         ]
     }
+}
+
+/// The block and lane of a pixel of a tile.
+pub(super) fn locate_in_tile(x: usize, y: usize) -> (usize, usize) {
+    (y / BLOCK * TILE_BLOCKS + x / BLOCK, y % BLOCK * BLOCK + x % BLOCK)
 }
 
 /// A picture stored tile by tile, as the renderer reads and writes it.

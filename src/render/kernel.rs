@@ -135,7 +135,7 @@ pub(super) struct TileSums {
 
 /// A stroke, splatted for the lanes, relative to its tile.
 #[derive(Clone, Copy)]
-struct Capsule<S: Simd> {
+pub(super) struct Capsule<S: Simd> {
     a: [f32; 2],
     axis: [f32x16<S>; 2],
     /// `1/(|b−a|² + ε)`.
@@ -145,7 +145,7 @@ struct Capsule<S: Simd> {
 
 impl<S: Simd> Capsule<S> {
     #[inline(always)]
-    fn new(simd: S, p: &Params, origin: [f32; 2]) -> Self {
+    pub(super) fn new(simd: S, p: &Params, origin: [f32; 2]) -> Self {
         let axis = [p[BX] - p[AX], p[BY] - p[AY]];
         let length2 = axis[0] * axis[0] + axis[1] * axis[1];
         Self {
@@ -172,10 +172,17 @@ impl<S: Simd> Capsule<S> {
         [load(simd, &LANE_X) + x, load(simd, &LANE_Y) + y]
     }
 
+    /// The signed distance at the pixels of a block.
+    #[inline(always)]
+    pub(super) fn distance(&self, simd: S, block: usize) -> f32x16<S> {
+        let (_, q) = self.nearest(self.offsets(simd, block));
+        self.radius - (q[0] * q[0] + q[1] * q[1] + EPSILON).sqrt()
+    }
+
     /// The blocks that the stroke widened by its soft edge can touch, and those wholly in its hard
     /// core, from the distances of the blocks' centres.
     #[inline(always)]
-    fn blocks(&self, simd: S, radius: f32, reach: Reach) -> (BlockSet, BlockSet) {
+    pub(super) fn blocks(&self, simd: S, radius: f32, reach: Reach) -> (BlockSet, BlockSet) {
         let outer = (radius + reach.outside + BLOCK_RADIUS).max(0.0);
         let inner = (radius - reach.inside - BLOCK_RADIUS).max(0.0);
         let (mut touched, mut core) = (0, 0);
@@ -193,18 +200,18 @@ impl<S: Simd> Capsule<S> {
 }
 
 #[inline(always)]
-fn load<S: Simd>(simd: S, lanes: &Lanes) -> f32x16<S> {
+pub(super) fn load<S: Simd>(simd: S, lanes: &Lanes) -> f32x16<S> {
     f32x16::load_array_ref(simd, &lanes.0)
 }
 
 #[inline(always)]
-fn store<S: Simd>(value: f32x16<S>, lanes: &mut Lanes) {
+pub(super) fn store<S: Simd>(value: f32x16<S>, lanes: &mut Lanes) {
     value.store_slice(&mut lanes.0);
 }
 
 /// The members of a set, in rising order.
 #[inline(always)]
-fn members(mut set: BlockSet) -> impl Iterator<Item = usize> {
+pub(super) fn members(mut set: BlockSet) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         (set != 0).then(|| {
             let block = set.trailing_zeros() as usize;
@@ -328,7 +335,7 @@ impl<S: Simd> Sums<S> {
 
 /// The sum of all lanes, in one order at every SIMD level.
 #[inline(always)]
-fn total<S: Simd>(v: f32x16<S>) -> f32 {
+pub(super) fn total<S: Simd>(v: f32x16<S>) -> f32 {
     let (low, high) = v.split();
     let eight: f32x8<S> = low + high;
     let (low, high) = eight.split();

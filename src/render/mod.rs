@@ -14,6 +14,7 @@
 mod edge;
 mod grid;
 mod kernel;
+pub mod probe;
 pub mod reference;
 mod strokes;
 
