@@ -7,5 +7,6 @@ pub mod image;
 pub mod math;
 pub mod rng;
 pub mod scene;
+pub mod sdf;
 
 pub use error::{Error, ErrorKind, Result};
