@@ -4,6 +4,7 @@ pub mod coverage;
 mod error;
 pub mod fit;
 pub mod image;
+pub mod loss;
 pub mod math;
 pub mod rng;
 pub mod scene;
