@@ -6,6 +6,7 @@ pub mod fit;
 pub mod image;
 pub mod loss;
 pub mod math;
+pub mod optim;
 pub mod rng;
 pub mod scene;
 pub mod sdf;
