@@ -7,6 +7,7 @@ pub mod image;
 pub mod loss;
 pub mod math;
 pub mod optim;
+pub mod render;
 pub mod rng;
 pub mod scene;
 pub mod sdf;

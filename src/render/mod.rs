@@ -1,0 +1,3 @@
+//! Rendering of strokes, forward and backward.
+
+pub mod reference;
