@@ -1,4 +1,19 @@
 //! Pictures: planar `f32`, sRGB-encoded. The one door of the `image` crate.
+//!
+//! PNG, JPEG, WebP, GIF and animated WebP (first frame), BMP and TIFF (first page) are read, 8 or
+//! 16 bit or float, grey or colour, with the orientation that EXIF asks for. Colours are taken as
+//! sRGB: colour profiles are not applied. Alpha is kept; [`Image::flattened`] lays it on a colour.
+
+mod decode;
+mod encode;
+mod header;
+
+use std::path::Path;
+
+pub use decode::Limits;
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::scene::Rgb;
 
 /// A picture: three planes of sRGB-encoded colour 0..1, and alpha where the source had it.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,4 +26,252 @@ pub struct Image {
     planes: [Vec<f32>; 3],
     /// `width·height` values 0..1, or `None` when every pixel is opaque.
     alpha: Option<Vec<f32>>,
+}
+
+impl Image {
+    /// An opaque picture of `width × height` px from its red, green and blue planes, row by row.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Picture`] when a side is 0, a plane has not `width·height` values, or a value
+    /// is not finite.
+    pub fn new(width: usize, height: usize, planes: [Vec<f32>; 3]) -> Result<Self> {
+        let pixels = width
+            .checked_mul(height)
+            .filter(|&n| n > 0)
+            .ok_or_else(|| {
+                let message = format!(
+                    "a picture of {width}×{height} has no pixels: give both sides 1 px or more"
+                );
+                Error::new(ErrorKind::Picture, message)
+            })?;
+        for plane in &planes {
+            check_plane(plane, pixels)?;
+        }
+        Ok(Self {
+            width,
+            height,
+            planes,
+            alpha: None,
+        })
+    }
+
+    /// The picture at half the size (rounded up), each pixel the mean of up to 2×2; alpha is left out.
+    pub(crate) fn halved(&self) -> Self {
+        let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
+        let half = |plane: &Vec<f32>| {
+            let mut out = Vec::with_capacity(width * height);
+            for pair in plane.chunks(2 * self.width) {
+                let (top, bottom) = pair.split_at(self.width);
+                let bottom = if bottom.is_empty() { top } else { bottom };
+                let mean = |row: &[f32]| row.iter().sum::<f32>() / row.len() as f32;
+                let columns = top.chunks(2).zip(bottom.chunks(2));
+                out.extend(columns.map(|(top, bottom)| (mean(top) + mean(bottom)) / 2.0));
+            }
+            out
+        };
+        Self {
+            width,
+            height,
+            planes: [0, 1, 2].map(|c| half(&self.planes[c])),
+            alpha: None,
+        }
+    }
+
+    /// The same without checks, for callers whose sizes agree by construction.
+    pub(crate) fn from_planes(width: usize, height: usize, planes: [Vec<f32>; 3]) -> Self {
+        debug_assert!(planes.iter().all(|plane| plane.len() == width * height));
+        Self {
+            width,
+            height,
+            planes,
+            alpha: None,
+        }
+    }
+
+    /// A picture of one colour.
+    ///
+    /// # Errors
+    /// As [`Image::new`].
+    pub fn filled(width: usize, height: usize, color: Rgb) -> Result<Self> {
+        let pixels = width.saturating_mul(height);
+        Self::new(width, height, color.map(|c| vec![c; pixels]))
+    }
+
+    /// The same picture with this alpha, `width·height` values 0..1. Alpha that is 1 everywhere
+    /// says nothing and is left out.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Picture`] when there are not `width·height` values or one is not finite.
+    pub fn with_alpha(mut self, alpha: Vec<f32>) -> Result<Self> {
+        check_plane(&alpha, self.width * self.height)?;
+        self.alpha = alpha.iter().any(|&a| a < 1.0).then_some(alpha);
+        Ok(self)
+    }
+
+    /// Reads the picture file at `path`, within the default [`Limits`].
+    ///
+    /// # Errors
+    /// [`ErrorKind::Io`] when the file cannot be read, else as [`Image::decode`]; every message
+    /// names the file.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self> {
+        decode::open(path.as_ref(), Limits::default())
+    }
+
+    /// Decodes the bytes of a picture file, whose format is told from the bytes alone. `name` is
+    /// what messages call the file.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Picture`] when the bytes are none, no picture, cut short, damaged, of 0×0 px,
+    /// or beyond `limits`; limits are checked from the header, before memory is spent.
+    pub fn decode(bytes: &[u8], name: &str, limits: Limits) -> Result<Self> {
+        decode::decode(bytes, limits).map_err(|error| error.within(name))
+    }
+
+    /// The picture as a PNG file: 8-bit RGB, or RGBA where there is alpha.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Picture`] when a side exceeds what PNG can say.
+    pub fn encode_png(&self) -> Result<Vec<u8>> {
+        encode::png(self)
+    }
+
+    /// Width in px, at least 1.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Height in px, at least 1.
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// Red, green and blue, each `width·height` values row by row. Not premultiplied.
+    pub fn planes(&self) -> &[Vec<f32>; 3] {
+        &self.planes
+    }
+
+    /// The planes, given away; alpha is dropped.
+    pub fn into_planes(self) -> [Vec<f32>; 3] {
+        self.planes
+    }
+
+    /// `width·height` values 0..1, or `None` when every pixel is opaque.
+    pub fn alpha(&self) -> Option<&[f32]> {
+        self.alpha.as_deref()
+    }
+
+    /// The picture laid on `color`: opaque, composited in encoded values as SVG renderers do.
+    #[must_use]
+    pub fn flattened(&self, color: Rgb) -> Self {
+        let Some(alpha) = &self.alpha else {
+            return self.clone();
+        };
+        let mut planes = self.planes.clone();
+        for (plane, ground) in planes.iter_mut().zip(color) {
+            for (value, &a) in plane.iter_mut().zip(alpha) {
+                *value = ground + a * (*value - ground);
+            }
+        }
+        Self {
+            width: self.width,
+            height: self.height,
+            planes,
+            alpha: None,
+        }
+    }
+
+    /// The colours as interleaved 8-bit RGB, row by row, each value rounded to the nearest of
+    /// 0..=255. Alpha plays no part: [flatten](Self::flattened) first.
+    pub fn to_rgb8(&self) -> Vec<u8> {
+        let [red, green, blue] = &self.planes;
+        let pixels = red.iter().zip(green).zip(blue);
+        pixels
+            .flat_map(|((&r, &g), &b)| [r, g, b].map(byte))
+            .collect()
+    }
+}
+
+/// The nearest of 0..=255 to a value of 0..1.
+fn byte(value: f32) -> u8 {
+    // `as` saturates, so values beyond 0..1 go to the nearer end.
+    (value * 255.0 + 0.5) as u8
+}
+
+fn check_plane(plane: &[f32], pixels: usize) -> Result<()> {
+    if plane.len() != pixels {
+        let message = format!(
+            "a plane of {} values does not fit {pixels} pixels",
+            plane.len()
+        );
+        return Err(Error::new(ErrorKind::Picture, message));
+    }
+    match plane.iter().position(|v| !v.is_finite()) {
+        Some(i) => {
+            let message = format!(
+                "the picture's value {i} is {}, not a number from 0 to 1",
+                plane[i]
+            );
+            Err(Error::new(ErrorKind::Picture, message))
+        }
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_without_pixels_cannot_be_made() {
+        let error = Image::new(0, 3, Default::default()).unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::Picture);
+        assert!(error.to_string().contains("0×3"), "{error}");
+    }
+
+    #[test]
+    fn planes_of_the_wrong_length_or_not_finite_are_refused() {
+        assert!(Image::new(2, 1, [vec![0.0; 2], vec![0.0; 2], vec![0.0; 1]]).is_err());
+        let error = Image::new(1, 1, [vec![0.0], vec![f32::NAN], vec![0.0]]).unwrap_err();
+        assert!(error.to_string().contains("NaN"), "{error}");
+    }
+
+    #[test]
+    fn alpha_of_one_everywhere_is_left_out() {
+        let image = Image::filled(2, 1, [0.5; 3]).unwrap();
+        assert_eq!(
+            image.clone().with_alpha(vec![1.0; 2]).unwrap().alpha(),
+            None
+        );
+        assert_eq!(
+            image.with_alpha(vec![1.0, 0.5]).unwrap().alpha(),
+            Some(&[1.0, 0.5][..])
+        );
+    }
+
+    #[test]
+    fn flattening_mixes_with_the_ground_in_encoded_values() {
+        let image = Image::filled(3, 1, [1.0, 0.0, 0.5]).unwrap();
+        let flat = image
+            .with_alpha(vec![0.0, 0.5, 1.0])
+            .unwrap()
+            .flattened([1.0; 3]);
+        assert_eq!(flat.planes()[0], [1.0, 1.0, 1.0]);
+        assert_eq!(flat.planes()[1], [1.0, 0.5, 0.0]);
+        assert_eq!(flat.planes()[2], [1.0, 0.75, 0.5]);
+        assert_eq!(flat.alpha(), None);
+    }
+
+    #[test]
+    fn every_byte_survives_the_way_to_float_and_back() {
+        let ramp: Vec<f32> = (0..=255u8).map(|v| f32::from(v) / 255.0).collect();
+        let image = Image::new(256, 1, [ramp.clone(), ramp.clone(), ramp]).unwrap();
+        let bytes: Vec<u8> = (0..=255u8).flat_map(|v| [v; 3]).collect();
+        assert_eq!(image.to_rgb8(), bytes);
+    }
+
+    #[test]
+    fn values_beyond_the_range_saturate() {
+        let image = Image::new(2, 1, [vec![-1.0, 2.0], vec![0.0; 2], vec![0.0; 2]]).unwrap();
+        assert_eq!(image.to_rgb8(), [0, 0, 0, 255, 0, 0]);
+    }
 }

@@ -12,5 +12,6 @@ pub mod rng;
 pub mod scene;
 pub mod sdf;
 pub mod seed;
+pub mod svg;
 
 pub use error::{Error, ErrorKind, Result};

@@ -3,7 +3,12 @@
 //! Coordinates are px with pixel centres at +0.5; colours are sRGB-encoded, 0..1, and are
 //! composited in that encoding, as SVG renderers do.
 
+mod quantize;
+
 use crate::math::Point;
+
+pub use quantize::{MAX_PRECISION, MIN_WIDTH};
+pub(crate) use quantize::{UNITS_PER_PX, Written, color, quantum};
 
 /// An sRGB-encoded colour, 0..1 per channel.
 pub type Rgb = [f32; 3];
@@ -74,7 +79,10 @@ pub struct Stroke {
 impl Stroke {
     /// Whether every number of the stroke is finite.
     pub fn is_finite(&self) -> bool {
-        self.shape.points().iter().all(|p| p.x.is_finite() && p.y.is_finite())
+        self.shape
+            .points()
+            .iter()
+            .all(|p| p.x.is_finite() && p.y.is_finite())
             && self.radius.is_finite()
             && self.color.iter().all(|c| c.is_finite())
             && self.opacity.is_finite()
@@ -104,7 +112,12 @@ pub struct Scene {
 impl Scene {
     /// A page without strokes.
     pub fn empty(width: u32, height: u32, background: Option<Rgb>) -> Self {
-        Self { width, height, background, stages: Vec::new() }
+        Self {
+            width,
+            height,
+            background,
+            stages: Vec::new(),
+        }
     }
 
     /// All strokes, back to front.

@@ -93,7 +93,10 @@ pub fn propose(level: Level, target: &Pyramid, canvas: &Canvas, wanted: Wanted) 
             let (index, probe) = best(level, &templates, patch, wanted.least_opacity)?;
             let center = [x, y].map(|v| (v as f32 + 0.5) * reduction);
             let stroke = probe.stroke(templates[index].shape(), center, reduction);
-            (probe.gain > 0.0).then_some(Candidate { stroke, gain: probe.gain * gain_scale })
+            (probe.gain > 0.0).then_some(Candidate {
+                stroke,
+                gain: probe.gain * gain_scale,
+            })
         })
         .flatten()
         .collect();
@@ -113,7 +116,10 @@ fn templates(level: Level, scale: f32) -> Vec<Template> {
             }));
         }
     }
-    shapes.into_iter().map(|shape| Template::new(level, shape)).collect()
+    shapes
+        .into_iter()
+        .map(|shape| Template::new(level, shape))
+        .collect()
 }
 
 /// A shape about the centre of a patch.
@@ -172,7 +178,12 @@ impl Cells {
         let (width, height) = (image.width(), image.height());
         let side = ((width * height) as f32 / count.max(1.0)).sqrt().max(1.0);
         let along = |size: usize| ((size as f32 / side).round() as usize).clamp(1, size);
-        Self { width, height, columns: along(width), rows: along(height) }
+        Self {
+            width,
+            height,
+            columns: along(width),
+            rows: along(height),
+        }
     }
 
     fn len(&self) -> usize {

@@ -25,11 +25,17 @@ impl Anneal {
             return self.last();
         }
         let width = self.from.max(FINAL_SOFTNESS).powf(1.0 - done);
-        Softness { coverage: self.coverage.early, width }
+        Softness {
+            coverage: self.coverage.early,
+            width,
+        }
     }
 
     /// The edge of the finished drawing.
     pub(super) fn last(&self) -> Softness {
-        Softness { coverage: self.coverage.late, width: FINAL_SOFTNESS }
+        Softness {
+            coverage: self.coverage.late,
+            width: FINAL_SOFTNESS,
+        }
     }
 }

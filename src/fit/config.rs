@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use crate::coverage::CoverageSchedule;
 use super::recipe::Recipe;
+use crate::coverage::CoverageSchedule;
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::Rgb;
 
@@ -97,9 +97,13 @@ impl Execution {
     /// The worker threads.
     pub(super) fn pool(&self) -> Result<rayon::ThreadPool> {
         let threads = self.threads.unwrap_or(0);
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|cause| {
-            let message = format!("cannot start {threads} worker threads: ask for fewer with --threads");
-            Error::new(ErrorKind::Config, message).caused_by(cause)
-        })
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .map_err(|cause| {
+                let message =
+                    format!("cannot start {threads} worker threads: ask for fewer with --threads");
+                Error::new(ErrorKind::Config, message).caused_by(cause)
+            })
     }
 }

@@ -3,7 +3,9 @@
 use super::objective::Objective;
 use super::recipe::Rates;
 use crate::optim::{Adam, AdamParams, Optimizer};
-use crate::render::{AX, BY, Base, Gradients, OPACITY, PARAMS, Params, RADIUS, RED, Renderer, Softness};
+use crate::render::{
+    AX, BY, Base, Gradients, OPACITY, PARAMS, Params, RADIUS, RED, Renderer, Softness,
+};
 
 /// Least radius of a stroke, px: widths of 1 px and less are drawn as hairlines, with other ink.
 pub(super) const LEAST_RADIUS: f32 = 0.51;
@@ -20,7 +22,12 @@ pub(super) struct Limits {
 
 impl Limits {
     pub(super) fn new(width: usize, height: usize, least_opacity: f32) -> Self {
-        Self { margin: 8.0, width: width as f32, height: height as f32, least_opacity }
+        Self {
+            margin: 8.0,
+            width: width as f32,
+            height: height as f32,
+            least_opacity,
+        }
     }
 
     fn largest_radius(&self) -> f32 {
@@ -52,8 +59,16 @@ pub(super) struct Descent {
 
 impl Descent {
     pub(super) fn new(strokes: usize, rates: Rates, limits: Limits) -> Self {
-        let Rates { position, radius, color, opacity, .. } = rates;
-        let rates = [position, position, position, position, radius, color, color, color, opacity];
+        let Rates {
+            position,
+            radius,
+            color,
+            opacity,
+            ..
+        } = rates;
+        let rates = [
+            position, position, position, position, radius, color, color, color, opacity,
+        ];
         Self {
             adam: Adam::new(strokes * PARAMS, ADAM),
             rates,
@@ -75,7 +90,8 @@ impl Descent {
     ) {
         renderer.backward(strokes, softness, base, objective, &mut self.gradients);
         let flat = self.gradients.strokes.as_flattened();
-        self.adam.step_scaled(strokes.as_flattened_mut(), flat, rate, &self.scales);
+        self.adam
+            .step_scaled(strokes.as_flattened_mut(), flat, rate, &self.scales);
         for p in strokes {
             self.limits.apply(p);
         }
@@ -89,4 +105,7 @@ impl Descent {
 }
 
 /// Short memory for the squares: a fit is tens to hundreds of steps long.
-const ADAM: AdamParams = AdamParams { betas: [0.9, 0.99], eps: 1e-10 };
+const ADAM: AdamParams = AdamParams {
+    betas: [0.9, 0.99],
+    eps: 1e-10,
+};

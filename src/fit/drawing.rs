@@ -51,15 +51,25 @@ impl Drawing {
     /// Renders everything at the final softness.
     pub(super) fn render(&mut self, anneal: &Anneal) {
         let base = Base::Flat(self.background);
-        self.renderer.forward(&self.strokes, anneal.last(), base, &mut self.canvas);
+        self.renderer
+            .forward(&self.strokes, anneal.last(), base, &mut self.canvas);
     }
 
     /// Mean squared error of the canvas.
     pub(super) fn mse(&mut self) -> f64 {
         let mut gradients = Gradients::default();
         let objective = Objective::new(Loss::L2, &self.target);
-        let softness = crate::render::Softness { coverage: crate::coverage::Coverage::Smoothstep, width: 1.0 };
-        self.renderer.backward(&[], softness, Base::Canvas(&self.canvas), &objective, &mut gradients);
+        let softness = crate::render::Softness {
+            coverage: crate::coverage::Coverage::Smoothstep,
+            width: 1.0,
+        };
+        self.renderer.backward(
+            &[],
+            softness,
+            Base::Canvas(&self.canvas),
+            &objective,
+            &mut gradients,
+        );
         gradients.loss
     }
 }

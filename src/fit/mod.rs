@@ -74,22 +74,53 @@ pub enum Stop {
 ///
 /// # Errors
 /// [`ErrorKind::Config`](crate::ErrorKind::Config) when an option is outside its domain.
-pub fn fit(target: &Image, config: &Config, execution: &Execution, observer: &mut dyn Observer) -> Result<Fit> {
+pub fn fit(
+    target: &Image,
+    config: &Config,
+    execution: &Execution,
+    observer: &mut dyn Observer,
+) -> Result<Fit> {
     let _ = observer;
     let pool = execution.pool()?;
-    Ok(pool.install(|| run(target, config, &config.recipe.unwrap_or(Recipe::of(config.preset)))))
+    Ok(pool.install(|| {
+        run(
+            target,
+            config,
+            &config.recipe.unwrap_or(Recipe::of(config.preset)),
+        )
+    }))
 }
 
 fn run(target: &Image, config: &Config, recipe: &Recipe) -> Fit {
-    let anneal = |from: f32| Anneal { coverage: config.coverage, from };
-    let mut drawing = Drawing::new(target, mean_color(target), config, fearless_simd::Level::new());
+    let anneal = |from: f32| Anneal {
+        coverage: config.coverage,
+        from,
+    };
+    let mut drawing = Drawing::new(
+        target,
+        mean_color(target),
+        config,
+        fearless_simd::Level::new(),
+    );
     let total = config.budget.strokes.unwrap_or(1000);
     let count = config.stages.unwrap_or(recipe.stages);
     let mut records = Vec::new();
     for planned in plan::stages(total, count, recipe.growth, drawing.pixels(), recipe.scale) {
         let start = std::time::Instant::now();
-        stage::add(&mut drawing, recipe, anneal(planned.scale.min(4.0)), planned.count, planned.scale);
-        records.push(StageRecord { index: records.len() + 1, strokes: planned.count, iterations: recipe.stage_iterations, wall: start.elapsed(), psnr_db: -10.0 * drawing.mse().log10() });
+        stage::add(
+            &mut drawing,
+            recipe,
+            anneal(planned.scale.min(4.0)),
+            planned.count,
+            planned.scale,
+        );
+        records.push(StageRecord {
+            index: records.len() + 1,
+            strokes: planned.count,
+            iterations: recipe.stage_iterations,
+            wall: start.elapsed(),
+            psnr_db: -10.0 * drawing.mse().log10(),
+        });
     }
     if config.polish {
         polish::run(&mut drawing, recipe, anneal(recipe.polish_softness));
@@ -97,14 +128,20 @@ fn run(target: &Image, config: &Config, recipe: &Recipe) -> Fit {
     let mse = drawing.mse();
     eprintln!("soft {:.2}", -10.0 * mse.log10());
     Fit {
-        scene: scene_of(&drawing), soft: drawing.canvas.to_image(), stages: records, stop: Stop::Strokes, dropped: 0,
+        scene: scene_of(&drawing),
+        soft: drawing.canvas.to_image(),
+        stages: records,
+        stop: Stop::Strokes,
+        dropped: 0,
     }
 }
 
 fn scene_of(d: &Drawing) -> crate::scene::Scene {
     let g = d.canvas.grid();
     let mut s = Scene::empty(g.width as u32, g.height as u32, Some(d.background));
-    s.stages = vec![crate::scene::Stage { strokes: d.strokes.iter().map(crate::render::unpack).collect() }];
+    s.stages = vec![crate::scene::Stage {
+        strokes: d.strokes.iter().map(crate::render::unpack).collect(),
+    }];
     s
 }
 

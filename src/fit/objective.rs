@@ -15,7 +15,11 @@ pub struct Objective<'a> {
 impl<'a> Objective<'a> {
     pub fn new(loss: Loss, target: &'a Canvas) -> Self {
         let grid = target.grid();
-        Self { loss, target, scale: 1.0 / (grid.width * grid.height * 3) as f32 }
+        Self {
+            loss,
+            target,
+            scale: 1.0 / (grid.width * grid.height * 3) as f32,
+        }
     }
 }
 

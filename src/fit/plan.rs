@@ -11,7 +11,13 @@ pub(super) struct PlannedStage {
 
 /// `total` strokes in at most `stages` stages, each `growth` times the one before; a stage's scale is
 /// `scale · sqrt(pixels / strokes so far)`.
-pub(super) fn stages(total: usize, stages: usize, growth: f64, pixels: usize, scale: f32) -> Vec<PlannedStage> {
+pub(super) fn stages(
+    total: usize,
+    stages: usize,
+    growth: f64,
+    pixels: usize,
+    scale: f32,
+) -> Vec<PlannedStage> {
     let weights: Vec<f64> = (0..stages).map(|k| growth.powi(k as i32)).collect();
     let whole: f64 = weights.iter().sum();
     let (mut planned, mut before, mut reached) = (Vec::new(), 0, 0.0);
@@ -20,7 +26,10 @@ pub(super) fn stages(total: usize, stages: usize, growth: f64, pixels: usize, sc
         let after = (total as f64 * reached / whole).round() as usize;
         if after > before {
             let scale = scale * (pixels as f32 / after as f32).sqrt();
-            planned.push(PlannedStage { count: after - before, scale });
+            planned.push(PlannedStage {
+                count: after - before,
+                scale,
+            });
         }
         before = after;
     }
@@ -36,7 +45,10 @@ mod tests {
         let plan = stages(1000, 8, 1.6, 65_536, 0.6);
         assert_eq!(plan.len(), 8);
         assert_eq!(plan.iter().map(|s| s.count).sum::<usize>(), 1000);
-        assert!(plan.windows(2).all(|w| w[1].count > w[0].count && w[1].scale < w[0].scale));
+        assert!(
+            plan.windows(2)
+                .all(|w| w[1].count > w[0].count && w[1].scale < w[0].scale)
+        );
     }
 
     #[test]

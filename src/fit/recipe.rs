@@ -55,18 +55,37 @@ impl Recipe {
             scale: 0.6,
             oversampling: 2.0,
             stage_iterations: 40,
-            stage_rates: Rates { position: 0.15, radius: 0.08, color: 0.02, opacity: 0.02, last: 0.1 },
+            stage_rates: Rates {
+                position: 0.15,
+                radius: 0.08,
+                color: 0.02,
+                opacity: 0.02,
+                last: 0.1,
+            },
             polish_iterations: 300,
-            polish_rates: Rates { position: 0.1, radius: 0.05, color: 0.01, opacity: 0.01, last: 0.1 },
+            polish_rates: Rates {
+                position: 0.1,
+                radius: 0.05,
+                color: 0.01,
+                opacity: 0.01,
+                last: 0.1,
+            },
             relocate_every: 50,
             relocate_share: 0.1,
             relocate_scale: 0.4,
             polish_softness: 1.5,
         };
         match preset {
-            Preset::Draft => Self { stage_iterations: 20, polish_iterations: 60, ..balanced },
+            Preset::Draft => Self {
+                stage_iterations: 20,
+                polish_iterations: 60,
+                ..balanced
+            },
             Preset::Balanced => balanced,
-            Preset::Best => Self { polish_iterations: 2000, ..balanced },
+            Preset::Best => Self {
+                polish_iterations: 2000,
+                ..balanced
+            },
         }
     }
 }

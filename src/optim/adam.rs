@@ -61,6 +61,25 @@ impl<T: Real> Adam<T> {
         }
     }
 
+    /// Follows a rearrangement of the values in groups of `group`: group `i` was `sources[i]`, or is
+    /// new and has no past.
+    pub fn rearrange(&mut self, group: usize, sources: &[Option<usize>]) {
+        for state in [
+            &mut self.mean,
+            &mut self.square,
+            &mut self.mean_of_one,
+            &mut self.square_of_one,
+        ] {
+            let mut moved = vec![T::zero(); group * sources.len()];
+            for (to, source) in moved.chunks_exact_mut(group).zip(sources) {
+                if let Some(from) = source.and_then(|i| state.get(i * group..(i + 1) * group)) {
+                    to.copy_from_slice(from);
+                }
+            }
+            *state = moved;
+        }
+    }
+
     /// One step; value `i` at the learning rate `rate(i)`, after it was multiplied by `keep(i)`.
     #[inline]
     pub(super) fn update(

@@ -69,7 +69,11 @@ enum Tail {
 
 impl Tailed {
     fn new(kind: Tail, slope: f32, outside: f32) -> Self {
-        Self { kind, slope, outside }
+        Self {
+            kind,
+            slope,
+            outside,
+        }
     }
 }
 
@@ -84,7 +88,10 @@ impl SoftEdge for Tailed {
         };
         let zero = f32x16::splat(d.token(), 0.0);
         let kept = d.simd_ge(-self.outside);
-        (kept.select(value, zero), kept.select(derivative * self.slope, zero))
+        (
+            kept.select(value, zero),
+            kept.select(derivative * self.slope, zero),
+        )
     }
 }
 
@@ -121,7 +128,10 @@ impl Edge {
 fn raw<S: Simd>(x: f32x16<S>) -> (f32x16<S>, f32x16<S>) {
     let simd = x.token();
     let value = x.max(-1.0).min(1.0) * 0.5 + 0.5;
-    let derivative = x.abs().simd_le(1.0).select(f32x16::splat(simd, 0.5), f32x16::splat(simd, 0.0));
+    let derivative = x
+        .abs()
+        .simd_le(1.0)
+        .select(f32x16::splat(simd, 0.5), f32x16::splat(simd, 0.0));
     (value, derivative)
 }
 
@@ -157,7 +167,10 @@ fn arctangent<S: Simd>(x: f32x16<S>) -> (f32x16<S>, f32x16<S>) {
     let near = size.simd_le(0.414_213_57);
     let reduced = far.select(-1.0 / size.max(1e-30), (size - 1.0) / (size + 1.0));
     let reduced = near.select(size, reduced);
-    let base = far.select(splat(std::f32::consts::FRAC_PI_2), splat(std::f32::consts::FRAC_PI_4));
+    let base = far.select(
+        splat(std::f32::consts::FRAC_PI_2),
+        splat(std::f32::consts::FRAC_PI_4),
+    );
     let base = near.select(splat(0.0), base);
     let z = reduced * reduced;
     let mut p = z * 8.053_744_5e-2 - 1.387_768_6e-1;

@@ -93,7 +93,13 @@ impl Grid {
 
     /// The range of tile columns and rows that the box `x0..x1`, `y0..y1` (px) can touch; empty
     /// where the box is off the picture or not a number.
-    pub(super) fn tiles_touched(&self, x0: f32, y0: f32, x1: f32, y1: f32) -> [std::ops::Range<usize>; 2] {
+    pub(super) fn tiles_touched(
+        &self,
+        x0: f32,
+        y0: f32,
+        x1: f32,
+        y1: f32,
+    ) -> [std::ops::Range<usize>; 2] {
         let range = |lo: f32, hi: f32, size: usize, count: usize| {
             if !(lo < size as f32 && hi > 0.0) {
                 return 0..0;
@@ -111,7 +117,10 @@ impl Grid {
 
 /// The block and lane of a pixel of a tile.
 pub(super) fn locate_in_tile(x: usize, y: usize) -> (usize, usize) {
-    (y / BLOCK * TILE_BLOCKS + x / BLOCK, y % BLOCK * BLOCK + x % BLOCK)
+    (
+        y / BLOCK * TILE_BLOCKS + x / BLOCK,
+        y % BLOCK * BLOCK + x % BLOCK,
+    )
 }
 
 /// A picture stored tile by tile, as the renderer reads and writes it.

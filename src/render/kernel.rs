@@ -20,10 +20,12 @@
 
 use fearless_simd::{f32x8, f32x16, prelude::*};
 
-use super::edge::{Reach, SoftEdge};
-use super::grid::{BLOCK, BLOCKS, BlockRgb, BlockSet, LANES, Lanes, TILE_BLOCKS, TileRgb, TileWeights, flat_tile};
-use super::strokes::{AX, AY, BX, BY, OPACITY, PARAMS, Params, RADIUS, RED};
 use super::CanvasLoss;
+use super::edge::{Reach, SoftEdge};
+use super::grid::{
+    BLOCK, BLOCKS, BlockRgb, BlockSet, LANES, Lanes, TILE_BLOCKS, TileRgb, TileWeights, flat_tile,
+};
+use super::strokes::{AX, AY, BX, BY, OPACITY, PARAMS, Params, RADIUS, RED};
 
 /// Guard in `1/|b−a|²` and in `|q| = sqrt(q·q + ε)`, px². Larger would blunt the distance near the
 /// centre line (by 1e-3 px at this value); smaller would let `1/|q|` overflow the gradient there.
@@ -187,8 +189,12 @@ impl<S: Simd> Capsule<S> {
         let inner = (radius - reach.inside - BLOCK_RADIUS).max(0.0);
         let (mut touched, mut core) = (0, 0);
         for row in 0..BLOCKS / LANES {
-            let column = f32x16::from_fn(simd, |i| (i % TILE_BLOCKS * BLOCK) as f32 + BLOCK as f32 / 2.0);
-            let line = f32x16::from_fn(simd, |i| (i / TILE_BLOCKS * BLOCK) as f32 + BLOCK as f32 / 2.0);
+            let column = f32x16::from_fn(simd, |i| {
+                (i % TILE_BLOCKS * BLOCK) as f32 + BLOCK as f32 / 2.0
+            });
+            let line = f32x16::from_fn(simd, |i| {
+                (i / TILE_BLOCKS * BLOCK) as f32 + BLOCK as f32 / 2.0
+            });
             let y = (row * LANES / TILE_BLOCKS * BLOCK) as f32 - self.a[1];
             let (_, q) = self.nearest([column - self.a[0], line + y]);
             let distance2 = q[0] * q[0] + q[1] * q[1];
@@ -224,7 +230,14 @@ pub(super) fn members(mut set: BlockSet) -> impl Iterator<Item = usize> {
 /// Pass 1. Leaves the canvas in `scratch.color`.
 #[inline(always)]
 fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scratch: &mut Scratch) {
-    let Scratch { color, transmittance, visits, kept_transmittance, kept_edges, .. } = scratch;
+    let Scratch {
+        color,
+        transmittance,
+        visits,
+        kept_transmittance,
+        kept_edges,
+        ..
+    } = scratch;
     *color = flat_tile([0.0; 3]);
     *transmittance = [Lanes::splat(1.0); BLOCKS];
     visits.clear();
@@ -235,7 +248,11 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
         let p = &job.strokes[id as usize];
         let capsule = Capsule::new(simd, p, job.origin);
         let (touched, core) = capsule.blocks(simd, p[RADIUS], job.reach);
-        let visit = Visit { slot: slot as u32, edge: touched & !core & live, core: touched & core & live };
+        let visit = Visit {
+            slot: slot as u32,
+            edge: touched & !core & live,
+            core: touched & core & live,
+        };
         if visit.edge | visit.core == 0 {
             continue;
         }
@@ -247,19 +264,35 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
             let length = (q[0] * q[0] + q[1] * q[1] + EPSILON).sqrt();
             let (value, derivative) = edge.eval(capsule.radius - length);
             let alpha = opacity * value;
-            let mut kept = EdgeBlock { alpha: Lanes::splat(0.0), slope: Lanes::splat(0.0), inverse: Lanes::splat(0.0) };
+            let mut kept = EdgeBlock {
+                alpha: Lanes::splat(0.0),
+                slope: Lanes::splat(0.0),
+                inverse: Lanes::splat(0.0),
+            };
             store(alpha, &mut kept.alpha);
             store(opacity * derivative, &mut kept.slope);
             store(1.0 / length, &mut kept.inverse);
             kept_edges.push(kept);
             kept_transmittance.push(transmittance[block]);
-            if see_through(simd, alpha, &rgb, &mut color[block], &mut transmittance[block]) {
+            if see_through(
+                simd,
+                alpha,
+                &rgb,
+                &mut color[block],
+                &mut transmittance[block],
+            ) {
                 live &= !(1 << block);
             }
         }
         for block in members(visit.core) {
             kept_transmittance.push(transmittance[block]);
-            if see_through(simd, opacity, &rgb, &mut color[block], &mut transmittance[block]) {
+            if see_through(
+                simd,
+                opacity,
+                &rgb,
+                &mut color[block],
+                &mut transmittance[block],
+            ) {
                 live &= !(1 << block);
             }
         }
@@ -310,7 +343,14 @@ impl<S: Simd> Sums<S> {
     #[inline(always)]
     fn new(simd: S) -> Self {
         let zero = f32x16::splat(simd, 0.0);
-        Self { color: [zero; 3], opacity: zero, radius: zero, shift: [zero; 2], shift_b: [zero; 2], worth: zero }
+        Self {
+            color: [zero; 3],
+            opacity: zero,
+            radius: zero,
+            shift: [zero; 2],
+            shift_b: [zero; 2],
+            worth: zero,
+        }
     }
 
     #[inline(always)]
@@ -352,7 +392,15 @@ fn back_to_front<S: Simd, const WITH_WORTH: bool>(
     scratch: &mut Scratch,
     sums: &mut [StrokeSums],
 ) -> [f32; 3] {
-    let Scratch { color: behind, transmittance, error, gradient, visits, kept_transmittance, kept_edges } = scratch;
+    let Scratch {
+        color: behind,
+        transmittance,
+        error,
+        gradient,
+        visits,
+        kept_transmittance,
+        kept_edges,
+    } = scratch;
     behind.clone_from(job.base);
     let mut base = [f32x16::splat(simd, 0.0); 3];
     for (t, g) in transmittance.iter().zip(gradient.iter()) {
@@ -369,9 +417,20 @@ fn back_to_front<S: Simd, const WITH_WORTH: bool>(
         at -= (visit.edge.count_ones() + visit.core.count_ones()) as usize;
         at_edge -= visit.edge.count_ones() as usize;
         let mut seen_through = kept_transmittance[at..].iter();
-        for ((block, kept), t) in members(visit.edge).zip(&kept_edges[at_edge..]).zip(&mut seen_through) {
+        for ((block, kept), t) in members(visit.edge)
+            .zip(&kept_edges[at_edge..])
+            .zip(&mut seen_through)
+        {
             let alpha = load(simd, &kept.alpha);
-            let d_alpha = stroke.blend::<WITH_WORTH>(simd, alpha, load(simd, t), &rgb, &mut behind[block], &gradient[block], &error[block]);
+            let d_alpha = stroke.blend::<WITH_WORTH>(
+                simd,
+                alpha,
+                load(simd, t),
+                &rgb,
+                &mut behind[block],
+                &gradient[block],
+                &error[block],
+            );
             let (h, q) = capsule.nearest(capsule.offsets(simd, block));
             let d_distance = d_alpha * load(simd, &kept.slope);
             let pull = d_distance * load(simd, &kept.inverse);
@@ -384,7 +443,15 @@ fn back_to_front<S: Simd, const WITH_WORTH: bool>(
         }
         let opacity = f32x16::splat(simd, p[OPACITY]);
         for (block, t) in members(visit.core).zip(seen_through) {
-            stroke.blend::<WITH_WORTH>(simd, opacity, load(simd, t), &rgb, &mut behind[block], &gradient[block], &error[block]);
+            stroke.blend::<WITH_WORTH>(
+                simd,
+                opacity,
+                load(simd, t),
+                &rgb,
+                &mut behind[block],
+                &gradient[block],
+                &error[block],
+            );
         }
         sums[visit.slot as usize] = stroke.finish(p[OPACITY]);
     }
@@ -432,7 +499,13 @@ impl<S: Simd> Sums<S> {
 
 /// Renders one tile.
 #[inline(always)]
-pub(super) fn forward<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scratch: &mut Scratch, out: &mut TileRgb) {
+pub(super) fn forward<S: Simd, E: SoftEdge>(
+    simd: S,
+    edge: E,
+    job: &TileJob<'_>,
+    scratch: &mut Scratch,
+    out: &mut TileRgb,
+) {
     front_to_back(simd, edge, job, scratch);
     out.clone_from(&scratch.color);
 }
@@ -449,8 +522,18 @@ pub(super) fn backward<S: Simd, E: SoftEdge, L: CanvasLoss, const WITH_WORTH: bo
 ) -> TileSums {
     front_to_back(simd, edge, job, scratch);
     let (loss, tile) = loss;
-    let value = loss.tile(tile, job.weights, &scratch.color, &mut scratch.error, &mut scratch.gradient);
+    let value = loss.tile(
+        tile,
+        job.weights,
+        &scratch.color,
+        &mut scratch.error,
+        &mut scratch.gradient,
+    );
     sums.fill([0.0; PARAMS + 1]);
     let base = back_to_front::<S, WITH_WORTH>(simd, job, scratch, sums);
-    TileSums { loss: value, base, blocks: scratch.kept_transmittance.len() as u64 }
+    TileSums {
+        loss: value,
+        base,
+        blocks: scratch.kept_transmittance.len() as u64,
+    }
 }

@@ -101,12 +101,17 @@ impl Renderer {
     /// A renderer for pictures of the size of `grid`, at SIMD level `level`, for use in the rayon
     /// pool that is current now.
     pub fn new(grid: Grid, level: Level) -> Self {
-        let tile = |tile| TileWork { weights: edge_weights(&grid, tile), ..TileWork::default() };
+        let tile = |tile| TileWork {
+            weights: edge_weights(&grid, tile),
+            ..TileWork::default()
+        };
         Self {
             grid,
             level,
             tiles: (0..grid.len()).map(tile).collect(),
-            scratch: (0..rayon::current_num_threads()).map(|_| Mutex::new(Scratch::new())).collect(),
+            scratch: (0..rayon::current_num_threads())
+                .map(|_| Mutex::new(Scratch::new()))
+                .collect(),
         }
     }
 
@@ -116,22 +121,42 @@ impl Renderer {
     }
 
     /// Renders `strokes`, back to front, on `base` into `out`.
-    pub fn forward(&mut self, strokes: &[Params], softness: Softness, base: Base<'_>, out: &mut Canvas) {
+    pub fn forward(
+        &mut self,
+        strokes: &[Params],
+        softness: Softness,
+        base: Base<'_>,
+        out: &mut Canvas,
+    ) {
         let (edge, reach) = Edge::new(softness.coverage, softness.width);
         self.bin(strokes, reach);
-        let Self { grid, level, ref mut tiles, ref scratch } = *self;
+        let Self {
+            grid,
+            level,
+            ref mut tiles,
+            ref scratch,
+        } = *self;
         let flat = flat_base(base);
-        tiles.par_iter_mut().zip(out.tiles_mut()).enumerate().with_max_len(1).for_each(|(index, (work, out))| {
-            let job = job(&grid, index, work, strokes, base, &flat, reach);
-            if job.ids.is_empty() {
-                out.clone_from(job.base);
-                return;
-            }
-            with_scratch(scratch, |scratch| match edge {
-                Edge::Smoothstep(edge) => dispatch!(level, simd => kernel::forward(simd, edge, &job, scratch, out)),
-                Edge::Tailed(edge) => dispatch!(level, simd => kernel::forward(simd, edge, &job, scratch, out)),
+        tiles
+            .par_iter_mut()
+            .zip(out.tiles_mut())
+            .enumerate()
+            .with_max_len(1)
+            .for_each(|(index, (work, out))| {
+                let job = job(&grid, index, work, strokes, base, &flat, reach);
+                if job.ids.is_empty() {
+                    out.clone_from(job.base);
+                    return;
+                }
+                with_scratch(scratch, |scratch| match edge {
+                    Edge::Smoothstep(edge) => {
+                        dispatch!(level, simd => kernel::forward(simd, edge, &job, scratch, out))
+                    }
+                    Edge::Tailed(edge) => {
+                        dispatch!(level, simd => kernel::forward(simd, edge, &job, scratch, out))
+                    }
+                });
             });
-        });
     }
 
     /// Renders `strokes` on `base` and writes the derivatives of `loss` to `gradients`.
@@ -170,7 +195,12 @@ impl Renderer {
     ) {
         let (edge, reach) = Edge::new(softness.coverage, softness.width);
         self.bin(strokes, reach);
-        let Self { grid, level, ref mut tiles, ref scratch } = *self;
+        let Self {
+            grid,
+            level,
+            ref mut tiles,
+            ref scratch,
+        } = *self;
         let flat = flat_base(base);
         tiles.par_iter_mut().enumerate().with_max_len(1).for_each(|(index, work)| {
             let mut sums = std::mem::take(&mut work.sums);
@@ -205,7 +235,9 @@ impl Renderer {
             );
             for row in rows {
                 for column in columns.clone() {
-                    self.tiles[row * self.grid.columns + column].ids.push(id as u32);
+                    self.tiles[row * self.grid.columns + column]
+                        .ids
+                        .push(id as u32);
                 }
             }
         }
@@ -219,7 +251,9 @@ impl Renderer {
         gradients.strokes.clear();
         gradients.strokes.resize(strokes, [0.0; PARAMS]);
         gradients.worth.clear();
-        gradients.worth.resize(if with_worth { strokes } else { 0 }, 0.0);
+        gradients
+            .worth
+            .resize(if with_worth { strokes } else { 0 }, 0.0);
         for work in &self.tiles {
             gradients.loss += work.total.loss;
             gradients.blocks += work.total.blocks;
@@ -273,5 +307,7 @@ fn with_scratch<R>(scratch: &[Mutex<Box<Scratch>>], f: impl FnOnce(&mut Scratch)
     // A worker never waits here: no other has its index. A panic elsewhere leaves only stale
     // numbers behind, which every tile overwrites, so a poisoned lock is as good as another.
     let index = rayon::current_thread_index().unwrap_or(0) % scratch.len();
-    f(&mut scratch[index].lock().unwrap_or_else(PoisonError::into_inner))
+    f(&mut scratch[index]
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner))
 }

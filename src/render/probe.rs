@@ -92,7 +92,10 @@ impl Template {
 
 #[inline(always)]
 fn cover<S: Simd>(simd: S, shape: &Params) -> Vec<(usize, Lanes)> {
-    let reach = Reach { outside: 0.5, inside: f32::INFINITY };
+    let reach = Reach {
+        outside: 0.5,
+        inside: f32::INFINITY,
+    };
     let edge = Smoothstep::new(1.0);
     let capsule = Capsule::new(simd, shape, [0.0; 2]);
     let (touched, _) = capsule.blocks(simd, shape[RADIUS], reach);
@@ -117,12 +120,22 @@ pub struct Probe {
 }
 
 /// Probes all `templates` on `patch`; returns the index of the one that gains most, and its probe.
-pub fn best(level: Level, templates: &[Template], patch: &Patch, least_opacity: f32) -> Option<(usize, Probe)> {
+pub fn best(
+    level: Level,
+    templates: &[Template],
+    patch: &Patch,
+    least_opacity: f32,
+) -> Option<(usize, Probe)> {
     dispatch!(level, simd => best_of(simd, templates, patch, least_opacity))
 }
 
 #[inline(always)]
-fn best_of<S: Simd>(simd: S, templates: &[Template], patch: &Patch, least_opacity: f32) -> Option<(usize, Probe)> {
+fn best_of<S: Simd>(
+    simd: S,
+    templates: &[Template],
+    patch: &Patch,
+    least_opacity: f32,
+) -> Option<(usize, Probe)> {
     let mut best: Option<(usize, Probe)> = None;
     for (index, template) in templates.iter().enumerate() {
         let probe = sums(simd, template, patch).solve(least_opacity);
@@ -161,25 +174,45 @@ fn sums<S: Simd>(simd: S, template: &Template, patch: &Patch) -> Sums {
             z = z + me * c;
         }
     }
-    Sums { s: total(s), x: x.map(total), y: y.map(total), q: total(q), z: total(z) }
+    Sums {
+        s: total(s),
+        x: x.map(total),
+        y: y.map(total),
+        q: total(q),
+        z: total(z),
+    }
 }
 
 impl Sums {
     fn solve(&self, least_opacity: f32) -> Probe {
         if self.s < 1e-3 {
-            return Probe { color: [0.0; 3], opacity: 1.0, gain: 0.0 };
+            return Probe {
+                color: [0.0; 3],
+                opacity: 1.0,
+                gain: 0.0,
+            };
         }
         let dot = |a: &[f32; 3], b: &[f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let spread = self.q - dot(&self.x, &self.x) / self.s;
         let pull = dot(&self.x, &self.y) / self.s - self.z;
         // On a flat canvas opacity and colour say the same, and the opaque stroke is preferred.
-        let free = if spread > 1e-4 * self.s { pull / spread } else { 1.0 };
+        let free = if spread > 1e-4 * self.s {
+            pull / spread
+        } else {
+            1.0
+        };
         let opacity = free.clamp(least_opacity, 1.0);
-        let color = [0, 1, 2].map(|k| ((self.y[k] + opacity * self.x[k]) / (self.s * opacity)).clamp(0.0, 1.0));
+        let color = [0, 1, 2]
+            .map(|k| ((self.y[k] + opacity * self.x[k]) / (self.s * opacity)).clamp(0.0, 1.0));
         let u = color.map(|c| c * opacity);
         let gain = 2.0 * (dot(&u, &self.y) - opacity * self.z)
-            - (dot(&u, &u) * self.s - 2.0 * opacity * dot(&u, &self.x) + opacity * opacity * self.q);
-        Probe { color, opacity, gain }
+            - (dot(&u, &u) * self.s - 2.0 * opacity * dot(&u, &self.x)
+                + opacity * opacity * self.q);
+        Probe {
+            color,
+            opacity,
+            gain,
+        }
     }
 }
 

@@ -28,7 +28,17 @@ pub type Params = [f32; PARAMS];
 pub fn pack(stroke: &Stroke) -> Params {
     let (a, b) = stroke.shape.ends();
     let [red, green, blue] = stroke.color;
-    [a.x, a.y, b.x, b.y, stroke.radius, red, green, blue, stroke.opacity]
+    [
+        a.x,
+        a.y,
+        b.x,
+        b.y,
+        stroke.radius,
+        red,
+        green,
+        blue,
+        stroke.opacity,
+    ]
 }
 
 /// The stroke of these numbers, always a capsule.

@@ -1,0 +1,274 @@
+//! The bytes of a picture file as an [`Image`].
+
+use std::cell::Cell;
+use std::fs::File;
+use std::io::{self, BufRead, Cursor, Read, Seek, SeekFrom};
+use std::path::Path;
+
+use ::image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
+
+use super::{Image, header};
+use crate::error::{Error, ErrorKind, Result};
+
+/// What a picture file may cost. Checked from the header, before memory is spent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Limits {
+    /// Most pixels, width × height.
+    pub max_pixels: u64,
+    /// Most bytes of the file, and most bytes of the decoded samples.
+    pub max_bytes: u64,
+}
+
+impl Default for Limits {
+    /// 128 Mpx and 1 GiB: a poster at 300 dpi passes, a decompression bomb does not. The planes of
+    /// an [`Image`] at the limit take 1.5 GiB.
+    fn default() -> Self {
+        Self {
+            max_pixels: 1 << 27,
+            max_bytes: 1 << 30,
+        }
+    }
+}
+
+/// Reads and decodes the file at `path`.
+pub(super) fn open(path: &Path, limits: Limits) -> Result<Image> {
+    read(path, limits)
+        .and_then(|bytes| decode(&bytes, limits))
+        .map_err(|error| error.within(path.display()))
+}
+
+fn read(path: &Path, limits: Limits) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    // One byte more than allowed tells a file at the limit from an endless one.
+    let mut input = File::open(path)
+        .map_err(unreadable)?
+        .take(limits.max_bytes.saturating_add(1));
+    input.read_to_end(&mut bytes).map_err(unreadable)?;
+    Ok(bytes)
+}
+
+fn unreadable(error: io::Error) -> Error {
+    let remedy = match error.kind() {
+        io::ErrorKind::NotFound => "no such file: check the name",
+        io::ErrorKind::PermissionDenied => "permission denied: make the file readable",
+        io::ErrorKind::IsADirectory => "is a directory: name a picture file",
+        _ => return Error::new(ErrorKind::Io, format!("cannot be read: {error}")).caused_by(error),
+    };
+    Error::new(ErrorKind::Io, remedy).caused_by(error)
+}
+
+/// Decodes the bytes of a picture file.
+pub(super) fn decode(bytes: &[u8], limits: Limits) -> Result<Image> {
+    let format = format(bytes, limits)?;
+    if let Some((width, height)) = header::size(bytes, format) {
+        check_size(width, height, limits)?;
+    }
+    if format == ImageFormat::Jpeg && !header::jpeg_is_whole(bytes) {
+        return Err(truncated(format));
+    }
+    let ran_out = Cell::new(false);
+    let watched = Watched {
+        inner: Cursor::new(bytes),
+        ran_out: &ran_out,
+    };
+    let picture = samples(watched, format, limits).map_err(|error| {
+        // The JPEG decoder always reads to the end.
+        if ran_out.get() && format != ImageFormat::Jpeg {
+            return truncated(format).caused_by(error);
+        }
+        refused(error, format)
+    })??;
+    planar(picture)
+}
+
+/// The format that the bytes begin like.
+fn format(bytes: &[u8], limits: Limits) -> Result<ImageFormat> {
+    if bytes.is_empty() {
+        return Err(bad(
+            "the file is empty: give a PNG, JPEG, WebP, GIF, BMP or TIFF picture",
+        ));
+    }
+    if bytes.len() as u64 > limits.max_bytes {
+        return Err(bad(format!(
+            "the file is longer than {} MiB: give a smaller picture",
+            limits.max_bytes >> 20
+        )));
+    }
+    ::image::guess_format(bytes)
+        .ok()
+        .filter(|format| format.reading_enabled())
+        .ok_or_else(|| {
+            bad("not a picture that can be read: give a PNG, JPEG, WebP, GIF, BMP or TIFF file")
+        })
+}
+
+fn check_size(width: u32, height: u32, limits: Limits) -> Result<()> {
+    if width == 0 || height == 0 {
+        return Err(bad(format!(
+            "the picture has no pixels ({width}×{height}): give one of at least 1×1"
+        )));
+    }
+    if u64::from(width) * u64::from(height) > limits.max_pixels {
+        let most = limits.max_pixels;
+        return Err(bad(format!(
+            "the picture is too large ({width}×{height} px, at most {most} pixels): scale it down"
+        )));
+    }
+    Ok(())
+}
+
+/// The decoded samples, turned as EXIF asks.
+fn samples(
+    bytes: Watched<'_>,
+    format: ImageFormat,
+    limits: Limits,
+) -> Result<Result<DynamicImage>, ImageError> {
+    let mut allowed = ::image::Limits::no_limits();
+    allowed.max_alloc = Some(limits.max_bytes);
+    let mut reader = ImageReader::with_format(bytes, format);
+    reader.limits(allowed.clone());
+    let mut decoder = reader.into_decoder()?;
+    let (width, height) = decoder.dimensions();
+    if let Err(error) = check_size(width, height, limits) {
+        return Ok(Err(error));
+    }
+    allowed.reserve(decoder.total_bytes())?;
+    decoder.set_limits(allowed)?;
+    // A picture whose metadata is damaged is still a picture.
+    let orientation = decoder
+        .orientation()
+        .unwrap_or(::image::metadata::Orientation::NoTransforms);
+    let mut picture = DynamicImage::from_decoder(decoder)?;
+    picture.apply_orientation(orientation);
+    Ok(Ok(picture))
+}
+
+fn bad(message: impl Into<String>) -> Error {
+    Error::new(ErrorKind::Picture, message)
+}
+
+fn truncated(format: ImageFormat) -> Error {
+    bad(format!(
+        "the {} file is cut short: get a complete copy",
+        name(format)
+    ))
+}
+
+fn name(format: ImageFormat) -> String {
+    format!("{format:?}").to_uppercase()
+}
+
+/// What the decoder's refusal means for the owner of the file.
+fn refused(error: ImageError, format: ImageFormat) -> Error {
+    let message = match &error {
+        ImageError::Limits(_) => "the picture needs too much memory: scale it down".into(),
+        ImageError::Unsupported(e) => {
+            format!(
+                "this kind of {} cannot be read ({e}): save it as an ordinary PNG",
+                name(format)
+            )
+        }
+        e => format!(
+            "the {} file is damaged ({}): get an intact copy",
+            name(format),
+            one_line(e)
+        ),
+    };
+    bad(message).caused_by(error)
+}
+
+fn one_line(error: &ImageError) -> String {
+    error
+        .to_string()
+        .split_whitespace()
+        .collect::<Vec<_>>()
+        .join(" ")
+}
+
+/// The bytes of a file, and whether a reader asked for more than there are: the decoders disagree
+/// in how they report a file that is cut short, but all of them ask.
+struct Watched<'a> {
+    inner: Cursor<&'a [u8]>,
+    ran_out: &'a Cell<bool>,
+}
+
+impl Read for Watched<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.inner.read(buffer)?;
+        if count == 0 && !buffer.is_empty() {
+            self.ran_out.set(true);
+        }
+        Ok(count)
+    }
+}
+
+impl BufRead for Watched<'_> {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        let rest = self.inner.fill_buf()?;
+        if rest.is_empty() {
+            self.ran_out.set(true);
+        }
+        Ok(rest)
+    }
+
+    fn consume(&mut self, amount: usize) {
+        self.inner.consume(amount);
+    }
+}
+
+impl Seek for Watched<'_> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.inner.seek(to)
+    }
+}
+
+fn planar(picture: DynamicImage) -> Result<Image> {
+    let (width, height) = (picture.width() as usize, picture.height() as usize);
+    let channels = usize::from(picture.color().channel_count());
+    let bits8 = |v: u8| f32::from(v) / 255.0;
+    let bits16 = |v: u16| f32::from(v) / 65535.0;
+    let float = |v: f32| if v.is_nan() { 0.0 } else { v.clamp(0.0, 1.0) };
+    let (planes, alpha) = match &picture {
+        DynamicImage::ImageLuma8(p) => split(p.as_raw(), channels, bits8),
+        DynamicImage::ImageLumaA8(p) => split(p.as_raw(), channels, bits8),
+        DynamicImage::ImageRgb8(p) => split(p.as_raw(), channels, bits8),
+        DynamicImage::ImageRgba8(p) => split(p.as_raw(), channels, bits8),
+        DynamicImage::ImageLuma16(p) => split(p.as_raw(), channels, bits16),
+        DynamicImage::ImageLumaA16(p) => split(p.as_raw(), channels, bits16),
+        DynamicImage::ImageRgb16(p) => split(p.as_raw(), channels, bits16),
+        DynamicImage::ImageRgba16(p) => split(p.as_raw(), channels, bits16),
+        DynamicImage::ImageRgb32F(p) => split(p.as_raw(), channels, float),
+        DynamicImage::ImageRgba32F(p) => split(p.as_raw(), channels, float),
+        other => split(other.to_rgba32f().as_raw(), 4, float),
+    };
+    let image = Image::new(width, height, planes)?;
+    match alpha {
+        Some(alpha) => image.with_alpha(alpha),
+        None => Ok(image),
+    }
+}
+
+type Planes = ([Vec<f32>; 3], Option<Vec<f32>>);
+
+/// Interleaved samples (grey, grey and alpha, RGB, or RGBA) as planes.
+fn split<T: Copy>(samples: &[T], channels: usize, value: impl Fn(T) -> f32) -> Planes {
+    let plane = |c: usize| {
+        samples
+            .iter()
+            .skip(c)
+            .step_by(channels)
+            .map(|&v| value(v))
+            .collect::<Vec<_>>()
+    };
+    let planes = if channels < 3 {
+        let grey = plane(0);
+        [grey.clone(), grey.clone(), grey]
+    } else {
+        [plane(0), plane(1), plane(2)]
+    };
+    let alpha = channels.is_multiple_of(2).then(|| plane(channels - 1));
+    (planes, alpha)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,133 @@
+//! What the first bytes of a picture file say, where the decoders are silent or vague: a size of
+//! zero, and whether a JPEG is whole.
+
+use ::image::ImageFormat;
+
+/// Width and height as written in the header, where their place is fixed or easily found.
+pub(super) fn size(bytes: &[u8], format: ImageFormat) -> Option<(u32, u32)> {
+    match format {
+        ImageFormat::Png => Some((be32(bytes, 16)?, be32(bytes, 20)?)),
+        ImageFormat::Gif => Some((le16(bytes, 6)?, le16(bytes, 8)?)),
+        ImageFormat::Bmp => bmp_size(bytes),
+        ImageFormat::Jpeg => jpeg_size(bytes),
+        _ => None,
+    }
+}
+
+/// Whether the JPEG's scans reach their end-of-image marker. The decoder fills what is missing
+/// with grey and says nothing.
+pub(super) fn jpeg_is_whole(bytes: &[u8]) -> bool {
+    segments(bytes).any(|segment| segment.marker == 0xd9)
+}
+
+fn bmp_size(bytes: &[u8]) -> Option<(u32, u32)> {
+    match le32(bytes, 14)? {
+        // The oldest header has 16-bit sides.
+        12 => Some((le16(bytes, 18)?, le16(bytes, 20)?)),
+        // A negative height means top-down rows.
+        _ => Some((le32(bytes, 18)?, (le32(bytes, 22)? as i32).unsigned_abs())),
+    }
+}
+
+fn jpeg_size(bytes: &[u8]) -> Option<(u32, u32)> {
+    let is_frame = |m: u8| (0xc0..=0xcf).contains(&m) && !matches!(m, 0xc4 | 0xc8 | 0xcc);
+    let frame = segments(bytes).find(|segment| is_frame(segment.marker))?;
+    Some((be16(bytes, frame.at + 7)?, be16(bytes, frame.at + 5)?))
+}
+
+/// A marker segment of a JPEG: its marker and where its 0xff stands.
+struct Segment {
+    marker: u8,
+    at: usize,
+}
+
+/// The marker segments of a JPEG in order, scan data skipped, up to end of image or of bytes.
+fn segments(bytes: &[u8]) -> impl Iterator<Item = Segment> + '_ {
+    let mut at = 2;
+    std::iter::from_fn(move || {
+        let start = next_marker(bytes, at)?;
+        let marker = bytes[start + 1];
+        at = match marker {
+            0xd9 => bytes.len(),
+            // Restart markers, TEM and SOI stand alone.
+            0x01 | 0xd0..=0xd8 => start + 2,
+            _ => start + 2 + be16(bytes, start + 2)? as usize,
+        };
+        Some(Segment { marker, at: start })
+    })
+}
+
+/// Where the next marker stands at or after `from`: 0xff and a byte that is neither fill (0xff)
+/// nor stuffing (0x00).
+fn next_marker(bytes: &[u8], from: usize) -> Option<usize> {
+    let pairs = bytes.get(from..)?.windows(2);
+    let found = pairs
+        .into_iter()
+        .position(|p| p[0] == 0xff && !matches!(p[1], 0x00 | 0xff))?;
+    Some(from + found)
+}
+
+fn be32(bytes: &[u8], at: usize) -> Option<u32> {
+    bytes
+        .get(at..)?
+        .first_chunk()
+        .map(|b| u32::from_be_bytes(*b))
+}
+
+fn le32(bytes: &[u8], at: usize) -> Option<u32> {
+    bytes
+        .get(at..)?
+        .first_chunk()
+        .map(|b| u32::from_le_bytes(*b))
+}
+
+fn be16(bytes: &[u8], at: usize) -> Option<u32> {
+    bytes
+        .get(at..)?
+        .first_chunk()
+        .map(|b| u16::from_be_bytes(*b).into())
+}
+
+fn le16(bytes: &[u8], at: usize) -> Option<u32> {
+    bytes
+        .get(at..)?
+        .first_chunk()
+        .map(|b| u16::from_le_bytes(*b).into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ::image::{DynamicImage, RgbImage};
+
+    fn file(format: ImageFormat) -> Vec<u8> {
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        let picture =
+            RgbImage::from_fn(19, 11, |x, y| ::image::Rgb([x as u8 * 13, y as u8 * 20, 7]));
+        DynamicImage::from(picture)
+            .write_to(&mut bytes, format)
+            .unwrap();
+        bytes.into_inner()
+    }
+
+    #[test]
+    fn sizes_are_found_where_the_formats_put_them() {
+        for format in [
+            ImageFormat::Png,
+            ImageFormat::Gif,
+            ImageFormat::Bmp,
+            ImageFormat::Jpeg,
+        ] {
+            assert_eq!(size(&file(format), format), Some((19, 11)), "{format:?}");
+        }
+    }
+
+    #[test]
+    fn no_cut_of_a_jpeg_is_whole() {
+        let bytes = file(ImageFormat::Jpeg);
+        assert!(jpeg_is_whole(&bytes));
+        for cut in 0..bytes.len() {
+            assert!(!jpeg_is_whole(&bytes[..cut]), "{cut} of {}", bytes.len());
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! Scenes as SVG text and back: [`write`] and [`read`]. The one door of `quick-xml`.
+//!
+//! The dialect is small on purpose, so that every renderer agrees on it and the file stays easy to
+//! edit:
+//!
+//! ```text
+//! <svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="…" width="W" height="H" viewBox="0 0 W H">
+//! <rect width="W" height="H" fill="#rrggbb"/>                        the background, if any
+//! <g id="stage-1" inkscape:groupmode="layer" inkscape:label="Stage 1" fill="none" stroke-linecap="round">
+//! <title>Stage 1: 2 strokes</title>
+//! <path d="M1.5 2L30.25 4" stroke="#rrggbb" stroke-width="2.5"/>      a capsule
+//! <path d="M1.5 2h0.01" stroke="#rrggbb" stroke-width="8" stroke-opacity="0.502"/>   a dot
+//! </g>
+//! </svg>
+//! ```
+//!
+//! - `width` and `height` equal the `viewBox`: one unit is one px of the picture.
+//! - A path's second point is absolute (`L`) or relative (`l`), whichever is shorter.
+//! - A dot is a segment of 0.01, because many programs drop a segment of length 0 although the
+//!   specification draws it. `h` marks a dot and nothing else. The 0.01 does not follow the
+//!   precision of the other numbers: it neither shows nor vanishes at any of them.
+//! - `stroke-opacity` is k/255 to 3 decimals, which k survives; it is left out at 1.
+//! - Numbers are decimals without exponent; `0.5`, never `.5`.
+//! - No dates, no random names: equal scenes give equal bytes.
+//!
+//! Reading gives the scene as it was quantised, to the bit:
+//!
+//! ```
+//! use strokefit::scene::{Scene, Shape, Stage, Stroke};
+//! use strokefit::svg::{self, WriteOptions};
+//!
+//! let shape = Shape::capsule([1.25, 2.0].into(), [30.0, 4.0].into());
+//! let stroke = Stroke { shape, radius: 1.5, color: [1.0, 0.4, 0.0], opacity: 0.5 };
+//! let page = Scene::empty(40, 10, Some([1.0; 3]));
+//! let scene = Scene { stages: vec![Stage { strokes: vec![stroke] }], ..page };
+//!
+//! let text = svg::write(&scene, &WriteOptions { precision: 2 });
+//! assert!(text.contains(r##"<path d="M1.25 2L30 4" stroke="#ff6600" stroke-width="3" stroke-opacity="0.502"/>"##));
+//! assert_eq!(svg::read(&text)?, scene.quantized(2).0);
+//! # Ok::<(), strokefit::Error>(())
+//! ```
+
+mod dialect;
+mod read;
+mod write;
+
+pub use read::read;
+pub use write::{WriteOptions, stroke_bytes, write};
+
+#[cfg(test)]
+mod tests;
