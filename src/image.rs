@@ -56,6 +56,39 @@ impl Image {
         })
     }
 
+    /// The picture at half the size (rounded up), each pixel the mean of up to 2×2; alpha is left out.
+    pub(crate) fn halved(&self) -> Self {
+        let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
+        let half = |plane: &Vec<f32>| {
+            let mut out = Vec::with_capacity(width * height);
+            for pair in plane.chunks(2 * self.width) {
+                let (top, bottom) = pair.split_at(self.width);
+                let bottom = if bottom.is_empty() { top } else { bottom };
+                let mean = |row: &[f32]| row.iter().sum::<f32>() / row.len() as f32;
+                let columns = top.chunks(2).zip(bottom.chunks(2));
+                out.extend(columns.map(|(top, bottom)| (mean(top) + mean(bottom)) / 2.0));
+            }
+            out
+        };
+        Self {
+            width,
+            height,
+            planes: [0, 1, 2].map(|c| half(&self.planes[c])),
+            alpha: None,
+        }
+    }
+
+    /// The same without checks, for callers whose sizes agree by construction.
+    pub(crate) fn from_planes(width: usize, height: usize, planes: [Vec<f32>; 3]) -> Self {
+        debug_assert!(planes.iter().all(|plane| plane.len() == width * height));
+        Self {
+            width,
+            height,
+            planes,
+            alpha: None,
+        }
+    }
+
     /// A picture of one colour.
     ///
     /// # Errors

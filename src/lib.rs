@@ -4,10 +4,15 @@ pub mod coverage;
 mod error;
 pub mod fit;
 pub mod image;
+pub mod loss;
 pub mod math;
 pub mod metrics;
+pub mod optim;
+pub mod render;
 pub mod rng;
 pub mod scene;
+pub mod sdf;
+pub mod seed;
 pub mod svg;
 pub mod verify;
 

@@ -1,7 +1,43 @@
 //! Geometry words of the crate: the one door of `nalgebra`.
 
+pub use nalgebra::{Point2, Vector2};
+
 /// A point of the picture plane in px; x to the right, y down, pixel centres at +0.5.
-pub type Point = nalgebra::Point2<f32>;
+pub type Point = Point2<f32>;
 
 /// A displacement in the picture plane in px.
-pub type Vector = nalgebra::Vector2<f32>;
+pub type Vector = Vector2<f32>;
+
+/// The numbers that the mathematics of the crate is written in: `f32` in the renderer and the fit,
+/// `f64` in the reference and the experiments.
+pub trait Real: nalgebra::RealField + Copy {
+    /// `x`, rounded to this type.
+    fn of(x: f64) -> Self;
+
+    /// This number, exactly.
+    fn to_f64(self) -> f64;
+}
+
+impl Real for f32 {
+    #[inline]
+    fn of(x: f64) -> Self {
+        x as Self
+    }
+
+    #[inline]
+    fn to_f64(self) -> f64 {
+        f64::from(self)
+    }
+}
+
+impl Real for f64 {
+    #[inline]
+    fn of(x: f64) -> Self {
+        x
+    }
+
+    #[inline]
+    fn to_f64(self) -> f64 {
+        self
+    }
+}

@@ -7,7 +7,9 @@
 
 /// 64 random bits for the key `(seed, stage, i, k)`.
 pub fn bits(seed: u64, stage: u64, i: u64, k: u64) -> u64 {
-    [stage, i, k].into_iter().fold(mix(seed), |hash, word| mix(hash ^ mix(word)))
+    [stage, i, k]
+        .into_iter()
+        .fold(mix(seed), |hash, word| mix(hash ^ mix(word)))
 }
 
 /// A uniform number in `0.0 .. 1.0` for the key `(seed, stage, i, k)`, a multiple of 2⁻²⁴.
@@ -44,7 +46,10 @@ mod tests {
     #[test]
     fn normals_have_unit_variance() {
         let n = 20_000;
-        let variance = (0..n).map(|i| f64::from(normal(7, 1, i, 0)).powi(2)).sum::<f64>() / n as f64;
+        let variance = (0..n)
+            .map(|i| f64::from(normal(7, 1, i, 0)).powi(2))
+            .sum::<f64>()
+            / n as f64;
         assert!((variance - 1.0).abs() < 0.05, "variance {variance}");
     }
 }

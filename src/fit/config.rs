@@ -2,7 +2,9 @@
 
 use std::time::Duration;
 
+use super::recipe::Recipe;
 use crate::coverage::CoverageSchedule;
+use crate::error::{Error, ErrorKind, Result};
 use crate::scene::Rgb;
 
 /// What to fit. Equal configurations of equal pictures give equal bytes.
@@ -26,6 +28,8 @@ pub struct Config {
     pub background: Background,
     /// Key of every random draw.
     pub seed: u64,
+    /// The numbers behind the preset, when they are to be others than [`Recipe::of`] gives.
+    pub recipe: Option<Recipe>,
 }
 
 impl Default for Config {
@@ -40,6 +44,7 @@ impl Default for Config {
             precision: 2,
             background: Background::Auto,
             seed: 0,
+            recipe: None,
         }
     }
 }
@@ -86,4 +91,19 @@ pub enum Background {
 pub struct Execution {
     /// Worker threads; all cores when `None`.
     pub threads: Option<usize>,
+}
+
+impl Execution {
+    /// The worker threads.
+    pub(super) fn pool(&self) -> Result<rayon::ThreadPool> {
+        let threads = self.threads.unwrap_or(0);
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .map_err(|cause| {
+                let message =
+                    format!("cannot start {threads} worker threads: ask for fewer with --threads");
+                Error::new(ErrorKind::Config, message).caused_by(cause)
+            })
+    }
 }

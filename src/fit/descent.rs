@@ -1,0 +1,111 @@
+//! Gradient descent on the numbers of strokes: one step, its rates and its limits.
+
+use super::objective::Objective;
+use super::recipe::Rates;
+use crate::optim::{Adam, AdamParams, Optimizer};
+use crate::render::{
+    AX, BY, Base, Gradients, OPACITY, PARAMS, Params, RADIUS, RED, Renderer, Softness,
+};
+
+/// Least radius of a stroke, px: widths of 1 px and less are drawn as hairlines, with other ink.
+pub(super) const LEAST_RADIUS: f32 = 0.51;
+
+/// The domain of each parameter; a step that leaves it is brought back.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Limits {
+    /// Ends stay within this many px around the picture.
+    pub(super) margin: f32,
+    pub(super) width: f32,
+    pub(super) height: f32,
+    pub(super) least_opacity: f32,
+}
+
+impl Limits {
+    pub(super) fn new(width: usize, height: usize, least_opacity: f32) -> Self {
+        Self {
+            margin: 8.0,
+            width: width as f32,
+            height: height as f32,
+            least_opacity,
+        }
+    }
+
+    fn largest_radius(&self) -> f32 {
+        self.width.max(self.height)
+    }
+
+    /// Brings `p` into the domain. Numbers that are not finite are left; the stroke is dropped later.
+    pub(super) fn apply(&self, p: &mut Params) {
+        let far = [self.width + self.margin, self.height + self.margin];
+        for k in AX..=BY {
+            p[k] = p[k].clamp(-self.margin, far[k % 2]);
+        }
+        p[RADIUS] = p[RADIUS].clamp(LEAST_RADIUS, self.largest_radius());
+        for color in &mut p[RED..OPACITY] {
+            *color = color.clamp(0.0, 1.0);
+        }
+        p[OPACITY] = p[OPACITY].clamp(self.least_opacity, 1.0);
+    }
+}
+
+/// The optimiser of a set of strokes, with its memory.
+pub(super) struct Descent {
+    adam: Adam<f32>,
+    rates: Params,
+    scales: Vec<f32>,
+    limits: Limits,
+    pub(super) gradients: Gradients,
+}
+
+impl Descent {
+    pub(super) fn new(strokes: usize, rates: Rates, limits: Limits) -> Self {
+        let Rates {
+            position,
+            radius,
+            color,
+            opacity,
+            ..
+        } = rates;
+        let rates = [
+            position, position, position, position, radius, color, color, color, opacity,
+        ];
+        Self {
+            adam: Adam::new(strokes * PARAMS, ADAM),
+            rates,
+            scales: rates.repeat(strokes),
+            limits,
+            gradients: Gradients::default(),
+        }
+    }
+
+    /// One step of all `strokes` down the gradient of `objective`, at `rate` times the rates.
+    pub(super) fn step(
+        &mut self,
+        renderer: &mut Renderer,
+        strokes: &mut [Params],
+        softness: Softness,
+        base: Base<'_>,
+        objective: &Objective<'_>,
+        rate: f32,
+    ) {
+        renderer.backward(strokes, softness, base, objective, &mut self.gradients);
+        let flat = self.gradients.strokes.as_flattened();
+        self.adam
+            .step_scaled(strokes.as_flattened_mut(), flat, rate, &self.scales);
+        for p in strokes {
+            self.limits.apply(p);
+        }
+    }
+
+    /// Follows a rearrangement of the strokes: stroke `i` was `sources[i]`, or is new.
+    pub(super) fn rearrange(&mut self, sources: &[Option<usize>]) {
+        self.adam.rearrange(PARAMS, sources);
+        self.scales = self.rates.repeat(sources.len());
+    }
+}
+
+/// Short memory for the squares: a fit is tens to hundreds of steps long.
+const ADAM: AdamParams = AdamParams {
+    betas: [0.9, 0.99],
+    eps: 1e-10,
+};

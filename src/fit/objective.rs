@@ -1,0 +1,52 @@
+//! What a fit minimises: a loss over all pixels against a target, tile by tile.
+
+use crate::loss::Loss;
+use crate::render::{Canvas, CanvasLoss, Lanes, TileRgb};
+
+/// The mean of `loss` over width·height·3 values against `target`.
+#[derive(Debug, Clone, Copy)]
+pub struct Objective<'a> {
+    loss: Loss,
+    target: &'a Canvas,
+    /// 1/(width·height·3).
+    scale: f32,
+}
+
+impl<'a> Objective<'a> {
+    pub fn new(loss: Loss, target: &'a Canvas) -> Self {
+        let grid = target.grid();
+        Self {
+            loss,
+            target,
+            scale: 1.0 / (grid.width * grid.height * 3) as f32,
+        }
+    }
+}
+
+impl CanvasLoss for Objective<'_> {
+    #[inline(always)]
+    fn tile(
+        &self,
+        tile: usize,
+        weights: &[Lanes; 64],
+        canvas: &TileRgb,
+        error: &mut TileRgb,
+        gradient: &mut TileRgb,
+    ) -> f64 {
+        let target = &self.target.tiles()[tile];
+        let mut sums = Lanes::splat(0.0);
+        for (block, weight) in weights.iter().enumerate() {
+            for channel in 0..3 {
+                let (c, t) = (&canvas[block][channel], &target[block][channel]);
+                let (e, g) = (&mut error[block][channel], &mut gradient[block][channel]);
+                for lane in 0..weight.0.len() {
+                    let w = weight.0[lane];
+                    e.0[lane] = (c.0[lane] - t.0[lane]) * w;
+                    sums.0[lane] += self.loss.value(e.0[lane]);
+                    g.0[lane] = self.loss.derivative(e.0[lane]) * self.scale;
+                }
+            }
+        }
+        sums.0.iter().map(|&s| f64::from(s)).sum::<f64>() * f64::from(self.scale)
+    }
+}

@@ -1,0 +1,232 @@
+//! Adam: steps of the learning rate's size, along the mean gradient over its root mean square.
+//!
+//! ```text
+//! m ← β₁m + (1−β₁)g          v ← β₂v + (1−β₂)g²
+//! x ← x − rate · m/(1−β₁ᵗ) / (√(v/(1−β₂ᵗ)) + ε)
+//! ```
+//!
+//! `1−βᵗ` corrects the bias of averages that start from 0. It is the same average taken of the
+//! constant 1, and is kept as such for every value, so that values of different age `t` live in one
+//! slice.
+//!
+//! Domain: finite gradients, `0 ≤ β < 1`, `ε > 0`. A gradient that is always 0 moves nothing.
+//!
+//! Source: Kingma & Ba, "Adam: a method for stochastic optimization", ICLR 2015, algorithm 1, with
+//! ε outside of the root and of the correction, as `torch.optim.Adam` has it.
+
+use std::ops::Range;
+
+use super::{Optimizer, clip};
+use crate::math::Real;
+
+/// What Adam needs beside the learning rate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AdamParams {
+    /// Decay of the mean gradient and of the mean squared gradient, each in 0..1.
+    pub betas: [f64; 2],
+    /// Added to the root mean square.
+    pub eps: f64,
+}
+
+impl Default for AdamParams {
+    fn default() -> Self {
+        Self {
+            betas: [0.9, 0.999],
+            eps: 1e-8,
+        }
+    }
+}
+
+/// The Adam optimiser.
+#[derive(Debug, Clone)]
+pub struct Adam<T> {
+    params: AdamParams,
+    /// The moving averages of the gradient, of its square, and of 1 with either decay.
+    mean: Vec<T>,
+    square: Vec<T>,
+    mean_of_one: Vec<T>,
+    square_of_one: Vec<T>,
+}
+
+impl<T: Real> Adam<T> {
+    /// An optimiser of `len` values.
+    pub fn new(len: usize, params: AdamParams) -> Self {
+        let zeros = || vec![T::zero(); len];
+        Self {
+            params,
+            mean: zeros(),
+            square: zeros(),
+            mean_of_one: zeros(),
+            square_of_one: zeros(),
+        }
+    }
+
+    /// Follows a rearrangement of the values in groups of `group`: group `i` was `sources[i]`, or is
+    /// new and has no past.
+    pub fn rearrange(&mut self, group: usize, sources: &[Option<usize>]) {
+        for state in [
+            &mut self.mean,
+            &mut self.square,
+            &mut self.mean_of_one,
+            &mut self.square_of_one,
+        ] {
+            let mut moved = vec![T::zero(); group * sources.len()];
+            for (to, source) in moved.chunks_exact_mut(group).zip(sources) {
+                if let Some(from) = source.and_then(|i| state.get(i * group..(i + 1) * group)) {
+                    to.copy_from_slice(from);
+                }
+            }
+            *state = moved;
+        }
+    }
+
+    /// One step; value `i` at the learning rate `rate(i)`, after it was multiplied by `keep(i)`.
+    #[inline]
+    pub(super) fn update(
+        &mut self,
+        params: &mut [T],
+        gradients: &[T],
+        rate: impl Fn(usize) -> T,
+        keep: impl Fn(usize) -> T,
+    ) {
+        let [keep1, keep2] = self.params.betas.map(T::of);
+        let [take1, take2] = self.params.betas.map(|beta| T::of(1.0 - beta));
+        let eps = T::of(self.params.eps);
+        // Equal lengths known beforehand are what lets the compiler vectorise the loop.
+        let n = self.mean.len().min(params.len()).min(gradients.len());
+        let (params, gradients) = (&mut params[..n], &gradients[..n]);
+        let (mean, square) = (&mut self.mean[..n], &mut self.square[..n]);
+        let mean_of_one = &mut self.mean_of_one[..n];
+        let square_of_one = &mut self.square_of_one[..n];
+        for i in 0..n {
+            let g = gradients[i];
+            mean[i] += take1 * (g - mean[i]);
+            square[i] = keep2 * square[i] + take2 * g * g;
+            mean_of_one[i] = keep1 * mean_of_one[i] + take1;
+            square_of_one[i] = keep2 * square_of_one[i] + take2;
+            let scale = mean_of_one[i] * ((square[i] / square_of_one[i]).sqrt() + eps);
+            params[i] = params[i] * keep(i) - rate(i) * mean[i] / scale;
+        }
+    }
+}
+
+impl<T: Real> Optimizer<T> for Adam<T> {
+    fn step(&mut self, params: &mut [T], gradients: &[T], rate: T) {
+        self.update(params, gradients, |_| rate, |_| T::one());
+    }
+
+    fn step_scaled(&mut self, params: &mut [T], gradients: &[T], rate: T, scales: &[T]) {
+        let n = scales.len().min(params.len());
+        let scales = &scales[..n];
+        self.update(
+            &mut params[..n],
+            gradients,
+            |i| rate * scales[i],
+            |_| T::one(),
+        );
+    }
+
+    fn reset(&mut self, range: Range<usize>) {
+        let range = clip(range, self.mean.len());
+        for state in [
+            &mut self.mean,
+            &mut self.square,
+            &mut self.mean_of_one,
+            &mut self.square_of_one,
+        ] {
+            state[range.clone()].fill(T::zero());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The formulas at the head of the file, for one value, with powers instead of averages of 1.
+    fn by_the_book(x: f64, gradients: &[f64], rate: f64, params: AdamParams) -> f64 {
+        let [b1, b2] = params.betas;
+        let (mut x, mut m, mut v) = (x, 0.0, 0.0);
+        for (t, g) in (1..).zip(gradients) {
+            m = b1 * m + (1.0 - b1) * g;
+            v = b2 * v + (1.0 - b2) * g * g;
+            let scale = f64::sqrt(v) / (1.0 - b2.powi(t)).sqrt() + params.eps;
+            x -= rate / (1.0 - b1.powi(t)) * m / scale;
+        }
+        x
+    }
+
+    const GRADIENTS: [f64; 5] = [0.5, -1.5, 3.0, 0.0, 2e-9];
+
+    #[test]
+    fn a_step_follows_the_formula() {
+        let params = AdamParams {
+            betas: [0.95, 0.99],
+            eps: 1e-4,
+        };
+        let mut x = [1.0, -2.0];
+        let mut adam = Adam::new(2, params);
+        for g in GRADIENTS {
+            adam.step(&mut x, &[g, -g], 0.1);
+        }
+        let expected = by_the_book(1.0, &GRADIENTS, 0.1, params);
+        assert!((x[0] - expected).abs() < 1e-14, "{} {expected}", x[0]);
+        assert!((x[1] + 1.0 + expected).abs() < 1e-14, "{} {expected}", x[1]);
+    }
+
+    #[test]
+    fn rates_scale_per_value() {
+        let mut x = [1.0, 1.0, 1.0];
+        let mut adam = Adam::new(3, AdamParams::default());
+        for g in GRADIENTS {
+            adam.step_scaled(&mut x, &[g; 3], 0.1, &[1.0, 0.5, 0.0]);
+        }
+        for (x, rate) in x.into_iter().zip([0.1, 0.05, 0.0]) {
+            let expected = by_the_book(1.0, &GRADIENTS, rate, AdamParams::default());
+            assert!((x - expected).abs() < 1e-14, "rate {rate}: {x} {expected}");
+        }
+    }
+
+    #[test]
+    fn a_reset_value_starts_afresh_and_the_others_go_on() {
+        let mut x = [1.0, 1.0];
+        let mut adam = Adam::new(2, AdamParams::default());
+        for g in [7.0, -3.0] {
+            adam.step(&mut x, &[g; 2], 0.1);
+        }
+        let before = x[1];
+        adam.reset(1..9);
+        for g in GRADIENTS {
+            adam.step(&mut x, &[g; 2], 0.1);
+        }
+        let all: Vec<f64> = [7.0, -3.0].into_iter().chain(GRADIENTS).collect();
+        let expected = [
+            by_the_book(1.0, &all, 0.1, AdamParams::default()),
+            by_the_book(before, &GRADIENTS, 0.1, AdamParams::default()),
+        ];
+        assert!((x[0] - expected[0]).abs() < 1e-14);
+        assert!((x[1] - expected[1]).abs() < 1e-14);
+    }
+
+    #[test]
+    fn single_precision_follows_double() {
+        let (mut single, mut double) = ([1.0_f32], [1.0_f64]);
+        let mut adam32 = Adam::new(1, AdamParams::default());
+        let mut adam64 = Adam::new(1, AdamParams::default());
+        for i in 0..200 {
+            let g = (f64::from(i) * 0.1).sin();
+            adam32.step(&mut single, &[g as f32], 0.01);
+            adam64.step(&mut double, &[g], 0.01);
+        }
+        let gap = (f64::from(single[0]) - double[0]).abs();
+        assert!(gap < 1e-5, "{gap}");
+    }
+
+    #[test]
+    fn no_gradient_no_motion() {
+        let mut x = [0.7_f32];
+        let mut adam = Adam::new(1, AdamParams::default());
+        adam.step(&mut x, &[0.0], 0.1);
+        assert_eq!(x, [0.7]);
+    }
+}

@@ -1,0 +1,56 @@
+//! First-order optimisers over slices: [`Adam`], [`AdamW`] and [`RmsProp`], with `PyTorch`'s update
+//! formulas, and learning-rate [`Schedule`]s.
+//!
+//! An optimiser knows nothing but slices: how strokes are laid out in them, which values are
+//! positions and which colours, and what they are clamped to, is the caller's affair. State is
+//! allocated once; a step allocates nothing. Every value keeps its own bias correction, so a stroke
+//! that was put elsewhere starts afresh ([`Optimizer::reset`]) amid others that go on.
+//!
+//! ```
+//! use strokefit::optim::{Adam, Optimizer};
+//!
+//! let mut x = [3.0_f64, -2.0];
+//! let mut adam = Adam::new(x.len(), Default::default());
+//! for _ in 0..500 {
+//!     let gradient = x.map(|x| 2.0 * x); // of |x|²
+//!     adam.step(&mut x, &gradient, 0.05);
+//! }
+//! assert!(x.iter().all(|x| x.abs() < 1e-3));
+//! ```
+
+mod adam;
+mod adamw;
+mod rmsprop;
+mod schedule;
+
+use std::ops::Range;
+
+pub use adam::{Adam, AdamParams};
+pub use adamw::{AdamW, AdamWParams};
+pub use rmsprop::{RmsProp, RmsPropParams};
+pub use schedule::Schedule;
+
+use crate::math::Real;
+
+/// What all optimisers can do.
+///
+/// The slices given to a step are as long as the `len` the optimiser was made with; what
+/// is beyond the shortest of them is left as it is.
+pub trait Optimizer<T: Real> {
+    /// Moves `params` down `gradients` with one learning `rate` for all.
+    fn step(&mut self, params: &mut [T], gradients: &[T], rate: T);
+
+    /// The same with the learning rate `rate · scales[i]` for value `i`: positions, radii, colours
+    /// and opacities want different ones. `scales` are filled once, `rate` follows a [`Schedule`].
+    fn step_scaled(&mut self, params: &mut [T], gradients: &[T], rate: T, scales: &[T]);
+
+    /// Forgets the past of the values in `range`, as if they had never made a step.
+    /// What is beyond the end is ignored.
+    fn reset(&mut self, range: Range<usize>);
+}
+
+/// The part of `range` that lies in `0..len`.
+fn clip(range: Range<usize>, len: usize) -> Range<usize> {
+    let end = range.end.min(len);
+    range.start.min(end)..end
+}

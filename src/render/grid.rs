@@ -1,0 +1,217 @@
+//! How a picture is cut into tiles and blocks, and pictures stored that way.
+//!
+//! A *block* is 4×4 px, one SIMD register of 16 lanes; a *tile* is 8×8 blocks, so that a set of
+//! blocks is one `u64`. Square blocks waste fewer lanes on the small slanted strokes that a drawing
+//! is made of than runs of a row do: for a capsule of radius 2 and length 10, 160 lanes are walked
+//! for 70 pixels covered, against about 220 in runs of 16.
+//!
+//! Tiles at the right and bottom edge are padded; the padding has weight 0 and is never read back.
+
+use crate::image::Image;
+
+/// Side of a block, px.
+pub(super) const BLOCK: usize = 4;
+/// Pixels of a block: the lanes of the renderer's vectors.
+pub(super) const LANES: usize = BLOCK * BLOCK;
+/// Blocks along the side of a tile.
+pub(super) const TILE_BLOCKS: usize = 8;
+/// Blocks of a tile; one bit each in a [`BlockSet`].
+pub(super) const BLOCKS: usize = TILE_BLOCKS * TILE_BLOCKS;
+/// Side of a tile, px.
+pub const TILE: usize = BLOCK * TILE_BLOCKS;
+
+/// A set of blocks of one tile, bit `by·8 + bx`.
+pub(super) type BlockSet = u64;
+
+/// One value per pixel of a block, row by row.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(align(64))]
+pub struct Lanes(pub [f32; LANES]);
+
+impl Lanes {
+    /// The same value in every lane.
+    pub const fn splat(value: f32) -> Self {
+        Self([value; LANES])
+    }
+}
+
+/// One channel triple per pixel of a block.
+pub type BlockRgb = [Lanes; 3];
+
+/// The pixels of one tile, block by block.
+pub type TileRgb = [BlockRgb; BLOCKS];
+
+/// A tile in one colour.
+pub(super) fn flat_tile(color: [f32; 3]) -> TileRgb {
+    [color.map(Lanes::splat); BLOCKS]
+}
+
+/// The tiles of a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Grid {
+    /// Width of the picture, px.
+    pub width: usize,
+    /// Height of the picture, px.
+    pub height: usize,
+    /// Tiles in a row.
+    pub columns: usize,
+    /// Rows of tiles.
+    pub rows: usize,
+}
+
+impl Grid {
+    /// The grid of a picture of `width`×`height` px.
+    pub fn new(width: usize, height: usize) -> Self {
+        Self {
+            width,
+            height,
+            columns: width.div_ceil(TILE),
+            rows: height.div_ceil(TILE),
+        }
+    }
+
+    /// Number of tiles.
+    pub fn len(&self) -> usize {
+        self.columns * self.rows
+    }
+
+    /// Whether there is no tile.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Top left corner of a tile, px.
+    pub fn origin(&self, tile: usize) -> (usize, usize) {
+        (tile % self.columns * TILE, tile / self.columns * TILE)
+    }
+
+    /// The tile, block and lane of a pixel.
+    fn locate(&self, x: usize, y: usize) -> (usize, usize, usize) {
+        let (block, lane) = locate_in_tile(x % TILE, y % TILE);
+        (y / TILE * self.columns + x / TILE, block, lane)
+    }
+
+    /// The range of tile columns and rows that the box `x0..x1`, `y0..y1` (px) can touch; empty
+    /// where the box is off the picture or not a number.
+    pub(super) fn tiles_touched(
+        &self,
+        x0: f32,
+        y0: f32,
+        x1: f32,
+        y1: f32,
+    ) -> [std::ops::Range<usize>; 2] {
+        let range = |lo: f32, hi: f32, size: usize, count: usize| {
+            if !(lo < size as f32 && hi > 0.0) {
+                return 0..0;
+            }
+            let first = (lo.max(0.0) as usize) / TILE;
+            let last = (hi.min(size as f32) as usize) / TILE;
+            first..(last + 1).min(count)
+        };
+        [
+            range(x0, x1, self.width, self.columns),
+            range(y0, y1, self.height, self.rows),
+        ]
+    }
+}
+
+/// The block and lane of a pixel of a tile.
+pub(super) fn locate_in_tile(x: usize, y: usize) -> (usize, usize) {
+    (
+        y / BLOCK * TILE_BLOCKS + x / BLOCK,
+        y % BLOCK * BLOCK + x % BLOCK,
+    )
+}
+
+/// A picture stored tile by tile, as the renderer reads and writes it.
+#[derive(Debug, Clone)]
+pub struct Canvas {
+    grid: Grid,
+    tiles: Vec<TileRgb>,
+}
+
+impl Canvas {
+    /// A canvas in one colour.
+    pub fn flat(grid: Grid, color: [f32; 3]) -> Self {
+        Self {
+            grid,
+            tiles: vec![flat_tile(color); grid.len()],
+        }
+    }
+
+    /// The colours of `image`, its alpha ignored. The padding repeats the nearest pixel's column
+    /// and row of the padding's own tile as zero; it is never read back.
+    pub fn from_image(image: &Image) -> Self {
+        let grid = Grid::new(image.width(), image.height());
+        let mut canvas = Self::flat(grid, [0.0; 3]);
+        for (channel, plane) in image.planes().iter().enumerate() {
+            for (y, row) in plane.chunks_exact(grid.width).enumerate() {
+                for (x, &value) in row.iter().enumerate() {
+                    let (tile, block, lane) = grid.locate(x, y);
+                    canvas.tiles[tile][block][channel].0[lane] = value;
+                }
+            }
+        }
+        canvas
+    }
+
+    /// The picture, row by row.
+    pub fn to_image(&self) -> Image {
+        let Grid { width, height, .. } = self.grid;
+        let planes = [0, 1, 2].map(|channel| {
+            let mut plane = Vec::with_capacity(width * height);
+            for y in 0..height {
+                plane.extend((0..width).map(|x| self.pixel(x, y)[channel]));
+            }
+            plane
+        });
+        Image::from_planes(width, height, planes)
+    }
+
+    /// The colour of one pixel.
+    ///
+    /// # Panics
+    /// When the pixel is off the canvas.
+    pub fn pixel(&self, x: usize, y: usize) -> [f32; 3] {
+        let (tile, block, lane) = self.grid.locate(x, y);
+        let rgb = &self.tiles[tile][block];
+        [rgb[0].0[lane], rgb[1].0[lane], rgb[2].0[lane]]
+    }
+
+    /// How the canvas is cut into tiles.
+    pub fn grid(&self) -> Grid {
+        self.grid
+    }
+
+    /// The tiles, row by row.
+    pub fn tiles(&self) -> &[TileRgb] {
+        &self.tiles
+    }
+
+    /// The tiles, row by row, to write.
+    pub(super) fn tiles_mut(&mut self) -> &mut [TileRgb] {
+        &mut self.tiles
+    }
+}
+
+/// 1 for the pixels of a tile that are on the picture, 0 for its padding.
+pub(super) type TileWeights = [Lanes; BLOCKS];
+
+/// The weights of a tile wholly on the picture.
+pub(super) static FULL: TileWeights = [Lanes::splat(1.0); BLOCKS];
+
+/// The weights of tile `tile`, or `None` where it is wholly on the picture.
+pub(super) fn edge_weights(grid: &Grid, tile: usize) -> Option<Box<TileWeights>> {
+    let (x0, y0) = grid.origin(tile);
+    if x0 + TILE <= grid.width && y0 + TILE <= grid.height {
+        return None;
+    }
+    let mut weights = Box::new([Lanes::splat(0.0); BLOCKS]);
+    for y in y0..grid.height.min(y0 + TILE) {
+        for x in x0..grid.width.min(x0 + TILE) {
+            let (_, block, lane) = grid.locate(x, y);
+            weights[block].0[lane] = 1.0;
+        }
+    }
+    Some(weights)
+}

@@ -1,0 +1,539 @@
+//! The two passes over one tile.
+//!
+//! Pass 1 goes front to back: it accumulates the colour seen, `C ← C + T·m·c`, and the
+//! transmittance `T ← T·(1 − m)`, and keeps `T`, `m`, `o·σ'` and `1/|q|` of every block it visits.
+//! A block through which nothing shows any more leaves the set of live blocks, and nothing behind
+//! it is evaluated. Pass 2 goes back to front over the same blocks with the colour behind, `B`:
+//!
+//! ```text
+//! ∂L/∂m = T·g·(c − B)      ∂L/∂c = Σ T·m·g      ∂L/∂d = ∂L/∂m · o · σ'(d)
+//! ∂d/∂r = 1                ∂d/∂a = u·(1 − h)    ∂d/∂b = u·h          u = q/|q|
+//! worth  = Σ 2e·δ + δ²     δ = −T·m·(c − B)     B ← B + m·(c − B)
+//! ```
+//!
+//! No step divides by `1 − m`, so opaque strokes are as exact as others. `h` is held fixed in the
+//! derivatives: at the nearest point the distance does not change with `h` (envelope theorem), up
+//! to the guard [`EPSILON`].
+//!
+//! Degenerate cases: a zero-length capsule is a disc; a stroke with a non-finite number touches no
+//! block; on the centre line `u` tends to 0 with the guard instead of being undefined.
+
+use fearless_simd::{f32x8, f32x16, prelude::*};
+
+use super::CanvasLoss;
+use super::edge::{Reach, SoftEdge};
+use super::grid::{
+    BLOCK, BLOCKS, BlockRgb, BlockSet, LANES, Lanes, TILE_BLOCKS, TileRgb, TileWeights, flat_tile,
+};
+use super::strokes::{AX, AY, BX, BY, OPACITY, PARAMS, Params, RADIUS, RED};
+
+/// Guard in `1/|b−a|²` and in `|q| = sqrt(q·q + ε)`, px². Larger would blunt the distance near the
+/// centre line (by 1e-3 px at this value); smaller would let `1/|q|` overflow the gradient there.
+pub(super) const EPSILON: f32 = 1e-6;
+
+/// Transmittance below which nothing behind shows: a sixteenth of an 8-bit level.
+pub(super) const OPAQUE: f32 = 1.0 / 4096.0;
+
+/// Distance from a block's centre to its outermost pixel centres, px, rounded up.
+const BLOCK_RADIUS: f32 = 2.121_5;
+
+const LANE_X: Lanes = {
+    let mut lanes = [0.0; LANES];
+    let mut i = 0;
+    while i < LANES {
+        lanes[i] = (i % BLOCK) as f32 + 0.5;
+        i += 1;
+    }
+    Lanes(lanes)
+};
+const LANE_Y: Lanes = {
+    let mut lanes = [0.0; LANES];
+    let mut i = 0;
+    while i < LANES {
+        lanes[i] = (i / BLOCK) as f32 + 0.5;
+        i += 1;
+    }
+    Lanes(lanes)
+};
+
+/// `∂L` of one stroke over one tile: its [`PARAMS`] in order, then its worth.
+pub(super) type StrokeSums = [f32; PARAMS + 1];
+/// Index of the leave-one-out change of the squared error.
+pub(super) const WORTH: usize = PARAMS;
+
+/// What pass 1 keeps of a block on the soft edge.
+#[derive(Debug, Clone, Copy)]
+struct EdgeBlock {
+    /// `m = o·σ(d)`.
+    alpha: Lanes,
+    /// `o·σ'(d)`.
+    slope: Lanes,
+    /// `1/|q|`.
+    inverse: Lanes,
+}
+
+/// One stroke's blocks, as pass 1 visited them.
+#[derive(Debug, Clone, Copy)]
+struct Visit {
+    /// Position in the tile's list of strokes.
+    slot: u32,
+    /// Blocks on the soft edge, visited first.
+    edge: BlockSet,
+    /// Blocks in the hard core, where coverage is 1 and no distance is needed.
+    core: BlockSet,
+}
+
+/// Scratch of one worker, reused from tile to tile.
+#[derive(Debug)]
+pub(super) struct Scratch {
+    color: TileRgb,
+    transmittance: [Lanes; BLOCKS],
+    error: TileRgb,
+    gradient: TileRgb,
+    visits: Vec<Visit>,
+    kept_transmittance: Vec<Lanes>,
+    kept_edges: Vec<EdgeBlock>,
+}
+
+impl Scratch {
+    pub(super) fn new() -> Box<Self> {
+        Box::new(Self {
+            color: flat_tile([0.0; 3]),
+            transmittance: [Lanes::splat(1.0); BLOCKS],
+            error: flat_tile([0.0; 3]),
+            gradient: flat_tile([0.0; 3]),
+            visits: Vec::new(),
+            kept_transmittance: Vec::new(),
+            kept_edges: Vec::new(),
+        })
+    }
+}
+
+/// One tile's share of the work.
+pub(super) struct TileJob<'a> {
+    /// All strokes of the call.
+    pub(super) strokes: &'a [Params],
+    /// The strokes that may touch this tile, back to front.
+    pub(super) ids: &'a [u32],
+    /// The tile's top left corner, px.
+    pub(super) origin: [f32; 2],
+    /// What is behind all strokes.
+    pub(super) base: &'a TileRgb,
+    /// 1 on the picture, 0 on the padding.
+    pub(super) weights: &'a TileWeights,
+    pub(super) reach: Reach,
+}
+
+/// Sums of one tile over its pixels.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct TileSums {
+    /// The loss.
+    pub(super) loss: f64,
+    /// `∂L/∂base`, summed.
+    pub(super) base: [f32; 3],
+    /// Blocks visited by pass 1.
+    pub(super) blocks: u64,
+}
+
+/// A stroke, splatted for the lanes, relative to its tile.
+#[derive(Clone, Copy)]
+pub(super) struct Capsule<S: Simd> {
+    a: [f32; 2],
+    axis: [f32x16<S>; 2],
+    /// `1/(|b−a|² + ε)`.
+    inverse_length2: f32x16<S>,
+    radius: f32x16<S>,
+}
+
+impl<S: Simd> Capsule<S> {
+    #[inline(always)]
+    pub(super) fn new(simd: S, p: &Params, origin: [f32; 2]) -> Self {
+        let axis = [p[BX] - p[AX], p[BY] - p[AY]];
+        let length2 = axis[0] * axis[0] + axis[1] * axis[1];
+        Self {
+            a: [p[AX] - origin[0], p[AY] - origin[1]],
+            axis: axis.map(|v| f32x16::splat(simd, v)),
+            inverse_length2: f32x16::splat(simd, 1.0 / (length2 + EPSILON)),
+            radius: f32x16::splat(simd, p[RADIUS]),
+        }
+    }
+
+    /// `h` and `q = p − a − h(b−a)` at `p − a`.
+    #[inline(always)]
+    fn nearest(&self, pa: [f32x16<S>; 2]) -> (f32x16<S>, [f32x16<S>; 2]) {
+        let dot = pa[0] * self.axis[0] + pa[1] * self.axis[1];
+        let h = (dot * self.inverse_length2).max(0.0).min(1.0);
+        (h, [pa[0] - h * self.axis[0], pa[1] - h * self.axis[1]])
+    }
+
+    /// `p − a` at the pixels of a block.
+    #[inline(always)]
+    fn offsets(&self, simd: S, block: usize) -> [f32x16<S>; 2] {
+        let x = (block % TILE_BLOCKS * BLOCK) as f32 - self.a[0];
+        let y = (block / TILE_BLOCKS * BLOCK) as f32 - self.a[1];
+        [load(simd, &LANE_X) + x, load(simd, &LANE_Y) + y]
+    }
+
+    /// The signed distance at the pixels of a block.
+    #[inline(always)]
+    pub(super) fn distance(&self, simd: S, block: usize) -> f32x16<S> {
+        let (_, q) = self.nearest(self.offsets(simd, block));
+        self.radius - (q[0] * q[0] + q[1] * q[1] + EPSILON).sqrt()
+    }
+
+    /// The blocks that the stroke widened by its soft edge can touch, and those wholly in its hard
+    /// core, from the distances of the blocks' centres.
+    #[inline(always)]
+    pub(super) fn blocks(&self, simd: S, radius: f32, reach: Reach) -> (BlockSet, BlockSet) {
+        let outer = (radius + reach.outside + BLOCK_RADIUS).max(0.0);
+        let inner = (radius - reach.inside - BLOCK_RADIUS).max(0.0);
+        let (mut touched, mut core) = (0, 0);
+        for row in 0..BLOCKS / LANES {
+            let column = f32x16::from_fn(simd, |i| {
+                (i % TILE_BLOCKS * BLOCK) as f32 + BLOCK as f32 / 2.0
+            });
+            let line = f32x16::from_fn(simd, |i| {
+                (i / TILE_BLOCKS * BLOCK) as f32 + BLOCK as f32 / 2.0
+            });
+            let y = (row * LANES / TILE_BLOCKS * BLOCK) as f32 - self.a[1];
+            let (_, q) = self.nearest([column - self.a[0], line + y]);
+            let distance2 = q[0] * q[0] + q[1] * q[1];
+            touched |= distance2.simd_lt(outer * outer).to_bitmask() << (row * LANES);
+            core |= distance2.simd_lt(inner * inner).to_bitmask() << (row * LANES);
+        }
+        (touched, core)
+    }
+}
+
+#[inline(always)]
+pub(super) fn load<S: Simd>(simd: S, lanes: &Lanes) -> f32x16<S> {
+    f32x16::load_array_ref(simd, &lanes.0)
+}
+
+#[inline(always)]
+pub(super) fn store<S: Simd>(value: f32x16<S>, lanes: &mut Lanes) {
+    value.store_slice(&mut lanes.0);
+}
+
+/// The members of a set, in rising order.
+#[inline(always)]
+pub(super) fn members(mut set: BlockSet) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        (set != 0).then(|| {
+            let block = set.trailing_zeros() as usize;
+            set &= set - 1;
+            block
+        })
+    })
+}
+
+/// Pass 1. Leaves the canvas in `scratch.color`.
+#[inline(always)]
+fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scratch: &mut Scratch) {
+    let Scratch {
+        color,
+        transmittance,
+        visits,
+        kept_transmittance,
+        kept_edges,
+        ..
+    } = scratch;
+    *color = flat_tile([0.0; 3]);
+    *transmittance = [Lanes::splat(1.0); BLOCKS];
+    visits.clear();
+    kept_transmittance.clear();
+    kept_edges.clear();
+    let mut live = BlockSet::MAX;
+    for (slot, &id) in job.ids.iter().enumerate().rev() {
+        let p = &job.strokes[id as usize];
+        let capsule = Capsule::new(simd, p, job.origin);
+        let (touched, core) = capsule.blocks(simd, p[RADIUS], job.reach);
+        let visit = Visit {
+            slot: slot as u32,
+            edge: touched & !core & live,
+            core: touched & core & live,
+        };
+        if visit.edge | visit.core == 0 {
+            continue;
+        }
+        visits.push(visit);
+        let rgb = [p[RED], p[RED + 1], p[RED + 2]].map(|c| f32x16::splat(simd, c));
+        let opacity = f32x16::splat(simd, p[OPACITY]);
+        for block in members(visit.edge) {
+            let (_, q) = capsule.nearest(capsule.offsets(simd, block));
+            let length = (q[0] * q[0] + q[1] * q[1] + EPSILON).sqrt();
+            let (value, derivative) = edge.eval(capsule.radius - length);
+            let alpha = opacity * value;
+            let mut kept = EdgeBlock {
+                alpha: Lanes::splat(0.0),
+                slope: Lanes::splat(0.0),
+                inverse: Lanes::splat(0.0),
+            };
+            store(alpha, &mut kept.alpha);
+            store(opacity * derivative, &mut kept.slope);
+            store(1.0 / length, &mut kept.inverse);
+            kept_edges.push(kept);
+            kept_transmittance.push(transmittance[block]);
+            if see_through(
+                simd,
+                alpha,
+                &rgb,
+                &mut color[block],
+                &mut transmittance[block],
+            ) {
+                live &= !(1 << block);
+            }
+        }
+        for block in members(visit.core) {
+            kept_transmittance.push(transmittance[block]);
+            if see_through(
+                simd,
+                opacity,
+                &rgb,
+                &mut color[block],
+                &mut transmittance[block],
+            ) {
+                live &= !(1 << block);
+            }
+        }
+        if live == 0 {
+            break;
+        }
+    }
+    for ((color, transmittance), base) in color.iter_mut().zip(transmittance.iter()).zip(job.base) {
+        let t = load(simd, transmittance);
+        for (color, base) in color.iter_mut().zip(base) {
+            store(load(simd, color) + t * load(simd, base), color);
+        }
+    }
+}
+
+/// Adds one stroke, seen through what is before it, and says whether the block is now opaque.
+#[inline(always)]
+fn see_through<S: Simd>(
+    simd: S,
+    alpha: f32x16<S>,
+    rgb: &[f32x16<S>; 3],
+    color: &mut BlockRgb,
+    transmittance: &mut Lanes,
+) -> bool {
+    let t = load(simd, transmittance);
+    let weight = t * alpha;
+    for (color, &c) in color.iter_mut().zip(rgb) {
+        store(load(simd, color) + weight * c, color);
+    }
+    let t = t - weight;
+    store(t, transmittance);
+    t.simd_lt(OPAQUE).all_true()
+}
+
+/// Sums of one stroke in lanes.
+struct Sums<S: Simd> {
+    color: [f32x16<S>; 3],
+    opacity: f32x16<S>,
+    radius: f32x16<S>,
+    /// `Σ ∂L/∂d · u`.
+    shift: [f32x16<S>; 2],
+    /// `Σ ∂L/∂d · u · h`.
+    shift_b: [f32x16<S>; 2],
+    worth: f32x16<S>,
+}
+
+impl<S: Simd> Sums<S> {
+    #[inline(always)]
+    fn new(simd: S) -> Self {
+        let zero = f32x16::splat(simd, 0.0);
+        Self {
+            color: [zero; 3],
+            opacity: zero,
+            radius: zero,
+            shift: [zero; 2],
+            shift_b: [zero; 2],
+            worth: zero,
+        }
+    }
+
+    #[inline(always)]
+    fn finish(&self, opacity: f32) -> StrokeSums {
+        let [shift_x, shift_y] = self.shift.map(total);
+        let [bx, by] = self.shift_b.map(total);
+        let [red, green, blue] = self.color.map(total);
+        [
+            shift_x - bx,
+            shift_y - by,
+            bx,
+            by,
+            total(self.radius),
+            red,
+            green,
+            blue,
+            total(self.opacity) / opacity.max(f32::MIN_POSITIVE),
+            total(self.worth),
+        ]
+    }
+}
+
+/// The sum of all lanes, in one order at every SIMD level.
+#[inline(always)]
+pub(super) fn total<S: Simd>(v: f32x16<S>) -> f32 {
+    let (low, high) = v.split();
+    let eight: f32x8<S> = low + high;
+    let (low, high) = eight.split();
+    let four = low + high;
+    (four[0] + four[2]) + (four[1] + four[3])
+}
+
+/// Pass 2, over the blocks that pass 1 visited. `scratch.gradient` and `scratch.error` are given;
+/// `scratch.color` becomes the colour behind.
+#[inline(always)]
+fn back_to_front<S: Simd, const WITH_WORTH: bool>(
+    simd: S,
+    job: &TileJob<'_>,
+    scratch: &mut Scratch,
+    sums: &mut [StrokeSums],
+) -> [f32; 3] {
+    let Scratch {
+        color: behind,
+        transmittance,
+        error,
+        gradient,
+        visits,
+        kept_transmittance,
+        kept_edges,
+    } = scratch;
+    behind.clone_from(job.base);
+    let mut base = [f32x16::splat(simd, 0.0); 3];
+    for (t, g) in transmittance.iter().zip(gradient.iter()) {
+        for (sum, g) in base.iter_mut().zip(g) {
+            *sum = *sum + load(simd, t) * load(simd, g);
+        }
+    }
+    let (mut at, mut at_edge) = (kept_transmittance.len(), kept_edges.len());
+    for visit in visits.iter().rev() {
+        let p = &job.strokes[job.ids[visit.slot as usize] as usize];
+        let capsule = Capsule::new(simd, p, job.origin);
+        let rgb = [p[RED], p[RED + 1], p[RED + 2]].map(|c| f32x16::splat(simd, c));
+        let mut stroke = Sums::new(simd);
+        at -= (visit.edge.count_ones() + visit.core.count_ones()) as usize;
+        at_edge -= visit.edge.count_ones() as usize;
+        let mut seen_through = kept_transmittance[at..].iter();
+        for ((block, kept), t) in members(visit.edge)
+            .zip(&kept_edges[at_edge..])
+            .zip(&mut seen_through)
+        {
+            let alpha = load(simd, &kept.alpha);
+            let d_alpha = stroke.blend::<WITH_WORTH>(
+                simd,
+                alpha,
+                load(simd, t),
+                &rgb,
+                &mut behind[block],
+                &gradient[block],
+                &error[block],
+            );
+            let (h, q) = capsule.nearest(capsule.offsets(simd, block));
+            let d_distance = d_alpha * load(simd, &kept.slope);
+            let pull = d_distance * load(simd, &kept.inverse);
+            stroke.radius = stroke.radius + d_distance;
+            for axis in 0..2 {
+                let shift = pull * q[axis];
+                stroke.shift[axis] = stroke.shift[axis] + shift;
+                stroke.shift_b[axis] = stroke.shift_b[axis] + shift * h;
+            }
+        }
+        let opacity = f32x16::splat(simd, p[OPACITY]);
+        for (block, t) in members(visit.core).zip(seen_through) {
+            stroke.blend::<WITH_WORTH>(
+                simd,
+                opacity,
+                load(simd, t),
+                &rgb,
+                &mut behind[block],
+                &gradient[block],
+                &error[block],
+            );
+        }
+        sums[visit.slot as usize] = stroke.finish(p[OPACITY]);
+    }
+    base.map(total)
+}
+
+impl<S: Simd> Sums<S> {
+    /// Lays the stroke on what is behind it in one block; returns `∂L/∂m`.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments)]
+    fn blend<const WITH_WORTH: bool>(
+        &mut self,
+        simd: S,
+        alpha: f32x16<S>,
+        t: f32x16<S>,
+        rgb: &[f32x16<S>; 3],
+        behind: &mut BlockRgb,
+        gradient: &BlockRgb,
+        error: &BlockRgb,
+    ) -> f32x16<S> {
+        let zero = f32x16::splat(simd, 0.0);
+        let seen = t * alpha;
+        let (mut along, mut change) = (zero, zero);
+        for channel in 0..3 {
+            let back = load(simd, &behind[channel]);
+            let contrast = rgb[channel] - back;
+            let g = load(simd, &gradient[channel]);
+            along = along + g * contrast;
+            self.color[channel] = self.color[channel] + seen * g;
+            store(back + alpha * contrast, &mut behind[channel]);
+            if WITH_WORTH {
+                let delta = seen * contrast;
+                let e = load(simd, &error[channel]);
+                change = change + delta * (delta - (e + e));
+            }
+        }
+        if WITH_WORTH {
+            self.worth = self.worth + change;
+        }
+        let d_alpha = t * along;
+        self.opacity = self.opacity + d_alpha * alpha;
+        d_alpha
+    }
+}
+
+/// Renders one tile.
+#[inline(always)]
+pub(super) fn forward<S: Simd, E: SoftEdge>(
+    simd: S,
+    edge: E,
+    job: &TileJob<'_>,
+    scratch: &mut Scratch,
+    out: &mut TileRgb,
+) {
+    front_to_back(simd, edge, job, scratch);
+    out.clone_from(&scratch.color);
+}
+
+/// Renders one tile and differentiates `loss` through it. `sums` has one row per stroke of the job.
+#[inline(always)]
+pub(super) fn backward<S: Simd, E: SoftEdge, L: CanvasLoss, const WITH_WORTH: bool>(
+    simd: S,
+    edge: E,
+    job: &TileJob<'_>,
+    loss: (&L, usize),
+    scratch: &mut Scratch,
+    sums: &mut [StrokeSums],
+) -> TileSums {
+    front_to_back(simd, edge, job, scratch);
+    let (loss, tile) = loss;
+    let value = loss.tile(
+        tile,
+        job.weights,
+        &scratch.color,
+        &mut scratch.error,
+        &mut scratch.gradient,
+    );
+    sums.fill([0.0; PARAMS + 1]);
+    let base = back_to_front::<S, WITH_WORTH>(simd, job, scratch, sums);
+    TileSums {
+        loss: value,
+        base,
+        blocks: scratch.kept_transmittance.len() as u64,
+    }
+}

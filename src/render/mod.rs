@@ -1,0 +1,313 @@
+//! The differentiable renderer: strokes to canvas, `∂L/∂canvas` to `∂L/∂stroke`.
+//!
+//! The picture is cut in tiles of 32×32 px. Strokes are binned to the tiles that their extent
+//! touches; each tile then renders its own strokes over its own pixels with scratch of its worker
+//! and writes its own sums, which are added in tile order. No result depends on the number of
+//! threads or on the SIMD level, there are no locks to wait for and no atomics, and after the
+//! first iteration nothing is allocated.
+//!
+//! Work is proportional to the (stroke, block) pairs that can be seen; memory to pixels, strokes
+//! per tile, and the pairs of one tile per worker.
+//!
+//! [`reference`] is the same in naive `f64`, against which all of this is tested.
+
+mod edge;
+mod grid;
+mod kernel;
+pub mod probe;
+pub mod reference;
+mod strokes;
+
+use std::sync::{Mutex, PoisonError};
+
+use fearless_simd::{Level, dispatch};
+use rayon::prelude::*;
+
+pub use grid::{BlockRgb, Canvas, Grid, Lanes, TILE, TileRgb};
+pub use strokes::{AX, AY, BX, BY, OPACITY, PARAMS, Params, RADIUS, RED, pack, unpack};
+
+use crate::coverage::Coverage;
+use edge::{Edge, Reach};
+use grid::{FULL, TileWeights, edge_weights, flat_tile};
+use kernel::{Scratch, StrokeSums, TileJob, TileSums, WORTH};
+
+/// A differentiable loss over the canvas, told tile by tile while the tile is still in cache.
+pub trait CanvasLoss: Sync {
+    /// Writes the signed error `canvas − target` and `∂L/∂canvas` of tile `tile` and returns its
+    /// share of the loss. Every value is to be multiplied by the pixel's `weight` (0 on padding).
+    fn tile(
+        &self,
+        tile: usize,
+        weights: &[Lanes; 64],
+        canvas: &TileRgb,
+        error: &mut TileRgb,
+        gradient: &mut TileRgb,
+    ) -> f64;
+}
+
+/// What lies behind all strokes.
+#[derive(Debug, Clone, Copy)]
+pub enum Base<'a> {
+    /// One colour.
+    Flat([f32; 3]),
+    /// A picture, such as the frozen stages below.
+    Canvas(&'a Canvas),
+}
+
+/// Coverage and its softness.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Softness {
+    /// The coverage function.
+    pub coverage: Coverage,
+    /// Width of the soft edge, px, above 0.
+    pub width: f32,
+}
+
+/// Derivatives of a loss by everything that was drawn.
+#[derive(Debug, Clone, Default)]
+pub struct Gradients {
+    /// The loss itself.
+    pub loss: f64,
+    /// `∂L/∂(parameters)`, one row per stroke.
+    pub strokes: Vec<Params>,
+    /// `∂L/∂base`, summed over the pixels.
+    pub base: [f32; 3],
+    /// By how much the squared error (summed over pixels and channels) grows when the stroke is
+    /// left out, exactly; filled by [`Renderer::backward_with_worth`] alone.
+    pub worth: Vec<f32>,
+    /// Blocks of 16 px that were visited: the work done.
+    pub blocks: u64,
+}
+
+/// One tile's list of strokes and its results.
+#[derive(Debug, Default)]
+struct TileWork {
+    ids: Vec<u32>,
+    sums: Vec<StrokeSums>,
+    total: TileSums,
+    weights: Option<Box<TileWeights>>,
+}
+
+/// Renders strokes on pictures of one size; keeps its memory from call to call.
+#[derive(Debug)]
+pub struct Renderer {
+    grid: Grid,
+    level: Level,
+    tiles: Vec<TileWork>,
+    scratch: Vec<Mutex<Box<Scratch>>>,
+}
+
+impl Renderer {
+    /// A renderer for pictures of the size of `grid`, at SIMD level `level`, for use in the rayon
+    /// pool that is current now.
+    pub fn new(grid: Grid, level: Level) -> Self {
+        let tile = |tile| TileWork {
+            weights: edge_weights(&grid, tile),
+            ..TileWork::default()
+        };
+        Self {
+            grid,
+            level,
+            tiles: (0..grid.len()).map(tile).collect(),
+            scratch: (0..rayon::current_num_threads())
+                .map(|_| Mutex::new(Scratch::new()))
+                .collect(),
+        }
+    }
+
+    /// How the picture is cut.
+    pub fn grid(&self) -> Grid {
+        self.grid
+    }
+
+    /// Renders `strokes`, back to front, on `base` into `out`.
+    pub fn forward(
+        &mut self,
+        strokes: &[Params],
+        softness: Softness,
+        base: Base<'_>,
+        out: &mut Canvas,
+    ) {
+        let (edge, reach) = Edge::new(softness.coverage, softness.width);
+        self.bin(strokes, reach);
+        let Self {
+            grid,
+            level,
+            ref mut tiles,
+            ref scratch,
+        } = *self;
+        let flat = flat_base(base);
+        tiles
+            .par_iter_mut()
+            .zip(out.tiles_mut())
+            .enumerate()
+            .with_max_len(1)
+            .for_each(|(index, (work, out))| {
+                let job = job(&grid, index, work, strokes, base, &flat, reach);
+                if job.ids.is_empty() {
+                    out.clone_from(job.base);
+                    return;
+                }
+                with_scratch(scratch, |scratch| match edge {
+                    Edge::Smoothstep(edge) => {
+                        dispatch!(level, simd => kernel::forward(simd, edge, &job, scratch, out))
+                    }
+                    Edge::Tailed(edge) => {
+                        dispatch!(level, simd => kernel::forward(simd, edge, &job, scratch, out))
+                    }
+                });
+            });
+    }
+
+    /// Renders `strokes` on `base` and writes the derivatives of `loss` to `gradients`.
+    ///
+    /// Tiles that no stroke touches take part with their loss and `∂L/∂base`.
+    pub fn backward<L: CanvasLoss>(
+        &mut self,
+        strokes: &[Params],
+        softness: Softness,
+        base: Base<'_>,
+        loss: &L,
+        gradients: &mut Gradients,
+    ) {
+        self.run_backward::<L, false>(strokes, softness, base, loss, gradients);
+    }
+
+    /// The same, and every stroke's worth.
+    pub fn backward_with_worth<L: CanvasLoss>(
+        &mut self,
+        strokes: &[Params],
+        softness: Softness,
+        base: Base<'_>,
+        loss: &L,
+        gradients: &mut Gradients,
+    ) {
+        self.run_backward::<L, true>(strokes, softness, base, loss, gradients);
+    }
+
+    fn run_backward<L: CanvasLoss, const WITH_WORTH: bool>(
+        &mut self,
+        strokes: &[Params],
+        softness: Softness,
+        base: Base<'_>,
+        loss: &L,
+        gradients: &mut Gradients,
+    ) {
+        let (edge, reach) = Edge::new(softness.coverage, softness.width);
+        self.bin(strokes, reach);
+        let Self {
+            grid,
+            level,
+            ref mut tiles,
+            ref scratch,
+        } = *self;
+        let flat = flat_base(base);
+        tiles.par_iter_mut().enumerate().with_max_len(1).for_each(|(index, work)| {
+            let mut sums = std::mem::take(&mut work.sums);
+            sums.resize(work.ids.len(), [0.0; PARAMS + 1]);
+            let job = job(&grid, index, work, strokes, base, &flat, reach);
+            let total = with_scratch(scratch, |scratch| match edge {
+                Edge::Smoothstep(edge) => {
+                    dispatch!(level, simd => kernel::backward::<_, _, L, WITH_WORTH>(simd, edge, &job, (loss, index), scratch, &mut sums))
+                }
+                Edge::Tailed(edge) => {
+                    dispatch!(level, simd => kernel::backward::<_, _, L, WITH_WORTH>(simd, edge, &job, (loss, index), scratch, &mut sums))
+                }
+            });
+            work.total = total;
+            work.sums = sums;
+        });
+        self.reduce(strokes.len(), WITH_WORTH, gradients);
+    }
+
+    /// Lists for each tile the strokes whose extent touches it, back to front.
+    fn bin(&mut self, strokes: &[Params], reach: Reach) {
+        for work in &mut self.tiles {
+            work.ids.clear();
+        }
+        for (id, p) in strokes.iter().enumerate() {
+            let margin = p[RADIUS] + reach.outside;
+            let [columns, rows] = self.grid.tiles_touched(
+                p[AX].min(p[BX]) - margin,
+                p[AY].min(p[BY]) - margin,
+                p[AX].max(p[BX]) + margin,
+                p[AY].max(p[BY]) + margin,
+            );
+            for row in rows {
+                for column in columns.clone() {
+                    self.tiles[row * self.grid.columns + column]
+                        .ids
+                        .push(id as u32);
+                }
+            }
+        }
+    }
+
+    /// Adds the tiles' sums in tile order.
+    fn reduce(&self, strokes: usize, with_worth: bool, gradients: &mut Gradients) {
+        gradients.loss = 0.0;
+        gradients.base = [0.0; 3];
+        gradients.blocks = 0;
+        gradients.strokes.clear();
+        gradients.strokes.resize(strokes, [0.0; PARAMS]);
+        gradients.worth.clear();
+        gradients
+            .worth
+            .resize(if with_worth { strokes } else { 0 }, 0.0);
+        for work in &self.tiles {
+            gradients.loss += work.total.loss;
+            gradients.blocks += work.total.blocks;
+            for (sum, base) in gradients.base.iter_mut().zip(work.total.base) {
+                *sum += base;
+            }
+            for (&id, sums) in work.ids.iter().zip(&work.sums) {
+                for (sum, part) in gradients.strokes[id as usize].iter_mut().zip(sums) {
+                    *sum += part;
+                }
+                if with_worth {
+                    gradients.worth[id as usize] += sums[WORTH];
+                }
+            }
+        }
+    }
+}
+
+fn flat_base(base: Base<'_>) -> TileRgb {
+    match base {
+        Base::Flat(color) => flat_tile(color),
+        Base::Canvas(_) => flat_tile([0.0; 3]),
+    }
+}
+
+fn job<'a>(
+    grid: &Grid,
+    index: usize,
+    work: &'a TileWork,
+    strokes: &'a [Params],
+    base: Base<'a>,
+    flat: &'a TileRgb,
+    reach: Reach,
+) -> TileJob<'a> {
+    let (x, y) = grid.origin(index);
+    TileJob {
+        strokes,
+        ids: &work.ids,
+        origin: [x as f32, y as f32],
+        base: match base {
+            Base::Flat(_) => flat,
+            Base::Canvas(canvas) => &canvas.tiles()[index],
+        },
+        weights: work.weights.as_deref().unwrap_or(&FULL),
+        reach,
+    }
+}
+
+/// Runs `f` with the scratch of this worker.
+fn with_scratch<R>(scratch: &[Mutex<Box<Scratch>>], f: impl FnOnce(&mut Scratch) -> R) -> R {
+    // A worker never waits here: no other has its index. A panic elsewhere leaves only stale
+    // numbers behind, which every tile overwrites, so a poisoned lock is as good as another.
+    let index = rayon::current_thread_index().unwrap_or(0) % scratch.len();
+    f(&mut scratch[index]
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner))
+}

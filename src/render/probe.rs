@@ -1,0 +1,233 @@
+//! What a stroke laid on top of a canvas would be worth, in closed form.
+//!
+//! A stroke of coverage `m`, opacity `v` and colour `c = u/v` over a fixed canvas `C` with residual
+//! `e = target − C` leaves `e − m(u − vC)`. Its gain, the squared error that it removes, is quadratic
+//! in `(u, v)`, so nine sums over its pixels answer for every colour and opacity at once:
+//!
+//! ```text
+//! S = Σm²   X = Σm²C   Y = Σm·e   Q = Σm²|C|²   Z = Σm·e·C
+//! gain(u, v) = 2(u·Y − vZ) − (|u|²S − 2v u·X + v²Q)
+//! u = (Y + vX)/S           v = (X·Y/S − Z) / (Q − |X|²/S)
+//! ```
+//!
+//! Source: the best colour of `DESIGN`'s formulas, with the opacity solved for in the same way.
+
+use fearless_simd::{Level, dispatch, f32x16, prelude::*};
+
+use super::edge::{Reach, Smoothstep, SoftEdge};
+use super::grid::{BLOCK, BLOCKS, Lanes, TILE, TileRgb, flat_tile, locate_in_tile};
+use super::kernel::{Capsule, load, members, store, total};
+use super::strokes::{OPACITY, Params, RADIUS, RED};
+use crate::image::Image;
+
+/// Where the probed shapes are centred in a [`Patch`], px.
+pub const PATCH_CENTER: f32 = TILE as f32 / 2.0 + 0.5;
+
+/// The surroundings of a place: canvas and residual of the 32×32 px around it.
+#[derive(Debug)]
+pub struct Patch {
+    canvas: TileRgb,
+    residual: TileRgb,
+    inside: [Lanes; BLOCKS],
+}
+
+impl Patch {
+    /// A patch to be filled.
+    pub fn new() -> Box<Self> {
+        Box::new(Self {
+            canvas: flat_tile([0.0; 3]),
+            residual: flat_tile([0.0; 3]),
+            inside: [Lanes::splat(0.0); BLOCKS],
+        })
+    }
+
+    /// Copies what is around pixel (x, y), which comes to lie on [`PATCH_CENTER`].
+    pub fn fill(&mut self, target: &Image, canvas: &Image, x: usize, y: usize) {
+        let (width, height, half) = (canvas.width(), canvas.height(), TILE / 2);
+        self.inside = [Lanes::splat(0.0); BLOCKS];
+        self.canvas = flat_tile([0.0; 3]);
+        self.residual = flat_tile([0.0; 3]);
+        let columns = half.saturating_sub(x)..TILE.min(width + half - x);
+        for py in half.saturating_sub(y)..TILE.min(height + half - y) {
+            let row = (y + py - half) * width;
+            for first in (columns.start / BLOCK * BLOCK..columns.end).step_by(BLOCK) {
+                let segment = first.max(columns.start)..(first + BLOCK).min(columns.end);
+                let (block, lane) = locate_in_tile(segment.start, py);
+                let lanes = lane..lane + segment.len();
+                let source = row + x + segment.start - half..row + x + segment.end - half;
+                self.inside[block].0[lanes.clone()].fill(1.0);
+                for channel in 0..3 {
+                    let c = &canvas.planes()[channel][source.clone()];
+                    let t = &target.planes()[channel][source.clone()];
+                    self.canvas[block][channel].0[lanes.clone()].copy_from_slice(c);
+                    let residual = &mut self.residual[block][channel].0[lanes.clone()];
+                    for ((r, t), c) in residual.iter_mut().zip(t).zip(c) {
+                        *r = t - c;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A shape centred on [`PATCH_CENTER`] with its coverage there.
+#[derive(Debug, Clone)]
+pub struct Template {
+    shape: Params,
+    blocks: Vec<(usize, Lanes)>,
+}
+
+impl Template {
+    /// The template of the geometry of `shape`, in the coordinates of a patch, with a soft edge 1 px wide.
+    pub fn new(level: Level, shape: Params) -> Self {
+        let blocks = dispatch!(level, simd => cover(simd, &shape));
+        Self { shape, blocks }
+    }
+
+    /// The numbers that the template was made from.
+    pub fn shape(&self) -> &Params {
+        &self.shape
+    }
+}
+
+#[inline(always)]
+fn cover<S: Simd>(simd: S, shape: &Params) -> Vec<(usize, Lanes)> {
+    let reach = Reach {
+        outside: 0.5,
+        inside: f32::INFINITY,
+    };
+    let edge = Smoothstep::new(1.0);
+    let capsule = Capsule::new(simd, shape, [0.0; 2]);
+    let (touched, _) = capsule.blocks(simd, shape[RADIUS], reach);
+    members(touched)
+        .map(|block| {
+            let mut coverage = Lanes::splat(0.0);
+            store(edge.eval(capsule.distance(simd, block)).0, &mut coverage);
+            (block, coverage)
+        })
+        .collect()
+}
+
+/// The best colour and opacity of a shape, and the squared error that it then removes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Probe {
+    /// sRGB-encoded colour, 0..1.
+    pub color: [f32; 3],
+    /// Opacity, from `least_opacity` to 1.
+    pub opacity: f32,
+    /// Sum over pixels and channels of the squared error removed; negative where none is.
+    pub gain: f32,
+}
+
+/// Probes all `templates` on `patch`; returns the index of the one that gains most, and its probe.
+pub fn best(
+    level: Level,
+    templates: &[Template],
+    patch: &Patch,
+    least_opacity: f32,
+) -> Option<(usize, Probe)> {
+    dispatch!(level, simd => best_of(simd, templates, patch, least_opacity))
+}
+
+#[inline(always)]
+fn best_of<S: Simd>(
+    simd: S,
+    templates: &[Template],
+    patch: &Patch,
+    least_opacity: f32,
+) -> Option<(usize, Probe)> {
+    let mut best: Option<(usize, Probe)> = None;
+    for (index, template) in templates.iter().enumerate() {
+        let probe = sums(simd, template, patch).solve(least_opacity);
+        if best.is_none_or(|(_, held)| probe.gain > held.gain) {
+            best = Some((index, probe));
+        }
+    }
+    best
+}
+
+/// The nine sums at the head of the file.
+#[derive(Debug, Clone, Copy)]
+struct Sums {
+    s: f32,
+    x: [f32; 3],
+    y: [f32; 3],
+    q: f32,
+    z: f32,
+}
+
+#[inline(always)]
+fn sums<S: Simd>(simd: S, template: &Template, patch: &Patch) -> Sums {
+    let zero = f32x16::splat(simd, 0.0);
+    let (mut s, mut x, mut y, mut q, mut z) = (zero, [zero; 3], [zero; 3], zero, zero);
+    for (block, coverage) in &template.blocks {
+        let m = load(simd, coverage) * load(simd, &patch.inside[*block]);
+        let m2 = m * m;
+        s = s + m2;
+        for channel in 0..3 {
+            let c = load(simd, &patch.canvas[*block][channel]);
+            let me = m * load(simd, &patch.residual[*block][channel]);
+            let m2c = m2 * c;
+            x[channel] = x[channel] + m2c;
+            y[channel] = y[channel] + me;
+            q = q + m2c * c;
+            z = z + me * c;
+        }
+    }
+    Sums {
+        s: total(s),
+        x: x.map(total),
+        y: y.map(total),
+        q: total(q),
+        z: total(z),
+    }
+}
+
+impl Sums {
+    fn solve(&self, least_opacity: f32) -> Probe {
+        if self.s < 1e-3 {
+            return Probe {
+                color: [0.0; 3],
+                opacity: 1.0,
+                gain: 0.0,
+            };
+        }
+        let dot = |a: &[f32; 3], b: &[f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let spread = self.q - dot(&self.x, &self.x) / self.s;
+        let pull = dot(&self.x, &self.y) / self.s - self.z;
+        // On a flat canvas opacity and colour say the same, and the opaque stroke is preferred.
+        let free = if spread > 1e-4 * self.s {
+            pull / spread
+        } else {
+            1.0
+        };
+        let opacity = free.clamp(least_opacity, 1.0);
+        let color = [0, 1, 2]
+            .map(|k| ((self.y[k] + opacity * self.x[k]) / (self.s * opacity)).clamp(0.0, 1.0));
+        let u = color.map(|c| c * opacity);
+        let gain = 2.0 * (dot(&u, &self.y) - opacity * self.z)
+            - (dot(&u, &u) * self.s - 2.0 * opacity * dot(&u, &self.x)
+                + opacity * opacity * self.q);
+        Probe {
+            color,
+            opacity,
+            gain,
+        }
+    }
+}
+
+impl Probe {
+    /// The stroke of this probe: `shape` scaled by `scale` about the patch's centre and moved to `center`.
+    pub fn stroke(&self, shape: &Params, center: [f32; 2], scale: f32) -> Params {
+        let mut p = *shape;
+        for end in [0, 2] {
+            for axis in 0..2 {
+                p[end + axis] = center[axis] + (shape[end + axis] - PATCH_CENTER) * scale;
+            }
+        }
+        p[RADIUS] = shape[RADIUS] * scale;
+        p[RED..RED + 3].copy_from_slice(&self.color);
+        p[OPACITY] = self.opacity;
+        p
+    }
+}

@@ -1,0 +1,423 @@
+//! The reference: strokes × pixels, `f64`, no cleverness. Slow, and what every faster path is
+//! compared with.
+//!
+//! **Forward.** Source-over with opacity, back to front: with `d` the signed distance of a pixel's
+//! sample point ([`sdf`](crate::sdf)) and `σ` the coverage ([`coverage`](crate::coverage)),
+//!
+//! ```text
+//! m = opacity·σ(d)          C ← C + m(c − C)
+//! ```
+//!
+//! **Backward**, from any `g = ∂L/∂canvas`, per pixel. Pass 1, front to back, gives the
+//! transmittance `T` in front of every stroke; pass 2, back to front, carries the colour `B` behind
+//! it:
+//!
+//! ```text
+//! ∂L/∂m = T·g·(c − B)       ∂L/∂c = T·m·g        ∂L/∂background = T₀·g
+//! ∂L/∂opacity = ∂L/∂m·σ(d)  ∂L/∂d = ∂L/∂m·opacity·σ'(d)
+//! ```
+//!
+//! and from `∂L/∂d` on by the chain rule. Nothing is divided by `1 − m`, so opaque strokes are no
+//! special case.
+//!
+//! **Leave-one-out.** Without stroke `i` a pixel changes by `δ = −T·m·(c − B)`, so the squared
+//! error changes by `Σ(2e·δ + δ²)`, exactly, with `e = canvas − target`.
+//! [`Reference::leave_one_out_by_removal`] really removes each stroke.
+//!
+//! Domain: any finite parameters; a radius of 0 or below leaves what the coverage function has
+//! outside of the edge.
+//!
+//! Source: the gradient of source-over in two passes is what Kerbl et al., "3D Gaussian splatting
+//! for real-time radiance field rendering", SIGGRAPH 2023, do front to back; here without their
+//! division.
+
+use crate::coverage::Coverage;
+use crate::math::Point2;
+use crate::scene;
+use crate::sdf::Capsule;
+
+/// A colour: three values, 0..1 in any sensible scene.
+pub type Rgb = [f64; 3];
+
+/// A capsule in one colour.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Stroke {
+    /// Where the centre line starts, px: x, y.
+    pub a: [f64; 2],
+    /// Where it ends, px: x, y.
+    pub b: [f64; 2],
+    /// Half the stroke width, px.
+    pub radius: f64,
+    /// sRGB-encoded.
+    pub color: Rgb,
+    /// 0..1.
+    pub opacity: f64,
+}
+
+impl Stroke {
+    /// How many numbers a stroke is.
+    pub const PARAMS: usize = 9;
+
+    /// `[a.x, a.y, b.x, b.y, radius, red, green, blue, opacity]`.
+    pub fn to_params(self) -> [f64; Self::PARAMS] {
+        let ([ax, ay], [bx, by], [red, green, blue]) = (self.a, self.b, self.color);
+        [ax, ay, bx, by, self.radius, red, green, blue, self.opacity]
+    }
+
+    /// The inverse of [`to_params`](Self::to_params).
+    pub fn from_params(params: [f64; Self::PARAMS]) -> Self {
+        let [ax, ay, bx, by, radius, red, green, blue, opacity] = params;
+        Self {
+            a: [ax, ay],
+            b: [bx, by],
+            radius,
+            color: [red, green, blue],
+            opacity,
+        }
+    }
+}
+
+/// What is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// Columns of pixels.
+    pub width: usize,
+    /// Rows of pixels.
+    pub height: usize,
+    /// The colour behind all strokes.
+    pub background: Rgb,
+    /// Back to front.
+    pub strokes: Vec<Stroke>,
+}
+
+/// A dot becomes a capsule of zero length, a missing background white.
+impl From<&scene::Scene> for Scene {
+    fn from(scene: &scene::Scene) -> Self {
+        Self {
+            width: scene.width as usize,
+            height: scene.height as usize,
+            background: scene.background.unwrap_or([1.0; 3]).map(f64::from),
+            strokes: scene.strokes().map(Stroke::from).collect(),
+        }
+    }
+}
+
+impl From<&scene::Stroke> for Stroke {
+    fn from(stroke: &scene::Stroke) -> Self {
+        let (a, b) = stroke.shape.ends();
+        Self {
+            a: [f64::from(a.x), f64::from(a.y)],
+            b: [f64::from(b.x), f64::from(b.y)],
+            radius: f64::from(stroke.radius),
+            color: stroke.color.map(f64::from),
+            opacity: f64::from(stroke.opacity),
+        }
+    }
+}
+
+/// The derivatives of a loss by every number of a [`Scene`], each in the place of its number.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Gradients {
+    /// By the background.
+    pub background: Rgb,
+    /// By the strokes, in the scene's order.
+    pub strokes: Vec<Stroke>,
+}
+
+/// The reference renderer: how a scene is turned into pixels.
+///
+/// Pictures are `width·height` colours, row by row.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reference {
+    /// From signed distance to coverage.
+    pub coverage: Coverage,
+    /// Width of the soft edge, px.
+    pub softness: f64,
+    /// ε of the signed distance, px².
+    pub eps: f64,
+    /// Where in a pixel it is sampled, px from its upper left corner in x and y: ½ is the centre,
+    /// and 0 is for data that has pixels at integer coordinates.
+    pub sample_offset: f64,
+    /// Whether coverage beyond [`Coverage::support`] is dropped, as the fast renderer does.
+    pub cut: bool,
+}
+
+impl Reference {
+    /// Samples at pixel centres, with ε = 0 and no cut.
+    pub fn new(coverage: Coverage, softness: f64) -> Self {
+        Self {
+            coverage,
+            softness,
+            eps: 0.0,
+            sample_offset: 0.5,
+            cut: false,
+        }
+    }
+
+    /// The picture of `scene`.
+    pub fn render(&self, scene: &Scene) -> Vec<Rgb> {
+        self.samples(scene)
+            .map(|p| {
+                let strokes = scene.strokes.iter();
+                strokes.fold(scene.background, |behind, stroke| {
+                    over(
+                        behind,
+                        stroke.color,
+                        stroke.opacity * self.covered(stroke, p).0,
+                    )
+                })
+            })
+            .collect()
+    }
+
+    /// The derivatives of a loss by every number of `scene`, from `d_canvas = ∂L/∂canvas`.
+    pub fn gradients(&self, scene: &Scene, d_canvas: &[Rgb]) -> Gradients {
+        let mut gradients = Gradients {
+            background: [0.0; 3],
+            strokes: vec![Stroke::default(); scene.strokes.len()],
+        };
+        for (p, &g) in self.samples(scene).zip(d_canvas) {
+            let layers = self.layers(scene, p);
+            let through = layers
+                .first()
+                .map_or(1.0, |back| back.transmittance * (1.0 - back.m));
+            add(&mut gradients.background, through, g);
+            for (i, layer) in layers.iter().enumerate() {
+                self.accumulate(&mut gradients.strokes[i], &scene.strokes[i], layer, p, g);
+            }
+        }
+        gradients
+    }
+
+    /// By how much the sum of squared errors over all values would change if a stroke were removed,
+    /// for each stroke. Positive where a stroke is worth having.
+    pub fn leave_one_out(&self, scene: &Scene, target: &[Rgb]) -> Vec<f64> {
+        let mut changes = vec![0.0; scene.strokes.len()];
+        let canvas = self.render(scene);
+        for (k, p) in self.samples(scene).enumerate().take(target.len()) {
+            for (i, layer) in self.layers(scene, p).iter().enumerate() {
+                for channel in 0..3 {
+                    let e = canvas[k][channel] - target[k][channel];
+                    let reach = scene.strokes[i].color[channel] - layer.behind[channel];
+                    let delta = -layer.transmittance * layer.m * reach;
+                    changes[i] += 2.0 * e * delta + delta * delta;
+                }
+            }
+        }
+        changes
+    }
+
+    /// The same as [`leave_one_out`](Self::leave_one_out), by rendering the scene again without
+    /// each stroke.
+    pub fn leave_one_out_by_removal(&self, scene: &Scene, target: &[Rgb]) -> Vec<f64> {
+        let whole = squared_error(&self.render(scene), target);
+        (0..scene.strokes.len())
+            .map(|i| {
+                let mut rest = scene.clone();
+                rest.strokes.remove(i);
+                squared_error(&self.render(&rest), target) - whole
+            })
+            .collect()
+    }
+
+    /// The sample points of all pixels, row by row.
+    fn samples(&self, scene: &Scene) -> impl Iterator<Item = Point2<f64>> + use<> {
+        let (width, offset) = (scene.width, self.sample_offset);
+        let at = move |i| i as f64 + offset;
+        (0..scene.height).flat_map(move |y| (0..width).map(move |x| Point2::new(at(x), at(y))))
+    }
+
+    /// Coverage and its derivative by the distance.
+    fn covered(&self, stroke: &Stroke, p: Point2<f64>) -> (f64, f64) {
+        let d = capsule(stroke).distance(p, self.eps);
+        if self.cut && d < -self.coverage.support(self.softness) {
+            return (0.0, 0.0);
+        }
+        let value = self.coverage.value(d, self.softness);
+        (value, self.coverage.derivative(d, self.softness))
+    }
+
+    /// What each stroke is at the sample point `p`, back to front.
+    fn layers(&self, scene: &Scene, p: Point2<f64>) -> Vec<Layer> {
+        let mut behind = scene.background;
+        let mut layers = Vec::with_capacity(scene.strokes.len());
+        for stroke in &scene.strokes {
+            let (coverage, slope) = self.covered(stroke, p);
+            let m = stroke.opacity * coverage;
+            layers.push(Layer {
+                coverage,
+                slope,
+                m,
+                behind,
+                transmittance: 1.0,
+            });
+            behind = over(behind, stroke.color, m);
+        }
+        let mut transmittance = 1.0;
+        for layer in layers.iter_mut().rev() {
+            layer.transmittance = transmittance;
+            transmittance *= 1.0 - layer.m;
+        }
+        layers
+    }
+
+    /// Adds what one pixel with `∂L/∂canvas = g` has to say about `stroke`.
+    fn accumulate(&self, sum: &mut Stroke, stroke: &Stroke, layer: &Layer, p: Point2<f64>, g: Rgb) {
+        let reach = std::array::from_fn(|k| stroke.color[k] - layer.behind[k]);
+        let d_m = layer.transmittance * dot(g, reach);
+        let d_distance = d_m * stroke.opacity * layer.slope;
+        let jet = capsule(stroke).jet(p, self.eps);
+        add(&mut sum.a, d_distance, jet.by_a.into());
+        add(&mut sum.b, d_distance, jet.by_b.into());
+        sum.radius += d_distance;
+        add(&mut sum.color, layer.transmittance * layer.m, g);
+        sum.opacity += d_m * layer.coverage;
+    }
+}
+
+/// The sum of squared differences over all values.
+pub fn squared_error(canvas: &[Rgb], target: &[Rgb]) -> f64 {
+    let values = canvas.as_flattened().iter().zip(target.as_flattened());
+    values.map(|(c, t)| (c - t) * (c - t)).sum()
+}
+
+/// One stroke at one sample point.
+struct Layer {
+    coverage: f64,
+    /// Derivative of the coverage by the distance.
+    slope: f64,
+    /// Opacity times coverage.
+    m: f64,
+    /// The colour of all strokes behind.
+    behind: Rgb,
+    /// How much of the stroke the strokes in front let through.
+    transmittance: f64,
+}
+
+fn capsule(stroke: &Stroke) -> Capsule<f64> {
+    Capsule {
+        a: stroke.a.into(),
+        b: stroke.b.into(),
+        radius: stroke.radius,
+    }
+}
+
+fn over(behind: Rgb, color: Rgb, m: f64) -> Rgb {
+    std::array::from_fn(|k| behind[k] + m * (color[k] - behind[k]))
+}
+
+fn dot(x: Rgb, y: Rgb) -> f64 {
+    x.iter().zip(y).map(|(x, y)| x * y).sum()
+}
+
+/// `sum += weight·x`.
+fn add<const N: usize>(sum: &mut [f64; N], weight: f64, x: [f64; N]) {
+    for (sum, x) in sum.iter_mut().zip(x) {
+        *sum += weight * x;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RED: Rgb = [1.0, 0.0, 0.0];
+
+    fn pixel(strokes: Vec<Stroke>) -> Scene {
+        Scene {
+            width: 1,
+            height: 1,
+            background: [0.5; 3],
+            strokes,
+        }
+    }
+
+    fn red(opacity: f64) -> Stroke {
+        Stroke {
+            a: [0.5, 0.5],
+            b: [0.5, 0.5],
+            radius: 5.0,
+            color: RED,
+            opacity,
+        }
+    }
+
+    #[test]
+    fn strokes_are_laid_over_what_is_behind() {
+        let reference = Reference::new(Coverage::Smoothstep, 1.0);
+        assert_eq!(reference.render(&pixel(vec![])), [[0.5; 3]]);
+        assert_eq!(reference.render(&pixel(vec![red(1.0)])), [RED]);
+        assert_eq!(
+            reference.render(&pixel(vec![red(0.5)])),
+            [[0.75, 0.25, 0.25]]
+        );
+        let blue = Stroke {
+            color: [0.0, 0.0, 1.0],
+            ..red(0.5)
+        };
+        assert_eq!(
+            reference.render(&pixel(vec![red(1.0), blue])),
+            [[0.5, 0.0, 0.5]]
+        );
+    }
+
+    #[test]
+    fn pixels_are_sampled_where_they_are_said_to_be() {
+        let mut reference = Reference::new(Coverage::Raw, 1.0);
+        let dot = Stroke {
+            a: [1.0, 0.0],
+            b: [1.0, 0.0],
+            radius: 0.0,
+            ..red(1.0)
+        };
+        let scene = Scene {
+            width: 3,
+            ..pixel(vec![dot])
+        };
+        let gray = [0.5; 3];
+        reference.sample_offset = 0.0;
+        assert_eq!(reference.render(&scene), [gray, [0.75, 0.25, 0.25], gray]);
+        reference.sample_offset = 0.5;
+        let canvas = reference.render(&scene);
+        assert_eq!(canvas[0], canvas[1]);
+        assert!(canvas[0][0] > canvas[2][0]);
+    }
+
+    #[test]
+    fn a_cut_drops_tails_and_nothing_else() {
+        let mut reference = Reference::new(Coverage::Sigmoid, 1.0);
+        let scene = Scene {
+            width: 20,
+            ..pixel(vec![red(1.0)])
+        };
+        let whole = reference.render(&scene);
+        reference.cut = true;
+        let cut = reference.render(&scene);
+        let changed = (0..20).filter(|&x| whole[x] != cut[x]);
+        assert_eq!(changed.collect::<Vec<_>>(), (12..20).collect::<Vec<_>>());
+        assert_eq!(cut[12], [0.5; 3]);
+    }
+
+    #[test]
+    fn a_scene_of_the_crate_can_be_rendered() {
+        use crate::math::Point;
+        let mut scene = scene::Scene::empty(1, 1, None);
+        scene.stages.push(scene::Stage {
+            strokes: vec![scene::Stroke {
+                shape: scene::Shape::dot(Point::new(0.5, 0.5)),
+                radius: 5.0,
+                color: [1.0, 0.0, 0.0],
+                opacity: 0.5,
+            }],
+        });
+        let scene = Scene::from(&scene);
+        assert_eq!(scene.strokes, [red(0.5)]);
+        assert_eq!(scene.background, [1.0; 3]);
+    }
+
+    #[test]
+    fn params_are_a_strokes_numbers() {
+        let params = std::array::from_fn(|k| k as f64);
+        assert_eq!(Stroke::from_params(params).to_params(), params);
+    }
+}

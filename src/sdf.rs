@@ -1,0 +1,360 @@
+//! Signed distance fields of circles and capsules, and their combinations.
+//!
+//! **Distances are positive inside** the shape, zero on its edge and negative outside, in px. Much
+//! of the literature, this file's source included, has them the other way round (negative inside).
+//!
+//! ```text
+//! circle         d = r − √(|p−c|² + ε)
+//! capsule        d = r − √(|q|² + ε)
+//!                q = (p−a) − h(b−a),   h = clamp((p−a)·(b−a) / (|b−a|² + ε), 0, 1)
+//! union          d = max(d₁, d₂)
+//! intersection   d = min(d₁, d₂)
+//! subtraction    d = min(d₁, −d₂)
+//! ```
+//!
+//! **Derivatives.** With `u = q / √(|q|² + ε)`: `∂d/∂r = 1`, and by the chain rule through `h`
+//!
+//! ```text
+//! ∂d/∂a = (1−h)u + (u·(b−a)) ∂h/∂a      ∂h/∂a = (2h(b−a) − (b−a) − (p−a)) / (|b−a|² + ε)
+//! ∂d/∂b =     hu + (u·(b−a)) ∂h/∂b      ∂h/∂b = ((p−a) − 2h(b−a)) / (|b−a|² + ε)
+//! ```
+//!
+//! where `∂h = 0` outside of `0 ≤ h ≤ 1` (the ends included in the inside, as `PyTorch`'s `clamp`
+//! has it). At ε = 0 the terms with `∂h` vanish, because `q` is then orthogonal to `b − a` wherever
+//! `h` is free.
+//!
+//! **Domain.** All finite parameters and ε ≥ 0, the radius of either sign. ε rounds off the kink of
+//! the distance on the centre line; it makes `d` smaller by at most `√ε`, there, and by `ε / 2|q|`
+//! further away.
+//!
+//! **Degenerate cases.** A capsule of zero length is a circle: `h = 0`, and the gradient of both
+//! ends goes to `a`. On the centre line `u = 0` at ε > 0; at ε = 0, where there is no derivative,
+//! it is taken to be 0 too. A combination divides its derivative evenly where its operands tie.
+//!
+//! Source: Inigo Quilez, "2D distance functions" (the segment and the boolean operators), with the
+//! sign turned and ε added as in the golden data of this crate's tests.
+
+use crate::math::{Point2, Real, Vector2};
+
+/// A disc.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Circle<T: Real> {
+    /// Centre, px.
+    pub center: Point2<T>,
+    /// Radius, px.
+    pub radius: T,
+}
+
+/// A circle's distance at a point, with its derivatives; that by the radius is always 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CircleJet<T: Real> {
+    /// Signed distance, px, positive inside.
+    pub d: T,
+    /// `∂d/∂center`.
+    pub by_center: Vector2<T>,
+}
+
+impl<T: Real> Circle<T> {
+    /// Signed distance from `p` to the edge in px, positive inside.
+    #[inline]
+    pub fn distance(&self, p: Point2<T>, eps: T) -> T {
+        self.radius - length(p - self.center, eps)
+    }
+
+    /// The distance at `p` with its derivatives.
+    #[inline]
+    pub fn jet(&self, p: Point2<T>, eps: T) -> CircleJet<T> {
+        let q = p - self.center;
+        let length = length(q, eps);
+        CircleJet {
+            d: self.radius - length,
+            by_center: direction(q, length),
+        }
+    }
+}
+
+/// A line segment swept by a disc: a segment with round caps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Capsule<T: Real> {
+    /// Where the centre line starts, px.
+    pub a: Point2<T>,
+    /// Where it ends, px.
+    pub b: Point2<T>,
+    /// Radius, px.
+    pub radius: T,
+}
+
+/// A capsule's distance at a point, with its derivatives; that by the radius is always 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CapsuleJet<T: Real> {
+    /// Signed distance, px, positive inside.
+    pub d: T,
+    /// `∂d/∂a`.
+    pub by_a: Vector2<T>,
+    /// `∂d/∂b`.
+    pub by_b: Vector2<T>,
+}
+
+impl<T: Real> Capsule<T> {
+    /// Signed distance from `p` to the edge in px, positive inside.
+    #[inline]
+    pub fn distance(&self, p: Point2<T>, eps: T) -> T {
+        let (pa, ba) = (p - self.a, self.b - self.a);
+        let h = foot(&pa, &ba, eps).clamp(T::zero(), T::one());
+        self.radius - length(pa - ba * h, eps)
+    }
+
+    /// The distance at `p` with its derivatives.
+    #[inline]
+    pub fn jet(&self, p: Point2<T>, eps: T) -> CapsuleJet<T> {
+        let (pa, ba) = (p - self.a, self.b - self.a);
+        let foot = foot(&pa, &ba, eps);
+        let h = foot.clamp(T::zero(), T::one());
+        let q = pa - ba * h;
+        let length = length(q, eps);
+        let u = direction(q, length);
+        let (mut by_a, mut by_b) = (u * (T::one() - h), u * h);
+        let m = ba.dot(&ba) + eps;
+        if foot == h && m > T::zero() {
+            let along = u.dot(&ba) / m;
+            let twice = ba * (h + h);
+            by_a += (twice - ba - pa) * along;
+            by_b += (pa - twice) * along;
+        }
+        CapsuleJet {
+            d: self.radius - length,
+            by_a,
+            by_b,
+        }
+    }
+}
+
+/// How two distance fields combine into one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Combination {
+    /// Inside either: `max(d₁, d₂)`.
+    Union,
+    /// Inside both: `min(d₁, d₂)`. A bound of the true distance, not the distance itself.
+    Intersection,
+    /// Inside the first but not the second: `min(d₁, −d₂)`. A bound, as above.
+    Subtraction,
+}
+
+impl Combination {
+    /// The combined distance, px, positive inside.
+    #[inline]
+    pub fn distance<T: Real>(self, d1: T, d2: T) -> T {
+        match self {
+            Self::Union => d1.max(d2),
+            Self::Intersection => d1.min(d2),
+            Self::Subtraction => d1.min(-d2),
+        }
+    }
+
+    /// The derivatives of [`distance`](Self::distance) by `d1` and by `d2`.
+    #[inline]
+    pub fn derivatives<T: Real>(self, d1: T, d2: T) -> (T, T) {
+        match self {
+            Self::Union => shares(d1, d2),
+            Self::Intersection => shares(-d1, -d2),
+            Self::Subtraction => {
+                let (first, second) = shares(-d1, d2);
+                (first, -second)
+            }
+        }
+    }
+}
+
+/// The derivatives of `max(x, y)`; half each at a tie.
+fn shares<T: Real>(x: T, y: T) -> (T, T) {
+    let share = if x > y {
+        T::one()
+    } else if x == y {
+        T::of(0.5)
+    } else {
+        T::zero()
+    };
+    (share, T::one() - share)
+}
+
+/// Where the foot of the perpendicular from `p` lies on the line, 0 at `a` and 1 at `b`.
+#[inline]
+fn foot<T: Real>(pa: &Vector2<T>, ba: &Vector2<T>, eps: T) -> T {
+    let m = ba.dot(ba) + eps;
+    if m > T::zero() {
+        pa.dot(ba) / m
+    } else {
+        T::zero()
+    }
+}
+
+#[inline]
+fn length<T: Real>(q: Vector2<T>, eps: T) -> T {
+    (q.dot(&q) + eps).sqrt()
+}
+
+/// `q / length`, or zero where there is no direction.
+#[inline]
+fn direction<T: Real>(q: Vector2<T>, length: T) -> Vector2<T> {
+    if length > T::zero() {
+        q / length
+    } else {
+        Vector2::zeros()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng;
+
+    const EPS: f64 = 1e-3;
+
+    /// A number in −4..12, so that points lie within and around shapes of the same range.
+    fn coordinate(i: u64, k: u64) -> f64 {
+        f64::from(rng::draw(1, 0, i, k)) * 16.0 - 4.0
+    }
+
+    fn point(i: u64, k: u64) -> Point2<f64> {
+        Point2::new(coordinate(i, k), coordinate(i, k + 1))
+    }
+
+    fn capsule([ax, ay, bx, by, radius]: [f64; 5]) -> Capsule<f64> {
+        Capsule {
+            a: Point2::new(ax, ay),
+            b: Point2::new(bx, by),
+            radius,
+        }
+    }
+
+    /// Central differences of `f` in each of its parameters.
+    fn differences<const N: usize>(x: [f64; N], f: impl Fn([f64; N]) -> f64) -> [f64; N] {
+        let step = 1e-6;
+        std::array::from_fn(|k| {
+            let (mut low, mut high) = (x, x);
+            low[k] -= step;
+            high[k] += step;
+            (f(high) - f(low)) / (2.0 * step)
+        })
+    }
+
+    fn check(name: &str, analytic: &[f64], numeric: &[f64], failures: &mut Vec<String>) {
+        for (k, (a, n)) in analytic.iter().zip(numeric).enumerate() {
+            if (a - n).abs() > 1e-7 * (1.0 + n.abs()) {
+                failures.push(format!("{name}, parameter {k}: {a} against {n}"));
+            }
+        }
+    }
+
+    #[test]
+    fn distances_are_positive_inside() {
+        let circle = Circle {
+            center: Point2::new(3.0, 4.0),
+            radius: 2.0,
+        };
+        assert_eq!(circle.distance(Point2::new(3.0, 4.0), 0.0), 2.0);
+        assert_eq!(circle.distance(Point2::new(0.0, 0.0), 0.0), -3.0);
+        let capsule = capsule([0.0, 0.0, 10.0, 0.0, 1.0]);
+        assert_eq!(capsule.distance(Point2::new(5.0, 0.0), 0.0), 1.0);
+        assert_eq!(capsule.distance(Point2::new(5.0, 3.0), 0.0), -2.0);
+        assert_eq!(capsule.distance(Point2::new(-3.0, 4.0), 0.0), -4.0);
+        assert_eq!(capsule.distance(Point2::new(14.0, -3.0), 0.0), -4.0);
+    }
+
+    #[test]
+    fn a_capsule_of_zero_length_is_a_circle() {
+        let center = Point2::new(2.0, 3.0);
+        let circle = Circle {
+            center,
+            radius: 1.5,
+        };
+        let capsule = Capsule {
+            a: center,
+            b: center,
+            radius: 1.5,
+        };
+        for i in 0..20 {
+            for eps in [0.0, EPS] {
+                let p = point(i, 0);
+                let (round, long) = (circle.jet(p, eps), capsule.jet(p, eps));
+                assert_eq!(round.d, long.d);
+                assert!((round.by_center - long.by_a - long.by_b).norm() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_is_infinite_on_the_centre_line() {
+        let thin = capsule([1.0, 1.0, 5.0, 1.0, 0.0]);
+        for x in [1.0, 3.0, 5.0] {
+            let jet = thin.jet(Point2::new(x, 1.0), 0.0);
+            assert_eq!((jet.d, jet.by_a.norm(), jet.by_b.norm()), (0.0, 0.0, 0.0));
+        }
+        let dot = capsule([1.0, 1.0, 1.0, 1.0, 2.0]).jet(Point2::new(1.0, 1.0), 0.0);
+        assert_eq!((dot.d, dot.by_a.norm(), dot.by_b.norm()), (2.0, 0.0, 0.0));
+    }
+
+    #[test]
+    fn a_jet_has_the_value_of_the_distance() {
+        for i in 0..50 {
+            let (a, b, p) = (point(i, 0), point(i, 2), point(i, 4));
+            let capsule = Capsule { a, b, radius: 1.0 };
+            assert_eq!(capsule.jet(p, EPS).d, capsule.distance(p, EPS));
+            let circle = Circle {
+                center: a,
+                radius: 1.0,
+            };
+            assert_eq!(circle.jet(p, EPS).d, circle.distance(p, EPS));
+        }
+    }
+
+    #[test]
+    fn derivatives_are_central_differences() {
+        let mut failures = Vec::new();
+        for i in 0..200 {
+            let (a, b, p) = (point(i, 0), point(i, 2), point(i, 4));
+            let jet = capsule([a.x, a.y, b.x, b.y, 1.0]).jet(p, EPS);
+            let numeric = differences([a.x, a.y, b.x, b.y, 1.0], |x| capsule(x).distance(p, EPS));
+            let analytic = [jet.by_a.x, jet.by_a.y, jet.by_b.x, jet.by_b.y, 1.0];
+            check(&format!("capsule {i}"), &analytic, &numeric, &mut failures);
+
+            let circle = |[x, y, radius]: [f64; 3]| Circle {
+                center: Point2::new(x, y),
+                radius,
+            };
+            let by_center = circle([a.x, a.y, 1.0]).jet(p, EPS).by_center;
+            let numeric = differences([a.x, a.y, 1.0], |x| circle(x).distance(p, EPS));
+            let analytic = [by_center.x, by_center.y, 1.0];
+            check(&format!("circle {i}"), &analytic, &numeric, &mut failures);
+        }
+        assert!(failures.is_empty(), "{}", failures.join("\n"));
+    }
+
+    #[test]
+    fn combinations_are_of_sets() {
+        use Combination::{Intersection, Subtraction, Union};
+        for (d1, d2) in [(1.0, 2.0), (1.0, -2.0), (-1.0, 2.0), (-1.0, -2.0)] {
+            let inside = |c: Combination| c.distance(d1, d2) > 0.0;
+            assert_eq!(inside(Union), d1 > 0.0 || d2 > 0.0);
+            assert_eq!(inside(Intersection), d1 > 0.0 && d2 > 0.0);
+            assert_eq!(inside(Subtraction), d1 > 0.0 && d2 < 0.0);
+        }
+    }
+
+    #[test]
+    fn combinations_derive() {
+        use Combination::{Intersection, Subtraction, Union};
+        let mut failures = Vec::new();
+        for combination in [Union, Intersection, Subtraction] {
+            for (d1, d2) in [(1.0, 2.0), (2.0, 1.0), (-1.0, 0.5), (0.5, -3.0)] {
+                let (by_1, by_2) = combination.derivatives(d1, d2);
+                let numeric = differences([d1, d2], |[x, y]| combination.distance(x, y));
+                let name = format!("{combination:?} of {d1} and {d2}");
+                check(&name, &[by_1, by_2], &numeric, &mut failures);
+            }
+        }
+        assert!(failures.is_empty(), "{}", failures.join("\n"));
+        assert_eq!(Union.derivatives(1.0, 1.0), (0.5, 0.5));
+        assert_eq!(Subtraction.derivatives(1.0, -1.0), (0.5, -0.5));
+    }
+}
