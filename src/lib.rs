@@ -9,6 +9,7 @@ pub mod math;
 pub mod metrics;
 pub mod optim;
 pub mod render;
+pub mod report;
 pub mod rng;
 pub mod scene;
 pub mod sdf;
