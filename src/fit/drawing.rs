@@ -34,6 +34,9 @@ pub(super) struct Drawing {
     pub(super) canvas: Canvas,
     pub(super) limits: Limits,
     edge: Softness,
+    seed: u64,
+    /// How often strokes were sought.
+    searches: u64,
 }
 
 impl Drawing {
@@ -54,6 +57,8 @@ impl Drawing {
             canvas: Canvas::flat(grid, background),
             limits: Limits::new(grid.width, grid.height, least_opacity),
             edge: final_softness(config.coverage.late),
+            seed: config.seed,
+            searches: 0,
         }
     }
 
@@ -65,6 +70,12 @@ impl Drawing {
     /// Side of the square that each of `count` strokes would have to itself, px.
     pub(super) fn spacing(&self, count: usize) -> f32 {
         (self.pixels() as f32 / count.max(1) as f32).sqrt()
+    }
+
+    /// The random key of the next search for strokes.
+    pub(super) fn next_key(&mut self) -> [u64; 2] {
+        self.searches += 1;
+        [self.seed, self.searches]
     }
 
     /// The number of the stage on top, from 0.

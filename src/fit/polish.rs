@@ -106,6 +106,7 @@ fn relocate(drawing: &mut Drawing, recipe: &Recipe, descent: &mut Descent) {
         scale: drawing.spacing(drawing.strokes.len()) * recipe.scale * recipe.relocate_scale,
         oversampling: recipe.oversampling,
         least_opacity: drawing.limits.least_opacity,
+        key: drawing.next_key(),
     };
     let candidates = propose(drawing.level, &drawing.pyramid, &drawing.canvas, wanted);
     let keep = survivors(&worth, &candidates);

@@ -32,12 +32,13 @@ pub(super) fn add(
     accept(drawing, anneal, strokes, plan.index);
 }
 
-fn seed(drawing: &Drawing, recipe: &Recipe, plan: PlannedStage) -> Vec<Params> {
+fn seed(drawing: &mut Drawing, recipe: &Recipe, plan: PlannedStage) -> Vec<Params> {
     let wanted = Wanted {
         count: plan.count,
         scale: plan.scale,
         oversampling: recipe.oversampling,
         least_opacity: drawing.limits.least_opacity,
+        key: drawing.next_key(),
     };
     let candidates = propose(drawing.level, &drawing.pyramid, &drawing.canvas, wanted);
     // The best candidate is drawn last, so that none of lesser gain hides it.
