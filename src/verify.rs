@@ -68,7 +68,7 @@ pub fn render(svg: &str, size: Size, ground: Option<Rgb>) -> Result<Image> {
 /// # Errors
 /// As [`render`]; also [`ErrorKind::Svg`] when the SVG has another aspect ratio than the target.
 pub fn fidelity(svg: &str, target: &Image) -> Result<Quality> {
-    Quality::between(target, &rendered_like(svg, target)?)
+    Quality::between(target, &render_like(svg, target)?)
 }
 
 /// Judges SVG text: faithful to `target`, and drawn as in `soft`, our own render of it?
@@ -76,14 +76,18 @@ pub fn fidelity(svg: &str, target: &Image) -> Result<Quality> {
 /// # Errors
 /// As [`fidelity`]; also [`ErrorKind::Picture`] when `soft` and `target` differ in size.
 pub fn verify(svg: &str, target: &Image, soft: &Image) -> Result<Verdict> {
-    let drawn = rendered_like(svg, target)?;
+    let drawn = render_like(svg, target)?;
     Ok(Verdict {
         fidelity: Quality::between(target, &drawn)?,
         agreement: Agreement::between(soft, &drawn)?,
     })
 }
 
-fn rendered_like(svg: &str, target: &Image) -> Result<Image> {
+/// Renders SVG text at the size of `target`, on white.
+///
+/// # Errors
+/// As [`fidelity`].
+pub(crate) fn render_like(svg: &str, target: &Image) -> Result<Image> {
     let tree = parse(svg)?;
     let side = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
     let (width, height) = (side(target.width()), side(target.height()));

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use anyhow::Result;
 use clap::ValueEnum;
 use strokefit::coverage::CoverageSchedule;
-use strokefit::fit::{self, Background, Budget, Config, Execution, Fit};
+use strokefit::fit::{self, Background, Budget, Config, Execution, Fit, Simd};
 use strokefit::image::Image;
 use strokefit::metrics::Quality;
 use strokefit::report::{self, FitReport, Input, StageEntry, Usage};
@@ -82,6 +82,9 @@ pub(super) struct Args {
     /// Worker threads [default: all cores]
     #[arg(long, value_name = "N", help_heading = HOW, value_parser = domain::threads, allow_negative_numbers = true)]
     threads: Option<usize>,
+    /// Instruction set: auto, avx512, avx2, sse4.2, sse2, neon or scalar
+    #[arg(long, value_name = "LEVEL", default_value = "auto", help_heading = HOW)]
+    simd: Simd,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -116,14 +119,6 @@ impl Args {
             background: self.background,
             seed: self.seed,
             ..Config::default()
-        }
-    }
-
-    /// What transparency is laid on.
-    fn ground(&self) -> [f32; 3] {
-        match self.background {
-            Background::Color(color) => color,
-            _ => [1.0; 3],
         }
     }
 }
@@ -171,23 +166,23 @@ pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
     let start = Instant::now();
     let picture = input::picture(&args.input)?;
     let outputs = Outputs::open(args)?;
-    let target = picture.flattened(args.ground());
-    let drawn = draw(args, &target, verbosity)?;
+    let drawn = draw(args, &picture, verbosity)?;
     outputs.svg.write(drawn.text.as_bytes())?;
     let wall = start.elapsed();
     if let Some(output) = &outputs.report {
-        output.write(&json(&report(args, &target, &drawn, wall))?)?;
+        output.write(&json(&report(args, &drawn, wall))?)?;
     }
     verbosity.say(summary(args, &drawn, wall));
     Ok(judge(args, &drawn))
 }
 
-fn draw(args: &Args, target: &Image, verbosity: Verbosity) -> Result<Drawn> {
+fn draw(args: &Args, picture: &Image, verbosity: Verbosity) -> Result<Drawn> {
     let mut bar = Bar::new(verbosity.quiet);
     let execution = Execution {
         threads: args.threads,
+        simd: args.simd,
     };
-    let fit = fit::fit(target, &args.config(), &execution, &mut bar);
+    let fit = fit::fit(picture, &args.config(), &execution, &mut bar);
     bar.clear();
     let fit = fit?;
     for stage in &fit.stages {
@@ -206,8 +201,8 @@ fn draw(args: &Args, target: &Image, verbosity: Verbosity) -> Result<Drawn> {
             precision: args.precision,
         },
     );
-    let soft = Quality::between(target, &fit.soft)?;
-    let verdict = verify::verify(&text, target, &fit.soft)?;
+    let soft = Quality::between(&fit.target, &fit.soft)?;
+    let verdict = verify::verify(&text, &fit.target, &fit.soft)?;
     Ok(Drawn {
         fit,
         text,
@@ -216,14 +211,14 @@ fn draw(args: &Args, target: &Image, verbosity: Verbosity) -> Result<Drawn> {
     })
 }
 
-fn report(args: &Args, target: &Image, drawn: &Drawn, wall: Duration) -> FitReport {
+fn report(args: &Args, drawn: &Drawn, wall: Duration) -> FitReport {
     let Usage {
         cpu_s,
         peak_rss_bytes,
     } = Usage::now();
     FitReport {
         schema: report::SCHEMA,
-        input: Input::new(args.input.display().to_string(), target),
+        input: Input::new(args.input.display().to_string(), &drawn.fit.target),
         strokes: drawn.fit.scene.len(),
         dropped: drawn.fit.dropped,
         stages: drawn.fit.stages.iter().map(StageEntry::from).collect(),
