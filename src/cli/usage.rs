@@ -1,17 +1,21 @@
 //! Parsing of the arguments, with refusals of one line.
 
 use clap::Parser;
+use clap::error::ErrorKind;
 
 use super::{Args, Status, complain};
 
 /// The arguments of the process, or the status to leave with: help was shown, or a line of error.
 pub(crate) fn parse() -> Result<Args, Status> {
     Args::try_parse().map_err(|error| {
-        if error.use_stderr() {
+        // Called without any argument: clap prints the help on standard error.
+        let asks = error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
+        if error.use_stderr() && !asks {
             complain(one_line(&error.to_string()));
             return Status::Usage;
         }
         match error.print() {
+            Ok(()) if asks => Status::Usage,
             Ok(()) => Status::Done,
             Err(_) => Status::Failed,
         }
