@@ -18,6 +18,9 @@
 //! Degenerate cases: a zero-length capsule is a disc; a stroke with a non-finite number touches no
 //! block; on the centre line `u` tends to 0 with the guard instead of being undefined.
 
+// Lanes are never passed through closures of `array::map`: those are compiled on their own, without the
+// instruction set of their caller.
+
 use fearless_simd::{Level, dispatch, f32x8, f32x16, prelude::*};
 
 use super::CanvasLoss;
@@ -41,24 +44,22 @@ const FAINTEST: f32 = 1e-20;
 /// Distance from a block's centre to its outermost pixel centres, px, rounded up.
 const BLOCK_RADIUS: f32 = 2.121_5;
 
-const LANE_X: Lanes = {
-    let mut lanes = [0.0; LANES];
+/// x and y of the pixel centres of a block, px.
+const PIXELS: [Lanes; 2] = lattice(BLOCK, 1.0);
+/// x and y of the centres of a tile's first 16 blocks, px.
+const CENTERS: [Lanes; 2] = lattice(TILE_BLOCKS, BLOCK as f32);
+
+/// The centres of 16 cells of side `side`, `columns` in a row.
+const fn lattice(columns: usize, side: f32) -> [Lanes; 2] {
+    let mut centers = [Lanes::splat(0.0); 2];
     let mut i = 0;
     while i < LANES {
-        lanes[i] = (i % BLOCK) as f32 + 0.5;
+        centers[0].0[i] = ((i % columns) as f32 + 0.5) * side;
+        centers[1].0[i] = ((i / columns) as f32 + 0.5) * side;
         i += 1;
     }
-    Lanes(lanes)
-};
-const LANE_Y: Lanes = {
-    let mut lanes = [0.0; LANES];
-    let mut i = 0;
-    while i < LANES {
-        lanes[i] = (i / BLOCK) as f32 + 0.5;
-        i += 1;
-    }
-    Lanes(lanes)
-};
+    centers
+}
 
 /// `∂L` of one stroke over one tile: its [`PARAMS`] in order, then its worth.
 pub(super) type StrokeSums = [f32; PARAMS + 1];
@@ -183,7 +184,7 @@ impl<S: Simd> Capsule<S> {
         let length2 = axis[0] * axis[0] + axis[1] * axis[1];
         Self {
             a: [p[AX] - origin[0], p[AY] - origin[1]],
-            axis: axis.map(|v| f32x16::splat(simd, v)),
+            axis: [f32x16::splat(simd, axis[0]), f32x16::splat(simd, axis[1])],
             inverse_length2: f32x16::splat(simd, 1.0 / (length2 + EPSILON)),
             radius: f32x16::splat(simd, p[RADIUS]),
         }
@@ -202,7 +203,7 @@ impl<S: Simd> Capsule<S> {
     fn offsets(&self, simd: S, block: usize) -> [f32x16<S>; 2] {
         let x = (block % TILE_BLOCKS * BLOCK) as f32 - self.a[0];
         let y = (block / TILE_BLOCKS * BLOCK) as f32 - self.a[1];
-        [load(simd, &LANE_X) + x, load(simd, &LANE_Y) + y]
+        [load(simd, &PIXELS[0]) + x, load(simd, &PIXELS[1]) + y]
     }
 
     /// The signed distance at the pixels of a block.
@@ -220,14 +221,11 @@ impl<S: Simd> Capsule<S> {
         let inner = (radius - reach.inside - BLOCK_RADIUS).max(0.0);
         let (mut touched, mut core) = (0, 0);
         for row in 0..BLOCKS / LANES {
-            let column = f32x16::from_fn(simd, |i| {
-                (i % TILE_BLOCKS * BLOCK) as f32 + BLOCK as f32 / 2.0
-            });
-            let line = f32x16::from_fn(simd, |i| {
-                (i / TILE_BLOCKS * BLOCK) as f32 + BLOCK as f32 / 2.0
-            });
             let y = (row * LANES / TILE_BLOCKS * BLOCK) as f32 - self.a[1];
-            let (_, q) = self.nearest([column - self.a[0], line + y]);
+            let (_, q) = self.nearest([
+                load(simd, &CENTERS[0]) - self.a[0],
+                load(simd, &CENTERS[1]) + y,
+            ]);
             let distance2 = q[0] * q[0] + q[1] * q[1];
             touched |= distance2.simd_lt(outer * outer).to_bitmask() << (row * LANES);
             core |= distance2.simd_lt(inner * inner).to_bitmask() << (row * LANES);
@@ -244,6 +242,15 @@ pub(super) fn load<S: Simd>(simd: S, lanes: &Lanes) -> f32x16<S> {
 #[inline(always)]
 pub(super) fn store<S: Simd>(value: f32x16<S>, lanes: &mut Lanes) {
     value.store_slice(&mut lanes.0);
+}
+
+#[inline(always)]
+fn splat_rgb<S: Simd>(simd: S, p: &Params) -> [f32x16<S>; 3] {
+    [
+        f32x16::splat(simd, p[RED]),
+        f32x16::splat(simd, p[RED + 1]),
+        f32x16::splat(simd, p[RED + 2]),
+    ]
 }
 
 /// The members of a set, in rising order.
@@ -290,7 +297,7 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
             continue;
         }
         visits.push(visit);
-        let rgb = [p[RED], p[RED + 1], p[RED + 2]].map(|c| f32x16::splat(simd, c));
+        let rgb = splat_rgb(simd, p);
         let opacity = f32x16::splat(simd, p[OPACITY].max(FAINTEST));
         for block in members(visit.edge) {
             let (_, q) = capsule.nearest(capsule.offsets(simd, block));
@@ -379,18 +386,16 @@ impl<S: Simd> Sums<S> {
 
     #[inline(always)]
     fn finish(&self, opacity: f32) -> StrokeSums {
-        let [shift_x, shift_y] = self.shift.map(total);
-        let [bx, by] = self.shift_b.map(total);
-        let [red, green, blue] = self.color.map(total);
+        let (bx, by) = (total(self.shift_b[0]), total(self.shift_b[1]));
         [
-            shift_x - bx,
-            shift_y - by,
+            total(self.shift[0]) - bx,
+            total(self.shift[1]) - by,
             bx,
             by,
             total(self.radius),
-            red,
-            green,
-            blue,
+            total(self.color[0]),
+            total(self.color[1]),
+            total(self.color[2]),
             total(self.opacity) / opacity,
             total(self.worth),
         ]
@@ -437,7 +442,7 @@ fn back_to_front<S: Simd, const WITH_WORTH: bool>(
     for visit in visits.iter().rev() {
         let p = &job.strokes[job.ids[visit.slot as usize] as usize];
         let capsule = Capsule::new(simd, p, job.origin);
-        let rgb = [p[RED], p[RED + 1], p[RED + 2]].map(|c| f32x16::splat(simd, c));
+        let rgb = splat_rgb(simd, p);
         let mut stroke = Sums::new(simd);
         at -= (visit.edge.count_ones() + visit.core.count_ones()) as usize;
         at_edge -= visit.edge.count_ones() as usize;
@@ -480,7 +485,7 @@ fn back_to_front<S: Simd, const WITH_WORTH: bool>(
         }
         sums[visit.slot as usize] = stroke.finish(p[OPACITY].max(FAINTEST));
     }
-    base.map(total)
+    [total(base[0]), total(base[1]), total(base[2])]
 }
 
 impl<S: Simd> Sums<S> {
