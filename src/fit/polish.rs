@@ -38,7 +38,7 @@ pub(super) fn run(
         from: recipe.polish_softness,
         ..anneal
     };
-    let mut descent = Descent::new(drawing.free().len(), recipe.polish_rates, drawing.limits);
+    let mut descent = Descent::new(drawing.free(), recipe.polish_rates, drawing.limits);
     let mut background = Adam::new(3, AdamParams::default());
     let mut clock = Clock::new(steps, control);
     while let Some((step, done)) = clock.tick(control) {
@@ -110,7 +110,7 @@ fn relocate(drawing: &mut Drawing, recipe: &Recipe, terms: Terms, descent: &mut 
     let stage = drawing.last_stage();
     drawing.retain_free(&keep);
     drawing.extend(newcomers, stage);
-    descent.rearrange(&sources);
+    descent.rearrange(drawing.free(), &sources);
 }
 
 /// Which strokes stay, and how many of the `candidates`, best first, come.

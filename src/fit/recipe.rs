@@ -57,21 +57,21 @@ impl Recipe {
     pub fn of(preset: Preset) -> Self {
         let balanced = Self {
             stages: 8,
-            growth: 1.6,
-            scale: 0.4,
+            growth: 1.35,
+            scale: 0.3,
             oversampling: 3.0,
-            stage_iterations: 100,
+            stage_iterations: 120,
             stage_rates: Rates {
-                position: 0.6,
-                radius: 0.2,
+                position: 1.0,
+                radius: 0.3,
                 color: 0.02,
                 opacity: 0.02,
                 last: 0.1,
             },
-            polish_iterations: 600,
+            polish_iterations: 900,
             polish_rates: Rates {
-                position: 0.4,
-                radius: 0.1,
+                position: 0.8,
+                radius: 0.2,
                 color: 0.02,
                 opacity: 0.03,
                 last: 0.1,
@@ -82,7 +82,7 @@ impl Recipe {
             polish_softness: 2.4,
             settle_rounds: 3,
             settle_iterations: 20,
-            settle_rate: 0.1,
+            settle_rate: 0.05,
         };
         match preset {
             Preset::Draft => Self {

@@ -108,7 +108,7 @@ fn descend(drawing: &mut Drawing, recipe: &Recipe, target: &Canvas) {
     let steps = recipe.settle_iterations;
     let rates = recipe.polish_rates;
     let schedule = Schedule::Cosine { end: rates.last };
-    let mut descent = Descent::new(drawing.free().len(), rates, drawing.limits);
+    let mut descent = Descent::new(drawing.free(), rates, drawing.limits);
     for step in 0..steps {
         let rate = schedule.factor(step, steps) as f32 * recipe.settle_rate;
         drawing.step_towards(target, &mut descent, rate);

@@ -41,7 +41,7 @@ fn descend(drawing: &mut Drawing, recipe: &Recipe, anneal: Anneal, control: &mut
     let schedule = Schedule::Cosine {
         end: recipe.stage_rates.last,
     };
-    let mut descent = Descent::new(drawing.free().len(), recipe.stage_rates, drawing.limits);
+    let mut descent = Descent::new(drawing.free(), recipe.stage_rates, drawing.limits);
     for step in 0..steps {
         let rate = schedule.factor(step, steps) as f32;
         drawing.step(&mut descent, anneal.at(step as f32 / steps as f32), rate);
