@@ -4,6 +4,7 @@ pub mod coverage;
 mod error;
 pub mod fit;
 pub mod image;
+pub mod lab;
 pub mod loss;
 pub mod math;
 pub mod optim;
