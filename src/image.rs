@@ -9,6 +9,7 @@ mod decode;
 mod encode;
 mod header;
 
+use std::fmt;
 use std::path::Path;
 
 pub use animate::Animation;
@@ -18,7 +19,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::scene::Rgb;
 
 /// A picture: three planes of sRGB-encoded colour 0..1, and alpha where the source had it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct Image {
     /// Width in px, at least 1.
     width: usize,
@@ -190,6 +191,17 @@ impl Image {
         pixels
             .flat_map(|((&r, &g), &b)| [r, g, b].map(byte))
             .collect()
+    }
+}
+
+/// Without the values: they would bury everything else.
+impl fmt::Debug for Image {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Image")
+            .field("width", &self.width)
+            .field("height", &self.height)
+            .field("alpha", &self.alpha.is_some())
+            .finish_non_exhaustive()
     }
 }
 

@@ -7,12 +7,15 @@ pub mod image;
 pub mod lab;
 pub mod loss;
 pub mod math;
+pub mod metrics;
 pub mod optim;
 pub mod render;
+pub mod report;
 pub mod rng;
 pub mod scene;
 pub mod sdf;
 pub mod seed;
 pub mod svg;
+pub mod verify;
 
 pub use error::{Error, ErrorKind, Result};

@@ -8,12 +8,15 @@
 //!
 //! Large strokes are sought in a reduced picture, so that a probe costs the same at every scale.
 
+use std::ops::Range;
+
 use fearless_simd::Level;
 use rayon::prelude::*;
 
 use crate::image::Image;
 use crate::render::probe::{PATCH_CENTER, Patch, Template, best};
 use crate::render::{Canvas, Params};
+use crate::rng;
 
 /// Radii of the probed shapes, in units of the scale.
 const RADII: [f32; 3] = [0.3, 0.55, 1.0];
@@ -38,6 +41,9 @@ pub struct Wanted {
     pub oversampling: f32,
     /// Candidates less opaque than this are not proposed; 1 for opaque drawings.
     pub least_opacity: f32,
+    /// Key of the random shift of the cells: the seed of the fit, and a number for each call, so that
+    /// no two calls cut the picture alike.
+    pub key: [u64; 2],
 }
 
 /// A proposed stroke and the squared error (summed over pixels and channels) it would remove alone.
@@ -83,12 +89,16 @@ pub fn propose(level: Level, target: &Pyramid, canvas: &Canvas, wanted: Wanted) 
     let scale = (wanted.scale / reduction).min(SCALE_LIMIT);
     let templates = templates(level, scale);
     let energy = smoothed_energy(target, &canvas, (scale / 2.0).round() as usize);
-    let cells = Cells::new(&canvas, wanted.count as f32 * wanted.oversampling);
+    let cells = Cells::new(
+        &canvas,
+        wanted.count as f32 * wanted.oversampling,
+        wanted.key,
+    );
     let gain_scale = reduction * reduction;
     let mut candidates: Vec<Candidate> = (0..cells.len())
         .into_par_iter()
         .map_init(Patch::new, |patch, cell| {
-            let (x, y) = cells.peak(cell, &energy);
+            let (x, y) = cells.peak(cell, &energy)?;
             patch.fill(target, &canvas, x, y);
             let (index, probe) = best(level, &templates, patch, wanted.least_opacity)?;
             let center = [x, y].map(|v| (v as f32 + 0.5) * reduction);
@@ -164,25 +174,32 @@ fn box_sums<'a>(
     }
 }
 
-/// The picture cut in about `count` nearly square cells.
+/// The picture cut in about `count` nearly square cells, shifted at random.
 #[derive(Debug, Clone, Copy)]
 struct Cells {
     width: usize,
     height: usize,
+    /// Side of a cell, px.
+    side: f32,
+    /// How much of the first column and row is cut off, px.
+    shift: [f32; 2],
     columns: usize,
     rows: usize,
 }
 
 impl Cells {
-    fn new(image: &Image, count: f32) -> Self {
+    fn new(image: &Image, count: f32, [seed, call]: [u64; 2]) -> Self {
         let (width, height) = (image.width(), image.height());
         let side = ((width * height) as f32 / count.max(1.0)).sqrt().max(1.0);
-        let along = |size: usize| ((size as f32 / side).round() as usize).clamp(1, size);
+        let shift = [0, 1].map(|axis| rng::draw(seed, call, axis, 0) * side);
+        let along = |size: usize, shift: f32| ((size as f32 + shift) / side).ceil() as usize;
         Self {
             width,
             height,
-            columns: along(width),
-            rows: along(height),
+            side,
+            shift,
+            columns: along(width, shift[0]),
+            rows: along(height, shift[1]),
         }
     }
 
@@ -190,20 +207,107 @@ impl Cells {
         self.columns * self.rows
     }
 
-    /// The pixel of a cell where `energy` is largest; the first of equals.
-    fn peak(&self, cell: usize, energy: &[f32]) -> (usize, usize) {
-        let (column, row) = (cell % self.columns, cell / self.columns);
-        let span = |i: usize, n: usize, size: usize| i * size / n..(i + 1) * size / n;
-        let xs = span(column, self.columns, self.width);
-        let ys = span(row, self.rows, self.height);
-        let mut peak = (xs.start, ys.start);
+    /// Cell `i` of a row or column of `size` px; empty where rounding leaves no pixel.
+    fn span(&self, i: usize, shift: f32, size: usize) -> Range<usize> {
+        let edge = |i: usize| ((i as f32 * self.side - shift).max(0.0).ceil() as usize).min(size);
+        edge(i)..edge(i + 1)
+    }
+
+    /// The pixel of a cell where `energy` is largest, the first of equals; `None` in an empty cell.
+    fn peak(&self, cell: usize, energy: &[f32]) -> Option<(usize, usize)> {
+        let xs = self.span(cell % self.columns, self.shift[0], self.width);
+        let ys = self.span(cell / self.columns, self.shift[1], self.height);
+        let mut peak = None;
+        let mut most = f32::NEG_INFINITY;
         for y in ys {
             for x in xs.clone() {
-                if energy[y * self.width + x] > energy[peak.1 * self.width + peak.0] {
-                    peak = (x, y);
+                let e = energy[y * self.width + x];
+                if e > most {
+                    (most, peak) = (e, Some((x, y)));
                 }
             }
         }
         peak
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ramp(width: usize, height: usize) -> Image {
+        Image::from_planes(
+            width,
+            height,
+            [0, 1, 2].map(|_| (0..width * height).map(|i| i as f32).collect()),
+        )
+    }
+
+    #[test]
+    fn cells_partition_the_picture() {
+        for (width, height, count) in [(37, 23, 40.0), (1, 1, 5.0), (1, 100, 7.0), (64, 64, 1.0)] {
+            for call in 0..5 {
+                let cells = Cells::new(&ramp(width, height), count, [3, call]);
+                let mut hits = vec![0; width * height];
+                for cell in 0..cells.len() {
+                    for y in cells.span(cell / cells.columns, cells.shift[1], height) {
+                        for x in cells.span(cell % cells.columns, cells.shift[0], width) {
+                            hits[y * width + x] += 1;
+                        }
+                    }
+                }
+                assert!(
+                    hits.iter().all(|&n| n == 1),
+                    "{width}×{height} in {count}, call {call}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn box_sums_add_their_windows() {
+        for radius in [0, 1, 3, 20] {
+            let values: Vec<f32> = (0..11).map(|i| (i * i) as f32).collect();
+            let mut out = vec![0.0; 11];
+            box_sums(values.iter().copied(), radius, out.iter_mut());
+            for (i, &sum) in out.iter().enumerate() {
+                let window = &values[i.saturating_sub(radius)..(i + radius + 1).min(11)];
+                assert_eq!(sum, window.iter().sum::<f32>(), "radius {radius} at {i}");
+            }
+        }
+    }
+
+    /// A red bar on white is found where it lies, in its colour, and its gain is what it removes.
+    #[test]
+    fn a_bar_is_proposed_where_it_lies() {
+        let (width, height) = (48, 40);
+        let inside = |i: usize| (14..=34).contains(&(i % width)) && (18..22).contains(&(i / width));
+        let plane = |bar: f32| {
+            (0..width * height)
+                .map(|i| if inside(i) { bar } else { 1.0 })
+                .collect()
+        };
+        let target = Image::from_planes(width, height, [plane(0.9), plane(0.1), plane(0.2)]);
+        let canvas = Canvas::flat(Canvas::from_image(&target).grid(), [1.0; 3]);
+        let wanted = Wanted {
+            count: 1,
+            scale: 4.0,
+            oversampling: 4.0,
+            least_opacity: 1.0,
+            key: [0, 0],
+        };
+        let found = propose(Level::new(), &Pyramid::new(target), &canvas, wanted);
+        let Candidate { stroke, gain } = found[0];
+        assert!(
+            (stroke[5] - 0.9).abs() < 0.1 && stroke[6] < 0.25,
+            "{stroke:?}"
+        );
+        let center = [(stroke[0] + stroke[2]) / 2.0, (stroke[1] + stroke[3]) / 2.0];
+        assert!(
+            (14.0..35.0).contains(&center[0]) && (17.0..23.0).contains(&center[1]),
+            "{stroke:?}"
+        );
+        let error = 21.0 * 4.0 * (0.1f32.powi(2) + 0.9f32.powi(2) + 0.8f32.powi(2));
+        assert!(gain > 0.4 * error && gain < error, "gain {gain} of {error}");
     }
 }

@@ -1,10 +1,13 @@
 //! *What* to fit ([`Config`]) and *how* to run ([`Execution`]); *how* never changes a byte.
 
+use std::collections::HashMap;
 use std::time::Duration;
 
 use super::recipe::Recipe;
+use super::simd::Simd;
 use crate::coverage::CoverageSchedule;
 use crate::error::{Error, ErrorKind, Result};
+use crate::image::Image;
 use crate::scene::Rgb;
 
 /// What to fit. Equal configurations of equal pictures give equal bytes.
@@ -87,11 +90,43 @@ pub enum Background {
 }
 
 /// How to run. Never changes the result.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct Execution {
     /// Worker threads; all cores when `None`.
     pub threads: Option<usize>,
+    /// The instruction set of the renderer.
+    pub simd: Simd,
 }
+
+impl Config {
+    /// Refuses what is outside its domain.
+    pub(super) fn check(&self) -> Result<()> {
+        let refuse = |message: String| Err(Error::new(ErrorKind::Config, message));
+        let Budget { psnr_db, time, .. } = self.budget;
+        if psnr_db.is_some_and(|db| !db.is_finite() || db <= 0.0) {
+            return refuse(format!(
+                "a fidelity of {} dB cannot be asked for: give one above 0",
+                psnr_db.unwrap_or(0.0)
+            ));
+        }
+        if time.is_some_and(|time| time.is_zero()) {
+            return refuse("a time of 0 s leaves none to fit in: give more".into());
+        }
+        if self.stages == Some(0) {
+            return refuse("0 stages add no stroke: give 1 or more".into());
+        }
+        if self.precision > MAX_PRECISION {
+            return refuse(format!(
+                "a precision of {} decimals is out of range: give 0 to {MAX_PRECISION}",
+                self.precision
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// Most decimals of coordinates: more than `f32` holds in a picture of any size.
+const MAX_PRECISION: u8 = 6;
 
 impl Execution {
     /// The worker threads.
@@ -105,5 +140,48 @@ impl Execution {
                     format!("cannot start {threads} worker threads: ask for fewer with --threads");
                 Error::new(ErrorKind::Config, message).caused_by(cause)
             })
+    }
+}
+
+impl Background {
+    /// The colour that a picture with alpha is laid on.
+    pub(super) fn ground(self) -> Rgb {
+        match self {
+            Self::Color(color) => color,
+            Self::Auto | Self::None => [1.0; 3],
+        }
+    }
+
+    /// The colour that the page starts from, and whether it stays that colour.
+    pub(super) fn choose(self, target: &Image) -> (Rgb, bool) {
+        match self {
+            Self::Auto => (prevailing_color(target), false),
+            Self::None => ([1.0; 3], true),
+            Self::Color(color) => (color, true),
+        }
+    }
+}
+
+/// Share of the pixels that one colour must have to be taken for the ground.
+const PREVAILING: f64 = 0.25;
+
+/// The colour of most pixels if it is a ground, otherwise the mean colour.
+fn prevailing_color(image: &Image) -> Rgb {
+    let pixels = image.width() * image.height();
+    let mut counts = HashMap::<[u8; 3], usize>::new();
+    for rgb in image.to_rgb8().chunks_exact(3) {
+        *counts.entry([rgb[0], rgb[1], rgb[2]]).or_default() += 1;
+    }
+    let most = counts
+        .into_iter()
+        .max_by_key(|&(color, count)| (count, color));
+    match most {
+        Some((color, count)) if count as f64 >= PREVAILING * pixels as f64 => {
+            color.map(|v| f32::from(v) / 255.0)
+        }
+        _ => [0, 1, 2].map(|c| {
+            let sum: f64 = image.planes()[c].iter().map(|&v| f64::from(v)).sum();
+            (sum / pixels as f64) as f32
+        }),
     }
 }

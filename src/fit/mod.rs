@@ -1,34 +1,52 @@
-//! The fit: stages of new strokes, then a joint polish.
+//! The fit: picture in, drawing out.
+//!
+//! [`fit`] adds strokes in stages. Each stage seeds new strokes where the residual is largest, fits
+//! them alone for a moment on the frozen canvas of those below, and keeps what pays. Then all strokes
+//! are polished jointly, those worth least moving to where more is to be gained, and settled against
+//! what the file really looks like.
 
 mod anneal;
 mod config;
+mod control;
 mod descent;
 mod drawing;
-pub mod objective;
+mod objective;
 mod observer;
 mod plan;
 mod polish;
 mod recipe;
+mod settle;
+mod simd;
 mod stage;
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
+use fearless_simd::Level;
+
+pub use anneal::final_softness;
 pub use config::{Background, Budget, Config, Execution, Preset};
+pub use objective::Objective;
 pub use observer::{Observer, Progress};
+pub use recipe::{Rates, Recipe};
+pub use simd::Simd;
 
 use crate::error::Result;
 use crate::image::Image;
+use crate::metrics::psnr_db;
 use crate::scene::Scene;
 use anneal::Anneal;
+use control::Control;
 use drawing::Drawing;
-pub use recipe::{Rates, Recipe};
+use settle::Page;
 
 /// A finished drawing and how it came to be.
 #[derive(Debug, Clone)]
 pub struct Fit {
     /// The drawing, rounded to what its SVG says.
     pub scene: Scene,
-    /// Our own render of `scene` at the final softness.
+    /// The picture that was drawn, its alpha laid on the ground.
+    pub target: Image,
+    /// Our own render of `scene` with the edge of a finished drawing.
     pub soft: Image,
     /// One record per stage.
     pub stages: Vec<StageRecord>,
@@ -72,82 +90,78 @@ pub enum Stop {
 
 /// Draws `target` with strokes.
 ///
+/// Where the picture has alpha it is laid on the background colour of the configuration, or on white.
+///
 /// # Errors
 /// [`ErrorKind::Config`](crate::ErrorKind::Config) when an option is outside its domain.
 pub fn fit(
     target: &Image,
     config: &Config,
     execution: &Execution,
-    observer: &mut dyn Observer,
+    observer: &mut (dyn Observer + Send),
 ) -> Result<Fit> {
-    let _ = observer;
-    let pool = execution.pool()?;
-    Ok(pool.install(|| {
-        run(
-            target,
-            config,
-            &config.recipe.unwrap_or(Recipe::of(config.preset)),
-        )
-    }))
+    config.check()?;
+    let level = execution.simd.require()?;
+    let target = target.flattened(config.background.ground());
+    execution
+        .pool()?
+        .install(|| draw(target, config, level, observer))
 }
 
-fn run(target: &Image, config: &Config, recipe: &Recipe) -> Fit {
-    let anneal = |from: f32| Anneal {
-        coverage: config.coverage,
-        from,
-    };
-    let mut drawing = Drawing::new(
-        target,
-        mean_color(target),
+fn draw(
+    target: Image,
+    config: &Config,
+    level: Level,
+    observer: &mut (dyn Observer + Send),
+) -> Result<Fit> {
+    let recipe = config.recipe.unwrap_or(Recipe::of(config.preset));
+    let mut drawing = Drawing::new(&target, config, level);
+    let plan = plan::stages(&drawing, config, &recipe);
+    let mut control = Control::new(
+        observer,
         config,
-        fearless_simd::Level::new(),
+        plan::work(&plan, config, &recipe),
+        plan.len(),
     );
-    let total = config.budget.strokes.unwrap_or(1000);
-    let count = config.stages.unwrap_or(recipe.stages);
-    let mut records = Vec::new();
-    for planned in plan::stages(total, count, recipe.growth, drawing.pixels(), recipe.scale) {
-        let start = std::time::Instant::now();
-        stage::add(
-            &mut drawing,
-            recipe,
-            anneal(planned.scale.min(4.0)),
-            planned.count,
-            planned.scale,
-        );
-        records.push(StageRecord {
-            index: records.len() + 1,
-            strokes: planned.count,
+    let anneal = Anneal {
+        coverage: config.coverage,
+        from: 1.0,
+    };
+
+    let mut stages = Vec::new();
+    for planned in plan {
+        let start = Instant::now();
+        control.enter(planned.index, drawing.strokes.len());
+        stage::add(&mut drawing, &recipe, anneal, planned, &mut control);
+        stages.push(StageRecord {
+            index: planned.index + 1,
+            strokes: 0,
             iterations: recipe.stage_iterations,
             wall: start.elapsed(),
-            psnr_db: -10.0 * drawing.mse().log10(),
+            psnr_db: psnr_db(drawing.mse()),
         });
+        if control.stopped().is_some() {
+            break;
+        }
     }
-    if config.polish {
-        polish::run(&mut drawing, recipe, anneal(recipe.polish_softness));
+    if config.polish && control.stopped().is_none() {
+        control.enter(stages.len(), drawing.strokes.len());
+        polish::run(&mut drawing, &recipe, anneal, &mut control);
     }
-    let mse = drawing.mse();
-    eprintln!("soft {:.2}", -10.0 * mse.log10());
-    Fit {
-        scene: scene_of(&drawing),
-        soft: drawing.canvas.to_image(),
-        stages: records,
-        stop: Stop::Strokes,
-        dropped: 0,
-    }
-}
+    let page = Page::of(config);
+    let written = settle::run(&mut drawing, &target, page, &recipe, anneal)?;
 
-fn scene_of(d: &Drawing) -> crate::scene::Scene {
-    let g = d.canvas.grid();
-    let mut s = Scene::empty(g.width as u32, g.height as u32, Some(d.background));
-    s.stages = vec![crate::scene::Stage {
-        strokes: d.strokes.iter().map(crate::render::unpack).collect(),
-    }];
-    s
-}
-
-fn mean_color(target: &Image) -> [f32; 3] {
-    [0, 1, 2].map(|c| {
-        let plane = &target.planes()[c];
-        (plane.iter().map(|&v| f64::from(v)).sum::<f64>() / plane.len() as f64) as f32
+    for (record, stage) in stages.iter_mut().zip(&written.scene.stages) {
+        record.strokes = stage.strokes.len();
+    }
+    let soft = drawing.soft(&written.scene);
+    let stop = control.stopped().unwrap_or(Stop::Strokes);
+    Ok(Fit {
+        scene: written.scene,
+        target,
+        soft,
+        stages,
+        stop,
+        dropped: written.dropped,
     })
 }

@@ -13,6 +13,7 @@ pub struct Objective<'a> {
 }
 
 impl<'a> Objective<'a> {
+    /// The loss against `target`.
     pub fn new(loss: Loss, target: &'a Canvas) -> Self {
         let grid = target.grid();
         Self {

@@ -20,7 +20,7 @@ pub struct Progress {
 
 /// Told of progress; may stop the fit. Stopping is no error: what is finished is a valid scene.
 pub trait Observer {
-    /// Called a few times per stage, on the thread that called the fit.
+    /// Called after every iteration, always on the same thread; it should return soon.
     fn observe(&mut self, progress: &Progress) -> ControlFlow<()>;
 }
 

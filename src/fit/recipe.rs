@@ -24,11 +24,17 @@ pub struct Recipe {
     /// Iterations between relocations.
     pub relocate_every: usize,
     /// Share of the strokes that may be relocated at a time.
-    pub relocate_share: f64,
+    pub relocate_share: f32,
     /// Scale of relocated strokes, in units of the last stage's.
     pub relocate_scale: f32,
-    /// Softness at the start of the joint fit, px.
+    /// Softness at the start of the joint fit, in units of the final one.
     pub polish_softness: f32,
+    /// Rounds of settling against the rendered file; 0 for none.
+    pub settle_rounds: usize,
+    /// Iterations of each round.
+    pub settle_iterations: usize,
+    /// Their step sizes, in units of those of the joint fit.
+    pub settle_rate: f32,
 }
 
 /// Step sizes of the optimiser by kind of parameter, per iteration.
@@ -52,28 +58,31 @@ impl Recipe {
         let balanced = Self {
             stages: 8,
             growth: 1.6,
-            scale: 0.6,
-            oversampling: 2.0,
-            stage_iterations: 40,
+            scale: 0.4,
+            oversampling: 3.0,
+            stage_iterations: 100,
             stage_rates: Rates {
-                position: 0.15,
-                radius: 0.08,
+                position: 0.6,
+                radius: 0.2,
                 color: 0.02,
                 opacity: 0.02,
                 last: 0.1,
             },
-            polish_iterations: 300,
+            polish_iterations: 600,
             polish_rates: Rates {
-                position: 0.1,
-                radius: 0.05,
-                color: 0.01,
-                opacity: 0.01,
+                position: 0.4,
+                radius: 0.1,
+                color: 0.02,
+                opacity: 0.03,
                 last: 0.1,
             },
-            relocate_every: 50,
-            relocate_share: 0.1,
+            relocate_every: 30,
+            relocate_share: 0.3,
             relocate_scale: 0.4,
-            polish_softness: 1.5,
+            polish_softness: 2.4,
+            settle_rounds: 3,
+            settle_iterations: 20,
+            settle_rate: 0.1,
         };
         match preset {
             Preset::Draft => Self {
@@ -88,4 +97,13 @@ impl Recipe {
             },
         }
     }
+
+    /// Whether strokes are relocated before iteration `step`, when a share `done` of the polish is over:
+    /// newcomers need time to settle in.
+    pub(super) fn relocates(&self, step: usize, done: f32) -> bool {
+        step > 0 && step % self.relocate_every == 0 && done < LAST_RELOCATION
+    }
 }
+
+/// Share of the polish after which nothing is relocated.
+const LAST_RELOCATION: f32 = 0.9;

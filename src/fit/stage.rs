@@ -1,62 +1,83 @@
 //! One stage: seed where the residual is largest, fit the new strokes alone on the frozen canvas, accept.
 
 use super::anneal::Anneal;
-use super::descent::{Descent, Limits};
+use super::control::Control;
+use super::descent::Descent;
 use super::drawing::Drawing;
 use super::objective::Objective;
+use super::plan::PlannedStage;
 use super::recipe::Recipe;
 use crate::loss::Loss;
 use crate::optim::Schedule;
 use crate::render::{Base, Gradients, Params};
 use crate::seed::{Wanted, propose};
 
-/// Adds up to `count` strokes of about `scale` px on top of `drawing`.
+/// Softness of the first iteration at most, in units of the final one.
+const SOFTEST: f32 = 4.0;
+
+/// Adds the planned strokes on top of `drawing`, less those that remove no error.
 pub(super) fn add(
     drawing: &mut Drawing,
     recipe: &Recipe,
     anneal: Anneal,
-    count: usize,
-    scale: f32,
+    plan: PlannedStage,
+    control: &mut Control<'_>,
 ) {
-    let mut strokes = seed(drawing, recipe, count, scale);
-    descend(drawing, recipe, anneal, &mut strokes);
-    accept(drawing, anneal, strokes);
+    let mut strokes = seed(drawing, recipe, plan);
+    let anneal = Anneal {
+        from: plan.scale.min(SOFTEST),
+        ..anneal
+    };
+    descend(drawing, recipe, anneal, &mut strokes, control);
+    accept(drawing, anneal, strokes, plan.index);
 }
 
-fn seed(drawing: &Drawing, recipe: &Recipe, count: usize, scale: f32) -> Vec<Params> {
+fn seed(drawing: &mut Drawing, recipe: &Recipe, plan: PlannedStage) -> Vec<Params> {
     let wanted = Wanted {
-        count,
-        scale,
+        count: plan.count,
+        scale: plan.scale,
         oversampling: recipe.oversampling,
         least_opacity: drawing.limits.least_opacity,
+        key: drawing.next_key(),
     };
     let candidates = propose(drawing.level, &drawing.pyramid, &drawing.canvas, wanted);
     // The best candidate is drawn last, so that none of lesser gain hides it.
     candidates.iter().rev().map(|c| c.stroke).collect()
 }
 
-fn descend(drawing: &mut Drawing, recipe: &Recipe, anneal: Anneal, strokes: &mut [Params]) {
+fn descend(
+    drawing: &mut Drawing,
+    recipe: &Recipe,
+    anneal: Anneal,
+    strokes: &mut [Params],
+    control: &mut Control<'_>,
+) {
     let steps = recipe.stage_iterations;
-    let rates = recipe.stage_rates;
-    let schedule = Schedule::Cosine { end: rates.last };
-    let mut descent = Descent::new(strokes.len(), rates, drawing.limits);
+    let schedule = Schedule::Cosine {
+        end: recipe.stage_rates.last,
+    };
+    let mut descent = Descent::new(strokes.len(), recipe.stage_rates, drawing.limits);
     let objective = Objective::new(Loss::L2, &drawing.target);
     let base = Base::Canvas(&drawing.canvas);
     for step in 0..steps {
+        let done = step as f32 / steps as f32;
         let rate = schedule.factor(step, steps) as f32;
         descent.step(
             &mut drawing.renderer,
             strokes,
-            anneal.at(step, steps),
+            anneal.at(done),
             base,
             &objective,
             rate,
         );
+        if !control.advance(strokes.len() as f64, descent.gradients.loss) {
+            return;
+        }
     }
 }
 
-/// Takes the strokes into the drawing, without those that make it worse.
-fn accept(drawing: &mut Drawing, anneal: Anneal, mut strokes: Vec<Params>) {
+/// Takes the strokes into the drawing, without those that are not worth it.
+fn accept(drawing: &mut Drawing, anneal: Anneal, mut strokes: Vec<Params>, stage: usize) {
     let objective = Objective::new(Loss::L2, &drawing.target);
     let mut gradients = Gradients::default();
     let base = Base::Canvas(&drawing.canvas);
@@ -65,13 +86,5 @@ fn accept(drawing: &mut Drawing, anneal: Anneal, mut strokes: Vec<Params>) {
         .backward_with_worth(&strokes, anneal.last(), base, &objective, &mut gradients);
     let mut worth = gradients.worth.iter();
     strokes.retain(|_| worth.next().is_some_and(|&w| w > 0.0));
-    let below = drawing.canvas.clone();
-    drawing.renderer.forward(
-        &strokes,
-        anneal.last(),
-        Base::Canvas(&below),
-        &mut drawing.canvas,
-    );
-    drawing.stages.push(strokes.len());
-    drawing.strokes.extend(strokes);
+    drawing.extend(strokes, stage);
 }

@@ -1,0 +1,124 @@
+//! What option values may be. Each parser's error says what would be right; clap adds the value
+//! and the option's name.
+
+use std::time::Duration;
+
+use strokefit::fit::Background;
+use strokefit::scene::MAX_PRECISION;
+
+/// resvg and everything built on it read at most a million elements.
+const MAX_STROKES: usize = 900_000;
+
+/// More threads than any machine has cores only waste memory.
+const MAX_THREADS: usize = 1024;
+
+type Parsed<T> = Result<T, String>;
+
+pub(super) fn strokes(text: &str) -> Parsed<usize> {
+    whole(text, 1..=MAX_STROKES)
+}
+
+pub(super) fn bytes(text: &str) -> Parsed<usize> {
+    whole(text, 1..=usize::MAX)
+}
+
+pub(super) fn stages(text: &str) -> Parsed<usize> {
+    whole(text, 1..=MAX_STROKES)
+}
+
+pub(super) fn threads(text: &str) -> Parsed<usize> {
+    whole(text, 1..=MAX_THREADS)
+}
+
+pub(super) fn precision(text: &str) -> Parsed<u8> {
+    whole(text, 0..=usize::from(MAX_PRECISION)).map(|n| n as u8)
+}
+
+pub(super) fn psnr(text: &str) -> Parsed<f64> {
+    let remedy = "give decibels above 0 and up to 100, such as 32";
+    text.parse()
+        .ok()
+        .filter(|db| *db > 0.0 && *db <= 100.0)
+        .ok_or_else(|| remedy.into())
+}
+
+pub(super) fn seconds(text: &str) -> Parsed<Duration> {
+    let remedy = "give seconds above 0, such as 10 or 0.5";
+    let seconds = text.parse().ok().filter(|s| *s > 0.0);
+    seconds
+        .and_then(|s| Duration::try_from_secs_f64(s).ok())
+        .ok_or_else(|| remedy.into())
+}
+
+pub(super) fn scale(text: &str) -> Parsed<f64> {
+    let remedy = "give a factor above 0, such as 2 or 0.5";
+    text.parse()
+        .ok()
+        .filter(|s: &f64| s.is_finite() && *s > 0.0)
+        .ok_or_else(|| remedy.into())
+}
+
+pub(super) fn background(text: &str) -> Parsed<Background> {
+    match text {
+        "auto" => Ok(Background::Auto),
+        "none" => Ok(Background::None),
+        _ => color(text)
+            .map(Background::Color)
+            .ok_or_else(|| "give auto, none or a colour such as #ffffff".into()),
+    }
+}
+
+fn color(text: &str) -> Option<[f32; 3]> {
+    let digits = text
+        .strip_prefix('#')
+        .filter(|d| d.len() == 6 && d.bytes().all(|b| b.is_ascii_hexdigit()))?;
+    let [_, channels @ ..] = u32::from_str_radix(digits, 16).ok()?.to_be_bytes();
+    Some(channels.map(|c| f32::from(c) / 255.0))
+}
+
+fn whole(text: &str, range: std::ops::RangeInclusive<usize>) -> Parsed<usize> {
+    text.parse()
+        .ok()
+        .filter(|n| range.contains(n))
+        .ok_or_else(|| match *range.end() {
+            usize::MAX => format!("give a whole number of {} or more", range.start()),
+            end => format!("give a whole number from {} to {end}", range.start()),
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nonsense_is_refused() {
+        for text in ["", "0", "-1", "1.5", "x", "99999999999999999999999"] {
+            assert!(
+                strokes(text).is_err() && bytes(text).is_err() && threads(text).is_err(),
+                "{text}"
+            );
+        }
+        for text in ["NaN", "inf", "-1", "0", "1e400", ""] {
+            assert!(
+                psnr(text).is_err() && seconds(text).is_err() && scale(text).is_err(),
+                "{text}"
+            );
+        }
+        assert!(precision("7").is_err() && precision("-1").is_err());
+        for text in ["", "#fff", "white", "#gggggg", "#+12345", "ffffff"] {
+            assert!(background(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn sense_is_understood() {
+        assert_eq!(strokes("900000"), Ok(900_000));
+        assert_eq!(precision("0"), Ok(0));
+        assert_eq!(psnr("32.5"), Ok(32.5));
+        assert_eq!(seconds("0.5"), Ok(Duration::from_millis(500)));
+        assert_eq!(
+            background("#00fF00"),
+            Ok(Background::Color([0.0, 1.0, 0.0]))
+        );
+    }
+}

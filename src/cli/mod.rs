@@ -1,0 +1,132 @@
+//! Arguments, subcommands and exit statuses.
+
+mod check;
+mod domain;
+mod fit;
+mod input;
+mod output;
+mod progress;
+mod render;
+mod usage;
+
+use std::fmt::Display;
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+pub(crate) use usage::parse;
+
+/// Turns a raster picture into an editable SVG made of strokes.
+///
+/// A stroke is a line segment with round caps. strokefit looks where picture and drawing differ
+/// most, puts strokes there, improves them by gradient descent, and repeats; then it writes the
+/// SVG, renders it with resvg and says how faithful it is.
+#[derive(Debug, Parser)]
+#[command(version, after_help = EXAMPLES, after_long_help = EXAMPLES_AND_STATUSES)]
+pub(crate) struct Args {
+    #[command(subcommand)]
+    command: Command,
+    #[command(flatten)]
+    verbosity: Verbosity,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Fit(fit::Args),
+    Check(check::Args),
+    Render(render::Args),
+}
+
+const EXAMPLES: &str = "Examples:
+  strokefit fit photo.jpg -o photo.svg
+  strokefit fit logo.png -o logo.svg --strokes 300 --opaque
+  strokefit check photo.svg photo.jpg
+  strokefit render photo.svg -o large.png --scale 4";
+
+const EXAMPLES_AND_STATUSES: &str = "Examples:
+  strokefit fit photo.jpg -o photo.svg                 all defaults
+  strokefit fit logo.png -o logo.svg --strokes 300     at most 300 strokes
+  strokefit fit a.png -o a.svg --psnr 32 --time 60     until 32 dB, or a minute has passed
+  cat a.png | strokefit fit - -o - > a.svg             in a pipe
+  strokefit check photo.svg photo.jpg                  how faithful is the file?
+  strokefit render photo.svg -o large.png --scale 4    four times the size
+
+Exit status: 0 done, 1 failed, 2 wrong usage, 3 a target was not reached, 4 the fidelity check
+failed (the SVG is not drawn as it was fitted).";
+
+/// How much to say on standard error.
+#[derive(Debug, Clone, Copy, clap::Args)]
+struct Verbosity {
+    /// Say nothing but errors
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    quiet: bool,
+    /// Say what each stage did
+    #[arg(short, long, global = true)]
+    verbose: bool,
+}
+
+impl Verbosity {
+    /// A line for the user, unless quiet.
+    fn say(self, line: impl Display) {
+        if !self.quiet {
+            complain(line);
+        }
+    }
+
+    /// A line for the curious.
+    fn detail(self, line: impl Display) {
+        if self.verbose {
+            complain(line);
+        }
+    }
+}
+
+/// How the command ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Status {
+    /// All is well.
+    Done = 0,
+    /// Nothing was made.
+    Failed = 1,
+    /// The arguments make no sense.
+    Usage = 2,
+    /// The drawing is there, but short of what was asked for.
+    TargetMissed = 3,
+    /// The drawing is there, but not drawn as it was fitted.
+    Disagrees = 4,
+}
+
+impl From<Status> for ExitCode {
+    fn from(status: Status) -> Self {
+        Self::from(status as u8)
+    }
+}
+
+/// Does what the arguments ask for.
+pub(crate) fn run(args: &Args) -> anyhow::Result<Status> {
+    match &args.command {
+        Command::Fit(fit) => fit::run(fit, args.verbosity),
+        Command::Check(check) => check::run(check),
+        Command::Render(render) => render::run(render),
+    }
+}
+
+/// Says what went wrong, in one line.
+pub(crate) fn fail(error: &anyhow::Error) -> Status {
+    complain(format_args!("error: {error}"));
+    match error.downcast_ref::<strokefit::Error>() {
+        Some(error) if error.kind() == strokefit::ErrorKind::Config => Status::Usage,
+        _ => Status::Failed,
+    }
+}
+
+/// A line on standard error, which may be closed.
+fn complain(line: impl Display) {
+    let _ = writeln!(io::stderr(), "{line}");
+}
+
+/// An error of wrong usage.
+fn misuse(message: impl Into<String>) -> anyhow::Error {
+    strokefit::Error::new(strokefit::ErrorKind::Config, message).into()
+}

@@ -1,0 +1,182 @@
+//! Files to write, `-` being standard output. A file appears whole under its name or not at all.
+
+use std::fs::{self, OpenOptions};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Result, anyhow};
+
+const STDOUT: &str = "-";
+
+/// Where data goes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Output {
+    /// Standard output.
+    Stdout,
+    /// A regular file, there already or to be made: written beside its name, then renamed.
+    File(PathBuf),
+    /// A device or pipe: written in place.
+    Device(PathBuf),
+}
+
+impl Output {
+    /// The output that `path` means, once it is certain that it can be written.
+    pub(super) fn open(path: &Path) -> Result<Self> {
+        if path == Path::new(STDOUT) {
+            return Ok(Self::Stdout);
+        }
+        let output = Self::locate(path).and_then(|output| output.rehearse().map(|()| output));
+        output.map_err(|e| unwritable(path, &e))
+    }
+
+    fn locate(path: &Path) -> io::Result<Self> {
+        // A link stays a link to the new file.
+        let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        match fs::metadata(&path) {
+            Ok(found) if found.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
+            Ok(found) if !found.is_file() => Ok(Self::Device(path)),
+            Ok(found) if found.permissions().readonly() => {
+                Err(io::ErrorKind::PermissionDenied.into())
+            }
+            _ => Ok(Self::File(path)),
+        }
+    }
+
+    /// Fails as writing would, and leaves nothing behind.
+    fn rehearse(&self) -> io::Result<()> {
+        match self {
+            Self::Stdout => Ok(()),
+            Self::File(path) => temporary(path).map(drop),
+            Self::Device(path) => OpenOptions::new().write(true).open(path).map(drop),
+        }
+    }
+
+    /// Writes everything.
+    pub(super) fn write(&self, bytes: &[u8]) -> Result<()> {
+        match self {
+            Self::Stdout => {
+                let mut stdout = io::stdout().lock();
+                let outcome = stdout.write_all(bytes).and_then(|()| stdout.flush());
+                outcome.map_err(|e| anyhow!("standard output cannot be written: {e}"))
+            }
+            Self::File(path) => replace(path, bytes).map_err(|e| unwritable(path, &e)),
+            Self::Device(path) => {
+                let device = OpenOptions::new().write(true).open(path);
+                device
+                    .and_then(|mut d| d.write_all(bytes))
+                    .map_err(|e| unwritable(path, &e))
+            }
+        }
+    }
+
+    /// Whether the output is this file.
+    pub(super) fn is(&self, path: &Path) -> bool {
+        match (self, fs::canonicalize(path)) {
+            (Self::File(own), Ok(path)) => *own == path,
+            _ => false,
+        }
+    }
+}
+
+fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut file = temporary(path)?;
+    file.write_all(bytes)?;
+    if let Ok(existing) = fs::metadata(path) {
+        file.as_file().set_permissions(existing.permissions())?;
+    }
+    file.persist(path)?;
+    Ok(())
+}
+
+/// A file without the final name in the final folder, gone when dropped.
+fn temporary(path: &Path) -> io::Result<tempfile::NamedTempFile> {
+    let folder = path
+        .parent()
+        .filter(|p| !p.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
+    if path.file_name().is_none() {
+        return Err(io::ErrorKind::InvalidFilename.into());
+    }
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".strokefit-");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // As any new file: the umask takes its share.
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    builder.tempfile_in(folder)
+}
+
+fn unwritable(path: &Path, error: &io::Error) -> anyhow::Error {
+    let path = path.display();
+    match error.kind() {
+        io::ErrorKind::NotFound => {
+            anyhow!("{path}: cannot be written, its folder does not exist: make the folder first")
+        }
+        io::ErrorKind::IsADirectory => {
+            anyhow!("{path}: cannot be written, it is a folder: name a file in it")
+        }
+        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
+            anyhow!("{path}: cannot be written, permission denied: choose another place")
+        }
+        io::ErrorKind::NotADirectory => {
+            anyhow!("{path}: cannot be written, its folder is a file: choose another place")
+        }
+        _ => anyhow!("{path}: cannot be written ({error}): choose another place"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_replaced_whole_and_nothing_else_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.svg");
+        fs::write(&path, "old and long").unwrap();
+        let output = Output::open(&path).unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "old and long");
+        output.write(b"new").unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "new");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn opening_leaves_no_file() {
+        let folder = tempfile::tempdir().unwrap();
+        Output::open(&folder.path().join("a.svg")).unwrap();
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn what_cannot_be_written_says_why() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("file");
+        fs::write(&file, "").unwrap();
+        for (path, why) in [
+            (folder.path().join("none/a.svg"), "does not exist"),
+            (folder.path().to_owned(), "is a folder"),
+            (file.join("a.svg"), "is a file"),
+        ] {
+            let error = Output::open(&path).unwrap_err().to_string();
+            assert!(
+                error.contains(why) && error.contains(&path.display().to_string()),
+                "{error}"
+            );
+        }
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_link_stays_a_link() {
+        let folder = tempfile::tempdir().unwrap();
+        let (file, link) = (folder.path().join("file"), folder.path().join("link"));
+        fs::write(&file, "old").unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        Output::open(&link).unwrap().write(b"new").unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::read_to_string(&file).unwrap(), "new");
+    }
+}

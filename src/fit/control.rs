@@ -1,0 +1,84 @@
+//! Deadline, cancellation and progress of one fit.
+
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+use super::Stop;
+use super::config::Config;
+use super::observer::{Observer, Progress};
+use crate::metrics::psnr_db;
+
+/// Asked after every iteration whether to go on.
+pub(super) struct Control<'a> {
+    observer: &'a mut (dyn Observer + Send),
+    started: Instant,
+    limit: Option<Duration>,
+    /// Work planned and done, in strokes × iterations.
+    planned: f64,
+    done: f64,
+    /// What the observer is told next time.
+    progress: Progress,
+    /// Set once, by whatever stopped the fit first.
+    stopped: Option<Stop>,
+}
+
+impl<'a> Control<'a> {
+    pub(super) fn new(
+        observer: &'a mut (dyn Observer + Send),
+        config: &Config,
+        planned: f64,
+        stages: usize,
+    ) -> Self {
+        let progress = Progress {
+            done: 0.0,
+            stage: 0,
+            stages,
+            strokes: 0,
+            psnr_db: 0.0,
+        };
+        Self {
+            observer,
+            started: Instant::now(),
+            limit: config.budget.time,
+            planned,
+            done: 0.0,
+            progress,
+            stopped: None,
+        }
+    }
+
+    /// Why the fit has to end now, if it has to.
+    pub(super) fn stopped(&self) -> Option<Stop> {
+        self.stopped
+    }
+
+    /// The share of the time limit that is used up; 0 without a limit.
+    pub(super) fn time_used(&self) -> f32 {
+        self.limit.map_or(0.0, |limit| {
+            self.started.elapsed().as_secs_f32() / limit.as_secs_f32()
+        })
+    }
+
+    /// Announces stage `stage`, from 0, and the strokes that are there.
+    pub(super) fn enter(&mut self, stage: usize, strokes: usize) {
+        self.progress.stage = stage + 1;
+        self.progress.strokes = strokes;
+    }
+
+    /// Adds `work` to what is done, tells the observer, with the mean squared error `mse`, and says
+    /// whether to go on.
+    pub(super) fn advance(&mut self, work: f64, mse: f64) -> bool {
+        self.done += work;
+        let done = (self.done / self.planned).max(f64::from(self.time_used()));
+        self.progress.done = done.clamp(self.progress.done, 1.0);
+        self.progress.psnr_db = psnr_db(mse);
+        if self.stopped.is_none() && self.time_used() >= 1.0 {
+            self.stopped = Some(Stop::Time);
+        }
+        if self.stopped.is_none() && self.observer.observe(&self.progress) == ControlFlow::Break(())
+        {
+            self.stopped = Some(Stop::Observer);
+        }
+        self.stopped.is_none()
+    }
+}

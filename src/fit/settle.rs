@@ -1,0 +1,142 @@
+//! Settling: the last steps are taken against what the file really looks like.
+//!
+//! A renderer of SVG rounds after every stroke to 8 bits and has its own antialiasing, so that its
+//! picture differs from our canvas by an offset that hardly changes when strokes move a little. Each
+//! round renders the rounded drawing as SVG, takes the offset from the target, and descends a few
+//! iterations; the best round, by the file's own error, is kept.
+
+use super::anneal::Anneal;
+use super::config::{Background, Config};
+use super::descent::Descent;
+use super::drawing::Drawing;
+use super::objective::Objective;
+use super::recipe::{Rates, Recipe};
+use crate::error::Result;
+use crate::image::Image;
+use crate::loss::Loss;
+use crate::optim::Schedule;
+use crate::render::{Base, Canvas};
+use crate::scene::Scene;
+use crate::{metrics, svg, verify};
+
+/// How the drawing is written.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Page {
+    /// Whether there is a rectangle of the background's colour.
+    has_ground: bool,
+    precision: u8,
+}
+
+impl Page {
+    pub(super) fn of(config: &Config) -> Self {
+        Self {
+            has_ground: config.background != Background::None,
+            precision: config.precision,
+        }
+    }
+}
+
+/// A drawing as its file says it.
+#[derive(Debug, Clone)]
+pub(super) struct Written {
+    pub(super) scene: Scene,
+    /// Strokes that cannot be written.
+    pub(super) dropped: usize,
+    /// What an SVG renderer draws.
+    pub(super) drawn: Image,
+    /// Its mean squared error.
+    pub(super) mse: f64,
+}
+
+/// Rounds and writes `drawing` and renders the file.
+pub(super) fn write(drawing: &Drawing, target: &Image, page: Page) -> Result<Written> {
+    let (scene, dropped) = drawing.scene(page.has_ground).quantized(page.precision);
+    let text = svg::write(
+        &scene,
+        &svg::WriteOptions {
+            precision: page.precision,
+        },
+    );
+    let drawn = verify::render_like(&text, target)?;
+    let mse = metrics::mse(target, &drawn)?;
+    Ok(Written {
+        scene,
+        dropped,
+        drawn,
+        mse,
+    })
+}
+
+/// Descends against the file's own picture and returns the best of the files; `drawing` becomes the
+/// drawing that it was written from.
+pub(super) fn run(
+    drawing: &mut Drawing,
+    target: &Image,
+    page: Page,
+    recipe: &Recipe,
+    anneal: Anneal,
+) -> Result<Written> {
+    let mut best = write(drawing, target, page)?;
+    let mut best_strokes = drawing.strokes.clone();
+    for _ in 0..recipe.settle_rounds {
+        let written = write(drawing, target, page)?;
+        let corrected = corrected_target(drawing, target, &written);
+        descend(drawing, recipe, anneal, &corrected);
+        let written = write(drawing, target, page)?;
+        if written.mse < best.mse {
+            best = written;
+            best_strokes.clone_from(&drawing.strokes);
+        }
+    }
+    drawing.strokes = best_strokes;
+    Ok(best)
+}
+
+/// The target less what the file's picture differs by from our render of the same scene.
+fn corrected_target(drawing: &mut Drawing, target: &Image, written: &Written) -> Canvas {
+    let soft = drawing.soft(&written.scene);
+    let planes = [0, 1, 2].map(|c| {
+        let pixels = target.planes()[c]
+            .iter()
+            .zip(&soft.planes()[c])
+            .zip(&written.drawn.planes()[c]);
+        pixels
+            .map(|((target, soft), drawn)| target - (drawn - soft))
+            .collect()
+    });
+    Canvas::from_image(&Image::from_planes(target.width(), target.height(), planes))
+}
+
+fn descend(drawing: &mut Drawing, recipe: &Recipe, anneal: Anneal, target: &Canvas) {
+    let steps = recipe.settle_iterations;
+    let fine = |rate: f32| rate * recipe.settle_rate;
+    let Rates {
+        position,
+        radius,
+        color,
+        opacity,
+        last,
+    } = recipe.polish_rates;
+    let rates = Rates {
+        position: fine(position),
+        radius: fine(radius),
+        color: fine(color),
+        opacity: fine(opacity),
+        last,
+    };
+    let schedule = Schedule::Cosine { end: last };
+    let mut descent = Descent::new(drawing.strokes.len(), rates, drawing.limits);
+    let objective = Objective::new(Loss::L2, target);
+    let base = Base::Flat(drawing.background);
+    for step in 0..steps {
+        let rate = schedule.factor(step, steps) as f32;
+        descent.step(
+            &mut drawing.renderer,
+            &mut drawing.strokes,
+            anneal.last(),
+            base,
+            &objective,
+            rate,
+        );
+    }
+}

@@ -1,0 +1,106 @@
+//! Names for SIMD levels, and the levels that this machine has.
+
+use std::fmt;
+use std::str::FromStr;
+
+use fearless_simd::{Fallback, Level};
+
+use crate::error::{Error, ErrorKind, Result};
+
+/// The instruction set of the renderer. All give the same bits.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Simd {
+    /// The widest that this machine has.
+    #[default]
+    Auto,
+    /// AVX-512 as of Ice Lake.
+    Avx512,
+    /// AVX2 (x86-64-v3).
+    Avx2,
+    /// SSE4.2 (x86-64-v2).
+    Sse42,
+    /// SSE2, which every x86-64 has.
+    Sse2,
+    /// NEON, which every aarch64 has.
+    Neon,
+    /// No vectors.
+    Scalar,
+}
+
+impl Simd {
+    /// Every name but `auto`, widest first.
+    pub const ALL: [Self; 6] = [
+        Self::Avx512,
+        Self::Avx2,
+        Self::Sse42,
+        Self::Sse2,
+        Self::Neon,
+        Self::Scalar,
+    ];
+
+    /// The level, if this machine has it.
+    pub fn level(self) -> Option<Level> {
+        let best = Level::new();
+        match self {
+            Self::Auto => Some(best),
+            Self::Scalar => Some(Level::Fallback(Fallback::new())),
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Self::Avx512 => best.as_avx512().map(Level::Avx512),
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Self::Avx2 => best.as_avx2().map(Level::Avx2),
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Self::Sse42 => best.as_sse4_2().map(Level::Sse4_2),
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Self::Sse2 => best.as_sse2().map(Level::Sse2),
+            #[cfg(target_arch = "aarch64")]
+            Self::Neon => best.as_neon().map(Level::Neon),
+            #[allow(unreachable_patterns, reason = "levels of other machines")]
+            _ => None,
+        }
+    }
+
+    /// The level.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Config`] when this machine does not have it.
+    pub(super) fn require(self) -> Result<Level> {
+        self.level().ok_or_else(|| {
+            let here: Vec<String> = Self::ALL
+                .into_iter()
+                .filter(|s| s.level().is_some())
+                .map(|s| s.to_string())
+                .collect();
+            let message = format!(
+                "this machine has no {self}: use auto or one of {}",
+                here.join(", ")
+            );
+            Error::new(ErrorKind::Config, message)
+        })
+    }
+}
+
+impl fmt::Display for Simd {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Auto => "auto",
+            Self::Avx512 => "avx512",
+            Self::Avx2 => "avx2",
+            Self::Sse42 => "sse4.2",
+            Self::Sse2 => "sse2",
+            Self::Neon => "neon",
+            Self::Scalar => "scalar",
+        })
+    }
+}
+
+impl FromStr for Simd {
+    type Err = Error;
+
+    fn from_str(word: &str) -> Result<Self> {
+        let mut names = [Self::Auto].into_iter().chain(Self::ALL);
+        names.find(|name| name.to_string() == word).ok_or_else(|| {
+            let message = format!("'{word}' is no instruction set: use auto, avx512, avx2, sse4.2, sse2, neon or scalar");
+            Error::new(ErrorKind::Config, message)
+        })
+    }
+}

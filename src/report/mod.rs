@@ -1,0 +1,208 @@
+//! What a command did, as plain records that serialise to JSON.
+//!
+//! Scripts rely on the field names; more may be added, none is renamed. Lengths of time are in
+//! seconds, errors as [`metrics`](crate::metrics) defines them. `psnr_db` is `null` where two
+//! pictures are equal, since JSON has no infinity; what could not be measured is `null` too.
+
+mod usage;
+
+use serde::{Deserialize, Serialize};
+
+use crate::fit::{StageRecord, Stop};
+use crate::image::Image;
+use crate::metrics::{Agreement, Quality};
+
+pub use usage::Usage;
+
+/// Version of the records' layout.
+pub const SCHEMA: u32 = 1;
+
+/// What `strokefit fit` did.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FitReport {
+    /// [`SCHEMA`].
+    pub schema: u32,
+    /// The picture.
+    pub input: Input,
+    /// Strokes in the drawing.
+    pub strokes: usize,
+    /// Strokes that were dropped because they became non-finite or could not be seen.
+    pub dropped: usize,
+    /// One per stage, in order.
+    pub stages: Vec<StageEntry>,
+    /// Length of the SVG text in bytes.
+    pub svg_bytes: usize,
+    /// Wall time from the start of the command to the verdict, s.
+    pub wall_s: f64,
+    /// CPU time of the process, all threads, s.
+    pub cpu_s: Option<f64>,
+    /// Most memory that the process held at once, bytes.
+    pub peak_rss_bytes: Option<u64>,
+    /// Why no more was done: `strokes`, `psnr`, `bytes`, `time`, `converged` or `observer`.
+    pub stop: String,
+    /// Key of every random draw.
+    pub seed: u64,
+    /// The SVG as rendered by resvg against the picture.
+    pub fidelity: Quality,
+    /// Our own soft render against the picture.
+    pub soft: Quality,
+    /// The SVG as rendered by resvg against our own soft render.
+    pub agreement: Agreement,
+}
+
+/// What `strokefit check` found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CheckReport {
+    /// [`SCHEMA`].
+    pub schema: u32,
+    /// The picture.
+    pub input: Input,
+    /// The SVG file, as it was named.
+    pub svg: String,
+    /// Length of the SVG text in bytes.
+    pub svg_bytes: usize,
+    /// One per renderer, in the order asked for.
+    pub renderers: Vec<RendererEntry>,
+}
+
+/// A picture that was read.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Input {
+    /// As it was named; `-` for standard input.
+    pub path: String,
+    /// Width in px.
+    pub width: usize,
+    /// Height in px.
+    pub height: usize,
+}
+
+impl Input {
+    /// The record of `image`, named `path`.
+    pub fn new(path: impl Into<String>, image: &Image) -> Self {
+        Self {
+            path: path.into(),
+            width: image.width(),
+            height: image.height(),
+        }
+    }
+}
+
+/// How one stage went.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct StageEntry {
+    /// From 1.
+    pub index: usize,
+    /// Strokes of the stage in the drawing.
+    pub strokes: usize,
+    /// Iterations of the optimiser.
+    pub iterations: usize,
+    /// Wall time, s.
+    pub wall_s: f64,
+    /// Fidelity of the soft render after the stage, dB; `null` when perfect.
+    pub psnr_db: Option<f64>,
+}
+
+impl From<&StageRecord> for StageEntry {
+    fn from(record: &StageRecord) -> Self {
+        Self {
+            index: record.index,
+            strokes: record.strokes,
+            iterations: record.iterations,
+            wall_s: record.wall.as_secs_f64(),
+            psnr_db: Some(record.psnr_db).filter(|db| db.is_finite()),
+        }
+    }
+}
+
+/// What one renderer makes of an SVG.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RendererEntry {
+    /// `resvg`.
+    pub renderer: String,
+    /// The SVG as rendered against the picture.
+    pub fidelity: Quality,
+}
+
+/// The word of [`FitReport::stop`].
+pub fn stop_word(stop: Stop) -> &'static str {
+    match stop {
+        Stop::Strokes => "strokes",
+        Stop::Psnr => "psnr",
+        Stop::Bytes => "bytes",
+        Stop::Time => "time",
+        Stop::Converged => "converged",
+        Stop::Observer => "observer",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Duration;
+
+    fn report() -> FitReport {
+        let quality = Quality {
+            psnr_db: f64::INFINITY,
+            ssim: 1.0,
+            mse: 0.0,
+            l1: 0.0,
+        };
+        let record = StageRecord {
+            index: 1,
+            strokes: 9,
+            iterations: 40,
+            wall: Duration::from_millis(250),
+            psnr_db: 31.5,
+        };
+        FitReport {
+            schema: SCHEMA,
+            input: Input {
+                path: "a.png".into(),
+                width: 4,
+                height: 3,
+            },
+            strokes: 9,
+            dropped: 1,
+            stages: vec![StageEntry::from(&record)],
+            svg_bytes: 900,
+            wall_s: 0.5,
+            cpu_s: Some(0.75),
+            peak_rss_bytes: None,
+            stop: stop_word(Stop::Strokes).into(),
+            seed: 7,
+            fidelity: quality,
+            soft: quality,
+            agreement: Agreement {
+                psnr_db: 41.0,
+                max_abs: 12,
+            },
+        }
+    }
+
+    #[test]
+    fn the_fields_scripts_rely_on_are_there() {
+        let expected = serde_json::json!({
+            "schema": 1,
+            "input": {"path": "a.png", "width": 4, "height": 3},
+            "strokes": 9,
+            "dropped": 1,
+            "stages": [{"index": 1, "strokes": 9, "iterations": 40, "wall_s": 0.25, "psnr_db": 31.5}],
+            "svg_bytes": 900,
+            "wall_s": 0.5,
+            "cpu_s": 0.75,
+            "peak_rss_bytes": null,
+            "stop": "strokes",
+            "seed": 7,
+            "fidelity": {"psnr_db": null, "ssim": 1.0, "mse": 0.0, "l1": 0.0},
+            "soft": {"psnr_db": null, "ssim": 1.0, "mse": 0.0, "l1": 0.0},
+            "agreement": {"psnr_db": 41.0, "max_abs": 12},
+        });
+        assert_eq!(serde_json::to_value(report()).unwrap(), expected);
+    }
+
+    #[test]
+    fn a_report_comes_back_from_its_json() {
+        let json = serde_json::to_string(&report()).unwrap();
+        assert_eq!(serde_json::from_str::<FitReport>(&json).unwrap(), report());
+    }
+}

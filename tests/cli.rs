@@ -1,0 +1,516 @@
+//! The program as its users meet it: exit statuses, lines on standard error, files left behind.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use tempfile::TempDir;
+
+const RED_SVG: &str = r##"<svg xmlns="http://www.w3.org/2000/svg" width="4" height="2"><rect width="2" height="2" fill="#ff0000"/></svg>"##;
+
+/// A folder of its own for each test.
+struct Place(TempDir);
+
+impl Place {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn file(&self, name: &str, bytes: impl AsRef<[u8]>) -> String {
+        fs::write(self.path(name), bytes).unwrap();
+        name.into()
+    }
+
+    fn picture(&self, name: &str, width: u32, height: u32) -> String {
+        let level = |x: u32, n: u32| (x * 255 / n.max(2)) as u8;
+        let picture = image::RgbImage::from_fn(width, height, |x, y| {
+            image::Rgb([level(x, width), level(y, height), 90])
+        });
+        picture.save(self.path(name)).unwrap();
+        name.into()
+    }
+
+    fn run(&self, args: &[&str]) -> Output {
+        self.pipe(args, b"")
+    }
+
+    fn pipe(&self, args: &[&str], stdin: &[u8]) -> Output {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_strokefit"))
+            .args(args)
+            .current_dir(self.0.path())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        // The program may leave before it has read everything.
+        let _ = child.stdin.take().unwrap().write_all(stdin);
+        child.wait_with_output().unwrap()
+    }
+
+    fn names(&self) -> Vec<String> {
+        let entries = fs::read_dir(self.0.path()).unwrap();
+        let mut names: Vec<_> = entries
+            .map(|e| e.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+/// One line that holds all of `words`, the exit status, and no new file.
+#[track_caller]
+fn assert_refused(place: &Place, args: &[&str], status: i32, words: &[&str]) {
+    let before = place.names();
+    let output = place.run(args);
+    let line = stderr(&output);
+    assert_eq!(output.status.code(), Some(status), "{args:?}: {line}");
+    assert_eq!(line.trim_end().lines().count(), 1, "{args:?}: {line}");
+    assert!(line.starts_with("error: "), "{args:?}: {line}");
+    for word in words {
+        assert!(
+            line.contains(word),
+            "{args:?} does not say {word:?}: {line}"
+        );
+    }
+    assert!(
+        output.stdout.is_empty(),
+        "{args:?} wrote on standard output"
+    );
+    assert_eq!(place.names(), before, "{args:?} left a file");
+}
+
+fn report(place: &Place, name: &str) -> serde_json::Value {
+    serde_json::from_slice(&fs::read(place.path(name)).unwrap()).unwrap()
+}
+
+fn sample(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("samples")
+        .join(name);
+    path.to_str().unwrap().into()
+}
+
+#[test]
+fn pictures_that_cannot_be_read_are_refused() {
+    let place = Place::new();
+    place.picture("good.png", 30, 20);
+    let good = fs::read(place.path("good.png")).unwrap();
+    place.file("empty.png", "");
+    place.file("cut.png", &good[..good.len() / 2]);
+    place.file("text.png", "this is no picture");
+    let mut hollow = good.clone();
+    hollow[16..24].fill(0);
+    place.file("hollow.png", hollow);
+    let mut huge = good;
+    huge[16..24].copy_from_slice(&[0x7f, 0xff, 0xff, 0xff, 0x7f, 0xff, 0xff, 0xff]);
+    place.file("huge.png", huge);
+    fs::create_dir(place.path("folder")).unwrap();
+    for (name, words) in [
+        ("missing.png", "no such file"),
+        ("folder", "is a directory"),
+        ("empty.png", "empty"),
+        ("cut.png", "cut short"),
+        ("text.png", "not a picture"),
+        ("hollow.png", "0×0"),
+        ("huge.png", "too large"),
+    ] {
+        assert_refused(&place, &["fit", name, "-o", "out.svg"], 1, &[name, words]);
+    }
+    let refused = place.run(&["fit", "-", "-o", "out.svg"]);
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(stderr(&refused).contains("standard input: the file is empty"));
+}
+
+#[test]
+fn outputs_that_cannot_be_written_are_refused_before_the_work() {
+    let place = Place::new();
+    place.picture("in.png", 30, 20);
+    place.file("file", "");
+    fs::create_dir(place.path("folder")).unwrap();
+    for name in ["none/out.svg", "folder", "file/out.svg"] {
+        assert_refused(
+            &place,
+            &["fit", "in.png", "-o", name],
+            1,
+            &[name, "cannot be written"],
+        );
+        let args = ["fit", "in.png", "-o", "out.svg", "--report", name];
+        assert_refused(&place, &args, 1, &[name, "cannot be written"]);
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn a_write_protected_file_is_not_replaced() {
+    use std::os::unix::fs::PermissionsExt;
+    let place = Place::new();
+    place.picture("in.png", 30, 20);
+    place.file("out.svg", "precious");
+    fs::set_permissions(place.path("out.svg"), fs::Permissions::from_mode(0o444)).unwrap();
+    assert_refused(
+        &place,
+        &["fit", "in.png", "-o", "out.svg"],
+        1,
+        &["out.svg", "permission denied"],
+    );
+    assert_eq!(
+        fs::read_to_string(place.path("out.svg")).unwrap(),
+        "precious"
+    );
+}
+
+#[test]
+fn nonsense_options_are_refused() {
+    let place = Place::new();
+    place.picture("in.png", 30, 20);
+    for (option, value) in [
+        ("--strokes", "0"),
+        ("--strokes", "many"),
+        ("--strokes", "1000000000"),
+        ("--psnr", "NaN"),
+        ("--psnr", "inf"),
+        ("--psnr", "-3"),
+        ("--bytes", "0"),
+        ("--time", "-1"),
+        ("--time", "0"),
+        ("--time", "1e300"),
+        ("--stages", "0"),
+        ("--precision", "9"),
+        ("--threads", "0"),
+        ("--preset", "ludicrous"),
+        ("--coverage", "mystery"),
+        ("--coverage", "atan:-1"),
+        ("--background", "#12345"),
+        ("--seed", "x"),
+    ] {
+        let args = ["fit", "in.png", "-o", "out.svg", option, value];
+        assert_refused(&place, &args, 2, &[option, value]);
+    }
+    assert_refused(
+        &place,
+        &["fit", "in.png", "-o", "out.svg", "--stroke", "3"],
+        2,
+        &["--stroke", "--strokes"],
+    );
+    assert_refused(&place, &["fit", "in.png"], 2, &["--output"]);
+    assert_refused(&place, &["paint"], 2, &["paint"]);
+    assert_refused(
+        &place,
+        &["render", "in.svg", "-o", "a.png", "--scale", "0"],
+        2,
+        &["--scale", "0"],
+    );
+}
+
+#[test]
+fn outputs_may_not_collide() {
+    let place = Place::new();
+    place.picture("in.png", 30, 20);
+    assert_refused(
+        &place,
+        &["fit", "in.png", "-o", "./in.png"],
+        2,
+        &["in.png", "overwritten"],
+    );
+    assert_refused(
+        &place,
+        &["fit", "in.png", "-o", "-", "--report", "-"],
+        2,
+        &["same place"],
+    );
+    place.file("a.svg", RED_SVG);
+    assert_refused(
+        &place,
+        &["render", "a.svg", "-o", "a.svg"],
+        2,
+        &["a.svg", "overwritten"],
+    );
+    assert_refused(&place, &["check", "-", "-"], 2, &["standard input"]);
+}
+
+#[test]
+fn files_that_are_no_svg_are_refused() {
+    let place = Place::new();
+    place.picture("in.png", 4, 2);
+    place.file("text.svg", "hello");
+    place.file("cut.svg", &RED_SVG[..60]);
+    place.file("empty.svg", "");
+    place.file("foreign.svg", RED_SVG.replace("http:", "https:"));
+    for name in [
+        "missing.svg",
+        "text.svg",
+        "cut.svg",
+        "empty.svg",
+        "foreign.svg",
+        "in.png",
+    ] {
+        assert_refused(&place, &["check", name, "in.png"], 1, &[name]);
+        assert_refused(&place, &["render", name, "-o", "out.png"], 1, &[name]);
+    }
+    place.file("red.svg", RED_SVG);
+    place.picture("tall.png", 2, 4);
+    assert_refused(
+        &place,
+        &["check", "red.svg", "tall.png"],
+        1,
+        &["red.svg", "aspect ratio"],
+    );
+    assert_refused(
+        &place,
+        &["render", "red.svg", "-o", "a.png", "--scale", "1e9"],
+        1,
+        &["red.svg", "px"],
+    );
+}
+
+#[test]
+fn help_and_version_go_to_standard_output() {
+    let place = Place::new();
+    for args in [
+        &["--help"][..],
+        &["fit", "--help"],
+        &["check", "-h"],
+        &["render", "-h"],
+        &["--version"],
+    ] {
+        let output = place.run(args);
+        assert_eq!(output.status.code(), Some(0), "{args:?}");
+        assert!(
+            !output.stdout.is_empty() && output.stderr.is_empty(),
+            "{args:?}"
+        );
+    }
+    assert_eq!(place.run(&[]).status.code(), Some(2));
+}
+
+#[test]
+fn render_draws_at_the_scale_asked_for() {
+    let place = Place::new();
+    place.file("red.svg", RED_SVG);
+    assert_eq!(
+        place
+            .run(&["render", "red.svg", "-o", "a.png", "--scale", "2"])
+            .status
+            .code(),
+        Some(0)
+    );
+    let picture = image::open(place.path("a.png")).unwrap().to_rgba8();
+    assert_eq!(picture.dimensions(), (8, 4));
+    assert_eq!(picture.get_pixel(0, 0).0, [255, 0, 0, 255]);
+    assert_eq!(picture.get_pixel(7, 3).0[3], 0);
+    let piped = place.pipe(
+        &["render", "-", "-o", "-", "--scale", "2"],
+        RED_SVG.as_bytes(),
+    );
+    assert_eq!(piped.stdout, fs::read(place.path("a.png")).unwrap());
+}
+
+#[test]
+fn check_prints_a_table_or_json() {
+    let place = Place::new();
+    place.file("red.svg", RED_SVG);
+    place.run(&["render", "red.svg", "-o", "red.png"]);
+    let table = place.run(&["check", "red.svg", "red.png", "--report", "r.json"]);
+    assert_eq!(table.status.code(), Some(0), "{}", stderr(&table));
+    let table = String::from_utf8(table.stdout).unwrap();
+    assert!(table.contains("resvg") && table.contains("inf"), "{table}");
+    let record = report(&place, "r.json");
+    assert_eq!(record["schema"], 1);
+    assert_eq!(record["renderers"][0]["renderer"], "resvg");
+    assert!(
+        record["renderers"][0]["fidelity"]["psnr_db"].is_null(),
+        "{record}"
+    );
+    let json = place
+        .run(&["check", "red.svg", "red.png", "--report", "-"])
+        .stdout;
+    assert_eq!(
+        serde_json::from_slice::<serde_json::Value>(&json).unwrap(),
+        record
+    );
+}
+
+#[test]
+fn fit_writes_a_file_that_check_and_render_understand() {
+    let place = Place::new();
+    let input = sample("noto-gem.png");
+    let args = [
+        "fit",
+        &input,
+        "-o",
+        "gem.svg",
+        "--strokes",
+        "150",
+        "--report",
+        "gem.json",
+    ];
+    let output = place.run(&args);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let summary = stderr(&output);
+    assert_eq!(summary.lines().count(), 1, "{summary}");
+    for word in ["gem.svg", "strokes", "bytes", "fidelity", "agreement", "dB"] {
+        assert!(summary.contains(word), "{summary}");
+    }
+    assert!(output.stdout.is_empty());
+    assert_eq!(place.names(), ["gem.json", "gem.svg"]);
+
+    let record = report(&place, "gem.json");
+    assert_eq!(
+        record["svg_bytes"],
+        fs::metadata(place.path("gem.svg")).unwrap().len()
+    );
+    assert!(record["strokes"].as_u64().unwrap() <= 150);
+    let staged: u64 = record["stages"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|s| s["strokes"].as_u64().unwrap())
+        .sum();
+    assert_eq!(staged, record["strokes"]);
+    assert!(
+        record["agreement"]["psnr_db"].as_f64().unwrap() > 36.0,
+        "{record}"
+    );
+
+    // What the report says is what anyone can measure; the gem's transparent ground is white.
+    let check = place.run(&["check", "gem.svg", &input, "--report", "-"]);
+    let check: serde_json::Value = serde_json::from_slice(&check.stdout).unwrap();
+    assert_eq!(check["renderers"][0]["fidelity"], record["fidelity"]);
+    assert_eq!(
+        place
+            .run(&["render", "gem.svg", "-o", "gem.png"])
+            .status
+            .code(),
+        Some(0)
+    );
+}
+
+#[test]
+fn fit_works_in_a_pipe_and_quietly() {
+    let place = Place::new();
+    place.picture("in.png", 30, 20);
+    let bytes = fs::read(place.path("in.png")).unwrap();
+    let piped = place.pipe(&["fit", "-", "-o", "-", "-q", "--strokes", "20"], &bytes);
+    assert_eq!(piped.status.code(), Some(0), "{}", stderr(&piped));
+    assert_eq!(stderr(&piped), "");
+    place.run(&["fit", "in.png", "-o", "out.svg", "--strokes", "20"]);
+    assert_eq!(piped.stdout, fs::read(place.path("out.svg")).unwrap());
+}
+
+#[test]
+fn threads_change_no_byte() {
+    let place = Place::new();
+    let input = sample("noto-rocket.png");
+    for threads in ["1", "3"] {
+        let name = format!("{threads}.svg");
+        let output = place.run(&[
+            "fit",
+            &input,
+            "-o",
+            &name,
+            "--strokes",
+            "200",
+            "--threads",
+            threads,
+        ]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    }
+    assert!(fs::read(place.path("1.svg")).unwrap() == fs::read(place.path("3.svg")).unwrap());
+}
+
+#[test]
+fn the_smallest_and_thinnest_pictures_work() {
+    let place = Place::new();
+    for (width, height) in [(1, 1), (1, 4096), (4096, 1), (3, 2)] {
+        place.picture("in.png", width, height);
+        for strokes in ["1", "40"] {
+            let output = place.run(&["fit", "in.png", "-o", "out.svg", "--strokes", strokes]);
+            assert_eq!(
+                output.status.code(),
+                Some(0),
+                "{width}×{height}: {}",
+                stderr(&output)
+            );
+        }
+        let text = fs::read_to_string(place.path("out.svg")).unwrap();
+        assert!(
+            text.contains(&format!("viewBox=\"0 0 {width} {height}\"")),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn a_target_out_of_reach_is_exit_3_and_the_file_is_kept() {
+    let place = Place::new();
+    let output = place.run(&[
+        "fit",
+        &sample("coffee-300.png"),
+        "-o",
+        "out.svg",
+        "--strokes",
+        "5",
+        "--psnr",
+        "60",
+    ]);
+    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("target not reached"),
+        "{}",
+        stderr(&output)
+    );
+    assert_eq!(place.names(), ["out.svg"]);
+}
+
+#[test]
+fn the_look_is_as_asked_for() {
+    let place = Place::new();
+    place.picture("in.png", 40, 30);
+    let fit = |options: &[&str]| {
+        let args = [
+            &["fit", "in.png", "-o", "out.svg", "--strokes", "30"],
+            options,
+        ]
+        .concat();
+        let output = place.run(&args);
+        assert_eq!(
+            output.status.code(),
+            Some(0),
+            "{options:?}: {}",
+            stderr(&output)
+        );
+        fs::read_to_string(place.path("out.svg")).unwrap()
+    };
+    assert!(!fit(&["--opaque"]).contains("stroke-opacity"));
+    assert!(!fit(&["--background", "none"]).contains("<rect"));
+    assert!(fit(&["--background", "#0a0b0c"]).contains("fill=\"#0a0b0c\""));
+    let stages = fit(&["--stages", "3", "--no-polish"])
+        .matches("inkscape:groupmode")
+        .count();
+    assert!((1..=3).contains(&stages), "{stages}");
+    let whole = fit(&["--precision", "0"]);
+    // The length of a dot and opacities are fractions at any precision.
+    let numbers = whole
+        .replace("h0.01", "")
+        .replace("stroke-opacity=\"0.", "");
+    assert!(
+        !numbers
+            .lines()
+            .any(|line| line.starts_with("<path") && line.contains('.')),
+        "{whole}"
+    );
+    for coverage in ["sigmoid", "tanh", "atan", "atan:4", "sigmoid>smoothstep"] {
+        fit(&["--coverage", coverage, "--preset", "draft"]);
+    }
+}
