@@ -106,32 +106,48 @@ fn at<T: Real>(place: f64) -> [T; 3] {
 /// When a file cannot be written.
 pub fn run(output: &mut Output<'_>) -> Result<()> {
     let mut table = table::convergence();
-    for target in TARGETS {
-        for (name, start) in STARTS {
-            for method in METHODS {
-                output.say(&format!("circle: target {target}, {name} start, {method}"));
-                let setups = setups(target, start, method);
-                let ends = table::tabulated(&mut table, &setups);
-                let file = format!("circle-target{target}-{name}-{method}");
-                output.picture(
-                    &format!("{file}-loss.png"),
-                    &losses(&file, &setups, &ends).draw()?,
-                )?;
-                output.picture(
-                    &format!("{file}-end.png"),
-                    &sheet(&file, &setups, &ends, STEPS)?,
-                )?;
-                if method.to_string() == "adam" {
-                    let frames = (0..=STEPS).step_by(4);
-                    let frames = frames.map(|step| sheet(&file, &setups, &ends, step));
-                    output.animation(&format!("{file}.gif"), 80, frames)?;
-                }
-            }
-        }
+    let all = TARGETS
+        .iter()
+        .flat_map(|&target| STARTS.map(|start| (target, start)));
+    let all: Vec<_> = all
+        .flat_map(|place| METHODS.map(|method| (place, method)))
+        .collect();
+    for (i, &((target, (name, start)), method)) in all.iter().enumerate() {
+        let what = format!("target {target}, {name} start, {method}");
+        output.doing(0.7 * i as f64 / all.len() as f64, &what);
+        let setups = setups(target, start, method);
+        let file = format!("circle-target{target}-{name}-{method}");
+        let ends = table::tabulated(&mut table, &setups);
+        experiment(output, &file, &setups, &ends)?;
     }
     output.text("circle.csv", table.text())?;
-    output.say("circle: the same from starts that are nudged by rounding errors");
+    output.doing(
+        0.7,
+        "the same from starts that are nudged by rounding errors",
+    );
     output.text("circle-nudged.csv", nudged().text())
+}
+
+fn experiment(
+    output: &mut Output<'_>,
+    file: &str,
+    setups: &[Setup],
+    ends: &[Descent<f64>],
+) -> Result<()> {
+    output.picture(
+        &format!("{file}-loss.png"),
+        &losses(file, setups, ends).draw()?,
+    )?;
+    output.picture(
+        &format!("{file}-end.png"),
+        &sheet(file, setups, ends, STEPS)?,
+    )?;
+    if setups.iter().all(|setup| setup.method == METHODS[1]) {
+        let frames = (0..=STEPS).step_by(4);
+        let frames = frames.map(|step| sheet(file, setups, ends, step));
+        output.animation(&format!("{file}.gif"), 80, frames)?;
+    }
+    Ok(())
 }
 
 /// How often each centred start finds its target when it is moved by rounding errors: a verdict

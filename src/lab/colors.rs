@@ -106,9 +106,9 @@ fn start() -> Vec<f64> {
 /// When a file cannot be written.
 pub fn run(output: &mut Output<'_>) -> Result<()> {
     let mut table = table::convergence();
-    for method in METHODS {
+    for (i, method) in METHODS.into_iter().enumerate() {
         let name = format!("colors-{method}");
-        output.say(&format!("{name}: {} coverage functions", COVERAGES.len()));
+        output.doing(i as f64 / METHODS.len() as f64, &name);
         let descent = |&c: &Coverage| descend(&Coloring::new(c), &start(), method, STEPS);
         let descents: Vec<_> = COVERAGES.par_iter().map(descent).collect();
         for (coverage, descent) in COVERAGES.iter().zip(&descents) {

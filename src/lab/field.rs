@@ -59,7 +59,10 @@ struct Field {
 /// # Errors
 /// When a file cannot be written.
 pub fn run(output: &mut Output<'_>) -> Result<()> {
-    output.say("field: the loss at every position, for six coverage functions");
+    output.doing(
+        0.0,
+        "the loss at every position, for six coverage functions",
+    );
     let coverages: Vec<Coverage> = [Coverage::Raw].into_iter().chain(COVERAGES).collect();
     let fields: Vec<Field> = coverages.into_iter().map(Field::new).collect();
     output.text("field.csv", table(&fields).text())?;

@@ -12,14 +12,18 @@
 //! | [`star`] | do sixteen strokes find a star of four? |
 //! | [`compose`] | how do coloured strokes make a picture? |
 //! | [`colors`] | do coloured strokes find coloured strokes? |
+//! | [`article`] | how far do thousands of strokes get, all at once from a random start? |
+//! | [`compare`] | which coverage function is best, in the render and in the file? |
 //!
 //! Beneath them: [`descent`] (a problem, an optimiser, its course), [`matching`] (a union of shapes
 //! against a target), [`table`], [`picture`] and [`plot`].
 //!
 //! The small experiments follow the article in sampling pixels at integer coordinates.
 
+pub mod article;
 pub mod circle;
 pub mod colors;
+pub mod compare;
 pub mod compose;
 pub mod descent;
 pub mod field;
@@ -31,7 +35,7 @@ pub mod sdf;
 pub mod star;
 pub mod table;
 
-pub use output::Output;
+pub use output::{Event, Output};
 
 use crate::coverage::Coverage;
 

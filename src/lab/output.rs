@@ -1,4 +1,4 @@
-//! Where an experiment's files go.
+//! Where an experiment's files go, and who is told of them.
 
 use std::fs::{self, File};
 use std::io::BufWriter;
@@ -7,32 +7,41 @@ use std::path::{Path, PathBuf};
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::{Animation, Image};
 
+/// What an experiment is at.
+#[derive(Debug, Clone, Copy)]
+pub enum Event<'a> {
+    /// Something is under way.
+    Doing {
+        /// Which part of the whole is done, 0..1.
+        done: f64,
+        /// What comes now.
+        what: &'a str,
+    },
+    /// A file is complete.
+    Wrote(&'a Path),
+}
+
 /// A folder for results, and somebody to tell of them.
 pub struct Output<'a> {
     dir: PathBuf,
-    say: &'a mut dyn FnMut(&str),
+    tell: &'a mut dyn FnMut(Event<'_>),
 }
 
 impl<'a> Output<'a> {
-    /// Results go to the folder `dir`, which is made if need be; `say` is told of each file
-    /// and of what is under way.
+    /// Results go to the folder `dir`, which is made if need be; `tell` is told of each file and of
+    /// what is under way.
     ///
     /// # Errors
     /// [`ErrorKind::Io`] when the folder cannot be made.
-    pub fn new(dir: impl Into<PathBuf>, say: &'a mut dyn FnMut(&str)) -> Result<Self> {
+    pub fn new(dir: impl Into<PathBuf>, tell: &'a mut dyn FnMut(Event<'_>)) -> Result<Self> {
         let dir = dir.into();
         fs::create_dir_all(&dir).map_err(|e| unwritten(&dir, e))?;
-        Ok(Self { dir, say })
+        Ok(Self { dir, tell })
     }
 
-    /// Tells what is under way.
-    pub fn say(&mut self, message: &str) {
-        (self.say)(message);
-    }
-
-    /// Where the file `name` goes.
-    pub fn path(&self, name: &str) -> PathBuf {
-        self.dir.join(name)
+    /// Tells what is under way, and which part (0..1) of the whole is done.
+    pub fn doing(&mut self, done: f64, what: &str) {
+        (self.tell)(Event::Doing { done, what });
     }
 
     /// Writes a text file.
@@ -65,30 +74,33 @@ impl<'a> Output<'a> {
         for frame in frames {
             animation.push(&frame?)?;
         }
-        self.written(name);
+        drop(animation);
+        self.finished(name);
         Ok(())
     }
 
-    /// Starts an animated GIF for frames that come one by one.
+    /// Starts an animated GIF for frames that come one by one; tell when it is
+    /// [finished](Self::finished).
     ///
     /// # Errors
     /// [`ErrorKind::Io`] when it cannot be written.
     pub fn start_animation(&self, name: &str, frame_ms: u32) -> Result<Animation<BufWriter<File>>> {
-        let path = self.path(name);
+        let path = self.dir.join(name);
         let file = File::create(&path).map_err(|e| unwritten(&path, e))?;
         Animation::new(BufWriter::new(file), frame_ms)
     }
 
-    fn bytes(&mut self, name: &str, bytes: &[u8]) -> Result<()> {
-        let path = self.path(name);
-        fs::write(&path, bytes).map_err(|e| unwritten(&path, e))?;
-        self.written(name);
-        Ok(())
+    /// Tells that the file `name` is complete.
+    pub fn finished(&mut self, name: &str) {
+        let path = self.dir.join(name);
+        (self.tell)(Event::Wrote(&path));
     }
 
-    fn written(&mut self, name: &str) {
-        let message = format!("wrote {}", self.path(name).display());
-        self.say(&message);
+    fn bytes(&mut self, name: &str, bytes: &[u8]) -> Result<()> {
+        let path = self.dir.join(name);
+        fs::write(&path, bytes).map_err(|e| unwritten(&path, e))?;
+        self.finished(name);
+        Ok(())
     }
 }
 

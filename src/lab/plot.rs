@@ -199,6 +199,8 @@ pub struct Sheet {
 }
 
 const MARGIN: usize = 8;
+/// Least width of a picture with a caption, px: some 46 letters.
+const CAPTION: usize = 380;
 const LINE: usize = 20;
 
 impl Sheet {
@@ -276,7 +278,7 @@ fn blit(
 /// # Errors
 /// [`ErrorKind::Picture`] when there is no memory for it.
 pub fn captioned(image: &Image, lines: &[String]) -> Result<Image> {
-    let (width, height) = (image.width(), image.height());
+    let (width, height) = (image.width().max(CAPTION), image.height());
     let whole = Image::filled(width, height + lines.len() * LINE, [1.0; 3])?;
     let mut planes = whole.planes().clone();
     blit(&mut planes, width, (0, 0), image, 1);
@@ -417,9 +419,9 @@ mod tests {
 
     #[test]
     fn captions_are_written_beneath() {
-        let white = Image::filled(60, 10, [1.0; 3]).unwrap();
+        let white = Image::filled(60, 30, [1.0; 3]).unwrap();
         let image = captioned(&white, &["step 1".into()]).unwrap();
-        assert_eq!((image.width(), image.height()), (60, 30));
-        assert!(is_dark(&image, 0..60, 10..30));
+        assert_eq!((image.width(), image.height()), (CAPTION, 50));
+        assert!(is_dark(&image, 0..60, 30..50));
     }
 }

@@ -105,14 +105,19 @@ fn flat<T: Real>(rows: &[[f64; 5]]) -> Vec<T> {
 /// When a file cannot be written.
 pub fn run(output: &mut Output<'_>) -> Result<()> {
     let mut table = table::convergence();
-    for eps in EPSILONS {
-        for method in METHODS {
-            let name = format!("star-eps{eps:e}-{method}");
-            experiment(output, &mut table, &name, &setups(eps, method, COVERAGES))?;
+    let atans = STEEPNESSES.map(|k| Coverage::Atan { k });
+    let groups = METHODS.map(|method| (method.to_string(), method, COVERAGES));
+    let groups = groups
+        .into_iter()
+        .chain([("atan".to_owned(), METHODS[0], atans)]);
+    let groups: Vec<_> = groups.collect();
+    for (i, eps) in EPSILONS.into_iter().enumerate() {
+        for (j, (group, method, coverages)) in groups.iter().enumerate() {
+            let name = format!("star-eps{eps:e}-{group}");
+            let done = (i * groups.len() + j) as f64 / (EPSILONS.len() * groups.len()) as f64;
+            output.doing(done, &name);
+            experiment(output, &mut table, &name, &setups(eps, *method, *coverages))?;
         }
-        let atans = STEEPNESSES.map(|k| Coverage::Atan { k });
-        let name = format!("star-eps{eps:e}-atan");
-        experiment(output, &mut table, &name, &setups(eps, METHODS[0], atans))?;
     }
     output.text("star.csv", table.text())
 }
@@ -132,10 +137,6 @@ fn experiment(
     name: &str,
     setups: &[Setup],
 ) -> Result<()> {
-    output.say(&format!(
-        "{name}: {} coverage functions, two precisions",
-        setups.len()
-    ));
     let doubles = table::tabulated(table, setups);
     output.picture(
         &format!("{name}-loss.png"),
