@@ -80,8 +80,10 @@ fn table(fields: &[Field]) -> Table {
     for field in fields {
         for (x, y) in positions(TABLE_STEP) {
             let Slope { loss, d_x, d_y } = field.at(x, y);
-            let numbers = [x as f64, y as f64, loss, d_x, d_y].map(|v| v.to_string());
-            table.row([field.coverage.to_string()].into_iter().chain(numbers));
+            let place = [x, y].map(|v| v.to_string());
+            let numbers = [loss, d_x, d_y].map(|v| format!("{v:e}"));
+            let coverage = [field.coverage.to_string()];
+            table.row(coverage.into_iter().chain(place).chain(numbers));
         }
     }
     table
