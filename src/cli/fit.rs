@@ -54,9 +54,16 @@ pub(super) struct Args {
     #[arg(long, value_name = "SECONDS", help_heading = BUDGET, value_parser = domain::seconds, allow_negative_numbers = true)]
     time: Option<Duration>,
 
+    /// What a byte is worth, 0 to 60: a stroke stays while each of its bytes removes as much error as
+    /// one pixel has at Q dB [default: 30 without a budget of strokes, dB or bytes]
+    #[arg(long, value_name = "Q", help_heading = LOOK, allow_negative_numbers = true)]
+    quality: Option<f64>,
     /// How much work to spend
     #[arg(long, value_enum, default_value_t = Preset::Balanced, help_heading = LOOK)]
     preset: Preset,
+    /// Polish each layer on those below alone: a good drawing after every layer, some dB less in the end
+    #[arg(long, conflicts_with = "no_polish", help_heading = LOOK)]
+    progressive: bool,
     /// Only opaque strokes: fewer dB, but flat colours that are easy to edit
     #[arg(long, help_heading = LOOK)]
     opaque: bool,
@@ -111,6 +118,8 @@ impl Args {
                 Preset::Balanced => fit::Preset::Balanced,
                 Preset::Best => fit::Preset::Best,
             },
+            quality: self.quality,
+            progressive: self.progressive,
             opaque: self.opaque,
             coverage: self.coverage,
             stages: self.stages,

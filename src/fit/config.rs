@@ -15,8 +15,14 @@ use crate::scene::Rgb;
 pub struct Config {
     /// When to stop adding strokes.
     pub budget: Budget,
+    /// What a byte is worth: a stroke stays while each of its bytes removes as much squared error as one
+    /// pixel has in a picture of this many dB. `None`: [`DEFAULT_QUALITY`] without a budget of strokes,
+    /// fidelity or bytes, and with one any stroke that removes error may stay.
+    pub quality: Option<f64>,
     /// How much work to spend.
     pub preset: Preset,
+    /// Whether every layer is polished alone, so that the drawing is good after each.
+    pub progressive: bool,
     /// Only strokes of opacity 1.
     pub opaque: bool,
     /// The coverage function, or the two between which a fit passes.
@@ -39,7 +45,9 @@ impl Default for Config {
     fn default() -> Self {
         Self {
             budget: Budget::default(),
+            quality: None,
             preset: Preset::default(),
+            progressive: false,
             opaque: false,
             coverage: CoverageSchedule::default(),
             stages: None,
@@ -98,7 +106,22 @@ pub struct Execution {
     pub simd: Simd,
 }
 
+/// The quality of a drawing without a budget.
+pub const DEFAULT_QUALITY: f64 = 30.0;
+
 impl Config {
+    /// The quality that sets the price of a stroke, if strokes have one.
+    pub(super) fn effective_quality(&self) -> Option<f64> {
+        let Budget {
+            strokes,
+            psnr_db,
+            bytes,
+            ..
+        } = self.budget;
+        let bounded = strokes.is_some() || psnr_db.is_some() || bytes.is_some();
+        self.quality.or((!bounded).then_some(DEFAULT_QUALITY))
+    }
+
     /// Refuses what is outside its domain.
     pub(super) fn check(&self) -> Result<()> {
         let refuse = |message: String| Err(Error::new(ErrorKind::Config, message));
@@ -107,6 +130,11 @@ impl Config {
             return refuse(format!(
                 "a fidelity of {} dB cannot be asked for: give one above 0",
                 psnr_db.unwrap_or(0.0)
+            ));
+        }
+        if let Some(quality) = self.quality.filter(|q| !(0.0..=MOST_QUALITY).contains(q)) {
+            return refuse(format!(
+                "a quality of {quality} is out of range: give 0 to {MOST_QUALITY}"
             ));
         }
         if time.is_some_and(|time| time.is_zero()) {
@@ -124,6 +152,9 @@ impl Config {
         Ok(())
     }
 }
+
+/// Beyond it a stroke may cost less than one 8-bit level of one pixel.
+const MOST_QUALITY: f64 = 60.0;
 
 /// Most decimals of coordinates: more than `f32` holds in a picture of any size.
 const MAX_PRECISION: u8 = 6;

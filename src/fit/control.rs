@@ -65,10 +65,10 @@ impl<'a> Control<'a> {
         self.progress.strokes = strokes;
     }
 
-    /// Adds `work` to what is done, tells the observer, with the mean squared error `mse`, and says
+    /// Adds an iteration of `strokes` to what is done, tells the observer, with the mean squared error `mse`, and says
     /// whether to go on.
-    pub(super) fn advance(&mut self, work: f64, mse: f64) -> bool {
-        self.done += work;
+    pub(super) fn advance(&mut self, strokes: usize, mse: f64) -> bool {
+        self.done += strokes as f64;
         let done = (self.done / self.planned).max(f64::from(self.time_used()));
         self.progress.done = done.clamp(self.progress.done, 1.0);
         self.progress.psnr_db = psnr_db(mse);

@@ -1,37 +1,41 @@
-//! The state of a fit: the strokes so far and the canvas that they make.
+//! The state of a fit: the strokes so far, how many of them are frozen, and the canvas they make.
 
 use fearless_simd::Level;
 
 use super::anneal::final_softness;
 use super::config::Config;
-use super::descent::Limits;
+use super::descent::{Descent, Limits};
 use super::objective::Objective;
 use crate::image::Image;
 use crate::loss::Loss;
 use crate::render::{Base, Canvas, Gradients, Params, Renderer, Softness, pack, unpack};
 use crate::scene::{Rgb, Scene, Stage};
-use crate::seed::Pyramid;
+use crate::seed::{Candidate, Pyramid, Wanted, propose};
 
 /// Least opacity of a stroke: the 8-bit compositing of renderers drifts by levels under many layers
 /// fainter than this.
 const LEAST_OPACITY: f32 = 0.1;
 
-/// A drawing under work.
+/// A drawing under work. What is fitted, judged and relocated are its *free* strokes; the frozen ones
+/// below them are a picture.
 pub(super) struct Drawing {
-    pub(super) level: Level,
-    /// The picture, on its ground.
-    pub(super) target: Canvas,
-    pub(super) pyramid: Pyramid,
-    pub(super) renderer: Renderer,
+    target: Canvas,
+    pyramid: Pyramid,
+    renderer: Renderer,
+    level: Level,
     pub(super) background: Rgb,
     /// Whether the background is not to be fitted.
     pub(super) background_fixed: bool,
     /// Back to front.
-    pub(super) strokes: Vec<Params>,
+    strokes: Vec<Params>,
     /// The stage of each stroke, counted from 0, never decreasing.
-    pub(super) stage_of: Vec<usize>,
-    /// What all of it looks like with the edge of the finished drawing.
-    pub(super) canvas: Canvas,
+    stage_of: Vec<usize>,
+    /// How many strokes, from the back, are frozen.
+    frozen: usize,
+    /// The picture of the frozen strokes on the background; unused when there is none.
+    below: Canvas,
+    /// The picture of all strokes as of the last [`render`](Self::render), with the final edge.
+    canvas: Canvas,
     pub(super) limits: Limits,
     edge: Softness,
     seed: u64,
@@ -46,20 +50,37 @@ impl Drawing {
         let (background, background_fixed) = config.background.choose(target);
         let least_opacity = if config.opaque { 1.0 } else { LEAST_OPACITY };
         Self {
-            level,
             target: canvas,
             pyramid: Pyramid::new(target.clone()),
             renderer: Renderer::new(grid, level),
+            level,
             background,
             background_fixed,
             strokes: Vec::new(),
             stage_of: Vec::new(),
+            frozen: 0,
+            below: Canvas::flat(grid, background),
             canvas: Canvas::flat(grid, background),
             limits: Limits::new(grid.width, grid.height, least_opacity),
             edge: final_softness(config.coverage.late),
             seed: config.seed,
             searches: 0,
         }
+    }
+
+    /// How many strokes there are, frozen ones included.
+    pub(super) fn len(&self) -> usize {
+        self.strokes.len()
+    }
+
+    /// The strokes that are not frozen, back to front.
+    pub(super) fn free(&self) -> &[Params] {
+        &self.strokes[self.frozen..]
+    }
+
+    /// Whether there are no frozen strokes, so that the background shows through to the fit.
+    pub(super) fn is_thawed(&self) -> bool {
+        self.frozen == 0
     }
 
     /// The picture's number of pixels.
@@ -72,10 +93,37 @@ impl Drawing {
         (self.pixels() as f32 / count.max(1) as f32).sqrt()
     }
 
-    /// The random key of the next search for strokes.
-    pub(super) fn next_key(&mut self) -> [u64; 2] {
-        self.searches += 1;
-        [self.seed, self.searches]
+    /// Freezes all strokes that there are.
+    pub(super) fn freeze(&mut self) {
+        self.render();
+        self.below.clone_from(&self.canvas);
+        self.frozen = self.strokes.len();
+    }
+
+    /// Frees all strokes.
+    pub(super) fn thaw(&mut self) {
+        self.frozen = 0;
+    }
+
+    /// Puts `strokes` on top, as part of stage `stage`.
+    pub(super) fn extend(&mut self, strokes: impl IntoIterator<Item = Params>, stage: usize) {
+        self.strokes.extend(strokes);
+        self.stage_of.resize(self.strokes.len(), stage);
+    }
+
+    /// Keeps the free strokes for which `keep` is true.
+    pub(super) fn retain_free(&mut self, keep: &[bool]) {
+        let frozen = self.frozen;
+        let kept = |i: usize| i < frozen || keep.get(i - frozen).copied().unwrap_or(false);
+        let mut i = 0..;
+        self.strokes.retain(|_| i.next().is_some_and(kept));
+        let mut i = 0..;
+        self.stage_of.retain(|_| i.next().is_some_and(kept));
+    }
+
+    /// Replaces the numbers of the free strokes.
+    pub(super) fn set_free(&mut self, strokes: &[Params]) {
+        self.strokes[self.frozen..].copy_from_slice(strokes);
     }
 
     /// The number of the stage on top, from 0.
@@ -83,44 +131,61 @@ impl Drawing {
         self.stage_of.last().copied().unwrap_or(0)
     }
 
-    /// Puts `strokes` on top, as part of stage `stage`; `self.canvas` shows them from then on.
-    pub(super) fn extend(&mut self, strokes: Vec<Params>, stage: usize) {
-        let below = self.canvas.clone();
-        self.renderer
-            .forward(&strokes, self.edge, Base::Canvas(&below), &mut self.canvas);
-        self.stage_of
-            .resize(self.stage_of.len() + strokes.len(), stage);
-        self.strokes.extend(strokes);
+    /// Candidates for strokes on top of all there are, best first.
+    pub(super) fn propose(
+        &mut self,
+        count: usize,
+        scale: f32,
+        oversampling: f32,
+    ) -> Vec<Candidate> {
+        self.searches += 1;
+        self.render();
+        let least_opacity = self.limits.least_opacity;
+        let wanted = Wanted {
+            count,
+            scale,
+            oversampling,
+            least_opacity,
+            key: [self.seed, self.searches],
+        };
+        propose(self.level, &self.pyramid, &self.canvas, wanted)
     }
 
-    /// Keeps the strokes for which `keep` is true. The canvas is not rendered again.
-    pub(super) fn retain(&mut self, keep: &[bool]) {
-        let kept = |i: usize| keep.get(i).copied().unwrap_or(false);
-        let mut i = 0..;
-        self.strokes.retain(|_| i.next().is_some_and(kept));
-        let mut i = 0..;
-        self.stage_of.retain(|_| i.next().is_some_and(kept));
+    /// One step of the free strokes towards the target.
+    pub(super) fn step(&mut self, descent: &mut Descent, softness: Softness, rate: f32) {
+        let base = base(self.frozen, &self.below, self.background);
+        let objective = Objective::new(Loss::L2, &self.target);
+        let free = &mut self.strokes[self.frozen..];
+        descent.step(&mut self.renderer, free, softness, base, &objective, rate);
+    }
+
+    /// One step of the free strokes towards another target, with the final edge.
+    pub(super) fn step_towards(&mut self, target: &Canvas, descent: &mut Descent, rate: f32) {
+        let base = base(self.frozen, &self.below, self.background);
+        let objective = Objective::new(Loss::L2, target);
+        let free = &mut self.strokes[self.frozen..];
+        descent.step(&mut self.renderer, free, self.edge, base, &objective, rate);
     }
 
     /// Renders everything.
     pub(super) fn render(&mut self) {
-        let base = Base::Flat(self.background);
-        self.renderer
-            .forward(&self.strokes, self.edge, base, &mut self.canvas);
+        let base = base(self.frozen, &self.below, self.background);
+        self.renderer.forward(
+            &self.strokes[self.frozen..],
+            self.edge,
+            base,
+            &mut self.canvas,
+        );
     }
 
-    /// Loss, gradients and worth of all strokes at the final edge.
+    /// Loss, gradients and worth of the free strokes at the final edge.
     pub(super) fn judge(&mut self) -> Gradients {
         let mut gradients = Gradients::default();
         let objective = Objective::new(Loss::L2, &self.target);
-        let base = Base::Flat(self.background);
-        self.renderer.backward_with_worth(
-            &self.strokes,
-            self.edge,
-            base,
-            &objective,
-            &mut gradients,
-        );
+        let base = base(self.frozen, &self.below, self.background);
+        let free = &self.strokes[self.frozen..];
+        self.renderer
+            .backward_with_worth(free, self.edge, base, &objective, &mut gradients);
         gradients
     }
 
@@ -138,6 +203,32 @@ impl Drawing {
         self.canvas.to_image()
     }
 
+    /// The mean squared error after each layer of `scene`.
+    pub(super) fn layer_mses(&mut self, scene: &Scene) -> Vec<f64> {
+        let objective = Objective::new(Loss::L2, &self.target);
+        let mut canvas = Canvas::flat(
+            self.target.grid(),
+            scene.background.unwrap_or(self.background),
+        );
+        let mut gradients = Gradients::default();
+        let mut mses = Vec::new();
+        for stage in &scene.stages {
+            let strokes: Vec<Params> = stage.strokes.iter().map(pack).collect();
+            let below = canvas.clone();
+            self.renderer
+                .forward(&strokes, self.edge, Base::Canvas(&below), &mut canvas);
+            self.renderer.backward(
+                &[],
+                self.edge,
+                Base::Canvas(&canvas),
+                &objective,
+                &mut gradients,
+            );
+            mses.push(gradients.loss);
+        }
+        mses
+    }
+
     /// The drawing as a scene, unrounded, with the background if it `has_ground`.
     pub(super) fn scene(&self, has_ground: bool) -> Scene {
         let grid = self.target.grid();
@@ -150,5 +241,14 @@ impl Drawing {
             scene.stages[stage].strokes.push(unpack(stroke));
         }
         scene
+    }
+}
+
+/// What lies behind the free strokes.
+fn base(frozen: usize, below: &Canvas, background: Rgb) -> Base<'_> {
+    if frozen == 0 {
+        Base::Flat(background)
+    } else {
+        Base::Canvas(below)
     }
 }

@@ -14,17 +14,19 @@ mod objective;
 mod observer;
 mod plan;
 mod polish;
+mod price;
 mod recipe;
 mod settle;
 mod simd;
 mod stage;
+mod work;
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use fearless_simd::Level;
 
 pub use anneal::final_softness;
-pub use config::{Background, Budget, Config, Execution, Preset};
+pub use config::{Background, Budget, Config, DEFAULT_QUALITY, Execution, Preset};
 pub use objective::Objective;
 pub use observer::{Observer, Progress};
 pub use recipe::{Rates, Recipe};
@@ -32,12 +34,8 @@ pub use simd::Simd;
 
 use crate::error::Result;
 use crate::image::Image;
-use crate::metrics::psnr_db;
 use crate::scene::Scene;
-use anneal::Anneal;
-use control::Control;
-use drawing::Drawing;
-use settle::Page;
+use work::Work;
 
 /// A finished drawing and how it came to be.
 #[derive(Debug, Clone)]
@@ -69,6 +67,8 @@ pub struct StageRecord {
     pub wall: Duration,
     /// Fidelity of the soft render to the target after the stage, dB.
     pub psnr_db: f64,
+    /// Fidelity of the finished drawing's layers up to this one, dB.
+    pub layer_psnr_db: f64,
 }
 
 /// Why a fit ended.
@@ -114,54 +114,9 @@ fn draw(
     level: Level,
     observer: &mut (dyn Observer + Send),
 ) -> Result<Fit> {
-    let recipe = config.recipe.unwrap_or(Recipe::of(config.preset));
-    let mut drawing = Drawing::new(&target, config, level);
-    let plan = plan::stages(&drawing, config, &recipe);
-    let mut control = Control::new(
-        observer,
-        config,
-        plan::work(&plan, config, &recipe),
-        plan.len(),
-    );
-    let anneal = Anneal {
-        coverage: config.coverage,
-        from: 1.0,
-    };
-
-    let mut stages = Vec::new();
-    for planned in plan {
-        let start = Instant::now();
-        control.enter(planned.index, drawing.strokes.len());
-        stage::add(&mut drawing, &recipe, anneal, planned, &mut control);
-        stages.push(StageRecord {
-            index: planned.index + 1,
-            strokes: 0,
-            iterations: recipe.stage_iterations,
-            wall: start.elapsed(),
-            psnr_db: psnr_db(drawing.mse()),
-        });
-        if control.stopped().is_some() {
-            break;
-        }
-    }
-    if config.polish && control.stopped().is_none() {
-        control.enter(stages.len(), drawing.strokes.len());
-        polish::run(&mut drawing, &recipe, anneal, &mut control);
-    }
-    let page = Page::of(config);
-    let written = settle::run(&mut drawing, &target, page, &recipe, anneal)?;
-
-    for (record, stage) in stages.iter_mut().zip(&written.scene.stages) {
-        record.strokes = stage.strokes.len();
-    }
-    let soft = drawing.soft(&written.scene);
-    let stop = control.stopped().unwrap_or(Stop::Strokes);
-    Ok(Fit {
-        scene: written.scene,
-        target,
-        soft,
-        stages,
-        stop,
-        dropped: written.dropped,
-    })
+    let mut work = Work::new(target, config, level, observer);
+    work.grow();
+    work.polish();
+    let written = work.settle()?;
+    Ok(work.finish(written))
 }

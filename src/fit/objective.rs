@@ -24,25 +24,24 @@ impl<'a> Objective<'a> {
     }
 }
 
+/// The padding of a canvas made from a picture is 0, as the renderer's is, and adds nothing.
 impl CanvasLoss for Objective<'_> {
     #[inline(always)]
     fn tile(
         &self,
         tile: usize,
-        weights: &[Lanes; 64],
         canvas: &TileRgb,
         error: &mut TileRgb,
         gradient: &mut TileRgb,
     ) -> f64 {
         let target = &self.target.tiles()[tile];
         let mut sums = Lanes::splat(0.0);
-        for (block, weight) in weights.iter().enumerate() {
+        for block in 0..canvas.len() {
             for channel in 0..3 {
                 let (c, t) = (&canvas[block][channel], &target[block][channel]);
                 let (e, g) = (&mut error[block][channel], &mut gradient[block][channel]);
-                for lane in 0..weight.0.len() {
-                    let w = weight.0[lane];
-                    e.0[lane] = (c.0[lane] - t.0[lane]) * w;
+                for lane in 0..sums.0.len() {
+                    e.0[lane] = c.0[lane] - t.0[lane];
                     sums.0[lane] += self.loss.value(e.0[lane]);
                     g.0[lane] = self.loss.derivative(e.0[lane]) * self.scale;
                 }

@@ -1,8 +1,16 @@
 //! How many strokes each stage adds, and how large they are.
 
 use super::config::Config;
-use super::drawing::Drawing;
 use super::recipe::Recipe;
+
+/// Strokes of the first stage when their total is not known beforehand.
+const FIRST: usize = 12;
+
+/// Pixels per stroke of an ordinary drawing; a guess for progress, and for `--stages` without a budget.
+const PIXELS_PER_STROKE: usize = 250;
+
+/// Most strokes of a drawing: renderers of SVG read a million elements.
+pub(super) const MOST_STROKES: usize = 900_000;
 
 /// One planned stage.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,37 +23,72 @@ pub(super) struct PlannedStage {
     pub(super) scale: f32,
 }
 
-/// Strokes of a drawing whose budget does not say.
-const DEFAULT_STROKES: usize = 1000;
-
-/// The stages of a fit.
-pub(super) fn stages(drawing: &Drawing, config: &Config, recipe: &Recipe) -> Vec<PlannedStage> {
-    let total = config.budget.strokes.unwrap_or(DEFAULT_STROKES);
-    let stages = config.stages.unwrap_or(recipe.stages);
-    counts(total, stages, recipe.growth)
-        .into_iter()
-        .scan(0, |reached, count| {
-            *reached += count;
-            Some((count, recipe.scale * drawing.spacing(*reached)))
-        })
-        .enumerate()
-        .map(|(index, (count, scale))| PlannedStage {
-            index,
-            count,
-            scale,
-        })
-        .collect()
+/// The stages of a fit, coarse to fine.
+#[derive(Debug, Clone)]
+pub(super) struct Plan {
+    counts: Vec<usize>,
+    /// Whether stages may follow the planned ones.
+    open: bool,
+    pixels: usize,
+    growth: f64,
+    scale: f32,
 }
 
-/// The work of all stages and the polish, in strokes × iterations.
-pub(super) fn work(plan: &[PlannedStage], config: &Config, recipe: &Recipe) -> f64 {
-    let strokes: usize = plan.iter().map(|stage| stage.count).sum();
-    let polish = if config.polish {
-        recipe.polish_iterations
-    } else {
-        0
-    };
-    (strokes * (recipe.stage_iterations + polish)) as f64
+impl Plan {
+    /// Stages for `limit` strokes, or for as many as will pay.
+    pub(super) fn new(
+        config: &Config,
+        recipe: &Recipe,
+        limit: Option<usize>,
+        pixels: usize,
+    ) -> Self {
+        let stages = config.stages.unwrap_or(recipe.stages);
+        let guess = config
+            .stages
+            .map(|_| (pixels / PIXELS_PER_STROKE).max(FIRST));
+        let counts = limit
+            .or(guess)
+            .map(|total| counts(total, stages, recipe.growth));
+        Self {
+            open: counts.is_none(),
+            counts: counts.unwrap_or_default(),
+            pixels,
+            growth: recipe.growth,
+            scale: recipe.scale,
+        }
+    }
+
+    /// How many stages are planned, as far as that is known.
+    pub(super) fn len(&self) -> usize {
+        self.counts.len()
+    }
+
+    /// Strokes of the whole drawing; a guess where the plan is open.
+    pub(super) fn strokes(&self) -> usize {
+        if self.open {
+            (self.pixels / PIXELS_PER_STROKE).max(1)
+        } else {
+            self.counts.iter().sum()
+        }
+    }
+
+    /// Stage `index`, on top of `before` strokes.
+    pub(super) fn stage(&self, index: usize, before: usize) -> Option<PlannedStage> {
+        let count = match self.counts.get(index) {
+            Some(&count) => count,
+            None if self.open => {
+                let count = FIRST as f64 * self.growth.powi(index as i32);
+                (count as usize).min((self.pixels).min(MOST_STROKES).saturating_sub(before))
+            }
+            None => return None,
+        };
+        let spacing = (self.pixels as f32 / (before + count).max(1) as f32).sqrt();
+        (count > 0).then_some(PlannedStage {
+            index,
+            count,
+            scale: self.scale * spacing,
+        })
+    }
 }
 
 /// `total` strokes in at most `stages` stages, each `growth` times the one before.
@@ -81,6 +124,18 @@ mod tests {
         let counts = counts(2, 8, 1.6);
         assert_eq!(counts.iter().sum::<usize>(), 2);
         assert!(counts.iter().all(|&count| count > 0));
-        assert!(counts.len() <= 2);
+    }
+
+    #[test]
+    fn open_plans_go_on_to_a_stroke_per_pixel() {
+        let config = Config::default();
+        let plan = Plan::new(&config, &Recipe::of(config.preset), None, 100);
+        let mut strokes = 0;
+        let mut index = 0;
+        while let Some(stage) = plan.stage(index, strokes) {
+            strokes += stage.count;
+            index += 1;
+        }
+        assert_eq!(strokes, 100);
     }
 }

@@ -1,27 +1,36 @@
-//! Polish: all strokes and the background fitted jointly, with relocation.
+//! Polish: all free strokes, and the background, fitted jointly, with relocation.
 //!
-//! Every so often the strokes worth least by exact leave-one-out are taken away, and candidates whose
-//! closed-form gain is larger are put on top instead. Their number stays the same.
+//! Every so often the strokes worth least by exact leave-one-out, and those not worth their price, are
+//! taken away, and candidates whose closed-form gain is larger are put on top instead.
 
 use super::anneal::Anneal;
 use super::control::Control;
 use super::descent::Descent;
 use super::drawing::Drawing;
-use super::objective::Objective;
+use super::price::Price;
 use super::recipe::Recipe;
-use crate::loss::Loss;
 use crate::optim::{Adam, AdamParams, Optimizer, Schedule};
-use crate::render::{Base, Params};
-use crate::seed::{Candidate, Wanted, propose};
+use crate::render::Params;
+use crate::seed::Candidate;
 
-/// Fits all strokes of `drawing` jointly; the background too, unless it is fixed.
+/// How many strokes there may be, and what each has to be worth.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Terms {
+    /// Strokes of the drawing at most, frozen ones included.
+    pub(super) limit: usize,
+    pub(super) price: Price,
+}
+
+/// Fits the free strokes of `drawing` jointly, in `steps` iterations; the background too, where it shows
+/// through to them and is not fixed.
 pub(super) fn run(
     drawing: &mut Drawing,
     recipe: &Recipe,
     anneal: Anneal,
+    terms: Terms,
+    steps: usize,
     control: &mut Control<'_>,
 ) {
-    let steps = recipe.polish_iterations;
     let schedule = Schedule::Cosine {
         end: recipe.polish_rates.last,
     };
@@ -29,38 +38,24 @@ pub(super) fn run(
         from: recipe.polish_softness,
         ..anneal
     };
-    let mut descent = Descent::new(drawing.strokes.len(), recipe.polish_rates, drawing.limits);
+    let mut descent = Descent::new(drawing.free().len(), recipe.polish_rates, drawing.limits);
     let mut background = Adam::new(3, AdamParams::default());
     let mut clock = Clock::new(steps, control);
-    while let Some(step) = clock.tick(control) {
-        if recipe.relocates(step, clock.done()) {
-            relocate(drawing, recipe, &mut descent);
+    while let Some((step, done)) = clock.tick(control) {
+        if recipe.relocates(step, done) {
+            relocate(drawing, recipe, terms, &mut descent);
         }
-        let rate = schedule.factor((clock.done() * steps as f32) as usize, steps) as f32;
-        let objective = Objective::new(Loss::L2, &drawing.target);
-        let base = Base::Flat(drawing.background);
-        let softness = anneal.at(clock.done());
-        descent.step(
-            &mut drawing.renderer,
-            &mut drawing.strokes,
-            softness,
-            base,
-            &objective,
-            rate,
-        );
-        if !drawing.background_fixed {
-            background.step(
-                &mut drawing.background,
-                &descent.gradients.base,
-                rate * recipe.polish_rates.color,
-            );
+        let rate = schedule.factor((done * steps as f32) as usize, steps) as f32;
+        drawing.step(&mut descent, anneal.at(done), rate);
+        if drawing.is_thawed() && !drawing.background_fixed {
+            let rate = rate * recipe.polish_rates.color;
+            background.step(&mut drawing.background, &descent.gradients.base, rate);
             drawing.background = drawing.background.map(|c| c.clamp(0.0, 1.0));
         }
-        if !control.advance(drawing.strokes.len() as f64, descent.gradients.loss) {
+        if !control.advance(drawing.free().len(), descent.gradients.loss) {
             break;
         }
     }
-    drawing.render();
 }
 
 /// Counts iterations, and hurries the schedule on when the time limit would cut it short.
@@ -69,7 +64,6 @@ struct Clock {
     steps: usize,
     /// Share of the time limit that was used before.
     before: f32,
-    done: f32,
 }
 
 impl Clock {
@@ -78,79 +72,107 @@ impl Clock {
             step: 0,
             steps,
             before: control.time_used(),
-            done: 0.0,
         }
     }
 
-    /// The next iteration, or `None` when the schedule is over.
-    fn tick(&mut self, control: &Control<'_>) -> Option<usize> {
+    /// The next iteration and the share of the schedule that is over, or `None` when all of it is.
+    fn tick(&mut self, control: &Control<'_>) -> Option<(usize, f32)> {
         let by_count = self.step as f32 / self.steps.max(1) as f32;
         let left = (1.0 - self.before).max(f32::MIN_POSITIVE);
         let by_time = (control.time_used() - self.before) / left;
-        self.done = by_count.max(by_time);
+        let done = by_count.max(by_time);
         self.step += 1;
-        (self.done < 1.0).then_some(self.step - 1)
-    }
-
-    fn done(&self) -> f32 {
-        self.done
+        (done < 1.0).then_some((self.step - 1, done))
     }
 }
 
-/// Swaps the strokes worth least for candidates that gain more.
-fn relocate(drawing: &mut Drawing, recipe: &Recipe, descent: &mut Descent) {
+/// Swaps strokes for candidates that gain more, and fills up to the limit with those that pay.
+fn relocate(drawing: &mut Drawing, recipe: &Recipe, terms: Terms, descent: &mut Descent) {
+    let room = terms.limit.saturating_sub(drawing.len());
+    let share = (drawing.free().len() as f32 * recipe.relocate_share).ceil() as usize;
+    let scale = drawing.spacing(drawing.len()) * recipe.scale * recipe.relocate_scale;
     let worth = drawing.judge().worth;
-    drawing.render();
-    let wanted = Wanted {
-        count: (drawing.strokes.len() as f32 * recipe.relocate_share).ceil() as usize,
-        scale: drawing.spacing(drawing.strokes.len()) * recipe.scale * recipe.relocate_scale,
-        oversampling: recipe.oversampling,
-        least_opacity: drawing.limits.least_opacity,
-        key: drawing.next_key(),
-    };
-    let candidates = propose(drawing.level, &drawing.pyramid, &drawing.canvas, wanted);
-    let keep = survivors(&worth, &candidates);
-    let mut sources: Vec<Option<usize>> = (0..keep.len()).filter(|&i| keep[i]).map(Some).collect();
-    let newcomers = keep.len() - sources.len();
-    let newcomers: Vec<Params> = candidates[..newcomers]
+    let candidates = drawing.propose(share.max(room.min(share * 2)), scale, recipe.oversampling);
+    let prices: Vec<f32> = drawing
+        .free()
         .iter()
-        .rev()
-        .map(|c| c.stroke)
+        .map(|stroke| terms.price.of(stroke))
         .collect();
+    let candidate_price = |c: &Candidate| terms.price.of(&c.stroke);
+    let paying: Vec<Candidate> = candidates
+        .into_iter()
+        .filter(|c| c.gain > candidate_price(c))
+        .collect();
+    let (keep, newcomers) = exchange(&worth, &prices, &paying, room);
+    let mut sources: Vec<Option<usize>> = (0..keep.len()).filter(|&i| keep[i]).map(Some).collect();
+    let newcomers: Vec<Params> = paying[..newcomers].iter().rev().map(|c| c.stroke).collect();
+    sources.resize(sources.len() + newcomers.len(), None);
     let stage = drawing.last_stage();
-    drawing.retain(&keep);
+    drawing.retain_free(&keep);
     drawing.extend(newcomers, stage);
-    sources.resize(drawing.strokes.len(), None);
     descent.rearrange(&sources);
 }
 
-/// Which strokes stay: the i-th from the bottom goes while the i-th best candidate is worth more.
-fn survivors(worth: &[f32], candidates: &[Candidate]) -> Vec<bool> {
-    let mut order: Vec<usize> = (0..worth.len()).collect();
+/// Which strokes stay, and how many of the `candidates`, best first, come.
+///
+/// Strokes not worth their price go. Candidates first take the places that are free, then, the best of
+/// them against the worst of those, the places of strokes worth less than they gain.
+fn exchange(
+    worth: &[f32],
+    prices: &[f32],
+    candidates: &[Candidate],
+    room: usize,
+) -> (Vec<bool>, usize) {
+    let mut keep: Vec<bool> = worth
+        .iter()
+        .zip(prices)
+        .map(|(worth, price)| worth > price)
+        .collect();
+    let vacated = keep.iter().filter(|&&stays| !stays).count();
+    let mut coming = candidates.len().min(room + vacated);
+    let mut order: Vec<usize> = (0..worth.len()).filter(|&i| keep[i]).collect();
     order.sort_by(|&i, &j| worth[i].total_cmp(&worth[j]).then(i.cmp(&j)));
-    let mut keep = vec![true; worth.len()];
-    for (i, candidate) in order.into_iter().zip(candidates) {
+    for (i, candidate) in order.into_iter().zip(&candidates[coming..]) {
         if candidate.gain <= worth[i] {
             break;
         }
         keep[i] = false;
+        coming += 1;
     }
-    keep
+    (keep, coming)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn candidates(gains: &[f32]) -> Vec<Candidate> {
+        gains
+            .iter()
+            .map(|&gain| Candidate {
+                stroke: [0.0; 9],
+                gain,
+            })
+            .collect()
+    }
+
     #[test]
     fn strokes_worth_less_than_candidates_go() {
-        let candidate = |gain| Candidate {
-            stroke: [0.0; 9],
-            gain,
-        };
-        let candidates = [candidate(5.0), candidate(3.0), candidate(1.0)];
-        let keep = survivors(&[4.0, 0.5, 2.0, 9.0, -1.0], &candidates);
-        // −1 < 5 and 0.5 < 3, but 2 > 1.
-        assert_eq!(keep, [true, false, true, true, false]);
+        let worth = [4.0, 0.5, 2.0, 9.0, 0.1];
+        let (keep, coming) = exchange(&worth, &[0.0; 5], &candidates(&[5.0, 3.0, 1.0]), 0);
+        // 0.1 < 5 and 0.5 < 3, but 2 > 1.
+        assert_eq!((keep, coming), (vec![true, false, true, true, false], 2));
+    }
+
+    #[test]
+    fn strokes_not_worth_their_price_go_anyway() {
+        let (keep, coming) = exchange(&[4.0, -1.0, 0.5], &[1.0; 3], &[], 0);
+        assert_eq!((keep, coming), (vec![true, false, false], 0));
+    }
+
+    #[test]
+    fn free_places_are_filled_first() {
+        let (keep, coming) = exchange(&[4.0, 8.0], &[0.0; 2], &candidates(&[3.0, 2.0]), 2);
+        assert_eq!((keep, coming), (vec![true, true], 2));
     }
 }

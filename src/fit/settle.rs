@@ -5,17 +5,14 @@
 //! round renders the rounded drawing as SVG, takes the offset from the target, and descends a few
 //! iterations; the best round, by the file's own error, is kept.
 
-use super::anneal::Anneal;
 use super::config::{Background, Config};
 use super::descent::Descent;
 use super::drawing::Drawing;
-use super::objective::Objective;
-use super::recipe::{Rates, Recipe};
+use super::recipe::Recipe;
 use crate::error::Result;
 use crate::image::Image;
-use crate::loss::Loss;
 use crate::optim::Schedule;
-use crate::render::{Base, Canvas};
+use crate::render::Canvas;
 use crate::scene::Scene;
 use crate::{metrics, svg, verify};
 
@@ -44,6 +41,8 @@ pub(super) struct Written {
     pub(super) dropped: usize,
     /// What an SVG renderer draws.
     pub(super) drawn: Image,
+    /// Bytes of SVG.
+    pub(super) bytes: usize,
     /// Its mean squared error.
     pub(super) mse: f64,
 }
@@ -62,34 +61,32 @@ pub(super) fn write(drawing: &Drawing, target: &Image, page: Page) -> Result<Wri
     Ok(Written {
         scene,
         dropped,
+        bytes: text.len(),
         drawn,
         mse,
     })
 }
 
 /// Descends against the file's own picture and returns the best of the files; `drawing` becomes the
-/// drawing that it was written from.
+/// drawing that it was written from. All strokes must be free.
 pub(super) fn run(
     drawing: &mut Drawing,
     target: &Image,
     page: Page,
     recipe: &Recipe,
-    anneal: Anneal,
 ) -> Result<Written> {
-    let mut best = write(drawing, target, page)?;
-    let mut best_strokes = drawing.strokes.clone();
+    let mut written = write(drawing, target, page)?;
+    let mut best = (written.clone(), drawing.free().to_vec());
     for _ in 0..recipe.settle_rounds {
-        let written = write(drawing, target, page)?;
         let corrected = corrected_target(drawing, target, &written);
-        descend(drawing, recipe, anneal, &corrected);
-        let written = write(drawing, target, page)?;
-        if written.mse < best.mse {
-            best = written;
-            best_strokes.clone_from(&drawing.strokes);
+        descend(drawing, recipe, &corrected);
+        written = write(drawing, target, page)?;
+        if written.mse < best.0.mse {
+            best = (written.clone(), drawing.free().to_vec());
         }
     }
-    drawing.strokes = best_strokes;
-    Ok(best)
+    drawing.set_free(&best.1);
+    Ok(best.0)
 }
 
 /// The target less what the file's picture differs by from our render of the same scene.
@@ -107,36 +104,13 @@ fn corrected_target(drawing: &mut Drawing, target: &Image, written: &Written) ->
     Canvas::from_image(&Image::from_planes(target.width(), target.height(), planes))
 }
 
-fn descend(drawing: &mut Drawing, recipe: &Recipe, anneal: Anneal, target: &Canvas) {
+fn descend(drawing: &mut Drawing, recipe: &Recipe, target: &Canvas) {
     let steps = recipe.settle_iterations;
-    let fine = |rate: f32| rate * recipe.settle_rate;
-    let Rates {
-        position,
-        radius,
-        color,
-        opacity,
-        last,
-    } = recipe.polish_rates;
-    let rates = Rates {
-        position: fine(position),
-        radius: fine(radius),
-        color: fine(color),
-        opacity: fine(opacity),
-        last,
-    };
-    let schedule = Schedule::Cosine { end: last };
-    let mut descent = Descent::new(drawing.strokes.len(), rates, drawing.limits);
-    let objective = Objective::new(Loss::L2, target);
-    let base = Base::Flat(drawing.background);
+    let rates = recipe.polish_rates;
+    let schedule = Schedule::Cosine { end: rates.last };
+    let mut descent = Descent::new(drawing.free().len(), rates, drawing.limits);
     for step in 0..steps {
-        let rate = schedule.factor(step, steps) as f32;
-        descent.step(
-            &mut drawing.renderer,
-            &mut drawing.strokes,
-            anneal.last(),
-            base,
-            &objective,
-            rate,
-        );
+        let rate = schedule.factor(step, steps) as f32 * recipe.settle_rate;
+        drawing.step_towards(target, &mut descent, rate);
     }
 }

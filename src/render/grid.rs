@@ -5,7 +5,8 @@
 //! is made of than runs of a row do: for a capsule of radius 2 and length 10, 160 lanes are walked
 //! for 70 pixels covered, against about 220 in runs of 16.
 //!
-//! Tiles at the right and bottom edge are padded; the padding has weight 0 and is never read back.
+//! Tiles at the right and bottom edge are padded. Nothing is seen through the padding (its transmittance
+//! is 0 from the start), so that it stays 0, and is never read back.
 
 use crate::image::Image;
 
@@ -139,8 +140,7 @@ impl Canvas {
         }
     }
 
-    /// The colours of `image`, its alpha ignored. The padding repeats the nearest pixel's column
-    /// and row of the padding's own tile as zero; it is never read back.
+    /// The colours of `image`, its alpha ignored; the padding is 0.
     pub fn from_image(image: &Image) -> Self {
         let grid = Grid::new(image.width(), image.height());
         let mut canvas = Self::flat(grid, [0.0; 3]);

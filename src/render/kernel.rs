@@ -2,8 +2,8 @@
 //!
 //! Pass 1 goes front to back: it accumulates the colour seen, `C ← C + T·m·c`, and the
 //! transmittance `T ← T·(1 − m)`, and keeps `T`, `m`, `o·σ'` and `1/|q|` of every block it visits.
-//! A block through which nothing shows any more leaves the set of live blocks, and nothing behind
-//! it is evaluated. Pass 2 goes back to front over the same blocks with the colour behind, `B`:
+//! A block that stays opaque even when any one stroke is taken away leaves the set of live blocks, and
+//! nothing behind it is evaluated: neither a gradient nor a stroke's worth depends on it. Pass 2 goes back to front over the same blocks with the colour behind, `B`:
 //!
 //! ```text
 //! ∂L/∂m = T·g·(c − B)      ∂L/∂c = Σ T·m·g      ∂L/∂d = ∂L/∂m · o · σ'(d)
@@ -18,10 +18,13 @@
 //! Degenerate cases: a zero-length capsule is a disc; a stroke with a non-finite number touches no
 //! block; on the centre line `u` tends to 0 with the guard instead of being undefined.
 
-use fearless_simd::{f32x8, f32x16, prelude::*};
+// Lanes are never passed through closures of `array::map`: those are compiled on their own, without the
+// instruction set of their caller.
+
+use fearless_simd::{Level, dispatch, f32x8, f32x16, prelude::*};
 
 use super::CanvasLoss;
-use super::edge::{Reach, SoftEdge};
+use super::edge::{Edge, Reach, SoftEdge};
 use super::grid::{
     BLOCK, BLOCKS, BlockRgb, BlockSet, LANES, Lanes, TILE_BLOCKS, TileRgb, TileWeights, flat_tile,
 };
@@ -29,32 +32,34 @@ use super::strokes::{AX, AY, BX, BY, OPACITY, PARAMS, Params, RADIUS, RED};
 
 /// Guard in `1/|b−a|²` and in `|q| = sqrt(q·q + ε)`, px². Larger would blunt the distance near the
 /// centre line (by 1e-3 px at this value); smaller would let `1/|q|` overflow the gradient there.
-pub(super) const EPSILON: f32 = 1e-6;
+const EPSILON: f32 = 1e-6;
 
-/// Transmittance below which nothing behind shows: a sixteenth of an 8-bit level.
-pub(super) const OPAQUE: f32 = 1.0 / 4096.0;
+/// Transmittance below which nothing behind shows: a sixty-fourth of an 8-bit level. Four times as
+/// much costs gradients of tailed edges their third digit.
+const OPAQUE: f32 = 1.0 / 16384.0;
+
+/// Least opacity that is drawn, so that the derivative by an opacity of 0 is not 0/0.
+const FAINTEST: f32 = 1e-20;
 
 /// Distance from a block's centre to its outermost pixel centres, px, rounded up.
 const BLOCK_RADIUS: f32 = 2.121_5;
 
-const LANE_X: Lanes = {
-    let mut lanes = [0.0; LANES];
+/// x and y of the pixel centres of a block, px.
+const PIXELS: [Lanes; 2] = lattice(BLOCK, 1.0);
+/// x and y of the centres of a tile's first 16 blocks, px.
+const CENTERS: [Lanes; 2] = lattice(TILE_BLOCKS, BLOCK as f32);
+
+/// The centres of 16 cells of side `side`, `columns` in a row.
+const fn lattice(columns: usize, side: f32) -> [Lanes; 2] {
+    let mut centers = [Lanes::splat(0.0); 2];
     let mut i = 0;
     while i < LANES {
-        lanes[i] = (i % BLOCK) as f32 + 0.5;
+        centers[0].0[i] = ((i % columns) as f32 + 0.5) * side;
+        centers[1].0[i] = ((i / columns) as f32 + 0.5) * side;
         i += 1;
     }
-    Lanes(lanes)
-};
-const LANE_Y: Lanes = {
-    let mut lanes = [0.0; LANES];
-    let mut i = 0;
-    while i < LANES {
-        lanes[i] = (i / BLOCK) as f32 + 0.5;
-        i += 1;
-    }
-    Lanes(lanes)
-};
+    centers
+}
 
 /// `∂L` of one stroke over one tile: its [`PARAMS`] in order, then its worth.
 pub(super) type StrokeSums = [f32; PARAMS + 1];
@@ -83,11 +88,30 @@ struct Visit {
     core: BlockSet,
 }
 
+/// What pass 1 sees through the strokes so far.
+#[derive(Debug, Clone, Copy)]
+struct Veil {
+    /// Transmittance.
+    through: Lanes,
+    /// Transmittance were the most opaque stroke not there.
+    less_one: Lanes,
+}
+
+impl Veil {
+    /// Nothing in the way where `weights` is 1; nothing to be seen where it is 0.
+    fn clear(weights: &Lanes) -> Self {
+        Self {
+            through: *weights,
+            less_one: *weights,
+        }
+    }
+}
+
 /// Scratch of one worker, reused from tile to tile.
 #[derive(Debug)]
 pub(super) struct Scratch {
     color: TileRgb,
-    transmittance: [Lanes; BLOCKS],
+    veils: [Veil; BLOCKS],
     error: TileRgb,
     gradient: TileRgb,
     visits: Vec<Visit>,
@@ -99,13 +123,18 @@ impl Scratch {
     pub(super) fn new() -> Box<Self> {
         Box::new(Self {
             color: flat_tile([0.0; 3]),
-            transmittance: [Lanes::splat(1.0); BLOCKS],
+            veils: [Veil::clear(&Lanes::splat(1.0)); BLOCKS],
             error: flat_tile([0.0; 3]),
             gradient: flat_tile([0.0; 3]),
             visits: Vec::new(),
             kept_transmittance: Vec::new(),
             kept_edges: Vec::new(),
         })
+    }
+
+    /// What pass 1 has drawn.
+    pub(super) fn canvas(&self) -> &TileRgb {
+        &self.color
     }
 }
 
@@ -115,12 +144,15 @@ pub(super) struct TileJob<'a> {
     pub(super) strokes: &'a [Params],
     /// The strokes that may touch this tile, back to front.
     pub(super) ids: &'a [u32],
+    /// The tile's number.
+    pub(super) tile: usize,
     /// The tile's top left corner, px.
     pub(super) origin: [f32; 2],
     /// What is behind all strokes.
     pub(super) base: &'a TileRgb,
-    /// 1 on the picture, 0 on the padding.
+    /// 1 on the picture, 0 on the padding: what is seen through the padding is nothing.
     pub(super) weights: &'a TileWeights,
+    pub(super) edge: Edge,
     pub(super) reach: Reach,
 }
 
@@ -152,7 +184,7 @@ impl<S: Simd> Capsule<S> {
         let length2 = axis[0] * axis[0] + axis[1] * axis[1];
         Self {
             a: [p[AX] - origin[0], p[AY] - origin[1]],
-            axis: axis.map(|v| f32x16::splat(simd, v)),
+            axis: [f32x16::splat(simd, axis[0]), f32x16::splat(simd, axis[1])],
             inverse_length2: f32x16::splat(simd, 1.0 / (length2 + EPSILON)),
             radius: f32x16::splat(simd, p[RADIUS]),
         }
@@ -171,7 +203,7 @@ impl<S: Simd> Capsule<S> {
     fn offsets(&self, simd: S, block: usize) -> [f32x16<S>; 2] {
         let x = (block % TILE_BLOCKS * BLOCK) as f32 - self.a[0];
         let y = (block / TILE_BLOCKS * BLOCK) as f32 - self.a[1];
-        [load(simd, &LANE_X) + x, load(simd, &LANE_Y) + y]
+        [load(simd, &PIXELS[0]) + x, load(simd, &PIXELS[1]) + y]
     }
 
     /// The signed distance at the pixels of a block.
@@ -189,14 +221,11 @@ impl<S: Simd> Capsule<S> {
         let inner = (radius - reach.inside - BLOCK_RADIUS).max(0.0);
         let (mut touched, mut core) = (0, 0);
         for row in 0..BLOCKS / LANES {
-            let column = f32x16::from_fn(simd, |i| {
-                (i % TILE_BLOCKS * BLOCK) as f32 + BLOCK as f32 / 2.0
-            });
-            let line = f32x16::from_fn(simd, |i| {
-                (i / TILE_BLOCKS * BLOCK) as f32 + BLOCK as f32 / 2.0
-            });
             let y = (row * LANES / TILE_BLOCKS * BLOCK) as f32 - self.a[1];
-            let (_, q) = self.nearest([column - self.a[0], line + y]);
+            let (_, q) = self.nearest([
+                load(simd, &CENTERS[0]) - self.a[0],
+                load(simd, &CENTERS[1]) + y,
+            ]);
             let distance2 = q[0] * q[0] + q[1] * q[1];
             touched |= distance2.simd_lt(outer * outer).to_bitmask() << (row * LANES);
             core |= distance2.simd_lt(inner * inner).to_bitmask() << (row * LANES);
@@ -215,6 +244,15 @@ pub(super) fn store<S: Simd>(value: f32x16<S>, lanes: &mut Lanes) {
     value.store_slice(&mut lanes.0);
 }
 
+#[inline(always)]
+fn splat_rgb<S: Simd>(simd: S, p: &Params) -> [f32x16<S>; 3] {
+    [
+        f32x16::splat(simd, p[RED]),
+        f32x16::splat(simd, p[RED + 1]),
+        f32x16::splat(simd, p[RED + 2]),
+    ]
+}
+
 /// The members of a set, in rising order.
 #[inline(always)]
 pub(super) fn members(mut set: BlockSet) -> impl Iterator<Item = usize> {
@@ -227,19 +265,21 @@ pub(super) fn members(mut set: BlockSet) -> impl Iterator<Item = usize> {
     })
 }
 
-/// Pass 1. Leaves the canvas in `scratch.color`.
+/// Pass 1, for one kind of edge.
 #[inline(always)]
 fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scratch: &mut Scratch) {
     let Scratch {
         color,
-        transmittance,
+        veils,
         visits,
         kept_transmittance,
         kept_edges,
         ..
     } = scratch;
     *color = flat_tile([0.0; 3]);
-    *transmittance = [Lanes::splat(1.0); BLOCKS];
+    for (veil, weights) in veils.iter_mut().zip(job.weights) {
+        *veil = Veil::clear(weights);
+    }
     visits.clear();
     kept_transmittance.clear();
     kept_edges.clear();
@@ -257,8 +297,8 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
             continue;
         }
         visits.push(visit);
-        let rgb = [p[RED], p[RED + 1], p[RED + 2]].map(|c| f32x16::splat(simd, c));
-        let opacity = f32x16::splat(simd, p[OPACITY]);
+        let rgb = splat_rgb(simd, p);
+        let opacity = f32x16::splat(simd, p[OPACITY].max(FAINTEST));
         for block in members(visit.edge) {
             let (_, q) = capsule.nearest(capsule.offsets(simd, block));
             let length = (q[0] * q[0] + q[1] * q[1] + EPSILON).sqrt();
@@ -273,26 +313,14 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
             store(opacity * derivative, &mut kept.slope);
             store(1.0 / length, &mut kept.inverse);
             kept_edges.push(kept);
-            kept_transmittance.push(transmittance[block]);
-            if see_through(
-                simd,
-                alpha,
-                &rgb,
-                &mut color[block],
-                &mut transmittance[block],
-            ) {
+            kept_transmittance.push(veils[block].through);
+            if see_through(simd, alpha, &rgb, &mut color[block], &mut veils[block]) {
                 live &= !(1 << block);
             }
         }
         for block in members(visit.core) {
-            kept_transmittance.push(transmittance[block]);
-            if see_through(
-                simd,
-                opacity,
-                &rgb,
-                &mut color[block],
-                &mut transmittance[block],
-            ) {
+            kept_transmittance.push(veils[block].through);
+            if see_through(simd, opacity, &rgb, &mut color[block], &mut veils[block]) {
                 live &= !(1 << block);
             }
         }
@@ -300,31 +328,34 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
             break;
         }
     }
-    for ((color, transmittance), base) in color.iter_mut().zip(transmittance.iter()).zip(job.base) {
-        let t = load(simd, transmittance);
+    for ((color, veil), base) in color.iter_mut().zip(veils.iter()).zip(job.base) {
+        let t = load(simd, &veil.through);
         for (color, base) in color.iter_mut().zip(base) {
             store(load(simd, color) + t * load(simd, base), color);
         }
     }
 }
 
-/// Adds one stroke, seen through what is before it, and says whether the block is now opaque.
+/// Adds one stroke, seen through what is before it, and says whether nothing behind it matters.
 #[inline(always)]
 fn see_through<S: Simd>(
     simd: S,
     alpha: f32x16<S>,
     rgb: &[f32x16<S>; 3],
     color: &mut BlockRgb,
-    transmittance: &mut Lanes,
+    veil: &mut Veil,
 ) -> bool {
-    let t = load(simd, transmittance);
+    let t = load(simd, &veil.through);
     let weight = t * alpha;
     for (color, &c) in color.iter_mut().zip(rgb) {
         store(load(simd, color) + weight * c, color);
     }
-    let t = t - weight;
-    store(t, transmittance);
-    t.simd_lt(OPAQUE).all_true()
+    let less_one = load(simd, &veil.less_one);
+    // Without the new stroke there is `t`; without the one left out so far, the new one dims the rest.
+    let less_one = (less_one - less_one * alpha).max(t);
+    store(t - weight, &mut veil.through);
+    store(less_one, &mut veil.less_one);
+    less_one.simd_lt(OPAQUE).all_true()
 }
 
 /// Sums of one stroke in lanes.
@@ -355,19 +386,17 @@ impl<S: Simd> Sums<S> {
 
     #[inline(always)]
     fn finish(&self, opacity: f32) -> StrokeSums {
-        let [shift_x, shift_y] = self.shift.map(total);
-        let [bx, by] = self.shift_b.map(total);
-        let [red, green, blue] = self.color.map(total);
+        let (bx, by) = (total(self.shift_b[0]), total(self.shift_b[1]));
         [
-            shift_x - bx,
-            shift_y - by,
+            total(self.shift[0]) - bx,
+            total(self.shift[1]) - by,
             bx,
             by,
             total(self.radius),
-            red,
-            green,
-            blue,
-            total(self.opacity) / opacity.max(f32::MIN_POSITIVE),
+            total(self.color[0]),
+            total(self.color[1]),
+            total(self.color[2]),
+            total(self.opacity) / opacity,
             total(self.worth),
         ]
     }
@@ -394,7 +423,7 @@ fn back_to_front<S: Simd, const WITH_WORTH: bool>(
 ) -> [f32; 3] {
     let Scratch {
         color: behind,
-        transmittance,
+        veils,
         error,
         gradient,
         visits,
@@ -402,17 +431,18 @@ fn back_to_front<S: Simd, const WITH_WORTH: bool>(
         kept_edges,
     } = scratch;
     behind.clone_from(job.base);
+    sums.fill([0.0; PARAMS + 1]);
     let mut base = [f32x16::splat(simd, 0.0); 3];
-    for (t, g) in transmittance.iter().zip(gradient.iter()) {
+    for (veil, g) in veils.iter().zip(gradient.iter()) {
         for (sum, g) in base.iter_mut().zip(g) {
-            *sum = *sum + load(simd, t) * load(simd, g);
+            *sum = *sum + load(simd, &veil.through) * load(simd, g);
         }
     }
     let (mut at, mut at_edge) = (kept_transmittance.len(), kept_edges.len());
     for visit in visits.iter().rev() {
         let p = &job.strokes[job.ids[visit.slot as usize] as usize];
         let capsule = Capsule::new(simd, p, job.origin);
-        let rgb = [p[RED], p[RED + 1], p[RED + 2]].map(|c| f32x16::splat(simd, c));
+        let rgb = splat_rgb(simd, p);
         let mut stroke = Sums::new(simd);
         at -= (visit.edge.count_ones() + visit.core.count_ones()) as usize;
         at_edge -= visit.edge.count_ones() as usize;
@@ -441,7 +471,7 @@ fn back_to_front<S: Simd, const WITH_WORTH: bool>(
                 stroke.shift_b[axis] = stroke.shift_b[axis] + shift * h;
             }
         }
-        let opacity = f32x16::splat(simd, p[OPACITY]);
+        let opacity = f32x16::splat(simd, p[OPACITY].max(FAINTEST));
         for (block, t) in members(visit.core).zip(seen_through) {
             stroke.blend::<WITH_WORTH>(
                 simd,
@@ -453,9 +483,9 @@ fn back_to_front<S: Simd, const WITH_WORTH: bool>(
                 &error[block],
             );
         }
-        sums[visit.slot as usize] = stroke.finish(p[OPACITY]);
+        sums[visit.slot as usize] = stroke.finish(p[OPACITY].max(FAINTEST));
     }
-    base.map(total)
+    [total(base[0]), total(base[1]), total(base[2])]
 }
 
 impl<S: Simd> Sums<S> {
@@ -497,43 +527,26 @@ impl<S: Simd> Sums<S> {
     }
 }
 
-/// Renders one tile.
-#[inline(always)]
-pub(super) fn forward<S: Simd, E: SoftEdge>(
-    simd: S,
-    edge: E,
-    job: &TileJob<'_>,
-    scratch: &mut Scratch,
-    out: &mut TileRgb,
-) {
-    front_to_back(simd, edge, job, scratch);
-    out.clone_from(&scratch.color);
+/// Pass 1. Leaves the canvas in [`Scratch::canvas`].
+pub(super) fn draw(level: Level, job: &TileJob<'_>, scratch: &mut Scratch) {
+    match job.edge {
+        Edge::Smoothstep(edge) => dispatch!(level, simd => front_to_back(simd, edge, job, scratch)),
+        Edge::Tailed(edge) => dispatch!(level, simd => front_to_back(simd, edge, job, scratch)),
+    }
 }
 
-/// Renders one tile and differentiates `loss` through it. `sums` has one row per stroke of the job.
-#[inline(always)]
-pub(super) fn backward<S: Simd, E: SoftEdge, L: CanvasLoss, const WITH_WORTH: bool>(
-    simd: S,
-    edge: E,
+/// After pass 1: the tile's loss and the derivatives of it. `sums` has one row per stroke of the job.
+pub(super) fn differentiate<L: CanvasLoss, const WITH_WORTH: bool>(
+    level: Level,
     job: &TileJob<'_>,
-    loss: (&L, usize),
+    loss: &L,
     scratch: &mut Scratch,
     sums: &mut [StrokeSums],
 ) -> TileSums {
-    front_to_back(simd, edge, job, scratch);
-    let (loss, tile) = loss;
-    let value = loss.tile(
-        tile,
-        job.weights,
-        &scratch.color,
-        &mut scratch.error,
-        &mut scratch.gradient,
-    );
-    sums.fill([0.0; PARAMS + 1]);
-    let base = back_to_front::<S, WITH_WORTH>(simd, job, scratch, sums);
-    TileSums {
-        loss: value,
-        base,
-        blocks: scratch.kept_transmittance.len() as u64,
-    }
+    dispatch!(level, simd => {
+        let Scratch { color, error, gradient, .. } = scratch;
+        let value = loss.tile(job.tile, color, error, gradient);
+        let base = back_to_front::<_, WITH_WORTH>(simd, job, scratch, sums);
+        TileSums { loss: value, base, blocks: scratch.kept_transmittance.len() as u64 }
+    })
 }

@@ -20,7 +20,7 @@ mod strokes;
 
 use std::sync::{Mutex, PoisonError};
 
-use fearless_simd::{Level, dispatch};
+use fearless_simd::Level;
 use rayon::prelude::*;
 
 pub use grid::{BlockRgb, Canvas, Grid, Lanes, TILE, TileRgb};
@@ -34,11 +34,10 @@ use kernel::{Scratch, StrokeSums, TileJob, TileSums, WORTH};
 /// A differentiable loss over the canvas, told tile by tile while the tile is still in cache.
 pub trait CanvasLoss: Sync {
     /// Writes the signed error `canvas − target` and `∂L/∂canvas` of tile `tile` and returns its
-    /// share of the loss. Every value is to be multiplied by the pixel's `weight` (0 on padding).
+    /// share of the loss. On the padding of a tile the canvas is 0.
     fn tile(
         &self,
         tile: usize,
-        weights: &[Lanes; 64],
         canvas: &TileRgb,
         error: &mut TileRgb,
         gradient: &mut TileRgb,
@@ -128,35 +127,30 @@ impl Renderer {
         base: Base<'_>,
         out: &mut Canvas,
     ) {
-        let (edge, reach) = Edge::new(softness.coverage, softness.width);
-        self.bin(strokes, reach);
+        let frame = Frame::new(self.grid, strokes, softness, base);
+        self.bin(strokes, frame.reach);
         let Self {
-            grid,
             level,
             ref mut tiles,
             ref scratch,
+            ..
         } = *self;
-        let flat = flat_base(base);
-        tiles
-            .par_iter_mut()
+        let tiles = tiles
+            .par_iter()
             .zip(out.tiles_mut())
             .enumerate()
-            .with_max_len(1)
-            .for_each(|(index, (work, out))| {
-                let job = job(&grid, index, work, strokes, base, &flat, reach);
-                if job.ids.is_empty() {
-                    out.clone_from(job.base);
-                    return;
-                }
-                with_scratch(scratch, |scratch| match edge {
-                    Edge::Smoothstep(edge) => {
-                        dispatch!(level, simd => kernel::forward(simd, edge, &job, scratch, out))
-                    }
-                    Edge::Tailed(edge) => {
-                        dispatch!(level, simd => kernel::forward(simd, edge, &job, scratch, out))
-                    }
-                });
+            .with_max_len(1);
+        tiles.for_each(|(tile, (work, out))| {
+            let job = frame.job(tile, work);
+            if job.ids.is_empty() {
+                out.clone_from(job.base);
+                return;
+            }
+            with_scratch(scratch, |scratch| {
+                kernel::draw(level, &job, scratch);
+                out.clone_from(scratch.canvas());
             });
+        });
     }
 
     /// Renders `strokes` on `base` and writes the derivatives of `loss` to `gradients`.
@@ -170,7 +164,11 @@ impl Renderer {
         loss: &L,
         gradients: &mut Gradients,
     ) {
-        self.run_backward::<L, false>(strokes, softness, base, loss, gradients);
+        self.run_backward::<L, false>(
+            &Frame::new(self.grid, strokes, softness, base),
+            loss,
+            gradients,
+        );
     }
 
     /// The same, and every stroke's worth.
@@ -182,42 +180,42 @@ impl Renderer {
         loss: &L,
         gradients: &mut Gradients,
     ) {
-        self.run_backward::<L, true>(strokes, softness, base, loss, gradients);
+        self.run_backward::<L, true>(
+            &Frame::new(self.grid, strokes, softness, base),
+            loss,
+            gradients,
+        );
     }
 
     fn run_backward<L: CanvasLoss, const WITH_WORTH: bool>(
         &mut self,
-        strokes: &[Params],
-        softness: Softness,
-        base: Base<'_>,
+        frame: &Frame<'_>,
         loss: &L,
         gradients: &mut Gradients,
     ) {
-        let (edge, reach) = Edge::new(softness.coverage, softness.width);
-        self.bin(strokes, reach);
+        self.bin(frame.strokes, frame.reach);
         let Self {
-            grid,
             level,
             ref mut tiles,
             ref scratch,
+            ..
         } = *self;
-        let flat = flat_base(base);
-        tiles.par_iter_mut().enumerate().with_max_len(1).for_each(|(index, work)| {
-            let mut sums = std::mem::take(&mut work.sums);
-            sums.resize(work.ids.len(), [0.0; PARAMS + 1]);
-            let job = job(&grid, index, work, strokes, base, &flat, reach);
-            let total = with_scratch(scratch, |scratch| match edge {
-                Edge::Smoothstep(edge) => {
-                    dispatch!(level, simd => kernel::backward::<_, _, L, WITH_WORTH>(simd, edge, &job, (loss, index), scratch, &mut sums))
-                }
-                Edge::Tailed(edge) => {
-                    dispatch!(level, simd => kernel::backward::<_, _, L, WITH_WORTH>(simd, edge, &job, (loss, index), scratch, &mut sums))
-                }
+        tiles
+            .par_iter_mut()
+            .enumerate()
+            .with_max_len(1)
+            .for_each(|(tile, work)| {
+                let mut sums = std::mem::take(&mut work.sums);
+                sums.resize(work.ids.len(), [0.0; PARAMS + 1]);
+                let job = frame.job(tile, work);
+                let total = with_scratch(scratch, |scratch| {
+                    kernel::draw(level, &job, scratch);
+                    kernel::differentiate::<L, WITH_WORTH>(level, &job, loss, scratch, &mut sums)
+                });
+                work.total = total;
+                work.sums = sums;
             });
-            work.total = total;
-            work.sums = sums;
-        });
-        self.reduce(strokes.len(), WITH_WORTH, gradients);
+        self.reduce(frame.strokes.len(), WITH_WORTH, gradients);
     }
 
     /// Lists for each tile the strokes whose extent touches it, back to front.
@@ -272,33 +270,50 @@ impl Renderer {
     }
 }
 
-fn flat_base(base: Base<'_>) -> TileRgb {
-    match base {
-        Base::Flat(color) => flat_tile(color),
-        Base::Canvas(_) => flat_tile([0.0; 3]),
-    }
-}
-
-fn job<'a>(
-    grid: &Grid,
-    index: usize,
-    work: &'a TileWork,
+/// What one call renders.
+struct Frame<'a> {
+    grid: Grid,
     strokes: &'a [Params],
     base: Base<'a>,
-    flat: &'a TileRgb,
+    /// A tile of the base's colour, if it is flat.
+    flat: TileRgb,
+    edge: Edge,
     reach: Reach,
-) -> TileJob<'a> {
-    let (x, y) = grid.origin(index);
-    TileJob {
-        strokes,
-        ids: &work.ids,
-        origin: [x as f32, y as f32],
-        base: match base {
-            Base::Flat(_) => flat,
-            Base::Canvas(canvas) => &canvas.tiles()[index],
-        },
-        weights: work.weights.as_deref().unwrap_or(&FULL),
-        reach,
+}
+
+impl<'a> Frame<'a> {
+    fn new(grid: Grid, strokes: &'a [Params], softness: Softness, base: Base<'a>) -> Self {
+        let (edge, reach) = Edge::new(softness.coverage, softness.width);
+        let flat = match base {
+            Base::Flat(color) => flat_tile(color),
+            Base::Canvas(_) => flat_tile([0.0; 3]),
+        };
+        Self {
+            grid,
+            strokes,
+            base,
+            flat,
+            edge,
+            reach,
+        }
+    }
+
+    /// The share of tile `tile`.
+    fn job<'b>(&'b self, tile: usize, work: &'b TileWork) -> TileJob<'b> {
+        let (x, y) = self.grid.origin(tile);
+        TileJob {
+            tile,
+            origin: [x as f32, y as f32],
+            strokes: self.strokes,
+            ids: &work.ids,
+            base: match self.base {
+                Base::Flat(_) => &self.flat,
+                Base::Canvas(canvas) => &canvas.tiles()[tile],
+            },
+            weights: work.weights.as_deref().unwrap_or(&FULL),
+            edge: self.edge,
+            reach: self.reach,
+        }
     }
 }
 

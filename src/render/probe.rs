@@ -176,8 +176,8 @@ fn sums<S: Simd>(simd: S, template: &Template, patch: &Patch) -> Sums {
     }
     Sums {
         s: total(s),
-        x: x.map(total),
-        y: y.map(total),
+        x: [total(x[0]), total(x[1]), total(x[2])],
+        y: [total(y[0]), total(y[1]), total(y[2])],
         q: total(q),
         z: total(z),
     }

@@ -100,6 +100,8 @@ pub struct StageEntry {
     pub wall_s: f64,
     /// Fidelity of the soft render after the stage, dB; `null` when perfect.
     pub psnr_db: Option<f64>,
+    /// Fidelity of the finished drawing's layers up to this one, dB; `null` when perfect.
+    pub layer_psnr_db: Option<f64>,
 }
 
 impl From<&StageRecord> for StageEntry {
@@ -110,6 +112,7 @@ impl From<&StageRecord> for StageEntry {
             iterations: record.iterations,
             wall_s: record.wall.as_secs_f64(),
             psnr_db: Some(record.psnr_db).filter(|db| db.is_finite()),
+            layer_psnr_db: Some(record.layer_psnr_db).filter(|db| db.is_finite()),
         }
     }
 }
@@ -153,6 +156,7 @@ mod tests {
             iterations: 40,
             wall: Duration::from_millis(250),
             psnr_db: 31.5,
+            layer_psnr_db: 30.5,
         };
         FitReport {
             schema: SCHEMA,
@@ -186,7 +190,7 @@ mod tests {
             "input": {"path": "a.png", "width": 4, "height": 3},
             "strokes": 9,
             "dropped": 1,
-            "stages": [{"index": 1, "strokes": 9, "iterations": 40, "wall_s": 0.25, "psnr_db": 31.5}],
+            "stages": [{"index": 1, "strokes": 9, "iterations": 40, "wall_s": 0.25, "psnr_db": 31.5, "layer_psnr_db": 30.5}],
             "svg_bytes": 900,
             "wall_s": 0.5,
             "cpu_s": 0.75,
