@@ -1,6 +1,6 @@
 //! Coverage functions on real pictures, from worst to best, and what is left of them in the file.
 //!
-//! The article's recipe ([`article`](super::article)) with each coverage function and with mixes, and
+//! The article's recipe ([`article`]) with each coverage function and with mixes, and
 //! the staged pipeline with as many strokes, without and with polish, and in as much time as the
 //! article's recipe took with smoothstep. Beside the fidelity of the soft render, which is what the article
 //! judges, stands that of the SVG as resvg draws it, which is what one gets.
