@@ -4,6 +4,7 @@
 //! 16 bit or float, grey or colour, with the orientation that EXIF asks for. Colours are taken as
 //! sRGB: colour profiles are not applied. Alpha is kept; [`Image::flattened`] lays it on a colour.
 
+mod animate;
 mod decode;
 mod encode;
 mod header;
@@ -11,6 +12,7 @@ mod header;
 use std::fmt;
 use std::path::Path;
 
+pub use animate::Animation;
 pub use decode::Limits;
 
 use crate::error::{Error, ErrorKind, Result};

@@ -65,6 +65,7 @@ pub mod coverage;
 mod error;
 pub mod fit;
 pub mod image;
+pub mod lab;
 pub mod loss;
 pub mod math;
 pub mod metrics;

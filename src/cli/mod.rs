@@ -4,6 +4,7 @@ mod check;
 mod domain;
 mod fit;
 mod input;
+mod lab;
 mod output;
 mod progress;
 mod render;
@@ -36,6 +37,7 @@ enum Command {
     Fit(fit::Args),
     Check(check::Args),
     Render(render::Args),
+    Lab(lab::Args),
 }
 
 const EXAMPLES: &str = "Examples:
@@ -109,6 +111,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Status> {
         Command::Fit(fit) => fit::run(fit, args.verbosity),
         Command::Check(check) => check::run(check),
         Command::Render(render) => render::run(render),
+        Command::Lab(lab) => lab::run(lab, args.verbosity),
     }
 }
 

@@ -31,6 +31,27 @@ impl Bar {
     }
 }
 
+/// Shows how far a sequence of named steps has come, where standard error is a terminal.
+pub(super) struct Steps(Bar);
+
+impl Steps {
+    pub(super) fn new(quiet: bool) -> Self {
+        Self(Bar::new(quiet))
+    }
+
+    /// `what` is under way, and a part `done` (0..1) of all is behind it.
+    pub(super) fn show(&self, done: f64, what: &str) {
+        let Self(Bar(bar)) = self;
+        bar.set_position((done.clamp(0.0, 1.0) * STEPS as f64) as u64);
+        bar.set_message(what.to_owned());
+    }
+
+    /// Takes the bar off the screen.
+    pub(super) fn clear(&self) {
+        self.0.clear();
+    }
+}
+
 impl Observer for Bar {
     fn observe(&mut self, progress: &Progress) -> ControlFlow<()> {
         self.0

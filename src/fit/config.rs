@@ -161,7 +161,7 @@ const MAX_PRECISION: u8 = 6;
 
 impl Execution {
     /// The worker threads.
-    pub(super) fn pool(&self) -> Result<rayon::ThreadPool> {
+    pub(crate) fn pool(&self) -> Result<rayon::ThreadPool> {
         let threads = self.threads.unwrap_or(0);
         rayon::ThreadPoolBuilder::new()
             .num_threads(threads)

@@ -63,7 +63,7 @@ impl Simd {
     ///
     /// # Errors
     /// [`ErrorKind::Config`] when this machine does not have it.
-    pub(super) fn require(self) -> Result<Level> {
+    pub(crate) fn require(self) -> Result<Level> {
         self.level().ok_or_else(|| {
             let here: Vec<String> = Self::ALL
                 .into_iter()

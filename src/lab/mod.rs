@@ -1,0 +1,52 @@
+//! The experiments of the article that this project starts from, and what they show beyond it.
+//!
+//! Each experiment is a file with a `run` that writes tables, pictures and animations to an
+//! [`Output`]; `strokefit lab` runs them by name. They use the same distances, coverage functions,
+//! optimisers and renderers as the fit.
+//!
+//! | experiment | question |
+//! | --- | --- |
+//! | [`sdf`] | what do distances, coverage functions and combinations look like? |
+//! | [`field`] | which way does the loss pull a circle, from everywhere? |
+//! | [`circle`] | does a circle find its target? |
+//! | [`star`] | do sixteen strokes find a star of four? |
+//! | [`compose`] | how do coloured strokes make a picture? |
+//! | [`colors`] | do coloured strokes find coloured strokes? |
+//! | [`article`] | how far do thousands of strokes get, all at once from a random start? |
+//! | [`compare`] | which coverage function is best, in the render and in the file? |
+//!
+//! Beneath them: [`descent`] (a problem, an optimiser, its course), [`matching`] (a union of shapes
+//! against a target), [`table`], [`picture`] and [`plot`].
+//!
+//! The small experiments follow the article in sampling pixels at integer coordinates.
+
+pub mod article;
+pub mod circle;
+pub mod colors;
+pub mod compare;
+pub mod compose;
+pub mod descent;
+pub mod field;
+pub mod matching;
+mod output;
+pub mod picture;
+pub mod plot;
+pub mod sdf;
+pub mod star;
+pub mod table;
+
+pub use output::{Event, Output};
+
+use crate::coverage::Coverage;
+
+/// Side of the small experiments' pictures, px.
+pub const SIZE: usize = 64;
+
+/// The coverage functions that the article compares, with a legend for each.
+pub const COVERAGES: [Coverage; 5] = [
+    Coverage::Smoothstep,
+    Coverage::Atan { k: 1.0 },
+    Coverage::Atan { k: 4.0 },
+    Coverage::Tanh,
+    Coverage::Sigmoid,
+];

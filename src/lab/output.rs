@@ -1,0 +1,113 @@
+//! Where an experiment's files go, and who is told of them.
+
+use std::fs::{self, File};
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::image::{Animation, Image};
+
+/// What an experiment is at.
+#[derive(Debug, Clone, Copy)]
+pub enum Event<'a> {
+    /// Something is under way.
+    Doing {
+        /// Which part of the whole is done, 0..1.
+        done: f64,
+        /// What comes now.
+        what: &'a str,
+    },
+    /// A file is complete.
+    Wrote(&'a Path),
+}
+
+/// A folder for results, and somebody to tell of them.
+pub struct Output<'a> {
+    dir: PathBuf,
+    tell: &'a mut dyn FnMut(Event<'_>),
+}
+
+impl<'a> Output<'a> {
+    /// Results go to the folder `dir`, which is made if need be; `tell` is told of each file and of
+    /// what is under way.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Io`] when the folder cannot be made.
+    pub fn new(dir: impl Into<PathBuf>, tell: &'a mut dyn FnMut(Event<'_>)) -> Result<Self> {
+        let dir = dir.into();
+        fs::create_dir_all(&dir).map_err(|e| unwritten(&dir, e))?;
+        Ok(Self { dir, tell })
+    }
+
+    /// Tells what is under way, and which part (0..1) of the whole is done.
+    pub fn doing(&mut self, done: f64, what: &str) {
+        (self.tell)(Event::Doing { done, what });
+    }
+
+    /// Writes a text file.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Io`] when it cannot be written.
+    pub fn text(&mut self, name: &str, text: &str) -> Result<()> {
+        self.bytes(name, text.as_bytes())
+    }
+
+    /// Writes a picture as PNG.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Io`] when it cannot be written, [`ErrorKind::Picture`] when it is too large.
+    pub fn picture(&mut self, name: &str, image: &Image) -> Result<()> {
+        self.bytes(name, &image.encode_png()?)
+    }
+
+    /// Writes an animated GIF of frames of `frame_ms` each.
+    ///
+    /// # Errors
+    /// As [`picture`](Self::picture), and the first error among `frames`.
+    pub fn animation(
+        &mut self,
+        name: &str,
+        frame_ms: u32,
+        frames: impl IntoIterator<Item = Result<Image>>,
+    ) -> Result<()> {
+        let mut animation = self.start_animation(name, frame_ms)?;
+        for frame in frames {
+            animation.push(&frame?)?;
+        }
+        drop(animation);
+        self.finished(name);
+        Ok(())
+    }
+
+    /// Starts an animated GIF for frames that come one by one; tell when it is
+    /// [finished](Self::finished).
+    ///
+    /// # Errors
+    /// [`ErrorKind::Io`] when it cannot be written.
+    pub fn start_animation(&self, name: &str, frame_ms: u32) -> Result<Animation<BufWriter<File>>> {
+        let path = self.dir.join(name);
+        let file = File::create(&path).map_err(|e| unwritten(&path, e))?;
+        Animation::new(BufWriter::new(file), frame_ms)
+    }
+
+    /// Tells that the file `name` is complete.
+    pub fn finished(&mut self, name: &str) {
+        let path = self.dir.join(name);
+        (self.tell)(Event::Wrote(&path));
+    }
+
+    fn bytes(&mut self, name: &str, bytes: &[u8]) -> Result<()> {
+        let path = self.dir.join(name);
+        fs::write(&path, bytes).map_err(|e| unwritten(&path, e))?;
+        self.finished(name);
+        Ok(())
+    }
+}
+
+fn unwritten(path: &Path, cause: std::io::Error) -> Error {
+    let message = format!(
+        "cannot write {}: {cause}; choose another folder with -o",
+        path.display()
+    );
+    Error::new(ErrorKind::Io, message).caused_by(cause)
+}
