@@ -112,6 +112,7 @@ fn seed(criterion: &mut Criterion, image: &Image) {
             scale: 0.4 * (pixels(image) as f32 / count as f32).sqrt(),
             oversampling: 3.0,
             least_opacity: 0.1,
+            level: 0,
             key: [0, 0],
         };
         group.throughput(Throughput::Elements(count as u64));

@@ -41,6 +41,8 @@ pub struct Wanted {
     pub oversampling: f32,
     /// Candidates less opaque than this are not proposed; 1 for opaque drawings.
     pub least_opacity: f32,
+    /// The level of the pyramid that the canvas is of; all lengths are in its px.
+    pub level: usize,
     /// Key of the random shift of the cells: the seed of the fit, and a number for each call, so that
     /// no two calls cut the picture alike.
     pub key: [u64; 2],
@@ -72,18 +74,32 @@ impl Pyramid {
         Self { levels }
     }
 
-    /// How many times the picture is halved for strokes of `scale` px.
-    fn level(&self, scale: f32) -> usize {
-        let halvings = (scale / SCALE_LIMIT).log2().ceil().max(0.0) as usize;
-        halvings.min(self.levels.len() - 1)
+    /// The picture halved `level` times.
+    ///
+    /// # Panics
+    /// When `level` is not below [`len`](Self::len).
+    pub fn level(&self, level: usize) -> &Image {
+        &self.levels[level]
+    }
+
+    /// How many levels there are, at least 1.
+    #[allow(clippy::len_without_is_empty, reason = "never empty")]
+    pub fn len(&self) -> usize {
+        self.levels.len()
+    }
+
+    /// How many times level `from` is halved to bring `scale` px to at most `limit`.
+    pub fn halvings(&self, from: usize, scale: f32, limit: f32) -> usize {
+        let halvings = (scale / limit).log2().ceil().max(0.0) as usize;
+        halvings.min(self.levels.len() - 1 - from)
     }
 }
 
 /// Candidates for strokes on top of `canvas`, best first; at most `wanted.count`, and only such as
 /// remove error.
 pub fn propose(level: Level, target: &Pyramid, canvas: &Canvas, wanted: Wanted) -> Vec<Candidate> {
-    let halvings = target.level(wanted.scale);
-    let target = &target.levels[halvings];
+    let halvings = target.halvings(wanted.level, wanted.scale, SCALE_LIMIT);
+    let target = target.level(wanted.level + halvings);
     let canvas = (0..halvings).fold(canvas.to_image(), |image, _| image.halved());
     let reduction = (1 << halvings) as f32;
     let scale = (wanted.scale / reduction).min(SCALE_LIMIT);
@@ -268,7 +284,7 @@ mod tests {
     fn box_sums_add_their_windows() {
         for radius in [0, 1, 3, 20] {
             let values: Vec<f32> = (0..11).map(|i| (i * i) as f32).collect();
-            let mut out = vec![0.0; 11];
+            let mut out = [0.0; 11];
             box_sums(values.iter().copied(), radius, out.iter_mut());
             for (i, &sum) in out.iter().enumerate() {
                 let window = &values[i.saturating_sub(radius)..(i + radius + 1).min(11)];
@@ -294,6 +310,7 @@ mod tests {
             scale: 4.0,
             oversampling: 4.0,
             least_opacity: 1.0,
+            level: 0,
             key: [0, 0],
         };
         let found = propose(Level::new(), &Pyramid::new(target), &canvas, wanted);

@@ -8,7 +8,9 @@ use super::descent::{Descent, Limits};
 use super::objective::Objective;
 use crate::image::Image;
 use crate::loss::Loss;
-use crate::render::{Base, Canvas, Gradients, Params, Renderer, Softness, pack, unpack};
+use crate::render::{
+    AX, Base, Canvas, Gradients, Params, RADIUS, Renderer, Softness, pack, unpack,
+};
 use crate::scene::{Rgb, Scene, Stage};
 use crate::seed::{Candidate, Pyramid, Wanted, propose};
 
@@ -16,9 +18,18 @@ use crate::seed::{Candidate, Pyramid, Wanted, propose};
 /// fainter than this.
 const LEAST_OPACITY: f32 = 0.1;
 
+/// Strokes are fitted at the coarsest resolution at which they still have this typical radius, px. Less,
+/// and their edges are fitted to pixels that are not there; more, and time is spent on pixels that say
+/// nothing about them.
+const LEAST_SCALE: f32 = 2.5;
+
 /// A drawing under work. What is fitted, judged and relocated are its *free* strokes; the frozen ones
-/// below them are a picture.
+/// below them are a picture. Large strokes are fitted to a reduced picture: the numbers of strokes are
+/// in px of the current level of the pyramid, what goes in and out of the methods in px of the picture.
 pub(super) struct Drawing {
+    /// How many times the picture is halved.
+    halvings: usize,
+    /// The picture, at the current level.
     target: Canvas,
     pyramid: Pyramid,
     renderer: Renderer,
@@ -44,14 +55,18 @@ pub(super) struct Drawing {
 }
 
 impl Drawing {
-    pub(super) fn new(target: &Image, config: &Config, level: Level) -> Self {
-        let canvas = Canvas::from_image(target);
+    /// An empty drawing at the resolution for strokes of `scale` px.
+    pub(super) fn new(target: &Image, scale: f32, config: &Config, level: Level) -> Self {
+        let pyramid = Pyramid::new(target.clone());
+        let halvings = resolution(&pyramid, scale);
+        let canvas = Canvas::from_image(pyramid.level(halvings));
         let grid = canvas.grid();
         let (background, background_fixed) = config.background.choose(target);
         let least_opacity = if config.opaque { 1.0 } else { LEAST_OPACITY };
         Self {
+            halvings,
             target: canvas,
-            pyramid: Pyramid::new(target.clone()),
+            pyramid,
             renderer: Renderer::new(grid, level),
             level,
             background,
@@ -78,6 +93,35 @@ impl Drawing {
         &self.strokes[self.frozen..]
     }
 
+    /// Goes to the resolution for strokes of `scale` px, if that is finer than the current one; says
+    /// whether it did. All strokes are free then.
+    pub(super) fn refine(&mut self, scale: f32) -> bool {
+        let halvings = resolution(&self.pyramid, scale);
+        if halvings >= self.halvings {
+            return false;
+        }
+        let factor = (1 << (self.halvings - halvings)) as f32;
+        for p in &mut self.strokes {
+            p[AX..=RADIUS]
+                .iter_mut()
+                .for_each(|length| *length *= factor);
+        }
+        self.halvings = halvings;
+        self.target = Canvas::from_image(self.pyramid.level(halvings));
+        let grid = self.target.grid();
+        self.renderer = Renderer::new(grid, self.level);
+        self.below = Canvas::flat(grid, self.background);
+        self.canvas = Canvas::flat(grid, self.background);
+        self.limits = Limits::new(grid.width, grid.height, self.limits.least_opacity);
+        self.frozen = 0;
+        true
+    }
+
+    /// Pixels of the picture in one of the current level.
+    fn pixel_area(&self) -> f32 {
+        (1 << (2 * self.halvings)) as f32
+    }
+
     /// Whether there are no frozen strokes, so that the background shows through to the fit.
     pub(super) fn is_thawed(&self) -> bool {
         self.frozen == 0
@@ -85,7 +129,7 @@ impl Drawing {
 
     /// The picture's number of pixels.
     pub(super) fn pixels(&self) -> usize {
-        self.target.grid().width * self.target.grid().height
+        self.pyramid.level(0).width() * self.pyramid.level(0).height()
     }
 
     /// Side of the square that each of `count` strokes would have to itself, px.
@@ -140,15 +184,18 @@ impl Drawing {
     ) -> Vec<Candidate> {
         self.searches += 1;
         self.render();
-        let least_opacity = self.limits.least_opacity;
+        let area = self.pixel_area();
         let wanted = Wanted {
             count,
-            scale,
+            scale: scale / area.sqrt(),
             oversampling,
-            least_opacity,
+            least_opacity: self.limits.least_opacity,
+            level: self.halvings,
             key: [self.seed, self.searches],
         };
-        propose(self.level, &self.pyramid, &self.canvas, wanted)
+        let mut candidates = propose(self.level, &self.pyramid, &self.canvas, wanted);
+        candidates.iter_mut().for_each(|c| c.gain *= area);
+        candidates
     }
 
     /// One step of the free strokes towards the target.
@@ -186,10 +233,12 @@ impl Drawing {
         let free = &self.strokes[self.frozen..];
         self.renderer
             .backward_with_worth(free, self.edge, base, &objective, &mut gradients);
+        let area = self.pixel_area();
+        gradients.worth.iter_mut().for_each(|worth| *worth *= area);
         gradients
     }
 
-    /// The mean squared error of the drawing.
+    /// The mean squared error of the drawing; at a reduced resolution, of what can be seen there.
     pub(super) fn mse(&mut self) -> f64 {
         self.judge().loss
     }
@@ -251,4 +300,10 @@ fn base(frozen: usize, below: &Canvas, background: Rgb) -> Base<'_> {
     } else {
         Base::Canvas(below)
     }
+}
+
+/// How many halvings leave strokes of `scale` px their least scale.
+fn resolution(pyramid: &Pyramid, scale: f32) -> usize {
+    // Rounded down: `halvings` alone would bring the scale below the least.
+    pyramid.halvings(0, scale / 2.0, LEAST_SCALE)
 }

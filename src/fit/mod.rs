@@ -65,7 +65,8 @@ pub struct StageRecord {
     pub iterations: usize,
     /// Wall time of the stage.
     pub wall: Duration,
-    /// Fidelity of the soft render to the target after the stage, dB.
+    /// Fidelity of the soft render to the target after the stage, dB, at the resolution that the stage
+    /// was fitted at: large strokes are fitted to a reduced picture.
     pub psnr_db: f64,
     /// Fidelity of the finished drawing's layers up to this one, dB.
     pub layer_psnr_db: f64,

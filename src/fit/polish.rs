@@ -22,7 +22,8 @@ pub(super) struct Terms {
 }
 
 /// Fits the free strokes of `drawing` jointly, in `steps` iterations; the background too, where it shows
-/// through to them and is not fixed.
+/// through to them and is not fixed. A first share of the iterations is done at the resolution that the
+/// drawing has.
 pub(super) fn run(
     drawing: &mut Drawing,
     recipe: &Recipe,
@@ -42,6 +43,9 @@ pub(super) fn run(
     let mut background = Adam::new(3, AdamParams::default());
     let mut clock = Clock::new(steps, control);
     while let Some((step, done)) = clock.tick(control) {
+        if done >= recipe.coarse_share && drawing.is_thawed() && drawing.refine(0.0) {
+            descent = Descent::new(drawing.free(), recipe.polish_rates, drawing.limits);
+        }
         if recipe.relocates(step, done) {
             relocate(drawing, recipe, terms, &mut descent);
         }

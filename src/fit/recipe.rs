@@ -19,6 +19,8 @@ pub struct Recipe {
     pub stage_rates: Rates,
     /// Iterations of the joint fit; 0 for none.
     pub polish_iterations: usize,
+    /// Share of them at the resolution of the last stage, before the full one.
+    pub coarse_share: f32,
     /// Step sizes of the joint fit.
     pub polish_rates: Rates,
     /// Iterations between relocations.
@@ -69,6 +71,7 @@ impl Recipe {
                 last: 0.1,
             },
             polish_iterations: 900,
+            coarse_share: 0.5,
             polish_rates: Rates {
                 position: 0.8,
                 radius: 0.2,
@@ -101,7 +104,7 @@ impl Recipe {
     /// Whether strokes are relocated before iteration `step`, when a share `done` of the polish is over:
     /// newcomers need time to settle in.
     pub(super) fn relocates(&self, step: usize, done: f32) -> bool {
-        step > 0 && step % self.relocate_every == 0 && done < LAST_RELOCATION
+        step > 0 && step.is_multiple_of(self.relocate_every) && done < LAST_RELOCATION
     }
 }
 

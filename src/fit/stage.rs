@@ -23,6 +23,7 @@ pub(super) fn add(
     price: Price,
     control: &mut Control<'_>,
 ) -> usize {
+    drawing.refine(plan.scale);
     drawing.freeze();
     let candidates = drawing.propose(plan.count, plan.scale, recipe.oversampling);
     // The best candidate is drawn last, so that none of lesser gain hides it.

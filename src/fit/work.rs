@@ -58,7 +58,6 @@ impl<'a> Work<'a> {
         observer: &'a mut (dyn Observer + Send),
     ) -> Self {
         let recipe = config.recipe.unwrap_or(Recipe::of(config.preset));
-        let drawing = Drawing::new(&target, config, level);
         let by_bytes = config
             .budget
             .bytes
@@ -67,7 +66,9 @@ impl<'a> Work<'a> {
             .into_iter()
             .flatten()
             .min();
-        let plan = Plan::new(config, &recipe, limit, drawing.pixels());
+        let plan = Plan::new(config, &recipe, limit, target.width() * target.height());
+        let coarsest = plan.stage(0, 0).map_or(0.0, |stage| stage.scale);
+        let drawing = Drawing::new(&target, coarsest, config, level);
         let iterations = recipe.stage_iterations
             + if config.polish {
                 recipe.polish_iterations
@@ -205,6 +206,7 @@ impl<'a> Work<'a> {
 
     /// Settles the drawing against its file, and adds or removes strokes until the budgets are met.
     pub(super) fn settle(&mut self) -> Result<Written> {
+        self.drawing.refine(0.0);
         let mut written = settle::run(&mut self.drawing, &self.target, self.page, &self.recipe)?;
         if let Some(wanted) = self.config.budget.psnr_db {
             written = self.meet_fidelity(wanted, written)?;

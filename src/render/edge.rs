@@ -111,7 +111,7 @@ impl Edge {
             Coverage::Smoothstep => Self::Smoothstep(Smoothstep::new(softness)),
             Coverage::Sigmoid => tailed(Tail::Logistic, 1.0),
             Coverage::Tanh => tailed(Tail::Logistic, 2.0),
-            Coverage::Atan { k } => tailed(Tail::Atan, k as f32),
+            Coverage::Atan { k } => tailed(Tail::Atan, k),
             Coverage::Raw => tailed(Tail::Raw, 1.0),
         };
         let inside = match coverage {

@@ -435,7 +435,7 @@ fn back_to_front<S: Simd, const WITH_WORTH: bool>(
     let mut base = [f32x16::splat(simd, 0.0); 3];
     for (veil, g) in veils.iter().zip(gradient.iter()) {
         for (sum, g) in base.iter_mut().zip(g) {
-            *sum = *sum + load(simd, &veil.through) * load(simd, g);
+            *sum += load(simd, &veil.through) * load(simd, g);
         }
     }
     let (mut at, mut at_edge) = (kept_transmittance.len(), kept_edges.len());
@@ -464,11 +464,11 @@ fn back_to_front<S: Simd, const WITH_WORTH: bool>(
             let (h, q) = capsule.nearest(capsule.offsets(simd, block));
             let d_distance = d_alpha * load(simd, &kept.slope);
             let pull = d_distance * load(simd, &kept.inverse);
-            stroke.radius = stroke.radius + d_distance;
-            for axis in 0..2 {
-                let shift = pull * q[axis];
-                stroke.shift[axis] = stroke.shift[axis] + shift;
-                stroke.shift_b[axis] = stroke.shift_b[axis] + shift * h;
+            stroke.radius += d_distance;
+            for (axis, &q) in q.iter().enumerate() {
+                let shift = pull * q;
+                stroke.shift[axis] += shift;
+                stroke.shift_b[axis] += shift * h;
             }
         }
         let opacity = f32x16::splat(simd, p[OPACITY].max(FAINTEST));
@@ -509,20 +509,20 @@ impl<S: Simd> Sums<S> {
             let back = load(simd, &behind[channel]);
             let contrast = rgb[channel] - back;
             let g = load(simd, &gradient[channel]);
-            along = along + g * contrast;
-            self.color[channel] = self.color[channel] + seen * g;
+            along += g * contrast;
+            self.color[channel] += seen * g;
             store(back + alpha * contrast, &mut behind[channel]);
             if WITH_WORTH {
                 let delta = seen * contrast;
                 let e = load(simd, &error[channel]);
-                change = change + delta * (delta - (e + e));
+                change += delta * (delta - (e + e));
             }
         }
         if WITH_WORTH {
-            self.worth = self.worth + change;
+            self.worth += change;
         }
         let d_alpha = t * along;
-        self.opacity = self.opacity + d_alpha * alpha;
+        self.opacity += d_alpha * alpha;
         d_alpha
     }
 }

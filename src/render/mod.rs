@@ -9,7 +9,7 @@
 //! Work is proportional to the (stroke, block) pairs that can be seen; memory to pixels, strokes
 //! per tile, and the pairs of one tile per worker.
 //!
-//! [`reference`] is the same in naive `f64`, against which all of this is tested.
+//! [`mod@reference`] is the same in naive `f64`, against which all of this is tested.
 
 mod edge;
 mod grid;

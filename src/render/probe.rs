@@ -163,15 +163,15 @@ fn sums<S: Simd>(simd: S, template: &Template, patch: &Patch) -> Sums {
     for (block, coverage) in &template.blocks {
         let m = load(simd, coverage) * load(simd, &patch.inside[*block]);
         let m2 = m * m;
-        s = s + m2;
+        s += m2;
         for channel in 0..3 {
             let c = load(simd, &patch.canvas[*block][channel]);
             let me = m * load(simd, &patch.residual[*block][channel]);
             let m2c = m2 * c;
-            x[channel] = x[channel] + m2c;
-            y[channel] = y[channel] + me;
-            q = q + m2c * c;
-            z = z + me * c;
+            x[channel] += m2c;
+            y[channel] += me;
+            q += m2c * c;
+            z += me * c;
         }
     }
     Sums {

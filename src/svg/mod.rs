@@ -1,4 +1,4 @@
-//! Scenes as SVG text and back: [`write`] and [`read`]. The one door of `quick-xml`.
+//! Scenes as SVG text and back: [`fn@write`] and [`read`]. The one door of `quick-xml`.
 //!
 //! The dialect is small on purpose, so that every renderer agrees on it and the file stays easy to
 //! edit:
