@@ -61,7 +61,7 @@ impl Recipe {
             stages: 8,
             growth: 1.35,
             scale: 0.3,
-            oversampling: 3.0,
+            oversampling: 2.5,
             stage_iterations: 120,
             stage_rates: Rates {
                 position: 1.0,
@@ -70,14 +70,14 @@ impl Recipe {
                 opacity: 0.02,
                 last: 0.1,
             },
-            polish_iterations: 900,
-            coarse_share: 0.5,
+            polish_iterations: 1800,
+            coarse_share: 0.3,
             polish_rates: Rates {
-                position: 0.8,
-                radius: 0.2,
+                position: 2.0,
+                radius: 0.5,
                 color: 0.02,
                 opacity: 0.03,
-                last: 0.1,
+                last: 0.03,
             },
             relocate_every: 30,
             relocate_share: 0.3,
@@ -85,17 +85,26 @@ impl Recipe {
             polish_softness: 2.4,
             settle_rounds: 3,
             settle_iterations: 20,
-            settle_rate: 0.05,
+            settle_rate: 0.02,
         };
         match preset {
             Preset::Draft => Self {
-                stage_iterations: 20,
-                polish_iterations: 60,
+                stage_iterations: 40,
+                polish_iterations: 100,
+                polish_rates: Rates {
+                    position: 1.0,
+                    radius: 0.3,
+                    last: 0.1,
+                    ..balanced.polish_rates
+                },
+                relocate_every: 20,
+                settle_rounds: 1,
                 ..balanced
             },
             Preset::Balanced => balanced,
             Preset::Best => Self {
-                polish_iterations: 2000,
+                polish_iterations: 8000,
+                relocate_every: 20,
                 ..balanced
             },
         }
