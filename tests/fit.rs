@@ -1,0 +1,275 @@
+//! Whole fits: budgets are met, drawings model what the scene needs, and nothing but the picture and the
+//! configuration decides what comes out.
+#![allow(missing_docs, clippy::unwrap_used)]
+
+use std::ops::ControlFlow;
+
+use strokefit::coverage::CoverageSchedule;
+use strokefit::fit::{
+    Background, Budget, Config, Execution, Fit, Preset, Progress, Simd, Stop, fit,
+};
+use strokefit::image::Image;
+use strokefit::svg::{self, WriteOptions};
+use strokefit::verify::{self, Verdict};
+
+/// Agreement that every drawing has to have, dB.
+const AGREEMENT_DB: f64 = 36.0;
+
+fn sample(name: &str) -> Image {
+    let path = format!("{}/samples/{name}.png", env!("CARGO_MANIFEST_DIR"));
+    Image::open(path).unwrap()
+}
+
+/// The draft of a drawing of at most `strokes` strokes.
+fn draft(strokes: usize) -> Config {
+    Config {
+        budget: Budget {
+            strokes: Some(strokes),
+            ..Budget::default()
+        },
+        preset: Preset::Draft,
+        ..Config::default()
+    }
+}
+
+fn drawn(picture: &Image, config: &Config) -> Fit {
+    fit(picture, config, &Execution::default(), &mut ()).unwrap()
+}
+
+fn text(fit: &Fit, config: &Config) -> String {
+    svg::write(
+        &fit.scene,
+        &WriteOptions {
+            precision: config.precision,
+        },
+    )
+}
+
+fn verdict(fit: &Fit, config: &Config) -> Verdict {
+    verify::verify(&text(fit, config), &fit.target, &fit.soft).unwrap()
+}
+
+/// A smooth ramp with a dark disc.
+fn ball(width: usize, height: usize) -> Image {
+    let plane = |c: usize| {
+        let value = |i: usize| {
+            let (x, y) = ((i % width) as f32, (i / width) as f32);
+            let away = (x - 30.0).hypot(y - 24.0);
+            if away < 14.0 {
+                0.1 * c as f32 + away / 40.0
+            } else {
+                0.5 + 0.4 * x / width as f32
+            }
+        };
+        (0..width * height).map(value).collect()
+    };
+    Image::new(width, height, [plane(0), plane(1), plane(2)]).unwrap()
+}
+
+#[test]
+fn samples_are_drawn_as_they_were_fitted() {
+    for (name, strokes, least_db) in [
+        ("chelsea-cat", 400, 26.0),
+        ("coffee-300", 400, 26.0),
+        ("rocket-320", 300, 28.0),
+        ("noto-gem", 100, 34.0),
+        ("noto-hibiscus", 200, 30.0),
+    ] {
+        let config = draft(strokes);
+        let fit = drawn(&sample(name), &config);
+        let verdict = verdict(&fit, &config);
+        assert_eq!(fit.scene.len(), strokes, "{name}");
+        assert!(
+            verdict.agreement.psnr_db > AGREEMENT_DB,
+            "{name}: {verdict:?}"
+        );
+        assert!(verdict.fidelity.psnr_db > least_db, "{name}: {verdict:?}");
+    }
+}
+
+#[test]
+fn every_coverage_function_ends_in_a_drawing_that_renderers_agree_on() {
+    let picture = ball(64, 48);
+    for word in [
+        "smoothstep",
+        "sigmoid",
+        "tanh",
+        "atan",
+        "atan:4",
+        "raw",
+        "sigmoid>smoothstep",
+    ] {
+        let coverage: CoverageSchedule = word.parse().unwrap();
+        let config = Config {
+            coverage,
+            ..draft(40)
+        };
+        let fit = drawn(&picture, &config);
+        let verdict = verdict(&fit, &config);
+        assert!(verdict.fidelity.psnr_db > 26.0, "{word}: {verdict:?}");
+    }
+}
+
+#[test]
+fn a_fidelity_is_met_by_few_strokes() {
+    let picture = sample("coffee-300");
+    let config = Config {
+        budget: Budget {
+            psnr_db: Some(25.0),
+            ..Budget::default()
+        },
+        preset: Preset::Draft,
+        ..Config::default()
+    };
+    let fit = drawn(&picture, &config);
+    let reached = verdict(&fit, &config).fidelity.psnr_db;
+    assert_eq!(fit.stop, Stop::Psnr);
+    assert!((25.0..26.0).contains(&reached), "{reached} dB");
+}
+
+#[test]
+fn bytes_are_met() {
+    let picture = sample("noto-hibiscus");
+    for most in [2_000, 12_345] {
+        let config = Config {
+            budget: Budget {
+                bytes: Some(most),
+                ..Budget::default()
+            },
+            ..draft(1)
+        };
+        let bytes = text(&drawn(&picture, &config), &config).len();
+        assert!(bytes <= most && bytes * 10 > most * 8, "{bytes} of {most}");
+    }
+}
+
+#[test]
+fn a_picture_of_one_colour_needs_no_stroke() {
+    let picture = Image::filled(70, 50, [51.0 / 255.0, 102.0 / 255.0, 1.0]).unwrap();
+    let config = Config {
+        preset: Preset::Draft,
+        ..Config::default()
+    };
+    let fit = drawn(&picture, &config);
+    assert_eq!(fit.scene.len(), 0);
+    assert_eq!(verdict(&fit, &config).fidelity.mse, 0.0);
+}
+
+#[test]
+fn quality_decides_how_many_strokes_a_scene_gets() {
+    let count = |picture: &Image, quality: f64| {
+        let config = Config {
+            preset: Preset::Draft,
+            quality: Some(quality),
+            ..Config::default()
+        };
+        drawn(picture, &config).scene.len()
+    };
+    let (cat, gem) = (sample("chelsea-cat"), sample("noto-gem"));
+    let counts = [count(&cat, 20.0), count(&cat, 25.0), count(&cat, 30.0)];
+    assert!(counts.windows(2).all(|w| w[1] > w[0] * 3 / 2), "{counts:?}");
+    assert!(
+        count(&gem, 30.0) * 3 < counts[2],
+        "flat art gets as many strokes as a photograph"
+    );
+}
+
+#[test]
+fn opaque_drawings_are_opaque() {
+    let config = Config {
+        opaque: true,
+        ..draft(60)
+    };
+    let fit = drawn(&ball(64, 48), &config);
+    assert!(fit.scene.strokes().all(|stroke| stroke.opacity == 1.0));
+    assert!(!text(&fit, &config).contains("stroke-opacity"));
+}
+
+#[test]
+fn progressive_drawings_are_better_with_every_layer() {
+    let config = Config {
+        progressive: true,
+        ..draft(400)
+    };
+    let fit = drawn(&sample("coffee-300"), &config);
+    let layers: Vec<f64> = fit.stages.iter().map(|stage| stage.layer_psnr_db).collect();
+    assert!(layers.len() >= 6, "{layers:?}");
+    assert!(layers.windows(2).all(|w| w[1] > w[0] + 0.3), "{layers:?}");
+}
+
+#[test]
+fn threads_simd_and_repetition_change_no_byte() {
+    let picture = sample("noto-rocket");
+    let config = draft(80);
+    let written = |threads, simd| {
+        let execution = Execution {
+            threads: Some(threads),
+            simd,
+        };
+        text(
+            &fit(&picture, &config, &execution, &mut ()).unwrap(),
+            &config,
+        )
+    };
+    let expected = written(1, Simd::Auto);
+    for threads in [1, 2, 3] {
+        assert!(
+            written(threads, Simd::Auto) == expected,
+            "{threads} threads"
+        );
+    }
+    for simd in Simd::ALL.into_iter().filter(|simd| simd.level().is_some()) {
+        assert!(written(2, simd) == expected, "{simd}");
+    }
+}
+
+#[test]
+fn another_seed_is_another_drawing() {
+    let picture = ball(64, 48);
+    let with = |seed| {
+        let config = Config { seed, ..draft(30) };
+        text(&drawn(&picture, &config), &config)
+    };
+    assert_ne!(with(1), with(2));
+}
+
+#[test]
+fn an_observer_sees_progress_and_may_stop() {
+    let picture = ball(64, 48);
+    let mut seen = Vec::new();
+    let mut watch = |progress: &Progress| {
+        seen.push(progress.done);
+        if seen.len() == 40 {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    };
+    let fit = fit(&picture, &draft(100), &Execution::default(), &mut watch).unwrap();
+    assert_eq!(fit.stop, Stop::Observer);
+    assert_eq!(seen.len(), 40);
+    assert!(
+        seen.windows(2).all(|w| w[0] <= w[1]) && seen.iter().all(|done| (0.0..=1.0).contains(done))
+    );
+}
+
+#[test]
+fn alpha_lies_on_the_background() {
+    let picture = sample("noto-gem");
+    for (background, corner) in [
+        (Background::None, [1.0; 3]),
+        (Background::Color([0.0, 0.2, 0.4]), [0.0, 0.2, 0.4]),
+    ] {
+        let config = Config {
+            background,
+            ..draft(60)
+        };
+        let fit = drawn(&picture, &config);
+        let got = fit.target.planes().each_ref().map(|plane| plane[0]);
+        assert_eq!(got, corner);
+        assert_eq!(
+            fit.scene.background.is_some(),
+            background != Background::None
+        );
+    }
+}
