@@ -18,7 +18,7 @@ mod random;
 use std::time::Instant;
 
 use strokefit::coverage::Coverage;
-use strokefit::fit::{self, Budget, Config, Execution, Objective, Simd};
+use strokefit::fit::{self, Budget, Config, Execution, Objective, Preset, Simd};
 use strokefit::image::Image;
 use strokefit::loss::Loss;
 use strokefit::metrics::psnr;
@@ -151,6 +151,7 @@ fn compare(article: &Outcome, staged: &Outcome, claims: bool) {
 
 fn staged(target: &Image, options: &Options) -> Result<Drawn> {
     let config = Config {
+        preset: Preset::Draft,
         budget: Budget {
             strokes: Some(options.strokes),
             ..Budget::default()

@@ -89,7 +89,7 @@ impl Recipe {
         };
         match preset {
             Preset::Draft => Self {
-                stage_iterations: 40,
+                stage_iterations: 30,
                 polish_iterations: 100,
                 polish_rates: Rates {
                     position: 1.0,
