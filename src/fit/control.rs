@@ -8,6 +8,9 @@ use super::config::Config;
 use super::observer::{Observer, Progress};
 use crate::metrics::psnr_db;
 
+/// Share of a time limit after which the descent ends; the rest is for settling, writing and verifying.
+const DESCENT_SHARE: f32 = 0.9;
+
 /// Asked after every iteration whether to go on.
 pub(super) struct Control<'a> {
     observer: &'a mut (dyn Observer + Send),
@@ -52,11 +55,17 @@ impl<'a> Control<'a> {
         self.stopped
     }
 
-    /// The share of the time limit that is used up; 0 without a limit.
+    /// The share that is used up of the time for descending; 0 without a limit.
     pub(super) fn time_used(&self) -> f32 {
         self.limit.map_or(0.0, |limit| {
-            self.started.elapsed().as_secs_f32() / limit.as_secs_f32()
+            self.started.elapsed().as_secs_f32() / (limit.as_secs_f32() * DESCENT_SHARE)
         })
+    }
+
+    /// Whether something that takes about `span`, and writing the result after it, ends within the limit.
+    pub(super) fn allows(&self, span: Duration) -> bool {
+        self.limit
+            .is_none_or(|limit| self.started.elapsed() + 2 * span < limit)
     }
 
     /// Announces stage `stage`, from 0, and the strokes that are there.

@@ -5,7 +5,10 @@
 //! round renders the rounded drawing as SVG, takes the offset from the target, and descends a few
 //! iterations; the best round, by the file's own error, is kept.
 
+use std::time::Instant;
+
 use super::config::{Background, Config};
+use super::control::Control;
 use super::descent::Descent;
 use super::drawing::Drawing;
 use super::recipe::Recipe;
@@ -74,16 +77,25 @@ pub(super) fn run(
     target: &Image,
     page: Page,
     recipe: &Recipe,
+    control: &Control<'_>,
 ) -> Result<Written> {
+    let start = Instant::now();
     let mut written = write(drawing, target, page)?;
     let mut best = (written.clone(), drawing.free().to_vec());
+    // A round is taken to be as long as the one before, the first as three times a writing.
+    let mut span = 3 * start.elapsed();
     for _ in 0..recipe.settle_rounds {
+        if !control.allows(span) {
+            break;
+        }
+        let start = Instant::now();
         let corrected = corrected_target(drawing, target, &written);
         descend(drawing, recipe, &corrected);
         written = write(drawing, target, page)?;
         if written.mse < best.0.mse {
             best = (written.clone(), drawing.free().to_vec());
         }
+        span = start.elapsed();
     }
     drawing.set_free(&best.1);
     Ok(best.0)

@@ -207,7 +207,13 @@ impl<'a> Work<'a> {
     /// Settles the drawing against its file, and adds or removes strokes until the budgets are met.
     pub(super) fn settle(&mut self) -> Result<Written> {
         self.drawing.refine(0.0);
-        let mut written = settle::run(&mut self.drawing, &self.target, self.page, &self.recipe)?;
+        let mut written = settle::run(
+            &mut self.drawing,
+            &self.target,
+            self.page,
+            &self.recipe,
+            &self.control,
+        )?;
         if let Some(wanted) = self.config.budget.psnr_db {
             written = self.meet_fidelity(wanted, written)?;
         }
@@ -234,7 +240,13 @@ impl<'a> Work<'a> {
                 terms,
                 (self.recipe.polish_iterations as f64 * REPOLISH) as usize,
             );
-            let written = settle::run(&mut self.drawing, &self.target, self.page, &self.recipe)?;
+            let written = settle::run(
+                &mut self.drawing,
+                &self.target,
+                self.page,
+                &self.recipe,
+                &self.control,
+            )?;
             current = psnr_db(written.mse);
             let reached = |w: &Written| psnr_db(w.mse) >= wanted;
             let better = match (reached(&written), reached(&best)) {
@@ -298,7 +310,13 @@ impl<'a> Work<'a> {
             self.stop = Stop::Bytes;
             let share = (written.bytes - most) as f64 / written.bytes as f64;
             self.remove(((self.drawing.len() as f64 * share).ceil() as usize).max(1));
-            written = settle::run(&mut self.drawing, &self.target, self.page, &self.recipe)?;
+            written = settle::run(
+                &mut self.drawing,
+                &self.target,
+                self.page,
+                &self.recipe,
+                &self.control,
+            )?;
         }
         Ok(written)
     }
