@@ -14,7 +14,7 @@ use fearless_simd::Level;
 use rayon::prelude::*;
 
 use crate::image::Image;
-use crate::render::probe::{PATCH_CENTER, Patch, Template, best};
+use crate::render::probe::{PATCH_CENTER, Patch, Probes};
 use crate::render::{Canvas, Params};
 use crate::rng;
 
@@ -103,7 +103,7 @@ pub fn propose(level: Level, target: &Pyramid, canvas: &Canvas, wanted: Wanted) 
     let canvas = (0..halvings).fold(canvas.to_image(), |image, _| image.halved());
     let reduction = (1 << halvings) as f32;
     let scale = (wanted.scale / reduction).min(SCALE_LIMIT);
-    let templates = templates(level, scale);
+    let probes = Probes::new(level, shapes(scale));
     let energy = smoothed_energy(target, &canvas, (scale / 2.0).round() as usize);
     let cells = Cells::new(
         &canvas,
@@ -115,10 +115,10 @@ pub fn propose(level: Level, target: &Pyramid, canvas: &Canvas, wanted: Wanted) 
         .into_par_iter()
         .map_init(Patch::new, |patch, cell| {
             let (x, y) = cells.peak(cell, &energy)?;
-            patch.fill(target, &canvas, x, y);
-            let (index, probe) = best(level, &templates, patch, wanted.least_opacity)?;
+            patch.fill(&probes, target, &canvas, x, y);
+            let (shape, probe) = probes.best(patch, wanted.least_opacity)?;
             let center = [x, y].map(|v| (v as f32 + 0.5) * reduction);
-            let stroke = probe.stroke(templates[index].shape(), center, reduction);
+            let stroke = probe.stroke(shape, center, reduction);
             (probe.gain > 0.0).then_some(Candidate {
                 stroke,
                 gain: probe.gain * gain_scale,
@@ -131,7 +131,8 @@ pub fn propose(level: Level, target: &Pyramid, canvas: &Canvas, wanted: Wanted) 
     candidates
 }
 
-fn templates(level: Level, scale: f32) -> Vec<Template> {
+/// The probed shapes for strokes of `scale` px.
+fn shapes(scale: f32) -> Vec<Params> {
     let mut shapes = Vec::new();
     for radius in RADII.map(|r| (r * scale).max(LEAST_RADIUS)) {
         shapes.push(shape(radius, 0.0, 0.0));
@@ -143,9 +144,6 @@ fn templates(level: Level, scale: f32) -> Vec<Template> {
         }
     }
     shapes
-        .into_iter()
-        .map(|shape| Template::new(level, shape))
-        .collect()
 }
 
 /// A shape about the centre of a patch.
@@ -168,10 +166,7 @@ fn smoothed_energy(target: &Image, canvas: &Image, radius: usize) -> Vec<f32> {
     for (out, row) in rows.chunks_exact_mut(width).zip(energy.chunks_exact(width)) {
         box_sums(row.iter().copied(), radius, out.iter_mut());
     }
-    for x in 0..width {
-        let column = rows[x..].iter().step_by(width).copied();
-        box_sums(column, radius, energy[x..].iter_mut().step_by(width));
-    }
+    column_sums(&rows, width, radius, &mut energy);
     energy
 }
 
@@ -187,6 +182,30 @@ fn box_sums<'a>(
     for ((out, new), old) in out.zip(entering).zip(leaving) {
         sum += f64::from(new) - f64::from(old);
         *out = sum as f32;
+    }
+}
+
+/// Sums over `2·radius + 1` rows of `width` values, cut at both ends.
+fn column_sums(values: &[f32], width: usize, radius: usize, out: &mut [f32]) {
+    let row = |y: usize| values.get(y * width..(y + 1) * width).unwrap_or_default();
+    let mut sums = vec![0.0_f64; width];
+    for y in 0..radius {
+        sums.iter_mut()
+            .zip(row(y))
+            .for_each(|(sum, &v)| *sum += f64::from(v));
+    }
+    for (y, out) in out.chunks_exact_mut(width).enumerate() {
+        sums.iter_mut()
+            .zip(row(y + radius))
+            .for_each(|(sum, &v)| *sum += f64::from(v));
+        if let Some(left) = y.checked_sub(radius + 1) {
+            sums.iter_mut()
+                .zip(row(left))
+                .for_each(|(sum, &v)| *sum -= f64::from(v));
+        }
+        out.iter_mut()
+            .zip(&sums)
+            .for_each(|(out, &sum)| *out = sum as f32);
     }
 }
 
@@ -290,6 +309,21 @@ mod tests {
                 let window = &values[i.saturating_sub(radius)..(i + radius + 1).min(11)];
                 assert_eq!(sum, window.iter().sum::<f32>(), "radius {radius} at {i}");
             }
+        }
+    }
+
+    #[test]
+    fn column_sums_are_box_sums_of_columns() {
+        let (width, height) = (5, 13);
+        let values: Vec<f32> = (0..width * height).map(|i| (i * i % 17) as f32).collect();
+        for radius in [0, 2, 20] {
+            let (mut by_rows, mut by_columns) = (values.clone(), values.clone());
+            column_sums(&values, width, radius, &mut by_rows);
+            for x in 0..width {
+                let column = values[x..].iter().step_by(width).copied();
+                box_sums(column, radius, by_columns[x..].iter_mut().step_by(width));
+            }
+            assert_eq!(by_rows, by_columns, "radius {radius}");
         }
     }
 

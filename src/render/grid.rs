@@ -86,9 +86,22 @@ impl Grid {
         (tile % self.columns * TILE, tile / self.columns * TILE)
     }
 
+    /// The pixels of row `y` as tile, block, lanes of the block and x of the first, from left to right.
+    fn segments(
+        &self,
+        y: usize,
+    ) -> impl Iterator<Item = (usize, usize, std::ops::Range<usize>, usize)> {
+        let (grid, width) = (*self, self.width);
+        (0..width).step_by(BLOCK).map(move |x| {
+            let (tile, block, lane) = grid.locate(x, y);
+            (tile, block, lane..lane + BLOCK.min(width - x), x)
+        })
+    }
+
     /// The tile, block and lane of a pixel.
     fn locate(&self, x: usize, y: usize) -> (usize, usize, usize) {
-        let (block, lane) = locate_in_tile(x % TILE, y % TILE);
+        let block = y % TILE / BLOCK * TILE_BLOCKS + x % TILE / BLOCK;
+        let lane = y % BLOCK * BLOCK + x % BLOCK;
         (y / TILE * self.columns + x / TILE, block, lane)
     }
 
@@ -116,14 +129,6 @@ impl Grid {
     }
 }
 
-/// The block and lane of a pixel of a tile.
-pub(super) fn locate_in_tile(x: usize, y: usize) -> (usize, usize) {
-    (
-        y / BLOCK * TILE_BLOCKS + x / BLOCK,
-        y % BLOCK * BLOCK + x % BLOCK,
-    )
-}
-
 /// A picture stored tile by tile, as the renderer reads and writes it.
 #[derive(Debug, Clone)]
 pub struct Canvas {
@@ -144,11 +149,12 @@ impl Canvas {
     pub fn from_image(image: &Image) -> Self {
         let grid = Grid::new(image.width(), image.height());
         let mut canvas = Self::flat(grid, [0.0; 3]);
-        for (channel, plane) in image.planes().iter().enumerate() {
-            for (y, row) in plane.chunks_exact(grid.width).enumerate() {
-                for (x, &value) in row.iter().enumerate() {
-                    let (tile, block, lane) = grid.locate(x, y);
-                    canvas.tiles[tile][block][channel].0[lane] = value;
+        let width = grid.width;
+        for y in 0..grid.height {
+            for (tile, block, lanes, x) in grid.segments(y) {
+                for (channel, plane) in image.planes().iter().enumerate() {
+                    let source = &plane[y * width + x..][..lanes.len()];
+                    canvas.tiles[tile][block][channel].0[lanes.clone()].copy_from_slice(source);
                 }
             }
         }
@@ -161,7 +167,9 @@ impl Canvas {
         let planes = [0, 1, 2].map(|channel| {
             let mut plane = Vec::with_capacity(width * height);
             for y in 0..height {
-                plane.extend((0..width).map(|x| self.pixel(x, y)[channel]));
+                for (tile, block, lanes, _) in self.grid.segments(y) {
+                    plane.extend_from_slice(&self.tiles[tile][block][channel].0[lanes]);
+                }
             }
             plane
         });

@@ -12,10 +12,12 @@
 //!
 //! Source: the best colour of `DESIGN`'s formulas, with the opacity solved for in the same way.
 
+use std::ops::Range;
+
 use fearless_simd::{Level, dispatch, f32x16, prelude::*};
 
 use super::edge::{Reach, Smoothstep, SoftEdge};
-use super::grid::{BLOCK, BLOCKS, Lanes, TILE, TileRgb, flat_tile, locate_in_tile};
+use super::grid::{BLOCK, BLOCKS, BlockSet, LANES, Lanes, TILE, TILE_BLOCKS, TileRgb, flat_tile};
 use super::kernel::{Capsule, load, members, store, total};
 use super::strokes::{OPACITY, Params, RADIUS, RED};
 use crate::image::Image;
@@ -41,52 +43,83 @@ impl Patch {
         })
     }
 
-    /// Copies what is around pixel (x, y), which comes to lie on [`PATCH_CENTER`].
-    pub fn fill(&mut self, target: &Image, canvas: &Image, x: usize, y: usize) {
-        let (width, height, half) = (canvas.width(), canvas.height(), TILE / 2);
-        self.inside = [Lanes::splat(0.0); BLOCKS];
-        self.canvas = flat_tile([0.0; 3]);
-        self.residual = flat_tile([0.0; 3]);
-        let columns = half.saturating_sub(x)..TILE.min(width + half - x);
-        for py in half.saturating_sub(y)..TILE.min(height + half - y) {
-            let row = (y + py - half) * width;
-            for first in (columns.start / BLOCK * BLOCK..columns.end).step_by(BLOCK) {
-                let segment = first.max(columns.start)..(first + BLOCK).min(columns.end);
-                let (block, lane) = locate_in_tile(segment.start, py);
-                let lanes = lane..lane + segment.len();
-                let source = row + x + segment.start - half..row + x + segment.end - half;
-                self.inside[block].0[lanes.clone()].fill(1.0);
-                for channel in 0..3 {
-                    let c = &canvas.planes()[channel][source.clone()];
-                    let t = &target.planes()[channel][source.clone()];
-                    self.canvas[block][channel].0[lanes.clone()].copy_from_slice(c);
-                    let residual = &mut self.residual[block][channel].0[lanes.clone()];
-                    for ((r, t), c) in residual.iter_mut().zip(t).zip(c) {
-                        *r = t - c;
-                    }
-                }
+    /// Copies what `probes` needs of the surroundings of pixel (x, y), which comes to lie on
+    /// [`PATCH_CENTER`].
+    pub fn fill(&mut self, probes: &Probes, target: &Image, canvas: &Image, x: usize, y: usize) {
+        let (width, height) = (canvas.width() as isize, canvas.height() as isize);
+        for &block in &probes.blocks {
+            let left = x as isize + block_start(block % TILE_BLOCKS);
+            let top = y as isize + block_start(block / TILE_BLOCKS);
+            let columns = visible(left, width);
+            let rows = visible(top, height);
+            if columns.len() * rows.len() < LANES {
+                self.clear(block);
+            }
+            if columns.is_empty() {
+                continue;
+            }
+            for row in rows {
+                let lane = row * BLOCK + columns.start;
+                let source = (top + row as isize) * width + left + columns.start as isize;
+                self.copy(block, lane, source as usize, columns.len(), target, canvas);
+            }
+        }
+    }
+
+    fn clear(&mut self, block: usize) {
+        self.inside[block] = Lanes::splat(0.0);
+        self.canvas[block] = [Lanes::splat(0.0); 3];
+        self.residual[block] = [Lanes::splat(0.0); 3];
+    }
+
+    /// Copies `count` pixels from index `source` of the pictures to lane `lane` on.
+    #[inline]
+    fn copy(
+        &mut self,
+        block: usize,
+        lane: usize,
+        source: usize,
+        count: usize,
+        target: &Image,
+        canvas: &Image,
+    ) {
+        let lanes = lane..lane + count;
+        self.inside[block].0[lanes.clone()].fill(1.0);
+        for channel in 0..3 {
+            let c = &canvas.planes()[channel][source..source + count];
+            let t = &target.planes()[channel][source..source + count];
+            self.canvas[block][channel].0[lanes.clone()].copy_from_slice(c);
+            let residual = &mut self.residual[block][channel].0[lanes.clone()];
+            for ((r, t), c) in residual.iter_mut().zip(t).zip(c) {
+                *r = t - c;
             }
         }
     }
 }
 
+/// Where column or row `i` of a patch's blocks starts, relative to the pixel at its centre.
+fn block_start(i: usize) -> isize {
+    (i * BLOCK) as isize - (TILE / 2) as isize
+}
+
+/// Which of the 4 pixels from `start` on lie in a picture of `size`.
+fn visible(start: isize, size: isize) -> Range<usize> {
+    let within = |v: isize| v.clamp(0, BLOCK as isize) as usize;
+    within(-start)..within(size - start).max(within(-start))
+}
+
 /// A shape centred on [`PATCH_CENTER`] with its coverage there.
 #[derive(Debug, Clone)]
-pub struct Template {
+struct Template {
     shape: Params,
     blocks: Vec<(usize, Lanes)>,
 }
 
 impl Template {
     /// The template of the geometry of `shape`, in the coordinates of a patch, with a soft edge 1 px wide.
-    pub fn new(level: Level, shape: Params) -> Self {
+    fn new(level: Level, shape: Params) -> Self {
         let blocks = dispatch!(level, simd => cover(simd, &shape));
         Self { shape, blocks }
-    }
-
-    /// The numbers that the template was made from.
-    pub fn shape(&self) -> &Params {
-        &self.shape
     }
 }
 
@@ -119,14 +152,37 @@ pub struct Probe {
     pub gain: f32,
 }
 
-/// Probes all `templates` on `patch`; returns the index of the one that gains most, and its probe.
-pub fn best(
+/// The shapes that are probed at every place.
+#[derive(Debug)]
+pub struct Probes {
     level: Level,
-    templates: &[Template],
-    patch: &Patch,
-    least_opacity: f32,
-) -> Option<(usize, Probe)> {
-    dispatch!(level, simd => best_of(simd, templates, patch, least_opacity))
+    templates: Vec<Template>,
+    /// The blocks of a patch that they touch.
+    blocks: Vec<usize>,
+}
+
+impl Probes {
+    /// Probes of the geometry of `shapes`, which are centred on [`PATCH_CENTER`].
+    pub fn new(level: Level, shapes: impl IntoIterator<Item = Params>) -> Self {
+        let templates: Vec<Template> = shapes
+            .into_iter()
+            .map(|shape| Template::new(level, shape))
+            .collect();
+        let touched = templates.iter().flat_map(|template| &template.blocks);
+        let set = touched.fold(0, |set: BlockSet, (block, _)| set | 1 << block);
+        Self {
+            level,
+            templates,
+            blocks: members(set).collect(),
+        }
+    }
+
+    /// The shape that gains most on `patch`, and its probe.
+    pub fn best(&self, patch: &Patch, least_opacity: f32) -> Option<(&Params, Probe)> {
+        let (index, probe) =
+            dispatch!(self.level, simd => best_of(simd, &self.templates, patch, least_opacity))?;
+        Some((&self.templates[index].shape, probe))
+    }
 }
 
 #[inline(always)]
@@ -184,6 +240,7 @@ fn sums<S: Simd>(simd: S, template: &Template, patch: &Patch) -> Sums {
 }
 
 impl Sums {
+    #[inline(always)]
     fn solve(&self, least_opacity: f32) -> Probe {
         if self.s < 1e-3 {
             return Probe {
