@@ -101,11 +101,9 @@ impl<'a> Work<'a> {
     pub(super) fn grow(&mut self) {
         while self.control.stopped().is_none() {
             let index = self.records.len();
-            let planned = self
-                .plan
-                .stage(index, self.drawing.len())
-                .or_else(|| self.top_up(index));
-            let Some(planned) = planned else { break };
+            let Some(planned) = self.plan.stage(index, self.drawing.len()) else {
+                break;
+            };
             let accepted = self.add(planned);
             if (accepted as f64) < PAYING_SHARE * planned.count as f64 {
                 self.stop = Stop::Converged;
@@ -123,19 +121,36 @@ impl<'a> Work<'a> {
                 break;
             }
         }
+        if self.stop == Stop::Strokes && self.control.stopped().is_none() {
+            self.top_up();
+        }
         self.drawing.thaw();
     }
 
-    /// Where nothing is polished, a last stage for the strokes that were promised but not accepted.
-    fn top_up(&self, index: usize) -> Option<PlannedStage> {
+    /// Where nothing is polished, adds to the last stage the strokes that were promised but not accepted.
+    fn top_up(&mut self) {
         let count = self.terms.limit.saturating_sub(self.drawing.len());
-        let wanted = self.config.budget.strokes.is_some() && !self.config.polish;
+        let promised = self.config.budget.strokes.is_some() && !self.config.polish;
+        let Some(last) = self.records.last_mut().filter(|_| promised && count > 0) else {
+            return;
+        };
         let scale = self.recipe.scale * self.drawing.spacing(self.terms.limit);
-        (wanted && count > 0 && index <= self.plan.len()).then_some(PlannedStage {
-            index,
+        let planned = PlannedStage {
+            index: last.index - 1,
             count,
             scale,
-        })
+        };
+        let (recipe, price) = (&self.recipe, self.terms.price);
+        stage::add(
+            &mut self.drawing,
+            recipe,
+            self.anneal,
+            planned,
+            price,
+            &mut self.control,
+        );
+        last.iterations += recipe.stage_iterations;
+        last.psnr_db = psnr_db(self.drawing.mse());
     }
 
     fn add(&mut self, planned: PlannedStage) -> usize {
