@@ -222,13 +222,7 @@ impl<'a> Work<'a> {
     /// Settles the drawing against its file, and adds or removes strokes until the budgets are met.
     pub(super) fn settle(&mut self) -> Result<Written> {
         self.drawing.refine(0.0);
-        let mut written = settle::run(
-            &mut self.drawing,
-            &self.target,
-            self.page,
-            &self.recipe,
-            &self.control,
-        )?;
+        let mut written = self.settled()?;
         if let Some(wanted) = self.config.budget.psnr_db {
             written = self.meet_fidelity(wanted, written)?;
         }
@@ -236,6 +230,17 @@ impl<'a> Work<'a> {
             written = self.meet_bytes(most, written)?;
         }
         Ok(written)
+    }
+
+    /// Settles the drawing against its file.
+    fn settled(&mut self) -> Result<Written> {
+        settle::run(
+            &mut self.drawing,
+            &self.target,
+            self.page,
+            &self.recipe,
+            &self.control,
+        )
     }
 
     /// The drawing of fewest strokes found that is as faithful as `wanted`, dB, or the most faithful one.
@@ -255,13 +260,7 @@ impl<'a> Work<'a> {
                 terms,
                 (self.recipe.polish_iterations as f64 * REPOLISH) as usize,
             );
-            let written = settle::run(
-                &mut self.drawing,
-                &self.target,
-                self.page,
-                &self.recipe,
-                &self.control,
-            )?;
+            let written = self.settled()?;
             current = psnr_db(written.mse);
             let reached = |w: &Written| psnr_db(w.mse) >= wanted;
             let better = match (reached(&written), reached(&best)) {
@@ -325,13 +324,7 @@ impl<'a> Work<'a> {
             self.stop = Stop::Bytes;
             let share = (written.bytes - most) as f64 / written.bytes as f64;
             self.remove(((self.drawing.len() as f64 * share).ceil() as usize).max(1));
-            written = settle::run(
-                &mut self.drawing,
-                &self.target,
-                self.page,
-                &self.recipe,
-                &self.control,
-            )?;
+            written = self.settled()?;
         }
         Ok(written)
     }
