@@ -6,9 +6,10 @@ use std::ops::ControlFlow;
 
 use strokefit::coverage::CoverageSchedule;
 use strokefit::fit::{
-    Background, Budget, Config, Execution, Fit, Preset, Progress, Simd, Stop, fit,
+    Background, Budget, Config, Execution, Fit, Fitter, Preset, Progress, Simd, Stop, fit,
 };
 use strokefit::image::Image;
+use strokefit::scene::Scene;
 use strokefit::svg::{self, WriteOptions};
 use strokefit::verify::{self, Verdict};
 
@@ -237,7 +238,7 @@ fn another_seed_is_another_drawing() {
 fn an_observer_sees_progress_and_may_stop() {
     let picture = ball(64, 48);
     let mut seen = Vec::new();
-    let mut watch = |progress: &Progress| {
+    let mut watch = |progress: &Progress<'_>| {
         seen.push(progress.done);
         if seen.len() == 40 {
             ControlFlow::Break(())
@@ -272,4 +273,33 @@ fn alpha_lies_on_the_background() {
             background != Background::None
         );
     }
+}
+
+#[test]
+fn the_drawing_can_be_seen_while_it_grows() {
+    let picture = sample("coffee-300");
+    let mut seen = Vec::new();
+    let mut watch = |progress: &Progress<'_>| {
+        let scene = progress.scene();
+        assert_eq!(
+            (scene.width as usize, scene.height as usize),
+            (picture.width(), picture.height())
+        );
+        assert_eq!(scene.len(), progress.strokes);
+        seen.push(scene);
+        ControlFlow::Continue(())
+    };
+    let fit = Fitter::new(draft(100))
+        .observer(&mut watch)
+        .fit(&picture)
+        .unwrap();
+    // Large strokes are fitted to a reduced picture; what is seen is in px of the whole one all the same.
+    let reach = |scene: &Scene| {
+        scene
+            .strokes()
+            .map(|s| s.shape.ends().0.x)
+            .fold(0.0, f32::max)
+    };
+    assert!(reach(&seen[seen.len() / 3]) > 200.0);
+    assert_eq!(seen.last().unwrap().len(), fit.scene.len());
 }

@@ -53,7 +53,7 @@ impl Steps {
 }
 
 impl Observer for Bar {
-    fn observe(&mut self, progress: &Progress) -> ControlFlow<()> {
+    fn observe(&mut self, progress: &Progress<'_>) -> ControlFlow<()> {
         self.0
             .set_position((progress.done.clamp(0.0, 1.0) * STEPS as f64) as u64);
         self.0.set_message(caption(progress));
@@ -61,7 +61,7 @@ impl Observer for Bar {
     }
 }
 
-fn caption(progress: &Progress) -> String {
+fn caption(progress: &Progress<'_>) -> String {
     let Progress {
         stage,
         stages,

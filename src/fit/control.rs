@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use super::Stop;
 use super::config::Config;
+use super::drawing::Drawing;
 use super::observer::{Observer, Progress};
 use crate::metrics::psnr_db;
 
@@ -19,8 +20,10 @@ pub(super) struct Control<'a> {
     /// Work planned and done, in strokes × iterations.
     planned: f64,
     done: f64,
-    /// What the observer is told next time.
-    progress: Progress,
+    /// What the observer is told next time: the fraction done, and the stage under way of how many.
+    fraction: f64,
+    stage: usize,
+    stages: usize,
     /// Set once, by whatever stopped the fit first.
     stopped: Option<Stop>,
 }
@@ -32,20 +35,15 @@ impl<'a> Control<'a> {
         planned: f64,
         stages: usize,
     ) -> Self {
-        let progress = Progress {
-            done: 0.0,
-            stage: 0,
-            stages,
-            strokes: 0,
-            psnr_db: 0.0,
-        };
         Self {
             observer,
             started: Instant::now(),
             limit: config.budget.time,
             planned,
             done: 0.0,
-            progress,
+            fraction: 0.0,
+            stage: 0,
+            stages,
             stopped: None,
         }
     }
@@ -68,24 +66,29 @@ impl<'a> Control<'a> {
             .is_none_or(|limit| self.started.elapsed() + 2 * span < limit)
     }
 
-    /// Announces stage `stage`, from 0, and the strokes that are there.
-    pub(super) fn enter(&mut self, stage: usize, strokes: usize) {
-        self.progress.stage = stage + 1;
-        self.progress.strokes = strokes;
+    /// Announces stage `stage`, from 0.
+    pub(super) fn enter(&mut self, stage: usize) {
+        self.stage = stage + 1;
     }
 
-    /// Adds an iteration of `strokes` to what is done, tells the observer, with the mean squared error `mse`, and says
-    /// whether to go on.
-    pub(super) fn advance(&mut self, strokes: usize, mse: f64) -> bool {
-        self.done += strokes as f64;
+    /// Adds an iteration of the free strokes of `drawing` to what is done, tells the observer, with the
+    /// mean squared error `mse`, and says whether to go on.
+    pub(super) fn advance(&mut self, drawing: &Drawing, mse: f64) -> bool {
+        self.done += drawing.free().len() as f64;
         let done = (self.done / self.planned).max(f64::from(self.time_used()));
-        self.progress.done = done.clamp(self.progress.done, 1.0);
-        self.progress.psnr_db = psnr_db(mse);
+        self.fraction = done.clamp(self.fraction, 1.0);
         if self.stopped.is_none() && self.time_used() >= 1.0 {
             self.stopped = Some(Stop::Time);
         }
-        if self.stopped.is_none() && self.observer.observe(&self.progress) == ControlFlow::Break(())
-        {
+        let progress = Progress {
+            done: self.fraction,
+            stage: self.stage,
+            stages: self.stages,
+            strokes: drawing.len(),
+            psnr_db: psnr_db(mse),
+            drawing,
+        };
+        if self.stopped.is_none() && self.observer.observe(&progress) == ControlFlow::Break(()) {
             self.stopped = Some(Stop::Observer);
         }
         self.stopped.is_none()

@@ -100,11 +100,8 @@ impl Drawing {
         if halvings >= self.halvings {
             return false;
         }
-        let factor = (1 << (self.halvings - halvings)) as f32;
-        for p in &mut self.strokes {
-            p[AX..=RADIUS]
-                .iter_mut()
-                .for_each(|length| *length *= factor);
+        for stroke in &mut self.strokes {
+            *stroke = enlarged(*stroke, self.halvings - halvings);
         }
         self.halvings = halvings;
         self.target = Canvas::from_image(self.pyramid.level(halvings));
@@ -278,19 +275,30 @@ impl Drawing {
         mses
     }
 
-    /// The drawing as a scene, unrounded, with the background if it `has_ground`.
+    /// The drawing as a scene in px of the picture, unrounded, with the background if it `has_ground`.
     pub(super) fn scene(&self, has_ground: bool) -> Scene {
-        let grid = self.target.grid();
+        let picture = self.pyramid.level(0);
         let background = has_ground.then_some(self.background);
-        let mut scene = Scene::empty(grid.width as u32, grid.height as u32, background);
-        for (stroke, &stage) in self.strokes.iter().zip(&self.stage_of) {
+        let mut scene = Scene::empty(picture.width() as u32, picture.height() as u32, background);
+        for (&stroke, &stage) in self.strokes.iter().zip(&self.stage_of) {
             if scene.stages.len() <= stage {
                 scene.stages.resize(stage + 1, Stage::default());
             }
-            scene.stages[stage].strokes.push(unpack(stroke));
+            scene.stages[stage]
+                .strokes
+                .push(unpack(&enlarged(stroke, self.halvings)));
         }
         scene
     }
+}
+
+/// The stroke at a resolution that is twice as fine `doublings` times.
+fn enlarged(mut stroke: Params, doublings: usize) -> Params {
+    let factor = (1_u32 << doublings) as f32;
+    for length in &mut stroke[AX..=RADIUS] {
+        *length *= factor;
+    }
+    stroke
 }
 
 /// What lies behind the free strokes.

@@ -1,6 +1,6 @@
 //! The fit: picture in, drawing out.
 //!
-//! [`fit`] adds strokes in stages. Each stage seeds new strokes where the residual is largest, fits
+//! A [`Fitter`] adds strokes in stages. Each stage seeds new strokes where the residual is largest, fits
 //! them alone for a moment on the frozen canvas of those below, and keeps what pays. Then all strokes
 //! are polished jointly, those worth least moving to where more is to be gained, and settled against
 //! what the file really looks like.
@@ -10,6 +10,7 @@ mod config;
 mod control;
 mod descent;
 mod drawing;
+mod fitter;
 mod objective;
 mod observer;
 mod plan;
@@ -27,6 +28,7 @@ use fearless_simd::Level;
 
 pub use anneal::final_softness;
 pub use config::{Background, Budget, Config, DEFAULT_QUALITY, Execution, Preset};
+pub use fitter::Fitter;
 pub use objective::Objective;
 pub use observer::{Observer, Progress};
 pub use recipe::{Rates, Recipe};
@@ -89,26 +91,23 @@ pub enum Stop {
     Observer,
 }
 
-/// Draws `target` with strokes.
-///
-/// Where the picture has alpha it is laid on the background colour of the configuration, or on white.
+/// Draws `target` with strokes: [`Fitter`] in one call.
 ///
 /// # Errors
-/// [`ErrorKind::Config`](crate::ErrorKind::Config) when an option is outside its domain.
+/// As [`Fitter::fit`].
 pub fn fit(
     target: &Image,
     config: &Config,
     execution: &Execution,
     observer: &mut (dyn Observer + Send),
 ) -> Result<Fit> {
-    config.check()?;
-    let level = execution.simd.require()?;
-    let target = target.flattened(config.background.ground());
-    execution
-        .pool()?
-        .install(|| draw(target, config, level, observer))
+    Fitter::new(config.clone())
+        .execution(*execution)
+        .observer(observer)
+        .fit(target)
 }
 
+/// The algorithm.
 fn draw(
     target: Image,
     config: &Config,

@@ -56,7 +56,7 @@ pub(super) fn run(
             background.step(&mut drawing.background, &descent.gradients.base, rate);
             drawing.background = drawing.background.map(|c| c.clamp(0.0, 1.0));
         }
-        if !control.advance(drawing.free().len(), descent.gradients.loss) {
+        if !control.advance(drawing, descent.gradients.loss) {
             break;
         }
     }

@@ -46,7 +46,7 @@ fn descend(drawing: &mut Drawing, recipe: &Recipe, anneal: Anneal, control: &mut
     for step in 0..steps {
         let rate = schedule.factor(step, steps) as f32;
         drawing.step(&mut descent, anneal.at(step as f32 / steps as f32), rate);
-        if !control.advance(drawing.free().len(), descent.gradients.loss) {
+        if !control.advance(drawing, descent.gradients.loss) {
             return;
         }
     }

@@ -155,7 +155,7 @@ impl<'a> Work<'a> {
 
     fn add(&mut self, planned: PlannedStage) -> usize {
         let start = Instant::now();
-        self.control.enter(planned.index, self.drawing.len());
+        self.control.enter(planned.index);
         let price = self.terms.price;
         let accepted = stage::add(
             &mut self.drawing,
@@ -195,7 +195,7 @@ impl<'a> Work<'a> {
             } else {
                 self.terms.limit
             };
-            self.control.enter(self.records.len(), self.drawing.len());
+            self.control.enter(self.records.len());
             self.polish_free(
                 Terms {
                     limit,
