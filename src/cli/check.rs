@@ -8,7 +8,7 @@ use strokefit::image::Image;
 use strokefit::report::{CheckReport, Input, RendererEntry, SCHEMA};
 use strokefit::verify;
 
-use super::fit::json;
+use super::job::json;
 use super::output::Output;
 use super::{Status, input, misuse};
 

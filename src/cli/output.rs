@@ -19,6 +19,15 @@ pub(super) enum Output {
     Device(PathBuf),
 }
 
+/// What messages call the file.
+pub(super) fn name(path: &Path) -> String {
+    if path == Path::new(STDOUT) {
+        "standard output".into()
+    } else {
+        path.display().to_string()
+    }
+}
+
 impl Output {
     /// The output that `path` means, once it is certain that it can be written.
     pub(super) fn open(path: &Path) -> Result<Self> {

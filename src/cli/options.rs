@@ -1,0 +1,142 @@
+//! What to draw and how to run, as the commands that draw share it.
+
+use std::time::Duration;
+
+use clap::ValueEnum;
+use strokefit::coverage::CoverageSchedule;
+use strokefit::fit::{self, Background, Config, Execution, Simd};
+
+use super::domain;
+
+/// The options of a command that draws.
+#[derive(Debug, clap::Args)]
+pub(super) struct Options {
+    #[command(flatten)]
+    pub(super) budget: Budget,
+    #[command(flatten)]
+    pub(super) look: Look,
+    #[command(flatten)]
+    pub(super) how: How,
+}
+
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Budget (the first one reached stops)")]
+pub(super) struct Budget {
+    /// At most N strokes
+    #[arg(long, value_name = "N", value_parser = domain::strokes, allow_negative_numbers = true)]
+    pub(super) strokes: Option<usize>,
+    /// Until the file is this faithful, in dB of PSNR; 25 is rough, 30 fair, 35 good
+    #[arg(long, value_name = "DB", value_parser = domain::psnr, allow_negative_numbers = true)]
+    pub(super) psnr: Option<f64>,
+    /// At most N bytes of SVG
+    #[arg(long, value_name = "N", value_parser = domain::bytes, allow_negative_numbers = true)]
+    pub(super) bytes: Option<usize>,
+    /// At most this long
+    #[arg(long, value_name = "SECONDS", value_parser = domain::seconds, allow_negative_numbers = true)]
+    pub(super) time: Option<Duration>,
+}
+
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Look")]
+pub(super) struct Look {
+    /// What a byte is worth, 0 to 60: a stroke stays while each of its bytes removes as much error as
+    /// one pixel has at Q dB [default: 30 without a budget of strokes, dB or bytes]
+    #[arg(long, value_name = "Q", allow_negative_numbers = true)]
+    quality: Option<f64>,
+    /// How much work to spend
+    #[arg(long, value_enum, default_value_t = Preset::Balanced)]
+    preset: Preset,
+    /// Polish each layer on those below alone: a good drawing after every layer, some dB less in the end
+    #[arg(long, conflicts_with = "no_polish")]
+    progressive: bool,
+    /// Only opaque strokes: fewer dB, but flat colours that are easy to edit
+    #[arg(long)]
+    opaque: bool,
+    /// Soft edge while fitting: smoothstep, sigmoid, tanh or atan[:K]; A>B passes from one to another
+    #[arg(long, value_name = "EDGE", default_value = "smoothstep")]
+    coverage: CoverageSchedule,
+    /// Add the strokes in N stages, each a layer of the SVG [default: from the budget]
+    #[arg(long, value_name = "N", value_parser = domain::stages, allow_negative_numbers = true)]
+    stages: Option<usize>,
+    /// Leave out the joint fit of all strokes after the stages: faster, some dB less
+    #[arg(long)]
+    no_polish: bool,
+    /// Decimals of coordinates and widths, 0 to 6
+    #[arg(long, value_name = "N", default_value = "2", value_parser = domain::precision, allow_negative_numbers = true)]
+    pub(super) precision: u8,
+    /// Colour behind the strokes: auto, none or #rrggbb; transparency is laid on it, or on white
+    #[arg(long, value_name = "COLOR", default_value = "auto", value_parser = domain::background)]
+    background: Background,
+    /// Key of every random draw: another seed, another drawing
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    pub(super) seed: u64,
+}
+
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Execution (never changes the result)")]
+pub(super) struct How {
+    /// Worker threads [default: all cores]
+    #[arg(long, value_name = "N", value_parser = domain::threads, allow_negative_numbers = true)]
+    threads: Option<usize>,
+    /// Instruction set: auto, avx512, avx2, sse4.2, sse2, neon or scalar
+    #[arg(long, value_name = "LEVEL", default_value = "auto")]
+    simd: Simd,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Preset {
+    /// Quick look
+    Draft,
+    /// The default
+    Balanced,
+    /// The last tenths of a dB
+    Best,
+}
+
+impl Options {
+    pub(super) fn config(&self) -> Config {
+        let look = &self.look;
+        Config {
+            budget: self.budget.limits(),
+            preset: look.preset.into(),
+            quality: look.quality,
+            progressive: look.progressive,
+            opaque: look.opaque,
+            coverage: look.coverage,
+            stages: look.stages,
+            polish: !look.no_polish,
+            precision: look.precision,
+            background: look.background,
+            seed: look.seed,
+            ..Config::default()
+        }
+    }
+
+    pub(super) fn execution(&self) -> Execution {
+        Execution {
+            threads: self.how.threads,
+            simd: self.how.simd,
+        }
+    }
+}
+
+impl Budget {
+    fn limits(&self) -> fit::Budget {
+        fit::Budget {
+            strokes: self.strokes,
+            psnr_db: self.psnr,
+            bytes: self.bytes,
+            time: self.time,
+        }
+    }
+}
+
+impl From<Preset> for fit::Preset {
+    fn from(preset: Preset) -> Self {
+        match preset {
+            Preset::Draft => Self::Draft,
+            Preset::Balanced => Self::Balanced,
+            Preset::Best => Self::Best,
+        }
+    }
+}
