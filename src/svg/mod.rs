@@ -45,7 +45,7 @@ mod read;
 mod write;
 
 pub use read::read;
-pub use write::{WriteOptions, stroke_bytes, write};
+pub use write::{WriteOptions, layers, stroke_bytes, write};
 
 #[cfg(test)]
 mod tests;

@@ -137,6 +137,23 @@ fn the_dialect_is_this() {
     assert_eq!(write(&sample(), &WriteOptions::default()), expected);
 }
 
+#[test]
+fn layers_are_the_document_without_its_head() {
+    let (text, layers) = (
+        write(&sample(), &WriteOptions::default()),
+        layers(&sample(), &WriteOptions::default(), 1),
+    );
+    assert!(layers.starts_with("<g id=\"stage-1\""));
+    assert!(text.ends_with(&(layers + "</svg>\n")));
+}
+
+#[test]
+fn layers_are_numbered_from_where_they_are_told() {
+    let layers = layers(&sample(), &WriteOptions::default(), 4);
+    let found = ["id=\"stage-4\"", "Stage 5: 2 strokes"].map(|text| layers.contains(text));
+    assert_eq!(found, [true; 2]);
+}
+
 fn refusal(text: &str) -> String {
     let error = read(text).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::Svg);

@@ -20,10 +20,18 @@ impl Default for WriteOptions {
 /// The scene as SVG text, as [`Scene::quantized`] would round it; what that drops is not written.
 pub fn write(scene: &Scene, options: &WriteOptions) -> String {
     let mut out = head(scene);
-    for (index, stage) in scene.stages.iter().enumerate() {
-        push_stage(&mut out, index + 1, stage, scene, options);
-    }
+    out.push_str(&layers(scene, options, 1));
     out.push_str("</svg>\n");
+    out
+}
+
+/// The layers of the scene alone, a line each for head, title, strokes and end, to be put into a document of
+/// the scene's size. They are numbered from `first`; `xmlns:inkscape` must be declared around them.
+pub fn layers(scene: &Scene, options: &WriteOptions, first: usize) -> String {
+    let mut out = String::new();
+    for (index, stage) in scene.stages.iter().enumerate() {
+        push_stage(&mut out, first + index, stage, scene, options);
+    }
     out
 }
 
