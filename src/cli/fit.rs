@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use anyhow::Result;
-use strokefit::fit;
+use strokefit::fit::Fitter;
 
 use super::job::Job;
 use super::options::Options;
@@ -33,14 +33,14 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
-    let (config, execution) = (args.options.config(), args.options.execution());
     let job = Job {
         input: &args.input,
         output: &args.output,
         report: args.report.as_deref(),
         options: &args.options,
     };
-    job.run(verbosity, |picture, observer| {
-        Ok(fit::fit(picture, &config, &execution, observer)?)
+    job.run(verbosity, &|picture, observer| {
+        let fitter = Fitter::new(args.options.config()).execution(args.options.execution());
+        Ok(fitter.observer(observer).fit(picture)?)
     })
 }

@@ -24,45 +24,6 @@ pub(super) struct Job<'a> {
     pub(super) options: &'a Options,
 }
 
-/// Where the results go, known to be writable.
-struct Outputs {
-    svg: Output,
-    report: Option<Output>,
-}
-
-impl Outputs {
-    fn open(job: &Job<'_>) -> Result<Self> {
-        let svg = Output::open(job.output)?;
-        let report = job.report.map(Output::open).transpose()?;
-        if report.as_ref() == Some(&svg) {
-            return Err(misuse(format!(
-                "{}: SVG and report cannot go to the same place: name another",
-                job.output.display()
-            )));
-        }
-        let outputs = Self { svg, report };
-        if !input::is_stdin(job.input) && outputs.all().any(|output| output.is(job.input)) {
-            return Err(misuse(format!(
-                "{}: would be overwritten: name another output",
-                job.input.display()
-            )));
-        }
-        Ok(outputs)
-    }
-
-    fn all(&self) -> impl Iterator<Item = &Output> {
-        [&self.svg].into_iter().chain(&self.report)
-    }
-}
-
-/// A drawing with its text and the judgement of it.
-struct Drawn {
-    fit: Fit,
-    text: String,
-    soft: Quality,
-    verdict: Verdict,
-}
-
 /// What draws a picture, telling the observer how it goes.
 type Draw<'a> = dyn Fn(&Image, &mut (dyn Observer + Send)) -> Result<Fit> + 'a;
 
@@ -156,17 +117,43 @@ impl Job<'_> {
     }
 }
 
-fn tell_stages(fit: &Fit, verbosity: Verbosity) {
-    for stage in &fit.stages {
-        verbosity.detail(format_args!(
-            "stage {}: {} strokes, {} iterations, {:.2} s, {:.2} dB",
-            stage.index,
-            stage.strokes,
-            stage.iterations,
-            stage.wall.as_secs_f64(),
-            stage.psnr_db
-        ));
+/// Where the results go, known to be writable.
+struct Outputs {
+    svg: Output,
+    report: Option<Output>,
+}
+
+impl Outputs {
+    fn open(job: &Job<'_>) -> Result<Self> {
+        let svg = Output::open(job.output)?;
+        let report = job.report.map(Output::open).transpose()?;
+        if report.as_ref() == Some(&svg) {
+            return Err(misuse(format!(
+                "{}: SVG and report cannot go to the same place: name another",
+                job.output.display()
+            )));
+        }
+        let outputs = Self { svg, report };
+        if !input::is_stdin(job.input) && outputs.all().any(|output| output.is(job.input)) {
+            return Err(misuse(format!(
+                "{}: would be overwritten: name another output",
+                job.input.display()
+            )));
+        }
+        Ok(outputs)
     }
+
+    fn all(&self) -> impl Iterator<Item = &Output> {
+        [&self.svg].into_iter().chain(&self.report)
+    }
+}
+
+/// A drawing with its text and the judgement of it.
+struct Drawn {
+    fit: Fit,
+    text: String,
+    soft: Quality,
+    verdict: Verdict,
 }
 
 impl Drawn {
@@ -180,6 +167,19 @@ impl Drawn {
             soft,
             verdict,
         })
+    }
+}
+
+fn tell_stages(fit: &Fit, verbosity: Verbosity) {
+    for stage in &fit.stages {
+        verbosity.detail(format_args!(
+            "stage {}: {} strokes, {} iterations, {:.2} s, {:.2} dB",
+            stage.index,
+            stage.strokes,
+            stage.iterations,
+            stage.wall.as_secs_f64(),
+            stage.psnr_db
+        ));
     }
 }
 
