@@ -1,4 +1,4 @@
-//! Pictures: planar `f32`, sRGB-encoded. The one door of the `image` crate.
+//! Pictures: planar `f32`, sRGB-encoded. The one door of the crates `image`, `gif` and `crc32fast`.
 //!
 //! PNG, JPEG, WebP, GIF and animated WebP (first frame), BMP and TIFF (first page) are read, 8 or
 //! 16 bit or float, grey or colour, with the orientation that EXIF asks for. Colours are taken as
@@ -12,7 +12,7 @@ mod header;
 use std::fmt;
 use std::path::Path;
 
-pub use animate::Animation;
+pub use animate::{Animation, AnimationFormat};
 pub use decode::Limits;
 
 use crate::error::{Error, ErrorKind, Result};

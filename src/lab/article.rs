@@ -23,7 +23,7 @@ use super::table::Table;
 use crate::coverage::{Coverage, CoverageSchedule};
 use crate::error::Result;
 use crate::fit::{Execution, Objective};
-use crate::image::Image;
+use crate::image::{Animation, AnimationFormat, Image};
 use crate::loss::Loss;
 use crate::optim::{Adam, AdamParams, Optimizer};
 use crate::render::{
@@ -212,7 +212,7 @@ pub fn run(
         None => Drawing::random(width, height, config.strokes, config.seed),
     };
     let mut descent = Descent::new(target, start, execution)?;
-    let mut film = Film::new(output)?;
+    let mut film = Film::new();
     let begin = Instant::now();
     for step in 0..config.iterations {
         let shown = step % config.every.max(1) == 0;
@@ -324,19 +324,15 @@ impl Row {
     }
 }
 
-type Gif = crate::image::Animation<std::io::BufWriter<std::fs::File>>;
-
-const FILMS: [&str; 2] = ["article.gif", "article-legend.gif"];
-
 /// The pictures so far.
 struct Film {
     table: Table,
-    plain: Gif,
-    legend: Gif,
+    plain: Animation,
+    legend: Animation,
 }
 
 impl Film {
-    fn new(output: &Output<'_>) -> Result<Self> {
+    fn new() -> Self {
         let head = [
             "iteration",
             "coverage",
@@ -347,24 +343,23 @@ impl Film {
             "deviation_of_radius",
             "wall_s",
         ];
-        Ok(Self {
+        Self {
             table: Table::new(&head),
-            plain: output.start_animation(FILMS[0], FRAME_MS)?,
-            legend: output.start_animation(FILMS[1], FRAME_MS)?,
-        })
+            plain: Animation::new(AnimationFormat::Gif),
+            legend: Animation::new(AnimationFormat::Gif),
+        }
     }
 
     fn push(&mut self, picture: &Image, row: &Row) -> Result<()> {
         self.table.row(row.cells());
-        self.plain.push(picture)?;
-        self.legend.push(&captioned(picture, &row.legend())?)
+        self.plain.push(picture, FRAME_MS)?;
+        self.legend
+            .push(&captioned(picture, &row.legend())?, FRAME_MS)
     }
 
     fn finish(self, output: &mut Output<'_>) -> Result<()> {
-        drop((self.plain, self.legend));
-        for film in FILMS {
-            output.finished(film);
-        }
+        output.bytes("article.gif", &self.plain.finish()?)?;
+        output.bytes("article-legend.gif", &self.legend.finish()?)?;
         output.text("article.csv", self.table.text())
     }
 }

@@ -1,11 +1,10 @@
 //! Where an experiment's files go, and who is told of them.
 
-use std::fs::{self, File};
-use std::io::BufWriter;
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::image::{Animation, Image};
+use crate::image::{Animation, AnimationFormat, Image};
 
 /// What an experiment is at.
 #[derive(Debug, Clone, Copy)]
@@ -70,36 +69,21 @@ impl<'a> Output<'a> {
         frame_ms: u32,
         frames: impl IntoIterator<Item = Result<Image>>,
     ) -> Result<()> {
-        let mut animation = self.start_animation(name, frame_ms)?;
+        let mut animation = Animation::new(AnimationFormat::Gif);
         for frame in frames {
-            animation.push(&frame?)?;
+            animation.push(&frame?, frame_ms)?;
         }
-        drop(animation);
-        self.finished(name);
-        Ok(())
+        self.bytes(name, &animation.finish()?)
     }
 
-    /// Starts an animated GIF for frames that come one by one; tell when it is
-    /// [finished](Self::finished).
+    /// Writes a file.
     ///
     /// # Errors
     /// [`ErrorKind::Io`] when it cannot be written.
-    pub fn start_animation(&self, name: &str, frame_ms: u32) -> Result<Animation<BufWriter<File>>> {
-        let path = self.dir.join(name);
-        let file = File::create(&path).map_err(|e| unwritten(&path, e))?;
-        Animation::new(BufWriter::new(file), frame_ms)
-    }
-
-    /// Tells that the file `name` is complete.
-    pub fn finished(&mut self, name: &str) {
-        let path = self.dir.join(name);
-        (self.tell)(Event::Wrote(&path));
-    }
-
-    fn bytes(&mut self, name: &str, bytes: &[u8]) -> Result<()> {
+    pub fn bytes(&mut self, name: &str, bytes: &[u8]) -> Result<()> {
         let path = self.dir.join(name);
         fs::write(&path, bytes).map_err(|e| unwritten(&path, e))?;
-        self.finished(name);
+        (self.tell)(Event::Wrote(&path));
         Ok(())
     }
 }

@@ -1,0 +1,270 @@
+//! Pictures one after another: animated GIF, PNG and WebP.
+//!
+//! Each frame but the first says only what changes: the rectangle around the pixels that differ from
+//! the frame before, transparent where they do not. GIF has at most 256 colours a frame; the others
+//! lose nothing.
+
+mod apng;
+mod gif;
+mod patch;
+mod webp;
+
+use ::image::ImageError;
+
+use super::Image;
+use crate::error::{Error, ErrorKind, Result};
+use patch::Patch;
+
+/// The format of an animation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AnimationFormat {
+    /// GIF: everywhere, 256 colours a frame.
+    Gif,
+    /// Animated PNG: lossless.
+    Apng,
+    /// Animated WebP: lossless, smaller than PNG.
+    Webp,
+}
+
+impl AnimationFormat {
+    /// Longest side that the format can say, px.
+    fn max_side(self) -> usize {
+        match self {
+            Self::Gif => usize::from(u16::MAX),
+            Self::Apng => i32::MAX as usize,
+            Self::Webp => 1 << 14,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Gif => "GIF",
+            Self::Apng => "PNG",
+            Self::Webp => "WebP",
+        }
+    }
+}
+
+/// What joins patches to a file.
+trait Encoder {
+    /// Appends a frame that is shown for `ms` milliseconds.
+    fn push(&mut self, patch: &Patch, ms: u32) -> Result<()>;
+
+    /// The file, complete.
+    fn finish(self: Box<Self>) -> Result<Vec<u8>>;
+}
+
+/// An animation under way. It repeats for ever.
+pub struct Animation {
+    format: AnimationFormat,
+    /// Made for the size of the first frame.
+    encoder: Option<Box<dyn Encoder + Send>>,
+    /// The frame before.
+    shown: Option<Image>,
+}
+
+impl Animation {
+    /// An animation without frames.
+    pub fn new(format: AnimationFormat) -> Self {
+        Self {
+            format,
+            encoder: None,
+            shown: None,
+        }
+    }
+
+    /// Appends a frame that is shown for `ms` milliseconds, which GIF rounds to hundredths of a second;
+    /// its alpha plays no part.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Picture`] when a side is longer than the format can say, or the frame is not as
+    /// large as the first.
+    pub fn push(&mut self, image: &Image, ms: u32) -> Result<()> {
+        self.check(image)?;
+        let patch = Patch::between(self.shown.as_ref(), image);
+        let encoder = match &mut self.encoder {
+            Some(encoder) => encoder,
+            None => self.encoder.insert(start(self.format, image)?),
+        };
+        encoder.push(&patch, ms)?;
+        self.shown = Some(image.clone());
+        Ok(())
+    }
+
+    /// The file.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Picture`] when there is no frame.
+    pub fn finish(self) -> Result<Vec<u8>> {
+        let Some(encoder) = self.encoder else {
+            let message = "an animation without frames: push one at least";
+            return Err(Error::new(ErrorKind::Picture, message));
+        };
+        encoder.finish()
+    }
+
+    fn check(&self, image: &Image) -> Result<()> {
+        let (width, height) = (image.width(), image.height());
+        let (name, most) = (self.format.name(), self.format.max_side());
+        let refused = |message| Err(Error::new(ErrorKind::Picture, message));
+        if width.max(height) > most {
+            return refused(format!(
+                "an animated {name} cannot be {width}×{height} px: at most {most} a side"
+            ));
+        }
+        match &self.shown {
+            Some(first) if (first.width(), first.height()) != (width, height) => refused(format!(
+                "a frame of {width}×{height} px in an animation of {}×{}: make them equal",
+                first.width(),
+                first.height()
+            )),
+            _ => Ok(()),
+        }
+    }
+}
+
+fn start(format: AnimationFormat, first: &Image) -> Result<Box<dyn Encoder + Send>> {
+    // Sides are known to fit.
+    let (width, height) = (first.width() as u32, first.height() as u32);
+    Ok(match format {
+        AnimationFormat::Gif => Box::new(gif::Gif::new(width, height)?),
+        AnimationFormat::Apng => Box::new(apng::Apng::new(width, height)),
+        AnimationFormat::Webp => Box::new(webp::Webp::new(width, height)),
+    })
+}
+
+/// A frame that cannot be encoded.
+fn unencoded(name: &str, cause: ImageError) -> Error {
+    let message = format!("cannot encode a frame as {name}: {cause}");
+    Error::new(ErrorKind::Picture, message).caused_by(cause)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Cursor;
+
+    use ::image::codecs::gif::GifDecoder;
+    use ::image::codecs::png::PngDecoder;
+    use ::image::codecs::webp::WebPDecoder;
+    use ::image::{AnimationDecoder, Frame};
+
+    use super::*;
+
+    const ALL: [AnimationFormat; 3] = [
+        AnimationFormat::Gif,
+        AnimationFormat::Apng,
+        AnimationFormat::Webp,
+    ];
+
+    /// Frames of `width`×`height` px in which a bar grows by a column of its own colour.
+    fn film(width: usize, height: usize) -> Vec<Image> {
+        let frame = |k: usize| {
+            let level = move |i: usize, c: usize| {
+                let x = i % width;
+                let here = (1..k).contains(&x) && i / width > 0;
+                if here { (x * 40 + c * 70) % 256 } else { 255 }
+            };
+            let plane = |c: usize| (0..width * height).map(move |i| level(i, c) as f32 / 255.0);
+            Image::new(width, height, [0, 1, 2].map(|c| plane(c).collect())).unwrap()
+        };
+        // The same frame twice, too.
+        [0, 2, 3, 3, width - 1].map(frame).to_vec()
+    }
+
+    fn encoded(format: AnimationFormat, frames: &[Image]) -> Vec<u8> {
+        let mut animation = Animation::new(format);
+        for frame in frames {
+            animation.push(frame, 80).unwrap();
+        }
+        animation.finish().unwrap()
+    }
+
+    fn decoded(format: AnimationFormat, bytes: &[u8]) -> Vec<Frame> {
+        let bytes = Cursor::new(bytes);
+        let frames = match format {
+            AnimationFormat::Gif => GifDecoder::new(bytes).unwrap().into_frames(),
+            AnimationFormat::Apng => {
+                let decoder = PngDecoder::new(bytes).unwrap();
+                decoder.apng().unwrap().into_frames()
+            }
+            AnimationFormat::Webp => WebPDecoder::new(bytes).unwrap().into_frames(),
+        };
+        frames.collect_frames().unwrap()
+    }
+
+    #[test]
+    fn all_frames_come_back() {
+        for format in ALL {
+            for (width, height) in [(9, 4), (6, 7)] {
+                let film = film(width, height);
+                let frames = decoded(format, &encoded(format, &film));
+                assert_eq!(frames.len(), film.len(), "{format:?}");
+                for (frame, image) in frames.iter().zip(&film) {
+                    let rgb: Vec<u8> = frame
+                        .buffer()
+                        .pixels()
+                        .flat_map(|p| [p.0[0], p.0[1], p.0[2]])
+                        .collect();
+                    assert!(frame.buffer().pixels().all(|p| p.0[3] == 255), "{format:?}");
+                    assert_eq!(rgb, image.to_rgb8(), "{format:?}");
+                    assert_eq!(frame.delay().numer_denom_ms(), (80, 1), "{format:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_small_change_takes_few_bytes() {
+        let noise = |i: usize| (i.wrapping_mul(2_654_435_761) >> 7) % 256;
+        let plane: Vec<f32> = (0..64 * 64).map(|i| noise(i) as f32 / 255.0).collect();
+        let first = Image::new(64, 64, [plane.clone(), plane.clone(), plane.clone()]).unwrap();
+        let mut changed = plane.clone();
+        changed[2000] = 1.0 - changed[2000].round();
+        let second = Image::new(64, 64, [changed, plane.clone(), plane]).unwrap();
+        for format in ALL {
+            let still = encoded(format, std::slice::from_ref(&first)).len();
+            let moving = encoded(format, &[first.clone(), second.clone()]).len();
+            assert!(moving < still + 200, "{format:?}: {still}, {moving}");
+        }
+    }
+
+    #[test]
+    fn they_repeat_for_ever() {
+        let film = film(5, 4);
+        let gif = encoded(AnimationFormat::Gif, &film);
+        assert!(gif.windows(14).any(|w| w == b"NETSCAPE2.0\x03\x01\x00"));
+        let png = encoded(AnimationFormat::Apng, &film);
+        assert!(png.windows(12).any(|w| w == b"acTL\0\0\0\x05\0\0\0\0"));
+        let webp = encoded(AnimationFormat::Webp, &film);
+        let anim = webp.windows(4).position(|w| w == b"ANIM").unwrap();
+        assert_eq!(webp[anim + 12..anim + 14], [0, 0]);
+    }
+
+    #[test]
+    fn what_the_format_cannot_say_is_refused() {
+        for (format, side) in [
+            (AnimationFormat::Gif, 70_000),
+            (AnimationFormat::Webp, 16_385),
+        ] {
+            let wide = Image::filled(side, 1, [0.0; 3]).unwrap();
+            let error = Animation::new(format).push(&wide, 40).unwrap_err();
+            assert_eq!(error.kind(), ErrorKind::Picture);
+            assert!(error.to_string().contains(&side.to_string()), "{error}");
+        }
+    }
+
+    #[test]
+    fn frames_of_two_sizes_are_refused() {
+        let mut animation = Animation::new(AnimationFormat::Apng);
+        animation
+            .push(&Image::filled(3, 2, [0.0; 3]).unwrap(), 40)
+            .unwrap();
+        let other = Image::filled(2, 3, [0.0; 3]).unwrap();
+        assert!(animation.push(&other, 40).is_err());
+    }
+
+    #[test]
+    fn no_frames_make_no_file() {
+        assert!(Animation::new(AnimationFormat::Gif).finish().is_err());
+    }
+}
