@@ -68,15 +68,25 @@ fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
-/// One line that holds all of `words`, the exit status, and no new file.
+/// A line of error and perhaps one of advice that hold all of `words`, the exit status, and no new file.
 #[track_caller]
 fn assert_refused(place: &Place, args: &[&str], status: i32, words: &[&str]) {
     let before = place.names();
     let output = place.run(args);
     let line = stderr(&output);
     assert_eq!(output.status.code(), Some(status), "{args:?}: {line}");
-    assert_eq!(line.trim_end().lines().count(), 1, "{args:?}: {line}");
-    assert!(line.starts_with("error: "), "{args:?}: {line}");
+    let mut lines = line.lines();
+    assert!(
+        lines
+            .next()
+            .is_some_and(|first| first.starts_with("error: ")),
+        "{args:?}: {line}"
+    );
+    assert!(
+        lines.all(|other| other.starts_with("hint: ")),
+        "{args:?}: {line}"
+    );
+    assert!(line.lines().count() <= 2, "{args:?}: {line}");
     for word in words {
         assert!(
             line.contains(word),

@@ -1,15 +1,15 @@
-//! `strokefit fit`: a picture in, a verified SVG out.
+//! `strokefit fit`: pictures in, verified SVGs out.
 
 use std::path::PathBuf;
 
 use anyhow::Result;
 use strokefit::fit::Fitter;
 
-use super::job::Job;
+use super::batch;
 use super::options::Options;
 use super::{Status, Verbosity};
 
-/// Draw a picture with strokes
+/// Draw pictures with strokes
 ///
 /// The SVG has one layer per stage, from large strokes to small. Equal pictures and options give
 /// equal bytes, on any number of threads.
@@ -18,14 +18,18 @@ use super::{Status, Verbosity};
   strokefit fit photo.jpg -o photo.svg
   strokefit fit photo.jpg -o photo.svg --preset best --strokes 5000 --report photo.json
   strokefit fit logo.png -o logo.svg --opaque --background none --bytes 20000
+  strokefit fit *.jpg -o 'out/{stem}.svg' --psnr 30        one SVG for each picture
+  strokefit fit --psnr 32 --opaque --print-config > fit.toml
+  strokefit fit photo.jpg -o photo.svg --config fit.toml --seed 7
   curl -s https://example.org/a.png | strokefit fit - -o - --psnr 30 > a.svg")]
 pub(super) struct Args {
-    /// PNG, JPEG, WebP, GIF (first frame), BMP or TIFF picture; - for standard input
-    input: PathBuf,
-    /// The SVG to write; - for standard output
+    /// PNG, JPEG, WebP, GIF (first frame), BMP or TIFF pictures; - for standard input
+    #[arg(required = true, value_name = "INPUT")]
+    inputs: Vec<PathBuf>,
+    /// The SVG to write; - for standard output; {stem} stands for the picture's name without extension
     #[arg(short, long, value_name = "OUT.svg")]
     output: PathBuf,
-    /// Write what was done as JSON; - for standard output
+    /// Write what was done as JSON; - for standard output; {stem} as above
     #[arg(long, value_name = "R.json")]
     report: Option<PathBuf>,
     #[command(flatten)]
@@ -33,14 +37,10 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
-    let job = Job {
-        input: &args.input,
-        output: &args.output,
-        report: args.report.as_deref(),
-        options: &args.options,
-    };
-    job.run(verbosity, &|picture, observer| {
-        let fitter = Fitter::new(args.options.config()).execution(args.options.execution());
+    let options = &args.options;
+    let jobs = batch::jobs(&args.inputs, &args.output, args.report.as_deref(), options)?;
+    batch::run(&jobs, verbosity, &|picture, observer| {
+        let fitter = Fitter::new(options.config()).execution(options.execution());
         Ok(fitter.observer(observer).fit(picture)?)
     })
 }

@@ -7,6 +7,8 @@ use std::path::Path;
 use anyhow::{Result, anyhow};
 use strokefit::image::{Image, Limits};
 
+use super::hint;
+
 const STDIN: &str = "-";
 
 /// Whether the argument means standard input.
@@ -26,7 +28,7 @@ pub(super) fn name(path: &Path) -> String {
 /// Reads a picture.
 pub(super) fn picture(path: &Path) -> Result<Image> {
     if !is_stdin(path) {
-        return Ok(Image::open(path)?);
+        return Image::open(path).map_err(|e| hint::or_neighbour(e.into(), path));
     }
     let limits = Limits::default();
     let bytes = read(path, limits.max_bytes)?;
@@ -35,21 +37,24 @@ pub(super) fn picture(path: &Path) -> Result<Image> {
 
 /// Reads an SVG file.
 pub(super) fn svg(path: &Path) -> Result<String> {
+    text(path, "an SVG file")
+}
+
+/// Reads a text file; `kind` says what it should be.
+pub(super) fn text(path: &Path, kind: &str) -> Result<String> {
     let limit = Limits::default().max_bytes;
     let bytes = read(path, limit)?;
     let name = name(path);
     if bytes.is_empty() {
-        return Err(anyhow!("{name}: the file is empty: give an SVG file"));
+        return Err(anyhow!("{name}: the file is empty: give {kind}"));
     }
     if bytes.len() as u64 > limit {
+        let most = limit >> 20;
         return Err(anyhow!(
-            "{name}: the file is longer than {} MiB: give a smaller SVG",
-            limit >> 20
+            "{name}: the file is longer than {most} MiB: give {kind} of less"
         ));
     }
-    String::from_utf8(bytes).map_err(|_| {
-        anyhow!("{name}: not UTF-8 text, so no SVG that can be read: give a plain .svg file")
-    })
+    String::from_utf8(bytes).map_err(|_| anyhow!("{name}: not UTF-8 text: give {kind}"))
 }
 
 /// All bytes, but no more than one beyond `limit`.
@@ -63,9 +68,18 @@ fn read(path: &Path, limit: u64) -> Result<Vec<u8>> {
     };
     match outcome {
         Ok(_) => Ok(bytes),
-        Err(e) => Err(anyhow!(
-            "{}: cannot be read ({e}): check the name and its permissions",
-            name(path)
-        )),
+        Err(error) => Err(hint::or_neighbour(unreadable(path, &error), path)),
+    }
+}
+
+fn unreadable(path: &Path, error: &io::Error) -> anyhow::Error {
+    let name = name(path);
+    match error.kind() {
+        io::ErrorKind::NotFound => anyhow!("{name}: no such file: check the name"),
+        io::ErrorKind::PermissionDenied => {
+            anyhow!("{name}: permission denied: make the file readable")
+        }
+        io::ErrorKind::IsADirectory => anyhow!("{name}: is a directory: name a file in it"),
+        _ => anyhow!("{name}: cannot be read ({error}): check the file"),
     }
 }

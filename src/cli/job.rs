@@ -1,54 +1,82 @@
 //! One drawing from start to end: read, fit, write, verify, report.
 
-use std::path::Path;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::Result;
-use strokefit::fit::{Fit, Observer};
+use strokefit::fit::{Fit, Observer, Progress};
 use strokefit::image::Image;
 use strokefit::metrics::Quality;
-use strokefit::report::{self, FitReport, Input, StageEntry, Usage};
+use strokefit::report::{self, Event, FitReport, Input, StageEntry, Usage};
 use strokefit::svg::{self, WriteOptions};
 use strokefit::verify::{self, MIN_AGREEMENT_DB, Verdict};
 
+use super::events::{Events, Phases};
 use super::options::Options;
 use super::output::{self, Output};
 use super::progress::Bar;
-use super::{Status, Verbosity, complain, input, misuse};
+use super::{Status, Verbosity, complain, input};
 
 /// What to draw, and where the results go.
 pub(super) struct Job<'a> {
     pub(super) input: &'a Path,
-    pub(super) output: &'a Path,
-    pub(super) report: Option<&'a Path>,
+    pub(super) output: PathBuf,
+    pub(super) report: Option<PathBuf>,
     pub(super) options: &'a Options,
 }
 
 /// What draws a picture, telling the observer how it goes.
-type Draw<'a> = dyn Fn(&Image, &mut (dyn Observer + Send)) -> Result<Fit> + 'a;
+pub(super) type Draw<'a> = dyn Fn(&Image, &mut (dyn Observer + Send)) -> Result<Fit> + 'a;
 
 impl Job<'_> {
-    /// Draws, and says on standard error how it went.
-    pub(super) fn run(&self, verbosity: Verbosity, draw: &Draw<'_>) -> Result<Status> {
+    /// Draws and writes; the bar begins with `heading`.
+    pub(super) fn run(
+        &self,
+        outputs: &Outputs,
+        events: &mut Events,
+        heading: String,
+        verbosity: Verbosity,
+        draw: &Draw<'_>,
+    ) -> Result<Drawn> {
         let start = Instant::now();
         let picture = input::picture(self.input)?;
-        let outputs = Outputs::open(self)?;
-        let mut bar = Bar::new(verbosity.quiet);
-        let fit = draw(&picture, &mut bar);
-        bar.clear();
-        let fit = fit?;
+        let input = Input::new(self.input.display().to_string(), &picture);
+        events.tell(&Event::Start { input });
+        let fit = self.watched(&picture, events, Bar::new(verbosity.quiet, heading), draw)?;
         tell_stages(&fit, verbosity);
-        let drawn = Drawn::new(fit, self.options.look.precision)?;
+        let mut drawn = Drawn::new(fit, self.options.look.precision)?;
         outputs.svg.write(drawn.text.as_bytes())?;
-        let wall = start.elapsed();
+        drawn.wall = start.elapsed();
+        let record = self.record(&drawn);
         if let Some(output) = &outputs.report {
-            output.write(&json(&self.record(&drawn, wall))?)?;
+            output.write(&json(&record)?)?;
         }
-        verbosity.say(self.summary(&drawn, wall));
-        Ok(self.judge(&drawn))
+        events.tell(&Event::Done(Box::new(record)));
+        Ok(drawn)
     }
 
-    fn record(&self, drawn: &Drawn, wall: Duration) -> FitReport {
+    /// Draws, showing and telling how it goes.
+    fn watched(
+        &self,
+        picture: &Image,
+        events: &mut Events,
+        mut bar: Bar,
+        draw: &Draw<'_>,
+    ) -> Result<Fit> {
+        let mut phases = Phases::new(events, self.input.display().to_string());
+        let mut observer = |progress: &Progress<'_>| {
+            bar.show(progress);
+            phases.watch(progress);
+            ControlFlow::Continue(())
+        };
+        let fit = draw(picture, &mut observer);
+        phases.end();
+        bar.clear();
+        fit
+    }
+
+    fn record(&self, drawn: &Drawn) -> FitReport {
         let Usage {
             cpu_s,
             peak_rss_bytes,
@@ -60,7 +88,7 @@ impl Job<'_> {
             dropped: drawn.fit.dropped,
             stages: drawn.fit.stages.iter().map(StageEntry::from).collect(),
             svg_bytes: drawn.text.len(),
-            wall_s: wall.as_secs_f64(),
+            wall_s: drawn.wall.as_secs_f64(),
             cpu_s,
             peak_rss_bytes,
             stop: report::stop_word(drawn.fit.stop).into(),
@@ -71,23 +99,25 @@ impl Job<'_> {
         }
     }
 
-    fn summary(&self, drawn: &Drawn, wall: Duration) -> String {
+    /// How it went, in a line.
+    pub(super) fn summary(&self, drawn: &Drawn) -> String {
         format!(
             "{}: {} strokes, {} bytes, {:.2} s, fidelity {:.2} dB, agreement {:.2} dB",
-            output::name(self.output),
+            output::name(&self.output),
             drawn.fit.scene.len(),
             drawn.text.len(),
-            wall.as_secs_f64(),
+            drawn.wall.as_secs_f64(),
             drawn.verdict.fidelity.psnr_db,
             drawn.verdict.agreement.psnr_db,
         )
     }
 
     /// The status of a drawing that was written. What is short of the promise is said even when quiet.
-    fn judge(&self, drawn: &Drawn) -> Status {
+    pub(super) fn judge(&self, drawn: &Drawn) -> Status {
+        let name = output::name(&self.output);
         if !drawn.verdict.agrees() {
             complain(format_args!(
-                "fidelity check failed: resvg draws the file {:.2} dB from what was fitted, the bound is {MIN_AGREEMENT_DB} dB: \
+                "{name}: fidelity check failed: resvg draws the file {:.2} dB from what was fitted, the bound is {MIN_AGREEMENT_DB} dB: \
                  the file was kept; try --opaque or a higher --precision",
                 drawn.verdict.agreement.psnr_db
             ));
@@ -97,7 +127,7 @@ impl Job<'_> {
         if let Some(wanted) = self.options.budget.psnr.filter(|wanted| reached < *wanted) {
             let stop = report::stop_word(drawn.fit.stop);
             complain(format_args!(
-                "target not reached: {reached:.2} dB of {wanted} (stopped by: {stop}): allow more strokes, bytes or time"
+                "{name}: target not reached: {reached:.2} dB of {wanted} (stopped by: {stop}): allow more strokes, bytes or time"
             ));
             return Status::TargetMissed;
         }
@@ -108,7 +138,7 @@ impl Job<'_> {
             .filter(|most| drawn.text.len() > *most)
         {
             complain(format_args!(
-                "target not reached: {} bytes, more than {most}: allow more",
+                "{name}: target not reached: {} bytes, more than {most}: allow more",
                 drawn.text.len()
             ));
             return Status::TargetMissed;
@@ -118,42 +148,28 @@ impl Job<'_> {
 }
 
 /// Where the results go, known to be writable.
-struct Outputs {
-    svg: Output,
-    report: Option<Output>,
+pub(super) struct Outputs {
+    pub(super) svg: Output,
+    pub(super) report: Option<Output>,
 }
 
 impl Outputs {
-    fn open(job: &Job<'_>) -> Result<Self> {
-        let svg = Output::open(job.output)?;
-        let report = job.report.map(Output::open).transpose()?;
-        if report.as_ref() == Some(&svg) {
-            return Err(misuse(format!(
-                "{}: SVG and report cannot go to the same place: name another",
-                job.output.display()
-            )));
-        }
-        let outputs = Self { svg, report };
-        if !input::is_stdin(job.input) && outputs.all().any(|output| output.is(job.input)) {
-            return Err(misuse(format!(
-                "{}: would be overwritten: name another output",
-                job.input.display()
-            )));
-        }
-        Ok(outputs)
-    }
-
-    fn all(&self) -> impl Iterator<Item = &Output> {
-        [&self.svg].into_iter().chain(&self.report)
+    pub(super) fn open(job: &Job<'_>) -> Result<Self> {
+        Ok(Self {
+            svg: Output::open(&job.output)?,
+            report: job.report.as_deref().map(Output::open).transpose()?,
+        })
     }
 }
 
 /// A drawing with its text and the judgement of it.
-struct Drawn {
-    fit: Fit,
-    text: String,
+pub(super) struct Drawn {
+    pub(super) fit: Fit,
+    pub(super) text: String,
     soft: Quality,
-    verdict: Verdict,
+    pub(super) verdict: Verdict,
+    /// From the start of the job until the SVG is written.
+    pub(super) wall: Duration,
 }
 
 impl Drawn {
@@ -166,6 +182,7 @@ impl Drawn {
             text,
             soft,
             verdict,
+            wall: Duration::ZERO,
         })
     }
 }

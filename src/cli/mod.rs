@@ -1,15 +1,20 @@
 //! Arguments, subcommands and exit statuses.
 
+mod batch;
 mod check;
 mod domain;
+mod events;
 mod fit;
+mod hint;
 mod input;
 mod job;
 mod lab;
+mod manual;
 mod options;
 mod output;
 mod progress;
 mod render;
+mod settings;
 mod usage;
 
 use std::fmt::Display;
@@ -18,6 +23,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+use hint::Hint;
 pub(crate) use usage::parse;
 
 /// Turns a raster picture into an editable SVG made of strokes.
@@ -40,6 +46,8 @@ enum Command {
     Check(check::Args),
     Render(render::Args),
     Lab(lab::Args),
+    Completions(manual::Completions),
+    Man(manual::Man),
 }
 
 const EXAMPLES: &str = "Examples:
@@ -101,6 +109,25 @@ pub(crate) enum Status {
     Disagrees = 4,
 }
 
+impl Status {
+    /// The worse of two.
+    fn or_worse(self, other: Self) -> Self {
+        let order = [
+            Self::Done,
+            Self::TargetMissed,
+            Self::Disagrees,
+            Self::Usage,
+            Self::Failed,
+        ];
+        let rank = |status| order.iter().position(|&s| s == status);
+        if rank(other) > rank(self) {
+            other
+        } else {
+            self
+        }
+    }
+}
+
 impl From<Status> for ExitCode {
     fn from(status: Status) -> Self {
         Self::from(status as u8)
@@ -114,12 +141,18 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Status> {
         Command::Check(check) => check::run(check),
         Command::Render(render) => render::run(render),
         Command::Lab(lab) => lab::run(lab, args.verbosity),
+        Command::Completions(completions) => manual::complete(completions),
+        Command::Man(man) => manual::man(man, args.verbosity),
     }
 }
 
-/// Says what went wrong, in one line.
+/// Says what went wrong in one line, and what to do in another where there is advice.
 pub(crate) fn fail(error: &anyhow::Error) -> Status {
-    complain(format_args!("error: {error}"));
+    let (wrong, hint) = Hint::split(error);
+    complain(format_args!("error: {wrong}"));
+    if let Some(hint) = hint {
+        complain(format_args!("hint: {hint}"));
+    }
     match error.downcast_ref::<strokefit::Error>() {
         Some(error) if error.kind() == strokefit::ErrorKind::Config => Status::Usage,
         _ => Status::Failed,

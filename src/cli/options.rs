@@ -1,5 +1,6 @@
 //! What to draw and how to run, as the commands that draw share it.
 
+use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::ValueEnum;
@@ -11,6 +12,10 @@ use super::domain;
 /// The options of a command that draws.
 #[derive(Debug, clap::Args)]
 pub(super) struct Options {
+    /// Write what happens as it happens, one JSON object a line: each stage, then the report; - for
+    /// standard output
+    #[arg(long, value_name = "E.jsonl")]
+    pub(super) events: Option<PathBuf>,
     #[command(flatten)]
     pub(super) budget: Budget,
     #[command(flatten)]

@@ -39,8 +39,7 @@ impl Output {
     }
 
     fn locate(path: &Path) -> io::Result<Self> {
-        // A link stays a link to the new file.
-        let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        let path = canonical(path);
         match fs::metadata(&path) {
             Ok(found) if found.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
             Ok(found) if !found.is_file() => Ok(Self::Device(path)),
@@ -87,6 +86,24 @@ impl Output {
     }
 }
 
+/// One name for each file, so that two outputs can be compared; a link stays a link to the new file.
+fn canonical(path: &Path) -> PathBuf {
+    let beside = || {
+        let folder = fs::canonicalize(folder(path)).ok()?;
+        Some(folder.join(path.file_name()?))
+    };
+    fs::canonicalize(path)
+        .ok()
+        .or_else(beside)
+        .unwrap_or_else(|| path.to_owned())
+}
+
+fn folder(path: &Path) -> &Path {
+    path.parent()
+        .filter(|p| !p.as_os_str().is_empty())
+        .unwrap_or(Path::new("."))
+}
+
 fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut file = temporary(path)?;
     file.write_all(bytes)?;
@@ -99,10 +116,6 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
 
 /// A file without the final name in the final folder, gone when dropped.
 fn temporary(path: &Path) -> io::Result<tempfile::NamedTempFile> {
-    let folder = path
-        .parent()
-        .filter(|p| !p.as_os_str().is_empty())
-        .unwrap_or(Path::new("."));
     if path.file_name().is_none() {
         return Err(io::ErrorKind::InvalidFilename.into());
     }
@@ -114,7 +127,7 @@ fn temporary(path: &Path) -> io::Result<tempfile::NamedTempFile> {
         // As any new file: the umask takes its share.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    builder.tempfile_in(folder)
+    builder.tempfile_in(folder(path))
 }
 
 fn unwritable(path: &Path, error: &io::Error) -> anyhow::Error {

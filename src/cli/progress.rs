@@ -1,28 +1,81 @@
 //! A bar with an estimate of the time left, on a terminal only.
 
 use std::io::{self, IsTerminal};
-use std::ops::ControlFlow;
+use std::time::Instant;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use strokefit::fit::{Observer, Progress};
+use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressStyle};
+use strokefit::fit::Progress;
 
 /// Steps of the bar.
 const STEPS: u64 = 1000;
 
 /// Shows the progress of a fit on standard error, or nothing where that is no terminal.
-pub(super) struct Bar(ProgressBar);
+pub(super) struct Bar {
+    bar: ProgressBar,
+    started: Instant,
+    /// Strokes moved so far, each once an iteration.
+    moves: u64,
+}
 
 impl Bar {
+    /// A bar that begins with `heading`.
+    pub(super) fn new(quiet: bool, heading: String) -> Self {
+        Self {
+            bar: bar(quiet).with_prefix(heading),
+            started: Instant::now(),
+            moves: 0,
+        }
+    }
+
+    /// Shows how far the fit has come.
+    pub(super) fn show(&mut self, progress: &Progress<'_>) {
+        if !self.bar.is_hidden() {
+            self.moves += progress.strokes as u64;
+            self.bar.set_position(position(progress.done));
+            self.bar.set_message(self.caption(progress));
+        }
+    }
+
+    /// Takes the bar off the screen.
+    pub(super) fn clear(&self) {
+        self.bar.finish_and_clear();
+    }
+
+    /// Where the fit stands, and how fast it goes.
+    fn caption(&self, progress: &Progress<'_>) -> String {
+        let Progress {
+            strokes, psnr_db, ..
+        } = *progress;
+        let rate = self.moves as f64 / self.started.elapsed().as_secs_f64().max(1e-3);
+        let (place, rate) = (place(progress), HumanCount(rate as u64));
+        format!("{place}, {strokes} strokes, {psnr_db:.2} dB, {rate} moves/s")
+    }
+}
+
+fn bar(quiet: bool) -> ProgressBar {
+    if quiet || !io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::with_draw_target(Some(STEPS), ProgressDrawTarget::stderr());
+    let template = "{prefix}{bar:24} {percent:>3} %  {msg}  {elapsed} gone, {eta} to go";
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style.progress_chars("━━╌"));
+    }
+    bar
+}
+
+/// Shows how far a sequence of named steps has come, where standard error is a terminal.
+pub(super) struct Steps(ProgressBar);
+
+impl Steps {
     pub(super) fn new(quiet: bool) -> Self {
-        if quiet || !io::stderr().is_terminal() {
-            return Self(ProgressBar::hidden());
-        }
-        let bar = ProgressBar::with_draw_target(Some(STEPS), ProgressDrawTarget::stderr());
-        let template = "{bar:24} {percent:>3} %  {msg}  {elapsed} gone, {eta} to go";
-        if let Ok(style) = ProgressStyle::with_template(template) {
-            bar.set_style(style.progress_chars("━━╌"));
-        }
-        Self(bar)
+        Self(bar(quiet))
+    }
+
+    /// `what` is under way, and a part `done` (0..1) of all is behind it.
+    pub(super) fn show(&self, done: f64, what: &str) {
+        self.0.set_position(position(done));
+        self.0.set_message(what.to_owned());
     }
 
     /// Takes the bar off the screen.
@@ -31,48 +84,16 @@ impl Bar {
     }
 }
 
-/// Shows how far a sequence of named steps has come, where standard error is a terminal.
-pub(super) struct Steps(Bar);
-
-impl Steps {
-    pub(super) fn new(quiet: bool) -> Self {
-        Self(Bar::new(quiet))
-    }
-
-    /// `what` is under way, and a part `done` (0..1) of all is behind it.
-    pub(super) fn show(&self, done: f64, what: &str) {
-        let Self(Bar(bar)) = self;
-        bar.set_position((done.clamp(0.0, 1.0) * STEPS as f64) as u64);
-        bar.set_message(what.to_owned());
-    }
-
-    /// Takes the bar off the screen.
-    pub(super) fn clear(&self) {
-        self.0.clear();
-    }
+fn position(done: f64) -> u64 {
+    (done.clamp(0.0, 1.0) * STEPS as f64) as u64
 }
 
-impl Observer for Bar {
-    fn observe(&mut self, progress: &Progress<'_>) -> ControlFlow<()> {
-        self.0
-            .set_position((progress.done.clamp(0.0, 1.0) * STEPS as f64) as u64);
-        self.0.set_message(caption(progress));
-        ControlFlow::Continue(())
+/// The part of the fit that is under way; how many stages there will be is not always planned.
+fn place(progress: &Progress<'_>) -> String {
+    let Progress { stage, stages, .. } = *progress;
+    match stages {
+        _ if progress.polishing => "polish".into(),
+        0 => format!("stage {stage}"),
+        _ => format!("stage {stage} of {stages}"),
     }
-}
-
-fn caption(progress: &Progress<'_>) -> String {
-    let Progress {
-        stage,
-        stages,
-        strokes,
-        psnr_db,
-        ..
-    } = *progress;
-    let place = if stage > stages {
-        "polish".into()
-    } else {
-        format!("stage {stage} of {stages}")
-    };
-    format!("{place}, {strokes} strokes, {psnr_db:.2} dB")
 }

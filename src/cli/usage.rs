@@ -1,58 +1,168 @@
-//! Parsing of the arguments, with refusals of one line.
+//! Parsing of the arguments: help that begins with examples, refusals of one line and a hint.
 
-use clap::Parser;
-use clap::error::ErrorKind;
+use std::env;
+use std::ffi::OsString;
+use std::path::Path;
 
-use super::{Args, Status, complain};
+use anyhow::Result;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{Command, CommandFactory, FromArgMatches};
 
-/// The arguments of the process, or the status to leave with: help was shown, or a line of error.
-pub(crate) fn parse() -> Result<Args, Status> {
-    Args::try_parse().map_err(|error| {
-        // Called without any argument: clap prints the help on standard error.
-        let asks = error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
-        if error.use_stderr() && !asks {
-            complain(one_line(&error.to_string()));
-            return Status::Usage;
-        }
-        match error.print() {
-            Ok(()) if asks => Status::Usage,
-            Ok(()) => Status::Done,
-            Err(_) => Status::Failed,
-        }
+use super::hint::Hint;
+use super::output::Output;
+use super::{Args, Status, fail, misuse, settings};
+
+/// Examples come before the list of options.
+const TEMPLATE: &str = "{about}{after-help}\n\n{usage-heading} {usage}\n\n{all-args}";
+
+/// The whole command line.
+pub(super) fn command() -> Command {
+    let command = Args::command().help_template(TEMPLATE);
+    command.mut_subcommands(|sub| {
+        settings::offer(sub)
+            .help_template(TEMPLATE)
+            .mut_subcommands(|sub| sub.help_template(TEMPLATE))
     })
 }
 
-/// The gist of clap's message: what is wrong and its tips, without the reminder of the usage.
-fn one_line(message: &str) -> String {
-    let paragraphs = message
+/// The arguments of the process, or the status to leave with: help was shown, or an error.
+pub(crate) fn parse() -> Result<Args, Status> {
+    match understand(env::args_os().collect()) {
+        Ok(Understood::Run(args)) => Ok(args),
+        Ok(Understood::Print(text)) => Err(match Output::Stdout.write(text.as_bytes()) {
+            Ok(()) => Status::Done,
+            Err(error) => fail(&error),
+        }),
+        Err(error) => Err(refuse(&error)),
+    }
+}
+
+/// What the arguments ask for.
+enum Understood {
+    Run(Args),
+    /// The options as a file.
+    Print(String),
+}
+
+fn understand(args: Vec<OsString>) -> Result<Understood> {
+    let command = command();
+    let args = settings::expand(&command, args)?;
+    if let Some(text) = settings::printed(&command, &args)? {
+        return Ok(Understood::Print(text));
+    }
+    let matches = command.try_get_matches_from(args)?;
+    Ok(Understood::Run(Args::from_arg_matches(&matches)?))
+}
+
+/// Says what is wrong with the arguments, or shows the help that they ask for.
+fn refuse(error: &anyhow::Error) -> Status {
+    let Some(error) = error.downcast_ref::<clap::Error>() else {
+        return fail(error);
+    };
+    // Called without any argument: clap prints the help on standard error.
+    let asks = error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
+    if error.use_stderr() && !asks {
+        let (wrong, advice) = told(error);
+        return fail(&Hint::on(misuse(wrong), advice));
+    }
+    match error.print() {
+        Ok(()) if asks => Status::Usage,
+        Ok(()) => Status::Done,
+        Err(_) => Status::Failed,
+    }
+}
+
+/// What clap says is wrong, in one line, and what it advises or where to read on.
+pub(super) fn told(error: &clap::Error) -> (String, String) {
+    let message = error.to_string();
+    let paragraphs: Vec<String> = message
         .split("\n\n")
-        .map(|p| p.split_whitespace().collect::<Vec<_>>().join(" "));
-    let telling = paragraphs
-        .filter(|p| !p.is_empty() && !p.starts_with("Usage:") && !p.starts_with("For more"));
-    let mut line = telling.collect::<Vec<_>>().join("; ");
-    line.push_str(" (see --help)");
-    line
+        .map(|p| p.split_whitespace().collect::<Vec<_>>().join(" "))
+        .collect();
+    let wrong = paragraphs.first().map_or("", String::as_str);
+    let wrong = wrong.trim_start_matches("error: ").to_owned();
+    let tips: Vec<&str> = paragraphs
+        .iter()
+        .flat_map(|p| p.split("tip: ").skip(1))
+        .map(str::trim)
+        .collect();
+    let advice = match (forgotten(error), tips.is_empty()) {
+        (Some(advice), _) => advice,
+        (None, false) => tips.join("; "),
+        (None, true) => further(&paragraphs),
+    };
+    (wrong, advice)
+}
+
+/// Where a picture stands in the place of the subcommand: the command that was meant.
+fn forgotten(error: &clap::Error) -> Option<String> {
+    match error.get(ContextKind::InvalidSubcommand)? {
+        ContextValue::String(word) if Path::new(word).is_file() => {
+            let output = Path::new(word).with_extension("svg");
+            Some(format!("strokefit fit {word} -o {}", output.display()))
+        }
+        _ => None,
+    }
+}
+
+/// The help of the command whose usage is among the paragraphs.
+fn further(paragraphs: &[String]) -> String {
+    let usage = paragraphs
+        .iter()
+        .find_map(|p| p.strip_prefix("Usage: "))
+        .unwrap_or("strokefit");
+    let words = usage
+        .split(' ')
+        .take_while(|word| word.starts_with(|c: char| c.is_ascii_lowercase()));
+    let command = words.collect::<Vec<_>>().join(" ");
+    format!("{command} --help lists the options")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory;
 
-    #[test]
-    fn the_arguments_are_consistent() {
-        Args::command().debug_assert();
+    fn refusal(args: &[&str]) -> (String, String) {
+        let args = ["strokefit"].iter().chain(args);
+        told(&command().try_get_matches_from(args).unwrap_err())
     }
 
     #[test]
-    fn refusals_are_one_line_with_their_tip() {
-        let error =
-            Args::try_parse_from(["strokefit", "fit", "a.png", "-o", "a.svg", "--stroke", "3"])
-                .unwrap_err();
-        let line = one_line(&error.to_string());
+    fn the_arguments_are_consistent() {
+        command().debug_assert();
+    }
+
+    #[test]
+    fn refusals_are_one_line_and_a_tip() {
+        let (wrong, advice) = refusal(&["fit", "a.png", "-o", "a.svg", "--stroke", "3"]);
         assert!(
-            line.contains("--stroke") && line.contains("--strokes") && !line.contains('\n'),
-            "{line}"
+            wrong.contains("--stroke") && !wrong.contains('\n'),
+            "{wrong}"
         );
+        assert!(
+            advice.contains("--strokes") && !advice.contains('\n'),
+            "{advice}"
+        );
+    }
+
+    #[test]
+    fn without_a_tip_the_help_of_the_command_is_named() {
+        let (wrong, advice) = refusal(&["fit", "a.png"]);
+        assert!(wrong.contains("--output"), "{wrong}");
+        assert_eq!(advice, "strokefit fit --help lists the options");
+    }
+
+    #[test]
+    fn help_begins_with_examples() {
+        for name in ["fit", "check", "render", "lab"] {
+            let mut command = command();
+            let help = command
+                .find_subcommand_mut(name)
+                .unwrap()
+                .render_help()
+                .to_string();
+            let (examples, usage) = (help.find("Examples:"), help.find("Usage:"));
+            assert!(examples.is_some() && examples < usage, "{help}");
+        }
     }
 }

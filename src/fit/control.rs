@@ -24,6 +24,7 @@ pub(super) struct Control<'a> {
     fraction: f64,
     stage: usize,
     stages: usize,
+    polishing: bool,
     /// Set once, by whatever stopped the fit first.
     stopped: Option<Stop>,
 }
@@ -44,6 +45,7 @@ impl<'a> Control<'a> {
             fraction: 0.0,
             stage: 0,
             stages,
+            polishing: false,
             stopped: None,
         }
     }
@@ -69,6 +71,12 @@ impl<'a> Control<'a> {
     /// Announces stage `stage`, from 0.
     pub(super) fn enter(&mut self, stage: usize) {
         self.stage = stage + 1;
+        self.polishing = false;
+    }
+
+    /// Announces polish.
+    pub(super) fn polish(&mut self) {
+        self.polishing = true;
     }
 
     /// Adds an iteration of the free strokes of `drawing` to what is done, tells the observer, with the
@@ -84,6 +92,7 @@ impl<'a> Control<'a> {
             done: self.fraction,
             stage: self.stage,
             stages: self.stages,
+            polishing: self.polishing,
             strokes: drawing.len(),
             psnr_db: psnr_db(mse),
             drawing,

@@ -13,8 +13,10 @@ pub struct Progress<'a> {
     pub done: f64,
     /// Index of the stage under way, from 1; one past the last during polish.
     pub stage: usize,
-    /// How many stages are planned.
+    /// How many stages are planned; 0 where the picture decides as it goes.
     pub stages: usize,
+    /// Whether strokes of several stages are fitted jointly, or those of this stage once more.
+    pub polishing: bool,
     /// Strokes in the drawing.
     pub strokes: usize,
     /// Fidelity of the soft render to the target, dB.

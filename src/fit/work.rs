@@ -208,6 +208,7 @@ impl<'a> Work<'a> {
 
     fn polish_free(&mut self, terms: Terms, steps: usize) {
         if self.control.stopped().is_none() {
+            self.control.polish();
             polish::run(
                 &mut self.drawing,
                 &self.recipe,

@@ -4,6 +4,7 @@
 //! seconds, errors as [`metrics`](crate::metrics) defines them. `psnr_db` is `null` where two
 //! pictures are equal, since JSON has no infinity; what could not be measured is `null` too.
 
+mod event;
 mod usage;
 
 use serde::{Deserialize, Serialize};
@@ -12,6 +13,7 @@ use crate::fit::{StageRecord, Stop};
 use crate::image::Image;
 use crate::metrics::{Agreement, Quality};
 
+pub use event::{Event, Phase};
 pub use usage::Usage;
 
 /// Version of the records' layout.

@@ -1,0 +1,226 @@
+//! Drawings one after the other: none spoils another, and a table tells of all.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+use anyhow::Result;
+use strokefit::report::Event;
+
+use super::events::Events;
+use super::job::{Draw, Drawn, Job, Outputs};
+use super::options::Options;
+use super::output::{self, Output};
+use super::{Status, Verbosity, fail, input, misuse};
+
+/// What stands for the name of the picture without its extension.
+const STEM: &str = "{stem}";
+
+/// One job for each input.
+pub(super) fn jobs<'a>(
+    inputs: &'a [PathBuf],
+    output: &Path,
+    report: Option<&Path>,
+    options: &'a Options,
+) -> Result<Vec<Job<'a>>> {
+    let job = |input: &'a PathBuf| {
+        Ok(Job {
+            input,
+            output: named(output, input)?,
+            report: report.map(|report| named(report, input)).transpose()?,
+            options,
+        })
+    };
+    inputs.iter().map(job).collect()
+}
+
+/// The path that `template` means for `input`.
+fn named(template: &Path, input: &Path) -> Result<PathBuf> {
+    let Some((before, after)) = template.to_str().and_then(|text| text.split_once(STEM)) else {
+        return Ok(template.to_owned());
+    };
+    let stem = input.file_stem().filter(|_| !input::is_stdin(input));
+    let Some(stem) = stem else {
+        let (name, template) = (input::name(input), template.display());
+        return Err(misuse(format!(
+            "{template}: {name} has no name to put for {STEM}: name the output"
+        )));
+    };
+    let mut path = OsString::from(before);
+    path.push(stem);
+    path.push(after);
+    named(Path::new(&path), input)
+}
+
+/// Does the jobs in order. One alone tells its outcome in a line, several in a table.
+pub(super) fn run(jobs: &[Job<'_>], verbosity: Verbosity, draw: &Draw<'_>) -> Result<Status> {
+    let events = jobs.first().and_then(|job| job.options.events.as_deref());
+    let outputs: Vec<Outputs> = jobs.iter().map(Outputs::open).collect::<Result<_>>()?;
+    keep_apart(jobs, &outputs, events)?;
+    let mut events = Events::open(events)?;
+    let status = match (jobs, outputs.as_slice()) {
+        ([job], [outputs]) => one(job, outputs, &mut events, verbosity, draw),
+        _ => Ok(several(jobs, &outputs, &mut events, verbosity, draw)),
+    };
+    status.and_then(|status| events.close().map(|()| status))
+}
+
+fn one(
+    job: &Job<'_>,
+    outputs: &Outputs,
+    events: &mut Events,
+    verbosity: Verbosity,
+    draw: &Draw<'_>,
+) -> Result<Status> {
+    let drawn = attempt(job, outputs, events, String::new(), verbosity, draw)?;
+    verbosity.say(job.summary(&drawn));
+    Ok(job.judge(&drawn))
+}
+
+fn several(
+    jobs: &[Job<'_>],
+    outputs: &[Outputs],
+    events: &mut Events,
+    verbosity: Verbosity,
+    draw: &Draw<'_>,
+) -> Status {
+    let table = Table::of(jobs);
+    verbosity.say(table.head());
+    let (mut worst, mut failed) = (Status::Done, 0);
+    for (i, (job, outputs)) in jobs.iter().zip(outputs).enumerate() {
+        let heading = format!("{} of {} ", i + 1, jobs.len());
+        let status = match attempt(job, outputs, events, heading, verbosity, draw) {
+            Ok(drawn) => {
+                verbosity.say(table.row(job, &drawn));
+                job.judge(&drawn)
+            }
+            Err(error) => {
+                failed += 1;
+                fail(&error)
+            }
+        };
+        worst = worst.or_worse(status);
+    }
+    verbosity.say(format_args!(
+        "{} drawn, {failed} failed",
+        jobs.len() - failed
+    ));
+    worst
+}
+
+/// Does one job; a failure is an event too.
+fn attempt(
+    job: &Job<'_>,
+    outputs: &Outputs,
+    events: &mut Events,
+    heading: String,
+    verbosity: Verbosity,
+    draw: &Draw<'_>,
+) -> Result<Drawn> {
+    let drawn = job.run(outputs, events, heading, verbosity, draw);
+    if let Err(error) = &drawn {
+        events.tell(&Event::Failed {
+            path: job.input.display().to_string(),
+            error: super::hint::Hint::split(error).0,
+        });
+    }
+    drawn
+}
+
+/// Refuses jobs of which one would overwrite what another reads or writes.
+fn keep_apart(jobs: &[Job<'_>], outputs: &[Outputs], events: Option<&Path>) -> Result<()> {
+    let events = events.map(|path| Output::open(path).map(|output| (path, output)));
+    let events = events.transpose()?;
+    let mut taken: Vec<(&Path, &Output)> = events.iter().map(|(path, o)| (*path, o)).collect();
+    for (job, outputs) in jobs.iter().zip(outputs) {
+        let report = job.report.as_deref().zip(outputs.report.as_ref());
+        for (path, output) in [(job.output.as_path(), &outputs.svg)]
+            .into_iter()
+            .chain(report)
+        {
+            if taken.iter().any(|(_, other)| *other == output) {
+                return Err(clash(path, jobs.len()));
+            }
+            taken.push((path, output));
+        }
+    }
+    let inputs = jobs.iter().map(|job| job.input);
+    for input in inputs.filter(|input| !input::is_stdin(input)) {
+        if taken.iter().any(|(_, output)| output.is(input)) {
+            let name = input.display();
+            return Err(misuse(format!(
+                "{name}: would be overwritten: name another output"
+            )));
+        }
+    }
+    Ok(())
+}
+
+fn clash(path: &Path, jobs: usize) -> anyhow::Error {
+    let name = output::name(path);
+    let remedy = match jobs {
+        1 => "name another".into(),
+        _ => format!("use {STEM} in the name, and pictures whose names differ"),
+    };
+    misuse(format!(
+        "{name}: two outputs cannot go to the same place: {remedy}"
+    ))
+}
+
+/// The width of the pictures' names, in characters.
+struct Table(usize);
+
+impl Table {
+    fn of(jobs: &[Job<'_>]) -> Self {
+        let widths = jobs
+            .iter()
+            .map(|job| job.input.display().to_string().chars().count());
+        Self(widths.max().unwrap_or(0).max("picture".len()))
+    }
+
+    fn head(&self) -> String {
+        let width = self.0;
+        format!(
+            "{:width$}  strokes      bytes        s  fidelity  agreement",
+            "picture"
+        )
+    }
+
+    fn row(&self, job: &Job<'_>, drawn: &Drawn) -> String {
+        let (width, name) = (self.0, job.input.display().to_string());
+        let (strokes, bytes, wall) = (
+            drawn.fit.scene.len(),
+            drawn.text.len(),
+            drawn.wall.as_secs_f64(),
+        );
+        let (fidelity, agreement) = (
+            drawn.verdict.fidelity.psnr_db,
+            drawn.verdict.agreement.psnr_db,
+        );
+        format!(
+            "{name:width$}  {strokes:>7} {bytes:>10} {wall:>8.2}  {fidelity:>5.2} dB   {agreement:>5.2} dB"
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_stem_goes_where_the_template_says() {
+        let named =
+            |template: &str, input: &str| named(Path::new(template), Path::new(input)).unwrap();
+        assert_eq!(
+            named("out/{stem}.svg", "in/a b.c.png"),
+            Path::new("out/a b.c.svg")
+        );
+        assert_eq!(named("{stem}/{stem}.svg", "x.png"), Path::new("x/x.svg"));
+        assert_eq!(named("plain.svg", "x.png"), Path::new("plain.svg"));
+    }
+
+    #[test]
+    fn standard_input_has_no_stem() {
+        let error = named(Path::new("{stem}.svg"), Path::new("-")).unwrap_err();
+        assert!(error.to_string().contains("standard input"), "{error}");
+    }
+}

@@ -1,0 +1,127 @@
+//! `--events`: what happens, as it happens, one JSON object a line.
+
+use std::fs::File;
+use std::io::{self, Write};
+use std::path::Path;
+use std::time::Instant;
+
+use anyhow::{Result, anyhow};
+use strokefit::fit::Progress;
+use strokefit::report::{Event, Phase};
+
+use super::output::{self, Output};
+
+/// Where events go, if anyone wants them.
+pub(super) struct Events {
+    name: String,
+    to: Option<Box<dyn Write + Send>>,
+    /// Why events were lost.
+    lost: Option<io::Error>,
+}
+
+impl Events {
+    /// The stream that goes to `path`.
+    pub(super) fn open(path: Option<&Path>) -> Result<Self> {
+        let name = path.map(output::name).unwrap_or_default();
+        let to: Option<Box<dyn Write + Send>> = match path.map(Output::open).transpose()? {
+            None => None,
+            Some(Output::Stdout) => Some(Box::new(io::stdout())),
+            Some(Output::File(path) | Output::Device(path)) => {
+                let file = File::create(path).map_err(|e| unwritable(&name, &e))?;
+                Some(Box::new(file))
+            }
+        };
+        Ok(Self {
+            name,
+            to,
+            lost: None,
+        })
+    }
+
+    /// Writes one event. The drawing matters more: what goes wrong here is told at the end.
+    pub(super) fn tell(&mut self, event: &Event) {
+        let Some(to) = &mut self.to else {
+            return;
+        };
+        let line = serde_json::to_string(event).map_err(io::Error::from);
+        let written = line.and_then(|line| writeln!(to, "{line}").and_then(|()| to.flush()));
+        if let Err(error) = written {
+            self.to = None;
+            self.lost = Some(error);
+        }
+    }
+
+    /// Whether all events were written. A reader that went away has seen what it wanted.
+    pub(super) fn close(self) -> Result<()> {
+        match self.lost {
+            Some(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+                Err(unwritable(&self.name, &error))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+fn unwritable(name: &str, error: &io::Error) -> anyhow::Error {
+    anyhow!("{name}: events cannot be written ({error}): choose another place")
+}
+
+/// Watches one fit, and tells of each part that has ended.
+pub(super) struct Phases<'a> {
+    events: &'a mut Events,
+    started: Instant,
+    /// Whether the part under way is polish, and what is known of it.
+    current: Option<(bool, Phase)>,
+    path: String,
+}
+
+impl<'a> Phases<'a> {
+    /// Phases of the fit of `path`, which starts now.
+    pub(super) fn new(events: &'a mut Events, path: String) -> Self {
+        Self {
+            events,
+            started: Instant::now(),
+            current: None,
+            path,
+        }
+    }
+
+    /// Tells of the part under way, which has ended.
+    pub(super) fn end(&mut self) {
+        match self.current.take() {
+            Some((true, phase)) => self.events.tell(&Event::Polish(phase)),
+            Some((false, phase)) => self.events.tell(&Event::Stage(phase)),
+            None => {}
+        }
+    }
+
+    fn goes_on(&self, progress: &Progress<'_>) -> bool {
+        self.current.as_ref().is_some_and(|(polish, phase)| {
+            *polish == progress.polishing && phase.stage == progress.stage
+        })
+    }
+
+    /// Notes how far the fit has come.
+    pub(super) fn watch(&mut self, progress: &Progress<'_>) {
+        if self.events.to.is_none() {
+            return;
+        }
+        if !self.goes_on(progress) {
+            self.end();
+        }
+        let before = self
+            .current
+            .as_ref()
+            .map_or(0, |(_, phase)| phase.iterations);
+        let phase = Phase {
+            path: self.path.clone(),
+            stage: progress.stage,
+            strokes: progress.strokes,
+            iterations: before + 1,
+            elapsed_s: self.started.elapsed().as_secs_f64(),
+            psnr_db: Some(progress.psnr_db).filter(|db| db.is_finite()),
+            done: progress.done,
+        };
+        self.current = Some((progress.polishing, phase));
+    }
+}
