@@ -42,7 +42,7 @@ impl Job<'_> {
         let start = Instant::now();
         let picture = input::picture(self.input)?;
         let input = Input::new(self.input.display().to_string(), &picture);
-        events.tell(&Event::Start { input });
+        events.tell(&Event::Start(input));
         let fit = self.watched(&picture, events, Bar::new(verbosity.quiet, heading), draw)?;
         tell_stages(&fit, verbosity);
         let mut drawn = Drawn::new(fit, self.options.look.precision)?;

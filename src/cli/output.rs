@@ -65,7 +65,13 @@ impl Output {
             Self::Stdout => {
                 let mut stdout = io::stdout().lock();
                 let outcome = stdout.write_all(bytes).and_then(|()| stdout.flush());
-                outcome.map_err(|e| anyhow!("standard output cannot be written: {e}"))
+                match outcome {
+                    // A reader that went away has seen what it wanted.
+                    Err(e) if e.kind() != io::ErrorKind::BrokenPipe => {
+                        Err(anyhow!("standard output cannot be written: {e}"))
+                    }
+                    _ => Ok(()),
+                }
             }
             Self::File(path) => replace(path, bytes).map_err(|e| unwritable(path, &e)),
             Self::Device(path) => {

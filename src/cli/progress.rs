@@ -3,7 +3,7 @@
 use std::io::{self, IsTerminal};
 use std::time::Instant;
 
-use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use strokefit::fit::Progress;
 
 /// Steps of the bar.
@@ -46,9 +46,9 @@ impl Bar {
         let Progress {
             strokes, psnr_db, ..
         } = *progress;
-        let rate = self.moves as f64 / self.started.elapsed().as_secs_f64().max(1e-3);
-        let (place, rate) = (place(progress), HumanCount(rate as u64));
-        format!("{place}, {strokes} strokes, {psnr_db:.2} dB, {rate} moves/s")
+        let thousands = self.moves as f64 / 1e3 / self.started.elapsed().as_secs_f64().max(1e-3);
+        let place = place(progress);
+        format!("{place}, {strokes} strokes, {psnr_db:.2} dB, {thousands:.0} k moves/s")
     }
 }
 
@@ -57,7 +57,8 @@ fn bar(quiet: bool) -> ProgressBar {
         return ProgressBar::hidden();
     }
     let bar = ProgressBar::with_draw_target(Some(STEPS), ProgressDrawTarget::stderr());
-    let template = "{prefix}{bar:24} {percent:>3} %  {msg}  {elapsed} gone, {eta} to go";
+    // What matters least is last: a narrow terminal cuts it off.
+    let template = "{prefix}{bar:16} {percent:>3} %, {eta} to go: {wide_msg}";
     if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style.progress_chars("━━╌"));
     }

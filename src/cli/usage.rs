@@ -2,6 +2,7 @@
 
 use std::env;
 use std::ffi::OsString;
+use std::io;
 use std::path::Path;
 
 use anyhow::Result;
@@ -68,6 +69,8 @@ fn refuse(error: &anyhow::Error) -> Status {
     match error.print() {
         Ok(()) if asks => Status::Usage,
         Ok(()) => Status::Done,
+        // A reader that went away has seen what it wanted.
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Status::Done,
         Err(_) => Status::Failed,
     }
 }

@@ -10,10 +10,7 @@ use super::{FitReport, Input};
 #[non_exhaustive]
 pub enum Event {
     /// The picture was read; work begins.
-    Start {
-        /// The picture.
-        input: Input,
-    },
+    Start(Input),
     /// The strokes of a stage were fitted.
     Stage(Phase),
     /// The strokes of all stages were fitted jointly; of one stage, where layers are polished alone.
