@@ -20,6 +20,8 @@ pub enum ErrorKind {
     Svg,
     /// An option or argument is outside its domain.
     Config,
+    /// Another program that draws SVG is not there, or failed.
+    Engine,
 }
 
 /// What went wrong, in one line, with its cause.

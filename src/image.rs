@@ -183,6 +183,20 @@ impl Image {
         }
     }
 
+    /// The upper left `width × height` px, without alpha, or `None` where the picture is smaller or
+    /// nothing would be left.
+    pub(crate) fn cropped(&self, width: usize, height: usize) -> Option<Self> {
+        if width > self.width || height > self.height || width == 0 || height == 0 {
+            return None;
+        }
+        let cut = |plane: &Vec<f32>| {
+            let rows = plane.chunks(self.width).take(height);
+            rows.flat_map(|row| &row[..width]).copied().collect()
+        };
+        let planes = self.planes.each_ref().map(cut);
+        Some(Self::from_planes(width, height, planes))
+    }
+
     /// The colours as interleaved 8-bit RGB, row by row, each value rounded to the nearest of
     /// 0..=255. Alpha plays no part: [flatten](Self::flattened) first.
     pub fn to_rgb8(&self) -> Vec<u8> {
@@ -260,6 +274,18 @@ mod tests {
             image.with_alpha(vec![1.0, 0.5]).unwrap().alpha(),
             Some(&[1.0, 0.5][..])
         );
+    }
+
+    #[test]
+    fn cropping_keeps_the_upper_left() {
+        let plane: Vec<f32> = (0..6_u8).map(f32::from).collect();
+        let image = Image::new(3, 2, [plane.clone(), plane.clone(), plane]).unwrap();
+        assert_eq!(
+            image.cropped(2, 2).unwrap().planes()[2],
+            [0.0, 1.0, 3.0, 4.0]
+        );
+        assert_eq!(image.cropped(3, 2), Some(image.clone()));
+        assert!(image.cropped(4, 1).is_none() && image.cropped(0, 1).is_none());
     }
 
     #[test]

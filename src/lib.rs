@@ -31,6 +31,7 @@
 //! render                          strokes → canvas, ∂L/∂canvas → ∂L/∂strokes, worth
 //! seed                            residual → candidates ranked by closed-form gain
 //! svg  verify                     drawing → text → what a renderer makes of it
+//! engines                         what other programs make of it
 //! fit                             stages, polish, settling, budgets
 //! report                          plain records
 //! ```
@@ -62,6 +63,7 @@
 //! ```
 
 pub mod coverage;
+pub mod engines;
 mod error;
 pub mod fit;
 pub mod image;

@@ -81,6 +81,41 @@ impl Agreement {
     }
 }
 
+/// Where two pictures differ most.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Largest {
+    /// Largest difference of a channel of a pixel, 0..=255.
+    pub max_abs: u8,
+    /// Column of the first pixel, row by row, that has it.
+    pub x: usize,
+    /// Row of that pixel.
+    pub y: usize,
+}
+
+impl Largest {
+    /// Compares two pictures.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Picture`] when their sizes differ.
+    pub fn between(a: &Image, b: &Image) -> Result<Self> {
+        let (left, right) = levels_of_both(a, b)?;
+        let mut largest = Self {
+            max_abs: 0,
+            x: 0,
+            y: 0,
+        };
+        for (i, (left, right)) in left.iter().zip(&right).enumerate() {
+            let max_abs = left.abs_diff(*right);
+            if max_abs > largest.max_abs {
+                let pixel = i / CHANNELS;
+                let (x, y) = (pixel % a.width(), pixel / a.width());
+                largest = Self { max_abs, x, y };
+            }
+        }
+        Ok(largest)
+    }
+}
+
 /// Mean squared error over 8-bit RGB on white, 0..1.
 ///
 /// # Errors

@@ -14,6 +14,9 @@ use crate::image::Image;
 use crate::metrics::{Agreement, Quality};
 use crate::scene::Rgb;
 
+/// Version of resvg that is built in, as far as `Cargo.toml` fixes it.
+pub const RESVG_VERSION: &str = "0.49";
+
 /// Most pixels of a render: the raster takes 4 bytes each, its [`Image`] up to 16 more.
 const MAX_PIXELS: f64 = (1_u64 << 27) as f64;
 
@@ -87,7 +90,7 @@ pub fn verify(svg: &str, target: &Image, soft: &Image) -> Result<Verdict> {
 ///
 /// # Errors
 /// As [`fidelity`].
-pub(crate) fn render_like(svg: &str, target: &Image) -> Result<Image> {
+pub fn render_like(svg: &str, target: &Image) -> Result<Image> {
     let tree = parse(svg)?;
     let side = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
     let (width, height) = (side(target.width()), side(target.height()));
@@ -259,6 +262,13 @@ mod tests {
 
     fn rgb8(svg: &str, size: Size) -> Vec<u8> {
         render(svg, size, Some([1.0; 3])).unwrap().to_rgb8()
+    }
+
+    #[test]
+    fn the_version_is_that_of_the_lock_file() {
+        let lock = include_str!("../Cargo.lock");
+        let entry = format!("name = \"resvg\"\nversion = \"{RESVG_VERSION}.");
+        assert!(lock.contains(&entry), "{entry}");
     }
 
     #[test]

@@ -138,7 +138,7 @@ impl From<Status> for ExitCode {
 pub(crate) fn run(args: &Args) -> anyhow::Result<Status> {
     match &args.command {
         Command::Fit(fit) => fit::run(fit, args.verbosity),
-        Command::Check(check) => check::run(check),
+        Command::Check(check) => check::run(check, args.verbosity),
         Command::Render(render) => render::run(render),
         Command::Lab(lab) => lab::run(lab, args.verbosity),
         Command::Completions(completions) => manual::complete(completions),

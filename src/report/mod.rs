@@ -4,6 +4,7 @@
 //! seconds, errors as [`metrics`](crate::metrics) defines them. `psnr_db` is `null` where two
 //! pictures are equal, since JSON has no infinity; what could not be measured is `null` too.
 
+mod check;
 mod event;
 mod usage;
 
@@ -13,6 +14,7 @@ use crate::fit::{StageRecord, Stop};
 use crate::image::Image;
 use crate::metrics::{Agreement, Quality};
 
+pub use check::{AgainstResvg, CheckReport, NotDrawn, RendererEntry};
 pub use event::{Event, Phase};
 pub use usage::Usage;
 
@@ -50,21 +52,6 @@ pub struct FitReport {
     pub soft: Quality,
     /// The SVG as rendered by resvg against our own soft render.
     pub agreement: Agreement,
-}
-
-/// What `strokefit check` found.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct CheckReport {
-    /// [`SCHEMA`].
-    pub schema: u32,
-    /// The picture.
-    pub input: Input,
-    /// The SVG file, as it was named.
-    pub svg: String,
-    /// Length of the SVG text in bytes.
-    pub svg_bytes: usize,
-    /// One per renderer, in the order asked for.
-    pub renderers: Vec<RendererEntry>,
 }
 
 /// A picture that was read.
@@ -117,15 +104,6 @@ impl From<&StageRecord> for StageEntry {
             layer_psnr_db: Some(record.layer_psnr_db).filter(|db| db.is_finite()),
         }
     }
-}
-
-/// What one renderer makes of an SVG.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct RendererEntry {
-    /// `resvg`.
-    pub renderer: String,
-    /// The SVG as rendered against the picture.
-    pub fidelity: Quality,
 }
 
 /// The word of [`FitReport::stop`].

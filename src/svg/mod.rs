@@ -41,9 +41,11 @@
 //! ```
 
 mod dialect;
+mod lint;
 mod read;
 mod write;
 
+pub use lint::{Finding, Severity, lint};
 pub use read::read;
 pub use write::{WriteOptions, layers, stroke_bytes, write};
 

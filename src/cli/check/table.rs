@@ -1,0 +1,63 @@
+//! What was found, for people.
+
+use strokefit::engines::MIN_AGREEMENT_DB;
+use strokefit::report::{CheckReport, RendererEntry};
+
+/// One line for each program, then one for each finding of the lint.
+pub(super) fn table(record: &CheckReport) -> String {
+    let mut table = format!(
+        "{:<9} {:<14} {:>7} {:>7} {:>9}  {:<20} {:>7}\n",
+        "renderer", "version", "PSNR dB", "SSIM", "to resvg", "largest difference", "seconds"
+    );
+    for entry in &record.renderers {
+        table += &row(entry);
+    }
+    for finding in &record.lint {
+        table += &format!("{finding}\n");
+    }
+    table
+}
+
+fn row(entry: &RendererEntry) -> String {
+    let RendererEntry {
+        renderer,
+        version,
+        fidelity,
+        against_resvg,
+        wall_s,
+        ..
+    } = entry;
+    let psnr = fidelity.map_or_else(|| "-".into(), |f| format!("{:.2}", f.psnr_db));
+    let ssim = fidelity.map_or_else(|| "-".into(), |f| format!("{:.4}", f.ssim));
+    let (agreement, largest) = match against_resvg {
+        Some(other) => {
+            let db = other.psnr_db.unwrap_or(f64::INFINITY);
+            (
+                format!("{db:.2}"),
+                format!("{} at {}, {}", other.max_abs, other.x, other.y),
+            )
+        }
+        None => ("-".into(), "-".into()),
+    };
+    format!(
+        "{renderer:<9} {version:<14} {psnr:>7} {ssim:>7} {agreement:>9}  {largest:<20} {wall_s:>7.2}\n"
+    )
+}
+
+/// How a program that did not pass differs from resvg.
+pub(super) fn shortfall(entry: &RendererEntry, record: &CheckReport) -> String {
+    let name = &entry.renderer;
+    let resvg = record.renderers.first().and_then(|resvg| resvg.fidelity);
+    let what = match (&entry.fidelity, resvg) {
+        (Some(own), Some(resvg)) => {
+            format!(
+                "{:.2} dB less faithfully than resvg",
+                resvg.psnr_db - own.psnr_db
+            )
+        }
+        _ => {
+            format!("otherwise than resvg, with which it agrees to less than {MIN_AGREEMENT_DB} dB")
+        }
+    };
+    format!("{name}: draws the file {what}: see the findings, and --pictures DIR for where")
+}

@@ -1,0 +1,24 @@
+//! CairoSVG, the usual converter of Python programs.
+
+use super::Engine;
+
+pub(super) const ENGINE: Engine = Engine {
+    name: "cairosvg",
+    install: "pip install cairosvg, or apt-get install cairosvg",
+    programs: &["cairosvg"],
+    arguments: |job| {
+        Ok(vec![
+            "--output-width".into(),
+            job.page.width.to_string().into(),
+            "--output-height".into(),
+            job.page.height.to_string().into(),
+            "--output".into(),
+            job.png().into(),
+            job.svg().into(),
+        ])
+    },
+    failure: None,
+    // What pip installed for one user lies under the home.
+    keeps_home: true,
+    has_margin: false,
+};

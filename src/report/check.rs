@@ -1,0 +1,67 @@
+//! What `strokefit check` found.
+
+use serde::{Deserialize, Serialize};
+
+use super::Input;
+use crate::metrics::Quality;
+use crate::svg::Finding;
+
+/// What `strokefit check` found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CheckReport {
+    /// [`SCHEMA`](super::SCHEMA).
+    pub schema: u32,
+    /// The picture; `null` when the file was compared with nothing.
+    pub input: Option<Input>,
+    /// The SVG file, as it was named.
+    pub svg: String,
+    /// Length of the SVG text in bytes.
+    pub svg_bytes: usize,
+    /// One per renderer that drew the file: resvg, then the others in the order asked for.
+    pub renderers: Vec<RendererEntry>,
+    /// One per renderer that did not.
+    pub not_drawn: Vec<NotDrawn>,
+    /// What programs disagree on, by the text of the file alone; the worst first.
+    pub lint: Vec<Finding>,
+}
+
+/// What one renderer makes of an SVG.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RendererEntry {
+    /// `resvg`, `inkscape`, `rsvg`, `chromium` or `cairosvg`.
+    pub renderer: String,
+    /// Its version.
+    pub version: String,
+    /// The SVG as rendered against the picture; `null` without a picture.
+    pub fidelity: Option<Quality>,
+    /// Its render against that of resvg; `null` for resvg.
+    pub against_resvg: Option<AgainstResvg>,
+    /// Wall time of the render, the start of the program included, s.
+    pub wall_s: f64,
+    /// Whether it draws the file as resvg does.
+    pub passed: bool,
+}
+
+/// A render compared with that of resvg.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct AgainstResvg {
+    /// dB; `null` when equal.
+    pub psnr_db: Option<f64>,
+    /// Largest difference of a channel of a pixel, 0..=255.
+    pub max_abs: u8,
+    /// Column of the first pixel that has it.
+    pub x: usize,
+    /// Row of that pixel.
+    pub y: usize,
+}
+
+/// A renderer that drew nothing.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct NotDrawn {
+    /// Its name.
+    pub renderer: String,
+    /// Whether it is there.
+    pub installed: bool,
+    /// Why not, and what to do about it.
+    pub reason: String,
+}

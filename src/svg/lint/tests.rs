@@ -1,0 +1,194 @@
+use super::*;
+use crate::scene::{Scene, Shape, Stage, Stroke};
+use crate::svg::{WriteOptions, write};
+
+fn page(body: &str) -> String {
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"9\" height=\"9\" viewBox=\"0 0 9 9\">\n{body}\n</svg>\n"
+    )
+}
+
+/// The names of the rules that `text` breaks.
+fn names(text: &str) -> Vec<String> {
+    lint(text).into_iter().map(|f| f.rule).collect()
+}
+
+#[test]
+fn what_strokefit_writes_has_nothing() {
+    let stroke = |shape| Stroke {
+        shape,
+        radius: 0.2,
+        color: [0.5; 3],
+        opacity: 0.3,
+    };
+    let strokes = vec![
+        stroke(Shape::dot([4.0, 4.0].into())),
+        stroke(Shape::capsule([0.5, 1.0].into(), [0.25, 8.0].into())),
+    ];
+    let scene = Scene {
+        stages: vec![Stage { strokes }],
+        ..Scene::empty(9, 9, Some([1.0; 3]))
+    };
+    for precision in 0..=6 {
+        assert_eq!(lint(&write(&scene, &WriteOptions { precision })), []);
+    }
+}
+
+#[test]
+fn each_rule_finds_its_case_and_nothing_else() {
+    for (body, rule) in [
+        (
+            "<path d=\"M5 5h0\" stroke=\"#000\" stroke-width=\"2\"/>",
+            "zero-length",
+        ),
+        (
+            "<line x1=\"3\" y1=\"3\" x2=\"3\" y2=\"3\" stroke=\"red\" stroke-width=\"2\"/>",
+            "zero-length",
+        ),
+        ("<path d=\"M5 5h2\" stroke=\"#000\"/>", "thin-stroke"),
+        (
+            "<g stroke=\"#000\" transform=\"scale(0.1)\"><path d=\"M5 5h2\" stroke-width=\"9\"/></g>",
+            "thin-stroke",
+        ),
+        (
+            "<path d=\"M5 5h2\" style=\"stroke:#000;stroke-width:0.5px\" stroke-width=\"9\"/>",
+            "thin-stroke",
+        ),
+        (
+            "<rect width=\"5\" height=\"5\" fill=\"#11223344\"/>",
+            "color-alpha",
+        ),
+        (
+            "<rect width=\"5\" height=\"5\" style=\"fill: rgba(1,2,3,0.5)\"/>",
+            "color-alpha",
+        ),
+        (
+            "<g opacity=\"0.5\"><path d=\"M1 1h1\"/></g>",
+            "group-opacity",
+        ),
+        ("<rect width=\"5\" height=\"5\" x=\".5\"/>", "leading-dot"),
+        ("<filter/>", "feature"),
+        ("<image href=\"data:image/png;base64,\"/>", "feature"),
+        ("<text>url</text>", "text"),
+        ("<style>path{fill:red}</style>", "style-sheet"),
+        ("<script>1</script>", "script"),
+        ("<rect width=\"5\" height=\"5\" onclick=\"x()\"/>", "script"),
+        ("<style>@import 'x.css';</style>", "external-reference"),
+        (
+            "<image href=\"http://example.org/a.png\"/>",
+            "external-reference",
+        ),
+        (
+            "<use xlink:href=\"other.svg#a\" xmlns:xlink=\"http://www.w3.org/1999/xlink\"/>",
+            "external-reference",
+        ),
+        (
+            "<rect width=\"5\" height=\"5\" fill=\"url(paint.svg#a)\"/>",
+            "external-reference",
+        ),
+        (
+            "<rect width=\"5\" height=\"5\" fill=\"url(#none)\"/>",
+            "missing-id",
+        ),
+        ("<g id=\"a\"/><g id=\"a\"/>", "duplicate-id"),
+        ("<g id=\"1a\"/>", "id-start"),
+        (
+            "<g xmlns:inkscape=\"i\" inkscape:groupmode=\"layer\"/>",
+            "layer-id",
+        ),
+        ("<circle r=\"3\"/>", "dialect"),
+    ] {
+        let found = names(&page(body));
+        assert!(found.contains(&rule.to_owned()), "{body}: {found:?}");
+        let expected = ["feature", "style-sheet", "dialect"];
+        let others = found
+            .iter()
+            .filter(|f| *f != rule && !expected.contains(&f.as_str()));
+        assert_eq!(others.count(), 0, "{body}: {found:?}");
+    }
+}
+
+#[test]
+fn what_looks_like_it_but_is_not_is_let_pass() {
+    for body in [
+        "<path d=\"M5 5h0\" fill=\"#000\"/>",
+        "<path d=\"M5 5h2\" stroke=\"none\" stroke-width=\"0.1\"/>",
+        "<g transform=\"scale(10)\"><path d=\"M5 5h2\" stroke=\"#000\" stroke-width=\"0.2\"/></g>",
+        "<path d=\"M5 5h2\" stroke=\"#000\" stroke-width=\"0.2\" style=\"stroke-width:3\"/>",
+        "<g opacity=\"1\"/>",
+        "<g id=\"a.5\"><title>#11223344 .5 rgba(</title></g>",
+        "<path id=\"a\" d=\"M1 1h1\"/><path fill=\"url(#a)\" d=\"M1 1h1\"/>",
+    ] {
+        assert_eq!(lint(&page(body)), [], "{body}");
+    }
+}
+
+#[test]
+fn the_page_should_have_the_size_of_its_view() {
+    let good = page("");
+    for (from, to) in [
+        ("viewBox=\"0 0 9 9\"", ""),
+        ("viewBox=\"0 0 9 9\"", "viewBox=\"0 0 18 18\""),
+        ("viewBox=\"0 0 9 9\"", "viewBox=\"1 0 9 9\""),
+        ("width=\"9\"", "width=\"100%\""),
+        ("width=\"9\"", "width=\"9mm\""),
+        ("height=\"9\"", ""),
+    ] {
+        assert_eq!(names(&good.replace(from, to)), ["page-size"], "{to}");
+    }
+    assert!(names(&good.replace("width=\"9\"", "width=\"9px\"")).is_empty());
+}
+
+#[test]
+fn what_nothing_is_drawn_of_is_an_error() {
+    let good = page("<g/>");
+    for (text, rule) in [
+        (good.replace("http:", "https:"), "namespace"),
+        (good.replace("</svg>", ""), "not-xml"),
+        (good.replace("<g/>", "<g></p>"), "not-xml"),
+        (
+            format!("<?xml-stylesheet href=\"a.css\"?>{good}"),
+            "external-reference",
+        ),
+        (page(&("<g>".repeat(300) + &"</g>".repeat(300))), "deep"),
+        (page(&" ".repeat(LIBXML2_BYTES)), "large-file"),
+    ] {
+        let findings = lint(&text);
+        assert_eq!(
+            (findings[0].rule.as_str(), findings[0].severity),
+            (rule, Severity::Error)
+        );
+    }
+}
+
+#[test]
+fn all_lines_are_kept_and_three_are_shown() {
+    let thin = "<path d=\"M1 1h1\"\n stroke=\"#000\"/>\n".repeat(5);
+    let findings = lint(&page(&thin));
+    assert_eq!(findings[0].lines, [2, 4, 6, 8, 10]);
+    let shown = findings[0].to_string();
+    assert!(
+        shown.starts_with(
+            "warning: lines 2, 4, 6 and 2 more: thin-stroke: <path> with a stroke 1.000 px wide: "
+        ),
+        "{shown}"
+    );
+}
+
+#[test]
+fn the_worst_comes_first() {
+    let body = "<circle r=\"3\"/>\n<g opacity=\"0.5\"/>\n<image href=\"a.png\"/>";
+    assert_eq!(
+        names(&page(body)),
+        ["external-reference", "group-opacity", "feature", "dialect"]
+    );
+}
+
+#[test]
+fn no_text_makes_it_panic() {
+    let text =
+        page("<path d=\"M5é 5h0\" style=\"stroke:url(\" transform=\"é(\"/><!-- é --><![CDATA[é]]>");
+    for end in (0..text.len()).filter(|&end| text.is_char_boundary(end)) {
+        lint(&text[..end]);
+    }
+}

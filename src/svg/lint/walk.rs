@@ -1,0 +1,294 @@
+//! From the beginning of the text to its end, element by element, each rule in turn.
+
+use quick_xml::events::{BytesStart, Event};
+use quick_xml::name::{Namespace, ResolveResult};
+use quick_xml::reader::NsReader;
+
+use super::element::{Element, short};
+use super::number;
+use super::reference::References;
+use super::rules::{self, Rule};
+use super::stroke::Pen;
+use super::{Findings, element};
+use crate::svg::dialect::SVG_NAMESPACE;
+
+/// Levels of elements that readers built on libxml2 stop at.
+const LIBXML2_LEVELS: usize = 256;
+
+/// Attributes that hold numbers.
+const NUMERIC: [&str; 24] = [
+    "cx",
+    "cy",
+    "d",
+    "fill-opacity",
+    "height",
+    "offset",
+    "opacity",
+    "points",
+    "r",
+    "rx",
+    "ry",
+    "stop-opacity",
+    "stroke-dasharray",
+    "stroke-opacity",
+    "stroke-width",
+    "transform",
+    "viewBox",
+    "width",
+    "x",
+    "x1",
+    "x2",
+    "y",
+    "y1",
+    "y2",
+];
+
+/// Elements of the dialect, and those that draw nothing and say nothing of the drawing.
+const PLAIN: [&str; 7] = ["svg", "g", "path", "rect", "title", "desc", "metadata"];
+
+/// Elements that every renderer draws alike.
+const SHAPES: [&str; 6] = ["circle", "defs", "ellipse", "line", "polygon", "polyline"];
+
+/// Looks at all of the text.
+pub(super) fn walk(text: &str, findings: &mut Findings) {
+    let mut walk = Walk::new(text, findings);
+    if let Err(message) = walk.document() {
+        let line = walk.line;
+        walk.findings.add(&rules::NOT_XML, line, short(&message));
+    }
+    let Walk {
+        references,
+        findings,
+        ..
+    } = walk;
+    references.judge(findings);
+}
+
+struct Walk<'a, 'b> {
+    text: &'a str,
+    xml: NsReader<&'a [u8]>,
+    /// Line on which the current event begins, from 1.
+    line: usize,
+    /// Bytes before that line's event.
+    at: usize,
+    /// One for each open element.
+    pens: Vec<Pen>,
+    references: References,
+    /// Whether the text is a style sheet.
+    in_style: bool,
+    findings: &'b mut Findings,
+}
+
+impl<'a, 'b> Walk<'a, 'b> {
+    fn new(text: &'a str, findings: &'b mut Findings) -> Self {
+        let mut xml = NsReader::from_str(text);
+        xml.config_mut().expand_empty_elements = true;
+        Self {
+            text,
+            xml,
+            line: 1,
+            at: 0,
+            pens: Vec::new(),
+            references: References::default(),
+            in_style: false,
+            findings,
+        }
+    }
+
+    fn document(&mut self) -> Result<(), String> {
+        loop {
+            self.advance();
+            let outcome = self.xml.read_resolved_event();
+            let (namespace, event) = outcome.map_err(|e| e.to_string())?;
+            match event {
+                Event::Start(tag) => {
+                    let known = matches!(&namespace, ResolveResult::Bound(Namespace(n)) if *n == SVG_NAMESPACE);
+                    self.open(&tag.into_owned(), known)?;
+                }
+                Event::End(_) => {
+                    self.in_style = false;
+                    self.pens.pop();
+                }
+                Event::DocType(_) => self.doctype(),
+                Event::PI(_) => self.instruction(),
+                Event::Text(_) | Event::CData(_) => self.characters(),
+                Event::Eof if self.pens.is_empty() => return Ok(()),
+                Event::Eof => return Err("the file ends before its last element".into()),
+                _ => {}
+            }
+        }
+    }
+
+    /// The next event begins where the last one ended.
+    fn advance(&mut self) {
+        let to = self.here();
+        let passed = self.text.as_bytes().get(self.at..to).unwrap_or_default();
+        self.line += passed.iter().filter(|&&b| b == b'\n').count();
+        self.at = to;
+    }
+
+    fn here(&self) -> usize {
+        usize::try_from(self.xml.buffer_position()).unwrap_or(usize::MAX)
+    }
+
+    /// The event that was just read, as it stands in the file.
+    fn raw(&self) -> &'a str {
+        self.text.get(self.at..self.here()).unwrap_or_default()
+    }
+
+    fn instruction(&mut self) {
+        let raw = self.raw();
+        if raw.starts_with("<?xml-stylesheet") {
+            self.findings
+                .add_each(&rules::EXTERNAL, self.line, short(raw));
+        }
+    }
+
+    fn characters(&mut self) {
+        if self.in_style {
+            self.references
+                .note_css(self.raw(), self.line, self.findings);
+        }
+    }
+
+    fn doctype(&mut self) {
+        let raw = self.raw();
+        self.findings
+            .add(&rules::DOCTYPE, self.line, "<!DOCTYPE …>");
+        let mut entities = raw.split("<!ENTITY").skip(1);
+        if entities.any(|entity| entity.contains("SYSTEM") || entity.contains("PUBLIC")) {
+            self.findings.add_each(
+                &rules::EXTERNAL,
+                self.line,
+                "an entity in another file".into(),
+            );
+        }
+    }
+
+    fn open(&mut self, tag: &BytesStart<'_>, is_svg: bool) -> Result<(), String> {
+        let element = Element::new(tag)?;
+        let is_root = self.pens.is_empty();
+        let pen = match self.pens.last() {
+            None if is_svg && element.name == "svg" => self.page(&element),
+            None => {
+                self.findings.add(
+                    &rules::NAMESPACE,
+                    self.line,
+                    format!("<{}>", short(&element.name)),
+                );
+                Pen::page(1.0)
+            }
+            Some(pen) => pen.within(&element),
+        };
+        self.pens.push(pen);
+        self.in_style = is_svg && element.name == "style";
+        if self.pens.len() > LIBXML2_LEVELS {
+            self.findings.add(
+                &rules::DEEP,
+                self.line,
+                format!("<{}>", short(&element.name)),
+            );
+        }
+        if is_svg {
+            self.look(&element, pen, is_root);
+        }
+        Ok(())
+    }
+
+    /// Judges the size of the page; gives its pen.
+    fn page(&mut self, root: &Element) -> Pen {
+        let view = root.get("viewBox").map(number::all);
+        let side = |key| root.get(key).and_then(number::length_px);
+        let (width, height) = (side("width"), side("height"));
+        let Some(&[x, y, w, h]) = view.as_deref() else {
+            let found = "<svg> without a viewBox of four numbers";
+            self.findings.add(&rules::PAGE_SIZE, self.line, found);
+            return Pen::page(1.0);
+        };
+        if (width, height) != (Some(w), Some(h)) || (x, y) != (0.0, 0.0) {
+            let size = |key| root.get(key).unwrap_or("none");
+            let found = format!(
+                "<svg> of width {}, height {}, viewBox {}",
+                short(size("width")),
+                short(size("height")),
+                short(size("viewBox"))
+            );
+            self.findings.add(&rules::PAGE_SIZE, self.line, found);
+        }
+        let scale = width.filter(|_| w > 0.0).map_or(1.0, |width| width / w);
+        Pen::page(scale).within(root)
+    }
+
+    fn look(&mut self, element: &Element, pen: Pen, is_root: bool) {
+        let line = self.line;
+        self.references.note(element, line, self.findings);
+        if !is_root && let Some(rule) = kind(&element.name) {
+            self.findings
+                .add_each(rule, line, format!("<{}>", short(&element.name)));
+        }
+        if let Some(key) = handler(element) {
+            self.findings.add(&rules::SCRIPT, line, element.quote(&key));
+        }
+        if pen.has_zero_length(element) {
+            self.findings
+                .add(&rules::ZERO_LENGTH, line, element::quote_shape(element));
+        }
+        if let Some(width_px) = pen.hairline_px(element) {
+            let found = format!("<{}> with a stroke {width_px:.3} px wide", element.name);
+            self.findings.add(&rules::THIN_STROKE, line, found);
+        }
+        if let Some((key, _)) = values(element).find(|(_, value)| has_alpha(value)) {
+            self.findings
+                .add(&rules::COLOR_ALPHA, line, element.quote(key));
+        }
+        if element
+            .property("opacity")
+            .and_then(number::length_px)
+            .is_some_and(|o| o < 1.0)
+        {
+            self.findings
+                .add(&rules::GROUP_OPACITY, line, element.quote("opacity"));
+        }
+        let mut numbers = values(element).filter(|(key, _)| NUMERIC.contains(key));
+        if let Some((key, _)) = numbers.find(|(_, value)| number::has_leading_dot(value)) {
+            self.findings
+                .add(&rules::LEADING_DOT, line, element.quote(key));
+        }
+    }
+}
+
+/// Attributes and the properties of `style`.
+fn values(element: &Element) -> impl Iterator<Item = (&str, &str)> {
+    element.attributes().chain(element.styles())
+}
+
+/// The rule that an element breaks by being there.
+fn kind(name: &str) -> Option<&'static Rule> {
+    match name {
+        "script" => Some(&rules::SCRIPT),
+        "style" => Some(&rules::STYLE_SHEET),
+        "text" => Some(&rules::TEXT),
+        "tspan" | "textPath" => None,
+        _ if PLAIN.contains(&name) => None,
+        _ if SHAPES.contains(&name) => Some(&rules::DIALECT),
+        _ => Some(&rules::FEATURE),
+    }
+}
+
+/// The attribute that runs a script, if any.
+fn handler(element: &Element) -> Option<String> {
+    let mut keys = element.attributes().map(|(key, _)| key);
+    keys.find(|key| key.len() > 4 && key.starts_with("on"))
+        .map(str::to_owned)
+}
+
+/// Whether a value is a colour with alpha.
+fn has_alpha(value: &str) -> bool {
+    let value = value.trim();
+    let hex = value
+        .strip_prefix('#')
+        .filter(|h| h.bytes().all(|b| b.is_ascii_hexdigit()));
+    hex.is_some_and(|h| h.len() == 4 || h.len() == 8)
+        || value.starts_with("rgba(")
+        || value.starts_with("hsla(")
+}
