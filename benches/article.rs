@@ -123,7 +123,7 @@ impl Outcome {
         let start = Instant::now();
         let Drawn { scene, soft } = draw()?;
         let seconds = start.elapsed().as_secs_f64();
-        let text = svg::write(&scene, &WriteOptions { precision: 2 });
+        let text = svg::write(&scene, &WriteOptions::default());
         let soft_db = psnr(target, &soft)?;
         let fidelity_db = verify::fidelity(&text, target)?.psnr_db;
         let strokes = scene.quantized(2).0.len();

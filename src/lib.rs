@@ -51,7 +51,7 @@
 //!
 //! let config = Config { budget: Budget { strokes: Some(4), ..Budget::default() }, ..Config::default() };
 //! let drawing = fit(&picture, &config, &Execution::default(), &mut ())?;
-//! let text = svg::write(&drawing.scene, &WriteOptions { precision: 2 });
+//! let text = svg::write(&drawing.scene, &WriteOptions::default());
 //! assert!(text.starts_with("<svg"));
 //!
 //! // What it looks like, a character per 2×2 px.

@@ -10,7 +10,7 @@ use strokefit::fit::{
 };
 use strokefit::image::Image;
 use strokefit::scene::Scene;
-use strokefit::svg::{self, WriteOptions};
+use strokefit::svg;
 use strokefit::verify::{self, Verdict};
 
 /// Agreement that every drawing has to have, dB.
@@ -38,12 +38,7 @@ fn drawn(picture: &Image, config: &Config) -> Fit {
 }
 
 fn text(fit: &Fit, config: &Config) -> String {
-    svg::write(
-        &fit.scene,
-        &WriteOptions {
-            precision: config.precision,
-        },
-    )
+    svg::write(&fit.scene, &config.file)
 }
 
 fn verdict(fit: &Fit, config: &Config) -> Verdict {

@@ -45,7 +45,7 @@ impl Job<'_> {
         events.tell(&Event::Start(input));
         let fit = self.watched(&picture, events, Bar::new(verbosity.quiet, heading), draw)?;
         tell_stages(&fit, verbosity);
-        let mut drawn = Drawn::new(fit, self.options.look.precision)?;
+        let mut drawn = Drawn::new(fit, &self.options.form.options())?;
         outputs.svg.write(drawn.text.as_bytes())?;
         drawn.wall = start.elapsed();
         let record = self.record(&drawn);
@@ -88,6 +88,8 @@ impl Job<'_> {
             dropped: drawn.fit.dropped,
             stages: drawn.fit.stages.iter().map(StageEntry::from).collect(),
             svg_bytes: drawn.text.len(),
+            svg_gzip_bytes: report::gzip_bytes(&drawn.text),
+            bytes_per_stroke: report::per_stroke(drawn.text.len(), drawn.fit.scene.len()),
             wall_s: drawn.wall.as_secs_f64(),
             cpu_s,
             peak_rss_bytes,
@@ -173,8 +175,8 @@ pub(super) struct Drawn {
 }
 
 impl Drawn {
-    fn new(fit: Fit, precision: u8) -> Result<Self> {
-        let text = svg::write(&fit.scene, &WriteOptions { precision });
+    fn new(fit: Fit, form: &WriteOptions) -> Result<Self> {
+        let text = svg::write(&fit.scene, form);
         let soft = Quality::between(&fit.target, &fit.soft)?;
         let verdict = verify::verify(&text, &fit.target, &fit.soft)?;
         Ok(Self {

@@ -5,6 +5,7 @@ mod check;
 mod domain;
 mod events;
 mod fit;
+mod form;
 mod hint;
 mod input;
 mod job;

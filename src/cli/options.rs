@@ -7,7 +7,7 @@ use clap::ValueEnum;
 use strokefit::coverage::CoverageSchedule;
 use strokefit::fit::{self, Background, Config, Execution, Simd};
 
-use super::domain;
+use super::{domain, form};
 
 /// The options of a command that draws.
 #[derive(Debug, clap::Args)]
@@ -20,6 +20,8 @@ pub(super) struct Options {
     pub(super) budget: Budget,
     #[command(flatten)]
     pub(super) look: Look,
+    #[command(flatten)]
+    pub(super) form: form::Args,
     #[command(flatten)]
     pub(super) how: How,
 }
@@ -66,9 +68,6 @@ pub(super) struct Look {
     /// Leave out the joint fit of all strokes after the stages: faster, some dB less
     #[arg(long)]
     no_polish: bool,
-    /// Decimals of coordinates and widths, 0 to 6
-    #[arg(long, value_name = "N", default_value = "2", value_parser = domain::precision, allow_negative_numbers = true)]
-    pub(super) precision: u8,
     /// Colour behind the strokes: auto, none or #rrggbb; transparency is laid on it, or on white
     #[arg(long, value_name = "COLOR", default_value = "auto", value_parser = domain::background)]
     background: Background,
@@ -110,7 +109,7 @@ impl Options {
             coverage: look.coverage,
             stages: look.stages,
             polish: !look.no_polish,
-            precision: look.precision,
+            file: self.form.options(),
             background: look.background,
             seed: look.seed,
             ..Config::default()

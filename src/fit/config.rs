@@ -8,7 +8,8 @@ use super::simd::Simd;
 use crate::coverage::CoverageSchedule;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
-use crate::scene::Rgb;
+use crate::scene::{MAX_PRECISION, Rgb};
+use crate::svg::WriteOptions;
 
 /// What to fit. Equal configurations of equal pictures give equal bytes.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,8 +32,8 @@ pub struct Config {
     pub stages: Option<usize>,
     /// Whether all strokes are fitted jointly after the stages.
     pub polish: bool,
-    /// Decimals of coordinates and widths in the SVG, 0..=6.
-    pub precision: u8,
+    /// How the drawing is written, which says what it looks like and what its bytes are.
+    pub file: WriteOptions,
     /// The colour behind all strokes.
     pub background: Background,
     /// Key of every random draw.
@@ -52,7 +53,7 @@ impl Default for Config {
             coverage: CoverageSchedule::default(),
             stages: None,
             polish: true,
-            precision: 2,
+            file: WriteOptions::default(),
             background: Background::Auto,
             seed: 0,
             recipe: None,
@@ -143,10 +144,10 @@ impl Config {
         if self.stages == Some(0) {
             return refuse("0 stages add no stroke: give 1 or more".into());
         }
-        if self.precision > MAX_PRECISION {
+        if self.file.precision > MAX_PRECISION {
             return refuse(format!(
                 "a precision of {} decimals is out of range: give 0 to {MAX_PRECISION}",
-                self.precision
+                self.file.precision
             ));
         }
         Ok(())
@@ -155,9 +156,6 @@ impl Config {
 
 /// Beyond it a stroke may cost less than one 8-bit level of one pixel.
 const MOST_QUALITY: f64 = 60.0;
-
-/// Most decimals of coordinates: more than `f32` holds in a picture of any size.
-const MAX_PRECISION: u8 = 6;
 
 impl Execution {
     /// The worker threads.

@@ -7,18 +7,15 @@ use crate::svg::{WriteOptions, stroke_bytes};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Price {
     per_byte: f32,
-    options: WriteOptions,
+    file: WriteOptions,
 }
 
 impl Price {
     /// At quality `q` a byte must remove as much squared error as one pixel has in a picture of `q` dB:
     /// 3·10^(−q/10). Without a quality every stroke that removes any error is worth drawing.
-    pub(super) fn new(quality: Option<f64>, precision: u8) -> Self {
+    pub(super) fn new(quality: Option<f64>, file: WriteOptions) -> Self {
         let per_byte = quality.map_or(0.0, |q| 3.0 * 10f64.powf(-q / 10.0)) as f32;
-        Self {
-            per_byte,
-            options: WriteOptions { precision },
-        }
+        Self { per_byte, file }
     }
 
     /// The price of `stroke`.
@@ -26,7 +23,7 @@ impl Price {
         if self.per_byte == 0.0 {
             return 0.0;
         }
-        self.per_byte * stroke_bytes(&unpack(stroke), &self.options) as f32
+        self.per_byte * stroke_bytes(&unpack(stroke), &self.file) as f32
     }
 }
 
@@ -36,14 +33,18 @@ mod tests {
 
     const STROKE: Params = [10.0, 10.0, 20.0, 14.0, 2.0, 0.5, 0.25, 0.75, 1.0];
 
+    fn price(quality: Option<f64>) -> Price {
+        Price::new(quality, WriteOptions::default())
+    }
+
     #[test]
     fn ten_db_are_a_tenth_of_the_price() {
-        let (dear, cheap) = (Price::new(Some(20.0), 2), Price::new(Some(30.0), 2));
+        let (dear, cheap) = (price(Some(20.0)), price(Some(30.0)));
         assert!((dear.of(&STROKE) / cheap.of(&STROKE) - 10.0).abs() < 1e-3);
     }
 
     #[test]
     fn without_a_quality_strokes_are_free() {
-        assert_eq!(Price::new(None, 2).of(&STROKE), 0.0);
+        assert_eq!(price(None).of(&STROKE), 0.0);
     }
 }

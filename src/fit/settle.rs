@@ -17,6 +17,7 @@ use crate::image::Image;
 use crate::optim::Schedule;
 use crate::render::Canvas;
 use crate::scene::Scene;
+use crate::svg::WriteOptions;
 use crate::{metrics, svg, verify};
 
 /// How the drawing is written.
@@ -24,14 +25,14 @@ use crate::{metrics, svg, verify};
 pub(super) struct Page {
     /// Whether there is a rectangle of the background's colour.
     has_ground: bool,
-    precision: u8,
+    file: WriteOptions,
 }
 
 impl Page {
     pub(super) fn of(config: &Config) -> Self {
         Self {
             has_ground: config.background != Background::None,
-            precision: config.precision,
+            file: config.file,
         }
     }
 }
@@ -52,13 +53,10 @@ pub(super) struct Written {
 
 /// Rounds and writes `drawing` and renders the file.
 pub(super) fn write(drawing: &Drawing, target: &Image, page: Page) -> Result<Written> {
-    let (scene, dropped) = drawing.scene(page.has_ground).quantized(page.precision);
-    let text = svg::write(
-        &scene,
-        &svg::WriteOptions {
-            precision: page.precision,
-        },
-    );
+    let (scene, dropped) = drawing
+        .scene(page.has_ground)
+        .quantized(page.file.precision);
+    let text = svg::write(&scene, &page.file);
     let drawn = verify::render_like(&text, target)?;
     let mse = metrics::mse(target, &drawn)?;
     Ok(Written {

@@ -86,7 +86,7 @@ impl<'a> Work<'a> {
             page: Page::of(config),
             terms: Terms {
                 limit: limit.unwrap_or(MOST_STROKES),
-                price: Price::new(config.effective_quality(), config.precision),
+                price: Price::new(config.effective_quality(), config.file),
             },
             control: Control::new(observer, config, planned, plan.len()),
             plan,

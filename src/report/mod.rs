@@ -6,6 +6,7 @@
 
 mod check;
 mod event;
+mod size;
 mod usage;
 
 use serde::{Deserialize, Serialize};
@@ -16,6 +17,7 @@ use crate::metrics::{Agreement, Quality};
 
 pub use check::{AgainstResvg, CheckReport, NotDrawn, RendererEntry};
 pub use event::{Event, Phase};
+pub use size::{gzip_bytes, per_stroke};
 pub use usage::Usage;
 
 /// Version of the records' layout.
@@ -36,6 +38,10 @@ pub struct FitReport {
     pub stages: Vec<StageEntry>,
     /// Length of the SVG text in bytes.
     pub svg_bytes: usize,
+    /// Its length when compressed by gzip.
+    pub svg_gzip_bytes: usize,
+    /// Its length, head and layers included, per stroke; `null` without strokes.
+    pub bytes_per_stroke: Option<f64>,
     /// Wall time from the start of the command to the verdict, s.
     pub wall_s: f64,
     /// CPU time of the process, all threads, s.
@@ -149,6 +155,8 @@ mod tests {
             dropped: 1,
             stages: vec![StageEntry::from(&record)],
             svg_bytes: 900,
+            svg_gzip_bytes: 400,
+            bytes_per_stroke: Some(100.0),
             wall_s: 0.5,
             cpu_s: Some(0.75),
             peak_rss_bytes: None,
@@ -172,6 +180,8 @@ mod tests {
             "dropped": 1,
             "stages": [{"index": 1, "strokes": 9, "iterations": 40, "wall_s": 0.25, "psnr_db": 31.5, "layer_psnr_db": 30.5}],
             "svg_bytes": 900,
+            "svg_gzip_bytes": 400,
+            "bytes_per_stroke": 100.0,
             "wall_s": 0.5,
             "cpu_s": 0.75,
             "peak_rss_bytes": null,

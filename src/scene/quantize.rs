@@ -56,7 +56,7 @@ impl Scene {
 }
 
 /// A stroke in the integers that its SVG element is made of.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Written {
     /// Corners of the centre line in units of 1/[`UNITS_PER_PX`] px; neighbours differ; one makes
     /// a dot.

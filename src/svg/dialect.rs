@@ -1,4 +1,4 @@
-//! The words of the dialect that reader and writer share: names, numbers, path data, colours.
+//! The words of the dialect that reader and writer share: names, numbers, colours.
 
 use crate::scene::UNITS_PER_PX;
 
@@ -8,12 +8,9 @@ pub(super) const SVG_NAMESPACE: &str = "http://www.w3.org/2000/svg";
 /// The namespace that makes a group a layer in Inkscape.
 pub(super) const INKSCAPE_NAMESPACE: &str = "http://www.inkscape.org/namespaces/inkscape";
 
-/// The way from a dot to the end of its segment.
-const DOT: &str = "h0.01";
-
 /// Largest number that may be read, in units: the way between the two farthest points of a scene.
 /// All decimals up to here are exact in `f64`.
-const MAX_UNITS: i64 = 2_000_000_000 * UNITS_PER_PX;
+pub(super) const MAX_UNITS: i64 = 2_000_000_000 * UNITS_PER_PX;
 
 /// Appends `units` as a decimal of px: no exponent, no leading dot, no trailing zeros.
 pub(super) fn push_number(out: &mut String, units: i64) {
@@ -49,86 +46,34 @@ pub(super) fn number(text: &str) -> Option<i64> {
     (units <= MAX_UNITS).then_some(if negative { -units } else { units })
 }
 
-/// The `d` of a path through `points`: absolute or relative, whichever is shorter.
-pub(super) fn path_data(points: &[[i64; 2]]) -> String {
-    let Some((&start, rest)) = points.split_first() else {
-        return String::new();
-    };
-    let mut head = String::from("M");
-    push_pair(&mut head, start);
-    if rest.is_empty() {
-        return head + DOT;
-    }
-    let (mut absolute, mut relative) = (String::from("L"), String::from("l"));
-    let mut last = start;
-    for &[x, y] in rest {
-        push_pair(&mut absolute, [x, y]);
-        push_pair(&mut relative, [x - last[0], y - last[1]]);
-        last = [x, y];
-    }
-    head + if relative.len() < absolute.len() {
-        &relative
-    } else {
-        &absolute
-    }
-}
-
-fn push_pair(out: &mut String, pair: [i64; 2]) {
-    for units in pair {
-        let follows_number = out.ends_with(|c: char| c.is_ascii_digit());
-        // A minus sign separates by itself.
-        if follows_number && units >= 0 {
-            out.push(' ');
-        }
-        push_number(out, units);
-    }
-}
-
-/// The points of the `d` of a path, neighbours different, or `None` if it is not of the dialect.
-pub(super) fn points(d: &str) -> Option<Vec<[i64; 2]>> {
-    let body = d.strip_prefix('M')?;
-    if let Some(start) = body.strip_suffix(DOT) {
-        return pairs(start).filter(|p| p.len() == 1);
-    }
-    let at = body.find(['L', 'l'])?;
-    let mut points = pairs(&body[..at]).filter(|p| p.len() == 1)?;
-    let relative = body[at..].starts_with('l');
-    for [x, y] in pairs(&body[at + 1..]).filter(|p| p.len() == 1)? {
-        let [from_x, from_y] = if relative { *points.last()? } else { [0, 0] };
-        points.push([from_x + x, from_y + y]);
-    }
-    points.dedup();
-    Some(points)
-}
-
-/// Numbers two by two, separated by spaces or their own minus signs.
-fn pairs(text: &str) -> Option<Vec<[i64; 2]>> {
-    let mut numbers = Vec::new();
-    for word in text.split_ascii_whitespace() {
-        let mut rest = word;
-        while !rest.is_empty() {
-            let minus = rest.bytes().skip(1).position(|b| b == b'-');
-            let end = minus.map_or(rest.len(), |at| at + 1);
-            numbers.push(number(&rest[..end])?);
-            rest = &rest[end..];
-        }
-    }
-    let (pairs, left) = numbers.as_chunks();
-    left.is_empty().then(|| pairs.to_vec())
-}
-
 /// `#rrggbb`.
 pub(super) fn hex([r, g, b]: [u8; 3]) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// The channels of `#rrggbb`.
+/// `#rgb` where that says the same as `#rrggbb`, which is written otherwise.
+pub(super) fn short_hex(channels: [u8; 3]) -> String {
+    let twice = |c: u8| c.is_multiple_of(0x11);
+    if channels.into_iter().all(twice) {
+        let [r, g, b] = channels.map(|c| c / 0x11);
+        format!("#{r:x}{g:x}{b:x}")
+    } else {
+        hex(channels)
+    }
+}
+
+/// The channels of `#rrggbb` or `#rgb`.
 pub(super) fn channels(hex: &str) -> Option<[u8; 3]> {
     let digits = hex
         .strip_prefix('#')
-        .filter(|h| h.len() == 6 && h.bytes().all(|b| b.is_ascii_hexdigit()))?;
-    let [_, r, g, b] = u32::from_str_radix(digits, 16).ok()?.to_be_bytes();
-    Some([r, g, b])
+        .filter(|h| h.bytes().all(|b| b.is_ascii_hexdigit()))?;
+    let bits = u32::from_str_radix(digits, 16).ok()?;
+    let [_, r, g, b] = bits.to_be_bytes();
+    match digits.len() {
+        6 => Some([r, g, b]),
+        3 => Some([8, 4, 0].map(|shift| (bits >> shift & 0xf) as u8 * 0x11)),
+        _ => None,
+    }
 }
 
 /// Opacity k/255 with 3 decimals, enough to find k again.
@@ -192,45 +137,19 @@ mod tests {
     }
 
     #[test]
-    fn a_path_is_absolute_or_relative_whichever_is_shorter() {
-        let px = |x: i64, y: i64| [x * UNITS_PER_PX, y * UNITS_PER_PX];
-        assert_eq!(path_data(&[px(1, 2), px(3, 4)]), "M1 2L3 4");
-        assert_eq!(path_data(&[px(100, 200), px(103, 199)]), "M100 200l3-1");
-        assert_eq!(path_data(&[px(-1, -2), px(-3, 4)]), "M-1-2L-3 4");
-        assert_eq!(path_data(&[px(5, 6)]), "M5 6h0.01");
-    }
-
-    #[test]
-    fn path_data_outside_the_dialect_is_refused() {
-        let refused = [
-            "",
-            "M",
-            "M1 2",
-            "M1 2L3",
-            "M1 2L3 4 5",
-            "M1 2L3 4L5 6",
-            "m1 2l3 4",
-            "M1 2h1",
-            "M1 2 3 4",
-            "M1,2L3,4",
-            "M1 2L--3 4",
-            "Mé 2L3 4",
-        ];
-        for d in refused {
-            assert_eq!(points(d), None, "{d}");
-        }
-    }
-
-    #[test]
     fn every_opacity_and_channel_survives() {
         for k in 1..=255 {
             assert_eq!(opacity_quantum(&opacity(k)), Some(k));
-            assert_eq!(channels(&hex([k, 0, 255 - k])), Some([k, 0, 255 - k]));
+            for hex in [hex([k, 0, 255 - k]), short_hex([k, 0, 255 - k])] {
+                assert_eq!(channels(&hex), Some([k, 0, 255 - k]));
+            }
         }
+        assert_eq!(short_hex([0x11, 0xff, 0]), "#1f0");
+        assert_eq!(short_hex([0x11, 0xf1, 0]), "#11f100");
         for text in ["0", "0.001", "1.1", "-0.5", "x"] {
             assert_eq!(opacity_quantum(text), None, "{text}");
         }
-        for text in ["#fff", "ffffff", "#ffffff00", "#+12345", "#ééé"] {
+        for text in ["#ff", "ffffff", "#ffff", "#ffffff00", "#+12345", "#ééé"] {
             assert_eq!(channels(text), None, "{text}");
         }
     }

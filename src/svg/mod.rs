@@ -34,20 +34,27 @@
 //! let page = Scene::empty(40, 10, Some([1.0; 3]));
 //! let scene = Scene { stages: vec![Stage { strokes: vec![stroke] }], ..page };
 //!
-//! let text = svg::write(&scene, &WriteOptions { precision: 2 });
+//! let text = svg::write(&scene, &WriteOptions::default());
 //! assert!(text.contains(r##"<path d="M1.25 2L30 4" stroke="#ff6600" stroke-width="3" stroke-opacity="0.502"/>"##));
 //! assert_eq!(svg::read(&text)?, scene.quantized(2).0);
 //! # Ok::<(), strokefit::Error>(())
 //! ```
 
+mod arrange;
 mod dialect;
+mod element;
 mod lint;
+mod options;
+mod outline;
+mod path;
 mod read;
 mod write;
 
+pub use arrange::arrange;
 pub use lint::{Finding, Severity, lint};
+pub use options::{Form, Group, Length, WriteOptions};
 pub use read::read;
-pub use write::{WriteOptions, layers, stroke_bytes, write};
+pub use write::{layers, stroke_bytes, write};
 
 #[cfg(test)]
 mod tests;

@@ -5,11 +5,12 @@ use quick_xml::events::{BytesStart, Event};
 use quick_xml::name::{Namespace, ResolveResult};
 use quick_xml::reader::NsReader;
 
-use super::dialect;
+use super::options::Length;
+use super::{dialect, path};
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::{Rgb, Scene, Stage, Stroke, Written, color};
 
-/// Reads what [`write`](super::write) wrote.
+/// Reads what [`write`](super::write()) wrote in any form but outlines.
 ///
 /// Comments, white space and attributes with a prefix (`inkscape:label`) do not matter.
 ///
@@ -100,20 +101,39 @@ impl<'a> Parser<'a> {
     }
 
     fn stage(&mut self, group: &Element, number: usize) -> Parsed<Stage> {
-        group.only(&["id", "fill", "stroke-linecap"])?;
-        group.expect("id", &format!("stage-{number}"))?;
+        group.only(&["id", "fill", "stroke-linecap", "stroke-linejoin"])?;
+        let ids = ["stage", "color"].map(|kind| format!("{kind}-{number}"));
+        if !ids.iter().any(|id| group.find("id") == Some(id)) {
+            group.expect("id", &ids[0])?;
+        }
         group.expect("fill", "none")?;
         group.expect("stroke-linecap", "round")?;
+        let has_join = group.find("stroke-linejoin").is_some();
+        if has_join {
+            group.expect("stroke-linejoin", "round")?;
+        }
         let mut stage = Stage::default();
+        let look = Look {
+            has_join,
+            ..Look::default()
+        };
+        self.strokes(&look, &mut stage)?;
+        Ok(stage)
+    }
+
+    /// Adds the strokes up to the end of a group.
+    fn strokes(&mut self, look: &Look, stage: &mut Stage) -> Parsed<()> {
         loop {
             match self.next()? {
                 Tag::Open(e) if e.name == "path" => {
-                    stage.strokes.push(stroke(&e)?);
+                    stage.strokes.extend(look.of(&e, &["d"])?.strokes(&e)?);
                     self.close(&e)?;
                 }
+                // Each group has to say something new, which bounds their depth.
+                Tag::Open(e) if e.name == "g" => self.strokes(&look.of(&e, &[])?, stage)?,
                 Tag::Open(e) if e.name == "title" => self.close(&e)?,
                 Tag::Open(e) => return Err(unexpected(&e)),
-                Tag::Close => return Ok(stage),
+                Tag::Close => return Ok(()),
                 Tag::End => return Err("the file ends before </g>: get a complete copy".into()),
             }
         }
@@ -194,6 +214,19 @@ impl Element {
         })
     }
 
+    /// The attribute as `parse` understands it, or what is `known` without it.
+    fn either<T>(
+        &self,
+        key: &str,
+        known: Option<T>,
+        parse: impl Fn(&str) -> Option<T>,
+    ) -> Parsed<Option<T>> {
+        match self.find(key) {
+            Some(_) => self.parsed(key, parse).map(Some),
+            None => Ok(known),
+        }
+    }
+
     fn expect(&self, key: &str, value: &str) -> Parsed<()> {
         self.parsed(key, |text| (text == value).then_some(()))
             .map_err(|e| format!("{e} (expected \"{value}\")"))
@@ -215,11 +248,21 @@ impl Element {
     }
 }
 
+/// Width and height in px of the picture, which the `viewBox` has.
 fn page_size(root: &Element) -> Parsed<(u32, u32)> {
     root.only(&["width", "height", "viewBox"])?;
-    let side = |text: &str| text.parse::<u32>().ok().filter(|&side| side > 0);
-    let (width, height) = (root.parsed("width", side)?, root.parsed("height", side)?);
-    root.expect("viewBox", &format!("0 0 {width} {height}"))?;
+    let (width, height) = root.parsed("viewBox", |text| {
+        let (width, height) = text.strip_prefix("0 0 ")?.split_once(' ')?;
+        let side = |text: &str| text.parse::<u32>().ok().filter(|&side| side > 0);
+        Some((side(width)?, side(height)?))
+    })?;
+    match root.find("width").and_then(Length::parse) {
+        Some(length) => root.expect("height", &length.scaled(height, width).text())?,
+        None => {
+            root.expect("width", &width.to_string())?;
+            root.expect("height", &height.to_string())?;
+        }
+    }
     Ok((width, height))
 }
 
@@ -230,20 +273,63 @@ fn background(rect: &Element, width: u32, height: u32) -> Parsed<Rgb> {
     rect.parsed("fill", dialect::channels).map(color)
 }
 
-fn stroke(path: &Element) -> Parsed<Stroke> {
-    path.only(&["d", "stroke", "stroke-width", "stroke-opacity"])?;
-    let width = |text: &str| dialect::number(text).filter(|&width| width > 0);
-    let opacity = match path.find("stroke-opacity") {
-        Some(_) => path.parsed("stroke-opacity", dialect::opacity_quantum)?,
-        None => u8::MAX,
-    };
-    let written = Written {
-        points: path.parsed("d", dialect::points)?,
-        width: path.parsed("stroke-width", width)?,
-        color: path.parsed("stroke", dialect::channels)?,
-        opacity,
-    };
-    Ok(written.stroke())
+/// What groups say of the strokes in them.
+#[derive(Debug, Clone, Default)]
+struct Look {
+    color: Option<[u8; 3]>,
+    width: Option<i64>,
+    opacity: Option<u8>,
+    /// Whether corners are round.
+    has_join: bool,
+}
+
+impl Look {
+    /// What this and the attributes of `element` say together; other attributes it may have are `own`.
+    fn of(&self, element: &Element, own: &[&str]) -> Parsed<Self> {
+        let free = [
+            ("stroke", self.color.is_none()),
+            ("stroke-width", self.width.is_none()),
+            ("stroke-opacity", self.opacity.is_none()),
+        ];
+        let free: Vec<_> = free
+            .iter()
+            .filter(|(_, free)| *free)
+            .map(|(key, _)| *key)
+            .collect();
+        element.only(&[own, free.as_slice()].concat())?;
+        if own.is_empty() && element.attributes.is_empty() {
+            return Err("<g> says nothing: remove it".into());
+        }
+        let width = |text: &str| dialect::number(text).filter(|&width| width > 0);
+        Ok(Self {
+            color: element.either("stroke", self.color, dialect::channels)?,
+            width: element.either("stroke-width", self.width, width)?,
+            opacity: element.either("stroke-opacity", self.opacity, dialect::opacity_quantum)?,
+            has_join: self.has_join,
+        })
+    }
+
+    /// The strokes of a path that looks so.
+    fn strokes(&self, path: &Element) -> Parsed<Vec<Stroke>> {
+        let parsed = path.parsed("d", path::parse)?;
+        if parsed.has_corner && !self.has_join {
+            return Err("<path> has a corner, but its layer no stroke-linejoin=\"round\"".into());
+        }
+        let missing = |key: &str| format!("<path> has no {key}");
+        let width = self.width.ok_or_else(|| missing("stroke-width"))?;
+        let color = self.color.ok_or_else(|| missing("stroke"))?;
+        let stroke = |points| {
+            let opacity = self.opacity.unwrap_or(u8::MAX);
+            Written {
+                points,
+                width,
+                color,
+                opacity,
+            }
+            .stroke()
+        };
+        Ok(parsed.strokes.into_iter().map(stroke).collect())
+    }
 }
 
 fn check_namespace(namespace: &ResolveResult<'_>, tag: &BytesStart<'_>) -> Parsed<()> {

@@ -1,55 +1,46 @@
 //! A scene as SVG text.
 
-use super::dialect;
-use crate::scene::{Scene, Stage, Stroke, Written, quantum};
+use super::arrange::{self, Layer};
+use super::options::{Form, WriteOptions};
+use super::{dialect, element};
+use crate::scene::{Scene, Stroke, Written, quantum};
 
-/// How to write.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct WriteOptions {
-    /// Decimals of coordinates and widths, 0..=6; more are taken as 6.
-    pub precision: u8,
-}
-
-impl Default for WriteOptions {
-    /// Two decimals: a hundredth of a px is finer than any rasteriser's grid.
-    fn default() -> Self {
-        Self { precision: 2 }
-    }
-}
-
-/// The scene as SVG text, as [`Scene::quantized`] would round it; what that drops is not written.
+/// The scene as SVG text, in the order that [`arrange`](super::arrange()) says and as [`Scene::quantized`]
+/// rounds it; what that drops is not written.
 pub fn write(scene: &Scene, options: &WriteOptions) -> String {
-    let mut out = head(scene);
+    let mut out = head(scene, options);
     out.push_str(&layers(scene, options, 1));
     out.push_str("</svg>\n");
     out
 }
 
-/// The layers of the scene alone, a line each for head, title, strokes and end, to be put into a document of
-/// the scene's size. They are numbered from `first`; `xmlns:inkscape` must be declared around them.
+/// The layers of the scene alone, to be put into a document of the scene's size. They are numbered from `first`;
+/// `xmlns:inkscape` must be declared around them.
 pub fn layers(scene: &Scene, options: &WriteOptions, first: usize) -> String {
     let mut out = String::new();
-    for (index, stage) in scene.stages.iter().enumerate() {
-        push_stage(&mut out, first + index, stage, scene, options);
+    for (index, layer) in arrange::layers(scene, options).iter().enumerate() {
+        push_layer(&mut out, first + index, layer, options.form);
     }
     out
 }
 
-/// Bytes that the stroke takes in a file, 0 when it would be dropped wherever it lay.
+/// Bytes that the stroke takes in a file, 0 when it would be dropped wherever it lay. In the smallest form, where
+/// that depends on its neighbours, a width that they share is taken to be theirs, and a colour the stroke's own.
 pub fn stroke_bytes(stroke: &Stroke, options: &WriteOptions) -> usize {
-    let mut out = String::new();
-    if let Some(written) = Written::anywhere(stroke, options.precision) {
-        push_stroke(&mut out, &written);
-    }
-    out.len()
+    Written::anywhere(stroke, options.precision)
+        .map_or(0, |stroke| element::bytes(&stroke, options.form))
 }
 
-fn head(scene: &Scene) -> String {
+fn head(scene: &Scene, options: &WriteOptions) -> String {
     let Scene { width, height, .. } = *scene;
     let (svg, inkscape) = (dialect::SVG_NAMESPACE, dialect::INKSCAPE_NAMESPACE);
+    let (page_width, page_height) = match options.width {
+        Some(length) => (length.text(), length.scaled(height, width).text()),
+        None => (width.to_string(), height.to_string()),
+    };
     let mut out = format!(
         "<svg xmlns=\"{svg}\" xmlns:inkscape=\"{inkscape}\" \
-         width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\">\n"
+         width=\"{page_width}\" height=\"{page_height}\" viewBox=\"0 0 {width} {height}\">\n"
     );
     if let Some(color) = scene.background {
         let fill = dialect::hex(color.map(quantum));
@@ -58,40 +49,32 @@ fn head(scene: &Scene) -> String {
     out
 }
 
-fn push_stage(
-    out: &mut String,
-    number: usize,
-    stage: &Stage,
-    scene: &Scene,
-    options: &WriteOptions,
-) {
-    let strokes: Vec<_> = stage
-        .strokes
-        .iter()
-        .filter_map(|stroke| Written::new(stroke, scene, options.precision))
-        .collect();
-    let count = strokes.len();
+fn push_layer(out: &mut String, number: usize, layer: &Layer, form: Form) {
+    let count = layer.strokes.len();
     let plural = if count == 1 { "" } else { "s" };
+    let (id, label) = match layer.color {
+        Some(color) => (format!("color-{number}"), dialect::hex(color)),
+        None => (format!("stage-{number}"), format!("Stage {number}")),
+    };
     *out += &format!(
-        "<g id=\"stage-{number}\" inkscape:groupmode=\"layer\" inkscape:label=\"Stage {number}\" \
-         fill=\"none\" stroke-linecap=\"round\">\n<title>Stage {number}: {count} stroke{plural}</title>\n"
+        "<g id=\"{id}\" inkscape:groupmode=\"layer\" inkscape:label=\"{label}\"{}>\n\
+         <title>{label}: {count} stroke{plural}</title>\n",
+        look(layer, form)
     );
-    for stroke in &strokes {
-        push_stroke(out, stroke);
+    element::push(out, &layer.strokes, form);
+    if !out.ends_with('\n') {
+        out.push('\n');
     }
     out.push_str("</g>\n");
 }
 
-fn push_stroke(out: &mut String, stroke: &Written) {
-    out.push_str("<path d=\"");
-    out.push_str(&dialect::path_data(&stroke.points));
-    out.push_str("\" stroke=\"");
-    out.push_str(&dialect::hex(stroke.color));
-    out.push_str("\" stroke-width=\"");
-    dialect::push_number(out, stroke.width);
-    if stroke.opacity < u8::MAX {
-        out.push_str("\" stroke-opacity=\"");
-        out.push_str(&dialect::opacity(stroke.opacity));
+/// The attributes of a layer that make its paths strokes.
+fn look(layer: &Layer, form: Form) -> &'static str {
+    if form == Form::Outlines {
+        ""
+    } else if element::has_corner(&layer.strokes, form) {
+        " fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\""
+    } else {
+        " fill=\"none\" stroke-linecap=\"round\""
     }
-    out.push_str("\"/>\n");
 }

@@ -30,7 +30,16 @@ fn what_strokefit_writes_has_nothing() {
         ..Scene::empty(9, 9, Some([1.0; 3]))
     };
     for precision in 0..=6 {
-        assert_eq!(lint(&write(&scene, &WriteOptions { precision })), []);
+        assert_eq!(
+            lint(&write(
+                &scene,
+                &WriteOptions {
+                    precision,
+                    ..WriteOptions::default()
+                }
+            )),
+            []
+        );
     }
 }
 

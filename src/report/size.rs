@@ -1,0 +1,34 @@
+//! How long a file is. The one door of `flate2`.
+
+use std::io::Write;
+
+use flate2::{Compression, write::GzEncoder};
+
+/// Bytes of `text` as a web server sends it: compressed by gzip, as well as that can.
+pub fn gzip_bytes(text: &str) -> usize {
+    let mut gzip = GzEncoder::new(Vec::new(), Compression::best());
+    // Writing to memory cannot fail.
+    let _ = gzip.write_all(text.as_bytes());
+    gzip.finish().map_or(0, |bytes| bytes.len())
+}
+
+/// Bytes of a file, head and layers included, per stroke; `None` without strokes.
+pub fn per_stroke(bytes: usize, strokes: usize) -> Option<f64> {
+    (strokes > 0).then(|| bytes as f64 / strokes as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_repeats_is_compressed() {
+        let text = "<path/>".repeat(1000);
+        assert!((18..200).contains(&gzip_bytes(&text)));
+    }
+
+    #[test]
+    fn nothing_is_not_divided_by() {
+        assert_eq!([per_stroke(300, 4), per_stroke(300, 0)], [Some(75.0), None]);
+    }
+}

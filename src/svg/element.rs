@@ -1,0 +1,150 @@
+//! Strokes as elements: which share one, and which attributes neighbours share.
+
+use super::arrange::{pen, touch};
+use super::options::Form;
+use super::{dialect, outline, path};
+use crate::scene::Written;
+
+/// Appends the elements of `strokes`.
+pub(super) fn push(out: &mut String, strokes: &[Written], form: Form) {
+    match form {
+        Form::Elements | Form::Plain => {
+            for element in split(strokes, form) {
+                push_path(out, element, &[], dialect::hex);
+                out.push('\n');
+            }
+        }
+        Form::Smallest => push_runs(out, &split(strokes, form), &[]),
+        Form::Outlines => strokes.iter().for_each(|stroke| outline::push(out, stroke)),
+    }
+}
+
+/// Bytes of an element of one stroke. In the smallest form its width is taken to be shared with neighbours.
+pub(super) fn bytes(stroke: &Written, form: Form) -> usize {
+    let mut out = String::new();
+    let alone = std::slice::from_ref(stroke);
+    match form {
+        Form::Smallest => push_path(&mut out, alone, &[Attribute::Width], dialect::short_hex),
+        form => push(&mut out, alone, form),
+    }
+    out.len()
+}
+
+/// Whether a stroke of a path goes on from the end of the one before.
+pub(super) fn has_corner(strokes: &[Written], form: Form) -> bool {
+    split(strokes, form)
+        .iter()
+        .any(|element| element.windows(2).any(|w| is_chain(&w[0], &w[1])))
+}
+
+/// The strokes of each element.
+fn split(strokes: &[Written], form: Form) -> Vec<&[Written]> {
+    let mut elements = Vec::new();
+    let mut rest = strokes;
+    while !rest.is_empty() {
+        let joins = |&k: &usize| joins(&rest[..k], &rest[k], form);
+        let length = 1 + (1..rest.len()).take_while(joins).count();
+        let (element, later) = rest.split_at(length);
+        elements.push(element);
+        rest = later;
+    }
+    elements
+}
+
+/// Whether `next` may be part of a path of `strokes` without a change to the picture.
+fn joins(strokes: &[Written], next: &Written, form: Form) -> bool {
+    let Some(last) = strokes.last().filter(|last| pen(last) == pen(next)) else {
+        return false;
+    };
+    let opaque = next.opacity == u8::MAX;
+    match form {
+        Form::Plain => opaque && is_chain(last, next),
+        Form::Smallest => opaque || !strokes.iter().any(|stroke| touch(stroke, next)),
+        Form::Elements | Form::Outlines => false,
+    }
+}
+
+/// Whether `next` begins where `last` ends.
+fn is_chain(last: &Written, next: &Written) -> bool {
+    let lines = [last, next].iter().all(|stroke| stroke.points.len() > 1);
+    lines && last.points.last() == next.points.first()
+}
+
+/// What the strokes of a path have in common.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Attribute {
+    Color,
+    Width,
+    Opacity,
+}
+
+impl Attribute {
+    const ALL: [Self; 3] = [Self::Color, Self::Width, Self::Opacity];
+
+    /// As it is written, with a space before; nothing where the default says the same.
+    fn text(self, stroke: &Written, hex: fn([u8; 3]) -> String) -> String {
+        match self {
+            Self::Color => format!(" stroke=\"{}\"", hex(stroke.color)),
+            Self::Width => {
+                let mut width = String::new();
+                dialect::push_number(&mut width, stroke.width);
+                format!(" stroke-width=\"{width}\"")
+            }
+            Self::Opacity if stroke.opacity == u8::MAX => String::new(),
+            Self::Opacity => format!(" stroke-opacity=\"{}\"", dialect::opacity(stroke.opacity)),
+        }
+    }
+}
+
+/// Appends the path of `strokes` with the attributes that are not `shared`.
+fn push_path(
+    out: &mut String,
+    strokes: &[Written],
+    shared: &[Attribute],
+    hex: fn([u8; 3]) -> String,
+) {
+    let d = path::data(strokes.iter().map(|stroke| stroke.points.as_slice()));
+    *out += &format!("<path d=\"{d}\"");
+    let own = Attribute::ALL.iter().filter(|a| !shared.contains(a));
+    for attribute in own {
+        *out += &strokes
+            .first()
+            .map_or_else(String::new, |stroke| attribute.text(stroke, hex));
+    }
+    out.push_str("/>");
+}
+
+/// Bytes of a group around elements, besides its attribute.
+const GROUP_BYTES: usize = "<g></g>".len();
+
+/// Appends `elements`, in groups where the attribute that most share is shorter on a group.
+fn push_runs(out: &mut String, elements: &[&[Written]], shared: &[Attribute]) {
+    let mut rest = elements;
+    while let Some((first, others)) = rest.split_first() {
+        let Some((attribute, length)) = best_run(rest, shared) else {
+            push_path(out, first, shared, dialect::short_hex);
+            rest = others;
+            continue;
+        };
+        let (run, later) = rest.split_at(length);
+        *out += &format!("<g{}>", attribute.text(&first[0], dialect::short_hex));
+        push_runs(out, run, &[shared, &[attribute]].concat());
+        out.push_str("</g>");
+        rest = later;
+    }
+}
+
+/// The attribute that saves most bytes on a group around the elements from the first on, and how many share it.
+fn best_run(elements: &[&[Written]], shared: &[Attribute]) -> Option<(Attribute, usize)> {
+    let saved = |attribute: Attribute| {
+        let text = |element: &&[Written]| attribute.text(&element[0], dialect::short_hex);
+        let first = text(elements.first()?);
+        let length = elements.iter().take_while(|e| text(e) == first).count();
+        let saved = (first.len() * (length - 1)).checked_sub(GROUP_BYTES + 1)?;
+        Some((saved, (attribute, length)))
+    };
+    let free = Attribute::ALL.iter().filter(|a| !shared.contains(a));
+    free.filter_map(|&attribute| saved(attribute))
+        .max_by_key(|(saved, _)| *saved)
+        .map(|(_, run)| run)
+}

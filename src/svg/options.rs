@@ -1,0 +1,167 @@
+//! How a scene is to be written.
+
+use std::str::FromStr;
+
+use super::dialect;
+use crate::error::{Error, ErrorKind};
+use crate::scene::UNITS_PER_PX;
+
+/// How to write.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct WriteOptions {
+    /// Decimals of coordinates and widths, 0..=6; more are taken as 6.
+    pub precision: u8,
+    /// What an element holds.
+    pub form: Form,
+    /// What a layer holds.
+    pub group: Group,
+    /// Width of the page on paper or screen; its height follows. `None`: a px of the picture is a px.
+    pub width: Option<Length>,
+}
+
+impl Default for WriteOptions {
+    /// Two decimals: a hundredth of a px is finer than any rasteriser's grid.
+    fn default() -> Self {
+        Self {
+            precision: 2,
+            form: Form::default(),
+            group: Group::default(),
+            width: None,
+        }
+    }
+}
+
+/// What an element of the file holds.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Form {
+    /// One stroke, with all its attributes.
+    Elements,
+    /// One stroke, or several end to end that look the same as one polyline.
+    #[default]
+    Plain,
+    /// As many strokes of one look as may be drawn together. Attributes that neighbours share are on a group
+    /// around them, and strokes that do not touch change places for the sake of it.
+    Smallest,
+    /// The outline of one stroke, filled: for programs that ignore strokes. It cannot be read back.
+    Outlines,
+}
+
+/// What a layer of the file holds.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Group {
+    /// The strokes that were added together.
+    #[default]
+    Stage,
+    /// Strokes of one colour that may be drawn one after the other. A colour that others cover in one place
+    /// and that covers them in another has several layers.
+    Color,
+}
+
+/// A length with its unit, exact to 4 decimals.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Length {
+    /// In 1/[`UNITS_PER_PX`] of the unit.
+    value: i64,
+    unit: &'static str,
+}
+
+/// Names of units and how many px of 1/96 inch they have.
+const UNITS: [(&str, f64); 5] = [
+    ("mm", 96.0 / 25.4),
+    ("cm", 96.0 / 2.54),
+    ("in", 96.0),
+    ("pt", 96.0 / 72.0),
+    ("px", 1.0),
+];
+
+/// Widest page in px of 1/96 inch; no raster of it would be larger than renderers allow.
+const MAX_PAGE_PX: f64 = 100_000.0;
+
+/// 4 decimals of a unit: a ten-thousandth of a mm is finer than any plotter's grid.
+const STEP: i64 = UNITS_PER_PX / 10_000;
+
+impl Length {
+    /// This length times `numerator` / `denominator`, rounded to 4 decimals but no less than one of them.
+    pub(super) fn scaled(self, numerator: u32, denominator: u32) -> Self {
+        let exact = i128::from(self.value) * i128::from(numerator) / i128::from(STEP);
+        let steps = (2 * exact + i128::from(denominator)) / (2 * i128::from(denominator));
+        let value = i64::try_from(steps).unwrap_or(i64::MAX / STEP).max(1) * STEP;
+        Self { value, ..self }
+    }
+
+    /// The length as an attribute says it.
+    pub(super) fn text(self) -> String {
+        let mut out = String::new();
+        dialect::push_number(&mut out, self.value);
+        out + self.unit
+    }
+
+    /// The length that [`text`](Self::text) wrote.
+    pub(super) fn parse(text: &str) -> Option<Self> {
+        let &(unit, _) = UNITS.iter().find(|(unit, _)| text.ends_with(unit))?;
+        let value = dialect::number(text.strip_suffix(unit)?)?;
+        (value > 0 && value % STEP == 0).then_some(Self { value, unit })
+    }
+
+    /// In px of 1/96 inch.
+    fn px(self) -> f64 {
+        let per_unit = UNITS.iter().find(|(unit, _)| *unit == self.unit);
+        self.value as f64 / UNITS_PER_PX as f64 * per_unit.map_or(1.0, |&(_, px)| px)
+    }
+}
+
+impl FromStr for Length {
+    type Err = Error;
+
+    /// A number of 1 px to 100,000 px with a unit of mm, cm, in, pt or px, such as `120mm`.
+    fn from_str(text: &str) -> Result<Self, Error> {
+        Self::parse(text)
+            .filter(|length| (1.0..=MAX_PAGE_PX).contains(&length.px()))
+            .ok_or_else(|| {
+                let message =
+                    "give a length of 1 px to 100000 px with mm, cm, in, pt or px, such as 120mm";
+                Error::new(ErrorKind::Config, message)
+            })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_keep_their_unit_and_their_decimals() {
+        for text in ["120mm", "12.5cm", "4.75in", "1pt", "600px", "0.5in"] {
+            assert_eq!(text.parse::<Length>().unwrap().text(), text);
+        }
+    }
+
+    #[test]
+    fn what_is_no_length_is_refused() {
+        let refused = [
+            "",
+            "120",
+            "mm",
+            "-3mm",
+            "0mm",
+            ".5in",
+            "1e3mm",
+            "12 mm",
+            "12em",
+            "50%",
+            "0.1mm",
+            "99999cm",
+            "1.23456in",
+        ];
+        for text in refused {
+            assert!(text.parse::<Length>().is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn the_height_follows_the_width() {
+        let width: Length = "120mm".parse().unwrap();
+        assert_eq!(width.scaled(225, 300).text(), "90mm");
+        assert_eq!(width.scaled(1, 7).text(), "17.1429mm");
+    }
+}

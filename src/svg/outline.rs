@@ -1,0 +1,110 @@
+//! The outline of a stroke: two lines and two arcs, or a circle.
+
+use super::dialect;
+use crate::scene::{UNITS_PER_PX, Written};
+
+/// Appends the outline of `stroke` as an element of its own.
+pub(super) fn push(out: &mut String, stroke: &Written) {
+    match stroke.points.as_slice() {
+        [a, .., b] => push_capsule(out, *a, *b, stroke.width),
+        [centre] => push_circle(out, *centre, stroke.width),
+        [] => return,
+    }
+    *out += &format!(" fill=\"{}\"", dialect::hex(stroke.color));
+    if stroke.opacity < u8::MAX {
+        *out += &format!(" fill-opacity=\"{}\"", dialect::opacity(stroke.opacity));
+    }
+    out.push_str("/>\n");
+}
+
+fn push_circle(out: &mut String, [x, y]: [i64; 2], width: i64) {
+    let numbers = [x, y, width / 2].map(number);
+    let [x, y, r] = numbers;
+    *out += &format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\"");
+}
+
+/// One side, an arc around the second end, the other side, an arc around the first. Both sides are the very
+/// same step, forth and back, and so are the chords of the arcs, so that rounding cannot open the outline.
+fn push_capsule(out: &mut String, a: [i64; 2], b: [i64; 2], width: i64) {
+    let side = [b[0] - a[0], b[1] - a[1]];
+    let length = (side[0] as f64).hypot(side[1] as f64);
+    let across = |along: i64| rounded(along as f64 / length * width as f64);
+    let chord = [across(-side[1]), across(side[0])];
+    // A radius too short for its chord is stretched to a half circle by definition; one too long would
+    // make a flatter arc.
+    let r = number(floor(width / 2));
+    let start = [a[0] - floor(chord[0] / 2), a[1] - floor(chord[1] / 2)];
+    let arc = |step| format!("a{r} {r} 0 0 1{}", pair(step, true));
+    let back = |step: [i64; 2]| step.map(|units| -units);
+    *out += &format!(
+        "<path d=\"M{}l{}{}l{}{}z\"",
+        pair(start, false),
+        pair(side, false),
+        arc(chord),
+        pair(back(side), false),
+        arc(back(chord)),
+    );
+}
+
+/// A ten-thousandth of a px: an arc shows the rounding of its ends more than a stroke does.
+const STEP: i64 = UNITS_PER_PX / 10_000;
+
+fn rounded(units: f64) -> i64 {
+    (units / STEP as f64).round() as i64 * STEP
+}
+
+fn floor(units: i64) -> i64 {
+    units.div_euclid(STEP) * STEP
+}
+
+fn number(units: i64) -> String {
+    let mut out = String::new();
+    dialect::push_number(&mut out, units);
+    out
+}
+
+/// Two numbers; `spaced` when another precedes them.
+fn pair([x, y]: [i64; 2], spaced: bool) -> String {
+    let space = |units: i64, needed: bool| if needed && units >= 0 { " " } else { "" };
+    format!(
+        "{}{}{}{}",
+        space(x, spaced),
+        number(x),
+        space(y, true),
+        number(y)
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn written(points: &[[i64; 2]], opacity: u8) -> String {
+        let stroke = Written {
+            points: points
+                .iter()
+                .map(|p| p.map(|px| px * UNITS_PER_PX))
+                .collect(),
+            width: 3 * UNITS_PER_PX,
+            color: [255, 102, 0],
+            opacity,
+        };
+        let mut out = String::new();
+        push(&mut out, &stroke);
+        out
+    }
+
+    #[test]
+    fn a_capsule_has_two_lines_and_two_arcs() {
+        let d = "M10 18.5l30 0a1.5 1.5 0 0 1 0 3l-30 0a1.5 1.5 0 0 1 0-3z";
+        let expected = format!("<path d=\"{d}\" fill=\"#ff6600\"/>\n");
+        assert_eq!(written(&[[10, 20], [40, 20]], 255), expected);
+    }
+
+    #[test]
+    fn a_dot_is_a_circle() {
+        let expected =
+            "<circle cx=\"10\" cy=\"20\" r=\"1.5\" fill=\"#ff6600\" fill-opacity=\"0.502\"/>\n";
+        assert_eq!(written(&[[10, 20]], 128), expected);
+    }
+}
