@@ -17,6 +17,21 @@
 //! Smoothstep at s = 1 is close to what an antialiasing rasteriser draws. `raw` is what the
 //! article's targets are drawn with.
 //!
+//! Ninths of coverage from 3 px outside to 3 px inside, at a softness of 1 px:
+//!
+//! ```
+//! use strokefit::coverage::Coverage;
+//!
+//! let profile = |coverage: Coverage| -> String {
+//!     let ninths = |d: i32| (9.0 * coverage.value(f64::from(d) / 4.0, 1.0)).round() as u8;
+//!     (-12..=12).map(|d| char::from(b'0' + ninths(d))).collect()
+//! };
+//! assert_eq!(profile(Coverage::Smoothstep),    "0000000000014899999999999");
+//! assert_eq!(profile(Coverage::Tanh),          "0000000112235677889999999");
+//! assert_eq!(profile(Coverage::Sigmoid),       "0111112223345566777888889");
+//! assert_eq!(profile(Coverage::Atan { k: 1.0 }), "1111112223345566777888888");
+//! ```
+//!
 //! At infinite `d` the values are 0 and 1 and the derivatives 0.
 //!
 //! Source: the functions are those that the article behind this project compares (`strokefit lab`);

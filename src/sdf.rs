@@ -31,6 +31,37 @@
 //! ends goes to `a`. On the centre line `u = 0` at ε > 0; at ε = 0, where there is no derivative,
 //! it is taken to be 0 too. A combination divides its derivative evenly where its operands tie.
 //!
+//! What it looks like, `#` deep inside, `+` inside and `.` just outside:
+//!
+//! ```
+//! use strokefit::math::Point2;
+//! use strokefit::sdf::Capsule;
+//!
+//! let capsule = Capsule { a: Point2::new(7.0, 7.0), b: Point2::new(26.0, 3.0), radius: 3.0 };
+//! let shade = |d: f64| match d {
+//!     d if d > 1.5 => '#',
+//!     d if d > 0.0 => '+',
+//!     d if d > -1.5 => '.',
+//!     _ => ' ',
+//! };
+//! let pixel = |x, y| shade(capsule.distance(Point2::new(f64::from(x) + 0.5, f64::from(y) + 0.5), 0.0));
+//! let row = |y: i32| (0..32).map(|x| pixel(x, y)).collect::<String>();
+//! let picture = (0..11).map(|y| row(y).trim_end().to_owned()).collect::<Vec<_>>();
+//! assert_eq!(picture, [
+//!     "                .......+++++..",
+//!     "           ........++++++++++.",
+//!     "       .......+++++++######++.",
+//!     "    .....+++++++###########++.",
+//!     "   ..+++++++##############+++.",
+//!     "   .+++##############+++++++..",
+//!     "   .++###########+++++++.....",
+//!     "   .++######+++++++.......",
+//!     "   .++++++++++........",
+//!     "   ..+++++.......",
+//!     "    ........",
+//! ]);
+//! ```
+//!
 //! Source: Inigo Quilez, "2D distance functions" (the segment and the boolean operators), with the
 //! sign turned and ε added as in the golden data of this crate's tests.
 

@@ -4,6 +4,28 @@
 //! Nothing outside the text is ever read: references to files and addresses are not followed, and
 //! no fonts are loaded, so text that is not outlines is not drawn. Pictures embedded as `data:`
 //! are.
+//!
+//! ```
+//! use strokefit::verify::{self, Size};
+//!
+//! let stroke = r#"<path d="M4 7L16 3" stroke="black" stroke-width="4" stroke-linecap="round"/>"#;
+//! let text = format!(r#"<svg xmlns="http://www.w3.org/2000/svg" width="20" height="10">{stroke}</svg>"#);
+//! let picture = verify::render(&text, Size::Scale(1.0), Some([1.0; 3]))?;
+//!
+//! let dark = |x: usize, y: usize| picture.planes()[0][y * 20 + x] < 0.5;
+//! let row = |y| (0..20).map(|x| if dark(x, y) { '#' } else { '.' }).collect::<String>();
+//! assert_eq!((1..9).map(row).collect::<Vec<_>>(), [
+//!     "..............###...",
+//!     "...........#######..",
+//!     "........##########..",
+//!     ".....############...",
+//!     "...############.....",
+//!     "..##########........",
+//!     "..#######...........",
+//!     "...###..............",
+//! ]);
+//! # Ok::<(), strokefit::Error>(())
+//! ```
 
 use resvg::tiny_skia::{Color, Pixmap, PremultipliedColorU8, Transform};
 use resvg::usvg::roxmltree::{Document, ParsingOptions};

@@ -9,6 +9,39 @@
 //! Work is proportional to the (stroke, block) pairs that can be seen; memory to pixels, strokes
 //! per tile, and the pairs of one tile per worker.
 //!
+//! A dark bar, and on it a dot of white, of opacity 0.6; a character is 1×2 px:
+//!
+//! ```
+//! use strokefit::coverage::Coverage;
+//! use strokefit::fit::Simd;
+//! use strokefit::render::{Base, Canvas, Grid, Renderer, Softness};
+//!
+//! // Two ends, radius, colour, opacity.
+//! let bar = [8.0, 4.0, 40.0, 12.0, 3.0, 0.0, 0.0, 0.0, 1.0];
+//! let dot = [36.0, 5.0, 36.0, 5.0, 4.5, 1.0, 1.0, 1.0, 0.6];
+//!
+//! let grid = Grid::new(48, 16);
+//! let level = Simd::Auto.level().ok_or("no level")?;
+//! let softness = Softness { coverage: Coverage::Smoothstep, width: 1.0 };
+//! let mut canvas = Canvas::flat(grid, [1.0; 3]);
+//! Renderer::new(grid, level).forward(&[bar, dot], softness, Base::Flat([1.0; 3]), &mut canvas);
+//!
+//! let dark = |x, y| 1.0 - canvas.pixel(x, y)[0];
+//! let shade = |x, y| char::from(b" .:-=+*#%@"[(9.0 * dark(x, y)).round() as usize]);
+//! let row = |y| (0..48).map(|x| shade(x, y)).collect::<String>();
+//! let picture = (2..16).step_by(2).map(|y| row(y).trim_end().to_owned()).collect::<Vec<_>>();
+//! assert_eq!(picture, [
+//!     "     *@@@@@@@#=.",
+//!     "     @@@@@@@@@@@@@@@@#=.",
+//!     "      *@@@@@@@@@@@@@@@@@@@@@@#=.",
+//!     "            .=#@@@@@@@@@@@@@@@@@@+===-:.",
+//!     "                    .=#@@@@@@@@@@@@@@@@@@@*",
+//!     "                            .=#@@@@@@@@@@@@",
+//!     "                                    .=#@@*",
+//! ]);
+//! # Ok::<(), &str>(())
+//! ```
+//!
 //! [`mod@reference`] is the same in naive `f64`, against which all of this is tested.
 
 mod edge;
