@@ -29,7 +29,7 @@ pub(super) fn command() -> Command {
 /// The arguments of the process, or the status to leave with: help was shown, or an error.
 pub(crate) fn parse() -> Result<Args, Status> {
     match understand(env::args_os().collect()) {
-        Ok(Understood::Run(args)) => Ok(args),
+        Ok(Understood::Run(args)) => Ok(*args),
         Ok(Understood::Print(text)) => Err(match Output::Stdout.write(text.as_bytes()) {
             Ok(()) => Status::Done,
             Err(error) => fail(&error),
@@ -40,7 +40,7 @@ pub(crate) fn parse() -> Result<Args, Status> {
 
 /// What the arguments ask for.
 enum Understood {
-    Run(Args),
+    Run(Box<Args>),
     /// The options as a file.
     Print(String),
 }
@@ -52,7 +52,8 @@ fn understand(args: Vec<OsString>) -> Result<Understood> {
         return Ok(Understood::Print(text));
     }
     let matches = command.try_get_matches_from(args)?;
-    Ok(Understood::Run(Args::from_arg_matches(&matches)?))
+    let args = Args::from_arg_matches(&matches)?;
+    Ok(Understood::Run(Box::new(args)))
 }
 
 /// Says what is wrong with the arguments, or shows the help that they ask for.
