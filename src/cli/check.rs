@@ -30,9 +30,9 @@ const RESVG: &str = "resvg";
 ///
 /// Without a picture, the programs are compared with resvg alone.
 ///
-/// Exit status 4: a program draws the file more than 0.6 dB less faithfully than resvg, and below
-/// 42 dB (without a picture: agrees with resvg to less than 36 dB). Exit status 1: a program that
-/// is installed could not draw it, or one named with --renderer is not installed.
+/// Exit status 4: a program agrees with resvg to less than 36 dB and, where there is a picture, is
+/// more than 0.6 dB less faithful to it. Exit status 1: a program that is installed could not draw
+/// the file, or one named with --renderer is not installed.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   strokefit check photo.svg photo.jpg
@@ -135,7 +135,7 @@ fn verdict(record: &CheckReport, asked_by_name: bool, verbosity: Verbosity) -> S
     }
     let differs = || record.renderers.iter().filter(|entry| !entry.passed);
     for entry in differs() {
-        complain(table::shortfall(entry, record));
+        complain(table::shortfall(entry));
     }
     let missed = record
         .not_drawn

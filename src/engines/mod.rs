@@ -46,7 +46,7 @@ use crate::svg::{self, Finding};
 use process::Outcome;
 
 pub use sheet::{DIFFERENCE_GAIN, compared};
-pub use verdict::{CLEAR_DB, MAX_SHORTFALL_DB, MIN_AGREEMENT_DB, passes, passes_alone};
+pub use verdict::{MAX_SHORTFALL_DB, MIN_AGREEMENT_DB, passes};
 
 /// All engines besides resvg.
 pub static ENGINES: [Engine; 4] = [

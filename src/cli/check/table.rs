@@ -45,19 +45,12 @@ fn row(entry: &RendererEntry) -> String {
 }
 
 /// How a program that did not pass differs from resvg.
-pub(super) fn shortfall(entry: &RendererEntry, record: &CheckReport) -> String {
+pub(super) fn shortfall(entry: &RendererEntry) -> String {
     let name = &entry.renderer;
-    let resvg = record.renderers.first().and_then(|resvg| resvg.fidelity);
-    let what = match (&entry.fidelity, resvg) {
-        (Some(own), Some(resvg)) => {
-            format!(
-                "{:.2} dB less faithfully than resvg",
-                resvg.psnr_db - own.psnr_db
-            )
-        }
-        _ => {
-            format!("otherwise than resvg, with which it agrees to less than {MIN_AGREEMENT_DB} dB")
-        }
-    };
-    format!("{name}: draws the file {what}: see the findings, and --pictures DIR for where")
+    let agreement_db = entry.against_resvg.and_then(|other| other.psnr_db);
+    format!(
+        "{name}: draws the file otherwise than resvg, with which it agrees to {:.2} dB, not \
+         {MIN_AGREEMENT_DB}: see the findings, and --pictures DIR for where",
+        agreement_db.unwrap_or(f64::INFINITY)
+    )
 }

@@ -123,10 +123,8 @@ impl<'a> Trial<'a> {
         let agreement = Agreement::between(&self.resvg, &drawn.image)?;
         let Largest { max_abs, x, y } = Largest::between(&self.resvg, &drawn.image)?;
         let psnr_db = Some(agreement.psnr_db).filter(|db| db.is_finite());
-        let passed = match (&fidelity, &self.drawn[0].fidelity) {
-            (Some(own), Some(resvg)) => engines::passes(own, resvg),
-            _ => engines::passes_alone(&agreement),
-        };
+        let fidelities = fidelity.as_ref().zip(self.drawn[0].fidelity.as_ref());
+        let shortfall_db = fidelities.map(|(own, resvg)| resvg.psnr_db - own.psnr_db);
         self.drawn.push(RendererEntry {
             renderer: engine.name.into(),
             version: drawn.version.clone(),
@@ -138,7 +136,7 @@ impl<'a> Trial<'a> {
                 y,
             }),
             wall_s: drawn.wall.as_secs_f64(),
-            passed,
+            passed: engines::passes(agreement.psnr_db, shortfall_db),
         });
         self.keep(engine.name, &drawn.image)
     }

@@ -81,13 +81,13 @@ pub(super) const ZERO_LENGTH: Rule = rule(
 pub(super) const THIN_STROKE: Rule = rule(
     "thin-stroke",
     Warning,
-    "at a width of 1 px or less, renderers of the Skia family draw another amount of ink",
+    "at a width of 1 px or less, resvg and browsers draw a tenth less ink than Cairo",
     "make it at least 1.02 px wide, and less opaque",
 );
 pub(super) const COLOR_ALPHA: Rule = rule(
     "color-alpha",
     Warning,
-    "programs that know SVG 1.1 alone draw it black, opaque or not at all",
+    "Inkscape draws it opaque, and CairoSVG #rrggbbaa",
     "write #rrggbb and stroke-opacity or fill-opacity",
 );
 pub(super) const GROUP_OPACITY: Rule = rule(
