@@ -25,7 +25,7 @@ use strokefit::metrics;
 use strokefit::optim::{Adam, AdamParams, Optimizer};
 use strokefit::render::{Base, Canvas, Gradients, PARAMS, Params, Renderer, Softness, unpack};
 use strokefit::scene::{Scene, Stage};
-use strokefit::seed::{Pyramid, Wanted, propose};
+use strokefit::seed::{Pyramid, View, Wanted, propose};
 use strokefit::svg::{self, WriteOptions};
 use strokefit::verify;
 
@@ -117,7 +117,11 @@ fn seed(criterion: &mut Criterion, image: &Image) {
         };
         group.throughput(Throughput::Elements(count as u64));
         group.bench_function(BenchmarkId::new("propose", count), |b| {
-            b.iter(|| propose(level, &pyramid, black_box(&canvas), wanted));
+            let view = View {
+                target: &pyramid,
+                canvas: &canvas,
+            };
+            b.iter(|| propose(level, black_box(&[view]), wanted));
         });
     }
     group.finish();

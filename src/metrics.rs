@@ -358,7 +358,9 @@ fn similarity(a: f32, b: f32, aa: f32, bb: f32, ab: f32) -> f32 {
 }
 
 /// JSON has no infinity; serde writes it as `null`.
-fn null_is_infinite<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+pub(crate) fn null_is_infinite<'de, D: serde::Deserializer<'de>>(
+    deserializer: D,
+) -> Result<f64, D::Error> {
     Ok(Option::deserialize(deserializer)?.unwrap_or(f64::INFINITY))
 }
 

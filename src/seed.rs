@@ -57,6 +57,15 @@ pub struct Candidate {
     pub gain: f32,
 }
 
+/// The picture and what is drawn of it so far, as they look on one ground.
+#[derive(Debug, Clone, Copy)]
+pub struct View<'a> {
+    /// The picture.
+    pub target: &'a Pyramid,
+    /// The drawing, of the size of the level that is wanted.
+    pub canvas: &'a Canvas,
+}
+
 /// The target and its reductions by 2, 4, 8 …
 #[derive(Debug)]
 pub struct Pyramid {
@@ -95,28 +104,36 @@ impl Pyramid {
     }
 }
 
-/// Candidates for strokes on top of `canvas`, best first; at most `wanted.count`, and only such as
-/// remove error.
-pub fn propose(level: Level, target: &Pyramid, canvas: &Canvas, wanted: Wanted) -> Vec<Candidate> {
-    let halvings = target.halvings(wanted.level, wanted.scale, SCALE_LIMIT);
-    let target = target.level(wanted.level + halvings);
-    let canvas = (0..halvings).fold(canvas.to_image(), |image, _| image.halved());
+/// Candidates for strokes on top of the canvases of `views`, which are pictures of one size, best first;
+/// at most `wanted.count`, and only such as remove error. Their gain is the mean over the views.
+pub fn propose(level: Level, views: &[View<'_>], wanted: Wanted) -> Vec<Candidate> {
+    let Some(first) = views.first() else {
+        return Vec::new();
+    };
+    let halvings = (first.target).halvings(wanted.level, wanted.scale, SCALE_LIMIT);
+    let views: Vec<Residual<'_>> = views
+        .iter()
+        .map(|view| Residual::new(view, wanted.level, halvings))
+        .collect();
     let reduction = (1 << halvings) as f32;
     let scale = (wanted.scale / reduction).min(SCALE_LIMIT);
     let probes = Probes::new(level, shapes(scale));
-    let energy = smoothed_energy(target, &canvas, (scale / 2.0).round() as usize);
+    let energy = smoothed_energy(&views, (scale / 2.0).round() as usize);
     let cells = Cells::new(
-        &canvas,
+        &views[0].canvas,
         wanted.count as f32 * wanted.oversampling,
         wanted.key,
     );
-    let gain_scale = reduction * reduction;
+    let gain_scale = reduction * reduction / views.len() as f32;
+    let patches = || -> Vec<_> { views.iter().map(|_| Patch::new()).collect() };
     let mut candidates: Vec<Candidate> = (0..cells.len())
         .into_par_iter()
-        .map_init(Patch::new, |patch, cell| {
+        .map_init(patches, |patches, cell| {
             let (x, y) = cells.peak(cell, &energy)?;
-            patch.fill(&probes, target, &canvas, x, y);
-            let (shape, probe) = probes.best(patch, wanted.least_opacity)?;
+            for (patch, view) in patches.iter_mut().zip(&views) {
+                patch.fill(&probes, view.target, &view.canvas, x, y);
+            }
+            let (shape, probe) = probes.best(patches, wanted.least_opacity)?;
             let center = [x, y].map(|v| (v as f32 + 0.5) * reduction);
             let stroke = probe.stroke(shape, center, reduction);
             (probe.gain > 0.0).then_some(Candidate {
@@ -129,6 +146,21 @@ pub fn propose(level: Level, target: &Pyramid, canvas: &Canvas, wanted: Wanted) 
     candidates.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     candidates.truncate(wanted.count);
     candidates
+}
+
+/// A view at the resolution that strokes are sought at.
+struct Residual<'a> {
+    target: &'a Image,
+    canvas: Image,
+}
+
+impl<'a> Residual<'a> {
+    fn new(view: &View<'a>, level: usize, halvings: usize) -> Self {
+        Self {
+            target: view.target.level(level + halvings),
+            canvas: (0..halvings).fold(view.canvas.to_image(), |image, _| image.halved()),
+        }
+    }
 }
 
 /// The probed shapes for strokes of `scale` px.
@@ -153,11 +185,14 @@ fn shape(radius: f32, length: f32, angle: f32) -> Params {
     [c - dx, c - dy, c + dx, c + dy, radius, 0.0, 0.0, 0.0, 1.0]
 }
 
-/// The squared residual, summed over channels and averaged over boxes of side `2·radius + 1`.
-fn smoothed_energy(target: &Image, canvas: &Image, radius: usize) -> Vec<f32> {
-    let (width, height) = (canvas.width(), canvas.height());
+/// The squared residual, summed over channels and views and over boxes of side `2·radius + 1`.
+fn smoothed_energy(views: &[Residual<'_>], radius: usize) -> Vec<f32> {
+    let (width, height) = (views[0].canvas.width(), views[0].canvas.height());
     let mut energy = vec![0.0; width * height];
-    for (t, c) in target.planes().iter().zip(canvas.planes()) {
+    let planes = views
+        .iter()
+        .flat_map(|view| view.target.planes().iter().zip(view.canvas.planes()));
+    for (t, c) in planes {
         for ((energy, t), c) in energy.iter_mut().zip(t).zip(c) {
             *energy += (t - c) * (t - c);
         }
@@ -347,8 +382,18 @@ mod tests {
             level: 0,
             key: [0, 0],
         };
-        let found = propose(Level::new(), &Pyramid::new(target), &canvas, wanted);
+        let target = Pyramid::new(target);
+        let view = View {
+            target: &target,
+            canvas: &canvas,
+        };
+        let found = propose(Level::new(), &[view], wanted);
         let Candidate { stroke, gain } = found[0];
+        assert_eq!(
+            propose(Level::new(), &[view; 2], wanted),
+            found,
+            "the mean of two equal views is one of them"
+        );
         assert!(
             (stroke[5] - 0.9).abs() < 0.1 && stroke[6] < 0.25,
             "{stroke:?}"

@@ -28,12 +28,15 @@
 //! ```
 
 use resvg::tiny_skia::{Color, Pixmap, PremultipliedColorU8, Transform};
-use resvg::usvg::roxmltree::{Document, ParsingOptions};
-use resvg::usvg::{ImageHrefResolver, Options, Tree};
+use resvg::usvg::roxmltree::{self, Document, ParsingOptions};
+use resvg::usvg::{
+    BlendMode, Group, ImageHrefResolver, LineCap, Node, Opacity, Options, Paint, Path, Stroke, Tree,
+};
+use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
-use crate::metrics::{Agreement, Quality};
+use crate::metrics::{self, Agreement, Quality, null_is_infinite};
 use crate::scene::Rgb;
 
 /// Version of resvg that is built in, as far as `Cargo.toml` fixes it.
@@ -41,6 +44,8 @@ pub const RESVG_VERSION: &str = "0.49";
 
 /// Most pixels of a render: the raster takes 4 bytes each, its [`Image`] up to 16 more.
 const MAX_PIXELS: f64 = (1_u64 << 27) as f64;
+
+const WHITE: Rgb = [1.0; 3];
 
 const SVG_NAMESPACE: &str = "http://www.w3.org/2000/svg";
 
@@ -93,7 +98,7 @@ pub fn render(svg: &str, size: Size, ground: Option<Rgb>) -> Result<Image> {
 /// # Errors
 /// As [`render`]; also [`ErrorKind::Svg`] when the SVG has another aspect ratio than the target.
 pub fn fidelity(svg: &str, target: &Image) -> Result<Quality> {
-    Quality::between(target, &render_like(svg, target)?)
+    Quality::between(target, &render_like(svg, target, WHITE)?)
 }
 
 /// Judges SVG text: faithful to `target`, and drawn as in `soft`, our own render of it?
@@ -101,23 +106,116 @@ pub fn fidelity(svg: &str, target: &Image) -> Result<Quality> {
 /// # Errors
 /// As [`fidelity`]; also [`ErrorKind::Picture`] when `soft` and `target` differ in size.
 pub fn verify(svg: &str, target: &Image, soft: &Image) -> Result<Verdict> {
-    let drawn = render_like(svg, target)?;
+    let drawn = render_like(svg, target, WHITE)?;
     Ok(Verdict {
         fidelity: Quality::between(target, &drawn)?,
         agreement: Agreement::between(soft, &drawn)?,
     })
 }
 
-/// Renders SVG text at the size of `target`, on white.
+/// How faithful a drawing with transparency is wherever it is laid.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct OnGrounds {
+    /// PSNR on black, dB.
+    #[serde(deserialize_with = "null_is_infinite")]
+    pub black_db: f64,
+    /// PSNR on white, dB.
+    #[serde(deserialize_with = "null_is_infinite")]
+    pub white_db: f64,
+    /// PSNR on magenta, dB.
+    #[serde(deserialize_with = "null_is_infinite")]
+    pub magenta_db: f64,
+}
+
+/// Renders SVG text on black, on white and on magenta and compares it with `target`, laid on the same.
 ///
 /// # Errors
 /// As [`fidelity`].
-pub fn render_like(svg: &str, target: &Image) -> Result<Image> {
+pub fn on_grounds(svg: &str, target: &Image) -> Result<OnGrounds> {
+    let on = |ground: Rgb| -> Result<f64> {
+        metrics::psnr(
+            &target.flattened(ground),
+            &render_like(svg, target, ground)?,
+        )
+    };
+    Ok(OnGrounds {
+        black_db: on([0.0; 3])?,
+        white_db: on([1.0; 3])?,
+        magenta_db: on([1.0, 0.0, 1.0])?,
+    })
+}
+
+/// Where px of `target` lie in the coordinates at the end of an SVG's root element, told from the stroke
+/// with the id `probe` there, which is of width 2, colour #010203 and untransformed.
+///
+/// # Errors
+/// As [`fidelity`]; also [`ErrorKind::Svg`] when the SVG changes how such a stroke is drawn.
+pub(crate) fn placement(svg: &str, probe: &str, target: &Image) -> Result<[f64; 6]> {
     let tree = parse(svg)?;
-    let side = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+    check_aspect(&tree, side(target.width()), side(target.height()))?;
+    let path = untouched(tree.root(), probe).filter(|path| is_as_written(path));
+    let placed = path.and_then(|path| path.abs_transform().invert());
+    let Some(t) = placed else {
+        let message = "strokes laid on this SVG would not look as they are meant to: its root element or its \
+                       style sheet hides, repaints or filters them; put its contents into a group, and \
+                       the style on that";
+        return Err(Error::new(ErrorKind::Svg, message));
+    };
+    let scale = |size: f32, px: usize| f64::from(size) / px as f64;
+    let (x, y) = (
+        scale(tree.size().width(), target.width()),
+        scale(tree.size().height(), target.height()),
+    );
+    let [a, b, c, d, e, f] = [t.sx, t.ky, t.kx, t.sy, t.tx, t.ty].map(f64::from);
+    Ok([a * x, b * x, c * y, d * y, e, f])
+}
+
+/// The path with this id, if no group around it changes how it looks.
+fn untouched<'a>(group: &'a Group, id: &str) -> Option<&'a Path> {
+    let is_plain = group.opacity() == Opacity::ONE
+        && group.blend_mode() == BlendMode::Normal
+        && group.clip_path().is_none()
+        && group.mask().is_none()
+        && group.filters().is_empty();
+    // The probe is the last of its document.
+    let mut children = group.children().iter().rev().filter(|_| is_plain);
+    children.find_map(|child| match child {
+        Node::Group(group) => untouched(group, id),
+        Node::Path(path) if path.id() == id => Some(&**path),
+        _ => None,
+    })
+}
+
+/// Whether the probe is drawn as it says.
+fn is_as_written(path: &Path) -> bool {
+    let color = Paint::Color(resvg::usvg::Color::new_rgb(1, 2, 3));
+    let is_plain = |stroke: &Stroke| {
+        *stroke.paint() == color
+            && stroke.width().get() == 2.0
+            && stroke.opacity() == Opacity::ONE
+            && stroke.linecap() == LineCap::Round
+            && stroke.dasharray().is_none()
+    };
+    path.is_visible()
+        && path.fill().is_none()
+        && path.rendering_mode().use_shape_antialiasing()
+        && path.stroke().is_some_and(is_plain)
+}
+
+/// A side of a picture as the renderer counts.
+fn side(px: usize) -> u32 {
+    u32::try_from(px).unwrap_or(u32::MAX)
+}
+
+/// Renders SVG text at the size of `target`, on `ground`.
+///
+/// # Errors
+/// As [`fidelity`].
+pub fn render_like(svg: &str, target: &Image, ground: Rgb) -> Result<Image> {
+    let tree = parse(svg)?;
     let (width, height) = (side(target.width()), side(target.height()));
     check_aspect(&tree, width, height)?;
-    draw(&tree, Size::Exact { width, height }, Some([1.0; 3]))
+    draw(&tree, Size::Exact { width, height }, Some(ground))
 }
 
 /// Whether scaling the SVG to the target's width misses its height by no more than a px.
@@ -132,7 +230,7 @@ fn check_aspect(tree: &Tree, width: u32, height: u32) -> Result<()> {
     }
     let message = format!(
         "the SVG of {svg_width}×{svg_height} has another aspect ratio than the picture of \
-         {width}×{height} px: compare it with the picture it was made from"
+         {width}×{height} px: give the picture it was made from"
     );
     Err(Error::new(ErrorKind::Svg, message))
 }
@@ -159,7 +257,17 @@ fn parse(svg: &str) -> Result<Tree> {
     let document =
         Document::parse_with_options(svg, allow_dtd).map_err(|e| unreadable(&e).caused_by(e))?;
     check_namespace(&document)?;
-    Tree::from_xmltree(&document, &options).map_err(|e| unreadable(&e).caused_by(e))
+    Tree::from_xmltree(&document, &options).map_err(|e| match e {
+        resvg::usvg::Error::ElementsLimitReached
+        | resvg::usvg::Error::ParsingFailed(roxmltree::Error::NodesLimitReached) => too_much(e),
+        e => unreadable(&e).caused_by(e),
+    })
+}
+
+fn too_much(error: resvg::usvg::Error) -> Error {
+    let message = "the SVG has more than a million elements, also counted through <use>, or more than 1,024 \
+                   levels of nesting, which resvg does not read: simplify it";
+    Error::new(ErrorKind::Svg, message).caused_by(error)
 }
 
 /// resvg passes over elements of other namespaces and calls the empty page a success.

@@ -24,6 +24,7 @@ pub(super) fn jobs<'a>(
 ) -> Result<Vec<Job<'a>>> {
     let job = |input: &'a PathBuf| {
         Ok(Job {
+            base: None,
             input,
             output: named(output, input)?,
             report: report.map(|report| named(report, input)).transpose()?,
@@ -143,7 +144,9 @@ fn keep_apart(jobs: &[Job<'_>], outputs: &[Outputs], events: Option<&Path>) -> R
             taken.push((path, output));
         }
     }
-    let inputs = jobs.iter().map(|job| job.input);
+    let inputs = jobs
+        .iter()
+        .flat_map(|job| [job.input].into_iter().chain(job.base));
     for input in inputs.filter(|input| !input::is_stdin(input)) {
         if taken.iter().any(|(_, output)| output.is(input)) {
             let name = input.display();

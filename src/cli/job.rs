@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::Result;
-use strokefit::fit::{Fit, Observer, Progress};
+use strokefit::fit::{Base, Fit, Observer, Progress};
 use strokefit::image::Image;
 use strokefit::metrics::Quality;
-use strokefit::report::{self, Event, FitReport, Input, StageEntry, Usage};
-use strokefit::svg::{self, WriteOptions};
-use strokefit::verify::{self, MIN_AGREEMENT_DB, Verdict};
+use strokefit::report::{self, BaseEntry, Event, FitReport, Input, StageEntry, Usage};
+use strokefit::svg::WriteOptions;
+use strokefit::verify::{self, MIN_AGREEMENT_DB, OnGrounds, Verdict};
 
 use super::events::{Events, Phases};
 use super::options::Options;
@@ -20,6 +20,8 @@ use super::{Status, Verbosity, complain, input};
 
 /// What to draw, and where the results go.
 pub(super) struct Job<'a> {
+    /// The SVG to go on from.
+    pub(super) base: Option<&'a Path>,
     pub(super) input: &'a Path,
     pub(super) output: PathBuf,
     pub(super) report: Option<PathBuf>,
@@ -98,6 +100,8 @@ impl Job<'_> {
             fidelity: drawn.verdict.fidelity,
             soft: drawn.soft,
             agreement: drawn.verdict.agreement,
+            alpha: drawn.alpha,
+            base: drawn.fit.base.as_ref().zip(self.base).map(base_entry),
         }
     }
 
@@ -170,22 +174,35 @@ pub(super) struct Drawn {
     pub(super) text: String,
     soft: Quality,
     pub(super) verdict: Verdict,
+    /// Of a transparent drawing.
+    alpha: Option<OnGrounds>,
     /// From the start of the job until the SVG is written.
     pub(super) wall: Duration,
 }
 
 impl Drawn {
     fn new(fit: Fit, form: &WriteOptions) -> Result<Self> {
-        let text = svg::write(&fit.scene, form);
+        let text = fit.svg(form);
         let soft = Quality::between(&fit.target, &fit.soft)?;
         let verdict = verify::verify(&text, &fit.target, &fit.soft)?;
+        let is_clear = fit.target.alpha().is_some();
+        let alpha = is_clear.then(|| verify::on_grounds(&text, &fit.target));
         Ok(Self {
             fit,
-            text,
             soft,
             verdict,
             wall: Duration::ZERO,
+            alpha: alpha.transpose()?,
+            text,
         })
+    }
+}
+
+fn base_entry((base, path): (&Base, &Path)) -> BaseEntry {
+    BaseEntry {
+        path: path.display().to_string(),
+        strokes: base.scene.len(),
+        elements: base.elements(),
     }
 }
 

@@ -14,6 +14,7 @@ mod manual;
 mod options;
 mod output;
 mod progress;
+mod refine;
 mod render;
 mod settings;
 mod usage;
@@ -44,6 +45,7 @@ pub(crate) struct Args {
 #[derive(Debug, Subcommand)]
 enum Command {
     Fit(fit::Args),
+    Refine(refine::Args),
     Check(check::Args),
     Render(render::Args),
     Lab(lab::Args),
@@ -54,6 +56,7 @@ enum Command {
 const EXAMPLES: &str = "Examples:
   strokefit fit photo.jpg -o photo.svg
   strokefit fit logo.png -o logo.svg --strokes 300 --opaque
+  strokefit refine photo.svg photo.jpg -o better.svg --strokes 2000
   strokefit check photo.svg photo.jpg
   strokefit render photo.svg -o large.png --scale 4";
 
@@ -62,6 +65,7 @@ const EXAMPLES_AND_STATUSES: &str = "Examples:
   strokefit fit logo.png -o logo.svg --strokes 300     at most 300 strokes
   strokefit fit a.png -o a.svg --psnr 32 --time 60     until 32 dB, or a minute has passed
   cat a.png | strokefit fit - -o - > a.svg             in a pipe
+  strokefit refine a.svg a.png -o b.svg --strokes 900  more strokes on a drawing, or on any SVG
   strokefit check photo.svg photo.jpg                  how faithful is the file?
   strokefit render photo.svg -o large.png --scale 4    four times the size
 
@@ -139,6 +143,7 @@ impl From<Status> for ExitCode {
 pub(crate) fn run(args: &Args) -> anyhow::Result<Status> {
     match &args.command {
         Command::Fit(fit) => fit::run(fit, args.verbosity),
+        Command::Refine(refine) => refine::run(refine, args.verbosity),
         Command::Check(check) => check::run(check, args.verbosity),
         Command::Render(render) => render::run(render),
         Command::Lab(lab) => lab::run(lab, args.verbosity),

@@ -1,11 +1,9 @@
 //! Gradient descent on the numbers of strokes: one step, its rates and its limits.
 
-use super::objective::Objective;
+use super::objective::{View, differentiate};
 use super::recipe::Rates;
 use crate::optim::{Adam, AdamParams, Optimizer};
-use crate::render::{
-    AX, BY, Base, Gradients, OPACITY, PARAMS, Params, RADIUS, RED, Renderer, Softness,
-};
+use crate::render::{AX, BY, Gradients, OPACITY, PARAMS, Params, RADIUS, RED, Renderer, Softness};
 
 /// Least radius of a stroke, px: widths of 1 px and less are drawn as hairlines, with other ink.
 pub(super) const LEAST_RADIUS: f32 = 0.51;
@@ -78,17 +76,17 @@ impl Descent {
         }
     }
 
-    /// One step of all `strokes` down the gradient of `objective`, at `rate` times the rates.
+    /// One step of all `strokes` down the gradient of the mean loss over `views`, at `rate` times the
+    /// rates.
     pub(super) fn step(
         &mut self,
         renderer: &mut Renderer,
         strokes: &mut [Params],
         softness: Softness,
-        base: Base<'_>,
-        objective: &Objective<'_>,
+        views: &[View<'_>],
         rate: f32,
     ) {
-        renderer.backward(strokes, softness, base, objective, &mut self.gradients);
+        differentiate::<false>(renderer, strokes, softness, views, &mut self.gradients);
         let flat = self.gradients.strokes.as_flattened();
         self.adam
             .step_scaled(strokes.as_flattened_mut(), flat, rate, &self.scales);

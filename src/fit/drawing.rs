@@ -5,37 +5,28 @@ use fearless_simd::Level;
 use super::anneal::final_softness;
 use super::config::Config;
 use super::descent::{Descent, Limits};
-use super::objective::Objective;
+use super::ground::{Ground, Setting};
+use super::objective::{View, differentiate};
 use crate::image::Image;
-use crate::loss::Loss;
 use crate::render::{
     AX, Base, Canvas, Gradients, Params, RADIUS, Renderer, Softness, pack, unpack,
 };
 use crate::scene::{Rgb, Scene, Stage};
-use crate::seed::{Candidate, Pyramid, Wanted, propose};
+use crate::seed::{Candidate, Wanted, propose};
 
 /// Least opacity of a stroke: the 8-bit compositing of renderers drifts by levels under many layers
 /// fainter than this.
 const LEAST_OPACITY: f32 = 0.1;
 
-/// Strokes are fitted at the coarsest resolution at which they still have this typical radius, px. Less,
-/// and their edges are fitted to pixels that are not there; more, and time is spent on pixels that say
-/// nothing about them.
-const LEAST_SCALE: f32 = 2.5;
-
 /// A drawing under work. What is fitted, judged and relocated are its *free* strokes; the frozen ones
 /// below them are a picture. Large strokes are fitted to a reduced picture: the numbers of strokes are
 /// in px of the current level of the pyramid, what goes in and out of the methods in px of the picture.
 pub(super) struct Drawing {
-    /// How many times the picture is halved.
-    halvings: usize,
-    /// The picture, at the current level.
-    target: Canvas,
-    pyramid: Pyramid,
+    /// What it is fitted on: one ground, or two for a transparent drawing.
+    grounds: Vec<Ground>,
     renderer: Renderer,
     level: Level,
-    pub(super) background: Rgb,
-    /// Whether the background is not to be fitted.
+    /// Whether the colour of the ground is not to be fitted.
     pub(super) background_fixed: bool,
     /// Back to front.
     strokes: Vec<Params>,
@@ -43,10 +34,6 @@ pub(super) struct Drawing {
     stage_of: Vec<usize>,
     /// How many strokes, from the back, are frozen.
     frozen: usize,
-    /// The picture of the frozen strokes on the background; unused when there is none.
-    below: Canvas,
-    /// The picture of all strokes as of the last [`render`](Self::render), with the final edge.
-    canvas: Canvas,
     pub(super) limits: Limits,
     edge: Softness,
     seed: u64,
@@ -55,27 +42,19 @@ pub(super) struct Drawing {
 }
 
 impl Drawing {
-    /// An empty drawing at the resolution for strokes of `scale` px.
-    pub(super) fn new(target: &Image, scale: f32, config: &Config, level: Level) -> Self {
-        let pyramid = Pyramid::new(target.clone());
-        let halvings = resolution(&pyramid, scale);
-        let canvas = Canvas::from_image(pyramid.level(halvings));
-        let grid = canvas.grid();
-        let (background, background_fixed) = config.background.choose(target);
+    /// An empty drawing on the grounds of `setting`, which is left without any.
+    pub(super) fn new(setting: &mut Setting, config: &Config, level: Level) -> Self {
+        let grounds = std::mem::take(&mut setting.grounds);
+        let grid = grounds[0].grid();
         let least_opacity = if config.opaque { 1.0 } else { LEAST_OPACITY };
         Self {
-            halvings,
-            target: canvas,
-            pyramid,
+            grounds,
             renderer: Renderer::new(grid, level),
             level,
-            background,
-            background_fixed,
+            background_fixed: setting.is_fixed,
             strokes: Vec::new(),
             stage_of: Vec::new(),
             frozen: 0,
-            below: Canvas::flat(grid, background),
-            canvas: Canvas::flat(grid, background),
             limits: Limits::new(grid.width, grid.height, least_opacity),
             edge: final_softness(config.coverage.late),
             seed: config.seed,
@@ -96,27 +75,53 @@ impl Drawing {
     /// Goes to the resolution for strokes of `scale` px, if that is finer than the current one; says
     /// whether it did. All strokes are free then.
     pub(super) fn refine(&mut self, scale: f32) -> bool {
-        let halvings = resolution(&self.pyramid, scale);
-        if halvings >= self.halvings {
+        let grounds = self.grounds.iter_mut();
+        let doublings = grounds
+            .map(|ground| ground.refine(scale))
+            .max()
+            .unwrap_or(0);
+        if doublings == 0 {
             return false;
         }
         for stroke in &mut self.strokes {
-            *stroke = enlarged(*stroke, self.halvings - halvings);
+            *stroke = enlarged(*stroke, doublings);
         }
-        self.halvings = halvings;
-        self.target = Canvas::from_image(self.pyramid.level(halvings));
-        let grid = self.target.grid();
+        let grid = self.ground().grid();
         self.renderer = Renderer::new(grid, self.level);
-        self.below = Canvas::flat(grid, self.background);
-        self.canvas = Canvas::flat(grid, self.background);
         self.limits = Limits::new(grid.width, grid.height, self.limits.least_opacity);
         self.frozen = 0;
         true
     }
 
+    /// The first ground; all agree in size and resolution.
+    fn ground(&self) -> &Ground {
+        &self.grounds[0]
+    }
+
+    /// All grounds.
+    pub(super) fn grounds(&self) -> &[Ground] {
+        &self.grounds
+    }
+
+    /// The colour behind all strokes, if there is one ground and it is flat.
+    fn background(&self) -> Option<Rgb> {
+        match self.grounds.as_slice() {
+            [ground] => ground.color(),
+            _ => None,
+        }
+    }
+
+    /// Changes the colour of the ground, if it is flat, and brings it into its domain.
+    pub(super) fn change_background(&mut self, change: impl FnOnce(&mut Rgb)) {
+        if let Some(color) = self.grounds[0].color_mut() {
+            change(color);
+            *color = color.map(|c| c.clamp(0.0, 1.0));
+        }
+    }
+
     /// Pixels of the picture in one of the current level.
     fn pixel_area(&self) -> f32 {
-        (1 << (2 * self.halvings)) as f32
+        (1 << (2 * self.ground().halvings())) as f32
     }
 
     /// Whether there are no frozen strokes, so that the background shows through to the fit.
@@ -126,7 +131,7 @@ impl Drawing {
 
     /// The picture's number of pixels.
     pub(super) fn pixels(&self) -> usize {
-        self.pyramid.level(0).width() * self.pyramid.level(0).height()
+        self.ground().picture().width() * self.ground().picture().height()
     }
 
     /// Side of the square that each of `count` strokes would have to itself, px.
@@ -137,13 +142,23 @@ impl Drawing {
     /// Freezes all strokes that there are.
     pub(super) fn freeze(&mut self) {
         self.render();
-        self.below.clone_from(&self.canvas);
+        self.grounds.iter_mut().for_each(Ground::freeze);
         self.frozen = self.strokes.len();
     }
 
     /// Frees all strokes.
     pub(super) fn thaw(&mut self) {
+        self.grounds.iter_mut().for_each(Ground::thaw);
         self.frozen = 0;
+    }
+
+    /// Puts the strokes of `scene`, in px of the picture, on top of none.
+    pub(super) fn load(&mut self, scene: &Scene) {
+        let halvings = self.ground().halvings();
+        for (index, stage) in scene.stages.iter().enumerate() {
+            let strokes = stage.strokes.iter().map(|s| reduced(pack(s), halvings));
+            self.extend(strokes, index);
+        }
     }
 
     /// Puts `strokes` on top, as part of stage `stage`.
@@ -187,49 +202,46 @@ impl Drawing {
             scale: scale / area.sqrt(),
             oversampling,
             least_opacity: self.limits.least_opacity,
-            level: self.halvings,
+            level: self.ground().halvings(),
             key: [self.seed, self.searches],
         };
-        let mut candidates = propose(self.level, &self.pyramid, &self.canvas, wanted);
+        let views: Vec<_> = self.grounds.iter().map(Ground::residual).collect();
+        let mut candidates = propose(self.level, &views, wanted);
         candidates.iter_mut().for_each(|c| c.gain *= area);
         candidates
     }
 
     /// One step of the free strokes towards the target.
     pub(super) fn step(&mut self, descent: &mut Descent, softness: Softness, rate: f32) {
-        let base = base(self.frozen, &self.below, self.background);
-        let objective = Objective::new(Loss::L2, &self.target);
+        let views = views(&self.grounds, self.frozen);
         let free = &mut self.strokes[self.frozen..];
-        descent.step(&mut self.renderer, free, softness, base, &objective, rate);
+        descent.step(&mut self.renderer, free, softness, &views, rate);
     }
 
-    /// One step of the free strokes towards another target, with the final edge.
-    pub(super) fn step_towards(&mut self, target: &Canvas, descent: &mut Descent, rate: f32) {
-        let base = base(self.frozen, &self.below, self.background);
-        let objective = Objective::new(Loss::L2, target);
+    /// One step of the free strokes towards other targets, one per ground, with the final edge.
+    pub(super) fn step_towards(&mut self, targets: &[Canvas], descent: &mut Descent, rate: f32) {
+        let grounds = self.grounds.iter().zip(targets);
+        let views: Vec<_> = grounds
+            .map(|(ground, target)| ground.view(self.frozen, Some(target)))
+            .collect();
         let free = &mut self.strokes[self.frozen..];
-        descent.step(&mut self.renderer, free, self.edge, base, &objective, rate);
+        descent.step(&mut self.renderer, free, self.edge, &views, rate);
     }
 
     /// Renders everything.
     pub(super) fn render(&mut self) {
-        let base = base(self.frozen, &self.below, self.background);
-        self.renderer.forward(
-            &self.strokes[self.frozen..],
-            self.edge,
-            base,
-            &mut self.canvas,
-        );
+        let free = &self.strokes[self.frozen..];
+        for ground in &mut self.grounds {
+            ground.render(&mut self.renderer, free, self.edge, self.frozen);
+        }
     }
 
     /// Loss, gradients and worth of the free strokes at the final edge.
     pub(super) fn judge(&mut self) -> Gradients {
         let mut gradients = Gradients::default();
-        let objective = Objective::new(Loss::L2, &self.target);
-        let base = base(self.frozen, &self.below, self.background);
+        let views = views(&self.grounds, self.frozen);
         let free = &self.strokes[self.frozen..];
-        self.renderer
-            .backward_with_worth(free, self.edge, base, &objective, &mut gradients);
+        differentiate::<true>(&mut self.renderer, free, self.edge, &views, &mut gradients);
         let area = self.pixel_area();
         gradients.worth.iter_mut().for_each(|worth| *worth *= area);
         gradients
@@ -240,53 +252,68 @@ impl Drawing {
         self.judge().loss
     }
 
-    /// Our render of `scene`, with the background of this drawing where it has none.
-    pub(super) fn soft(&mut self, scene: &Scene) -> Image {
+    /// Our render of `scene` on each ground.
+    pub(super) fn soft(&mut self, scene: &Scene) -> Vec<Image> {
         let strokes: Vec<Params> = scene.strokes().map(pack).collect();
-        let base = Base::Flat(scene.background.unwrap_or(self.background));
-        self.renderer
-            .forward(&strokes, self.edge, base, &mut self.canvas);
-        self.canvas.to_image()
+        let mut canvas = self.ground().canvas.clone();
+        let mut images = Vec::new();
+        for ground in &self.grounds {
+            let base = ground.base_of(scene);
+            self.renderer
+                .forward(&strokes, self.edge, base, &mut canvas);
+            images.push(canvas.to_image());
+        }
+        images
     }
 
     /// The mean squared error after each layer of `scene`.
     pub(super) fn layer_mses(&mut self, scene: &Scene) -> Vec<f64> {
-        let objective = Objective::new(Loss::L2, &self.target);
-        let mut canvas = Canvas::flat(
-            self.target.grid(),
-            scene.background.unwrap_or(self.background),
-        );
-        let mut gradients = Gradients::default();
+        let mut below: Vec<Canvas> = self.grounds.iter().map(|g| g.page(scene)).collect();
+        let halvings = self.ground().halvings();
         let mut mses = Vec::new();
         for stage in &scene.stages {
-            let strokes: Vec<Params> = stage.strokes.iter().map(pack).collect();
-            let below = canvas.clone();
-            self.renderer
-                .forward(&strokes, self.edge, Base::Canvas(&below), &mut canvas);
-            self.renderer.backward(
-                &[],
-                self.edge,
-                Base::Canvas(&canvas),
-                &objective,
-                &mut gradients,
-            );
-            mses.push(gradients.loss);
+            let strokes: Vec<Params> = stage
+                .strokes
+                .iter()
+                .map(|s| reduced(pack(s), halvings))
+                .collect();
+            for canvas in &mut below {
+                let base = canvas.clone();
+                self.renderer
+                    .forward(&strokes, self.edge, Base::Canvas(&base), canvas);
+            }
+            mses.push(self.mse_of(&below));
         }
         mses
     }
 
+    /// The mean squared error of finished canvases, one per ground.
+    fn mse_of(&mut self, canvases: &[Canvas]) -> f64 {
+        let grounds = self.grounds.iter().zip(canvases);
+        let views: Vec<_> = grounds
+            .map(|(ground, canvas)| View {
+                base: Base::Canvas(canvas),
+                ..ground.view(0, None)
+            })
+            .collect();
+        let mut gradients = Gradients::default();
+        differentiate::<false>(&mut self.renderer, &[], self.edge, &views, &mut gradients);
+        gradients.loss
+    }
+
     /// The drawing as a scene in px of the picture, unrounded, with the background if it `has_ground`.
     pub(super) fn scene(&self, has_ground: bool) -> Scene {
-        let picture = self.pyramid.level(0);
-        let background = has_ground.then_some(self.background);
+        let picture = self.ground().picture();
+        let background = self.background().filter(|_| has_ground);
         let mut scene = Scene::empty(picture.width() as u32, picture.height() as u32, background);
+        let halvings = self.ground().halvings();
         for (&stroke, &stage) in self.strokes.iter().zip(&self.stage_of) {
             if scene.stages.len() <= stage {
                 scene.stages.resize(stage + 1, Stage::default());
             }
             scene.stages[stage]
                 .strokes
-                .push(unpack(&enlarged(stroke, self.halvings)));
+                .push(unpack(&enlarged(stroke, halvings)));
         }
         scene
     }
@@ -301,17 +328,17 @@ fn enlarged(mut stroke: Params, doublings: usize) -> Params {
     stroke
 }
 
-/// What lies behind the free strokes.
-fn base(frozen: usize, below: &Canvas, background: Rgb) -> Base<'_> {
-    if frozen == 0 {
-        Base::Flat(background)
-    } else {
-        Base::Canvas(below)
+/// The stroke at a resolution that is half as fine `halvings` times.
+fn reduced(mut stroke: Params, halvings: usize) -> Params {
+    let factor = (1_u32 << halvings) as f32;
+    for length in &mut stroke[AX..=RADIUS] {
+        *length /= factor;
     }
+    stroke
 }
 
-/// How many halvings leave strokes of `scale` px their least scale.
-fn resolution(pyramid: &Pyramid, scale: f32) -> usize {
-    // Rounded down: `halvings` alone would bring the scale below the least.
-    pyramid.halvings(0, scale / 2.0, LEAST_SCALE)
+/// The grounds as the free strokes see them, on `frozen` others.
+fn views(grounds: &[Ground], frozen: usize) -> Vec<View<'_>> {
+    let view = |ground| Ground::view(ground, frozen, None);
+    grounds.iter().map(view).collect()
 }

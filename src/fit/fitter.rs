@@ -1,8 +1,9 @@
 //! A fit, set up step by step.
 
-use super::{Config, Execution, Fit, Observer, draw};
-use crate::error::Result;
+use super::{Base, Config, Execution, Fit, Observer, draw};
+use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
+use crate::scene::Scene;
 
 /// Draws pictures with strokes.
 ///
@@ -24,6 +25,7 @@ use crate::image::Image;
 pub struct Fitter<'a> {
     config: Config,
     execution: Execution,
+    base: Option<Base>,
     observer: Option<&'a mut (dyn Observer + Send)>,
 }
 
@@ -33,6 +35,7 @@ impl<'a> Fitter<'a> {
         Self {
             config,
             execution: Execution::default(),
+            base: None,
             observer: None,
         }
     }
@@ -41,6 +44,16 @@ impl<'a> Fitter<'a> {
     #[must_use]
     pub fn execution(self, execution: Execution) -> Self {
         Self { execution, ..self }
+    }
+
+    /// What to go on from. Budgets count the strokes that it brings and all its bytes; a base that meets
+    /// one already stays as it is. It decides on the background.
+    #[must_use]
+    pub fn on(self, base: Base) -> Self {
+        Self {
+            base: Some(base),
+            ..self
+        }
     }
 
     /// Who is told of progress, and may stop the fit.
@@ -54,23 +67,40 @@ impl<'a> Fitter<'a> {
 
     /// Draws `picture`.
     ///
-    /// Where the picture has alpha it is laid on the background colour of the configuration, or on white.
+    /// Where the picture has alpha the drawing is transparent, unless there is a background colour for it
+    /// to lie on.
     ///
     /// # Errors
-    /// [`ErrorKind::Config`](crate::ErrorKind::Config) when an option is outside its domain.
+    /// [`ErrorKind::Config`] when an option is outside its domain, or the base is of another size than the
+    /// picture; [`ErrorKind::Svg`] when it cannot be rendered.
     pub fn fit(self, picture: &Image) -> Result<Fit> {
         let Self {
             config,
             execution,
+            base,
             observer,
         } = self;
         config.check()?;
+        if let Some(base) = &base {
+            check_size(&base.scene, picture)?;
+        }
         let level = execution.simd.require()?;
-        let target = picture.flattened(config.background.ground());
         let mut nobody = ();
         let observer = observer.unwrap_or(&mut nobody);
         execution
             .pool()?
-            .install(|| draw(target, &config, level, observer))
+            .install(|| draw(picture, &config, base.as_ref(), level, observer))
     }
+}
+
+fn check_size(scene: &Scene, picture: &Image) -> Result<()> {
+    let (width, height) = (picture.width(), picture.height());
+    if (scene.width as usize, scene.height as usize) == (width, height) {
+        return Ok(());
+    }
+    let message = format!(
+        "the drawing of {}×{} px is no base for a picture of {width}×{height} px: scale the picture",
+        scene.width, scene.height
+    );
+    Err(Error::new(ErrorKind::Config, message))
 }

@@ -6,11 +6,13 @@
 //! what the file really looks like.
 
 mod anneal;
+mod base;
 mod config;
 mod control;
 mod descent;
 mod drawing;
 mod fitter;
+mod ground;
 mod objective;
 mod observer;
 mod plan;
@@ -27,6 +29,7 @@ use std::time::Duration;
 use fearless_simd::Level;
 
 pub use anneal::final_softness;
+pub use base::Base;
 pub use config::{Background, Budget, Config, DEFAULT_QUALITY, Execution, Preset};
 pub use fitter::Fitter;
 pub use objective::Objective;
@@ -37,16 +40,20 @@ pub use simd::Simd;
 use crate::error::Result;
 use crate::image::Image;
 use crate::scene::Scene;
+use crate::svg::WriteOptions;
 use work::Work;
 
 /// A finished drawing and how it came to be.
 #[derive(Debug, Clone)]
 pub struct Fit {
-    /// The drawing, rounded to what its SVG says.
+    /// The drawing, rounded to what its SVG says. On a base that stays as it is, the new strokes alone.
     pub scene: Scene,
-    /// The picture that was drawn, its alpha laid on the ground.
+    /// What the drawing goes on from, if anything.
+    pub base: Option<Base>,
+    /// The picture that was drawn: with its alpha, or laid on the colour of the ground.
     pub target: Image,
-    /// Our own render of `scene` with the edge of a finished drawing.
+    /// Our own render of `scene` with the edge of a finished drawing; with alpha if the drawing has no
+    /// ground and the picture has alpha.
     pub soft: Image,
     /// One record per stage.
     pub stages: Vec<StageRecord>,
@@ -54,6 +61,13 @@ pub struct Fit {
     pub stop: Stop,
     /// Strokes that were dropped because they became non-finite or could not be seen.
     pub dropped: usize,
+}
+
+impl Fit {
+    /// The drawing as SVG text, with the base that it was fitted on.
+    pub fn svg(&self, options: &WriteOptions) -> String {
+        Base::write(self.base.as_ref(), &self.scene, options)
+    }
 }
 
 /// How one stage went.
@@ -109,14 +123,18 @@ pub fn fit(
 
 /// The algorithm.
 fn draw(
-    target: Image,
+    target: &Image,
     config: &Config,
+    base: Option<&Base>,
     level: Level,
     observer: &mut (dyn Observer + Send),
 ) -> Result<Fit> {
-    let mut work = Work::new(target, config, level, observer);
+    let mut work = Work::new(target, config, base, level, observer)?;
+    if let Some(written) = work.met_already()? {
+        return work.finish(written);
+    }
     work.grow();
     work.polish();
     let written = work.settle()?;
-    Ok(work.finish(written))
+    work.finish(written)
 }

@@ -1,7 +1,9 @@
 //! What a fit minimises: a loss over all pixels against a target, tile by tile.
 
 use crate::loss::Loss;
-use crate::render::{Canvas, CanvasLoss, Lanes, TileRgb};
+use crate::render::{
+    Base, Canvas, CanvasLoss, Gradients, Lanes, Params, Renderer, Softness, TileRgb,
+};
 
 /// The mean of `loss` over width·height·3 values against `target`.
 #[derive(Debug, Clone, Copy)]
@@ -48,5 +50,41 @@ impl CanvasLoss for Objective<'_> {
             }
         }
         sums.0.iter().map(|&s| f64::from(s)).sum::<f64>() * f64::from(self.scale)
+    }
+}
+
+/// What strokes lie on, and what they are to look like there.
+#[derive(Clone, Copy)]
+pub(super) struct View<'a> {
+    pub(super) base: Base<'a>,
+    pub(super) objective: Objective<'a>,
+}
+
+/// The mean loss of `strokes` over `views` and its derivatives, with the strokes' worth if so asked.
+pub(super) fn differentiate<const WITH_WORTH: bool>(
+    renderer: &mut Renderer,
+    strokes: &[Params],
+    softness: Softness,
+    views: &[View<'_>],
+    gradients: &mut Gradients,
+) {
+    let mut run = |View { base, objective }: &View<'_>, gradients: &mut Gradients| {
+        if WITH_WORTH {
+            renderer.backward_with_worth(strokes, softness, *base, objective, gradients);
+        } else {
+            renderer.backward(strokes, softness, *base, objective, gradients);
+        }
+    };
+    let Some((first, others)) = views.split_first() else {
+        return;
+    };
+    run(first, gradients);
+    let mut more = Gradients::default();
+    for view in others {
+        run(view, &mut more);
+        gradients.add(&more);
+    }
+    if !others.is_empty() {
+        gradients.scale(1.0 / views.len() as f32);
     }
 }

@@ -23,9 +23,21 @@ pub(super) struct PlannedStage {
     pub(super) scale: f32,
 }
 
+/// What is there before a fit.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Before {
+    pub(super) layers: usize,
+    pub(super) strokes: usize,
+}
+
 /// The stages of a fit, coarse to fine.
 #[derive(Debug, Clone)]
 pub(super) struct Plan {
+    /// Layers that are there already; the stages are numbered on from them.
+    before: usize,
+    /// Stages whose strokes are there already.
+    covered: usize,
+    /// The strokes of the stages to come.
     counts: Vec<usize>,
     /// Whether stages may follow the planned ones.
     open: bool,
@@ -35,11 +47,12 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    /// Stages for `limit` strokes, or for as many as will pay.
+    /// Stages for `limit` strokes, or for as many as will pay, less those whose strokes are there `before`.
     pub(super) fn new(
         config: &Config,
         recipe: &Recipe,
         limit: Option<usize>,
+        before: Before,
         pixels: usize,
     ) -> Self {
         let stages = config.stages.unwrap_or(recipe.stages);
@@ -48,8 +61,10 @@ impl Plan {
             .map(|_| (pixels / PIXELS_PER_STROKE).max(FIRST));
         let counts = limit
             .or(guess)
-            .map(|total| counts(total, stages, recipe.growth));
+            .map(|total| rest(&counts(total, stages, recipe.growth), before.strokes));
         Self {
+            before: before.layers,
+            covered: covered(recipe.growth, before.strokes),
             open: counts.is_none(),
             counts: counts.unwrap_or_default(),
             pixels,
@@ -58,12 +73,12 @@ impl Plan {
         }
     }
 
-    /// How many stages are planned, as far as that is known.
+    /// How many layers there are and are planned, as far as that is known.
     pub(super) fn len(&self) -> usize {
-        self.counts.len()
+        self.before + self.counts.len()
     }
 
-    /// Strokes of the whole drawing; a guess where the plan is open.
+    /// Strokes of the stages to come; a guess where the plan is open.
     pub(super) fn strokes(&self) -> usize {
         if self.open {
             (self.pixels / PIXELS_PER_STROKE).max(1)
@@ -74,10 +89,11 @@ impl Plan {
 
     /// Stage `index`, on top of `before` strokes.
     pub(super) fn stage(&self, index: usize, before: usize) -> Option<PlannedStage> {
-        let count = match self.counts.get(index) {
+        let step = index.checked_sub(self.before)?;
+        let count = match self.counts.get(step) {
             Some(&count) => count,
             None if self.open => {
-                let count = FIRST as f64 * self.growth.powi(index as i32);
+                let count = FIRST as f64 * self.growth.powi((self.covered + step) as i32);
                 (count as usize).min((self.pixels).min(MOST_STROKES).saturating_sub(before))
             }
             None => return None,
@@ -107,6 +123,34 @@ fn counts(total: usize, stages: usize, growth: f64) -> Vec<usize> {
     counts
 }
 
+/// What is left of planned stages when there are `before` strokes. A stage that is more than half there is
+/// added to the next.
+fn rest(counts: &[usize], before: usize) -> Vec<usize> {
+    let (mut rest, mut there, mut carried) = (Vec::new(), before, 0);
+    for &count in counts {
+        let covered = count.min(there);
+        there -= covered;
+        carried += count - covered;
+        if covered * 2 <= count {
+            rest.push(std::mem::take(&mut carried));
+        }
+    }
+    if carried > 0 {
+        rest.push(carried);
+    }
+    rest
+}
+
+/// How many stages of an open plan `before` strokes make.
+fn covered(growth: f64, before: usize) -> usize {
+    let (mut stages, mut strokes) = (0, 0.0);
+    while strokes + FIRST as f64 * growth.powi(stages) <= before as f64 {
+        strokes += FIRST as f64 * growth.powi(stages);
+        stages += 1;
+    }
+    stages as usize
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -129,7 +173,13 @@ mod tests {
     #[test]
     fn open_plans_go_on_to_a_stroke_per_pixel() {
         let config = Config::default();
-        let plan = Plan::new(&config, &Recipe::of(config.preset), None, 100);
+        let plan = Plan::new(
+            &config,
+            &Recipe::of(config.preset),
+            None,
+            Before::default(),
+            100,
+        );
         let mut strokes = 0;
         let mut index = 0;
         while let Some(stage) = plan.stage(index, strokes) {
@@ -137,5 +187,20 @@ mod tests {
             index += 1;
         }
         assert_eq!(strokes, 100);
+    }
+
+    #[test]
+    fn what_is_there_is_not_planned_again() {
+        let counts = [10, 20, 40, 80];
+        assert_eq!(rest(&counts, 0), counts);
+        assert_eq!(rest(&counts, 30), [40, 80]);
+        assert_eq!(rest(&counts, 35), [35, 80]);
+        assert_eq!(
+            rest(&counts, 60),
+            [90],
+            "10 strokes make no stage of their own"
+        );
+        assert_eq!(rest(&counts, 149), [1]);
+        assert!(rest(&counts, 150).is_empty() && rest(&counts, 999).is_empty());
     }
 }

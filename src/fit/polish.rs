@@ -53,8 +53,8 @@ pub(super) fn run(
         drawing.step(&mut descent, anneal.at(done), rate);
         if drawing.is_thawed() && !drawing.background_fixed {
             let rate = rate * recipe.polish_rates.color;
-            background.step(&mut drawing.background, &descent.gradients.base, rate);
-            drawing.background = drawing.background.map(|c| c.clamp(0.0, 1.0));
+            let slope = &descent.gradients.base;
+            drawing.change_background(|color| background.step(color, slope, rate));
         }
         if !control.advance(drawing, descent.gradients.loss) {
             break;

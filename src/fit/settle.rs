@@ -7,6 +7,7 @@
 
 use std::time::Instant;
 
+use super::base::Base;
 use super::config::{Background, Config};
 use super::control::Control;
 use super::descent::Descent;
@@ -18,20 +19,26 @@ use crate::optim::Schedule;
 use crate::render::Canvas;
 use crate::scene::Scene;
 use crate::svg::WriteOptions;
-use crate::{metrics, svg, verify};
+use crate::{metrics, verify};
 
 /// How the drawing is written.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Page {
+pub(super) struct Page<'a> {
+    base: Option<&'a Base>,
     /// Whether there is a rectangle of the background's colour.
     has_ground: bool,
     file: WriteOptions,
 }
 
-impl Page {
-    pub(super) fn of(config: &Config) -> Self {
+impl<'a> Page<'a> {
+    pub(super) fn of(config: &Config, base: Option<&'a Base>) -> Self {
+        let has_ground = match base {
+            Some(base) => base.document.is_none() && base.scene.background.is_some(),
+            None => config.background != Background::None,
+        };
         Self {
-            has_ground: config.background != Background::None,
+            base,
+            has_ground,
             file: config.file,
         }
     }
@@ -43,22 +50,26 @@ pub(super) struct Written {
     pub(super) scene: Scene,
     /// Strokes that cannot be written.
     pub(super) dropped: usize,
-    /// What an SVG renderer draws.
-    pub(super) drawn: Image,
+    /// What an SVG renderer draws on each ground.
+    pub(super) drawn: Vec<Image>,
     /// Bytes of SVG.
     pub(super) bytes: usize,
-    /// Its mean squared error.
+    /// The mean squared error on the ground where it is largest.
     pub(super) mse: f64,
 }
 
 /// Rounds and writes `drawing` and renders the file.
-pub(super) fn write(drawing: &Drawing, target: &Image, page: Page) -> Result<Written> {
+pub(super) fn write(drawing: &Drawing, page: Page<'_>) -> Result<Written> {
     let (scene, dropped) = drawing
         .scene(page.has_ground)
         .quantized(page.file.precision);
-    let text = svg::write(&scene, &page.file);
-    let drawn = verify::render_like(&text, target)?;
-    let mse = metrics::mse(target, &drawn)?;
+    let text = Base::write(page.base, &scene, &page.file);
+    let (mut drawn, mut mse) = (Vec::new(), 0.0_f64);
+    for ground in drawing.grounds() {
+        let image = verify::render_like(&text, ground.picture(), ground.paper)?;
+        mse = mse.max(metrics::mse(ground.picture(), &image)?);
+        drawn.push(image);
+    }
     Ok(Written {
         scene,
         dropped,
@@ -72,13 +83,12 @@ pub(super) fn write(drawing: &Drawing, target: &Image, page: Page) -> Result<Wri
 /// drawing that it was written from. All strokes must be free.
 pub(super) fn run(
     drawing: &mut Drawing,
-    target: &Image,
-    page: Page,
+    page: Page<'_>,
     recipe: &Recipe,
     control: &Control<'_>,
 ) -> Result<Written> {
     let start = Instant::now();
-    let mut written = write(drawing, target, page)?;
+    let mut written = write(drawing, page)?;
     let mut best = (written.clone(), drawing.free().to_vec());
     // A round is taken to be as long as the one before, the first as three times a writing.
     let mut span = 3 * start.elapsed();
@@ -87,9 +97,9 @@ pub(super) fn run(
             break;
         }
         let start = Instant::now();
-        let corrected = corrected_target(drawing, target, &written);
+        let corrected = corrected_targets(drawing, &written);
         descend(drawing, recipe, &corrected);
-        written = write(drawing, target, page)?;
+        written = write(drawing, page)?;
         if written.mse < best.0.mse {
             best = (written.clone(), drawing.free().to_vec());
         }
@@ -99,14 +109,22 @@ pub(super) fn run(
     Ok(best.0)
 }
 
-/// The target less what the file's picture differs by from our render of the same scene.
-fn corrected_target(drawing: &mut Drawing, target: &Image, written: &Written) -> Canvas {
-    let soft = drawing.soft(&written.scene);
+/// What is to be drawn on each ground, less what the file's picture differs by from our render of the
+/// same scene.
+fn corrected_targets(drawing: &mut Drawing, written: &Written) -> Vec<Canvas> {
+    let softs = drawing.soft(&written.scene);
+    let grounds = drawing.grounds().iter().zip(&softs).zip(&written.drawn);
+    grounds
+        .map(|((ground, soft), drawn)| corrected(ground.picture(), soft, drawn))
+        .collect()
+}
+
+fn corrected(target: &Image, soft: &Image, drawn: &Image) -> Canvas {
     let planes = [0, 1, 2].map(|c| {
         let pixels = target.planes()[c]
             .iter()
             .zip(&soft.planes()[c])
-            .zip(&written.drawn.planes()[c]);
+            .zip(&drawn.planes()[c]);
         pixels
             .map(|((target, soft), drawn)| target - (drawn - soft))
             .collect()
@@ -114,13 +132,13 @@ fn corrected_target(drawing: &mut Drawing, target: &Image, written: &Written) ->
     Canvas::from_image(&Image::from_planes(target.width(), target.height(), planes))
 }
 
-fn descend(drawing: &mut Drawing, recipe: &Recipe, target: &Canvas) {
+fn descend(drawing: &mut Drawing, recipe: &Recipe, targets: &[Canvas]) {
     let steps = recipe.settle_iterations;
     let rates = recipe.polish_rates;
     let schedule = Schedule::Cosine { end: rates.last };
     let mut descent = Descent::new(drawing.free(), rates, drawing.limits);
     for step in 0..steps {
         let rate = schedule.factor(step, steps) as f32 * recipe.settle_rate;
-        drawing.step_towards(target, &mut descent, rate);
+        drawing.step_towards(targets, &mut descent, rate);
     }
 }

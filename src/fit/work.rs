@@ -1,15 +1,17 @@
 //! The phases of a fit, and the budgets that bind them.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use fearless_simd::Level;
 
 use super::anneal::Anneal;
+use super::base::Base;
 use super::config::Config;
 use super::control::Control;
 use super::drawing::Drawing;
+use super::ground::{self, Setting};
 use super::observer::Observer;
-use super::plan::{MOST_STROKES, Plan, PlannedStage};
+use super::plan::{Before, MOST_STROKES, Plan, PlannedStage};
 use super::polish::{self, Terms};
 use super::price::Price;
 use super::recipe::Recipe;
@@ -39,7 +41,8 @@ pub(super) struct Work<'a> {
     config: &'a Config,
     recipe: Recipe,
     anneal: Anneal,
-    page: Page,
+    base: Option<&'a Base>,
+    page: Page<'a>,
     plan: Plan,
     terms: Terms,
     target: Image,
@@ -52,23 +55,46 @@ pub(super) struct Work<'a> {
 
 impl<'a> Work<'a> {
     pub(super) fn new(
-        target: Image,
+        picture: &Image,
         config: &'a Config,
+        base: Option<&'a Base>,
         level: Level,
         observer: &'a mut (dyn Observer + Send),
-    ) -> Self {
+    ) -> Result<Self> {
         let recipe = config.recipe.unwrap_or(Recipe::of(config.preset));
+        let kept_bytes = base.map_or(0, Base::bytes);
         let by_bytes = config
             .budget
             .bytes
-            .map(|bytes| (bytes / STROKE_BYTES).max(1));
+            .map(|bytes| (bytes.saturating_sub(kept_bytes) / STROKE_BYTES).max(1));
         let limit = [config.budget.strokes, by_bytes]
             .into_iter()
             .flatten()
             .min();
-        let plan = Plan::new(config, &recipe, limit, target.width() * target.height());
-        let coarsest = plan.stage(0, 0).map_or(0.0, |stage| stage.scale);
-        let drawing = Drawing::new(&target, coarsest, config, level);
+        let most = MOST_STROKES.saturating_sub(base.map_or(0, Base::elements));
+        let before = Before {
+            layers: base.map_or(0, |base| base.scene.stages.len()),
+            strokes: base.map_or(0, |base| base.scene.len()),
+        };
+        let pixels = picture.width() * picture.height();
+        let plan = Plan::new(config, &recipe, limit, before, pixels);
+        let first = plan.stage(before.layers, before.strokes);
+        // A reduced picture flatters a base: whether a fidelity is reached is told at full resolution.
+        let whole = base.is_some() && config.budget.psnr_db.is_some();
+        let first = first.filter(|_| !whole);
+        let coarsest = first.map_or(0.0, |stage| stage.scale);
+        let mut setting = Setting::new(picture, config.background, base, coarsest)?;
+        let mut drawing = Drawing::new(&mut setting, config, level);
+        let mut records = Vec::new();
+        if let Some(Base { scene, .. }) = base {
+            drawing.load(scene);
+            records = drawing
+                .layer_mses(scene)
+                .into_iter()
+                .enumerate()
+                .map(kept_layer)
+                .collect();
+        }
         let iterations = recipe.stage_iterations
             + if config.polish {
                 recipe.polish_iterations
@@ -76,25 +102,55 @@ impl<'a> Work<'a> {
                 0
             };
         let planned = (plan.strokes() * iterations) as f64;
-        Self {
+        Ok(Self {
             config,
             recipe,
+            base,
             anneal: Anneal {
                 coverage: config.coverage,
                 from: 1.0,
             },
-            page: Page::of(config),
+            page: Page::of(config, base),
             terms: Terms {
-                limit: limit.unwrap_or(MOST_STROKES),
+                limit: limit.unwrap_or(most).min(most),
                 price: Price::new(config.effective_quality(), config.file),
             },
             control: Control::new(observer, config, planned, plan.len()),
             plan,
-            target,
+            target: setting.target,
             drawing,
-            records: Vec::new(),
+            records,
             stop: Stop::Strokes,
+        })
+    }
+
+    /// The base as it is, if it meets a budget already.
+    pub(super) fn met_already(&mut self) -> Result<Option<Written>> {
+        if self.base.is_none() {
+            return Ok(None);
         }
+        let written = settle::write(&self.drawing, self.page)?;
+        let budget = self.config.budget;
+        let met = [
+            (
+                Stop::Strokes,
+                budget.strokes.is_some_and(|n| self.drawing.len() >= n),
+            ),
+            (
+                Stop::Psnr,
+                budget.psnr_db.is_some_and(|db| psnr_db(written.mse) >= db),
+            ),
+            (
+                Stop::Bytes,
+                budget.bytes.is_some_and(|n| written.bytes >= n),
+            ),
+        ];
+        let Some(&(stop, _)) = met.iter().find(|(_, met)| *met) else {
+            return Ok(None);
+        };
+        self.stop = stop;
+        self.drawing.refine(0.0);
+        Ok(Some(written))
     }
 
     /// Adds strokes stage by stage until the plan or a budget ends.
@@ -110,7 +166,12 @@ impl<'a> Work<'a> {
                 break;
             }
             let staged = self.records.last().map_or(0.0, |record| record.psnr_db);
-            let later = if self.config.polish { POLISH_DB } else { 0.0 };
+            // A base has been finished before, and gains less from polish than stages do.
+            let later = if self.config.polish && self.base.is_none() {
+                POLISH_DB
+            } else {
+                0.0
+            };
             if self
                 .config
                 .budget
@@ -235,22 +296,19 @@ impl<'a> Work<'a> {
 
     /// Settles the drawing against its file.
     fn settled(&mut self) -> Result<Written> {
-        settle::run(
-            &mut self.drawing,
-            &self.target,
-            self.page,
-            &self.recipe,
-            &self.control,
-        )
+        settle::run(&mut self.drawing, self.page, &self.recipe, &self.control)
     }
 
     /// The drawing of fewest strokes found that is as faithful as `wanted`, dB, or the most faithful one.
     fn meet_fidelity(&mut self, wanted: f64, first: Written) -> Result<Written> {
         let mut best = first;
         let mut current = psnr_db(best.mse);
+        let mut db_per_doubling = DB_PER_DOUBLING;
         for _ in 0..CORRECTIONS {
             let settled = (0.0..=EXCESS_DB).contains(&(current - wanted));
-            if settled || self.control.stopped().is_some() || !self.resize(wanted - current) {
+            let doublings = (wanted - current) / db_per_doubling;
+            let before = (self.drawing.len(), current);
+            if settled || self.control.stopped().is_some() || !self.resize(doublings) {
                 break;
             }
             let terms = Terms {
@@ -263,6 +321,9 @@ impl<'a> Work<'a> {
             );
             let written = self.settled()?;
             current = psnr_db(written.mse);
+            if self.base.is_some() {
+                db_per_doubling = slope(before, (self.drawing.len(), current));
+            }
             let reached = |w: &Written| psnr_db(w.mse) >= wanted;
             let better = match (reached(&written), reached(&best)) {
                 (true, true) => written.scene.len() < best.scene.len(),
@@ -273,21 +334,21 @@ impl<'a> Work<'a> {
                 best = written;
             }
         }
-        self.stop = if psnr_db(best.mse) >= wanted {
-            Stop::Psnr
-        } else {
-            self.stop
+        self.stop = match self.stop {
+            _ if psnr_db(best.mse) >= wanted => Stop::Psnr,
+            Stop::Psnr => Stop::Converged,
+            other => other,
         };
         Ok(best)
     }
 
-    /// Adds or removes the strokes that are reckoned to change the fidelity by `missing_db`; false where
-    /// there is none to add or to remove.
-    fn resize(&mut self, missing_db: f64) -> bool {
+    /// Doubles or halves the strokes `doublings` times, at most once; false where there is none to add or
+    /// to remove.
+    fn resize(&mut self, doublings: f64) -> bool {
         let strokes = self.drawing.len();
-        let factor = (missing_db / DB_PER_DOUBLING).clamp(-1.0, 1.0).exp2();
+        let factor = doublings.clamp(-1.0, 1.0).exp2();
         let wanted = ((strokes as f64 * factor) as usize).clamp(1, self.terms.limit);
-        if missing_db > 0.0 {
+        if doublings > 0.0 {
             let count = wanted
                 .max(strokes + 1)
                 .min(self.terms.limit)
@@ -331,7 +392,7 @@ impl<'a> Work<'a> {
     }
 
     /// The finished fit.
-    pub(super) fn finish(mut self, written: Written) -> Fit {
+    pub(super) fn finish(mut self, written: Written) -> Result<Fit> {
         let layers = self.drawing.layer_mses(&written.scene);
         for (record, (stage, mse)) in self
             .records
@@ -341,13 +402,43 @@ impl<'a> Work<'a> {
             record.strokes = stage.strokes.len();
             record.layer_psnr_db = psnr_db(mse);
         }
-        Fit {
-            soft: self.drawing.soft(&written.scene),
+        let mut softs = self.drawing.soft(&written.scene);
+        let soft = match softs.as_slice() {
+            [black, white] => ground::transparent(black, white)?,
+            _ => softs.remove(0),
+        };
+        Ok(Fit {
+            soft,
             scene: written.scene,
+            base: self.base.cloned(),
             target: self.target,
             stages: self.records,
             stop: self.control.stopped().unwrap_or(self.stop),
             dropped: written.dropped,
-        }
+        })
+    }
+}
+
+/// Fidelity gained by doubling the strokes, dB, told from two drawings of so many strokes and dB each: what
+/// the new strokes of a refined drawing bring depends on its base.
+fn slope((few, few_db): (usize, f64), (many, many_db): (usize, f64)) -> f64 {
+    let doublings = (many.max(1) as f64 / few.max(1) as f64).log2();
+    let slope = (many_db - few_db) / doublings;
+    if slope.is_finite() {
+        slope.clamp(DB_PER_DOUBLING / 8.0, DB_PER_DOUBLING)
+    } else {
+        DB_PER_DOUBLING
+    }
+}
+
+/// The record of a layer that was there before, from its index and the mean squared error after it.
+fn kept_layer((index, mse): (usize, f64)) -> StageRecord {
+    StageRecord {
+        index: index + 1,
+        strokes: 0,
+        iterations: 0,
+        wall: Duration::ZERO,
+        psnr_db: psnr_db(mse),
+        layer_psnr_db: 0.0,
     }
 }

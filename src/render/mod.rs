@@ -111,6 +111,34 @@ pub struct Gradients {
     pub blocks: u64,
 }
 
+impl Gradients {
+    /// Adds the derivatives of another loss by the same strokes.
+    pub(crate) fn add(&mut self, other: &Self) {
+        let add = |sums: &mut [f32], parts: &[f32]| {
+            for (sum, part) in sums.iter_mut().zip(parts) {
+                *sum += part;
+            }
+        };
+        self.loss += other.loss;
+        self.blocks += other.blocks;
+        add(&mut self.base, &other.base);
+        add(&mut self.worth, &other.worth);
+        add(
+            self.strokes.as_flattened_mut(),
+            other.strokes.as_flattened(),
+        );
+    }
+
+    /// Multiplies the loss, its derivatives and the worth by `factor`.
+    pub(crate) fn scale(&mut self, factor: f32) {
+        self.loss *= f64::from(factor);
+        let values = self.strokes.as_flattened_mut().iter_mut();
+        for value in values.chain(&mut self.base).chain(&mut self.worth) {
+            *value *= factor;
+        }
+    }
+}
+
 /// One tile's list of strokes and its results.
 #[derive(Debug, Default)]
 struct TileWork {

@@ -10,6 +10,8 @@
 //! u = (Y + vX)/S           v = (X·Y/S − Z) / (Q − |X|²/S)
 //! ```
 //!
+//! On several grounds at once the sums add up, and so do the gains.
+//!
 //! Source: the best colour of `DESIGN`'s formulas, with the opacity solved for in the same way.
 
 use std::ops::Range;
@@ -177,10 +179,13 @@ impl Probes {
         }
     }
 
-    /// The shape that gains most on `patch`, and its probe.
-    pub fn best(&self, patch: &Patch, least_opacity: f32) -> Option<(&Params, Probe)> {
-        let (index, probe) =
-            dispatch!(self.level, simd => best_of(simd, &self.templates, patch, least_opacity))?;
+    /// The shape that gains most on all of `patches` together, the same place on different grounds, and
+    /// its probe.
+    pub fn best(&self, patches: &[Box<Patch>], least_opacity: f32) -> Option<(&Params, Probe)> {
+        let (first, others) = patches.split_first()?;
+        let (index, probe) = dispatch!(self.level, simd => {
+            best_of(simd, &self.templates, first, others, least_opacity)
+        })?;
         Some((&self.templates[index].shape, probe))
     }
 }
@@ -189,12 +194,17 @@ impl Probes {
 fn best_of<S: Simd>(
     simd: S,
     templates: &[Template],
-    patch: &Patch,
+    first: &Patch,
+    others: &[Box<Patch>],
     least_opacity: f32,
 ) -> Option<(usize, Probe)> {
     let mut best: Option<(usize, Probe)> = None;
     for (index, template) in templates.iter().enumerate() {
-        let probe = sums(simd, template, patch).solve(least_opacity);
+        let mut total = sums(simd, template, first);
+        for patch in others {
+            total.add(&sums(simd, template, patch));
+        }
+        let probe = total.solve(least_opacity);
         if best.is_none_or(|(_, held)| probe.gain > held.gain) {
             best = Some((index, probe));
         }
@@ -240,6 +250,16 @@ fn sums<S: Simd>(simd: S, template: &Template, patch: &Patch) -> Sums {
 }
 
 impl Sums {
+    fn add(&mut self, other: &Self) {
+        self.s += other.s;
+        self.q += other.q;
+        self.z += other.z;
+        for channel in 0..3 {
+            self.x[channel] += other.x[channel];
+            self.y[channel] += other.y[channel];
+        }
+    }
+
     #[inline(always)]
     fn solve(&self, least_opacity: f32) -> Probe {
         if self.s < 1e-3 {

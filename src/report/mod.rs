@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::fit::{StageRecord, Stop};
 use crate::image::Image;
 use crate::metrics::{Agreement, Quality};
+use crate::verify::OnGrounds;
 
 pub use check::{AgainstResvg, CheckReport, NotDrawn, RendererEntry};
 pub use event::{Event, Phase};
@@ -58,6 +59,21 @@ pub struct FitReport {
     pub soft: Quality,
     /// The SVG as rendered by resvg against our own soft render.
     pub agreement: Agreement,
+    /// A transparent drawing on black, on white and on magenta; `null` for others.
+    pub alpha: Option<OnGrounds>,
+    /// The SVG that the drawing goes on from; `null` where there is none.
+    pub base: Option<BaseEntry>,
+}
+
+/// An SVG that was refined.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct BaseEntry {
+    /// As it was named; `-` for standard input.
+    pub path: String,
+    /// Strokes that were taken up.
+    pub strokes: usize,
+    /// Elements that were passed through as they are.
+    pub elements: usize,
 }
 
 /// A picture that was read.
@@ -168,6 +184,16 @@ mod tests {
                 psnr_db: 41.0,
                 max_abs: 12,
             },
+            alpha: Some(OnGrounds {
+                black_db: 28.5,
+                white_db: f64::INFINITY,
+                magenta_db: 29.0,
+            }),
+            base: Some(BaseEntry {
+                path: "b.svg".into(),
+                strokes: 4,
+                elements: 0,
+            }),
         }
     }
 
@@ -190,6 +216,8 @@ mod tests {
             "fidelity": {"psnr_db": null, "ssim": 1.0, "mse": 0.0, "l1": 0.0},
             "soft": {"psnr_db": null, "ssim": 1.0, "mse": 0.0, "l1": 0.0},
             "agreement": {"psnr_db": 41.0, "max_abs": 12},
+            "alpha": {"black_db": 28.5, "white_db": null, "magenta_db": 29.0},
+            "base": {"path": "b.svg", "strokes": 4, "elements": 0},
         });
         assert_eq!(serde_json::to_value(report()).unwrap(), expected);
     }

@@ -42,6 +42,7 @@
 
 mod arrange;
 mod dialect;
+mod document;
 mod element;
 mod lint;
 mod options;
@@ -51,6 +52,7 @@ mod read;
 mod write;
 
 pub use arrange::arrange;
+pub use document::{Document, Placement};
 pub use lint::{Finding, Severity, lint};
 pub use options::{Form, Group, Length, WriteOptions};
 pub use read::read;

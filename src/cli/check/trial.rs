@@ -56,7 +56,7 @@ impl<'a> Trial<'a> {
     ) -> Result<Self> {
         let start = Instant::now();
         let resvg = match target {
-            Some(target) => verify::render_like(svg, target)?,
+            Some(target) => verify::render_like(svg, target, [1.0; 3])?,
             None => verify::render(svg, Size::Scale(1.0), Some([1.0; 3]))?,
         };
         let entry = RendererEntry {

@@ -1,0 +1,70 @@
+//! What a fit goes on from: a drawing of ours, or any SVG.
+
+use crate::error::Result;
+use crate::image::Image;
+use crate::scene::Scene;
+use crate::svg::{self, Document, WriteOptions};
+use crate::verify;
+
+/// What a fit goes on from: a page that stays as it is, strokes that are fitted on, or both.
+#[derive(Debug, Clone)]
+pub struct Base {
+    /// Any SVG: it stays as it is, byte for byte, and strokes are laid on it.
+    pub document: Option<Document>,
+    /// Strokes on top, to be fitted together with the new ones, each in its layer.
+    pub scene: Scene,
+}
+
+impl Base {
+    /// The base that the text of an SVG is for a drawing of `picture`.
+    ///
+    /// Strokes are taken up from a drawing of ours and from the layers that we have laid on another SVG,
+    /// provided that they were fitted to a picture of this size. Everything else, and all of it if it is
+    /// to be `kept`, stays as it is.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Svg`](crate::ErrorKind::Svg) when the text is no SVG, of another aspect ratio than the
+    /// picture, or one that would change the strokes laid on it.
+    pub fn read(text: String, picture: &Image, kept: bool) -> Result<Self> {
+        let of_its_size = |scene: &Scene| {
+            (scene.width as usize, scene.height as usize) == (picture.width(), picture.height())
+        };
+        let own = svg::read(&text).ok().filter(of_its_size);
+        if let Some(scene) = own.filter(|_| !kept) {
+            let document = None;
+            return Ok(Self { document, scene });
+        }
+        let document = Document::parse(text)?;
+        let split = document.split();
+        let laid = split.filter(|(_, scene)| !kept && of_its_size(scene));
+        let (mut document, scene) = laid.unwrap_or_else(|| (document, blank(picture)));
+        let placement = verify::placement(&document.probed(), document.probe(), picture)?;
+        document.place(placement);
+        let document = Some(document);
+        Ok(Self { document, scene })
+    }
+
+    /// The SVG of `scene`, fitted on `base` if there was one.
+    pub fn write(base: Option<&Self>, scene: &Scene, options: &WriteOptions) -> String {
+        match base.and_then(|base| base.document.as_ref()) {
+            Some(document) => document.with_layers(scene, options),
+            None => svg::write(scene, options),
+        }
+    }
+
+    /// The elements that stay as they are.
+    pub fn elements(&self) -> usize {
+        self.document.as_ref().map_or(0, Document::elements)
+    }
+
+    /// The bytes that stay as they are.
+    pub(super) fn bytes(&self) -> usize {
+        let document = self.document.as_ref();
+        document.map_or(0, |document| document.text().len())
+    }
+}
+
+/// A page of the picture's size.
+fn blank(picture: &Image) -> Scene {
+    Scene::empty(picture.width() as u32, picture.height() as u32, None)
+}
