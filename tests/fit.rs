@@ -6,7 +6,8 @@ use std::ops::ControlFlow;
 
 use strokefit::coverage::CoverageSchedule;
 use strokefit::fit::{
-    Background, Budget, Config, Execution, Fit, Fitter, Preset, Progress, Simd, Stop, fit,
+    Background, Budget, Config, Execution, Fit, Fitter, Preset, Progress, Rates, Recipe, Simd,
+    Stop, fit,
 };
 use strokefit::image::Image;
 use strokefit::scene::Scene;
@@ -297,4 +298,27 @@ fn the_drawing_can_be_seen_while_it_grows() {
     };
     assert!(reach(&seen[seen.len() / 3]) > 200.0);
     assert_eq!(seen.last().unwrap().len(), fit.scene.len());
+}
+
+#[test]
+fn strokes_that_become_no_numbers_are_dropped_and_counted() {
+    let recipe = Recipe::of(Preset::Draft);
+    let poison = |rates: Rates| Rates {
+        position: f32::NAN,
+        color: f32::NAN,
+        ..rates
+    };
+    let config = Config {
+        recipe: Some(Recipe {
+            stage_rates: poison(recipe.stage_rates),
+            polish_rates: poison(recipe.polish_rates),
+            ..recipe
+        }),
+        ..draft(40)
+    };
+    let fit = drawn(&ball(64, 48), &config);
+    assert!(fit.scene.is_empty() && fit.dropped >= 40, "{}", fit.dropped);
+    // Nor is the page poisoned: it has the picture's mean colour, not black.
+    let verdict = verdict(&fit, &config);
+    assert!(verdict.fidelity.psnr_db > 12.0, "{verdict:?}");
 }

@@ -39,6 +39,8 @@ pub(super) struct Drawing {
     seed: u64,
     /// How often strokes were sought.
     searches: u64,
+    /// How many strokes became non-finite and were taken out.
+    lost: usize,
 }
 
 impl Drawing {
@@ -59,6 +61,7 @@ impl Drawing {
             edge: final_softness(config.coverage.late),
             seed: config.seed,
             searches: 0,
+            lost: 0,
         }
     }
 
@@ -114,8 +117,12 @@ impl Drawing {
     /// Changes the colour of the ground, if it is flat, and brings it into its domain.
     pub(super) fn change_background(&mut self, change: impl FnOnce(&mut Rgb)) {
         if let Some(color) = self.grounds[0].color_mut() {
-            change(color);
-            *color = color.map(|c| c.clamp(0.0, 1.0));
+            let mut moved = *color;
+            change(&mut moved);
+            // A step to nowhere is not taken: no stroke could make up for a page without a colour.
+            if moved.iter().all(|c| c.is_finite()) {
+                *color = moved.map(|c| c.clamp(0.0, 1.0));
+            }
         }
     }
 
@@ -170,11 +177,20 @@ impl Drawing {
     /// Keeps the free strokes for which `keep` is true.
     pub(super) fn retain_free(&mut self, keep: &[bool]) {
         let frozen = self.frozen;
+        let gone = self.free().iter().zip(keep).filter(|(_, keep)| !**keep);
+        self.lost += gone
+            .filter(|(p, _)| !p.iter().all(|v| v.is_finite()))
+            .count();
         let kept = |i: usize| i < frozen || keep.get(i - frozen).copied().unwrap_or(false);
         let mut i = 0..;
         self.strokes.retain(|_| i.next().is_some_and(kept));
         let mut i = 0..;
         self.stage_of.retain(|_| i.next().is_some_and(kept));
+    }
+
+    /// How many strokes became non-finite and were taken out.
+    pub(super) fn lost(&self) -> usize {
+        self.lost
     }
 
     /// Replaces the numbers of the free strokes.

@@ -414,7 +414,7 @@ impl<'a> Work<'a> {
             target: self.target,
             stages: self.records,
             stop: self.control.stopped().unwrap_or(self.stop),
-            dropped: written.dropped,
+            dropped: written.dropped + self.drawing.lost(),
         })
     }
 }
