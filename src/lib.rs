@@ -33,7 +33,8 @@
 //! svg  verify                     drawing → text → what a renderer makes of it
 //! engines                         what other programs make of it
 //! fit                             stages, polish, settling, budgets
-//! report                          plain records
+//! report                          plain records, tables, plots
+//! lab  bench                      experiments, measurements
 //! ```
 //!
 //! # Quick start
@@ -62,6 +63,7 @@
 //! # Ok::<(), strokefit::Error>(())
 //! ```
 
+pub mod bench;
 pub mod coverage;
 pub mod engines;
 mod error;

@@ -4,7 +4,7 @@
 
 use strokefit::render::{AX, AY, BX, BY, Grid, OPACITY, Params, RADIUS, TILE};
 
-use crate::measure::EDGE;
+use strokefit::bench::measure::EDGE;
 
 /// Pixels of a block.
 pub(crate) const LANES: u64 = 16;

@@ -18,10 +18,9 @@
 
 mod count;
 mod limits;
-#[path = "../measure/mod.rs"]
-mod measure;
 
 use strokefit::Result;
+use strokefit::bench::measure::{DEPTH, EDGE, Size, fastest, thread_counts};
 use strokefit::fit::{self, Budget, Config, Execution, Objective, Simd};
 use strokefit::image::Image;
 use strokefit::loss::Loss;
@@ -29,7 +28,6 @@ use strokefit::render::{Base, Canvas, Gradients, Params, Renderer, pack};
 
 use count::{Count, Work};
 use limits::Limits;
-use measure::{DEPTH, EDGE, Size, fastest, pool, thread_counts};
 
 const PICTURE: &str = "samples/coffee-550x220.png";
 const GROUND: [f32; 3] = [0.5; 3];
@@ -238,7 +236,8 @@ impl<'a> Bench<'a> {
         level: fearless_simd::Level,
         threads: usize,
     ) -> Self {
-        let pool = pool(threads);
+        let builder = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let pool = builder.build().expect("so few threads can be started");
         let grid = target.grid();
         Self {
             drawing,

@@ -82,6 +82,7 @@ impl Job<'_> {
         let Usage {
             cpu_s,
             peak_rss_bytes,
+            ..
         } = Usage::now();
         FitReport {
             schema: report::SCHEMA,

@@ -1,6 +1,7 @@
 //! Arguments, subcommands and exit statuses.
 
 mod batch;
+mod bench;
 mod check;
 mod domain;
 mod events;
@@ -48,6 +49,7 @@ enum Command {
     Refine(refine::Args),
     Check(check::Args),
     Render(render::Args),
+    Bench(bench::Args),
     Lab(lab::Args),
     Completions(manual::Completions),
     Man(manual::Man),
@@ -146,6 +148,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Status> {
         Command::Refine(refine) => refine::run(refine, args.verbosity),
         Command::Check(check) => check::run(check, args.verbosity),
         Command::Render(render) => render::run(render),
+        Command::Bench(bench) => bench::run(bench, args.verbosity),
         Command::Lab(lab) => lab::run(lab, args.verbosity),
         Command::Completions(completions) => manual::complete(completions),
         Command::Man(man) => manual::man(man, args.verbosity),

@@ -18,8 +18,6 @@ use rayon::ThreadPool;
 pub use drawing::{Drawing, Statistics};
 
 use super::Output;
-use super::plot::captioned;
-use super::table::Table;
 use crate::coverage::{Coverage, CoverageSchedule};
 use crate::error::Result;
 use crate::fit::{Execution, Objective};
@@ -29,6 +27,8 @@ use crate::optim::{Adam, AdamParams, Optimizer};
 use crate::render::{
     Base, Canvas, Gradients, Grid, OPACITY, PARAMS, Params, RADIUS, RED, Renderer, Softness,
 };
+use crate::report::Table;
+use crate::report::plot::captioned;
 use crate::svg::{self, WriteOptions};
 use crate::verify;
 
@@ -360,7 +360,7 @@ impl Film {
     fn finish(self, output: &mut Output<'_>) -> Result<()> {
         output.bytes("article.gif", &self.plain.finish()?)?;
         output.bytes("article-legend.gif", &self.legend.finish()?)?;
-        output.text("article.csv", self.table.text())
+        output.text("article.csv", &self.table.csv())
     }
 }
 

@@ -13,14 +13,15 @@ use rayon::prelude::*;
 
 use super::descent::{Descent, Method, descend};
 use super::matching::{Grid, Matching};
-use super::picture::{self, gray};
-use super::plot::{Chart, Panel, Path, Sheet};
-use super::table::{self, STEPS, Table};
+use super::table::{self, STEPS};
 use super::{COVERAGES, Output, SIZE};
 use crate::coverage::Coverage;
 use crate::error::Result;
 use crate::image::Image;
 use crate::math::Real;
+use crate::report::Table;
+use crate::report::picture::{self, gray};
+use crate::report::plot::{Chart, Panel, Path, Sheet};
 use crate::sdf::Circle;
 
 /// ε of the article's small experiments, px.
@@ -120,12 +121,12 @@ pub fn run(output: &mut Output<'_>) -> Result<()> {
         let ends = table::tabulated(&mut table, &setups);
         experiment(output, &file, &setups, &ends)?;
     }
-    output.text("circle.csv", table.text())?;
+    output.text("circle.csv", &table.csv())?;
     output.doing(
         0.7,
         "the same from starts that are nudged by rounding errors",
     );
-    output.text("circle-nudged.csv", nudged().text())
+    output.text("circle-nudged.csv", &nudged().csv())
 }
 
 fn experiment(

@@ -8,8 +8,6 @@ use rayon::prelude::*;
 
 use super::compose::{GRAY, reference, star};
 use super::descent::{Descent, Method, Problem, descend};
-use super::picture;
-use super::plot::{Chart, Panel, Sheet};
 use super::star::START;
 use super::table::{self, STEPS};
 use super::{COVERAGES, Output, SIZE};
@@ -18,6 +16,8 @@ use crate::error::Result;
 use crate::image::Image;
 use crate::loss::Loss;
 use crate::render::reference::{Reference, Rgb, Scene, Stroke};
+use crate::report::picture;
+use crate::report::plot::{Chart, Panel, Sheet};
 use crate::rng;
 
 const METHODS: [Method; 2] = [Method::adam(0.5), Method::rmsprop(0.1)];
@@ -131,7 +131,7 @@ pub fn run(output: &mut Output<'_>) -> Result<()> {
             .map(|step| sheet(&name, &descents, step));
         output.animation(&format!("{name}.gif"), 80, frames)?;
     }
-    output.text("colors.csv", table.text())
+    output.text("colors.csv", &table.csv())
 }
 
 /// The target, and the drawings after `step` steps.

@@ -5,18 +5,17 @@
 //! article's recipe took with smoothstep. Beside the fidelity of the soft render, which is what the article
 //! judges, stands that of the SVG as resvg draws it, which is what one gets.
 
-use std::fmt::Write;
 use std::time::{Duration, Instant};
 
 use super::Output;
 use super::article::{self, Descent, Drawing};
-use super::plot::{Panel, Sheet};
-use super::table::Table;
 use crate::coverage::{Coverage, CoverageSchedule};
 use crate::error::Result;
 use crate::fit::{self, Budget, Execution, Preset};
 use crate::image::Image;
 use crate::metrics::Quality;
+use crate::report::Table;
+use crate::report::plot::{Panel, Sheet};
 use crate::scene::Scene;
 use crate::svg::{self, WriteOptions};
 use crate::verify::{self, Size};
@@ -86,7 +85,7 @@ pub fn run(
     output.doing(0.95, &format!("{name}: the staged pipeline"));
     rows.extend(staged(&target, config, time, execution)?);
     rows.sort_by(|x, y| y.soft.l1.total_cmp(&x.soft.l1));
-    output.text(&format!("{name}.csv"), table(&rows).text())?;
+    output.text(&format!("{name}.csv"), &table(&rows).csv())?;
     output.text(&format!("{name}.md"), &markdown(name, config, &rows))?;
     output.picture(&format!("{name}.png"), &sheet(name, target, rows)?)
 }
@@ -199,17 +198,12 @@ fn table(rows: &[Row]) -> Table {
 }
 
 fn markdown(name: &str, config: &article::Config, rows: &[Row]) -> String {
-    let mut text = format!(
-        "# {name}: {} strokes, {} iterations, worst soft render first\n\n",
-        config.strokes, config.iterations
-    );
-    // Writing to a `String` cannot fail.
-    let _ = writeln!(text, "| {} |", HEAD.join(" | "));
-    let _ = writeln!(text, "|{}", " --- |".repeat(HEAD.len()));
-    for row in rows {
-        let _ = writeln!(text, "| {} |", row.cells().join(" | "));
-    }
-    text
+    format!(
+        "# {name}: {} strokes, {} iterations, worst soft render first\n\n{}",
+        config.strokes,
+        config.iterations,
+        table(rows).markdown()
+    )
 }
 
 fn sheet(name: &str, target: Image, rows: Vec<Row>) -> Result<Image> {

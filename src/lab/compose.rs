@@ -4,15 +4,15 @@
 //! `canvas ← canvas·(1−m) + colour·m` with `m = opacity·coverage`. Shown are `m`, the two products and
 //! the canvas after each stroke; opaque, and with an opacity of ½.
 
-use super::picture;
-use super::plot::{Panel, Sheet};
 use super::star::STAR;
-use super::table::Table;
 use super::{COVERAGES, Output, SIZE};
 use crate::coverage::Coverage;
 use crate::error::Result;
 use crate::image::Image;
 use crate::render::reference::{Reference, Rgb, Scene, Stroke};
+use crate::report::Table;
+use crate::report::picture;
+use crate::report::plot::{Panel, Sheet};
 
 /// The star's colours.
 pub const COLORS: [Rgb; 4] = [
@@ -82,7 +82,7 @@ pub fn run(output: &mut Output<'_>) -> Result<()> {
         output.picture(&format!("compose-{name}.png"), &sheet(opacity, &steps)?)?;
     }
     output.picture("compose-coverages.png", &coverages()?)?;
-    output.text("compose.csv", table.text())
+    output.text("compose.csv", &table.csv())
 }
 
 fn steps(scene: &Scene, reference: Reference) -> Vec<Step> {

@@ -9,13 +9,13 @@ use rayon::prelude::*;
 
 use super::descent::Problem;
 use super::matching::{Grid, Matching};
-use super::picture::{self, heat};
-use super::plot::{Panel, Path, Sheet};
-use super::table::Table;
 use super::{COVERAGES, Output, SIZE};
 use crate::coverage::Coverage;
 use crate::error::Result;
 use crate::image::Image;
+use crate::report::Table;
+use crate::report::picture::{self, heat};
+use crate::report::plot::{Panel, Path, Sheet};
 use crate::sdf::Circle;
 
 const TARGET: [f64; 3] = [48.0, 48.0, 8.0];
@@ -65,7 +65,7 @@ pub fn run(output: &mut Output<'_>) -> Result<()> {
     );
     let coverages: Vec<Coverage> = [Coverage::Raw].into_iter().chain(COVERAGES).collect();
     let fields: Vec<Field> = coverages.into_iter().map(Field::new).collect();
-    output.text("field.csv", table(&fields).text())?;
+    output.text("field.csv", &table(&fields).csv())?;
     let arrows = "descent direction of a circle towards (48, 48), over the loss";
     output.picture("field-arrows.png", &sheet(arrows, &fields, Field::arrows)?)?;
     let streams = "stream lines of the descent, over the loss";

@@ -16,7 +16,7 @@
 //! | [`compare`] | which coverage function is best, in the render and in the file? |
 //!
 //! Beneath them: [`descent`] (a problem, an optimiser, its course), [`matching`] (a union of shapes
-//! against a target), [`table`], [`picture`] and [`plot`].
+//! against a target) and [`table`].
 //!
 //! The small experiments follow the article in sampling pixels at integer coordinates.
 
@@ -29,8 +29,6 @@ pub mod descent;
 pub mod field;
 pub mod matching;
 mod output;
-pub mod picture;
-pub mod plot;
 pub mod sdf;
 pub mod star;
 pub mod table;

@@ -4,13 +4,13 @@
 //! and of their union, intersection and subtraction; charts and a table of the coverage functions
 //! and their derivatives over the distance.
 
-use super::picture::{self, distance, gray};
-use super::plot::{Chart, Panel, Sheet};
-use super::table::Table;
 use super::{Output, SIZE};
 use crate::coverage::Coverage;
 use crate::error::Result;
 use crate::math::Point2;
+use crate::report::Table;
+use crate::report::picture::{self, distance, gray};
+use crate::report::plot::{Chart, Panel, Sheet};
 use crate::sdf::{Capsule, Circle, Combination};
 
 /// The functions on show.
@@ -34,7 +34,7 @@ const SOFTNESS: f64 = 1.0;
 /// # Errors
 /// When a file cannot be written.
 pub fn run(output: &mut Output<'_>) -> Result<()> {
-    output.text("sdf.csv", table().text())?;
+    output.text("sdf.csv", &table().csv())?;
     let derivative = |c: Coverage, d| c.derivative(d, SOFTNESS);
     let value = |c: Coverage, d| c.value(d, SOFTNESS);
     output.picture("sdf-coverage.png", &chart("coverage", value)?)?;
@@ -88,6 +88,7 @@ fn chart(what: &str, f: impl Fn(Coverage, f64) -> f64) -> Result<crate::image::I
         axes: ["signed distance, px".into(), what.into()],
         logarithmic: false,
         series: SHOWN.map(|c| (c.to_string(), points(c))).into(),
+        ..Chart::default()
     };
     chart.draw()
 }

@@ -5,14 +5,15 @@
 
 use super::descent::{Descent, Method, descend};
 use super::matching::{Grid, Matching};
-use super::picture::{self, gray};
-use super::plot::{Chart, Panel, Sheet};
-use super::table::{self, STEPS, Table};
+use super::table::{self, STEPS};
 use super::{COVERAGES, Output, SIZE};
 use crate::coverage::Coverage;
 use crate::error::Result;
 use crate::image::Image;
 use crate::math::Real;
+use crate::report::Table;
+use crate::report::picture::{self, gray};
+use crate::report::plot::{Chart, Panel, Sheet};
 use crate::sdf::Capsule;
 
 /// The star: `[a.x, a.y, b.x, b.y, radius]`, px.
@@ -119,7 +120,7 @@ pub fn run(output: &mut Output<'_>) -> Result<()> {
             experiment(output, &mut table, &name, &setups(eps, *method, *coverages))?;
         }
     }
-    output.text("star.csv", table.text())
+    output.text("star.csv", &table.csv())
 }
 
 fn setups(eps: f64, method: Method, coverages: [Coverage; 5]) -> Vec<Setup> {

@@ -1,61 +1,16 @@
-//! Tables of results as CSV.
-
-use std::fmt::{Display, Write};
+//! Tables of descents: what they were of, and their losses.
 
 use rayon::prelude::*;
 
 use super::descent::Descent;
 use crate::math::Real;
+use crate::report::Table;
 
 /// The steps whose losses are in the tables; the loss after all of [`STEPS`] is there too.
 pub const SHOWN: [usize; 6] = [0, 1, 10, 50, 100, 199];
 
 /// How many steps the small experiments make.
 pub const STEPS: usize = 200;
-
-/// Rows of comma-separated values under a head. Cells with a comma, a quote or a line break are
-/// quoted.
-#[derive(Debug, Clone)]
-pub struct Table {
-    text: String,
-    columns: usize,
-}
-
-impl Table {
-    /// A table of the columns `head`.
-    pub fn new<S: AsRef<str>>(head: &[S]) -> Self {
-        let mut table = Self {
-            text: String::new(),
-            columns: head.len(),
-        };
-        table.row(head.iter().map(AsRef::as_ref));
-        table
-    }
-
-    /// Appends a row, of as many cells as the head has.
-    pub fn row<D: Display>(&mut self, cells: impl IntoIterator<Item = D>) {
-        let cells: Vec<String> = cells
-            .into_iter()
-            .map(|cell| quoted(&cell.to_string()))
-            .collect();
-        debug_assert_eq!(cells.len(), self.columns);
-        // Writing to a `String` cannot fail.
-        let _ = writeln!(self.text, "{}", cells.join(","));
-    }
-
-    /// The table as CSV text.
-    pub fn text(&self) -> &str {
-        &self.text
-    }
-}
-
-fn quoted(cell: &str) -> String {
-    if cell.contains([',', '"', '\n']) {
-        format!("\"{}\"", cell.replace('"', "\"\""))
-    } else {
-        cell.to_owned()
-    }
-}
 
 /// What a descent was of: `[experiment, variant, coverage, optimizer, start]`.
 pub type Labels = [String; 5];
@@ -108,17 +63,4 @@ pub fn push_descent<T: Real>(table: &mut Table, labels: &Labels, descent: &Desce
     let last = descent.last().iter().map(|x| format!("{x:.6}"));
     cells.push(last.collect::<Vec<_>>().join(" "));
     table.row(cells);
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn cells_that_need_quotes_get_them() {
-        let mut table = Table::new(&["a", "b"]);
-        table.row(["1,2", "say \"x\""]);
-        table.row([1.5, 2.0]);
-        assert_eq!(table.text(), "a,b\n\"1,2\",\"say \"\"x\"\"\"\n1.5,2\n");
-    }
 }

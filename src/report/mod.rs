@@ -1,4 +1,5 @@
-//! What a command did, as plain records that serialise to JSON.
+//! What a command did, as plain records that serialise to JSON, and how they are shown: as tables, plots
+//! and pages.
 //!
 //! Scripts rely on the field names; more may be added, none is renamed. Lengths of time are in
 //! seconds, errors as [`metrics`](crate::metrics) defines them. `psnr_db` is `null` where two
@@ -6,7 +7,13 @@
 
 mod check;
 mod event;
+pub mod pareto;
+pub mod picture;
+pub mod plot;
+pub mod scaling;
 mod size;
+pub mod stability;
+mod table;
 mod usage;
 
 use serde::{Deserialize, Serialize};
@@ -19,6 +26,7 @@ use crate::verify::OnGrounds;
 pub use check::{AgainstResvg, CheckReport, NotDrawn, RendererEntry};
 pub use event::{Event, Phase};
 pub use size::{gzip_bytes, per_stroke};
+pub use table::Table;
 pub use usage::Usage;
 
 /// Version of the records' layout.

@@ -13,25 +13,43 @@ pub struct Usage {
     pub cpu_s: Option<f64>,
     /// Most memory held at once, bytes.
     pub peak_rss_bytes: Option<u64>,
+    /// CPU time of the children that were waited for, s; to a hundredth.
+    pub children_cpu_s: Option<f64>,
 }
 
 impl Usage {
     /// Up to now.
     pub fn now() -> Self {
-        let read = |file| fs::read_to_string(file).ok();
+        let stat = fs::read_to_string("/proc/self/stat").ok();
+        let cpu_s = |first| stat.as_deref().and_then(|stat| cpu_s(stat, first));
         Self {
-            cpu_s: read("/proc/self/stat").and_then(|stat| cpu_s(&stat)),
-            peak_rss_bytes: read("/proc/self/status").and_then(|status| peak_rss_bytes(&status)),
+            cpu_s: cpu_s(OWN),
+            peak_rss_bytes: peak_rss_bytes_in("/proc/self/status"),
+            children_cpu_s: cpu_s(CHILDREN),
         }
+    }
+
+    /// Most memory held at once by the process `id` so far, bytes; `None` when it is no more.
+    pub fn peak_of(id: u32) -> Option<u64> {
+        peak_rss_bytes_in(&format!("/proc/{id}/status"))
     }
 }
 
-/// Fields 14 and 15 of `stat`. The second, the program's name in brackets, may hold anything.
-fn cpu_s(stat: &str) -> Option<f64> {
+/// The fields of `stat` with user and system time, counted from the one after the program's name.
+const OWN: usize = 11;
+const CHILDREN: usize = 13;
+
+fn peak_rss_bytes_in(file: &str) -> Option<u64> {
+    let status = fs::read_to_string(file).ok()?;
+    peak_rss_bytes(&status)
+}
+
+/// Two fields of `stat`. The second of all, the program's name in brackets, may hold anything.
+fn cpu_s(stat: &str, first: usize) -> Option<f64> {
     let (_, after_name) = stat.rsplit_once(')')?;
     let mut ticks = after_name
         .split_ascii_whitespace()
-        .skip(11)
+        .skip(first)
         .map(str::parse::<u64>);
     let (user, system) = (ticks.next()?.ok()?, ticks.next()?.ok()?);
     Some((user + system) as f64 / TICKS_PER_S)
@@ -52,14 +70,17 @@ mod tests {
 
     #[test]
     fn stat_and_status_are_understood() {
-        let stat = "7 (odd ) name) R 1 7 7 0 -1 4194304 99 0 0 0 123 27 0 0 20 0 3 0 5 6 7";
-        assert_eq!(cpu_s(stat), Some(1.5));
+        let stat = "7 (odd ) name) R 1 7 7 0 -1 4194304 99 0 0 0 123 27 10 20 20 0 3 0 5 6 7";
+        assert_eq!(
+            (cpu_s(stat, OWN), cpu_s(stat, CHILDREN)),
+            (Some(1.5), Some(0.3))
+        );
         assert_eq!(
             peak_rss_bytes("Name:\tx\nVmHWM:\t   2048 kB\nVmRSS:\t 1 kB\n"),
             Some(2 << 20)
         );
         assert_eq!(
-            (cpu_s("nonsense"), peak_rss_bytes("nonsense")),
+            (cpu_s("nonsense", OWN), peak_rss_bytes("nonsense")),
             (None, None)
         );
     }

@@ -1,39 +1,63 @@
-//! What the benchmarks of speed and of scale have in common: strokes of one size, and the clock.
+//! Strokes of one size and the clock, for measurements of the renderer.
 
 use std::f32::consts::{PI, TAU};
 use std::time::Instant;
 
-use strokefit::coverage::Coverage;
-use strokefit::render::{Grid, Params, Softness};
-use strokefit::rng;
+use crate::coverage::Coverage;
+use crate::render::{Grid, Params, Softness};
+use crate::rng;
 
 /// The soft edge of a finished drawing.
-pub(crate) const EDGE: Softness = Softness {
+pub const EDGE: Softness = Softness {
     coverage: Coverage::Smoothstep,
     width: 1.25,
 };
 
 /// Pairs per pixel of random drawings.
-pub(crate) const DEPTH: f32 = 10.0;
+pub const DEPTH: f32 = 10.0;
 
 /// Strokes of one size.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Size {
-    pub(crate) radius_px: f32,
+pub struct Size {
+    /// Half the width, px.
+    pub radius_px: f32,
     /// From end to end of the centre line.
-    pub(crate) length_px: f32,
-    pub(crate) opacity: f32,
+    pub length_px: f32,
+    /// 0..1.
+    pub opacity: f32,
 }
 
 impl Size {
     /// Pixels that a stroke covers, its soft edge included.
-    pub(crate) fn area_px(self) -> f32 {
+    pub fn area_px(self) -> f32 {
         let outer = self.radius_px + EDGE.width / 2.0;
         2.0 * outer * self.length_px + PI * outer * outer
     }
 
+    /// The size, four radii long and half opaque, of which `count` strokes cover `pixels` [`DEPTH`]
+    /// times.
+    pub fn covering(pixels: f32, count: usize) -> Self {
+        let of_radius = |radius_px: f32| Self {
+            radius_px,
+            length_px: 4.0 * radius_px,
+            opacity: 0.5,
+        };
+        let wanted = DEPTH * pixels / count.max(1) as f32;
+        // The area grows with the radius: halve the interval until it is small.
+        let (mut low, mut high) = (0.0, pixels.sqrt());
+        for _ in 0..40 {
+            let middle = f32::midpoint(low, high);
+            if of_radius(middle).area_px() < wanted {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        of_radius(high)
+    }
+
     /// `count` strokes of random place, direction and colour, the same in every run.
-    pub(crate) fn strokes(self, grid: Grid, count: usize) -> Vec<Params> {
+    pub fn strokes(self, grid: Grid, count: usize) -> Vec<Params> {
         (0..count as u64).map(|i| self.stroke(grid, i)).collect()
     }
 
@@ -61,7 +85,7 @@ impl Size {
 
 /// The shortest time of each of `jobs`, s, over `rounds` in which they take turns: what disturbs the
 /// machine disturbs all of them.
-pub(crate) fn fastest<const N: usize>(rounds: usize, mut jobs: [&mut dyn FnMut(); N]) -> [f64; N] {
+pub fn fastest<const N: usize>(rounds: usize, mut jobs: [&mut dyn FnMut(); N]) -> [f64; N] {
     let mut best = [f64::INFINITY; N];
     for _ in 0..rounds {
         for (job, best) in jobs.iter_mut().zip(&mut best) {
@@ -73,17 +97,32 @@ pub(crate) fn fastest<const N: usize>(rounds: usize, mut jobs: [&mut dyn FnMut()
     best
 }
 
-/// A pool of `threads` workers.
-pub(crate) fn pool(threads: usize) -> rayon::ThreadPool {
-    let builder = rayon::ThreadPoolBuilder::new().num_threads(threads);
-    builder.build().expect("so few threads can be started")
-}
-
 /// 1, 2, 4, … and all of the machine's threads.
-pub(crate) fn thread_counts() -> Vec<usize> {
+pub fn thread_counts() -> Vec<usize> {
     let all = std::thread::available_parallelism().map_or(1, usize::from);
     let doubling = std::iter::successors(Some(1), |n| Some(2 * n));
     let mut counts: Vec<usize> = doubling.take_while(|&n| n < all).collect();
     counts.push(all);
     counts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strokes_cover_the_picture_as_often_as_is_said() {
+        for count in [10, 1000, 100_000] {
+            let pixels = 1e6;
+            let depth = Size::covering(pixels, count).area_px() * count as f32 / pixels;
+            assert!((depth - DEPTH).abs() < 0.1, "{count}: {depth}");
+        }
+    }
+
+    #[test]
+    fn threads_double_up_to_all() {
+        let counts = thread_counts();
+        assert_eq!(counts[0], 1);
+        assert!(counts.is_sorted_by(|a, b| a < b), "{counts:?}");
+    }
 }

@@ -1,0 +1,396 @@
+//! One drawing: who makes it, how, and what it costs and gains.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use serde::{Deserialize, Serialize};
+
+use super::programs::Peer;
+use crate::coverage::{Coverage, CoverageSchedule};
+use crate::error::{Error, ErrorKind, Result};
+use crate::fit::{self, Budget, Config, Execution};
+use crate::image::Image;
+use crate::lab::article::{Descent, Drawing};
+use crate::metrics::Agreement;
+use crate::report::pareto::ParetoEntry;
+use crate::report::{StageEntry, Usage, gzip_bytes};
+use crate::svg::{self, WriteOptions};
+use crate::verify::{self, MIN_AGREEMENT_DB};
+
+const WHITE: [f32; 3] = [1.0; 3];
+
+/// Iterations of the article's recipe between looks at the clock.
+const CLOCK_EVERY: usize = 10;
+
+/// One drawing to make.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Case {
+    /// The picture's file.
+    pub picture: PathBuf,
+    /// Who makes it, and how.
+    pub method: Method,
+}
+
+/// Who makes a drawing, and how.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Method {
+    /// A fit.
+    Fit {
+        /// How much work.
+        preset: Preset,
+        /// The coverage function or mix, in its own words.
+        coverage: String,
+        /// How many strokes.
+        strokes: usize,
+        /// Key of every random draw.
+        seed: u64,
+    },
+    /// The recipe of the article: all strokes at once, from a random start.
+    Article {
+        /// How many strokes.
+        strokes: usize,
+        /// How many iterations, or as many as fit in a time.
+        limit: Limit,
+        /// Key of the random start.
+        seed: u64,
+    },
+    /// Another program, or a library of another project.
+    Peer {
+        /// The peer's name.
+        name: String,
+        /// Its settings, in its own words.
+        settings: String,
+    },
+    /// A file that is there already.
+    File {
+        /// Whose it is.
+        family: String,
+        /// The SVG.
+        path: PathBuf,
+    },
+}
+
+/// How much work a fit spends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Preset {
+    /// The stages of a draft, without polish.
+    Stages,
+    /// `--preset draft`
+    Draft,
+    /// `--preset balanced`
+    Balanced,
+    /// `--preset best`
+    Best,
+}
+
+impl Preset {
+    /// The word for it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Stages => "stages",
+            Self::Draft => "draft",
+            Self::Balanced => "balanced",
+            Self::Best => "best",
+        }
+    }
+}
+
+/// When the article's recipe ends.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Limit {
+    /// After so many iterations.
+    Iterations(usize),
+    /// After as much CPU time as the fit of this preset and as many strokes took.
+    TimeOf {
+        /// The fit.
+        preset: Preset,
+        /// What it took, s.
+        cpu_s: f64,
+    },
+}
+
+/// A drawing as it was made.
+struct Drawn {
+    text: String,
+    strokes: Option<usize>,
+    soft: Option<Image>,
+    stages: Vec<StageEntry>,
+    /// Most memory of another program, bytes.
+    peak_rss_bytes: Option<u64>,
+}
+
+impl Drawn {
+    fn file(text: String) -> Self {
+        Self {
+            text,
+            strokes: None,
+            soft: None,
+            stages: Vec::new(),
+            peak_rss_bytes: None,
+        }
+    }
+}
+
+impl Method {
+    /// Whose drawing it is.
+    pub fn family(&self) -> &str {
+        match self {
+            Self::Fit { .. } => "strokefit",
+            Self::Article { .. } => "article",
+            Self::Peer { name, .. } => name,
+            Self::File { family, .. } => family,
+        }
+    }
+
+    /// What tells it from others of its family.
+    pub fn label(&self) -> String {
+        match self {
+            Self::Fit {
+                preset,
+                coverage,
+                strokes,
+                seed,
+            } => format!("{} {strokes} {coverage} seed {seed}", preset.word()),
+            Self::Article {
+                strokes,
+                limit,
+                seed,
+            } => match limit {
+                Limit::Iterations(n) => format!("{strokes} strokes, {n} iterations, seed {seed}"),
+                Limit::TimeOf { preset, .. } => {
+                    format!("{strokes} strokes, time of {}, seed {seed}", preset.word())
+                }
+            },
+            Self::Peer { settings, .. } => settings.clone(),
+            Self::File { .. } => "file".into(),
+        }
+    }
+
+    fn draw(&self, picture: &Image, peers: &[Box<dyn Peer>]) -> Result<Drawn> {
+        match self {
+            Self::Fit {
+                preset,
+                coverage,
+                strokes,
+                seed,
+            } => fitted(picture, *preset, coverage.parse()?, *strokes, *seed),
+            Self::Article {
+                strokes,
+                limit,
+                seed,
+            } => article(picture, *strokes, *limit, *seed),
+            Self::Peer { name, settings } => {
+                let peer = peers.iter().find(|peer| peer.name() == name);
+                let peer = peer.ok_or_else(|| {
+                    Error::new(ErrorKind::Config, format!("{name} is not here: install it"))
+                })?;
+                let traced = peer.trace(picture, settings)?;
+                Ok(Drawn {
+                    peak_rss_bytes: traced.peak_rss_bytes,
+                    ..Drawn::file(traced.svg)
+                })
+            }
+            Self::File { path, .. } => read(path).map(Drawn::file),
+        }
+    }
+}
+
+fn read(path: &Path) -> Result<String> {
+    fs::read_to_string(path).map_err(|e| {
+        let message = format!("{}: cannot be read ({e}): give an SVG file", path.display());
+        Error::new(ErrorKind::Io, message)
+    })
+}
+
+fn fitted(
+    picture: &Image,
+    preset: Preset,
+    coverage: CoverageSchedule,
+    strokes: usize,
+    seed: u64,
+) -> Result<Drawn> {
+    let config = Config {
+        budget: Budget {
+            strokes: Some(strokes),
+            ..Budget::default()
+        },
+        preset: match preset {
+            Preset::Stages | Preset::Draft => fit::Preset::Draft,
+            Preset::Balanced => fit::Preset::Balanced,
+            Preset::Best => fit::Preset::Best,
+        },
+        polish: preset != Preset::Stages,
+        coverage,
+        seed,
+        ..Config::default()
+    };
+    let fit = fit::fit(picture, &config, &Execution::default(), &mut ())?;
+    Ok(Drawn {
+        text: svg::write(&fit.scene, &WriteOptions::default()),
+        strokes: Some(fit.scene.len()),
+        soft: Some(fit.soft),
+        stages: fit.stages.iter().map(StageEntry::from).collect(),
+        peak_rss_bytes: None,
+    })
+}
+
+fn article(picture: &Image, strokes: usize, limit: Limit, seed: u64) -> Result<Drawn> {
+    let start = Drawing::random(picture.width(), picture.height(), strokes, seed);
+    let mut descent = Descent::new(picture, start, Execution::default())?;
+    let clock = Clock::start();
+    let goes_on = |step: usize| match limit {
+        Limit::Iterations(n) => step < n,
+        Limit::TimeOf { cpu_s, .. } => {
+            !step.is_multiple_of(CLOCK_EVERY) || clock.cost().cpu_s.is_none_or(|used| used < cpu_s)
+        }
+    };
+    let mut step = 0;
+    while goes_on(step) {
+        descent.step(Coverage::Smoothstep);
+        step += 1;
+    }
+    let scene = descent.drawing().scene();
+    // What it ends with may be thinner than any file has it: no soft render stands for the file.
+    Ok(Drawn {
+        strokes: Some(scene.quantized(2).0.len()),
+        ..Drawn::file(svg::write(&scene, &WriteOptions::default()))
+    })
+}
+
+/// What has been used since a moment.
+struct Clock {
+    start: Instant,
+    before: Usage,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Cost {
+    wall_s: f64,
+    /// This process and the children that it waited for; wall time where the system does not tell.
+    cpu_s: Option<f64>,
+    peak_rss_bytes: Option<u64>,
+}
+
+impl Clock {
+    fn start() -> Self {
+        Self {
+            start: Instant::now(),
+            before: Usage::now(),
+        }
+    }
+
+    fn cost(&self) -> Cost {
+        let wall_s = self.start.elapsed().as_secs_f64();
+        let now = Usage::now();
+        let all = |usage: Usage| Some(usage.cpu_s? + usage.children_cpu_s?);
+        Cost {
+            wall_s,
+            cpu_s: all(now)
+                .zip(all(self.before))
+                .map(|(now, before)| now - before),
+            peak_rss_bytes: now.peak_rss_bytes,
+        }
+    }
+}
+
+impl Case {
+    /// The record of this case before anything is known of the drawing.
+    pub fn entry(&self, picture: &Image) -> ParetoEntry {
+        let (preset, coverage, seed) = match &self.method {
+            Method::Fit {
+                preset,
+                coverage,
+                seed,
+                ..
+            } => (
+                Some(preset.word().to_owned()),
+                Some(coverage.clone()),
+                Some(*seed),
+            ),
+            Method::Article { seed, .. } => (None, None, Some(*seed)),
+            Method::Peer { .. } | Method::File { .. } => (None, None, None),
+        };
+        ParetoEntry {
+            picture: stem(&self.picture),
+            digest: digest(picture),
+            width: picture.width(),
+            height: picture.height(),
+            family: self.method.family().into(),
+            label: self.method.label(),
+            preset,
+            coverage,
+            seed,
+            ..ParetoEntry::default()
+        }
+    }
+
+    /// Makes the drawing, writes it to `svg_to` and measures it. Memory is that of this process.
+    ///
+    /// # Errors
+    /// When it cannot be made, written or drawn.
+    pub fn measure(&self, svg_to: &Path, peers: &[Box<dyn Peer>]) -> Result<ParetoEntry> {
+        let picture = open(&self.picture)?;
+        let clock = Clock::start();
+        let drawn = self.method.draw(&picture, peers)?;
+        let cost = clock.cost();
+        fs::write(svg_to, &drawn.text).map_err(|e| {
+            Error::new(
+                ErrorKind::Io,
+                format!("cannot write {}: {e}", svg_to.display()),
+            )
+        })?;
+        let shown = verify::fidelity(&drawn.text, &picture)?;
+        let agreement = drawn.soft.as_ref().map(|soft| agreement(&drawn.text, soft));
+        let agreement_db = agreement.transpose()?.map(|a| a.psnr_db);
+        let timed = !matches!(self.method, Method::File { .. });
+        let foreign = matches!(self.method, Method::Peer { .. });
+        Ok(ParetoEntry {
+            strokes: drawn.strokes,
+            wall_s: timed.then_some(cost.wall_s),
+            cpu_s: cost.cpu_s.filter(|_| timed),
+            peak_rss_bytes: if foreign { drawn.peak_rss_bytes } else { cost.peak_rss_bytes.filter(|_| timed) },
+            svg_bytes: drawn.text.len(),
+            gzip_bytes: gzip_bytes(&drawn.text),
+            fidelity: Some(shown),
+            agreement_db,
+            failure: agreement_db.filter(|db| *db < MIN_AGREEMENT_DB).map(|db| {
+                format!("resvg draws the file {db:.1} dB from what was fitted, the bound is {MIN_AGREEMENT_DB}")
+            }),
+            stages: drawn.stages,
+            ..self.entry(&picture)
+        })
+    }
+}
+
+fn agreement(text: &str, soft: &Image) -> Result<Agreement> {
+    let size = verify::Size::Exact {
+        width: soft.width() as u32,
+        height: soft.height() as u32,
+    };
+    Agreement::between(soft, &verify::render(text, size, Some(WHITE))?)
+}
+
+/// The picture as everybody is given it: its alpha laid on white.
+pub(super) fn open(path: &Path) -> Result<Image> {
+    Ok(Image::open(path)?.flattened(WHITE))
+}
+
+pub(super) fn stem(path: &Path) -> String {
+    path.file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned()
+}
+
+/// A short hash of the picture's pixels (FNV-1a), which tells pictures of one name apart.
+pub(super) fn digest(picture: &Image) -> String {
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64 ^ picture.width() as u64;
+    for byte in picture.to_rgb8() {
+        hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+    }
+    format!("{:08x}", (hash >> 32) as u32 ^ hash as u32)
+}

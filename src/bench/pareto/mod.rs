@@ -1,0 +1,146 @@
+//! Cost against error: drawings of pictures by our fits at many settings, by the article's recipe and by
+//! peers, all judged alike: the file as resvg draws it.
+//!
+//! Results are written as they come, a line of `results.jsonl` and an SVG each, and what is there already
+//! is not measured again: a run that was stopped goes on where it was.
+
+mod case;
+mod gallery;
+mod journal;
+mod plan;
+mod programs;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+pub use case::{Case, Limit, Method, Preset};
+pub use plan::{Plan, Work};
+pub use programs::{Peer, Traced, installed, known};
+
+use super::child::Task;
+use crate::error::{Error, ErrorKind, Result};
+use crate::image::Image;
+use crate::lab::Output;
+use crate::report::pareto::{ParetoEntry, ParetoReport, charts, page};
+use journal::Journal;
+
+/// Measures one task, in a process of its own.
+pub type Measure<'a> = &'a dyn Fn(&Task) -> Result<ParetoEntry>;
+
+/// A run under way.
+struct Run<'a> {
+    folder: &'a Path,
+    journal: Journal,
+    measure: Measure<'a>,
+    say: &'a mut dyn FnMut(&str),
+}
+
+/// Measures what `work` asks for on `pictures` and writes to `folder`, telling a line per case.
+///
+/// # Errors
+/// When a picture cannot be read, two have one name, or the folder cannot be written. A case that cannot
+/// be measured is a failure in the report.
+pub fn run(
+    folder: &Path,
+    pictures: &[PathBuf],
+    work: &Work,
+    peers: &[Box<dyn Peer>],
+    measure: Measure<'_>,
+    say: &mut dyn FnMut(&str),
+) -> Result<ParetoReport> {
+    check_names(pictures)?;
+    fs::create_dir_all(folder.join("svg")).map_err(|e| unwritten(folder, &e))?;
+    let mut run = Run {
+        folder,
+        journal: Journal::open(&folder.join("results.jsonl"))?,
+        measure,
+        say,
+    };
+    for path in pictures {
+        let picture = case::open(path)?;
+        let cases = work.cases(path, peers)?;
+        for case in &cases {
+            run.once(case, &picture)?;
+        }
+        if let Some(case) = work.at_equal_time(path, &run.journal.entries) {
+            run.once(&case, &picture)?;
+        }
+    }
+    let entries = run.journal.current(pictures)?;
+    let report = ParetoReport::new(entries, work.claims());
+    for comparison in &report.comparisons {
+        (run.say)(&comparison.line());
+    }
+    Ok(report)
+}
+
+impl Run<'_> {
+    /// Measures a case, unless that was done before.
+    fn once(&mut self, case: &Case, picture: &Image) -> Result<()> {
+        let blank = case.entry(picture);
+        if let Some(known) = self.journal.find(&blank.id()) {
+            (self.say)(&known.line());
+            return Ok(());
+        }
+        let task = Task::Case {
+            case: case.clone(),
+            svg: self.folder.join("svg").join(blank.svg_name()),
+        };
+        let entry = (self.measure)(&task).unwrap_or_else(|error| ParetoEntry {
+            failure: Some(error.to_string()),
+            ..blank
+        });
+        (self.say)(&entry.line());
+        self.journal.append(entry)
+    }
+}
+
+/// Writes tables, plots and the page of `report` into `output`, whose folder is that of the run.
+///
+/// # Errors
+/// When a file cannot be written or a plot not be drawn.
+pub fn publish(
+    output: &mut Output<'_>,
+    folder: &Path,
+    pictures: &[PathBuf],
+    report: &ParetoReport,
+) -> Result<()> {
+    output.text("pareto.csv", &report.table().csv())?;
+    output.text("pareto.md", &report.markdown())?;
+    let json = serde_json::to_string_pretty(report)
+        .map_err(|e| Error::new(ErrorKind::Io, format!("the report cannot be told: {e}")))?;
+    output.text("pareto.json", &(json + "\n"))?;
+    let mut exhibits = Vec::new();
+    for path in pictures {
+        let name = case::stem(path);
+        for (plot, svg) in charts(&report.entries, &name)? {
+            output.text(&format!("{name}-{plot}.svg"), &svg)?;
+        }
+        exhibits.extend(gallery::exhibits(
+            folder,
+            &case::open(path)?,
+            &name,
+            &report.entries,
+        )?);
+    }
+    output.text("pareto.html", &page(report, &exhibits)?)
+}
+
+fn check_names(pictures: &[PathBuf]) -> Result<()> {
+    for (i, path) in pictures.iter().enumerate() {
+        let name = case::stem(path);
+        if pictures[..i].iter().any(|other| case::stem(other) == name) {
+            let message = format!("two pictures are called {name}: give one of them another name");
+            return Err(Error::new(ErrorKind::Config, message));
+        }
+    }
+    Ok(())
+}
+
+fn unwritten(path: &Path, cause: &std::io::Error) -> Error {
+    let message = format!(
+        "cannot write {}: {cause}; choose another folder with -o",
+        path.display()
+    );
+    Error::new(ErrorKind::Io, message)
+}

@@ -1,0 +1,227 @@
+//! Peers: who else turns pictures into SVG. Programs are run where they are installed, by the command
+//! lines that their manuals give; libraries are handed in by whoever links them.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::image::Image;
+use crate::report::Usage;
+
+/// Between two looks at the memory of a running program.
+const LOOK_EVERY: Duration = Duration::from_millis(2);
+
+/// Somebody else who turns pictures into SVG.
+pub trait Peer {
+    /// What plots and tables call it.
+    fn name(&self) -> &str;
+
+    /// The settings that are run, rough to fine.
+    fn settings(&self) -> Vec<String>;
+
+    /// The drawing of an opaque `picture` at one of its settings.
+    ///
+    /// # Errors
+    /// When it makes none.
+    fn trace(&self, picture: &Image, settings: &str) -> Result<Traced>;
+}
+
+/// What a peer made.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Traced {
+    /// The SVG.
+    pub svg: String,
+    /// Most memory that was held, bytes: looked at every 2 ms while another program runs, so that a peak
+    /// just before its end may be missed.
+    pub peak_rss_bytes: Option<u64>,
+}
+
+/// A program on the path.
+#[derive(Debug, Clone, Copy)]
+struct Program {
+    name: &'static str,
+    /// The picture's file: PNG, or PPM where it reads nothing else.
+    input: &'static str,
+    settings: &'static [&'static str],
+    /// The arguments; `{in}` and `{out}` stand for the files, `{settings}` for the words of
+    /// the settings.
+    args: &'static [&'static str],
+    /// An argument, and what its answer says where the program can do it at all.
+    can: Option<[&'static str; 2]>,
+}
+
+/// The programs that are known.
+const PROGRAMS: [Program; 4] = [
+    Program {
+        name: "vtracer",
+        input: "in.png",
+        settings: &[
+            "-f 16 -p 4 -g 64",
+            "-f 8 -p 6 -g 32",
+            "-f 4 -p 6 -g 16",
+            "-f 4 -p 8 -g 8",
+            "-f 1 -p 8 -g 4",
+        ],
+        args: &["--input", "{in}", "--output", "{out}", "{settings}"],
+        can: None,
+    },
+    Program {
+        name: "primitive",
+        input: "in.png",
+        settings: &["-n 50 -m 0", "-n 200 -m 0", "-n 500 -m 0"],
+        args: &["-i", "{in}", "-o", "{out}", "{settings}"],
+        can: None,
+    },
+    Program {
+        name: "potrace",
+        input: "in.ppm",
+        settings: &["--turdsize 10", "--turdsize 2"],
+        args: &["--svg", "{settings}", "--output", "{out}", "{in}"],
+        can: None,
+    },
+    Program {
+        name: "inkscape",
+        input: "in.png",
+        settings: &["4", "8", "16", "32"],
+        args: &[
+            "{in}",
+            "--actions=select-all;selection-trace:{settings},false,true,false,4,1.0,0.2;export-filename:{out};export-do",
+        ],
+        // From version 1.3 on.
+        can: Some(["--action-list", "selection-trace"]),
+    },
+];
+
+/// The programs that are known, installed or not.
+pub fn known() -> Vec<Box<dyn Peer>> {
+    boxed(PROGRAMS.into_iter())
+}
+
+/// The known programs that are installed.
+pub fn installed() -> Vec<Box<dyn Peer>> {
+    boxed(PROGRAMS.into_iter().filter(Program::is_here))
+}
+
+fn boxed(programs: impl Iterator<Item = Program>) -> Vec<Box<dyn Peer>> {
+    programs
+        .map(|program| Box::new(program) as Box<dyn Peer>)
+        .collect()
+}
+
+fn is_on_path(name: &str) -> bool {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let name = format!("{name}{}", std::env::consts::EXE_SUFFIX);
+    std::env::split_paths(&path).any(|folder| folder.join(&name).is_file())
+}
+
+impl Peer for Program {
+    fn name(&self) -> &str {
+        self.name
+    }
+
+    fn settings(&self) -> Vec<String> {
+        self.settings
+            .iter()
+            .map(|&words| words.to_owned())
+            .collect()
+    }
+
+    fn trace(&self, picture: &Image, settings: &str) -> Result<Traced> {
+        let failed = |what: String| Error::new(ErrorKind::Io, format!("{}: {what}", self.name));
+        let folder = tempfile::tempdir().map_err(|e| failed(e.to_string()))?;
+        let (from, to) = (
+            folder.path().join(self.input),
+            folder.path().join("out.svg"),
+        );
+        let bytes = if self.input.ends_with("ppm") {
+            ppm(picture)
+        } else {
+            picture.encode_png()?
+        };
+        fs::write(&from, bytes).map_err(|e| failed(e.to_string()))?;
+        let mut command = Command::new(self.name);
+        command.args(self.arguments(&from, &to, settings));
+        command
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null());
+        let child = command.spawn().map_err(|e| failed(e.to_string()))?;
+        let peak_rss_bytes = watched(child).map_err(|e| failed(e.to_string()))?;
+        let svg =
+            fs::read_to_string(&to).map_err(|_| failed(format!("made no SVG with {settings}")))?;
+        Ok(Traced {
+            svg,
+            peak_rss_bytes,
+        })
+    }
+}
+
+impl Program {
+    fn is_here(&self) -> bool {
+        let able = |[arg, word]: [&str; 2]| {
+            let output = Command::new(self.name).arg(arg).output();
+            output.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).contains(word))
+        };
+        is_on_path(self.name) && self.can.is_none_or(able)
+    }
+
+    fn arguments(&self, from: &Path, to: &Path, settings: &str) -> Vec<String> {
+        let file = |path: &Path| path.display().to_string();
+        let words = self.args.iter().flat_map(|&arg| {
+            if arg == "{settings}" {
+                settings.split_whitespace().map(str::to_owned).collect()
+            } else {
+                vec![arg.to_owned()]
+            }
+        });
+        words
+            .map(|word| {
+                let word = word.replace("{settings}", settings);
+                word.replace("{out}", &file(to))
+                    .replace("{in}", &file(from))
+            })
+            .collect()
+    }
+}
+
+/// Waits for the end of a program; the most memory that it was seen to hold.
+fn watched(mut child: Child) -> std::io::Result<Option<u64>> {
+    let mut peak = None;
+    while child.try_wait()?.is_none() {
+        peak = Usage::peak_of(child.id()).max(peak);
+        std::thread::sleep(LOOK_EVERY);
+    }
+    Ok(peak)
+}
+
+/// A picture as a portable pixmap.
+fn ppm(picture: &Image) -> Vec<u8> {
+    let mut bytes = format!("P6 {} {} 255\n", picture.width(), picture.height()).into_bytes();
+    bytes.extend(picture.to_rgb8());
+    bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_become_words_or_part_of_one() {
+        let (from, to) = (Path::new("a.png"), Path::new("b.svg"));
+        let words = PROGRAMS[1].arguments(from, to, "-n 5 -m 1");
+        assert_eq!(words, ["-i", "a.png", "-o", "b.svg", "-n", "5", "-m", "1"]);
+        let words = PROGRAMS[3].arguments(from, to, "8");
+        assert!(
+            words[1].contains("trace:8,") && words[1].contains("filename:b.svg;"),
+            "{words:?}"
+        );
+    }
+
+    #[test]
+    fn a_pixmap_has_its_size_and_pixels() {
+        let picture = Image::filled(2, 1, [1.0, 0.0, 0.0]).unwrap();
+        assert_eq!(ppm(&picture), b"P6 2 1 255\n\xff\0\0\xff\0\0");
+    }
+}

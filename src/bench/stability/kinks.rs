@@ -1,0 +1,137 @@
+//! Gradients where there is a kink: a pixel on the centre line, at the clamp of `h`, at the end of the
+//! soft edge. There the gradient has to lie between the slopes of both sides, and `f32` has to agree.
+
+use super::oracle::{Page, oracle, pixels, random, slopes};
+use super::{Check, Finding, WITHIN};
+use crate::coverage::Coverage;
+use crate::error::Result;
+use crate::render::reference::{Scene, Stroke, squared_error};
+use crate::render::{PARAMS, Params};
+
+/// Step of the one-sided differences, px or channel values.
+const STEP: f64 = 1e-6;
+
+/// Coverage functions without a jump in their derivative.
+const SMOOTH: [Coverage; 5] = [
+    Coverage::Smoothstep,
+    Coverage::Sigmoid,
+    Coverage::Tanh,
+    Coverage::Atan { k: 1.0 },
+    Coverage::Atan { k: 4.0 },
+];
+
+const JUMP: &str =
+    "the derivative of `raw` jumps at its end, and f32 rounds some pixels to the other side";
+
+const DISC: &str = "a capsule of zero length is a disc by definition: the gradient of both ends goes to the first, \
+                    though the loss has a slope along the other, too, another on each side";
+
+pub(super) fn checks() -> Vec<Check<'static>> {
+    let check = |name: &'static str, what: &'static str, stroke: Params| {
+        Check::new("kinks", name, what, move || {
+            finding(&around(stroke), &SMOOTH)
+        })
+    };
+    let raw = Check::new(
+        "kinks",
+        "end-of-raw",
+        "pixels exactly where `raw` begins to rise",
+        || {
+            let page = around(horizontal(2.5));
+            Ok(finding(&page, &[Coverage::Raw])?.excepting(JUMP))
+        },
+    );
+    let on_the_end = Check::new(
+        "kinks",
+        "on-the-end",
+        "a pixel centre on both ends of a dot",
+        || Ok(finding(&around(dot()), &SMOOTH)?.excepting(DISC)),
+    );
+    vec![
+        check(
+            "on-the-axis",
+            "a line of pixel centres on the centre line",
+            horizontal(2.0),
+        ),
+        check(
+            "clamp-of-h",
+            "pixel centres abreast of the ends, where h is clamped",
+            horizontal(4.0),
+        ),
+        check(
+            "end-of-smoothstep",
+            "pixel centres where smoothstep begins and ends",
+            horizontal(2.75),
+        ),
+        check(
+            "on-the-edge",
+            "pixel centres on the edge, d = 0",
+            horizontal(3.0),
+        ),
+        raw,
+        on_the_end,
+    ]
+}
+
+/// The stroke between two ordinary ones, so that there are gradients to compare with.
+fn around(stroke: Params) -> Page {
+    let mut strokes = random(8, 24, 20, 2);
+    strokes.insert(1, stroke);
+    Page::new(24, 20, strokes)
+}
+
+/// A stroke along pixel centres, with ends on pixel centres.
+fn horizontal(radius: f32) -> Params {
+    [6.5, 9.5, 17.5, 9.5, radius, 0.9, 0.2, 0.1, 0.7]
+}
+
+fn dot() -> Params {
+    [11.5, 9.5, 11.5, 9.5, 3.3, 0.9, 0.2, 0.1, 0.7]
+}
+
+fn finding(page: &Page, functions: &[Coverage]) -> Result<Finding> {
+    let gap = page.gap(functions)?;
+    let mut outside: f64 = 0.0;
+    for &coverage in functions {
+        outside = outside.max(beyond_slopes(page, coverage)?);
+    }
+    let holds = gap.holds() && outside <= WITHIN;
+    let figure = format!("{gap}; beyond the one-sided slopes by {outside:.1e}");
+    Ok(Finding::new(figure, holds))
+}
+
+/// How far the gradients of the reference lie outside of the slopes on both sides, as a share of the
+/// largest of them.
+fn beyond_slopes(page: &Page, coverage: Coverage) -> Result<f64> {
+    let (scene, target) = (page.naive(), pixels(&page.noise()?));
+    let reference = oracle(coverage);
+    let canvas = reference.render(&scene);
+    let loss = |scene: &Scene| {
+        let values = (target.len() * 3) as f64;
+        squared_error(&reference.render(scene), &target) / values
+    };
+    let gradients = reference.gradients(&scene, &slopes(&canvas, &target));
+    let (mut most, mut outside) = (f64::MIN_POSITIVE, 0.0_f64);
+    for (i, gradient) in gradients.strokes.iter().enumerate() {
+        for (k, analytic) in gradient.to_params().into_iter().enumerate() {
+            let [left, right] = one_sided(&scene, i, k, &loss);
+            let (low, high) = (left.min(right), left.max(right));
+            outside = outside.max(low - analytic).max(analytic - high);
+            most = most.max(analytic.abs());
+        }
+    }
+    Ok(outside / most)
+}
+
+/// The slopes of `loss` along number `k` of stroke `i`, from below and from above.
+fn one_sided(scene: &Scene, i: usize, k: usize, loss: &impl Fn(&Scene) -> f64) -> [f64; 2] {
+    let at = |step: f64| {
+        let mut moved = scene.clone();
+        let mut params: [f64; PARAMS] = moved.strokes[i].to_params();
+        params[k] += step;
+        moved.strokes[i] = Stroke::from_params(params);
+        loss(&moved)
+    };
+    let here = at(0.0);
+    [(here - at(-STEP)) / STEP, (at(STEP) - here) / STEP]
+}

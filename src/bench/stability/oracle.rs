@@ -1,0 +1,268 @@
+//! The fast renderer in `f32` beside the naive one in `f64`.
+
+use super::{Finding, WITHIN};
+use crate::coverage::Coverage;
+use crate::error::{Error, ErrorKind, Result};
+use crate::fit::{Objective, Simd};
+use crate::image::Image;
+use crate::loss::Loss;
+use crate::render::reference::{self, Reference, Rgb};
+use crate::render::{Base, Canvas, Gradients, Grid, PARAMS, Params, Renderer, Softness};
+use crate::rng;
+
+/// ε of the fast renderer's distances, px².
+const EPS: f64 = 1e-6;
+
+/// What may lie between two canvases: culling behind opaque strokes, and `f32`.
+const CANVAS_WITHIN: f64 = 4e-4;
+
+/// Gradients and worths below this are as good as none.
+const FAINT: f64 = 1e-6;
+
+/// Width of the soft edge, px.
+const SOFTNESS: f32 = 1.5;
+
+pub(super) const BACKGROUND: [f32; 3] = [0.3, 0.6, 0.8];
+
+pub(super) const FUNCTIONS: [Coverage; 6] = [
+    Coverage::Smoothstep,
+    Coverage::Sigmoid,
+    Coverage::Tanh,
+    Coverage::Atan { k: 1.0 },
+    Coverage::Atan { k: 4.0 },
+    Coverage::Raw,
+];
+
+/// The kinds of numbers of a stroke that have one unit.
+const KINDS: [std::ops::Range<usize>; 4] = [0..4, 4..5, 5..8, 8..9];
+
+/// Strokes on a page.
+#[derive(Debug, Clone)]
+pub(super) struct Page {
+    pub(super) width: usize,
+    pub(super) height: usize,
+    pub(super) strokes: Vec<Params>,
+}
+
+/// How far `f32` is from `f64`, each relative to the largest value of its kind; the canvas in absolute
+/// terms. Infinite where something is not finite.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Gap {
+    pub(super) canvas: f64,
+    pub(super) gradients: f64,
+    pub(super) worth: f64,
+}
+
+impl Gap {
+    fn max(self, other: Self) -> Self {
+        Self {
+            canvas: self.canvas.max(other.canvas),
+            gradients: self.gradients.max(other.gradients),
+            worth: self.worth.max(other.worth),
+        }
+    }
+
+    pub(super) fn holds(self) -> bool {
+        self.canvas <= CANVAS_WITHIN && self.gradients <= WITHIN && self.worth <= WITHIN
+    }
+
+    pub(super) fn finding(self) -> Finding {
+        Finding::new(self.to_string(), self.holds())
+    }
+}
+
+impl std::fmt::Display for Gap {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self {
+            canvas,
+            gradients,
+            worth,
+        } = self;
+        write!(
+            f,
+            "f32 from f64: canvas {canvas:.1e}, gradients {gradients:.1e}, worth {worth:.1e}"
+        )
+    }
+}
+
+impl Page {
+    pub(super) fn new(width: usize, height: usize, strokes: Vec<Params>) -> Self {
+        Self {
+            width,
+            height,
+            strokes,
+        }
+    }
+
+    /// The largest gap over several coverage functions.
+    pub(super) fn gap(&self, functions: &[Coverage]) -> Result<Gap> {
+        let target = self.noise()?;
+        let gaps = functions
+            .iter()
+            .map(|&coverage| self.gap_under(coverage, &target));
+        gaps.reduce(|a, b| Ok(a?.max(b?)))
+            .unwrap_or(Ok(Gap::default()))
+    }
+
+    /// The gap against `target`.
+    pub(super) fn gap_under(&self, coverage: Coverage, target: &Image) -> Result<Gap> {
+        let softness = Softness {
+            coverage,
+            width: SOFTNESS,
+        };
+        let (canvas, gradients) = self.fast(softness, target)?;
+        let naive = oracle(coverage);
+        let scene = self.naive();
+        let (pixels, expected) = (naive.render(&scene), pixels(target));
+        let slow = naive.gradients(&scene, &slopes(&pixels, &expected));
+        let slow: Vec<[f64; PARAMS]> = slow.strokes.iter().map(|s| s.to_params()).collect();
+        let worth = naive.leave_one_out(&scene, &expected);
+        Ok(Gap {
+            canvas: largest_difference(&canvas, &pixels),
+            gradients: KINDS
+                .iter()
+                .map(|kind| relative(flat(&gradients.strokes, kind), flat64(&slow, kind)))
+                .fold(0.0, f64::max),
+            worth: relative(gradients.worth.iter().copied(), worth.into_iter()),
+        })
+    }
+
+    /// Canvas, gradients and worths of the fast renderer.
+    fn fast(&self, softness: Softness, target: &Image) -> Result<(Image, Gradients)> {
+        let level = Simd::Auto.level().ok_or_else(|| {
+            Error::new(
+                ErrorKind::Config,
+                "this machine has no instruction set: use another",
+            )
+        })?;
+        let grid = Grid::new(self.width, self.height);
+        let mut renderer = Renderer::new(grid, level);
+        let mut canvas = Canvas::flat(grid, [0.0; 3]);
+        let base = Base::Flat(BACKGROUND);
+        renderer.forward(&self.strokes, softness, base, &mut canvas);
+        let target = Canvas::from_image(target);
+        let objective = Objective::new(Loss::L2, &target);
+        let mut gradients = Gradients::default();
+        renderer.backward_with_worth(&self.strokes, softness, base, &objective, &mut gradients);
+        Ok((canvas.to_image(), gradients))
+    }
+
+    /// The same scene for the reference.
+    pub(super) fn naive(&self) -> reference::Scene {
+        let stroke = |p: &Params| reference::Stroke::from_params(p.map(f64::from));
+        reference::Scene {
+            width: self.width,
+            height: self.height,
+            background: BACKGROUND.map(f64::from),
+            strokes: self.strokes.iter().map(stroke).collect(),
+        }
+    }
+
+    /// A target that agrees with the page nowhere.
+    pub(super) fn noise(&self) -> Result<Image> {
+        let plane = |c: u64| {
+            let pixels = 0..(self.width * self.height) as u64;
+            pixels.map(|i| rng::draw(5, c, i, 0)).collect()
+        };
+        Image::new(self.width, self.height, [plane(0), plane(1), plane(2)])
+    }
+}
+
+/// The reference renderer as the fast one is meant to be.
+pub(super) fn oracle(coverage: Coverage) -> Reference {
+    Reference {
+        eps: EPS,
+        cut: true,
+        ..Reference::new(coverage, f64::from(SOFTNESS))
+    }
+}
+
+/// The pixels of a picture for the reference.
+pub(super) fn pixels(image: &Image) -> Vec<Rgb> {
+    let [red, green, blue] = image.planes();
+    let pixels = red.iter().zip(green).zip(blue);
+    pixels
+        .map(|((&r, &g), &b)| [r, g, b].map(f64::from))
+        .collect()
+}
+
+/// `∂L2/∂canvas`.
+pub(super) fn slopes(canvas: &[Rgb], target: &[Rgb]) -> Vec<Rgb> {
+    let slopes = Loss::L2.gradient(canvas.as_flattened(), target.as_flattened());
+    slopes.as_chunks().0.to_vec()
+}
+
+fn largest_difference(image: &Image, expected: &[Rgb]) -> f64 {
+    let values = image.planes().iter().enumerate().flat_map(|(c, plane)| {
+        let expected = expected.iter().map(move |rgb| rgb[c]);
+        plane.iter().zip(expected)
+    });
+    let gaps = values.map(|(&got, expected)| (f64::from(got) - expected).abs());
+    largest(gaps)
+}
+
+/// The largest difference in units of the largest expected value.
+fn relative(got: impl Iterator<Item = f32>, expected: impl Iterator<Item = f64> + Clone) -> f64 {
+    let scale = expected.clone().fold(FAINT, |most, v| most.max(v.abs()));
+    largest(
+        got.zip(expected)
+            .map(|(got, v)| (f64::from(got) - v).abs() / scale),
+    )
+}
+
+/// The largest of `values`; infinite where one is not a number.
+fn largest(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, |most, v| {
+        if v.is_nan() {
+            f64::INFINITY
+        } else {
+            most.max(v)
+        }
+    })
+}
+
+fn flat<'a>(
+    strokes: &'a [Params],
+    kind: &std::ops::Range<usize>,
+) -> impl Iterator<Item = f32> + 'a {
+    let kind = kind.clone();
+    strokes
+        .iter()
+        .flat_map(move |p| p[kind.clone()].iter().copied())
+}
+
+fn flat64<'a>(
+    strokes: &'a [[f64; PARAMS]],
+    kind: &std::ops::Range<usize>,
+) -> impl Iterator<Item = f64> + Clone + 'a {
+    let kind = kind.clone();
+    strokes
+        .iter()
+        .flat_map(move |p| p[kind.clone()].iter().copied())
+}
+
+/// Random strokes of mixed size and opacity, some off the page.
+pub(super) fn random(seed: u64, width: usize, height: usize, count: usize) -> Vec<Params> {
+    let stroke = |i: u64| {
+        let u = |k| rng::draw(seed, 9, i, k);
+        let x = (u(0) * 1.2 - 0.1) * width as f32;
+        let y = (u(1) * 1.2 - 0.1) * height as f32;
+        let (sin, cos) = (u(2) * std::f32::consts::TAU).sin_cos();
+        let length = u(3) * u(3) * width as f32;
+        let radius = 0.2 + 0.2 * u(4) * u(4) * height as f32;
+        let [red, green, blue] = [u(5), u(6), u(7)];
+        let opacity = if u(8) > 0.8 { 1.0 } else { u(8) };
+        [
+            x,
+            y,
+            x + length * cos,
+            y + length * sin,
+            radius,
+            red,
+            green,
+            blue,
+            opacity,
+        ]
+    };
+    (0..count as u64).map(stroke).collect()
+}

@@ -1,0 +1,124 @@
+//! `f32` against `f64` through many iterations: the same descent in both, and the kernels compared where
+//! the `f32` descent has come to.
+
+use super::oracle::{BACKGROUND, FUNCTIONS, Page, oracle, pixels, random, slopes};
+use super::{Check, Finding};
+use crate::coverage::Coverage;
+use crate::error::Result;
+use crate::fit::{Execution, Objective};
+use crate::image::Image;
+use crate::loss::Loss;
+use crate::optim::{Adam, AdamParams, Optimizer, Schedule};
+use crate::render::reference::{Scene, Stroke};
+use crate::render::{Base, Canvas, Gradients, Grid, PARAMS, Renderer, Softness};
+
+const SIDE: usize = 16;
+const STROKES: usize = 6;
+
+/// Learning rates of ends, radius, colours and opacity at the start.
+const RATES: [f64; PARAMS] = [0.1, 0.1, 0.1, 0.1, 0.05, 0.01, 0.01, 0.01, 0.01];
+
+/// A last loss in `f32` may be larger than in `f64` by this factor: both find a minimum, and with kinks
+/// in the way not always the same.
+const LOSS_FACTOR: f64 = 1.25;
+
+pub(super) fn checks() -> Vec<Check<'static>> {
+    [0, 1_000, 10_000]
+        .map(|iterations| {
+            let name = format!("after-{iterations}");
+            let what = format!(
+                "forward, gradients and worth of {STROKES} strokes after {iterations} iterations in f32; \
+                 the same descent in f64"
+            );
+            Check::new("precision", name, what, move || after(iterations))
+        })
+        .into()
+}
+
+fn after(iterations: usize) -> Result<Finding> {
+    let start = Page::new(SIDE, SIDE, random(6, SIDE, SIDE, STROKES));
+    let target = target()?;
+    let (single, loss32) = descend32(start.clone(), &target, iterations)?;
+    let (double, loss64) = descend64(start.naive(), &target, iterations);
+    let finite = double
+        .strokes
+        .iter()
+        .all(|s| s.to_params().iter().all(|v| v.is_finite()));
+    let gap = single.gap(&FUNCTIONS)?;
+    let alike = loss32 <= LOSS_FACTOR * loss64;
+    let figure = format!("{gap}; loss {loss32:.3e} in f32, {loss64:.3e} in f64");
+    Ok(Finding::new(figure, gap.holds() && alike && finite))
+}
+
+/// A disc on a ramp.
+fn target() -> Result<Image> {
+    let value = |c: usize, i: usize| {
+        let (x, y) = ((i % SIDE) as f32, (i / SIDE) as f32);
+        if (x - 6.0).hypot(y - 8.0) < 4.0 {
+            0.2 + 0.3 * c as f32
+        } else {
+            x / SIDE as f32
+        }
+    };
+    let plane = |c| (0..SIDE * SIDE).map(|i| value(c, i)).collect();
+    Image::new(SIDE, SIDE, [plane(0), plane(1), plane(2)])
+}
+
+const SCHEDULE: Schedule = Schedule::Cosine { end: 0.01 };
+
+/// Descends in `f32`; the page it comes to and the loss there.
+fn descend32(mut page: Page, target: &Image, iterations: usize) -> Result<(Page, f64)> {
+    let softness = Softness {
+        coverage: Coverage::Smoothstep,
+        width: 1.5,
+    };
+    let canvas = Canvas::from_image(target);
+    let objective = Objective::new(Loss::L2, &canvas);
+    let level = Execution::default().simd.require()?;
+    let mut renderer = Renderer::new(Grid::new(page.width, page.height), level);
+    let mut gradients = Gradients::default();
+    let mut adam = Adam::new(STROKES * PARAMS, AdamParams::default());
+    let scales = RATES.map(|rate| rate as f32).repeat(STROKES);
+    let base = Base::Flat(BACKGROUND);
+    for step in 0..iterations {
+        renderer.backward(&page.strokes, softness, base, &objective, &mut gradients);
+        let rate = SCHEDULE.factor(step, iterations) as f32;
+        let flat = gradients.strokes.as_flattened();
+        adam.step_scaled(page.strokes.as_flattened_mut(), flat, rate, &scales);
+        page.strokes
+            .iter_mut()
+            .for_each(|p| p[8] = p[8].clamp(0.05, 1.0));
+    }
+    renderer.backward(&page.strokes, softness, base, &objective, &mut gradients);
+    Ok((page, gradients.loss))
+}
+
+/// The same in `f64`, with the reference renderer.
+fn descend64(mut scene: Scene, target: &Image, iterations: usize) -> (Scene, f64) {
+    let (reference, target) = (oracle(Coverage::Smoothstep), pixels(target));
+    let mut adam = Adam::new(STROKES * PARAMS, AdamParams::default());
+    let scales = RATES.repeat(STROKES);
+    for step in 0..iterations {
+        let canvas = reference.render(&scene);
+        let gradients = reference.gradients(&scene, &slopes(&canvas, &target));
+        let flat: Vec<f64> = gradients
+            .strokes
+            .iter()
+            .flat_map(|s| s.to_params())
+            .collect();
+        let mut params: Vec<f64> = scene.strokes.iter().flat_map(|s| s.to_params()).collect();
+        adam.step_scaled(
+            &mut params,
+            &flat,
+            SCHEDULE.factor(step, iterations),
+            &scales,
+        );
+        for (stroke, params) in scene.strokes.iter_mut().zip(params.as_chunks::<PARAMS>().0) {
+            *stroke = Stroke::from_params(*params);
+            stroke.opacity = stroke.opacity.clamp(0.05, 1.0);
+        }
+    }
+    let canvas = reference.render(&scene);
+    let loss = Loss::L2.mean(canvas.as_flattened(), target.as_flattened());
+    (scene, loss)
+}

@@ -1,0 +1,231 @@
+//! Degenerate and absurd strokes: canvas, gradients and worths in `f32` against the reference, and the
+//! file that the scene is written to.
+
+use super::oracle::{BACKGROUND, FUNCTIONS, Page, random};
+use super::{Check, Finding};
+use crate::coverage::Coverage;
+use crate::error::Result;
+use crate::render::{Params, unpack};
+use crate::scene::{Scene, Stage};
+use crate::svg::{self, WriteOptions};
+use crate::verify;
+
+/// A scene of one kind of trouble.
+struct Hard {
+    name: &'static str,
+    what: &'static str,
+    page: Page,
+    functions: &'static [Coverage],
+    exception: &'static str,
+}
+
+const FAR: &str = "at 10^6 px f32 knows a coordinate to 1/16 px; no fit makes such a stroke, since its ends \
+                   stay within 8 px of the picture";
+
+const HIDDEN: &str = "each stroke hides another of its own colour, so that all true gradients of ends are as good \
+                      as 0; what is left is the cut where less than 1/16384 of the light comes through";
+
+pub(super) fn checks() -> Vec<Check<'static>> {
+    let gaps = scenes().into_iter().map(|hard| {
+        Check::new("strokes", hard.name, hard.what, move || {
+            let written = written(&hard.page)?;
+            let finding = hard.page.gap(hard.functions)?.finding();
+            let finding = finding.excepting(hard.exception);
+            Ok(Finding {
+                figure: format!("{}; {written}", finding.figure),
+                ..finding
+            })
+        })
+    });
+    gaps.chain([Check::new(
+        "strokes",
+        "not-finite",
+        "each number of a stroke NaN, +∞ and −∞ in turn: dropped and counted, the rest is drawn",
+        poisoned,
+    )])
+    .collect()
+}
+
+fn scenes() -> Vec<Hard> {
+    let hard = |name, what, strokes: &[Params]| Hard {
+        name,
+        what,
+        page: Page::new(40, 36, strokes.to_vec()),
+        functions: &FUNCTIONS,
+        exception: "",
+    };
+    let red = |a: [f32; 2], b: [f32; 2], radius: f32, opacity: f32| {
+        [a[0], a[1], b[0], b[1], radius, 0.9, 0.2, 0.1, opacity]
+    };
+    let across = |radius, opacity| red([5.2, 6.1], [30.4, 25.7], radius, opacity);
+    vec![
+        hard(
+            "random",
+            "30 strokes of mixed size and opacity",
+            &random(1, 40, 36, 30),
+        ),
+        hard(
+            "coincident-ends",
+            "both ends in one place",
+            &[red([20.3, 17.1], [20.3, 17.1], 4.2, 0.7)],
+        ),
+        hard(
+            "nearly-coincident-ends",
+            "ends 10⁻⁴ px apart",
+            &[red([20.3, 17.1], [20.3001, 17.1], 4.2, 0.7)],
+        ),
+        hard("radius-0", "a radius of 0", &[across(0.0, 0.9)]),
+        hard("radius-negative", "a radius of −2 px", &[across(-2.0, 0.9)]),
+        hard(
+            "off-canvas",
+            "wholly off the canvas",
+            &[red([-50.0, -9.0], [-45.0, 50.0], 3.0, 1.0)],
+        ),
+        hard(
+            "across-the-edge",
+            "partly off the canvas",
+            &[red([-12.0, 8.0], [60.0, 30.0], 5.0, 0.6)],
+        ),
+        hard("opacity-0", "an opacity of 0", &[across(3.0, 0.0)]),
+        hard("opacity-1", "an opacity of 1", &[across(3.0, 1.0)]),
+        hard(
+            "opaque-stack",
+            "30 opaque strokes, stacked",
+            &opaque_stack(),
+        ),
+        hard(
+            "covers-everything",
+            "one opaque stroke over the canvas, one on top",
+            &[
+                red([20.0, 18.0], [21.0, 18.0], 90.0, 1.0),
+                red([9.0, 9.0], [30.0, 20.0], 3.0, 0.5),
+            ],
+        ),
+        Hard {
+            page: Page::new(
+                12,
+                12,
+                vec![red([3.0, 4.0], [9.0, 7.0], 2.0, 0.001); 10_000],
+            ),
+            functions: &[Coverage::Smoothstep, Coverage::Sigmoid],
+            ..hard(
+                "identical-strokes",
+                "10,000 identical strokes of opacity 0.001",
+                &[],
+            )
+        },
+        Hard {
+            page: Page::new(12, 12, vec![red([3.0, 4.0], [9.0, 7.0], 2.0, 1.0); 10_000]),
+            exception: HIDDEN,
+            functions: &[Coverage::Smoothstep, Coverage::Sigmoid],
+            ..hard(
+                "identical-opaque-strokes",
+                "10,000 identical opaque strokes",
+                &[],
+            )
+        },
+        Hard {
+            exception: FAR,
+            ..hard(
+                "length-10^6",
+                "a capsule of 10⁶ px through the canvas",
+                &[red([-5e5, -4e5], [5e5, 4.001e5], 2.0, 0.5)],
+            )
+        },
+        Hard {
+            exception: FAR,
+            ..hard(
+                "coordinates-10^6",
+                "one end in the canvas, the other at (10⁶, 10⁶) px",
+                &[red([7.0, 5.0], [1e6, 1e6], 2.0, 0.5)],
+            )
+        },
+    ]
+}
+
+fn opaque_stack() -> Vec<Params> {
+    let mut strokes = random(3, 40, 36, 30);
+    for p in &mut strokes {
+        p[8] = 1.0;
+        p[4] += 4.0;
+    }
+    strokes
+}
+
+fn scene(page: &Page) -> Scene {
+    let (width, height) = (page.width as u32, page.height as u32);
+    Scene {
+        stages: vec![Stage {
+            strokes: page.strokes.iter().map(unpack).collect(),
+        }],
+        ..Scene::empty(width, height, Some(BACKGROUND))
+    }
+}
+
+/// Writes, reads back and draws; says what became of the strokes.
+fn written(page: &Page) -> Result<String> {
+    let scene = scene(page);
+    let (kept, dropped) = scene.quantized(2);
+    let text = svg::write(&scene, &WriteOptions::default());
+    let back = svg::read(&text)?;
+    verify::render(&text, verify::Size::Scale(1.0), None)?;
+    let same = if back == kept {
+        ""
+    } else {
+        ", NOT as quantised"
+    };
+    Ok(format!(
+        "file: {} strokes, {dropped} dropped{same}",
+        back.len()
+    ))
+}
+
+/// Strokes with numbers that are none, among five that are sound.
+fn poisoned() -> Result<Finding> {
+    let sound = Page::new(40, 36, random(2, 40, 36, 5));
+    let kept = scene(&sound).quantized(2).0.len();
+    let (mut dropped, mut wrong) = (0, Vec::new());
+    for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        for k in 0..9 {
+            let mut page = sound.clone();
+            let mut stroke = page.strokes[0];
+            stroke[k] = bad;
+            page.strokes.push(stroke);
+            let (quantized, out) = scene(&page).quantized(2);
+            dropped += out + kept - 5;
+            let text = svg::write(&scene(&page), &WriteOptions::default());
+            let drawn = verify::render(&text, verify::Size::Scale(1.0), None).is_ok();
+            let sane = svg::read(&text).is_ok_and(|back| back == quantized);
+            if !drawn || !sane || quantized.len() != kept {
+                wrong.push(format!("number {k} {bad}"));
+            }
+        }
+    }
+    let figure = if wrong.is_empty() {
+        format!("27 of 27 dropped and counted ({dropped}), every file valid")
+    } else {
+        format!("wrong: {}", wrong.join(", "))
+    };
+    Ok(Finding::new(figure, wrong.is_empty() && dropped == 27))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_finite_is_dropped_and_counted() {
+        let finding = poisoned().unwrap();
+        assert!(finding.figure.starts_with("27 of 27"), "{}", finding.figure);
+    }
+
+    #[test]
+    fn a_wrong_gradient_would_be_seen() {
+        let mut page = Page::new(20, 20, random(4, 20, 20, 5));
+        let target = page.noise().unwrap();
+        let coverage = Coverage::Smoothstep;
+        assert!(page.gap_under(coverage, &target).unwrap().holds());
+        page.strokes[0][0] = f32::NAN;
+        assert!(!page.gap_under(coverage, &target).unwrap().holds());
+    }
+}

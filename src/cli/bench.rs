@@ -1,0 +1,243 @@
+//! `strokefit bench`: measurements.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::Result;
+use clap::{Subcommand, ValueEnum};
+use strokefit::bench::child::{Runner, perform};
+use strokefit::bench::pareto::{self, Plan, Preset, Work, installed, known};
+use strokefit::bench::scaling;
+use strokefit::bench::stability::{self, Extent};
+use strokefit::coverage::CoverageSchedule;
+use strokefit::lab::{Event, Output};
+
+use super::job::json;
+use super::{Status, Verbosity, domain, input, output};
+
+/// Measure speed against error, hard cases, and growth
+///
+/// Each case is a line of standard output that ends in its verdict; tables, plots and pages go to the
+/// folder. The exit status is 1 when a case fails.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  strokefit bench pareto photo.png -o out --short
+  strokefit bench pareto photo.png -o out --svgs others
+  strokefit bench stability -o out --short
+  strokefit bench scaling photo.png -o out")]
+pub(super) struct Args {
+    #[command(subcommand)]
+    benchmark: Benchmark,
+}
+
+#[derive(Debug, Subcommand)]
+enum Benchmark {
+    Pareto(Pareto),
+    Stability(Stability),
+    Scaling(Scaling),
+    /// Measures one case for another process of this program
+    #[command(hide = true)]
+    Case {
+        /// The case, as JSON
+        task: String,
+    },
+}
+
+#[derive(Debug, clap::Args)]
+struct Extents {
+    /// The folder to write to; made if need be
+    #[arg(short, long = "output", value_name = "DIR")]
+    output: PathBuf,
+    /// Fewer and smaller cases: a minute or less
+    #[arg(long)]
+    short: bool,
+}
+
+/// Time, memory, bytes and strokes against error: our fits, the article's recipe, and other programs
+/// where they are installed (vtracer, primitive, potrace, Inkscape)
+///
+/// Results are kept as they come: what is in the folder already is not measured again.
+#[derive(Debug, clap::Args)]
+struct Pareto {
+    /// The pictures to draw
+    #[arg(required = true)]
+    pictures: Vec<PathBuf>,
+    #[command(flatten)]
+    extents: Extents,
+    /// Instead of drawing, score the SVGs of this folder that are named as the pictures
+    #[arg(long, value_name = "DIR")]
+    svgs: Vec<PathBuf>,
+    /// Numbers of strokes [default: 50 to 10,000]
+    #[arg(long, value_name = "N", value_delimiter = ',', value_parser = domain::strokes)]
+    strokes: Vec<usize>,
+    /// Presets [default: all but stages]
+    #[arg(long, value_enum, value_name = "PRESET", value_delimiter = ',')]
+    preset: Vec<PresetWord>,
+    /// Coverage functions: the first for everything, the others for one drawing each
+    #[arg(long, value_name = "EDGE", value_delimiter = ',')]
+    coverage: Vec<CoverageSchedule>,
+    /// How many seeds for the spread
+    #[arg(long, value_name = "N")]
+    seeds: Option<u64>,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum PresetWord {
+    /// A draft without polish
+    Stages,
+    Draft,
+    Balanced,
+    Best,
+}
+
+impl From<PresetWord> for Preset {
+    fn from(word: PresetWord) -> Self {
+        match word {
+            PresetWord::Stages => Self::Stages,
+            PresetWord::Draft => Self::Draft,
+            PresetWord::Balanced => Self::Balanced,
+            PresetWord::Best => Self::Best,
+        }
+    }
+}
+
+/// Hard cases: degenerate strokes and pictures, precision, wild learning rates, thin strokes
+#[derive(Debug, clap::Args)]
+struct Stability {
+    /// Pictures to fit beside the hard ones
+    pictures: Vec<PathBuf>,
+    #[command(flatten)]
+    extents: Extents,
+}
+
+/// Growth of time and memory with strokes, pixels and threads
+#[derive(Debug, clap::Args)]
+struct Scaling {
+    /// The picture, resampled to every size [default: a made one]
+    picture: Option<PathBuf>,
+    #[command(flatten)]
+    extents: Extents,
+}
+
+impl Benchmark {
+    /// Runs it; how many cases failed.
+    fn run(&self, folder: &Path, files: &mut Output<'_>) -> Result<usize> {
+        match self {
+            Self::Pareto(pareto) => pareto.run(folder, files),
+            Self::Stability(stability) => stability.run(files),
+            Self::Scaling(scaling) => scaling.run(files),
+            Self::Case { .. } => Ok(0),
+        }
+    }
+}
+
+/// What tells a child of this program that it is one.
+const CHILD: [&str; 2] = ["bench", "case"];
+
+impl Pareto {
+    fn work(&self) -> Work {
+        if !self.svgs.is_empty() {
+            return Work::Files(self.svgs.clone());
+        }
+        let mut plan = if self.extents.short {
+            Plan::short()
+        } else {
+            Plan::full()
+        };
+        if !self.strokes.is_empty() {
+            plan.strokes.clone_from(&self.strokes);
+        }
+        if !self.preset.is_empty() {
+            plan.presets = self.preset.iter().map(|&word| word.into()).collect();
+        }
+        if !self.coverage.is_empty() {
+            plan.coverages.clone_from(&self.coverage);
+        }
+        plan.seeds = self.seeds.unwrap_or(plan.seeds);
+        Work::Plan(plan)
+    }
+
+    fn run(&self, folder: &Path, files: &mut Output<'_>) -> Result<usize> {
+        let runner = Runner::new(CHILD)?;
+        let measure = |task: &_| runner.run(task);
+        let pictures = &self.pictures;
+        let report = pareto::run(
+            folder,
+            pictures,
+            &self.work(),
+            &installed(),
+            &measure,
+            &mut say,
+        )?;
+        pareto::publish(files, folder, pictures, &report)?;
+        Ok(report.failures())
+    }
+}
+
+impl Stability {
+    fn run(&self, files: &mut Output<'_>) -> Result<usize> {
+        let extent = if self.extents.short {
+            Extent::Short
+        } else {
+            Extent::Full
+        };
+        let named = |path: &PathBuf| Ok((input::name(path), input::picture(path)?));
+        let pictures: Vec<_> = self.pictures.iter().map(named).collect::<Result<_>>()?;
+        let (report, map) = stability::run(extent, &pictures, &mut |entry| say(&entry.line()))?;
+        let table = report.table();
+        files.text("stability.csv", &table.csv())?;
+        files.text("stability.md", &table.markdown())?;
+        files.text("stability.json", &text(&report)?)?;
+        files.text("agreement.csv", &map.table().csv())?;
+        files.picture("agreement.png", &map.picture()?)?;
+        Ok(report.failures())
+    }
+}
+
+impl Scaling {
+    fn run(&self, files: &mut Output<'_>) -> Result<usize> {
+        let runner = Runner::new(CHILD)?;
+        let measure = |task: &_| runner.run(task);
+        let report = scaling::run(self.extents.short, self.picture.clone(), &measure, &mut say)?;
+        files.text("scaling.csv", &report.table().csv())?;
+        files.text("scaling.md", &report.markdown())?;
+        files.text("scaling.json", &text(&report)?)?;
+        for (axis, chart) in report.charts()? {
+            files.text(&format!("scaling-{axis}.svg"), &chart)?;
+        }
+        Ok(report.failures())
+    }
+}
+
+fn text(record: &impl serde::Serialize) -> Result<String> {
+    Ok(String::from_utf8(json(record)?)?)
+}
+
+/// A line on standard output, which may be closed.
+fn say(line: &str) {
+    let _ = output::Output::Stdout.write(format!("{line}\n").as_bytes());
+}
+
+pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
+    let folder = match &args.benchmark {
+        Benchmark::Pareto(Pareto { extents, .. })
+        | Benchmark::Stability(Stability { extents, .. })
+        | Benchmark::Scaling(Scaling { extents, .. }) => extents.output.as_path(),
+        Benchmark::Case { task } => {
+            say(&perform(task, &known())?);
+            return Ok(Status::Done);
+        }
+    };
+    let mut tell = |event: Event<'_>| {
+        if let Event::Wrote(path) = event {
+            verbosity.detail(format_args!("wrote {}", path.display()));
+        }
+    };
+    let mut files = Output::new(folder, &mut tell)?;
+    let failures = args.benchmark.run(folder, &mut files)?;
+    verbosity.say(format_args!("{}: {failures} failed", folder.display()));
+    Ok(if failures == 0 {
+        Status::Done
+    } else {
+        Status::Failed
+    })
+}

@@ -1,0 +1,127 @@
+//! Plots of one picture's drawings: marks for drawings, lines for fronts.
+
+use super::{ARTICLE, OWN, ParetoEntry, front};
+use crate::error::Result;
+use crate::report::plot::Chart;
+
+type Number = fn(&ParetoEntry) -> Option<f64>;
+
+/// Name and SVG of each plot of `picture`: `time`, `bytes`, `strokes` and `stages`.
+///
+/// # Errors
+/// [`ErrorKind::Picture`](crate::ErrorKind::Picture) when one cannot be drawn.
+pub fn charts(entries: &[ParetoEntry], picture: &str) -> Result<Vec<(&'static str, String)>> {
+    let here: Vec<&ParetoEntry> = entries.iter().filter(|e| e.picture == picture).collect();
+    let by = |name: &'static str, axis: &str, cost: Number| {
+        let chart = scatter(
+            &format!("{picture}: {name} against error"),
+            axis,
+            &here,
+            cost,
+        );
+        Ok((name, chart.svg()?))
+    };
+    Ok(vec![
+        by("time", "CPU time, s", |e| e.cpu_s)?,
+        by("bytes", "bytes after gzip", |e| Some(e.gzip_bytes as f64))?,
+        by("strokes", "strokes", |e| e.strokes.map(|n| n as f64))?,
+        ("stages", stages(picture, &here).svg()?),
+    ])
+}
+
+/// Whose line a drawing is on: ours by preset, others by family.
+fn line(entry: &ParetoEntry) -> String {
+    match &entry.preset {
+        Some(preset) => format!("{OWN} {preset}"),
+        None if entry.family == ARTICLE => "article's recipe".into(),
+        None => entry.family.clone(),
+    }
+}
+
+fn scatter(title: &str, axis: &str, here: &[&ParetoEntry], cost: Number) -> Chart {
+    let point = |e: &&ParetoEntry| Some([cost(e)?, e.psnr_db().filter(|db| db.is_finite())?]);
+    let mut chart = Chart {
+        title: title.into(),
+        axes: [axis.into(), "PSNR of the file, dB".into()],
+        logarithmic_x: true,
+        ..Chart::default()
+    };
+    for name in lines(here) {
+        let members: Vec<&ParetoEntry> = here.iter().copied().filter(|e| line(e) == name).collect();
+        let marks: Vec<[f64; 2]> = members.iter().filter_map(point).collect();
+        if marks.is_empty() {
+            continue;
+        }
+        let best = front(members, cost, ParetoEntry::psnr_db);
+        chart
+            .series
+            .push((name, best.iter().filter_map(point).collect()));
+        chart.marks.push(marks);
+    }
+    chart
+}
+
+/// Names of lines in the order of their first drawings.
+fn lines(here: &[&ParetoEntry]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for name in here.iter().map(|e| line(e)) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names
+}
+
+/// The error after each layer of the largest drawing of each preset.
+fn stages(picture: &str, here: &[&ParetoEntry]) -> Chart {
+    let mut chart = Chart {
+        title: format!("{picture}: error after each layer"),
+        axes: [
+            "strokes up to the layer".into(),
+            "PSNR of the layers, dB".into(),
+        ],
+        logarithmic_x: true,
+        ..Chart::default()
+    };
+    for name in lines(here) {
+        let members = here
+            .iter()
+            .filter(|e| line(e) == name && !e.stages.is_empty());
+        let Some(largest) =
+            members.max_by_key(|e| (e.strokes, std::cmp::Reverse(e.label.as_str())))
+        else {
+            continue;
+        };
+        let mut strokes = 0;
+        let points = largest.stages.iter().filter_map(|stage| {
+            strokes += stage.strokes;
+            Some([strokes as f64, stage.layer_psnr_db?])
+        });
+        let points: Vec<_> = points.collect();
+        chart.marks.push(points.clone());
+        chart.series.push((largest.label.clone(), points));
+    }
+    chart
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::drawing;
+    use super::*;
+
+    #[test]
+    fn every_family_has_its_line() {
+        let entries = [
+            drawing(ARTICLE, "100 strokes", 4.0, 900, 24.0),
+            drawing("vtracer", "x", 0.2, 700, 23.0),
+        ];
+        let charts = charts(&entries, "cat").unwrap();
+        let names: Vec<_> = charts.iter().map(|(name, _)| *name).collect();
+        assert_eq!(names, ["time", "bytes", "strokes", "stages"]);
+        assert!(
+            charts[0].1.contains("article's recipe")
+                || charts[0].1.contains("article&apos;s recipe")
+        );
+        assert!(charts[1].1.contains("vtracer"));
+    }
+}

@@ -1,0 +1,403 @@
+//! What `strokefit bench pareto` found: cost against error of drawings, ours and others'.
+//!
+//! An entry is all there is to say of one drawing; fronts, comparisons, tables, plots and the page are
+//! made from entries alone, so that they can be made again without any fit.
+
+mod charts;
+mod compare;
+mod page;
+
+use serde::{Deserialize, Serialize};
+
+pub use charts::charts;
+pub use compare::{Comparison, Holds, comparisons, front};
+pub use page::{Exhibit, page};
+
+use super::{SCHEMA, StageEntry, Table};
+use crate::metrics::Quality;
+
+/// The family of the drawings of the article's recipe.
+pub const ARTICLE: &str = "article";
+/// The family of our own drawings.
+pub const OWN: &str = "strokefit";
+
+/// All drawings of a run, and what follows from them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ParetoReport {
+    /// [`SCHEMA`].
+    pub schema: u32,
+    /// One per drawing.
+    pub entries: Vec<ParetoEntry>,
+    /// What was claimed, and whether it holds.
+    pub comparisons: Vec<Comparison>,
+    /// How much seeds differ.
+    pub spreads: Vec<Spread>,
+}
+
+/// One drawing.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct ParetoEntry {
+    /// The picture's name, without folder and ending.
+    pub picture: String,
+    /// A hash of its pixels.
+    pub digest: String,
+    /// Its width in px.
+    pub width: usize,
+    /// Its height in px.
+    pub height: usize,
+    /// Who made the drawing: `strokefit`, `article`, or another's name.
+    pub family: String,
+    /// With which settings; family and label tell the drawings of a picture apart.
+    pub label: String,
+    /// How much work, for our own: `stages`, `draft`, `balanced` or `best`.
+    pub preset: Option<String>,
+    /// The coverage function, for our own.
+    pub coverage: Option<String>,
+    /// Key of every random draw.
+    pub seed: Option<u64>,
+    /// Strokes in the file.
+    pub strokes: Option<usize>,
+    /// Wall time of making it, s.
+    pub wall_s: Option<f64>,
+    /// CPU time of making it, all threads, s; to a hundredth.
+    pub cpu_s: Option<f64>,
+    /// Most memory held at once while it was made, the picture included, bytes.
+    pub peak_rss_bytes: Option<u64>,
+    /// Length of the SVG, bytes.
+    pub svg_bytes: usize,
+    /// Its length after gzip, bytes.
+    pub gzip_bytes: usize,
+    /// The file as resvg draws it against the picture.
+    pub fidelity: Option<Quality>,
+    /// The file as resvg draws it against our own soft render, dB, for our own; `null` when perfect.
+    pub agreement_db: Option<f64>,
+    /// The stages, for our own.
+    pub stages: Vec<StageEntry>,
+    /// Why there is no drawing, or none that is as it was fitted.
+    pub failure: Option<String>,
+}
+
+/// Drawings that differ in their seed alone.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Spread {
+    /// The picture.
+    pub picture: String,
+    /// Who, and with which settings.
+    pub label: String,
+    /// How many seeds.
+    pub seeds: usize,
+    /// Mean and standard deviation of the fidelity, dB.
+    pub psnr_db: [f64; 2],
+    /// Of the CPU time, s.
+    pub cpu_s: [f64; 2],
+    /// Of the bytes after gzip.
+    pub gzip_bytes: [f64; 2],
+}
+
+impl ParetoEntry {
+    /// What tells the drawing from all others.
+    pub fn id(&self) -> String {
+        format!(
+            "{} {} {} {}",
+            self.picture, self.digest, self.family, self.label
+        )
+    }
+
+    /// The name of its SVG in the folder `svg`.
+    pub fn svg_name(&self) -> String {
+        let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
+        let mut name: String = self.id().chars().map(plain).collect();
+        while name.contains("--") {
+            name = name.replace("--", "-");
+        }
+        format!("{}.svg", name.trim_matches('-'))
+    }
+
+    /// Whether the drawing is this program's, so that a failure is one, too.
+    fn is_ours(&self) -> bool {
+        self.family == OWN || self.family == ARTICLE
+    }
+
+    /// Fidelity in dB, where there is a drawing.
+    pub fn psnr_db(&self) -> Option<f64> {
+        self.fidelity.map(|quality| quality.psnr_db)
+    }
+
+    /// The line of standard output, ending in the verdict.
+    pub fn line(&self) -> String {
+        let Self {
+            picture,
+            family,
+            label,
+            ..
+        } = self;
+        let verdict = match &self.failure {
+            Some(why) if self.is_ours() => format!("{why}: FAIL"),
+            Some(why) => format!("{why}: none"),
+            None => "pass".into(),
+        };
+        let Some(quality) = self.fidelity else {
+            return format!("{picture}, {family} {label}: {verdict}");
+        };
+        format!(
+            "{picture}, {family} {label}: {:.2} dB, SSIM {:.4}, {} s of CPU, {} bytes, {} after gzip: {verdict}",
+            quality.psnr_db,
+            quality.ssim,
+            optional(self.cpu_s, 2),
+            self.svg_bytes,
+            self.gzip_bytes
+        )
+    }
+}
+
+impl ParetoReport {
+    /// The report of these drawings.
+    pub fn new(entries: Vec<ParetoEntry>, claims: bool) -> Self {
+        Self {
+            schema: SCHEMA,
+            comparisons: comparisons(&entries, claims),
+            spreads: spreads(&entries),
+            entries,
+        }
+    }
+
+    /// How many drawings failed, and claims do not hold.
+    pub fn failures(&self) -> usize {
+        let failed = self
+            .entries
+            .iter()
+            .filter(|entry| entry.is_ours() && entry.failure.is_some());
+        let refuted = self
+            .comparisons
+            .iter()
+            .filter(|c| c.holds == Holds::Refuted);
+        failed.count() + refuted.count()
+    }
+
+    /// One row per drawing.
+    pub fn table(&self) -> Table {
+        let mut table = Table::new(&HEAD);
+        self.entries
+            .iter()
+            .for_each(|entry| table.row(cells(entry)));
+        table
+    }
+
+    /// One row per comparison.
+    pub fn comparison_table(&self) -> Table {
+        let mut table = Table::new(&["picture", "comparison", "figure", "verdict"]);
+        for c in &self.comparisons {
+            table.row([&c.picture, &c.claim, &c.figure, &c.holds.word().to_owned()]);
+        }
+        table
+    }
+
+    /// One row per set of seeds.
+    pub fn spread_table(&self) -> Table {
+        let mut table = Table::new(&[
+            "picture",
+            "drawing",
+            "seeds",
+            "PSNR dB",
+            "CPU s",
+            "gzip bytes",
+        ]);
+        for spread in &self.spreads {
+            let Spread {
+                psnr_db,
+                cpu_s,
+                gzip_bytes,
+                ..
+            } = spread;
+            let pair = |[mean, deviation]: [f64; 2], digits| {
+                format!("{mean:.digits$} ± {deviation:.digits$}")
+            };
+            table.row([
+                spread.picture.clone(),
+                spread.label.clone(),
+                spread.seeds.to_string(),
+                pair(*psnr_db, 2),
+                pair(*cpu_s, 2),
+                pair(*gzip_bytes, 0),
+            ]);
+        }
+        table
+    }
+
+    /// Everything as Markdown.
+    pub fn markdown(&self) -> String {
+        format!(
+            "# Cost against error\n\n{NOTE}\n\n## Comparisons\n\n{}\n## Spread over seeds\n\n{}\n## Drawings\n\n{}",
+            self.comparison_table().markdown(),
+            self.spread_table().markdown(),
+            self.table().markdown()
+        )
+    }
+}
+
+/// What the figures are.
+pub(super) const NOTE: &str = "Fidelity is that of the file as resvg draws it, over 8-bit RGB on white. Times are of \
+                               making the drawing, without reading the picture or judging the file; CPU time is \
+                               that of all threads, in hundredths of a second. Each case is a process of its own, \
+                               and memory is the most that it held, picture included; that of other programs is \
+                               looked at every 2 ms.";
+
+const HEAD: [&str; 15] = [
+    "picture",
+    "family",
+    "settings",
+    "strokes",
+    "psnr_db",
+    "ssim",
+    "l1",
+    "cpu_s",
+    "wall_s",
+    "peak_mib",
+    "svg_bytes",
+    "gzip_bytes",
+    "agreement_db",
+    "seed",
+    "failure",
+];
+
+fn cells(entry: &ParetoEntry) -> [String; 15] {
+    let quality = |f: fn(Quality) -> f64| entry.fidelity.map(f);
+    let mib = entry
+        .peak_rss_bytes
+        .map(|bytes| bytes as f64 / f64::from(1 << 20));
+    let whole = |v: Option<f64>| optional(v, 0);
+    [
+        entry.picture.clone(),
+        entry.family.clone(),
+        entry.label.clone(),
+        whole(entry.strokes.map(|n| n as f64)),
+        optional(quality(|q| q.psnr_db), 2),
+        optional(quality(|q| q.ssim), 4),
+        optional(quality(|q| q.l1), 5),
+        optional(entry.cpu_s, 2),
+        optional(entry.wall_s, 2),
+        optional(mib, 0),
+        entry.svg_bytes.to_string(),
+        entry.gzip_bytes.to_string(),
+        optional(entry.agreement_db, 1),
+        whole(entry.seed.map(|seed| seed as f64)),
+        entry.failure.clone().unwrap_or_default(),
+    ]
+}
+
+fn optional(value: Option<f64>, digits: usize) -> String {
+    value.map_or_else(String::new, |v| format!("{v:.digits$}"))
+}
+
+/// Pictures in the order of their first entries.
+pub(super) fn pictures(entries: &[ParetoEntry]) -> Vec<&str> {
+    let mut names: Vec<&str> = Vec::new();
+    for entry in entries {
+        if !names.contains(&entry.picture.as_str()) {
+            names.push(&entry.picture);
+        }
+    }
+    names
+}
+
+fn spreads(entries: &[ParetoEntry]) -> Vec<Spread> {
+    let key = |entry: &ParetoEntry| {
+        let unseeded = entry
+            .label
+            .rsplit_once("seed")
+            .map_or(entry.label.as_str(), |(head, _)| head);
+        (
+            entry.picture.clone(),
+            format!("{} {}", entry.family, unseeded.trim_end_matches([' ', ','])),
+        )
+    };
+    let mut groups: Vec<((String, String), Vec<&ParetoEntry>)> = Vec::new();
+    for entry in entries
+        .iter()
+        .filter(|entry| entry.seed.is_some() && entry.fidelity.is_some())
+    {
+        let key = key(entry);
+        match groups.iter_mut().find(|(k, _)| *k == key) {
+            Some((_, group)) => group.push(entry),
+            None => groups.push((key, vec![entry])),
+        }
+    }
+    let several = groups.into_iter().filter(|(_, group)| group.len() > 1);
+    several
+        .map(|((picture, label), group)| Spread {
+            picture,
+            label,
+            seeds: group.len(),
+            psnr_db: spread(group.iter().filter_map(|e| e.psnr_db())),
+            cpu_s: spread(group.iter().filter_map(|e| e.cpu_s)),
+            gzip_bytes: spread(group.iter().map(|e| e.gzip_bytes as f64)),
+        })
+        .collect()
+}
+
+/// Mean and standard deviation of a sample.
+fn spread(values: impl Iterator<Item = f64> + Clone) -> [f64; 2] {
+    let n = values.clone().count().max(1) as f64;
+    let mean = values.clone().sum::<f64>() / n;
+    let variance = values.map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0);
+    [mean, variance.sqrt()]
+}
+
+#[cfg(test)]
+pub(super) fn drawing(
+    family: &str,
+    label: &str,
+    cpu_s: f64,
+    gzip_bytes: usize,
+    psnr_db: f64,
+) -> ParetoEntry {
+    ParetoEntry {
+        picture: "cat".into(),
+        family: family.into(),
+        label: label.into(),
+        cpu_s: Some(cpu_s),
+        gzip_bytes,
+        seed: Some(0),
+        strokes: Some(100),
+        fidelity: Some(Quality {
+            psnr_db,
+            ssim: 0.9,
+            mse: 10f64.powf(-psnr_db / 10.0),
+            l1: 0.01,
+        }),
+        ..ParetoEntry::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_ends_in_its_verdict() {
+        let mut entry = drawing(OWN, "draft 100 smoothstep seed 0", 0.5, 900, 30.0);
+        assert!(entry.line().ends_with(": pass"), "{}", entry.line());
+        entry.failure = Some("killed".into());
+        assert!(entry.line().ends_with("killed: FAIL"), "{}", entry.line());
+    }
+
+    #[test]
+    fn seeds_are_told_apart_from_settings() {
+        let entries = [
+            drawing(OWN, "draft 100 smoothstep seed 0", 0.5, 900, 30.0),
+            drawing(OWN, "draft 100 smoothstep seed 1", 0.7, 900, 32.0),
+            drawing(OWN, "best 100 smoothstep seed 0", 9.0, 900, 33.0),
+        ];
+        let spreads = spreads(&entries);
+        assert_eq!(spreads.len(), 1);
+        assert_eq!(spreads[0].seeds, 2);
+        assert!((spreads[0].psnr_db[0] - 31.0).abs() < 1e-12);
+        assert!((spreads[0].psnr_db[1] - 2f64.sqrt()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn file_names_are_plain() {
+        let entry = drawing("a/b", "x > y", 1.0, 1, 20.0);
+        assert_eq!(entry.svg_name(), "cat-a-b-x-y.svg");
+    }
+}

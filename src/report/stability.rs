@@ -1,0 +1,108 @@
+//! What `strokefit bench stability` found.
+
+use serde::{Deserialize, Serialize};
+
+use super::{SCHEMA, Table};
+
+/// All checks of a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StabilityReport {
+    /// [`SCHEMA`].
+    pub schema: u32,
+    /// One per check, in order.
+    pub entries: Vec<StabilityEntry>,
+}
+
+/// What one check found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StabilityEntry {
+    /// What kind of case it is.
+    pub group: String,
+    /// The case.
+    pub name: String,
+    /// What was checked.
+    pub checked: String,
+    /// What was found.
+    pub figure: String,
+    /// Whether it holds.
+    pub verdict: Verdict,
+    /// Why an exception is one.
+    pub note: String,
+    /// CPU time, s.
+    pub cpu_s: Option<f64>,
+}
+
+/// Whether a case holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// It does.
+    Pass,
+    /// It does not, for a reason that is known and named, and that no drawing meets.
+    Exception,
+    /// It does not.
+    Fail,
+}
+
+impl Verdict {
+    /// The word that a line of the table ends in.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Pass => "pass",
+            Self::Exception => "exception",
+            Self::Fail => "FAIL",
+        }
+    }
+}
+
+impl StabilityReport {
+    /// The report of these checks.
+    pub fn new(entries: Vec<StabilityEntry>) -> Self {
+        Self {
+            schema: SCHEMA,
+            entries,
+        }
+    }
+
+    /// How many checks failed.
+    pub fn failures(&self) -> usize {
+        let failed = |entry: &&StabilityEntry| entry.verdict == Verdict::Fail;
+        self.entries.iter().filter(failed).count()
+    }
+
+    /// One row per check.
+    pub fn table(&self) -> Table {
+        let mut table = Table::new(&["group", "case", "checked", "figure", "verdict", "note"]);
+        for entry in &self.entries {
+            let verdict = entry.verdict.word().to_owned();
+            let StabilityEntry {
+                group,
+                name,
+                checked,
+                figure,
+                note,
+                ..
+            } = entry.clone();
+            table.row([group, name, checked, figure, verdict, note]);
+        }
+        table
+    }
+}
+
+impl StabilityEntry {
+    /// The line of standard output, ending in the verdict.
+    pub fn line(&self) -> String {
+        let note = if self.note.is_empty() {
+            String::new()
+        } else {
+            format!(" ({})", self.note)
+        };
+        format!(
+            "{}/{}: {}{note}: {}",
+            self.group,
+            self.name,
+            self.figure,
+            self.verdict.word()
+        )
+    }
+}

@@ -1,0 +1,105 @@
+//! Rows of cells under a head, as CSV or Markdown.
+
+use std::fmt::Display;
+
+/// A table of texts.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Table {
+    head: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// A table of the columns `head`.
+    pub fn new<S: AsRef<str>>(head: &[S]) -> Self {
+        Self {
+            head: head.iter().map(|cell| cell.as_ref().to_owned()).collect(),
+            rows: Vec::new(),
+        }
+    }
+
+    /// Appends a row, of as many cells as the head has.
+    pub fn row<D: Display>(&mut self, cells: impl IntoIterator<Item = D>) {
+        let cells: Vec<String> = cells.into_iter().map(|cell| cell.to_string()).collect();
+        debug_assert_eq!(cells.len(), self.head.len());
+        self.rows.push(cells);
+    }
+
+    /// As comma-separated values. Cells with a comma, a quote or a line break are quoted.
+    pub fn csv(&self) -> String {
+        let line = |cells: &Vec<String>| {
+            let cells: Vec<String> = cells.iter().map(|cell| quoted(cell)).collect();
+            cells.join(",") + "\n"
+        };
+        self.lines().map(line).collect()
+    }
+
+    /// As a Markdown table.
+    pub fn markdown(&self) -> String {
+        let line = |cells: &Vec<String>| {
+            let cells: Vec<String> = cells.iter().map(|cell| cell.replace('|', "\\|")).collect();
+            format!("| {} |\n", cells.join(" | "))
+        };
+        let mut lines = self.lines().map(line);
+        let head = lines.next().unwrap_or_default();
+        let rule = format!("|{}\n", " --- |".repeat(self.head.len()));
+        head + &rule + &lines.collect::<String>()
+    }
+
+    /// As an HTML table.
+    pub fn html(&self) -> String {
+        let line = |tag: &str, cells: &[String]| {
+            let cell = |cell: &String| format!("<{tag}>{}</{tag}>", escaped(cell));
+            let cells: String = cells.iter().map(cell).collect();
+            format!("<tr>{cells}</tr>\n")
+        };
+        let rows: String = self.rows.iter().map(|row| line("td", row)).collect();
+        format!("<table>\n{}{rows}</table>\n", line("th", &self.head))
+    }
+
+    fn lines(&self) -> impl Iterator<Item = &Vec<String>> {
+        std::iter::once(&self.head).chain(&self.rows)
+    }
+}
+
+/// Text as it stands in HTML and XML.
+pub(super) fn escaped(text: &str) -> String {
+    let text = text.replace('&', "&amp;").replace('<', "&lt;");
+    text.replace('>', "&gt;").replace('"', "&quot;")
+}
+
+fn quoted(cell: &str) -> String {
+    if cell.contains([',', '"', '\n']) {
+        format!("\"{}\"", cell.replace('"', "\"\""))
+    } else {
+        cell.to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table() -> Table {
+        let mut table = Table::new(&["a", "b"]);
+        table.row(["1,2", "say \"x\""]);
+        table.row(["1.5", "<|>"]);
+        table
+    }
+
+    #[test]
+    fn cells_that_need_quotes_get_them() {
+        assert_eq!(table().csv(), "a,b\n\"1,2\",\"say \"\"x\"\"\"\n1.5,<|>\n");
+    }
+
+    #[test]
+    fn markdown_keeps_bars_within_their_cell() {
+        let expected = "| a | b |\n| --- | --- |\n| 1,2 | say \"x\" |\n| 1.5 | <\\|> |\n";
+        assert_eq!(table().markdown(), expected);
+    }
+
+    #[test]
+    fn html_shows_signs_as_they_are() {
+        assert!(table().html().contains("<td>&lt;|&gt;</td>"));
+    }
+}
