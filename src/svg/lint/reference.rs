@@ -50,7 +50,7 @@ impl References {
     fn refer(&mut self, target: &str, line: usize, findings: &mut Findings) {
         if let Some(id) = target.strip_prefix('#') {
             self.wanted.push((id.to_owned(), line));
-        } else if !target.starts_with("data:") && !target.is_empty() {
+        } else if !is_embedded(target) && !target.is_empty() {
             findings.add_each(&rules::EXTERNAL, line, format!("\"{}\"", short(target)));
         }
     }
@@ -72,6 +72,16 @@ impl References {
     }
 }
 
+/// Whether the target is in the file, and itself refers to nothing: a drawing in a drawing may.
+fn is_embedded(target: &str) -> bool {
+    let kind = target
+        .strip_prefix("data:")
+        .and_then(|data| data.split([',', ';']).next());
+    kind.is_some_and(|kind| {
+        !kind.contains(['+', '&']) && !kind.to_ascii_lowercase().ends_with("xml")
+    })
+}
+
 fn is_href(key: &str) -> bool {
     key.rsplit(':').next() == Some("href")
 }
@@ -91,6 +101,19 @@ fn urls(value: &str) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_drawing_in_a_drawing_is_not_taken_as_embedded() {
+        assert!(is_embedded("data:image/png;base64,AA") && is_embedded("data:,"));
+        for target in [
+            "data:image/svg+xml,x",
+            "data:image/SVG+XML;base64,x",
+            "data:text/xml,x",
+            "a.png",
+        ] {
+            assert!(!is_embedded(target), "{target}");
+        }
+    }
 
     #[test]
     fn urls_are_found_with_any_quotes() {
