@@ -355,6 +355,50 @@ fn a_round_trip_through_inkscape_keeps_the_drawing_and_its_layers() {
     }
 }
 
+#[test]
+fn what_inkscape_saved_is_refined() {
+    if installed("inkscape").is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let (file, picture) = (
+        path("docs/pictures/coffee-quality-20.svg"),
+        path("samples/coffee-300.png"),
+    );
+    for plain in [true, false] {
+        let saved = saved_by_inkscape(folder.path(), &file, plain);
+        let refine = ["refine", "saved.svg", &picture, "-o", "better.svg"];
+        let budget = ["--strokes", "300", "--preset", "draft"];
+        let output = strokefit(folder.path())
+            .args([&refine[..], &budget].concat())
+            .output()
+            .unwrap();
+        assert_eq!(
+            output.status.code(),
+            Some(0),
+            "plain {plain}: {}",
+            stderr(&output)
+        );
+        let better = fs::read_to_string(folder.path().join("better.svg")).unwrap();
+        let target = Image::open(&picture).unwrap();
+        let db = |text: &str| verify::fidelity(text, &target).unwrap().psnr_db;
+        let (before, after) = (db(&saved), db(&better));
+        assert!(
+            after > before + 1.0,
+            "plain {plain}: {before:.2} dB, then {after:.2} dB"
+        );
+        assert!(better.matches("<path").count() > saved.matches("<path").count());
+        let check = ["check", "better.svg", &picture, "--renderer", "inkscape"];
+        let output = strokefit(folder.path()).args(check).output().unwrap();
+        assert_eq!(
+            output.status.code(),
+            Some(0),
+            "plain {plain}: {}",
+            stderr(&output)
+        );
+    }
+}
+
 fn draws_what_inkscape_saved(name: &str) {
     if installed(name).is_none() || installed("inkscape").is_none() {
         return;
