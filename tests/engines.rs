@@ -16,7 +16,7 @@ use strokefit::engines::{ENGINES, Engine, Page};
 use strokefit::image::Image;
 use strokefit::metrics;
 use strokefit::scene::{Scene, Shape, Stage, Stroke};
-use strokefit::svg::{self, WriteOptions};
+use strokefit::svg::{self, Form, WriteOptions};
 use strokefit::verify::{self, Size};
 use tempfile::TempDir;
 
@@ -82,6 +82,11 @@ macro_rules! for_each_engine {
             #[test]
             fn draws_every_kind_of_stroke() {
                 super::draws_every_kind_of_stroke(NAME);
+            }
+
+            #[test]
+            fn draws_every_form_of_file() {
+                super::draws_every_form_of_file(NAME);
             }
 
             #[test]
@@ -247,6 +252,34 @@ fn draws_every_kind_of_stroke(name: &str) {
             (0.95..1.05).contains(&ratio),
             "{kind}: {ratio:.3} × the ink of resvg"
         );
+    }
+}
+
+fn draws_every_form_of_file(name: &str) {
+    let Some((engine, program)) = installed(name) else {
+        return;
+    };
+    let layers = kinds().into_iter().filter(|(kind, _)| *kind != "covered");
+    let stages = layers.flat_map(|(_, scene)| scene.stages).collect();
+    let scene = Scene {
+        stages,
+        ..Scene::empty(64, 48, Some([1.0, 0.9, 0.7]))
+    };
+    for form in [Form::Elements, Form::Plain, Form::Smallest, Form::Outlines] {
+        let options = WriteOptions {
+            form,
+            ..WriteOptions::default()
+        };
+        let text = svg::write(&scene, &options);
+        let page = Page {
+            svg: &text,
+            width: 64,
+            height: 48,
+        };
+        let drawn = engine.draw(&program, page, PATIENCE).unwrap().image;
+        let resvg = verify::render(&text, Size::Scale(1.0), Some([1.0; 3])).unwrap();
+        let db = metrics::psnr(&resvg, &drawn).unwrap();
+        assert!(db >= 36.0, "{form:?}: {db:.2} dB from resvg");
     }
 }
 

@@ -70,7 +70,13 @@ pub(super) const PAGE_SIZE: Rule = rule(
     "page-size",
     Warning,
     "programs differ in the size that the page gets",
-    "give width and height in px, equal to those of a viewBox=\"0 0 W H\"",
+    "give a width and height, and a viewBox=\"0 0 W H\" of the same aspect ratio",
+);
+pub(super) const PAGE_SCALE: Rule = rule(
+    "page-scale",
+    Note,
+    "a unit of the file is not a px of the page",
+    "nothing, if it is meant so; else give the width, height and viewBox=\"0 0 W H\" the same numbers",
 );
 pub(super) const ZERO_LENGTH: Rule = rule(
     "zero-length",

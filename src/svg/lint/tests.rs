@@ -1,6 +1,6 @@
 use super::*;
 use crate::scene::{Scene, Shape, Stage, Stroke};
-use crate::svg::{WriteOptions, write};
+use crate::svg::{Form, WriteOptions, write};
 
 fn page(body: &str) -> String {
     format!(
@@ -29,17 +29,15 @@ fn what_strokefit_writes_has_nothing() {
         stages: vec![Stage { strokes }],
         ..Scene::empty(9, 9, Some([1.0; 3]))
     };
-    for precision in 0..=6 {
-        assert_eq!(
-            lint(&write(
-                &scene,
-                &WriteOptions {
-                    precision,
-                    ..WriteOptions::default()
-                }
-            )),
-            []
-        );
+    for form in [Form::Elements, Form::Plain, Form::Smallest, Form::Outlines] {
+        for precision in 0..=6 {
+            let options = WriteOptions {
+                precision,
+                form,
+                ..WriteOptions::default()
+            };
+            assert_eq!(lint(&write(&scene, &options)), [], "{options:?}");
+        }
     }
 }
 
@@ -105,7 +103,7 @@ fn each_rule_finds_its_case_and_nothing_else() {
             "<g xmlns:inkscape=\"i\" inkscape:groupmode=\"layer\"/>",
             "layer-id",
         ),
-        ("<circle r=\"3\"/>", "dialect"),
+        ("<ellipse rx=\"3\"/>", "dialect"),
     ] {
         let found = names(&page(body));
         assert!(found.contains(&rule.to_owned()), "{body}: {found:?}");
@@ -135,15 +133,21 @@ fn what_looks_like_it_but_is_not_is_let_pass() {
 #[test]
 fn the_page_should_have_the_size_of_its_view() {
     let good = page("");
-    for (from, to) in [
-        ("viewBox=\"0 0 9 9\"", ""),
-        ("viewBox=\"0 0 9 9\"", "viewBox=\"0 0 18 18\""),
-        ("viewBox=\"0 0 9 9\"", "viewBox=\"1 0 9 9\""),
-        ("width=\"9\"", "width=\"100%\""),
-        ("width=\"9\"", "width=\"9mm\""),
-        ("height=\"9\"", ""),
+    for (from, to, rule) in [
+        ("viewBox=\"0 0 9 9\"", "", "page-size"),
+        ("viewBox=\"0 0 9 9\"", "viewBox=\"0 0 9 8\"", "page-size"),
+        ("width=\"9\"", "width=\"100%\"", "page-size"),
+        ("width=\"9\"", "width=\"9mm\"", "page-size"),
+        ("height=\"9\"", "", "page-size"),
+        ("viewBox=\"0 0 9 9\"", "viewBox=\"0 0 18 18\"", "page-scale"),
+        ("viewBox=\"0 0 9 9\"", "viewBox=\"1 0 9 9\"", "page-scale"),
+        (
+            "width=\"9\" height=\"9\"",
+            "width=\"5mm\" height=\"5mm\"",
+            "page-scale",
+        ),
     ] {
-        assert_eq!(names(&good.replace(from, to)), ["page-size"], "{to}");
+        assert_eq!(names(&good.replace(from, to)), [rule], "{to}");
     }
     assert!(names(&good.replace("width=\"9\"", "width=\"9px\"")).is_empty());
 }
@@ -186,7 +190,7 @@ fn all_lines_are_kept_and_three_are_shown() {
 
 #[test]
 fn the_worst_comes_first() {
-    let body = "<circle r=\"3\"/>\n<g opacity=\"0.5\"/>\n<image href=\"a.png\"/>";
+    let body = "<ellipse rx=\"3\"/>\n<g opacity=\"0.5\"/>\n<image href=\"a.png\"/>";
     assert_eq!(
         names(&page(body)),
         ["external-reference", "group-opacity", "feature", "dialect"]

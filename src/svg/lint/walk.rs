@@ -15,6 +15,9 @@ use crate::svg::dialect::SVG_NAMESPACE;
 /// Levels of elements that readers built on libxml2 stop at.
 const LIBXML2_LEVELS: usize = 256;
 
+/// By what part the aspect ratios of page and view may differ.
+const ASPECT_TOLERANCE: f64 = 1e-3;
+
 /// Attributes that hold numbers.
 const NUMERIC: [&str; 24] = [
     "cx",
@@ -44,10 +47,12 @@ const NUMERIC: [&str; 24] = [
 ];
 
 /// Elements of the dialect, and those that draw nothing and say nothing of the drawing.
-const PLAIN: [&str; 7] = ["svg", "g", "path", "rect", "title", "desc", "metadata"];
+const PLAIN: [&str; 9] = [
+    "circle", "defs", "desc", "g", "metadata", "path", "rect", "svg", "title",
+];
 
 /// Elements that every renderer draws alike.
-const SHAPES: [&str; 6] = ["circle", "defs", "ellipse", "line", "polygon", "polyline"];
+const SHAPES: [&str; 4] = ["ellipse", "line", "polygon", "polyline"];
 
 /// Looks at all of the text.
 pub(super) fn walk(text: &str, findings: &mut Findings) {
@@ -205,15 +210,11 @@ impl<'a, 'b> Walk<'a, 'b> {
             self.findings.add(&rules::PAGE_SIZE, self.line, found);
             return Pen::page(1.0);
         };
-        if (width, height) != (Some(w), Some(h)) || (x, y) != (0.0, 0.0) {
-            let size = |key| root.get(key).unwrap_or("none");
-            let found = format!(
-                "<svg> of width {}, height {}, viewBox {}",
-                short(size("width")),
-                short(size("height")),
-                short(size("viewBox"))
-            );
-            self.findings.add(&rules::PAGE_SIZE, self.line, found);
+        if let Some(rule) = size_rule(width.zip(height), (w, h), (x, y)) {
+            let size = |key| short(root.get(key).unwrap_or("none"));
+            let (width, height, view) = (size("width"), size("height"), size("viewBox"));
+            let found = format!("<svg> of width {width}, height {height}, viewBox {view}");
+            self.findings.add(rule, self.line, found);
         }
         let scale = width.filter(|_| w > 0.0).map_or(1.0, |width| width / w);
         Pen::page(scale).within(root)
@@ -255,6 +256,23 @@ impl<'a, 'b> Walk<'a, 'b> {
                 .add(&rules::LEADING_DOT, line, element.quote(key));
         }
     }
+}
+
+/// What the page's size in px, if it has one, says of its view.
+fn size_rule(
+    size: Option<(f64, f64)>,
+    view: (f64, f64),
+    origin: (f64, f64),
+) -> Option<&'static Rule> {
+    let Some((width, height)) = size else {
+        return Some(&rules::PAGE_SIZE);
+    };
+    // Sides are written with a few decimals.
+    let misses = (width * view.1 - height * view.0).abs() > ASPECT_TOLERANCE * width * view.1;
+    if misses {
+        return Some(&rules::PAGE_SIZE);
+    }
+    ((width, height) != view || origin != (0.0, 0.0)).then_some(&rules::PAGE_SCALE)
 }
 
 /// Attributes and the properties of `style`.
