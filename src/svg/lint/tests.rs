@@ -123,6 +123,7 @@ fn what_looks_like_it_but_is_not_is_let_pass() {
         "<g transform=\"scale(10)\"><path d=\"M5 5h2\" stroke=\"#000\" stroke-width=\"0.2\"/></g>",
         "<path d=\"M5 5h2\" stroke=\"#000\" stroke-width=\"0.2\" style=\"stroke-width:3\"/>",
         "<g opacity=\"1\"/>",
+        "<g id=\"face\" href=\"#face\" data-name=\"#face\"/>",
         "<g id=\"a.5\"><title>#11223344 .5 rgba(</title></g>",
         "<path id=\"a\" d=\"M1 1h1\"/><path fill=\"url(#a)\" d=\"M1 1h1\"/>",
     ] {

@@ -18,6 +18,16 @@ const LIBXML2_LEVELS: usize = 256;
 /// By what part the aspect ratios of page and view may differ.
 const ASPECT_TOLERANCE: f64 = 1e-3;
 
+/// Attributes that hold colours.
+const COLORED: [&str; 6] = [
+    "color",
+    "fill",
+    "flood-color",
+    "lighting-color",
+    "stop-color",
+    "stroke",
+];
+
 /// Attributes that hold numbers.
 const NUMERIC: [&str; 24] = [
     "cx",
@@ -221,39 +231,39 @@ impl<'a, 'b> Walk<'a, 'b> {
     }
 
     fn look(&mut self, element: &Element, pen: Pen, is_root: bool) {
-        let line = self.line;
-        self.references.note(element, line, self.findings);
-        if !is_root && let Some(rule) = kind(&element.name) {
-            self.findings
-                .add_each(rule, line, format!("<{}>", short(&element.name)));
+        self.references.note(element, self.line, self.findings);
+        if !is_root {
+            self.look_at_kind(element);
         }
-        if let Some(key) = handler(element) {
-            self.findings.add(&rules::SCRIPT, line, element.quote(&key));
+        self.look_at_stroke(element, pen);
+        self.look_at_values(element);
+    }
+
+    fn look_at_kind(&mut self, element: &Element) {
+        if let Some(rule) = kind(&element.name) {
+            let found = format!("<{}>", short(&element.name));
+            self.findings.add_each(rule, self.line, found);
         }
+    }
+
+    fn look_at_stroke(&mut self, element: &Element, pen: Pen) {
         if pen.has_zero_length(element) {
-            self.findings
-                .add(&rules::ZERO_LENGTH, line, element::quote_shape(element));
+            let found = element::quote_shape(element);
+            self.findings.add(&rules::ZERO_LENGTH, self.line, found);
         }
         if let Some(width_px) = pen.hairline_px(element) {
             let found = format!("<{}> with a stroke {width_px:.3} px wide", element.name);
-            self.findings.add(&rules::THIN_STROKE, line, found);
+            self.findings.add(&rules::THIN_STROKE, self.line, found);
         }
-        if let Some((key, _)) = values(element).find(|(_, value)| has_alpha(value)) {
-            self.findings
-                .add(&rules::COLOR_ALPHA, line, element.quote(key));
+    }
+
+    fn look_at_values(&mut self, element: &Element) {
+        let mut faults = Vec::new();
+        for (key, value) in element.attributes().chain(element.styles()) {
+            faults.extend(value_rule(key, value).map(|rule| (rule, element.quote(key))));
         }
-        if element
-            .property("opacity")
-            .and_then(number::length_px)
-            .is_some_and(|o| o < 1.0)
-        {
-            self.findings
-                .add(&rules::GROUP_OPACITY, line, element.quote("opacity"));
-        }
-        let mut numbers = values(element).filter(|(key, _)| NUMERIC.contains(key));
-        if let Some((key, _)) = numbers.find(|(_, value)| number::has_leading_dot(value)) {
-            self.findings
-                .add(&rules::LEADING_DOT, line, element.quote(key));
+        for (rule, found) in faults {
+            self.findings.add(rule, self.line, found);
         }
     }
 }
@@ -275,9 +285,19 @@ fn size_rule(
     ((width, height) != view || origin != (0.0, 0.0)).then_some(&rules::PAGE_SCALE)
 }
 
-/// Attributes and the properties of `style`.
-fn values(element: &Element) -> impl Iterator<Item = (&str, &str)> {
-    element.attributes().chain(element.styles())
+/// The rule that a value breaks.
+fn value_rule(key: &str, value: &str) -> Option<&'static Rule> {
+    if key.len() > 4 && key.starts_with("on") {
+        Some(&rules::SCRIPT)
+    } else if COLORED.contains(&key) && has_alpha(value) {
+        Some(&rules::COLOR_ALPHA)
+    } else if key == "opacity" && number::length_px(value).is_some_and(|opacity| opacity < 1.0) {
+        Some(&rules::GROUP_OPACITY)
+    } else if NUMERIC.contains(&key) && number::has_leading_dot(value) {
+        Some(&rules::LEADING_DOT)
+    } else {
+        None
+    }
 }
 
 /// The rule that an element breaks by being there.
@@ -291,13 +311,6 @@ fn kind(name: &str) -> Option<&'static Rule> {
         _ if SHAPES.contains(&name) => Some(&rules::DIALECT),
         _ => Some(&rules::FEATURE),
     }
-}
-
-/// The attribute that runs a script, if any.
-fn handler(element: &Element) -> Option<String> {
-    let mut keys = element.attributes().map(|(key, _)| key);
-    keys.find(|key| key.len() > 4 && key.starts_with("on"))
-        .map(str::to_owned)
 }
 
 /// Whether a value is a colour with alpha.
