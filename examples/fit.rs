@@ -28,9 +28,8 @@ pub(crate) fn draw(
         preset: Preset::Draft,
         ..Config::default()
     };
-    let precision = config.precision;
     let drawing = Fitter::new(config).fit(&picture)?;
-    let text = svg::write(&drawing.scene, &WriteOptions { precision });
+    let text = svg::write(&drawing.scene, &WriteOptions::default());
     std::fs::write(output, &text)?;
     // What a renderer that knows nothing of the fit makes of the text.
     Ok(verify::fidelity(&text, &drawing.target)?)

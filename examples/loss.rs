@@ -136,6 +136,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         return Err("say which picture to draw, and which SVG to write".into());
     };
     let scene = draw(&Image::open(input)?)?;
-    std::fs::write(output, svg::write(&scene, &WriteOptions { precision: 2 }))?;
+    std::fs::write(output, svg::write(&scene, &WriteOptions::default()))?;
     Ok(())
 }

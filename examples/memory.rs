@@ -29,9 +29,8 @@ pub(crate) fn convert(file: &[u8]) -> strokefit::Result<(String, Vec<u8>)> {
         preset: Preset::Draft,
         ..Config::default()
     };
-    let precision = config.precision;
     let drawing = Fitter::new(config).fit(&picture)?;
-    let text = svg::write(&drawing.scene, &WriteOptions { precision });
+    let text = svg::write(&drawing.scene, &WriteOptions::default());
     let png = verify::render(&text, Size::Scale(2.0), None)?.encode_png()?;
     Ok((text, png))
 }

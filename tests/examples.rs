@@ -61,7 +61,7 @@ fn memory_gives_text_and_bytes_that_belong_together() {
 fn loss_gets_the_brightness_right_and_leaves_the_colours_alone() {
     let picture = Image::open(sample("coffee-300.png")).unwrap();
     let scene = loss::draw(&picture).unwrap();
-    let text = svg::write(&scene, &WriteOptions { precision: 2 });
+    let text = svg::write(&scene, &WriteOptions::default());
     let drawn = verify::render(&text, Size::Scale(1.0), Some([1.0; 3])).unwrap();
     let (mut brightness, mut colors) = (0.0, 0.0);
     for i in 0..picture.width() * picture.height() {

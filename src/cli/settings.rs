@@ -206,7 +206,10 @@ fn text(command: &Command, matches: &ArgMatches) -> String {
     for arg in settable(command) {
         if heading != Some(arg.get_help_heading()) {
             heading = Some(arg.get_help_heading());
-            text += &format!("\n## {}\n", arg.get_help_heading().unwrap_or("Files"));
+            text += &format!(
+                "\n## {}\n",
+                arg.get_help_heading().unwrap_or("Input and output")
+            );
         }
         text += &line(arg, matches);
     }
