@@ -161,3 +161,22 @@ fn a_conflict_between_file_and_flag_is_a_refusal() {
         &["--config", "fit.toml", "--no-polish", "--no-progressive"],
     );
 }
+
+#[test]
+fn refining_takes_options_from_files_too() {
+    let place = Place::new();
+    place.picture("in.png", 40, 30);
+    draw(&place, &["--strokes", "5", "--preset", "draft"]);
+    place.file(
+        "more.toml",
+        "strokes = 15\npreset = 'draft'\nfreeze-base = true\n",
+    );
+    let refine = |name: &str, options: &[&str]| {
+        let args = [&["refine", "out.svg", "in.png", "-o", name], options].concat();
+        let output = place.run(&args);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        fs::read_to_string(place.path(name)).unwrap()
+    };
+    let flags = ["--strokes", "15", "--preset", "draft", "--freeze-base"];
+    assert!(refine("a.svg", &flags) == refine("b.svg", &["--config", "more.toml"]));
+}

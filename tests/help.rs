@@ -21,7 +21,16 @@ fn stdout(place: &Place, args: &[&str]) -> String {
 #[test]
 fn help_shows_examples_first_and_no_colour_in_a_pipe() {
     let place = Place::new();
-    for command in ["fit", "check", "render", "lab", "completions", "man"] {
+    let commands = [
+        "fit",
+        "refine",
+        "check",
+        "render",
+        "lab",
+        "completions",
+        "man",
+    ];
+    for command in commands {
         let help = stdout(&place, &[command, "--help"]);
         let (examples, usage) = (
             help.find("Examples:").unwrap(),

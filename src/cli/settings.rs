@@ -23,7 +23,7 @@ const PRINT: &str = "print_config";
 const NOT_IN_FILES: [&str; 3] = ["help", CONFIG, PRINT];
 
 /// The commands that take options from files.
-const DRAWING: [&str; 1] = ["fit"];
+const DRAWING: [&str; 2] = ["fit", "refine"];
 
 /// The command, with the two options if it draws, and with a hidden opposite to each switch, so that flags
 /// can override a file.
