@@ -28,6 +28,14 @@ impl Hint {
         error.into().context(Self(advice.into()))
     }
 
+    /// The same error, carrying the advice if there is any.
+    pub(super) fn maybe_on(error: Error, advice: Option<String>) -> Error {
+        match advice {
+            Some(advice) => Self::on(error, advice),
+            None => error,
+        }
+    }
+
     /// What is wrong, and the advice that goes with it.
     pub(super) fn split(error: &Error) -> (String, Option<&Self>) {
         let hint = error.downcast_ref();

@@ -39,8 +39,11 @@ impl Output {
     }
 
     fn locate(path: &Path) -> io::Result<Self> {
+        let last = path.as_os_str().as_encoded_bytes().last();
+        let names_a_folder = last.is_some_and(|&byte| std::path::is_separator(byte.into()));
         let path = canonical(path);
         match fs::metadata(&path) {
+            Err(_) if names_a_folder => Err(io::ErrorKind::IsADirectory.into()),
             Ok(found) if found.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
             Ok(found) if !found.is_file() => Ok(Self::Device(path)),
             Ok(found) if found.permissions().readonly() => {
@@ -186,6 +189,7 @@ mod tests {
         for (path, why) in [
             (folder.path().join("none/a.svg"), "does not exist"),
             (folder.path().to_owned(), "is a folder"),
+            (folder.path().join("new/"), "is a folder"),
             (file.join("a.svg"), "is a file"),
         ] {
             let error = Output::open(&path).unwrap_err().to_string();

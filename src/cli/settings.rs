@@ -159,8 +159,9 @@ fn check(at: &str, command: &Command, flag: &OsString) -> Result<()> {
                 ErrorKind::InvalidValue | ErrorKind::ValueValidation
             ) =>
         {
-            let (wrong, advice) = super::usage::told(&e);
-            Err(Hint::on(misuse(format!("{at}: {wrong}")), advice))
+            let (wrong, advice) = super::usage::parts(&e);
+            let wrong = misuse(format!("{at}: {wrong}"));
+            Err(Hint::maybe_on(wrong, advice))
         }
         _ => Ok(()),
     }

@@ -64,8 +64,7 @@ fn refuse(error: &anyhow::Error) -> Status {
     // Called without any argument: clap prints the help on standard error.
     let asks = error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
     if error.use_stderr() && !asks {
-        let (wrong, advice) = told(error);
-        return fail(&Hint::on(misuse(wrong), advice));
+        return fail(&told(error));
     }
     match error.print() {
         Ok(()) if asks => Status::Usage,
@@ -76,8 +75,14 @@ fn refuse(error: &anyhow::Error) -> Status {
     }
 }
 
-/// What clap says is wrong, in one line, and what it advises or where to read on.
-pub(super) fn told(error: &clap::Error) -> (String, String) {
+/// What clap says is wrong, in one line, with what it advises or where to read on.
+fn told(error: &clap::Error) -> anyhow::Error {
+    let (wrong, advice) = parts(error);
+    Hint::maybe_on(misuse(wrong), advice)
+}
+
+/// What is wrong, and the advice.
+pub(super) fn parts(error: &clap::Error) -> (String, Option<String>) {
     let message = error.to_string();
     let paragraphs: Vec<String> = message
         .split("\n\n")
@@ -90,11 +95,8 @@ pub(super) fn told(error: &clap::Error) -> (String, String) {
         .flat_map(|p| p.split("tip: ").skip(1))
         .map(str::trim)
         .collect();
-    let advice = match (forgotten(error), tips.is_empty()) {
-        (Some(advice), _) => advice,
-        (None, false) => tips.join("; "),
-        (None, true) => further(&paragraphs),
-    };
+    let tips = (!tips.is_empty()).then(|| tips.join("; "));
+    let advice = forgotten(error).or(tips).or_else(|| further(&paragraphs));
     (wrong, advice)
 }
 
@@ -109,17 +111,15 @@ fn forgotten(error: &clap::Error) -> Option<String> {
     }
 }
 
-/// The help of the command whose usage is among the paragraphs.
-fn further(paragraphs: &[String]) -> String {
-    let usage = paragraphs
-        .iter()
-        .find_map(|p| p.strip_prefix("Usage: "))
-        .unwrap_or("strokefit");
+/// The help of the command whose usage is among the paragraphs; a value that is wrong has none, and says
+/// itself what would be right.
+fn further(paragraphs: &[String]) -> Option<String> {
+    let usage = paragraphs.iter().find_map(|p| p.strip_prefix("Usage: "))?;
     let words = usage
         .split(' ')
         .take_while(|word| word.starts_with(|c: char| c.is_ascii_lowercase()));
     let command = words.collect::<Vec<_>>().join(" ");
-    format!("{command} --help lists the options")
+    Some(format!("{command} --help lists the options"))
 }
 
 #[cfg(test)]
@@ -128,7 +128,8 @@ mod tests {
 
     fn refusal(args: &[&str]) -> (String, String) {
         let args = ["strokefit"].iter().chain(args);
-        told(&command().try_get_matches_from(args).unwrap_err())
+        let (wrong, advice) = parts(&command().try_get_matches_from(args).unwrap_err());
+        (wrong, advice.unwrap_or_default())
     }
 
     #[test]
