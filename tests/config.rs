@@ -130,6 +130,8 @@ fn files_that_say_nonsense_are_refused_with_the_line() {
         1,
         &["fti.toml", "no such file", "did you mean fit.toml?"],
     );
+    let args = ["fit", "-", "-o", "out.svg", "--config", "-"];
+    assert_refused(&place, &args, 2, &["standard input", "both"]);
     assert_refused(
         &place,
         &["fit", "--print-config", "--strokes", "0"],

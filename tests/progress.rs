@@ -1,0 +1,71 @@
+//! Progress on a terminal, and nowhere else. The terminal is that of `script`, of util-linux.
+#![cfg(target_os = "linux")]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+
+mod place;
+
+use std::process::Command;
+
+use place::{Place, sample};
+
+/// What a terminal 120 columns wide gets to see of `strokefit ARGS`.
+fn on_a_terminal(place: &Place, args: &str) -> String {
+    let program = env!("CARGO_BIN_EXE_strokefit");
+    let output = Command::new("script")
+        .args([
+            "-qec",
+            &format!("stty cols 120; '{program}' {args}"),
+            "/dev/null",
+        ])
+        .current_dir(place.path("."))
+        .env("NO_COLOR", "1")
+        .output()
+        .unwrap();
+    let seen = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success(), "{seen}");
+    seen
+}
+
+#[test]
+fn a_terminal_sees_stage_strokes_fidelity_rate_and_time_left() {
+    let place = Place::new();
+    let input = sample("coffee-300.png");
+    let seen = on_a_terminal(&place, &format!("fit '{input}' -o a.svg --strokes 400"));
+    for words in [
+        "stage ",
+        " of ",
+        "polish",
+        " strokes, ",
+        " dB, ",
+        "moves/s",
+        " to go: ",
+        "a.svg: ",
+    ] {
+        assert!(seen.contains(words), "no {words:?} in {seen}");
+    }
+    let quiet = on_a_terminal(&place, &format!("fit '{input}' -o a.svg --strokes 400 -q"));
+    assert_eq!(quiet, "");
+}
+
+#[test]
+fn several_pictures_are_counted() {
+    let place = Place::new();
+    place.picture("a.png", 300, 200);
+    place.picture("b.png", 300, 200);
+    let seen = on_a_terminal(&place, "fit a.png b.png -o {stem}.svg --strokes 200");
+    assert!(
+        seen.contains("1 of 2 ") && seen.contains("2 of 2 "),
+        "{seen}"
+    );
+    assert!(seen.contains("2 drawn, 0 failed"), "{seen}");
+}
+
+#[test]
+fn nothing_is_coloured_against_the_wish() {
+    let place = Place::new();
+    let help = on_a_terminal(&place, "fit --help");
+    assert!(
+        help.contains("Usage:") && !help.contains('\u{1b}'),
+        "{help}"
+    );
+}
