@@ -1,0 +1,361 @@
+//! `refine`: drawings are taken up where they were left, foreign files stay as they are under the strokes,
+//! and what cannot be refined is refused.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+
+mod place;
+
+use std::fs;
+
+use place::{Place, assert_refused, report, sample, stderr};
+use strokefit::svg;
+
+/// The cat in 8 colours, traced with the `vtracer` crate 0.6.5 at its defaults, but for speckles of 16 px,
+/// no decimals and a layer difference of 48.
+const TRACED: &str = include_str!("data/chelsea-traced.svg");
+
+const NAMESPACE: &str = "xmlns=\"http://www.w3.org/2000/svg\"";
+
+#[track_caller]
+fn done(place: &Place, args: &[&str]) -> String {
+    let output = place.run(args);
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(0), "{args:?}: {said}");
+    said
+}
+
+/// Draws or refines with the options of a draft; returns the fidelity in dB.
+#[track_caller]
+fn draft(place: &Place, args: &[&str], out: &str) -> f64 {
+    let ends = [
+        "-q",
+        "-o",
+        out,
+        "--preset",
+        "draft",
+        "--report",
+        "report.json",
+    ];
+    done(place, &[args, &ends].concat());
+    report(place, "report.json")["fidelity"]["psnr_db"]
+        .as_f64()
+        .unwrap()
+}
+
+fn read(place: &Place, name: &str) -> String {
+    fs::read_to_string(place.path(name)).unwrap()
+}
+
+fn layers(place: &Place, name: &str) -> Vec<usize> {
+    let scene = svg::read(&read(place, name)).unwrap();
+    scene
+        .stages
+        .iter()
+        .map(|stage| stage.strokes.len())
+        .collect()
+}
+
+/// The text before and after what was put into it, which is returned.
+#[track_caller]
+fn put_into<'a>(base: &str, refined: &'a str) -> &'a str {
+    let (head, tail) = base.split_at(base.rfind("</").unwrap());
+    assert!(refined.starts_with(head) && refined.ends_with(tail));
+    &refined[head.len()..refined.len() - tail.len()]
+}
+
+#[test]
+fn a_drawing_in_two_goes_is_as_good_as_one_in_one_go() {
+    let place = Place::new();
+    let picture = sample("coffee-300.png");
+    let whole = draft(&place, &["fit", &picture, "--strokes", "300"], "whole.svg");
+    draft(&place, &["fit", &picture, "--strokes", "150"], "half.svg");
+    let both = draft(
+        &place,
+        &["refine", "half.svg", &picture, "--strokes", "300"],
+        "both.svg",
+    );
+    assert!(both > whole - 0.3, "{both} dB in two goes, {whole} in one");
+    assert_eq!(layers(&place, "both.svg").iter().sum::<usize>(), 300);
+    assert_eq!(report(&place, "report.json")["base"]["strokes"], 150);
+}
+
+/// Without polish the first stages of a plan are the same whether or not others follow: the stages that are
+/// there are not planned again, and the drawing ends as good as the whole one.
+#[test]
+fn the_stages_that_are_missing_are_added() {
+    let place = Place::new();
+    let picture = sample("coffee-300.png");
+    let plain = ["fit", &picture, "--no-polish", "--strokes"];
+    let whole = draft(&place, &[&plain[..], &["200"]].concat(), "whole.svg");
+    let counts = layers(&place, "whole.svg");
+    let first: usize = counts[..5].iter().sum();
+    let first = first.to_string();
+    draft(
+        &place,
+        &[&plain[..], &[&first, "--stages", "5"]].concat(),
+        "first.svg",
+    );
+    let refine = [
+        "refine",
+        "first.svg",
+        &picture,
+        "--no-polish",
+        "--strokes",
+        "200",
+    ];
+    let both = draft(&place, &refine, "both.svg");
+    assert!(
+        (both - whole).abs() < 0.3,
+        "{both} dB in two goes, {whole} in one"
+    );
+    let both = layers(&place, "both.svg");
+    assert_eq!(both.len(), counts.len(), "{both:?} for {counts:?}");
+    assert_eq!(both[..5], layers(&place, "first.svg"));
+}
+
+#[test]
+fn a_base_that_meets_a_budget_is_written_as_it_is() {
+    let place = Place::new();
+    let picture = sample("chelsea-cat.png");
+    place.file("traced.svg", TRACED);
+    draft(&place, &["fit", &picture, "--strokes", "80"], "own.svg");
+    draft(
+        &place,
+        &["refine", "traced.svg", &picture, "--strokes", "20"],
+        "laid.svg",
+    );
+    for (base, budget) in [
+        ("own.svg", ["--strokes", "80"]),
+        ("own.svg", ["--psnr", "20"]),
+        ("laid.svg", ["--strokes", "20"]),
+        ("traced.svg", ["--psnr", "15"]),
+    ] {
+        draft(
+            &place,
+            &[&["refine", base, &picture], &budget[..]].concat(),
+            "again.svg",
+        );
+        assert!(
+            read(&place, "again.svg") == read(&place, base),
+            "{base} {budget:?}"
+        );
+    }
+}
+
+#[test]
+fn a_traced_picture_gains_and_stays_as_it_is() {
+    let place = Place::new();
+    let picture = sample("chelsea-cat.png");
+    place.file("traced.svg", TRACED);
+    let before = draft(
+        &place,
+        &["refine", "traced.svg", &picture, "--psnr", "1"],
+        "same.svg",
+    );
+    let refine = ["refine", "traced.svg", &picture, "--strokes", "200"];
+    let after = draft(&place, &refine, "refined.svg");
+    assert!(after > before + 3.0, "from {before} to {after} dB");
+    let refined = read(&place, "refined.svg");
+    assert_eq!(put_into(TRACED, &refined).matches("<path").count(), 200);
+    let record = report(&place, "report.json");
+    assert_eq!(
+        (&record["base"]["elements"], &record["base"]["strokes"]),
+        (&59.into(), &0.into())
+    );
+    assert!(record["agreement"]["psnr_db"].as_f64().unwrap() > 40.0);
+}
+
+#[test]
+fn strokes_laid_on_a_file_are_taken_up_again() {
+    let place = Place::new();
+    let picture = sample("chelsea-cat.png");
+    place.file("traced.svg", TRACED);
+    let refine = |base, strokes| ["refine", base, picture.as_str(), "--strokes", strokes];
+    draft(&place, &refine("traced.svg", "100"), "first.svg");
+    let twice = draft(&place, &refine("first.svg", "200"), "second.svg");
+    assert_eq!(report(&place, "report.json")["base"]["strokes"], 100);
+    let second = read(&place, "second.svg");
+    assert_eq!(put_into(TRACED, &second).matches("<path").count(), 200);
+    let once = draft(&place, &refine("traced.svg", "200"), "once.svg");
+    assert!(twice > once - 0.3, "{twice} dB in two goes, {once} in one");
+}
+
+#[test]
+fn a_frozen_drawing_stays_as_it_is_and_stays_a_drawing() {
+    let place = Place::new();
+    let picture = sample("coffee-300.png");
+    let before = draft(&place, &["fit", &picture, "--strokes", "60"], "own.svg");
+    let refine = [
+        "refine",
+        "own.svg",
+        &picture,
+        "--freeze-base",
+        "--strokes",
+        "60",
+    ];
+    let after = draft(&place, &refine, "more.svg");
+    put_into(&read(&place, "own.svg"), &read(&place, "more.svg"));
+    assert_eq!(layers(&place, "more.svg").iter().sum::<usize>(), 120);
+    assert!(after > before, "from {before} to {after} dB");
+}
+
+/// Another prefix, other units, a viewBox, and properties that strokes would inherit.
+#[test]
+fn the_root_does_not_change_the_strokes() {
+    let place = Place::new();
+    place.picture("in.png", 60, 40);
+    let root = "<s:svg xmlns:s=\"http://www.w3.org/2000/svg\" width=\"30mm\" height=\"20mm\" \
+                viewBox=\"-5 7 30 20\" stroke-opacity=\"0.2\" stroke-dasharray=\"1 2\" fill=\"red\" \
+                shape-rendering=\"crispEdges\" stroke-linecap=\"butt\">";
+    let base = format!(
+        "{root}<s:style>svg{{stroke:blue;stroke-width:9}}</s:style>\
+         <s:rect x=\"-5\" y=\"7\" width=\"30\" height=\"20\" fill=\"#888\"/><s:g id=\"stage-3\"/></s:svg>"
+    );
+    place.file("base.svg", &base);
+    let db = draft(
+        &place,
+        &["refine", "base.svg", "in.png", "--strokes", "30"],
+        "out.svg",
+    );
+    let refined = read(&place, "out.svg");
+    let layers = put_into(&base, &refined);
+    assert!(
+        layers.contains("<g id=\"stage-4\"") && !layers.contains("stage-3"),
+        "{layers}"
+    );
+    let agreement = &report(&place, "report.json")["agreement"]["psnr_db"];
+    assert!(
+        db > 25.0 && agreement.as_f64().unwrap() > 36.0,
+        "{db} {agreement}"
+    );
+}
+
+#[test]
+fn what_is_passed_through_and_what_cannot_be_seen_is_said() {
+    let place = Place::new();
+    place.picture("in.png", 30, 20);
+    let base = format!(
+        "<svg {NAMESPACE} viewBox=\"0 0 30 20\"><text>a</text><image href=\"/etc/hostname\"/><g/></svg>"
+    );
+    place.file("base.svg", base);
+    let refine = [
+        "refine",
+        "base.svg",
+        "in.png",
+        "-o",
+        "out.svg",
+        "--strokes",
+        "3",
+    ];
+    let said = done(&place, &refine);
+    for words in ["passing through 3 elements", "fonts", "other files"] {
+        assert!(said.contains(words), "no {words:?} in {said}");
+    }
+}
+
+/// What is clear in both stays clear, and no ground is drawn.
+#[test]
+fn transparency_is_kept() {
+    let place = Place::new();
+    let picture = sample("noto-gem.png");
+    draft(&place, &["fit", &picture, "--strokes", "40"], "own.svg");
+    draft(
+        &place,
+        &["refine", "own.svg", &picture, "--strokes", "60"],
+        "more.svg",
+    );
+    let alpha = &report(&place, "report.json")["alpha"];
+    assert!(alpha["black_db"].as_f64().unwrap() > 25.0, "{alpha}");
+    assert!(!read(&place, "more.svg").contains("<rect"));
+}
+
+#[test]
+fn what_cannot_be_refined_is_refused() {
+    let place = Place::new();
+    place.picture("in.png", 30, 20);
+    let svg = |root: &str, inside: &str| format!("<svg {NAMESPACE} {root}>{inside}</svg>");
+    let page = "width=\"30\" height=\"20\"";
+    let nested = "<g>".repeat(3000) + &"</g>".repeat(3000);
+    let bomb =
+        "<!DOCTYPE svg [<!ENTITY a \"haha\"><!ENTITY b \"&a;&a;&a;&a;\"><!ENTITY c \"&c;\">]>";
+    for (name, text, words) in [
+        ("empty.svg", String::new(), "empty"),
+        ("text.svg", "this is no SVG".into(), "no <svg>"),
+        ("html.svg", "<html></html>".into(), "<html>"),
+        (
+            "cut.svg",
+            svg(page, "<g>").replace("</svg>", ""),
+            "ends within",
+        ),
+        ("mixed.svg", svg(page, "<g>"), "not well-formed"),
+        (
+            "alien.svg",
+            svg(page, "").replace("http:", "https:"),
+            "namespace",
+        ),
+        (
+            "other.svg",
+            svg("width=\"30\" height=\"30\"", ""),
+            "aspect ratio",
+        ),
+        (
+            "unit.svg",
+            svg("width=\"30furlong\" height=\"20furlong\"", ""),
+            "viewBox",
+        ),
+        (
+            "percent.svg",
+            svg("width=\"100%\" height=\"100%\"", ""),
+            "viewBox",
+        ),
+        (
+            "faint.svg",
+            svg(&format!("{page} opacity=\"0.5\""), "<g/>"),
+            "root element",
+        ),
+        (
+            "styled.svg",
+            svg(page, "<style>path{fill:red}</style>"),
+            "style sheet",
+        ),
+        (
+            "hidden.svg",
+            svg(&format!("{page} display=\"none\""), ""),
+            "root element",
+        ),
+        ("nested.svg", svg(page, &nested), "nesting"),
+        (
+            "bomb.svg",
+            bomb.to_owned() + &svg(page, "<text>&c;</text>"),
+            "entity",
+        ),
+        ("outside.svg", svg(page, "<text>&x;</text>"), "entity"),
+    ] {
+        place.file(name, text);
+        let refine = ["refine", name, "in.png", "-o", "out.svg"];
+        assert_refused(&place, &refine, 1, &[name, words]);
+    }
+}
+
+#[test]
+fn usage_that_makes_no_sense_is_refused() {
+    let place = Place::new();
+    place.picture("in.png", 30, 20);
+    place.file(
+        "base.svg",
+        format!("<svg {NAMESPACE} viewBox=\"0 0 30 20\"/>"),
+    );
+    let refine = |base, input, output| ["refine", base, input, "-o", output];
+    assert_refused(&place, &refine("-", "-", "out.svg"), 2, &["standard input"]);
+    assert_refused(
+        &place,
+        &refine("base.svg", "in.png", "base.svg"),
+        2,
+        &["overwritten"],
+    );
+    let ground = [
+        &refine("base.svg", "in.png", "out.svg")[..],
+        &["--background", "none"],
+    ]
+    .concat();
+    assert_refused(&place, &ground, 2, &["--background"]);
+}
