@@ -252,6 +252,23 @@ fn what_is_passed_through_and_what_cannot_be_seen_is_said() {
     }
 }
 
+#[test]
+fn the_page_keeps_its_width() {
+    let place = Place::new();
+    place.picture("in.png", 60, 40);
+    draft(
+        &place,
+        &["fit", "in.png", "--strokes", "5", "--width", "120mm"],
+        "own.svg",
+    );
+    draft(
+        &place,
+        &["refine", "own.svg", "in.png", "--strokes", "9"],
+        "more.svg",
+    );
+    assert!(read(&place, "more.svg").contains("width=\"120mm\" height=\"80mm\""));
+}
+
 /// What is clear in both stays clear, and no ground is drawn.
 #[test]
 fn transparency_is_kept() {

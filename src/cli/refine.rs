@@ -18,8 +18,8 @@ use super::{Status, Verbosity, batch, input, misuse};
 /// What was drawn from a picture of another size, or with --freeze-base, stays as it is.
 ///
 /// Budgets count the whole file: --strokes the strokes taken up and the new ones, --psnr and --bytes the
-/// file that is written. An SVG that meets one of them already is written as it is. The background and the
-/// transparency are those of the SVG.
+/// file that is written, and --stages plans the whole drawing, of which the stages that are there are left
+/// out. An SVG that meets a budget already is written as it is. The background is that of the SVG.
 #[derive(Debug, clap::Args)]
 #[command(
     mut_arg("background", |background| background.hide(true)),

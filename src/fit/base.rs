@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::image::Image;
 use crate::scene::Scene;
-use crate::svg::{self, Document, WriteOptions};
+use crate::svg::{self, Document, Length, WriteOptions};
 use crate::verify;
 
 /// What a fit goes on from: a page that stays as it is, strokes that are fitted on, or both.
@@ -13,6 +13,8 @@ pub struct Base {
     pub document: Option<Document>,
     /// Strokes on top, to be fitted together with the new ones, each in its layer.
     pub scene: Scene,
+    /// Width of the page of a drawing of ours, if it says one; kept unless another is asked for.
+    pub width: Option<Length>,
 }
 
 impl Base {
@@ -31,8 +33,11 @@ impl Base {
         };
         let own = svg::read(&text).ok().filter(of_its_size);
         if let Some(scene) = own.filter(|_| !kept) {
-            let document = None;
-            return Ok(Self { document, scene });
+            return Ok(Self {
+                document: None,
+                scene,
+                width: svg::page_width(&text),
+            });
         }
         let document = Document::parse(text)?;
         let split = document.split();
@@ -40,16 +45,23 @@ impl Base {
         let (mut document, scene) = laid.unwrap_or_else(|| (document, blank(picture)));
         let placement = verify::placement(&document.probed(), document.probe(), picture)?;
         document.place(placement);
-        let document = Some(document);
-        Ok(Self { document, scene })
+        Ok(Self {
+            document: Some(document),
+            scene,
+            width: None,
+        })
     }
 
     /// The SVG of `scene`, fitted on `base` if there was one.
     pub fn write(base: Option<&Self>, scene: &Scene, options: &WriteOptions) -> String {
-        match base.and_then(|base| base.document.as_ref()) {
-            Some(document) => document.with_layers(scene, options),
-            None => svg::write(scene, options),
+        let Some(base) = base else {
+            return svg::write(scene, options);
+        };
+        if let Some(document) = &base.document {
+            return document.with_layers(scene, options);
         }
+        let width = options.width.or(base.width);
+        svg::write(scene, &WriteOptions { width, ..*options })
     }
 
     /// The elements that stay as they are.

@@ -12,7 +12,7 @@ use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
 use super::dialect::{INKSCAPE_NAMESPACE, SVG_NAMESPACE};
-use super::{WriteOptions, layers, read};
+use super::{Length, WriteOptions, layers, read};
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::Scene;
 
@@ -40,8 +40,9 @@ pub struct Document {
     /// Whether the layers stand as those of our own drawings do.
     is_ours: bool,
     placement: Placement,
-    /// An id that the document does not have.
+    /// Ids that the document does not have: of a stroke to try, and of the group of layers.
     probe: String,
+    group: String,
 }
 
 impl Document {
@@ -53,16 +54,13 @@ impl Document {
         let refused = |message| Error::new(ErrorKind::Svg, message);
         let mut outline = Outline::of(&text).map_err(refused)?;
         outline.fill(&mut text);
-        let mut probe = String::from("strokefit-probe");
-        while text.contains(&probe) {
-            probe.push('-');
-        }
         Ok(Self {
             is_ours: read(&text).is_ok(),
+            probe: unused(&text, "strokefit-probe"),
+            group: unused(&text, "strokefit"),
             text,
             outline,
             placement: IDENTITY,
-            probe,
         })
     }
 
@@ -140,8 +138,9 @@ impl Document {
         };
         format!(
             "{head}<g xmlns=\"{SVG_NAMESPACE}\" xmlns:inkscape=\"{INKSCAPE_NAMESPACE}\" \
-             inkscape:groupmode=\"layer\" inkscape:label=\"strokefit\" \
-             {MARK}=\"{width} {height}\"{transform} style=\"{RESET}\">\n{layers}</g>\n{tail}"
+             id=\"{}\" inkscape:groupmode=\"layer\" inkscape:label=\"strokefit\" \
+             {MARK}=\"{width} {height}\"{transform} style=\"{RESET}\">\n{layers}</g>\n{tail}",
+            self.group
         )
     }
 }
@@ -278,6 +277,33 @@ impl Group {
         );
         read(&format!("{head}{layers}</svg>")).ok()
     }
+}
+
+/// The width that the root of an SVG gives its page, if it has a unit.
+pub fn page_width(text: &str) -> Option<Length> {
+    let mut xml = Reader::from_str(text);
+    loop {
+        match xml.read_event().ok()? {
+            Event::Start(root) | Event::Empty(root) => {
+                return Length::parse(&attribute(&root, "width")?);
+            }
+            Event::Eof => return None,
+            _ => {}
+        }
+    }
+}
+
+/// An id like `name` that the text does not have.
+fn unused(text: &str, name: &str) -> String {
+    let is_used =
+        |id: &str| text.contains(&format!("\"{id}\"")) || text.contains(&format!("'{id}'"));
+    let mut id = name.to_owned();
+    let mut number = 1;
+    while is_used(&id) {
+        number += 1;
+        id = format!("{name}-{number}");
+    }
+    id
 }
 
 /// How far the text has been read.

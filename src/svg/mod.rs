@@ -52,7 +52,7 @@ mod read;
 mod write;
 
 pub use arrange::arrange;
-pub use document::{Document, Placement};
+pub use document::{Document, Placement, page_width};
 pub use lint::{Finding, Severity, lint};
 pub use options::{Form, Group, Length, WriteOptions};
 pub use read::read;
