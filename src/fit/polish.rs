@@ -1,7 +1,9 @@
 //! Polish: all free strokes, and the background, fitted jointly, with relocation.
 //!
 //! Every so often the strokes worth least by exact leave-one-out, and those not worth their price, are
-//! taken away, and candidates whose closed-form gain is larger are put on top instead.
+//! taken away, and candidates that will gain more are put on top instead. A candidate's closed-form gain
+//! is that before it is fitted, and a stroke's worth that before its neighbours take over, so that both
+//! speak for the stroke in place: the gain counts several times ([`Recipe::relocate_gain`]).
 
 use super::anneal::Anneal;
 use super::control::Control;
@@ -90,7 +92,7 @@ impl Clock {
     }
 }
 
-/// Swaps strokes for candidates that gain more, and fills up to the limit with those that pay.
+/// Swaps strokes for candidates that will gain more, and fills up to the limit with those that pay.
 fn relocate(drawing: &mut Drawing, recipe: &Recipe, terms: Terms, descent: &mut Descent) {
     let room = terms.limit.saturating_sub(drawing.len());
     let share = (drawing.free().len() as f32 * recipe.relocate_share).ceil() as usize;
@@ -107,7 +109,11 @@ fn relocate(drawing: &mut Drawing, recipe: &Recipe, terms: Terms, descent: &mut 
         .into_iter()
         .filter(|c| c.gain > candidate_price(c))
         .collect();
-    let (keep, newcomers) = exchange(&worth, &prices, &paying, room);
+    let gains: Vec<f32> = paying
+        .iter()
+        .map(|c| c.gain * recipe.relocate_gain)
+        .collect();
+    let (keep, newcomers) = exchange(&worth, &prices, &gains, room);
     let mut sources: Vec<Option<usize>> = (0..keep.len()).filter(|&i| keep[i]).map(Some).collect();
     let newcomers: Vec<Params> = paying[..newcomers].iter().rev().map(|c| c.stroke).collect();
     sources.resize(sources.len() + newcomers.len(), None);
@@ -117,27 +123,22 @@ fn relocate(drawing: &mut Drawing, recipe: &Recipe, terms: Terms, descent: &mut 
     descent.rearrange(drawing.free(), &sources);
 }
 
-/// Which strokes stay, and how many of the `candidates`, best first, come.
+/// Which strokes stay, and how many candidates come, of those that will gain `gains`, best first.
 ///
 /// Strokes not worth their price go. Candidates first take the places that are free, then, the best of
 /// them against the worst of those, the places of strokes worth less than they gain.
-fn exchange(
-    worth: &[f32],
-    prices: &[f32],
-    candidates: &[Candidate],
-    room: usize,
-) -> (Vec<bool>, usize) {
+fn exchange(worth: &[f32], prices: &[f32], gains: &[f32], room: usize) -> (Vec<bool>, usize) {
     let mut keep: Vec<bool> = worth
         .iter()
         .zip(prices)
         .map(|(worth, price)| worth > price)
         .collect();
     let vacated = keep.iter().filter(|&&stays| !stays).count();
-    let mut coming = candidates.len().min(room + vacated);
+    let mut coming = gains.len().min(room + vacated);
     let mut order: Vec<usize> = (0..worth.len()).filter(|&i| keep[i]).collect();
     order.sort_by(|&i, &j| worth[i].total_cmp(&worth[j]).then(i.cmp(&j)));
-    for (i, candidate) in order.into_iter().zip(&candidates[coming..]) {
-        if candidate.gain <= worth[i] {
+    for (i, &gain) in order.into_iter().zip(&gains[coming..]) {
+        if gain <= worth[i] {
             break;
         }
         keep[i] = false;
@@ -150,20 +151,10 @@ fn exchange(
 mod tests {
     use super::*;
 
-    fn candidates(gains: &[f32]) -> Vec<Candidate> {
-        gains
-            .iter()
-            .map(|&gain| Candidate {
-                stroke: [0.0; 9],
-                gain,
-            })
-            .collect()
-    }
-
     #[test]
     fn strokes_worth_less_than_candidates_go() {
         let worth = [4.0, 0.5, 2.0, 9.0, 0.1];
-        let (keep, coming) = exchange(&worth, &[0.0; 5], &candidates(&[5.0, 3.0, 1.0]), 0);
+        let (keep, coming) = exchange(&worth, &[0.0; 5], &[5.0, 3.0, 1.0], 0);
         // 0.1 < 5 and 0.5 < 3, but 2 > 1.
         assert_eq!((keep, coming), (vec![true, false, true, true, false], 2));
     }
@@ -176,7 +167,7 @@ mod tests {
 
     #[test]
     fn free_places_are_filled_first() {
-        let (keep, coming) = exchange(&[4.0, 8.0], &[0.0; 2], &candidates(&[3.0, 2.0]), 2);
+        let (keep, coming) = exchange(&[4.0, 8.0], &[0.0; 2], &[3.0, 2.0], 2);
         assert_eq!((keep, coming), (vec![true, true], 2));
     }
 }

@@ -29,6 +29,8 @@ pub struct Recipe {
     pub relocate_share: f32,
     /// Scale of relocated strokes, in units of the last stage's.
     pub relocate_scale: f32,
+    /// What a candidate is reckoned to gain once it is fitted, in units of its gain as it is proposed.
+    pub relocate_gain: f32,
     /// Softness at the start of the joint fit, in units of the final one.
     pub polish_softness: f32,
     /// Rounds of settling against the rendered file; 0 for none.
@@ -73,7 +75,7 @@ impl Recipe {
             polish_iterations: 1800,
             coarse_share: 0.3,
             polish_rates: Rates {
-                position: 2.0,
+                position: 2.5,
                 radius: 0.5,
                 color: 0.02,
                 opacity: 0.03,
@@ -81,7 +83,8 @@ impl Recipe {
             },
             relocate_every: 30,
             relocate_share: 0.3,
-            relocate_scale: 0.4,
+            relocate_scale: 0.5,
+            relocate_gain: 4.0,
             polish_softness: 2.4,
             settle_rounds: 3,
             settle_iterations: 20,
@@ -98,6 +101,8 @@ impl Recipe {
                     ..balanced.polish_rates
                 },
                 relocate_every: 20,
+                relocate_scale: 0.4,
+                relocate_gain: 2.0,
                 settle_rounds: 1,
                 ..balanced
             },
