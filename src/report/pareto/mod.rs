@@ -6,14 +6,17 @@
 mod charts;
 mod compare;
 mod page;
+mod spread;
+mod tables;
 
 use serde::{Deserialize, Serialize};
 
 pub use charts::charts;
 pub use compare::{Comparison, Holds, comparisons, front};
 pub use page::{Exhibit, page};
+pub use spread::{Spread, spreads};
 
-use super::{SCHEMA, StageEntry, Table};
+use super::{SCHEMA, StageEntry};
 use crate::metrics::Quality;
 
 /// The family of the drawings of the article's recipe.
@@ -75,23 +78,6 @@ pub struct ParetoEntry {
     pub stages: Vec<StageEntry>,
     /// Why there is no drawing, or none that is as it was fitted.
     pub failure: Option<String>,
-}
-
-/// Drawings that differ in their seed alone.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Spread {
-    /// The picture.
-    pub picture: String,
-    /// Who, and with which settings.
-    pub label: String,
-    /// How many seeds.
-    pub seeds: usize,
-    /// Mean and standard deviation of the fidelity, dB.
-    pub psnr_db: [f64; 2],
-    /// Of the CPU time, s.
-    pub cpu_s: [f64; 2],
-    /// Of the bytes after gzip.
-    pub gzip_bytes: [f64; 2],
 }
 
 impl ParetoEntry {
@@ -173,116 +159,6 @@ impl ParetoReport {
             .filter(|c| c.holds == Holds::Refuted);
         failed.count() + refuted.count()
     }
-
-    /// One row per drawing.
-    pub fn table(&self) -> Table {
-        let mut table = Table::new(&HEAD);
-        self.entries
-            .iter()
-            .for_each(|entry| table.row(cells(entry)));
-        table
-    }
-
-    /// One row per comparison.
-    pub fn comparison_table(&self) -> Table {
-        let mut table = Table::new(&["picture", "comparison", "figure", "verdict"]);
-        for c in &self.comparisons {
-            table.row([&c.picture, &c.claim, &c.figure, &c.holds.word().to_owned()]);
-        }
-        table
-    }
-
-    /// One row per set of seeds.
-    pub fn spread_table(&self) -> Table {
-        let mut table = Table::new(&[
-            "picture",
-            "drawing",
-            "seeds",
-            "PSNR dB",
-            "CPU s",
-            "gzip bytes",
-        ]);
-        for spread in &self.spreads {
-            let Spread {
-                psnr_db,
-                cpu_s,
-                gzip_bytes,
-                ..
-            } = spread;
-            let pair = |[mean, deviation]: [f64; 2], digits| {
-                format!("{mean:.digits$} ± {deviation:.digits$}")
-            };
-            table.row([
-                spread.picture.clone(),
-                spread.label.clone(),
-                spread.seeds.to_string(),
-                pair(*psnr_db, 2),
-                pair(*cpu_s, 2),
-                pair(*gzip_bytes, 0),
-            ]);
-        }
-        table
-    }
-
-    /// Everything as Markdown.
-    pub fn markdown(&self) -> String {
-        format!(
-            "# Cost against error\n\n{NOTE}\n\n## Comparisons\n\n{}\n## Spread over seeds\n\n{}\n## Drawings\n\n{}",
-            self.comparison_table().markdown(),
-            self.spread_table().markdown(),
-            self.table().markdown()
-        )
-    }
-}
-
-/// What the figures are.
-pub(super) const NOTE: &str = "Fidelity is that of the file as resvg draws it, over 8-bit RGB on white. Times are of \
-                               making the drawing, without reading the picture or judging the file; CPU time is \
-                               that of all threads, in hundredths of a second. Each case is a process of its own, \
-                               and memory is the most that it held, picture included; that of other programs is \
-                               looked at every 2 ms.";
-
-const HEAD: [&str; 15] = [
-    "picture",
-    "family",
-    "settings",
-    "strokes",
-    "psnr_db",
-    "ssim",
-    "l1",
-    "cpu_s",
-    "wall_s",
-    "peak_mib",
-    "svg_bytes",
-    "gzip_bytes",
-    "agreement_db",
-    "seed",
-    "failure",
-];
-
-fn cells(entry: &ParetoEntry) -> [String; 15] {
-    let quality = |f: fn(Quality) -> f64| entry.fidelity.map(f);
-    let mib = entry
-        .peak_rss_bytes
-        .map(|bytes| bytes as f64 / f64::from(1 << 20));
-    let whole = |v: Option<f64>| optional(v, 0);
-    [
-        entry.picture.clone(),
-        entry.family.clone(),
-        entry.label.clone(),
-        whole(entry.strokes.map(|n| n as f64)),
-        optional(quality(|q| q.psnr_db), 2),
-        optional(quality(|q| q.ssim), 4),
-        optional(quality(|q| q.l1), 5),
-        optional(entry.cpu_s, 2),
-        optional(entry.wall_s, 2),
-        optional(mib, 0),
-        entry.svg_bytes.to_string(),
-        entry.gzip_bytes.to_string(),
-        optional(entry.agreement_db, 1),
-        whole(entry.seed.map(|seed| seed as f64)),
-        entry.failure.clone().unwrap_or_default(),
-    ]
 }
 
 fn optional(value: Option<f64>, digits: usize) -> String {
@@ -298,49 +174,6 @@ pub(super) fn pictures(entries: &[ParetoEntry]) -> Vec<&str> {
         }
     }
     names
-}
-
-fn spreads(entries: &[ParetoEntry]) -> Vec<Spread> {
-    let key = |entry: &ParetoEntry| {
-        let unseeded = entry
-            .label
-            .rsplit_once("seed")
-            .map_or(entry.label.as_str(), |(head, _)| head);
-        (
-            entry.picture.clone(),
-            format!("{} {}", entry.family, unseeded.trim_end_matches([' ', ','])),
-        )
-    };
-    let mut groups: Vec<((String, String), Vec<&ParetoEntry>)> = Vec::new();
-    for entry in entries
-        .iter()
-        .filter(|entry| entry.seed.is_some() && entry.fidelity.is_some())
-    {
-        let key = key(entry);
-        match groups.iter_mut().find(|(k, _)| *k == key) {
-            Some((_, group)) => group.push(entry),
-            None => groups.push((key, vec![entry])),
-        }
-    }
-    let several = groups.into_iter().filter(|(_, group)| group.len() > 1);
-    several
-        .map(|((picture, label), group)| Spread {
-            picture,
-            label,
-            seeds: group.len(),
-            psnr_db: spread(group.iter().filter_map(|e| e.psnr_db())),
-            cpu_s: spread(group.iter().filter_map(|e| e.cpu_s)),
-            gzip_bytes: spread(group.iter().map(|e| e.gzip_bytes as f64)),
-        })
-        .collect()
-}
-
-/// Mean and standard deviation of a sample.
-fn spread(values: impl Iterator<Item = f64> + Clone) -> [f64; 2] {
-    let n = values.clone().count().max(1) as f64;
-    let mean = values.clone().sum::<f64>() / n;
-    let variance = values.map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0);
-    [mean, variance.sqrt()]
 }
 
 #[cfg(test)]
@@ -379,20 +212,6 @@ mod tests {
         assert!(entry.line().ends_with(": pass"), "{}", entry.line());
         entry.failure = Some("killed".into());
         assert!(entry.line().ends_with("killed: FAIL"), "{}", entry.line());
-    }
-
-    #[test]
-    fn seeds_are_told_apart_from_settings() {
-        let entries = [
-            drawing(OWN, "draft 100 smoothstep seed 0", 0.5, 900, 30.0),
-            drawing(OWN, "draft 100 smoothstep seed 1", 0.7, 900, 32.0),
-            drawing(OWN, "best 100 smoothstep seed 0", 9.0, 900, 33.0),
-        ];
-        let spreads = spreads(&entries);
-        assert_eq!(spreads.len(), 1);
-        assert_eq!(spreads[0].seeds, 2);
-        assert!((spreads[0].psnr_db[0] - 31.0).abs() < 1e-12);
-        assert!((spreads[0].psnr_db[1] - 2f64.sqrt()).abs() < 1e-12);
     }
 
     #[test]

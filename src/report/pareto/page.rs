@@ -4,7 +4,8 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
 use super::super::table::escaped;
-use super::{Holds, NOTE, ParetoReport, charts, pictures};
+use super::tables::NOTE;
+use super::{Holds, ParetoReport, charts, pictures};
 use crate::error::Result;
 
 /// A drawing to be shown.

@@ -1,0 +1,117 @@
+//! The report as tables and as Markdown.
+
+use super::{ParetoEntry, ParetoReport, Spread, optional};
+use crate::metrics::Quality;
+use crate::report::Table;
+
+/// What the figures are.
+pub(super) const NOTE: &str = "Fidelity is that of the file as resvg draws it, over 8-bit RGB on white. Times are of \
+                               making the drawing, without reading the picture or judging the file; CPU time is \
+                               that of all threads, in hundredths of a second. Each case is a process of its own, \
+                               and memory is the most that it held, picture included; that of other programs is \
+                               looked at every 2 ms.";
+
+impl ParetoReport {
+    /// One row per drawing.
+    pub fn table(&self) -> Table {
+        let mut table = Table::new(&HEAD);
+        self.entries
+            .iter()
+            .for_each(|entry| table.row(cells(entry)));
+        table
+    }
+
+    /// One row per comparison.
+    pub fn comparison_table(&self) -> Table {
+        let mut table = Table::new(&["picture", "comparison", "figure", "verdict"]);
+        for c in &self.comparisons {
+            table.row([&c.picture, &c.claim, &c.figure, &c.holds.word().to_owned()]);
+        }
+        table
+    }
+
+    /// One row per set of seeds.
+    pub fn spread_table(&self) -> Table {
+        let mut table = Table::new(&[
+            "picture",
+            "drawing",
+            "seeds",
+            "PSNR dB",
+            "CPU s",
+            "gzip bytes",
+        ]);
+        for spread in &self.spreads {
+            let Spread {
+                psnr_db,
+                cpu_s,
+                gzip_bytes,
+                ..
+            } = spread;
+            let pair = |[mean, deviation]: [f64; 2], digits| {
+                format!("{mean:.digits$} ± {deviation:.digits$}")
+            };
+            table.row([
+                spread.picture.clone(),
+                spread.label.clone(),
+                spread.seeds.to_string(),
+                pair(*psnr_db, 2),
+                pair(*cpu_s, 2),
+                pair(*gzip_bytes, 0),
+            ]);
+        }
+        table
+    }
+
+    /// Everything as Markdown.
+    pub fn markdown(&self) -> String {
+        format!(
+            "# Cost against error\n\n{NOTE}\n\n## Comparisons\n\n{}\n## Spread over seeds\n\n{}\n## Drawings\n\n{}",
+            self.comparison_table().markdown(),
+            self.spread_table().markdown(),
+            self.table().markdown()
+        )
+    }
+}
+
+const HEAD: [&str; 15] = [
+    "picture",
+    "family",
+    "settings",
+    "strokes",
+    "psnr_db",
+    "ssim",
+    "l1",
+    "cpu_s",
+    "wall_s",
+    "peak_mib",
+    "svg_bytes",
+    "gzip_bytes",
+    "agreement_db",
+    "seed",
+    "failure",
+];
+
+fn cells(entry: &ParetoEntry) -> [String; 15] {
+    let quality = |f: fn(Quality) -> f64| entry.fidelity.map(f);
+    let mib = entry
+        .peak_rss_bytes
+        .map(|bytes| bytes as f64 / f64::from(1 << 20));
+    let whole = |v: Option<f64>| optional(v, 0);
+    [
+        entry.picture.clone(),
+        entry.family.clone(),
+        entry.label.clone(),
+        whole(entry.strokes.map(|n| n as f64)),
+        optional(quality(|q| q.psnr_db), 2),
+        optional(quality(|q| q.ssim), 4),
+        optional(quality(|q| q.l1), 5),
+        optional(entry.cpu_s, 2),
+        optional(entry.wall_s, 2),
+        optional(mib, 0),
+        entry.svg_bytes.to_string(),
+        entry.gzip_bytes.to_string(),
+        optional(entry.agreement_db, 1),
+        whole(entry.seed.map(|seed| seed as f64)),
+        entry.failure.clone().unwrap_or_default(),
+    ]
+}
