@@ -62,8 +62,12 @@ impl Gap {
         }
     }
 
+    pub(super) fn canvas_holds(self) -> bool {
+        self.canvas <= CANVAS_WITHIN
+    }
+
     pub(super) fn holds(self) -> bool {
-        self.canvas <= CANVAS_WITHIN && self.gradients <= WITHIN && self.worth <= WITHIN
+        self.canvas_holds() && self.gradients <= WITHIN && self.worth <= WITHIN
     }
 
     pub(super) fn finding(self) -> Finding {
