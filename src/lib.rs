@@ -34,6 +34,7 @@
 //! engines                         what other programs make of it
 //! fit                             stages, polish, settling, budgets
 //! report                          plain records, tables, plots
+//! animation  view                 frames of a drawing, a page that watches a fit
 //! lab  bench                      experiments, measurements
 //! ```
 //!
@@ -63,6 +64,7 @@
 //! # Ok::<(), strokefit::Error>(())
 //! ```
 
+pub mod animation;
 pub mod bench;
 pub mod coverage;
 pub mod engines;
@@ -82,5 +84,6 @@ pub mod sdf;
 pub mod seed;
 pub mod svg;
 pub mod verify;
+pub mod view;
 
 pub use error::{Error, ErrorKind, Result};

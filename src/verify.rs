@@ -27,12 +27,15 @@
 //! # Ok::<(), strokefit::Error>(())
 //! ```
 
+mod painting;
 mod placement;
 
 use resvg::tiny_skia::{Color, Pixmap, PremultipliedColorU8, Transform};
 use resvg::usvg::roxmltree::{self, Document, ParsingOptions};
 use resvg::usvg::{ImageHrefResolver, Options, Tree};
 use serde::{Deserialize, Serialize};
+
+pub use painting::Painting;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;

@@ -151,7 +151,15 @@ fn outputs_that_would_collide_are_refused_before_the_work() {
             ["standard output", "same place"],
         ),
         (
-            &["fit", "in/a.png", "b.png", "-o", "{stem}.png"],
+            &[
+                "fit",
+                "in/a.png",
+                "b.png",
+                "-o",
+                "{stem}.svg",
+                "-o",
+                "{stem}.png",
+            ],
             ["overwritten", "b.png"],
         ),
         (

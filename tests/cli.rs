@@ -127,7 +127,7 @@ fn outputs_may_not_collide() {
     place.picture("in.png", 30, 20);
     assert_refused(
         &place,
-        &["fit", "in.png", "-o", "./in.png"],
+        &["fit", "in.png", "-o", "out.svg", "-o", "./in.png"],
         2,
         &["in.png", "overwritten"],
     );

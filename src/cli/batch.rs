@@ -10,6 +10,8 @@ use super::events::Events;
 use super::job::{Draw, Drawn, Job, Outputs};
 use super::options::Options;
 use super::output::{self, Output};
+use super::pictures;
+use super::view::{self, Watch};
 use super::{Status, Verbosity, fail, input, misuse};
 
 /// What stands for the name of the picture without its extension.
@@ -18,15 +20,18 @@ const STEM: &str = "{stem}";
 /// One job for each input.
 pub(super) fn jobs<'a>(
     inputs: &'a [PathBuf],
-    output: &Path,
+    outputs: &[PathBuf],
     report: Option<&Path>,
     options: &'a Options,
 ) -> Result<Vec<Job<'a>>> {
+    let (output, pictures) = pictures::split(outputs)?;
     let job = |input: &'a PathBuf| {
+        let pictures = pictures.iter().map(|template| named(template, input));
         Ok(Job {
             base: None,
             input,
             output: named(output, input)?,
+            pictures: pictures.collect::<Result<_>>()?,
             report: report.map(|report| named(report, input)).transpose()?,
             options,
         })
@@ -55,31 +60,60 @@ fn named(template: &Path, input: &Path) -> Result<PathBuf> {
 /// Does the jobs in order. One alone tells its outcome in a line, several in a table.
 pub(super) fn run(jobs: &[Job<'_>], verbosity: Verbosity, draw: &Draw<'_>) -> Result<Status> {
     let events = jobs.first().and_then(|job| job.options.events.as_deref());
-    let outputs: Vec<Outputs> = jobs.iter().map(Outputs::open).collect::<Result<_>>()?;
+    let outputs: Vec<Outputs<'_>> = jobs.iter().map(Outputs::open).collect::<Result<_>>()?;
     keep_apart(jobs, &outputs, events)?;
     let mut events = Events::open(events)?;
+    let watch = jobs.first().map(|job| Watch::open(job.options));
+    let watch = watch.transpose()?.flatten();
+    let draw: &Draw<'_> = &|picture, observer| match &watch {
+        Some(watch) => watch.fit(picture, observer, draw),
+        None => draw(picture, observer),
+    };
     let status = match (jobs, outputs.as_slice()) {
-        ([job], [outputs]) => one(job, outputs, &mut events, verbosity, draw),
-        _ => Ok(several(jobs, &outputs, &mut events, verbosity, draw)),
+        ([job], [outputs]) => one(job, outputs, &mut events, verbosity, draw, watch.as_ref()),
+        _ => {
+            let status = several(jobs, &outputs, &mut events, verbosity, draw);
+            watch.as_ref().and_then(Watch::wait);
+            Ok(status)
+        }
     };
     status.and_then(|status| events.close().map(|()| status))
 }
 
 fn one(
     job: &Job<'_>,
-    outputs: &Outputs,
+    outputs: &Outputs<'_>,
     events: &mut Events,
     verbosity: Verbosity,
     draw: &Draw<'_>,
+    watch: Option<&Watch>,
 ) -> Result<Status> {
-    let drawn = attempt(job, outputs, events, String::new(), verbosity, draw)?;
-    verbosity.say(job.summary(&drawn));
-    Ok(job.judge(&drawn))
+    // Standard input cannot be read again for more strokes.
+    let watch = watch.inspect(|watch| watch.offer_more(!input::is_stdin(job.input)));
+    let mut attempt = |draw: &Draw<'_>| {
+        let drawn = attempt(job, outputs, events, String::new(), verbosity, draw)?;
+        verbosity.say(job.summary(&drawn));
+        anyhow::Ok(drawn)
+    };
+    let mut drawn = attempt(draw)?;
+    loop {
+        let status = job.judge(&drawn);
+        let Some((watch, more)) = watch.and_then(|watch| Some((watch, watch.wait()?))) else {
+            return Ok(status);
+        };
+        drawn = attempt(&|picture, observer| {
+            watch.fit(
+                picture,
+                observer,
+                &view::more(job.options, &drawn.fit, more),
+            )
+        })?;
+    }
 }
 
 fn several(
     jobs: &[Job<'_>],
-    outputs: &[Outputs],
+    outputs: &[Outputs<'_>],
     events: &mut Events,
     verbosity: Verbosity,
     draw: &Draw<'_>,
@@ -111,7 +145,7 @@ fn several(
 /// Does one job; a failure is an event too.
 fn attempt(
     job: &Job<'_>,
-    outputs: &Outputs,
+    outputs: &Outputs<'_>,
     events: &mut Events,
     heading: String,
     verbosity: Verbosity,
@@ -128,16 +162,12 @@ fn attempt(
 }
 
 /// Refuses jobs of which one would overwrite what another reads or writes.
-fn keep_apart(jobs: &[Job<'_>], outputs: &[Outputs], events: Option<&Path>) -> Result<()> {
+fn keep_apart(jobs: &[Job<'_>], outputs: &[Outputs<'_>], events: Option<&Path>) -> Result<()> {
     let events = events.map(|path| Output::open(path).map(|output| (path, output)));
     let events = events.transpose()?;
     let mut taken: Vec<(&Path, &Output)> = events.iter().map(|(path, o)| (*path, o)).collect();
-    for (job, outputs) in jobs.iter().zip(outputs) {
-        let report = job.report.as_deref().zip(outputs.report.as_ref());
-        for (path, output) in [(job.output.as_path(), &outputs.svg)]
-            .into_iter()
-            .chain(report)
-        {
+    for outputs in outputs {
+        for (path, output) in outputs.all() {
             if taken.iter().any(|(_, other)| *other == output) {
                 return Err(clash(path, jobs.len()));
             }

@@ -21,14 +21,18 @@ use super::{Status, Verbosity};
   strokefit fit *.jpg -o 'out/{stem}.svg' --psnr 30        one SVG for each picture
   strokefit fit --psnr 32 --opaque --print-config > fit.toml
   strokefit fit photo.jpg -o photo.svg --config fit.toml --seed 7
+  strokefit fit photo.jpg -o photo.svg --view                see it grow
+  strokefit fit photo.jpg -o photo.svg -o photo.gif --frames stage --legend
   curl -s https://example.org/a.png | strokefit fit - -o - --psnr 30 > a.svg")]
 pub(super) struct Args {
     /// PNG, JPEG, WebP, GIF (first frame), BMP or TIFF pictures; - for standard input
     #[arg(required = true, value_name = "INPUT")]
     inputs: Vec<PathBuf>,
-    /// The SVG to write; - for standard output; {stem} stands for the picture's name without extension
-    #[arg(short, long, value_name = "OUT.svg")]
-    output: PathBuf,
+    /// The SVG to write; - for standard output; {stem} stands for the picture's name without extension.
+    /// Again for more: .png is a render, .gif, .webp or .apng an animation, .animated.svg draws itself,
+    /// {n}.png are single frames
+    #[arg(short, long, value_name = "OUT.svg", required = true)]
+    output: Vec<PathBuf>,
     /// Write what was done as JSON; - for standard output; {stem} as above
     #[arg(long, value_name = "R.json")]
     report: Option<PathBuf>,

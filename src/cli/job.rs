@@ -9,12 +9,14 @@ use strokefit::fit::{Base, Fit, Observer, Progress};
 use strokefit::image::Image;
 use strokefit::metrics::Quality;
 use strokefit::report::{self, BaseEntry, Event, FitReport, Input, StageEntry, Usage};
+use strokefit::scene::Scene;
 use strokefit::svg::WriteOptions;
 use strokefit::verify::{self, MIN_AGREEMENT_DB, OnGrounds, Verdict};
 
 use super::events::{Events, Phases};
 use super::options::Options;
 use super::output::{self, Output};
+use super::pictures::{Pictures, Subject};
 use super::progress::Bar;
 use super::{Status, Verbosity, complain, input};
 
@@ -23,7 +25,10 @@ pub(super) struct Job<'a> {
     /// The SVG to go on from.
     pub(super) base: Option<&'a Path>,
     pub(super) input: &'a Path,
+    /// The SVG.
     pub(super) output: PathBuf,
+    /// Pictures and animations beside it.
+    pub(super) pictures: Vec<PathBuf>,
     pub(super) report: Option<PathBuf>,
     pub(super) options: &'a Options,
 }
@@ -35,7 +40,7 @@ impl Job<'_> {
     /// Draws and writes; the bar begins with `heading`.
     pub(super) fn run(
         &self,
-        outputs: &Outputs,
+        outputs: &Outputs<'_>,
         events: &mut Events,
         heading: String,
         verbosity: Verbosity,
@@ -48,12 +53,18 @@ impl Job<'_> {
         let fit = self.watched(&picture, events, Bar::new(verbosity.quiet, heading), draw)?;
         tell_stages(&fit, verbosity);
         let mut drawn = Drawn::new(fit, &self.options.form.options())?;
-        outputs.svg.write(drawn.text.as_bytes())?;
+        outputs.svg.1.write(drawn.text.as_bytes())?;
         drawn.wall = start.elapsed();
         let record = self.record(&drawn);
-        if let Some(output) = &outputs.report {
+        if let Some((_, output)) = &outputs.report {
             output.write(&json(&record)?)?;
         }
+        outputs.pictures.write(&Subject {
+            scene: drawn.all_strokes(),
+            text: &drawn.text,
+            target: Some(&drawn.fit.target),
+            scale: 1.0,
+        })?;
         events.tell(&Event::Done(Box::new(record)));
         Ok(drawn)
     }
@@ -155,17 +166,27 @@ impl Job<'_> {
 }
 
 /// Where the results go, known to be writable.
-pub(super) struct Outputs {
-    pub(super) svg: Output,
-    pub(super) report: Option<Output>,
+pub(super) struct Outputs<'a> {
+    svg: (&'a Path, Output),
+    report: Option<(&'a Path, Output)>,
+    pictures: Pictures<'a>,
 }
 
-impl Outputs {
-    pub(super) fn open(job: &Job<'_>) -> Result<Self> {
+impl<'a> Outputs<'a> {
+    pub(super) fn open(job: &'a Job<'_>) -> Result<Self> {
+        let open = |path: &'a PathBuf| Output::open(path).map(|output| (path.as_path(), output));
         Ok(Self {
-            svg: Output::open(&job.output)?,
-            report: job.report.as_deref().map(Output::open).transpose()?,
+            svg: open(&job.output)?,
+            report: job.report.as_ref().map(open).transpose()?,
+            pictures: Pictures::open(&job.pictures, &job.options.film)?,
         })
+    }
+
+    /// Every file that is written.
+    pub(super) fn all(&self) -> impl Iterator<Item = (&'a Path, &Output)> {
+        let own = [&self.svg].into_iter().chain(&self.report);
+        own.map(|(path, output)| (*path, output))
+            .chain(self.pictures.all())
     }
 }
 
@@ -196,6 +217,14 @@ impl Drawn {
             alpha: alpha.transpose()?,
             text,
         })
+    }
+}
+
+impl Drawn {
+    /// The drawing, unless its strokes lie on a document and are only a part of it.
+    fn all_strokes(&self) -> Option<&Scene> {
+        let lies_on_document = |base: &Base| base.document.is_some();
+        (!self.fit.base.as_ref().is_some_and(lies_on_document)).then_some(&self.fit.scene)
     }
 }
 

@@ -14,11 +14,13 @@ mod lab;
 mod manual;
 mod options;
 mod output;
+mod pictures;
 mod progress;
 mod refine;
 mod render;
 mod settings;
 mod usage;
+mod view;
 
 use std::fmt::Display;
 use std::io::{self, Write};
@@ -50,6 +52,7 @@ enum Command {
     Check(check::Args),
     Render(render::Args),
     Bench(bench::Args),
+    View(view::Args),
     Lab(lab::Args),
     Completions(manual::Completions),
     Man(manual::Man),
@@ -149,6 +152,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Status> {
         Command::Check(check) => check::run(check, args.verbosity),
         Command::Render(render) => render::run(render),
         Command::Bench(bench) => bench::run(bench, args.verbosity),
+        Command::View(view) => view::run(view),
         Command::Lab(lab) => lab::run(lab, args.verbosity),
         Command::Completions(completions) => manual::complete(completions),
         Command::Man(man) => manual::man(man, args.verbosity),

@@ -7,6 +7,7 @@ use clap::ValueEnum;
 use strokefit::coverage::CoverageSchedule;
 use strokefit::fit::{self, Background, Config, Execution, Simd};
 
+use super::pictures::FilmOptions;
 use super::{domain, form};
 
 /// The options of a command that draws.
@@ -22,6 +23,12 @@ pub(super) struct Options {
     pub(super) look: Look,
     #[command(flatten)]
     pub(super) form: form::Args,
+    #[command(flatten)]
+    pub(super) film: FilmOptions,
+    /// Serve a page that shows the drawing as it grows, at an address that is printed. Afterwards the
+    /// program ends with the page's button Done, with Ctrl-C, or when no page has been open for two minutes
+    #[arg(long, help_heading = "Watching")]
+    pub(super) view: bool,
     #[command(flatten)]
     pub(super) how: How,
 }

@@ -8,7 +8,7 @@ use strokefit::image::Image;
 
 use super::job::Job;
 use super::options::Options;
-use super::{Status, Verbosity, batch, input, misuse};
+use super::{Status, Verbosity, batch, input, misuse, pictures};
 
 /// Add strokes to an SVG so that it comes closer to a picture
 ///
@@ -33,9 +33,10 @@ pub(super) struct Args {
     base: PathBuf,
     /// PNG, JPEG, WebP, GIF (first frame), BMP or TIFF picture; - for standard input
     input: PathBuf,
-    /// The SVG to write; - for standard output
-    #[arg(short, long, value_name = "OUT.svg")]
-    output: PathBuf,
+    /// The SVG to write; - for standard output. Again for more: .png is a render, .gif, .webp or .apng an
+    /// animation, .animated.svg draws itself, {n}.png are single frames
+    #[arg(short, long, value_name = "OUT.svg", required = true)]
+    output: Vec<PathBuf>,
     /// Write what was done as JSON; - for standard output
     #[arg(long, value_name = "R.json")]
     report: Option<PathBuf>,
@@ -58,10 +59,12 @@ pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
             "--background cannot be chosen when refining: the base is the background",
         ));
     }
+    let (output, others) = pictures::split(&args.output)?;
     let job = Job {
         base: Some(&args.base),
         input: &args.input,
-        output: args.output.clone(),
+        output: output.to_owned(),
+        pictures: others.into_iter().map(PathBuf::from).collect(),
         report: args.report.clone(),
         options: &args.options,
     };

@@ -1,43 +1,70 @@
-//! `strokefit render`: an SVG as resvg draws it.
+//! `strokefit render`: an SVG as resvg draws it, at once or stroke by stroke.
 
 use std::path::PathBuf;
 
 use anyhow::Result;
-use strokefit::verify::{self, Size};
+use strokefit::svg;
 
-use super::output::Output;
+use super::pictures::{FilmOptions, Format, Pictures, Subject};
 use super::{Status, domain, input, misuse};
 
-/// Render an SVG to a PNG, as resvg draws it
+/// Render an SVG to a PNG or an animation, as resvg draws it
 ///
 /// Any SVG will do. Files and addresses it refers to are not read, and no fonts are loaded, so
 /// text that is not outlines is not drawn. Where the SVG has no background, the PNG is transparent.
+///
+/// Files of strokefit can be drawn stroke by stroke: an output named .gif, .webp or .apng is an
+/// animation, one named .animated.svg draws itself, and frames/{n}.png are its single frames.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   strokefit render photo.svg -o photo.png
-  strokefit render photo.svg -o thumbnail.png --scale 0.25")]
+  strokefit render photo.svg -o thumbnail.png --scale 0.25
+  strokefit render photo.svg -o photo.gif --frames stage --legend")]
 pub(super) struct Args {
     /// The SVG file; - for standard input
     file: PathBuf,
-    /// The PNG to write; - for standard output
-    #[arg(short, long, value_name = "OUT.png")]
-    output: PathBuf,
+    /// The PNG or animation to write; - for standard output; may be given again
+    #[arg(short, long, value_name = "OUT.png", required = true)]
+    output: Vec<PathBuf>,
     /// Pixels per unit of the SVG
     #[arg(long, value_name = "X", default_value = "1", value_parser = domain::scale, allow_negative_numbers = true)]
     scale: f64,
+    #[command(flatten)]
+    film: FilmOptions,
 }
 
 pub(super) fn run(args: &Args) -> Result<Status> {
-    let svg = input::svg(&args.file)?;
-    let output = Output::open(&args.output)?;
-    if !input::is_stdin(&args.file) && output.is(&args.file) {
+    let text = input::svg(&args.file)?;
+    let pictures = Pictures::open(&args.output, &args.film)?;
+    if !input::is_stdin(&args.file) && pictures.all().any(|(_, output)| output.is(&args.file)) {
         return Err(misuse(format!(
             "{}: would be overwritten: name another output",
             args.file.display()
         )));
     }
-    let picture = verify::render(&svg, Size::Scale(args.scale), None)
-        .map_err(|e| e.within(input::name(&args.file)))?;
-    output.write(&picture.encode_png()?)?;
+    let is_svg = |path: &&PathBuf| Format::of(path) == Some(Format::Svg);
+    if let Some(path) = args.output.iter().find(is_svg) {
+        return Err(misuse(format!(
+            "{}: an SVG, where a picture or an animation is written: name another output",
+            path.display()
+        )));
+    }
+    write(&pictures, &text, args.scale).map_err(|error| {
+        // What the file is to blame for.
+        match error.downcast::<strokefit::Error>() {
+            Ok(error) => error.within(input::name(&args.file)).into(),
+            Err(error) => error,
+        }
+    })?;
     Ok(Status::Done)
+}
+
+fn write(pictures: &Pictures<'_>, text: &str, scale: f64) -> Result<()> {
+    let scene = pictures.moves().then(|| svg::read(text)).transpose()?;
+    pictures.write(&Subject {
+        scene: scene.as_ref(),
+        text,
+        target: None,
+        scale,
+    })
 }

@@ -69,7 +69,10 @@ impl Setting {
         start: Option<&Start>,
         scale: f32,
     ) -> Result<Self> {
-        let Some(Start { document, scene, .. }) = start else {
+        let Some(Start {
+            document, scene, ..
+        }) = start
+        else {
             return Ok(Self::on_color(picture, background, scale));
         };
         if let Some(document) = document {

@@ -324,6 +324,9 @@ impl Row {
     }
 }
 
+/// Least width of a picture with its legend, px: some 46 letters.
+const CAPTION: usize = 380;
+
 /// The pictures so far.
 struct Film {
     table: Table,
@@ -354,7 +357,7 @@ impl Film {
         self.table.row(row.cells());
         self.plain.push(picture, FRAME_MS)?;
         self.legend
-            .push(&captioned(picture, &row.legend())?, FRAME_MS)
+            .push(&captioned(picture, &row.legend(), CAPTION)?, FRAME_MS)
     }
 
     fn finish(self, output: &mut Output<'_>) -> Result<()> {

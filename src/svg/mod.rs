@@ -40,6 +40,7 @@
 //! # Ok::<(), strokefit::Error>(())
 //! ```
 
+mod animated;
 mod arrange;
 mod dialect;
 mod document;
@@ -51,6 +52,7 @@ mod path;
 mod read;
 mod write;
 
+pub use animated::{Timing, write_animated};
 pub use arrange::arrange;
 pub use document::{Document, Placement, page_width};
 pub use lint::{Finding, Severity, lint};

@@ -150,9 +150,13 @@ impl AgreementMap {
                 "across: angle, 0 to 90 degrees; down: width in px:".into(),
                 widths.join(" "),
             ],
+            CAPTION,
         )
     }
 }
+
+/// Least width of the picture, px, so that its caption fits.
+const CAPTION: usize = 460;
 
 /// Draws one stroke in both ways.
 struct Bench {

@@ -55,8 +55,6 @@ pub struct Sheet {
 }
 
 const MARGIN: usize = 8;
-/// Least width of a picture with a caption, px: some 46 letters.
-const CAPTION: usize = 380;
 const LINE: usize = 20;
 
 impl Sheet {
@@ -129,12 +127,12 @@ fn blit(
     }
 }
 
-/// The picture with lines of text beneath it.
+/// The picture with lines of text beneath it, at least `least_width` px wide.
 ///
 /// # Errors
 /// [`ErrorKind::Picture`] when there is no memory for it.
-pub fn captioned(image: &Image, lines: &[String]) -> Result<Image> {
-    let (width, height) = (image.width().max(CAPTION), image.height());
+pub fn captioned(image: &Image, lines: &[String], least_width: usize) -> Result<Image> {
+    let (width, height) = (image.width().max(least_width), image.height());
     let whole = Image::filled(width, height + lines.len() * LINE, [1.0; 3])?;
     let mut planes = whole.planes().clone();
     blit(&mut planes, width, (0, 0), image, 1);
@@ -213,8 +211,8 @@ mod tests {
     #[test]
     fn captions_are_written_beneath() {
         let white = Image::filled(60, 30, [1.0; 3]).unwrap();
-        let image = captioned(&white, &["step 1".into()]).unwrap();
-        assert_eq!((image.width(), image.height()), (CAPTION, 50));
+        let image = captioned(&white, &["step 1".into()], 90).unwrap();
+        assert_eq!((image.width(), image.height()), (90, 50));
         assert!(is_dark(&image, 0..60, 30..50));
     }
 }

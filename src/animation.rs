@@ -1,0 +1,353 @@
+//! A finished drawing, stroke by stroke: frames, animations and SVG that draws itself.
+//!
+//! ```
+//! use strokefit::animation::{self, Film, Legend, Step};
+//! use strokefit::image::AnimationFormat;
+//! use strokefit::scene::{Scene, Shape, Stage, Stroke};
+//!
+//! let stroke = |x| Stroke { shape: Shape::dot([x, 4.0].into()), radius: 2.0, color: [0.1; 3], opacity: 1.0 };
+//! let scene = Scene {
+//!     stages: vec![Stage { strokes: [3.0, 8.0, 13.0].map(stroke).to_vec() }],
+//!     ..Scene::empty(16, 8, Some([1.0; 3]))
+//! };
+//! let film = Film { step: Some(Step::Strokes(2)), legend: Legend::None, scale: 1.0 };
+//! let counts: Vec<usize> = film.parts(&scene).iter().map(|part| part.end).collect();
+//! assert_eq!(counts, [2, 3]);
+//! let gif = film.encode(&scene, AnimationFormat::Gif)?;
+//! assert!(gif.starts_with(b"GIF89a"));
+//! # Ok::<(), strokefit::Error>(())
+//! ```
+
+use std::ops::Range;
+use std::str::FromStr;
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::image::{Animation, AnimationFormat, Image};
+use crate::metrics;
+use crate::report::plot::captioned;
+use crate::scene::{MAX_PRECISION, Rgb, Scene, Stage, Stroke};
+use crate::svg::{self, Form, Timing, WriteOptions};
+use crate::verify::{Painting, Size};
+
+/// How many frames there are about, when nothing else is asked for.
+const USUAL_FRAMES: usize = 48;
+/// How long a whole film takes, as far as its frames stay within their bounds, ms.
+const FILM_MS: u32 = 6000;
+/// Time of a frame at least and at most, ms. Browsers slow down GIFs of less than 20.
+const FRAME_MS: [u32; 2] = [30, 800];
+/// How long the finished drawing is shown, ms.
+const LAST_MS: u32 = 2500;
+
+/// Least width of a frame with a legend, px: some 25 letters.
+const LEGEND: usize = 210;
+
+const WHITE: Rgb = [1.0; 3];
+
+/// What each frame adds to the one before.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Step {
+    /// A stage.
+    Stage,
+    /// So many strokes.
+    Strokes(usize),
+}
+
+impl FromStr for Step {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let strokes = text.parse().ok().filter(|&n| n > 0).map(Self::Strokes);
+        let step = strokes.or((text == "stage").then_some(Self::Stage));
+        step.ok_or_else(|| {
+            let message = format!("\"{text}\" frames: say stage, or a number of strokes from 1");
+            Error::new(ErrorKind::Config, message)
+        })
+    }
+}
+
+/// What is written beneath each frame.
+#[derive(Debug, Clone, Copy)]
+pub enum Legend<'a> {
+    /// Nothing.
+    None,
+    /// How many strokes.
+    Strokes,
+    /// How many strokes, and how faithful they are to this picture, dB.
+    Fidelity(&'a Image),
+}
+
+impl Legend<'_> {
+    fn lay(&self, frame: Image, strokes: usize) -> Result<Image> {
+        let text = match self {
+            Self::None => return Ok(frame),
+            Self::Strokes => format!("{strokes} strokes"),
+            Self::Fidelity(target) => {
+                format!(
+                    "{strokes} strokes, {:.1} dB",
+                    metrics::psnr(target, &frame)?
+                )
+            }
+        };
+        captioned(&frame, &[text], LEGEND)
+    }
+}
+
+/// How to film a drawing.
+#[derive(Debug, Clone, Copy)]
+pub struct Film<'a> {
+    /// What each frame adds, or `None` for some 50 frames.
+    pub step: Option<Step>,
+    /// What is written beneath.
+    pub legend: Legend<'a>,
+    /// Pixels per px of the drawing; 1 for a legend with fidelity.
+    pub scale: f64,
+}
+
+impl Film<'_> {
+    /// The strokes that each frame adds, back to front; without strokes, one frame of nothing.
+    pub fn parts(&self, scene: &Scene) -> Vec<Range<usize>> {
+        let total = scene.len();
+        let usual = Step::Strokes(total.div_ceil(USUAL_FRAMES));
+        let ends = match self.step.unwrap_or(usual) {
+            Step::Stage => stage_ends(scene),
+            Step::Strokes(n) => {
+                let frames = total.div_ceil(n.max(1));
+                (1..=frames)
+                    .map(|k| total.min(k.saturating_mul(n)))
+                    .collect()
+            }
+        };
+        let starts = [0].into_iter().chain(ends.iter().copied());
+        let parts: Vec<_> = starts.zip(&ends).map(|(start, &end)| start..end).collect();
+        if parts.is_empty() { vec![0..0] } else { parts }
+    }
+
+    /// The frames, drawn by resvg on white as they are asked for.
+    ///
+    /// # Errors
+    /// Each as [`verify::render`](crate::verify::render); [`ErrorKind::Picture`] when a legend's
+    /// picture is of another size.
+    pub fn frames(&self, scene: &Scene) -> impl Iterator<Item = Result<Image>> {
+        let mut strokes = scene.strokes();
+        let mut painting = None;
+        self.parts(scene).into_iter().map(move |part| {
+            let ground = scene.background.filter(|_| part.start == 0);
+            let text = part_svg(scene, ground, strokes.by_ref().take(part.len()));
+            let painting = match &mut painting {
+                Some(painting) => painting,
+                none => none.insert(Painting::new(&text, Size::Scale(self.scale), WHITE)?),
+            };
+            if part.start > 0 {
+                painting.add(&text)?;
+            }
+            self.legend.lay(painting.image()?, part.end)
+        })
+    }
+
+    /// An animation of the frames, which repeats for ever; the last one stays for a while.
+    ///
+    /// # Errors
+    /// As [`frames`](Self::frames), and [`Animation::push`].
+    pub fn encode(&self, scene: &Scene, format: AnimationFormat) -> Result<Vec<u8>> {
+        let count = self.parts(scene).len();
+        let timing = timing(count);
+        let mut animation = Animation::new(format);
+        for (i, frame) in self.frames(scene).enumerate() {
+            let rest = if i + 1 == count { timing.last_ms } else { 0 };
+            animation.push(&frame?, timing.part_ms + rest)?;
+        }
+        animation.finish()
+    }
+
+    /// SVG that draws itself in the same steps, with as many decimals as `scene` was rounded to; it has
+    /// no legend and no scale.
+    pub fn svg(&self, scene: &Scene) -> String {
+        let parts = self.parts(scene);
+        svg::write_animated(scene, &parts, timing(parts.len()), precision(scene))
+    }
+}
+
+fn timing(frames: usize) -> Timing {
+    let frames = u32::try_from(frames).unwrap_or(u32::MAX).max(1);
+    Timing {
+        part_ms: (FILM_MS / frames).clamp(FRAME_MS[0], FRAME_MS[1]),
+        last_ms: LAST_MS,
+    }
+}
+
+/// How many strokes there are after each stage that has any.
+fn stage_ends(scene: &Scene) -> Vec<usize> {
+    let counts = scene.stages.iter().map(|stage| stage.strokes.len());
+    let ends = counts.filter(|&count| count > 0).scan(0, |end, count| {
+        *end += count;
+        Some(*end)
+    });
+    ends.collect()
+}
+
+/// Some strokes of `scene` as SVG, not rounded any further.
+fn part_svg<'a>(
+    scene: &Scene,
+    ground: Option<Rgb>,
+    strokes: impl Iterator<Item = &'a Stroke>,
+) -> String {
+    let stage = Stage {
+        strokes: strokes.copied().collect(),
+    };
+    let part = Scene {
+        stages: vec![stage],
+        ..Scene::empty(scene.width, scene.height, ground)
+    };
+    let exactly = WriteOptions {
+        precision: MAX_PRECISION,
+        form: Form::Elements,
+        ..WriteOptions::default()
+    };
+    svg::write(&part, &exactly)
+}
+
+/// The fewest decimals that say all of `scene`.
+fn precision(scene: &Scene) -> u8 {
+    let says_all = |precision: &u8| scene.quantized(*precision).0 == *scene;
+    (0..MAX_PRECISION).find(says_all).unwrap_or(MAX_PRECISION)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Shape;
+    use crate::verify;
+
+    fn scene(stages: &[usize]) -> Scene {
+        let stroke = |k: usize| Stroke {
+            shape: Shape::capsule(
+                [(k * 7 % 30) as f32, 3.0].into(),
+                [20.0, (k * 5 % 24) as f32].into(),
+            ),
+            radius: 1.5,
+            color: [k as f32 / 20.0, 0.3, 0.8 - k as f32 / 40.0],
+            opacity: 0.6,
+        };
+        let mut next = 0..;
+        let stage = |&count: &usize| Stage {
+            strokes: next.by_ref().take(count).map(stroke).collect(),
+        };
+        let stages = stages.iter().map(stage).collect();
+        let scene = Scene {
+            stages,
+            ..Scene::empty(32, 24, Some([0.9, 1.0, 0.8]))
+        };
+        scene.quantized(2).0
+    }
+
+    fn film(step: Option<Step>) -> Film<'static> {
+        Film {
+            step,
+            legend: Legend::None,
+            scale: 1.0,
+        }
+    }
+
+    fn ends(step: Option<Step>, stages: &[usize]) -> Vec<usize> {
+        film(step)
+            .parts(&scene(stages))
+            .iter()
+            .map(|part| part.end)
+            .collect()
+    }
+
+    #[test]
+    fn frames_follow_stages_or_strokes() {
+        assert_eq!(ends(Some(Step::Stage), &[2, 0, 5]), [2, 7]);
+        assert_eq!(ends(Some(Step::Strokes(3)), &[2, 5]), [3, 6, 7]);
+        assert_eq!(ends(Some(Step::Strokes(usize::MAX)), &[2, 5]), [7]);
+        assert_eq!(ends(None, &[2, 5]).len(), 7);
+        assert_eq!(ends(None, &[500]).len(), 46);
+        assert_eq!(ends(None, &[]), [0]);
+    }
+
+    #[test]
+    fn the_last_frame_is_the_picture_of_the_file_to_the_bit() {
+        let scene = scene(&[3, 9]);
+        let text = svg::write(&scene, &WriteOptions::default());
+        let whole = verify::render(&text, Size::Scale(2.0), Some(WHITE)).unwrap();
+        for step in [Step::Stage, Step::Strokes(1), Step::Strokes(5)] {
+            let film = Film {
+                scale: 2.0,
+                ..film(Some(step))
+            };
+            let last = film.frames(&scene).last().unwrap().unwrap();
+            assert!(last == whole, "{step:?}");
+        }
+    }
+
+    #[test]
+    fn each_frame_is_what_its_strokes_draw() {
+        let whole = scene(&[3, 9]);
+        let frames: Vec<_> = film(Some(Step::Stage)).frames(&whole).collect();
+        assert_eq!(frames.len(), 2);
+        let mut first = whole;
+        first.stages.truncate(1);
+        let text = svg::write(&first, &WriteOptions::default());
+        let drawn = verify::render(&text, Size::Scale(1.0), Some(WHITE)).unwrap();
+        assert!(*frames[0].as_ref().unwrap() == drawn);
+    }
+
+    #[test]
+    fn a_drawing_without_strokes_is_one_frame_of_its_ground() {
+        let frames: Vec<_> = film(None).frames(&scene(&[])).collect();
+        assert_eq!(frames.len(), 1);
+        let [r, g, b] = frames[0].as_ref().unwrap().planes();
+        assert!(r[0] < g[0] && b[0] < r[0]);
+    }
+
+    #[test]
+    fn a_legend_is_beneath_and_measures() {
+        let scene = scene(&[4]);
+        let plain = film(None).frames(&scene).last().unwrap().unwrap();
+        let legend = Legend::Fidelity(&plain);
+        let film = Film {
+            legend,
+            ..film(None)
+        };
+        let with = film.frames(&scene).last().unwrap().unwrap();
+        assert!(with.height() > plain.height());
+        let other = Image::filled(3, 3, WHITE).unwrap();
+        let legend = Legend::Fidelity(&other);
+        assert!(
+            Film { legend, ..film }
+                .frames(&scene)
+                .any(|frame| frame.is_err())
+        );
+    }
+
+    #[test]
+    fn animated_svg_has_the_numbers_of_the_file() {
+        let scene = scene(&[3, 4]);
+        let form = Form::Elements;
+        let file = svg::write(
+            &scene,
+            &WriteOptions {
+                form,
+                ..WriteOptions::default()
+            },
+        );
+        let animated = film(None).svg(&scene);
+        let strokes = |text: &str| {
+            text.lines()
+                .filter(|l| l.starts_with("<path"))
+                .map(str::to_owned)
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(strokes(&animated), strokes(&file));
+    }
+
+    #[test]
+    fn steps_are_read_or_refused() {
+        assert_eq!("stage".parse::<Step>().unwrap(), Step::Stage);
+        assert_eq!("12".parse::<Step>().unwrap(), Step::Strokes(12));
+        for text in ["", "0", "-1", "stages", "1.5"] {
+            assert!(text.parse::<Step>().is_err(), "{text}");
+        }
+    }
+}

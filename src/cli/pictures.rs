@@ -1,0 +1,229 @@
+//! Pictures and animations of a drawing, each in the format that its name tells.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::Result;
+use strokefit::animation::{Film, Legend, Step};
+use strokefit::image::{AnimationFormat, Image};
+use strokefit::scene::Scene;
+use strokefit::verify::{self, Size};
+
+use super::misuse;
+use super::output::Output;
+
+/// What stands for the number of a frame.
+const NUMBER: &str = "{n}";
+
+/// How to film a drawing.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Animation (.gif, .webp, .apng, .animated.svg and {n}.png)")]
+pub(super) struct FilmOptions {
+    /// What each frame adds: a stage, or N strokes [default: what makes some 50 frames]
+    #[arg(long, value_name = "stage|N", allow_negative_numbers = true)]
+    frames: Option<Step>,
+    /// Say beneath each frame how many strokes there are and, in fit, how faithful they are
+    #[arg(long)]
+    legend: bool,
+}
+
+/// What a file holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Format {
+    /// The drawing.
+    Svg,
+    /// A PNG of the drawing.
+    Picture,
+    /// The drawing as it draws itself.
+    AnimatedSvg,
+    /// An animation.
+    Animation(AnimationFormat),
+    /// A PNG of each frame.
+    Frames,
+}
+
+impl Format {
+    /// What the name of a file asks for, or `None` when it says nothing.
+    pub(super) fn of(path: &Path) -> Option<Self> {
+        let name = path.file_name()?.to_str()?.to_ascii_lowercase();
+        let numbered = name.contains(NUMBER);
+        Some(match name.rsplit_once('.')?.1 {
+            "png" if numbered => Self::Frames,
+            "png" => Self::Picture,
+            "gif" => Self::Animation(AnimationFormat::Gif),
+            "apng" => Self::Animation(AnimationFormat::Apng),
+            "webp" => Self::Animation(AnimationFormat::Webp),
+            "svg" if name.ends_with(".animated.svg") => Self::AnimatedSvg,
+            "svg" => Self::Svg,
+            _ => return None,
+        })
+    }
+
+    fn moves(self) -> bool {
+        !matches!(self, Self::Svg | Self::Picture)
+    }
+}
+
+/// A drawing and what is known of it.
+pub(super) struct Subject<'a> {
+    /// Needed for what moves.
+    pub(super) scene: Option<&'a Scene>,
+    pub(super) text: &'a str,
+    /// What it is to look like.
+    pub(super) target: Option<&'a Image>,
+    /// Pixels per px of the drawing.
+    pub(super) scale: f64,
+}
+
+/// Pictures and animations, known to be writable.
+#[derive(Debug)]
+pub(super) struct Pictures<'a> {
+    files: Vec<(Format, Output, &'a Path)>,
+    options: &'a FilmOptions,
+}
+
+impl<'a> Pictures<'a> {
+    /// The files at `paths`, all of them pictures or animations; a name that says nothing is a picture.
+    pub(super) fn open(paths: &'a [PathBuf], options: &'a FilmOptions) -> Result<Self> {
+        let open = |path: &'a PathBuf| {
+            let format = Format::of(path).unwrap_or(Format::Picture);
+            let output = Output::open(&numbered(path, format, "1"))?;
+            Ok((format, output, path.as_path()))
+        };
+        let files = paths.iter().map(open).collect::<Result<Vec<_>>>()?;
+        let outputs = Self { files, options };
+        outputs.check()?;
+        Ok(outputs)
+    }
+
+    fn check(&self) -> Result<()> {
+        for (i, (_, output, path)) in self.files.iter().enumerate() {
+            if self.files[..i].iter().any(|(_, other, _)| other == output) {
+                let path = path.display();
+                return Err(misuse(format!("{path}: named twice: name another output")));
+            }
+        }
+        let FilmOptions { frames, legend } = self.options;
+        if !self.moves() && (frames.is_some() || *legend) {
+            let message = "--frames and --legend are for animations: add one, as with -o out.gif";
+            return Err(misuse(message));
+        }
+        Ok(())
+    }
+
+    /// Whether any of the files needs the strokes.
+    pub(super) fn moves(&self) -> bool {
+        self.files.iter().any(|(format, ..)| format.moves())
+    }
+
+    /// Every file that is written.
+    pub(super) fn all(&self) -> impl Iterator<Item = (&'a Path, &Output)> {
+        self.files.iter().map(|(_, output, path)| (*path, output))
+    }
+
+    /// Writes all files.
+    pub(super) fn write(&self, subject: &Subject<'_>) -> Result<()> {
+        for (format, output, path) in &self.files {
+            match (format, subject.scene) {
+                (Format::Frames, Some(scene)) => self.write_frames(path, subject, scene)?,
+                (Format::AnimatedSvg, Some(scene)) => {
+                    output.write(self.film(subject).svg(scene).as_bytes())?;
+                }
+                (Format::Animation(format), Some(scene)) => {
+                    output.write(&self.film(subject).encode(scene, *format)?)?;
+                }
+                (format, None) if format.moves() => {
+                    return Err(misuse(format!(
+                        "{}: only a drawing of strokes alone can be drawn stroke by stroke: leave it out",
+                        path.display()
+                    )));
+                }
+                _ => {
+                    let picture = verify::render(subject.text, Size::Scale(subject.scale), None)?;
+                    output.write(&picture.encode_png()?)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn write_frames(&self, path: &Path, subject: &Subject<'_>, scene: &Scene) -> Result<()> {
+        let film = self.film(subject);
+        let digits = film.parts(scene).len().to_string().len();
+        for (i, frame) in film.frames(scene).enumerate() {
+            let number = format!("{:0digits$}", i + 1);
+            let output = Output::open(&numbered(path, Format::Frames, &number))?;
+            output.write(&frame?.encode_png()?)?;
+        }
+        Ok(())
+    }
+
+    fn film<'d>(&self, subject: &Subject<'d>) -> Film<'d> {
+        let legend = match subject.target {
+            _ if !self.options.legend => Legend::None,
+            None => Legend::Strokes,
+            Some(target) => Legend::Fidelity(target),
+        };
+        Film {
+            step: self.options.frames,
+            legend,
+            scale: subject.scale,
+        }
+    }
+}
+
+/// The SVG among the outputs of a fit, and the others.
+pub(super) fn split(paths: &[PathBuf]) -> Result<(&Path, Vec<&Path>)> {
+    let is_svg = |path: &Path| matches!(Format::of(path), None | Some(Format::Svg));
+    let (svgs, others): (Vec<&Path>, Vec<&Path>) = paths
+        .iter()
+        .map(PathBuf::as_path)
+        .partition(|path| is_svg(path));
+    match svgs.as_slice() {
+        [svg] => Ok((svg, others)),
+        [] => Err(misuse("no output is the SVG: add one, as with -o out.svg")),
+        [_, second, ..] => Err(misuse(format!(
+            "{}: a second SVG: give one, and pictures and animations beside it",
+            second.display()
+        ))),
+    }
+}
+
+/// The path of the frame `number`; others have none.
+fn numbered(path: &Path, format: Format, number: &str) -> PathBuf {
+    match path.to_str() {
+        Some(text) if format == Format::Frames => PathBuf::from(text.replace(NUMBER, number)),
+        _ => path.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_tell_formats() {
+        let of = |name: &str| Format::of(Path::new(name));
+        assert_eq!(of("a/b.svg"), Some(Format::Svg));
+        assert_eq!(of("a.ANIMATED.svg"), Some(Format::AnimatedSvg));
+        assert_eq!(
+            of("a.animated.GIF"),
+            Some(Format::Animation(AnimationFormat::Gif))
+        );
+        assert_eq!(of("f/{n}.png"), Some(Format::Frames));
+        assert_eq!(of("{n}/a.png"), Some(Format::Picture));
+        for name in ["-", "a", "svg", "a.xml", "/dev/stdout"] {
+            assert_eq!(of(name), None, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_fit_has_one_svg() {
+        let paths = |names: &[&str]| names.iter().map(PathBuf::from).collect::<Vec<_>>();
+        let given = paths(&["a.gif", "-", "b.png"]);
+        let (svg, others) = split(&given).unwrap();
+        assert_eq!((svg, others.len()), (Path::new("-"), 2));
+        for names in [&["a.gif"][..], &["a.svg", "b.svg"], &["a.svg", "-"]] {
+            assert!(split(&paths(names)).is_err(), "{names:?}");
+        }
+    }
+}

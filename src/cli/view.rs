@@ -1,0 +1,127 @@
+//! `strokefit view`: a drawing in a browser; and `--view`, a fit in one.
+
+use std::path::PathBuf;
+
+use anyhow::Result;
+use strokefit::fit::{Background, Base, Budget, Config, Fit, Fitter, Observer};
+use strokefit::image::Image;
+use strokefit::svg::{self, WriteOptions};
+use strokefit::verify;
+use strokefit::view::Viewer;
+
+use super::job::Draw;
+use super::options::Options;
+use super::{Status, complain, input, misuse};
+
+/// Look at a drawing, stroke by stroke, in a browser
+///
+/// The page is served on this machine alone, at the address that is printed. The program ends with the
+/// button Done, with Ctrl-C, or when no page has been open for two minutes.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  strokefit view photo.svg photo.jpg
+  strokefit view photo.svg")]
+pub(super) struct Args {
+    /// An SVG file as strokefit writes it; - for standard input
+    file: PathBuf,
+    /// The picture it should look like; - for standard input
+    input: Option<PathBuf>,
+}
+
+pub(super) fn run(args: &Args) -> Result<Status> {
+    let is_stdin = |path: Option<&PathBuf>| path.is_some_and(|path| input::is_stdin(path));
+    if is_stdin(Some(&args.file)) && is_stdin(args.input.as_ref()) {
+        return Err(misuse(
+            "standard input cannot be both the SVG and the picture: name one of them",
+        ));
+    }
+    let text = input::svg(&args.file)?;
+    let name = input::name(&args.file);
+    let scene = svg::read(&text).map_err(|e| e.within(&name))?;
+    let picture = args.input.as_deref().map(input::picture).transpose()?;
+    if let Some(picture) = &picture {
+        // Refuses a picture of another shape.
+        verify::fidelity(&text, picture).map_err(|e| e.within(&name))?;
+    }
+    let viewer = Viewer::open()?;
+    viewer.begin(&name, picture.as_ref())?;
+    viewer.show(&scene, &text);
+    tell(&viewer);
+    viewer.wait();
+    Ok(Status::Done)
+}
+
+fn tell(viewer: &Viewer) {
+    complain(format_args!("see {}", viewer.address()));
+}
+
+/// A page that fits are watched on.
+pub(super) struct Watch {
+    viewer: Viewer,
+    written: WriteOptions,
+}
+
+impl Watch {
+    /// Tells the address, if the options ask for a page.
+    pub(super) fn open(options: &Options) -> Result<Option<Self>> {
+        if !options.view {
+            return Ok(None);
+        }
+        let viewer = Viewer::open()?;
+        tell(&viewer);
+        let written = options.form.options();
+        Ok(Some(Self { viewer, written }))
+    }
+
+    /// Lets the page ask for more strokes, or not.
+    pub(super) fn offer_more(&self, offered: bool) {
+        self.viewer.offer_more(offered);
+    }
+
+    /// Draws `picture`, telling the page and `observer`.
+    pub(super) fn fit(
+        &self,
+        picture: &Image,
+        observer: &mut (dyn Observer + Send),
+        draw: &Draw<'_>,
+    ) -> Result<Fit> {
+        let title = format!("{}×{} px", picture.width(), picture.height());
+        self.viewer.begin(&title, Some(picture))?;
+        let fit = draw(picture, &mut self.viewer.watch(observer))?;
+        self.viewer.show(&fit.scene, &fit.svg(&self.written));
+        Ok(fit)
+    }
+
+    /// Stays as long as somebody watches; returns how many more strokes are wanted.
+    pub(super) fn wait(&self) -> Option<usize> {
+        self.viewer.wait()
+    }
+}
+
+/// What adds `strokes` to the drawing of `fit`, and fits all of them jointly.
+pub(super) fn more(
+    options: &Options,
+    fit: &Fit,
+    strokes: usize,
+) -> impl Fn(&Image, &mut (dyn Observer + Send)) -> Result<Fit> {
+    let config = Config {
+        budget: Budget {
+            strokes: Some(fit.scene.len() + strokes),
+            time: options.config().budget.time,
+            ..Budget::default()
+        },
+        // That of the drawing stays.
+        background: Background::Auto,
+        ..options.config()
+    };
+    let base = Base {
+        document: fit.base.as_ref().and_then(|base| base.document.clone()),
+        scene: fit.scene.clone(),
+        width: fit.base.as_ref().and_then(|base| base.width),
+    };
+    let execution = options.execution();
+    move |picture, observer| {
+        let fitter = Fitter::new(config.clone()).execution(execution);
+        Ok(fitter.on(base.clone()).observer(observer).fit(picture)?)
+    }
+}

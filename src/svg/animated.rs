@@ -1,0 +1,167 @@
+//! A drawing that draws itself: SVG with animation in SMIL, which browsers play, in `<img>` too, and
+//! which other programs pass over, so that they show the finished drawing.
+
+use std::ops::Range;
+
+use super::{Form, Group, WriteOptions, write};
+use crate::scene::Scene;
+
+/// How long the parts of an animated drawing take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Timing {
+    /// From one part to the next, ms.
+    pub part_ms: u32,
+    /// Of the finished drawing, before it starts again, ms.
+    pub last_ms: u32,
+}
+
+/// The scene with `precision` decimals, an element for each stroke, and the strokes of each of `parts` in
+/// a group that appears at its time; the first is there from the start. Parts are ranges of the strokes
+/// back to front, one after another. It repeats for ever.
+///
+/// A part that goes over the end of a stage is in two groups that appear together.
+pub fn write_animated(
+    scene: &Scene,
+    parts: &[Range<usize>],
+    timing: Timing,
+    precision: u8,
+) -> String {
+    let (scene, _) = scene.quantized(precision);
+    let options = WriteOptions {
+        precision,
+        form: Form::Elements,
+        group: Group::Stage,
+        width: None,
+    };
+    let clock = Clock {
+        whole_ms: timing.part_ms * parts.len() as u32 + timing.last_ms,
+        part_ms: timing.part_ms,
+    };
+    let mut groups = Groups {
+        out: String::new(),
+        open: false,
+    };
+    let mut strokes = 0;
+    let mut part = 0;
+    // The writer puts every element on a line of its own.
+    for line in write(&scene, &options).lines() {
+        if !is_stroke(line) {
+            groups.close();
+        } else {
+            while parts.get(part).is_some_and(|range| strokes >= range.end) {
+                part += 1;
+                groups.close();
+            }
+            groups.ensure(|| clock.entrance(part));
+            strokes += 1;
+        }
+        groups.push(line);
+    }
+    groups.out
+}
+
+/// Whether a line of the writer's is a stroke: what else it writes is groups, their titles, and the page.
+fn is_stroke(line: &str) -> bool {
+    !["<g", "</", "<title", "<svg", "<rect"]
+        .iter()
+        .any(|other| line.starts_with(other))
+}
+
+struct Clock {
+    whole_ms: u32,
+    part_ms: u32,
+}
+
+impl Clock {
+    /// What makes the group around it appear with part `part`, from 0.
+    fn entrance(&self, part: usize) -> String {
+        if part == 0 {
+            return String::new();
+        }
+        let at = part as f64 * f64::from(self.part_ms) / f64::from(self.whole_ms);
+        format!(
+            "<animate attributeName=\"visibility\" calcMode=\"discrete\" values=\"hidden;visible\" \
+             keyTimes=\"0;{at:.4}\" dur=\"{}ms\" repeatCount=\"indefinite\"/>\n",
+            self.whole_ms
+        )
+    }
+}
+
+/// Text in which groups open and close.
+struct Groups {
+    out: String,
+    open: bool,
+}
+
+impl Groups {
+    fn push(&mut self, line: &str) {
+        self.out.push_str(line);
+        self.out.push('\n');
+    }
+
+    /// Opens a group with `head` in it, unless one is open.
+    fn ensure(&mut self, head: impl FnOnce() -> String) {
+        if !self.open {
+            self.push("<g>");
+            self.out.push_str(&head());
+            self.open = true;
+        }
+    }
+
+    fn close(&mut self) {
+        if self.open {
+            self.push("</g>");
+            self.open = false;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Shape, Stage, Stroke};
+    use crate::verify::{Size, render};
+
+    fn scene() -> Scene {
+        let stroke = |k: usize| Stroke {
+            shape: Shape::capsule([k as f32, 2.0].into(), [k as f32 + 3.0, 8.0].into()),
+            radius: 1.0,
+            color: [k as f32 / 7.0, 0.5, 0.2],
+            opacity: 0.8,
+        };
+        let stage = |range: Range<usize>| Stage {
+            strokes: range.map(stroke).collect(),
+        };
+        Scene {
+            stages: vec![stage(0..3), stage(3..7)],
+            ..Scene::empty(12, 10, Some([1.0; 3]))
+        }
+    }
+
+    const TIMING: Timing = Timing {
+        part_ms: 100,
+        last_ms: 600,
+    };
+
+    #[test]
+    fn parts_appear_in_order() {
+        let text = write_animated(&scene(), &[0..2, 2..5, 5..6, 6..7], TIMING, 2);
+        let times: Vec<&str> = text
+            .split("keyTimes=\"0;")
+            .skip(1)
+            .filter_map(|rest| rest.split('"').next())
+            .collect();
+        // The second part has a group in each of the two stages.
+        assert_eq!(times, ["0.1000", "0.1000", "0.2000", "0.3000"]);
+        assert_eq!(text.matches("dur=\"1000ms\"").count(), 4);
+        assert_eq!(text.matches("<path").count(), 7);
+    }
+
+    #[test]
+    fn programs_without_animation_show_the_finished_drawing() {
+        let options = WriteOptions::default();
+        let draw = |text: &str| render(text, Size::Scale(3.0), None).unwrap();
+        let animated = write_animated(&scene(), &[0..1, 1..4, 4..7], TIMING, 2);
+        assert!(draw(&animated) == draw(&write(&scene(), &options)));
+    }
+}

@@ -1,0 +1,122 @@
+//! The page: its files, and the records that its script reads.
+
+use serde::Serialize;
+
+use super::curve::Point;
+use super::http::Response;
+use super::shared::{Shared, Shown, State};
+use crate::scene::{Rgb, Scene, Stroke};
+
+/// A file of the page.
+pub(super) fn file(name: &str) -> Option<Response> {
+    let (kind, text) = match name {
+        "" => ("text/html", include_str!("page/index.html")),
+        "page.css" => ("text/css", include_str!("page/page.css")),
+        "page.js" => ("text/javascript", include_str!("page/page.js")),
+        "chart.js" => ("text/javascript", include_str!("page/chart.js")),
+        "picture.js" => ("text/javascript", include_str!("page/picture.js")),
+        _ => return None,
+    };
+    Some(Response::of(kind, text.as_bytes()))
+}
+
+/// The state as JSON; the drawing only if it is not the one with the number `seen`.
+pub(super) fn state(shared: &Shared, seen: Option<u64>) -> Option<Vec<u8>> {
+    let State {
+        picture,
+        numbers,
+        curve,
+        shown,
+        file,
+        grows,
+        more,
+    } = shared.asked();
+    let record = StateRecord {
+        picture: picture.number,
+        title: &picture.title,
+        has_target: picture.target.is_some(),
+        finished: file.is_some(),
+        grows,
+        more,
+        svg_bytes: file.map(|file| file.len()),
+        done: numbers.map(|numbers| numbers.done),
+        stage: numbers.map(|numbers| numbers.stage),
+        stages: numbers.map(|numbers| numbers.stages),
+        polishing: numbers.is_some_and(|numbers| numbers.polishing),
+        last: numbers.map(|numbers| numbers.last),
+        curve: curve.points(),
+        version: shown.as_ref().map_or(0, |shown| shown.version),
+        scene: shown
+            .as_ref()
+            .filter(|shown| seen != Some(shown.version))
+            .map(|Shown { scene, .. }| SceneRecord::of(scene)),
+    };
+    serde_json::to_vec(&record).ok()
+}
+
+#[derive(Serialize)]
+struct StateRecord<'a> {
+    /// Another number, another picture.
+    picture: u64,
+    title: &'a str,
+    has_target: bool,
+    finished: bool,
+    /// Whether more strokes can be had, and how many have been asked for.
+    grows: bool,
+    more: Option<usize>,
+    svg_bytes: Option<usize>,
+    /// Fraction of the fit, and the stage under way of how many; `null` when nothing was fitted.
+    done: Option<f64>,
+    stage: Option<usize>,
+    stages: Option<usize>,
+    polishing: bool,
+    last: Option<Point>,
+    curve: &'a [Point],
+    version: u64,
+    scene: Option<SceneRecord>,
+}
+
+#[derive(Serialize)]
+struct SceneRecord {
+    width: u32,
+    height: u32,
+    background: Option<String>,
+    /// Strokes back to front, stage by stage.
+    stages: Vec<Vec<StrokeRecord>>,
+}
+
+/// Points x, y, x, y, …, radius, colour and opacity.
+#[derive(Serialize)]
+struct StrokeRecord(Vec<f32>, f32, String, f32);
+
+impl SceneRecord {
+    fn of(scene: &Scene) -> Self {
+        let stages = scene.stages.iter();
+        Self {
+            width: scene.width,
+            height: scene.height,
+            background: scene.background.map(css),
+            stages: stages
+                .map(|stage| stage.strokes.iter().map(StrokeRecord::of).collect())
+                .collect(),
+        }
+    }
+}
+
+impl StrokeRecord {
+    fn of(stroke: &Stroke) -> Self {
+        let points = stroke.shape.points().iter();
+        Self(
+            points.flat_map(|p| [p.x, p.y]).collect(),
+            stroke.radius,
+            css(stroke.color),
+            stroke.opacity,
+        )
+    }
+}
+
+/// `#rrggbb`.
+fn css(color: Rgb) -> String {
+    let [r, g, b] = color.map(|c| (c * 255.0 + 0.5) as u8);
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
