@@ -3,6 +3,7 @@
 //! Coordinates are px with pixel centres at +0.5; colours are sRGB-encoded, 0..1, and are
 //! composited in that encoding, as SVG renderers do.
 
+mod overlap;
 mod quantize;
 
 use crate::math::Point;

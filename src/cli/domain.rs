@@ -9,6 +9,9 @@ use strokefit::scene::MAX_PRECISION;
 /// resvg and everything built on it read at most a million elements.
 const MAX_STROKES: usize = 900_000;
 
+/// More are as good as any.
+const MAX_COLORS: usize = 4096;
+
 /// More threads than any machine has cores only waste memory.
 const MAX_THREADS: usize = 1024;
 
@@ -16,6 +19,10 @@ type Parsed<T> = Result<T, String>;
 
 pub(super) fn strokes(text: &str) -> Parsed<usize> {
     whole(text, 1..=MAX_STROKES)
+}
+
+pub(super) fn colors(text: &str) -> Parsed<usize> {
+    whole(text, 1..=MAX_COLORS)
 }
 
 pub(super) fn bytes(text: &str) -> Parsed<usize> {
@@ -69,11 +76,16 @@ pub(super) fn background(text: &str) -> Parsed<Background> {
 }
 
 fn color(text: &str) -> Option<[f32; 3]> {
+    channels(text).map(|rgb| rgb.map(|c| f32::from(c) / 255.0))
+}
+
+/// The channels of `#rrggbb`.
+pub(super) fn channels(text: &str) -> Option<[u8; 3]> {
     let digits = text
         .strip_prefix('#')
         .filter(|d| d.len() == 6 && d.bytes().all(|b| b.is_ascii_hexdigit()))?;
     let [_, channels @ ..] = u32::from_str_radix(digits, 16).ok()?.to_be_bytes();
-    Some(channels.map(|c| f32::from(c) / 255.0))
+    Some(channels)
 }
 
 fn whole(text: &str, range: std::ops::RangeInclusive<usize>) -> Parsed<usize> {

@@ -3,6 +3,7 @@
 mod batch;
 mod bench;
 mod check;
+mod colors;
 mod domain;
 mod events;
 mod fit;

@@ -8,7 +8,7 @@ use strokefit::coverage::CoverageSchedule;
 use strokefit::fit::{self, Background, Config, Execution, Simd};
 
 use super::pictures::FilmOptions;
-use super::{domain, form};
+use super::{colors, domain, form};
 
 /// The options of a command that draws.
 #[derive(Debug, clap::Args)]
@@ -21,6 +21,8 @@ pub(super) struct Options {
     pub(super) budget: Budget,
     #[command(flatten)]
     pub(super) look: Look,
+    #[command(flatten)]
+    pub(super) colors: colors::Args,
     #[command(flatten)]
     pub(super) form: form::Args,
     #[command(flatten)]
@@ -116,6 +118,7 @@ impl Options {
             coverage: look.coverage,
             stages: look.stages,
             polish: !look.no_polish,
+            colors: self.colors.colors(),
             file: self.form.options(),
             background: look.background,
             seed: look.seed,

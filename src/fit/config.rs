@@ -3,12 +3,13 @@
 use std::collections::HashMap;
 use std::time::Duration;
 
+use super::palette::Colors;
 use super::recipe::Recipe;
 use super::simd::Simd;
 use crate::coverage::CoverageSchedule;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
-use crate::scene::{MAX_PRECISION, Rgb};
+use crate::scene::{MAX_PRECISION, Rgb, quantum};
 use crate::svg::WriteOptions;
 
 /// What to fit. Equal configurations of equal pictures give equal bytes.
@@ -32,6 +33,8 @@ pub struct Config {
     pub stages: Option<usize>,
     /// Whether all strokes are fitted jointly after the stages.
     pub polish: bool,
+    /// Which colours it may have.
+    pub colors: Colors,
     /// How the drawing is written, which says what it looks like and what its bytes are.
     pub file: WriteOptions,
     /// The colour behind all strokes.
@@ -53,6 +56,7 @@ impl Default for Config {
             coverage: CoverageSchedule::default(),
             stages: None,
             polish: true,
+            colors: Colors::default(),
             file: WriteOptions::default(),
             background: Background::Auto,
             seed: 0,
@@ -141,6 +145,7 @@ impl Config {
         if time.is_some_and(|time| time.is_zero()) {
             return refuse("a time of 0 s leaves none to fit in: give more".into());
         }
+        self.check_colors()?;
         if self.stages == Some(0) {
             return refuse("0 stages add no stroke: give 1 or more".into());
         }
@@ -151,6 +156,30 @@ impl Config {
             ));
         }
         Ok(())
+    }
+}
+
+impl Config {
+    fn check_colors(&self) -> Result<()> {
+        let refuse = |message: String| Err(Error::new(ErrorKind::Config, message));
+        let Colors::Palette(palette) = &self.colors else {
+            return match self.colors {
+                Colors::AtMost(0) => refuse("0 colours draw nothing: give 1 or more".into()),
+                _ => Ok(()),
+            };
+        };
+        if palette.is_empty() {
+            return refuse("the palette has no colour: give one or more".into());
+        }
+        match self.background {
+            Background::Color(ground) if !palette.contains(&ground.map(quantum)) => {
+                let [r, g, b] = ground.map(quantum);
+                refuse(format!(
+                    "the background #{r:02x}{g:02x}{b:02x} is not in the palette: add it, or have it chosen by auto"
+                ))
+            }
+            _ => Ok(()),
+        }
     }
 }
 

@@ -9,7 +9,8 @@ use super::ground::{Ground, Setting};
 use super::objective::{View, differentiate};
 use crate::image::Image;
 use crate::render::{
-    AX, Base, Canvas, Gradients, Params, RADIUS, Renderer, Softness, pack, unpack,
+    AX, Base, Canvas, CanvasLoss, Gradients, Lanes, OPACITY, Params, RADIUS, RED, Renderer,
+    Softness, TileRgb, pack, unpack,
 };
 use crate::scene::{Rgb, Scene, Stage};
 use crate::seed::{Candidate, Wanted, propose};
@@ -107,7 +108,7 @@ impl Drawing {
     }
 
     /// The colour behind all strokes, if there is one ground and it is flat.
-    fn background(&self) -> Option<Rgb> {
+    pub(super) fn background(&self) -> Option<Rgb> {
         match self.grounds.as_slice() {
             [ground] => ground.color(),
             _ => None,
@@ -193,9 +194,31 @@ impl Drawing {
         self.lost
     }
 
+    /// What [`restore`](Self::restore) brings back.
+    pub(super) fn snapshot(&self) -> Snapshot {
+        Snapshot {
+            background: self.background(),
+            strokes: self.strokes.clone(),
+            stage_of: self.stage_of.clone(),
+        }
+    }
+
+    /// Goes back to a drawing of the same resolution, without frozen strokes then and now.
+    pub(super) fn restore(&mut self, snapshot: Snapshot) {
+        self.change_background(|color| *color = snapshot.background.unwrap_or(*color));
+        self.strokes = snapshot.strokes;
+        self.stage_of = snapshot.stage_of;
+    }
+
     /// Replaces the numbers of the free strokes.
     pub(super) fn set_free(&mut self, strokes: &[Params]) {
         self.strokes[self.frozen..].copy_from_slice(strokes);
+    }
+
+    /// How many strokes each stage has, back to front; a stage without any may be missing.
+    pub(super) fn stage_sizes(&self) -> Vec<usize> {
+        let stages = self.stage_of.chunk_by(|a, b| a == b);
+        stages.map(<[usize]>::len).collect()
     }
 
     /// The number of the stage on top, from 0.
@@ -261,6 +284,51 @@ impl Drawing {
         let area = self.pixel_area();
         gradients.worth.iter_mut().for_each(|worth| *worth *= area);
         gradients
+    }
+
+    /// The colours that the strokes, and at last the background if there is one, would like to have after a share
+    /// `damping` of their Newton steps. All strokes must be free.
+    pub(super) fn wishes(&mut self, damping: f32) -> Vec<Wish> {
+        let slopes = self.judge();
+        let mut shown = Gradients::default();
+        // What a stroke shows of itself is the same on every ground.
+        for View { base, .. } in views(&self.grounds, 0).iter().take(1) {
+            self.renderer
+                .backward(&self.strokes, self.edge, *base, &Shown, &mut shown);
+        }
+        // The loss is a mean over channels, too.
+        let values = (3 * self.pixels()) as f32 / self.pixel_area();
+        let wish = |color: Rgb, slope: Rgb, weight: f32| {
+            // A hidden stroke has no wish.
+            let step = if weight > LEAST_SHOWN {
+                damping * values / (2.0 * weight)
+            } else {
+                0.0
+            };
+            let moved = |c: usize| color[c] - (step * slope[c]).clamp(-1.0, 1.0);
+            let color = [0, 1, 2].map(|c| moved(c).clamp(0.0, 1.0));
+            Wish { color, weight }
+        };
+        let rgb = |p: &Params| [p[RED], p[RED + 1], p[RED + 2]];
+        let strokes = self.strokes.iter().zip(&slopes.strokes).zip(&shown.strokes);
+        let wishes = strokes.map(|((stroke, slope), shown)| {
+            // The square of a share is at most the share times the opacity.
+            wish(rgb(stroke), rgb(slope), shown[RED] * stroke[OPACITY])
+        });
+        let ground = self.background();
+        let ground = ground.map(|color| wish(color, slopes.base, shown.base[0]));
+        wishes.chain(ground).collect()
+    }
+
+    /// Gives the strokes, and at last the background unless it is fixed, these colours. All strokes must be free.
+    pub(super) fn set_colors(&mut self, colors: &[Rgb]) {
+        let mut colors = colors.iter();
+        for (stroke, color) in self.strokes.iter_mut().zip(colors.by_ref()) {
+            stroke[RED..OPACITY].copy_from_slice(color);
+        }
+        if let Some(&ground) = colors.next().filter(|_| !self.background_fixed) {
+            self.change_background(|color| *color = ground);
+        }
     }
 
     /// The mean squared error of the drawing; at a reduced resolution, of what can be seen there.
@@ -332,6 +400,36 @@ impl Drawing {
                 .push(unpack(&enlarged(stroke, halvings)));
         }
         scene
+    }
+}
+
+/// The strokes of a drawing and what is behind them.
+pub(super) struct Snapshot {
+    background: Option<Rgb>,
+    strokes: Vec<Params>,
+    stage_of: Vec<usize>,
+}
+
+/// The colour that a stroke, or the background, would like to have if the others stayed as they are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Wish {
+    pub(super) color: Rgb,
+    /// By how much the squared error grows with the squared distance from it.
+    pub(super) weight: f32,
+}
+
+/// Pixels that a stroke has to show in for its colour to matter.
+const LEAST_SHOWN: f32 = 1e-3;
+
+/// Sums each stroke's share of the pixels that it shows in, as the derivative by its red.
+struct Shown;
+
+impl CanvasLoss for Shown {
+    fn tile(&self, _: usize, _: &TileRgb, _: &mut TileRgb, gradient: &mut TileRgb) -> f64 {
+        for [red, ..] in gradient.iter_mut() {
+            *red = Lanes::splat(1.0);
+        }
+        0.0
     }
 }
 

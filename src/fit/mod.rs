@@ -15,6 +15,8 @@ mod fitter;
 mod ground;
 mod objective;
 mod observer;
+mod palette;
+mod pens;
 mod plan;
 mod polish;
 mod price;
@@ -34,6 +36,7 @@ pub use config::{Background, Budget, Config, DEFAULT_QUALITY, Execution, Preset}
 pub use fitter::Fitter;
 pub use objective::Objective;
 pub use observer::{Observer, Progress};
+pub use palette::Colors;
 pub use recipe::{Rates, Recipe};
 pub use simd::Simd;
 

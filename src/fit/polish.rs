@@ -5,6 +5,8 @@
 //! is that before it is fitted, and a stroke's worth that before its neighbours take over, so that both
 //! speak for the stroke in place: the gain counts several times ([`Recipe::relocate_gain`]).
 
+use std::convert::identity;
+
 use super::anneal::Anneal;
 use super::control::Control;
 use super::descent::Descent;
@@ -49,7 +51,7 @@ pub(super) fn run(
             descent = Descent::new(drawing.free(), recipe.polish_rates, drawing.limits);
         }
         if recipe.relocates(step, done) {
-            relocate(drawing, recipe, terms, &mut descent);
+            relocate(drawing, recipe, terms, identity, &mut descent);
         }
         let rate = schedule.factor((done * steps as f32) as usize, steps) as f32;
         drawing.step(&mut descent, anneal.at(done), rate);
@@ -93,7 +95,14 @@ impl Clock {
 }
 
 /// Swaps strokes for candidates that will gain more, and fills up to the limit with those that pay.
-fn relocate(drawing: &mut Drawing, recipe: &Recipe, terms: Terms, descent: &mut Descent) {
+/// `adapt` makes of a candidate what may come in its place.
+pub(super) fn relocate(
+    drawing: &mut Drawing,
+    recipe: &Recipe,
+    terms: Terms,
+    adapt: impl Fn(Candidate) -> Candidate,
+    descent: &mut Descent,
+) {
     let room = terms.limit.saturating_sub(drawing.len());
     let share = (drawing.free().len() as f32 * recipe.relocate_share).ceil() as usize;
     let scale = drawing.spacing(drawing.len()) * recipe.scale * recipe.relocate_scale;
@@ -105,10 +114,12 @@ fn relocate(drawing: &mut Drawing, recipe: &Recipe, terms: Terms, descent: &mut 
         .map(|stroke| terms.price.of(stroke))
         .collect();
     let candidate_price = |c: &Candidate| terms.price.of(&c.stroke);
-    let paying: Vec<Candidate> = candidates
+    let mut paying: Vec<Candidate> = candidates
         .into_iter()
+        .map(adapt)
         .filter(|c| c.gain > candidate_price(c))
         .collect();
+    paying.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     let gains: Vec<f32> = paying
         .iter()
         .map(|c| c.gain * recipe.relocate_gain)

@@ -26,7 +26,7 @@ use crate::{metrics, verify};
 pub(super) struct Page<'a> {
     base: Option<&'a Base>,
     /// Whether there is a rectangle of the background's colour.
-    has_ground: bool,
+    pub(super) has_ground: bool,
     file: WriteOptions,
 }
 

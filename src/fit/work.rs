@@ -11,6 +11,8 @@ use super::control::Control;
 use super::drawing::Drawing;
 use super::ground::{self, Setting};
 use super::observer::Observer;
+use super::palette::{self, Colors, Palette};
+use super::pens;
 use super::plan::{Before, MOST_STROKES, Plan, PlannedStage};
 use super::polish::{self, Terms};
 use super::price::Price;
@@ -19,10 +21,11 @@ use super::settle::{self, Page, Written};
 use super::{Fit, StageRecord, Stop, stage};
 use crate::error::Result;
 use crate::image::Image;
+use crate::math::Point;
 use crate::metrics::psnr_db;
+use crate::scene::{Shape, Stroke};
+use crate::svg::{self, Form};
 
-/// Bytes of a typical stroke, for the first guess at what a budget of bytes holds.
-const STROKE_BYTES: usize = 90;
 /// What polish adds to the fidelity of a staged drawing at least, dB.
 const POLISH_DB: f64 = 2.0;
 /// An open plan ends when less than this share of a stage's strokes is worth its price.
@@ -35,6 +38,22 @@ const CORRECTIONS: usize = 6;
 const EXCESS_DB: f64 = 0.1;
 /// Share of the polish's iterations that follow a correction.
 const REPOLISH: f64 = 0.4;
+
+/// Bytes of a typical stroke, for the first guess at what a budget of bytes holds.
+fn typical_bytes(config: &Config, target: &Image) -> usize {
+    // Two thirds of the way, so that no decimal is 0, and as short as most strokes are.
+    let place = |share: f32, step: f32| {
+        let [x, y] = [target.width(), target.height()].map(|side| side as f32 * share);
+        Point::new(x + step, y - step)
+    };
+    let stroke = Stroke {
+        shape: Shape::capsule(place(2.0 / 3.0, 0.0), place(2.0 / 3.0, 10.0 / 3.0)),
+        radius: 5.0 / 3.0,
+        color: [1.0 / 3.0; 3].map(|c: f32| c + 0.01),
+        opacity: if config.opaque { 1.0 } else { 2.0 / 3.0 },
+    };
+    svg::stroke_bytes(&stroke, &config.file).max(1)
+}
 
 /// A fit under way.
 pub(super) struct Work<'a> {
@@ -66,7 +85,8 @@ impl<'a> Work<'a> {
         let by_bytes = config
             .budget
             .bytes
-            .map(|bytes| (bytes.saturating_sub(kept_bytes) / STROKE_BYTES).max(1));
+            .map(|bytes| bytes.saturating_sub(kept_bytes) / typical_bytes(config, picture))
+            .map(|strokes| strokes.max(1));
         let limit = [config.budget.strokes, by_bytes]
             .into_iter()
             .flatten()
@@ -296,7 +316,53 @@ impl<'a> Work<'a> {
 
     /// Settles the drawing against its file.
     fn settled(&mut self) -> Result<Written> {
-        settle::run(&mut self.drawing, self.page, &self.recipe, &self.control)
+        let recipe = self.restricted();
+        settle::run(&mut self.drawing, self.page, &recipe, &self.control)
+    }
+
+    /// The palette of the drawing, if it has to have one.
+    fn palette(&mut self) -> Option<Palette> {
+        let colors = &self.config.colors;
+        if *colors == Colors::Free {
+            return None;
+        }
+        let strokes = self.drawing.len();
+        let mut wishes = self.drawing.wishes(0.0);
+        if !self.page.has_ground {
+            // No background is drawn.
+            wishes.truncate(strokes);
+        }
+        let is_given = self.page.has_ground && self.drawing.background_fixed;
+        let ground = self.drawing.background().filter(|_| is_given);
+        Palette::new(colors, &wishes, ground)
+    }
+
+    /// Brings the drawing to the colours and pens that it may have, and returns the recipe that leaves them as they are.
+    fn restricted(&mut self) -> Recipe {
+        let mut recipe = self.recipe;
+        if let Some(mut palette) = self.palette() {
+            let (anneal, control) = (self.anneal, &mut self.control);
+            let terms = Terms {
+                limit: self.drawing.len(),
+                ..self.terms
+            };
+            palette::run(
+                &mut self.drawing,
+                &mut palette,
+                &recipe,
+                anneal,
+                terms,
+                control,
+            );
+            recipe.polish_rates = palette::without_color(recipe.polish_rates);
+        }
+        if self.config.file.form == Form::Smallest {
+            let (anneal, control) = (self.anneal, &mut self.control);
+            let keep_colors = self.config.colors != Colors::Free;
+            pens::run(&mut self.drawing, keep_colors, &recipe, anneal, control);
+            recipe.polish_rates = pens::without_pen(recipe.polish_rates);
+        }
+        recipe
     }
 
     /// The drawing of fewest strokes found that is as faithful as `wanted`, dB, or the most faithful one.

@@ -7,7 +7,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::options::{Form, Group, WriteOptions};
-use crate::scene::{Scene, Stage, UNITS_PER_PX, Written};
+use super::path;
+use crate::scene::{Scene, Stage, Written};
 
 /// Strokes of a layer, and the colour that is all of theirs if that made the layer.
 #[derive(Debug, Clone)]
@@ -36,7 +37,8 @@ pub(super) fn layers(scene: &Scene, options: &WriteOptions) -> Vec<Layer> {
     };
     if options.form == Form::Smallest {
         for layer in &mut layers {
-            layer.strokes = arranged(std::mem::take(&mut layer.strokes), |s| s.width, pen);
+            layer.strokes.iter_mut().for_each(orient);
+            layer.strokes = arranged(std::mem::take(&mut layer.strokes), pen, |s| s.width);
         }
     }
     layers
@@ -55,34 +57,27 @@ pub fn arrange(scene: &Scene, options: &WriteOptions) -> Scene {
     }
 }
 
+/// Lets a stroke begin at the end that makes its path shorter.
+fn orient(stroke: &mut Written) {
+    let length = |stroke: &Written| path::data([stroke.points.as_slice()]).len();
+    let mut other = stroke.clone();
+    other.points.reverse();
+    if length(&other) < length(stroke) {
+        *stroke = other;
+    }
+}
+
 /// What strokes have to have in common to be one path.
 pub(super) fn pen(stroke: &Written) -> (i64, [u8; 3], u8) {
     (stroke.width, stroke.color, stroke.opacity)
 }
-
-/// Whether there is a way to see in which order the two are drawn.
-pub(super) fn touch(a: &Written, b: &Written) -> bool {
-    let reach = (a.width + b.width) / 2 + APART;
-    let near = |axis: usize| {
-        let ends = |s: &Written| {
-            let along = || s.points.iter().map(|p| p[axis]);
-            (along().min().unwrap_or(0), along().max().unwrap_or(0))
-        };
-        let ((a_near, a_far), (b_near, b_far)) = (ends(a), ends(b));
-        a_near - b_far < reach && b_near - a_far < reach
-    };
-    near(0) && near(1) && distance(a, b) < reach as f64
-}
-
-/// Strokes farther apart than the diagonal of a pixel have no pixel in common.
-const APART: i64 = UNITS_PER_PX * 3 / 2;
 
 /// Strokes that are arranged together: the pairs of more would take long to compare.
 const WINDOW: usize = 4096;
 
 /// Layers of one colour.
 fn by_color(strokes: Vec<Written>) -> Vec<Layer> {
-    let arranged = arranged(strokes, |s| s.color, pen);
+    let arranged = arranged(strokes, |s| s.color, |_| ());
     let runs = arranged.chunk_by(|a, b| a.color == b.color);
     runs.map(|run| Layer {
         strokes: run.to_vec(),
@@ -91,86 +86,96 @@ fn by_color(strokes: Vec<Written>) -> Vec<Layer> {
     .collect()
 }
 
-/// The strokes with those of one `outer` look together as far as may be, and of one `inner` look within.
-fn arranged<K: Ord, L: Ord>(
+/// The strokes with those of one `run` together as far as may be, and runs of one `kin` one after the other.
+fn arranged<R: Ord, K: Ord>(
     mut strokes: Vec<Written>,
-    outer: impl Fn(&Written) -> K,
-    inner: impl Fn(&Written) -> L,
+    run: impl Fn(&Written) -> R,
+    kin: impl Fn(&Written) -> K,
 ) -> Vec<Written> {
     for window in strokes.chunks_mut(WINDOW) {
-        let order = order(window, &outer, &inner);
+        let order = order(window, &run, &kin);
         let sorted: Vec<_> = order.iter().map(|&i| window[i].clone()).collect();
         window.clone_from_slice(&sorted);
     }
     strokes
 }
 
-/// The strokes that may come next: by outer look, inner look, and themselves.
-type Ready<'a, K, L> = BTreeMap<K, BTreeMap<L, BTreeSet<(&'a Written, usize)>>>;
-
-fn order<'a, K: Ord, L: Ord>(
-    strokes: &'a [Written],
-    outer: impl Fn(&Written) -> K,
-    inner: impl Fn(&Written) -> L,
+fn order<R: Ord, K: Ord>(
+    strokes: &[Written],
+    run: impl Fn(&Written) -> R,
+    kin: impl Fn(&Written) -> K,
 ) -> Vec<usize> {
     let above = above(strokes);
     let mut below = vec![0_usize; strokes.len()];
     above.iter().flatten().for_each(|&i| below[i] += 1);
-    let mut ready: Ready<'a, K, L> = BTreeMap::new();
-    let put = |ready: &mut Ready<'a, K, L>, i: usize| {
-        let stroke = &strokes[i];
-        let runs = ready.entry(outer(stroke)).or_default();
-        runs.entry(inner(stroke)).or_default().insert((stroke, i));
-    };
-    (0..strokes.len())
-        .filter(|&i| below[i] == 0)
-        .for_each(|i| put(&mut ready, i));
+    let mut runs: BTreeMap<R, Run<'_>> = BTreeMap::new();
+    for (i, stroke) in strokes.iter().enumerate() {
+        let run = runs.entry(run(stroke)).or_default();
+        run.left += 1;
+        if below[i] == 0 {
+            run.ready.insert((stroke, i));
+        }
+    }
     let mut order: Vec<usize> = Vec::with_capacity(strokes.len());
-    while let Some(next) = take(
-        &mut ready,
-        order.last().map(|&i| &strokes[i]),
-        &outer,
-        &inner,
-    ) {
+    while let Some(next) = take(&mut runs, order.last().map(|&i| &strokes[i]), &run, &kin) {
         order.push(next);
         for &i in &above[next] {
             below[i] -= 1;
             if below[i] == 0 {
-                put(&mut ready, i);
+                let run = runs.entry(run(&strokes[i])).or_default();
+                run.ready.insert((&strokes[i], i));
             }
         }
     }
     order
 }
 
-/// Takes a stroke that looks like the last one, or else one of the looks that most may come next with.
-fn take<K: Ord, L: Ord>(
-    ready: &mut Ready<'_, K, L>,
+/// The strokes of one look.
+#[derive(Default)]
+struct Run<'a> {
+    /// Those that may come next.
+    ready: BTreeSet<(&'a Written, usize)>,
+    /// How many have not come yet, ready or not.
+    left: usize,
+}
+
+/// Takes a stroke that looks like the last one, or begins a run.
+fn take<R: Ord, K: Ord>(
+    runs: &mut BTreeMap<R, Run<'_>>,
     last: Option<&Written>,
-    outer: impl Fn(&Written) -> K,
-    inner: impl Fn(&Written) -> L,
+    run: impl Fn(&Written) -> R,
+    kin: impl Fn(&Written) -> K,
 ) -> Option<usize> {
-    let same_outer = last.and_then(|last| ready.get_key_value(&outer(last)));
-    let (_, runs) = same_outer.or_else(|| {
-        let count = |runs: &BTreeMap<L, BTreeSet<_>>| runs.values().map(BTreeSet::len).sum();
-        ready
-            .iter()
-            .max_by_key(|(_, runs)| -> usize { count(runs) })
-    })?;
-    let same_inner = last.and_then(|last| runs.get(&inner(last)));
-    let run = same_inner.or_else(|| runs.values().max_by_key(|run| run.len()))?;
-    let &(stroke, next) = run.first()?;
-    let (outer, inner) = (outer(stroke), inner(stroke));
-    let runs = ready.get_mut(&outer)?;
-    let run = runs.get_mut(&inner)?;
-    run.pop_first();
-    if run.is_empty() {
-        runs.remove(&inner);
+    let may_go_on = |key: &R| runs.get(key).is_some_and(|run| !run.ready.is_empty());
+    let key = last.map(&run).filter(may_go_on);
+    let key = key.or_else(|| begin(runs, last.map(&kin), kin).map(run))?;
+    let run = runs.get_mut(&key)?;
+    run.left -= 1;
+    run.ready.pop_first().map(|(_, i)| i)
+}
+
+/// The first stroke of the run to begin: one that may come as a whole before others, then one of the `last` kin, then
+/// of the kin that most such runs are of, then the one that most of may come.
+fn begin<'a, R, K: Ord>(
+    runs: &BTreeMap<R, Run<'a>>,
+    last: Option<K>,
+    kin: impl Fn(&Written) -> K,
+) -> Option<&'a Written> {
+    let ready = || {
+        runs.values()
+            .filter_map(|run| Some((run, run.ready.first()?.0)))
+    };
+    let is_whole = |run: &Run<'_>| run.ready.len() == run.left;
+    let mut kins = BTreeMap::<K, usize>::new();
+    for (_, first) in ready().filter(|(run, _)| is_whole(run)) {
+        *kins.entry(kin(first)).or_default() += 1;
     }
-    if runs.is_empty() {
-        ready.remove(&outer);
-    }
-    Some(next)
+    let rank = |(run, first): &(&Run<'_>, &Written)| {
+        let kin = Some(kin(first));
+        let relatives = kin.as_ref().and_then(|kin| kins.get(kin)).copied();
+        (is_whole(run), kin == last, relatives, run.ready.len())
+    };
+    ready().max_by_key(rank).map(|(_, first)| first)
 }
 
 /// For each stroke, the later ones that have to stay above it.
@@ -178,51 +183,18 @@ fn above(strokes: &[Written]) -> Vec<Vec<usize>> {
     let above = |(i, below): (usize, &Written)| {
         let later = strokes.iter().enumerate().skip(i + 1);
         later
-            .filter(|(_, stroke)| stroke.color != below.color && touch(stroke, below))
+            .filter(|(_, stroke)| stroke.color != below.color && stroke.meets(below))
             .map(|(k, _)| k)
             .collect()
     };
     strokes.iter().enumerate().map(above).collect()
 }
 
-/// Distance of the centre lines, in units.
-fn distance(a: &Written, b: &Written) -> f64 {
-    let (a, b) = (ends(a), ends(b));
-    if cross(a, b) {
-        return 0.0;
-    }
-    let gaps = [gap(a[0], b), gap(a[1], b), gap(b[0], a), gap(b[1], a)];
-    gaps.into_iter().fold(f64::INFINITY, f64::min)
-}
-
-type Segment = [[f64; 2]; 2];
-
-fn ends(stroke: &Written) -> Segment {
-    let place = |p: Option<&[i64; 2]>| p.map_or([0.0; 2], |p| p.map(|units| units as f64));
-    [place(stroke.points.first()), place(stroke.points.last())]
-}
-
-/// From a point to a segment.
-fn gap([x, y]: [f64; 2], [a, b]: Segment) -> f64 {
-    let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
-    let length2 = dx * dx + dy * dy;
-    let along = ((x - a[0]) * dx + (y - a[1]) * dy) / length2.max(f64::MIN_POSITIVE);
-    let h = along.clamp(0.0, 1.0);
-    (x - a[0] - h * dx).hypot(y - a[1] - h * dy)
-}
-
-fn cross(a: Segment, b: Segment) -> bool {
-    let side = |[from, to]: Segment, p: [f64; 2]| {
-        (to[0] - from[0]) * (p[1] - from[1]) - (to[1] - from[1]) * (p[0] - from[0])
-    };
-    side(a, b[0]) * side(a, b[1]) < 0.0 && side(b, a[0]) * side(b, a[1]) < 0.0
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const PX: i64 = UNITS_PER_PX;
+    const PX: i64 = crate::scene::UNITS_PER_PX;
 
     fn stroke(x: i64, color: u8, width: i64) -> Written {
         Written {
@@ -234,7 +206,7 @@ mod tests {
     }
 
     fn by_width(strokes: &[Written]) -> Vec<usize> {
-        order(strokes, |s| s.width, pen)
+        order(strokes, pen, |s| s.width)
     }
 
     #[test]
@@ -252,26 +224,5 @@ mod tests {
     fn what_lies_above_stays_above() {
         let strokes = [stroke(10, 1, 4), stroke(11, 2, 2), stroke(12, 3, 4)];
         assert_eq!(by_width(&strokes), [0, 1, 2]);
-    }
-
-    #[test]
-    fn strokes_touch_where_they_may_share_a_pixel() {
-        let base = stroke(10, 1, 4);
-        let touches = [13, 14, 15].map(|x| touch(&base, &stroke(x, 2, 2)));
-        assert_eq!(touches, [true, true, false]);
-        let beyond = Written {
-            points: vec![[10 * PX, 96 * PX]],
-            ..base.clone()
-        };
-        assert!(!touch(&base, &beyond));
-    }
-
-    #[test]
-    fn crossing_strokes_touch() {
-        let across = Written {
-            points: vec![[-500 * PX, 50 * PX], [500 * PX, 51 * PX]],
-            ..stroke(0, 2, 1)
-        };
-        assert!(touch(&stroke(10, 1, 1), &across));
     }
 }

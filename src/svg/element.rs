@@ -1,6 +1,8 @@
 //! Strokes as elements: which share one, and which attributes neighbours share.
 
-use super::arrange::{pen, touch};
+use std::collections::BTreeMap;
+
+use super::arrange::pen;
 use super::options::Form;
 use super::{dialect, outline, path};
 use crate::scene::Written;
@@ -10,11 +12,16 @@ pub(super) fn push(out: &mut String, strokes: &[Written], form: Form) {
     match form {
         Form::Elements | Form::Plain => {
             for element in split(strokes, form) {
-                push_path(out, element, &[], dialect::hex);
+                push_path(out, element, &[], Style::Full);
                 out.push('\n');
             }
         }
-        Form::Smallest => push_runs(out, &split(strokes, form), &[]),
+        Form::Smallest => {
+            let style = Style::Short {
+                width: usual_width(strokes, form),
+            };
+            push_runs(out, &split(strokes, form), &[], style);
+        }
         Form::Outlines => strokes.iter().for_each(|stroke| outline::push(out, stroke)),
     }
 }
@@ -24,10 +31,37 @@ pub(super) fn bytes(stroke: &Written, form: Form) -> usize {
     let mut out = String::new();
     let alone = std::slice::from_ref(stroke);
     match form {
-        Form::Smallest => push_path(&mut out, alone, &[Attribute::Width], dialect::short_hex),
+        Form::Smallest => {
+            let style = Style::Short { width: None };
+            push_path(&mut out, alone, &[Attribute::Width], style);
+        }
         form => push(&mut out, alone, form),
     }
     out.len()
+}
+
+/// The attribute with which a layer of `strokes` says their usual width, or nothing.
+pub(super) fn layer_width(strokes: &[Written], form: Form) -> String {
+    let mut out = String::new();
+    if let Some(width) = usual_width(strokes, form) {
+        out.push_str(" stroke-width=\"");
+        dialect::push_number(&mut out, width);
+        out.push('"');
+    }
+    out
+}
+
+/// In the smallest form, the width that most elements have, if that is more than one.
+fn usual_width(strokes: &[Written], form: Form) -> Option<i64> {
+    let mut counts = BTreeMap::<i64, usize>::new();
+    for element in split(strokes, form)
+        .iter()
+        .filter(|_| form == Form::Smallest)
+    {
+        *counts.entry(element[0].width).or_default() += 1;
+    }
+    let (width, count) = counts.into_iter().max_by_key(|&(_, count)| count)?;
+    (count > 1).then_some(width)
 }
 
 /// Whether a stroke of a path goes on from the end of the one before.
@@ -59,7 +93,7 @@ fn joins(strokes: &[Written], next: &Written, form: Form) -> bool {
     let opaque = next.opacity == u8::MAX;
     match form {
         Form::Plain => opaque && is_chain(last, next),
-        Form::Smallest => opaque || !strokes.iter().any(|stroke| touch(stroke, next)),
+        Form::Smallest => opaque || !strokes.iter().any(|stroke| stroke.meets(next)),
         Form::Elements | Form::Outlines => false,
     }
 }
@@ -82,9 +116,20 @@ impl Attribute {
     const ALL: [Self; 3] = [Self::Color, Self::Width, Self::Opacity];
 
     /// As it is written, with a space before; nothing where the default says the same.
-    fn text(self, stroke: &Written, hex: fn([u8; 3]) -> String) -> String {
+    fn text(self, stroke: &Written, style: Style) -> String {
         match self {
-            Self::Color => format!(" stroke=\"{}\"", hex(stroke.color)),
+            Self::Color if style == Style::Full => {
+                format!(" stroke=\"{}\"", dialect::hex(stroke.color))
+            }
+            Self::Color => format!(" stroke=\"{}\"", dialect::short_hex(stroke.color)),
+            Self::Width
+                if style
+                    == (Style::Short {
+                        width: Some(stroke.width),
+                    }) =>
+            {
+                String::new()
+            }
             Self::Width => {
                 let mut width = String::new();
                 dialect::push_number(&mut width, stroke.width);
@@ -96,20 +141,24 @@ impl Attribute {
     }
 }
 
+/// How attributes are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Style {
+    /// All of them, colours with six digits.
+    Full,
+    /// As few characters as will do in a layer of this `width`.
+    Short { width: Option<i64> },
+}
+
 /// Appends the path of `strokes` with the attributes that are not `shared`.
-fn push_path(
-    out: &mut String,
-    strokes: &[Written],
-    shared: &[Attribute],
-    hex: fn([u8; 3]) -> String,
-) {
+fn push_path(out: &mut String, strokes: &[Written], shared: &[Attribute], style: Style) {
     let d = path::data(strokes.iter().map(|stroke| stroke.points.as_slice()));
     *out += &format!("<path d=\"{d}\"");
     let own = Attribute::ALL.iter().filter(|a| !shared.contains(a));
     for attribute in own {
         *out += &strokes
             .first()
-            .map_or_else(String::new, |stroke| attribute.text(stroke, hex));
+            .map_or_else(String::new, |stroke| attribute.text(stroke, style));
     }
     out.push_str("/>");
 }
@@ -118,26 +167,30 @@ fn push_path(
 const GROUP_BYTES: usize = "<g></g>".len();
 
 /// Appends `elements`, in groups where the attribute that most share is shorter on a group.
-fn push_runs(out: &mut String, elements: &[&[Written]], shared: &[Attribute]) {
+fn push_runs(out: &mut String, elements: &[&[Written]], shared: &[Attribute], style: Style) {
     let mut rest = elements;
     while let Some((first, others)) = rest.split_first() {
-        let Some((attribute, length)) = best_run(rest, shared) else {
-            push_path(out, first, shared, dialect::short_hex);
+        let Some((attribute, length)) = best_run(rest, shared, style) else {
+            push_path(out, first, shared, style);
             rest = others;
             continue;
         };
         let (run, later) = rest.split_at(length);
-        *out += &format!("<g{}>", attribute.text(&first[0], dialect::short_hex));
-        push_runs(out, run, &[shared, &[attribute]].concat());
+        *out += &format!("<g{}>", attribute.text(&first[0], style));
+        push_runs(out, run, &[shared, &[attribute]].concat(), style);
         out.push_str("</g>");
         rest = later;
     }
 }
 
 /// The attribute that saves most bytes on a group around the elements from the first on, and how many share it.
-fn best_run(elements: &[&[Written]], shared: &[Attribute]) -> Option<(Attribute, usize)> {
+fn best_run(
+    elements: &[&[Written]],
+    shared: &[Attribute],
+    style: Style,
+) -> Option<(Attribute, usize)> {
     let saved = |attribute: Attribute| {
-        let text = |element: &&[Written]| attribute.text(&element[0], dialect::short_hex);
+        let text = |element: &&[Written]| attribute.text(&element[0], style);
         let first = text(elements.first()?);
         let length = elements.iter().take_while(|e| text(e) == first).count();
         let saved = (first.len() * (length - 1)).checked_sub(GROUP_BYTES + 1)?;

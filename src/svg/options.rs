@@ -40,7 +40,7 @@ pub enum Form {
     #[default]
     Plain,
     /// As many strokes of one look as may be drawn together. Attributes that neighbours share are on a group
-    /// around them, and strokes that do not touch change places for the sake of it.
+    /// around them, and strokes that do not touch change places, and some their ends, for the sake of it.
     Smallest,
     /// The outline of one stroke, filled: for programs that ignore strokes. It cannot be read back.
     Outlines,

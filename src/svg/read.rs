@@ -101,7 +101,13 @@ impl<'a> Parser<'a> {
     }
 
     fn stage(&mut self, group: &Element, number: usize) -> Parsed<Stage> {
-        group.only(&["id", "fill", "stroke-linecap", "stroke-linejoin"])?;
+        group.only(&[
+            "id",
+            "fill",
+            "stroke-linecap",
+            "stroke-linejoin",
+            "stroke-width",
+        ])?;
         let ids = ["stage", "color"].map(|kind| format!("{kind}-{number}"));
         if !ids.iter().any(|id| group.find("id") == Some(id)) {
             group.expect("id", &ids[0])?;
@@ -114,6 +120,7 @@ impl<'a> Parser<'a> {
         }
         let mut stage = Stage::default();
         let look = Look {
+            layer_width: group.either("stroke-width", None, width)?,
             has_join,
             ..Look::default()
         };
@@ -279,8 +286,14 @@ struct Look {
     color: Option<[u8; 3]>,
     width: Option<i64>,
     opacity: Option<u8>,
+    /// What holds where no width is said.
+    layer_width: Option<i64>,
     /// Whether corners are round.
     has_join: bool,
+}
+
+fn width(text: &str) -> Option<i64> {
+    dialect::number(text).filter(|&width| width > 0)
 }
 
 impl Look {
@@ -300,11 +313,11 @@ impl Look {
         if own.is_empty() && element.attributes.is_empty() {
             return Err("<g> says nothing: remove it".into());
         }
-        let width = |text: &str| dialect::number(text).filter(|&width| width > 0);
         Ok(Self {
             color: element.either("stroke", self.color, dialect::channels)?,
             width: element.either("stroke-width", self.width, width)?,
             opacity: element.either("stroke-opacity", self.opacity, dialect::opacity_quantum)?,
+            layer_width: self.layer_width,
             has_join: self.has_join,
         })
     }
@@ -316,7 +329,8 @@ impl Look {
             return Err("<path> has a corner, but its layer no stroke-linejoin=\"round\"".into());
         }
         let missing = |key: &str| format!("<path> has no {key}");
-        let width = self.width.ok_or_else(|| missing("stroke-width"))?;
+        let width = self.width.or(self.layer_width);
+        let width = width.ok_or_else(|| missing("stroke-width"))?;
         let color = self.color.ok_or_else(|| missing("stroke"))?;
         let stroke = |points| {
             let opacity = self.opacity.unwrap_or(u8::MAX);

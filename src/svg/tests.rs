@@ -116,7 +116,12 @@ proptest! {
     #[test]
     fn arranging_takes_no_stroke_away(scene in scene_of_few_looks(), options in options()) {
         let sorted = |scene: &Scene| {
-            let mut strokes: Vec<_> = scene.strokes().map(|s| format!("{s:?}")).collect();
+            let ends = |s: &Stroke| {
+                let mut ends = s.shape.points().iter().map(|p| [p.x, p.y]).collect::<Vec<_>>();
+                ends.sort_by(|a, b| a.partial_cmp(b).unwrap());
+                format!("{ends:?} {} {:?} {}", s.radius, s.color, s.opacity)
+            };
+            let mut strokes: Vec<_> = scene.strokes().map(ends).collect();
             strokes.sort();
             strokes
         };

@@ -57,9 +57,10 @@ fn push_layer(out: &mut String, number: usize, layer: &Layer, form: Form) {
         None => (format!("stage-{number}"), format!("Stage {number}")),
     };
     *out += &format!(
-        "<g id=\"{id}\" inkscape:groupmode=\"layer\" inkscape:label=\"{label}\"{}>\n\
+        "<g id=\"{id}\" inkscape:groupmode=\"layer\" inkscape:label=\"{label}\"{}{}>\n\
          <title>{label}: {count} stroke{plural}</title>\n",
-        look(layer, form)
+        look(layer, form),
+        element::layer_width(&layer.strokes, form)
     );
     element::push(out, &layer.strokes, form);
     if !out.ends_with('\n') {
