@@ -1,0 +1,271 @@
+//! The forms of a file, as users of the program and of the library meet them.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use strokefit::image::Image;
+use strokefit::svg;
+use strokefit::verify::{self, Size};
+use tempfile::TempDir;
+
+/// A folder with a drawing of a sample.
+struct Drawn {
+    folder: TempDir,
+    text: String,
+    report: serde_json::Value,
+}
+
+fn sample(name: &str) -> String {
+    format!("{}/samples/{name}.png", env!("CARGO_MANIFEST_DIR"))
+}
+
+fn run(folder: &Path, args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_strokefit"))
+        .args(args)
+        .current_dir(folder)
+        .output()
+        .unwrap()
+}
+
+/// A draft of a sample in 150 strokes.
+fn drawn(name: &str, options: &[&str]) -> Drawn {
+    let folder = tempfile::tempdir().unwrap();
+    let input = sample(name);
+    let fixed = ["fit", &input, "-o", "a.svg", "--report", "a.json"];
+    let draft = ["--preset", "draft", "--strokes", "150", "-q"];
+    let output = run(folder.path(), &[&fixed, &draft, options].concat());
+    assert!(output.status.success(), "{output:?}");
+    let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+    Drawn {
+        text: read("a.svg"),
+        report: serde_json::from_str(&read("a.json")).unwrap(),
+        folder,
+    }
+}
+
+impl Drawn {
+    fn number(&self, field: &str) -> f64 {
+        self.report[field].as_f64().unwrap()
+    }
+
+    fn psnr_db(&self) -> f64 {
+        self.report["fidelity"]["psnr_db"].as_f64().unwrap()
+    }
+
+    /// All colours of strokes and background.
+    fn colors(&self) -> BTreeSet<String> {
+        let scene = svg::read(&self.text).unwrap();
+        let strokes = scene.strokes().map(|stroke| stroke.color);
+        let hex = |rgb: [f32; 3]| {
+            let [r, g, b] = rgb.map(|c| (c * 255.0).round() as u8);
+            format!("#{r:02x}{g:02x}{b:02x}")
+        };
+        strokes.chain(scene.background).map(hex).collect()
+    }
+}
+
+fn image(text: &str) -> Image {
+    let size = Size::Exact {
+        width: 300,
+        height: 200,
+    };
+    verify::render(text, size, Some([1.0; 3])).unwrap()
+}
+
+/// How alike resvg draws two files, dB.
+fn agreement(a: &str, b: &str) -> f64 {
+    strokefit::metrics::Agreement::between(&image(a), &image(b))
+        .unwrap()
+        .psnr_db
+}
+
+/// A refusal of one line that has `words`.
+#[track_caller]
+fn assert_refused(options: &[&str], words: &str) {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("bad.gpl"), "GIMP Palette\n1 2 x\n").unwrap();
+    let input = sample("noto-gem");
+    let output = run(
+        folder.path(),
+        &[&["fit", &input, "-o", "a.svg"], options].concat(),
+    );
+    let line = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{line}");
+    assert_eq!(line.trim_end().lines().count(), 1, "{line}");
+    assert!(line.contains(words), "{line}");
+    assert!(!folder.path().join("a.svg").exists());
+}
+
+#[test]
+fn one_element_is_one_stroke() {
+    let drawn = drawn("coffee-300", &["--form", "elements"]);
+    let elements = drawn.text.matches("<path").count();
+    assert_eq!(elements as f64, drawn.number("strokes"));
+}
+
+#[test]
+fn the_smallest_file_is_a_fifth_shorter_and_hardly_worse() {
+    let options = ["--opaque", "--precision", "1"];
+    let plain = drawn("coffee-300", &options);
+    let smallest = drawn(
+        "coffee-300",
+        &[&options[..], &["--form", "smallest"]].concat(),
+    );
+    assert!(smallest.number("bytes_per_stroke") < 0.8 * plain.number("bytes_per_stroke"));
+    assert!(smallest.number("svg_gzip_bytes") < plain.number("svg_gzip_bytes"));
+    assert!(smallest.psnr_db() > plain.psnr_db() - 1.0);
+}
+
+#[test]
+fn a_budget_of_bytes_buys_more_strokes_in_the_smallest_form() {
+    let strokes = |form: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        let input = sample("coffee-300");
+        let options = [
+            "--bytes", "9000", "--opaque", "--preset", "draft", "--form", form,
+        ];
+        let output = run(
+            folder.path(),
+            &[&["fit", &input, "-o", "a.svg"], &options[..]].concat(),
+        );
+        assert!(output.status.success(), "{output:?}");
+        let text = fs::read_to_string(folder.path().join("a.svg")).unwrap();
+        assert!(text.len() <= 9000);
+        svg::read(&text).unwrap().len()
+    };
+    assert!(strokes("smallest") as f64 > 1.2 * strokes("plain") as f64);
+}
+
+#[test]
+fn outlines_look_like_the_strokes() {
+    let strokes = drawn("coffee-300", &[]);
+    let scene = svg::read(&strokes.text).unwrap();
+    let options = svg::WriteOptions {
+        form: svg::Form::Outlines,
+        ..svg::WriteOptions::default()
+    };
+    let outlines = svg::write(&scene, &options);
+    assert!(!outlines.contains("stroke="));
+    assert!(agreement(&strokes.text, &outlines) > 40.0);
+}
+
+#[test]
+fn outlines_are_verified_but_not_read_back() {
+    let drawn = drawn("noto-gem", &["--outline"]);
+    assert!(drawn.report["agreement"]["psnr_db"].as_f64().unwrap() > 36.0);
+    let message = svg::read(&drawn.text).unwrap_err().to_string();
+    assert!(message.contains("dialect"), "{message}");
+}
+
+#[test]
+fn a_page_has_the_width_that_was_asked_for() {
+    let drawn = drawn("coffee-300", &["--width", "120mm"]);
+    let head = r#"width="120mm" height="80mm" viewBox="0 0 300 200""#;
+    assert!(drawn.text.contains(head));
+    let input = sample("coffee-300");
+    let check = run(drawn.folder.path(), &["check", "a.svg", &input]);
+    assert!(check.status.success(), "{check:?}");
+}
+
+#[test]
+fn at_most_so_many_colours_are_used() {
+    for options in [vec!["--colors", "5"], vec!["--colors", "5", "--opaque"]] {
+        assert_eq!(
+            drawn("coffee-300", &options).colors().len(),
+            5,
+            "{options:?}"
+        );
+    }
+}
+
+#[test]
+fn a_background_that_was_asked_for_is_one_of_the_colours() {
+    let colors = drawn("coffee-300", &["--colors", "3", "--background", "#00ff00"]).colors();
+    assert_eq!(colors.len(), 3);
+    assert!(colors.contains("#00ff00"));
+}
+
+#[test]
+fn only_colours_of_the_palette_are_used() {
+    let palette = ["#000000", "#ffffff", "#c0392b", "#d35400"];
+    let drawn = drawn("coffee-300", &["--palette", &palette.join(",")]);
+    let palette = palette.map(String::from).into_iter().collect();
+    assert!(drawn.colors().is_subset(&palette));
+}
+
+/// Strokes that know their palette make up for each other's missing colours; colours that are exchanged
+/// afterwards do not.
+#[test]
+fn a_palette_is_fitted_and_not_only_applied() {
+    let free = drawn("coffee-300", &[]);
+    let fitted = drawn(
+        "coffee-300",
+        &["--palette", "#200804,#f0e0d0,#a03010,#c08050"],
+    );
+    let palette = [[32, 8, 4], [240, 224, 208], [160, 48, 16], [192, 128, 80]]
+        .map(|rgb| rgb.map(|c: u8| f32::from(c) / 255.0));
+    let nearest = |wanted: [f32; 3]| {
+        let away = |c: &[f32; 3]| (0..3).map(|k| (c[k] - wanted[k]).powi(2)).sum::<f32>();
+        palette
+            .into_iter()
+            .min_by(|a, b| away(a).total_cmp(&away(b)))
+            .unwrap()
+    };
+    let mut applied = svg::read(&free.text).unwrap();
+    applied.background = applied.background.map(nearest);
+    for stroke in applied
+        .stages
+        .iter_mut()
+        .flat_map(|stage| &mut stage.strokes)
+    {
+        stroke.color = nearest(stroke.color);
+    }
+    let text = svg::write(&applied, &svg::WriteOptions::default());
+    let target = Image::open(sample("coffee-300")).unwrap();
+    let applied = verify::fidelity(&text, &target).unwrap().psnr_db;
+    assert!(
+        fitted.psnr_db() > applied + 1.0,
+        "{} {applied}",
+        fitted.psnr_db()
+    );
+}
+
+#[test]
+fn layers_by_colour_show_the_same_picture() {
+    let by_stage = drawn("coffee-300", &["--colors", "6"]);
+    let by_color = drawn("coffee-300", &["--colors", "6", "--group", "color"]);
+    assert!(by_color.text.contains(r#"<g id="color-1""#));
+    assert!(agreement(&by_stage.text, &by_color.text) > 50.0);
+    let scene = svg::read(&by_color.text).unwrap();
+    for stage in &scene.stages {
+        assert!(
+            stage
+                .strokes
+                .iter()
+                .all(|s| s.color == stage.strokes[0].color)
+        );
+    }
+}
+
+#[test]
+fn options_that_make_no_sense_are_refused() {
+    assert_refused(&["--width", "12"], "such as 120mm");
+    assert_refused(&["--width", "-3mm"], "such as 120mm");
+    assert_refused(&["--outline", "--form", "smallest"], "--outline");
+    assert_refused(&["--form", "tiny"], "smallest");
+    assert_refused(&["--group", "size"], "color");
+}
+
+#[test]
+fn bad_palettes_are_refused() {
+    assert_refused(&["--colors", "0"], "whole number");
+    assert_refused(&["--palette", "#12,#ffffff"], "\"#12\" is no colour");
+    assert_refused(&["--palette", "none.gpl"], "cannot be read");
+    assert_refused(&["--palette", "bad.gpl"], "line 2");
+    assert_refused(&["--palette", "#ffffff", "--colors", "3"], "--colors");
+    let ground = ["--palette", "#ffffff", "--background", "#000000"];
+    assert_refused(&ground, "the background #000000 is not in the palette");
+}
