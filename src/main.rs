@@ -7,10 +7,8 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let args = match cli::parse() {
         Ok(args) => args,
-        Err(status) => return status.into(),
+        Err(status) => return status.leave(),
     };
-    match cli::run(&args) {
-        Ok(status) => status.into(),
-        Err(error) => cli::fail(&error).into(),
-    }
+    let status = cli::run(&args).unwrap_or_else(|error| cli::fail(&error));
+    status.leave()
 }

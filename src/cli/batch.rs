@@ -59,6 +59,11 @@ fn named(template: &Path, input: &Path) -> Result<PathBuf> {
 
 /// Does the jobs in order. One alone tells its outcome in a line, several in a table.
 pub(super) fn run(jobs: &[Job<'_>], verbosity: Verbosity, draw: &Draw<'_>) -> Result<Status> {
+    if jobs.len() > 1 && jobs.iter().any(|job| job.options.checkpoint().is_some()) {
+        return Err(misuse(
+            "--checkpoint keeps the state of one fit: give one picture",
+        ));
+    }
     let events = jobs.first().and_then(|job| job.options.events.as_deref());
     let outputs: Vec<Outputs<'_>> = jobs.iter().map(Outputs::open).collect::<Result<_>>()?;
     keep_apart(jobs, &outputs, events)?;
@@ -120,7 +125,7 @@ fn several(
 ) -> Status {
     let table = Table::of(jobs);
     verbosity.say(table.head());
-    let (mut worst, mut failed) = (Status::Done, 0);
+    let (mut worst, mut done, mut failed) = (Status::Done, 0, 0);
     for (i, (job, outputs)) in jobs.iter().zip(outputs).enumerate() {
         let heading = format!("{} of {} ", i + 1, jobs.len());
         let status = match attempt(job, outputs, events, heading, verbosity, draw) {
@@ -134,10 +139,18 @@ fn several(
             }
         };
         worst = worst.or_worse(status);
+        done += 1;
+        if matches!(status, Status::Interrupted(_)) {
+            break;
+        }
     }
     verbosity.say(format_args!(
-        "{} drawn, {failed} failed",
-        jobs.len() - failed
+        "{} drawn, {failed} failed{}",
+        done - failed,
+        match jobs.len() - done {
+            0 => String::new(),
+            left => format!(", {left} left out"),
+        }
     ));
     worst
 }

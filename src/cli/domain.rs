@@ -37,6 +37,10 @@ pub(super) fn threads(text: &str) -> Parsed<usize> {
     whole(text, 1..=MAX_THREADS)
 }
 
+pub(super) fn pixels(text: &str) -> Parsed<u64> {
+    whole(text, 1..=usize::MAX).map(|n| n as u64)
+}
+
 pub(super) fn precision(text: &str) -> Parsed<u8> {
     whole(text, 0..=usize::from(MAX_PRECISION)).map(|n| n as u8)
 }

@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use anyhow::Result;
-use strokefit::fit::Fitter;
 
 use super::batch;
 use super::options::Options;
@@ -43,8 +42,9 @@ pub(super) struct Args {
 pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
     let options = &args.options;
     let jobs = batch::jobs(&args.inputs, &args.output, args.report.as_deref(), options)?;
-    batch::run(&jobs, verbosity, &|picture, observer| {
-        let fitter = Fitter::new(options.config()).execution(options.execution());
-        Ok(fitter.observer(observer).fit(picture)?)
-    })
+    batch::run(
+        &jobs,
+        verbosity,
+        &|fitter, picture| Ok(fitter.fit(picture)?),
+    )
 }

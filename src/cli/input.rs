@@ -25,12 +25,16 @@ pub(super) fn name(path: &Path) -> String {
     }
 }
 
-/// Reads a picture.
+/// Reads a picture, within the usual limits.
 pub(super) fn picture(path: &Path) -> Result<Image> {
+    picture_within(path, Limits::default())
+}
+
+/// Reads a picture, within the limits.
+pub(super) fn picture_within(path: &Path, limits: Limits) -> Result<Image> {
     if !is_stdin(path) {
-        return Image::open(path).map_err(|e| hint::or_neighbour(e.into(), path));
+        return Image::open_within(path, limits).map_err(|e| hint::or_neighbour(e.into(), path));
     }
-    let limits = Limits::default();
     let bytes = read(path, limits.max_bytes)?;
     Ok(Image::decode(&bytes, &name(path), limits)?)
 }

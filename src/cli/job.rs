@@ -1,11 +1,10 @@
 //! One drawing from start to end: read, fit, write, verify, report.
 
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::Result;
-use strokefit::fit::{Base, Fit, Observer, Progress};
+use strokefit::fit::{self, Base, Fit, Fitter, Observer, Progress, Stop};
 use strokefit::image::Image;
 use strokefit::metrics::Quality;
 use strokefit::report::{self, BaseEntry, Event, FitReport, Input, StageEntry, Usage};
@@ -14,6 +13,7 @@ use strokefit::svg::WriteOptions;
 use strokefit::verify::{self, MIN_AGREEMENT_DB, OnGrounds, Verdict};
 
 use super::events::{Events, Phases};
+use super::interrupt::Interrupt;
 use super::options::Options;
 use super::output::{self, Output};
 use super::pictures::{Pictures, Subject};
@@ -33,8 +33,8 @@ pub(super) struct Job<'a> {
     pub(super) options: &'a Options,
 }
 
-/// What draws a picture, telling the observer how it goes.
-pub(super) type Draw<'a> = dyn Fn(&Image, &mut (dyn Observer + Send)) -> Result<Fit> + 'a;
+/// What draws a picture with a fitter that is set up.
+pub(super) type Draw<'a> = dyn Fn(Fitter<'_>, &Image) -> Result<Fit> + 'a;
 
 impl Job<'_> {
     /// Draws and writes; the bar begins with `heading`.
@@ -47,10 +47,13 @@ impl Job<'_> {
         draw: &Draw<'_>,
     ) -> Result<Drawn> {
         let start = Instant::now();
-        let picture = input::picture(self.input)?;
+        let picture = input::picture_within(self.input, self.options.limits())?;
         let input = Input::new(self.input.display().to_string(), &picture);
         events.tell(&Event::Start(input));
-        let fit = self.watched(&picture, events, Bar::new(verbosity.quiet, heading), draw)?;
+        self.foretell(&picture, verbosity);
+        let bar = Bar::new(verbosity.quiet, heading);
+        let since = |fitter: Fitter<'_>, picture: &Image| draw(fitter.since(start), picture);
+        let fit = self.watched(&picture, events, bar, &since)?;
         tell_stages(&fit, verbosity);
         let mut drawn = Drawn::new(fit, &self.options.form.options())?;
         outputs.svg.1.write(drawn.text.as_bytes())?;
@@ -66,7 +69,14 @@ impl Job<'_> {
             scale: 1.0,
         })?;
         events.tell(&Event::Done(Box::new(record)));
+        self.forget(&drawn)?;
         Ok(drawn)
+    }
+
+    /// Says how much memory is about to be used.
+    fn foretell(&self, picture: &Image, verbosity: Verbosity) {
+        let bytes = fit::predicted_rss_bytes(picture, &self.options.config());
+        verbosity.detail(format_args!("about {} MiB of memory", bytes >> 20));
     }
 
     /// Draws, showing and telling how it goes.
@@ -77,16 +87,45 @@ impl Job<'_> {
         mut bar: Bar,
         draw: &Draw<'_>,
     ) -> Result<Fit> {
+        let mut interrupt = Interrupt::watch()?;
         let mut phases = Phases::new(events, self.input.display().to_string());
         let mut observer = |progress: &Progress<'_>| {
             bar.show(progress);
             phases.watch(progress);
-            ControlFlow::Continue(())
+            interrupt.observe(progress)
         };
-        let fit = draw(picture, &mut observer);
+        let fit = self.fit(picture, &mut observer, draw);
         phases.end();
         bar.clear();
         fit
+    }
+
+    /// Draws, or goes on drawing where a checkpoint was left.
+    fn fit(
+        &self,
+        picture: &Image,
+        observer: &mut (dyn Observer + Send),
+        draw: &Draw<'_>,
+    ) -> Result<Fit> {
+        let fitter = Fitter::new(self.options.config())
+            .execution(self.options.execution())
+            .observer(observer);
+        let Some(mut checkpoint) = self.options.checkpoint() else {
+            return draw(fitter, picture);
+        };
+        let fit = draw(fitter.checkpoint(&mut checkpoint), picture);
+        if let Some(trouble) = checkpoint.trouble() {
+            complain(format_args!("warning: {trouble}"));
+        }
+        fit
+    }
+
+    /// Removes the checkpoint of a drawing that is written, unless there is more to be drawn of it.
+    fn forget(&self, drawn: &Drawn) -> Result<()> {
+        match self.options.checkpoint() {
+            Some(checkpoint) if drawn.fit.stop != Stop::Observer => Ok(checkpoint.remove()?),
+            _ => Ok(()),
+        }
     }
 
     fn record(&self, drawn: &Drawn) -> FitReport {
@@ -107,6 +146,10 @@ impl Job<'_> {
             wall_s: drawn.wall.as_secs_f64(),
             cpu_s,
             peak_rss_bytes,
+            predicted_rss_bytes: fit::predicted_rss_bytes(
+                &drawn.fit.target,
+                &self.options.config(),
+            ),
             stop: report::stop_word(drawn.fit.stop).into(),
             seed: self.options.look.seed,
             fidelity: drawn.verdict.fidelity,
@@ -133,6 +176,14 @@ impl Job<'_> {
     /// The status of a drawing that was written. What is short of the promise is said even when quiet.
     pub(super) fn judge(&self, drawn: &Drawn) -> Status {
         let name = output::name(&self.output);
+        if let Some(signal) = Interrupt::caught() {
+            if drawn.fit.stop == Stop::Observer {
+                complain(format_args!(
+                    "{name}: interrupted: it has what was drawn until then"
+                ));
+            }
+            return Status::Interrupted(signal);
+        }
         if !drawn.verdict.agrees() {
             complain(format_args!(
                 "{name}: fidelity check failed: resvg draws the file {:.2} dB from what was fitted, the bound is {MIN_AGREEMENT_DB} dB: \

@@ -10,6 +10,7 @@ mod fit;
 mod form;
 mod hint;
 mod input;
+mod interrupt;
 mod job;
 mod lab;
 mod manual;
@@ -30,6 +31,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use hint::Hint;
+use interrupt::Signal;
 pub(crate) use usage::parse;
 
 /// Turns a raster picture into an editable SVG made of strokes.
@@ -76,7 +78,9 @@ const EXAMPLES_AND_STATUSES: &str = "Examples:
   strokefit render photo.svg -o large.png --scale 4    four times the size
 
 Exit status: 0 done, 1 failed, 2 wrong usage, 3 a target was not reached, 4 the fidelity check
-failed (the SVG is not drawn as it was fitted).";
+failed (the SVG is not drawn as it was fitted). Ctrl-C, SIGTERM or SIGHUP during a fit finishes what is
+drawn so far, within a second or so, and then ends the program as the signal does, which shells report
+as 130, 143 or 129; a second one ends it at once.";
 
 /// How much to say on standard error.
 #[derive(Debug, Clone, Copy, clap::Args)]
@@ -109,39 +113,47 @@ impl Verbosity {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Status {
     /// All is well.
-    Done = 0,
+    Done,
     /// Nothing was made.
-    Failed = 1,
+    Failed,
     /// The arguments make no sense.
-    Usage = 2,
+    Usage,
     /// The drawing is there, but short of what was asked for.
-    TargetMissed = 3,
+    TargetMissed,
     /// The drawing is there, but not drawn as it was fitted.
-    Disagrees = 4,
+    Disagrees,
+    /// A signal ended the fit; what was drawn until then is there.
+    Interrupted(Signal),
 }
 
 impl Status {
     /// The worse of two.
     fn or_worse(self, other: Self) -> Self {
-        let order = [
-            Self::Done,
-            Self::TargetMissed,
-            Self::Disagrees,
-            Self::Usage,
-            Self::Failed,
-        ];
-        let rank = |status| order.iter().position(|&s| s == status);
+        let rank = |status| match status {
+            Self::Done => 0,
+            Self::TargetMissed => 1,
+            Self::Disagrees => 2,
+            Self::Usage => 3,
+            Self::Failed => 4,
+            Self::Interrupted(_) => 5,
+        };
         if rank(other) > rank(self) {
             other
         } else {
             self
         }
     }
-}
 
-impl From<Status> for ExitCode {
-    fn from(status: Status) -> Self {
-        Self::from(status as u8)
+    /// Leaves with this status, by the signal where one was the cause.
+    pub(crate) fn leave(self) -> ExitCode {
+        ExitCode::from(match self {
+            Self::Done => 0,
+            Self::Failed => 1,
+            Self::Usage => 2,
+            Self::TargetMissed => 3,
+            Self::Disagrees => 4,
+            Self::Interrupted(signal) => signal.end(),
+        })
     }
 }
 

@@ -5,7 +5,8 @@ use std::time::Duration;
 
 use clap::ValueEnum;
 use strokefit::coverage::CoverageSchedule;
-use strokefit::fit::{self, Background, Config, Execution, Simd};
+use strokefit::fit::{self, Background, Checkpoint, Config, Execution, Simd};
+use strokefit::image::Limits;
 
 use super::pictures::FilmOptions;
 use super::{colors, domain, form};
@@ -94,6 +95,16 @@ pub(super) struct How {
     /// Instruction set: auto, avx512, avx2, sse4.2, sse2, neon or scalar
     #[arg(long, value_name = "LEVEL", default_value = "auto")]
     simd: Simd,
+    /// Refuse pictures of more than N pixels
+    #[arg(long, value_name = "N", value_parser = domain::pixels, allow_negative_numbers = true)]
+    max_pixels: Option<u64>,
+    /// Keep the state of the fit in FILE now and then: if the fit is cut off, the same command goes on from
+    /// there; removed when the drawing is done
+    #[arg(long, value_name = "FILE")]
+    checkpoint: Option<PathBuf>,
+    /// How often to keep it
+    #[arg(long, value_name = "SECONDS", default_value = "10", value_parser = domain::seconds, requires = "checkpoint", allow_negative_numbers = true)]
+    checkpoint_every: Duration,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -124,6 +135,24 @@ impl Options {
             seed: look.seed,
             ..Config::default()
         }
+    }
+
+    pub(super) fn limits(&self) -> Limits {
+        let limits = Limits::default();
+        Limits {
+            max_pixels: self.how.max_pixels.unwrap_or(limits.max_pixels),
+            ..limits
+        }
+    }
+
+    pub(super) fn checkpoint(&self) -> Option<Checkpoint> {
+        let How {
+            checkpoint,
+            checkpoint_every,
+            ..
+        } = &self.how;
+        let path = checkpoint.as_ref()?;
+        Some(Checkpoint::new(path).every(*checkpoint_every))
     }
 
     pub(super) fn execution(&self) -> Execution {

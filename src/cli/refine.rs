@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use anyhow::Result;
-use strokefit::fit::{Background, Base, Fitter};
+use strokefit::fit::{Background, Base};
 use strokefit::image::Image;
 
 use super::job::Job;
@@ -53,8 +53,7 @@ pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
             "standard input cannot be both the SVG and the picture: name one of them",
         ));
     }
-    let config = args.options.config();
-    if config.background != Background::Auto {
+    if args.options.config().background != Background::Auto {
         return Err(misuse(
             "--background cannot be chosen when refining: the base is the background",
         ));
@@ -69,11 +68,10 @@ pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
         options: &args.options,
     };
     let text = input::svg(&args.base)?;
-    batch::run(&[job], verbosity, &|picture, observer| {
+    batch::run(&[job], verbosity, &|fitter, picture| {
         let base = read(args, text.clone(), picture)?;
         tell(&base, verbosity);
-        let fitter = Fitter::new(config.clone()).execution(args.options.execution());
-        Ok(fitter.on(base).observer(observer).fit(picture)?)
+        Ok(fitter.on(base).fit(picture)?)
     })
 }
 

@@ -1,5 +1,7 @@
 //! Gradient descent on the numbers of strokes: one step, its rates and its limits.
 
+use serde::{Deserialize, Serialize};
+
 use super::objective::{View, differentiate};
 use super::recipe::Rates;
 use crate::optim::{Adam, AdamParams, Optimizer};
@@ -9,7 +11,7 @@ use crate::render::{AX, BY, Gradients, OPACITY, PARAMS, Params, RADIUS, RED, Ren
 pub(super) const LEAST_RADIUS: f32 = 0.51;
 
 /// The domain of each parameter; a step that leaves it is brought back.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub(super) struct Limits {
     /// Ends stay within this many px around the picture.
     pub(super) margin: f32,
@@ -47,11 +49,14 @@ impl Limits {
 }
 
 /// The optimiser of a set of strokes, with its memory.
+#[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Descent {
     adam: Adam<f32>,
     rates: Params,
     scales: Vec<f32>,
     limits: Limits,
+    /// Those of the last step.
+    #[serde(skip)]
     pub(super) gradients: Gradients,
 }
 

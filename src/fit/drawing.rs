@@ -1,6 +1,7 @@
 //! The state of a fit: the strokes so far, how many of them are frozen, and the canvas they make.
 
 use fearless_simd::Level;
+use serde::{Deserialize, Serialize};
 
 use super::anneal::final_softness;
 use super::config::Config;
@@ -41,6 +42,19 @@ pub(super) struct Drawing {
     /// How often strokes were sought.
     searches: u64,
     /// How many strokes became non-finite and were taken out.
+    lost: usize,
+}
+
+/// What a drawing is made again from, to the bit.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct State {
+    halvings: usize,
+    /// The colour of a flat ground.
+    color: Option<Rgb>,
+    strokes: Vec<Params>,
+    stage_of: Vec<usize>,
+    frozen: usize,
+    searches: u64,
     lost: usize,
 }
 
@@ -90,11 +104,16 @@ impl Drawing {
         for stroke in &mut self.strokes {
             *stroke = enlarged(*stroke, doublings);
         }
+        self.cut_anew();
+        true
+    }
+
+    /// Follows the grounds to another resolution, where all strokes are free; their numbers are left.
+    fn cut_anew(&mut self) {
         let grid = self.ground().grid();
         self.renderer = Renderer::new(grid, self.level);
         self.limits = Limits::new(grid.width, grid.height, self.limits.least_opacity);
         self.frozen = 0;
-        true
     }
 
     /// The first ground; all agree in size and resolution.
@@ -147,8 +166,44 @@ impl Drawing {
         (self.pixels() as f32 / count.max(1) as f32).sqrt()
     }
 
-    /// Freezes all strokes that there are.
+    /// What the drawing is.
+    pub(super) fn state(&self) -> State {
+        State {
+            halvings: self.ground().halvings(),
+            color: self.ground().color(),
+            strokes: self.strokes.clone(),
+            stage_of: self.stage_of.clone(),
+            frozen: self.frozen,
+            searches: self.searches,
+            lost: self.lost,
+        }
+    }
+
+    /// Makes the drawing what it was.
+    pub(super) fn resume(&mut self, state: State) {
+        if let (Some(color), Some(was)) = (self.grounds[0].color_mut(), state.color) {
+            *color = was;
+        }
+        for ground in &mut self.grounds {
+            ground.enter(state.halvings);
+        }
+        self.cut_anew();
+        self.strokes = state.strokes;
+        self.stage_of = state.stage_of;
+        self.searches = state.searches;
+        self.lost = state.lost;
+        if state.frozen > 0 {
+            let free = self.strokes.split_off(state.frozen.min(self.strokes.len()));
+            self.freeze();
+            self.strokes.extend(free);
+        }
+    }
+
+    /// Freezes all strokes that there are. Their picture is made from nothing but them: made from that of
+    /// earlier frozen ones it would differ in the last bits, and could not be made again from a
+    /// [`State`].
     pub(super) fn freeze(&mut self) {
+        self.thaw();
         self.render();
         self.grounds.iter_mut().for_each(Ground::freeze);
         self.frozen = self.strokes.len();

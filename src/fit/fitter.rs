@@ -1,6 +1,9 @@
 //! A fit, set up step by step.
 
-use super::{Base, Config, Execution, Fit, Observer, draw};
+use std::time::Instant;
+
+use super::work::Work;
+use super::{Base, Checkpoint, Config, Execution, Fit, Observer, draw};
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
 use crate::scene::Scene;
@@ -27,6 +30,8 @@ pub struct Fitter<'a> {
     execution: Execution,
     base: Option<Base>,
     observer: Option<&'a mut (dyn Observer + Send)>,
+    checkpoint: Option<&'a mut Checkpoint>,
+    since: Option<Instant>,
 }
 
 impl<'a> Fitter<'a> {
@@ -37,6 +42,8 @@ impl<'a> Fitter<'a> {
             execution: Execution::default(),
             base: None,
             observer: None,
+            checkpoint: None,
+            since: None,
         }
     }
 
@@ -65,21 +72,44 @@ impl<'a> Fitter<'a> {
         }
     }
 
+    /// Where the state is kept, and found again when the same fit was cut off before. It changes nothing of
+    /// the drawing.
+    #[must_use]
+    pub fn checkpoint(self, checkpoint: &'a mut Checkpoint) -> Self {
+        Self {
+            checkpoint: Some(checkpoint),
+            ..self
+        }
+    }
+
+    /// Since when a limit of time runs: since the call of [`fit`](Self::fit), unless it is set.
+    #[must_use]
+    pub fn since(self, start: Instant) -> Self {
+        Self {
+            since: Some(start),
+            ..self
+        }
+    }
+
     /// Draws `picture`.
     ///
     /// Where the picture has alpha the drawing is transparent, unless there is a background colour for it
     /// to lie on.
     ///
     /// # Errors
-    /// [`ErrorKind::Config`] when an option is outside its domain, or the base is of another size than the
-    /// picture; [`ErrorKind::Svg`] when it cannot be rendered.
+    /// [`ErrorKind::Config`] when an option is outside its domain, the base is of another size than the
+    /// picture, or the checkpoint of another fit; [`ErrorKind::Svg`] when the base cannot be rendered;
+    /// [`ErrorKind::Io`] when the checkpoint is damaged or its place cannot be written.
     pub fn fit(self, picture: &Image) -> Result<Fit> {
         let Self {
             config,
             execution,
             base,
             observer,
+            checkpoint,
+            since,
         } = self;
+        let since = since.unwrap_or_else(Instant::now);
         config.check()?;
         if let Some(base) = &base {
             check_size(&base.scene, picture)?;
@@ -87,9 +117,14 @@ impl<'a> Fitter<'a> {
         let level = execution.simd.require()?;
         let mut nobody = ();
         let observer = observer.unwrap_or(&mut nobody);
-        execution
-            .pool()?
-            .install(|| draw(picture, &config, base.as_ref(), level, observer))
+        execution.pool()?.install(|| {
+            let mut work = Work::new(picture, &config, base.as_ref(), level, observer)?;
+            work.count_from(since);
+            if let Some(checkpoint) = checkpoint {
+                work.resume(checkpoint)?;
+            }
+            draw(work)
+        })
     }
 }
 

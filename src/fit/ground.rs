@@ -195,12 +195,17 @@ impl Ground {
         let halvings = resolution(&self.pyramid, scale);
         let doublings = self.halvings.saturating_sub(halvings);
         if doublings > 0 {
-            self.halvings = halvings;
-            self.target = Canvas::from_image(self.pyramid.level(halvings));
-            self.below = self.floor.canvas(self.target.grid(), halvings);
-            self.canvas.clone_from(&self.below);
+            self.enter(halvings);
         }
         doublings
+    }
+
+    /// Goes to the picture halved so many times. Nothing is frozen then.
+    pub(super) fn enter(&mut self, halvings: usize) {
+        self.halvings = halvings;
+        self.target = Canvas::from_image(self.pyramid.level(halvings));
+        self.below = self.floor.canvas(self.target.grid(), halvings);
+        self.canvas.clone_from(&self.below);
     }
 
     /// Takes the canvas for what lies below the free strokes.

@@ -7,12 +7,14 @@
 
 mod anneal;
 mod base;
+mod checkpoint;
 mod config;
 mod control;
 mod descent;
 mod drawing;
 mod fitter;
 mod ground;
+mod memory;
 mod objective;
 mod observer;
 mod palette;
@@ -28,12 +30,14 @@ mod work;
 
 use std::time::Duration;
 
-use fearless_simd::Level;
+use serde::{Deserialize, Serialize};
 
 pub use anneal::final_softness;
 pub use base::Base;
+pub use checkpoint::Checkpoint;
 pub use config::{Background, Budget, Config, DEFAULT_QUALITY, Execution, Preset};
 pub use fitter::Fitter;
+pub use memory::predicted_rss_bytes;
 pub use objective::Objective;
 pub use observer::{Observer, Progress};
 pub use palette::Colors;
@@ -44,7 +48,7 @@ use crate::error::Result;
 use crate::image::Image;
 use crate::scene::Scene;
 use crate::svg::WriteOptions;
-use work::Work;
+use work::{Task, Work};
 
 /// A finished drawing and how it came to be.
 #[derive(Debug, Clone)]
@@ -74,7 +78,7 @@ impl Fit {
 }
 
 /// How one stage went.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct StageRecord {
     /// From 1.
     pub index: usize,
@@ -92,7 +96,7 @@ pub struct StageRecord {
 }
 
 /// Why a fit ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Stop {
     /// The stroke budget is used.
     Strokes,
@@ -124,20 +128,22 @@ pub fn fit(
         .fit(target)
 }
 
-/// The algorithm.
-fn draw(
-    target: &Image,
-    config: &Config,
-    base: Option<&Base>,
-    level: Level,
-    observer: &mut (dyn Observer + Send),
-) -> Result<Fit> {
-    let mut work = Work::new(target, config, base, level, observer)?;
-    if let Some(written) = work.met_already()? {
-        return work.finish(written);
+/// The algorithm: stages, polish, settling, and what budgets ask for beyond. Between any two tasks all there
+/// is to know is in `work`, so that it can be kept, and the fit gone on with in another process.
+fn draw(mut work: Work<'_>) -> Result<Fit> {
+    while let Some(task) = work.next() {
+        match task {
+            Task::TryBase => work.try_base()?,
+            Task::Grow => work.grow()?,
+            Task::Stage(stage) => work.stage(stage),
+            Task::Record(stage) => work.record(&stage),
+            Task::Polish(steps) => work.polish(steps),
+            Task::Polishing(polish) => work.polishing(polish),
+            Task::Settle => work.settle()?,
+            Task::MeetFidelity => work.meet_fidelity(),
+            Task::MeetBytes => work.meet_bytes(),
+        }
+        work.keep();
     }
-    work.grow();
-    work.polish();
-    let written = work.settle()?;
-    work.finish(written)
+    work.finish()
 }

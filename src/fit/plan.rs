@@ -1,5 +1,7 @@
 //! How many strokes each stage adds, and how large they are.
 
+use serde::{Deserialize, Serialize};
+
 use super::config::Config;
 use super::recipe::Recipe;
 
@@ -13,7 +15,7 @@ const PIXELS_PER_STROKE: usize = 250;
 pub(super) const MOST_STROKES: usize = 900_000;
 
 /// One planned stage.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) struct PlannedStage {
     /// From 0.
     pub(super) index: usize,

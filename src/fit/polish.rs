@@ -7,6 +7,8 @@
 
 use std::convert::identity;
 
+use serde::{Deserialize, Serialize};
+
 use super::anneal::Anneal;
 use super::control::Control;
 use super::descent::Descent;
@@ -25,48 +27,75 @@ pub(super) struct Terms {
     pub(super) price: Price,
 }
 
-/// Fits the free strokes of `drawing` jointly, in `steps` iterations; the background too, where it shows
-/// through to them and is not fixed. A first share of the iterations is done at the resolution that the
-/// drawing has.
-pub(super) fn run(
-    drawing: &mut Drawing,
-    recipe: &Recipe,
-    anneal: Anneal,
-    terms: Terms,
-    steps: usize,
-    control: &mut Control<'_>,
-) {
-    let schedule = Schedule::Cosine {
-        end: recipe.polish_rates.last,
-    };
-    let anneal = Anneal {
-        from: recipe.polish_softness,
-        ..anneal
-    };
-    let mut descent = Descent::new(drawing.free(), recipe.polish_rates, drawing.limits);
-    let mut background = Adam::new(3, AdamParams::default());
-    let mut clock = Clock::new(steps, control);
-    while let Some((step, done)) = clock.tick(control) {
+/// A polish under way: the free strokes of the drawing are fitted jointly; the background too, where it
+/// shows through to them and is not fixed. A first share of the iterations is done at the resolution that
+/// the drawing has.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct Polish {
+    /// Strokes of the drawing at most, frozen ones included.
+    limit: usize,
+    clock: Clock,
+    descent: Descent,
+    background: Adam<f32>,
+}
+
+impl Polish {
+    /// A polish of the free strokes of `drawing` in `steps` iterations, which may make them `limit` strokes.
+    pub(super) fn new(
+        drawing: &Drawing,
+        recipe: &Recipe,
+        limit: usize,
+        steps: usize,
+        control: &Control<'_>,
+    ) -> Self {
+        Self {
+            limit,
+            clock: Clock::new(steps, control),
+            descent: Descent::new(drawing.free(), recipe.polish_rates, drawing.limits),
+            background: Adam::new(3, AdamParams::default()),
+        }
+    }
+
+    /// One iteration; false when none is left.
+    pub(super) fn step(
+        &mut self,
+        drawing: &mut Drawing,
+        recipe: &Recipe,
+        anneal: Anneal,
+        price: Price,
+        control: &mut Control<'_>,
+    ) -> bool {
+        let Some((step, done)) = self.clock.tick(control) else {
+            return false;
+        };
+        let anneal = Anneal {
+            from: recipe.polish_softness,
+            ..anneal
+        };
+        let descent = &mut self.descent;
         if done >= recipe.coarse_share && drawing.is_thawed() && drawing.refine(0.0) {
-            descent = Descent::new(drawing.free(), recipe.polish_rates, drawing.limits);
+            *descent = Descent::new(drawing.free(), recipe.polish_rates, drawing.limits);
         }
         if recipe.relocates(step, done) {
-            relocate(drawing, recipe, terms, identity, &mut descent);
+            let limit = self.limit;
+            relocate(drawing, recipe, Terms { limit, price }, identity, descent);
         }
-        let rate = schedule.factor((done * steps as f32) as usize, steps) as f32;
-        drawing.step(&mut descent, anneal.at(done), rate);
+        let (steps, end) = (self.clock.steps, recipe.polish_rates.last);
+        let at = (done * steps as f32) as usize;
+        let rate = Schedule::Cosine { end }.factor(at, steps) as f32;
+        drawing.step(descent, anneal.at(done), rate);
         if drawing.is_thawed() && !drawing.background_fixed {
             let rate = rate * recipe.polish_rates.color;
-            let slope = &descent.gradients.base;
+            let (slope, background) = (&descent.gradients.base, &mut self.background);
             drawing.change_background(|color| background.step(color, slope, rate));
         }
-        if !control.advance(drawing, descent.gradients.loss) {
-            break;
-        }
+        control.advance(drawing, descent.gradients.loss);
+        true
     }
 }
 
 /// Counts iterations, and hurries the schedule on when the time limit would cut it short.
+#[derive(Debug, Serialize, Deserialize)]
 struct Clock {
     step: usize,
     steps: usize,

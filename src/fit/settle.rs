@@ -85,20 +85,23 @@ pub(super) fn run(
     drawing: &mut Drawing,
     page: Page<'_>,
     recipe: &Recipe,
-    control: &Control<'_>,
+    control: &mut Control<'_>,
 ) -> Result<Written> {
     let start = Instant::now();
     let mut written = write(drawing, page)?;
+    control.expect_writing(start.elapsed());
     let mut best = (written.clone(), drawing.free().to_vec());
     // A round is taken to be as long as the one before, the first as three times a writing.
     let mut span = 3 * start.elapsed();
     for _ in 0..recipe.settle_rounds {
-        if !control.allows(span) {
+        if !control.allows(span) || !control.goes_on(drawing, written.mse) {
             break;
         }
         let start = Instant::now();
         let corrected = corrected_targets(drawing, &written);
-        descend(drawing, recipe, &corrected);
+        if !descend(drawing, recipe, &corrected, written.mse, control) {
+            break;
+        }
         written = write(drawing, page)?;
         if written.mse < best.0.mse {
             best = (written.clone(), drawing.free().to_vec());
@@ -132,7 +135,14 @@ fn corrected(target: &Image, soft: &Image, drawn: &Image) -> Canvas {
     Canvas::from_image(&Image::from_planes(target.width(), target.height(), planes))
 }
 
-fn descend(drawing: &mut Drawing, recipe: &Recipe, targets: &[Canvas]) {
+/// Says whether it came to its end.
+fn descend(
+    drawing: &mut Drawing,
+    recipe: &Recipe,
+    targets: &[Canvas],
+    mse: f64,
+    control: &mut Control<'_>,
+) -> bool {
     let steps = recipe.settle_iterations;
     let rates = recipe.polish_rates;
     let schedule = Schedule::Cosine { end: rates.last };
@@ -140,5 +150,9 @@ fn descend(drawing: &mut Drawing, recipe: &Recipe, targets: &[Canvas]) {
     for step in 0..steps {
         let rate = schedule.factor(step, steps) as f32 * recipe.settle_rate;
         drawing.step_towards(targets, &mut descent, rate);
+        if !control.goes_on(drawing, mse) {
+            return false;
+        }
     }
+    true
 }

@@ -16,11 +16,13 @@
 
 use std::ops::Range;
 
+use serde::{Deserialize, Serialize};
+
 use super::{Optimizer, clip};
 use crate::math::Real;
 
 /// What Adam needs beside the learning rate.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AdamParams {
     /// Decay of the mean gradient and of the mean squared gradient, each in 0..1.
     pub betas: [f64; 2],
@@ -38,7 +40,7 @@ impl Default for AdamParams {
 }
 
 /// The Adam optimiser.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Adam<T> {
     params: AdamParams,
     /// The moving averages of the gradient, of its square, and of 1 with either decay.

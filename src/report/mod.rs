@@ -57,7 +57,10 @@ pub struct FitReport {
     pub cpu_s: Option<f64>,
     /// Most memory that the process held at once, bytes.
     pub peak_rss_bytes: Option<u64>,
-    /// Why no more was done: `strokes`, `psnr`, `bytes`, `time`, `converged` or `observer`.
+    /// What that was predicted to be.
+    pub predicted_rss_bytes: u64,
+    /// Why no more was done: `strokes`, `psnr`, `bytes`, `time`, `converged` or
+    /// `interrupted`.
     pub stop: String,
     /// Key of every random draw.
     pub seed: u64,
@@ -144,7 +147,7 @@ pub fn stop_word(stop: Stop) -> &'static str {
         Stop::Bytes => "bytes",
         Stop::Time => "time",
         Stop::Converged => "converged",
-        Stop::Observer => "observer",
+        Stop::Observer => "interrupted",
     }
 }
 
@@ -184,6 +187,7 @@ mod tests {
             wall_s: 0.5,
             cpu_s: Some(0.75),
             peak_rss_bytes: None,
+            predicted_rss_bytes: 12_582_912,
             stop: stop_word(Stop::Strokes).into(),
             seed: 7,
             fidelity: quality,
@@ -219,6 +223,7 @@ mod tests {
             "wall_s": 0.5,
             "cpu_s": 0.75,
             "peak_rss_bytes": null,
+            "predicted_rss_bytes": 12_582_912,
             "stop": "strokes",
             "seed": 7,
             "fidelity": {"psnr_db": null, "ssim": 1.0, "mse": 0.0, "l1": 0.0},
