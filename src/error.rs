@@ -35,9 +35,12 @@ pub struct Error {
 impl Error {
     /// An error of `kind`; `message` names the offending value and the remedy.
     pub fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
+        // What was read may be quoted, and causes have words of their own: a line it stays.
+        let message: String = message.into();
+        let breaks = |c: char| c.is_control() || matches!(c, '\u{2028}' | '\u{2029}');
         Self {
             kind,
-            message: message.into(),
+            message: message.replace(breaks, " "),
             source: None,
         }
     }
@@ -74,5 +77,16 @@ impl fmt::Display for Error {
 impl std::error::Error for Error {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         self.source.as_ref().map(|s| s.as_ref() as _)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_message_has_one_line() {
+        let error = Error::new(ErrorKind::Svg, "expected '>' not '\n' here\r\u{2028}");
+        assert_eq!(error.to_string(), "expected '>' not ' ' here  ");
     }
 }

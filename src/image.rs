@@ -14,6 +14,7 @@ use std::path::Path;
 
 pub use animate::{Animation, AnimationFormat};
 pub use decode::Limits;
+pub(crate) use header::{Embeddable, stated_size};
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::Rgb;
@@ -118,6 +119,14 @@ impl Image {
     /// names the file.
     pub fn open(path: impl AsRef<Path>) -> Result<Self> {
         decode::open(path.as_ref(), Limits::default())
+    }
+
+    /// Reads the picture file at `path`, within other limits.
+    ///
+    /// # Errors
+    /// As [`Image::open`].
+    pub fn open_within(path: impl AsRef<Path>, limits: Limits) -> Result<Self> {
+        decode::open(path.as_ref(), limits)
     }
 
     /// Decodes the bytes of a picture file, whose format is told from the bytes alone. `name` is

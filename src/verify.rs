@@ -27,14 +27,17 @@
 //! # Ok::<(), strokefit::Error>(())
 //! ```
 
+mod limits;
 mod painting;
 mod placement;
+mod references;
 
 use resvg::tiny_skia::{Color, Pixmap, PremultipliedColorU8, Transform};
 use resvg::usvg::roxmltree::{self, Document, ParsingOptions};
-use resvg::usvg::{ImageHrefResolver, Options, Tree};
+use resvg::usvg::{Options, Tree};
 use serde::{Deserialize, Serialize};
 
+use limits::Embedded;
 pub use painting::Painting;
 
 use crate::error::{Error, ErrorKind, Result};
@@ -184,12 +187,9 @@ fn check_aspect(tree: &Tree, width: u32, height: u32) -> Result<()> {
 }
 
 fn parse(svg: &str) -> Result<Tree> {
-    let image_href_resolver = ImageHrefResolver {
-        resolve_string: Box::new(|_, _| None),
-        ..Default::default()
-    };
+    let embedded = Embedded::default();
     let options = Options {
-        image_href_resolver,
+        image_href_resolver: embedded.resolver(),
         ..Options::default()
     };
     let unreadable = |e: &dyn std::fmt::Display| {
@@ -200,16 +200,20 @@ fn parse(svg: &str) -> Result<Tree> {
     };
     let allow_dtd = ParsingOptions {
         allow_dtd: true,
+        nodes_limit: limits::MAX_NODES,
         ..ParsingOptions::default()
     };
     let document =
         Document::parse_with_options(svg, allow_dtd).map_err(|e| unreadable(&e).caused_by(e))?;
     check_namespace(&document)?;
-    Tree::from_xmltree(&document, &options).map_err(|e| match e {
+    references::check(&document).map_err(limits::refusal)?;
+    let tree = Tree::from_xmltree(&document, &options).map_err(|e| match e {
         resvg::usvg::Error::ElementsLimitReached
         | resvg::usvg::Error::ParsingFailed(roxmltree::Error::NodesLimitReached) => too_much(e),
         e => unreadable(&e).caused_by(e),
-    })
+    })?;
+    embedded.check()?;
+    Ok(tree)
 }
 
 fn too_much(error: resvg::usvg::Error) -> Error {
@@ -273,6 +277,12 @@ impl Raster {
         })
     }
 
+    /// Fails when drawing would cost more memory or time than any honest drawing.
+    fn afford(&self, tree: &Tree) -> Result<()> {
+        let scale = f64::from(self.transform.sx.max(self.transform.sy));
+        limits::check(tree, scale, f64::from(self.width) * f64::from(self.height))
+    }
+
     fn pixmap(&self) -> Result<Pixmap> {
         Pixmap::new(self.width, self.height).ok_or_else(|| {
             let message = format!(
@@ -286,6 +296,7 @@ impl Raster {
 
 fn draw(tree: &Tree, size: Size, ground: Option<Rgb>) -> Result<Image> {
     let raster = Raster::new(tree, size)?;
+    raster.afford(tree)?;
     let mut pixmap = raster.pixmap()?;
     if let Some(color) = ground {
         pixmap.fill(opaque(color));

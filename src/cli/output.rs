@@ -119,6 +119,8 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if let Ok(existing) = fs::metadata(path) {
         file.as_file().set_permissions(existing.permissions())?;
     }
+    // Or a loss of power could leave the name with none of the bytes.
+    file.as_file().sync_all()?;
     file.persist(path)?;
     Ok(())
 }

@@ -1,7 +1,39 @@
 //! What the first bytes of a picture file say, where the decoders are silent or vague: a size of
 //! zero, and whether a JPEG is whole.
 
-use ::image::ImageFormat;
+use std::io::Cursor;
+
+use ::image::{ImageFormat, ImageReader};
+
+/// A format that SVG files embed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Embeddable {
+    /// `image/png`.
+    Png,
+    /// `image/jpeg`.
+    Jpeg,
+    /// `image/gif`.
+    Gif,
+    /// `image/webp`.
+    WebP,
+}
+
+/// The format, width and height that a picture file states, if it is one that SVG files embed. No pixel
+/// is decoded.
+pub(crate) fn stated_size(bytes: &[u8]) -> Option<(Embeddable, u32, u32)> {
+    let reader = ImageReader::new(Cursor::new(bytes))
+        .with_guessed_format()
+        .ok()?;
+    let format = match reader.format()? {
+        ImageFormat::Png => Embeddable::Png,
+        ImageFormat::Jpeg => Embeddable::Jpeg,
+        ImageFormat::Gif => Embeddable::Gif,
+        ImageFormat::WebP => Embeddable::WebP,
+        _ => return None,
+    };
+    let (width, height) = reader.into_dimensions().ok()?;
+    Some((format, width, height))
+}
 
 /// Width and height as written in the header, where their place is fixed or easily found.
 pub(super) fn size(bytes: &[u8], format: ImageFormat) -> Option<(u32, u32)> {
@@ -101,7 +133,7 @@ mod tests {
     use ::image::{DynamicImage, RgbImage};
 
     fn file(format: ImageFormat) -> Vec<u8> {
-        let mut bytes = std::io::Cursor::new(Vec::new());
+        let mut bytes = Cursor::new(Vec::new());
         let picture =
             RgbImage::from_fn(19, 11, |x, y| ::image::Rgb([x as u8 * 13, y as u8 * 20, 7]));
         DynamicImage::from(picture)
