@@ -1,0 +1,83 @@
+//! What must hold for any bytes at all. Each target panics where it does not.
+//!
+//! `cargo fuzz run TARGET` drives them where there is a nightly toolchain and `cargo-fuzz`; the program of
+//! this crate drives them on a stable one.
+
+mod scene;
+
+use strokefit::fit::Simd;
+use strokefit::image::{Image, Limits};
+use strokefit::verify::{self, Size};
+use strokefit::{coverage, svg};
+
+pub use scene::scene;
+
+// The program's own parsers of option values.
+#[path = "../../src/cli/domain.rs"]
+#[allow(dead_code, unused_imports, unreachable_pub)]
+mod domain;
+
+/// A target, by its name.
+pub const TARGETS: [(&str, fn(&[u8])); 4] = [
+    ("picture", picture),
+    ("svg", svg),
+    ("words", words),
+    ("scene", scene),
+];
+
+/// Small, so that an input takes microseconds.
+const LIMITS: Limits = Limits {
+    max_pixels: 1 << 14,
+    max_bytes: 1 << 20,
+};
+
+/// A picture within the limits comes out, or an error of one line.
+pub fn picture(data: &[u8]) {
+    match Image::decode(data, "x", LIMITS) {
+        Ok(image) => {
+            assert!((image.width() * image.height()) as u64 <= LIMITS.max_pixels);
+            let values = image.planes().iter().flatten().chain(image.alpha().unwrap_or_default());
+            assert!(values.into_iter().all(|v| (0.0..=1.0).contains(v)));
+        }
+        Err(error) => assert!(!error.to_string().contains('\n'), "{error}"),
+    }
+}
+
+/// What is read is written and read back as it was; what is drawn has the size asked for.
+pub fn svg(data: &[u8]) {
+    let text = String::from_utf8_lossy(data);
+    if let Ok(scene) = svg::read(&text) {
+        let options = svg::WriteOptions { precision: 6, ..Default::default() };
+        let again = svg::read(&svg::write(&scene, &options)).expect("what is written can be read");
+        let (quantized, _) = scene.quantized(6);
+        assert_eq!(again, quantized);
+    }
+    let size = Size::Exact { width: 40, height: 30 };
+    match verify::render(&text, size, Some([1.0; 3])) {
+        Ok(image) => assert_eq!((image.width(), image.height()), (40, 30)),
+        Err(error) => assert!(!error.to_string().contains('\n'), "{error}"),
+    }
+}
+
+/// Option values are understood or refused in one line.
+pub fn words(data: &[u8]) {
+    let text = String::from_utf8_lossy(data);
+    let text = text.as_ref();
+    let refusals = [
+        text.parse::<coverage::CoverageSchedule>().err().map(|e| e.to_string()),
+        text.parse::<Simd>().err().map(|e| e.to_string()),
+        domain::strokes(text).err(),
+        domain::bytes(text).err(),
+        domain::stages(text).err(),
+        domain::threads(text).err(),
+        domain::precision(text).err(),
+        domain::pixels(text).err(),
+        domain::psnr(text).err(),
+        domain::seconds(text).err(),
+        domain::scale(text).err(),
+        domain::background(text).err(),
+    ];
+    if !text.contains(char::is_control) {
+        assert!(refusals.iter().flatten().all(|line| !line.contains('\n')));
+    }
+}

@@ -1,0 +1,111 @@
+//! Scenes of any numbers: quantised, written, read back, drawn by our renderer and by resvg.
+
+use std::cell::RefCell;
+
+use strokefit::coverage::Coverage;
+use strokefit::fit::{Objective, Simd};
+use strokefit::loss::Loss;
+use strokefit::render::{Base, Canvas, Gradients, Params, Renderer, Softness, pack};
+use strokefit::scene::{Scene, Shape, Stage, Stroke};
+use strokefit::{image::Image, svg};
+
+/// The bytes of an input, taken one after the other; zeros where there are no more.
+struct Source<'a>(&'a [u8]);
+
+impl Source<'_> {
+    fn byte(&mut self) -> u8 {
+        match self.0.split_first() {
+            Some((&byte, rest)) => {
+                self.0 = rest;
+                byte
+            }
+            None => 0,
+        }
+    }
+
+    /// Any float: bits as they come, or, three times in four, one of a size that occurs.
+    fn float(&mut self) -> f32 {
+        let bits = u32::from_le_bytes([(); 4].map(|()| self.byte()));
+        match bits >> 30 {
+            3 => f32::from_bits(bits << 2 | bits >> 30),
+            2 => (bits & 0xffff) as f32 / 65535.0,
+            _ => ((bits & 0x3fff_ffff) as f32 / (1 << 22) as f32) - 64.0,
+        }
+    }
+
+    fn stroke(&mut self) -> Stroke {
+        let [ax, ay, bx, by, radius, red, green, blue, opacity] = [(); 9].map(|()| self.float());
+        Stroke {
+            shape: match self.byte() % 4 {
+                0 => Shape::dot([ax, ay].into()),
+                _ => Shape::capsule([ax, ay].into(), [bx, by].into()),
+            },
+            radius,
+            color: [red, green, blue],
+            opacity,
+        }
+    }
+
+    fn scene(&mut self) -> Scene {
+        let (width, height) = (1 + self.byte() % 70, 1 + self.byte() % 40);
+        let background = [(); 3].map(|()| self.float());
+        let background = (self.byte() % 2 == 0).then_some(background);
+        let mut scene = Scene::empty(width.into(), height.into(), background);
+        for _ in 0..self.byte() % 3 {
+            let strokes = (0..self.byte() % 8).map(|_| self.stroke()).collect();
+            scene.stages.push(Stage { strokes });
+        }
+        scene
+    }
+
+    fn softness(&mut self) -> Softness {
+        let coverage = match self.byte() % 4 {
+            0 => Coverage::Smoothstep,
+            1 => Coverage::Sigmoid,
+            2 => Coverage::Tanh,
+            _ => Coverage::Atan { k: 4.0 },
+        };
+        let width = 0.05 + f32::from(self.byte()) / 40.0;
+        Softness { coverage, width }
+    }
+}
+
+/// What an SVG can say is said, and drawn finite; anything else is dropped without harm.
+pub fn scene(data: &[u8]) {
+    let mut source = Source(data);
+    let (scene, softness, precision) = (source.scene(), source.softness(), source.byte() % 8);
+    let (quantized, dropped) = scene.quantized(precision);
+    assert_eq!(quantized.len() + dropped, scene.len());
+    let text = svg::write(&scene, &svg::WriteOptions { precision, ..Default::default() });
+    assert_eq!(svg::read(&text).expect("what is written can be read"), quantized);
+    // Numbers of all kinds do no harm, those of a drawing give a picture.
+    draw(&scene, softness);
+    draw(&quantized, softness).expect("a drawing has a finite render");
+}
+
+thread_local! {
+    /// Gradients are written over and over, as in a fit.
+    static GRADIENTS: RefCell<Gradients> = RefCell::default();
+}
+
+/// The canvas and the gradients of `scene`, if all of them are finite.
+fn draw(scene: &Scene, softness: Softness) -> Option<()> {
+    let strokes: Vec<Params> = scene.strokes().map(pack).collect();
+    let ground = scene.background.unwrap_or([1.0; 3]);
+    let target = Image::filled(scene.width as usize, scene.height as usize, [0.5; 3]).ok()?;
+    let target = Canvas::from_image(&target);
+    let mut renderer = Renderer::new(target.grid(), Simd::Auto.level()?);
+    let mut canvas = Canvas::flat(target.grid(), ground);
+    renderer.forward(&strokes, softness, Base::Flat(ground), &mut canvas);
+    let finite = |values: &[f32]| values.iter().all(|v| v.is_finite());
+    let objective = Objective::new(Loss::L2, &target);
+    GRADIENTS.with_borrow_mut(|gradients| {
+        let base = Base::Flat(ground);
+        renderer.backward_with_worth(&strokes, softness, base, &objective, gradients);
+        let picture = canvas.to_image();
+        let is_finite = picture.planes().iter().all(|plane| finite(plane))
+            && finite(gradients.strokes.as_flattened())
+            && finite(&gradients.worth);
+        is_finite.then_some(())
+    })
+}
