@@ -103,6 +103,9 @@ fn one(
     let mut drawn = attempt(draw)?;
     loop {
         let status = job.judge(&drawn);
+        if matches!(status, Status::Interrupted(_)) {
+            return Ok(status);
+        }
         let Some((watch, more)) = watch.and_then(|watch| Some((watch, watch.wait()?))) else {
             return Ok(status);
         };

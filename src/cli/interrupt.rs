@@ -26,27 +26,39 @@ static WATCH: OnceLock<Interrupt> = OnceLock::new();
 pub(super) struct Interrupt {
     /// The last signal that came; 0 before.
     caught: Arc<AtomicUsize>,
+    /// Whether the next signal ends the program.
+    is_last: Arc<AtomicBool>,
 }
 
 impl Interrupt {
-    /// From now on, and to the end of the program, a first signal is only noted, and a second one ends the
-    /// program.
+    /// From now on a first signal is only noted, and a second one ends the program.
     pub(super) fn watch() -> io::Result<Self> {
-        match WATCH.get() {
-            Some(watch) => Ok(watch.clone()),
-            None => Self::register().map(|watch| WATCH.get_or_init(|| watch).clone()),
+        let watch = match WATCH.get() {
+            Some(watch) => watch.clone(),
+            None => Self::register().map(|watch| WATCH.get_or_init(|| watch).clone())?,
+        };
+        watch
+            .is_last
+            .store(Self::caught().is_some(), Ordering::Relaxed);
+        Ok(watch)
+    }
+
+    /// From now on a signal ends the program: there is nothing left to finish.
+    pub(super) fn rest() {
+        if let Some(watch) = WATCH.get() {
+            watch.is_last.store(true, Ordering::Relaxed);
         }
     }
 
     fn register() -> io::Result<Self> {
-        let (noted, caught) = (Arc::new(AtomicBool::new(false)), Arc::default());
+        let (is_last, caught) = (Arc::new(AtomicBool::new(false)), Arc::default());
         for signal in SIGNALS.into_iter().filter(|&signal| !is_ignored(signal)) {
             // In this order: the flag that ends the program is still down when it first comes up.
-            flag::register_conditional_default(signal, Arc::clone(&noted))?;
-            flag::register(signal, Arc::clone(&noted))?;
+            flag::register_conditional_default(signal, Arc::clone(&is_last))?;
+            flag::register(signal, Arc::clone(&is_last))?;
             flag::register_usize(signal, Arc::clone(&caught), signal.unsigned_abs() as usize)?;
         }
-        Ok(Self { caught })
+        Ok(Self { caught, is_last })
     }
 
     /// The signal that came since the first watch, if one did.

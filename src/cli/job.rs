@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::Result;
-use strokefit::fit::{self, Base, Fit, Fitter, Observer, Progress, Stop};
+use strokefit::fit::{self, Base, Fit, Observer, Progress, Stop};
 use strokefit::image::Image;
 use strokefit::metrics::Quality;
 use strokefit::report::{self, BaseEntry, Event, FitReport, Input, StageEntry, Usage};
@@ -33,8 +33,8 @@ pub(super) struct Job<'a> {
     pub(super) options: &'a Options,
 }
 
-/// What draws a picture with a fitter that is set up.
-pub(super) type Draw<'a> = dyn Fn(Fitter<'_>, &Image) -> Result<Fit> + 'a;
+/// What draws a picture, telling the observer how it goes.
+pub(super) type Draw<'a> = dyn Fn(&Image, &mut (dyn Observer + Send)) -> Result<Fit> + 'a;
 
 impl Job<'_> {
     /// Draws and writes; the bar begins with `heading`.
@@ -52,8 +52,7 @@ impl Job<'_> {
         events.tell(&Event::Start(input));
         self.foretell(&picture, verbosity);
         let bar = Bar::new(verbosity.quiet, heading);
-        let since = |fitter: Fitter<'_>, picture: &Image| draw(fitter.since(start), picture);
-        let fit = self.watched(&picture, events, bar, &since)?;
+        let fit = self.watched(&picture, events, bar, draw)?;
         tell_stages(&fit, verbosity);
         let mut drawn = Drawn::new(fit, &self.options.form.options())?;
         outputs.svg.1.write(drawn.text.as_bytes())?;
@@ -70,6 +69,7 @@ impl Job<'_> {
         })?;
         events.tell(&Event::Done(Box::new(record)));
         self.forget(&drawn)?;
+        Interrupt::rest();
         Ok(drawn)
     }
 
@@ -94,29 +94,9 @@ impl Job<'_> {
             phases.watch(progress);
             interrupt.observe(progress)
         };
-        let fit = self.fit(picture, &mut observer, draw);
+        let fit = draw(picture, &mut observer);
         phases.end();
         bar.clear();
-        fit
-    }
-
-    /// Draws, or goes on drawing where a checkpoint was left.
-    fn fit(
-        &self,
-        picture: &Image,
-        observer: &mut (dyn Observer + Send),
-        draw: &Draw<'_>,
-    ) -> Result<Fit> {
-        let fitter = Fitter::new(self.options.config())
-            .execution(self.options.execution())
-            .observer(observer);
-        let Some(mut checkpoint) = self.options.checkpoint() else {
-            return draw(fitter, picture);
-        };
-        let fit = draw(fitter.checkpoint(&mut checkpoint), picture);
-        if let Some(trouble) = checkpoint.trouble() {
-            complain(format_args!("warning: {trouble}"));
-        }
         fit
     }
 

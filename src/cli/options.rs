@@ -3,13 +3,16 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use anyhow::Result;
 use clap::ValueEnum;
 use strokefit::coverage::CoverageSchedule;
-use strokefit::fit::{self, Background, Checkpoint, Config, Execution, Simd};
+use strokefit::fit::{
+    self, Background, Checkpoint, Config, Execution, Fit, Fitter, Observer, Simd,
+};
 use strokefit::image::Limits;
 
 use super::pictures::FilmOptions;
-use super::{colors, domain, form};
+use super::{colors, complain, domain, form};
 
 /// The options of a command that draws.
 #[derive(Debug, clap::Args)]
@@ -153,6 +156,25 @@ impl Options {
         } = &self.how;
         let path = checkpoint.as_ref()?;
         Some(Checkpoint::new(path).every(*checkpoint_every))
+    }
+
+    /// Draws with a fitter that is set up, keeping its state where that is asked for.
+    pub(super) fn fit(
+        &self,
+        observer: &mut (dyn Observer + Send),
+        draw: impl FnOnce(Fitter<'_>) -> strokefit::Result<Fit>,
+    ) -> Result<Fit> {
+        let fitter = Fitter::new(self.config())
+            .execution(self.execution())
+            .observer(observer);
+        let Some(mut checkpoint) = self.checkpoint() else {
+            return Ok(draw(fitter)?);
+        };
+        let fit = draw(fitter.checkpoint(&mut checkpoint));
+        if let Some(trouble) = checkpoint.trouble() {
+            complain(format_args!("warning: {trouble}"));
+        }
+        Ok(fit?)
     }
 
     pub(super) fn execution(&self) -> Execution {

@@ -68,10 +68,11 @@ pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
         options: &args.options,
     };
     let text = input::svg(&args.base)?;
-    batch::run(&[job], verbosity, &|fitter, picture| {
+    batch::run(&[job], verbosity, &|picture, observer| {
         let base = read(args, text.clone(), picture)?;
         tell(&base, verbosity);
-        Ok(fitter.on(base).fit(picture)?)
+        args.options
+            .fit(observer, |fitter| fitter.on(base).fit(picture))
     })
 }
 

@@ -70,11 +70,6 @@ impl<'a> Control<'a> {
         self.spent.elapsed + self.started.elapsed()
     }
 
-    /// Counts the time from `start`.
-    pub(super) fn count_from(&mut self, start: Instant) {
-        self.started = start;
-    }
-
     /// What was done and taken so far.
     pub(super) fn spent(&self) -> Spent {
         Spent {

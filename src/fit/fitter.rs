@@ -1,7 +1,5 @@
 //! A fit, set up step by step.
 
-use std::time::Instant;
-
 use super::work::Work;
 use super::{Base, Checkpoint, Config, Execution, Fit, Observer, draw};
 use crate::error::{Error, ErrorKind, Result};
@@ -31,7 +29,6 @@ pub struct Fitter<'a> {
     base: Option<Base>,
     observer: Option<&'a mut (dyn Observer + Send)>,
     checkpoint: Option<&'a mut Checkpoint>,
-    since: Option<Instant>,
 }
 
 impl<'a> Fitter<'a> {
@@ -43,7 +40,6 @@ impl<'a> Fitter<'a> {
             base: None,
             observer: None,
             checkpoint: None,
-            since: None,
         }
     }
 
@@ -82,15 +78,6 @@ impl<'a> Fitter<'a> {
         }
     }
 
-    /// Since when a limit of time runs: since the call of [`fit`](Self::fit), unless it is set.
-    #[must_use]
-    pub fn since(self, start: Instant) -> Self {
-        Self {
-            since: Some(start),
-            ..self
-        }
-    }
-
     /// Draws `picture`.
     ///
     /// Where the picture has alpha the drawing is transparent, unless there is a background colour for it
@@ -107,9 +94,7 @@ impl<'a> Fitter<'a> {
             base,
             observer,
             checkpoint,
-            since,
         } = self;
-        let since = since.unwrap_or_else(Instant::now);
         config.check()?;
         if let Some(base) = &base {
             check_size(&base.scene, picture)?;
@@ -119,7 +104,6 @@ impl<'a> Fitter<'a> {
         let observer = observer.unwrap_or(&mut nobody);
         execution.pool()?.install(|| {
             let mut work = Work::new(picture, &config, base.as_ref(), level, observer)?;
-            work.count_from(since);
             if let Some(checkpoint) = checkpoint {
                 work.resume(checkpoint)?;
             }

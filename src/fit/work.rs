@@ -221,11 +221,6 @@ impl<'a> Work<'a> {
         })
     }
 
-    /// Counts the time from `start`.
-    pub(super) fn count_from(&mut self, start: Instant) {
-        self.control.count_from(start);
-    }
-
     /// Keeps the state in `checkpoint` from now on, and goes on from the state that it has, if it has one.
     pub(super) fn resume(&mut self, checkpoint: &'a mut Checkpoint) -> Result<()> {
         let fingerprint = checkpoint::fingerprint(&self.target, self.config, self.base);
