@@ -66,7 +66,7 @@ struct Pareto {
     /// Instead of drawing, score the SVGs of this folder that are named as the pictures
     #[arg(long, value_name = "DIR")]
     svgs: Vec<PathBuf>,
-    /// Numbers of strokes [default: 50 to 10,000]
+    /// Numbers of strokes [default: 20 to 10,000]
     #[arg(long, value_name = "N", value_delimiter = ',', value_parser = domain::strokes)]
     strokes: Vec<usize>,
     /// Presets [default: all but stages]

@@ -4,7 +4,7 @@ use std::fs::{self, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::{case, unwritten};
+use super::{case, unread, unwritten};
 use crate::error::{Error, ErrorKind, Result};
 use crate::report::pareto::ParetoEntry;
 
@@ -22,7 +22,7 @@ impl Journal {
         let text = match fs::read_to_string(path) {
             Ok(text) => text,
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => String::new(),
-            Err(e) => return Err(unwritten(path, &e)),
+            Err(e) => return Err(unread(path, &e)),
         };
         let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
         if whole.len() < text.len() {

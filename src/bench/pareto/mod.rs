@@ -137,6 +137,14 @@ fn check_names(pictures: &[PathBuf]) -> Result<()> {
     Ok(())
 }
 
+fn unread(path: &Path, cause: &std::io::Error) -> Error {
+    let message = format!(
+        "{}: cannot be read ({cause}): check the name and its permissions",
+        path.display()
+    );
+    Error::new(ErrorKind::Io, message)
+}
+
 fn unwritten(path: &Path, cause: &std::io::Error) -> Error {
     let message = format!(
         "cannot write {}: {cause}; choose another folder with -o",

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::case::{Case, Limit, Method, Preset, stem};
 use super::programs::Peer;
-use super::unwritten;
+use super::unread;
 use crate::coverage::CoverageSchedule;
 use crate::error::{Error, ErrorKind, Result};
 use crate::report::pareto::{OWN, ParetoEntry};
@@ -57,7 +57,7 @@ impl Plan {
     /// All of it.
     pub fn full() -> Self {
         Self {
-            strokes: vec![50, 100, 200, 500, 1000, 2000, 5000, 10_000],
+            strokes: vec![20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000],
             presets: vec![Preset::Draft, Preset::Balanced, Preset::Best],
             coverages: coverages(&[
                 "smoothstep",
@@ -201,9 +201,7 @@ fn files(folders: &[PathBuf], picture: &Path) -> Result<Vec<Method>> {
     let mut methods = Vec::new();
     for folder in folders {
         let path = folder.join(&name);
-        fs::read_dir(folder)
-            .map_err(|e| unwritten(folder, &e))
-            .map(drop)?;
+        fs::read_dir(folder).map_err(|e| unread(folder, &e))?;
         if path.is_file() {
             let family = folder.file_name().unwrap_or(folder.as_os_str());
             methods.push(Method::File {
