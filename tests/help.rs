@@ -26,6 +26,7 @@ fn help_shows_examples_first_and_no_colour_in_a_pipe() {
         "refine",
         "check",
         "render",
+        "bench",
         "lab",
         "completions",
         "man",

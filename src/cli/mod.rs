@@ -72,6 +72,7 @@ const EXAMPLES_AND_STATUSES: &str = "Examples:
   strokefit fit photo.jpg -o photo.svg                 all defaults
   strokefit fit logo.png -o logo.svg --strokes 300     at most 300 strokes
   strokefit fit a.png -o a.svg --psnr 32 --time 60     until 32 dB, or a minute has passed
+  strokefit fit *.jpg -o 'out/{stem}.svg'              one SVG for each picture
   cat a.png | strokefit fit - -o - > a.svg             in a pipe
   strokefit refine a.svg a.png -o b.svg --strokes 900  more strokes on a drawing, or on any SVG
   strokefit check photo.svg photo.jpg                  how faithful is the file?
