@@ -32,10 +32,15 @@ fn run(folder: &Path, args: &[&str]) -> Output {
 
 /// A draft of a sample in 150 strokes.
 fn drawn(name: &str, options: &[&str]) -> Drawn {
+    drawn_with(name, &[&["--strokes", "150"], options].concat())
+}
+
+/// A draft of a sample.
+fn drawn_with(name: &str, options: &[&str]) -> Drawn {
     let folder = tempfile::tempdir().unwrap();
     let input = sample(name);
     let fixed = ["fit", &input, "-o", "a.svg", "--report", "a.json"];
-    let draft = ["--preset", "draft", "--strokes", "150", "-q"];
+    let draft = ["--preset", "draft", "-q"];
     let output = run(folder.path(), &[&fixed, &draft, options].concat());
     assert!(output.status.success(), "{output:?}");
     let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
@@ -82,7 +87,7 @@ fn agreement(a: &str, b: &str) -> f64 {
         .psnr_db
 }
 
-/// A refusal of one line that has `words`.
+/// A refusal whose line of error has `words`.
 #[track_caller]
 fn assert_refused(options: &[&str], words: &str) {
     let folder = tempfile::tempdir().unwrap();
@@ -92,9 +97,10 @@ fn assert_refused(options: &[&str], words: &str) {
         folder.path(),
         &[&["fit", &input, "-o", "a.svg"], options].concat(),
     );
-    let line = String::from_utf8(output.stderr).unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    let line = said.lines().next().unwrap();
     assert_eq!(output.status.code(), Some(2), "{line}");
-    assert_eq!(line.trim_end().lines().count(), 1, "{line}");
+    assert!(line.starts_with("error: "), "{line}");
     assert!(line.contains(words), "{line}");
     assert!(!folder.path().join("a.svg").exists());
 }
@@ -107,7 +113,7 @@ fn one_element_is_one_stroke() {
 }
 
 #[test]
-fn the_smallest_file_is_a_fifth_shorter_and_hardly_worse() {
+fn the_smallest_file_of_as_many_strokes_is_a_fifth_shorter() {
     let options = ["--opaque", "--precision", "1"];
     let plain = drawn("coffee-300", &options);
     let smallest = drawn(
@@ -116,27 +122,21 @@ fn the_smallest_file_is_a_fifth_shorter_and_hardly_worse() {
     );
     assert!(smallest.number("bytes_per_stroke") < 0.8 * plain.number("bytes_per_stroke"));
     assert!(smallest.number("svg_gzip_bytes") < plain.number("svg_gzip_bytes"));
-    assert!(smallest.psnr_db() > plain.psnr_db() - 1.0);
 }
 
 #[test]
-fn a_budget_of_bytes_buys_more_strokes_in_the_smallest_form() {
-    let strokes = |form: &str| {
-        let folder = tempfile::tempdir().unwrap();
-        let input = sample("coffee-300");
-        let options = [
-            "--bytes", "9000", "--opaque", "--preset", "draft", "--form", form,
-        ];
-        let output = run(
-            folder.path(),
-            &[&["fit", &input, "-o", "a.svg"], &options[..]].concat(),
+fn a_budget_of_bytes_buys_more_in_the_smallest_form() {
+    let bought = |form: &str| {
+        let drawn = drawn_with(
+            "coffee-300",
+            &["--bytes", "9000", "--opaque", "--form", form],
         );
-        assert!(output.status.success(), "{output:?}");
-        let text = fs::read_to_string(folder.path().join("a.svg")).unwrap();
-        assert!(text.len() <= 9000);
-        svg::read(&text).unwrap().len()
+        assert!(drawn.text.len() <= 9000);
+        (drawn.number("strokes"), drawn.psnr_db())
     };
-    assert!(strokes("smallest") as f64 > 1.2 * strokes("plain") as f64);
+    let (plain, smallest) = (bought("plain"), bought("smallest"));
+    assert!(smallest.0 > 1.2 * plain.0);
+    assert!(smallest.1 > plain.1 + 0.2, "{smallest:?} {plain:?}");
 }
 
 #[test]
