@@ -14,7 +14,15 @@
 //! </svg>
 //! ```
 //!
-//! - `width` and `height` equal the `viewBox`: one unit is one px of the picture.
+//! - One unit is one px of the picture. `width` and `height` equal the `viewBox`, unless the page has a
+//!   [`Length`] as its width.
+//! - In the plain form, strokes end to end of one look are one path, `M1 2L3 4L5 6`, if they are opaque; the layer
+//!   then has `stroke-linejoin="round"`.
+//! - In the smallest form any strokes of one look that follow each other are one path, `M1 2L3 4M7 8l1 2`, if
+//!   they are opaque or do not touch; attributes that neighbours share are on a `<g>` around them; the layer has
+//!   the `stroke-width` of most of its elements, colours may be `#rgb`, and [`arrange()`] has put strokes that do not
+//!   touch in an order that makes use of all that.
+//! - Layers by colour have ids `color-1`, `color-2`, ….
 //! - A path's second point is absolute (`L`) or relative (`l`), whichever is shorter.
 //! - A dot is a segment of 0.01, because many programs drop a segment of length 0 although the
 //!   specification draws it. `h` marks a dot and nothing else. The 0.01 does not follow the
@@ -23,7 +31,10 @@
 //! - Numbers are decimals without exponent; `0.5`, never `.5`.
 //! - No dates, no random names: equal scenes give equal bytes.
 //!
-//! Reading gives the scene as it was quantised, to the bit:
+//! Outlines, [`Form::Outlines`], are closed paths of two lines and two arcs, and circles, with `fill`. They are for
+//! other programs: [`read`] refuses them.
+//!
+//! Reading gives the scene as it was quantised, and arranged by the smallest form or by colour, to the bit:
 //!
 //! ```
 //! use strokefit::scene::{Scene, Shape, Stage, Stroke};
