@@ -267,6 +267,7 @@ function place(event) {
 
 function zoomAt(event) {
   event.preventDefault();
+  if (!scene) return;
   const [x, y] = place(event);
   const least = drawing.clientWidth / scene.width;
   const zoom = Math.max(least, Math.min(100, currentZoom() * 1.0015 ** -event.deltaY));
@@ -285,6 +286,7 @@ function zoomTo({ stroke }) {
 let drag = null;
 
 function startDrag(event) {
+  if (!scene) return;
   drag = { from: place(event), moved: false };
   event.target.setPointerCapture(event.pointerId);
 }
