@@ -41,7 +41,7 @@ fn drawn_with(name: &str, options: &[&str]) -> Drawn {
     let input = sample(name);
     let fixed = ["fit", &input, "-o", "a.svg", "--report", "a.json"];
     let draft = ["--preset", "draft", "-q"];
-    let output = run(folder.path(), &[&fixed, &draft, options].concat());
+    let output = run(folder.path(), &[&fixed[..], &draft, options].concat());
     assert!(output.status.success(), "{output:?}");
     let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
     Drawn {
