@@ -6,8 +6,7 @@ use std::ops::ControlFlow;
 
 use strokefit::coverage::CoverageSchedule;
 use strokefit::fit::{
-    Background, Budget, Config, Execution, Fit, Fitter, Preset, Progress, Rates, Recipe, Simd,
-    Stop, fit,
+    Budget, Config, Execution, Fit, Fitter, Preset, Progress, Rates, Recipe, Simd, Stop, fit,
 };
 use strokefit::image::Image;
 use strokefit::scene::Scene;
@@ -248,27 +247,6 @@ fn an_observer_sees_progress_and_may_stop() {
     assert!(
         seen.windows(2).all(|w| w[0] <= w[1]) && seen.iter().all(|done| (0.0..=1.0).contains(done))
     );
-}
-
-#[test]
-fn alpha_lies_on_the_background() {
-    let picture = sample("noto-gem");
-    for (background, corner) in [
-        (Background::None, [1.0; 3]),
-        (Background::Color([0.0, 0.2, 0.4]), [0.0, 0.2, 0.4]),
-    ] {
-        let config = Config {
-            background,
-            ..draft(60)
-        };
-        let fit = drawn(&picture, &config);
-        let got = fit.target.planes().each_ref().map(|plane| plane[0]);
-        assert_eq!(got, corner);
-        assert_eq!(
-            fit.scene.background.is_some(),
-            background != Background::None
-        );
-    }
 }
 
 #[test]

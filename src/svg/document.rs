@@ -375,11 +375,10 @@ mod tests {
 
     #[test]
     fn the_text_stays_around_the_layers() {
-        let text = format!(
-            "<?xml version=\"1.0\"?>\n<!-- </svg> -->\n<x:svg viewBox=\"0 0 10 10\" xmlns:x=\"a\">\
-             <x:g id='stage-4'/><![CDATA[</x:svg>]]>\n</x:svg >\n<!-- after -->\n"
-        );
-        let drawn = document(&text).with_layers(&scene(), &WriteOptions::default());
+        let text = "<?xml version=\"1.0\"?>\n<!-- </svg> -->\n\
+                    <x:svg viewBox=\"0 0 10 10\" xmlns:x=\"a\"><x:g id='stage-4'/>\
+                    <![CDATA[</x:svg>]]>\n</x:svg >\n<!-- after -->\n";
+        let drawn = document(text).with_layers(&scene(), &WriteOptions::default());
         let (head, tail) = text.split_at(text.find("</x:svg >").unwrap());
         assert!(drawn.starts_with(head) && drawn.ends_with(tail), "{drawn}");
         assert!(drawn.contains("<g id=\"stage-5\""), "{drawn}");
