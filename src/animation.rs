@@ -117,9 +117,9 @@ impl Film<'_> {
                     .collect()
             }
         };
+        let ends = if ends.is_empty() { vec![0] } else { ends };
         let starts = [0].into_iter().chain(ends.iter().copied());
-        let parts: Vec<_> = starts.zip(&ends).map(|(start, &end)| start..end).collect();
-        if parts.is_empty() { vec![0..0] } else { parts }
+        starts.zip(&ends).map(|(start, &end)| start..end).collect()
     }
 
     /// The frames, drawn by resvg on white as they are asked for.

@@ -33,7 +33,7 @@ impl Encoder for Gif {
     }
 
     fn finish(self: Box<Self>) -> Result<Vec<u8>> {
-        self.0.into_inner().map_err(|cause| unwritten(cause.into()))
+        self.0.into_inner().map_err(unwritten)
     }
 }
 
