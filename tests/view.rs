@@ -1,5 +1,11 @@
 //! The page to watch a drawing with, as browsers and others meet it.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stderr,
+    missing_docs
+)]
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
