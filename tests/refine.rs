@@ -339,7 +339,7 @@ fn what_cannot_be_refined_is_refused() {
             svg(&format!("{page} display=\"none\""), ""),
             "root element",
         ),
-        ("nested.svg", svg(page, &nested), "nesting"),
+        ("nested.svg", svg(page, &nested), "nested"),
         (
             "bomb.svg",
             bomb.to_owned() + &svg(page, "<text>&c;</text>"),

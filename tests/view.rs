@@ -252,7 +252,7 @@ fn a_fit_is_seen_to_grow_and_can_be_stopped() {
     assert_eq!(file, fs::read(folder.path().join("a.svg")).unwrap());
     let report: Value =
         serde_json::from_slice(&fs::read(folder.path().join("r.json")).unwrap()).unwrap();
-    assert_eq!(report["stop"], "observer");
+    assert_eq!(report["stop"], "interrupted");
     assert_eq!(report["strokes"], strokes(&end));
 }
 

@@ -105,9 +105,9 @@ pub(super) struct How {
     /// there; removed when the drawing is done
     #[arg(long, value_name = "FILE")]
     checkpoint: Option<PathBuf>,
-    /// How often to keep it
-    #[arg(long, value_name = "SECONDS", default_value = "10", value_parser = domain::seconds, requires = "checkpoint", allow_negative_numbers = true)]
-    checkpoint_every: Duration,
+    /// How often to keep it [default: 10]
+    #[arg(long, value_name = "SECONDS", value_parser = domain::seconds, requires = "checkpoint", allow_negative_numbers = true)]
+    checkpoint_every: Option<Duration>,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -154,8 +154,11 @@ impl Options {
             checkpoint_every,
             ..
         } = &self.how;
-        let path = checkpoint.as_ref()?;
-        Some(Checkpoint::new(path).every(*checkpoint_every))
+        let kept = Checkpoint::new(checkpoint.as_ref()?);
+        Some(match checkpoint_every {
+            Some(span) => kept.every(*span),
+            None => kept,
+        })
     }
 
     /// Draws with a fitter that is set up, keeping its state where that is asked for.

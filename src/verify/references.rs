@@ -155,9 +155,9 @@ mod tests {
 
     #[test]
     fn style_sheets_refer_too() {
-        let inside = tower(7, 9, "<use href=\"#ID\"/>");
+        let inside = tower(6, 9, "<use href=\"#ID\"/>");
         let drawn = |class: &str| {
-            let sheet = "<style>.x { fill: red; mask: url(#a6) } .y { fill: blue }</style>";
+            let sheet = "<style>.x { fill: red; mask: url(#a5) } .y { fill: blue }</style>";
             format!(
                 "{sheet}{inside}{}",
                 format!("<g class=\"{class}\"/>").repeat(9)

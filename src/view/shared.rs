@@ -112,6 +112,8 @@ impl Shared {
         inside.state = State {
             picture: Arc::new(picture),
             grows: inside.state.grows,
+            // Asked for before the fit began.
+            more: inside.state.more,
             ..State::default()
         };
         inside.began = Instant::now();
