@@ -81,7 +81,8 @@ pub(super) struct Look {
     /// Leave out the joint fit of all strokes after the stages: faster, some dB less
     #[arg(long)]
     no_polish: bool,
-    /// Colour behind the strokes: auto, none or #rrggbb; transparency is laid on it, or on white
+    /// Colour behind the strokes: auto, none or #rrggbb, on which transparency is laid. With auto a drawing is
+    /// transparent where the picture is, but opaque strokes for translucent areas are laid on white
     #[arg(long, value_name = "COLOR", default_value = "auto", value_parser = domain::background)]
     background: Background,
     /// Key of every random draw: another seed, another drawing

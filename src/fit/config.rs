@@ -1,15 +1,14 @@
 //! *What* to fit ([`Config`]) and *how* to run ([`Execution`]); *how* never changes a byte.
 
-use std::collections::HashMap;
 use std::time::Duration;
 
+use super::background::Background;
 use super::palette::Colors;
 use super::recipe::Recipe;
 use super::simd::Simd;
 use crate::coverage::CoverageSchedule;
 use crate::error::{Error, ErrorKind, Result};
-use crate::image::Image;
-use crate::scene::{MAX_PRECISION, Rgb, quantum};
+use crate::scene::{MAX_PRECISION, quantum};
 use crate::svg::WriteOptions;
 
 /// What to fit. Equal configurations of equal pictures give equal bytes.
@@ -88,18 +87,6 @@ pub enum Preset {
     Balanced,
     /// The last tenths of a dB.
     Best,
-}
-
-/// The colour behind all strokes.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub enum Background {
-    /// Chosen from the picture.
-    #[default]
-    Auto,
-    /// No background; pictures are laid on white.
-    None,
-    /// This colour.
-    Color(Rgb),
 }
 
 /// How to run. Never changes the result.
@@ -198,48 +185,5 @@ impl Execution {
                     format!("cannot start {threads} worker threads: ask for fewer with --threads");
                 Error::new(ErrorKind::Config, message).caused_by(cause)
             })
-    }
-}
-
-impl Background {
-    /// The colour that a picture with alpha is laid on.
-    pub(super) fn ground(self) -> Rgb {
-        match self {
-            Self::Color(color) => color,
-            Self::Auto | Self::None => [1.0; 3],
-        }
-    }
-
-    /// The colour that the page starts from, and whether it stays that colour.
-    pub(super) fn choose(self, target: &Image) -> (Rgb, bool) {
-        match self {
-            Self::Auto => (prevailing_color(target), false),
-            Self::None => ([1.0; 3], true),
-            Self::Color(color) => (color, true),
-        }
-    }
-}
-
-/// Share of the pixels that one colour must have to be taken for the ground.
-const PREVAILING: f64 = 0.25;
-
-/// The colour of most pixels if it is a ground, otherwise the mean colour.
-fn prevailing_color(image: &Image) -> Rgb {
-    let pixels = image.width() * image.height();
-    let mut counts = HashMap::<[u8; 3], usize>::new();
-    for rgb in image.to_rgb8().chunks_exact(3) {
-        *counts.entry([rgb[0], rgb[1], rgb[2]]).or_default() += 1;
-    }
-    let most = counts
-        .into_iter()
-        .max_by_key(|&(color, count)| (count, color));
-    match most {
-        Some((color, count)) if count as f64 >= PREVAILING * pixels as f64 => {
-            color.map(|v| f32::from(v) / 255.0)
-        }
-        _ => [0, 1, 2].map(|c| {
-            let sum: f64 = image.planes()[c].iter().map(|&v| f64::from(v)).sum();
-            (sum / pixels as f64) as f32
-        }),
     }
 }

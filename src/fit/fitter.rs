@@ -89,13 +89,14 @@ impl<'a> Fitter<'a> {
     /// [`ErrorKind::Io`] when the checkpoint is damaged or its place cannot be written.
     pub fn fit(self, picture: &Image) -> Result<Fit> {
         let Self {
-            config,
+            mut config,
             execution,
             base,
             observer,
             checkpoint,
         } = self;
         config.check()?;
+        config.background = config.background.for_strokes(config.opaque, picture);
         if let Some(base) = &base {
             check_size(&base.scene, picture)?;
         }

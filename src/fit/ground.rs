@@ -5,8 +5,8 @@
 //! in every channel of g, so that what is right on black and on white is right on every ground. Losses,
 //! gradients, worths and gains are means over the grounds.
 
+use super::background::Background;
 use super::base::Base as Start;
-use super::config::Background;
 use super::objective::{Objective, View};
 use crate::error::Result;
 use crate::image::Image;

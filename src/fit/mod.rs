@@ -6,6 +6,7 @@
 //! what the file really looks like.
 
 mod anneal;
+mod background;
 mod base;
 mod checkpoint;
 mod config;
@@ -33,9 +34,10 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 pub use anneal::final_softness;
+pub use background::Background;
 pub use base::Base;
 pub use checkpoint::Checkpoint;
-pub use config::{Background, Budget, Config, DEFAULT_QUALITY, Execution, Preset};
+pub use config::{Budget, Config, DEFAULT_QUALITY, Execution, Preset};
 pub use fitter::Fitter;
 pub use memory::predicted_rss_bytes;
 pub use objective::Objective;

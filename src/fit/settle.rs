@@ -7,8 +7,9 @@
 
 use std::time::Instant;
 
+use super::background::Background;
 use super::base::Base;
-use super::config::{Background, Config};
+use super::config::Config;
 use super::control::Control;
 use super::descent::Descent;
 use super::drawing::Drawing;

@@ -2,12 +2,12 @@
 //!
 //! | group | what is hard |
 //! | --- | --- |
-//! | [`strokes`] | degenerate and absurd strokes, `f32` against the `f64` reference |
-//! | [`kinks`] | pixels where a distance or an edge has no derivative |
-//! | [`precision`] | `f32` against `f64` through thousands of iterations |
-//! | [`pictures`] | pictures without size, content or smoothness |
-//! | [`rates`] | learning rates and numbers gone wild, and very long runs |
-//! | [`agreement`] | thin and slanted strokes as resvg draws them |
+//! | `strokes` | degenerate and absurd strokes, `f32` against the `f64` reference |
+//! | `kinks` | pixels where a distance or an edge has no derivative |
+//! | `precision` | `f32` against `f64` through thousands of iterations |
+//! | `pictures` | pictures without size, content or smoothness |
+//! | `rates` | learning rates and numbers gone wild, and very long runs |
+//! | `agreement` | thin and slanted strokes as resvg draws them |
 //!
 //! `f32` is *within x of `f64`* when no value differs by more than x times the largest value of its kind
 //! (ends, radius, colour, opacity, worth) in the scene. The bound is [`WITHIN`].

@@ -71,7 +71,7 @@ impl Chart {
     /// The chart as a picture of `width × height` px.
     ///
     /// # Errors
-    /// [`ErrorKind::Picture`] when there is no room for it.
+    /// [`ErrorKind::Picture`](crate::ErrorKind::Picture) when there is no room for it.
     pub fn draw_sized(&self, width: usize, height: usize) -> Result<Image> {
         draw(Image::filled(width, height, [1.0; 3])?, |root| {
             self.draw_on(root)
