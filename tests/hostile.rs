@@ -255,6 +255,16 @@ fn svg_bombs() -> Vec<(&'static str, String)> {
             filter("<feTurbulence baseFrequency=\"0.05\" numOctaves=\"100000000\"/>"),
         ),
         (
+            "a path to infinity",
+            page("<path d=\"M0 0C9 3 3 9 2e38 20A5 5 0 0 1 9 2Q1 2 3 4z\"/>"),
+        ),
+        (
+            "a mask of a distant path",
+            page(
+                "<mask id=\"m\"><rect width=\"9\" height=\"9\"/></mask><path mask=\"url(#m)\" d=\"M0 0H2e14V9z\"/>",
+            ),
+        ),
+        (
             "a large pattern",
             page(
                 "<pattern id=\"p\" width=\"40000\" height=\"40000\" patternUnits=\"userSpaceOnUse\"><rect width=\"9\" height=\"9\"/></pattern><rect width=\"600\" height=\"400\" fill=\"url(#p)\"/>",
@@ -312,7 +322,7 @@ fn svg_files_that_are_merely_odd() {
     let stops = "<stop offset=\"0.5\"/>".repeat(50_000);
     let oddities = [
         page(
-            "<rect width=\"NaN\" height=\"1e999\"/><path d=\"M0 0L1e38 1e38 -1e38 1e38z\" stroke=\"#000\" stroke-width=\"1e30\"/>",
+            "<rect width=\"NaN\" height=\"1e999\"/><path d=\"M0 0L1e5 1e5 -1e5 1e5z\" stroke=\"#000\" stroke-width=\"1e4\"/>",
         ),
         page("<path d=\"M0 0H1000000\" stroke=\"#000\" stroke-dasharray=\"0.001\"/>"),
         page("<g transform=\"matrix(0 0 0 0 0 0)\"><rect width=\"9\" height=\"9\"/></g>"),

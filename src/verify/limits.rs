@@ -22,6 +22,8 @@ const MAX_EMBEDDED: u64 = 1 << 26;
 const MAX_LAYERED: f64 = (1_u64 << 28) as f64;
 /// Most pixels written in all; an ordinary drawing stays below a hundredth.
 const MAX_WRITTEN: f64 = (1_u64 << 35) as f64;
+/// Largest side of a part, in pixels. Beyond it tiny-skia, which reckons in fixed point, may hang or panic.
+const MAX_SIDE: f64 = (1_u64 << 20) as f64;
 /// What the smallest part costs, in pixels.
 const LEAST: f64 = 256.0;
 
@@ -104,7 +106,7 @@ impl Reckoning {
         if !group.should_isolate() {
             return group.children().iter().try_for_each(|node| self.node(node));
         }
-        let layer = self.seen(group.abs_layer_bounding_box().to_rect());
+        let layer = self.seen(group.abs_layer_bounding_box().to_rect())?;
         self.layer(layer, |this| {
             group
                 .children()
@@ -124,14 +126,18 @@ impl Reckoning {
         match node {
             Node::Group(group) => self.group(group),
             Node::Path(path) => self.path(path),
-            Node::Image(image) => self.write(self.seen(image.abs_bounding_box())),
+            Node::Image(image) => {
+                let seen = self.seen(image.abs_bounding_box())?;
+                self.write(seen)
+            }
             Node::Text(text) => self.group(text.flattened()),
         }
     }
 
     fn path(&mut self, path: &Path) -> Reckoned {
         let points = path.data().points().len() as f64;
-        self.write(self.seen(path.abs_stroke_bounding_box()) + points)?;
+        let seen = self.seen(path.abs_stroke_bounding_box())?;
+        self.write(seen + points)?;
         let fill = path.fill().map(|fill| fill.paint());
         let stroke = path.stroke().map(|stroke| stroke.paint());
         for paint in fill.into_iter().chain(stroke) {
@@ -153,6 +159,7 @@ impl Reckoning {
     }
 
     fn mask(&mut self, mask: &Mask) -> Reckoned {
+        self.seen(mask.rect().to_rect())?;
         self.layer(2.0 * self.pixels, |this| {
             this.group(mask.root())?;
             mask.mask().map_or(Ok(()), |mask| this.mask(mask))
@@ -202,8 +209,17 @@ impl Reckoning {
     }
 
     /// Pixels of the part of a box that can be seen, at most.
-    fn seen(&self, bounds: Rect) -> f64 {
+    fn seen(&self, bounds: Rect) -> Result<f64, &'static str> {
+        let ends = [bounds.left(), bounds.top(), bounds.right(), bounds.bottom()];
+        let scale = self.area.sqrt();
+        // Also where they are no numbers.
+        if !ends
+            .iter()
+            .all(|&end| f64::from(end).abs() * scale <= MAX_SIDE)
+        {
+            return Err("a part of it reaches more than 2^20 pixels beyond the page");
+        }
         let area = f64::from(bounds.width()) * f64::from(bounds.height()) * self.area;
-        area.min(self.pixels)
+        Ok(area.min(self.pixels))
     }
 }

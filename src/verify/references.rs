@@ -20,6 +20,9 @@ pub(super) fn check(document: &Document<'_>) -> Checked<()> {
     let elements = || document.descendants().filter(Node::is_element);
     let mut by_id = HashMap::new();
     for node in elements() {
+        if node.attribute("d").is_some_and(is_vast) {
+            return Err("a path has numbers beyond 10^12".into());
+        }
         if let Some(id) = node.attribute("id") {
             by_id.entry(id).or_insert(node);
         }
@@ -85,6 +88,20 @@ fn unfolds(node: Node<'_, '_>) -> bool {
     !matches!(node.tag_name().name(), "linearGradient" | "radialGradient")
 }
 
+/// Whether path data has numbers beyond 10¹²: arcs of such radii are cut in millions of pieces, which takes
+/// hours.
+fn is_vast(d: &str) -> bool {
+    let digits = |text: &str| text.bytes().take_while(u8::is_ascii_digit).count();
+    let wholes = d.split(|c: char| !c.is_ascii_digit() && c != '.');
+    let exponents = d.split(['e', 'E']).skip(1).filter(|rest| {
+        let rest = rest.strip_prefix('+').unwrap_or(rest);
+        let rest = rest.trim_start_matches('0');
+        let exponent = rest.get(..digits(rest)).unwrap_or_default();
+        !exponent.is_empty() && exponent.parse().is_ok_and(|n: u32| n > 11) || exponent.len() > 9
+    });
+    exponents.count() > 0 || wholes.into_iter().any(|number| digits(number) > 12)
+}
+
 /// The ids that an element's attributes refer to.
 fn references<'a>(node: Node<'a, '_>) -> impl Iterator<Item = &'a str> {
     node.attributes().flat_map(|attribute| {
@@ -145,6 +162,28 @@ mod tests {
             assert!(checked(&tower(12, 10, reference)).is_err(), "{reference}");
             checked(&tower(5, 10, reference)).unwrap();
             assert!(checked(&tower(2000, 1, reference)).is_err(), "{reference}");
+        }
+    }
+
+    #[test]
+    fn vast_numbers_are_found_in_any_form() {
+        for d in [
+            "M1e38 0",
+            "M0-2E+12z",
+            "a1,1 0 0 0 .5e0013 2",
+            "M1234567890123",
+            "M0 1e99999999999",
+        ] {
+            assert!(is_vast(d), "{d}");
+        }
+        for d in [
+            "M1e9 0",
+            "M.12345678901234 1e-30",
+            "M123456789012-3",
+            "M0 0h.01z",
+            "e",
+        ] {
+            assert!(!is_vast(d), "{d}");
         }
     }
 
