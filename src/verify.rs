@@ -209,7 +209,8 @@ fn parse(svg: &str) -> Result<Tree> {
         Document::parse_with_options(svg, allow_dtd).map_err(|e| unreadable(&e).caused_by(e))?;
     check_namespace(&document)?;
     references::check(&document).map_err(limits::refusal)?;
-    let tree = Tree::from_xmltree(&document, &options).map_err(|e| match e {
+    let tree = guarded(|| Tree::from_xmltree(&document, &options))?;
+    let tree = tree.map_err(|e| match e {
         resvg::usvg::Error::ElementsLimitReached
         | resvg::usvg::Error::ParsingFailed(roxmltree::Error::NodesLimitReached) => too_much(e),
         e => unreadable(&e).caused_by(e),
@@ -303,15 +304,18 @@ fn draw(tree: &Tree, size: Size, ground: Option<Rgb>) -> Result<Image> {
     if let Some(color) = ground {
         pixmap.fill(opaque(color));
     }
-    let mut paint = || resvg::render(tree, raster.transform, &mut pixmap.as_mut());
-    // The judge does not fall with what it judges: tiny-skia's arithmetic has corners that no check of ours
-    // foresees.
-    panic::catch_unwind(AssertUnwindSafe(&mut paint)).map_err(|_| {
+    guarded(|| resvg::render(tree, raster.transform, &mut pixmap.as_mut()))?;
+    image(&pixmap)
+}
+
+/// What resvg does, a panic being an error: the judge does not fall with what it judges, and its arithmetic
+/// has corners that no check of ours foresees.
+fn guarded<R>(judge: impl FnOnce() -> R) -> Result<R> {
+    panic::catch_unwind(AssertUnwindSafe(judge)).map_err(|_| {
         let message =
             "resvg cannot draw the SVG, its numbers are too large or too odd: simplify it";
         Error::new(ErrorKind::Svg, message)
-    })?;
-    image(&pixmap)
+    })
 }
 
 fn opaque([r, g, b]: Rgb) -> Color {

@@ -255,6 +255,12 @@ fn svg_bombs() -> Vec<(&'static str, String)> {
             filter("<feTurbulence baseFrequency=\"0.05\" numOctaves=\"100000000\"/>"),
         ),
         (
+            "a picture as high as the sky",
+            page(
+                &embedded("image/png", &png_bomb(1, 1, 0)).replace("\"400\"", "\"9999999999920\""),
+            ),
+        ),
+        (
             "a path to infinity",
             page("<path d=\"M0 0C9 3 3 9 2e38 20A5 5 0 0 1 9 2Q1 2 3 4z\"/>"),
         ),
