@@ -13,7 +13,7 @@ use crate::metrics::psnr_db;
 
 /// What follows the descent in any case, in units of the time that writing and rendering the drawing takes:
 /// that itself, the records of the layers, and the judging of the file, which renders it once more.
-const ENDING: u32 = 4;
+const ENDING: u32 = 6;
 /// Share of a time limit that is for the descent however long the rest takes.
 const LEAST_SHARE: u32 = 4;
 
@@ -50,12 +50,13 @@ impl<'a> Control<'a> {
     pub(super) fn new(
         observer: &'a mut (dyn Observer + Send),
         config: &Config,
+        started: Instant,
         planned: f64,
         stages: usize,
     ) -> Self {
         Self {
             observer,
-            started: Instant::now(),
+            started,
             limit: config.budget.time,
             planned,
             stages,

@@ -148,6 +148,7 @@ impl<'a> Work<'a> {
         level: Level,
         observer: &'a mut (dyn Observer + Send),
     ) -> Result<Self> {
+        let start = Instant::now();
         let recipe = config.recipe.unwrap_or(Recipe::of(config.preset));
         let kept_bytes = base.map_or(0, Base::bytes);
         let by_bytes = config
@@ -203,7 +204,7 @@ impl<'a> Work<'a> {
                 limit: limit.unwrap_or(most).min(most),
                 price: Price::new(config.effective_quality(), config.file),
             },
-            control: Control::new(observer, config, planned, plan.len()),
+            control: Control::new(observer, config, start, planned, plan.len()),
             plan,
             target: setting.target,
             drawing,
