@@ -1,9 +1,11 @@
 //! The fit: picture in, drawing out.
 //!
-//! A [`Fitter`] adds strokes in stages. Each stage seeds new strokes where the residual is largest, fits
-//! them alone for a moment on the frozen canvas of those below, and keeps what pays. Then all strokes
-//! are polished jointly, those worth least moving to where more is to be gained, and settled against
-//! what the file really looks like.
+//! A [`Fitter`] adds strokes in stages, on a blank ground or on a [`Base`]. Each stage seeds new strokes where
+//! the residual is largest, fits them alone for a moment on the frozen canvas of those below, and keeps what
+//! pays. Then all strokes are polished jointly, those worth least moving to where more is to be gained; where
+//! the file may have few colours or pens only, they are brought to those; and they are settled against what
+//! the file really looks like. At last strokes are added or removed, and fitted again, until the file is as
+//! faithful and as short as the budgets ask for.
 
 mod anneal;
 mod background;
@@ -130,8 +132,9 @@ pub fn fit(
         .fit(target)
 }
 
-/// The algorithm: stages, polish, settling, and what budgets ask for beyond. Between any two tasks all there
-/// is to know is in `work`, so that it can be kept, and the fit gone on with in another process.
+/// The algorithm: stages, polish, settling, and what budgets ask for beyond, each task saying what follows it.
+/// Between any two tasks all there is to know is in `work`, so that it can be kept, and the fit gone on with in
+/// another process.
 fn draw(mut work: Work<'_>) -> Result<Fit> {
     while let Some(task) = work.next() {
         match task {

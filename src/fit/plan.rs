@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::base::Base;
 use super::config::Config;
 use super::recipe::Recipe;
 
@@ -30,6 +31,15 @@ pub(super) struct PlannedStage {
 pub(super) struct Before {
     pub(super) layers: usize,
     pub(super) strokes: usize,
+}
+
+impl Before {
+    pub(super) fn of(base: Option<&Base>) -> Self {
+        base.map_or_else(Self::default, |Base { scene, .. }| Self {
+            layers: scene.stages.len(),
+            strokes: scene.len(),
+        })
+    }
 }
 
 /// The stages of a fit, coarse to fine.

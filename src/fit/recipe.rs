@@ -115,6 +115,16 @@ impl Recipe {
         }
     }
 
+    /// Iterations that a stroke takes part in, about: those of its stage, and of the polish if there is one.
+    pub(super) fn iterations(&self, is_polished: bool) -> usize {
+        let polish = if is_polished {
+            self.polish_iterations
+        } else {
+            0
+        };
+        self.stage_iterations + polish
+    }
+
     /// Whether strokes are relocated before iteration `step`, when a share `done` of the polish is over:
     /// newcomers need time to settle in.
     pub(super) fn relocates(&self, step: usize, done: f32) -> bool {

@@ -1,0 +1,77 @@
+//! What the budgets of a fit allow and ask for.
+
+use crate::fit::Stop;
+use crate::fit::base::Base;
+use crate::fit::config::{Budget, Config};
+use crate::fit::plan::MOST_STROKES;
+use crate::fit::settle::Written;
+use crate::image::Image;
+use crate::math::Point;
+use crate::metrics::psnr_db;
+use crate::scene::{Shape, Stroke};
+use crate::svg;
+
+/// The strokes that the budgets allow, as far as that can be told beforehand, those of `base` included.
+pub(super) fn strokes(config: &Config, base: Option<&Base>, target: &Image) -> Option<usize> {
+    let kept = base.map_or(0, Base::bytes);
+    let by_bytes = config
+        .budget
+        .bytes
+        .map(|bytes| (bytes.saturating_sub(kept) / typical_bytes(config, target)).max(1));
+    [config.budget.strokes, by_bytes]
+        .into_iter()
+        .flatten()
+        .min()
+}
+
+/// Most strokes of the drawing where the budgets allow `limit`.
+pub(super) fn most_strokes(limit: Option<usize>, base: Option<&Base>) -> usize {
+    let most = MOST_STROKES.saturating_sub(base.map_or(0, Base::elements));
+    limit.map_or(most, |limit| limit.min(most))
+}
+
+/// Bytes of a typical stroke, for the first guess at what a budget of bytes holds.
+fn typical_bytes(config: &Config, target: &Image) -> usize {
+    // Two thirds of the way, so that no decimal is 0, and as short as most strokes are.
+    let place = |share: f32, step: f32| {
+        let [x, y] = [target.width(), target.height()].map(|side| side as f32 * share);
+        Point::new(x + step, y - step)
+    };
+    let stroke = Stroke {
+        shape: Shape::capsule(place(2.0 / 3.0, 0.0), place(2.0 / 3.0, 10.0 / 3.0)),
+        radius: 5.0 / 3.0,
+        color: [1.0 / 3.0; 3].map(|c: f32| c + 0.01),
+        opacity: if config.opaque { 1.0 } else { 2.0 / 3.0 },
+    };
+    svg::stroke_bytes(&stroke, &config.file).max(1)
+}
+
+/// The first budget that a drawing of so many `strokes`, written as it is, uses up or meets.
+pub(super) fn met(budget: &Budget, strokes: usize, written: &Written) -> Option<Stop> {
+    let is_reached = |db| psnr_db(written.mse) >= db;
+    if budget.strokes.is_some_and(|most| strokes >= most) {
+        Some(Stop::Strokes)
+    } else if budget.psnr_db.is_some_and(is_reached) {
+        Some(Stop::Psnr)
+    } else if budget.bytes.is_some_and(|most| written.bytes >= most) {
+        Some(Stop::Bytes)
+    } else {
+        None
+    }
+}
+
+/// Whether a file serves the budget better than another: it has to have few enough bytes first, be faithful
+/// enough next, and have few strokes then, or where neither is faithful enough, little error.
+pub(super) fn is_better(budget: &Budget, new: &Written, old: &Written) -> bool {
+    let fits = |w: &Written| budget.bytes.is_none_or(|most| w.bytes <= most);
+    let reached = |w: &Written| budget.psnr_db.is_some_and(|db| psnr_db(w.mse) >= db);
+    match (fits(new), fits(old)) {
+        (true, true) => match (reached(new), reached(old)) {
+            (true, true) => new.scene.len() < old.scene.len(),
+            (false, false) => new.mse < old.mse,
+            (reaches, _) => reaches,
+        },
+        (false, false) => new.bytes < old.bytes,
+        (fits, _) => fits,
+    }
+}
