@@ -27,7 +27,7 @@
 mod cairosvg;
 mod chromium;
 mod inkscape;
-mod locate;
+pub(crate) mod locate;
 mod process;
 mod rsvg;
 mod sheet;

@@ -6,6 +6,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
+use crate::engines::locate;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
 use crate::report::Usage;
@@ -110,12 +111,6 @@ fn boxed(programs: impl Iterator<Item = Program>) -> Vec<Box<dyn Peer>> {
         .collect()
 }
 
-fn is_on_path(name: &str) -> bool {
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    let name = format!("{name}{}", std::env::consts::EXE_SUFFIX);
-    std::env::split_paths(&path).any(|folder| folder.join(&name).is_file())
-}
-
 impl Peer for Program {
     fn name(&self) -> &str {
         self.name
@@ -164,7 +159,7 @@ impl Program {
             let output = Command::new(self.name).arg(arg).output();
             output.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).contains(word))
         };
-        is_on_path(self.name) && self.can.is_none_or(able)
+        locate::program(self.name).is_some() && self.can.is_none_or(able)
     }
 
     fn arguments(&self, from: &Path, to: &Path, settings: &str) -> Vec<String> {
