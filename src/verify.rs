@@ -46,6 +46,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
 use crate::metrics::{self, Agreement, Quality, null_is_infinite};
 use crate::scene::Rgb;
+use crate::svg::SVG_NAMESPACE;
 
 pub(crate) use placement::placement;
 
@@ -56,8 +57,6 @@ pub const RESVG_VERSION: &str = "0.49";
 const MAX_PIXELS: f64 = (1_u64 << 27) as f64;
 
 const WHITE: Rgb = [1.0; 3];
-
-const SVG_NAMESPACE: &str = "http://www.w3.org/2000/svg";
 
 /// Least agreement, dB, of a drawing that is what was fitted. Ordinary drawings reach 36 to 45: what
 /// remains is the 4×4 supersampling of edges and 8-bit compositing. Below this, strokes are missing

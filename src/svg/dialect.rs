@@ -3,7 +3,7 @@
 use crate::scene::UNITS_PER_PX;
 
 /// The namespace of SVG; with `http`, or nothing draws it.
-pub(super) const SVG_NAMESPACE: &str = "http://www.w3.org/2000/svg";
+pub(crate) const SVG_NAMESPACE: &str = "http://www.w3.org/2000/svg";
 
 /// The namespace that makes a group a layer in Inkscape.
 pub(super) const INKSCAPE_NAMESPACE: &str = "http://www.inkscape.org/namespaces/inkscape";

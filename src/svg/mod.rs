@@ -65,6 +65,7 @@ mod write;
 
 pub use animated::{Timing, write_animated};
 pub use arrange::arrange;
+pub(crate) use dialect::SVG_NAMESPACE;
 pub use document::{Document, Placement, page_width};
 pub use lint::{Finding, Severity, lint};
 pub use options::{Form, Group, Length, WriteOptions};
