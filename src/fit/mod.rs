@@ -26,6 +26,7 @@ mod plan;
 mod polish;
 mod price;
 mod recipe;
+mod rounds;
 mod settle;
 mod simd;
 mod stage;

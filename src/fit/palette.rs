@@ -14,7 +14,7 @@ use super::descent::Descent;
 use super::drawing::{Drawing, Wish};
 use super::polish::{self, Terms};
 use super::recipe::{Rates, Recipe};
-use crate::optim::Schedule;
+use super::rounds::Rounds;
 use crate::render::{AX, AY, BX, BY, OPACITY, RADIUS, RED};
 use crate::scene::{Rgb, color, quantum};
 use crate::seed::Candidate;
@@ -32,11 +32,11 @@ pub enum Colors {
 }
 
 /// Rounds of choosing colours and fitting the rest.
-const ROUNDS: usize = 12;
-/// Iterations of all rounds, in units of those of the joint fit.
-const ITERATIONS: f64 = 0.6;
-/// Step sizes, in units of those of the joint fit.
-const RATE: f32 = 0.3;
+const ROUNDS: Rounds = Rounds {
+    count: 12,
+    iterations: 0.6,
+    rate: 0.3,
+};
 /// Rounds at the end that relocate no stroke.
 const QUIET_ROUNDS: usize = 2;
 /// Share of its Newton step that a stroke would like to take: those under and over it take theirs as well.
@@ -160,7 +160,7 @@ pub(super) fn run(
 ) {
     recolor(drawing, palette);
     let mut best = (drawing.mse(), drawing.snapshot());
-    for round in 0..ROUNDS {
+    for round in 0..ROUNDS.count {
         if control.stopped().is_some() {
             break;
         }
@@ -194,20 +194,11 @@ fn descend(
 ) {
     let rates = without_color(recipe.polish_rates);
     let mut descent = Descent::new(drawing.free(), rates, drawing.limits);
-    if round + QUIET_ROUNDS < ROUNDS {
+    if round + QUIET_ROUNDS < ROUNDS.count {
         let adapt = |candidate| palette.adapt(candidate);
         polish::relocate(drawing, recipe, terms, adapt, &mut descent);
     }
-    let steps = (recipe.polish_iterations as f64 * ITERATIONS) as usize / ROUNDS;
-    let schedule = Schedule::Cosine { end: rates.last };
-    for step in 0..steps {
-        let done = round * steps + step;
-        let rate = schedule.factor(done, ROUNDS * steps) as f32 * RATE;
-        drawing.step(&mut descent, anneal.last(), rate);
-        if !control.advance(drawing, descent.gradients.loss) {
-            return;
-        }
-    }
+    ROUNDS.descend(round, drawing, descent, recipe, anneal, control);
 }
 
 /// Rates that leave colours as they are.

@@ -14,7 +14,7 @@ use super::descent::{Descent, LEAST_RADIUS};
 use super::drawing::Drawing;
 use super::palette::without_color;
 use super::recipe::{Rates, Recipe};
-use crate::optim::Schedule;
+use super::rounds::Rounds;
 use crate::render::{AX, AY, BX, BY, OPACITY, Params, RADIUS, RED, unpack};
 use crate::scene::{Rgb, Written, color, quantum};
 
@@ -28,13 +28,13 @@ const EDGE: f32 = 0.02;
 /// Strokes that may share pens: their pairs are all compared.
 const WINDOW: usize = 1024;
 /// Rounds of fitting places to pens and colours of pens to places.
-const ROUNDS: usize = 8;
+const ROUNDS: Rounds = Rounds {
+    count: 8,
+    iterations: 0.2,
+    rate: 0.1,
+};
 /// Share of its Newton step that a colour takes: those under and over it take theirs as well.
 const DAMPING: f32 = 0.7;
-/// Iterations of all rounds, in units of those of the joint fit.
-const ITERATIONS: f64 = 0.2;
-/// Their step sizes in the same units.
-const RATE: f32 = 0.1;
 
 /// Makes the strokes of each stage of `drawing` share pens, with one another's very colours if they `keep_colors`.
 /// All strokes must be free.
@@ -58,8 +58,10 @@ pub(super) fn run(
         pens.extend(shared.into_iter().map(of_drawing));
     }
     drawing.set_free(&strokes);
-    for round in 0..ROUNDS {
-        descend(drawing, recipe, anneal, round, control);
+    let rates = without_pen(recipe.polish_rates);
+    for round in 0..ROUNDS.count {
+        let descent = Descent::new(drawing.free(), rates, drawing.limits);
+        ROUNDS.descend(round, drawing, descent, recipe, anneal, control);
         if !keep_colors {
             tint(drawing, &pens);
         }
@@ -101,27 +103,6 @@ fn tint(drawing: &mut Drawing, pens: &[Vec<usize>]) {
     }
     let colors: Vec<Rgb> = wishes.iter().map(|wish| wish.color).collect();
     drawing.set_colors(&colors);
-}
-
-/// Fits places to the pens.
-fn descend(
-    drawing: &mut Drawing,
-    recipe: &Recipe,
-    anneal: Anneal,
-    round: usize,
-    control: &mut Control<'_>,
-) {
-    let rates = without_pen(recipe.polish_rates);
-    let steps = (recipe.polish_iterations as f64 * ITERATIONS) as usize / ROUNDS;
-    let schedule = Schedule::Cosine { end: rates.last };
-    let mut descent = Descent::new(drawing.free(), rates, drawing.limits);
-    for step in 0..steps {
-        let rate = schedule.factor(round * steps + step, ROUNDS * steps) as f32 * RATE;
-        drawing.step(&mut descent, anneal.last(), rate);
-        if !control.advance(drawing, descent.gradients.loss) {
-            return;
-        }
-    }
 }
 
 /// Rates that leave colours and widths as they are.
