@@ -75,3 +75,53 @@ pub(super) fn is_better(budget: &Budget, new: &Written, old: &Written) -> bool {
         (fits, _) => fits,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    /// A file of no strokes.
+    fn file(bytes: usize, mse: f64) -> Written {
+        Written {
+            scene: Scene::empty(4, 3, None),
+            dropped: 0,
+            drawn: Vec::new(),
+            bytes,
+            mse,
+        }
+    }
+
+    /// At 20 dB the mean squared error is 0.01.
+    const BUDGET: Budget = Budget {
+        strokes: Some(10),
+        psnr_db: Some(20.0),
+        bytes: Some(100),
+        time: None,
+    };
+
+    #[test]
+    fn a_drawing_meets_the_first_of_its_budgets() {
+        let (poor, good, long) = (file(99, 0.02), file(99, 0.005), file(100, 0.02));
+        assert_eq!(met(&BUDGET, 9, &poor), None);
+        assert_eq!(met(&BUDGET, 9, &good), Some(Stop::Psnr));
+        assert_eq!(met(&BUDGET, 9, &long), Some(Stop::Bytes));
+        assert_eq!(met(&BUDGET, 10, &good), Some(Stop::Strokes));
+        assert_eq!(met(&Budget::default(), 10, &good), None);
+    }
+
+    #[test]
+    fn bytes_bind_before_fidelity_does() {
+        let order = [
+            file(200, 0.001),
+            file(150, 0.5),
+            file(100, 0.03),
+            file(100, 0.02),
+            file(90, 0.009),
+        ];
+        for pair in order.windows(2) {
+            assert!(is_better(&BUDGET, &pair[1], &pair[0]), "{pair:?}");
+            assert!(!is_better(&BUDGET, &pair[0], &pair[1]), "{pair:?}");
+        }
+    }
+}
