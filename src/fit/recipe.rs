@@ -72,7 +72,7 @@ impl Recipe {
                 opacity: 0.02,
                 last: 0.1,
             },
-            polish_iterations: 1800,
+            polish_iterations: 2800,
             coarse_share: 0.3,
             polish_rates: Rates {
                 position: 2.5,
