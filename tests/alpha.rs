@@ -1,30 +1,18 @@
 //! Transparency is fitted: no ground is drawn, and a drawing looks right on whatever it is laid.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use strokefit::fit::{Background, Budget, Config, Execution, Fit, Preset, Simd, fit};
+mod support {
+    pub(crate) mod drafts;
+    pub(crate) mod fits;
+    pub(crate) mod repository;
+}
+
+use strokefit::fit::{Background, Config, Execution, Fit, Simd, fit};
 use strokefit::image::Image;
 use strokefit::svg::WriteOptions;
 use strokefit::verify::{self, Size};
-
-fn sample(name: &str) -> Image {
-    let path = format!("{}/samples/{name}.png", env!("CARGO_MANIFEST_DIR"));
-    Image::open(path).unwrap()
-}
-
-fn draft(strokes: usize) -> Config {
-    Config {
-        budget: Budget {
-            strokes: Some(strokes),
-            ..Budget::default()
-        },
-        preset: Preset::Draft,
-        ..Config::default()
-    }
-}
-
-fn drawn(picture: &Image, config: &Config) -> Fit {
-    fit(picture, config, &Execution::default(), &mut ()).unwrap()
-}
+use support::drafts::draft;
+use support::fits::{drawn, sample};
 
 fn text(fit: &Fit) -> String {
     fit.svg(&WriteOptions::default())

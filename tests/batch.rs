@@ -1,11 +1,21 @@
 //! Several pictures at once: names, tables, failures, events.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
-mod place;
+mod support {
+    pub(crate) mod files;
+    pub(crate) mod output;
+    pub(crate) mod picture;
+    pub(crate) mod place;
+    pub(crate) mod program;
+    pub(crate) mod refusal;
+    pub(crate) mod report;
+}
 
 use std::fs;
 
-use place::{Place, assert_refused, report, stderr};
+use support::output::stderr;
+use support::place::{Place, STROKEFIT};
+use support::refusal::assert_refused;
 
 const QUICK: [&str; 4] = ["--strokes", "12", "--preset", "draft"];
 
@@ -28,8 +38,7 @@ fn each_picture_has_its_files_and_its_row() {
         "--report",
         "{stem}.json",
     ];
-    let output = place.run(&with(&args));
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let output = place.done(&with(&args));
     assert_eq!(
         place.names(),
         ["a.json", "a.png", "b c.json", "b c.png", "out"]
@@ -38,7 +47,7 @@ fn each_picture_has_its_files_and_its_row() {
     let lines: Vec<_> = table.lines().collect();
     assert_eq!(lines.len(), 4, "{table}");
     for name in ["a", "b c"] {
-        let record = report(&place, &format!("{name}.json"));
+        let record = place.report(&format!("{name}.json"));
         assert_eq!(record["input"]["path"], format!("{name}.png"));
         let bytes = fs::metadata(place.path(&format!("out/{name}.svg")))
             .unwrap()
@@ -219,7 +228,7 @@ fn events_tell_of_each_stage_and_end_with_the_report() {
         serde_json::json!({"event": "start", "path": "a.png", "width": 40, "height": 30})
     );
 
-    let (record, stages) = (report(&place, "a.json"), named("stage"));
+    let (record, stages) = (place.report("a.json"), named("stage"));
     assert_eq!(
         stages.len(),
         record["stages"].as_array().unwrap().len(),
@@ -245,11 +254,11 @@ fn names_that_are_not_unicode_work() {
     place.picture("a.png", 20, 30);
     let odd = std::ffi::OsStr::from_bytes(b"x\xff.png");
     fs::copy(place.path("a.png"), place.path("a.png").with_file_name(odd)).unwrap();
-    let output = std::process::Command::new(env!("CARGO_BIN_EXE_strokefit"))
+    let output = place
+        .command(STROKEFIT)
         .arg("fit")
         .arg(odd)
         .args(with(&["-o", "{stem}.svg"]))
-        .current_dir(place.path("."))
         .output()
         .unwrap();
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));

@@ -1,15 +1,21 @@
 //! `strokefit bench` as its users meet it: files, lines, exit statuses, and going on where it stopped.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use std::fs;
-use std::path::Path;
-use std::process::{Command, Output};
+mod support {
+    pub(crate) mod picture;
+    pub(crate) mod place;
+}
 
-fn bench(folder: &Path, args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_strokefit"))
+use std::fs;
+use std::process::Output;
+
+use support::place::{Place, STROKEFIT};
+
+fn bench(place: &Place, args: &[&str]) -> Output {
+    place
+        .command(STROKEFIT)
         .arg("bench")
         .args(args)
-        .current_dir(folder)
         // Peers that happen to be installed would only take time.
         .env("PATH", "")
         .output()
@@ -21,15 +27,8 @@ fn lines(output: &Output) -> Vec<String> {
     text.lines().map(str::to_owned).collect()
 }
 
-fn picture(folder: &Path, name: &str) {
-    let level = |v: u32| (v * 41 % 256) as u8;
-    let pixel = |x, y| image::Rgb([level(x / 3), level(y / 4), 90]);
-    let picture = image::RgbImage::from_fn(40, 30, pixel);
-    picture.save(folder.join(name)).unwrap();
-}
-
-fn results(folder: &Path) -> Vec<serde_json::Value> {
-    let text = fs::read_to_string(folder.join("out/results.jsonl")).unwrap();
+fn results(place: &Place) -> Vec<serde_json::Value> {
+    let text = fs::read_to_string(place.path("out/results.jsonl")).unwrap();
     let lines = text.lines();
     lines
         .map(|line| serde_json::from_str(line).unwrap())
@@ -50,9 +49,9 @@ const FEW: [&str; 9] = [
 
 #[test]
 fn pareto_writes_its_report() {
-    let folder = tempfile::tempdir().unwrap();
-    picture(folder.path(), "a.png");
-    let output = bench(folder.path(), &FEW);
+    let place = Place::new();
+    place.picture("a.png", 40, 30);
+    let output = bench(&place, &FEW);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     for name in [
         "pareto.csv",
@@ -64,9 +63,9 @@ fn pareto_writes_its_report() {
         "a-strokes.svg",
         "a-stages.svg",
     ] {
-        assert!(folder.path().join("out").join(name).exists(), "{name}");
+        assert!(place.path("out").join(name).exists(), "{name}");
     }
-    let results = results(folder.path());
+    let results = results(&place);
     let families: Vec<_> = results
         .iter()
         .map(|r| r["family"].as_str().unwrap())
@@ -76,7 +75,7 @@ fn pareto_writes_its_report() {
         2,
         "{families:?}"
     );
-    let drawings = fs::read_dir(folder.path().join("out/svg")).unwrap().count();
+    let drawings = fs::read_dir(place.path("out/svg")).unwrap().count();
     assert_eq!(drawings, results.len());
     for line in lines(&output) {
         let verdict = line.rsplit(": ").next().unwrap();
@@ -85,22 +84,22 @@ fn pareto_writes_its_report() {
             "{line}"
         );
     }
-    let page = fs::read_to_string(folder.path().join("out/pareto.html")).unwrap();
+    let page = fs::read_to_string(place.path("out/pareto.html")).unwrap();
     assert!(page.contains("data:image/png;base64,") && page.contains("data:image/svg+xml;base64,"));
 }
 
 #[test]
 fn a_run_goes_on_where_it_stopped() {
-    let folder = tempfile::tempdir().unwrap();
-    picture(folder.path(), "a.png");
-    assert_eq!(bench(folder.path(), &FEW).status.code(), Some(0));
-    let journal = folder.path().join("out/results.jsonl");
+    let place = Place::new();
+    place.picture("a.png", 40, 30);
+    assert_eq!(bench(&place, &FEW).status.code(), Some(0));
+    let journal = place.path("out/results.jsonl");
     let whole = fs::read_to_string(&journal).unwrap();
     // As if the process had been killed in the middle of a line.
     let kept = whole.lines().count() - 3;
     let cut: Vec<&str> = whole.lines().take(kept).collect();
     fs::write(&journal, format!("{}\n{{\"picture\":", cut.join("\n"))).unwrap();
-    let again = bench(folder.path(), &FEW);
+    let again = bench(&place, &FEW);
     assert_eq!(again.status.code(), Some(0), "{again:?}");
     let text = fs::read_to_string(&journal).unwrap();
     assert!(
@@ -112,15 +111,15 @@ fn a_run_goes_on_where_it_stopped() {
 
 #[test]
 fn drawings_of_others_are_scored() {
-    let folder = tempfile::tempdir().unwrap();
-    picture(folder.path(), "a.png");
+    let place = Place::new();
+    place.picture("a.png", 40, 30);
     let svg = r##"<svg xmlns="http://www.w3.org/2000/svg" width="40" height="30"><rect width="40" height="30" fill="#808080"/></svg>"##;
-    fs::create_dir(folder.path().join("others")).unwrap();
-    fs::write(folder.path().join("others/a.svg"), svg).unwrap();
+    fs::create_dir(place.path("others")).unwrap();
+    fs::write(place.path("others/a.svg"), svg).unwrap();
     let args = ["pareto", "a.png", "-o", "out", "--svgs", "others"];
-    let output = bench(folder.path(), &args);
+    let output = bench(&place, &args);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
-    let results = results(folder.path());
+    let results = results(&place);
     assert_eq!(results.len(), 1);
     assert_eq!(results[0]["family"], "others");
     assert_eq!(results[0]["svg_bytes"], svg.len());
@@ -129,11 +128,11 @@ fn drawings_of_others_are_scored() {
 
 #[test]
 fn what_cannot_be_measured_is_said_in_a_line() {
-    let folder = tempfile::tempdir().unwrap();
-    picture(folder.path(), "a.png");
-    fs::create_dir(folder.path().join("b")).unwrap();
-    picture(folder.path(), "b/a.png");
-    fs::create_dir(folder.path().join("none")).unwrap();
+    let place = Place::new();
+    place.picture("a.png", 40, 30);
+    fs::create_dir(place.path("b")).unwrap();
+    place.picture("b/a.png", 40, 30);
+    fs::create_dir(place.path("none")).unwrap();
     let cases: [(&[&str], i32, &str); 3] = [
         (&["pareto", "a.png", "b/a.png", "-o", "out"], 2, "called a"),
         (
@@ -144,7 +143,7 @@ fn what_cannot_be_measured_is_said_in_a_line() {
         (&["pareto", "missing.png", "-o", "out"], 1, "missing.png"),
     ];
     for (args, status, named) in cases {
-        let output = bench(folder.path(), args);
+        let output = bench(&place, args);
         assert_eq!(output.status.code(), Some(status), "{args:?} {output:?}");
         let text = String::from_utf8(output.stderr).unwrap();
         assert!(text.lines().count() == 1 && text.contains(named), "{text}");
@@ -153,31 +152,31 @@ fn what_cannot_be_measured_is_said_in_a_line() {
 
 #[test]
 fn a_case_that_fails_is_told_and_the_rest_goes_on() {
-    let folder = tempfile::tempdir().unwrap();
-    picture(folder.path(), "a.png");
+    let place = Place::new();
+    place.picture("a.png", 40, 30);
     // A folder in the place of a drawing: it cannot be written.
-    let first = bench(folder.path(), &FEW);
+    let first = bench(&place, &FEW);
     assert_eq!(first.status.code(), Some(0));
-    let drawings = folder.path().join("out/svg");
+    let drawings = place.path("out/svg");
     let victim = fs::read_dir(&drawings).unwrap().map(|e| e.unwrap().path());
     let victim = victim.min().unwrap();
     fs::remove_file(&victim).unwrap();
     fs::create_dir(&victim).unwrap();
-    fs::remove_file(folder.path().join("out/results.jsonl")).unwrap();
-    let output = bench(folder.path(), &FEW);
+    fs::remove_file(place.path("out/results.jsonl")).unwrap();
+    let output = bench(&place, &FEW);
     assert_eq!(output.status.code(), Some(1), "{output:?}");
     let failed: Vec<_> = lines(&output)
         .into_iter()
         .filter(|l| l.ends_with(": FAIL"))
         .collect();
     assert_eq!(failed.len(), 1, "{failed:?}");
-    assert!(folder.path().join("out/pareto.html").exists());
+    assert!(place.path("out/pareto.html").exists());
 }
 
 #[test]
 fn stability_holds_and_writes_its_table() {
-    let folder = tempfile::tempdir().unwrap();
-    let output = bench(folder.path(), &["stability", "-o", "out", "--short"]);
+    let place = Place::new();
+    let output = bench(&place, &["stability", "-o", "out", "--short"]);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     let lines = lines(&output);
     assert!(lines.len() > 40, "{lines:?}");
@@ -194,14 +193,14 @@ fn stability_holds_and_writes_its_table() {
         "agreement.csv",
         "agreement.png",
     ] {
-        assert!(folder.path().join("out").join(name).exists(), "{name}");
+        assert!(place.path("out").join(name).exists(), "{name}");
     }
 }
 
 #[test]
 fn scaling_writes_its_series() {
-    let folder = tempfile::tempdir().unwrap();
-    let output = bench(folder.path(), &["scaling", "-o", "out", "--short"]);
+    let place = Place::new();
+    let output = bench(&place, &["scaling", "-o", "out", "--short"]);
     // Growth is a matter of the machine: what is asked here is that it is told.
     assert!(
         output.status.code().is_some_and(|code| code < 2),
@@ -215,7 +214,7 @@ fn scaling_writes_its_series() {
             .all(|l| l.ends_with(": pass") || l.ends_with(": FAIL")),
         "{lines:?}"
     );
-    let table = fs::read_to_string(folder.path().join("out/scaling.csv")).unwrap();
+    let table = fs::read_to_string(place.path("out/scaling.csv")).unwrap();
     assert!(table.lines().count() > 15, "{table}");
-    assert!(folder.path().join("out/scaling-pixels.svg").exists());
+    assert!(place.path("out/scaling-pixels.svg").exists());
 }

@@ -2,13 +2,20 @@
 #![cfg(unix)]
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
+mod support {
+    pub(crate) mod place;
+    pub(crate) mod repository;
+    pub(crate) mod signal;
+}
+
 use std::fs;
-use std::path::Path;
 use std::process::{Command, ExitStatus, Stdio};
 use std::time::Duration;
 
 use strokefit::rng;
-use tempfile::TempDir;
+use support::place::{Place, STROKEFIT};
+use support::repository::committed;
+use support::signal::send;
 
 /// Options of fits of moderate length: all kinds of tasks that a fit has.
 const FITS: [&[&str]; 3] = [
@@ -28,34 +35,32 @@ const FITS: [&[&str]; 3] = [
 const OFTEN: [&str; 2] = ["--checkpoint-every", "0.001"];
 
 /// A folder with a picture.
-fn place() -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/rocket-320.png");
-    let picture = image::open(sample).unwrap().thumbnail(96, 96);
-    picture.save(folder.path().join("in.png")).unwrap();
-    folder
+fn with_picture() -> Place {
+    let place = Place::new();
+    let sample = image::open(committed("samples/rocket-320.png")).unwrap();
+    sample.thumbnail(96, 96).save(place.path("in.png")).unwrap();
+    place
 }
 
-fn fit(folder: &TempDir, output: &str, options: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_strokefit"));
+fn fit(place: &Place, output: &str, options: &[&str]) -> Command {
+    let mut command = place.command(STROKEFIT);
     command
         .args(["-q", "fit", "in.png", "-o", output])
         .args(options)
-        .current_dir(folder.path())
         .stdout(Stdio::null())
         .stderr(Stdio::piped());
     command
 }
 
-fn read(folder: &TempDir, name: &str) -> Option<Vec<u8>> {
-    fs::read(folder.path().join(name)).ok()
+fn read(place: &Place, name: &str) -> Option<Vec<u8>> {
+    fs::read(place.path(name)).ok()
 }
 
 /// Starts the fit and kills it after `life`, unless it has ended.
-fn live(folder: &TempDir, options: &[&str], life: Duration) -> Option<ExitStatus> {
+fn live(place: &Place, options: &[&str], life: Duration) -> Option<ExitStatus> {
     let kept = ["--checkpoint", "fit.state"];
     let options = [options, &kept, &OFTEN].concat();
-    let mut child = fit(folder, "killed.svg", &options).spawn().unwrap();
+    let mut child = fit(place, "killed.svg", &options).spawn().unwrap();
     std::thread::sleep(life);
     let ended = child.try_wait().unwrap();
     child.kill().unwrap();
@@ -70,27 +75,27 @@ fn fifty_kills_change_no_byte() {
     while kills < 50 {
         let options = FITS[round % FITS.len()];
         round += 1;
-        let folder = place();
-        let whole = fit(&folder, "whole.svg", options).output().unwrap();
+        let place = with_picture();
+        let whole = fit(&place, "whole.svg", options).output().unwrap();
         let status = whole.status.code();
-        let expected = read(&folder, "whole.svg").unwrap();
+        let expected = read(&place, "whole.svg").unwrap();
         for life in 0.. {
             let drawn = rng::draw(round as u64, life, 0, 0);
             let life = Duration::from_secs_f32(0.02 + 0.25 * drawn + 0.002 * life as f32);
-            if let Some(ended) = live(&folder, options, life) {
+            if let Some(ended) = live(&place, options, life) {
                 assert_eq!(ended.code(), status);
                 break;
             }
             // Nothing is written before it is whole.
-            assert!(read(&folder, "killed.svg").is_none_or(|svg| svg == expected));
+            assert!(read(&place, "killed.svg").is_none_or(|svg| svg == expected));
             kills += 1;
         }
         assert!(
-            read(&folder, "killed.svg") == Some(expected),
+            read(&place, "killed.svg") == Some(expected),
             "{options:?} after {kills} kills"
         );
         assert!(
-            read(&folder, "fit.state").is_none(),
+            read(&place, "fit.state").is_none(),
             "the checkpoint is left"
         );
     }
@@ -105,13 +110,13 @@ fn stderr(mut command: Command) -> (Option<i32>, String) {
 }
 
 /// A checkpoint of a fit that was killed on its way.
-fn killed_fit() -> (TempDir, Vec<u8>) {
-    let folder = place();
+fn killed_fit() -> (Place, Vec<u8>) {
+    let place = with_picture();
     let options = ["--preset", "best", "--strokes", "400"];
     for _ in 0..100 {
-        assert!(live(&folder, &options, Duration::from_millis(300)).is_none());
-        if let Some(state) = read(&folder, "fit.state") {
-            return (folder, state);
+        assert!(live(&place, &options, Duration::from_millis(300)).is_none());
+        if let Some(state) = read(&place, "fit.state") {
+            return (place, state);
         }
     }
     panic!("no state is kept");
@@ -119,7 +124,7 @@ fn killed_fit() -> (TempDir, Vec<u8>) {
 
 #[test]
 fn foreign_and_damaged_checkpoints_are_refused_and_kept() {
-    let (folder, state) = killed_fit();
+    let (place, state) = killed_fit();
     let kept = ["--checkpoint", "fit.state", "--preset", "best", "--strokes"];
     let mut damaged = state.clone();
     damaged[state.len() / 2] ^= 1;
@@ -130,22 +135,22 @@ fn foreign_and_damaged_checkpoints_are_refused_and_kept() {
         (b"<svg/>", "400", 2, "no checkpoint"),
     ];
     for (bytes, strokes, status, words) in cases {
-        fs::write(folder.path().join("fit.state"), bytes).unwrap();
-        let (code, line) = stderr(fit(&folder, "out.svg", &[&kept[..], &[strokes]].concat()));
+        fs::write(place.path("fit.state"), bytes).unwrap();
+        let (code, line) = stderr(fit(&place, "out.svg", &[&kept[..], &[strokes]].concat()));
         assert_eq!(code, Some(status), "{line}");
         assert!(
             line.contains("fit.state: ") && line.contains(words),
             "{line}"
         );
         assert_eq!(line.trim_end().lines().count(), 1, "{line}");
-        assert_eq!(read(&folder, "fit.state").unwrap(), bytes);
-        assert_eq!(read(&folder, "out.svg"), None);
+        assert_eq!(read(&place, "fit.state").unwrap(), bytes);
+        assert_eq!(read(&place, "out.svg"), None);
     }
 }
 
 #[test]
 fn a_place_that_cannot_be_written_is_said_at_once() {
-    let folder = place();
+    let place = with_picture();
     let options = [
         "--preset",
         "best",
@@ -154,7 +159,7 @@ fn a_place_that_cannot_be_written_is_said_at_once() {
         "--checkpoint",
         "none/fit.state",
     ];
-    let (code, line) = stderr(fit(&folder, "out.svg", &options));
+    let (code, line) = stderr(fit(&place, "out.svg", &options));
     assert_eq!(code, Some(1), "{line}");
     assert!(line.contains("none/fit.state: cannot be written"), "{line}");
 }
@@ -162,29 +167,22 @@ fn a_place_that_cannot_be_written_is_said_at_once() {
 /// An interrupted fit writes what it has, and goes on later as if nothing had happened.
 #[test]
 fn an_interrupted_fit_goes_on() {
-    let folder = place();
+    let place = with_picture();
     let options = ["--strokes", "150"];
-    let whole = fit(&folder, "whole.svg", &options).status().unwrap();
+    let whole = fit(&place, "whole.svg", &options).status().unwrap();
     assert!(whole.success());
     let kept = [&options[..], &["--checkpoint", "fit.state"]].concat();
-    let child = fit(&folder, "out.svg", &kept).spawn().unwrap();
-    while read(&folder, "fit.state").is_none() {
+    let child = fit(&place, "out.svg", &kept).spawn().unwrap();
+    while read(&place, "fit.state").is_none() {
         std::thread::sleep(Duration::from_millis(1));
     }
-    let kill = format!("kill -2 {}", child.id());
-    assert!(
-        Command::new("sh")
-            .args(["-c", &kill])
-            .status()
-            .unwrap()
-            .success()
-    );
+    send(&child, 2);
     let interrupted = child.wait_with_output().unwrap();
     assert_eq!(interrupted.status.code(), None);
-    let drawn = String::from_utf8(read(&folder, "out.svg").unwrap()).unwrap();
+    let drawn = String::from_utf8(read(&place, "out.svg").unwrap()).unwrap();
     strokefit::svg::read(&drawn).unwrap();
-    assert!(read(&folder, "fit.state").is_some());
-    assert!(fit(&folder, "out.svg", &kept).status().unwrap().success());
-    assert!(read(&folder, "out.svg") == read(&folder, "whole.svg"));
-    assert!(read(&folder, "fit.state").is_none());
+    assert!(read(&place, "fit.state").is_some());
+    assert!(fit(&place, "out.svg", &kept).status().unwrap().success());
+    assert!(read(&place, "out.svg") == read(&place, "whole.svg"));
+    assert!(read(&place, "fit.state").is_none());
 }

@@ -1,11 +1,24 @@
 //! The program as its users meet it: exit statuses, lines on standard error, files left behind.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
-mod place;
+mod support {
+    pub(crate) mod files;
+    pub(crate) mod output;
+    pub(crate) mod picture;
+    pub(crate) mod pipe;
+    pub(crate) mod place;
+    pub(crate) mod program;
+    pub(crate) mod refusal;
+    pub(crate) mod report;
+    pub(crate) mod repository;
+}
 
 use std::fs;
 
-use place::{Place, assert_refused, report, sample, stderr};
+use support::output::stderr;
+use support::place::Place;
+use support::refusal::assert_refused;
+use support::repository::committed;
 
 const RED_SVG: &str = r##"<svg xmlns="http://www.w3.org/2000/svg" width="4" height="2"><rect width="2" height="2" fill="#ff0000"/></svg>"##;
 
@@ -192,8 +205,7 @@ fn help_and_version_go_to_standard_output() {
         &["render", "-h"],
         &["--version"],
     ] {
-        let output = place.run(args);
-        assert_eq!(output.status.code(), Some(0), "{args:?}");
+        let output = place.done(args);
         assert!(
             !output.stdout.is_empty() && output.stderr.is_empty(),
             "{args:?}"
@@ -206,13 +218,7 @@ fn help_and_version_go_to_standard_output() {
 fn render_draws_at_the_scale_asked_for() {
     let place = Place::new();
     place.file("red.svg", RED_SVG);
-    assert_eq!(
-        place
-            .run(&["render", "red.svg", "-o", "a.png", "--scale", "2"])
-            .status
-            .code(),
-        Some(0)
-    );
+    place.done(&["render", "red.svg", "-o", "a.png", "--scale", "2"]);
     let picture = image::open(place.path("a.png")).unwrap().to_rgba8();
     assert_eq!(picture.dimensions(), (8, 4));
     assert_eq!(picture.get_pixel(0, 0).0, [255, 0, 0, 255]);
@@ -237,11 +243,10 @@ fn check_prints_a_table_or_json() {
         "resvg",
         "--report",
     ];
-    let table = place.run(&[&check[..], &["r.json"]].concat());
-    assert_eq!(table.status.code(), Some(0), "{}", stderr(&table));
+    let table = place.done(&[&check[..], &["r.json"]].concat());
     let table = String::from_utf8(table.stdout).unwrap();
     assert!(table.contains("resvg") && table.contains("inf"), "{table}");
-    let mut record = report(&place, "r.json");
+    let mut record = place.report("r.json");
     assert_eq!(record["schema"], 1);
     assert_eq!(record["renderers"][0]["renderer"], "resvg");
     assert!(
@@ -260,7 +265,7 @@ fn check_prints_a_table_or_json() {
 #[test]
 fn fit_writes_a_file_that_check_and_render_understand() {
     let place = Place::new();
-    let input = sample("noto-gem.png");
+    let input = committed("samples/noto-gem.png");
     let args = [
         "fit",
         &input,
@@ -271,8 +276,7 @@ fn fit_writes_a_file_that_check_and_render_understand() {
         "--report",
         "gem.json",
     ];
-    let output = place.run(&args);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let output = place.done(&args);
     let summary = stderr(&output);
     assert_eq!(summary.lines().count(), 1, "{summary}");
     for word in ["gem.svg", "strokes", "bytes", "fidelity", "agreement", "dB"] {
@@ -281,7 +285,7 @@ fn fit_writes_a_file_that_check_and_render_understand() {
     assert!(output.stdout.is_empty());
     assert_eq!(place.names(), ["gem.json", "gem.svg"]);
 
-    let record = report(&place, "gem.json");
+    let record = place.report("gem.json");
     assert_eq!(
         record["svg_bytes"],
         fs::metadata(place.path("gem.svg")).unwrap().len()
@@ -311,13 +315,7 @@ fn fit_writes_a_file_that_check_and_render_understand() {
     ]);
     let check: serde_json::Value = serde_json::from_slice(&check.stdout).unwrap();
     assert_eq!(check["renderers"][0]["fidelity"], record["fidelity"]);
-    assert_eq!(
-        place
-            .run(&["render", "gem.svg", "-o", "gem.png"])
-            .status
-            .code(),
-        Some(0)
-    );
+    place.done(&["render", "gem.svg", "-o", "gem.png"]);
 }
 
 #[test]
@@ -335,10 +333,10 @@ fn fit_works_in_a_pipe_and_quietly() {
 #[test]
 fn threads_change_no_byte() {
     let place = Place::new();
-    let input = sample("noto-rocket.png");
+    let input = committed("samples/noto-rocket.png");
     for threads in ["1", "3"] {
         let name = format!("{threads}.svg");
-        let output = place.run(&[
+        place.done(&[
             "fit",
             &input,
             "-o",
@@ -348,7 +346,6 @@ fn threads_change_no_byte() {
             "--threads",
             threads,
         ]);
-        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     }
     assert!(fs::read(place.path("1.svg")).unwrap() == fs::read(place.path("3.svg")).unwrap());
 }
@@ -357,15 +354,10 @@ fn threads_change_no_byte() {
 fn the_smallest_and_thinnest_pictures_work() {
     let place = Place::new();
     for (width, height) in [(1, 1), (1, 4096), (4096, 1), (3, 2)] {
-        place.picture("in.png", width, height);
+        let input = format!("{width}×{height}.png");
+        place.picture(&input, width, height);
         for strokes in ["1", "40"] {
-            let output = place.run(&["fit", "in.png", "-o", "out.svg", "--strokes", strokes]);
-            assert_eq!(
-                output.status.code(),
-                Some(0),
-                "{width}×{height}: {}",
-                stderr(&output)
-            );
+            place.done(&["fit", &input, "-o", "out.svg", "--strokes", strokes]);
         }
         let text = fs::read_to_string(place.path("out.svg")).unwrap();
         assert!(
@@ -380,7 +372,7 @@ fn a_target_out_of_reach_is_exit_3_and_the_file_is_kept() {
     let place = Place::new();
     let output = place.run(&[
         "fit",
-        &sample("coffee-300.png"),
+        &committed("samples/coffee-300.png"),
         "-o",
         "out.svg",
         "--strokes",
@@ -407,13 +399,7 @@ fn the_look_is_as_asked_for() {
             options,
         ]
         .concat();
-        let output = place.run(&args);
-        assert_eq!(
-            output.status.code(),
-            Some(0),
-            "{options:?}: {}",
-            stderr(&output)
-        );
+        place.done(&args);
         fs::read_to_string(place.path("out.svg")).unwrap()
     };
     assert!(!fit(&["--opaque"]).contains("stroke-opacity"));

@@ -1,14 +1,19 @@
 //! Many fits in one process: each has its own threads, memory and observer, and none sees another.
 #![allow(missing_docs, clippy::unwrap_used)]
 
+mod support {
+    pub(crate) mod drafts;
+}
+
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-use strokefit::fit::{Budget, Config, Execution, Fit, Fitter, Preset, Progress, Stop};
+use strokefit::fit::{Execution, Fit, Fitter, Progress, Stop};
 use strokefit::image::Image;
 use strokefit::rng;
 use strokefit::svg::{self, WriteOptions};
+use support::drafts::draft;
 
 const FITS: usize = 16;
 
@@ -24,15 +29,7 @@ fn picture(index: usize) -> Image {
 }
 
 fn fitter<'a>() -> Fitter<'a> {
-    let config = Config {
-        budget: Budget {
-            strokes: Some(40),
-            ..Budget::default()
-        },
-        preset: Preset::Draft,
-        ..Config::default()
-    };
-    Fitter::new(config).execution(Execution {
+    Fitter::new(draft(40)).execution(Execution {
         threads: Some(2),
         ..Execution::default()
     })

@@ -1,21 +1,25 @@
 //! Options from a file, and options as a file.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
-mod place;
+mod support {
+    pub(crate) mod files;
+    pub(crate) mod output;
+    pub(crate) mod picture;
+    pub(crate) mod pipe;
+    pub(crate) mod place;
+    pub(crate) mod program;
+    pub(crate) mod refusal;
+}
 
 use std::fs;
 
-use place::{Place, assert_refused, stderr};
+use support::output::stderr;
+use support::place::Place;
+use support::refusal::assert_refused;
 
 fn draw(place: &Place, options: &[&str]) -> String {
     let args = [&["fit", "in.png", "-o", "out.svg"], options].concat();
-    let output = place.run(&args);
-    assert_eq!(
-        output.status.code(),
-        Some(0),
-        "{options:?}: {}",
-        stderr(&output)
-    );
+    place.done(&args);
     fs::read_to_string(place.path("out.svg")).unwrap()
 }
 
@@ -53,8 +57,7 @@ fn a_printed_file_draws_the_same_bytes_as_the_flags() {
             "2",
         ],
     ] {
-        let printed = place.run(&[&["fit", "--print-config"], flags].concat());
-        assert_eq!(printed.status.code(), Some(0), "{}", stderr(&printed));
+        let printed = place.done(&[&["fit", "--print-config"], flags].concat());
         fs::write(place.path("fit.toml"), printed.stdout).unwrap();
         assert!(
             draw(&place, flags) == draw(&place, &["--config", "fit.toml"]),
@@ -175,8 +178,7 @@ fn refining_takes_options_from_files_too() {
     );
     let refine = |name: &str, options: &[&str]| {
         let args = [&["refine", "out.svg", "in.png", "-o", name], options].concat();
-        let output = place.run(&args);
-        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        place.done(&args);
         fs::read_to_string(place.path(name)).unwrap()
     };
     let flags = ["--strokes", "15", "--preset", "draft", "--freeze-base"];

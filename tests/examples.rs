@@ -12,24 +12,21 @@ mod observer;
 #[path = "../examples/refine.rs"]
 mod refine;
 
-use std::path::{Path, PathBuf};
+mod support {
+    pub(crate) mod repository;
+}
 
 use strokefit::fit::Stop;
 use strokefit::image::{Image, Limits};
 use strokefit::svg::{self, WriteOptions};
 use strokefit::verify::{self, Size};
-
-fn sample(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("samples")
-        .join(name)
-}
+use support::repository::committed;
 
 #[test]
 fn fit_writes_a_faithful_file() {
     let folder = tempfile::tempdir().unwrap();
     let output = folder.path().join("gem.svg");
-    let quality = fit::draw(&sample("noto-gem.png"), &output, 100).unwrap();
+    let quality = fit::draw(committed("samples/noto-gem.png").as_ref(), &output, 100).unwrap();
     assert!(quality.psnr_db > 35.0, "{quality:?}");
     let text = std::fs::read_to_string(output).unwrap();
     assert!((1..=100).contains(&svg::read(&text).unwrap().len()));
@@ -38,7 +35,7 @@ fn fit_writes_a_faithful_file() {
 #[test]
 fn observer_sees_the_drawing_grow_and_stops_it_before_its_time() {
     let mut patience = observer::Patience::default();
-    let picture = Image::open(sample("noto-gem.png")).unwrap();
+    let picture = Image::open(committed("samples/noto-gem.png")).unwrap();
     let drawing = observer::draw(&picture, &mut patience).unwrap();
     assert_eq!(drawing.stop, Stop::Observer);
     assert!(patience.strokes.len() > 2, "{:?}", patience.strokes);
@@ -48,7 +45,7 @@ fn observer_sees_the_drawing_grow_and_stops_it_before_its_time() {
 
 #[test]
 fn memory_gives_text_and_bytes_that_belong_together() {
-    let file = std::fs::read(sample("noto-rocket.png")).unwrap();
+    let file = std::fs::read(committed("samples/noto-rocket.png")).unwrap();
     let (text, png) = memory::convert(&file).unwrap();
     let drawn = verify::render(&text, Size::Scale(2.0), None).unwrap();
     assert!(png == drawn.encode_png().unwrap());
@@ -61,7 +58,7 @@ fn memory_gives_text_and_bytes_that_belong_together() {
 
 #[test]
 fn loss_gets_the_brightness_right_and_leaves_the_colours_alone() {
-    let picture = Image::open(sample("coffee-300.png")).unwrap();
+    let picture = Image::open(committed("samples/coffee-300.png")).unwrap();
     let scene = loss::draw(&picture).unwrap();
     let text = svg::write(&scene, &WriteOptions::default());
     let drawn = verify::render(&text, Size::Scale(1.0), Some([1.0; 3])).unwrap();
@@ -82,7 +79,7 @@ fn loss_gets_the_brightness_right_and_leaves_the_colours_alone() {
 
 #[test]
 fn refine_keeps_the_base_and_comes_closer() {
-    let picture = Image::open(sample("noto-gem.png"))
+    let picture = Image::open(committed("samples/noto-gem.png"))
         .unwrap()
         .flattened([1.0; 3]);
     let body = r##"<circle cx="128" cy="128" r="90" fill="#40a0e0"/>"##;

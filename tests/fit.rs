@@ -2,6 +2,12 @@
 //! configuration decides what comes out.
 #![allow(missing_docs, clippy::unwrap_used)]
 
+mod support {
+    pub(crate) mod drafts;
+    pub(crate) mod fits;
+    pub(crate) mod repository;
+}
+
 use std::ops::ControlFlow;
 
 use strokefit::coverage::CoverageSchedule;
@@ -12,30 +18,11 @@ use strokefit::image::Image;
 use strokefit::scene::Scene;
 use strokefit::svg;
 use strokefit::verify::{self, Verdict};
+use support::drafts::draft;
+use support::fits::{drawn, sample};
 
 /// Agreement that every drawing has to have, dB.
 const AGREEMENT_DB: f64 = 36.0;
-
-fn sample(name: &str) -> Image {
-    let path = format!("{}/samples/{name}.png", env!("CARGO_MANIFEST_DIR"));
-    Image::open(path).unwrap()
-}
-
-/// The draft of a drawing of at most `strokes` strokes.
-fn draft(strokes: usize) -> Config {
-    Config {
-        budget: Budget {
-            strokes: Some(strokes),
-            ..Budget::default()
-        },
-        preset: Preset::Draft,
-        ..Config::default()
-    }
-}
-
-fn drawn(picture: &Image, config: &Config) -> Fit {
-    fit(picture, config, &Execution::default(), &mut ()).unwrap()
-}
 
 fn text(fit: &Fit, config: &Config) -> String {
     svg::write(&fit.scene, &config.file)

@@ -1,33 +1,35 @@
 //! The forms of a file, as users of the program and of the library meet them.
 #![allow(clippy::unwrap_used, missing_docs)]
 
+mod support {
+    pub(crate) mod files;
+    pub(crate) mod output;
+    pub(crate) mod place;
+    pub(crate) mod program;
+    pub(crate) mod refusal;
+    pub(crate) mod report;
+    pub(crate) mod repository;
+}
+
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Output};
 
 use strokefit::image::Image;
 use strokefit::svg;
 use strokefit::verify::{self, Size};
-use tempfile::TempDir;
+use support::place::Place;
+use support::refusal;
+use support::repository::committed;
 
 /// A folder with a drawing of a sample.
 struct Drawn {
-    folder: TempDir,
+    place: Place,
     text: String,
     report: serde_json::Value,
 }
 
 fn sample(name: &str) -> String {
-    format!("{}/samples/{name}.png", env!("CARGO_MANIFEST_DIR"))
-}
-
-fn run(folder: &Path, args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_strokefit"))
-        .args(args)
-        .current_dir(folder)
-        .output()
-        .unwrap()
+    committed(&format!("samples/{name}.png"))
 }
 
 /// A draft of a sample in 150 strokes.
@@ -37,17 +39,15 @@ fn drawn(name: &str, options: &[&str]) -> Drawn {
 
 /// A draft of a sample.
 fn drawn_with(name: &str, options: &[&str]) -> Drawn {
-    let folder = tempfile::tempdir().unwrap();
+    let place = Place::new();
     let input = sample(name);
     let fixed = ["fit", &input, "-o", "a.svg", "--report", "a.json"];
     let draft = ["--preset", "draft", "-q"];
-    let output = run(folder.path(), &[&fixed[..], &draft, options].concat());
-    assert!(output.status.success(), "{output:?}");
-    let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+    place.done(&[&fixed[..], &draft, options].concat());
     Drawn {
-        text: read("a.svg"),
-        report: serde_json::from_str(&read("a.json")).unwrap(),
-        folder,
+        text: fs::read_to_string(place.path("a.svg")).unwrap(),
+        report: place.report("a.json"),
+        place,
     }
 }
 
@@ -90,19 +90,11 @@ fn agreement(a: &str, b: &str) -> f64 {
 /// A refusal whose line of error has `words`.
 #[track_caller]
 fn assert_refused(options: &[&str], words: &str) {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("bad.gpl"), "GIMP Palette\n1 2 x\n").unwrap();
+    let place = Place::new();
+    place.file("bad.gpl", "GIMP Palette\n1 2 x\n");
     let input = sample("noto-gem");
-    let output = run(
-        folder.path(),
-        &[&["fit", &input, "-o", "a.svg"], options].concat(),
-    );
-    let said = String::from_utf8(output.stderr).unwrap();
-    let line = said.lines().next().unwrap();
-    assert_eq!(output.status.code(), Some(2), "{line}");
-    assert!(line.starts_with("error: "), "{line}");
-    assert!(line.contains(words), "{line}");
-    assert!(!folder.path().join("a.svg").exists());
+    let fit = ["fit", &input, "-o", "a.svg"];
+    refusal::assert_refused(&place, &[&fit[..], options].concat(), 2, &[words]);
 }
 
 #[test]
@@ -166,8 +158,7 @@ fn a_page_has_the_width_that_was_asked_for() {
     let head = r#"width="120mm" height="80mm" viewBox="0 0 300 200""#;
     assert!(drawn.text.contains(head));
     let input = sample("coffee-300");
-    let check = run(drawn.folder.path(), &["check", "a.svg", &input]);
-    assert!(check.status.success(), "{check:?}");
+    drawn.place.done(&["check", "a.svg", &input]);
 }
 
 #[test]

@@ -2,19 +2,15 @@
 //! out is what its removal does. On random scenes, and on the degenerate ones that a fit runs into.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+mod support {
+    pub(crate) mod coverages;
+}
+
 use strokefit::coverage::Coverage;
 use strokefit::loss::Loss;
 use strokefit::render::reference::{Reference, Rgb, Scene, Stroke};
 use strokefit::rng;
-
-const COVERAGES: [Coverage; 6] = [
-    Coverage::Smoothstep,
-    Coverage::Sigmoid,
-    Coverage::Tanh,
-    Coverage::Atan { k: 1.0 },
-    Coverage::Atan { k: 4.0 },
-    Coverage::Raw,
-];
+use support::coverages::COVERAGES;
 
 /// The step of a central difference, and the error that it is good for.
 #[derive(Clone, Copy)]

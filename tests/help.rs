@@ -1,21 +1,23 @@
 //! Help, hints, completions and manual pages.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
-mod place;
+mod support {
+    pub(crate) mod files;
+    pub(crate) mod output;
+    pub(crate) mod picture;
+    pub(crate) mod place;
+    pub(crate) mod program;
+    pub(crate) mod refusal;
+}
 
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
-use place::{Place, assert_refused, stderr};
+use support::output::stderr;
+use support::place::{Place, STROKEFIT};
+use support::refusal::assert_refused;
 
 fn stdout(place: &Place, args: &[&str]) -> String {
-    let output = place.run(args);
-    assert_eq!(
-        output.status.code(),
-        Some(0),
-        "{args:?}: {}",
-        stderr(&output)
-    );
-    String::from_utf8(output.stdout).unwrap()
+    String::from_utf8(place.done(args).stdout).unwrap()
 }
 
 #[test]
@@ -157,11 +159,7 @@ fn bash_completes_an_option() {
     place.file("strokefit.bash", stdout(&place, &["completions", "bash"]));
     let ask = "source strokefit.bash; COMP_WORDS=(strokefit fit --stro); COMP_CWORD=2; \
                _strokefit strokefit --stro fit; echo ${COMPREPLY[@]}";
-    let bash = Command::new("bash")
-        .args(["-c", ask])
-        .current_dir(place.path("."))
-        .output()
-        .unwrap();
+    let bash = place.command("bash").args(["-c", ask]).output().unwrap();
     assert_eq!(
         String::from_utf8_lossy(&bash.stdout).trim(),
         "--strokes",
@@ -173,8 +171,7 @@ fn bash_completes_an_option() {
 #[test]
 fn manual_pages_are_written_for_every_command() {
     let place = Place::new();
-    let output = place.run(&["man", "-o", "man/man1", "-q"]);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    place.done(&["man", "-o", "man/man1", "-q"]);
     for (page, words) in [
         ("strokefit.1", ["strokefit", "Exit status"]),
         ("strokefit-fit.1", ["strokes", "Examples"]),
@@ -198,9 +195,9 @@ fn a_reader_that_goes_away_is_no_failure() {
         &["completions", "bash"],
         &["fit", "in.png", "-o", "-", "-q", "--strokes", "9"],
     ] {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_strokefit"))
+        let mut child = place
+            .command(STROKEFIT)
             .args(args)
-            .current_dir(place.path("."))
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()

@@ -2,22 +2,24 @@
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
-mod place;
+mod support {
+    pub(crate) mod picture;
+    pub(crate) mod place;
+    pub(crate) mod repository;
+}
 
-use std::process::Command;
-
-use place::{Place, sample};
+use support::place::{Place, STROKEFIT};
+use support::repository::committed;
 
 /// What a terminal 120 columns wide gets to see of `strokefit ARGS`.
 fn on_a_terminal(place: &Place, args: &str) -> String {
-    let program = env!("CARGO_BIN_EXE_strokefit");
-    let output = Command::new("script")
+    let output = place
+        .command("script")
         .args([
             "-qec",
-            &format!("stty cols 120; '{program}' {args}"),
+            &format!("stty cols 120; '{STROKEFIT}' {args}"),
             "/dev/null",
         ])
-        .current_dir(place.path("."))
         .env("NO_COLOR", "1")
         .output()
         .unwrap();
@@ -29,7 +31,7 @@ fn on_a_terminal(place: &Place, args: &str) -> String {
 #[test]
 fn a_terminal_sees_stage_strokes_fidelity_rate_and_time_left() {
     let place = Place::new();
-    let input = sample("coffee-300.png");
+    let input = committed("samples/coffee-300.png");
     let seen = on_a_terminal(&place, &format!("fit '{input}' -o a.svg --strokes 400"));
     for words in [
         "stage ",

@@ -2,26 +2,30 @@
 //! and what cannot be refined is refused.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
-mod place;
+mod support {
+    pub(crate) mod files;
+    pub(crate) mod output;
+    pub(crate) mod picture;
+    pub(crate) mod place;
+    pub(crate) mod program;
+    pub(crate) mod refusal;
+    pub(crate) mod report;
+    pub(crate) mod repository;
+}
 
 use std::fs;
 
-use place::{Place, assert_refused, report, sample, stderr};
 use strokefit::svg;
+use support::output::stderr;
+use support::place::Place;
+use support::refusal::assert_refused;
+use support::repository::committed;
 
 /// The cat in 8 colours, traced with the `vtracer` crate 0.6.5 at its defaults, but for speckles of 16 px,
 /// no decimals and a layer difference of 48.
 const TRACED: &str = include_str!("data/chelsea-traced.svg");
 
 const NAMESPACE: &str = "xmlns=\"http://www.w3.org/2000/svg\"";
-
-#[track_caller]
-fn done(place: &Place, args: &[&str]) -> String {
-    let output = place.run(args);
-    let said = stderr(&output);
-    assert_eq!(output.status.code(), Some(0), "{args:?}: {said}");
-    said
-}
 
 /// Draws or refines with the options of a draft; returns the fidelity in dB.
 #[track_caller]
@@ -35,8 +39,8 @@ fn draft(place: &Place, args: &[&str], out: &str) -> f64 {
         "--report",
         "report.json",
     ];
-    done(place, &[args, &ends].concat());
-    report(place, "report.json")["fidelity"]["psnr_db"]
+    place.done(&[args, &ends].concat());
+    place.report("report.json")["fidelity"]["psnr_db"]
         .as_f64()
         .unwrap()
 }
@@ -65,7 +69,7 @@ fn put_into<'a>(base: &str, refined: &'a str) -> &'a str {
 #[test]
 fn a_drawing_in_two_goes_is_as_good_as_one_in_one_go() {
     let place = Place::new();
-    let picture = sample("coffee-300.png");
+    let picture = committed("samples/coffee-300.png");
     let whole = draft(&place, &["fit", &picture, "--strokes", "300"], "whole.svg");
     draft(&place, &["fit", &picture, "--strokes", "150"], "half.svg");
     let both = draft(
@@ -75,7 +79,7 @@ fn a_drawing_in_two_goes_is_as_good_as_one_in_one_go() {
     );
     assert!(both > whole - 0.3, "{both} dB in two goes, {whole} in one");
     assert_eq!(layers(&place, "both.svg").iter().sum::<usize>(), 300);
-    assert_eq!(report(&place, "report.json")["base"]["strokes"], 150);
+    assert_eq!(place.report("report.json")["base"]["strokes"], 150);
 }
 
 /// Without polish the first stages of a plan are the same whether or not others follow: the stages that are
@@ -83,7 +87,7 @@ fn a_drawing_in_two_goes_is_as_good_as_one_in_one_go() {
 #[test]
 fn the_stages_that_are_missing_are_added() {
     let place = Place::new();
-    let picture = sample("coffee-300.png");
+    let picture = committed("samples/coffee-300.png");
     let plain = ["fit", &picture, "--no-polish", "--strokes"];
     let whole = draft(&place, &[&plain[..], &["200"]].concat(), "whole.svg");
     let counts = layers(&place, "whole.svg");
@@ -115,7 +119,7 @@ fn the_stages_that_are_missing_are_added() {
 #[test]
 fn a_base_that_meets_a_budget_is_written_as_it_is() {
     let place = Place::new();
-    let picture = sample("chelsea-cat.png");
+    let picture = committed("samples/chelsea-cat.png");
     place.file("traced.svg", TRACED);
     draft(&place, &["fit", &picture, "--strokes", "80"], "own.svg");
     draft(
@@ -144,7 +148,7 @@ fn a_base_that_meets_a_budget_is_written_as_it_is() {
 #[test]
 fn a_traced_picture_gains_and_stays_as_it_is() {
     let place = Place::new();
-    let picture = sample("chelsea-cat.png");
+    let picture = committed("samples/chelsea-cat.png");
     place.file("traced.svg", TRACED);
     let before = draft(
         &place,
@@ -156,7 +160,7 @@ fn a_traced_picture_gains_and_stays_as_it_is() {
     assert!(after > before + 3.0, "from {before} to {after} dB");
     let refined = read(&place, "refined.svg");
     assert_eq!(put_into(TRACED, &refined).matches("<path").count(), 200);
-    let record = report(&place, "report.json");
+    let record = place.report("report.json");
     assert_eq!(
         (&record["base"]["elements"], &record["base"]["strokes"]),
         (&59.into(), &0.into())
@@ -167,12 +171,12 @@ fn a_traced_picture_gains_and_stays_as_it_is() {
 #[test]
 fn strokes_laid_on_a_file_are_taken_up_again() {
     let place = Place::new();
-    let picture = sample("chelsea-cat.png");
+    let picture = committed("samples/chelsea-cat.png");
     place.file("traced.svg", TRACED);
     let refine = |base, strokes| ["refine", base, picture.as_str(), "--strokes", strokes];
     draft(&place, &refine("traced.svg", "100"), "first.svg");
     let twice = draft(&place, &refine("first.svg", "200"), "second.svg");
-    assert_eq!(report(&place, "report.json")["base"]["strokes"], 100);
+    assert_eq!(place.report("report.json")["base"]["strokes"], 100);
     let second = read(&place, "second.svg");
     assert_eq!(put_into(TRACED, &second).matches("<path").count(), 200);
     let once = draft(&place, &refine("traced.svg", "200"), "once.svg");
@@ -182,7 +186,7 @@ fn strokes_laid_on_a_file_are_taken_up_again() {
 #[test]
 fn a_frozen_drawing_stays_as_it_is_and_stays_a_drawing() {
     let place = Place::new();
-    let picture = sample("coffee-300.png");
+    let picture = committed("samples/coffee-300.png");
     let before = draft(&place, &["fit", &picture, "--strokes", "60"], "own.svg");
     let refine = [
         "refine",
@@ -222,7 +226,7 @@ fn the_root_does_not_change_the_strokes() {
         layers.contains("<g id=\"stage-4\"") && !layers.contains("stage-3"),
         "{layers}"
     );
-    let agreement = &report(&place, "report.json")["agreement"]["psnr_db"];
+    let agreement = &place.report("report.json")["agreement"]["psnr_db"];
     assert!(
         db > 25.0 && agreement.as_f64().unwrap() > 36.0,
         "{db} {agreement}"
@@ -246,7 +250,7 @@ fn what_is_passed_through_and_what_cannot_be_seen_is_said() {
         "--strokes",
         "3",
     ];
-    let said = done(&place, &refine);
+    let said = stderr(&place.done(&refine));
     for words in ["passing through 3 elements", "fonts", "other files"] {
         assert!(said.contains(words), "no {words:?} in {said}");
     }
@@ -273,14 +277,14 @@ fn the_page_keeps_its_width() {
 #[test]
 fn transparency_is_kept() {
     let place = Place::new();
-    let picture = sample("noto-gem.png");
+    let picture = committed("samples/noto-gem.png");
     draft(&place, &["fit", &picture, "--strokes", "40"], "own.svg");
     draft(
         &place,
         &["refine", "own.svg", &picture, "--strokes", "60"],
         "more.svg",
     );
-    let alpha = &report(&place, "report.json")["alpha"];
+    let alpha = &place.report("report.json")["alpha"];
     assert!(alpha["black_db"].as_f64().unwrap() > 25.0, "{alpha}");
     assert!(!read(&place, "more.svg").contains("<rect"));
 }

@@ -2,6 +2,10 @@
 //! at every SIMD level and number of threads.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
+mod support {
+    pub(crate) mod coverages;
+}
+
 use strokefit::coverage::Coverage;
 use strokefit::fit::{Objective, Simd};
 use strokefit::image::Image;
@@ -9,6 +13,7 @@ use strokefit::loss::Loss;
 use strokefit::render::reference::{self, Reference};
 use strokefit::render::{Base, Canvas, Gradients, Grid, PARAMS, Params, Renderer, Softness};
 use strokefit::rng::draw;
+use support::coverages::COVERAGES;
 
 /// ε of the fast renderer's distances, px².
 const EPS: f64 = 1e-6;
@@ -19,15 +24,6 @@ const GRADIENT_TOLERANCE: f64 = 1e-3;
 
 /// Gradients and worths below this are as good as none.
 const FAINT: f64 = 1e-6;
-
-const FUNCTIONS: [Coverage; 6] = [
-    Coverage::Smoothstep,
-    Coverage::Sigmoid,
-    Coverage::Tanh,
-    Coverage::Atan { k: 1.0 },
-    Coverage::Atan { k: 4.0 },
-    Coverage::Raw,
-];
 
 #[derive(Clone)]
 struct Case {
@@ -207,7 +203,7 @@ fn levels() -> impl Iterator<Item = Simd> {
 fn images_are_the_oracles() {
     let mut failures = Vec::new();
     for case in cases() {
-        for coverage in FUNCTIONS {
+        for coverage in COVERAGES {
             for width in [0.6, 1.0, 3.0] {
                 let fast = rendered(&case, Simd::Auto, Softness { coverage, width });
                 let slow = oracle(coverage, width).render(&naive(&case));
@@ -240,7 +236,7 @@ const KINDS: [(&str, std::ops::Range<usize>); 4] = [
 fn gradients_and_worths_are_the_oracles() {
     let mut failures = Vec::new();
     for case in cases() {
-        for (coverage, loss) in FUNCTIONS
+        for (coverage, loss) in COVERAGES
             .into_iter()
             .zip([Loss::L2, Loss::L1].into_iter().cycle())
         {
@@ -338,7 +334,7 @@ fn gradients_are_central_differences() {
 #[test]
 fn every_level_gives_the_same_bits() {
     for case in cases() {
-        for coverage in FUNCTIONS {
+        for coverage in COVERAGES {
             let softness = Softness {
                 coverage,
                 width: 1.25,

@@ -7,6 +7,14 @@
     missing_docs
 )]
 
+mod support {
+    pub(crate) mod output;
+    pub(crate) mod place;
+    pub(crate) mod program;
+    pub(crate) mod report;
+    pub(crate) mod repository;
+}
+
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
@@ -16,9 +24,14 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
-use tempfile::TempDir;
+use support::output::stderr;
+use support::place::{Place, STROKEFIT};
+use support::repository::committed;
 
-const SAMPLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/samples/coffee-300.png");
+/// What is drawn.
+fn sample() -> String {
+    committed("samples/coffee-300.png")
+}
 
 /// The program with a page, in a folder of its own.
 struct Program {
@@ -30,10 +43,10 @@ struct Program {
 }
 
 impl Program {
-    fn start(folder: &Path, args: &[&str]) -> Self {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_strokefit"))
+    fn start(place: &Place, args: &[&str]) -> Self {
+        let mut child = place
+            .command(STROKEFIT)
             .args(args)
-            .current_dir(folder)
             .stdin(Stdio::null())
             .stderr(Stdio::piped())
             .spawn()
@@ -114,36 +127,12 @@ impl Drop for Program {
     }
 }
 
-fn run(folder: &Path, args: &[&str]) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_strokefit"));
-    assert!(
-        command
-            .args(args)
-            .current_dir(folder)
-            .status()
-            .unwrap()
-            .success()
-    );
-}
-
 /// A folder with a drawing `a.svg` of the sample.
-fn drawn() -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    run(
-        folder.path(),
-        &[
-            "fit",
-            SAMPLE,
-            "-q",
-            "-o",
-            "a.svg",
-            "--strokes",
-            "80",
-            "--preset",
-            "draft",
-        ],
-    );
-    folder
+fn drawn() -> Place {
+    let place = Place::new();
+    let draft = ["--strokes", "80", "--preset", "draft"];
+    place.done(&[&["fit", &sample(), "-q", "-o", "a.svg"], &draft[..]].concat());
+    place
 }
 
 fn strokes(state: &Value) -> usize {
@@ -156,8 +145,8 @@ fn strokes(state: &Value) -> usize {
 
 #[test]
 fn the_page_needs_nothing_from_elsewhere() {
-    let folder = drawn();
-    let program = Program::start(folder.path(), &["view", "a.svg", SAMPLE]);
+    let place = drawn();
+    let program = Program::start(&place, &["view", "a.svg", &sample()]);
     for name in ["", "page.css", "page.js", "chart.js", "picture.js"] {
         let (status, body) = program.get(name);
         assert_eq!(status, 200, "{name}");
@@ -171,8 +160,8 @@ fn the_page_needs_nothing_from_elsewhere() {
 
 #[test]
 fn a_file_is_shown_stroke_by_stroke_and_given_back() {
-    let folder = drawn();
-    let program = Program::start(folder.path(), &["view", "a.svg"]);
+    let place = drawn();
+    let program = Program::start(&place, &["view", "a.svg"]);
     let state = program.state();
     assert_eq!(strokes(&state), 80);
     assert_eq!(
@@ -185,7 +174,7 @@ fn a_file_is_shown_stroke_by_stroke_and_given_back() {
     );
     assert_eq!(
         program.get("drawing.svg").1,
-        fs::read(folder.path().join("a.svg")).unwrap()
+        fs::read(place.path("a.svg")).unwrap()
     );
     assert_eq!(program.get("target.png").0, 404);
     assert_eq!(program.finish(), Some(0));
@@ -193,8 +182,8 @@ fn a_file_is_shown_stroke_by_stroke_and_given_back() {
 
 #[test]
 fn only_who_was_told_the_address_gets_an_answer() {
-    let folder = drawn();
-    let program = Program::start(folder.path(), &["view", "a.svg"]);
+    let place = drawn();
+    let program = Program::start(&place, &["view", "a.svg"]);
     let Program { host, root, .. } = &program;
     let status = |head: &str| program.send(&format!("{head}\r\n\r\n")).0;
     assert_eq!(status(&format!("GET / HTTP/1.1\r\nHost: {host}")), 404);
@@ -226,10 +215,11 @@ fn only_who_was_told_the_address_gets_an_answer() {
 
 #[test]
 fn a_fit_is_seen_to_grow_and_can_be_stopped() {
-    let folder = tempfile::tempdir().unwrap();
+    let place = Place::new();
+    let sample = sample();
     let args = [
         "fit",
-        SAMPLE,
+        &sample,
         "-o",
         "a.svg",
         "--strokes",
@@ -240,7 +230,7 @@ fn a_fit_is_seen_to_grow_and_can_be_stopped() {
         "--report",
         "r.json",
     ];
-    let program = Program::start(folder.path(), &args);
+    let program = Program::start(&place, &args);
     let seen = program.state_with(|state| state["version"].as_u64() >= Some(3));
     assert_eq!(seen["finished"], false);
     assert!(strokes(&seen) > 0 && !seen["curve"].as_array().unwrap().is_empty());
@@ -249,19 +239,19 @@ fn a_fit_is_seen_to_grow_and_can_be_stopped() {
     let end = program.state_with(|state| state["finished"] == true);
     let file = program.get("drawing.svg").1;
     assert_eq!(program.finish(), Some(0));
-    assert_eq!(file, fs::read(folder.path().join("a.svg")).unwrap());
-    let report: Value =
-        serde_json::from_slice(&fs::read(folder.path().join("r.json")).unwrap()).unwrap();
+    assert_eq!(file, fs::read(place.path("a.svg")).unwrap());
+    let report = place.report("r.json");
     assert_eq!(report["stop"], "interrupted");
     assert_eq!(report["strokes"], strokes(&end));
 }
 
 #[test]
 fn strokes_can_be_added_while_it_runs_and_after() {
-    let folder = tempfile::tempdir().unwrap();
+    let place = Place::new();
+    let sample = sample();
     let args = [
         "fit",
-        SAMPLE,
+        &sample,
         "-o",
         "a.svg",
         "--strokes",
@@ -270,7 +260,7 @@ fn strokes_can_be_added_while_it_runs_and_after() {
         "draft",
         "--view",
     ];
-    let program = Program::start(folder.path(), &args);
+    let program = Program::start(&place, &args);
     assert_eq!(program.post("more?strokes=0"), 400);
     assert_eq!(program.post("more?strokes=many"), 400);
     assert_eq!(program.post("more?strokes=40"), 200);
@@ -280,25 +270,26 @@ fn strokes_can_be_added_while_it_runs_and_after() {
     program.state_with(seen(120));
     let file = program.get("drawing.svg").1;
     assert_eq!(program.finish(), Some(0));
-    assert_eq!(file, fs::read(folder.path().join("a.svg")).unwrap());
+    assert_eq!(file, fs::read(place.path("a.svg")).unwrap());
 }
 
 #[test]
 fn watching_changes_no_byte() {
-    let folder = tempfile::tempdir().unwrap();
-    let args = ["fit", SAMPLE, "-q", "--strokes", "300", "-o"];
-    run(folder.path(), &[&args[..], &["a.svg"]].concat());
-    let program = Program::start(folder.path(), &[&args[..], &["b.svg", "--view"]].concat());
+    let place = Place::new();
+    let sample = sample();
+    let args = ["fit", &sample, "-q", "--strokes", "300", "-o"];
+    place.done(&[&args[..], &["a.svg"]].concat());
+    let program = Program::start(&place, &[&args[..], &["b.svg", "--view"]].concat());
     program.state_with(|state| state["finished"] == true);
     assert_eq!(program.finish(), Some(0));
-    let read = |name| fs::read(folder.path().join(name)).unwrap();
+    let read = |name| fs::read(place.path(name)).unwrap();
     assert!(read("a.svg") == read("b.svg"));
 }
 
 #[test]
 fn nobody_looks_at_a_fit_that_nobody_watches() {
     use strokefit::fit::{Budget, Config, Fitter};
-    let picture = strokefit::image::Image::open(SAMPLE).unwrap();
+    let picture = strokefit::image::Image::open(sample()).unwrap();
     let viewer = strokefit::view::Viewer::open().unwrap();
     viewer.begin("", Some(&picture)).unwrap();
     let budget = Budget {
@@ -371,9 +362,9 @@ fn text<'a>(dom: &'a str, id: &str) -> &'a str {
 
 #[test]
 fn chromium_shows_strokes_stages_and_fidelity() {
-    let folder = drawn();
-    let svg = fs::read_to_string(folder.path().join("a.svg")).unwrap();
-    let program = Program::start(folder.path(), &["view", "a.svg", SAMPLE]);
+    let place = drawn();
+    let svg = fs::read_to_string(place.path("a.svg")).unwrap();
+    let program = Program::start(&place, &["view", "a.svg", &sample()]);
     let Some(dom) = page(&program, "") else {
         return;
     };
@@ -384,7 +375,7 @@ fn chromium_shows_strokes_stages_and_fidelity() {
         .unwrap()
         .parse()
         .unwrap();
-    let picture = strokefit::image::Image::open(SAMPLE).unwrap();
+    let picture = strokefit::image::Image::open(sample()).unwrap();
     let fidelity = strokefit::verify::fidelity(&svg, &picture).unwrap();
     assert!(
         (db - fidelity.psnr_db).abs() < 0.7,
@@ -406,15 +397,10 @@ fn chromium_shows_strokes_stages_and_fidelity() {
 
 #[test]
 fn a_drawing_and_a_picture_of_another_shape_are_refused() {
-    let folder = drawn();
+    let place = drawn();
     let square = image::RgbImage::new(20, 20);
-    square.save(folder.path().join("square.png")).unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_strokefit"));
-    let output = command
-        .args(["view", "a.svg", "square.png"])
-        .current_dir(folder.path())
-        .output();
-    let output = output.unwrap();
+    square.save(place.path("square.png")).unwrap();
+    let output = place.run(&["view", "a.svg", "square.png"]);
     assert_eq!(output.status.code(), Some(1));
-    assert!(String::from_utf8(output.stderr).unwrap().contains("aspect"));
+    assert!(stderr(&output).contains("aspect"));
 }
