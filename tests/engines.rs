@@ -15,7 +15,7 @@ mod support {
 
 use std::fs;
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use serde_json::Value;
@@ -196,19 +196,30 @@ fn kinds() -> Vec<(&'static str, Scene)> {
     ]
 }
 
+/// What the engine draws of `svg` at this size, and what resvg does.
+fn drawn_by_both(
+    engine: &Engine,
+    program: &Path,
+    svg: &str,
+    [width, height]: [u32; 2],
+) -> [Image; 2] {
+    let page = Page {
+        svg,
+        width: width as usize,
+        height: height as usize,
+    };
+    let drawn = engine.draw(program, page, PATIENCE).unwrap().image;
+    let resvg = verify::render(svg, Size::Exact { width, height }, Some([1.0; 3])).unwrap();
+    [drawn, resvg]
+}
+
 fn draws_every_kind_of_stroke(name: &str) {
     let Some((engine, program)) = installed(name) else {
         return;
     };
     for (kind, scene) in kinds() {
         let text = svg::write(&scene, &WriteOptions::default());
-        let page = Page {
-            svg: &text,
-            width: 64,
-            height: 48,
-        };
-        let drawn = engine.draw(&program, page, PATIENCE).unwrap().image;
-        let resvg = verify::render(&text, Size::Scale(1.0), Some([1.0; 3])).unwrap();
+        let [drawn, resvg] = drawn_by_both(engine, &program, &text, [64, 48]);
         let db = metrics::psnr(&resvg, &drawn).unwrap();
         assert!(db >= 36.0, "{kind}: {db:.2} dB from resvg");
         let ground = Image::filled(64, 48, [1.0, 0.9, 0.7]).unwrap();
@@ -237,13 +248,7 @@ fn draws_every_form_of_file(name: &str) {
             ..WriteOptions::default()
         };
         let text = svg::write(&scene, &options);
-        let page = Page {
-            svg: &text,
-            width: 64,
-            height: 48,
-        };
-        let drawn = engine.draw(&program, page, PATIENCE).unwrap().image;
-        let resvg = verify::render(&text, Size::Scale(1.0), Some([1.0; 3])).unwrap();
+        let [drawn, resvg] = drawn_by_both(engine, &program, &text, [64, 48]);
         let db = metrics::psnr(&resvg, &drawn).unwrap();
         assert!(db >= 36.0, "{form:?}: {db:.2} dB from resvg");
     }
@@ -259,18 +264,8 @@ fn scales_to_the_size_asked_for(name: &str) {
         ..kinds().swap_remove(4).1
     };
     let text = svg::write(&scene, &WriteOptions::default());
-    for (width, height) in [(32, 24), (64, 48), (640, 480)] {
-        let page = Page {
-            svg: &text,
-            width,
-            height,
-        };
-        let drawn = engine.draw(&program, page, PATIENCE).unwrap().image;
-        let size = Size::Exact {
-            width: width as u32,
-            height: height as u32,
-        };
-        let resvg = verify::render(&text, size, Some([1.0; 3])).unwrap();
+    for [width, height] in [[32, 24], [64, 48], [640, 480]] {
+        let [drawn, resvg] = drawn_by_both(engine, &program, &text, [width, height]);
         let db = metrics::psnr(&resvg, &drawn).unwrap();
         assert!(db >= 36.0, "{width}×{height}: {db:.2} dB from resvg");
     }
