@@ -30,31 +30,28 @@
 mod limits;
 mod painting;
 mod placement;
+mod raster;
 mod references;
+mod tree;
 
 use std::panic::{self, AssertUnwindSafe};
 
-use resvg::tiny_skia::{Color, Pixmap, PremultipliedColorU8, Transform};
-use resvg::usvg::roxmltree::{self, Document, ParsingOptions};
-use resvg::usvg::{Options, Tree};
+use resvg::usvg::Tree;
 use serde::{Deserialize, Serialize};
 
-use limits::Embedded;
 pub use painting::Painting;
+use raster::draw;
+use tree::parse;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
 use crate::metrics::{self, Agreement, Quality, null_is_infinite};
 use crate::scene::Rgb;
-use crate::svg::SVG_NAMESPACE;
 
 pub(crate) use placement::placement;
 
 /// Version of resvg that is built in, as far as `Cargo.toml` fixes it.
 pub const RESVG_VERSION: &str = "0.49";
-
-/// Most pixels of a render: the raster takes 4 bytes each, its [`Image`] up to 16 more.
-const MAX_PIXELS: f64 = (1_u64 << 27) as f64;
 
 const WHITE: Rgb = [1.0; 3];
 
@@ -187,126 +184,6 @@ fn check_aspect(tree: &Tree, width: u32, height: u32) -> Result<()> {
     Err(Error::new(ErrorKind::Svg, message))
 }
 
-fn parse(svg: &str) -> Result<Tree> {
-    let embedded = Embedded::default();
-    let options = Options {
-        image_href_resolver: embedded.resolver(),
-        ..Options::default()
-    };
-    let unreadable = |e: &dyn std::fmt::Display| {
-        Error::new(
-            ErrorKind::Svg,
-            format!("not an SVG that resvg can read: {e}"),
-        )
-    };
-    let allow_dtd = ParsingOptions {
-        allow_dtd: true,
-        nodes_limit: limits::MAX_NODES,
-        ..ParsingOptions::default()
-    };
-    let document =
-        Document::parse_with_options(svg, allow_dtd).map_err(|e| unreadable(&e).caused_by(e))?;
-    check_namespace(&document)?;
-    references::check(&document).map_err(limits::refusal)?;
-    let tree = guarded(|| Tree::from_xmltree(&document, &options))?;
-    let tree = tree.map_err(|e| match e {
-        resvg::usvg::Error::ElementsLimitReached
-        | resvg::usvg::Error::ParsingFailed(roxmltree::Error::NodesLimitReached) => too_much(e),
-        e => unreadable(&e).caused_by(e),
-    })?;
-    embedded.check()?;
-    Ok(tree)
-}
-
-fn too_much(error: resvg::usvg::Error) -> Error {
-    let message = "the SVG has more than a million elements, also counted through <use>, or more than 1,024 \
-                   levels of nesting, which resvg does not read: simplify it";
-    Error::new(ErrorKind::Svg, message).caused_by(error)
-}
-
-/// resvg passes over elements of other namespaces and calls the empty page a success.
-fn check_namespace(document: &Document<'_>) -> Result<()> {
-    let root = document.root_element().tag_name();
-    if root.name() == "svg" && root.namespace() == Some(SVG_NAMESPACE) {
-        return Ok(());
-    }
-    let (name, namespace) = (root.name(), root.namespace().unwrap_or_default());
-    let message = format!(
-        "the root element is <{name}> of the namespace \"{namespace}\", so nothing would be drawn: \
-         an SVG starts with <svg xmlns=\"{SVG_NAMESPACE}\">"
-    );
-    Err(Error::new(ErrorKind::Svg, message))
-}
-
-/// The raster of a render and how the SVG is laid on it.
-struct Raster {
-    width: u32,
-    height: u32,
-    transform: Transform,
-}
-
-impl Raster {
-    fn new(tree: &Tree, size: Size) -> Result<Self> {
-        let (natural_width, natural_height) = (
-            f64::from(tree.size().width()),
-            f64::from(tree.size().height()),
-        );
-        let (width, height) = match size {
-            Size::Exact { width, height } => (f64::from(width), f64::from(height)),
-            Size::Scale(scale) if scale.is_finite() && scale > 0.0 => (
-                (natural_width * scale).round().max(1.0),
-                (natural_height * scale).round().max(1.0),
-            ),
-            Size::Scale(scale) => {
-                let message = format!("the scale is {scale}: give a number above 0, such as 2");
-                return Err(Error::new(ErrorKind::Config, message));
-            }
-        };
-        if width * height > MAX_PIXELS || width < 1.0 || height < 1.0 {
-            let message = format!(
-                "a render of {width}×{height} px is not possible: 1 to {MAX_PIXELS} pixels are"
-            );
-            return Err(Error::new(ErrorKind::Svg, message));
-        }
-        let (x, y) = match size {
-            Size::Exact { .. } => (width / natural_width, height / natural_height),
-            Size::Scale(scale) => (scale, scale),
-        };
-        Ok(Self {
-            width: width as u32,
-            height: height as u32,
-            transform: Transform::from_scale(x as f32, y as f32),
-        })
-    }
-
-    /// Fails when drawing would cost more memory or time than any honest drawing.
-    fn afford(&self, tree: &Tree) -> Result<()> {
-        let scale = f64::from(self.transform.sx.max(self.transform.sy));
-        limits::check(tree, scale, f64::from(self.width) * f64::from(self.height))
-    }
-
-    fn pixmap(&self) -> Result<Pixmap> {
-        Pixmap::new(self.width, self.height).ok_or_else(|| {
-            let message = format!(
-                "no memory for a render of {}×{} px: scale it down",
-                self.width, self.height
-            );
-            Error::new(ErrorKind::Svg, message)
-        })
-    }
-}
-
-fn draw(tree: &Tree, size: Size, ground: Option<Rgb>) -> Result<Image> {
-    let raster = Raster::new(tree, size)?;
-    raster.afford(tree)?;
-    let mut pixmap = raster.pixmap()?;
-    if let Some(color) = ground {
-        pixmap.fill(opaque(color));
-    }
-    guarded(|| resvg::render(tree, raster.transform, &mut pixmap.as_mut()))?;
-    image(&pixmap)
-}
-
 /// What resvg does, a panic being an error: the judge does not fall with what it judges, and its arithmetic
 /// has corners that no check of ours foresees.
 fn guarded<R>(judge: impl FnOnce() -> R) -> Result<R> {
@@ -315,42 +192,6 @@ fn guarded<R>(judge: impl FnOnce() -> R) -> Result<R> {
             "resvg cannot draw the SVG, its numbers are too large or too odd: simplify it";
         Error::new(ErrorKind::Svg, message)
     })
-}
-
-fn opaque([r, g, b]: Rgb) -> Color {
-    let byte = |v: f32| (v * 255.0 + 0.5) as u8;
-    Color::from_rgba8(byte(r), byte(g), byte(b), 255)
-}
-
-fn image(pixmap: &Pixmap) -> Result<Image> {
-    let pixels = pixmap.pixels();
-    let plane = |channel: fn(&PremultipliedColorU8) -> u8| {
-        pixels
-            .iter()
-            .map(move |p| straight(channel(p), p.alpha()))
-            .collect()
-    };
-    let planes = [
-        plane(|p| p.red()),
-        plane(|p| p.green()),
-        plane(|p| p.blue()),
-    ];
-    let image = Image::new(pixmap.width() as usize, pixmap.height() as usize, planes)?;
-    image.with_alpha(
-        pixels
-            .iter()
-            .map(|p| f32::from(p.alpha()) / 255.0)
-            .collect(),
-    )
-}
-
-/// A premultiplied channel as a colour 0..1; black where nothing is seen.
-fn straight(channel: u8, alpha: u8) -> f32 {
-    if alpha == 0 {
-        0.0
-    } else {
-        f32::from(channel) / f32::from(alpha)
-    }
 }
 
 #[cfg(test)]

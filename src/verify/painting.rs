@@ -2,7 +2,9 @@
 
 use resvg::tiny_skia::Pixmap;
 
-use super::{Raster, Size, image, opaque, parse};
+use super::Size;
+use super::raster::{Raster, image, opaque};
+use super::tree::parse;
 use crate::error::Result;
 use crate::image::Image;
 use crate::scene::Rgb;
