@@ -1,20 +1,22 @@
 //! The state of a fit: the strokes so far, how many of them are frozen, and the canvas they make.
 
+mod colors;
+mod scene;
+mod state;
+
 use fearless_simd::Level;
-use serde::{Deserialize, Serialize};
 
 use super::anneal::final_softness;
 use super::config::Config;
 use super::descent::{Descent, Limits};
 use super::ground::{Ground, Setting};
 use super::objective::{View, differentiate};
-use crate::image::Image;
-use crate::render::{
-    AX, Base, Canvas, CanvasLoss, Gradients, Lanes, OPACITY, Params, RADIUS, RED, Renderer,
-    Softness, TileRgb, pack, unpack,
-};
-use crate::scene::{Rgb, Scene, Stage};
+use crate::render::{Canvas, Gradients, Params, Renderer, Softness};
+use crate::scene::Rgb;
 use crate::seed::{Candidate, Wanted, propose};
+pub(super) use colors::Wish;
+use scene::enlarged;
+pub(super) use state::State;
 
 /// Least opacity of a stroke: the 8-bit compositing of renderers drifts by levels under many layers
 /// fainter than this.
@@ -42,19 +44,6 @@ pub(super) struct Drawing {
     /// How often strokes were sought.
     searches: u64,
     /// How many strokes became non-finite and were taken out.
-    lost: usize,
-}
-
-/// What a drawing is made again from, to the bit.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub(super) struct State {
-    halvings: usize,
-    /// The colour of a flat ground.
-    color: Option<Rgb>,
-    strokes: Vec<Params>,
-    stage_of: Vec<usize>,
-    frozen: usize,
-    searches: u64,
     lost: usize,
 }
 
@@ -166,39 +155,6 @@ impl Drawing {
         (self.pixels() as f32 / count.max(1) as f32).sqrt()
     }
 
-    /// What the drawing is.
-    pub(super) fn state(&self) -> State {
-        State {
-            halvings: self.ground().halvings(),
-            color: self.ground().color(),
-            strokes: self.strokes.clone(),
-            stage_of: self.stage_of.clone(),
-            frozen: self.frozen,
-            searches: self.searches,
-            lost: self.lost,
-        }
-    }
-
-    /// Makes the drawing what it was.
-    pub(super) fn resume(&mut self, state: State) {
-        if let (Some(color), Some(was)) = (self.grounds[0].color_mut(), state.color) {
-            *color = was;
-        }
-        for ground in &mut self.grounds {
-            ground.enter(state.halvings);
-        }
-        self.cut_anew();
-        self.strokes = state.strokes;
-        self.stage_of = state.stage_of;
-        self.searches = state.searches;
-        self.lost = state.lost;
-        if state.frozen > 0 {
-            let free = self.strokes.split_off(state.frozen.min(self.strokes.len()));
-            self.freeze();
-            self.strokes.extend(free);
-        }
-    }
-
     /// Freezes all strokes that there are. Their picture is made from nothing but them: made from that of
     /// earlier frozen ones it would differ in the last bits, and could not be made again from a
     /// [`State`].
@@ -213,15 +169,6 @@ impl Drawing {
     pub(super) fn thaw(&mut self) {
         self.grounds.iter_mut().for_each(Ground::thaw);
         self.frozen = 0;
-    }
-
-    /// Puts the strokes of `scene`, in px of the picture, on top of none.
-    pub(super) fn load(&mut self, scene: &Scene) {
-        let halvings = self.ground().halvings();
-        for (index, stage) in scene.stages.iter().enumerate() {
-            let strokes = stage.strokes.iter().map(|s| reduced(pack(s), halvings));
-            self.extend(strokes, index);
-        }
     }
 
     /// Puts `strokes` on top, as part of stage `stage`.
@@ -247,22 +194,6 @@ impl Drawing {
     /// How many strokes became non-finite and were taken out.
     pub(super) fn lost(&self) -> usize {
         self.lost
-    }
-
-    /// What [`restore`](Self::restore) brings back.
-    pub(super) fn snapshot(&self) -> Snapshot {
-        Snapshot {
-            background: self.background(),
-            strokes: self.strokes.clone(),
-            stage_of: self.stage_of.clone(),
-        }
-    }
-
-    /// Goes back to a drawing of the same resolution, without frozen strokes then and now.
-    pub(super) fn restore(&mut self, snapshot: Snapshot) {
-        self.change_background(|color| *color = snapshot.background.unwrap_or(*color));
-        self.strokes = snapshot.strokes;
-        self.stage_of = snapshot.stage_of;
     }
 
     /// Replaces the numbers of the free strokes.
@@ -341,169 +272,10 @@ impl Drawing {
         gradients
     }
 
-    /// The colours that the strokes, and at last the background if there is one, would like to have after a share
-    /// `damping` of their Newton steps. All strokes must be free.
-    pub(super) fn wishes(&mut self, damping: f32) -> Vec<Wish> {
-        let slopes = self.judge();
-        let mut shown = Gradients::default();
-        // What a stroke shows of itself is the same on every ground.
-        for View { base, .. } in views(&self.grounds, 0).iter().take(1) {
-            self.renderer
-                .backward(&self.strokes, self.edge, *base, &Shown, &mut shown);
-        }
-        // The loss is a mean over channels, too.
-        let values = (3 * self.pixels()) as f32 / self.pixel_area();
-        let wish = |color: Rgb, slope: Rgb, weight: f32| {
-            // A hidden stroke has no wish.
-            let step = if weight > LEAST_SHOWN {
-                damping * values / (2.0 * weight)
-            } else {
-                0.0
-            };
-            let moved = |c: usize| color[c] - (step * slope[c]).clamp(-1.0, 1.0);
-            let color = [0, 1, 2].map(|c| moved(c).clamp(0.0, 1.0));
-            Wish { color, weight }
-        };
-        let rgb = |p: &Params| [p[RED], p[RED + 1], p[RED + 2]];
-        let strokes = self.strokes.iter().zip(&slopes.strokes).zip(&shown.strokes);
-        let wishes = strokes.map(|((stroke, slope), shown)| {
-            // The square of a share is at most the share times the opacity.
-            wish(rgb(stroke), rgb(slope), shown[RED] * stroke[OPACITY])
-        });
-        let ground = self.background();
-        let ground = ground.map(|color| wish(color, slopes.base, shown.base[0]));
-        wishes.chain(ground).collect()
-    }
-
-    /// Gives the strokes, and at last the background unless it is fixed, these colours. All strokes must be free.
-    pub(super) fn set_colors(&mut self, colors: &[Rgb]) {
-        let mut colors = colors.iter();
-        for (stroke, color) in self.strokes.iter_mut().zip(colors.by_ref()) {
-            stroke[RED..OPACITY].copy_from_slice(color);
-        }
-        if let Some(&ground) = colors.next().filter(|_| !self.background_fixed) {
-            self.change_background(|color| *color = ground);
-        }
-    }
-
     /// The mean squared error of the drawing; at a reduced resolution, of what can be seen there.
     pub(super) fn mse(&mut self) -> f64 {
         self.judge().loss
     }
-
-    /// Our render of `scene` on each ground.
-    pub(super) fn soft(&mut self, scene: &Scene) -> Vec<Image> {
-        let strokes: Vec<Params> = scene.strokes().map(pack).collect();
-        let mut canvas = self.ground().canvas.clone();
-        let mut images = Vec::new();
-        for ground in &self.grounds {
-            let base = ground.base_of(scene);
-            self.renderer
-                .forward(&strokes, self.edge, base, &mut canvas);
-            images.push(canvas.to_image());
-        }
-        images
-    }
-
-    /// The mean squared error after each layer of `scene`.
-    pub(super) fn layer_mses(&mut self, scene: &Scene) -> Vec<f64> {
-        let mut below: Vec<Canvas> = self.grounds.iter().map(|g| g.page(scene)).collect();
-        let halvings = self.ground().halvings();
-        let mut mses = Vec::new();
-        for stage in &scene.stages {
-            let strokes: Vec<Params> = stage
-                .strokes
-                .iter()
-                .map(|s| reduced(pack(s), halvings))
-                .collect();
-            for canvas in &mut below {
-                let base = canvas.clone();
-                self.renderer
-                    .forward(&strokes, self.edge, Base::Canvas(&base), canvas);
-            }
-            mses.push(self.mse_of(&below));
-        }
-        mses
-    }
-
-    /// The mean squared error of finished canvases, one per ground.
-    fn mse_of(&mut self, canvases: &[Canvas]) -> f64 {
-        let grounds = self.grounds.iter().zip(canvases);
-        let views: Vec<_> = grounds
-            .map(|(ground, canvas)| View {
-                base: Base::Canvas(canvas),
-                ..ground.view(0, None)
-            })
-            .collect();
-        let mut gradients = Gradients::default();
-        differentiate::<false>(&mut self.renderer, &[], self.edge, &views, &mut gradients);
-        gradients.loss
-    }
-
-    /// The drawing as a scene in px of the picture, unrounded, with the background if it `has_ground`.
-    pub(super) fn scene(&self, has_ground: bool) -> Scene {
-        let picture = self.ground().picture();
-        let background = self.background().filter(|_| has_ground);
-        let mut scene = Scene::empty(picture.width() as u32, picture.height() as u32, background);
-        let halvings = self.ground().halvings();
-        for (&stroke, &stage) in self.strokes.iter().zip(&self.stage_of) {
-            if scene.stages.len() <= stage {
-                scene.stages.resize(stage + 1, Stage::default());
-            }
-            scene.stages[stage]
-                .strokes
-                .push(unpack(&enlarged(stroke, halvings)));
-        }
-        scene
-    }
-}
-
-/// The strokes of a drawing and what is behind them.
-pub(super) struct Snapshot {
-    background: Option<Rgb>,
-    strokes: Vec<Params>,
-    stage_of: Vec<usize>,
-}
-
-/// The colour that a stroke, or the background, would like to have if the others stayed as they are.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Wish {
-    pub(super) color: Rgb,
-    /// By how much the squared error grows with the squared distance from it.
-    pub(super) weight: f32,
-}
-
-/// Pixels that a stroke has to show in for its colour to matter.
-const LEAST_SHOWN: f32 = 1e-3;
-
-/// Sums each stroke's share of the pixels that it shows in, as the derivative by its red.
-struct Shown;
-
-impl CanvasLoss for Shown {
-    fn tile(&self, _: usize, _: &TileRgb, _: &mut TileRgb, gradient: &mut TileRgb) -> f64 {
-        for [red, ..] in gradient.iter_mut() {
-            *red = Lanes::splat(1.0);
-        }
-        0.0
-    }
-}
-
-/// The stroke at a resolution that is twice as fine `doublings` times.
-fn enlarged(mut stroke: Params, doublings: usize) -> Params {
-    let factor = (1_u32 << doublings) as f32;
-    for length in &mut stroke[AX..=RADIUS] {
-        *length *= factor;
-    }
-    stroke
-}
-
-/// The stroke at a resolution that is half as fine `halvings` times.
-fn reduced(mut stroke: Params, halvings: usize) -> Params {
-    let factor = (1_u32 << halvings) as f32;
-    for length in &mut stroke[AX..=RADIUS] {
-        *length /= factor;
-    }
-    stroke
 }
 
 /// The grounds as the free strokes see them, on `frozen` others.

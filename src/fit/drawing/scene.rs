@@ -1,0 +1,102 @@
+//! From scenes to drawings and back, and what a finished scene looks like.
+
+use super::Drawing;
+use crate::fit::objective::{View, differentiate};
+use crate::image::Image;
+use crate::render::{AX, Base, Canvas, Gradients, Params, RADIUS, pack, unpack};
+use crate::scene::{Scene, Stage};
+
+impl Drawing {
+    /// Puts the strokes of `scene`, in px of the picture, on top of none.
+    pub(in crate::fit) fn load(&mut self, scene: &Scene) {
+        let halvings = self.ground().halvings();
+        for (index, stage) in scene.stages.iter().enumerate() {
+            let strokes = stage.strokes.iter().map(|s| reduced(pack(s), halvings));
+            self.extend(strokes, index);
+        }
+    }
+
+    /// Our render of `scene` on each ground.
+    pub(in crate::fit) fn soft(&mut self, scene: &Scene) -> Vec<Image> {
+        let strokes: Vec<Params> = scene.strokes().map(pack).collect();
+        let mut canvas = self.ground().canvas.clone();
+        let mut images = Vec::new();
+        for ground in &self.grounds {
+            let base = ground.base_of(scene);
+            self.renderer
+                .forward(&strokes, self.edge, base, &mut canvas);
+            images.push(canvas.to_image());
+        }
+        images
+    }
+
+    /// The mean squared error after each layer of `scene`.
+    pub(in crate::fit) fn layer_mses(&mut self, scene: &Scene) -> Vec<f64> {
+        let mut below: Vec<Canvas> = self.grounds.iter().map(|g| g.page(scene)).collect();
+        let halvings = self.ground().halvings();
+        let mut mses = Vec::new();
+        for stage in &scene.stages {
+            let strokes: Vec<Params> = stage
+                .strokes
+                .iter()
+                .map(|s| reduced(pack(s), halvings))
+                .collect();
+            for canvas in &mut below {
+                let base = canvas.clone();
+                self.renderer
+                    .forward(&strokes, self.edge, Base::Canvas(&base), canvas);
+            }
+            mses.push(self.mse_of(&below));
+        }
+        mses
+    }
+
+    /// The mean squared error of finished canvases, one per ground.
+    fn mse_of(&mut self, canvases: &[Canvas]) -> f64 {
+        let grounds = self.grounds.iter().zip(canvases);
+        let views: Vec<_> = grounds
+            .map(|(ground, canvas)| View {
+                base: Base::Canvas(canvas),
+                ..ground.view(0, None)
+            })
+            .collect();
+        let mut gradients = Gradients::default();
+        differentiate::<false>(&mut self.renderer, &[], self.edge, &views, &mut gradients);
+        gradients.loss
+    }
+
+    /// The drawing as a scene in px of the picture, unrounded, with the background if it `has_ground`.
+    pub(in crate::fit) fn scene(&self, has_ground: bool) -> Scene {
+        let picture = self.ground().picture();
+        let background = self.background().filter(|_| has_ground);
+        let mut scene = Scene::empty(picture.width() as u32, picture.height() as u32, background);
+        let halvings = self.ground().halvings();
+        for (&stroke, &stage) in self.strokes.iter().zip(&self.stage_of) {
+            if scene.stages.len() <= stage {
+                scene.stages.resize(stage + 1, Stage::default());
+            }
+            scene.stages[stage]
+                .strokes
+                .push(unpack(&enlarged(stroke, halvings)));
+        }
+        scene
+    }
+}
+
+/// The stroke at a resolution that is twice as fine `doublings` times.
+pub(super) fn enlarged(mut stroke: Params, doublings: usize) -> Params {
+    let factor = (1_u32 << doublings) as f32;
+    for length in &mut stroke[AX..=RADIUS] {
+        *length *= factor;
+    }
+    stroke
+}
+
+/// The stroke at a resolution that is half as fine `halvings` times.
+fn reduced(mut stroke: Params, halvings: usize) -> Params {
+    let factor = (1_u32 << halvings) as f32;
+    for length in &mut stroke[AX..=RADIUS] {
+        *length /= factor;
+    }
+    stroke
+}
