@@ -289,6 +289,7 @@ impl Row {
     }
 
     fn legend(&self) -> [String; 2] {
+        let (iteration, coverage, loss) = (self.iteration, &self.coverage, self.loss);
         let Statistics {
             strokes,
             at_zero,
@@ -296,29 +297,21 @@ impl Row {
             deviation,
         } = self.statistics;
         [
-            format!(
-                "iteration {}, {}, L1 {:.5}",
-                self.iteration, self.coverage, self.loss
-            ),
+            format!("iteration {iteration}, {coverage}, L1 {loss:.5}"),
             format!("{strokes} radii: {at_zero} zero, mean {mean_radius:.2} ± {deviation:.2} px"),
         ]
     }
 
     fn cells(&self) -> [String; 8] {
-        let Statistics {
-            strokes,
-            at_zero,
-            mean_radius,
-            deviation,
-        } = self.statistics;
+        let radii = &self.statistics;
         [
             self.iteration.to_string(),
             self.coverage.to_string(),
             self.loss.to_string(),
-            strokes.to_string(),
-            at_zero.to_string(),
-            mean_radius.to_string(),
-            deviation.to_string(),
+            radii.strokes.to_string(),
+            radii.at_zero.to_string(),
+            radii.mean_radius.to_string(),
+            radii.deviation.to_string(),
             format!("{:.3}", self.wall_s),
         ]
     }
