@@ -57,7 +57,8 @@ impl Output {
     fn rehearse(&self) -> io::Result<()> {
         match self {
             Self::Stdout => Ok(()),
-            Self::File(path) => temporary(path).map(drop),
+            // Without a name, where the system can do that: nobody ever sees it.
+            Self::File(path) => tempfile::tempfile_in(target_folder(path)?).map(drop),
             Self::Device(path) => OpenOptions::new().write(true).open(path).map(drop),
         }
     }
@@ -113,6 +114,12 @@ fn folder(path: &Path) -> &Path {
         .unwrap_or(Path::new("."))
 }
 
+/// The folder in which `path` names a file.
+fn target_folder(path: &Path) -> io::Result<&Path> {
+    path.file_name().ok_or(io::ErrorKind::InvalidFilename)?;
+    Ok(folder(path))
+}
+
 fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut file = temporary(path)?;
     file.write_all(bytes)?;
@@ -127,9 +134,6 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
 
 /// A file without the final name in the final folder, gone when dropped.
 fn temporary(path: &Path) -> io::Result<tempfile::NamedTempFile> {
-    if path.file_name().is_none() {
-        return Err(io::ErrorKind::InvalidFilename.into());
-    }
     let mut builder = tempfile::Builder::new();
     builder.prefix(".strokefit-");
     #[cfg(unix)]
@@ -138,7 +142,7 @@ fn temporary(path: &Path) -> io::Result<tempfile::NamedTempFile> {
         // As any new file: the umask takes its share.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    builder.tempfile_in(folder(path))
+    builder.tempfile_in(target_folder(path)?)
 }
 
 fn unwritable(path: &Path, error: &io::Error) -> anyhow::Error {
