@@ -130,6 +130,12 @@ fn the_animated_file_is_drawn_like_the_other() {
 #[test]
 fn outputs_that_make_no_sense_are_refused() {
     let place = with_picture();
+    refused(
+        &place,
+        "fit a.png -o b.jpg",
+        2,
+        "b.jpg: .jpg is not written",
+    );
     refused(&place, "fit a.png -o b.gif", 2, "out.svg");
     refused(&place, "fit a.png -o b.svg -o c.svg", 2, "c.svg");
     refused(&place, "fit a.png -o b.svg -o b.gif -o b.gif", 2, "b.gif");

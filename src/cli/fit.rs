@@ -28,8 +28,8 @@ pub(super) struct Args {
     #[arg(required = true, value_name = "INPUT")]
     inputs: Vec<PathBuf>,
     /// The SVG to write; - for standard output; {stem} stands for the picture's name without extension.
-    /// Again for more: .png is a render, .gif, .webp or .apng an animation, .animated.svg draws itself,
-    /// {n}.png are single frames
+    /// Again for more: .png is a render, .gif, .webp or .apng an animation, .animated.svg draws itself;
+    /// for single frames see Animation
     #[arg(short, long, value_name = "OUT.svg", required = true)]
     output: Vec<PathBuf>,
     /// Write what was done as JSON; - for standard output; {stem} as above

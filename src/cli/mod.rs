@@ -79,9 +79,9 @@ const EXAMPLES_AND_STATUSES: &str = "Examples:
   strokefit render photo.svg -o large.png --scale 4    four times the size
 
 Exit status: 0 done, 1 failed, 2 wrong usage, 3 a target was not reached, 4 the fidelity check
-failed (the SVG is not drawn as it was fitted). Ctrl-C, SIGTERM or SIGHUP during a fit finishes what is
-drawn so far, within a second or so, and then ends the program as the signal does, which shells report
-as 130, 143 or 129; a second one ends it at once.";
+failed (the SVG is not drawn as it was fitted). Ctrl-C, SIGTERM or SIGHUP during a fit finishes
+what is drawn so far, within a second or so, and then ends the program as the signal does, which
+shells report as 130, 143 or 129; a second one ends it at once.";
 
 /// How much to say on standard error.
 #[derive(Debug, Clone, Copy, clap::Args)]

@@ -14,6 +14,11 @@ use super::output::Output;
 /// What stands for the number of a frame.
 const NUMBER: &str = "{n}";
 
+/// Endings of formats that one might expect, and that are not written.
+const NOT_WRITTEN: [&str; 9] = [
+    "jpg", "jpeg", "bmp", "tif", "tiff", "avif", "pdf", "eps", "svgz",
+];
+
 /// How to film a drawing.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Animation (.gif, .webp, .apng, .animated.svg and {n}.png)")]
@@ -85,6 +90,7 @@ impl<'a> Pictures<'a> {
     /// The files at `paths`, all of them pictures or animations; a name that says nothing is a picture.
     pub(super) fn open(paths: &'a [PathBuf], options: &'a FilmOptions) -> Result<Self> {
         let open = |path: &'a PathBuf| {
+            expect_written(path)?;
             let format = Format::of(path).unwrap_or(Format::Picture);
             let output = Output::open(&numbered(path, format, "1"))?;
             Ok((format, output, path.as_path()))
@@ -173,6 +179,7 @@ impl<'a> Pictures<'a> {
 
 /// The SVG among the outputs of a fit, and the others.
 pub(super) fn split(paths: &[PathBuf]) -> Result<(&Path, Vec<&Path>)> {
+    paths.iter().try_for_each(|path| expect_written(path))?;
     let is_svg = |path: &Path| matches!(Format::of(path), None | Some(Format::Svg));
     let (svgs, others): (Vec<&Path>, Vec<&Path>) = paths
         .iter()
@@ -186,6 +193,18 @@ pub(super) fn split(paths: &[PathBuf]) -> Result<(&Path, Vec<&Path>)> {
             second.display()
         ))),
     }
+}
+
+/// Refuses a name that would tell of another format than the file has.
+fn expect_written(path: &Path) -> Result<()> {
+    let ending = path.extension().unwrap_or_default().to_string_lossy();
+    let Some(other) = NOT_WRITTEN.iter().find(|o| ending.eq_ignore_ascii_case(o)) else {
+        return Ok(());
+    };
+    Err(misuse(format!(
+        "{}: .{other} is not written: name it .svg, .png, .gif, .webp or .apng",
+        path.display()
+    )))
 }
 
 /// The path of the frame `number`; others have none.
@@ -222,7 +241,12 @@ mod tests {
         let given = paths(&["a.gif", "-", "b.png"]);
         let (svg, others) = split(&given).unwrap();
         assert_eq!((svg, others.len()), (Path::new("-"), 2));
-        for names in [&["a.gif"][..], &["a.svg", "b.svg"], &["a.svg", "-"]] {
+        for names in [
+            &["a.gif"][..],
+            &["a.svg", "b.svg"],
+            &["a.svg", "-"],
+            &["a.jpg"],
+        ] {
             assert!(split(&paths(names)).is_err(), "{names:?}");
         }
     }

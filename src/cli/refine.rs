@@ -34,7 +34,7 @@ pub(super) struct Args {
     /// PNG, JPEG, WebP, GIF (first frame), BMP or TIFF picture; - for standard input
     input: PathBuf,
     /// The SVG to write; - for standard output. Again for more: .png is a render, .gif, .webp or .apng an
-    /// animation, .animated.svg draws itself, {n}.png are single frames
+    /// animation, .animated.svg draws itself; for single frames see Animation
     #[arg(short, long, value_name = "OUT.svg", required = true)]
     output: Vec<PathBuf>,
     /// Write what was done as JSON; - for standard output

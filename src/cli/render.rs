@@ -14,7 +14,7 @@ use super::{Status, domain, input, misuse};
 /// text that is not outlines is not drawn. Where the SVG has no background, the PNG is transparent.
 ///
 /// Files of strokefit can be drawn stroke by stroke: an output named .gif, .webp or .apng is an
-/// animation, one named .animated.svg draws itself, and frames/{n}.png are its single frames.
+/// animation, one named .animated.svg draws itself; for single frames see Animation.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   strokefit render photo.svg -o photo.png
