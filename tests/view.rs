@@ -135,6 +135,14 @@ fn drawn() -> Place {
     place
 }
 
+/// A fit of the sample to `a.svg`, with the words of a line as options.
+fn fitting(place: &Place, options: &str) -> Program {
+    let sample = sample();
+    let mut args = vec!["fit", &sample, "-o", "a.svg"];
+    args.extend(options.split(' '));
+    Program::start(place, &args)
+}
+
 fn strokes(state: &Value) -> usize {
     let stages = state["scene"]["stages"].as_array().unwrap();
     stages
@@ -216,21 +224,10 @@ fn only_who_was_told_the_address_gets_an_answer() {
 #[test]
 fn a_fit_is_seen_to_grow_and_can_be_stopped() {
     let place = Place::new();
-    let sample = sample();
-    let args = [
-        "fit",
-        &sample,
-        "-o",
-        "a.svg",
-        "--strokes",
-        "3000",
-        "--preset",
-        "best",
-        "--view",
-        "--report",
-        "r.json",
-    ];
-    let program = Program::start(&place, &args);
+    let program = fitting(
+        &place,
+        "--strokes 3000 --preset best --view --report r.json",
+    );
     let seen = program.state_with(|state| state["version"].as_u64() >= Some(3));
     assert_eq!(seen["finished"], false);
     assert!(strokes(&seen) > 0 && !seen["curve"].as_array().unwrap().is_empty());
@@ -248,19 +245,7 @@ fn a_fit_is_seen_to_grow_and_can_be_stopped() {
 #[test]
 fn strokes_can_be_added_while_it_runs_and_after() {
     let place = Place::new();
-    let sample = sample();
-    let args = [
-        "fit",
-        &sample,
-        "-o",
-        "a.svg",
-        "--strokes",
-        "60",
-        "--preset",
-        "draft",
-        "--view",
-    ];
-    let program = Program::start(&place, &args);
+    let program = fitting(&place, "--strokes 60 --preset draft --view");
     assert_eq!(program.post("more?strokes=0"), 400);
     assert_eq!(program.post("more?strokes=many"), 400);
     assert_eq!(program.post("more?strokes=40"), 200);

@@ -14,14 +14,14 @@ use rayon::prelude::*;
 use super::descent::{Descent, Method, descend};
 use super::matching::{Grid, Matching};
 use super::table::{self, STEPS};
-use super::{COVERAGES, Output, SIZE};
+use super::{COVERAGES, Output, SIZE, sheet_of_step};
 use crate::coverage::Coverage;
 use crate::error::Result;
 use crate::image::Image;
 use crate::math::Real;
 use crate::report::Table;
 use crate::report::picture::{self, gray};
-use crate::report::plot::{Chart, Panel, Path, Sheet};
+use crate::report::plot::{Chart, Panel, Path};
 use crate::sdf::Circle;
 
 /// ε of the article's small experiments, px.
@@ -223,17 +223,8 @@ fn sheet(title: &str, setups: &[Setup], descents: &[Descent<f64>], step: usize) 
         panel.paths.push(outline(setup.target));
         Ok(panel)
     };
-    let sheet = Sheet {
-        title: format!("{title}, step {step}"),
-        columns: 3,
-        zoom: 4,
-        panels: setups
-            .iter()
-            .zip(descents)
-            .map(panel)
-            .collect::<Result<_>>()?,
-    };
-    sheet.draw()
+    let panels = setups.iter().zip(descents).map(panel);
+    sheet_of_step(title, step, panels.collect::<Result<_>>()?)
 }
 
 fn outline(place: f64) -> Path {

@@ -10,14 +10,14 @@ use super::compose::{GRAY, reference, star};
 use super::descent::{Descent, Method, Problem, descend};
 use super::star::START;
 use super::table::{self, STEPS};
-use super::{COVERAGES, Output, SIZE};
+use super::{COVERAGES, Output, SIZE, sheet_of_step};
 use crate::coverage::Coverage;
 use crate::error::Result;
 use crate::image::Image;
 use crate::loss::Loss;
 use crate::render::reference::{Reference, Rgb, Scene, Stroke};
 use crate::report::picture;
-use crate::report::plot::{Chart, Panel, Sheet};
+use crate::report::plot::{Chart, Panel};
 use crate::rng;
 
 const METHODS: [Method; 2] = [Method::adam(0.5), Method::rmsprop(0.1)];
@@ -146,13 +146,7 @@ fn sheet(title: &str, descents: &[Descent<f64>], step: usize) -> Result<Image> {
         let title = format!("{coverage} {:.5}", descent.loss_at(step));
         panels.push(Panel::new(title, picture::map(SIZE, &canvas, |rgb| rgb)?));
     }
-    let sheet = Sheet {
-        title: format!("{title}, step {step}"),
-        columns: 3,
-        zoom: 4,
-        panels,
-    };
-    sheet.draw()
+    sheet_of_step(title, step, panels)
 }
 
 #[cfg(test)]

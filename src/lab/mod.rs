@@ -36,6 +36,9 @@ pub mod table;
 pub use output::{Event, Output};
 
 use crate::coverage::Coverage;
+use crate::error::Result;
+use crate::image::Image;
+use crate::report::plot::{Panel, Sheet};
 
 /// Side of the small experiments' pictures, px.
 pub const SIZE: usize = 64;
@@ -48,3 +51,14 @@ pub const COVERAGES: [Coverage; 5] = [
     Coverage::Tanh,
     Coverage::Sigmoid,
 ];
+
+/// What the functions made of a small problem after `step` steps, a panel each.
+fn sheet_of_step(title: &str, step: usize, panels: Vec<Panel>) -> Result<Image> {
+    let sheet = Sheet {
+        title: format!("{title}, step {step}"),
+        columns: 3,
+        zoom: 4,
+        panels,
+    };
+    sheet.draw()
+}

@@ -6,14 +6,14 @@
 use super::descent::{Descent, Method, descend};
 use super::matching::{Grid, Matching};
 use super::table::{self, STEPS};
-use super::{COVERAGES, Output, SIZE};
+use super::{COVERAGES, Output, SIZE, sheet_of_step};
 use crate::coverage::Coverage;
 use crate::error::Result;
 use crate::image::Image;
 use crate::math::Real;
 use crate::report::Table;
 use crate::report::picture::{self, gray};
-use crate::report::plot::{Chart, Panel, Sheet};
+use crate::report::plot::{Chart, Panel};
 use crate::sdf::Capsule;
 
 /// The star: `[a.x, a.y, b.x, b.y, radius]`, px.
@@ -177,11 +177,5 @@ fn sheet(title: &str, setups: &[Setup], descents: &[Descent<f64>], step: usize) 
         let title = format!("{} {:.5}", setup.coverage, descent.loss_at(step));
         panels.push(Panel::new(title, picture::map(SIZE, &canvas, gray)?));
     }
-    let sheet = Sheet {
-        title: format!("{title}, step {step}"),
-        columns: 3,
-        zoom: 4,
-        panels,
-    };
-    sheet.draw()
+    sheet_of_step(title, step, panels)
 }
