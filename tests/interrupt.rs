@@ -54,8 +54,23 @@ fn await_fit(child: &Child, signal: i32) {
 }
 
 fn catches(process: u32, signal: i32) -> bool {
+    is_in(process, "SigCgt:", signal)
+}
+
+/// Waits until `signal`, which was sent, has reached the process: of two that wait together, either may come
+/// first.
+fn await_arrival(child: &Child, signal: i32) {
+    let start = Instant::now();
+    while is_in(child.id(), "ShdPnd:", signal) {
+        assert!(start.elapsed() < PATIENCE, "the signal does not arrive");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+/// Whether `signal` is in a set of signals that Linux tells of a process.
+fn is_in(process: u32, set: &str, signal: i32) -> bool {
     let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
-    let line = status.lines().find_map(|l| l.strip_prefix("SigCgt:"));
+    let line = status.lines().find_map(|l| l.strip_prefix(set));
     let bits = line.map_or(0, |bits| u64::from_str_radix(bits.trim(), 16).unwrap());
     bits >> (signal - 1) & 1 == 1
 }
@@ -140,6 +155,7 @@ fn a_second_signal_ends_at_once_and_leaves_the_old_file() {
     let child = fit(&place, &[], &ENDLESS);
     await_fit(&child, 15);
     send(&child, 2);
+    await_arrival(&child, 2);
     send(&child, 15);
     assert_eq!(end(child).status.signal(), Some(15));
     let svg = fs::read_to_string(place.path("out.svg")).unwrap();
