@@ -208,7 +208,7 @@ fn part_svg<'a>(
 
 /// The fewest decimals that say all of `scene`.
 fn precision(scene: &Scene) -> u8 {
-    let says_all = |precision: &u8| scene.quantized(*precision).0 == *scene;
+    let says_all = |precision: &u8| scene.quantized(*precision).scene == *scene;
     (0..MAX_PRECISION).find(says_all).unwrap_or(MAX_PRECISION)
 }
 
@@ -237,7 +237,7 @@ mod tests {
             stages,
             ..Scene::empty(32, 24, Some([0.9, 1.0, 0.8]))
         };
-        scene.quantized(2).0
+        scene.quantized(2).scene
     }
 
     fn film(step: Option<Step>) -> Film<'static> {

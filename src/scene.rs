@@ -8,7 +8,7 @@ mod quantize;
 
 use crate::math::Point;
 
-pub use quantize::{MAX_PRECISION, MIN_WIDTH};
+pub use quantize::{Dropped, MAX_PRECISION, MIN_WIDTH, Quantized};
 pub(crate) use quantize::{UNITS_PER_PX, Written, color, quantum};
 
 /// An sRGB-encoded colour, 0..1 per channel.

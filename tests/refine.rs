@@ -117,6 +117,35 @@ fn the_stages_that_are_missing_are_added() {
 }
 
 #[test]
+fn a_layer_that_nothing_is_seen_of_goes_and_the_others_are_numbered_on() {
+    let place = Place::new();
+    let head = format!(r#"<svg {NAMESPACE} width="300" height="200" viewBox="0 0 300 200">"#);
+    let paths = ["M9 9L40 90", "M-90 9L-40 90", "M200 9L9 190"];
+    let layer = |(k, d): (usize, &str)| {
+        let id = k + 1;
+        format!(
+            r##"<g id="stage-{id}" fill="none" stroke-linecap="round"><path d="{d}" stroke="#999999" stroke-width="5"/></g>"##
+        )
+    };
+    let body: String = paths.into_iter().enumerate().map(layer).collect();
+    place.file("three.svg", &format!("{head}{body}</svg>"));
+    let picture = sample("coffee-300.png");
+    let enough = ["refine", "three.svg", &picture, "--psnr", "1"];
+    draft(&place, &enough, "two.svg");
+    assert_eq!(layers(&place, "two.svg"), [1, 1]);
+    assert!(!read(&place, "two.svg").contains("M-90 9"));
+    let report = report(&place, "report.json");
+    let records = report["stages"].as_array().unwrap().iter();
+    let records: Vec<_> = records.map(|s| (&s["index"], &s["strokes"])).collect();
+    assert_eq!(
+        format!("{records:?}"),
+        "[(Number(1), Number(1)), (Number(2), Number(1))]"
+    );
+    assert_eq!(report["dropped"], 1);
+    assert_eq!(report["dropped_for"]["off_page"], 1);
+}
+
+#[test]
 fn a_base_that_meets_a_budget_is_written_as_it_is() {
     let place = Place::new();
     let picture = committed("samples/chelsea-cat.png");

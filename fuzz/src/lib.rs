@@ -49,7 +49,7 @@ pub fn svg(data: &[u8]) {
     if let Ok(scene) = svg::read(&text) {
         let options = svg::WriteOptions { precision: 6, ..Default::default() };
         let again = svg::read(&svg::write(&scene, &options)).expect("what is written can be read");
-        let (quantized, _) = scene.quantized(6);
+        let quantized = scene.quantized(6).scene;
         assert_eq!(again, quantized);
     }
     let size = Size::Exact { width: 40, height: 30 };

@@ -6,7 +6,7 @@ use strokefit::coverage::Coverage;
 use strokefit::fit::{Objective, Simd};
 use strokefit::loss::Loss;
 use strokefit::render::{Base, Canvas, Gradients, Params, Renderer, Softness, pack};
-use strokefit::scene::{Scene, Shape, Stage, Stroke};
+use strokefit::scene::{Quantized, Scene, Shape, Stage, Stroke};
 use strokefit::{image::Image, svg};
 
 /// The bytes of an input, taken one after the other; zeros where there are no more.
@@ -74,8 +74,8 @@ impl Source<'_> {
 pub fn scene(data: &[u8]) {
     let mut source = Source(data);
     let (scene, softness, precision) = (source.scene(), source.softness(), source.byte() % 8);
-    let (quantized, dropped) = scene.quantized(precision);
-    assert_eq!(quantized.len() + dropped, scene.len());
+    let Quantized { scene: quantized, dropped, .. } = scene.quantized(precision);
+    assert_eq!(quantized.len() + dropped.total(), scene.len());
     let text = svg::write(&scene, &svg::WriteOptions { precision, ..Default::default() });
     assert_eq!(svg::read(&text).expect("what is written can be read"), quantized);
     // Numbers of all kinds do no harm, those of a drawing give a picture.

@@ -8,7 +8,7 @@ use strokefit::fit::{self, Base, Fit, Observer, Progress, Stop};
 use strokefit::image::Image;
 use strokefit::metrics::Quality;
 use strokefit::report::{self, BaseEntry, Event, FitReport, Input, StageEntry, Usage};
-use strokefit::scene::Scene;
+use strokefit::scene::{Dropped, Scene};
 use strokefit::svg::WriteOptions;
 use strokefit::verify::{self, MIN_AGREEMENT_DB, OnGrounds, Verdict};
 
@@ -54,6 +54,7 @@ impl Job<'_> {
         let bar = Bar::new(verbosity.quiet, heading);
         let fit = self.watched(&picture, events, bar, draw)?;
         tell_stages(&fit, verbosity);
+        tell_dropped(fit.dropped, verbosity);
         let mut drawn = Drawn::new(fit, &self.options.form.options())?;
         outputs.svg.1.write(drawn.text.as_bytes())?;
         drawn.wall = start.elapsed();
@@ -118,7 +119,8 @@ impl Job<'_> {
             schema: report::SCHEMA,
             input: Input::new(self.input.display().to_string(), &drawn.fit.target),
             strokes: drawn.fit.scene.len(),
-            dropped: drawn.fit.dropped,
+            dropped: drawn.fit.dropped.total(),
+            dropped_for: drawn.fit.dropped,
             stages: drawn.fit.stages.iter().map(StageEntry::from).collect(),
             svg_bytes: drawn.text.len(),
             svg_gzip_bytes: report::gzip_bytes(&drawn.text),
@@ -276,6 +278,19 @@ fn tell_stages(fit: &Fit, verbosity: Verbosity) {
             stage.iterations,
             stage.wall.as_secs_f64(),
             stage.psnr_db
+        ));
+    }
+}
+
+fn tell_dropped(dropped: Dropped, verbosity: Verbosity) {
+    let Dropped {
+        non_finite,
+        invisible,
+        off_page,
+    } = dropped;
+    if dropped.total() > 0 {
+        verbosity.detail(format_args!(
+            "dropped: {non_finite} strokes with numbers that are none, {invisible} invisible, {off_page} off the page"
         ));
     }
 }

@@ -51,7 +51,7 @@ pub use simd::Simd;
 
 use crate::error::Result;
 use crate::image::Image;
-use crate::scene::Scene;
+use crate::scene::{Dropped, Scene};
 use crate::svg::WriteOptions;
 use work::{Task, Work};
 
@@ -67,12 +67,12 @@ pub struct Fit {
     /// Our own render of `scene` with the edge of a finished drawing; with alpha if the drawing has no
     /// ground and the picture has alpha.
     pub soft: Image,
-    /// One record per stage.
+    /// One record per stage of `scene`, those that were kept of a base included.
     pub stages: Vec<StageRecord>,
     /// Why no more was done.
     pub stop: Stop,
     /// Strokes that were dropped because they became non-finite or could not be seen.
-    pub dropped: usize,
+    pub dropped: Dropped,
 }
 
 impl Fit {

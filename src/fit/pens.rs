@@ -238,7 +238,8 @@ impl Order {
             .iter()
             .map(|p| Written::anywhere(&unpack(p), 2))
             .collect();
-        let meet = |i: usize, k: usize| matches!((&written[i], &written[k]), (Some(a), Some(b)) if a.meets(b));
+        let meet =
+            |i: usize, k: usize| matches!((&written[i], &written[k]), (Ok(a), Ok(b)) if a.meets(b));
         let none = vec![0_u64; count.div_ceil(64)];
         let mut order = Self {
             later: vec![none.clone(); count],

@@ -18,7 +18,7 @@ use crate::error::Result;
 use crate::image::Image;
 use crate::optim::Schedule;
 use crate::render::Canvas;
-use crate::scene::Scene;
+use crate::scene::{Dropped, Scene};
 use crate::svg::WriteOptions;
 use crate::{metrics, verify};
 
@@ -49,8 +49,10 @@ impl<'a> Page<'a> {
 #[derive(Debug, Clone)]
 pub(super) struct Written {
     pub(super) scene: Scene,
+    /// Which stage of the drawing each layer is.
+    pub(super) origins: Vec<usize>,
     /// Strokes that cannot be written.
-    pub(super) dropped: usize,
+    pub(super) dropped: Dropped,
     /// What an SVG renderer draws on each ground.
     pub(super) drawn: Vec<Image>,
     /// Bytes of SVG.
@@ -61,9 +63,10 @@ pub(super) struct Written {
 
 /// Rounds and writes `drawing` and renders the file.
 pub(super) fn write(drawing: &Drawing, page: Page<'_>) -> Result<Written> {
-    let (scene, dropped) = drawing
+    let quantized = drawing
         .scene(page.has_ground)
         .quantized(page.file.precision);
+    let scene = quantized.scene;
     let text = Base::write(page.base, &scene, &page.file);
     let (mut drawn, mut mse) = (Vec::new(), 0.0_f64);
     for ground in drawing.grounds() {
@@ -73,7 +76,8 @@ pub(super) fn write(drawing: &Drawing, page: Page<'_>) -> Result<Written> {
     }
     Ok(Written {
         scene,
-        dropped,
+        origins: quantized.origins,
+        dropped: quantized.dropped,
         bytes: text.len(),
         drawn,
         mse,

@@ -31,7 +31,8 @@ pub enum Event {
 pub struct Phase {
     /// The picture as it was named.
     pub path: String,
-    /// Index of the stage, from 1; one past the last for the polish of all.
+    /// Index of the stage, from 1; one past the last for the polish of all. A stage that keeps no stroke in the
+    /// end is no layer, and those after it are then numbered otherwise in the report.
     pub stage: usize,
     /// Strokes in the drawing.
     pub strokes: usize,

@@ -21,6 +21,7 @@ use serde::{Deserialize, Serialize};
 use crate::fit::{StageRecord, Stop};
 use crate::image::Image;
 use crate::metrics::{Agreement, Quality};
+use crate::scene::Dropped;
 use crate::verify::OnGrounds;
 
 pub use check::{AgainstResvg, CheckReport, NotDrawn, RendererEntry};
@@ -43,7 +44,9 @@ pub struct FitReport {
     pub strokes: usize,
     /// Strokes that were dropped because they became non-finite or could not be seen.
     pub dropped: usize,
-    /// One per stage, in order.
+    /// How many of them for which reason.
+    pub dropped_for: Dropped,
+    /// One per layer of the drawing, in order.
     pub stages: Vec<StageEntry>,
     /// Length of the SVG text in bytes.
     pub svg_bytes: usize,
@@ -112,7 +115,7 @@ impl Input {
 /// How one stage went.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct StageEntry {
-    /// From 1.
+    /// From 1; that of the layer.
     pub index: usize,
     /// Strokes of the stage in the drawing.
     pub strokes: usize,
@@ -180,6 +183,10 @@ mod tests {
             },
             strokes: 9,
             dropped: 1,
+            dropped_for: Dropped {
+                off_page: 1,
+                ..Dropped::default()
+            },
             stages: vec![StageEntry::from(&record)],
             svg_bytes: 900,
             svg_gzip_bytes: 400,
@@ -216,6 +223,7 @@ mod tests {
             "input": {"path": "a.png", "width": 4, "height": 3},
             "strokes": 9,
             "dropped": 1,
+            "dropped_for": {"non_finite": 0, "invisible": 0, "off_page": 1},
             "stages": [{"index": 1, "strokes": 9, "iterations": 40, "wall_s": 0.25, "psnr_db": 31.5, "layer_psnr_db": 30.5}],
             "svg_bytes": 900,
             "svg_gzip_bytes": 400,

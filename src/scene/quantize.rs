@@ -4,6 +4,8 @@
 //! is read through it alone, so that reading back what was written gives the quantised scene to
 //! the bit.
 
+use serde::{Deserialize, Serialize};
+
 use super::{Rgb, Scene, Shape, Stage, Stroke};
 use crate::math::Point;
 
@@ -21,37 +23,85 @@ const MAX_COORDINATE: f32 = 1e9;
 /// Parts of a px in which [`Written`] counts.
 pub(crate) const UNITS_PER_PX: i64 = 10_i64.pow(MAX_PRECISION as u32);
 
+/// A scene as its SVG says it, and what that leaves out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Quantized {
+    /// What is written. No stage of it is empty.
+    pub scene: Scene,
+    /// Which stage of the original each of its stages is.
+    pub origins: Vec<usize>,
+    /// What is not written.
+    pub dropped: Dropped,
+}
+
+/// How many strokes are not written, by the reason.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Dropped {
+    /// A number of theirs is none.
+    pub non_finite: usize,
+    /// They have no width, or an opacity that rounds to 0.
+    pub invisible: usize,
+    /// They lie wholly off the page (judged by their bounding box), or absurdly far away.
+    pub off_page: usize,
+}
+
+impl Dropped {
+    /// All of them.
+    pub fn total(self) -> usize {
+        self.non_finite + self.invisible + self.off_page
+    }
+
+    fn count(&mut self, reason: Unwritable) {
+        *match reason {
+            Unwritable::NonFinite => &mut self.non_finite,
+            Unwritable::Invisible => &mut self.invisible,
+            Unwritable::OffPage => &mut self.off_page,
+        } += 1;
+    }
+}
+
+/// Why a stroke cannot be written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Unwritable {
+    NonFinite,
+    Invisible,
+    OffPage,
+}
+
 impl Scene {
-    /// The scene as its SVG of `precision` decimals (at most [`MAX_PRECISION`]) says it, and how
-    /// many strokes were dropped.
+    /// The scene as its SVG of `precision` decimals (at most [`MAX_PRECISION`]) says it.
     ///
     /// Coordinates and widths are rounded, widths kept at [`MIN_WIDTH`] or more; colours and
     /// opacities become multiples of 1/255; a shape shorter than the precision becomes a dot.
-    /// Dropped are strokes that are not finite, absurdly far away, of no width, of an opacity that
-    /// rounds to 0, or wholly off the page (judged by their bounding box).
-    pub fn quantized(&self, precision: u8) -> (Self, usize) {
-        let stages: Vec<_> = self
-            .stages
-            .iter()
-            .map(|stage| self.quantized_stage(stage, precision))
-            .collect();
-        let scene = Self {
-            background: self.background.map(quantized_color),
-            stages,
-            ..*self
+    /// [`Dropped`] says what is left out; stages without strokes are, too.
+    pub fn quantized(&self, precision: u8) -> Quantized {
+        let mut quantized = Quantized {
+            scene: Self {
+                background: self.background.map(quantized_color),
+                stages: Vec::new(),
+                ..*self
+            },
+            origins: Vec::new(),
+            dropped: Dropped::default(),
         };
-        let dropped = self.len() - scene.len();
-        (scene, dropped)
+        for (origin, stage) in self.stages.iter().enumerate() {
+            let strokes = self.written(stage, precision, &mut quantized.dropped);
+            if !strokes.is_empty() {
+                let strokes = strokes.iter().map(Written::stroke).collect();
+                quantized.scene.stages.push(Stage { strokes });
+                quantized.origins.push(origin);
+            }
+        }
+        quantized
     }
 
-    fn quantized_stage(&self, stage: &Stage, precision: u8) -> Stage {
-        let written = stage
-            .strokes
-            .iter()
-            .filter_map(|stroke| Written::new(stroke, self, precision));
-        Stage {
-            strokes: written.map(|w| w.stroke()).collect(),
-        }
+    /// The strokes of `stage` that can be written; the others are counted.
+    fn written(&self, stage: &Stage, precision: u8, dropped: &mut Dropped) -> Vec<Written> {
+        let written = |stroke| {
+            let written = Written::new(stroke, self, precision);
+            written.map_err(|reason| dropped.count(reason)).ok()
+        };
+        stage.strokes.iter().filter_map(written).collect()
     }
 }
 
@@ -70,22 +120,20 @@ pub(crate) struct Written {
 }
 
 impl Written {
-    /// The stroke rounded to `precision` decimals, or `None` where nothing of it would be seen on
-    /// the page of `scene`.
-    pub(crate) fn new(stroke: &Stroke, scene: &Scene, precision: u8) -> Option<Self> {
+    /// The stroke rounded to `precision` decimals, or why nothing of it would be seen on the page of
+    /// `scene`.
+    pub(crate) fn new(stroke: &Stroke, scene: &Scene, precision: u8) -> Result<Self, Unwritable> {
         let written = Self::anywhere(stroke, precision)?;
-        written
-            .touches(scene.width, scene.height)
-            .then_some(written)
+        if written.touches(scene.width, scene.height) {
+            Ok(written)
+        } else {
+            Err(Unwritable::OffPage)
+        }
     }
 
     /// The stroke rounded to `precision` decimals, wherever it lies.
-    pub(crate) fn anywhere(stroke: &Stroke, precision: u8) -> Option<Self> {
-        let far = |p: &Point| p.x.abs() > MAX_COORDINATE || p.y.abs() > MAX_COORDINATE;
-        let absurd = stroke.radius > MAX_COORDINATE || stroke.shape.points().iter().any(far);
-        if !stroke.is_finite() || absurd || stroke.radius <= 0.0 {
-            return None;
-        }
+    pub(crate) fn anywhere(stroke: &Stroke, precision: u8) -> Result<Self, Unwritable> {
+        check(stroke)?;
         let grid = Grid::new(precision);
         let mut points: Vec<_> = stroke
             .shape
@@ -97,12 +145,11 @@ impl Written {
         let width = grid
             .units(2.0 * f64::from(stroke.radius))
             .max(grid.min_width());
-        let opacity = quantum(stroke.opacity);
-        (opacity > 0).then(|| Self {
+        Ok(Self {
             points,
             width,
             color: stroke.color.map(quantum),
-            opacity,
+            opacity: quantum(stroke.opacity),
         })
     }
 
@@ -131,6 +178,20 @@ impl Written {
             color: color(self.color),
             opacity: f32::from(self.opacity) / 255.0,
         }
+    }
+}
+
+/// Refuses what no decimals make visible.
+fn check(stroke: &Stroke) -> Result<(), Unwritable> {
+    let far = |p: &Point| p.x.abs() > MAX_COORDINATE || p.y.abs() > MAX_COORDINATE;
+    if !stroke.is_finite() {
+        Err(Unwritable::NonFinite)
+    } else if stroke.radius <= 0.0 || quantum(stroke.opacity) == 0 {
+        Err(Unwritable::Invisible)
+    } else if stroke.radius > MAX_COORDINATE || stroke.shape.points().iter().any(far) {
+        Err(Unwritable::OffPage)
+    } else {
+        Ok(())
     }
 }
 
@@ -204,7 +265,7 @@ mod tests {
     fn quantized(stroke: Stroke, precision: u8) -> Option<Stroke> {
         scene(vec![stroke])
             .quantized(precision)
-            .0
+            .scene
             .strokes()
             .next()
             .copied()
@@ -245,7 +306,10 @@ mod tests {
             (q.color, q.opacity),
             ([128.0 / 255.0, 0.0, 1.0], 77.0 / 255.0)
         );
-        let ground = Scene::empty(1, 1, Some([0.5; 3])).quantized(2).0.background;
+        let ground = Scene::empty(1, 1, Some([0.5; 3]))
+            .quantized(2)
+            .scene
+            .background;
         assert_eq!(ground, Some([128.0 / 255.0; 3]));
     }
 
@@ -275,8 +339,35 @@ mod tests {
             capsule([5.0, 1.0], [5.0, 3e9]),
             capsule([f32::NAN, 1.0], [5.0, 3.0]),
         ];
-        let (kept, dropped) = scene(strokes).quantized(2);
-        assert_eq!((kept.len(), dropped), (1, 8));
+        let Quantized { scene, dropped, .. } = scene(strokes).quantized(2);
+        let expected = Dropped {
+            non_finite: 3,
+            invisible: 2,
+            off_page: 3,
+        };
+        assert_eq!((scene.len(), dropped), (1, expected));
+        assert_eq!(dropped.total(), 8);
+    }
+
+    #[test]
+    fn stages_without_strokes_are_none() {
+        let seen = capsule([1.0, 1.0], [5.0, 5.0]);
+        let away = capsule([-9.0, 5.0], [-2.5, 5.0]);
+        let stages = [vec![], vec![seen], vec![away], vec![away, seen, seen]]
+            .map(|strokes| Stage { strokes })
+            .to_vec();
+        let scene = Scene {
+            stages,
+            ..scene(vec![])
+        };
+        let quantized = scene.quantized(2);
+        let sizes: Vec<_> = quantized
+            .scene
+            .stages
+            .iter()
+            .map(|s| s.strokes.len())
+            .collect();
+        assert_eq!((sizes, quantized.origins), (vec![1, 2], vec![1, 3]));
     }
 
     #[test]

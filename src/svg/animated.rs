@@ -26,7 +26,7 @@ pub fn write_animated(
     timing: Timing,
     precision: u8,
 ) -> String {
-    let (scene, _) = scene.quantized(precision);
+    let scene = scene.quantized(precision).scene;
     let options = WriteOptions {
         precision,
         form: Form::Elements,

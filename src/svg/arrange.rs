@@ -17,15 +17,16 @@ pub(super) struct Layer {
     pub(super) color: Option<[u8; 3]>,
 }
 
-/// The layers of the file.
+/// The layers of the file, none of them empty.
 pub(super) fn layers(scene: &Scene, options: &WriteOptions) -> Vec<Layer> {
     let written = |stage: &Stage| -> Vec<_> {
         let strokes = stage.strokes.iter();
         strokes
-            .filter_map(|stroke| Written::new(stroke, scene, options.precision))
+            .filter_map(|stroke| Written::new(stroke, scene, options.precision).ok())
             .collect()
     };
     let stages = scene.stages.iter().map(written);
+    let stages = stages.filter(|strokes| !strokes.is_empty());
     let mut layers: Vec<_> = match options.group {
         Group::Stage => stages
             .map(|strokes| Layer {
@@ -50,7 +51,7 @@ pub fn arrange(scene: &Scene, options: &WriteOptions) -> Scene {
     let stage = |layer: &Layer| Stage {
         strokes: layer.strokes.iter().map(Written::stroke).collect(),
     };
-    let (quantized, _) = scene.quantized(options.precision);
+    let quantized = scene.quantized(options.precision).scene;
     Scene {
         stages: layers(&quantized, options).iter().map(stage).collect(),
         ..quantized

@@ -47,7 +47,7 @@
 //!
 //! let text = svg::write(&scene, &WriteOptions::default());
 //! assert!(text.contains(r##"<path d="M1.25 2L30 4" stroke="#ff6600" stroke-width="3" stroke-opacity="0.502"/>"##));
-//! assert_eq!(svg::read(&text)?, scene.quantized(2).0);
+//! assert_eq!(svg::read(&text)?, scene.quantized(2).scene);
 //! # Ok::<(), strokefit::Error>(())
 //! ```
 

@@ -4,7 +4,7 @@ use super::*;
 use crate::error::ErrorKind;
 use crate::math::Point;
 use crate::metrics::Agreement;
-use crate::scene::{Scene, Shape, Stage, Stroke};
+use crate::scene::{Dropped, Scene, Shape, Stage, Stroke};
 use crate::verify;
 
 fn point() -> impl Strategy<Value = Point> {
@@ -100,9 +100,9 @@ proptest! {
     #[test]
     fn reading_what_was_written_gives_the_quantised_scene(scene in scene(), precision in 0..=6_u8) {
         let text = write(&scene, &precise(precision));
-        let (quantized, dropped) = scene.quantized(precision);
-        prop_assert_eq!(quantized.len() + dropped, scene.len());
-        prop_assert_eq!(read(&text).unwrap(), quantized);
+        let quantized = scene.quantized(precision);
+        prop_assert_eq!(quantized.scene.len() + quantized.dropped.total(), scene.len());
+        prop_assert_eq!(read(&text).unwrap(), quantized.scene);
     }
 
     #[test]
@@ -126,7 +126,7 @@ proptest! {
             strokes
         };
         let arranged = arrange(&scene, &options);
-        prop_assert_eq!(sorted(&arranged), sorted(&scene.quantized(options.precision).0));
+        prop_assert_eq!(sorted(&arranged), sorted(&scene.quantized(options.precision).scene));
     }
 
     #[test]
@@ -148,8 +148,10 @@ proptest! {
 
     #[test]
     fn quantising_twice_changes_nothing(scene in scene(), precision in 0..=6_u8) {
-        let (once, _) = scene.quantized(precision);
-        prop_assert_eq!(once.quantized(precision), (once.clone(), 0));
+        let once = scene.quantized(precision).scene;
+        let twice = once.quantized(precision);
+        prop_assert_eq!(twice.dropped, Dropped::default());
+        prop_assert_eq!(&twice.scene, &once);
         let options = precise(precision);
         prop_assert_eq!(write(&once, &options), write(&scene, &options));
     }
@@ -344,5 +346,5 @@ fn comments_white_space_and_prefixed_attributes_do_not_matter() {
             "inkscape:insensitive=\"true\" inkscape:label=",
         )
         .replace("/>\n</g>", "></path>\n  </g>");
-    assert_eq!(read(&text).unwrap(), sample().quantized(2).0);
+    assert_eq!(read(&text).unwrap(), sample().quantized(2).scene);
 }

@@ -256,7 +256,7 @@ fn article(picture: &Image, strokes: usize, limit: Limit, seed: u64) -> Result<D
     let scene = descent.drawing().scene();
     // What it ends with may be thinner than any file has it: no soft render stands for the file.
     Ok(Drawn {
-        strokes: Some(scene.quantized(2).0.len()),
+        strokes: Some(scene.quantized(2).scene.len()),
         ..Drawn::file(svg::write(&scene, &WriteOptions::default()))
     })
 }

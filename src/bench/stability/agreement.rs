@@ -230,7 +230,7 @@ fn rounded(stroke: &Params) -> Params {
         stages: vec![stage],
         ..Scene::empty(SIDE as u32, SIDE as u32, None)
     };
-    let (written, _) = scene.quantized(2);
+    let written = scene.quantized(2).scene;
     written.strokes().next().map_or(*stroke, pack)
 }
 

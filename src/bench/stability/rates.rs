@@ -104,8 +104,8 @@ fn with_rates(factor: f32) -> Result<Finding> {
     })?;
     let sensible = factor <= 1.0;
     let useful = sound.holds() || !sensible;
-    let counted = !factor.is_nan() || fit.dropped > 0 && fit.scene.is_empty();
-    let figure = format!("{sound}, {} dropped and counted", fit.dropped);
+    let counted = !factor.is_nan() || fit.dropped.total() > 0 && fit.scene.is_empty();
+    let figure = format!("{sound}, {} dropped and counted", fit.dropped.total());
     Ok(Finding::new(figure, sound.is_valid() && useful && counted))
 }
 

@@ -6,7 +6,7 @@ use super::{Check, Finding};
 use crate::coverage::Coverage;
 use crate::error::Result;
 use crate::render::{Params, unpack};
-use crate::scene::{Scene, Stage};
+use crate::scene::{Quantized, Scene, Stage};
 use crate::svg::{self, WriteOptions};
 use crate::verify;
 
@@ -159,18 +159,22 @@ fn scene(page: &Page) -> Scene {
 /// written.
 fn written(page: &Page) -> Result<(String, bool)> {
     let scene = scene(page);
-    let (kept, dropped) = scene.quantized(2);
+    let quantized = scene.quantized(2);
     let text = svg::write(&scene, &WriteOptions::default());
     let back = svg::read(&text)?;
     verify::render(&text, verify::Size::Scale(1.0), None)?;
-    let figure = format!("file: {} strokes, {dropped} dropped", back.len());
-    Ok((figure, back == kept))
+    let figure = format!(
+        "file: {} strokes, {} dropped",
+        back.len(),
+        quantized.dropped.total()
+    );
+    Ok((figure, back == quantized.scene))
 }
 
 /// Strokes with numbers that are none, among five that are sound.
 fn poisoned() -> Result<Finding> {
     let sound = Page::new(40, 36, random(2, 40, 36, 5));
-    let kept = scene(&sound).quantized(2).0.len();
+    let kept = scene(&sound).quantized(2).scene.len();
     let (mut dropped, mut wrong) = (0, Vec::new());
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         for k in 0..9 {
@@ -178,8 +182,12 @@ fn poisoned() -> Result<Finding> {
             let mut stroke = page.strokes[0];
             stroke[k] = bad;
             page.strokes.push(stroke);
-            let (quantized, out) = scene(&page).quantized(2);
-            dropped += out + kept - 5;
+            let Quantized {
+                scene: quantized,
+                dropped: out,
+                ..
+            } = scene(&page).quantized(2);
+            dropped += out.total() + kept - 5;
             let text = svg::write(&scene(&page), &WriteOptions::default());
             let drawn = verify::render(&text, verify::Size::Scale(1.0), None).is_ok();
             let sane = svg::read(&text).is_ok_and(|back| back == quantized);

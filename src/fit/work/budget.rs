@@ -79,13 +79,14 @@ pub(super) fn is_better(budget: &Budget, new: &Written, old: &Written) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Scene;
+    use crate::scene::{Dropped, Scene};
 
     /// A file of no strokes.
     fn file(bytes: usize, mse: f64) -> Written {
         Written {
             scene: Scene::empty(4, 3, None),
-            dropped: 0,
+            origins: Vec::new(),
+            dropped: Dropped::default(),
             drawn: Vec::new(),
             bytes,
             mse,

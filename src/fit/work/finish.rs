@@ -3,10 +3,10 @@
 use super::{Work, budget};
 use crate::error::Result;
 use crate::fit::settle::Written;
-use crate::fit::{Fit, drawing, ground, settle};
+use crate::fit::{Fit, StageRecord, drawing, ground, settle};
 use crate::image::Image;
 use crate::metrics::psnr_db;
-use crate::scene::Scene;
+use crate::scene::{Dropped, Scene, Stage};
 
 impl Work<'_> {
     /// Ends the fit where the base as it is meets a budget already.
@@ -42,27 +42,37 @@ impl Work<'_> {
             Some(best) => best,
             None => settle::write(&self.drawing, self.page)?,
         };
-        self.record_layers(&written.scene);
+        let stages = self.records(&written);
         let soft = self.soft(&written.scene)?;
         Ok(Fit {
             soft,
             scene: written.scene,
             base: self.base.cloned(),
             target: self.target,
-            stages: self.standing.records,
+            stages,
             stop: self.control.stopped().unwrap_or(self.standing.stop),
-            dropped: written.dropped + self.drawing.lost(),
+            dropped: Dropped {
+                non_finite: written.dropped.non_finite + self.drawing.lost(),
+                ..written.dropped
+            },
         })
     }
 
-    /// Completes the records of the stages by what became of them in the finished `scene`.
-    fn record_layers(&mut self, scene: &Scene) {
-        let mses = self.drawing.layer_mses(scene);
-        let layers = scene.stages.iter().zip(mses);
-        for (record, (stage, mse)) in self.standing.records.iter_mut().zip(layers) {
-            record.strokes = stage.strokes.len();
-            record.layer_psnr_db = psnr_db(mse);
-        }
+    /// The records of the stages that have strokes in the finished drawing, numbered as its layers, with what
+    /// became of them.
+    fn records(&mut self, written: &Written) -> Vec<StageRecord> {
+        let mses = self.drawing.layer_mses(&written.scene);
+        let layers = written.scene.stages.iter().zip(mses);
+        let origins = written.origins.iter().enumerate();
+        let record = |((number, &origin), (stage, mse)): ((_, _), (&Stage, _))| {
+            Some(StageRecord {
+                index: number + 1,
+                strokes: stage.strokes.len(),
+                layer_psnr_db: psnr_db(mse),
+                ..*self.standing.records.get(origin)?
+            })
+        };
+        origins.zip(layers).filter_map(record).collect()
     }
 
     /// Our own render of `scene`; with alpha where there is a ground of either colour.
