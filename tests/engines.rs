@@ -322,32 +322,45 @@ fn a_round_trip_through_inkscape_keeps_the_drawing_and_its_layers() {
     if installed("inkscape").is_none() {
         return;
     }
-    let file = committed("docs/pictures/chelsea-cat.svg");
-    let original = fs::read_to_string(&file).unwrap();
-    let render = |text: &str| verify::render(text, Size::Scale(1.0), Some([1.0; 3])).unwrap();
-    for plain in [true, false] {
-        let place = Place::new();
-        let saved = saved_by_inkscape(&place, &file, plain);
-        assert_ne!(saved, original);
-        let db = metrics::psnr(&render(&original), &render(&saved)).unwrap();
-        assert!(db >= 45.0, "plain {plain}: {db:.2} dB");
-        let count = |text: &str, word| text.matches(word).count();
-        assert_eq!(count(&saved, "<path"), count(&original, "<path"));
-        assert_eq!(
-            count(&saved, "id=\"stage-"),
-            count(&original, "id=\"stage-")
-        );
-        let layers = if plain {
-            0
-        } else {
-            count(&original, "groupmode")
-        };
-        assert_eq!(count(&saved, "inkscape:groupmode=\"layer\""), layers);
-        let worst = svg::lint(&saved)
-            .into_iter()
-            .find(|f| f.severity < svg::Severity::Note);
-        assert_eq!(worst, None);
+    let plain = fs::read_to_string(committed("docs/pictures/chelsea-cat.svg")).unwrap();
+    let options = WriteOptions {
+        precision: 1,
+        form: Form::Smallest,
+        width: Some("120mm".parse().unwrap()),
+        ..WriteOptions::default()
+    };
+    let smallest = svg::write(&svg::read(&plain).unwrap(), &options);
+    assert!(smallest.contains("scale(0.1)"));
+    for original in [plain, smallest] {
+        survives_inkscape(&original, true);
+        survives_inkscape(&original, false);
     }
+}
+
+#[track_caller]
+fn survives_inkscape(original: &str, plain: bool) {
+    let place = Place::new();
+    let file = place.path("original.svg");
+    fs::write(&file, original).unwrap();
+    let saved = saved_by_inkscape(&place, file.to_str().unwrap(), plain);
+    assert_ne!(saved, original);
+    let render = |text: &str| verify::render(text, Size::Scale(1.0), Some([1.0; 3])).unwrap();
+    let db = metrics::psnr(&render(original), &render(&saved)).unwrap();
+    assert!(db >= 45.0, "plain {plain}: {db:.2} dB");
+    let count = |text: &str, word| text.matches(word).count();
+    for word in ["<path", "id=\"stage-"] {
+        assert_eq!(count(&saved, word), count(original, word));
+    }
+    let layers = if plain {
+        0
+    } else {
+        count(original, "groupmode")
+    };
+    assert_eq!(count(&saved, "inkscape:groupmode=\"layer\""), layers);
+    let worst = svg::lint(&saved)
+        .into_iter()
+        .find(|f| f.severity < svg::Severity::Note);
+    assert_eq!(worst, None);
 }
 
 #[test]

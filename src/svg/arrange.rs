@@ -6,6 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::dialect::Unit;
 use super::options::{Form, Group, WriteOptions};
 use super::path;
 use crate::scene::{Scene, Stage, Written};
@@ -38,7 +39,8 @@ pub(super) fn layers(scene: &Scene, options: &WriteOptions) -> Vec<Layer> {
     };
     if options.form == Form::Smallest {
         for layer in &mut layers {
-            layer.strokes.iter_mut().for_each(orient);
+            let strokes = layer.strokes.iter_mut();
+            strokes.for_each(|stroke| orient(stroke, options.unit()));
             layer.strokes = arranged(std::mem::take(&mut layer.strokes), pen, |s| s.width);
         }
     }
@@ -59,8 +61,8 @@ pub fn arrange(scene: &Scene, options: &WriteOptions) -> Scene {
 }
 
 /// Lets a stroke begin at the end that makes its path shorter.
-fn orient(stroke: &mut Written) {
-    let length = |stroke: &Written| path::data([stroke.points.as_slice()]).len();
+fn orient(stroke: &mut Written, unit: Unit) {
+    let length = |stroke: &Written| path::data([stroke.points.as_slice()], unit).len();
     let mut other = stroke.clone();
     other.points.reverse();
     if length(&other) < length(stroke) {

@@ -1,6 +1,6 @@
 //! The words of the dialect that reader and writer share: names, numbers, colours.
 
-use crate::scene::UNITS_PER_PX;
+use crate::scene::{MAX_PRECISION, UNITS_PER_PX};
 
 /// The namespace of SVG; with `http`, or nothing draws it.
 pub(crate) const SVG_NAMESPACE: &str = "http://www.w3.org/2000/svg";
@@ -12,38 +12,76 @@ pub(super) const INKSCAPE_NAMESPACE: &str = "http://www.inkscape.org/namespaces/
 /// All decimals up to here are exact in `f64`.
 pub(super) const MAX_UNITS: i64 = 2_000_000_000 * UNITS_PER_PX;
 
-/// Appends `units` as a decimal of px: no exponent, no leading dot, no trailing zeros.
-pub(super) fn push_number(out: &mut String, units: i64) {
-    if units < 0 {
-        out.push('-');
-    }
-    let units = units.unsigned_abs();
-    let per_px = UNITS_PER_PX.unsigned_abs();
-    out.push_str(&(units / per_px).to_string());
-    let fraction = units % per_px;
-    if fraction > 0 {
-        let digits = format!("{:0width$}", fraction, width = per_px.ilog10() as usize);
-        out.push('.');
-        out.push_str(digits.trim_end_matches('0'));
-    }
-}
+/// What the numbers of a text count: px or a decimal fraction of it, in 1/[`UNITS_PER_PX`] px.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Unit(i64);
 
-/// The units of a decimal of px, or `None` if it is no plain decimal, has more places than a unit
-/// can hold, or is beyond ±2·10⁹ px.
-pub(super) fn number(text: &str) -> Option<i64> {
-    let (negative, magnitude) = match text.strip_prefix('-') {
-        Some(rest) => (true, rest),
-        None => (false, text),
-    };
-    let (whole, fraction) = magnitude.split_once('.').unwrap_or((magnitude, "0"));
-    let places = UNITS_PER_PX.ilog10() as usize;
-    let digits = |s: &str| !s.is_empty() && s.bytes().all(|b| b.is_ascii_digit());
-    if !digits(whole) || !digits(fraction) || fraction.len() > places {
-        return None;
+impl Unit {
+    pub(super) const PX: Self = Self(UNITS_PER_PX);
+
+    /// 10^−precision px, the 10^−6th at least.
+    pub(super) fn decimal(precision: u8) -> Self {
+        Self(UNITS_PER_PX / 10_i64.pow(precision.min(MAX_PRECISION).into()))
     }
-    let units = whole.parse::<i64>().ok()?.checked_mul(UNITS_PER_PX)?;
-    let units = units.checked_add(format!("{fraction:0<places$}").parse().ok()?)?;
-    (units <= MAX_UNITS).then_some(if negative { -units } else { units })
+
+    /// What a group says in whose elements numbers count this.
+    pub(super) fn transform(self) -> String {
+        let mut out = String::from("scale(");
+        Self::PX.push(&mut out, self.0);
+        out + ")"
+    }
+
+    /// The unit of a group that says so.
+    pub(super) fn of_transform(text: &str) -> Option<Self> {
+        let mut units = (1..=MAX_PRECISION).map(Self::decimal);
+        units.find(|unit| unit.transform() == text)
+    }
+
+    /// Appends `units` as a decimal: no exponent, no leading dot, no trailing zeros.
+    pub(super) fn push(self, out: &mut String, units: i64) {
+        if units < 0 {
+            out.push('-');
+        }
+        let (units, one) = (units.unsigned_abs(), self.0.unsigned_abs());
+        out.push_str(&(units / one).to_string());
+        let fraction = units % one;
+        if fraction > 0 {
+            let digits = format!("{fraction:0width$}", width = self.places());
+            out.push('.');
+            out.push_str(digits.trim_end_matches('0'));
+        }
+    }
+
+    /// What a decimal says, in 1/[`UNITS_PER_PX`] px, or `None` if it is no plain decimal, has more places than
+    /// that can hold, or is beyond ±2·10⁹ px.
+    pub(super) fn parse(self, text: &str) -> Option<i64> {
+        let (negative, magnitude) = match text.strip_prefix('-') {
+            Some(rest) => (true, rest),
+            None => (false, text),
+        };
+        let is_digits = |s: &str| s.bytes().all(|b| b.is_ascii_digit());
+        let (whole, fraction) = match magnitude.split_once('.') {
+            Some((_, "")) => return None,
+            Some(parts) => parts,
+            None => (magnitude, ""),
+        };
+        let places = self.places();
+        if whole.is_empty()
+            || ![whole, fraction].into_iter().all(is_digits)
+            || fraction.len() > places
+        {
+            return None;
+        }
+        let whole = whole.parse::<i64>().ok()?.checked_mul(self.0)?;
+        // The zero before it is there where there are no places.
+        let units = whole.checked_add(format!("0{fraction:0<places$}").parse().ok()?)?;
+        (units <= MAX_UNITS).then_some(if negative { -units } else { units })
+    }
+
+    /// Decimals that a number can have.
+    fn places(self) -> usize {
+        self.0.ilog10() as usize
+    }
 }
 
 /// `#rrggbb`.
@@ -80,13 +118,15 @@ pub(super) fn channels(hex: &str) -> Option<[u8; 3]> {
 pub(super) fn opacity(k: u8) -> String {
     let mut out = String::new();
     let thousandths = (i64::from(k) * 1000 + 127) / 255;
-    push_number(&mut out, thousandths * (UNITS_PER_PX / 1000));
+    Unit::PX.push(&mut out, thousandths * (UNITS_PER_PX / 1000));
     out
 }
 
 /// The k in 1..=255 of an opacity.
 pub(super) fn opacity_quantum(text: &str) -> Option<u8> {
-    let units = number(text).filter(|&units| (0..=UNITS_PER_PX).contains(&units))?;
+    let units = Unit::PX
+        .parse(text)
+        .filter(|&units| (0..=UNITS_PER_PX).contains(&units))?;
     let k = (units * 255 + UNITS_PER_PX / 2) / UNITS_PER_PX;
     u8::try_from(k).ok().filter(|&k| k > 0)
 }
@@ -95,9 +135,9 @@ pub(super) fn opacity_quantum(text: &str) -> Option<u8> {
 mod tests {
     use super::*;
 
-    fn written(units: i64) -> String {
+    fn written(unit: Unit, units: i64) -> String {
         let mut out = String::new();
-        push_number(&mut out, units);
+        unit.push(&mut out, units);
         out
     }
 
@@ -111,8 +151,31 @@ mod tests {
             (-1_230_001, "-1.230001"),
         ];
         for (units, text) in cases {
-            assert_eq!(written(units), text);
-            assert_eq!(number(text), Some(units));
+            assert_eq!(written(Unit::PX, units), text);
+            assert_eq!(Unit::PX.parse(text), Some(units));
+        }
+    }
+
+    #[test]
+    fn numbers_count_decimals_of_a_px() {
+        for (precision, text) in [(0, "-12.3"), (1, "-123"), (2, "-1230"), (6, "-12300000")] {
+            let unit = Unit::decimal(precision);
+            assert_eq!(written(unit, -12_300_000), text);
+            assert_eq!(unit.parse(text), Some(-12_300_000));
+        }
+        assert_eq!(Unit::decimal(6).parse("1.5"), None);
+        assert_eq!(Unit::decimal(9), Unit::decimal(6));
+    }
+
+    #[test]
+    fn a_unit_is_known_by_its_transform() {
+        assert_eq!(Unit::decimal(2).transform(), "scale(0.01)");
+        for precision in 1..=6 {
+            let unit = Unit::decimal(precision);
+            assert_eq!(Unit::of_transform(&unit.transform()), Some(unit));
+        }
+        for text in ["scale(1)", "scale(2)", "scale(.1)", "scale(0.1 0.1)", ""] {
+            assert_eq!(Unit::of_transform(text), None, "{text}");
         }
     }
 
@@ -132,7 +195,7 @@ mod tests {
             "2000000001",
             "99999999999999999999",
         ] {
-            assert_eq!(number(text), None, "{text}");
+            assert_eq!(Unit::PX.parse(text), None, "{text}");
         }
     }
 

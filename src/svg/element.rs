@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 
 use super::arrange::pen;
+use super::dialect::{self, Unit};
 use super::options::Form;
-use super::{dialect, outline, path};
+use super::{outline, path};
 use crate::scene::Written;
 
-/// Appends the elements of `strokes`.
-pub(super) fn push(out: &mut String, strokes: &[Written], form: Form) {
+/// Appends the elements of `strokes`, in the smallest form with numbers in `unit`.
+pub(super) fn push(out: &mut String, strokes: &[Written], form: Form, unit: Unit) {
     match form {
         Form::Elements | Form::Plain => {
             for element in split(strokes, form) {
@@ -17,9 +18,8 @@ pub(super) fn push(out: &mut String, strokes: &[Written], form: Form) {
             }
         }
         Form::Smallest => {
-            let style = Style::Short {
-                width: usual_width(strokes, form),
-            };
+            let width = usual_width(strokes, form);
+            let style = Style::Short { width, unit };
             push_runs(out, &split(strokes, form), &[], style);
         }
         Form::Outlines => strokes.iter().for_each(|stroke| outline::push(out, stroke)),
@@ -27,28 +27,28 @@ pub(super) fn push(out: &mut String, strokes: &[Written], form: Form) {
 }
 
 /// Bytes of an element of one stroke. In the smallest form its width is taken to be shared with neighbours.
-pub(super) fn bytes(stroke: &Written, form: Form) -> usize {
+pub(super) fn bytes(stroke: &Written, form: Form, unit: Unit) -> usize {
     let mut out = String::new();
     let alone = std::slice::from_ref(stroke);
     match form {
         Form::Smallest => {
-            let style = Style::Short { width: None };
+            let style = Style::Short { width: None, unit };
             push_path(&mut out, alone, &[Attribute::Width], style);
         }
-        form => push(&mut out, alone, form),
+        form => push(&mut out, alone, form, unit),
     }
     out.len()
 }
 
 /// The attribute with which a layer of `strokes` says their usual width, or nothing.
-pub(super) fn layer_width(strokes: &[Written], form: Form) -> String {
-    let mut out = String::new();
-    if let Some(width) = usual_width(strokes, form) {
-        out.push_str(" stroke-width=\"");
-        dialect::push_number(&mut out, width);
-        out.push('"');
-    }
-    out
+pub(super) fn layer_width(strokes: &[Written], form: Form, unit: Unit) -> String {
+    usual_width(strokes, form).map_or_else(String::new, |width| width_text(width, unit))
+}
+
+fn width_text(width: i64, unit: Unit) -> String {
+    let mut out = String::from(" stroke-width=\"");
+    unit.push(&mut out, width);
+    out + "\""
 }
 
 /// In the smallest form, the width that most elements have, if that is more than one.
@@ -122,19 +122,8 @@ impl Attribute {
                 format!(" stroke=\"{}\"", dialect::hex(stroke.color))
             }
             Self::Color => format!(" stroke=\"{}\"", dialect::short_hex(stroke.color)),
-            Self::Width
-                if style
-                    == (Style::Short {
-                        width: Some(stroke.width),
-                    }) =>
-            {
-                String::new()
-            }
-            Self::Width => {
-                let mut width = String::new();
-                dialect::push_number(&mut width, stroke.width);
-                format!(" stroke-width=\"{width}\"")
-            }
+            Self::Width if style.layer_width() == Some(stroke.width) => String::new(),
+            Self::Width => width_text(stroke.width, style.unit()),
             Self::Opacity if stroke.opacity == u8::MAX => String::new(),
             Self::Opacity => format!(" stroke-opacity=\"{}\"", dialect::opacity(stroke.opacity)),
         }
@@ -146,13 +135,30 @@ impl Attribute {
 enum Style {
     /// All of them, colours with six digits.
     Full,
-    /// As few characters as will do in a layer of this `width`.
-    Short { width: Option<i64> },
+    /// As few characters as will do in a layer of this `width` with numbers in this `unit`.
+    Short { width: Option<i64>, unit: Unit },
+}
+
+impl Style {
+    fn layer_width(self) -> Option<i64> {
+        match self {
+            Self::Full => None,
+            Self::Short { width, .. } => width,
+        }
+    }
+
+    fn unit(self) -> Unit {
+        match self {
+            Self::Full => Unit::PX,
+            Self::Short { unit, .. } => unit,
+        }
+    }
 }
 
 /// Appends the path of `strokes` with the attributes that are not `shared`.
 fn push_path(out: &mut String, strokes: &[Written], shared: &[Attribute], style: Style) {
-    let d = path::data(strokes.iter().map(|stroke| stroke.points.as_slice()));
+    let lines = strokes.iter().map(|stroke| stroke.points.as_slice());
+    let d = path::data(lines, style.unit());
     *out += &format!("<path d=\"{d}\"");
     let own = Attribute::ALL.iter().filter(|a| !shared.contains(a));
     for attribute in own {

@@ -14,13 +14,14 @@
 //! </svg>
 //! ```
 //!
-//! - One unit is one px of the picture. `width` and `height` equal the `viewBox`, unless the page has a
+//! - One unit is one px of the picture, but in the smallest form. `width` and `height` equal the `viewBox`, unless the page has a
 //!   [`Length`] as its width.
 //! - In the plain form, strokes end to end of one look are one path, `M1 2L3 4L5 6`, if they are opaque; the layer
 //!   then has `stroke-linejoin="round"`.
 //! - In the smallest form any strokes of one look that follow each other are one path, `M1 2L3 4M7 8l1 2`, if
 //!   they are opaque or do not touch; attributes that neighbours share are on a `<g>` around them; the layer has
-//!   the `stroke-width` of most of its elements, colours may be `#rgb`, and [`arrange()`] has put strokes that do not
+//!   the `stroke-width` of most of its elements, colours may be `#rgb`, numbers count the last decimal where that is
+//!   shorter, by `transform="scale(0.1)"` on the layer, and [`arrange()`] has put strokes that do not
 //!   touch in an order that makes use of all that.
 //! - Layers by colour have ids `color-1`, `color-2`, ….
 //! - A path's second point is absolute (`L`) or relative (`l`), whichever is shorter.

@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use super::dialect;
+use super::dialect::Unit;
 use crate::error::{Error, ErrorKind};
 use crate::scene::UNITS_PER_PX;
 
@@ -17,6 +17,16 @@ pub struct WriteOptions {
     pub group: Group,
     /// Width of the page on paper or screen; its height follows. `None`: a px of the picture is a px.
     pub width: Option<Length>,
+}
+
+impl WriteOptions {
+    /// The unit in which numbers of the file are shortest.
+    pub(super) fn unit(&self) -> Unit {
+        match self.form {
+            Form::Smallest => Unit::decimal(self.precision),
+            Form::Elements | Form::Plain | Form::Outlines => Unit::PX,
+        }
+    }
 }
 
 impl Default for WriteOptions {
@@ -41,6 +51,7 @@ pub enum Form {
     Plain,
     /// As many strokes of one look as may be drawn together. Attributes that neighbours share are on a group
     /// around them, and strokes that do not touch change places, and some their ends, for the sake of it.
+    /// Numbers are whole: they count the last decimal.
     Smallest,
     /// The outline of one stroke, filled: for programs that ignore strokes. It cannot be read back.
     Outlines,
@@ -92,14 +103,14 @@ impl Length {
     /// The length as an attribute says it.
     pub(super) fn text(self) -> String {
         let mut out = String::new();
-        dialect::push_number(&mut out, self.value);
+        Unit::PX.push(&mut out, self.value);
         out + self.unit
     }
 
     /// The length that [`text`](Self::text) wrote.
     pub(super) fn parse(text: &str) -> Option<Self> {
         let &(unit, _) = UNITS.iter().find(|(unit, _)| text.ends_with(unit))?;
-        let value = dialect::number(text.strip_suffix(unit)?)?;
+        let value = Unit::PX.parse(text.strip_suffix(unit)?)?;
         (value > 0 && value % STEP == 0).then_some(Self { value, unit })
     }
 

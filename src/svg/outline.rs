@@ -1,6 +1,6 @@
 //! The outline of a stroke: two lines and two arcs, or a circle.
 
-use super::dialect;
+use super::dialect::{self, Unit};
 use crate::scene::{UNITS_PER_PX, Written};
 
 /// Appends the outline of `stroke` as an element of its own.
@@ -59,7 +59,7 @@ fn floor(units: i64) -> i64 {
 
 fn number(units: i64) -> String {
     let mut out = String::new();
-    dialect::push_number(&mut out, units);
+    Unit::PX.push(&mut out, units);
     out
 }
 

@@ -1,16 +1,17 @@
 //! The `d` of a path: one stroke, or several of one look.
 
-use super::dialect::{MAX_UNITS, number, push_number};
+use super::dialect::{MAX_UNITS, Unit};
+use crate::scene::UNITS_PER_PX;
 
 /// The way from a dot to the end of its segment.
-const DOT: &str = "h0.01";
+const DOT: i64 = UNITS_PER_PX / 100;
 
 /// A place in units of 1/[`UNITS_PER_PX`](crate::scene::UNITS_PER_PX) px.
 type Place = [i64; 2];
 
 /// The `d` of strokes with these corners. Each number pair is absolute or relative, whichever is shorter; a
 /// stroke that begins where the one before ends goes on from there.
-pub(super) fn data<'a>(strokes: impl IntoIterator<Item = &'a [Place]>) -> String {
+pub(super) fn data<'a>(strokes: impl IntoIterator<Item = &'a [Place]>, unit: Unit) -> String {
     let mut out = String::new();
     let mut at = None;
     for points in strokes {
@@ -18,15 +19,16 @@ pub(super) fn data<'a>(strokes: impl IntoIterator<Item = &'a [Place]>) -> String
             continue;
         };
         if at != Some(start) || rest.is_empty() {
-            push_step(&mut out, ['M', 'm'], at, start);
+            push_step(&mut out, ['M', 'm'], at, start, unit);
         }
         at = Some(start);
         for &point in rest {
-            push_step(&mut out, ['L', 'l'], at, point);
+            push_step(&mut out, ['L', 'l'], at, point, unit);
             at = Some(point);
         }
         if rest.is_empty() {
-            out.push_str(DOT);
+            out.push('h');
+            unit.push(&mut out, DOT);
             // Where the next relative step would start is 0.01 off.
             at = None;
         }
@@ -35,15 +37,21 @@ pub(super) fn data<'a>(strokes: impl IntoIterator<Item = &'a [Place]>) -> String
 }
 
 /// Appends the step from `at`, if that is known, to `to`.
-fn push_step(out: &mut String, [absolute, relative]: [char; 2], at: Option<Place>, to: Place) {
+fn push_step(
+    out: &mut String,
+    [absolute, relative]: [char; 2],
+    at: Option<Place>,
+    to: Place,
+    unit: Unit,
+) {
     let step = |letter: char, [x, y]: Place| {
         let mut text = String::from(letter);
-        push_number(&mut text, x);
+        unit.push(&mut text, x);
         // A minus sign separates by itself.
         if y >= 0 {
             text.push(' ');
         }
-        push_number(&mut text, y);
+        unit.push(&mut text, y);
         text
     };
     let from_page = step(absolute, to);
@@ -66,7 +74,7 @@ pub(super) struct Parsed {
 }
 
 /// The strokes of a `d`, or `None` if it is not of the dialect.
-pub(super) fn parse(d: &str) -> Option<Parsed> {
+pub(super) fn parse(d: &str, unit: Unit) -> Option<Parsed> {
     let mut parsed = Parsed {
         strokes: Vec::new(),
         has_corner: false,
@@ -76,7 +84,7 @@ pub(super) fn parse(d: &str) -> Option<Parsed> {
     while let Some(letter) = rest.chars().next() {
         let tail = &rest[letter.len_utf8()..];
         let end = tail.find(|c: char| c.is_alphabetic()).unwrap_or(tail.len());
-        pen = pen.step(letter, &tail[..end], &mut parsed)?;
+        pen = pen.step(letter, Numbers(&tail[..end], unit), &mut parsed)?;
         rest = &tail[end..];
     }
     matches!(pen, Pen::Drawn(_) | Pen::Dotted).then_some(parsed)
@@ -95,21 +103,21 @@ enum Pen {
 }
 
 impl Pen {
-    fn step(self, letter: char, numbers: &str, parsed: &mut Parsed) -> Option<Self> {
+    fn step(self, letter: char, numbers: Numbers<'_>, parsed: &mut Parsed) -> Option<Self> {
         match (letter, self) {
             ('M', Self::Nowhere | Self::Drawn(_) | Self::Dotted) => {
-                pair(numbers, [0, 0]).map(Self::Put)
+                numbers.place([0, 0]).map(Self::Put)
             }
-            ('m', Self::Drawn(at)) => pair(numbers, at).map(Self::Put),
+            ('m', Self::Drawn(at)) => numbers.place(at).map(Self::Put),
             ('L' | 'l', Self::Put(at) | Self::Drawn(at)) => {
                 parsed.has_corner |= matches!(self, Self::Drawn(_));
-                let to = pair(numbers, if letter == 'l' { at } else { [0, 0] })?;
+                let to = numbers.place(if letter == 'l' { at } else { [0, 0] })?;
                 let mut points = vec![at, to];
                 points.dedup();
                 parsed.strokes.push(points);
                 Some(Self::Drawn(to))
             }
-            ('h', Self::Put(at)) if numbers == &DOT[1..] => {
+            ('h', Self::Put(at)) if numbers.one() == Some(DOT) => {
                 parsed.strokes.push(vec![at]);
                 Some(Self::Dotted)
             }
@@ -118,24 +126,34 @@ impl Pen {
     }
 }
 
-/// Two numbers, separated by a space or the minus sign of the second, as steps from `origin`.
-fn pair(text: &str, origin: Place) -> Option<Place> {
-    let minus = text.bytes().skip(1).position(|b| b == b'-');
-    let (x, y) = match text.split_once(' ') {
-        Some(pair) => pair,
-        None => text.split_at_checked(minus? + 1)?,
-    };
-    let place = [origin[0] + number(x)?, origin[1] + number(y)?];
-    place
-        .iter()
-        .all(|units| units.abs() <= MAX_UNITS)
-        .then_some(place)
+/// What follows a letter, in this unit.
+#[derive(Clone, Copy)]
+struct Numbers<'a>(&'a str, Unit);
+
+impl Numbers<'_> {
+    fn one(self) -> Option<i64> {
+        self.1.parse(self.0)
+    }
+
+    /// Two numbers, separated by a space or the minus sign of the second, as steps from `origin`.
+    fn place(self, origin: Place) -> Option<Place> {
+        let Self(text, unit) = self;
+        let minus = text.bytes().skip(1).position(|b| b == b'-');
+        let (x, y) = match text.split_once(' ') {
+            Some(pair) => pair,
+            None => text.split_at_checked(minus? + 1)?,
+        };
+        let place = [origin[0] + unit.parse(x)?, origin[1] + unit.parse(y)?];
+        place
+            .iter()
+            .all(|units| units.abs() <= MAX_UNITS)
+            .then_some(place)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::UNITS_PER_PX;
 
     fn px(x: i64, y: i64) -> Place {
         [x * UNITS_PER_PX, y * UNITS_PER_PX]
@@ -143,13 +161,13 @@ mod tests {
 
     /// Writes, and checks that reading gives the same.
     fn written(strokes: &[&[Place]], has_corner: bool) -> String {
-        let d = data(strokes.iter().copied());
+        let d = data(strokes.iter().copied(), Unit::PX);
         let strokes = strokes.iter().map(|points| points.to_vec()).collect();
         let expected = Parsed {
             strokes,
             has_corner,
         };
-        assert_eq!(parse(&d), Some(expected), "{d}");
+        assert_eq!(parse(&d, Unit::PX), Some(expected), "{d}");
         d
     }
 
@@ -164,6 +182,12 @@ mod tests {
     #[test]
     fn a_dot_is_a_short_segment() {
         assert_eq!(written(&[&[px(5, 6)]], false), "M5 6h0.01");
+        for (precision, expected) in [(1, "M50 60h0.1"), (2, "M500 600h1"), (3, "M5000 6000h10")] {
+            let unit = Unit::decimal(precision);
+            let d = data([&[px(5, 6)][..]], unit);
+            assert_eq!(d, expected);
+            assert_eq!(parse(&d, unit).unwrap().strokes, [[px(5, 6)]]);
+        }
     }
 
     #[test]
@@ -214,7 +238,7 @@ mod tests {
             "M2000000000 1l2000000000 1l1 1",
         ];
         for d in refused {
-            assert_eq!(parse(d), None, "{d}");
+            assert_eq!(parse(d, Unit::PX), None, "{d}");
         }
     }
 }

@@ -5,8 +5,9 @@ use quick_xml::events::{BytesStart, Event};
 use quick_xml::name::{Namespace, ResolveResult};
 use quick_xml::reader::NsReader;
 
+use super::dialect::{self, Unit};
 use super::options::Length;
-use super::{dialect, path};
+use super::path;
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::{Rgb, Scene, Stage, Stroke, Written, color};
 
@@ -107,6 +108,7 @@ impl<'a> Parser<'a> {
             "stroke-linecap",
             "stroke-linejoin",
             "stroke-width",
+            "transform",
         ])?;
         let ids = ["stage", "color"].map(|kind| format!("{kind}-{number}"));
         if !ids.iter().any(|id| group.find("id") == Some(id)) {
@@ -119,10 +121,11 @@ impl<'a> Parser<'a> {
             group.expect("stroke-linejoin", "round")?;
         }
         let mut stage = Stage::default();
+        let unit = group.either("transform", None, Unit::of_transform)?;
+        let unit = unit.unwrap_or(Unit::PX);
         let look = Look {
-            layer_width: group.either("stroke-width", None, width)?,
-            has_join,
-            ..Look::default()
+            layer_width: group.either("stroke-width", None, |text| width(text, unit))?,
+            ..Look::new(unit, has_join)
         };
         self.strokes(&look, &mut stage)?;
         Ok(stage)
@@ -281,22 +284,35 @@ fn background(rect: &Element, width: u32, height: u32) -> Parsed<Rgb> {
 }
 
 /// What groups say of the strokes in them.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 struct Look {
     color: Option<[u8; 3]>,
     width: Option<i64>,
     opacity: Option<u8>,
     /// What holds where no width is said.
     layer_width: Option<i64>,
+    /// What their numbers count.
+    unit: Unit,
     /// Whether corners are round.
     has_join: bool,
 }
 
-fn width(text: &str) -> Option<i64> {
-    dialect::number(text).filter(|&width| width > 0)
+fn width(text: &str, unit: Unit) -> Option<i64> {
+    unit.parse(text).filter(|&width| width > 0)
 }
 
 impl Look {
+    fn new(unit: Unit, has_join: bool) -> Self {
+        Self {
+            color: None,
+            width: None,
+            opacity: None,
+            layer_width: None,
+            unit,
+            has_join,
+        }
+    }
+
     /// What this and the attributes of `element` say together; other attributes it may have are `own`.
     fn of(&self, element: &Element, own: &[&str]) -> Parsed<Self> {
         let free = [
@@ -315,16 +331,15 @@ impl Look {
         }
         Ok(Self {
             color: element.either("stroke", self.color, dialect::channels)?,
-            width: element.either("stroke-width", self.width, width)?,
+            width: element.either("stroke-width", self.width, |text| width(text, self.unit))?,
             opacity: element.either("stroke-opacity", self.opacity, dialect::opacity_quantum)?,
-            layer_width: self.layer_width,
-            has_join: self.has_join,
+            ..*self
         })
     }
 
     /// The strokes of a path that looks so.
     fn strokes(&self, path: &Element) -> Parsed<Vec<Stroke>> {
-        let parsed = path.parsed("d", path::parse)?;
+        let parsed = path.parsed("d", |d| path::parse(d, self.unit))?;
         if parsed.has_corner && !self.has_join {
             return Err("<path> has a corner, but its layer no stroke-linejoin=\"round\"".into());
         }

@@ -228,6 +228,35 @@ fn the_dialect_is_this() {
 }
 
 #[test]
+fn the_smallest_form_counts_the_last_decimal_where_that_is_shorter() {
+    let one = sample().stages[0].strokes[0];
+    let stages = [1, 9].map(|count| Stage {
+        strokes: vec![one; count],
+    });
+    let scene = Scene {
+        stages: stages.into(),
+        ..sample()
+    };
+    let options = WriteOptions {
+        precision: 1,
+        form: Form::Smallest,
+        ..WriteOptions::default()
+    };
+    let text = write(&scene, &options);
+    let layers: Vec<_> = text.lines().filter(|line| line.starts_with("<g")).collect();
+    assert!(!layers[0].contains("transform"), "{text}");
+    assert!(layers[1].ends_with(" transform=\"scale(0.1)\">"), "{text}");
+    let paths: Vec<_> = text.lines().filter(|line| line.contains("<path")).collect();
+    assert!(
+        paths[0].contains("d=\"M97 25.1l3.3-4.6\" stroke=\"#f60\" stroke-width=\"3\""),
+        "{text}"
+    );
+    assert!(paths[1].contains("M970 251l33-46m-33 46l33-46"), "{text}");
+    assert!(paths[1].contains("stroke-width=\"30\""), "{text}");
+    assert_eq!(read(&text).unwrap(), arrange(&scene, &options));
+}
+
+#[test]
 fn layers_are_the_document_without_its_head() {
     let (text, layers) = (
         write(&sample(), &WriteOptions::default()),
@@ -284,7 +313,7 @@ fn what_is_not_the_dialect_is_named_with_its_line() {
         (
             "id=\"stage-2\"",
             "id=\"stage-2\" transform=\"scale(2)\"",
-            "line 7: <g> has the attribute transform",
+            "line 7: <g> has transform=\"scale(2)\"",
         ),
         (
             "id=\"stage-2\"",

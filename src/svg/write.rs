@@ -1,8 +1,9 @@
 //! A scene as SVG text.
 
 use super::arrange::{self, Layer};
+use super::dialect::{self, Unit};
+use super::element;
 use super::options::{Form, WriteOptions};
-use super::{dialect, element};
 use crate::scene::{Scene, Stroke, Written, quantum};
 
 /// The scene as SVG text, in the order that [`arrange`](super::arrange()) says and as [`Scene::quantized`]
@@ -19,7 +20,7 @@ pub fn write(scene: &Scene, options: &WriteOptions) -> String {
 pub fn layers(scene: &Scene, options: &WriteOptions, first: usize) -> String {
     let mut out = String::new();
     for (index, layer) in arrange::layers(scene, options).iter().enumerate() {
-        push_layer(&mut out, first + index, layer, options.form);
+        out.push_str(&shortest(first + index, layer, options));
     }
     out
 }
@@ -27,8 +28,9 @@ pub fn layers(scene: &Scene, options: &WriteOptions, first: usize) -> String {
 /// Bytes that the stroke takes in a file, 0 when it would be dropped wherever it lay. In the smallest form, where
 /// that depends on its neighbours, a width that they share is taken to be theirs, and a colour the stroke's own.
 pub fn stroke_bytes(stroke: &Stroke, options: &WriteOptions) -> usize {
-    Written::anywhere(stroke, options.precision)
-        .map_or(0, |stroke| element::bytes(&stroke, options.form))
+    Written::anywhere(stroke, options.precision).map_or(0, |stroke| {
+        element::bytes(&stroke, options.form, options.unit())
+    })
 }
 
 fn head(scene: &Scene, options: &WriteOptions) -> String {
@@ -49,24 +51,40 @@ fn head(scene: &Scene, options: &WriteOptions) -> String {
     out
 }
 
-fn push_layer(out: &mut String, number: usize, layer: &Layer, form: Form) {
+/// The layer with numbers in px, or in the unit in which they are shortest, if that pays for saying so.
+fn shortest(number: usize, layer: &Layer, options: &WriteOptions) -> String {
+    let text = |unit| text(number, layer, options.form, unit);
+    let in_px = text(Unit::PX);
+    if options.unit() == Unit::PX {
+        return in_px;
+    }
+    Some(text(options.unit()))
+        .filter(|other| other.len() < in_px.len())
+        .unwrap_or(in_px)
+}
+
+fn text(number: usize, layer: &Layer, form: Form, unit: Unit) -> String {
     let count = layer.strokes.len();
     let plural = if count == 1 { "" } else { "s" };
     let (id, label) = match layer.color {
         Some(color) => (format!("color-{number}"), dialect::hex(color)),
         None => (format!("stage-{number}"), format!("Stage {number}")),
     };
-    *out += &format!(
-        "<g id=\"{id}\" inkscape:groupmode=\"layer\" inkscape:label=\"{label}\"{}{}>\n\
+    let transform = match unit {
+        Unit::PX => String::new(),
+        _ => format!(" transform=\"{}\"", unit.transform()),
+    };
+    let mut out = format!(
+        "<g id=\"{id}\" inkscape:groupmode=\"layer\" inkscape:label=\"{label}\"{}{transform}{}>\n\
          <title>{label}: {count} stroke{plural}</title>\n",
         look(layer, form),
-        element::layer_width(&layer.strokes, form)
+        element::layer_width(&layer.strokes, form, unit)
     );
-    element::push(out, &layer.strokes, form);
+    element::push(&mut out, &layer.strokes, form, unit);
     if !out.ends_with('\n') {
         out.push('\n');
     }
-    out.push_str("</g>\n");
+    out + "</g>\n"
 }
 
 /// The attributes of a layer that make its paths strokes.
