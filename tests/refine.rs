@@ -129,12 +129,12 @@ fn a_layer_that_nothing_is_seen_of_goes_and_the_others_are_numbered_on() {
     };
     let body: String = paths.into_iter().enumerate().map(layer).collect();
     place.file("three.svg", &format!("{head}{body}</svg>"));
-    let picture = sample("coffee-300.png");
+    let picture = committed("samples/coffee-300.png");
     let enough = ["refine", "three.svg", &picture, "--psnr", "1"];
     draft(&place, &enough, "two.svg");
     assert_eq!(layers(&place, "two.svg"), [1, 1]);
     assert!(!read(&place, "two.svg").contains("M-90 9"));
-    let report = report(&place, "report.json");
+    let report = place.report("report.json");
     let records = report["stages"].as_array().unwrap().iter();
     let records: Vec<_> = records.map(|s| (&s["index"], &s["strokes"])).collect();
     assert_eq!(
