@@ -1,13 +1,21 @@
-//! Scenes of any numbers: quantised, written, read back, drawn by our renderer and by resvg.
+//! Scenes of any numbers: quantised, written, read back, drawn by our renderer and, now and then, by resvg.
+//!
+//! A run takes some 40 µs. It took four times that when it was handed to worker threads, each of which had to
+//! be woken for a tile or two.
 
 use std::cell::RefCell;
 
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use strokefit::coverage::Coverage;
 use strokefit::fit::{Objective, Simd};
 use strokefit::loss::Loss;
 use strokefit::render::{Base, Canvas, Gradients, Params, Renderer, Softness, pack};
 use strokefit::scene::{Quantized, Scene, Shape, Stage, Stroke};
+use strokefit::verify::{self, Size};
 use strokefit::{image::Image, svg};
+
+/// One run in so many is done by several threads, and one is drawn by resvg.
+const SELDOM: u8 = 32;
 
 /// The bytes of an input, taken one after the other; zeros where there are no more.
 struct Source<'a>(&'a [u8]);
@@ -79,11 +87,28 @@ pub fn scene(data: &[u8]) {
     let text = svg::write(&scene, &svg::WriteOptions { precision, ..Default::default() });
     assert_eq!(svg::read(&text).expect("what is written can be read"), quantized);
     // Numbers of all kinds do no harm, those of a drawing give a picture.
-    draw(&scene, softness);
-    draw(&quantized, softness).expect("a drawing has a finite render");
+    let draw_both = || {
+        draw(&scene, softness);
+        draw(&quantized, softness).expect("a drawing has a finite render");
+    };
+    match source.byte() % SELDOM {
+        1 => draw_both(),
+        _ => ALONE.with(|pool| pool.install(draw_both)),
+    }
+    if source.byte() % SELDOM == 1
+        && let Ok(image) = verify::render(&text, Size::Scale(1.0), None)
+    {
+        assert_eq!((image.width(), image.height()), (scene.width as usize, scene.height as usize));
+    }
 }
 
 thread_local! {
+    /// This thread alone.
+    static ALONE: ThreadPool = ThreadPoolBuilder::new()
+        .num_threads(1)
+        .use_current_thread()
+        .build()
+        .expect("a pool that starts no thread");
     /// Gradients are written over and over, as in a fit.
     static GRADIENTS: RefCell<Gradients> = RefCell::default();
 }
