@@ -1,8 +1,9 @@
 //! What must hold for any bytes at all. Each target panics where it does not.
 //!
 //! `cargo fuzz run TARGET` drives them where there is a nightly toolchain and `cargo-fuzz`; the program of
-//! this crate drives them on a stable one.
+//! this crate drives them on a stable one, and `tests/fuzz.rs` does so for a moment.
 
+mod drive;
 mod scene;
 
 use strokefit::fit::Simd;
@@ -10,6 +11,7 @@ use strokefit::image::{Image, Limits};
 use strokefit::verify::{self, Size};
 use strokefit::{coverage, svg};
 
+pub use drive::drive;
 pub use scene::scene;
 
 // The program's own parsers of option values.

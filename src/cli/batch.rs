@@ -70,9 +70,9 @@ pub(super) fn run(jobs: &[Job<'_>], verbosity: Verbosity, draw: &Draw<'_>) -> Re
     let mut events = Events::open(events)?;
     let watch = jobs.first().map(|job| Watch::open(job.options));
     let watch = watch.transpose()?.flatten();
-    let draw: &Draw<'_> = &|picture, observer| match &watch {
-        Some(watch) => watch.fit(picture, observer, draw),
-        None => draw(picture, observer),
+    let draw: &Draw<'_> = &|picture, start, observer| match &watch {
+        Some(watch) => watch.fit(picture, start, observer, draw),
+        None => draw(picture, start, observer),
     };
     let status = match (jobs, outputs.as_slice()) {
         ([job], [outputs]) => one(job, outputs, &mut events, verbosity, draw, watch.as_ref()),
@@ -109,9 +109,10 @@ fn one(
         let Some((watch, more)) = watch.and_then(|watch| Some((watch, watch.wait()?))) else {
             return Ok(status);
         };
-        drawn = attempt(&|picture, observer| {
+        drawn = attempt(&|picture, start, observer| {
             watch.fit(
                 picture,
+                start,
                 observer,
                 &view::more(job.options, &drawn.fit, more),
             )

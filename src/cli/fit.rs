@@ -42,7 +42,7 @@ pub(super) struct Args {
 pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
     let options = &args.options;
     let jobs = batch::jobs(&args.inputs, &args.output, args.report.as_deref(), options)?;
-    batch::run(&jobs, verbosity, &|picture, observer| {
-        options.fit(observer, |fitter| fitter.fit(picture))
+    batch::run(&jobs, verbosity, &|picture, start, observer| {
+        options.fit(observer, |fitter| fitter.since(start).fit(picture))
     })
 }

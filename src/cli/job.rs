@@ -33,8 +33,8 @@ pub(super) struct Job<'a> {
     pub(super) options: &'a Options,
 }
 
-/// What draws a picture, telling the observer how it goes.
-pub(super) type Draw<'a> = dyn Fn(&Image, &mut (dyn Observer + Send)) -> Result<Fit> + 'a;
+/// What draws a picture, in time that began at the instant, telling the observer how it goes.
+pub(super) type Draw<'a> = dyn Fn(&Image, Instant, &mut (dyn Observer + Send)) -> Result<Fit> + 'a;
 
 impl Job<'_> {
     /// Draws and writes; the bar begins with `heading`.
@@ -52,7 +52,7 @@ impl Job<'_> {
         events.tell(&Event::Start(input));
         self.foretell(&picture, verbosity);
         let bar = Bar::new(verbosity.quiet, heading);
-        let fit = self.watched(&picture, events, bar, draw)?;
+        let fit = self.watched(&picture, start, events, bar, draw)?;
         tell_stages(&fit, verbosity);
         tell_dropped(fit.dropped, verbosity);
         let mut drawn = Drawn::new(fit, &self.options.form.options())?;
@@ -84,6 +84,7 @@ impl Job<'_> {
     fn watched(
         &self,
         picture: &Image,
+        start: Instant,
         events: &mut Events,
         mut bar: Bar,
         draw: &Draw<'_>,
@@ -95,7 +96,7 @@ impl Job<'_> {
             phases.watch(progress);
             interrupt.observe(progress)
         };
-        let fit = draw(picture, &mut observer);
+        let fit = draw(picture, start, &mut observer);
         phases.end();
         bar.clear();
         fit

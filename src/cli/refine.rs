@@ -68,11 +68,11 @@ pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
         options: &args.options,
     };
     let text = input::svg(&args.base)?;
-    batch::run(&[job], verbosity, &|picture, observer| {
+    batch::run(&[job], verbosity, &|picture, start, observer| {
         let base = read(args, text.clone(), picture)?;
         tell(&base, verbosity);
         args.options
-            .fit(observer, |fitter| fitter.on(base).fit(picture))
+            .fit(observer, |fitter| fitter.on(base).since(start).fit(picture))
     })
 }
 

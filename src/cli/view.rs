@@ -1,6 +1,7 @@
 //! `strokefit view`: a drawing in a browser; and `--view`, a fit in one.
 
 use std::path::PathBuf;
+use std::time::Instant;
 
 use anyhow::Result;
 use strokefit::fit::{Background, Base, Budget, Config, Fit, Fitter, Observer};
@@ -82,12 +83,13 @@ impl Watch {
     pub(super) fn fit(
         &self,
         picture: &Image,
+        start: Instant,
         observer: &mut (dyn Observer + Send),
         draw: &Draw<'_>,
     ) -> Result<Fit> {
         let title = format!("{}×{} px", picture.width(), picture.height());
         self.viewer.begin(&title, Some(picture))?;
-        let fit = draw(picture, &mut self.viewer.watch(observer))?;
+        let fit = draw(picture, start, &mut self.viewer.watch(observer))?;
         self.viewer.show(&fit.scene, &fit.svg(&self.written));
         Ok(fit)
     }
@@ -103,7 +105,7 @@ pub(super) fn more(
     options: &Options,
     fit: &Fit,
     strokes: usize,
-) -> impl Fn(&Image, &mut (dyn Observer + Send)) -> Result<Fit> {
+) -> impl Fn(&Image, Instant, &mut (dyn Observer + Send)) -> Result<Fit> {
     let config = Config {
         budget: Budget {
             strokes: Some(fit.scene.len() + strokes),
@@ -120,8 +122,10 @@ pub(super) fn more(
         width: fit.base.as_ref().and_then(|base| base.width),
     };
     let execution = options.execution();
-    move |picture, observer| {
-        let fitter = Fitter::new(config.clone()).execution(execution);
+    move |picture, start, observer| {
+        let fitter = Fitter::new(config.clone())
+            .execution(execution)
+            .since(start);
         Ok(fitter.on(base.clone()).observer(observer).fit(picture)?)
     }
 }

@@ -1,5 +1,7 @@
 //! A fit, set up step by step.
 
+use std::time::Instant;
+
 use super::work::Work;
 use super::{Base, Checkpoint, Config, Execution, Fit, Observer, draw};
 use crate::error::{Error, ErrorKind, Result};
@@ -29,6 +31,7 @@ pub struct Fitter<'a> {
     base: Option<Base>,
     observer: Option<&'a mut (dyn Observer + Send)>,
     checkpoint: Option<&'a mut Checkpoint>,
+    since: Option<Instant>,
 }
 
 impl<'a> Fitter<'a> {
@@ -40,6 +43,7 @@ impl<'a> Fitter<'a> {
             base: None,
             observer: None,
             checkpoint: None,
+            since: None,
         }
     }
 
@@ -78,6 +82,15 @@ impl<'a> Fitter<'a> {
         }
     }
 
+    /// When the time began that the budget allows; when the fit begins unless set.
+    #[must_use]
+    pub fn since(self, start: Instant) -> Self {
+        Self {
+            since: Some(start),
+            ..self
+        }
+    }
+
     /// Draws `picture`.
     ///
     /// Where the picture has alpha the drawing is transparent, unless there is a background colour for it
@@ -94,7 +107,9 @@ impl<'a> Fitter<'a> {
             base,
             observer,
             checkpoint,
+            since,
         } = self;
+        let since = since.unwrap_or_else(Instant::now);
         config.check()?;
         config.background = config.background.for_strokes(config.opaque, picture);
         if let Some(base) = &base {
@@ -104,7 +119,7 @@ impl<'a> Fitter<'a> {
         let mut nobody = ();
         let observer = observer.unwrap_or(&mut nobody);
         execution.pool()?.install(|| {
-            let mut work = Work::new(picture, &config, base.as_ref(), level, observer)?;
+            let mut work = Work::new(picture, &config, base.as_ref(), level, observer, since)?;
             if let Some(checkpoint) = checkpoint {
                 work.resume(checkpoint)?;
             }

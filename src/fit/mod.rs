@@ -16,6 +16,7 @@ mod control;
 mod descent;
 mod drawing;
 mod fitter;
+mod forecast;
 mod ground;
 mod memory;
 mod objective;
@@ -144,7 +145,7 @@ fn draw(mut work: Work<'_>) -> Result<Fit> {
             Task::Stage(stage) => work.stage(stage),
             Task::Record(stage) => work.record(&stage),
             Task::Polish(steps) => work.polish(steps),
-            Task::Polishing(polish) => work.polishing(polish),
+            Task::Polishing(polish) => work.polishing(polish)?,
             Task::Settle => work.settle()?,
             Task::MeetFidelity => work.meet_fidelity(),
             Task::MeetBytes => work.meet_bytes(),

@@ -32,7 +32,7 @@ pub enum Colors {
 }
 
 /// Rounds of choosing colours and fitting the rest.
-const ROUNDS: Rounds = Rounds {
+pub(super) const ROUNDS: Rounds = Rounds {
     count: 12,
     iterations: 0.6,
     rate: 0.3,

@@ -30,7 +30,7 @@ const EDGE: f32 = 0.02;
 /// Strokes that may share pens: their pairs are all compared.
 const WINDOW: usize = 1024;
 /// Rounds of fitting places to pens and colours of pens to places.
-const ROUNDS: Rounds = Rounds {
+pub(super) const ROUNDS: Rounds = Rounds {
     count: 8,
     iterations: 0.2,
     rate: 0.1,

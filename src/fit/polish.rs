@@ -40,17 +40,19 @@ pub(super) struct Polish {
 }
 
 impl Polish {
-    /// A polish of the free strokes of `drawing` in `steps` iterations, which may make them `limit` strokes.
+    /// A polish of the free strokes of `drawing` in `steps` iterations, which may make them `limit` strokes, and
+    /// is over when a share `until` of a limited time is used.
     pub(super) fn new(
         drawing: &Drawing,
         recipe: &Recipe,
         limit: usize,
         steps: usize,
+        until: f32,
         control: &Control<'_>,
     ) -> Self {
         Self {
             limit,
-            clock: Clock::new(steps, control),
+            clock: Clock::new(steps, until, control),
             descent: Descent::new(drawing.free(), recipe.polish_rates, drawing.limits),
             background: Adam::new(3, AdamParams::default()),
         }
@@ -76,9 +78,15 @@ impl Polish {
         if done >= recipe.coarse_share && drawing.is_thawed() && drawing.refine(0.0) {
             *descent = Descent::new(drawing.free(), recipe.polish_rates, drawing.limits);
         }
-        if recipe.relocates(step, done) {
-            let limit = self.limit;
-            relocate(drawing, recipe, Terms { limit, price }, identity, descent);
+        let share = relocated(drawing, recipe);
+        if recipe.relocates(step, done) && control.affordable(share) == share {
+            let terms = Terms {
+                limit: self.limit,
+                price,
+            };
+            control.searching(share, || {
+                relocate(drawing, recipe, terms, identity, descent);
+            });
         }
         let (steps, end) = (self.clock.steps, recipe.polish_rates.last);
         let at = (done * steps as f32) as usize;
@@ -99,28 +107,39 @@ impl Polish {
 struct Clock {
     step: usize,
     steps: usize,
-    /// Share of the time limit that was used before.
+    /// Share of the time for descent that was used before.
     before: f32,
+    /// Share of it that is used when the schedule has to be over.
+    until: f32,
 }
 
 impl Clock {
-    fn new(steps: usize, control: &Control<'_>) -> Self {
+    fn new(steps: usize, until: f32, control: &Control<'_>) -> Self {
         Self {
             step: 0,
             steps,
             before: control.time_used(),
+            until,
         }
     }
 
     /// The next iteration and the share of the schedule that is over, or `None` when all of it is.
-    fn tick(&mut self, control: &Control<'_>) -> Option<(usize, f32)> {
+    fn tick(&mut self, control: &mut Control<'_>) -> Option<(usize, f32)> {
         let by_count = self.step as f32 / self.steps.max(1) as f32;
-        let left = (1.0 - self.before).max(f32::MIN_POSITIVE);
+        let left = (self.until - self.before).max(f32::MIN_POSITIVE);
         let by_time = (control.time_used() - self.before) / left;
         let done = by_count.max(by_time);
+        if by_count < 1.0 && by_time >= 1.0 {
+            control.hurry();
+        }
         self.step += 1;
         (done < 1.0).then_some((self.step - 1, done))
     }
+}
+
+/// How many strokes may be relocated at a time.
+fn relocated(drawing: &Drawing, recipe: &Recipe) -> usize {
+    (drawing.free().len() as f32 * recipe.relocate_share).ceil() as usize
 }
 
 /// Swaps strokes for candidates that will gain more, and fills up to the limit with those that pay.
@@ -133,7 +152,7 @@ pub(super) fn relocate(
     descent: &mut Descent,
 ) {
     let room = terms.limit.saturating_sub(drawing.len());
-    let share = (drawing.free().len() as f32 * recipe.relocate_share).ceil() as usize;
+    let share = relocated(drawing, recipe);
     let scale = drawing.spacing(drawing.len()) * recipe.scale * recipe.relocate_scale;
     let worth = drawing.judge().worth;
     let candidates = drawing.propose(share.max(room.min(share * 2)), scale, recipe.oversampling);

@@ -17,7 +17,8 @@ pub(super) struct Rounds {
 }
 
 impl Rounds {
-    /// The `descent` of the free strokes of `drawing` in round `round`, from 0; less where the fit has to end.
+    /// The `descent` of the free strokes of `drawing` in round `round`, from 0; less where the time for it is over,
+    /// which is the same for each of the rounds that are left.
     pub(super) fn descend(
         &self,
         round: usize,
@@ -30,10 +31,16 @@ impl Rounds {
         let steps = (recipe.polish_iterations as f64 * self.iterations) as usize / self.count;
         let end = recipe.polish_rates.last;
         let schedule = Schedule::Cosine { end };
+        let used = control.time_used();
+        let until = used + (1.0 - used) / (self.count - round) as f32;
         for step in 0..steps {
             let rate = schedule.factor(round * steps + step, self.count * steps) as f32;
             drawing.step(&mut descent, anneal.last(), rate * self.rate);
             if !control.advance(drawing, descent.gradients.loss) {
+                return;
+            }
+            if control.time_used() >= until {
+                control.hurry();
                 return;
             }
         }

@@ -5,8 +5,6 @@
 //! round renders the rounded drawing as SVG, takes the offset from the target, and descends a few
 //! iterations; the best round, by the file's own error, is kept.
 
-use std::time::Instant;
-
 use super::background::Background;
 use super::base::Base;
 use super::config::Config;
@@ -92,26 +90,22 @@ pub(super) fn run(
     recipe: &Recipe,
     control: &mut Control<'_>,
 ) -> Result<Written> {
-    let start = Instant::now();
-    let mut written = write(drawing, page)?;
-    control.expect_writing(start.elapsed());
+    let mut written = control.writing(drawing.len(), || write(drawing, page))?;
     let mut best = (written.clone(), drawing.free().to_vec());
-    // A round is taken to be as long as the one before, the first as three times a writing.
-    let mut span = 3 * start.elapsed();
-    for _ in 0..recipe.settle_rounds {
-        if !control.allows(span) || !control.goes_on(drawing, written.mse) {
+    let mut round = 0;
+    while control.allows_round(round, recipe.settle_rounds) {
+        if !control.goes_on(drawing, written.mse) {
             break;
         }
-        let start = Instant::now();
+        round += 1;
         let corrected = corrected_targets(drawing, &written);
         if !descend(drawing, recipe, &corrected, written.mse, control) {
             break;
         }
-        written = write(drawing, page)?;
+        written = control.writing(drawing.len(), || write(drawing, page))?;
         if written.mse < best.0.mse {
             best = (written.clone(), drawing.free().to_vec());
         }
-        span = start.elapsed();
     }
     drawing.set_free(&best.1);
     Ok(best.0)
@@ -162,6 +156,9 @@ fn descend(
         drawing.step_towards(targets, &mut descent, rate);
         if !control.goes_on(drawing, mse) {
             return false;
+        }
+        if !control.allows_step() {
+            break;
         }
     }
     true

@@ -21,6 +21,7 @@ use super::checkpoint::{self, Checkpoint};
 use super::config::Config;
 use super::control::{Control, Spent};
 use super::drawing::{self, Drawing};
+use super::forecast::Forecast;
 use super::ground::Setting;
 use super::observer::Observer;
 use super::plan::{Before, Plan};
@@ -118,8 +119,8 @@ impl<'a> Work<'a> {
         base: Option<&'a Base>,
         level: Level,
         observer: &'a mut (dyn Observer + Send),
+        started: Instant,
     ) -> Result<Self> {
-        let start = Instant::now();
         let recipe = config.recipe.unwrap_or(Recipe::of(config.preset));
         let limit = budget::strokes(config, base, picture);
         let before = Before::of(base);
@@ -129,6 +130,9 @@ impl<'a> Work<'a> {
         let mut setting = Setting::new(picture, config.background, base, coarsest)?;
         let mut drawing = Drawing::new(&mut setting, config, level);
         let records = base.map_or_else(Vec::new, |base| stages::load(&mut drawing, base));
+        let is_clear = drawing.grounds().len() > 1;
+        let forecast = |limit| Forecast::new(limit, pixels, is_clear, &recipe);
+        let forecast = config.budget.time.map(forecast);
         let planned = (plan.strokes() * recipe.iterations(config.polish)) as f64;
         Ok(Self {
             config,
@@ -143,7 +147,7 @@ impl<'a> Work<'a> {
                 limit: budget::most_strokes(limit, base),
                 price: Price::new(config.effective_quality(), config.file),
             },
-            control: Control::new(observer, config, start, planned, plan.len()),
+            control: Control::new(observer, forecast, started, planned, plan.len()),
             plan,
             target: setting.target,
             drawing,

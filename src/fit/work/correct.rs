@@ -54,7 +54,8 @@ impl Work<'_> {
         let missing_db = wanted - corrections.last_db;
         let doublings = missing_db / corrections.db_per_doubling;
         let is_met = (0.0..=EXCESS_DB).contains(&-missing_db);
-        let ends = is_met || self.is_stopped() || self.standing.corrections.count >= CORRECTIONS;
+        let is_cut = self.control.cut_by().is_some();
+        let ends = is_met || is_cut || self.standing.corrections.count >= CORRECTIONS;
         if ends || !self.resize(doublings) {
             self.standing.stop = self.stop_at(wanted);
         }

@@ -50,7 +50,7 @@ impl Work<'_> {
             base: self.base.cloned(),
             target: self.target,
             stages,
-            stop: self.control.stopped().unwrap_or(self.standing.stop),
+            stop: self.control.cut_by().unwrap_or(self.standing.stop),
             dropped: Dropped {
                 non_finite: written.dropped.non_finite + self.drawing.lost(),
                 ..written.dropped

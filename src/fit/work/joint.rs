@@ -12,7 +12,7 @@ use crate::svg::Form;
 impl Work<'_> {
     /// Begins to fit all strokes jointly.
     pub(in crate::fit) fn polish(&mut self, steps: usize) {
-        if self.is_stopped() {
+        if self.is_stopped() || !self.control.allows_polish() {
             return;
         }
         self.drawing.thaw();
@@ -27,19 +27,38 @@ impl Work<'_> {
 
     pub(super) fn begin_polish(&mut self, limit: usize, steps: usize) {
         self.control.polish();
+        let until = self.given().0;
         let (drawing, control) = (&self.drawing, &self.control);
-        let polish = Polish::new(drawing, &self.recipe, limit, steps, control);
+        let polish = Polish::new(drawing, &self.recipe, limit, steps, until, control);
         self.then(Task::Polishing(polish));
     }
 
+    /// The shares of a limited time for descent after which polish and the fit to a palette have to be over; what
+    /// is left after that is for pens. Each has its part by its iterations.
+    fn given(&self) -> (f32, f32) {
+        let polish = 1.0;
+        let colors = match self.config.colors {
+            Colors::Free => 0.0,
+            _ => palette::ROUNDS.iterations,
+        };
+        let pens = match self.config.file.form {
+            Form::Smallest => pens::ROUNDS.iterations,
+            _ => 0.0,
+        };
+        let all = polish + colors + pens;
+        ((polish / all) as f32, ((polish + colors) / all) as f32)
+    }
+
     /// An iteration of a joint fit, unless it is at its end.
-    pub(in crate::fit) fn polishing(&mut self, mut polish: Polish) {
+    pub(in crate::fit) fn polishing(&mut self, mut polish: Polish) -> Result<()> {
+        self.rehearse()?;
         let (drawing, control) = (&mut self.drawing, &mut self.control);
         let (anneal, price) = (self.anneal, self.terms.price);
         if control.stopped().is_none() && polish.step(drawing, &self.recipe, anneal, price, control)
         {
             self.then(Task::Polishing(polish));
         }
+        Ok(())
     }
 
     /// Settles the drawing against its file.
@@ -94,12 +113,15 @@ impl Work<'_> {
 
     /// Gives every stroke a colour of `palette`.
     fn color(&mut self, mut palette: Palette) {
+        let until = self.given().1;
         let (drawing, anneal) = (&mut self.drawing, self.anneal);
         let terms = Terms {
             limit: drawing.len(),
             ..self.terms
         };
         let (recipe, control) = (&self.recipe, &mut self.control);
+        control.give_until(until);
         palette::run(drawing, &mut palette, recipe, anneal, terms, control);
+        control.give_until(1.0);
     }
 }

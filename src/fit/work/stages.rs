@@ -1,6 +1,6 @@
 //! The stages: which there are, when they end, and what is taken down of them.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::{Task, Work};
 use crate::error::Result;
@@ -29,9 +29,12 @@ impl Work<'_> {
         self.rehearse()?;
         let index = self.standing.records.len();
         match self.plan.stage(index, self.drawing.len()) {
-            Some(planned) => {
-                self.then(Task::Grow);
-                self.seed(planned);
+            Some(mut planned) => {
+                planned.count = self.control.affordable(planned.count);
+                if planned.count > 0 {
+                    self.then(Task::Grow);
+                    self.seed(planned);
+                }
             }
             None => self.top_up(),
         }
@@ -55,12 +58,12 @@ impl Work<'_> {
         }
     }
 
-    /// Tries how long it takes to write the drawing, where the time is limited.
-    fn rehearse(&mut self) -> Result<()> {
-        if self.control.may_rehearse() {
-            let start = Instant::now();
-            settle::write(&self.drawing, self.page)?;
-            self.control.expect_writing(start.elapsed());
+    /// Tries how long it takes to write the drawing, now and then, where the time is limited.
+    pub(super) fn rehearse(&mut self) -> Result<()> {
+        if self.control.wants_writing() {
+            let (drawing, page) = (&self.drawing, self.page);
+            let write = || settle::write(drawing, page);
+            self.control.writing(drawing.len(), write)?;
         }
         Ok(())
     }
@@ -88,7 +91,9 @@ impl Work<'_> {
     pub(super) fn seed(&mut self, planned: PlannedStage) {
         let began = self.control.elapsed();
         self.control.enter(planned.index);
-        let stage = Stage::seed(&mut self.drawing, &self.recipe, planned, began);
+        let (drawing, recipe) = (&mut self.drawing, &self.recipe);
+        let seed = || Stage::seed(drawing, recipe, planned, began);
+        let stage = self.control.searching(planned.count, seed);
         self.then(Task::Stage(stage));
     }
 
