@@ -39,11 +39,8 @@ fn main() -> Result<()> {
 }
 
 fn peers() -> Vec<Box<dyn Peer>> {
-    let others = pareto::installed()
-        .into_iter()
-        .filter(|peer| peer.name() != "vtracer");
     std::iter::once(Box::new(VTracer) as Box<dyn Peer>)
-        .chain(others)
+        .chain(pareto::installed())
         .collect()
 }
 
@@ -121,7 +118,7 @@ const SETTINGS: [([usize; 3], Option<f64>); 12] = [
 
 impl Peer for VTracer {
     fn name(&self) -> &str {
-        "vtracer"
+        "vtracer 1.0"
     }
 
     fn settings(&self) -> Vec<String> {

@@ -12,12 +12,17 @@ use std::process::Output;
 use support::place::{Place, STROKEFIT};
 
 fn bench(place: &Place, args: &[&str]) -> Output {
+    // Peers that happen to be installed would only take time.
+    bench_beside("", place, args)
+}
+
+/// With the programs in the folders `path`.
+fn bench_beside(path: &str, place: &Place, args: &[&str]) -> Output {
     place
         .command(STROKEFIT)
         .arg("bench")
         .args(args)
-        // Peers that happen to be installed would only take time.
-        .env("PATH", "")
+        .env("PATH", path)
         .output()
         .unwrap()
 }
@@ -170,6 +175,40 @@ fn a_case_that_fails_is_told_and_the_rest_goes_on() {
         .filter(|l| l.ends_with(": FAIL"))
         .collect();
     assert_eq!(failed.len(), 1, "{failed:?}");
+    assert!(place.path("out/pareto.html").exists());
+}
+
+/// A program that draws a grey page to the file after the word `-o`, and one that says why it does not.
+#[cfg(unix)]
+#[test]
+fn a_peer_that_fails_is_a_case_that_fails() {
+    use std::os::unix::fs::PermissionsExt;
+    let place = Place::new();
+    place.picture("a.png", 40, 30);
+    fs::create_dir(place.path("programs")).unwrap();
+    let program = |name: &str, script: &str| {
+        let path = place.path("programs").join(name);
+        fs::write(&path, format!("#!/bin/sh\n{script}\n")).unwrap();
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
+    };
+    let page = r##"<svg xmlns="http://www.w3.org/2000/svg" width="40" height="30"><rect width="40" height="30" fill="#808080"/></svg>"##;
+    let draw = format!("while [ \"$1\" != -o ]; do shift; done; echo '{page}' > \"$2\"");
+    program("primitive", &draw);
+    program("vtracer", "echo 'no bits left' >&2; exit 3");
+    let output = bench_beside(place.path("programs").to_str().unwrap(), &place, &FEW);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let of = |name: &str| -> Vec<String> {
+        let start = format!("a, {name} ");
+        let all = lines(&output).into_iter();
+        all.filter(|line| line.starts_with(&start)).collect()
+    };
+    let (drawn, failed) = (of("primitive"), of("vtracer"));
+    let passes = |line: &String| line.ends_with(": pass");
+    assert!(!drawn.is_empty() && drawn.iter().all(passes), "{drawn:?}");
+    let told = |line: &String| {
+        line.contains("no bits left (exit status: 3)") && line.ends_with(": FAIL")
+    };
+    assert!(!failed.is_empty() && failed.iter().all(told), "{failed:?}");
     assert!(place.path("out/pareto.html").exists());
 }
 

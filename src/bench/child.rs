@@ -83,8 +83,10 @@ impl Runner {
         answer.map_err(|_| {
             let said = String::from_utf8_lossy(&output.stderr);
             let last = said.lines().last().unwrap_or("nothing was said");
-            let last = last.trim_start_matches("error: ");
-            refuse(format!("{last} ({})", output.status))
+            match last.strip_prefix("error: ") {
+                Some(why) => refuse(why.to_owned()),
+                None => refuse(format!("{last} ({})", output.status)),
+            }
         })
     }
 }

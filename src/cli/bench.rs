@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 use clap::{Subcommand, ValueEnum};
 use strokefit::bench::child::{Runner, perform};
-use strokefit::bench::pareto::{self, Plan, Preset, Work, installed, known};
+use strokefit::bench::pareto::{self, Plan, Preset, Work, installed, known, missing};
 use strokefit::bench::scaling;
 use strokefit::bench::stability::{self, Extent};
 use strokefit::coverage::CoverageSchedule;
@@ -120,9 +120,9 @@ struct Scaling {
 
 impl Benchmark {
     /// Runs it; how many cases failed.
-    fn run(&self, folder: &Path, files: &mut Output<'_>) -> Result<usize> {
+    fn run(&self, folder: &Path, files: &mut Output<'_>, verbosity: Verbosity) -> Result<usize> {
         match self {
-            Self::Pareto(pareto) => pareto.run(folder, files),
+            Self::Pareto(pareto) => pareto.run(folder, files, verbosity),
             Self::Stability(stability) => stability.run(files),
             Self::Scaling(scaling) => scaling.run(files),
             Self::Case { .. } => Ok(0),
@@ -156,19 +156,16 @@ impl Pareto {
         Work::Plan(plan)
     }
 
-    fn run(&self, folder: &Path, files: &mut Output<'_>) -> Result<usize> {
+    fn run(&self, folder: &Path, files: &mut Output<'_>, verbosity: Verbosity) -> Result<usize> {
         let runner = Runner::new(CHILD)?;
         let measure = |task: &_| runner.run(task);
         let pictures = &self.pictures;
-        let report = pareto::run(
-            folder,
-            pictures,
-            &self.work(),
-            &installed(),
-            &measure,
-            &mut say,
-        )?;
+        let (work, peers) = (self.work(), installed());
+        let report = pareto::run(folder, pictures, &work, &peers, &measure, &mut say)?;
         pareto::publish(files, folder, pictures, &report)?;
+        for name in missing().into_iter().filter(|_| self.svgs.is_empty()) {
+            verbosity.say(format_args!("{name}: not here, or too old: not measured"));
+        }
         Ok(report.failures())
     }
 }
@@ -233,7 +230,7 @@ pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
         }
     };
     let mut files = Output::new(folder, &mut tell)?;
-    let failures = args.benchmark.run(folder, &mut files)?;
+    let failures = args.benchmark.run(folder, &mut files, verbosity)?;
     verbosity.say(format_args!("{}: {failures} failed", folder.display()));
     Ok(if failures == 0 {
         Status::Done

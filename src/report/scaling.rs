@@ -255,6 +255,7 @@ impl ScalingReport {
             axes: [axis.into(), "s".into()],
             logarithmic: true,
             logarithmic_x: true,
+            legend_beside: true,
             marks: lines.iter().map(|(_, points)| points.clone()).collect(),
             series: lines,
         }

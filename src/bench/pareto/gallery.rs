@@ -16,12 +16,12 @@ const OURS: usize = 6;
 const WIDEST: usize = 480;
 
 /// Longer SVGs are in the folder, not on the page, bytes.
-const LONGEST: usize = 400_000;
+const LONGEST: usize = 200_000;
 
 /// A difference of a channel that is shown in the brightest colour, 0..1.
 const BRIGHTEST: f64 = 0.25;
 
-/// Our front by bytes, what the article's recipe made, and the best of each peer.
+/// The picture, our front by bytes, what the article's recipe made, and the best of each peer.
 pub(super) fn exhibits(
     folder: &Path,
     target: &Image,
@@ -42,10 +42,22 @@ pub(super) fn exhibits(
     let mut chosen: Vec<&ParetoEntry> = ours.into_iter().step_by(step).collect();
     chosen.extend(here.iter().copied().filter(|e| e.family == ARTICLE));
     chosen.extend(best_of_others(&here));
-    chosen
+    let drawings = chosen
         .into_iter()
-        .map(|entry| exhibit(folder, target, entry))
+        .map(|entry| exhibit(folder, target, entry));
+    std::iter::once(itself(target, name))
+        .chain(drawings)
         .collect()
+}
+
+fn itself(target: &Image, name: &str) -> Result<Exhibit> {
+    Ok(Exhibit {
+        picture: name.to_owned(),
+        caption: format!("the picture, {}×{} px", target.width(), target.height()),
+        drawn: thumbnail(target.clone()).encode_png()?,
+        difference: Vec::new(),
+        svg: String::new(),
+    })
 }
 
 fn best_of_others<'a>(here: &[&'a ParetoEntry]) -> Vec<&'a ParetoEntry> {

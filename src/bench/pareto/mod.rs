@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 
 pub use case::{Case, Limit, Method, Preset};
 pub use plan::{Plan, Work};
-pub use programs::{Peer, Traced, installed, known};
+pub use programs::{Peer, Traced, installed, known, missing};
 
 use super::child::Task;
 use crate::error::{Error, ErrorKind, Result};
@@ -67,7 +67,7 @@ pub fn run(
         }
     }
     let entries = run.journal.current(pictures)?;
-    let report = ParetoReport::new(entries, work.claims());
+    let report = ParetoReport::new(entries);
     for comparison in &report.comparisons {
         (run.say)(&comparison.line());
     }

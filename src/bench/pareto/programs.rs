@@ -1,10 +1,12 @@
 //! Peers: who else turns pictures into SVG. Programs are run where they are installed, by the command
 //! lines that their manuals give; libraries are handed in by whoever links them.
 
-use std::fs;
+use std::fmt::Display;
+use std::fs::{self, File};
+use std::io;
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
-use std::time::Duration;
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
 
 use crate::engines::locate;
 use crate::error::{Error, ErrorKind, Result};
@@ -13,6 +15,9 @@ use crate::report::Usage;
 
 /// Between two looks at the memory of a running program.
 const LOOK_EVERY: Duration = Duration::from_millis(2);
+
+/// A program that takes longer hangs, and is ended.
+const LONGEST: Duration = Duration::from_secs(600);
 
 /// Somebody else who turns pictures into SVG.
 pub trait Peer {
@@ -59,19 +64,31 @@ const PROGRAMS: [Program; 4] = [
         name: "vtracer",
         input: "in.png",
         settings: &[
+            "-f 16 -p 4 -g 96",
             "-f 16 -p 4 -g 64",
+            "-f 10 -p 8 -g 48",
             "-f 8 -p 6 -g 32",
             "-f 4 -p 6 -g 16",
+            "-f 3 -p 7 -g 12",
             "-f 4 -p 8 -g 8",
             "-f 1 -p 8 -g 4",
         ],
-        args: &["--input", "{in}", "--output", "{out}", "{settings}"],
+        args: &[
+            "--input",
+            "{in}",
+            "--output",
+            "{out}",
+            "--path_precision",
+            "1",
+            "{settings}",
+        ],
         can: None,
     },
     Program {
         name: "primitive",
         input: "in.png",
-        settings: &["-n 50 -m 0", "-n 200 -m 0", "-n 500 -m 0"],
+        // A seventh of a second of CPU each, and the program has no seed: no two drawings are equal.
+        settings: &["-n 20 -m 0", "-n 100 -m 0", "-n 300 -m 0"],
         args: &["-i", "{in}", "-o", "{out}", "{settings}"],
         can: None,
     },
@@ -105,6 +122,12 @@ pub fn installed() -> Vec<Box<dyn Peer>> {
     boxed(PROGRAMS.into_iter().filter(Program::is_here))
 }
 
+/// Names of the known programs that are not, or are too old.
+pub fn missing() -> Vec<&'static str> {
+    let missing = PROGRAMS.into_iter().filter(|program| !program.is_here());
+    missing.map(|program| program.name).collect()
+}
+
 fn boxed(programs: impl Iterator<Item = Program>) -> Vec<Box<dyn Peer>> {
     programs
         .map(|program| Box::new(program) as Box<dyn Peer>)
@@ -124,8 +147,7 @@ impl Peer for Program {
     }
 
     fn trace(&self, picture: &Image, settings: &str) -> Result<Traced> {
-        let failed = |what: String| Error::new(ErrorKind::Io, format!("{}: {what}", self.name));
-        let folder = tempfile::tempdir().map_err(|e| failed(e.to_string()))?;
+        let folder = tempfile::tempdir().map_err(|e| self.failed(e))?;
         let (from, to) = (
             folder.path().join(self.input),
             folder.path().join("out.svg"),
@@ -135,17 +157,15 @@ impl Peer for Program {
         } else {
             picture.encode_png()?
         };
-        fs::write(&from, bytes).map_err(|e| failed(e.to_string()))?;
+        fs::write(&from, bytes).map_err(|e| self.failed(e))?;
         let mut command = Command::new(self.name);
         command.args(self.arguments(&from, &to, settings));
-        command
-            .stdin(Stdio::null())
-            .stdout(Stdio::null())
-            .stderr(Stdio::null());
-        let child = command.spawn().map_err(|e| failed(e.to_string()))?;
-        let peak_rss_bytes = watched(child).map_err(|e| failed(e.to_string()))?;
-        let svg =
-            fs::read_to_string(&to).map_err(|_| failed(format!("made no SVG with {settings}")))?;
+        let (ended, peak_rss_bytes) = run(command, folder.path()).map_err(|e| self.failed(e))?;
+        if let Some(why) = ended {
+            return Err(self.failed(format!("{why} with {settings}")));
+        }
+        let svg = fs::read_to_string(&to)
+            .map_err(|_| self.failed(format!("made no SVG with {settings}")))?;
         Ok(Traced {
             svg,
             peak_rss_bytes,
@@ -154,6 +174,10 @@ impl Peer for Program {
 }
 
 impl Program {
+    fn failed(&self, why: impl Display) -> Error {
+        Error::new(ErrorKind::Io, format!("{}: {why}", self.name))
+    }
+
     fn is_here(&self) -> bool {
         let able = |[arg, word]: [&str; 2]| {
             let output = Command::new(self.name).arg(arg).output();
@@ -181,14 +205,48 @@ impl Program {
     }
 }
 
-/// Waits for the end of a program; the most memory that it was seen to hold.
-fn watched(mut child: Child) -> std::io::Result<Option<u64>> {
-    let mut peak = None;
-    while child.try_wait()?.is_none() {
+/// Runs a program, which may leave files in `folder`: why it failed, if it did, and the most memory that it
+/// was seen to hold.
+fn run(mut command: Command, folder: &Path) -> io::Result<(Option<String>, Option<u64>)> {
+    // Not a pipe, which could fill up.
+    let said = folder.join("said");
+    command
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(File::create(&said)?);
+    let mut child = command.spawn()?;
+    let (status, peak) = watched(&mut child)?;
+    let why = match status {
+        None => Some(format!("ended after {} s", LONGEST.as_secs())),
+        Some(status) if !status.success() => {
+            let said = String::from_utf8_lossy(&fs::read(&said)?).into_owned();
+            let last = said.lines().rfind(|line| !line.trim().is_empty());
+            Some(last.map_or_else(
+                || status.to_string(),
+                |line| format!("{} ({status})", line.trim()),
+            ))
+        }
+        Some(_) => None,
+    };
+    Ok((why, peak))
+}
+
+/// Waits for the end of a program, and ends it where there is none: how it ended, and the most memory that
+/// it was seen to hold.
+fn watched(child: &mut Child) -> io::Result<(Option<ExitStatus>, Option<u64>)> {
+    let (start, mut peak) = (Instant::now(), None);
+    loop {
+        if let Some(status) = child.try_wait()? {
+            return Ok((Some(status), peak));
+        }
+        if start.elapsed() > LONGEST {
+            child.kill()?;
+            child.wait()?;
+            return Ok((None, peak));
+        }
         peak = Usage::peak_of(child.id()).max(peak);
         std::thread::sleep(LOOK_EVERY);
     }
-    Ok(peak)
 }
 
 /// A picture as a portable pixmap.

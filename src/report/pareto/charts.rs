@@ -44,6 +44,7 @@ fn scatter(title: &str, axis: &str, here: &[&ParetoEntry], cost: Number) -> Char
         title: title.into(),
         axes: [axis.into(), "PSNR of the file, dB".into()],
         logarithmic_x: true,
+        legend_beside: true,
         ..Chart::default()
     };
     for name in lines(here) {
@@ -72,15 +73,12 @@ fn lines(here: &[&ParetoEntry]) -> Vec<String> {
     names
 }
 
-/// The error after each layer of the largest drawing of each preset.
+/// The error after each stage of the largest drawing of each preset, and of its file.
 fn stages(picture: &str, here: &[&ParetoEntry]) -> Chart {
     let mut chart = Chart {
-        title: format!("{picture}: error after each layer"),
-        axes: [
-            "strokes up to the layer".into(),
-            "PSNR of the layers, dB".into(),
-        ],
-        logarithmic_x: true,
+        title: format!("{picture}: error after each stage"),
+        axes: ["stage, and at last the file".into(), "PSNR, dB".into()],
+        legend_beside: true,
         ..Chart::default()
     };
     for name in lines(here) {
@@ -92,14 +90,18 @@ fn stages(picture: &str, here: &[&ParetoEntry]) -> Chart {
         else {
             continue;
         };
-        let mut strokes = 0;
-        let points = largest.stages.iter().filter_map(|stage| {
-            strokes += stage.strokes;
-            Some([strokes as f64, stage.layer_psnr_db?])
-        });
-        let points: Vec<_> = points.collect();
+        let stages = largest.stages.iter().map(|stage| stage.psnr_db);
+        let errors = stages.chain([largest.psnr_db()]);
+        let points: Vec<[f64; 2]> = (1..)
+            .zip(errors)
+            .filter_map(|(index, db)| Some([f64::from(index), db.filter(|db| db.is_finite())?]))
+            .collect();
         chart.marks.push(points.clone());
-        chart.series.push((largest.label.clone(), points));
+        let asked = largest.asked_strokes().unwrap_or_default();
+        chart.series.push((
+            format!("{} {asked}", name.trim_start_matches(OWN).trim()),
+            points,
+        ));
     }
     chart
 }

@@ -5,8 +5,9 @@ use base64::engine::general_purpose::STANDARD;
 
 use super::super::table::escaped;
 use super::tables::NOTE;
-use super::{Holds, ParetoReport, charts, pictures};
+use super::{ParetoReport, charts, pictures};
 use crate::error::Result;
+use crate::report::Table;
 
 /// A drawing to be shown.
 #[derive(Debug, Clone)]
@@ -17,7 +18,7 @@ pub struct Exhibit {
     pub caption: String,
     /// The file as resvg draws it, as PNG.
     pub drawn: Vec<u8>,
-    /// Where and how far it is from the picture, as PNG.
+    /// Where and how far it is from the picture, as PNG; empty for the picture itself.
     pub difference: Vec<u8>,
     /// The SVG itself; empty where it is too long for a page.
     pub svg: String,
@@ -28,7 +29,7 @@ h1,h2,h3{line-height:1.2}table{border-collapse:collapse;font-size:13px;font-vari
 td,th{padding:.2rem .6rem;border-bottom:1px solid #ddd;text-align:left;vertical-align:top}\
 .plots,.exhibits{display:flex;flex-wrap:wrap;gap:1rem}.plots svg{max-width:100%;height:auto}\
 figure{margin:0;width:19rem}figure img{width:100%;display:block;image-rendering:auto}\
-figcaption{font-size:13px;margin:.2rem 0 .8rem}.wide{overflow-x:auto}.not{color:#a33}";
+figcaption{font-size:13px;margin:.2rem 0 .8rem}.wide{overflow-x:auto}.wide td{white-space:nowrap}";
 
 /// The page of `report` with its `exhibits`.
 ///
@@ -36,29 +37,25 @@ figcaption{font-size:13px;margin:.2rem 0 .8rem}.wide{overflow-x:auto}.not{color:
 /// [`ErrorKind::Picture`](crate::ErrorKind::Picture) when a plot cannot be drawn.
 pub fn page(report: &ParetoReport, exhibits: &[Exhibit]) -> Result<String> {
     let mut body = format!("<h1>Cost against error</h1>\n<p>{}</p>\n", escaped(NOTE));
-    body += "<h2>Comparisons</h2>\n<ul>\n";
-    for comparison in &report.comparisons {
-        let class = if comparison.holds == Holds::Holds {
-            ""
-        } else {
-            " class=\"not\""
-        };
-        body += &format!("<li{class}>{}</li>\n", escaped(&comparison.line()));
-    }
-    body += "</ul>\n";
+    body += &tables(&report.quoted());
     for picture in pictures(&report.entries) {
         body += &section(report, picture, exhibits)?;
     }
-    body += "<h2>Spread over seeds</h2>\n";
-    body += &report.spread_table().html();
-    body += "<h2>All drawings</h2>\n<div class=\"wide\">\n";
-    body += &report.table().html();
-    body += "</div>\n";
+    let details = tables(&report.details());
+    body += &format!("<div class=\"wide\">\n{details}</div>\n");
     Ok(format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width\">\n<title>strokefit: cost against error</title>\n\
          <style>{STYLE}</style>\n</head>\n<body>\n{body}</body>\n</html>\n"
     ))
+}
+
+fn tables(titled: &[(&str, Table)]) -> String {
+    let html = |(title, table): &(&str, Table)| {
+        let (title, table) = (escaped(title), table.html());
+        format!("<h2>{title}</h2>\n{table}")
+    };
+    titled.iter().map(html).collect()
 }
 
 fn section(report: &ParetoReport, picture: &str, exhibits: &[Exhibit]) -> Result<String> {
@@ -89,11 +86,14 @@ fn figure(exhibit: &Exhibit) -> String {
         let image = image("svg+xml", svg.as_bytes(), "the SVG itself");
         format!("<details><summary>the SVG itself</summary>{image}</details>")
     };
-    format!(
-        "<figure>{}<figcaption>{caption}</figcaption>{}<figcaption>difference</figcaption>{svg}</figure>\n",
-        image("png", drawn, &caption),
-        image("png", difference, "difference"),
-    )
+    let difference = if difference.is_empty() {
+        String::new()
+    } else {
+        let image = image("png", difference, "difference");
+        format!("{image}<figcaption>difference</figcaption>")
+    };
+    let drawn = image("png", drawn, &caption);
+    format!("<figure>{drawn}<figcaption>{caption}</figcaption>{difference}{svg}</figure>\n")
 }
 
 fn image(kind: &str, bytes: &[u8], alt: &str) -> String {
@@ -116,7 +116,7 @@ mod tests {
             difference: vec![4],
             svg: "<svg/>".into(),
         };
-        let page = page(&ParetoReport::new(entries, false), &[exhibit]).unwrap();
+        let page = page(&ParetoReport::new(entries), &[exhibit]).unwrap();
         assert!(page.contains("data:image/png;base64,AQID") && page.contains("<svg"));
         assert!(!page.contains("<b>"), "markup of names is shown as it is");
         let outside = page.match_indices("=\"http").count() - page.matches("xmlns=\"http").count();

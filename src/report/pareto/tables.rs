@@ -64,12 +64,27 @@ impl ParetoReport {
 
     /// Everything as Markdown.
     pub fn markdown(&self) -> String {
-        format!(
-            "# Cost against error\n\n{NOTE}\n\n## Comparisons\n\n{}\n## Spread over seeds\n\n{}\n## Drawings\n\n{}",
-            self.comparison_table().markdown(),
-            self.spread_table().markdown(),
-            self.table().markdown()
-        )
+        let all = self.quoted().into_iter().chain(self.details());
+        let section =
+            |(title, table): (&str, Table)| format!("\n## {title}\n\n{}", table.markdown());
+        let sections: String = all.map(section).collect();
+        format!("# Cost against error\n\n{NOTE}\n{sections}")
+    }
+
+    /// What is quoted: titles and tables.
+    pub(super) fn quoted(&self) -> [(&'static str, Table); 5] {
+        [
+            ("Fits", self.preset_table()),
+            ("The article's recipe", self.recipe_table()),
+            ("Other programs", self.peer_table()),
+            ("Spread over seeds", self.spread_table()),
+            ("Comparisons", self.comparison_table()),
+        ]
+    }
+
+    /// What it rests on.
+    pub(super) fn details(&self) -> [(&'static str, Table); 1] {
+        [("Drawings", self.table())]
     }
 }
 

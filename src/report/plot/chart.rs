@@ -21,6 +21,10 @@ const SERIES: [RGBColor; 9] = [
     RGBColor(110, 60, 20),
 ];
 
+/// Width of a legend beside a chart, px, and its first line.
+const LEGEND_WIDTH: i32 = 172;
+const LEGEND_TOP: i32 = 48;
+
 /// Numbers over numbers, as lines and marks.
 #[derive(Debug, Clone, Default)]
 pub struct Chart {
@@ -36,6 +40,8 @@ pub struct Chart {
     pub series: Vec<(String, Vec<[f64; 2]>)>,
     /// Points in the colour of the line of the same index.
     pub marks: Vec<Vec<[f64; 2]>>,
+    /// Whether the legend is beside the chart, because lines may be anywhere.
+    pub legend_beside: bool,
 }
 
 impl Chart {
@@ -105,7 +111,8 @@ impl Chart {
         let all = || series.iter().chain(&marks).flatten();
         let margin = if marks.is_empty() { 0.0 } else { MARGIN };
         let [x, y] = [0, 1].map(|k| widened(span(all().map(|p| p[k])), margin));
-        let mut chart = ChartBuilder::on(root)
+        let (area, beside) = self.areas(root);
+        let mut chart = ChartBuilder::on(&area)
             .caption(&self.title, (FONT, 16))
             .margin(10)
             .margin_right(24)
@@ -140,6 +147,9 @@ impl Chart {
                 .map(|&[x, y]| Circle::new((x, y), 3, color.filled()));
             chart.draw_series(discs)?;
         }
+        if let Some(beside) = beside {
+            return self.draw_legend(&beside);
+        }
         chart
             .configure_series_labels()
             .position(self.free_corner())
@@ -147,6 +157,32 @@ impl Chart {
             .border_style(BLACK.mix(0.3))
             .label_font((FONT, 13))
             .draw()?;
+        Ok(())
+    }
+
+    /// Where the chart is drawn, and its legend, if that is beside it.
+    fn areas<B: DrawingBackend>(
+        &self,
+        root: &DrawingArea<B, Shift>,
+    ) -> (DrawingArea<B, Shift>, Option<DrawingArea<B, Shift>>) {
+        if !self.legend_beside {
+            return (root.clone(), None);
+        }
+        let width = root.dim_in_pixel().0 as i32;
+        let (area, beside) = root.split_horizontally(width - LEGEND_WIDTH);
+        (area, Some(beside))
+    }
+
+    fn draw_legend<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Drawn
+    where
+        B::ErrorType: 'static,
+    {
+        let rows = (0..).map(|row| LEGEND_TOP + row * 20);
+        for (((name, _), y), color) in self.series.iter().zip(rows).zip(SERIES.iter().cycle()) {
+            let line = PathElement::new([(0, y), (18, y)], color.stroke_width(3));
+            area.draw(&line)?;
+            area.draw(&Text::new(name.as_str(), (24, y - 6), (FONT, 13)))?;
+        }
         Ok(())
     }
 
