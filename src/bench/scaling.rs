@@ -97,29 +97,23 @@ struct Series {
     values: Vec<f64>,
 }
 
-/// Measures all series on `picture`, or on a made one, telling a line for each.
+/// Measures all series on `picture`, or on a made one, telling a line for each. A point that cannot be
+/// measured is a failure of its series.
 ///
 /// # Errors
-/// When a point cannot be measured.
+/// When the picture cannot be read.
 pub fn run(
     short: bool,
     picture: Option<PathBuf>,
     measure: &dyn Fn(&ChildTask) -> Result<PointEntry>,
     say: &mut dyn FnMut(&str),
 ) -> Result<ScalingReport> {
+    if let Some(path) = &picture {
+        Image::open(path)?;
+    }
     let mut report = ScalingReport::default();
     for series in if short { brief() } else { thorough() } {
-        let points = series.points(short, picture.as_ref());
-        let points = points
-            .into_iter()
-            .map(|point| measure(&ChildTask::Point(point)));
-        let points = points.collect::<Result<Vec<_>>>()?;
-        let entry = SeriesEntry::new(
-            series.task.word(),
-            series.axis.word(),
-            &series.values,
-            points,
-        );
+        let entry = series.measured(short, picture.as_ref(), measure);
         say(&entry.line());
         report.series.push(entry);
     }
@@ -131,7 +125,10 @@ pub fn run(
             strokes: LARGEST.1,
             threads: all_threads(),
         };
-        report.largest = Some(measure(&ChildTask::Point(point))?);
+        match measure(&ChildTask::Point(point)) {
+            Ok(point) => report.largest = Some(point),
+            Err(error) => report.largest_failure = Some(error.to_string()),
+        }
         report.largest_line().iter().for_each(|line| say(line));
     }
     Ok(report)
@@ -180,6 +177,25 @@ impl Series {
     fn of_threads(task: Task) -> Self {
         let threads: Vec<f64> = thread_counts().iter().map(|&n| n as f64).collect();
         Self::new(task, Axis::Threads, &threads)
+    }
+
+    fn measured(
+        &self,
+        short: bool,
+        picture: Option<&PathBuf>,
+        measure: &dyn Fn(&ChildTask) -> Result<PointEntry>,
+    ) -> SeriesEntry {
+        let (mut values, mut points, mut failures) = (Vec::new(), Vec::new(), Vec::new());
+        for (&value, point) in self.values.iter().zip(self.points(short, picture)) {
+            match measure(&ChildTask::Point(point)) {
+                Ok(point) => {
+                    values.push(value);
+                    points.push(point);
+                }
+                Err(error) => failures.push(format!("at {value}: {error}")),
+            }
+        }
+        SeriesEntry::new(self.task.word(), self.axis.word(), &values, points).failing(failures)
     }
 
     fn points(&self, short: bool, picture: Option<&PathBuf>) -> Vec<Point> {

@@ -182,7 +182,7 @@ impl Stability {
         let (report, map) = stability::run(extent, &pictures, &mut |entry| say(&entry.line()))?;
         let table = report.table();
         files.text("stability.csv", &table.csv())?;
-        files.text("stability.md", &table.markdown())?;
+        files.text("stability.md", &report.markdown())?;
         files.text("stability.json", &text(&report)?)?;
         files.text("agreement.csv", &map.table().csv())?;
         files.picture("agreement.png", &map.picture()?)?;

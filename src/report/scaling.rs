@@ -23,6 +23,8 @@ pub struct ScalingReport {
     pub series: Vec<SeriesEntry>,
     /// A draft of the largest picture, if that was tried.
     pub largest: Option<PointEntry>,
+    /// Why there is none, if it was tried.
+    pub largest_failure: Option<String>,
 }
 
 impl Default for ScalingReport {
@@ -31,6 +33,7 @@ impl Default for ScalingReport {
             schema: SCHEMA,
             series: Vec::new(),
             largest: None,
+            largest_failure: None,
         }
     }
 }
@@ -52,7 +55,9 @@ pub struct SeriesEntry {
     pub cpu: Exponent,
     /// Exponent of memory.
     pub memory: Exponent,
-    /// Whether growth is no worse than it may be.
+    /// Points that could not be measured, and why.
+    pub failures: Vec<String>,
+    /// Whether growth is no worse than it may be, and all points were measured.
     pub verdict: Verdict,
 }
 
@@ -100,6 +105,11 @@ impl Exponent {
         format!("{} (last two {})", word(self.all), word(self.last))
     }
 
+    fn short(self) -> String {
+        let word = |v: Option<f64>| v.map_or_else(|| "?".to_owned(), |v| format!("{v:.2}"));
+        format!("{} ({})", word(self.all), word(self.last))
+    }
+
     fn is_at_most(self, most: f64) -> bool {
         self.all.is_none_or(|exponent| exponent <= most)
     }
@@ -140,8 +150,19 @@ impl SeriesEntry {
             cpu,
             memory,
             points,
+            failures: Vec::new(),
             verdict: if holds { Verdict::Pass } else { Verdict::Fail },
         }
+    }
+
+    /// The same, but some points could not be measured, if there are `failures`.
+    #[must_use]
+    pub fn failing(mut self, failures: Vec<String>) -> Self {
+        if !failures.is_empty() {
+            self.verdict = Verdict::Fail;
+        }
+        self.failures = failures;
+        self
     }
 
     /// The line of standard output, ending in the verdict.
@@ -152,11 +173,13 @@ impl SeriesEntry {
             wall,
             cpu,
             memory,
+            failures,
             verdict,
             ..
         } = self;
+        let failures: String = failures.iter().map(|why| format!(", {why}")).collect();
         format!(
-            "{task} against {axis}: exponents of CPU time {}, wall time {}, memory {}: {}",
+            "{task} against {axis}: exponents of CPU time {}, wall time {}, memory {}{failures}: {}",
             cpu.words(),
             wall.words(),
             memory.words(),
@@ -168,6 +191,9 @@ impl SeriesEntry {
 impl ScalingReport {
     /// The line of the largest picture.
     pub fn largest_line(&self) -> Option<String> {
+        if let Some(why) = &self.largest_failure {
+            return Some(format!("{why}: {}", Verdict::Fail.word()));
+        }
         let point = self.largest?;
         let cpu_s = point.cpu_s.unwrap_or(f64::NAN);
         Some(format!(
@@ -181,11 +207,40 @@ impl ScalingReport {
         ))
     }
 
-    /// How many series, or the largest picture, are beyond their bounds.
+    /// How many series, or the largest picture, are beyond their bounds or could not be measured.
     pub fn failures(&self) -> usize {
+        let unmeasured = self.largest_failure.iter().map(|_| Verdict::Fail);
+        let largest = self.largest.as_ref().map(largest_verdict);
         let series = self.series.iter().map(|series| series.verdict);
-        let all = series.chain(self.largest.as_ref().map(largest_verdict));
+        let all = series.chain(largest).chain(unmeasured);
         all.filter(|verdict| *verdict == Verdict::Fail).count()
+    }
+
+    /// What is quoted: one row per series.
+    pub fn growth_table(&self) -> Table {
+        let mut table = Table::new(&[
+            "what",
+            "from … to",
+            "exponent of wall time (last two points)",
+            "of CPU time",
+            "of memory",
+            "wall time, s",
+            "peak memory, MiB",
+        ]);
+        for series in &self.series {
+            let points = &series.points;
+            let mib = |p: &PointEntry| p.peak_rss_bytes.map_or(0, |bytes| bytes >> 20).to_string();
+            table.row([
+                format!("{}, {}", series.task, series.axis),
+                ends(&series.values, |v| format!("{v}")),
+                series.wall.short(),
+                series.cpu.short(),
+                series.memory.short(),
+                ends(points, |p| significant(p.wall_s)),
+                ends(points, mib),
+            ]);
+        }
+        table
     }
 
     /// One row per point.
@@ -227,7 +282,8 @@ impl ScalingReport {
             .map(SeriesEntry::line)
             .chain(self.largest_line());
         let lines: String = lines.map(|line| format!("- {line}\n")).collect();
-        format!("# Growth\n\n{lines}\n{}", self.table().markdown())
+        let (growth, all) = (self.growth_table().markdown(), self.table().markdown());
+        format!("# Growth\n\n{growth}\n## Verdicts\n\n{lines}\n## Points\n\n{all}")
     }
 
     /// A plot for each axis: name and SVG.
@@ -259,6 +315,24 @@ impl ScalingReport {
             marks: lines.iter().map(|(_, points)| points.clone()).collect(),
             series: lines,
         }
+    }
+}
+
+/// The first and the last of `values`, in words.
+fn ends<T>(values: &[T], word: impl Fn(&T) -> String) -> String {
+    match values {
+        [] => String::new(),
+        [only] => word(only),
+        [first, .., last] => format!("{} … {}", word(first), word(last)),
+    }
+}
+
+/// Seconds with two digits or more.
+fn significant(seconds: f64) -> String {
+    match seconds {
+        s if s < 0.1 => format!("{s:.4}"),
+        s if s < 1.0 => format!("{s:.2}"),
+        s => format!("{s:.1}"),
     }
 }
 
@@ -298,6 +372,37 @@ mod tests {
     #[test]
     fn worse_than_linear_growth_fails() {
         assert_eq!(series(1.4).verdict, Verdict::Fail);
+    }
+
+    #[test]
+    fn a_point_that_could_not_be_measured_fails_its_series() {
+        let series = series(0.8).failing(vec!["at 7: killed".into()]);
+        assert!(
+            series.line().ends_with(", at 7: killed: FAIL"),
+            "{}",
+            series.line()
+        );
+        let report = ScalingReport {
+            series: vec![series],
+            largest_failure: Some("no memory".into()),
+            ..ScalingReport::default()
+        };
+        assert_eq!(report.failures(), 2);
+    }
+
+    #[test]
+    fn a_series_is_quoted_from_end_to_end() {
+        let report = ScalingReport {
+            series: vec![series(0.5)],
+            ..ScalingReport::default()
+        };
+        let row =
+            "\"fit, strokes\",100 … 10000,0.50 (0.50),0.50 (0.50),0.00 (0.00),5.0 … 50.0,1 … 1\n";
+        assert!(
+            report.growth_table().csv().ends_with(row),
+            "{}",
+            report.growth_table().csv()
+        );
     }
 
     #[test]

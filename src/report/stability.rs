@@ -70,6 +70,31 @@ impl StabilityReport {
         self.entries.iter().filter(failed).count()
     }
 
+    /// The count of each verdict, the exceptions with their reasons, and all checks.
+    pub fn markdown(&self) -> String {
+        let of = |verdict| self.entries.iter().filter(move |e| e.verdict == verdict);
+        let mut exceptions = Table::new(&["case", "figure", "why"]);
+        for StabilityEntry {
+            group,
+            name,
+            figure,
+            note,
+            ..
+        } in of(Verdict::Exception)
+        {
+            exceptions.row([format!("`{group}/{name}`"), figure.clone(), note.clone()]);
+        }
+        format!(
+            "# Hard cases\n\n{} cases: {} hold, {} are exceptions, {} failed.\n\n## Exceptions\n\n{}\n## All\n\n{}",
+            self.entries.len(),
+            of(Verdict::Pass).count(),
+            of(Verdict::Exception).count(),
+            self.failures(),
+            exceptions.markdown(),
+            self.table().markdown()
+        )
+    }
+
     /// One row per check.
     pub fn table(&self) -> Table {
         let mut table = Table::new(&["group", "case", "checked", "figure", "verdict", "note"]);
@@ -104,5 +129,33 @@ impl StabilityEntry {
             self.figure,
             self.verdict.word()
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exceptions_are_told_with_their_reasons() {
+        let entry = |name: &str, verdict, note: &str| StabilityEntry {
+            group: "kinks".into(),
+            name: name.into(),
+            checked: String::new(),
+            figure: "2 %".into(),
+            verdict,
+            note: note.into(),
+            cpu_s: None,
+        };
+        let report = StabilityReport::new(vec![
+            entry("a", Verdict::Pass, ""),
+            entry("b", Verdict::Exception, "a jump"),
+        ]);
+        let text = report.markdown();
+        assert!(
+            text.contains("2 cases: 1 hold, 1 are exceptions, 0 failed."),
+            "{text}"
+        );
+        assert!(text.contains("| `kinks/b` | 2 % | a jump |"), "{text}");
     }
 }

@@ -66,8 +66,12 @@ impl Gap {
         self.canvas <= CANVAS_WITHIN
     }
 
+    pub(super) fn worth_holds(self) -> bool {
+        self.worth <= WITHIN
+    }
+
     pub(super) fn holds(self) -> bool {
-        self.canvas_holds() && self.gradients <= WITHIN && self.worth <= WITHIN
+        self.canvas_holds() && self.gradients <= WITHIN && self.worth_holds()
     }
 
     pub(super) fn finding(self) -> Finding {
