@@ -38,7 +38,7 @@ pub struct Plan {
     pub peer_settings: usize,
 }
 
-/// The number of strokes that coverage functions and seeds are compared at, if it is one of the plan's.
+/// The number of strokes that coverage functions and seeds are compared at, or the next below.
 const USUAL_STROKES: usize = 1000;
 
 /// The article's own strokes and iterations.
@@ -48,7 +48,7 @@ impl Plan {
     /// Less than a minute for a picture.
     pub fn short() -> Self {
         Self {
-            strokes: vec![100, 400],
+            strokes: vec![10, 100, 400],
             presets: vec![Preset::Draft, Preset::Balanced],
             coverages: coverages(&["smoothstep", "sigmoid>smoothstep"]),
             seeds: 2,
@@ -112,10 +112,11 @@ impl Plan {
         fits
     }
 
+    /// The largest number up to the usual one, or the smallest there is.
     fn usual_strokes(&self) -> usize {
-        let usual = self.strokes.iter().find(|&&n| n == USUAL_STROKES);
-        let middle = self.strokes.get(self.strokes.len() / 2);
-        usual.or(middle).copied().unwrap_or(USUAL_STROKES)
+        let up_to = self.strokes.iter().filter(|&&n| n <= USUAL_STROKES);
+        let usual = up_to.max().or(self.strokes.iter().min());
+        usual.copied().unwrap_or(USUAL_STROKES)
     }
 
     /// `preset`, if it is one of the plan's, or the first of them.

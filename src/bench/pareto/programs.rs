@@ -88,7 +88,7 @@ const PROGRAMS: [Program; 4] = [
         name: "primitive",
         input: "in.png",
         // A seventh of a second of CPU each, and the program has no seed: no two drawings are equal.
-        settings: &["-n 20 -m 0", "-n 100 -m 0", "-n 300 -m 0"],
+        settings: &["-n 20 -m 0", "-n 50 -m 0", "-n 100 -m 0", "-n 300 -m 0"],
         args: &["-i", "{in}", "-o", "{out}", "{settings}"],
         can: None,
     },
