@@ -205,9 +205,8 @@ fn a_peer_that_fails_is_a_case_that_fails() {
     let (drawn, failed) = (of("primitive"), of("vtracer"));
     let passes = |line: &String| line.ends_with(": pass");
     assert!(!drawn.is_empty() && drawn.iter().all(passes), "{drawn:?}");
-    let told = |line: &String| {
-        line.contains("no bits left (exit status: 3)") && line.ends_with(": FAIL")
-    };
+    let told =
+        |line: &String| line.contains("no bits left (exit status: 3)") && line.ends_with(": FAIL");
     assert!(!failed.is_empty() && failed.iter().all(told), "{failed:?}");
     assert!(place.path("out/pareto.html").exists());
 }

@@ -20,11 +20,41 @@ const LONGEST: usize = 1 << 14;
 
 /// Pieces that random bytes would not hit upon.
 const WORDS: [&[u8]; 36] = [
-    b"<g>", b"</g>", b"<g opacity=\".5\">", b"<path d=\"", b"\"/>", b"url(#a)", b" id=\"a\"",
-    b"<use href=\"#a\"/>", b"<pattern ", b"<mask ", b"<clipPath ", b"<filter ", b"<image href=\"data:",
-    b"<text>", b"<!DOCTYPE svg [<!ENTITY a \"", b"&a;", b" transform=\"", b" style=\"",
-    b"1e38", b"-1e38", b"NaN", b"-0", b"0.000001", b"99999999999", b"h0.01", b" stroke-opacity=\"0",
-    b"IHDR", b"IDAT", b"\xff\xd8\xff", b"\xff\xc0\x00\x11", b"RIFF", b"VP8X", b"GIF89a", b"BM", b"II*\0",
+    b"<g>",
+    b"</g>",
+    b"<g opacity=\".5\">",
+    b"<path d=\"",
+    b"\"/>",
+    b"url(#a)",
+    b" id=\"a\"",
+    b"<use href=\"#a\"/>",
+    b"<pattern ",
+    b"<mask ",
+    b"<clipPath ",
+    b"<filter ",
+    b"<image href=\"data:",
+    b"<text>",
+    b"<!DOCTYPE svg [<!ENTITY a \"",
+    b"&a;",
+    b" transform=\"",
+    b" style=\"",
+    b"1e38",
+    b"-1e38",
+    b"NaN",
+    b"-0",
+    b"0.000001",
+    b"99999999999",
+    b"h0.01",
+    b" stroke-opacity=\"0",
+    b"IHDR",
+    b"IDAT",
+    b"\xff\xd8\xff",
+    b"\xff\xc0\x00\x11",
+    b"RIFF",
+    b"VP8X",
+    b"GIF89a",
+    b"BM",
+    b"II*\0",
     b"\x7f\xff\xff\xff",
 ];
 
@@ -52,14 +82,24 @@ pub fn drive(fuzz: &Path, name: &str, runs: u64, seed: u64) -> Result<String, St
             let what = panic.downcast_ref::<String>().cloned();
             let what = what.or_else(|| panic.downcast_ref::<&str>().map(|s| (*s).to_owned()));
             let kept = keep(&findings, name, &input);
-            return Err(format!("{name}, run {run}: {} ({kept})", what.unwrap_or_default()));
+            return Err(format!(
+                "{name}, run {run}: {} ({kept})",
+                what.unwrap_or_default()
+            ));
         }
         if (run + 1).is_multiple_of(1_000_000) {
-            eprintln!("{name}: {} runs in {:.0} s", run + 1, start.elapsed().as_secs_f32());
+            eprintln!(
+                "{name}: {} runs in {:.0} s",
+                run + 1,
+                start.elapsed().as_secs_f32()
+            );
         }
     }
     *current.lock().expect("no panic under the lock") = (None, Vec::new());
-    Ok(format!("{name}: {runs} runs in {:.0} s, no finding", start.elapsed().as_secs_f32()))
+    Ok(format!(
+        "{name}: {runs} runs in {:.0} s, no finding",
+        start.elapsed().as_secs_f32()
+    ))
 }
 
 /// Ends the program when an input takes too long.
@@ -91,7 +131,9 @@ fn corpus(folder: &Path) -> Vec<Vec<u8>> {
 
 /// Writes an input down and says where.
 fn keep(findings: &Path, name: &str, input: &[u8]) -> String {
-    let hash = input.iter().fold(0, |hash, &byte| rng::bits(hash, byte.into(), 0, 0));
+    let hash = input
+        .iter()
+        .fold(0, |hash, &byte| rng::bits(hash, byte.into(), 0, 0));
     let path = findings.join(format!("{name}-{hash:016x}"));
     let written = fs::create_dir_all(findings).and_then(|()| fs::write(&path, input));
     match written {
@@ -112,7 +154,9 @@ fn mutated(corpus: &[Vec<u8>], seed: u64, run: u64) -> Vec<u8> {
         match draw(2, 9) {
             0 if at < bytes.len() => bytes[at] ^= 1 << draw(3, 8),
             1 if at < bytes.len() => bytes[at] = draw(3, 256) as u8,
-            2 if at < bytes.len() => bytes[at] = [0, 1, 0x7f, 0x80, 0xff, b'0', b'-', b'.'][draw(3, 8)],
+            2 if at < bytes.len() => {
+                bytes[at] = [0, 1, 0x7f, 0x80, 0xff, b'0', b'-', b'.'][draw(3, 8)]
+            }
             3 => bytes.truncate(at),
             4 => drop(bytes.drain(at..end)),
             5 => drop(bytes.splice(at..at, bytes[at..end].to_vec())),

@@ -38,7 +38,11 @@ pub fn picture(data: &[u8]) {
     match Image::decode(data, "x", LIMITS) {
         Ok(image) => {
             assert!((image.width() * image.height()) as u64 <= LIMITS.max_pixels);
-            let values = image.planes().iter().flatten().chain(image.alpha().unwrap_or_default());
+            let values = image
+                .planes()
+                .iter()
+                .flatten()
+                .chain(image.alpha().unwrap_or_default());
             assert!(values.into_iter().all(|v| (0.0..=1.0).contains(v)));
         }
         Err(error) => assert!(!error.to_string().contains('\n'), "{error}"),
@@ -49,12 +53,18 @@ pub fn picture(data: &[u8]) {
 pub fn svg(data: &[u8]) {
     let text = String::from_utf8_lossy(data);
     if let Ok(scene) = svg::read(&text) {
-        let options = svg::WriteOptions { precision: 6, ..Default::default() };
+        let options = svg::WriteOptions {
+            precision: 6,
+            ..Default::default()
+        };
         let again = svg::read(&svg::write(&scene, &options)).expect("what is written can be read");
         let quantized = scene.quantized(6).scene;
         assert_eq!(again, quantized);
     }
-    let size = Size::Exact { width: 40, height: 30 };
+    let size = Size::Exact {
+        width: 40,
+        height: 30,
+    };
     match verify::render(&text, size, Some([1.0; 3])) {
         Ok(image) => assert_eq!((image.width(), image.height()), (40, 30)),
         Err(error) => assert!(!error.to_string().contains('\n'), "{error}"),
@@ -66,7 +76,9 @@ pub fn words(data: &[u8]) {
     let text = String::from_utf8_lossy(data);
     let text = text.as_ref();
     let refusals = [
-        text.parse::<coverage::CoverageSchedule>().err().map(|e| e.to_string()),
+        text.parse::<coverage::CoverageSchedule>()
+            .err()
+            .map(|e| e.to_string()),
         text.parse::<Simd>().err().map(|e| e.to_string()),
         domain::strokes(text).err(),
         domain::bytes(text).err(),

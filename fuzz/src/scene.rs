@@ -82,10 +82,23 @@ impl Source<'_> {
 pub fn scene(data: &[u8]) {
     let mut source = Source(data);
     let (scene, softness, precision) = (source.scene(), source.softness(), source.byte() % 8);
-    let Quantized { scene: quantized, dropped, .. } = scene.quantized(precision);
+    let Quantized {
+        scene: quantized,
+        dropped,
+        ..
+    } = scene.quantized(precision);
     assert_eq!(quantized.len() + dropped.total(), scene.len());
-    let text = svg::write(&scene, &svg::WriteOptions { precision, ..Default::default() });
-    assert_eq!(svg::read(&text).expect("what is written can be read"), quantized);
+    let text = svg::write(
+        &scene,
+        &svg::WriteOptions {
+            precision,
+            ..Default::default()
+        },
+    );
+    assert_eq!(
+        svg::read(&text).expect("what is written can be read"),
+        quantized
+    );
     // Numbers of all kinds do no harm, those of a drawing give a picture.
     let draw_both = || {
         draw(&scene, softness);
@@ -98,7 +111,10 @@ pub fn scene(data: &[u8]) {
     if source.byte() % SELDOM == 1
         && let Ok(image) = verify::render(&text, Size::Scale(1.0), None)
     {
-        assert_eq!((image.width(), image.height()), (scene.width as usize, scene.height as usize));
+        assert_eq!(
+            (image.width(), image.height()),
+            (scene.width as usize, scene.height as usize)
+        );
     }
 }
 

@@ -29,7 +29,7 @@ h1,h2,h3{line-height:1.2}table{border-collapse:collapse;font-size:13px;font-vari
 td,th{padding:.2rem .6rem;border-bottom:1px solid #ddd;text-align:left;vertical-align:top}\
 .plots,.exhibits{display:flex;flex-wrap:wrap;gap:1rem}.plots svg{max-width:100%;height:auto}\
 figure{margin:0;width:19rem}figure img{width:100%;display:block;image-rendering:auto}\
-figcaption{font-size:13px;margin:.2rem 0 .8rem}.wide{overflow-x:auto}.wide td{white-space:nowrap}";
+figcaption{font-size:13px;margin:.2rem 0 .8rem}td:first-child,.wide td{white-space:nowrap}.wide{overflow-x:auto}";
 
 /// The page of `report` with its `exhibits`.
 ///
