@@ -66,16 +66,16 @@ struct Pareto {
     /// Instead of drawing, score the SVGs of this folder that are named as the pictures
     #[arg(long, value_name = "DIR")]
     svgs: Vec<PathBuf>,
-    /// Numbers of strokes [default: 20 to 10,000]
+    /// Numbers of strokes [default: 10 to 10,000]
     #[arg(long, value_name = "N", value_delimiter = ',', value_parser = domain::strokes)]
     strokes: Vec<usize>,
-    /// Presets [default: all but stages]
+    /// Presets [default: all]
     #[arg(long, value_enum, value_name = "PRESET", value_delimiter = ',')]
     preset: Vec<PresetWord>,
-    /// Coverage functions: the first for everything, the others for one drawing each
+    /// Coverage functions: the first for everything, the others for one draft each
     #[arg(long, value_name = "EDGE", value_delimiter = ',')]
     coverage: Vec<CoverageSchedule>,
-    /// How many seeds for the spread
+    /// How many seeds, for the spread of balanced fits
     #[arg(long, value_name = "N")]
     seeds: Option<u64>,
 }

@@ -7,6 +7,9 @@ const LEAST_GAIN_DB: f64 = 6.0;
 /// The share of the recipe's CPU time that it may take.
 const MOST_TIME: f64 = 0.25;
 
+/// What CPU time is counted in: less is not told from none.
+const TICK_S: f64 = 0.01;
+
 /// The article's own run, as labels begin: what is claimed is claimed of this one.
 const OWN_RUN: &str = "5000 strokes, 1500 iterations";
 /// Pixels per stroke from which on it is: the article's demo has 24. Where strokes are as small as pixels,
@@ -68,7 +71,8 @@ impl<'a> AtEqualStrokes<'a> {
     /// dB that the fit gains, and the share of the recipe's CPU time that it takes.
     pub(super) fn gain(&self) -> Option<[f64; 2]> {
         let fit = self.fit?;
-        Some([gain_db(fit, self.recipe), fit.cpu_s? / self.recipe.cpu_s?])
+        let share = fit.cpu_s? / self.recipe.cpu_s?.max(TICK_S);
+        Some([gain_db(fit, self.recipe), share])
     }
 
     pub(super) fn comparison(&self) -> Comparison {
