@@ -34,6 +34,7 @@ mod raster;
 mod references;
 mod tree;
 
+use std::cell::Cell;
 use std::panic::{self, AssertUnwindSafe};
 
 use resvg::usvg::Tree;
@@ -187,11 +188,30 @@ fn check_aspect(tree: &Tree, width: u32, height: u32) -> Result<()> {
 /// What resvg does, a panic being an error: the judge does not fall with what it judges, and its arithmetic
 /// has corners that no check of ours foresees.
 fn guarded<R>(judge: impl FnOnce() -> R) -> Result<R> {
-    panic::catch_unwind(AssertUnwindSafe(judge)).map_err(|_| {
+    GUARDED.set(true);
+    let outcome = panic::catch_unwind(AssertUnwindSafe(judge));
+    GUARDED.set(false);
+    outcome.map_err(|_| {
         let message =
             "resvg cannot draw the SVG, its numbers are too large or too odd: simplify it";
         Error::new(ErrorKind::Svg, message)
     })
+}
+
+thread_local! {
+    /// Whether this thread is within what resvg does.
+    static GUARDED: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Keeps the process's panic hook from telling of panics of resvg, which are errors here. For programs: a library
+/// leaves the hook as it is.
+pub fn silence_panics() {
+    let others = panic::take_hook();
+    panic::set_hook(Box::new(move |what| {
+        if !GUARDED.get() {
+            others(what);
+        }
+    }));
 }
 
 #[cfg(test)]

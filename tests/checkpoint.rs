@@ -186,3 +186,36 @@ fn an_interrupted_fit_goes_on() {
     assert!(read(&place, "out.svg") == read(&place, "whole.svg"));
     assert!(read(&place, "fit.state").is_none());
 }
+
+/// A refinement that is killed on its way goes on, too.
+#[test]
+fn a_killed_refinement_goes_on() {
+    let place = with_picture();
+    let base = ["--strokes", "100", "--preset", "draft"];
+    assert!(fit(&place, "base.svg", &base).status().unwrap().success());
+    let refine = |output: &str, options: &[&str]| {
+        let mut command = place.command(STROKEFIT);
+        command
+            .args(["-q", "refine", "base.svg", "in.png", "-o", output])
+            .args(["--strokes", "220"])
+            .args(options);
+        command
+    };
+    assert!(refine("whole.svg", &[]).status().unwrap().success());
+    let kept = [&["--checkpoint", "fit.state"], &OFTEN[..]].concat();
+    let mut kills = 0;
+    loop {
+        let mut child = refine("killed.svg", &kept).spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(100 + 20 * kills));
+        let ended = child.try_wait().unwrap();
+        child.kill().unwrap();
+        child.wait().unwrap();
+        if let Some(status) = ended {
+            assert!(status.success());
+            break;
+        }
+        kills += 1;
+    }
+    assert!(kills > 0, "it ended before it was killed");
+    assert!(read(&place, "killed.svg") == read(&place, "whole.svg"));
+}

@@ -9,6 +9,7 @@ mod support {
 }
 
 use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
 
 use strokefit::coverage::CoverageSchedule;
 use strokefit::fit::{
@@ -289,4 +290,35 @@ fn strokes_that_become_no_numbers_are_dropped_and_counted() {
     // Nor is the page poisoned: it has the picture's mean colour, not black.
     let verdict = verdict(&fit, &config);
     assert!(verdict.fidelity.psnr_db > 12.0, "{verdict:?}");
+}
+
+/// A fit of strokes without number in so many seconds, which began so many seconds ago.
+fn limited(limit_s: f32, began_s: u64) -> Fit {
+    let config = Config {
+        budget: Budget {
+            strokes: Some(100_000),
+            time: Some(Duration::from_secs_f32(limit_s)),
+            ..Budget::default()
+        },
+        preset: Preset::Best,
+        ..Config::default()
+    };
+    let since = Instant::now() - Duration::from_secs(began_s);
+    let fitter = Fitter::new(config).since(since);
+    fitter.fit(&ball(64, 48)).unwrap()
+}
+
+#[test]
+fn what_there_is_time_for_is_drawn() {
+    let fit = limited(0.2, 0);
+    assert_eq!(fit.stop, Stop::Time);
+    assert!(fit.scene.len() > 1);
+}
+
+#[test]
+fn time_counts_from_when_it_began() {
+    let fit = limited(5.0, 5);
+    assert_eq!(fit.stop, Stop::Time);
+    // The first stage is sought in any case.
+    assert_eq!(fit.stages.len(), 1);
 }

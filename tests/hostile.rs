@@ -373,3 +373,22 @@ fn damaged_svg_files() {
     }
     assert_frugal();
 }
+
+/// What resvg says when it panics is nothing for the user: the program says what is wrong in its own words.
+#[test]
+fn a_panic_of_resvg_is_an_error_like_any_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let svg = concat!(env!("CARGO_MANIFEST_DIR"), "/fuzz/corpus/svg/high.svg");
+    let output = std::process::Command::new(env!("CARGO_BIN_EXE_strokefit"))
+        .args(["render", svg, "-o", "out.png"])
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    let words = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{words}");
+    assert!(
+        words.starts_with("error: ") && words.contains("resvg cannot"),
+        "{words}"
+    );
+    assert!(!words.contains("panicked"), "{words}");
+}

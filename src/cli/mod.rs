@@ -160,6 +160,7 @@ impl Status {
 
 /// Does what the arguments ask for.
 pub(crate) fn run(args: &Args) -> anyhow::Result<Status> {
+    strokefit::verify::silence_panics();
     match &args.command {
         Command::Fit(fit) => fit::run(fit, args.verbosity),
         Command::Refine(refine) => refine::run(refine, args.verbosity),

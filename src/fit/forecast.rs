@@ -16,7 +16,7 @@ const JUDGING: f64 = 1.75;
 /// The same of a transparent drawing, whose writings render two grounds.
 const JUDGING_CLEAR: f64 = 2.2;
 /// What follows the fit whatever the strokes, in writings of an empty page: three comparisons, layers.
-const COMPARING: f64 = 3.2;
+const COMPARING: f64 = 2.6;
 /// Rounds of settling may take up to this part of the limit; they bring less than as much descent beyond.
 const SETTLING: f64 = 0.125;
 /// Share of a limit that is for the descent however long the rest takes.
