@@ -128,7 +128,7 @@ fn a_layer_that_nothing_is_seen_of_goes_and_the_others_are_numbered_on() {
         )
     };
     let body: String = paths.into_iter().enumerate().map(layer).collect();
-    place.file("three.svg", &format!("{head}{body}</svg>"));
+    place.file("three.svg", format!("{head}{body}</svg>"));
     let picture = committed("samples/coffee-300.png");
     let enough = ["refine", "three.svg", &picture, "--psnr", "1"];
     draft(&place, &enough, "two.svg");
