@@ -1,7 +1,7 @@
 //! The fuzz targets for a moment: the corpus, and inputs made of it.
 //!
 //! `STROKEFIT_FUZZ=50` makes it as many times longer; what it finds is written to `fuzz/findings`.
-#![allow(missing_docs, clippy::unwrap_used)]
+#![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
 use std::path::Path;
 

@@ -19,8 +19,11 @@ pub use scene::scene;
 #[allow(dead_code, unused_imports, unreachable_pub)]
 mod domain;
 
-/// A target, by its name.
-pub const TARGETS: [(&str, fn(&[u8])); 4] = [
+/// What panics for an input for which something does not hold.
+pub type Target = fn(&[u8]);
+
+/// The targets, by name.
+pub const TARGETS: [(&str, Target); 4] = [
     ("picture", picture),
     ("svg", svg),
     ("words", words),

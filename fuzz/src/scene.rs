@@ -35,7 +35,7 @@ impl Source<'_> {
     fn float(&mut self) -> f32 {
         let bits = u32::from_le_bytes([(); 4].map(|()| self.byte()));
         match bits >> 30 {
-            3 => f32::from_bits(bits << 2 | bits >> 30),
+            3 => f32::from_bits(bits.rotate_left(2)),
             2 => (bits & 0xffff) as f32 / 65535.0,
             _ => ((bits & 0x3fff_ffff) as f32 / (1 << 22) as f32) - 64.0,
         }
@@ -57,7 +57,7 @@ impl Source<'_> {
     fn scene(&mut self) -> Scene {
         let (width, height) = (1 + self.byte() % 70, 1 + self.byte() % 40);
         let background = [(); 3].map(|()| self.float());
-        let background = (self.byte() % 2 == 0).then_some(background);
+        let background = self.byte().is_multiple_of(2).then_some(background);
         let mut scene = Scene::empty(width.into(), height.into(), background);
         for _ in 0..self.byte() % 3 {
             let strokes = (0..self.byte() % 8).map(|_| self.stroke()).collect();
