@@ -11,6 +11,9 @@ use super::forecast::Forecast;
 use super::observer::{Observer, Progress};
 use crate::metrics::psnr_db;
 
+/// A search for less than this part of the strokes wanted is not worth a stage.
+const LEAST_PART: usize = 8;
+
 /// What a fit has done and taken so far.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub(super) struct Spent {
@@ -126,7 +129,8 @@ impl<'a> Control<'a> {
         done
     }
 
-    /// How many of the strokes wanted there is time to search places for; the first ones in any case.
+    /// How many of the strokes wanted there is time to search places for, if not too few; the first ones in any
+    /// case.
     pub(super) fn affordable(&mut self, wanted: usize) -> usize {
         let now = self.elapsed().as_secs_f64();
         let Some(forecast) = self.forecast.as_ref().filter(|_| self.strokes > 0) else {
@@ -134,7 +138,11 @@ impl<'a> Control<'a> {
         };
         let affordable = forecast.affordable(self.strokes, now).min(wanted);
         self.is_hurried |= affordable < wanted;
-        affordable
+        if affordable >= wanted / LEAST_PART {
+            affordable
+        } else {
+            0
+        }
     }
 
     /// Whether there is time for a joint fit that is not too short to be of use.
