@@ -39,11 +39,14 @@ fn drawn(name: &str, options: &[&str]) -> Drawn {
 
 /// A draft of a sample.
 fn drawn_with(name: &str, options: &[&str]) -> Drawn {
+    fitted(name, &[&["--preset", "draft"], options].concat())
+}
+
+fn fitted(name: &str, options: &[&str]) -> Drawn {
     let place = Place::new();
     let input = sample(name);
-    let fixed = ["fit", &input, "-o", "a.svg", "--report", "a.json"];
-    let draft = ["--preset", "draft", "-q"];
-    place.done(&[&fixed[..], &draft, options].concat());
+    let fixed = ["fit", &input, "-o", "a.svg", "--report", "a.json", "-q"];
+    place.done(&[&fixed[..], options].concat());
     Drawn {
         text: fs::read_to_string(place.path("a.svg")).unwrap(),
         report: place.report("a.json"),
@@ -114,6 +117,19 @@ fn the_smallest_file_of_as_many_strokes_is_a_fifth_shorter() {
     );
     assert!(smallest.number("bytes_per_stroke") < 0.8 * plain.number("bytes_per_stroke"));
     assert!(smallest.number("svg_gzip_bytes") < plain.number("svg_gzip_bytes"));
+}
+
+#[test]
+fn an_opaque_stroke_of_the_smallest_file_takes_52_bytes_at_most() {
+    for name in ["coffee-300", "noto-hibiscus", "noto-telescope"] {
+        let options = ["--opaque", "--precision", "1", "--form", "smallest"];
+        let drawn = fitted(name, &[&["--strokes", "600"], &options[..]].concat());
+        let bytes = drawn.number("bytes_per_stroke");
+        assert_eq!(drawn.number("strokes"), 600.0);
+        assert!(bytes <= 52.0, "{name}: {bytes}");
+        let scene = svg::read(&drawn.text).unwrap();
+        assert_eq!(scene.len(), 600);
+    }
 }
 
 #[test]
