@@ -13,6 +13,7 @@ mod support {
     pub(crate) mod repository;
 }
 
+use std::collections::BTreeSet;
 use std::fs;
 
 use strokefit::svg;
@@ -408,4 +409,127 @@ fn usage_that_makes_no_sense_is_refused() {
     ]
     .concat();
     assert_refused(&place, &ground, 2, &["--background"]);
+}
+
+/// The colours of the strokes of a text, and of its background.
+fn colors(text: &str) -> BTreeSet<&str> {
+    let after = |word: &'static str| {
+        text.split(word)
+            .skip(1)
+            .filter_map(|rest| rest.split('"').next())
+    };
+    after("stroke=\"")
+        .chain(after("<rect width=\"300\" height=\"200\" fill=\""))
+        .collect()
+}
+
+#[test]
+fn the_strokes_of_a_base_get_the_few_colours_too() {
+    let place = Place::new();
+    let picture = committed("samples/coffee-300.png");
+    draft(&place, &["fit", &picture, "--strokes", "80"], "base.svg");
+    let refine = ["refine", "base.svg", &picture, "--colors", "5", "--strokes"];
+    // Also where no stroke is to be added.
+    for (strokes, form) in [("120", "plain"), ("80", "plain"), ("120", "smallest")] {
+        let args = [&refine[..], &[strokes, "--form", form, "--opaque"]].concat();
+        draft(&place, &args, "few.svg");
+        let few = read(&place, "few.svg");
+        assert_eq!(colors(&few).len(), 5, "{strokes} strokes, {form}");
+        assert_eq!(svg::read(&few).unwrap().len().to_string(), strokes);
+    }
+    // What has few colours already is left as it is.
+    let again = [
+        "refine",
+        "few.svg",
+        &picture,
+        "--colors",
+        "5",
+        "--strokes",
+        "120",
+    ];
+    draft(
+        &place,
+        &[&again[..], &["--form", "smallest"]].concat(),
+        "again.svg",
+    );
+    assert_eq!(read(&place, "again.svg"), read(&place, "few.svg"));
+}
+
+#[test]
+fn only_what_is_laid_on_a_document_gets_few_colours() {
+    let place = Place::new();
+    let picture = committed("samples/chelsea-cat.png");
+    place.file("traced.svg", TRACED);
+    let palette = ["--palette", "#1f130b,#e4caba", "--strokes", "40"];
+    let args = [&["refine", "traced.svg", &picture], &palette[..]].concat();
+    draft(&place, &args, "laid.svg");
+    let laid = read(&place, "laid.svg");
+    assert_eq!(
+        colors(put_into(TRACED, &laid)),
+        ["#1f130b", "#e4caba"].into()
+    );
+}
+
+#[test]
+fn a_clear_drawing_keeps_few_colours() {
+    let place = Place::new();
+    let picture = committed("samples/noto-gem.png");
+    let few = ["--colors", "4", "--strokes"];
+    draft(
+        &place,
+        &[&["fit", &picture], &few[..], &["60"]].concat(),
+        "clear.svg",
+    );
+    assert_eq!(colors(&read(&place, "clear.svg")).len(), 4);
+    draft(
+        &place,
+        &[&["refine", "clear.svg", &picture], &few[..], &["90"]].concat(),
+        "more.svg",
+    );
+    let more = read(&place, "more.svg");
+    assert_eq!(colors(&more).len(), 4);
+    assert!(!more.contains("<rect"));
+    let palette = ["--palette", "#29b6f6,#ffffff", "--strokes", "60"];
+    draft(
+        &place,
+        &[&["fit", &picture], &palette[..]].concat(),
+        "given.svg",
+    );
+    assert_eq!(
+        colors(&read(&place, "given.svg")),
+        ["#29b6f6", "#ffffff"].into()
+    );
+}
+
+#[test]
+fn a_base_whose_background_is_not_in_the_palette_is_refused() {
+    let place = Place::new();
+    let picture = committed("samples/coffee-300.png");
+    let ground = ["--background", "#a95327", "--strokes", "20"];
+    draft(
+        &place,
+        &[&["fit", &picture], &ground[..]].concat(),
+        "base.svg",
+    );
+    let refine = ["refine", "base.svg", &picture, "-q"];
+    assert_refused(
+        &place,
+        &[
+            &refine[..],
+            &["-o", "few.svg", "--palette", "#ffffff,#000000"],
+        ]
+        .concat(),
+        2,
+        &["the background #a95327 is not in the palette: add it"],
+    );
+    let args = [
+        &refine[..3],
+        &["--palette", "#ffffff,#a95327", "--strokes", "30"],
+    ]
+    .concat();
+    draft(&place, &args, "few.svg");
+    assert_eq!(
+        colors(&read(&place, "few.svg")),
+        ["#a95327", "#ffffff"].into()
+    );
 }

@@ -8,7 +8,7 @@ use super::recipe::Recipe;
 use super::simd::Simd;
 use crate::coverage::CoverageSchedule;
 use crate::error::{Error, ErrorKind, Result};
-use crate::scene::{MAX_PRECISION, quantum};
+use crate::scene::{MAX_PRECISION, Rgb, quantum};
 use crate::svg::WriteOptions;
 
 /// What to fit. Equal configurations of equal pictures give equal bytes.
@@ -159,11 +159,20 @@ impl Config {
             return refuse("the palette has no colour: give one or more".into());
         }
         match self.background {
-            Background::Color(ground) if !palette.contains(&ground.map(quantum)) => {
-                let [r, g, b] = ground.map(quantum);
-                refuse(format!(
-                    "the background #{r:02x}{g:02x}{b:02x} is not in the palette: add it, or have it chosen by auto"
-                ))
+            Background::Color(ground) => self.check_ground(ground, ", or have it chosen by auto"),
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses a colour behind all strokes that the palette lacks; what helps besides adding it is said last.
+    pub(super) fn check_ground(&self, ground: Rgb, other_remedy: &str) -> Result<()> {
+        let [r, g, b] = ground.map(quantum);
+        match &self.colors {
+            Colors::Palette(palette) if !palette.contains(&[r, g, b]) => {
+                let message = format!(
+                    "the background #{r:02x}{g:02x}{b:02x} is not in the palette: add it{other_remedy}"
+                );
+                Err(Error::new(ErrorKind::Config, message))
             }
             _ => Ok(()),
         }

@@ -98,8 +98,9 @@ impl<'a> Fitter<'a> {
     ///
     /// # Errors
     /// [`ErrorKind::Config`] when an option is outside its domain, the base is of another size than the
-    /// picture, or the checkpoint of another fit; [`ErrorKind::Svg`] when the base cannot be rendered;
-    /// [`ErrorKind::Io`] when the checkpoint is damaged or its place cannot be written.
+    /// picture or on a background that the palette lacks, or the checkpoint of another fit;
+    /// [`ErrorKind::Svg`] when the base cannot be rendered; [`ErrorKind::Io`] when the checkpoint is damaged
+    /// or its place cannot be written.
     pub fn fit(self, picture: &Image) -> Result<Fit> {
         let Self {
             mut config,
@@ -114,6 +115,10 @@ impl<'a> Fitter<'a> {
         config.background = config.background.for_strokes(config.opaque, picture);
         if let Some(base) = &base {
             check_size(&base.scene, picture)?;
+            // That of a document stays with it.
+            if let (None, Some(ground)) = (&base.document, base.scene.background) {
+                config.check_ground(ground, ", since the base stays on it")?;
+            }
         }
         let level = execution.simd.require()?;
         let mut nobody = ();

@@ -6,6 +6,7 @@
 //! them would like: the rounds are those of k-means, with the drawing moving along. Strokes over each other make up
 //! for each other's missing colours in this way, as far as the palette allows.
 
+use std::collections::BTreeSet;
 use std::f32::consts::PI;
 
 use super::anneal::Anneal;
@@ -16,7 +17,7 @@ use super::polish::{self, Terms};
 use super::recipe::{Rates, Recipe};
 use super::rounds::Rounds;
 use crate::render::{AX, AY, BX, BY, OPACITY, RADIUS, RED};
-use crate::scene::{Rgb, color, quantum};
+use crate::scene::{Rgb, Scene, color, quantum};
 use crate::seed::Candidate;
 
 /// Which colours a drawing may have, its background included.
@@ -29,6 +30,22 @@ pub enum Colors {
     AtMost(usize),
     /// These 8-bit ones.
     Palette(Vec<[u8; 3]>),
+}
+
+impl Colors {
+    /// Whether `scene` has no other colours already.
+    pub(super) fn allow(&self, scene: &Scene) -> bool {
+        let strokes = scene.strokes().map(|stroke| stroke.color);
+        let used: BTreeSet<_> = strokes
+            .chain(scene.background)
+            .map(|c| c.map(quantum))
+            .collect();
+        match self {
+            Self::Free => true,
+            Self::AtMost(most) => used.len() <= *most,
+            Self::Palette(palette) => used.iter().all(|color| palette.contains(color)),
+        }
+    }
 }
 
 /// Rounds of choosing colours and fitting the rest.

@@ -226,7 +226,7 @@ fn agenda(config: &Config, recipe: &Recipe, base: Option<&Base>) -> Vec<Task> {
         agenda.push(Task::Polish(recipe.polish_iterations));
     }
     agenda.push(Task::Grow);
-    if base.is_some() {
+    if base.is_some_and(|base| config.colors.allow(&base.scene)) {
         agenda.push(Task::TryBase);
     }
     agenda
