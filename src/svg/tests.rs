@@ -228,6 +228,34 @@ fn the_dialect_is_this() {
 }
 
 #[test]
+fn opaque_strokes_end_to_end_are_one_polyline_in_the_plain_form() {
+    let corners = [[5.0, 5.0], [15.0, 8.0], [12.0, 20.0], [30.0, 20.0]].map(Point::from);
+    let stroke = |ends: &[Point]| Stroke {
+        shape: Shape::capsule(ends[0], ends[1]),
+        ..sample().stages[0].strokes[0]
+    };
+    let mut strokes: Vec<_> = corners.windows(2).map(stroke).collect();
+    let page = |strokes: &[Stroke]| Scene {
+        stages: vec![Stage {
+            strokes: strokes.to_vec(),
+        }],
+        ..Scene::empty(40, 40, None)
+    };
+    let chain = page(&strokes);
+    let text = write(&chain, &WriteOptions::default());
+    assert!(
+        text.contains("<path d=\"M5 5L15 8L12 20l18 0\" stroke=\"#ff6600\""),
+        "{text}"
+    );
+    assert!(text.contains("stroke-linejoin=\"round\""), "{text}");
+    assert_eq!(read(&text).unwrap(), chain);
+    // Where they overlap, translucent ones show twice.
+    strokes.iter_mut().for_each(|s| s.opacity = 0.2);
+    let apart = write(&page(&strokes), &WriteOptions::default());
+    assert_eq!(apart.matches("<path").count(), 3);
+}
+
+#[test]
 fn the_smallest_form_counts_the_last_decimal_where_that_is_shorter() {
     let one = sample().stages[0].strokes[0];
     let stages = [1, 9].map(|count| Stage {
