@@ -31,7 +31,7 @@
 //! render                          strokes → canvas, ∂L/∂canvas → ∂L/∂strokes, worth
 //! seed                            residual → candidates ranked by closed-form gain
 //! svg  verify                     drawing → text → what a renderer makes of it
-//! engines                         what other programs make of it
+//! engines  browser                what other programs make of it
 //! fit                             stages, polish, settling, budgets
 //! report                          plain records, tables, plots
 //! animation  view                 frames of a drawing, a page that watches a fit
@@ -66,6 +66,7 @@
 
 pub mod animation;
 pub mod bench;
+pub mod browser;
 pub mod coverage;
 pub mod engines;
 mod error;

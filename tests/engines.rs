@@ -16,10 +16,13 @@ mod support {
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 use std::time::Duration;
 
 use serde_json::Value;
+use strokefit::browser;
 use strokefit::engines::{ENGINES, Engine, Page};
+use strokefit::fit::{Budget, Config, Execution};
 use strokefit::image::Image;
 use strokefit::metrics;
 use strokefit::scene::{Scene, Shape, Stage, Stroke};
@@ -70,6 +73,7 @@ macro_rules! on_each_engine {
 
 on_each_engine!(
     draws_fits_as_faithfully_as_resvg
+    draws_fits_of_many_strokes_as_faithfully_as_resvg
     draws_every_kind_of_stroke
     draws_every_form_of_file
     scales_to_the_size_asked_for
@@ -115,6 +119,85 @@ fn draws_fits_as_faithfully_as_resvg(name: &str) {
                 .unwrap()
                 .starts_with(|c: char| c.is_ascii_digit())
         );
+    }
+}
+
+/// A fit that is more faithful than programs agree with one another, and the picture as it lies on white.
+struct Fitted {
+    name: &'static str,
+    text: String,
+    target: Image,
+}
+
+/// Flat art and a photograph.
+fn fits() -> &'static [Fitted] {
+    static FITS: OnceLock<Vec<Fitted>> = OnceLock::new();
+    FITS.get_or_init(|| {
+        let samples = [
+            ("noto-telescope", 500),
+            ("noto-hibiscus", 500),
+            ("rocket-320", 2000),
+        ];
+        samples.map(|(name, strokes)| fitted(name, strokes)).into()
+    })
+}
+
+fn fitted(name: &'static str, strokes: usize) -> Fitted {
+    let picture = Image::open(committed(&format!("samples/{name}.png"))).unwrap();
+    let budget = Budget {
+        strokes: Some(strokes),
+        ..Budget::default()
+    };
+    let config = Config {
+        budget,
+        ..Config::default()
+    };
+    let fit = strokefit::fit::fit(&picture, &config, &Execution::default(), &mut ()).unwrap();
+    Fitted {
+        name,
+        text: fit.svg(&WriteOptions::default()),
+        target: picture.flattened([1.0; 3]),
+    }
+}
+
+fn draws_fits_of_many_strokes_as_faithfully_as_resvg(name: &str) {
+    let Some((engine, program)) = installed(name) else {
+        return;
+    };
+    for Fitted { name, text, target } in fits() {
+        let page = Page {
+            svg: text,
+            width: target.width(),
+            height: target.height(),
+        };
+        let drawn = engine.draw(&program, page, PATIENCE).unwrap().image;
+        let resvg = verify::fidelity(text, target).unwrap().psnr_db;
+        let db = metrics::psnr(target, &drawn).unwrap();
+        assert!(resvg > 40.0, "{name}: {resvg:.2} dB");
+        assert!(db >= resvg - 0.6, "{name}: {db:.2} dB, {resvg:.2} in resvg");
+    }
+}
+
+/// What fits are settled for is what Chromium draws.
+#[test]
+fn chromium_draws_as_it_is_foreseen() {
+    let Some((engine, program)) = installed("chromium") else {
+        return;
+    };
+    for Fitted { name, text, target } in fits() {
+        let (width, height) = (target.width(), target.height());
+        let page = Page {
+            svg: text,
+            width,
+            height,
+        };
+        let drawn = engine.draw(&program, page, PATIENCE).unwrap().image;
+        let scene = svg::read(text).unwrap();
+        let ground = scene.background.unwrap_or([1.0; 3]);
+        let page = Image::filled(width, height, ground).unwrap();
+        let foreseen = browser::draw(scene.strokes(), &[page]).remove(0);
+        let db = metrics::psnr(&foreseen, &drawn).unwrap();
+        assert!(db >= 50.0, "{name}: {db:.2} dB");
     }
 }
 

@@ -22,6 +22,7 @@ mod memory;
 mod objective;
 mod observer;
 mod palette;
+mod panel;
 mod pens;
 mod plan;
 mod polish;

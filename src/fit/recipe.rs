@@ -86,7 +86,7 @@ impl Recipe {
             relocate_scale: 0.5,
             relocate_gain: 4.0,
             polish_softness: 2.4,
-            settle_rounds: 3,
+            settle_rounds: 5,
             settle_iterations: 20,
             settle_rate: 0.02,
         };

@@ -1,0 +1,182 @@
+//! How much of each pixel an outline covers.
+
+use std::ops::Range;
+
+use super::outline::{Edge, Outline};
+use crate::math::Point;
+
+/// Sums up what lies to the right of edges.
+pub(super) struct Area {
+    width: usize,
+    height: usize,
+    /// By how much more a pixel is covered than the one to its left, row by row; each row has
+    /// [`BEYOND`] more pixels than the picture.
+    changes: Vec<f32>,
+    /// The pixels of each row that have changes.
+    spans: Vec<Range<usize>>,
+}
+
+/// An edge in a pixel changes the next one, too, and may be just beyond the picture.
+const BEYOND: usize = 2;
+
+const NOWHERE: Range<usize> = Range {
+    start: usize::MAX,
+    end: 0,
+};
+
+impl Area {
+    pub(super) fn new(width: usize, height: usize) -> Self {
+        Self {
+            width,
+            height,
+            changes: vec![0.0; (width + BEYOND) * height],
+            spans: vec![NOWHERE; height],
+        }
+    }
+
+    /// Calls `paint` with each row that `outline` covers, the first pixel, and the coverage, 0 to 255, of that
+    /// and those to its right.
+    pub(super) fn fill(&mut self, outline: &Outline, mut paint: impl FnMut(usize, usize, &[u8])) {
+        let mut rows = NOWHERE;
+        for (side, sign) in outline.sides.iter().zip([1.0, -1.0]) {
+            for edge in side {
+                rows = union(&rows, &self.add(edge, sign));
+            }
+        }
+        let mut coverages = Vec::new();
+        for y in rows {
+            let span = std::mem::replace(&mut self.spans[y], NOWHERE);
+            let Range { start, end } = span;
+            if start >= end {
+                continue;
+            }
+            let changes = &mut self.changes[y * (self.width + BEYOND)..][start..end];
+            let mut covered = 0.0;
+            coverages.clear();
+            coverages.extend(changes.iter_mut().map(|change| {
+                covered += std::mem::take(change);
+                (255.0 * covered.clamp(0.0, 1.0) + 0.5) as u8
+            }));
+            coverages.truncate(self.width.saturating_sub(start));
+            paint(y, start, &coverages);
+        }
+    }
+
+    /// Adds what lies to the right of `edge`, and says in which rows.
+    fn add(&mut self, edge: &Edge, sign: f32) -> Range<usize> {
+        let bottom = edge.bottom.y.min(self.height as f32);
+        let mut upper = edge.at(edge.top.y.max(0.0));
+        if upper.y >= bottom {
+            return NOWHERE;
+        }
+        let rows = upper.y as usize..bottom.ceil() as usize;
+        for y in rows.clone() {
+            let lower = edge.at(bottom.min((y + 1) as f32));
+            self.add_piece(y, upper, lower, sign);
+            upper = lower;
+        }
+        rows
+    }
+
+    /// Adds what lies to the right of a piece of an edge in row `y`.
+    fn add_piece(&mut self, y: usize, upper: Point, lower: Point, sign: f32) {
+        let width = self.width as f32;
+        let height = sign * (lower.y - upper.y);
+        let (left, right) = (upper.x.min(lower.x), upper.x.max(lower.x));
+        if right <= 0.0 {
+            return self.change(y, 0, height, 0.0);
+        }
+        if right >= width {
+            // The row is covered up to there.
+            self.change(y, self.width, 0.0, 0.0);
+        }
+        if left.floor() == right.floor() && left < width {
+            return self.change(y, left as usize, height, (0.5 * (left + right)).fract());
+        }
+        let per_px = height / (right - left);
+        if left < 0.0 {
+            self.change(y, 0, -left * per_px, 0.0);
+        }
+        let (mut x, end) = (left.max(0.0), right.min(width));
+        while x < end {
+            let next = (x.floor() + 1.0).min(end);
+            let middle = 0.5 * (x + next) - x.floor();
+            self.change(y, x as usize, (next - x) * per_px, middle);
+            x = next;
+        }
+    }
+
+    /// Adds what lies to the right of a piece of some `height` with its `middle` at that place in pixel `x`.
+    fn change(&mut self, y: usize, x: usize, height: f32, middle: f32) {
+        let at = y * (self.width + BEYOND) + x;
+        self.changes[at] += height * (1.0 - middle);
+        self.changes[at + 1] += height * middle;
+        self.spans[y] = union(&self.spans[y], &(x..x + 2));
+    }
+}
+
+fn union(a: &Range<usize>, b: &Range<usize>) -> Range<usize> {
+    a.start.min(b.start)..a.end.max(b.end)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Coverages of a stroke on 12×10 px.
+    fn covered(a: [f32; 2], b: [f32; 2], radius: f32) -> Vec<Vec<u8>> {
+        let mut outline = Outline::default();
+        outline.trace(a.into(), b.into(), radius);
+        let mut rows = vec![vec![0; 12]; 10];
+        let mut area = Area::new(12, 10);
+        for _ in 0..2 {
+            // The second time nothing is left of the first.
+            area.fill(&outline, |y, x, coverages| {
+                rows[y][x..x + coverages.len()].copy_from_slice(coverages);
+            });
+        }
+        rows
+    }
+
+    #[test]
+    fn an_upright_stroke_covers_its_share_of_each_pixel() {
+        let rows = covered([5.25, -9.0], [5.25, 30.0], 1.5);
+        for row in rows {
+            assert_eq!(row, [0, 0, 0, 64, 255, 255, 191, 0, 0, 0, 0, 0]);
+        }
+    }
+
+    #[test]
+    fn a_level_stroke_covers_its_share_of_each_row() {
+        let rows = covered([-30.0, 4.5], [50.0, 4.5], 1.25);
+        let column: Vec<u8> = rows.iter().map(|row| row[7]).collect();
+        assert_eq!(column, [0, 0, 0, 191, 255, 191, 0, 0, 0, 0]);
+        assert!(rows.iter().all(|row| row.iter().all(|v| *v == row[0])));
+    }
+
+    #[test]
+    fn a_slanting_stroke_covers_its_area() {
+        // Its lines begin and end at quarters of a px.
+        let rows = covered([3.0, 2.0], [6.0, 6.0], 1.25);
+        let sum: f32 = rows.iter().flatten().map(|&v| f32::from(v)).sum();
+        let area = 2.5 * 5.0 + std::f32::consts::PI * 1.25 * 1.25;
+        assert!((sum / 255.0 / area - 1.0).abs() < 0.03, "{sum} {area}");
+    }
+
+    #[test]
+    fn what_is_beyond_the_picture_leaves_the_rest_as_it_is() {
+        let rows = covered([10.0, 5.0], [40.0, 5.0], 2.0);
+        assert_eq!(rows[5][9..], [255, 255, 255]);
+        assert_eq!(rows[5][..8], [0; 8]);
+        for (a, b) in [
+            ([-9.0, 5.0], [-5.0, 5.0]),
+            ([20.0, 5.0], [25.0, 5.0]),
+            ([5.0, 20.0], [5.0, 30.0]),
+        ] {
+            assert!(
+                covered(a, b, 2.0).iter().flatten().all(|v| *v == 0),
+                "{a:?}"
+            );
+        }
+    }
+}

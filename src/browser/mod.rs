@@ -1,0 +1,148 @@
+//! What a browser makes of strokes: Chromium when it draws with the CPU, as Chromium 156 was seen to.
+//!
+//! Its pictures of single strokes and of stacks of them show how they come about. A cap is two parabolas
+//! per half, up to 1/4 px outside of the circle; a parabola is a few chords; heights of chords' ends, and of
+//! lines', are rounded to quarters of a px; slight bends are put off to the next row of pixels. Of what
+//! that encloses, pixels have their exact area, 0 to 255. Products of colours, opacities, and coverages are
+//! rounded down, so that each translucent stroke darkens a picture by half a level, where tiny-skia
+//! brightens it.
+//!
+//! Drawings of 2,000 strokes agree to 53 to 57 dB with Chromium's own pictures, to which resvg's agree
+//! to 39 to 47 (docs/engines.md).
+//!
+//! ```
+//! use strokefit::browser;
+//! use strokefit::image::Image;
+//! use strokefit::scene::{Shape, Stroke};
+//!
+//! let shape = Shape::capsule([3.0, 2.5].into(), [9.0, 2.5].into());
+//! let stroke = Stroke { shape, radius: 1.0, color: [0.0; 3], opacity: 0.5 };
+//! let page = Image::filled(12, 5, [1.0; 3])?;
+//! let picture = browser::draw([&stroke].into_iter(), &[page]).remove(0);
+//! assert_eq!(picture.to_rgb8()[3 * (2 * 12 + 6)], 127);
+//! # Ok::<(), strokefit::Error>(())
+//! ```
+
+mod area;
+mod outline;
+
+use area::Area;
+use outline::Outline;
+
+use crate::image::Image;
+use crate::scene::Stroke;
+
+/// The strokes, back to front, on each of the `pages`, which are opaque and of one size.
+pub fn draw<'a>(strokes: impl Iterator<Item = &'a Stroke>, pages: &[Image]) -> Vec<Image> {
+    let Some((width, height)) = pages.first().map(|page| (page.width(), page.height())) else {
+        return Vec::new();
+    };
+    let (mut outline, mut area) = (Outline::default(), Area::new(width, height));
+    let mut pictures: Vec<Vec<u8>> = pages.iter().map(Image::to_rgb8).collect();
+    for stroke in strokes {
+        let (a, b) = stroke.shape.ends();
+        outline.trace(a, b, stroke.radius);
+        let paint = Paint::of(stroke);
+        area.fill(&outline, |y, x, coverages| {
+            for picture in &mut pictures {
+                paint.lay(&mut picture[3 * (y * width + x)..], coverages);
+            }
+        });
+    }
+    let pictures = pictures.iter();
+    pictures.map(|rgb| image(rgb, width, height)).collect()
+}
+
+fn image(rgb: &[u8], width: usize, height: usize) -> Image {
+    let planes = [0, 1, 2].map(|c| {
+        let channel = rgb.iter().skip(c).step_by(3);
+        channel.map(|&v| f32::from(v) / 255.0).collect()
+    });
+    Image::from_planes(width, height, planes)
+}
+
+/// What a stroke is painted with, 0 to 255.
+struct Paint {
+    /// The colour times the opacity.
+    color: [u32; 3],
+    opacity: u32,
+}
+
+impl Paint {
+    fn of(stroke: &Stroke) -> Self {
+        let byte = |v: f32| (255.0 * v.clamp(0.0, 1.0) + 0.5) as u32;
+        let opacity = byte(stroke.opacity);
+        let color = stroke.color.map(|c| (byte(c) * opacity + 127) / 255);
+        Self { color, opacity }
+    }
+
+    /// Paints pixels as far as they are covered.
+    fn lay(&self, rgb: &mut [u8], coverages: &[u8]) {
+        for (pixel, &coverage) in rgb.chunks_exact_mut(3).zip(coverages) {
+            let coverage = u32::from(coverage);
+            let rest = 255 - product(self.opacity, coverage);
+            for (value, &color) in pixel.iter_mut().zip(&self.color) {
+                let sum = product(color, coverage) + product(u32::from(*value), rest);
+                *value = sum.min(255) as u8;
+            }
+        }
+    }
+}
+
+/// The product of two numbers of 255ths, rounded down; exact where `b` is 255.
+fn product(a: u32, b: u32) -> u32 {
+    (a * b + a) >> 8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Shape;
+
+    fn pixel(ground: u8, color: u8, opacity: f32) -> u8 {
+        let level = |v: u8| [f32::from(v) / 255.0; 3];
+        let stroke = Stroke {
+            shape: Shape::dot([4.0, 4.0].into()),
+            radius: 3.0,
+            color: level(color),
+            opacity,
+        };
+        let page = Image::filled(8, 8, level(ground)).unwrap();
+        draw([&stroke].into_iter(), &[page])[0].to_rgb8()[3 * (4 * 8 + 4)]
+    }
+
+    #[test]
+    fn levels_are_those_that_chromium_shows() {
+        for (ground, color, opacity, seen) in [
+            (17, 201, 0.83, 169),
+            (90, 91, 0.7, 91),
+            (255, 255, 0.2, 255),
+            (200, 40, 1.0, 40),
+        ] {
+            assert_eq!(
+                pixel(ground, color, opacity),
+                seen,
+                "{ground} {color} {opacity}"
+            );
+        }
+    }
+
+    #[test]
+    fn every_page_has_its_own_ground() {
+        let stroke = Stroke {
+            shape: Shape::capsule([1.0, 2.0].into(), [1.0, 3.0].into()),
+            radius: 0.8,
+            color: [0.2, 0.4, 0.6],
+            opacity: 1.0,
+        };
+        let pages = [[0.0; 3], [1.0; 3]].map(|color| Image::filled(4, 4, color).unwrap());
+        let drawn = draw([&stroke].into_iter(), &pages).into_iter();
+        let [black, white] = [
+            drawn.clone().next().unwrap().to_rgb8(),
+            drawn.last().unwrap().to_rgb8(),
+        ];
+        let at = |picture: &[u8], x: usize| picture[3 * (2 * 4 + x) + 1];
+        assert_eq!([at(&black, 3), at(&white, 3)], [0, 255]);
+        assert!(at(&black, 1) > 60 && at(&black, 1) < at(&white, 1));
+    }
+}

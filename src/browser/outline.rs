@@ -1,0 +1,234 @@
+//! The outline that a stroke is filled by.
+
+use crate::math::{Point, Vector};
+
+/// A straight piece of an outline, px.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Edge {
+    pub(super) top: Point,
+    pub(super) bottom: Point,
+    /// Whether its curve goes on below it.
+    goes_on: bool,
+}
+
+impl Edge {
+    fn height(&self) -> f32 {
+        self.bottom.y - self.top.y
+    }
+
+    /// px to the right per px down.
+    fn slope(&self) -> f32 {
+        (self.bottom.x - self.top.x) / self.height()
+    }
+
+    /// The point of its line at `y`.
+    pub(super) fn at(&self, y: f32) -> Point {
+        Point::new(self.top.x + self.slope() * (y - self.top.y), y)
+    }
+}
+
+/// An outline by its left and its right side, each from top to bottom.
+#[derive(Debug, Default)]
+pub(super) struct Outline {
+    pub(super) sides: [Vec<Edge>; 2],
+}
+
+impl Outline {
+    /// Makes it that of the stroke from `a` to `b`: two lines and four quarters of circles.
+    pub(super) fn trace(&mut self, a: Point, b: Point, radius: f32) {
+        self.sides.iter_mut().for_each(Vec::clear);
+        let direction = (b - a).try_normalize(0.0);
+        let along = direction.unwrap_or(Vector::new(1.0, 0.0)) * radius;
+        let across = Vector::new(along.y, -along.x);
+        let bulge = QUARTER_BULGE * radius;
+        self.line(a + across, b + across);
+        self.arc(b, across, along, bulge);
+        self.arc(b, along, -across, bulge);
+        self.line(b - across, a - across);
+        self.arc(a, -across, -along, bulge);
+        self.arc(a, -along, across, bulge);
+        for side in &mut self.sides {
+            side.sort_by(|e, f| e.top.y.total_cmp(&f.top.y));
+        }
+        self.run_on();
+    }
+
+    fn line(&mut self, from: Point, to: Point) {
+        let is_down = from.y < to.y;
+        let (top, bottom) = if is_down { (from, to) } else { (to, from) };
+        self.push(is_down, snapped(top), snapped(bottom), false);
+    }
+
+    /// An arc around `center`, from there to there, as parabolas that touch it at their ends; one would be
+    /// `bulge` px outside of it.
+    fn arc(&mut self, center: Point, from: Vector, to: Vector, bulge: f32) {
+        let sum = from + to;
+        let cosine = from.dot(&to) / from.norm_squared();
+        if bulge > MAX_BULGE {
+            let middle = sum / (2.0 + 2.0 * cosine).sqrt();
+            self.arc(center, from, middle, bulge / 4.0);
+            self.arc(center, middle, to, bulge / 4.0);
+            return;
+        }
+        let knee = sum / (1.0 + cosine);
+        for part in monotone([from, knee, to].map(|v| center + v)) {
+            self.chords(part);
+        }
+    }
+
+    /// The chords of a parabola that does not turn back in y. All of it moves with its upper end, when that
+    /// is snapped; ends of chords are snapped in turn, but go nowhere beyond the lower end.
+    fn chords(&mut self, [from, knee, to]: [Point; 3]) {
+        let is_down = from.y <= to.y;
+        let (start, end) = if is_down { (from, to) } else { (to, from) };
+        let (mut top, last) = (snapped(start), snapped(end));
+        let shift = Vector::new(0.0, top.y - start.y);
+        let count = chord_count(start, knee, end);
+        for i in 1..=count {
+            let moved = || on_parabola(start, knee, end, i as f32 / count as f32) + shift;
+            let mut bottom = if i < count { snapped(moved()) } else { last };
+            bottom.y = bottom.y.min(last.y);
+            if bottom.y > top.y {
+                self.push(is_down, top, bottom, i < count);
+                top = bottom;
+            }
+        }
+    }
+
+    /// Adds an edge: what the outline, going round with its inside to the right, passes downwards is on the right.
+    fn push(&mut self, is_down: bool, top: Point, bottom: Point, goes_on: bool) {
+        if top.y < bottom.y {
+            let edge = Edge {
+                top,
+                bottom,
+                goes_on,
+            };
+            self.sides[usize::from(is_down)].push(edge);
+        }
+    }
+
+    /// Where a side hardly bends within a row of pixels, the edge above goes on to the end of the row.
+    fn run_on(&mut self) {
+        let [left, right] = &self.sides;
+        let bends = [unseen_bends(left, right), unseen_bends(right, left)];
+        for (side, bends) in self.sides.iter_mut().zip(bends) {
+            for i in bends {
+                let (upper, lower) = (side[i - 1], side[i]);
+                let end = lower.top.y.ceil();
+                side[i - 1].bottom = upper.at(end);
+                side[i].top = lower.at(end);
+            }
+        }
+    }
+}
+
+/// How far the parabola of a quarter is outside of a circle of radius 1. That of half an arc is a quarter as far.
+const QUARTER_BULGE: f32 = 0.0607;
+
+/// How far outside a parabola may be, px.
+const MAX_BULGE: f32 = 0.25;
+
+/// The parabola, in two where it turns back in y.
+fn monotone([from, knee, to]: [Point; 3]) -> impl Iterator<Item = [Point; 3]> {
+    let (before, after) = (knee.y - from.y, to.y - knee.y);
+    if before * after >= 0.0 {
+        return [Some([from, knee, to]), None].into_iter().flatten();
+    }
+    let t = before / (before - after);
+    let turn = on_parabola(from, knee, to, t);
+    let knees = [from + (knee - from) * t, knee + (to - knee) * t].map(|p| Point::new(p.x, turn.y));
+    let parts = [[from, knees[0], turn], [turn, knees[1], to]];
+    parts.map(Some).into_iter().flatten()
+}
+
+/// Two chords for a parabola that bends by less than 4 px, and twice as many for each four times of that.
+fn chord_count(start: Point, knee: Point, end: Point) -> u32 {
+    let bend = ((knee - start) - (end - knee)).abs();
+    let bend = bend.max() + 0.5 * bend.min();
+    let (mut count, mut limit) = (2, 4.0);
+    while bend + 0.25 >= limit && count < MAX_CHORDS {
+        (count, limit) = (2 * count, 4.0 * limit);
+    }
+    count
+}
+
+const MAX_CHORDS: u32 = 64;
+
+fn on_parabola(start: Point, knee: Point, end: Point, t: f32) -> Point {
+    let u = 1.0 - t;
+    Point::from(start.coords * (u * u) + knee.coords * (2.0 * t * u) + end.coords * (t * t))
+}
+
+/// Heights are rounded to quarters of a px; what is there stays at its place in x.
+fn snapped(p: Point) -> Point {
+    Point::new(p.x, (4.0 * p.y + 0.5).floor() / 4.0)
+}
+
+/// The edges of `side` that begin within a row with a bend that is passed over: a slight one, and if the
+/// `other` side bends within a px of there, that is slight, too.
+fn unseen_bends(side: &[Edge], other: &[Edge]) -> Vec<usize> {
+    let is_unseen = |&i: &usize| {
+        let (upper, y) = (&side[i - 1], side[i].top.y);
+        if y.fract() == 0.0 || !is_slight(side, i) {
+            return false;
+        }
+        let is_near = |edge: &Edge| edge.bottom.y > upper.top.y && (edge.bottom.y - y).abs() <= 1.0;
+        let opposite = other.iter().position(is_near);
+        opposite.is_none_or(|k| is_slight(other, k + 1))
+    };
+    (1..side.len()).filter(is_unseen).collect()
+}
+
+/// Whether `side` hardly bends where its edge `i` begins, between two curves or lines.
+fn is_slight(side: &[Edge], i: usize) -> bool {
+    let (upper, Some(lower)) = (&side[i - 1], side.get(i)) else {
+        return false;
+    };
+    !upper.goes_on && lower.height() >= 1.0 && (upper.slope() - lower.slope()).abs() <= 1.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn outline(a: [f32; 2], b: [f32; 2], radius: f32) -> Outline {
+        let mut outline = Outline::default();
+        outline.trace(a.into(), b.into(), radius);
+        outline
+    }
+
+    #[test]
+    fn sides_go_down_from_the_top_to_the_bottom_without_a_gap_in_height() {
+        for (a, b, radius) in [
+            ([5.3, 6.1], [9.8, 11.9], 2.2),
+            ([9.8, 3.1], [2.6, 3.9], 0.6),
+            ([40.0, 40.3], [40.0, 40.3], 31.7),
+        ] {
+            let Outline { sides } = outline(a, b, radius);
+            let [left, right] = sides
+                .each_ref()
+                .map(|side| (side[0].top.y, side[side.len() - 1].bottom.y));
+            assert_eq!(left, right);
+            for pair in sides.iter().flat_map(|side| side.windows(2)) {
+                assert_eq!(pair[0].bottom.y, pair[1].top.y);
+            }
+        }
+    }
+
+    #[test]
+    fn heights_are_quarters_of_a_px() {
+        let Outline { sides } = outline([5.3, 6.13], [9.8, 11.91], 2.2);
+        for edge in sides.iter().flatten() {
+            assert_eq!((4.0 * edge.top.y).fract(), 0.0, "{edge:?}");
+        }
+    }
+
+    #[test]
+    fn a_dot_is_as_wide_as_its_stroke_and_bulges_between() {
+        let Outline { sides } = outline([20.0, 20.0], [20.0, 20.0], 3.0);
+        let reach = |edge: &Edge| (edge.top - Point::new(20.0, 20.0)).norm();
+        let reaches = sides.iter().flatten().map(reach);
+        let most = reaches.fold(0.0_f32, f32::max);
+        assert!((3.1..3.2).contains(&most), "{most}");
+    }
+}
