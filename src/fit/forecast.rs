@@ -10,6 +10,10 @@ use super::recipe::Recipe;
 
 /// A stroke takes as long to write and to render as so many pixels do, about.
 const STROKE_PX: f64 = 160.0;
+/// What looking at the file as a browser does takes beside a writing, in writings of the drawing …
+const LOOKING: f64 = 0.25;
+/// … and, whatever the strokes, in writings of an empty page: our own render, and comparisons.
+const LOOKING_AT_PAGE: f64 = 1.15;
 /// What follows the fit, in writings of the drawing: the judge writes and renders it once more, the report
 /// packs it.
 const JUDGING: f64 = 1.75;
@@ -119,7 +123,7 @@ impl Forecast {
 
     /// Whether what is written from `now` on is judged in time.
     fn ends_in_time(&self, strokes: usize, now: f64) -> bool {
-        now + self.writing(strokes) + self.judging(strokes) < self.limit
+        now + self.seeing(strokes) + self.judging(strokes) < self.limit
     }
 
     /// How much there is to write, in pixels.
@@ -131,14 +135,19 @@ impl Forecast {
         self.per_pixel * self.size(strokes)
     }
 
+    /// A writing that is settled from.
+    fn seeing(&self, strokes: usize) -> f64 {
+        (1.0 + LOOKING) * self.writing(strokes) + LOOKING_AT_PAGE * self.writing(0)
+    }
+
     /// The time that is kept for the first writing and for rounds of settling; short rounds where it is short.
     fn settling(&self, strokes: usize) -> f64 {
-        let writing = self.writing(strokes);
-        let round = |steps: f64| writing + steps * self.step;
+        let seeing = self.seeing(strokes);
+        let round = |steps: f64| seeing + steps * self.step;
         let rounds = self.rounds as f64 * round(self.steps as f64);
         let most = self.limit * SETTLING;
         let worthwhile = round(LEAST_ROUND) < most;
-        writing + if worthwhile { rounds.min(most) } else { 0.0 }
+        seeing + if worthwhile { rounds.min(most) } else { 0.0 }
     }
 
     fn judging(&self, strokes: usize) -> f64 {
@@ -176,6 +185,12 @@ mod tests {
             forecast.has_written(strokes, span, self.now);
         }
 
+        /// Writes a drawing that is settled from, and looks at it.
+        fn see(&mut self, forecast: &mut Forecast, strokes: usize) {
+            self.write(forecast, strokes);
+            self.now += LOOKING * self.writing(strokes) + LOOKING_AT_PAGE * self.writing(0);
+        }
+
         fn step(&mut self, forecast: &mut Forecast, strokes: usize) {
             let span = self.writing(strokes) / 7.0;
             self.now += span;
@@ -195,12 +210,12 @@ mod tests {
                 self.step(&mut forecast, strokes(self.now));
             }
             let strokes = strokes(self.now);
-            self.write(&mut forecast, strokes);
+            self.see(&mut forecast, strokes);
             while forecast.allows_round(strokes, self.now) {
                 while forecast.allows_step(strokes, self.now) {
                     self.step(&mut forecast, strokes);
                 }
-                self.write(&mut forecast, strokes);
+                self.see(&mut forecast, strokes);
             }
             self.now + JUDGING * self.writing(strokes) + COMPARING * self.writing(0)
         }

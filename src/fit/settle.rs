@@ -93,7 +93,7 @@ pub(super) fn run(
     recipe: &Recipe,
     control: &mut Control<'_>,
 ) -> Result<Written> {
-    let (mut written, mut views) = control.writing(drawing.len(), || seen(drawing, page))?;
+    let (mut written, mut views) = seen(drawing, page, control)?;
     let mut best = Best::of(drawing, &written, views.badness());
     let (mut share, mut pace) = (views.first_share(), 1.0);
     let mut round = 0;
@@ -107,7 +107,7 @@ pub(super) fn run(
         if !descend(drawing, recipe, rates, &targets, written.mse, control) {
             break;
         }
-        (written, views) = control.writing(drawing.len(), || seen(drawing, page))?;
+        (written, views) = seen(drawing, page, control)?;
         if views.badness() < best.badness {
             best = Best::of(drawing, &written, views.badness());
         }
@@ -119,8 +119,12 @@ pub(super) fn run(
 }
 
 /// Writes `drawing` and looks at it.
-fn seen(drawing: &mut Drawing, page: Page<'_>) -> Result<(Written, Views)> {
-    let written = write(drawing, page)?;
+fn seen(
+    drawing: &mut Drawing,
+    page: Page<'_>,
+    control: &mut Control<'_>,
+) -> Result<(Written, Views)> {
+    let written = control.writing(drawing.len(), || write(drawing, page))?;
     let views = Views::of(drawing, &written)?;
     Ok((written, views))
 }
