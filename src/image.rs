@@ -211,9 +211,11 @@ impl Image {
     pub fn to_rgb8(&self) -> Vec<u8> {
         let [red, green, blue] = &self.planes;
         let pixels = red.iter().zip(green).zip(blue);
-        pixels
-            .flat_map(|((&r, &g), &b)| [r, g, b].map(byte))
-            .collect()
+        let mut rgb = vec![0; 3 * red.len()];
+        for (bytes, ((&r, &g), &b)) in rgb.chunks_exact_mut(3).zip(pixels) {
+            bytes.copy_from_slice(&[r, g, b].map(byte));
+        }
+        rgb
     }
 }
 

@@ -146,8 +146,11 @@ impl Forecast {
         let round = |steps: f64| seeing + steps * self.step;
         let rounds = self.rounds as f64 * round(self.steps as f64);
         let most = self.limit * SETTLING;
-        let worthwhile = round(LEAST_ROUND) < most;
-        seeing + if worthwhile { rounds.min(most) } else { 0.0 }
+        if self.rounds > 0 && round(LEAST_ROUND) < most {
+            seeing + rounds.min(most)
+        } else {
+            self.writing(strokes)
+        }
     }
 
     fn judging(&self, strokes: usize) -> f64 {
@@ -185,9 +188,7 @@ mod tests {
             forecast.has_written(strokes, span, self.now);
         }
 
-        /// Writes a drawing that is settled from, and looks at it.
-        fn see(&mut self, forecast: &mut Forecast, strokes: usize) {
-            self.write(forecast, strokes);
+        fn look(&mut self, strokes: usize) {
             self.now += LOOKING * self.writing(strokes) + LOOKING_AT_PAGE * self.writing(0);
         }
 
@@ -210,12 +211,16 @@ mod tests {
                 self.step(&mut forecast, strokes(self.now));
             }
             let strokes = strokes(self.now);
-            self.see(&mut forecast, strokes);
+            self.write(&mut forecast, strokes);
+            if forecast.allows_round(strokes, self.now) {
+                self.look(strokes);
+            }
             while forecast.allows_round(strokes, self.now) {
                 while forecast.allows_step(strokes, self.now) {
                     self.step(&mut forecast, strokes);
                 }
-                self.see(&mut forecast, strokes);
+                self.write(&mut forecast, strokes);
+                self.look(strokes);
             }
             self.now + JUDGING * self.writing(strokes) + COMPARING * self.writing(0)
         }

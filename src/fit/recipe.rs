@@ -93,17 +93,18 @@ impl Recipe {
         match preset {
             Preset::Draft => Self {
                 stage_iterations: 30,
-                polish_iterations: 100,
+                polish_iterations: 140,
                 polish_rates: Rates {
-                    position: 1.0,
+                    position: 1.3,
                     radius: 0.3,
                     last: 0.1,
                     ..balanced.polish_rates
                 },
                 relocate_every: 20,
                 relocate_scale: 0.4,
-                relocate_gain: 2.0,
-                settle_rounds: 1,
+                relocate_gain: 3.0,
+                // Iterations bring more than what a round takes.
+                settle_rounds: 0,
                 ..balanced
             },
             Preset::Balanced => balanced,

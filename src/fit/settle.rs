@@ -93,7 +93,11 @@ pub(super) fn run(
     recipe: &Recipe,
     control: &mut Control<'_>,
 ) -> Result<Written> {
-    let (mut written, mut views) = seen(drawing, page, control)?;
+    let mut written = control.writing(drawing.len(), || write(drawing, page))?;
+    if !control.allows_round(0, recipe.settle_rounds) {
+        return Ok(written);
+    }
+    let mut views = Views::of(drawing, &written)?;
     let mut best = Best::of(drawing, &written, views.badness());
     let (mut share, mut pace) = (views.first_share(), 1.0);
     let mut round = 0;
@@ -107,7 +111,8 @@ pub(super) fn run(
         if !descend(drawing, recipe, rates, &targets, written.mse, control) {
             break;
         }
-        (written, views) = seen(drawing, page, control)?;
+        written = control.writing(drawing.len(), || write(drawing, page))?;
+        views = Views::of(drawing, &written)?;
         if views.badness() < best.badness {
             best = Best::of(drawing, &written, views.badness());
         }
@@ -116,17 +121,6 @@ pub(super) fn run(
     }
     drawing.set_free(&best.free);
     Ok(best.written)
-}
-
-/// Writes `drawing` and looks at it.
-fn seen(
-    drawing: &mut Drawing,
-    page: Page<'_>,
-    control: &mut Control<'_>,
-) -> Result<(Written, Views)> {
-    let written = control.writing(drawing.len(), || write(drawing, page))?;
-    let views = Views::of(drawing, &written)?;
-    Ok((written, views))
 }
 
 /// The best file so far, and the strokes that it was written from.
