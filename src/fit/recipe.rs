@@ -93,7 +93,7 @@ impl Recipe {
         match preset {
             Preset::Draft => Self {
                 stage_iterations: 30,
-                polish_iterations: 140,
+                polish_iterations: 120,
                 polish_rates: Rates {
                     position: 1.3,
                     radius: 0.3,
