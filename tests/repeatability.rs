@@ -12,7 +12,7 @@ use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use strokefit::fit::{Background, Budget, Config, Execution, Fitter, Preset, Simd};
+use strokefit::fit::{Background, Budget, Config, Execution, Fitter, Preset, Recipe, Simd};
 use strokefit::image::Image;
 use strokefit::svg::WriteOptions;
 
@@ -48,9 +48,20 @@ fn option_sets() -> [(&'static str, Config); 3] {
         bytes: Some(9000),
         ..Budget::default()
     };
+    // A draft is not settled against its file.
+    let settled = Recipe {
+        settle_rounds: 2,
+        ..Recipe::of(Preset::Draft)
+    };
     [
         ("150 strokes", draft(most)),
-        ("22 dB in 9 kB", draft(faithful)),
+        (
+            "22 dB in 9 kB, settled",
+            Config {
+                recipe: Some(settled),
+                ..draft(faithful)
+            },
+        ),
         (
             "opaque, progressive, seed 7",
             Config {
