@@ -176,7 +176,7 @@ fn an_interrupted_fit_goes_on() {
     while read(&place, "fit.state").is_none() {
         std::thread::sleep(Duration::from_millis(1));
     }
-    send(&child, 2);
+    send(&child, 15);
     let interrupted = child.wait_with_output().unwrap();
     assert_eq!(interrupted.status.code(), None);
     let drawn = String::from_utf8(read(&place, "out.svg").unwrap()).unwrap();
