@@ -10,6 +10,7 @@ mod support {
 }
 
 use std::fs;
+use std::io::{self, Write};
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::process::{Child, Output, Stdio};
@@ -96,6 +97,12 @@ fn strokes(svg: &Path) -> usize {
 #[test]
 fn every_signal_leaves_the_drawing_so_far() {
     for (signal, wait_ms) in [(2, 300), (15, 0), (1, 1000)] {
+        if is_in(std::process::id(), "SigIgn:", signal) {
+            // As shells start what runs in the background of a script. Not by `eprintln!`, which is kept back.
+            let reason = "is ignored from outside, and stays so";
+            let _ = writeln!(io::stderr(), "SKIPPED: signal {signal} {reason}");
+            continue;
+        }
         let place = Place::new();
         picture(&place, 200, 150);
         let child = fit(&place, &[], &ENDLESS);
@@ -154,8 +161,8 @@ fn a_second_signal_ends_at_once_and_leaves_the_old_file() {
     fs::write(place.path("out.svg"), "old").unwrap();
     let child = fit(&place, &[], &ENDLESS);
     await_fit(&child, 15);
-    send(&child, 2);
-    await_arrival(&child, 2);
+    send(&child, 1);
+    await_arrival(&child, 1);
     send(&child, 15);
     assert_eq!(end(child).status.signal(), Some(15));
     let svg = fs::read_to_string(place.path("out.svg")).unwrap();
