@@ -30,7 +30,7 @@ use area::Area;
 use outline::Outline;
 
 use crate::image::Image;
-use crate::scene::Stroke;
+use crate::scene::{Stroke, quantum};
 
 /// The strokes, back to front, on each of the `pages`, which are opaque and of one size.
 pub fn draw<'a>(strokes: impl Iterator<Item = &'a Stroke>, pages: &[Image]) -> Vec<Image> {
@@ -70,9 +70,9 @@ struct Paint {
 
 impl Paint {
     fn of(stroke: &Stroke) -> Self {
-        let byte = |v: f32| (255.0 * v.clamp(0.0, 1.0) + 0.5) as u32;
-        let opacity = byte(stroke.opacity);
-        let color = stroke.color.map(|c| (byte(c) * opacity + 127) / 255);
+        let level = |v| u32::from(quantum(v));
+        let opacity = level(stroke.opacity);
+        let color = stroke.color.map(|c| (level(c) * opacity + 127) / 255);
         Self { color, opacity }
     }
 
