@@ -12,6 +12,10 @@
 //!
 //! On several grounds at once the sums add up, and so do the gains.
 //!
+//! A place is probed with dots and with capsules of some sizes, the latter in directions evenly over half a
+//! turn. The direction is sought first, with capsules of one size, and then the size: a third of all shapes,
+//! and the drawing is none the worse for it (by 0.02 dB).
+//!
 //! Source: the best colour of `DESIGN`'s formulas, with the opacity solved for in the same way.
 
 use std::ops::Range;
@@ -25,7 +29,7 @@ use super::strokes::{OPACITY, Params, RADIUS, RED};
 use crate::image::Image;
 
 /// Where the probed shapes are centred in a [`Patch`], px.
-pub const PATCH_CENTER: f32 = TILE as f32 / 2.0 + 0.5;
+const PATCH_CENTER: f32 = TILE as f32 / 2.0 + 0.5;
 
 /// The surroundings of a place: canvas and residual of the 32×32 px around it.
 #[derive(Debug)]
@@ -154,20 +158,36 @@ pub struct Probe {
     pub gain: f32,
 }
 
+/// Directions of the probed capsules, evenly over half a turn.
+const ANGLES: usize = 8;
+
 /// The shapes that are probed at every place.
 #[derive(Debug)]
 pub struct Probes {
     level: Level,
+    /// The capsules, [`ANGLES`] of each size, and then the dots.
     templates: Vec<Template>,
+    /// How many sizes of capsules there are.
+    sizes: usize,
     /// The blocks of a patch that they touch.
     blocks: Vec<usize>,
 }
 
 impl Probes {
-    /// Probes of the geometry of `shapes`, which are centred on [`PATCH_CENTER`].
-    pub fn new(level: Level, shapes: impl IntoIterator<Item = Params>) -> Self {
-        let templates: Vec<Template> = shapes
-            .into_iter()
+    /// Dots of these `radii`, px, and capsules of all of them with these `lengths`, px.
+    pub fn new(level: Level, radii: &[f32], lengths: &[f32]) -> Self {
+        let sizes: Vec<[f32; 2]> = radii
+            .iter()
+            .flat_map(|&radius| lengths.iter().map(move |&length| [radius, length]))
+            .collect();
+        let turned = |&[radius, length]: &[f32; 2]| {
+            let angle = |k: usize| std::f32::consts::PI * k as f32 / ANGLES as f32;
+            (0..ANGLES).map(move |k| shape(radius, length, angle(k)))
+        };
+        let capsules = sizes.iter().flat_map(turned);
+        let dots = radii.iter().map(|&radius| shape(radius, 0.0, 0.0));
+        let templates: Vec<Template> = capsules
+            .chain(dots)
             .map(|shape| Template::new(level, shape))
             .collect();
         let touched = templates.iter().flat_map(|template| &template.blocks);
@@ -175,45 +195,89 @@ impl Probes {
         Self {
             level,
             templates,
+            sizes: sizes.len(),
             blocks: members(set).collect(),
         }
     }
 
-    /// The shape that gains most on all of `patches` together, the same place on different grounds, and
-    /// its probe.
+    /// Of the shapes that are tried, the one that gains most on all of `patches` together, the same place on
+    /// different grounds, and its probe.
     pub fn best(&self, patches: &[Box<Patch>], least_opacity: f32) -> Option<(&Params, Probe)> {
-        let (first, others) = patches.split_first()?;
-        let (index, probe) = dispatch!(self.level, simd => {
-            best_of(simd, &self.templates, first, others, least_opacity)
-        })?;
+        let search = Search {
+            probes: self,
+            patches,
+            least_opacity,
+            best: None,
+        };
+        let (index, probe) = dispatch!(self.level, simd => search.run(simd))?;
         Some((&self.templates[index].shape, probe))
     }
 }
 
-#[inline(always)]
-fn best_of<S: Simd>(
-    simd: S,
-    templates: &[Template],
-    first: &Patch,
-    others: &[Box<Patch>],
+/// A shape about the centre of a patch.
+fn shape(radius: f32, length: f32, angle: f32) -> Params {
+    let (dx, dy) = (angle.cos() * length / 2.0, angle.sin() * length / 2.0);
+    let c = PATCH_CENTER;
+    [c - dx, c - dy, c + dx, c + dy, radius, 0.0, 0.0, 0.0, 1.0]
+}
+
+/// The search for the best shape at one place.
+struct Search<'a> {
+    probes: &'a Probes,
+    patches: &'a [Box<Patch>],
     least_opacity: f32,
-) -> Option<(usize, Probe)> {
-    let mut best: Option<(usize, Probe)> = None;
-    for (index, template) in templates.iter().enumerate() {
-        let mut total = sums(simd, template, first);
-        for patch in others {
-            total.add(&sums(simd, template, patch));
+    best: Option<(usize, Probe)>,
+}
+
+impl Search<'_> {
+    #[inline(always)]
+    fn run<S: Simd>(mut self, simd: S) -> Option<(usize, Probe)> {
+        let capsules = self.probes.sizes * ANGLES;
+        let middle = self.probes.sizes / 2 * ANGLES;
+        for turn in (0..ANGLES).step_by(2) {
+            self.probe(simd, middle + turn);
         }
-        let probe = total.solve(least_opacity);
-        if best.is_none_or(|(_, held)| probe.gain > held.gain) {
-            best = Some((index, probe));
+        self.turn(simd);
+        let turn = self.best?.0 % ANGLES;
+        for size in (0..capsules).step_by(ANGLES).filter(|&size| size != middle) {
+            self.probe(simd, size + turn);
+        }
+        for dot in capsules..self.probes.templates.len() {
+            self.probe(simd, dot);
+        }
+        self.turn(simd);
+        self.best
+    }
+
+    /// Tries the directions beside that of the best capsule.
+    #[inline(always)]
+    fn turn<S: Simd>(&mut self, simd: S) {
+        match self.best {
+            Some((index, _)) if index < self.probes.sizes * ANGLES => {
+                let (size, turn) = (index / ANGLES * ANGLES, index % ANGLES);
+                self.probe(simd, size + (turn + 1) % ANGLES);
+                self.probe(simd, size + (turn + ANGLES - 1) % ANGLES);
+            }
+            _ => {}
         }
     }
-    best
+
+    #[inline(always)]
+    fn probe<S: Simd>(&mut self, simd: S, index: usize) {
+        let template = &self.probes.templates[index];
+        let mut total = Sums::default();
+        for patch in self.patches {
+            total.add(&sums(simd, template, patch));
+        }
+        let probe = total.solve(self.least_opacity);
+        if self.best.is_none_or(|(_, held)| probe.gain > held.gain) {
+            self.best = Some((index, probe));
+        }
+    }
 }
 
 /// The nine sums at the head of the file.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct Sums {
     s: f32,
     x: [f32; 3],
