@@ -123,8 +123,9 @@ fn scales(rates: &Params, strokes: &[Params]) -> Vec<f32> {
     scales
 }
 
-/// Short memory for the squares: a fit is tens to hundreds of steps long.
+/// Short memory for the squares: gradients shrink fast, and change whenever neighbours are relocated. With
+/// 0.99 drafts have 0.15 dB less, and fits of thousands of steps 0.06.
 const ADAM: AdamParams = AdamParams {
-    betas: [0.9, 0.99],
+    betas: [0.9, 0.9],
     eps: 1e-10,
 };

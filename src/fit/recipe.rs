@@ -97,7 +97,7 @@ impl Recipe {
                 polish_rates: Rates {
                     position: 1.3,
                     radius: 0.3,
-                    last: 0.1,
+                    last: 0.2,
                     ..balanced.polish_rates
                 },
                 relocate_every: 20,
