@@ -1,7 +1,5 @@
 //! What lies behind all strokes.
 
-use std::collections::HashMap;
-
 use crate::image::Image;
 use crate::scene::Rgb;
 
@@ -52,16 +50,19 @@ const PREVAILING: f64 = 0.25;
 /// The colour of most pixels if it is a ground, otherwise the mean colour.
 fn prevailing_color(image: &Image) -> Rgb {
     let pixels = image.width() * image.height();
-    let mut counts = HashMap::<[u8; 3], usize>::new();
-    for rgb in image.to_rgb8().chunks_exact(3) {
-        *counts.entry([rgb[0], rgb[1], rgb[2]]).or_default() += 1;
-    }
-    let most = counts
-        .into_iter()
-        .max_by_key(|&(color, count)| (count, color));
+    let levels = image.to_rgb8();
+    let (colors, _) = levels.as_chunks::<3>();
+    let mut colors: Vec<u32> = colors
+        .iter()
+        .map(|&[r, g, b]| u32::from_be_bytes([0, r, g, b]))
+        .collect();
+    colors.sort_unstable();
+    let runs = colors.chunk_by(|a, b| a == b);
+    let most = runs.max_by_key(|run| run.len()).unwrap_or_default();
     match most {
-        Some((color, count)) if count as f64 >= PREVAILING * pixels as f64 => {
-            color.map(|v| f32::from(v) / 255.0)
+        [color, ..] if most.len() as f64 >= PREVAILING * pixels as f64 => {
+            let [_, rgb @ ..] = color.to_be_bytes();
+            rgb.map(|v| f32::from(v) / 255.0)
         }
         _ => [0, 1, 2].map(|c| {
             let sum: f64 = image.planes()[c].iter().map(|&v| f64::from(v)).sum();
