@@ -274,7 +274,12 @@ impl Drawing {
 
     /// The mean squared error of the drawing; at a reduced resolution, of what can be seen there.
     pub(super) fn mse(&mut self) -> f64 {
-        self.judge().loss
+        self.render();
+        let losses = self
+            .grounds
+            .iter()
+            .map(|ground| ground.loss_of(&ground.canvas));
+        losses.sum::<f64>() / self.grounds.len() as f64
     }
 }
 

@@ -250,6 +250,11 @@ impl Ground {
         renderer.forward(free, edge, base, &mut self.canvas);
     }
 
+    /// The mean squared error of `canvas`, at the current resolution.
+    pub(super) fn loss_of(&self, canvas: &Canvas) -> f64 {
+        Objective::new(Loss::L2, &self.target).of(canvas)
+    }
+
     /// What the free strokes lie on, and what they are to look like there: the picture, or `target`.
     pub(super) fn view<'a>(&'a self, frozen: usize, target: Option<&'a Canvas>) -> View<'a> {
         View {

@@ -1,5 +1,7 @@
 //! What a fit minimises: a loss over all pixels against a target, tile by tile.
 
+use rayon::prelude::*;
+
 use crate::loss::Loss;
 use crate::render::{
     Base, Canvas, CanvasLoss, Gradients, Lanes, Params, Renderer, Softness, TileRgb,
@@ -23,6 +25,26 @@ impl<'a> Objective<'a> {
             target,
             scale: 1.0 / (grid.width * grid.height * 3) as f32,
         }
+    }
+}
+
+impl Objective<'_> {
+    /// The loss of `canvas`.
+    pub(super) fn of(&self, canvas: &Canvas) -> f64 {
+        let pairs = canvas.tiles().par_iter().zip(self.target.tiles());
+        let sums: Vec<f64> = pairs.map(|(c, t)| self.sum(c, t)).collect();
+        sums.iter().sum::<f64>() * f64::from(self.scale)
+    }
+
+    fn sum(&self, canvas: &TileRgb, target: &TileRgb) -> f64 {
+        let mut sums = Lanes::splat(0.0);
+        let lanes = canvas.as_flattened().iter().zip(target.as_flattened());
+        for (c, t) in lanes {
+            for (sum, (c, t)) in sums.0.iter_mut().zip(c.0.iter().zip(&t.0)) {
+                *sum += self.loss.value(c - t);
+            }
+        }
+        sums.0.iter().map(|&s| f64::from(s)).sum()
     }
 }
 

@@ -1,9 +1,8 @@
 //! From scenes to drawings and back, and what a finished scene looks like.
 
 use super::Drawing;
-use crate::fit::objective::{View, differentiate};
 use crate::image::Image;
-use crate::render::{AX, Base, Canvas, Gradients, Params, RADIUS, pack, unpack};
+use crate::render::{AX, Base, Canvas, Params, RADIUS, pack, unpack};
 use crate::scene::{Scene, Stage};
 
 impl Drawing {
@@ -32,7 +31,8 @@ impl Drawing {
 
     /// The mean squared error after each layer of `scene`.
     pub(in crate::fit) fn layer_mses(&mut self, scene: &Scene) -> Vec<f64> {
-        let mut below: Vec<Canvas> = self.grounds.iter().map(|g| g.page(scene)).collect();
+        let mut canvases: Vec<Canvas> = self.grounds.iter().map(|g| g.page(scene)).collect();
+        let mut below = canvases.clone();
         let halvings = self.ground().halvings();
         let mut mses = Vec::new();
         for stage in &scene.stages {
@@ -41,28 +41,21 @@ impl Drawing {
                 .iter()
                 .map(|s| reduced(pack(s), halvings))
                 .collect();
-            for canvas in &mut below {
-                let base = canvas.clone();
-                self.renderer
-                    .forward(&strokes, self.edge, Base::Canvas(&base), canvas);
+            std::mem::swap(&mut below, &mut canvases);
+            for (below, canvas) in below.iter().zip(&mut canvases) {
+                let base = Base::Canvas(below);
+                self.renderer.forward(&strokes, self.edge, base, canvas);
             }
-            mses.push(self.mse_of(&below));
+            mses.push(self.mse_of(&canvases));
         }
         mses
     }
 
     /// The mean squared error of finished canvases, one per ground.
-    fn mse_of(&mut self, canvases: &[Canvas]) -> f64 {
-        let grounds = self.grounds.iter().zip(canvases);
-        let views: Vec<_> = grounds
-            .map(|(ground, canvas)| View {
-                base: Base::Canvas(canvas),
-                ..ground.view(0, None)
-            })
-            .collect();
-        let mut gradients = Gradients::default();
-        differentiate::<false>(&mut self.renderer, &[], self.edge, &views, &mut gradients);
-        gradients.loss
+    fn mse_of(&self, canvases: &[Canvas]) -> f64 {
+        let pairs = self.grounds.iter().zip(canvases);
+        let losses = pairs.map(|(ground, canvas)| ground.loss_of(canvas));
+        losses.sum::<f64>() / canvases.len() as f64
     }
 
     /// The drawing as a scene in px of the picture, unrounded, with the background if it `has_ground`.
