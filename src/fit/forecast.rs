@@ -41,6 +41,8 @@ pub(super) struct Forecast {
     limit: f64,
     pixels: f64,
     is_clear: bool,
+    /// Whether the drawing is written before it is judged.
+    needs_file: bool,
     /// Rounds of settling, and steps of each.
     rounds: usize,
     steps: usize,
@@ -55,12 +57,20 @@ pub(super) struct Forecast {
 }
 
 impl Forecast {
-    /// For a fit that may take `limit` in all, of a picture of so many pixels, `is_clear` if it is transparent.
-    pub(super) fn new(limit: Duration, pixels: usize, is_clear: bool, recipe: &Recipe) -> Self {
+    /// For a fit that may take `limit` in all, of a picture of so many pixels, `is_clear` if it is transparent;
+    /// it `needs_file` if it looks at what it writes.
+    pub(super) fn new(
+        limit: Duration,
+        pixels: usize,
+        is_clear: bool,
+        needs_file: bool,
+        recipe: &Recipe,
+    ) -> Self {
         Self {
             limit: limit.as_secs_f64(),
             pixels: pixels as f64,
             is_clear,
+            needs_file,
             rounds: recipe.settle_rounds,
             steps: recipe.settle_iterations,
             per_pixel: 0.0,
@@ -148,8 +158,10 @@ impl Forecast {
         let most = self.limit * SETTLING;
         if self.rounds > 0 && round(LEAST_ROUND) < most {
             seeing + rounds.min(most)
-        } else {
+        } else if self.needs_file {
             self.writing(strokes)
+        } else {
+            0.0
         }
     }
 
@@ -201,8 +213,8 @@ mod tests {
         /// Fits a drawing of `most` strokes, of which it adds as many as a second allows, and says what that takes.
         fn fit(mut self, limit: f64, most: usize) -> f64 {
             let recipe = Recipe::of(Preset::Balanced);
-            let mut forecast =
-                Forecast::new(Duration::from_secs_f64(limit), PIXELS, false, &recipe);
+            let limit_s = Duration::from_secs_f64(limit);
+            let mut forecast = Forecast::new(limit_s, PIXELS, false, true, &recipe);
             let strokes = |now: f64| most.min((4000.0 * now) as usize);
             while self.now < forecast.end_of_descent(strokes(self.now)) {
                 if forecast.is_due(self.now) {
@@ -249,7 +261,8 @@ mod tests {
 
     fn forecast(limit_s: u64) -> Forecast {
         let recipe = Recipe::of(Preset::Balanced);
-        let mut forecast = Forecast::new(Duration::from_secs(limit_s), PIXELS, false, &recipe);
+        let mut forecast =
+            Forecast::new(Duration::from_secs(limit_s), PIXELS, false, true, &recipe);
         forecast.has_written(1000, 0.02, 0.1);
         forecast.has_stepped(0.004);
         forecast

@@ -45,7 +45,7 @@ struct Errors {
 
 impl Views {
     pub(super) fn of(drawing: &mut Drawing, written: &Written) -> Result<Self> {
-        let scene = &written.scene;
+        let scene = &written.rounded.scene;
         let soft = drawing.soft(scene);
         let grounds = drawing.grounds();
         let pages: Vec<Image> = grounds.iter().map(|g| g.page(scene).to_image()).collect();

@@ -19,7 +19,7 @@ use crate::error::Result;
 use crate::image::Image;
 use crate::optim::Schedule;
 use crate::render::{Canvas, Params};
-use crate::scene::{Dropped, Scene};
+use crate::scene::Quantized;
 use crate::svg::WriteOptions;
 use crate::{metrics, verify};
 
@@ -46,14 +46,10 @@ impl<'a> Page<'a> {
     }
 }
 
-/// A drawing as its file says it.
+/// A drawing as its file says it, and what that looks like.
 #[derive(Debug, Clone)]
 pub(super) struct Written {
-    pub(super) scene: Scene,
-    /// Which stage of the drawing each layer is.
-    pub(super) origins: Vec<usize>,
-    /// Strokes that cannot be written.
-    pub(super) dropped: Dropped,
+    pub(super) rounded: Quantized,
     /// What an SVG renderer draws on each ground.
     pub(super) drawn: Vec<Image>,
     /// Bytes of SVG.
@@ -62,13 +58,16 @@ pub(super) struct Written {
     pub(super) mse: f64,
 }
 
+/// Rounds `drawing` to what its file says.
+pub(super) fn round(drawing: &Drawing, page: Page<'_>) -> Quantized {
+    let scene = drawing.scene(page.has_ground);
+    scene.quantized(page.file.precision)
+}
+
 /// Rounds and writes `drawing` and renders the file.
 pub(super) fn write(drawing: &Drawing, page: Page<'_>) -> Result<Written> {
-    let quantized = drawing
-        .scene(page.has_ground)
-        .quantized(page.file.precision);
-    let scene = quantized.scene;
-    let text = Base::write(page.base, &scene, &page.file);
+    let rounded = round(drawing, page);
+    let text = Base::write(page.base, &rounded.scene, &page.file);
     let (mut drawn, mut mse) = (Vec::new(), 0.0_f64);
     for ground in drawing.grounds() {
         let image = verify::render_like(&text, ground.picture(), ground.paper)?;
@@ -76,9 +75,7 @@ pub(super) fn write(drawing: &Drawing, page: Page<'_>) -> Result<Written> {
         drawn.push(image);
     }
     Ok(Written {
-        scene,
-        origins: quantized.origins,
-        dropped: quantized.dropped,
+        rounded,
         bytes: text.len(),
         drawn,
         mse,

@@ -131,7 +131,8 @@ impl<'a> Work<'a> {
         let mut drawing = Drawing::new(&mut setting, config, level);
         let records = base.map_or_else(Vec::new, |base| stages::load(&mut drawing, base));
         let is_clear = drawing.grounds().len() > 1;
-        let forecast = |limit| Forecast::new(limit, pixels, is_clear, &recipe);
+        let needs_file = budget::needs_file(&config.budget, &recipe);
+        let forecast = |limit| Forecast::new(limit, pixels, is_clear, needs_file, &recipe);
         let forecast = config.budget.time.map(forecast);
         let planned = (plan.strokes() * recipe.iterations(config.polish)) as f64;
         Ok(Self {

@@ -4,6 +4,7 @@ use crate::fit::Stop;
 use crate::fit::base::Base;
 use crate::fit::config::{Budget, Config};
 use crate::fit::plan::MOST_STROKES;
+use crate::fit::recipe::Recipe;
 use crate::fit::settle::Written;
 use crate::image::Image;
 use crate::math::Point;
@@ -46,6 +47,11 @@ fn typical_bytes(config: &Config, target: &Image) -> usize {
     svg::stroke_bytes(&stroke, &config.file).max(1)
 }
 
+/// Whether anything depends on what the file looks like, or on its bytes.
+pub(super) fn needs_file(budget: &Budget, recipe: &Recipe) -> bool {
+    recipe.settle_rounds > 0 || budget.psnr_db.is_some() || budget.bytes.is_some()
+}
+
 /// The first budget that a drawing of so many `strokes`, written as it is, uses up or meets.
 pub(super) fn met(budget: &Budget, strokes: usize, written: &Written) -> Option<Stop> {
     let is_reached = |db| psnr_db(written.mse) >= db;
@@ -67,7 +73,7 @@ pub(super) fn is_better(budget: &Budget, new: &Written, old: &Written) -> bool {
     let reached = |w: &Written| budget.psnr_db.is_some_and(|db| psnr_db(w.mse) >= db);
     match (fits(new), fits(old)) {
         (true, true) => match (reached(new), reached(old)) {
-            (true, true) => new.scene.len() < old.scene.len(),
+            (true, true) => new.rounded.scene.len() < old.rounded.scene.len(),
             (false, false) => new.mse < old.mse,
             (reaches, _) => reaches,
         },
@@ -79,14 +85,12 @@ pub(super) fn is_better(budget: &Budget, new: &Written, old: &Written) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Dropped, Scene};
+    use crate::scene::Scene;
 
     /// A file of no strokes.
     fn file(bytes: usize, mse: f64) -> Written {
         Written {
-            scene: Scene::empty(4, 3, None),
-            origins: Vec::new(),
-            dropped: Dropped::default(),
+            rounded: Scene::empty(4, 3, None).quantized(2),
             drawn: Vec::new(),
             bytes,
             mse,

@@ -6,7 +6,7 @@ use crate::fit::settle::Written;
 use crate::fit::{Fit, StageRecord, drawing, ground, settle};
 use crate::image::Image;
 use crate::metrics::psnr_db;
-use crate::scene::{Dropped, Scene, Stage};
+use crate::scene::{Dropped, Quantized, Scene, Stage};
 
 impl Work<'_> {
     /// Ends the fit where the base as it is meets a budget already.
@@ -38,32 +38,32 @@ impl Work<'_> {
 
     /// The finished fit.
     pub(in crate::fit) fn finish(mut self) -> Result<Fit> {
-        let written = match self.best.take() {
-            Some(best) => best,
-            None => settle::write(&self.drawing, self.page)?,
+        let rounded = match self.best.take() {
+            Some(best) => best.rounded,
+            None => settle::round(&self.drawing, self.page),
         };
-        let stages = self.records(&written);
-        let soft = self.soft(&written.scene)?;
+        let stages = self.records(&rounded);
+        let soft = self.soft(&rounded.scene)?;
         Ok(Fit {
             soft,
-            scene: written.scene,
+            scene: rounded.scene,
             base: self.base.cloned(),
             target: self.target,
             stages,
             stop: self.control.cut_by().unwrap_or(self.standing.stop),
             dropped: Dropped {
-                non_finite: written.dropped.non_finite + self.drawing.lost(),
-                ..written.dropped
+                non_finite: rounded.dropped.non_finite + self.drawing.lost(),
+                ..rounded.dropped
             },
         })
     }
 
     /// The records of the stages that have strokes in the finished drawing, numbered as its layers, with what
     /// became of them.
-    fn records(&mut self, written: &Written) -> Vec<StageRecord> {
-        let mses = self.drawing.layer_mses(&written.scene);
-        let layers = written.scene.stages.iter().zip(mses);
-        let origins = written.origins.iter().enumerate();
+    fn records(&mut self, rounded: &Quantized) -> Vec<StageRecord> {
+        let mses = self.drawing.layer_mses(&rounded.scene);
+        let layers = rounded.scene.stages.iter().zip(mses);
+        let origins = rounded.origins.iter().enumerate();
         let record = |((number, &origin), (stage, mse)): ((_, _), (&Stage, _))| {
             Some(StageRecord {
                 index: number + 1,

@@ -61,20 +61,22 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Settles the drawing against its file.
+    /// Settles the drawing against its file, where anything depends on what that looks like.
     pub(in crate::fit) fn settle(&mut self) -> Result<()> {
         self.drawing.thaw();
         self.drawing.refine(0.0);
         let recipe = self.restricted();
-        let (drawing, control) = (&mut self.drawing, &mut self.control);
-        let written = settle::run(drawing, self.page, &recipe, control)?;
-        // What was settled in haste is nothing to go on from.
-        self.is_final |= control.stopped() == Some(Stop::Observer);
-        self.standing.corrections.last_db = psnr_db(written.mse);
-        let (budget, best) = (&self.config.budget, self.best.as_ref());
-        if best.is_none_or(|best| budget::is_better(budget, &written, best)) {
-            self.set_best(written);
+        if budget::needs_file(&self.config.budget, &recipe) {
+            let (drawing, control) = (&mut self.drawing, &mut self.control);
+            let written = settle::run(drawing, self.page, &recipe, control)?;
+            self.standing.corrections.last_db = psnr_db(written.mse);
+            let (budget, best) = (&self.config.budget, self.best.as_ref());
+            if best.is_none_or(|best| budget::is_better(budget, &written, best)) {
+                self.set_best(written);
+            }
         }
+        // What was settled in haste is nothing to go on from.
+        self.is_final |= self.control.stopped() == Some(Stop::Observer);
         Ok(())
     }
 
