@@ -56,6 +56,8 @@ struct Program {
     args: &'static [&'static str],
     /// An argument, and what its answer says where the program can do it at all.
     can: Option<[&'static str; 2]>,
+    /// Whether it crashes where there is no display.
+    needs_display: bool,
 }
 
 /// The programs that are known.
@@ -83,6 +85,7 @@ const PROGRAMS: [Program; 4] = [
             "{settings}",
         ],
         can: None,
+        needs_display: false,
     },
     Program {
         name: "primitive",
@@ -91,6 +94,7 @@ const PROGRAMS: [Program; 4] = [
         settings: &["-n 20 -m 0", "-n 50 -m 0", "-n 100 -m 0", "-n 300 -m 0"],
         args: &["-i", "{in}", "-o", "{out}", "{settings}"],
         can: None,
+        needs_display: false,
     },
     Program {
         name: "potrace",
@@ -98,6 +102,7 @@ const PROGRAMS: [Program; 4] = [
         settings: &["--turdsize 10", "--turdsize 2"],
         args: &["--svg", "{settings}", "--output", "{out}", "{in}"],
         can: None,
+        needs_display: false,
     },
     Program {
         name: "inkscape",
@@ -105,10 +110,13 @@ const PROGRAMS: [Program; 4] = [
         settings: &["4", "8", "16", "32"],
         args: &[
             "{in}",
-            "--actions=select-all;selection-trace:{settings},false,true,false,4,1.0,0.2;export-filename:{out};export-do",
+            // Without the picture itself, which is below the drawing.
+            "--actions=select-all;object-trace:{settings},false,true,false,4,1.0,0.2;select-clear;\
+             select-by-element:image;delete;export-filename:{out};export-plain-svg;export-do",
         ],
         // From version 1.3 on.
-        can: Some(["--action-list", "selection-trace"]),
+        can: Some(["--action-list", "object-trace"]),
+        needs_display: true,
     },
 ];
 
@@ -122,7 +130,7 @@ pub fn installed() -> Vec<Box<dyn Peer>> {
     boxed(PROGRAMS.into_iter().filter(Program::is_here))
 }
 
-/// Names of the known programs that are not, or are too old.
+/// Names of the known programs that are not, are too old, or have no display to work on.
 pub fn missing() -> Vec<&'static str> {
     let missing = PROGRAMS.into_iter().filter(|program| !program.is_here());
     missing.map(|program| program.name).collect()
@@ -183,7 +191,8 @@ impl Program {
             let output = Command::new(self.name).arg(arg).output();
             output.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).contains(word))
         };
-        locate::program(self.name).is_some() && self.can.is_none_or(able)
+        let can_show = !self.needs_display || has_display();
+        can_show && locate::program(self.name).is_some() && self.can.is_none_or(able)
     }
 
     fn arguments(&self, from: &Path, to: &Path, settings: &str) -> Vec<String> {
@@ -203,6 +212,12 @@ impl Program {
             })
             .collect()
     }
+}
+
+/// Whether a window can be opened.
+fn has_display() -> bool {
+    let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    !cfg!(target_os = "linux") || is_set("DISPLAY") || is_set("WAYLAND_DISPLAY")
 }
 
 /// Runs a program, which may leave files in `folder`: why it failed, if it did, and the most memory that it
