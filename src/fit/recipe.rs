@@ -92,8 +92,13 @@ impl Recipe {
         };
         match preset {
             Preset::Draft => Self {
-                stage_iterations: 30,
-                polish_iterations: 120,
+                scale: 0.25,
+                stage_iterations: 20,
+                stage_rates: Rates {
+                    position: 1.5,
+                    ..balanced.stage_rates
+                },
+                polish_iterations: 140,
                 polish_rates: Rates {
                     position: 1.3,
                     radius: 0.3,
