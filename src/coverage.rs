@@ -71,6 +71,17 @@ pub enum Coverage {
 }
 
 impl Coverage {
+    /// One of each kind, and `atan` at both ends of its usual steepness: what holds for all of them is tried
+    /// with these.
+    pub const EACH: [Self; 6] = [
+        Self::Smoothstep,
+        Self::Sigmoid,
+        Self::Tanh,
+        Self::Atan { k: 1.0 },
+        Self::Atan { k: 4.0 },
+        Self::Raw,
+    ];
+
     /// Coverage 0..1 at signed distance `d` px, with an edge `softness` px wide.
     #[inline]
     pub fn value<T: Real>(self, d: T, softness: T) -> T {

@@ -2,15 +2,10 @@
 //! out is what its removal does. On random scenes, and on the degenerate ones that a fit runs into.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-mod support {
-    pub(crate) mod coverages;
-}
-
 use strokefit::coverage::Coverage;
 use strokefit::loss::Loss;
 use strokefit::render::reference::{Reference, Rgb, Scene, Stroke};
 use strokefit::rng;
-use support::coverages::COVERAGES;
 
 /// The step of a central difference, and the error that it is good for.
 #[derive(Clone, Copy)]
@@ -185,7 +180,7 @@ fn differing(name: &str, reference: &Reference, scene: &Scene, accuracy: Accurac
 fn expect_central_differences(scenes: Vec<(String, Scene)>, accuracy: Accuracy) {
     let mut failures = Vec::new();
     for (name, scene) in scenes {
-        for coverage in COVERAGES {
+        for coverage in Coverage::EACH {
             for softness in [1.0, 2.5] {
                 let reference = Reference {
                     eps: 1e-3,
@@ -212,7 +207,7 @@ fn gradients_are_central_differences_in_degenerate_scenes() {
 #[test]
 fn gradients_are_finite_without_eps() {
     for (name, scene) in random().into_iter().chain(degenerate()) {
-        for coverage in COVERAGES {
+        for coverage in Coverage::EACH {
             let reference = Reference::new(coverage, 1.0);
             let d_canvas = vec![[1.0; 3]; scene.width * scene.height];
             let gradients = reference.gradients(&scene, &d_canvas);
@@ -244,7 +239,7 @@ fn an_opaque_stroke_hides_what_is_behind() {
 fn leaving_out_is_removing() {
     let mut failures = Vec::new();
     for (name, scene) in random().into_iter().chain(degenerate()) {
-        for coverage in COVERAGES {
+        for coverage in Coverage::EACH {
             for cut in [false, true] {
                 let reference = Reference {
                     cut,

@@ -2,10 +2,6 @@
 //! at every SIMD level and number of threads.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
-mod support {
-    pub(crate) mod coverages;
-}
-
 use strokefit::coverage::Coverage;
 use strokefit::fit::{Objective, Simd};
 use strokefit::image::Image;
@@ -13,7 +9,6 @@ use strokefit::loss::Loss;
 use strokefit::render::reference::{self, Reference};
 use strokefit::render::{Base, Canvas, Gradients, Grid, PARAMS, Params, Renderer, Softness};
 use strokefit::rng::draw;
-use support::coverages::COVERAGES;
 
 /// ε of the fast renderer's distances, px².
 const EPS: f64 = 1e-6;
@@ -203,7 +198,7 @@ fn levels() -> impl Iterator<Item = Simd> {
 fn images_are_the_oracles() {
     let mut failures = Vec::new();
     for case in cases() {
-        for coverage in COVERAGES {
+        for coverage in Coverage::EACH {
             for width in [0.6, 1.0, 3.0] {
                 let fast = rendered(&case, Simd::Auto, Softness { coverage, width });
                 let slow = oracle(coverage, width).render(&naive(&case));
@@ -236,7 +231,7 @@ const KINDS: [(&str, std::ops::Range<usize>); 4] = [
 fn gradients_and_worths_are_the_oracles() {
     let mut failures = Vec::new();
     for case in cases() {
-        for (coverage, loss) in COVERAGES
+        for (coverage, loss) in Coverage::EACH
             .into_iter()
             .zip([Loss::L2, Loss::L1].into_iter().cycle())
         {
@@ -334,7 +329,7 @@ fn gradients_are_central_differences() {
 #[test]
 fn every_level_gives_the_same_bits() {
     for case in cases() {
-        for coverage in COVERAGES {
+        for coverage in Coverage::EACH {
             let softness = Softness {
                 coverage,
                 width: 1.25,

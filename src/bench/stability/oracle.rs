@@ -24,15 +24,6 @@ const SOFTNESS: f32 = 1.5;
 
 pub(super) const BACKGROUND: [f32; 3] = [0.3, 0.6, 0.8];
 
-pub(super) const FUNCTIONS: [Coverage; 6] = [
-    Coverage::Smoothstep,
-    Coverage::Sigmoid,
-    Coverage::Tanh,
-    Coverage::Atan { k: 1.0 },
-    Coverage::Atan { k: 4.0 },
-    Coverage::Raw,
-];
-
 /// The kinds of numbers of a stroke that have one unit.
 const KINDS: [std::ops::Range<usize>; 4] = [0..4, 4..5, 5..8, 8..9];
 

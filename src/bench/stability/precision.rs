@@ -1,7 +1,7 @@
 //! `f32` against `f64` through many iterations: the same descent in both, and the kernels compared where
 //! the `f32` descent has come to.
 
-use super::oracle::{BACKGROUND, FUNCTIONS, Page, oracle, pixels, random, slopes};
+use super::oracle::{BACKGROUND, Page, oracle, pixels, random, slopes};
 use super::{Check, Finding};
 use crate::coverage::Coverage;
 use crate::error::Result;
@@ -44,7 +44,7 @@ fn after(iterations: usize) -> Result<Finding> {
         .strokes
         .iter()
         .all(|s| s.to_params().iter().all(|v| v.is_finite()));
-    let gap = single.gap(&FUNCTIONS)?;
+    let gap = single.gap(&Coverage::EACH)?;
     let alike = loss32 <= LOSS_FACTOR * loss64;
     let figure = format!("{gap}; loss {loss32:.3e} in f32, {loss64:.3e} in f64");
     Ok(Finding::new(figure, gap.holds() && alike && finite))

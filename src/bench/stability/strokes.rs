@@ -1,7 +1,7 @@
 //! Degenerate and absurd strokes: canvas, gradients and worths in `f32` against the reference, and the
 //! file that the scene is written to.
 
-use super::oracle::{BACKGROUND, FUNCTIONS, Page, random};
+use super::oracle::{BACKGROUND, Page, random};
 use super::{Check, Finding};
 use crate::coverage::Coverage;
 use crate::error::Result;
@@ -50,7 +50,7 @@ fn scenes() -> Vec<Hard> {
         name,
         what,
         page: Page::new(40, 36, strokes.to_vec()),
-        functions: &FUNCTIONS,
+        functions: &Coverage::EACH,
         exception: "",
     };
     let red = |a: [f32; 2], b: [f32; 2], radius: f32, opacity: f32| {
