@@ -3,7 +3,8 @@
 //! [`Error`] is opaque: [`ErrorKind`] says what class of thing went wrong, the message names the
 //! offending file or value and the remedy, and [`std::error::Error::source`] holds the cause.
 
-use std::fmt;
+use std::path::Path;
+use std::{fmt, io};
 
 /// The result of every fallible function of the library.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
@@ -60,6 +61,15 @@ impl Error {
     pub fn within(mut self, context: impl fmt::Display) -> Self {
         self.message = format!("{context}: {}", self.message);
         self
+    }
+
+    /// A file `path` of a folder of results could not be written.
+    pub(crate) fn unwritten(path: &Path, cause: io::Error) -> Self {
+        let message = format!(
+            "cannot write {}: {cause}; choose another folder with -o",
+            path.display()
+        );
+        Self::new(ErrorKind::Io, message).caused_by(cause)
     }
 
     /// What class of thing went wrong.

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, Result};
 use crate::image::{Animation, AnimationFormat, Image};
 
 /// What an experiment is at.
@@ -31,10 +31,10 @@ impl<'a> Output<'a> {
     /// what is under way.
     ///
     /// # Errors
-    /// [`ErrorKind::Io`] when the folder cannot be made.
+    /// [`ErrorKind::Io`](crate::ErrorKind::Io) when the folder cannot be made.
     pub fn new(dir: impl Into<PathBuf>, tell: &'a mut dyn FnMut(Event<'_>)) -> Result<Self> {
         let dir = dir.into();
-        fs::create_dir_all(&dir).map_err(|e| unwritten(&dir, e))?;
+        fs::create_dir_all(&dir).map_err(|e| Error::unwritten(&dir, e))?;
         Ok(Self { dir, tell })
     }
 
@@ -46,7 +46,7 @@ impl<'a> Output<'a> {
     /// Writes a text file.
     ///
     /// # Errors
-    /// [`ErrorKind::Io`] when it cannot be written.
+    /// [`ErrorKind::Io`](crate::ErrorKind::Io) when it cannot be written.
     pub fn text(&mut self, name: &str, text: &str) -> Result<()> {
         self.bytes(name, text.as_bytes())
     }
@@ -54,7 +54,8 @@ impl<'a> Output<'a> {
     /// Writes a picture as PNG.
     ///
     /// # Errors
-    /// [`ErrorKind::Io`] when it cannot be written, [`ErrorKind::Picture`] when it is too large.
+    /// [`ErrorKind::Io`](crate::ErrorKind::Io) when it cannot be written,
+    /// [`ErrorKind::Picture`](crate::ErrorKind::Picture) when it is too large.
     pub fn picture(&mut self, name: &str, image: &Image) -> Result<()> {
         self.bytes(name, &image.encode_png()?)
     }
@@ -79,19 +80,11 @@ impl<'a> Output<'a> {
     /// Writes a file.
     ///
     /// # Errors
-    /// [`ErrorKind::Io`] when it cannot be written.
+    /// [`ErrorKind::Io`](crate::ErrorKind::Io) when it cannot be written.
     pub fn bytes(&mut self, name: &str, bytes: &[u8]) -> Result<()> {
         let path = self.dir.join(name);
-        fs::write(&path, bytes).map_err(|e| unwritten(&path, e))?;
+        fs::write(&path, bytes).map_err(|e| Error::unwritten(&path, e))?;
         (self.tell)(Event::Wrote(&path));
         Ok(())
     }
-}
-
-fn unwritten(path: &Path, cause: std::io::Error) -> Error {
-    let message = format!(
-        "cannot write {}: {cause}; choose another folder with -o",
-        path.display()
-    );
-    Error::new(ErrorKind::Io, message).caused_by(cause)
 }

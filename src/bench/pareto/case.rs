@@ -337,12 +337,7 @@ impl Case {
         let clock = Clock::start();
         let drawn = self.method.draw(&picture, peers)?;
         let cost = clock.cost();
-        fs::write(svg_to, &drawn.text).map_err(|e| {
-            Error::new(
-                ErrorKind::Io,
-                format!("cannot write {}: {e}", svg_to.display()),
-            )
-        })?;
+        fs::write(svg_to, &drawn.text).map_err(|e| Error::unwritten(svg_to, e))?;
         let shown = verify::fidelity(&drawn.text, &picture)?;
         let agreement = drawn.soft.as_ref().map(|soft| agreement(&drawn.text, soft));
         let agreement_db = agreement.transpose()?.map(|a| a.psnr_db);

@@ -4,7 +4,7 @@ use std::fs::{self, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::{case, unread, unwritten};
+use super::{case, unread};
 use crate::error::{Error, ErrorKind, Result};
 use crate::report::pareto::ParetoEntry;
 
@@ -22,11 +22,11 @@ impl Journal {
         let text = match fs::read_to_string(path) {
             Ok(text) => text,
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => String::new(),
-            Err(e) => return Err(unread(path, &e)),
+            Err(e) => return Err(unread(path, e)),
         };
         let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
         if whole.len() < text.len() {
-            fs::write(path, whole).map_err(|e| unwritten(path, &e))?;
+            fs::write(path, whole).map_err(|e| Error::unwritten(path, e))?;
         }
         let mut journal = Self {
             path: path.to_owned(),
@@ -60,7 +60,7 @@ impl Journal {
             .append(true)
             .open(&self.path);
         let written = file.and_then(|mut file| file.write_all(format!("{line}\n").as_bytes()));
-        written.map_err(|e| unwritten(&self.path, &e))?;
+        written.map_err(|e| Error::unwritten(&self.path, e))?;
         self.take(entry);
         Ok(())
     }

@@ -49,7 +49,7 @@ pub fn run(
     say: &mut dyn FnMut(&str),
 ) -> Result<ParetoReport> {
     check_names(pictures)?;
-    fs::create_dir_all(folder.join("svg")).map_err(|e| unwritten(folder, &e))?;
+    fs::create_dir_all(folder.join("svg")).map_err(|e| Error::unwritten(folder, e))?;
     let mut run = Run {
         folder,
         journal: Journal::open(&folder.join("results.jsonl"))?,
@@ -137,18 +137,10 @@ fn check_names(pictures: &[PathBuf]) -> Result<()> {
     Ok(())
 }
 
-fn unread(path: &Path, cause: &std::io::Error) -> Error {
+fn unread(path: &Path, cause: std::io::Error) -> Error {
     let message = format!(
         "{}: cannot be read ({cause}): check the name and its permissions",
         path.display()
     );
-    Error::new(ErrorKind::Io, message)
-}
-
-fn unwritten(path: &Path, cause: &std::io::Error) -> Error {
-    let message = format!(
-        "cannot write {}: {cause}; choose another folder with -o",
-        path.display()
-    );
-    Error::new(ErrorKind::Io, message)
+    Error::new(ErrorKind::Io, message).caused_by(cause)
 }

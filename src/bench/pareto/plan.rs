@@ -210,7 +210,7 @@ fn files(folders: &[PathBuf], picture: &Path) -> Result<Vec<Method>> {
     let mut methods = Vec::new();
     for folder in folders {
         let path = folder.join(&name);
-        fs::read_dir(folder).map_err(|e| unread(folder, &e))?;
+        fs::read_dir(folder).map_err(|e| unread(folder, e))?;
         if path.is_file() {
             let family = folder.file_name().unwrap_or(folder.as_os_str());
             methods.push(Method::File {
