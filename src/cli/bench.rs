@@ -164,7 +164,9 @@ impl Pareto {
         let report = pareto::run(folder, pictures, &work, &peers, &measure, &mut say)?;
         pareto::publish(files, folder, pictures, &report)?;
         for name in missing().into_iter().filter(|_| self.svgs.is_empty()) {
-            verbosity.say(format_args!("{name}: not here, too old, or without a display: not measured"));
+            verbosity.say(format_args!(
+                "{name}: not here, too old, or without a display: not measured"
+            ));
         }
         Ok(report.failures())
     }

@@ -49,8 +49,8 @@ impl Patch {
         })
     }
 
-    /// Copies what `probes` needs of the surroundings of pixel (x, y), which comes to lie on
-    /// [`PATCH_CENTER`].
+    /// Copies what `probes` needs of the surroundings of pixel (x, y), which comes to lie at its
+    /// centre.
     pub fn fill(&mut self, probes: &Probes, target: &Image, canvas: &Image, x: usize, y: usize) {
         let (width, height) = (canvas.width() as isize, canvas.height() as isize);
         for &block in &probes.blocks {
