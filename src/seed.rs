@@ -330,6 +330,20 @@ mod tests {
     }
 
     #[test]
+    fn the_cells_of_most_energy_are_kept() {
+        let image = ramp(40, 40);
+        let cells = Cells::new(&image, 25.0, [1, 1]);
+        let energy = &image.planes()[0];
+        let all = cells.peaks(energy, 1.0);
+        let kept = cells.peaks(energy, 0.6);
+        assert_eq!(kept.len(), all.len() - (0.4 * all.len() as f32) as usize);
+        let at = |&(x, y): &(usize, usize)| energy[y * 40 + x];
+        let least = kept.iter().map(at).fold(f32::INFINITY, f32::min);
+        let dropped = all.iter().filter(|peak| !kept.contains(peak));
+        assert!(dropped.map(at).all(|e| e < least));
+    }
+
+    #[test]
     fn box_sums_add_their_windows() {
         for radius in [0, 1, 3, 20] {
             let values: Vec<f32> = (0..11).map(|i| (i * i) as f32).collect();

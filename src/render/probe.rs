@@ -372,3 +372,43 @@ impl Probe {
         p
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIDE: usize = 48;
+    const BAR: f32 = 0.9;
+
+    /// A light bar 5 px wide and 18 px long on black through the middle, at `angle`.
+    fn bar(angle: f32) -> Image {
+        let pixel = |i: usize| {
+            let [x, y] = [i % SIDE, i / SIDE].map(|v| v as f32 - (SIDE / 2) as f32);
+            let along = x * angle.cos() + y * angle.sin();
+            let across = y * angle.cos() - x * angle.sin();
+            let inside = along.abs() < 9.0 && across.abs() < 2.5;
+            if inside { BAR } else { 0.0 }
+        };
+        Image::from_planes(
+            SIDE,
+            SIDE,
+            [0; 3].map(|_| (0..SIDE * SIDE).map(pixel).collect()),
+        )
+    }
+
+    #[test]
+    fn a_bar_is_found_in_its_direction_and_size() {
+        let probes = Probes::new(Level::new(), &[1.0, 2.5, 4.0], &[4.0, 14.0]);
+        let black = Image::from_planes(SIDE, SIDE, [0; 3].map(|_| vec![0.0; SIDE * SIDE]));
+        for k in 0..ANGLES {
+            let angle = std::f32::consts::PI * k as f32 / ANGLES as f32;
+            let mut patch = Patch::new();
+            patch.fill(&probes, &bar(angle), &black, SIDE / 2, SIDE / 2);
+            let (found, probe) = probes.best(&[patch], 1.0).unwrap();
+            let wanted = shape(2.5, 14.0, angle);
+            let apart = found.iter().zip(&wanted).map(|(a, b)| (a - b).abs());
+            assert!(apart.fold(0.0, f32::max) < 1e-4, "{k}: {found:?}");
+            assert!((probe.color[0] - BAR).abs() < 0.1, "{k}: {probe:?}");
+        }
+    }
+}
