@@ -275,11 +275,7 @@ impl Drawing {
     /// The mean squared error of the drawing; at a reduced resolution, of what can be seen there.
     pub(super) fn mse(&mut self) -> f64 {
         self.render();
-        let losses = self
-            .grounds
-            .iter()
-            .map(|ground| ground.loss_of(&ground.canvas));
-        losses.sum::<f64>() / self.grounds.len() as f64
+        self.mse_of(self.grounds.iter().map(|ground| &ground.canvas))
     }
 }
 

@@ -46,16 +46,16 @@ impl Drawing {
                 let base = Base::Canvas(below);
                 self.renderer.forward(&strokes, self.edge, base, canvas);
             }
-            mses.push(self.mse_of(&canvases));
+            mses.push(self.mse_of(canvases.iter()));
         }
         mses
     }
 
     /// The mean squared error of finished canvases, one per ground.
-    fn mse_of(&self, canvases: &[Canvas]) -> f64 {
+    pub(super) fn mse_of<'a>(&self, canvases: impl Iterator<Item = &'a Canvas>) -> f64 {
         let pairs = self.grounds.iter().zip(canvases);
         let losses = pairs.map(|(ground, canvas)| ground.loss_of(canvas));
-        losses.sum::<f64>() / canvases.len() as f64
+        losses.sum::<f64>() / self.grounds.len() as f64
     }
 
     /// The drawing as a scene in px of the picture, unrounded, with the background if it `has_ground`.
