@@ -98,7 +98,7 @@ impl Recipe {
                     position: 1.5,
                     ..balanced.stage_rates
                 },
-                polish_iterations: 150,
+                polish_iterations: 130,
                 polish_rates: Rates {
                     position: 1.3,
                     radius: 0.3,
