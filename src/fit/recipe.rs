@@ -11,7 +11,7 @@ pub struct Recipe {
     pub growth: f64,
     /// Typical radius of a stage's strokes, in units of `sqrt(pixels / strokes so far)`.
     pub scale: f32,
-    /// Places probed per stroke wanted.
+    /// Cells that are looked at per stroke wanted; the best of them are probed.
     pub oversampling: f32,
     /// Iterations of each stage's short fit.
     pub stage_iterations: usize,
