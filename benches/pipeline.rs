@@ -23,7 +23,7 @@ use strokefit::image::{Image, Limits};
 use strokefit::loss::Loss;
 use strokefit::metrics;
 use strokefit::optim::{Adam, AdamParams, Optimizer};
-use strokefit::render::{Base, Canvas, Gradients, PARAMS, Params, Renderer, Softness, unpack};
+use strokefit::render::{Backdrop, Canvas, Gradients, PARAMS, Params, Renderer, Softness, unpack};
 use strokefit::scene::{Scene, Stage};
 use strokefit::seed::{Pyramid, View, Wanted, propose};
 use strokefit::svg::{self, WriteOptions};
@@ -111,7 +111,7 @@ fn seed(criterion: &mut Criterion, image: &Image) {
             // Typical radius when `count` strokes share the picture.
             scale: 0.4 * (pixels(image) as f32 / count as f32).sqrt(),
             oversampling: 3.0,
-            least_opacity: 0.1,
+            min_opacity: 0.1,
             level: 0,
             key: [0, 0],
         };
@@ -145,25 +145,31 @@ fn passes(
     target: &Canvas,
 ) {
     let mut renderer = Renderer::new(target.grid(), Simd::Auto.level().unwrap());
-    let base = Base::Flat(GROUND);
+    let backdrop = Backdrop::Color(GROUND);
     let objective = Objective::new(Loss::L2, target);
     let mut gradients = Gradients::default();
-    renderer.backward(strokes, EDGE, base, &objective, &mut gradients);
+    renderer.backward(strokes, EDGE, backdrop, &objective, &mut gradients);
     group.throughput(Throughput::Elements(gradients.blocks));
 
     let mut canvas = Canvas::flat(target.grid(), GROUND);
     group.bench_function(BenchmarkId::new("forward", name), |b| {
-        b.iter(|| renderer.forward(black_box(strokes), EDGE, base, &mut canvas));
+        b.iter(|| renderer.forward(black_box(strokes), EDGE, backdrop, &mut canvas));
     });
     group.bench_function(BenchmarkId::new("backward", name), |b| {
         b.iter(|| {
-            renderer.backward(black_box(strokes), EDGE, base, &objective, &mut gradients);
+            renderer.backward(
+                black_box(strokes),
+                EDGE,
+                backdrop,
+                &objective,
+                &mut gradients,
+            );
         });
     });
     group.bench_function(BenchmarkId::new("backward_with_worth", name), |b| {
         b.iter(|| {
             let strokes = black_box(strokes);
-            renderer.backward_with_worth(strokes, EDGE, base, &objective, &mut gradients);
+            renderer.backward_with_worth(strokes, EDGE, backdrop, &objective, &mut gradients);
         });
     });
 }

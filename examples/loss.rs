@@ -11,7 +11,7 @@ use strokefit::fit::Simd;
 use strokefit::image::Image;
 use strokefit::optim::{Adam, Optimizer, Schedule};
 use strokefit::render::{
-    AX, BY, Base, Canvas, CanvasLoss, Gradients, Grid, OPACITY, PARAMS, Params, RADIUS, RED,
+    AX, BY, Backdrop, Canvas, CanvasLoss, Gradients, Grid, OPACITY, PARAMS, Params, RADIUS, RED,
     Renderer, Softness, TileRgb, unpack,
 };
 use strokefit::scene::{Scene, Stage};
@@ -108,7 +108,13 @@ fn descend(strokes: &mut [Params], loss: &Brightness, picture: &Image) -> stroke
         let width = 1.0 + 3.0 * (1.0 - step as f32 / STEPS as f32);
         let coverage = Coverage::Smoothstep;
         let softness = Softness { coverage, width };
-        renderer.backward(strokes, softness, Base::Flat(GREY), loss, &mut gradients);
+        renderer.backward(
+            strokes,
+            softness,
+            Backdrop::Color(GREY),
+            loss,
+            &mut gradients,
+        );
         let rate = schedule.factor(step, STEPS) as f32;
         let slopes = gradients.strokes.as_flattened();
         adam.step_scaled(strokes.as_flattened_mut(), slopes, rate, &scales);

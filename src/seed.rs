@@ -23,7 +23,7 @@ const RADII: [f32; 3] = [0.3, 0.55, 1.0];
 /// Lengths of the probed capsules, in units of the scale.
 const LENGTHS: [f32; 2] = [2.0, 4.5];
 /// Least radius of a probed shape, px of the reduced picture: half a pixel and the edge.
-const LEAST_RADIUS: f32 = 0.52;
+const MIN_RADIUS: f32 = 0.52;
 /// Share of the cells that are probed, those of the largest residual. From the others comes hardly a
 /// candidate that is kept: with all of them a draft gains 0.01 dB and takes 3 % longer.
 const PROBED: f32 = 0.6;
@@ -41,7 +41,7 @@ pub struct Wanted {
     /// Cells per stroke wanted, at least 1.
     pub oversampling: f32,
     /// Candidates less opaque than this are not proposed; 1 for opaque drawings.
-    pub least_opacity: f32,
+    pub min_opacity: f32,
     /// The level of the pyramid that the canvas is of; all lengths are in its px.
     pub level: usize,
     /// Key of the random shift of the cells: the seed of the fit, and a number for each call, so that
@@ -118,7 +118,7 @@ pub fn propose(level: Level, views: &[View<'_>], wanted: Wanted) -> Vec<Candidat
         .collect();
     let reduction = (1 << halvings) as f32;
     let scale = (wanted.scale / reduction).min(SCALE_LIMIT);
-    let radii = RADII.map(|r| (r * scale).max(LEAST_RADIUS));
+    let radii = RADII.map(|r| (r * scale).max(MIN_RADIUS));
     let probes = Probes::new(level, &radii, &LENGTHS.map(|l| l * scale));
     let energy = smoothed_energy(&views, (scale / 2.0).round() as usize);
     let cells = Cells::new(
@@ -135,7 +135,7 @@ pub fn propose(level: Level, views: &[View<'_>], wanted: Wanted) -> Vec<Candidat
             for (patch, view) in patches.iter_mut().zip(&views) {
                 patch.fill(&probes, view.target, &view.canvas, x, y);
             }
-            let (shape, probe) = probes.best(patches, wanted.least_opacity)?;
+            let (shape, probe) = probes.best(patches, wanted.min_opacity)?;
             let center = [x, y].map(|v| (v as f32 + 0.5) * reduction);
             let stroke = probe.stroke(shape, center, reduction);
             (probe.gain > 0.0).then_some(Candidate {
@@ -387,7 +387,7 @@ mod tests {
             count: 1,
             scale: 4.0,
             oversampling: 4.0,
-            least_opacity: 1.0,
+            min_opacity: 1.0,
             level: 0,
             key: [0, 0],
         };

@@ -30,7 +30,7 @@ fn glass() -> Image {
 
 #[test]
 fn pictures_look_right_on_every_ground() {
-    for (name, strokes, least_db) in [
+    for (name, strokes, min_db) in [
         ("noto-gem", 150, 36.0),
         ("noto-hibiscus", 150, 32.0),
         ("noto-rocket", 150, 30.0),
@@ -39,7 +39,7 @@ fn pictures_look_right_on_every_ground() {
         let fit = drawn(&picture, &draft(strokes));
         let seen = verify::on_grounds(&text(&fit), &picture).unwrap();
         for db in [seen.black_db, seen.white_db, seen.magenta_db] {
-            assert!(db > least_db, "{name}: {seen:?}");
+            assert!(db > min_db, "{name}: {seen:?}");
         }
         let verdict = verify::verify(&text(&fit), &fit.target, &fit.soft).unwrap();
         assert!(verdict.agreement.psnr_db > 36.0, "{name}: {verdict:?}");

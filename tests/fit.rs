@@ -52,7 +52,7 @@ fn ball(width: usize, height: usize) -> Image {
 
 #[test]
 fn samples_are_drawn_as_they_were_fitted() {
-    for (name, strokes, least_db) in [
+    for (name, strokes, min_db) in [
         ("chelsea-cat", 400, 26.0),
         ("coffee-300", 400, 26.0),
         ("rocket-320", 300, 28.0),
@@ -67,7 +67,7 @@ fn samples_are_drawn_as_they_were_fitted() {
             verdict.agreement.psnr_db > AGREEMENT_DB,
             "{name}: {verdict:?}"
         );
-        assert!(verdict.fidelity.psnr_db > least_db, "{name}: {verdict:?}");
+        assert!(verdict.fidelity.psnr_db > min_db, "{name}: {verdict:?}");
     }
 }
 

@@ -17,7 +17,7 @@ use strokefit::{Result, rng, svg};
 /// What no file may take, on a busy machine; without others it is a second at most.
 const PATIENCE: Duration = Duration::from_secs(60);
 /// Most memory that the process may have held at the end of a test.
-const MOST_BYTES: u64 = 1_500 << 20;
+const MAX_BYTES: u64 = 1_500 << 20;
 
 const LIMITS: Limits = Limits {
     max_pixels: 1 << 22,
@@ -46,7 +46,7 @@ fn survive<T: Send + 'static>(
 /// The memory of this process never exceeded the bound.
 fn assert_frugal() {
     if let Some(bytes) = Usage::now().peak_rss_bytes {
-        assert!(bytes < MOST_BYTES, "{} MiB were held", bytes >> 20);
+        assert!(bytes < MAX_BYTES, "{} MiB were held", bytes >> 20);
     }
 }
 

@@ -7,7 +7,7 @@ use strokefit::fit::{Objective, Simd};
 use strokefit::image::Image;
 use strokefit::loss::Loss;
 use strokefit::render::reference::{self, Reference};
-use strokefit::render::{Base, Canvas, Gradients, Grid, PARAMS, Params, Renderer, Softness};
+use strokefit::render::{Backdrop, Canvas, Gradients, Grid, PARAMS, Params, Renderer, Softness};
 use strokefit::rng::draw;
 
 /// ε of the fast renderer's distances, px².
@@ -164,7 +164,12 @@ fn renderer(case: &Case, simd: Simd) -> Renderer {
 
 fn rendered(case: &Case, simd: Simd, softness: Softness) -> Image {
     let mut canvas = Canvas::flat(Grid::new(case.width, case.height), [0.0; 3]);
-    renderer(case, simd).forward(&case.strokes, softness, Base::Flat(BACKGROUND), &mut canvas);
+    renderer(case, simd).forward(
+        &case.strokes,
+        softness,
+        Backdrop::Color(BACKGROUND),
+        &mut canvas,
+    );
     canvas.to_image()
 }
 
@@ -174,7 +179,7 @@ fn differentiated(case: &Case, simd: Simd, softness: Softness, loss: Loss) -> Gr
     renderer(case, simd).backward_with_worth(
         &case.strokes,
         softness,
-        Base::Flat(BACKGROUND),
+        Backdrop::Color(BACKGROUND),
         &Objective::new(loss, &target),
         &mut gradients,
     );
@@ -273,7 +278,7 @@ fn gradients_and_worths_are_the_oracles() {
                 }
             }
             for c in 0..3 {
-                let (got, expected) = (f64::from(fast.base[c]), slow.background[c]);
+                let (got, expected) = (f64::from(fast.backdrop[c]), slow.background[c]);
                 if (got - expected).abs() > 1e-4 {
                     failures.push(format!(
                         "{}, {coverage}: background {got} not {expected}",
@@ -340,7 +345,7 @@ fn every_level_gives_the_same_bits() {
                 let bits = |g: &Gradients| -> Vec<u32> {
                     let strokes = g.strokes.iter().flatten();
                     strokes
-                        .chain(&g.base)
+                        .chain(&g.backdrop)
                         .chain(&g.worth)
                         .map(|v| v.to_bits())
                         .collect()

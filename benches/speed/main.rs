@@ -24,7 +24,7 @@ use strokefit::bench::measure::{DEPTH, EDGE, Size, fastest, thread_counts};
 use strokefit::fit::{self, Budget, Config, Execution, Objective, Simd};
 use strokefit::image::Image;
 use strokefit::loss::Loss;
-use strokefit::render::{Base, Canvas, Gradients, Params, Renderer, pack};
+use strokefit::render::{Backdrop, Canvas, Gradients, Params, Renderer, pack};
 
 use count::{Count, Work};
 use limits::Limits;
@@ -268,21 +268,23 @@ impl<'a> Bench<'a> {
             canvas,
             gradients,
         } = self;
-        let (strokes, base) = (&drawing.strokes, Base::Flat(drawing.ground));
+        let (strokes, backdrop) = (&drawing.strokes, Backdrop::Color(drawing.ground));
         let objective = Objective::new(Loss::L2, target);
         pool.install(|| {
-            let [forward] = fastest(1, [&mut || renderer.forward(strokes, EDGE, base, canvas)]);
+            let [forward] = fastest(
+                1,
+                [&mut || renderer.forward(strokes, EDGE, backdrop, canvas)],
+            );
             let [backward] = fastest(
                 1,
-                [&mut || renderer.backward(strokes, EDGE, base, &objective, gradients)],
+                [&mut || renderer.backward(strokes, EDGE, backdrop, &objective, gradients)],
             );
-            let [worth] =
-                fastest(
-                    1,
-                    [&mut || {
-                        renderer.backward_with_worth(strokes, EDGE, base, &objective, gradients)
-                    }],
-                );
+            let [worth] = fastest(
+                1,
+                [&mut || {
+                    renderer.backward_with_worth(strokes, EDGE, backdrop, &objective, gradients)
+                }],
+            );
             best.forward = best.forward.min(forward);
             best.backward = best.backward.min(backward);
             best.worth = best.worth.min(worth);

@@ -9,7 +9,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use strokefit::coverage::Coverage;
 use strokefit::fit::{Objective, Simd};
 use strokefit::loss::Loss;
-use strokefit::render::{Base, Canvas, Gradients, Params, Renderer, Softness, pack};
+use strokefit::render::{Backdrop, Canvas, Gradients, Params, Renderer, Softness, pack};
 use strokefit::scene::{Quantized, Scene, Shape, Stage, Stroke};
 use strokefit::verify::{self, Size};
 use strokefit::{image::Image, svg};
@@ -137,12 +137,12 @@ fn draw(scene: &Scene, softness: Softness) -> Option<()> {
     let target = Canvas::from_image(&target);
     let mut renderer = Renderer::new(target.grid(), Simd::Auto.level()?);
     let mut canvas = Canvas::flat(target.grid(), ground);
-    renderer.forward(&strokes, softness, Base::Flat(ground), &mut canvas);
+    renderer.forward(&strokes, softness, Backdrop::Color(ground), &mut canvas);
     let finite = |values: &[f32]| values.iter().all(|v| v.is_finite());
     let objective = Objective::new(Loss::L2, &target);
     GRADIENTS.with_borrow_mut(|gradients| {
-        let base = Base::Flat(ground);
-        renderer.backward_with_worth(&strokes, softness, base, &objective, gradients);
+        let backdrop = Backdrop::Color(ground);
+        renderer.backward_with_worth(&strokes, softness, backdrop, &objective, gradients);
         let picture = canvas.to_image();
         let is_finite = picture.planes().iter().all(|plane| finite(plane))
             && finite(gradients.strokes.as_flattened())

@@ -13,7 +13,7 @@ use crate::error::Result;
 use crate::fit::{self, Budget, Config, Execution, Objective, Preset};
 use crate::image::Image;
 use crate::loss::Loss;
-use crate::render::{Base, Canvas, Gradients, Renderer};
+use crate::render::{Backdrop, Canvas, Gradients, Renderer};
 use crate::report::Usage;
 use crate::report::scaling::{PointEntry, ScalingReport, SeriesEntry};
 use crate::rng;
@@ -280,8 +280,9 @@ impl Point {
         Ok(self.execution().pool()?.install(|| {
             let mut renderer = Renderer::new(grid, level);
             let mut gradients = Gradients::default();
-            let base = Base::Flat(GROUND);
-            let mut run = || renderer.backward(&strokes, EDGE, base, &objective, &mut gradients);
+            let backdrop = Backdrop::Color(GROUND);
+            let mut run =
+                || renderer.backward(&strokes, EDGE, backdrop, &objective, &mut gradients);
             let [once] = fastest(1, [&mut run]);
             let rounds = (ROUNDS_S / once).clamp(5.0, 500.0) as usize;
             let before = Usage::now().cpu_s;

@@ -10,7 +10,7 @@ use anyhow::Error;
 const ALIKE: f64 = 0.85;
 
 /// Most names of a folder that are looked at.
-const MOST_NAMES: usize = 10_000;
+const MAX_NAMES: usize = 10_000;
 
 /// A line of advice that an error carries.
 #[derive(Debug)]
@@ -65,7 +65,7 @@ fn neighbour(path: &Path) -> Option<PathBuf> {
     } else {
         folder
     };
-    let names = fs::read_dir(listed).ok()?.flatten().take(MOST_NAMES);
+    let names = fs::read_dir(listed).ok()?.flatten().take(MAX_NAMES);
     let rated = names.map(|entry| {
         let name = entry.file_name();
         let alike = strsim::jaro_winkler(&wanted, &name.to_string_lossy().to_lowercase());

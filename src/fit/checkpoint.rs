@@ -26,7 +26,7 @@ const HEAD: usize = MAGIC.len() + 8 + 8;
 /// Time between two writings, unless it is set.
 const EVERY: Duration = Duration::from_secs(10);
 /// Writing takes at most this share of the time.
-const MOST_SHARE: u32 = 20;
+const MAX_SHARE: u32 = 20;
 
 /// Where a fit keeps its state, so that it can be resumed after it was cut off.
 ///
@@ -141,7 +141,7 @@ impl Checkpoint {
         let start = Instant::now();
         self.trouble = self.write(fingerprint, state).err();
         let end = Instant::now();
-        self.due = end + self.every.max((end - start) * MOST_SHARE);
+        self.due = end + self.every.max((end - start) * MAX_SHARE);
     }
 
     /// Writes `state`, as [`keep`](Self::keep), and fails where that is not possible.

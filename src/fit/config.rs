@@ -124,9 +124,9 @@ impl Config {
                 psnr_db.unwrap_or(0.0)
             ));
         }
-        if let Some(quality) = self.quality.filter(|q| !(0.0..=MOST_QUALITY).contains(q)) {
+        if let Some(quality) = self.quality.filter(|q| !(0.0..=MAX_QUALITY).contains(q)) {
             return refuse(format!(
-                "a quality of {quality} is out of range: give 0 to {MOST_QUALITY}"
+                "a quality of {quality} is out of range: give 0 to {MAX_QUALITY}"
             ));
         }
         if time.is_some_and(|time| time.is_zero()) {
@@ -180,7 +180,7 @@ impl Config {
 }
 
 /// Beyond it a stroke may cost less than one 8-bit level of one pixel.
-const MOST_QUALITY: f64 = 60.0;
+const MAX_QUALITY: f64 = 60.0;
 
 impl Execution {
     /// The worker threads.

@@ -12,7 +12,7 @@ use super::observer::{Observer, Progress};
 use crate::metrics::psnr_db;
 
 /// A search for less than this part of the strokes wanted is not worth a stage.
-const LEAST_PART: usize = 8;
+const MIN_PART: usize = 8;
 
 /// What a fit has done and taken so far.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
@@ -138,7 +138,7 @@ impl<'a> Control<'a> {
         };
         let affordable = forecast.affordable(self.strokes, now).min(wanted);
         self.is_hurried |= affordable < wanted;
-        if affordable >= wanted / LEAST_PART {
+        if affordable >= wanted / MIN_PART {
             affordable
         } else {
             0

@@ -8,7 +8,7 @@ use crate::optim::{Adam, AdamParams, Optimizer};
 use crate::render::{AX, BY, Gradients, OPACITY, PARAMS, Params, RADIUS, RED, Renderer, Softness};
 
 /// Least radius of a stroke, px: widths of 1 px and less are drawn as hairlines, with other ink.
-pub(super) const LEAST_RADIUS: f32 = 0.51;
+pub(super) const MIN_RADIUS: f32 = 0.51;
 
 /// The domain of each parameter; a step that leaves it is brought back.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
@@ -17,16 +17,16 @@ pub(super) struct Limits {
     pub(super) margin: f32,
     pub(super) width: f32,
     pub(super) height: f32,
-    pub(super) least_opacity: f32,
+    pub(super) min_opacity: f32,
 }
 
 impl Limits {
-    pub(super) fn new(width: usize, height: usize, least_opacity: f32) -> Self {
+    pub(super) fn new(width: usize, height: usize, min_opacity: f32) -> Self {
         Self {
             margin: 8.0,
             width: width as f32,
             height: height as f32,
-            least_opacity,
+            min_opacity,
         }
     }
 
@@ -40,11 +40,11 @@ impl Limits {
         for k in AX..=BY {
             p[k] = p[k].clamp(-self.margin, far[k % 2]);
         }
-        p[RADIUS] = p[RADIUS].clamp(LEAST_RADIUS, self.largest_radius());
+        p[RADIUS] = p[RADIUS].clamp(MIN_RADIUS, self.largest_radius());
         for color in &mut p[RED..OPACITY] {
             *color = color.clamp(0.0, 1.0);
         }
-        p[OPACITY] = p[OPACITY].clamp(self.least_opacity, 1.0);
+        p[OPACITY] = p[OPACITY].clamp(self.min_opacity, 1.0);
     }
 }
 

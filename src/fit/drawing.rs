@@ -20,7 +20,7 @@ pub(super) use state::State;
 
 /// Least opacity of a stroke: the 8-bit compositing of renderers drifts by levels under many layers
 /// fainter than this.
-const LEAST_OPACITY: f32 = 0.1;
+const MIN_OPACITY: f32 = 0.1;
 
 /// A drawing under work. What is fitted, judged and relocated are its *free* strokes; the frozen ones
 /// below them are a picture. Large strokes are fitted to a reduced picture: the numbers of strokes are
@@ -52,7 +52,7 @@ impl Drawing {
     pub(super) fn new(setting: &mut Setting, config: &Config, level: Level) -> Self {
         let grounds = std::mem::take(&mut setting.grounds);
         let grid = grounds[0].grid();
-        let least_opacity = if config.opaque { 1.0 } else { LEAST_OPACITY };
+        let min_opacity = if config.opaque { 1.0 } else { MIN_OPACITY };
         Self {
             grounds,
             renderer: Renderer::new(grid, level),
@@ -61,7 +61,7 @@ impl Drawing {
             strokes: Vec::new(),
             stage_of: Vec::new(),
             frozen: 0,
-            limits: Limits::new(grid.width, grid.height, least_opacity),
+            limits: Limits::new(grid.width, grid.height, min_opacity),
             edge: final_softness(config.coverage.late),
             seed: config.seed,
             searches: 0,
@@ -101,7 +101,7 @@ impl Drawing {
     fn cut_anew(&mut self) {
         let grid = self.ground().grid();
         self.renderer = Renderer::new(grid, self.level);
-        self.limits = Limits::new(grid.width, grid.height, self.limits.least_opacity);
+        self.limits = Limits::new(grid.width, grid.height, self.limits.min_opacity);
         self.frozen = 0;
     }
 
@@ -226,7 +226,7 @@ impl Drawing {
             count,
             scale: scale / area.sqrt(),
             oversampling,
-            least_opacity: self.limits.least_opacity,
+            min_opacity: self.limits.min_opacity,
             level: self.ground().halvings(),
             key: [self.seed, self.searches],
         };

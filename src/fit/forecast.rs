@@ -24,14 +24,14 @@ const COMPARING: f64 = 2.6;
 /// Rounds of settling may take up to this part of the limit; they bring less than as much descent beyond.
 const SETTLING: f64 = 0.125;
 /// Share of a limit that is for the descent however long the rest takes.
-const LEAST_DESCENT: f64 = 0.25;
+const MIN_DESCENT: f64 = 0.25;
 /// A joint fit takes this many writings at least, which are a hundred steps or more: it begins with soft edges
 /// and long steps, and one of twenty leaves a drawing of 34 dB at 25.
-const LEAST_POLISH: f64 = 15.0;
+const MIN_POLISH: f64 = 15.0;
 /// Trying how long a writing takes may take this part of the time.
 const TRYING: f64 = 0.01;
 /// Steps that make a round of settling worth its writing.
-const LEAST_ROUND: f64 = 2.0;
+const MIN_ROUND: f64 = 2.0;
 /// Share of a new measurement in the mean of steps.
 const FRESHNESS: f64 = 0.2;
 
@@ -107,7 +107,7 @@ impl Forecast {
     /// When the descent of a drawing of so many strokes has to end.
     pub(super) fn end_of_descent(&self, strokes: usize) -> f64 {
         let end = self.limit - self.settling(strokes) - self.judging(strokes);
-        end.max(self.limit * LEAST_DESCENT)
+        end.max(self.limit * MIN_DESCENT)
     }
 
     /// For how many strokes there is time to search, and to fit them for a few steps.
@@ -118,12 +118,12 @@ impl Forecast {
 
     /// Whether there is time for enough steps of all strokes jointly.
     pub(super) fn allows_polish(&self, strokes: usize, now: f64) -> bool {
-        now + LEAST_POLISH * self.writing(strokes) < self.end_of_descent(strokes)
+        now + MIN_POLISH * self.writing(strokes) < self.end_of_descent(strokes)
     }
 
     /// Whether another round of settling, if only of a few steps, ends in time.
     pub(super) fn allows_round(&self, strokes: usize, now: f64) -> bool {
-        self.ends_in_time(strokes, now + LEAST_ROUND * self.step)
+        self.ends_in_time(strokes, now + MIN_ROUND * self.step)
     }
 
     /// Whether another step of a round of settling ends in time.
@@ -156,7 +156,7 @@ impl Forecast {
         let round = |steps: f64| seeing + steps * self.step;
         let rounds = self.rounds as f64 * round(self.steps as f64);
         let most = self.limit * SETTLING;
-        if self.rounds > 0 && round(LEAST_ROUND) < most {
+        if self.rounds > 0 && round(MIN_ROUND) < most {
             seeing + rounds.min(most)
         } else if self.needs_file {
             self.writing(strokes)
@@ -277,7 +277,7 @@ mod tests {
 
     #[test]
     fn descent_has_its_part_however_long_the_rest_takes() {
-        assert!(forecast(1).end_of_descent(1_000_000) >= LEAST_DESCENT);
+        assert!(forecast(1).end_of_descent(1_000_000) >= MIN_DESCENT);
     }
 
     #[test]

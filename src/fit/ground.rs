@@ -6,12 +6,12 @@
 //! gradients, worths and gains are means over the grounds.
 
 use super::background::Background;
-use super::base::Base as Start;
+use super::base::Base;
 use super::objective::{Objective, View};
 use crate::error::Result;
 use crate::image::Image;
 use crate::loss::Loss;
-use crate::render::{Base, Canvas, Grid, Params, Renderer, Softness};
+use crate::render::{Backdrop, Canvas, Grid, Params, Renderer, Softness};
 use crate::scene::{Rgb, Scene};
 use crate::seed::{self, Pyramid};
 use crate::verify;
@@ -22,7 +22,7 @@ const WHITE: Rgb = [1.0; 3];
 /// Strokes are fitted at the coarsest resolution at which they still have this typical radius, px. Less,
 /// and their edges are fitted to pixels that are not there; more, and time is spent on pixels that say
 /// nothing about them.
-const LEAST_SCALE: f32 = 2.5;
+const MIN_SCALE: f32 = 2.5;
 
 /// What lies under all strokes.
 pub(super) enum Floor {
@@ -42,10 +42,10 @@ impl Floor {
     }
 
     /// What lies behind strokes: the floor itself, or the picture `below` where it has `frozen` others.
-    fn base<'a>(&self, below: &'a Canvas, frozen: usize) -> Base<'a> {
+    fn base<'a>(&self, below: &'a Canvas, frozen: usize) -> Backdrop<'a> {
         match self {
-            Self::Flat(color) if frozen == 0 => Base::Flat(*color),
-            _ => Base::Canvas(below),
+            Self::Flat(color) if frozen == 0 => Backdrop::Color(*color),
+            _ => Backdrop::Canvas(below),
         }
     }
 }
@@ -66,10 +66,10 @@ impl Setting {
     pub(super) fn new(
         picture: &Image,
         background: Background,
-        start: Option<&Start>,
+        start: Option<&Base>,
         scale: f32,
     ) -> Result<Self> {
-        let Some(Start {
+        let Some(Base {
             document, scene, ..
         }) = start
         else {
@@ -221,20 +221,20 @@ impl Ground {
     }
 
     /// What lies behind the free strokes, of which `frozen` lie below.
-    pub(super) fn base(&self, frozen: usize) -> Base<'_> {
+    pub(super) fn base(&self, frozen: usize) -> Backdrop<'_> {
         self.floor.base(&self.below, frozen)
     }
 
     /// What lies behind the strokes of `scene`, in a drawing without frozen strokes.
-    pub(super) fn base_of(&self, scene: &Scene) -> Base<'_> {
-        scene.background.map_or(self.base(0), Base::Flat)
+    pub(super) fn base_of(&self, scene: &Scene) -> Backdrop<'_> {
+        scene.background.map_or(self.base(0), Backdrop::Color)
     }
 
     /// The page that the strokes of `scene` are drawn on.
     pub(super) fn page(&self, scene: &Scene) -> Canvas {
         match self.base_of(scene) {
-            Base::Flat(color) => Canvas::flat(self.grid(), color),
-            Base::Canvas(canvas) => canvas.clone(),
+            Backdrop::Color(color) => Canvas::flat(self.grid(), color),
+            Backdrop::Canvas(canvas) => canvas.clone(),
         }
     }
 
@@ -275,7 +275,7 @@ impl Ground {
 /// How many halvings leave strokes of `scale` px their least scale.
 fn resolution(pyramid: &Pyramid, scale: f32) -> usize {
     // Rounded down: `halvings` alone would bring the scale below the least.
-    pyramid.halvings(0, scale / 2.0, LEAST_SCALE)
+    pyramid.halvings(0, scale / 2.0, MIN_SCALE)
 }
 
 /// The picture that looks like this on black and on white.

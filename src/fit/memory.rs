@@ -1,7 +1,7 @@
 //! How much memory a fit will take, before it takes any.
 
 use super::config::Config;
-use super::plan::{Before, MOST_STROKES, Plan};
+use super::plan::{Before, MAX_STROKES, Plan};
 use super::recipe::Recipe;
 use crate::image::Image;
 
@@ -20,7 +20,7 @@ const PER_STROKE: u64 = 2000;
 pub fn predicted_rss_bytes(picture: &Image, config: &Config) -> u64 {
     let pixels = picture.width() * picture.height();
     let recipe = config.recipe.unwrap_or(Recipe::of(config.preset));
-    let limit = config.budget.strokes.map(|n| n.min(MOST_STROKES));
+    let limit = config.budget.strokes.map(|n| n.min(MAX_STROKES));
     let strokes = Plan::new(config, &recipe, limit, Before::default(), pixels).strokes();
     BASE + PER_PIXEL * pixels as u64 + PER_STROKE * strokes as u64
 }

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::loss::Loss;
 use crate::render::{
-    Base, Canvas, CanvasLoss, Gradients, Lanes, Params, Renderer, Softness, TileRgb,
+    Backdrop, Canvas, CanvasLoss, Gradients, Lanes, Params, Renderer, Softness, TileRgb,
 };
 
 /// The mean of `loss` over width·height·3 values against `target`.
@@ -78,7 +78,7 @@ impl CanvasLoss for Objective<'_> {
 /// What strokes lie on, and what they are to look like there.
 #[derive(Clone, Copy)]
 pub(super) struct View<'a> {
-    pub(super) base: Base<'a>,
+    pub(super) base: Backdrop<'a>,
     pub(super) objective: Objective<'a>,
 }
 

@@ -118,7 +118,7 @@ fn corrected(target: &Image, soft: &Image, seen: [&Image; 2], shares: [f32; 2]) 
 impl Errors {
     /// By how many dB the browser is less faithful than resvg.
     fn shortfall_db(&self) -> f64 {
-        let [shown, drawn] = [self.shown, self.drawn].map(|mse| mse.max(LEAST_ERROR));
+        let [shown, drawn] = [self.shown, self.drawn].map(|mse| mse.max(MIN_ERROR));
         10.0 * (shown / drawn).log10()
     }
 
@@ -126,7 +126,7 @@ impl Errors {
     /// `d²` between the two and an error `e²` that both have, resvg's is `e² + s²·d²` then, and the browser's
     /// `e² + (1 − s)²·d²`.
     fn fair_share(&self) -> f64 {
-        let (ratio, d2) = (ratio(AIM_DB), self.apart / self.soft.max(LEAST_ERROR));
+        let (ratio, d2) = (ratio(AIM_DB), self.apart / self.soft.max(MIN_ERROR));
         // (ratio − 1)·d²·s² + 2·d²·s = d² − (ratio − 1)
         let (a, b, c) = ((ratio - 1.0) * d2, d2, d2 - (ratio - 1.0));
         if c <= 0.0 {
@@ -138,7 +138,7 @@ impl Errors {
 }
 
 /// Less than any picture of 8 bits can tell.
-const LEAST_ERROR: f64 = 1e-9;
+const MIN_ERROR: f64 = 1e-9;
 
 fn ratio(db: f64) -> f64 {
     10f64.powf(db / 10.0)

@@ -10,7 +10,7 @@ use std::ops::Range;
 
 use super::anneal::Anneal;
 use super::control::Control;
-use super::descent::{Descent, LEAST_RADIUS};
+use super::descent::{Descent, MIN_RADIUS};
 use super::drawing::Drawing;
 use super::palette::without_color;
 use super::recipe::{Rates, Recipe};
@@ -176,8 +176,8 @@ impl Pen {
 
 /// The nearest radius that a pen may have.
 fn rung(radius: f32) -> f32 {
-    let steps = (radius / LEAST_RADIUS).max(1.0).ln() / LADDER.ln();
-    LEAST_RADIUS * LADDER.powf(steps.round())
+    let steps = (radius / MIN_RADIUS).max(1.0).ln() / LADDER.ln();
+    MIN_RADIUS * LADDER.powf(steps.round())
 }
 
 /// Gives strokes of a window few pens, and says which share each.
@@ -364,7 +364,7 @@ mod tests {
 
     #[test]
     fn widths_are_on_a_ladder() {
-        assert_eq!(rung(LEAST_RADIUS), LEAST_RADIUS);
+        assert_eq!(rung(MIN_RADIUS), MIN_RADIUS);
         assert!((rung(3.0) / 3.0 - 1.0).abs() < 0.06);
     }
 }

@@ -13,7 +13,7 @@ const FIRST: usize = 12;
 const PIXELS_PER_STROKE: usize = 250;
 
 /// Most strokes of a drawing: renderers of SVG read a million elements.
-pub(super) const MOST_STROKES: usize = 900_000;
+pub(super) const MAX_STROKES: usize = 900_000;
 
 /// One planned stage.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -106,7 +106,7 @@ impl Plan {
             Some(&count) => count,
             None if self.open => {
                 let count = FIRST as f64 * self.growth.powi((self.covered + step) as i32);
-                (count as usize).min((self.pixels).min(MOST_STROKES).saturating_sub(before))
+                (count as usize).min((self.pixels).min(MAX_STROKES).saturating_sub(before))
             }
             None => return None,
         };

@@ -94,7 +94,7 @@ impl Polish {
         drawing.step(descent, anneal.at(done), rate);
         if drawing.is_thawed() && !drawing.background_fixed {
             let rate = rate * recipe.polish_rates.color;
-            let (slope, background) = (&descent.gradients.base, &mut self.background);
+            let (slope, background) = (&descent.gradients.backdrop, &mut self.background);
             drawing.change_background(|color| background.step(color, slope, rate));
         }
         control.advance(drawing, descent.gradients.loss);

@@ -145,7 +145,7 @@ impl<'a> Work<'a> {
             },
             page: Page::of(config, base),
             terms: Terms {
-                limit: budget::most_strokes(limit, base),
+                limit: budget::max_strokes(limit, base),
                 price: Price::new(config.effective_quality(), config.file),
             },
             control: Control::new(observer, forecast, started, planned, plan.len()),

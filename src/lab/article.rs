@@ -25,7 +25,7 @@ use crate::image::{Animation, AnimationFormat, Image};
 use crate::loss::Loss;
 use crate::optim::{Adam, AdamParams, Optimizer};
 use crate::render::{
-    Base, Canvas, Gradients, Grid, OPACITY, PARAMS, Params, RADIUS, RED, Renderer, Softness,
+    Backdrop, Canvas, Gradients, Grid, OPACITY, PARAMS, Params, RADIUS, RED, Renderer, Softness,
 };
 use crate::report::Table;
 use crate::report::plot::captioned;
@@ -119,13 +119,13 @@ impl Descent {
     pub fn step(&mut self, coverage: Coverage) -> f64 {
         let Self { drawing, .. } = self;
         let objective = Objective::new(Loss::L1, &self.target);
-        let base = Base::Flat(drawing.background);
+        let backdrop = Backdrop::Color(drawing.background);
         let (renderer, gradients) = (&mut self.renderer, &mut self.gradients);
         self.pool.install(|| {
             renderer.backward(
                 &drawing.strokes,
                 softness(coverage),
-                base,
+                backdrop,
                 &objective,
                 gradients,
             );
@@ -134,7 +134,7 @@ impl Descent {
         let params = drawing.strokes.as_flattened_mut();
         self.strokes.step_scaled(params, flat, RATE, &self.scales);
         self.background
-            .step(&mut drawing.background, &gradients.base, RATE);
+            .step(&mut drawing.background, &gradients.backdrop, RATE);
         drawing.background = drawing.background.map(|c| c.clamp(0.0, 1.0));
         let size = [drawing.width as f32, drawing.height as f32];
         for stroke in &mut drawing.strokes {
@@ -149,10 +149,10 @@ impl Descent {
         let Self {
             drawing, renderer, ..
         } = self;
-        let base = Base::Flat(drawing.background);
+        let backdrop = Backdrop::Color(drawing.background);
         let out = &mut canvas;
         self.pool
-            .install(|| renderer.forward(&drawing.strokes, softness(coverage), base, out));
+            .install(|| renderer.forward(&drawing.strokes, softness(coverage), backdrop, out));
         canvas.to_image()
     }
 

@@ -149,7 +149,7 @@ pub(super) struct TileJob<'a> {
     /// The tile's top left corner, px.
     pub(super) origin: [f32; 2],
     /// What is behind all strokes.
-    pub(super) base: &'a TileRgb,
+    pub(super) backdrop: &'a TileRgb,
     /// 1 on the picture, 0 on the padding: what is seen through the padding is nothing.
     pub(super) weights: &'a TileWeights,
     pub(super) edge: Edge,
@@ -161,8 +161,8 @@ pub(super) struct TileJob<'a> {
 pub(super) struct TileSums {
     /// The loss.
     pub(super) loss: f64,
-    /// `∂L/∂base`, summed.
-    pub(super) base: [f32; 3],
+    /// `∂L/∂backdrop`, summed.
+    pub(super) backdrop: [f32; 3],
     /// Blocks visited by pass 1.
     pub(super) blocks: u64,
 }
@@ -328,10 +328,10 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
             break;
         }
     }
-    for ((color, veil), base) in color.iter_mut().zip(veils.iter()).zip(job.base) {
+    for ((color, veil), backdrop) in color.iter_mut().zip(veils.iter()).zip(job.backdrop) {
         let t = load(simd, &veil.through);
-        for (color, base) in color.iter_mut().zip(base) {
-            store(load(simd, color) + t * load(simd, base), color);
+        for (color, backdrop) in color.iter_mut().zip(backdrop) {
+            store(load(simd, color) + t * load(simd, backdrop), color);
         }
     }
 }
@@ -430,11 +430,11 @@ fn back_to_front<S: Simd, const WITH_WORTH: bool>(
         kept_transmittance,
         kept_edges,
     } = scratch;
-    behind.clone_from(job.base);
+    behind.clone_from(job.backdrop);
     sums.fill([0.0; PARAMS + 1]);
-    let mut base = [f32x16::splat(simd, 0.0); 3];
+    let mut backdrop = [f32x16::splat(simd, 0.0); 3];
     for (veil, g) in veils.iter().zip(gradient.iter()) {
-        for (sum, g) in base.iter_mut().zip(g) {
+        for (sum, g) in backdrop.iter_mut().zip(g) {
             *sum += load(simd, &veil.through) * load(simd, g);
         }
     }
@@ -485,7 +485,7 @@ fn back_to_front<S: Simd, const WITH_WORTH: bool>(
         }
         sums[visit.slot as usize] = stroke.finish(p[OPACITY].max(FAINTEST));
     }
-    [total(base[0]), total(base[1]), total(base[2])]
+    [total(backdrop[0]), total(backdrop[1]), total(backdrop[2])]
 }
 
 impl<S: Simd> Sums<S> {
@@ -546,7 +546,7 @@ pub(super) fn differentiate<L: CanvasLoss, const WITH_WORTH: bool>(
     dispatch!(level, simd => {
         let Scratch { color, error, gradient, .. } = scratch;
         let value = loss.tile(job.tile, color, error, gradient);
-        let base = back_to_front::<_, WITH_WORTH>(simd, job, scratch, sums);
-        TileSums { loss: value, base, blocks: scratch.kept_transmittance.len() as u64 }
+        let backdrop = back_to_front::<_, WITH_WORTH>(simd, job, scratch, sums);
+        TileSums { loss: value, backdrop, blocks: scratch.kept_transmittance.len() as u64 }
     })
 }

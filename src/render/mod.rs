@@ -14,7 +14,7 @@
 //! ```
 //! use strokefit::coverage::Coverage;
 //! use strokefit::fit::Simd;
-//! use strokefit::render::{Base, Canvas, Grid, Renderer, Softness};
+//! use strokefit::render::{Backdrop, Canvas, Grid, Renderer, Softness};
 //!
 //! // Two ends, radius, colour, opacity.
 //! let bar = [8.0, 4.0, 40.0, 12.0, 3.0, 0.0, 0.0, 0.0, 1.0];
@@ -24,7 +24,7 @@
 //! let level = Simd::Auto.level().ok_or("no level")?;
 //! let softness = Softness { coverage: Coverage::Smoothstep, width: 1.0 };
 //! let mut canvas = Canvas::flat(grid, [1.0; 3]);
-//! Renderer::new(grid, level).forward(&[bar, dot], softness, Base::Flat([1.0; 3]), &mut canvas);
+//! Renderer::new(grid, level).forward(&[bar, dot], softness, Backdrop::Color([1.0; 3]), &mut canvas);
 //!
 //! let dark = |x, y| 1.0 - canvas.pixel(x, y)[0];
 //! let shade = |x, y| char::from(b" .:-=+*#%@"[(9.0 * dark(x, y)).round() as usize]);
@@ -79,9 +79,9 @@ pub trait CanvasLoss: Sync {
 
 /// What lies behind all strokes.
 #[derive(Debug, Clone, Copy)]
-pub enum Base<'a> {
+pub enum Backdrop<'a> {
     /// One colour.
-    Flat([f32; 3]),
+    Color([f32; 3]),
     /// A picture, such as the frozen stages below.
     Canvas(&'a Canvas),
 }
@@ -102,8 +102,8 @@ pub struct Gradients {
     pub loss: f64,
     /// `∂L/∂(parameters)`, one row per stroke.
     pub strokes: Vec<Params>,
-    /// `∂L/∂base`, summed over the pixels.
-    pub base: [f32; 3],
+    /// `∂L/∂backdrop`, summed over the pixels.
+    pub backdrop: [f32; 3],
     /// By how much the squared error (summed over pixels and channels) grows when the stroke is
     /// left out, exactly; filled by [`Renderer::backward_with_worth`] alone.
     pub worth: Vec<f32>,
@@ -121,7 +121,7 @@ impl Gradients {
         };
         self.loss += other.loss;
         self.blocks += other.blocks;
-        add(&mut self.base, &other.base);
+        add(&mut self.backdrop, &other.backdrop);
         add(&mut self.worth, &other.worth);
         add(
             self.strokes.as_flattened_mut(),
@@ -133,7 +133,7 @@ impl Gradients {
     pub(crate) fn scale(&mut self, factor: f32) {
         self.loss *= f64::from(factor);
         let values = self.strokes.as_flattened_mut().iter_mut();
-        for value in values.chain(&mut self.base).chain(&mut self.worth) {
+        for value in values.chain(&mut self.backdrop).chain(&mut self.worth) {
             *value *= factor;
         }
     }
@@ -180,15 +180,15 @@ impl Renderer {
         self.grid
     }
 
-    /// Renders `strokes`, back to front, on `base` into `out`.
+    /// Renders `strokes`, back to front, on `backdrop` into `out`.
     pub fn forward(
         &mut self,
         strokes: &[Params],
         softness: Softness,
-        base: Base<'_>,
+        backdrop: Backdrop<'_>,
         out: &mut Canvas,
     ) {
-        let frame = Frame::new(self.grid, strokes, softness, base);
+        let frame = Frame::new(self.grid, strokes, softness, backdrop);
         self.bin(strokes, frame.reach);
         let Self {
             level,
@@ -204,7 +204,7 @@ impl Renderer {
         tiles.for_each(|(tile, (work, out))| {
             let job = frame.job(tile, work);
             if job.ids.is_empty() {
-                out.clone_from(job.base);
+                out.clone_from(job.backdrop);
                 return;
             }
             with_scratch(scratch, |scratch| {
@@ -214,19 +214,19 @@ impl Renderer {
         });
     }
 
-    /// Renders `strokes` on `base` and writes the derivatives of `loss` to `gradients`.
+    /// Renders `strokes` on `backdrop` and writes the derivatives of `loss` to `gradients`.
     ///
-    /// Tiles that no stroke touches take part with their loss and `∂L/∂base`.
+    /// Tiles that no stroke touches take part with their loss and `∂L/∂backdrop`.
     pub fn backward<L: CanvasLoss>(
         &mut self,
         strokes: &[Params],
         softness: Softness,
-        base: Base<'_>,
+        backdrop: Backdrop<'_>,
         loss: &L,
         gradients: &mut Gradients,
     ) {
         self.run_backward::<L, false>(
-            &Frame::new(self.grid, strokes, softness, base),
+            &Frame::new(self.grid, strokes, softness, backdrop),
             loss,
             gradients,
         );
@@ -237,12 +237,12 @@ impl Renderer {
         &mut self,
         strokes: &[Params],
         softness: Softness,
-        base: Base<'_>,
+        backdrop: Backdrop<'_>,
         loss: &L,
         gradients: &mut Gradients,
     ) {
         self.run_backward::<L, true>(
-            &Frame::new(self.grid, strokes, softness, base),
+            &Frame::new(self.grid, strokes, softness, backdrop),
             loss,
             gradients,
         );
@@ -305,7 +305,7 @@ impl Renderer {
     /// Adds the tiles' sums in tile order.
     fn reduce(&self, strokes: usize, with_worth: bool, gradients: &mut Gradients) {
         gradients.loss = 0.0;
-        gradients.base = [0.0; 3];
+        gradients.backdrop = [0.0; 3];
         gradients.blocks = 0;
         gradients.strokes.clear();
         gradients.strokes.resize(strokes, [0.0; PARAMS]);
@@ -316,8 +316,8 @@ impl Renderer {
         for work in &self.tiles {
             gradients.loss += work.total.loss;
             gradients.blocks += work.total.blocks;
-            for (sum, base) in gradients.base.iter_mut().zip(work.total.base) {
-                *sum += base;
+            for (sum, backdrop) in gradients.backdrop.iter_mut().zip(work.total.backdrop) {
+                *sum += backdrop;
             }
             for (&id, sums) in work.ids.iter().zip(&work.sums) {
                 for (sum, part) in gradients.strokes[id as usize].iter_mut().zip(sums) {
@@ -335,24 +335,24 @@ impl Renderer {
 struct Frame<'a> {
     grid: Grid,
     strokes: &'a [Params],
-    base: Base<'a>,
-    /// A tile of the base's colour, if it is flat.
+    backdrop: Backdrop<'a>,
+    /// A tile of the backdrop's colour, if it is flat.
     flat: TileRgb,
     edge: Edge,
     reach: Reach,
 }
 
 impl<'a> Frame<'a> {
-    fn new(grid: Grid, strokes: &'a [Params], softness: Softness, base: Base<'a>) -> Self {
+    fn new(grid: Grid, strokes: &'a [Params], softness: Softness, backdrop: Backdrop<'a>) -> Self {
         let (edge, reach) = Edge::new(softness.coverage, softness.width);
-        let flat = match base {
-            Base::Flat(color) => flat_tile(color),
-            Base::Canvas(_) => flat_tile([0.0; 3]),
+        let flat = match backdrop {
+            Backdrop::Color(color) => flat_tile(color),
+            Backdrop::Canvas(_) => flat_tile([0.0; 3]),
         };
         Self {
             grid,
             strokes,
-            base,
+            backdrop,
             flat,
             edge,
             reach,
@@ -367,9 +367,9 @@ impl<'a> Frame<'a> {
             origin: [x as f32, y as f32],
             strokes: self.strokes,
             ids: &work.ids,
-            base: match self.base {
-                Base::Flat(_) => &self.flat,
-                Base::Canvas(canvas) => &canvas.tiles()[tile],
+            backdrop: match self.backdrop {
+                Backdrop::Color(_) => &self.flat,
+                Backdrop::Canvas(canvas) => &canvas.tiles()[tile],
             },
             weights: work.weights.as_deref().unwrap_or(&FULL),
             edge: self.edge,

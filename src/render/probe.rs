@@ -152,7 +152,7 @@ fn cover<S: Simd>(simd: S, shape: &Params) -> Vec<(usize, Lanes)> {
 pub struct Probe {
     /// sRGB-encoded colour, 0..1.
     pub color: [f32; 3],
-    /// Opacity, from `least_opacity` to 1.
+    /// Opacity, from `min_opacity` to 1.
     pub opacity: f32,
     /// Sum over pixels and channels of the squared error removed; negative where none is.
     pub gain: f32,
@@ -202,11 +202,11 @@ impl Probes {
 
     /// Of the shapes that are tried, the one that gains most on all of `patches` together, the same place on
     /// different grounds, and its probe.
-    pub fn best(&self, patches: &[Box<Patch>], least_opacity: f32) -> Option<(&Params, Probe)> {
+    pub fn best(&self, patches: &[Box<Patch>], min_opacity: f32) -> Option<(&Params, Probe)> {
         let search = Search {
             probes: self,
             patches,
-            least_opacity,
+            min_opacity,
             best: None,
         };
         let (index, probe) = dispatch!(self.level, simd => search.run(simd))?;
@@ -225,7 +225,7 @@ fn shape(radius: f32, length: f32, angle: f32) -> Params {
 struct Search<'a> {
     probes: &'a Probes,
     patches: &'a [Box<Patch>],
-    least_opacity: f32,
+    min_opacity: f32,
     best: Option<(usize, Probe)>,
 }
 
@@ -269,7 +269,7 @@ impl Search<'_> {
         for patch in self.patches {
             total.add(&sums(simd, template, patch));
         }
-        let probe = total.solve(self.least_opacity);
+        let probe = total.solve(self.min_opacity);
         if self.best.is_none_or(|(_, held)| probe.gain > held.gain) {
             self.best = Some((index, probe));
         }
@@ -325,7 +325,7 @@ impl Sums {
     }
 
     #[inline(always)]
-    fn solve(&self, least_opacity: f32) -> Probe {
+    fn solve(&self, min_opacity: f32) -> Probe {
         if self.s < 1e-3 {
             return Probe {
                 color: [0.0; 3],
@@ -342,7 +342,7 @@ impl Sums {
         } else {
             1.0
         };
-        let opacity = free.clamp(least_opacity, 1.0);
+        let opacity = free.clamp(min_opacity, 1.0);
         let color = [0, 1, 2]
             .map(|k| ((self.y[k] + opacity * self.x[k]) / (self.s * opacity)).clamp(0.0, 1.0));
         let u = color.map(|c| c * opacity);

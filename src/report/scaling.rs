@@ -8,11 +8,11 @@ use super::{SCHEMA, Table};
 use crate::error::Result;
 
 /// CPU time and memory may grow with strokes or pixels by this exponent at most: linear, and noise.
-const MOST_GROWTH: f64 = 1.15;
+const MAX_GROWTH: f64 = 1.15;
 /// CPU time may grow with threads by this exponent at most: what is shared costs no more, and noise.
-const MOST_OVERHEAD: f64 = 0.35;
+const MAX_OVERHEAD: f64 = 0.35;
 /// What the largest picture may take, bytes.
-const MOST_BYTES: u64 = 4 << 30;
+const MAX_BYTES: u64 = 4 << 30;
 
 /// All series of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -138,9 +138,9 @@ impl SeriesEntry {
             exponent(|p| p.peak_rss_bytes.map(|bytes| bytes as f64)),
         );
         let holds = if axis == "threads" {
-            cpu.is_at_most(MOST_OVERHEAD)
+            cpu.is_at_most(MAX_OVERHEAD)
         } else {
-            cpu.is_at_most(MOST_GROWTH) && memory.is_at_most(MOST_GROWTH)
+            cpu.is_at_most(MAX_GROWTH) && memory.is_at_most(MAX_GROWTH)
         };
         Self {
             task: task.into(),
@@ -202,7 +202,7 @@ impl ScalingReport {
             point.strokes,
             point.wall_s,
             point.peak_rss_bytes.unwrap_or(0) as f64 / f64::from(1 << 30),
-            MOST_BYTES >> 30,
+            MAX_BYTES >> 30,
             largest_verdict(&point).word()
         ))
     }
@@ -338,7 +338,7 @@ fn significant(seconds: f64) -> String {
 
 fn largest_verdict(point: &PointEntry) -> Verdict {
     match point.peak_rss_bytes {
-        Some(bytes) if bytes > MOST_BYTES => Verdict::Fail,
+        Some(bytes) if bytes > MAX_BYTES => Verdict::Fail,
         _ => Verdict::Pass,
     }
 }

@@ -10,7 +10,7 @@ use crate::coverage::Coverage;
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::{Simd, final_softness};
 use crate::image::Image;
-use crate::render::{Base, Canvas, Grid, Params, Renderer, pack, unpack};
+use crate::render::{Backdrop, Canvas, Grid, Params, Renderer, pack, unpack};
 use crate::report::Table;
 use crate::report::picture::{self, heat};
 use crate::report::plot::{Panel, Sheet, captioned};
@@ -205,9 +205,9 @@ impl Bench {
 
     fn soft(&mut self, stroke: &Params) -> Image {
         let edge = final_softness(Coverage::Smoothstep);
-        let base = Base::Flat([1.0; 3]);
+        let backdrop = Backdrop::Color([1.0; 3]);
         self.renderer
-            .forward(&[*stroke], edge, base, &mut self.canvas);
+            .forward(&[*stroke], edge, backdrop, &mut self.canvas);
         self.canvas.to_image()
     }
 }

@@ -7,7 +7,7 @@ use crate::fit::{Objective, Simd};
 use crate::image::Image;
 use crate::loss::Loss;
 use crate::render::reference::{self, Reference, Rgb};
-use crate::render::{Base, Canvas, Gradients, Grid, PARAMS, Params, Renderer, Softness};
+use crate::render::{Backdrop, Canvas, Gradients, Grid, PARAMS, Params, Renderer, Softness};
 use crate::rng;
 
 /// ε of the fast renderer's distances, px².
@@ -137,12 +137,18 @@ impl Page {
         let grid = Grid::new(self.width, self.height);
         let mut renderer = Renderer::new(grid, level);
         let mut canvas = Canvas::flat(grid, [0.0; 3]);
-        let base = Base::Flat(BACKGROUND);
-        renderer.forward(&self.strokes, softness, base, &mut canvas);
+        let backdrop = Backdrop::Color(BACKGROUND);
+        renderer.forward(&self.strokes, softness, backdrop, &mut canvas);
         let target = Canvas::from_image(target);
         let objective = Objective::new(Loss::L2, &target);
         let mut gradients = Gradients::default();
-        renderer.backward_with_worth(&self.strokes, softness, base, &objective, &mut gradients);
+        renderer.backward_with_worth(
+            &self.strokes,
+            softness,
+            backdrop,
+            &objective,
+            &mut gradients,
+        );
         Ok((canvas.to_image(), gradients))
     }
 

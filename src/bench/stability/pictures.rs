@@ -19,7 +19,7 @@ const NO_WORSE: f64 = 1.01;
 const ROUNDING: f64 = 1.0 / (255.0 * 255.0);
 
 /// How far an exception may be from what was fitted, dB: 26 levels root mean square.
-const LEAST_AGREEMENT_DB: f64 = 20.0;
+const MIN_AGREEMENT_DB: f64 = 20.0;
 
 pub(super) fn checks(extent: Extent, given: &[(String, Image)]) -> Vec<Check<'_>> {
     let strokes = match extent {
@@ -218,7 +218,7 @@ impl Sound {
         let bytes = if identical { "the same" } else { "DIFFERENT" };
         let figure = format!("{self}; {bytes} bytes on 1, 1, 2 and 3 threads");
         let finding = Finding::new(figure, self.holds() && identical);
-        let nearly = self.verdict.agreement.psnr_db >= LEAST_AGREEMENT_DB;
+        let nearly = self.verdict.agreement.psnr_db >= MIN_AGREEMENT_DB;
         if self.finite && self.useful && identical && nearly {
             finding.excepting(exception)
         } else {

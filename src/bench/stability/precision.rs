@@ -10,7 +10,7 @@ use crate::image::Image;
 use crate::loss::Loss;
 use crate::optim::{Adam, AdamParams, Optimizer, Schedule};
 use crate::render::reference::{Scene, Stroke};
-use crate::render::{Base, Canvas, Gradients, Grid, PARAMS, Renderer, Softness};
+use crate::render::{Backdrop, Canvas, Gradients, Grid, PARAMS, Renderer, Softness};
 
 const SIDE: usize = 16;
 const STROKES: usize = 6;
@@ -79,9 +79,15 @@ fn descend32(mut page: Page, target: &Image, iterations: usize) -> Result<(Page,
     let mut gradients = Gradients::default();
     let mut adam = Adam::new(STROKES * PARAMS, AdamParams::default());
     let scales = RATES.map(|rate| rate as f32).repeat(STROKES);
-    let base = Base::Flat(BACKGROUND);
+    let backdrop = Backdrop::Color(BACKGROUND);
     for step in 0..iterations {
-        renderer.backward(&page.strokes, softness, base, &objective, &mut gradients);
+        renderer.backward(
+            &page.strokes,
+            softness,
+            backdrop,
+            &objective,
+            &mut gradients,
+        );
         let rate = SCHEDULE.factor(step, iterations) as f32;
         let flat = gradients.strokes.as_flattened();
         adam.step_scaled(page.strokes.as_flattened_mut(), flat, rate, &scales);
@@ -89,7 +95,13 @@ fn descend32(mut page: Page, target: &Image, iterations: usize) -> Result<(Page,
             .iter_mut()
             .for_each(|p| p[8] = p[8].clamp(0.05, 1.0));
     }
-    renderer.backward(&page.strokes, softness, base, &objective, &mut gradients);
+    renderer.backward(
+        &page.strokes,
+        softness,
+        backdrop,
+        &objective,
+        &mut gradients,
+    );
     Ok((page, gradients.loss))
 }
 

@@ -14,7 +14,7 @@ pub(in crate::fit) struct Wish {
 }
 
 /// Pixels that a stroke has to show in for its colour to matter.
-const LEAST_SHOWN: f32 = 1e-3;
+const MIN_SHOWN: f32 = 1e-3;
 
 /// Sums each stroke's share of the pixels that it shows in, as the derivative by its red.
 struct Shown;
@@ -43,7 +43,7 @@ impl Drawing {
         let values = (3 * self.pixels()) as f32 / self.pixel_area();
         let wish = |color: Rgb, slope: Rgb, weight: f32| {
             // A hidden stroke has no wish.
-            let step = if weight > LEAST_SHOWN {
+            let step = if weight > MIN_SHOWN {
                 damping * values / (2.0 * weight)
             } else {
                 0.0
@@ -59,7 +59,7 @@ impl Drawing {
             wish(rgb(stroke), rgb(slope), shown[RED] * stroke[OPACITY])
         });
         let ground = self.background();
-        let ground = ground.map(|color| wish(color, slopes.base, shown.base[0]));
+        let ground = ground.map(|color| wish(color, slopes.backdrop, shown.backdrop[0]));
         wishes.chain(ground).collect()
     }
 

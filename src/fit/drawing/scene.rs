@@ -2,7 +2,7 @@
 
 use super::Drawing;
 use crate::image::Image;
-use crate::render::{AX, Base, Canvas, Params, RADIUS, pack, unpack};
+use crate::render::{AX, Backdrop, Canvas, Params, RADIUS, pack, unpack};
 use crate::scene::{Scene, Stage};
 
 impl Drawing {
@@ -43,7 +43,7 @@ impl Drawing {
                 .collect();
             std::mem::swap(&mut below, &mut canvases);
             for (below, canvas) in below.iter().zip(&mut canvases) {
-                let base = Base::Canvas(below);
+                let base = Backdrop::Canvas(below);
                 self.renderer.forward(&strokes, self.edge, base, canvas);
             }
             mses.push(self.mse_of(canvases.iter()));

@@ -3,7 +3,7 @@
 use crate::fit::Stop;
 use crate::fit::base::Base;
 use crate::fit::config::{Budget, Config};
-use crate::fit::plan::MOST_STROKES;
+use crate::fit::plan::MAX_STROKES;
 use crate::fit::recipe::Recipe;
 use crate::fit::settle::Written;
 use crate::image::Image;
@@ -26,8 +26,8 @@ pub(super) fn strokes(config: &Config, base: Option<&Base>, target: &Image) -> O
 }
 
 /// Most strokes of the drawing where the budgets allow `limit`.
-pub(super) fn most_strokes(limit: Option<usize>, base: Option<&Base>) -> usize {
-    let most = MOST_STROKES.saturating_sub(base.map_or(0, Base::elements));
+pub(super) fn max_strokes(limit: Option<usize>, base: Option<&Base>) -> usize {
+    let most = MAX_STROKES.saturating_sub(base.map_or(0, Base::elements));
     limit.map_or(most, |limit| limit.min(most))
 }
 

@@ -3,9 +3,9 @@
 use super::{ARTICLE, Comparison, Holds, OWN, ParetoEntry};
 
 /// What a fit is to gain over the article's recipe at equal strokes, dB.
-const LEAST_GAIN_DB: f64 = 6.0;
+const MIN_GAIN_DB: f64 = 6.0;
 /// The share of the recipe's CPU time that it may take.
-const MOST_TIME: f64 = 0.25;
+const MAX_TIME: f64 = 0.25;
 
 /// What CPU time is counted in: less is not told from none.
 const TICK_S: f64 = 0.01;
@@ -14,7 +14,7 @@ const TICK_S: f64 = 0.01;
 const OWN_RUN: &str = "5000 strokes, 1500 iterations";
 /// Pixels per stroke from which on it is: the article's demo has 24. Where strokes are as small as pixels,
 /// nobody has much to gain.
-const LEAST_ROOM: usize = 8;
+const MIN_ROOM: usize = 8;
 
 /// A run of the recipe, and the best fit of as many strokes that took at most a quarter of its time.
 pub(super) struct AtEqualStrokes<'a> {
@@ -57,7 +57,7 @@ impl<'a> AtEqualStrokes<'a> {
     pub(super) fn all(here: &[&'a ParetoEntry]) -> Vec<Self> {
         let runs = recipes(here).filter(|e| !e.label.contains("time of"));
         let best = |recipe: &'a ParetoEntry| {
-            let most = MOST_TIME * recipe.cpu_s?;
+            let most = MAX_TIME * recipe.cpu_s?;
             let quick = fits(here, recipe).filter(|e| e.cpu_s.is_some_and(|cpu| cpu <= most));
             quick.max_by(|a, b| gain_db(a, recipe).total_cmp(&gain_db(b, recipe)))
         };
@@ -83,13 +83,13 @@ impl<'a> AtEqualStrokes<'a> {
                 "{gain:+.2} dB ({}) in {share:.2} of its CPU time",
                 preset.unwrap_or_default()
             ),
-            None => format!("no fit of as many strokes took {MOST_TIME} of its {time:.2} s"),
+            None => format!("no fit of as many strokes took {MAX_TIME} of its {time:.2} s"),
         };
-        let enough = self.gain().is_some_and(|[gain, _]| gain >= LEAST_GAIN_DB);
+        let enough = self.gain().is_some_and(|[gain, _]| gain >= MIN_GAIN_DB);
         Comparison {
             picture: self.recipe.picture.clone(),
             claim: format!(
-                "{LEAST_GAIN_DB} dB or more over the article's recipe ({}) in {MOST_TIME} or less of its CPU time",
+                "{MIN_GAIN_DB} dB or more over the article's recipe ({}) in {MAX_TIME} or less of its CPU time",
                 self.recipe.label
             ),
             figure,
@@ -105,7 +105,7 @@ impl<'a> AtEqualStrokes<'a> {
         let strokes = asked(self.recipe).and_then(|word| word.parse().ok());
         let pixels = self.recipe.width * self.recipe.height;
         self.recipe.label.starts_with(OWN_RUN)
-            && strokes.is_some_and(|strokes: usize| pixels >= LEAST_ROOM * strokes)
+            && strokes.is_some_and(|strokes: usize| pixels >= MIN_ROOM * strokes)
     }
 }
 

@@ -127,12 +127,12 @@ fn blit(
     }
 }
 
-/// The picture with lines of text beneath it, at least `least_width` px wide.
+/// The picture with lines of text beneath it, at least `min_width` px wide.
 ///
 /// # Errors
 /// [`ErrorKind::Picture`] when there is no memory for it.
-pub fn captioned(image: &Image, lines: &[String], least_width: usize) -> Result<Image> {
-    let (width, height) = (image.width().max(least_width), image.height());
+pub fn captioned(image: &Image, lines: &[String], min_width: usize) -> Result<Image> {
+    let (width, height) = (image.width().max(min_width), image.height());
     let whole = Image::filled(width, height + lines.len() * LINE, [1.0; 3])?;
     let mut planes = whole.planes().clone();
     blit(&mut planes, width, (0, 0), image, 1);
