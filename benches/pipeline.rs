@@ -18,14 +18,14 @@ use criterion::measurement::WallTime;
 use criterion::{BatchSize, BenchmarkGroup, BenchmarkId, Criterion, Throughput};
 
 use strokefit::coverage::Coverage;
-use strokefit::fit::{self, Budget, Config, Execution, Objective, Simd};
+use strokefit::fit::{Budget, Config, Fitter, Objective, Preset, Recipe, Simd};
 use strokefit::image::{Image, Limits};
 use strokefit::loss::Loss;
 use strokefit::metrics;
 use strokefit::optim::{Adam, AdamParams, Optimizer};
 use strokefit::render::{Backdrop, Canvas, Gradients, PARAMS, Params, Renderer, Softness, unpack};
 use strokefit::scene::{Scene, Stage};
-use strokefit::seed::{Pyramid, View, Wanted, propose};
+use strokefit::seed::{Pyramid, Residual, Wanted, propose};
 use strokefit::svg::{self, WriteOptions};
 use strokefit::verify;
 
@@ -110,18 +110,18 @@ fn seed(criterion: &mut Criterion, image: &Image) {
             count,
             // Typical radius when `count` strokes share the picture.
             scale: 0.4 * (pixels(image) as f32 / count as f32).sqrt(),
-            oversampling: 3.0,
+            probing: Recipe::of(Preset::Balanced).probing,
             min_opacity: 0.1,
             level: 0,
             key: [0, 0],
         };
         group.throughput(Throughput::Elements(count as u64));
         group.bench_function(BenchmarkId::new("propose", count), |b| {
-            let view = View {
+            let residual = Residual {
                 target: &pyramid,
                 canvas: &canvas,
             };
-            b.iter(|| propose(level, black_box(&[view]), wanted));
+            b.iter(|| propose(level, black_box(&[residual]), wanted));
         });
     }
     group.finish();
@@ -242,8 +242,8 @@ fn fits(criterion: &mut Criterion) {
         let image = Image::open(format!("samples/{name}.png")).unwrap();
         group.bench_function(BenchmarkId::new("staged_1000", name), |b| {
             b.iter(|| {
-                let execution = Execution::default();
-                fit::fit(black_box(&image), &config, &execution, &mut ()).unwrap()
+                let fitter = Fitter::new(config.clone());
+                fitter.fit(black_box(&image)).unwrap()
             });
         });
     }

@@ -10,7 +10,6 @@ use std::path::Path;
 use strokefit::fit::{Budget, Config, Fitter, Preset};
 use strokefit::image::Image;
 use strokefit::metrics::Quality;
-use strokefit::svg::WriteOptions;
 use strokefit::verify;
 
 /// Draws `input` with at most `strokes` strokes and writes `output`; how faithful the file is.
@@ -29,7 +28,7 @@ pub(crate) fn draw(
         ..Config::default()
     };
     let drawing = Fitter::new(config).fit(&picture)?;
-    let text = drawing.svg(&WriteOptions::default());
+    let text = drawing.svg();
     std::fs::write(output, &text)?;
     // What a renderer that knows nothing of the fit makes of the text.
     Ok(verify::fidelity(&text, &drawing.target)?)

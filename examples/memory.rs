@@ -8,7 +8,6 @@ use std::io::{self, Read, Write};
 
 use strokefit::fit::{Budget, Config, Fitter, Preset};
 use strokefit::image::{Image, Limits};
-use strokefit::svg::WriteOptions;
 use strokefit::verify::{self, Size};
 
 /// Pictures that may come from anyone: at most a million pixels, from at most 4 MiB.
@@ -30,7 +29,7 @@ pub(crate) fn convert(file: &[u8]) -> strokefit::Result<(String, Vec<u8>)> {
         ..Config::default()
     };
     let drawing = Fitter::new(config).fit(&picture)?;
-    let text = drawing.svg(&WriteOptions::default());
+    let text = drawing.svg();
     let png = verify::render(&text, Size::Scale(2.0), None)?.encode_png()?;
     Ok((text, png))
 }

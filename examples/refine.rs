@@ -8,7 +8,6 @@
 use strokefit::fit::{Base, Budget, Config, Fitter, Preset};
 use strokefit::image::Image;
 use strokefit::metrics::Quality;
-use strokefit::svg::WriteOptions;
 use strokefit::verify;
 
 /// The SVG `base` with up to `strokes` strokes more, towards `picture`, and how faithful it was and is.
@@ -28,10 +27,7 @@ pub(crate) fn refine(
         preset: Preset::Draft,
         ..Config::default()
     };
-    let text = Fitter::new(config)
-        .on(base)
-        .fit(picture)?
-        .svg(&WriteOptions::default());
+    let text = Fitter::new(config).on(base).fit(picture)?.svg();
     let after = verify::fidelity(&text, picture)?;
     Ok((text, [before, after]))
 }

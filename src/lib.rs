@@ -41,9 +41,8 @@
 //! # Quick start
 //!
 //! ```
-//! use strokefit::fit::{Budget, Config, Execution, fit};
+//! use strokefit::fit::{Budget, Config, Fitter};
 //! use strokefit::image::Image;
-//! use strokefit::svg::{self, WriteOptions};
 //!
 //! // A dark bar on white.
 //! let (width, height) = (48, 24);
@@ -52,9 +51,8 @@
 //! let picture = Image::new(width, height, [plane.clone(), plane.clone(), plane])?;
 //!
 //! let config = Config { budget: Budget { strokes: Some(4), ..Budget::default() }, ..Config::default() };
-//! let drawing = fit(&picture, &config, &Execution::default(), &mut ())?;
-//! let text = svg::write(&drawing.scene, &WriteOptions::default());
-//! assert!(text.starts_with("<svg"));
+//! let drawing = Fitter::new(config).fit(&picture)?;
+//! assert!(drawing.svg().starts_with("<svg"));
 //!
 //! // What it looks like, a character per 2×2 px.
 //! let dark = |x: usize, y: usize| drawing.soft.planes()[0][y * width + x] < 0.6;

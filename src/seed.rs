@@ -3,8 +3,7 @@
 //! The picture is cut in cells, and in each the pixel is found where the smoothed squared residual is
 //! largest. Where it is largest of all, shapes are probed, dots and capsules of three radii, two lengths
 //! and eight angles, each with its best colour and opacity in closed form ([`crate::render::probe`]); the
-//! best one is the cell's candidate. More cells are probed than strokes are wanted and the best are kept,
-//! which was worth 0.2 dB over one cell per stroke.
+//! best one is the cell's candidate. More cells are probed than strokes are wanted and the best are kept.
 //!
 //! Large strokes are sought in a reduced picture, so that a probe costs the same at every scale.
 
@@ -18,18 +17,27 @@ use crate::render::probe::{Patch, Probes};
 use crate::render::{Canvas, Params};
 use crate::rng;
 
-/// Radii of the probed shapes, in units of the scale.
-const RADII: [f32; 3] = [0.3, 0.55, 1.0];
-/// Lengths of the probed capsules, in units of the scale.
-const LENGTHS: [f32; 2] = [2.0, 4.5];
 /// Least radius of a probed shape, px of the reduced picture: half a pixel and the edge.
 const MIN_RADIUS: f32 = 0.52;
-/// Share of the cells that are probed, those of the largest residual. From the others comes hardly a
-/// candidate that is kept: with all of them a draft gains 0.01 dB and takes 3 % longer.
-const PROBED: f32 = 0.6;
 /// The scale is brought below this, px, by halving the picture: the largest shape, 4.5 + 2 scales
 /// long, must fit the 32 px of a patch.
 const SCALE_LIMIT: f32 = 4.0;
+
+/// How hard places are searched: what a fit tunes of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Probing {
+    /// Radii of the probed shapes, in units of the scale.
+    pub radii: [f32; 3],
+    /// Lengths of the probed capsules, in units of the scale; the longest of at most 4.5, which fits a patch. A third
+    /// one of 7.5 in a larger patch: −0.01 dB.
+    pub lengths: [f32; 2],
+    /// Cells per stroke wanted, at least 1; the best candidates are kept. 1, 2, 4: −0.49, 0, +0.09 dB; more is worse, since
+    /// all candidates land on the same few spots. Drafts 1.5: −0.18.
+    pub cells: f32,
+    /// Share of the cells that are probed, those of the largest residual. From the others comes hardly a candidate that
+    /// is kept: with all of them a draft gains 0.01 dB and takes 3 % longer.
+    pub probed: f32,
+}
 
 /// What is sought.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,8 +46,8 @@ pub struct Wanted {
     pub count: usize,
     /// Their typical radius, px.
     pub scale: f32,
-    /// Cells per stroke wanted, at least 1.
-    pub oversampling: f32,
+    /// How hard they are searched.
+    pub probing: Probing,
     /// Candidates less opaque than this are not proposed; 1 for opaque drawings.
     pub min_opacity: f32,
     /// The level of the pyramid that the canvas is of; all lengths are in its px.
@@ -58,9 +66,9 @@ pub struct Candidate {
     pub gain: f32,
 }
 
-/// The picture and what is drawn of it so far, as they look on one ground.
+/// The picture and what is drawn of it so far, as they look on one matte.
 #[derive(Debug, Clone, Copy)]
-pub struct View<'a> {
+pub struct Residual<'a> {
     /// The picture.
     pub target: &'a Pyramid,
     /// The drawing, of the size of the level that is wanted.
@@ -105,35 +113,35 @@ impl Pyramid {
     }
 }
 
-/// Candidates for strokes on top of the canvases of `views`, which are pictures of one size, best first;
-/// at most `wanted.count`, and only such as remove error. Their gain is the mean over the views.
-pub fn propose(level: Level, views: &[View<'_>], wanted: Wanted) -> Vec<Candidate> {
-    let Some(first) = views.first() else {
+/// Candidates for strokes on top of the canvases of `residuals`, which are of one size, best first;
+/// at most `wanted.count`, and only such as remove error. Their gain is the mean over them.
+pub fn propose(level: Level, residuals: &[Residual<'_>], wanted: Wanted) -> Vec<Candidate> {
+    let Some(first) = residuals.first() else {
         return Vec::new();
     };
     let halvings = (first.target).halvings(wanted.level, wanted.scale, SCALE_LIMIT);
-    let views: Vec<Residual<'_>> = views
+    let residuals: Vec<Reduced<'_>> = residuals
         .iter()
-        .map(|view| Residual::new(view, wanted.level, halvings))
+        .map(|residual| Reduced::new(residual, wanted.level, halvings))
         .collect();
     let reduction = (1 << halvings) as f32;
     let scale = (wanted.scale / reduction).min(SCALE_LIMIT);
-    let radii = RADII.map(|r| (r * scale).max(MIN_RADIUS));
-    let probes = Probes::new(level, &radii, &LENGTHS.map(|l| l * scale));
-    let energy = smoothed_energy(&views, (scale / 2.0).round() as usize);
+    let radii = wanted.probing.radii.map(|r| (r * scale).max(MIN_RADIUS));
+    let probes = Probes::new(level, &radii, &wanted.probing.lengths.map(|l| l * scale));
+    let energy = smoothed_energy(&residuals, (scale / 2.0).round() as usize);
     let cells = Cells::new(
-        &views[0].canvas,
-        wanted.count as f32 * wanted.oversampling,
+        &residuals[0].canvas,
+        wanted.count as f32 * wanted.probing.cells,
         wanted.key,
     );
-    let gain_scale = reduction * reduction / views.len() as f32;
-    let patches = || -> Vec<_> { views.iter().map(|_| Patch::new()).collect() };
+    let gain_scale = reduction * reduction / residuals.len() as f32;
+    let patches = || -> Vec<_> { residuals.iter().map(|_| Patch::new()).collect() };
     let mut candidates: Vec<Candidate> = cells
-        .peaks(&energy, PROBED)
+        .peaks(&energy, wanted.probing.probed)
         .into_par_iter()
         .map_init(patches, |patches, (x, y)| {
-            for (patch, view) in patches.iter_mut().zip(&views) {
-                patch.fill(&probes, view.target, &view.canvas, x, y);
+            for (patch, residual) in patches.iter_mut().zip(&residuals) {
+                patch.fill(&probes, residual.target, &residual.canvas, x, y);
             }
             let (shape, probe) = probes.best(patches, wanted.min_opacity)?;
             let center = [x, y].map(|v| (v as f32 + 0.5) * reduction);
@@ -150,28 +158,32 @@ pub fn propose(level: Level, views: &[View<'_>], wanted: Wanted) -> Vec<Candidat
     candidates
 }
 
-/// A view at the resolution that strokes are sought at.
-struct Residual<'a> {
+/// A residual at the resolution that strokes are sought at.
+struct Reduced<'a> {
     target: &'a Image,
     canvas: Image,
 }
 
-impl<'a> Residual<'a> {
-    fn new(view: &View<'a>, level: usize, halvings: usize) -> Self {
+impl<'a> Reduced<'a> {
+    fn new(residual: &Residual<'a>, level: usize, halvings: usize) -> Self {
         Self {
-            target: view.target.level(level + halvings),
-            canvas: (0..halvings).fold(view.canvas.to_image(), |image, _| image.halved()),
+            target: residual.target.level(level + halvings),
+            canvas: (0..halvings).fold(residual.canvas.to_image(), |image, _| image.halved()),
         }
     }
 }
 
-/// The squared residual, summed over channels and views and over boxes of side `2·radius + 1`.
-fn smoothed_energy(views: &[Residual<'_>], radius: usize) -> Vec<f32> {
-    let (width, height) = (views[0].canvas.width(), views[0].canvas.height());
+/// The squared residual, summed over channels and mattes and over boxes of side `2·radius + 1`.
+fn smoothed_energy(residuals: &[Reduced<'_>], radius: usize) -> Vec<f32> {
+    let (width, height) = (residuals[0].canvas.width(), residuals[0].canvas.height());
     let mut energy = vec![0.0; width * height];
-    let planes = views
-        .iter()
-        .flat_map(|view| view.target.planes().iter().zip(view.canvas.planes()));
+    let planes = residuals.iter().flat_map(|residual| {
+        residual
+            .target
+            .planes()
+            .iter()
+            .zip(residual.canvas.planes())
+    });
     for (t, c) in planes {
         for ((energy, t), c) in energy.iter_mut().zip(t).zip(c) {
             *energy += (t - c) * (t - c);
@@ -386,22 +398,27 @@ mod tests {
         let wanted = Wanted {
             count: 1,
             scale: 4.0,
-            oversampling: 4.0,
+            probing: Probing {
+                radii: [0.3, 0.55, 1.0],
+                lengths: [2.0, 4.5],
+                cells: 4.0,
+                probed: 0.6,
+            },
             min_opacity: 1.0,
             level: 0,
             key: [0, 0],
         };
         let target = Pyramid::new(target);
-        let view = View {
+        let residual = Residual {
             target: &target,
             canvas: &canvas,
         };
-        let found = propose(Level::new(), &[view], wanted);
+        let found = propose(Level::new(), &[residual], wanted);
         let Candidate { stroke, gain } = found[0];
         assert_eq!(
-            propose(Level::new(), &[view; 2], wanted),
+            propose(Level::new(), &[residual; 2], wanted),
             found,
-            "the mean of two equal views is one of them"
+            "the mean of two equal residuals is one of them"
         );
         assert!(
             (stroke[5] - 0.9).abs() < 0.1 && stroke[6] < 0.25,

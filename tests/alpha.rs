@@ -7,15 +7,14 @@ mod support {
     pub(crate) mod repository;
 }
 
-use strokefit::fit::{Background, Config, Execution, Fit, Simd, fit};
+use strokefit::fit::{Background, Config, Execution, Fit, Fitter, Simd};
 use strokefit::image::Image;
-use strokefit::svg::WriteOptions;
 use strokefit::verify::{self, Size};
 use support::drafts::draft;
 use support::fits::{drawn, sample};
 
 fn text(fit: &Fit) -> String {
-    fit.svg(&WriteOptions::default())
+    fit.svg()
 }
 
 /// A red square of half opacity in a clear page.
@@ -105,6 +104,9 @@ fn neither_threads_nor_instructions_change_a_clear_drawing() {
         simd: "scalar".parse::<Simd>().unwrap(),
     };
     let picture = sample("noto-gem");
-    let slow = fit(&picture, &draft(30), &scalar, &mut ()).unwrap();
+    let slow = Fitter::new(draft(30))
+        .execution(scalar)
+        .fit(&picture)
+        .unwrap();
     assert_eq!(slow.scene, drawn(&picture, &draft(30)).scene);
 }

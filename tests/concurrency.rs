@@ -12,7 +12,7 @@ use std::thread;
 use strokefit::fit::{Execution, Fit, Fitter, Progress, Stop};
 use strokefit::image::Image;
 use strokefit::rng;
-use strokefit::svg::{self, WriteOptions};
+use strokefit::svg;
 use support::drafts::draft;
 
 const FITS: usize = 16;
@@ -36,7 +36,7 @@ fn fitter<'a>() -> Fitter<'a> {
 }
 
 fn text(fit: &Fit) -> String {
-    fit.svg(&WriteOptions::default())
+    fit.svg()
 }
 
 #[test]

@@ -22,7 +22,7 @@ use std::time::Duration;
 use serde_json::Value;
 use strokefit::browser;
 use strokefit::engines::{ENGINES, Engine, Page};
-use strokefit::fit::{Budget, Config, Execution};
+use strokefit::fit::{Budget, Config, Fitter};
 use strokefit::image::Image;
 use strokefit::metrics;
 use strokefit::scene::{Scene, Shape, Stage, Stroke};
@@ -152,10 +152,10 @@ fn fitted(name: &'static str, strokes: usize) -> Fitted {
         budget,
         ..Config::default()
     };
-    let fit = strokefit::fit::fit(&picture, &config, &Execution::default(), &mut ()).unwrap();
+    let fit = Fitter::new(config).fit(&picture).unwrap();
     Fitted {
         name,
-        text: fit.svg(&WriteOptions::default()),
+        text: fit.svg(),
         target: picture.flattened([1.0; 3]),
     }
 }

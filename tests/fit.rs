@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 
 use strokefit::coverage::CoverageSchedule;
 use strokefit::fit::{
-    Budget, Config, Execution, Fit, Fitter, Preset, Progress, Rates, Recipe, Simd, Stop, fit,
+    Budget, Config, Execution, Fit, Fitter, Preset, Progress, Rates, Recipe, Simd, Stop,
 };
 use strokefit::image::Image;
 use strokefit::scene::Scene;
@@ -191,7 +191,10 @@ fn threads_simd_and_repetition_change_no_byte() {
             simd,
         };
         text(
-            &fit(&picture, &config, &execution, &mut ()).unwrap(),
+            &Fitter::new(config.clone())
+                .execution(execution)
+                .fit(&picture)
+                .unwrap(),
             &config,
         )
     };
@@ -229,7 +232,10 @@ fn an_observer_sees_progress_and_may_stop() {
             ControlFlow::Continue(())
         }
     };
-    let fit = fit(&picture, &draft(100), &Execution::default(), &mut watch).unwrap();
+    let fit = Fitter::new(draft(100))
+        .observer(&mut watch)
+        .fit(&picture)
+        .unwrap();
     assert_eq!(fit.stop, Stop::Observer);
     assert_eq!(seen.len(), 40);
     assert!(
@@ -268,18 +274,16 @@ fn the_drawing_can_be_seen_while_it_grows() {
 
 #[test]
 fn strokes_that_become_no_numbers_are_dropped_and_counted() {
-    let recipe = Recipe::of(Preset::Draft);
+    let mut recipe = Recipe::of(Preset::Draft);
     let poison = |rates: Rates| Rates {
         position: f32::NAN,
         color: f32::NAN,
         ..rates
     };
+    recipe.stages.rates = poison(recipe.stages.rates);
+    recipe.polish.rates = poison(recipe.polish.rates);
     let config = Config {
-        recipe: Some(Recipe {
-            stage_rates: poison(recipe.stage_rates),
-            polish_rates: poison(recipe.polish_rates),
-            ..recipe
-        }),
+        recipe: Some(recipe),
         // All at once: a stage of which nothing is left is the last.
         stages: Some(1),
         ..draft(40)

@@ -49,10 +49,8 @@ fn option_sets() -> [(&'static str, Config); 3] {
         ..Budget::default()
     };
     // A draft is not settled against its file.
-    let settled = Recipe {
-        settle_rounds: 2,
-        ..Recipe::of(Preset::Draft)
-    };
+    let mut settled = Recipe::of(Preset::Draft);
+    settled.settling.rounds = 2;
     [
         ("150 strokes", draft(most)),
         (
@@ -84,7 +82,7 @@ fn drawn(sample: &str, config: &Config, execution: Execution) -> String {
     let picture = Image::open(folder("samples").join(format!("{sample}.png"))).unwrap();
     let fitter = Fitter::new(config.clone()).execution(execution);
     let fit = fitter.fit(&picture).unwrap();
-    fit.svg(&config.file)
+    fit.svg()
 }
 
 /// FNV-1a, of 64 bits.

@@ -21,7 +21,7 @@ mod limits;
 
 use strokefit::Result;
 use strokefit::bench::measure::{DEPTH, EDGE, Size, fastest, thread_counts};
-use strokefit::fit::{self, Budget, Config, Execution, Objective, Simd};
+use strokefit::fit::{Budget, Config, Fitter, Objective, Simd};
 use strokefit::image::Image;
 use strokefit::loss::Loss;
 use strokefit::render::{Backdrop, Canvas, Gradients, Params, Renderer, pack};
@@ -134,7 +134,7 @@ fn settled(image: &Image, options: &Options) -> Result<Drawing> {
         polish: options.polish,
         ..Config::default()
     };
-    let scene = fit::fit(image, &config, &Execution::default(), &mut ())?.scene;
+    let scene = Fitter::new(config).fit(image)?.scene;
     let strokes = scene.strokes().map(pack).collect();
     let ground = scene.background.unwrap_or([1.0; 3]);
     let target = Canvas::from_image(image);

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::child::Task as ChildTask;
 use super::measure::{EDGE, Size, fastest, thread_counts};
 use crate::error::Result;
-use crate::fit::{self, Budget, Config, Execution, Objective, Preset};
+use crate::fit::{Budget, Config, Execution, Fitter, Objective, Preset};
 use crate::image::Image;
 use crate::loss::Loss;
 use crate::render::{Backdrop, Canvas, Gradients, Renderer};
@@ -306,7 +306,9 @@ impl Point {
             ..Config::default()
         };
         let (start, before) = (Instant::now(), Usage::now().cpu_s);
-        fit::fit(picture, &config, &self.execution(), &mut ())?;
+        Fitter::new(config)
+            .execution(self.execution())
+            .fit(picture)?;
         Ok(Time {
             wall_s: start.elapsed().as_secs_f64(),
             cpu_s: Usage::now()

@@ -9,7 +9,6 @@ use strokefit::image::Image;
 use strokefit::metrics::Quality;
 use strokefit::report::{self, BaseEntry, Event, FitReport, Input, StageEntry, Usage};
 use strokefit::scene::{Dropped, Scene};
-use strokefit::svg::WriteOptions;
 use strokefit::verify::{self, MIN_AGREEMENT_DB, OnGrounds, Verdict};
 
 use super::events::{Events, Phases};
@@ -55,7 +54,7 @@ impl Job<'_> {
         let fit = self.watched(&picture, start, events, bar, draw)?;
         tell_stages(&fit, verbosity);
         tell_dropped(fit.dropped, verbosity);
-        let mut drawn = Drawn::new(fit, &self.options.form.options())?;
+        let mut drawn = Drawn::new(fit)?;
         outputs.svg.1.write(drawn.text.as_bytes())?;
         drawn.wall = start.elapsed();
         let record = self.record(&drawn);
@@ -237,8 +236,8 @@ pub(super) struct Drawn {
 }
 
 impl Drawn {
-    fn new(fit: Fit, form: &WriteOptions) -> Result<Self> {
-        let text = fit.svg(form);
+    fn new(fit: Fit) -> Result<Self> {
+        let text = fit.svg();
         let soft = Quality::between(&fit.target, &fit.soft)?;
         let verdict = verify::verify(&text, &fit.target, &fit.soft)?;
         let is_clear = fit.target.alpha().is_some();

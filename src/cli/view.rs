@@ -6,7 +6,7 @@ use std::time::Instant;
 use anyhow::Result;
 use strokefit::fit::{Background, Base, Budget, Config, Fit, Fitter, Observer};
 use strokefit::image::Image;
-use strokefit::svg::{self, WriteOptions};
+use strokefit::svg;
 use strokefit::verify;
 use strokefit::view::Viewer;
 
@@ -59,7 +59,6 @@ fn tell(viewer: &Viewer) {
 /// A page that fits are watched on.
 pub(super) struct Watch {
     viewer: Viewer,
-    written: WriteOptions,
 }
 
 impl Watch {
@@ -70,8 +69,7 @@ impl Watch {
         }
         let viewer = Viewer::open()?;
         tell(&viewer);
-        let written = options.form.options();
-        Ok(Some(Self { viewer, written }))
+        Ok(Some(Self { viewer }))
     }
 
     /// Lets the page ask for more strokes, or not.
@@ -90,7 +88,7 @@ impl Watch {
         let title = format!("{}×{} px", picture.width(), picture.height());
         self.viewer.begin(&title, Some(picture))?;
         let fit = draw(picture, start, &mut self.viewer.watch(observer))?;
-        self.viewer.show(&fit.scene, &fit.svg(&self.written));
+        self.viewer.show(&fit.scene, &fit.svg());
         Ok(fit)
     }
 

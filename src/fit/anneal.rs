@@ -1,47 +1,46 @@
 //! The soft edge narrows during a fit.
 
+use super::recipe::{Edge, Preset, Recipe};
 use crate::coverage::{Coverage, CoverageSchedule};
 use crate::render::Softness;
 
-/// Slope of the final edge at the outline, 1/px. An antialiasing rasteriser's box of 1 px has a slope
-/// between 1 (upright edges) and √2 (diagonal ones); of 1.0 to 1.5, this agreed best with resvg: by
-/// 1.2 dB more than 1.5, at no cost in fidelity.
-const FINAL_SLOPE: f64 = 1.2;
-
-/// Share of a fit after which the edge has its final softness.
-const ANNEALED: f32 = 0.7;
-
-/// The edge of a finished drawing: the softness at which `coverage` has the final slope.
+/// The edge of a finished drawing: the softness at which `coverage` has the slope of a rasterised edge.
 pub fn final_softness(coverage: Coverage) -> Softness {
+    with_slope(coverage, Recipe::of(Preset::default()).edge.final_slope)
+}
+
+/// The softness at which `coverage` has the slope `slope` at the outline, 1/px.
+fn with_slope(coverage: Coverage, slope: f64) -> Softness {
     // All coverage functions are functions of d/s, so that the slope at 0 is inverse to the softness.
-    let width = (coverage.derivative(0.0, 1.0) / FINAL_SLOPE) as f32;
+    let width = (coverage.derivative(0.0, 1.0) / slope) as f32;
     Softness { coverage, width }
 }
 
-/// A passage from a soft edge to the final one.
+/// The passage from a soft edge to the final one.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Anneal {
+pub(super) struct Annealing {
     pub(super) coverage: CoverageSchedule,
-    /// How many times softer than the final edge the first one is, at least 1.
-    pub(super) from: f32,
+    pub(super) edge: Edge,
 }
 
-impl Anneal {
-    /// The softness when a share `done` of the fit is over; it shrinks geometrically.
-    pub(super) fn at(&self, done: f32) -> Softness {
-        if done >= ANNEALED {
+impl Annealing {
+    /// The softness when a share `done` of a descent is over that began `from` times softer than the final edge, at
+    /// least 1; it shrinks geometrically.
+    pub(super) fn at(&self, from: f32, done: f32) -> Softness {
+        let annealed = self.edge.annealed;
+        if done >= annealed {
             return self.last();
         }
-        let last = final_softness(self.coverage.early);
+        let last = with_slope(self.coverage.early, self.edge.final_slope);
         Softness {
-            width: last.width * self.from.max(1.0).powf(1.0 - done / ANNEALED),
+            width: last.width * from.max(1.0).powf(1.0 - done / annealed),
             ..last
         }
     }
 
     /// The edge of the finished drawing.
     pub(super) fn last(&self) -> Softness {
-        final_softness(self.coverage.late)
+        with_slope(self.coverage.late, self.edge.final_slope)
     }
 }
 
@@ -57,20 +56,22 @@ mod tests {
             Coverage::Tanh,
             Coverage::Atan { k: 4.0 },
         ];
+        let expected = Recipe::of(Preset::default()).edge.final_slope;
         for coverage in functions {
             let softness = final_softness(coverage);
             let slope = coverage.derivative(0.0, f64::from(softness.width));
-            assert!((slope - FINAL_SLOPE).abs() < 1e-3, "{coverage}: {slope}");
+            assert!((slope - expected).abs() < 1e-3, "{coverage}: {slope}");
         }
     }
 
     #[test]
     fn softness_shrinks_to_the_last() {
-        let anneal = Anneal {
+        let annealing = Annealing {
             coverage: CoverageSchedule::default(),
-            from: 4.0,
+            edge: Recipe::of(Preset::default()).edge,
         };
-        let widths: Vec<f32> = (0..=10).map(|k| anneal.at(k as f32 / 10.0).width).collect();
+        let width = |k: i32| annealing.at(4.0, k as f32 / 10.0).width;
+        let widths: Vec<f32> = (0..=10).map(width).collect();
         assert!((widths[0] / widths[10] - 4.0).abs() < 1e-5);
         assert!(widths.windows(2).all(|w| w[1] <= w[0]));
     }

@@ -1,54 +1,49 @@
-//! What lies behind all strokes.
+//! Which background a drawing gets.
 
+use super::config::Background;
+use super::recipe::BackgroundChoice;
 use crate::image::Image;
 use crate::scene::Rgb;
 
-/// The colour behind all strokes.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub enum Background {
-    /// Chosen from the picture.
-    #[default]
-    Auto,
-    /// No background; pictures are laid on white.
-    None,
-    /// This colour.
-    Color(Rgb),
-}
-
-impl Background {
-    /// What `Auto` comes to for `picture`: opaque strokes cannot show what is translucent, a soft shadow or
-    /// glass, so that a picture with such areas is laid on white for them.
-    pub(super) fn for_strokes(self, opaque: bool, picture: &Image) -> Self {
-        if self == Self::Auto && opaque && translucent_share(picture) > TRANSLUCENT {
-            Self::Color([1.0; 3])
-        } else {
-            self
-        }
-    }
-
-    /// The colour that a picture with alpha is laid on.
-    pub(super) fn ground(self) -> Rgb {
-        match self {
-            Self::Color(color) => color,
-            Self::Auto | Self::None => [1.0; 3],
-        }
-    }
-
-    /// The colour that the page starts from, and whether it stays that colour.
-    pub(super) fn choose(self, target: &Image) -> (Rgb, bool) {
-        match self {
-            Self::Auto => (prevailing_color(target), false),
-            Self::None => ([1.0; 3], true),
-            Self::Color(color) => (color, true),
-        }
+/// The background that opaque strokes can be drawn on: they cannot show what is translucent, a soft shadow or glass, so
+/// that a picture with such areas is laid on white for them.
+pub(super) fn for_strokes(
+    background: Background,
+    opaque: bool,
+    picture: &Image,
+    choice: &BackgroundChoice,
+) -> Background {
+    let is_translucent = || translucent_share(picture, choice) > choice.translucent_share;
+    if background == Background::Auto && opaque && is_translucent() {
+        Background::Color([1.0; 3])
+    } else {
+        background
     }
 }
 
-/// Share of the pixels that one colour must have to be taken for the ground.
-const PREVAILING: f64 = 0.25;
+/// The colour that a picture with alpha is laid on where the drawing is not transparent.
+pub(super) fn matte(background: Background) -> Rgb {
+    match background {
+        Background::Color(color) => color,
+        Background::Auto | Background::None => [1.0; 3],
+    }
+}
 
-/// The colour of most pixels if it is a ground, otherwise the mean colour.
-fn prevailing_color(image: &Image) -> Rgb {
+/// The colour that a fit to `target` starts from, and whether it stays that colour.
+pub(super) fn choose(
+    background: Background,
+    target: &Image,
+    choice: &BackgroundChoice,
+) -> (Rgb, bool) {
+    match background {
+        Background::Auto => (prevailing_color(target, choice), false),
+        Background::None => ([1.0; 3], true),
+        Background::Color(color) => (color, true),
+    }
+}
+
+/// The commonest colour where it has a large enough share, otherwise the mean colour.
+fn prevailing_color(image: &Image, choice: &BackgroundChoice) -> Rgb {
     let pixels = image.width() * image.height();
     let levels = image.to_rgb8();
     let (colors, _) = levels.as_chunks::<3>();
@@ -60,7 +55,7 @@ fn prevailing_color(image: &Image) -> Rgb {
     let runs = colors.chunk_by(|a, b| a == b);
     let most = runs.max_by_key(|run| run.len()).unwrap_or_default();
     match most {
-        [color, ..] if most.len() as f64 >= PREVAILING * pixels as f64 => {
+        [color, ..] if most.len() as f64 >= choice.prevailing_share * pixels as f64 => {
             let [_, rgb @ ..] = color.to_be_bytes();
             rgb.map(|v| f32::from(v) / 255.0)
         }
@@ -71,17 +66,15 @@ fn prevailing_color(image: &Image) -> Rgb {
     }
 }
 
-/// Share of the pixels in translucent areas that opaque strokes can leave out.
-const TRANSLUCENT: f64 = 0.005;
-
 /// Share of the pixels that are translucent and have four translucent neighbours: the edge of an opaque
 /// shape is a pixel wide.
-fn translucent_share(image: &Image) -> f64 {
+fn translucent_share(image: &Image, choice: &BackgroundChoice) -> f64 {
     let Some(alpha) = image.alpha() else {
         return 0.0;
     };
     let (width, height) = (image.width(), image.height());
-    let shows = |x: usize, y: usize| (0.03..0.97).contains(&alpha[y * width + x]);
+    let [least, most] = choice.translucent;
+    let shows = |x: usize, y: usize| (least..most).contains(&alpha[y * width + x]);
     let inside = |x: usize, y: usize| {
         shows(x, y)
             && (x == 0 || shows(x - 1, y))
@@ -96,6 +89,7 @@ fn translucent_share(image: &Image) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fit::recipe::{Preset, Recipe};
 
     /// A grey disc with an antialiased edge, `alpha` inside.
     fn disc(alpha: f32) -> Image {
@@ -112,13 +106,12 @@ mod tests {
     #[test]
     fn what_is_translucent_is_laid_on_white_for_opaque_strokes() {
         let (solid, glass) = (disc(1.0), disc(0.5));
-        let white = Background::Color([1.0; 3]);
-        assert_eq!(Background::Auto.for_strokes(true, &solid), Background::Auto);
-        assert_eq!(Background::Auto.for_strokes(true, &glass), white);
-        assert_eq!(
-            Background::Auto.for_strokes(false, &glass),
-            Background::Auto
-        );
-        assert_eq!(Background::None.for_strokes(true, &glass), Background::None);
+        let choice = Recipe::of(Preset::Balanced).background;
+        let of = |background, opaque, picture| for_strokes(background, opaque, picture, &choice);
+        let (auto, none) = (Background::Auto, Background::None);
+        assert_eq!(of(auto, true, &solid), auto);
+        assert_eq!(of(auto, true, &glass), Background::Color([1.0; 3]));
+        assert_eq!(of(auto, false, &glass), auto);
+        assert_eq!(of(none, true, &glass), none);
     }
 }

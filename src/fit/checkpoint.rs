@@ -15,11 +15,12 @@ use serde::de::DeserializeOwned;
 
 use super::base::Base;
 use super::config::Config;
+use super::recipe::Recipe;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
 
 /// What every checkpoint begins with; the number counts the layouts that were released.
-const MAGIC: &[u8; 24] = b"strokefit checkpoint 01\n";
+const MAGIC: &[u8; 24] = b"strokefit checkpoint 02\n";
 /// Magic, fingerprint and checksum.
 const HEAD: usize = MAGIC.len() + 8 + 8;
 
@@ -175,9 +176,16 @@ fn replace(path: &Path, parts: &[&[u8]]) -> io::Result<()> {
 }
 
 /// What tells one fit from another: all that its bytes depend on.
-pub(super) fn fingerprint(target: &Image, config: &Config, base: Option<&Base>) -> u64 {
+pub(super) fn fingerprint(
+    target: &Image,
+    config: &Config,
+    recipe: &Recipe,
+    base: Option<&Base>,
+) -> u64 {
     let size = [target.width() as u64, target.height() as u64];
-    let words = format!("{} {config:?} {base:?}", env!("CARGO_PKG_VERSION"));
+    // The recipe of a preset may change from version to version, and from build to build of one.
+    let version = env!("CARGO_PKG_VERSION");
+    let words = format!("{version} {config:?} {recipe:?} {base:?}");
     let planes = target.planes().iter().flatten();
     let values = planes.chain(target.alpha().unwrap_or_default());
     hash(
@@ -265,10 +273,21 @@ mod tests {
                 seed,
                 ..Config::default()
             };
-            fingerprint(&Image::filled(3, 2, color).unwrap(), &config, None)
+            let picture = Image::filled(3, 2, color).unwrap();
+            fingerprint(&picture, &config, &config.recipe(), None)
         };
         assert_eq!(of(red, 1), of(red, 1));
         assert_ne!(of(red, 1), of(red, 2));
         assert_ne!(of(red, 1), of(blue, 1));
+    }
+
+    #[test]
+    fn a_retuned_program_has_fingerprints_of_its_own() {
+        let (picture, config) = (Image::filled(3, 2, [0.5; 3]).unwrap(), Config::default());
+        let recipe = config.recipe();
+        let mut retuned = recipe;
+        retuned.pens.ladder = 1.21;
+        let of = |recipe| fingerprint(&picture, &config, recipe, None);
+        assert_ne!(of(&recipe), of(&retuned));
     }
 }

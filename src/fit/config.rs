@@ -1,14 +1,13 @@
 //! *What* to fit ([`Config`]) and *how* to run ([`Execution`]); *how* never changes a byte.
 
+use std::collections::BTreeSet;
 use std::time::Duration;
 
-use super::background::Background;
-use super::palette::Colors;
-use super::recipe::Recipe;
+use super::recipe::{Preset, Recipe};
 use super::simd::Simd;
 use crate::coverage::CoverageSchedule;
 use crate::error::{Error, ErrorKind, Result};
-use crate::scene::{MAX_PRECISION, Rgb, quantum};
+use crate::scene::{MAX_PRECISION, Rgb, Scene, quantum};
 use crate::svg::WriteOptions;
 
 /// What to fit. Equal configurations of equal pictures give equal bytes.
@@ -77,16 +76,44 @@ pub struct Budget {
     pub time: Option<Duration>,
 }
 
-/// How much work to spend on a drawing.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Preset {
-    /// Quick look.
-    Draft,
-    /// The default.
+/// Which colours a drawing may have, its background included.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub enum Colors {
+    /// Any.
     #[default]
-    Balanced,
-    /// The last tenths of a dB.
-    Best,
+    Free,
+    /// At most so many, chosen from the picture.
+    AtMost(usize),
+    /// These 8-bit ones.
+    Palette(Vec<[u8; 3]>),
+}
+
+impl Colors {
+    /// Whether `scene` has no other colours already.
+    pub(super) fn allow(&self, scene: &Scene) -> bool {
+        let strokes = scene.strokes().map(|stroke| stroke.color);
+        let used: BTreeSet<_> = strokes
+            .chain(scene.background)
+            .map(|c| c.map(quantum))
+            .collect();
+        match self {
+            Self::Free => true,
+            Self::AtMost(most) => used.len() <= *most,
+            Self::Palette(palette) => used.iter().all(|color| palette.contains(color)),
+        }
+    }
+}
+
+/// The colour behind all strokes.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub enum Background {
+    /// Chosen from the picture; a picture with alpha has none.
+    #[default]
+    Auto,
+    /// No background; where the picture has no alpha it is laid on white.
+    None,
+    /// This colour.
+    Color(Rgb),
 }
 
 /// How to run. Never changes the result.
@@ -101,7 +128,18 @@ pub struct Execution {
 /// The quality of a drawing without a budget.
 pub const DEFAULT_QUALITY: f64 = 30.0;
 
+/// Most strokes of a drawing: renderers of SVG read a million elements.
+pub const MAX_STROKES: usize = 900_000;
+
+/// Beyond it a stroke may cost less than one 8-bit level of one pixel.
+const MAX_QUALITY: f64 = 60.0;
+
 impl Config {
+    /// The numbers to fit by.
+    pub(super) fn recipe(&self) -> Recipe {
+        self.recipe.unwrap_or(Recipe::of(self.preset))
+    }
+
     /// The quality that sets the price of a stroke, if strokes have one.
     pub(super) fn effective_quality(&self) -> Option<f64> {
         let Budget {
@@ -133,6 +171,7 @@ impl Config {
             return refuse("a time of 0 s leaves none to fit in: give more".into());
         }
         self.check_colors()?;
+        self.recipe().check()?;
         if self.stages == Some(0) {
             return refuse("0 stages add no stroke: give 1 or more".into());
         }
@@ -144,9 +183,7 @@ impl Config {
         }
         Ok(())
     }
-}
 
-impl Config {
     fn check_colors(&self) -> Result<()> {
         let refuse = |message: String| Err(Error::new(ErrorKind::Config, message));
         let Colors::Palette(palette) = &self.colors else {
@@ -159,14 +196,14 @@ impl Config {
             return refuse("the palette has no colour: give one or more".into());
         }
         match self.background {
-            Background::Color(ground) => self.check_ground(ground, ", or have it chosen by auto"),
+            Background::Color(color) => self.check_background(color, ", or have it chosen by auto"),
             _ => Ok(()),
         }
     }
 
     /// Refuses a colour behind all strokes that the palette lacks; what helps besides adding it is said last.
-    pub(super) fn check_ground(&self, ground: Rgb, other_remedy: &str) -> Result<()> {
-        let [r, g, b] = ground.map(quantum);
+    pub(super) fn check_background(&self, color: Rgb, other_remedy: &str) -> Result<()> {
+        let [r, g, b] = color.map(quantum);
         match &self.colors {
             Colors::Palette(palette) if !palette.contains(&[r, g, b]) => {
                 let message = format!(
@@ -178,9 +215,6 @@ impl Config {
         }
     }
 }
-
-/// Beyond it a stroke may cost less than one 8-bit level of one pixel.
-const MAX_QUALITY: f64 = 60.0;
 
 impl Execution {
     /// The worker threads.

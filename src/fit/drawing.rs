@@ -1,36 +1,27 @@
-//! The state of a fit: the strokes so far, how many of them are frozen, and the canvas they make.
+//! The drawing under work: strokes, how many of them are frozen, and the resolution that they are fitted at.
 
-mod colors;
+mod memento;
 mod scene;
-mod state;
 
 use fearless_simd::Level;
 
-use super::anneal::final_softness;
-use super::config::Config;
-use super::descent::{Descent, Limits};
-use super::ground::{Ground, Setting};
-use super::objective::{View, differentiate};
+use super::limits::Limits;
+use super::objective::{Term, differentiate};
+use super::surface::Surface;
 use crate::render::{Canvas, Gradients, Params, Renderer, Softness};
 use crate::scene::Rgb;
-use crate::seed::{Candidate, Wanted, propose};
-pub(super) use colors::Wish;
+pub(super) use memento::Memento;
 use scene::enlarged;
-pub(super) use state::State;
-
-/// Least opacity of a stroke: the 8-bit compositing of renderers drifts by levels under many layers
-/// fainter than this.
-const MIN_OPACITY: f32 = 0.1;
 
 /// A drawing under work. What is fitted, judged and relocated are its *free* strokes; the frozen ones
 /// below them are a picture. Large strokes are fitted to a reduced picture: the numbers of strokes are
 /// in px of the current level of the pyramid, what goes in and out of the methods in px of the picture.
 pub(super) struct Drawing {
-    /// What it is fitted on: one ground, or two for a transparent drawing.
-    grounds: Vec<Ground>,
-    renderer: Renderer,
-    level: Level,
-    /// Whether the colour of the ground is not to be fitted.
+    /// What it is fitted on: one surface, or two for a transparent drawing; all of one size and resolution.
+    pub(super) surfaces: Vec<Surface>,
+    pub(super) renderer: Renderer,
+    pub(super) level: Level,
+    /// Whether the background is not to be fitted.
     pub(super) background_fixed: bool,
     /// Back to front.
     strokes: Vec<Params>,
@@ -39,33 +30,40 @@ pub(super) struct Drawing {
     /// How many strokes, from the back, are frozen.
     frozen: usize,
     pub(super) limits: Limits,
+    /// The edge of the finished drawing.
     edge: Softness,
-    seed: u64,
-    /// How often strokes were sought.
-    searches: u64,
+    pub(super) counters: Counters,
+}
+
+/// What is counted in the course of a fit.
+#[derive(Debug, Clone, Copy, Default, serde::Serialize, serde::Deserialize)]
+pub(super) struct Counters {
+    /// How often places for strokes were searched: no two searches cut the picture alike.
+    pub(super) searches: u64,
     /// How many strokes became non-finite and were taken out.
-    lost: usize,
+    pub(super) lost: usize,
 }
 
 impl Drawing {
-    /// An empty drawing on the grounds of `setting`, which is left without any.
-    pub(super) fn new(setting: &mut Setting, config: &Config, level: Level) -> Self {
-        let grounds = std::mem::take(&mut setting.grounds);
-        let grid = grounds[0].grid();
-        let min_opacity = if config.opaque { 1.0 } else { MIN_OPACITY };
+    /// An empty drawing on `surfaces`, of which there is at least one.
+    pub(super) fn new(
+        surfaces: Vec<Surface>,
+        background_fixed: bool,
+        limits: Limits,
+        edge: Softness,
+        level: Level,
+    ) -> Self {
         Self {
-            grounds,
-            renderer: Renderer::new(grid, level),
+            renderer: Renderer::new(surfaces[0].grid(), level),
+            surfaces,
             level,
-            background_fixed: setting.is_fixed,
+            background_fixed,
             strokes: Vec::new(),
             stage_of: Vec::new(),
             frozen: 0,
-            limits: Limits::new(grid.width, grid.height, min_opacity),
-            edge: final_softness(config.coverage.late),
-            seed: config.seed,
-            searches: 0,
-            lost: 0,
+            limits,
+            edge,
+            counters: Counters::default(),
         }
     }
 
@@ -79,53 +77,51 @@ impl Drawing {
         &self.strokes[self.frozen..]
     }
 
+    /// The same, to be changed.
+    pub(super) fn free_mut(&mut self) -> &mut [Params] {
+        &mut self.strokes[self.frozen..]
+    }
+
     /// Goes to the resolution for strokes of `scale` px, if that is finer than the current one; says
     /// whether it did. All strokes are free then.
-    pub(super) fn refine(&mut self, scale: f32) -> bool {
-        let grounds = self.grounds.iter_mut();
-        let doublings = grounds
-            .map(|ground| ground.refine(scale))
-            .max()
-            .unwrap_or(0);
-        if doublings == 0 {
+    pub(super) fn sharpen(&mut self, scale: f32) -> bool {
+        let now = self.surface().halvings();
+        let halvings = self.surface().halvings_for(scale);
+        if halvings >= now {
             return false;
         }
+        self.halve(halvings);
         for stroke in &mut self.strokes {
-            *stroke = enlarged(*stroke, doublings);
+            *stroke = enlarged(*stroke, now - halvings);
         }
-        self.cut_anew();
         true
     }
 
-    /// Follows the grounds to another resolution, where all strokes are free; their numbers are left.
-    fn cut_anew(&mut self) {
-        let grid = self.ground().grid();
+    /// Goes to the picture halved so many times; the numbers of strokes are left, and all are free.
+    fn halve(&mut self, halvings: usize) {
+        self.surfaces.iter_mut().for_each(|s| s.halve(halvings));
+        let grid = self.surface().grid();
         self.renderer = Renderer::new(grid, self.level);
-        self.limits = Limits::new(grid.width, grid.height, self.limits.min_opacity);
+        self.limits = self.limits.on(grid);
         self.frozen = 0;
     }
 
-    /// The first ground; all agree in size and resolution.
-    fn ground(&self) -> &Ground {
-        &self.grounds[0]
+    /// The first surface; all agree in size and resolution.
+    pub(super) fn surface(&self) -> &Surface {
+        &self.surfaces[0]
     }
 
-    /// All grounds.
-    pub(super) fn grounds(&self) -> &[Ground] {
-        &self.grounds
-    }
-
-    /// The colour behind all strokes, if there is one ground and it is flat.
+    /// The background's colour, unless the drawing is transparent or lies on a document.
     pub(super) fn background(&self) -> Option<Rgb> {
-        match self.grounds.as_slice() {
-            [ground] => ground.color(),
+        match self.surfaces.as_slice() {
+            [surface] => surface.color(),
             _ => None,
         }
     }
 
-    /// Changes the colour of the ground, if it is flat, and brings it into its domain.
+    /// Changes the background's colour, if there is one, and brings it into its domain.
     pub(super) fn change_background(&mut self, change: impl FnOnce(&mut Rgb)) {
-        if let Some(color) = self.grounds[0].color_mut() {
+        if let Some(color) = self.surfaces[0].color_mut() {
             let mut moved = *color;
             change(&mut moved);
             // A step to nowhere is not taken: no stroke could make up for a page without a colour.
@@ -135,9 +131,9 @@ impl Drawing {
         }
     }
 
-    /// Pixels of the picture in one of the current level.
-    fn pixel_area(&self) -> f32 {
-        (1 << (2 * self.ground().halvings())) as f32
+    /// Pixels of the picture in one of the current resolution.
+    pub(super) fn pixel_area(&self) -> f32 {
+        (1 << (2 * self.surface().halvings())) as f32
     }
 
     /// Whether there are no frozen strokes, so that the background shows through to the fit.
@@ -147,7 +143,8 @@ impl Drawing {
 
     /// The picture's number of pixels.
     pub(super) fn pixels(&self) -> usize {
-        self.ground().picture().width() * self.ground().picture().height()
+        let picture = self.surface().picture();
+        picture.width() * picture.height()
     }
 
     /// Side of the square that each of `count` strokes would have to itself, px.
@@ -157,17 +154,17 @@ impl Drawing {
 
     /// Freezes all strokes that there are. Their picture is made from nothing but them: made from that of
     /// earlier frozen ones it would differ in the last bits, and could not be made again from a
-    /// [`State`].
+    /// [`Memento`].
     pub(super) fn freeze(&mut self) {
         self.thaw();
         self.render();
-        self.grounds.iter_mut().for_each(Ground::freeze);
+        self.surfaces.iter_mut().for_each(Surface::freeze);
         self.frozen = self.strokes.len();
     }
 
     /// Frees all strokes.
     pub(super) fn thaw(&mut self) {
-        self.grounds.iter_mut().for_each(Ground::thaw);
+        self.surfaces.iter_mut().for_each(Surface::thaw);
         self.frozen = 0;
     }
 
@@ -181,7 +178,7 @@ impl Drawing {
     pub(super) fn retain_free(&mut self, keep: &[bool]) {
         let frozen = self.frozen;
         let gone = self.free().iter().zip(keep).filter(|(_, keep)| !**keep);
-        self.lost += gone
+        self.counters.lost += gone
             .filter(|(p, _)| !p.iter().all(|v| v.is_finite()))
             .count();
         let kept = |i: usize| i < frozen || keep.get(i - frozen).copied().unwrap_or(false);
@@ -191,14 +188,14 @@ impl Drawing {
         self.stage_of.retain(|_| i.next().is_some_and(kept));
     }
 
-    /// How many strokes became non-finite and were taken out.
-    pub(super) fn lost(&self) -> usize {
-        self.lost
-    }
-
-    /// Replaces the numbers of the free strokes.
-    pub(super) fn set_free(&mut self, strokes: &[Params]) {
-        self.strokes[self.frozen..].copy_from_slice(strokes);
+    /// Removes the `count` free strokes worth least.
+    pub(super) fn remove_least(&mut self, count: usize) {
+        let worth = self.judge().worth;
+        let mut order: Vec<usize> = (0..worth.len()).collect();
+        order.sort_by(|&i, &j| worth[i].total_cmp(&worth[j]).then(i.cmp(&j)));
+        let mut keep = vec![true; worth.len()];
+        order.into_iter().take(count).for_each(|i| keep[i] = false);
+        self.retain_free(&keep);
     }
 
     /// How many strokes each stage has, back to front; a stage without any may be missing.
@@ -212,75 +209,73 @@ impl Drawing {
         self.stage_of.last().copied().unwrap_or(0)
     }
 
-    /// Candidates for strokes on top of all there are, best first.
-    pub(super) fn propose(
+    /// Derivatives of the loss by the free strokes, at softness `edge`: against the picture, or against `targets`,
+    /// one per surface.
+    pub(super) fn differentiate(
         &mut self,
-        count: usize,
-        scale: f32,
-        oversampling: f32,
-    ) -> Vec<Candidate> {
-        self.searches += 1;
-        self.render();
-        let area = self.pixel_area();
-        let wanted = Wanted {
-            count,
-            scale: scale / area.sqrt(),
-            oversampling,
-            min_opacity: self.limits.min_opacity,
-            level: self.ground().halvings(),
-            key: [self.seed, self.searches],
-        };
-        let views: Vec<_> = self.grounds.iter().map(Ground::residual).collect();
-        let mut candidates = propose(self.level, &views, wanted);
-        candidates.iter_mut().for_each(|c| c.gain *= area);
-        candidates
-    }
-
-    /// One step of the free strokes towards the target.
-    pub(super) fn step(&mut self, descent: &mut Descent, softness: Softness, rate: f32) {
-        let views = views(&self.grounds, self.frozen);
-        let free = &mut self.strokes[self.frozen..];
-        descent.step(&mut self.renderer, free, softness, &views, rate);
-    }
-
-    /// One step of the free strokes towards other targets, one per ground, with the final edge.
-    pub(super) fn step_towards(&mut self, targets: &[Canvas], descent: &mut Descent, rate: f32) {
-        let grounds = self.grounds.iter().zip(targets);
-        let views: Vec<_> = grounds
-            .map(|(ground, target)| ground.view(self.frozen, Some(target)))
-            .collect();
-        let free = &mut self.strokes[self.frozen..];
-        descent.step(&mut self.renderer, free, self.edge, &views, rate);
-    }
-
-    /// Renders everything.
-    pub(super) fn render(&mut self) {
+        edge: Softness,
+        targets: Option<&[Canvas]>,
+        gradients: &mut Gradients,
+    ) {
+        let terms = terms(&self.surfaces, self.frozen, targets);
         let free = &self.strokes[self.frozen..];
-        for ground in &mut self.grounds {
-            ground.render(&mut self.renderer, free, self.edge, self.frozen);
-        }
+        differentiate::<false>(&mut self.renderer, free, edge, &terms, gradients);
     }
 
     /// Loss, gradients and worth of the free strokes at the final edge.
     pub(super) fn judge(&mut self) -> Gradients {
         let mut gradients = Gradients::default();
-        let views = views(&self.grounds, self.frozen);
+        let terms = terms(&self.surfaces, self.frozen, None);
         let free = &self.strokes[self.frozen..];
-        differentiate::<true>(&mut self.renderer, free, self.edge, &views, &mut gradients);
+        differentiate::<true>(&mut self.renderer, free, self.edge, &terms, &mut gradients);
         let area = self.pixel_area();
         gradients.worth.iter_mut().for_each(|worth| *worth *= area);
         gradients
     }
 
+    /// Renders everything.
+    pub(super) fn render(&mut self) {
+        let free = &self.strokes[self.frozen..];
+        for surface in &mut self.surfaces {
+            surface.render(&mut self.renderer, free, self.edge, self.frozen);
+        }
+    }
+
+    /// The derivatives of some other loss by all strokes, which must be free, on the first surface.
+    pub(super) fn backward(
+        &mut self,
+        loss: &impl crate::render::CanvasLoss,
+        gradients: &mut Gradients,
+    ) {
+        let backdrop = self.surfaces[0].backdrop(0);
+        self.renderer
+            .backward(&self.strokes, self.edge, backdrop, loss, gradients);
+    }
+
     /// The mean squared error of the drawing; at a reduced resolution, of what can be seen there.
     pub(super) fn mse(&mut self) -> f64 {
         self.render();
-        self.mse_of(self.grounds.iter().map(|ground| &ground.canvas))
+        self.mse_of(self.surfaces.iter().map(|surface| &surface.canvas))
+    }
+
+    /// The mean squared error of finished canvases, one per surface.
+    fn mse_of<'a>(&self, canvases: impl Iterator<Item = &'a Canvas>) -> f64 {
+        let pairs = self.surfaces.iter().zip(canvases);
+        let losses = pairs.map(|(surface, canvas)| surface.mse_of(canvas));
+        losses.sum::<f64>() / self.surfaces.len() as f64
     }
 }
 
-/// The grounds as the free strokes see them, on `frozen` others.
-fn views(grounds: &[Ground], frozen: usize) -> Vec<View<'_>> {
-    let view = |ground| Ground::view(ground, frozen, None);
-    grounds.iter().map(view).collect()
+/// The terms of the loss that the free strokes have, on `frozen` others; against `targets` rather than the picture, if
+/// there are any.
+fn terms<'a>(
+    surfaces: &'a [Surface],
+    frozen: usize,
+    targets: Option<&'a [Canvas]>,
+) -> Vec<Term<'a>> {
+    let target = |i: usize| targets.and_then(|targets| targets.get(i));
+    let surfaces = surfaces.iter().enumerate();
+    surfaces
+        .map(|(i, surface)| surface.term(frozen, target(i)))
+        .collect()
 }

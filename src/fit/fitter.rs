@@ -2,8 +2,11 @@
 
 use std::time::Instant;
 
-use super::work::Work;
-use super::{Base, Checkpoint, Config, Execution, Fit, Observer, draw};
+use super::background;
+use super::base::Base;
+use super::checkpoint::Checkpoint;
+use super::config::{Config, Execution};
+use super::progress::{CancelToken, Observer};
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
 use crate::scene::Scene;
@@ -26,12 +29,13 @@ use crate::scene::Scene;
 /// # Ok::<(), strokefit::Error>(())
 /// ```
 pub struct Fitter<'a> {
-    config: Config,
-    execution: Execution,
-    base: Option<Base>,
-    observer: Option<&'a mut (dyn Observer + Send)>,
-    checkpoint: Option<&'a mut Checkpoint>,
-    since: Option<Instant>,
+    pub(super) config: Config,
+    pub(super) execution: Execution,
+    pub(super) base: Option<Base>,
+    pub(super) observer: Option<&'a mut (dyn Observer + Send)>,
+    pub(super) token: CancelToken,
+    pub(super) checkpoint: Option<&'a mut Checkpoint>,
+    pub(super) since: Option<Instant>,
 }
 
 impl<'a> Fitter<'a> {
@@ -42,6 +46,7 @@ impl<'a> Fitter<'a> {
             execution: Execution::default(),
             base: None,
             observer: None,
+            token: CancelToken::default(),
             checkpoint: None,
             since: None,
         }
@@ -72,6 +77,12 @@ impl<'a> Fitter<'a> {
         }
     }
 
+    /// What may stop the fit from another thread.
+    #[must_use]
+    pub fn cancelled_by(self, token: CancelToken) -> Self {
+        Self { token, ..self }
+    }
+
     /// Where the state is kept, and found again when the same fit was cut off before. It changes nothing of
     /// the drawing.
     #[must_use]
@@ -82,7 +93,7 @@ impl<'a> Fitter<'a> {
         }
     }
 
-    /// When the time began that the budget allows; when the fit begins unless set.
+    /// Start of the time budget; the start of the fit unless set.
     #[must_use]
     pub fn since(self, start: Instant) -> Self {
         Self {
@@ -91,45 +102,21 @@ impl<'a> Fitter<'a> {
         }
     }
 
-    /// Draws `picture`.
-    ///
-    /// Where the picture has alpha the drawing is transparent, unless there is a background colour for it
-    /// to lie on.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Config`] when an option is outside its domain, the base is of another size than the
-    /// picture or on a background that the palette lacks, or the checkpoint of another fit;
-    /// [`ErrorKind::Svg`] when the base cannot be rendered; [`ErrorKind::Io`] when the checkpoint is damaged
-    /// or its place cannot be written.
-    pub fn fit(self, picture: &Image) -> Result<Fit> {
-        let Self {
-            mut config,
-            execution,
-            base,
-            observer,
-            checkpoint,
-            since,
-        } = self;
-        let since = since.unwrap_or_else(Instant::now);
+    /// Refuses what cannot be fitted to `picture`, and says which background strokes can be drawn on.
+    pub(super) fn prepare(&mut self, picture: &Image) -> Result<()> {
+        let config = &mut self.config;
         config.check()?;
-        config.background = config.background.for_strokes(config.opaque, picture);
-        if let Some(base) = &base {
+        let choice = config.recipe().background;
+        config.background =
+            background::for_strokes(config.background, config.opaque, picture, &choice);
+        if let Some(base) = &self.base {
             check_size(&base.scene, picture)?;
-            // That of a document stays with it.
-            if let (None, Some(ground)) = (&base.document, base.scene.background) {
-                config.check_ground(ground, ", since the base stays on it")?;
+            // The background of a document stays with it.
+            if let (None, Some(color)) = (&base.document, base.scene.background) {
+                config.check_background(color, ", since the base stays on it")?;
             }
         }
-        let level = execution.simd.require()?;
-        let mut nobody = ();
-        let observer = observer.unwrap_or(&mut nobody);
-        execution.pool()?.install(|| {
-            let mut work = Work::new(picture, &config, base.as_ref(), level, observer, since)?;
-            if let Some(checkpoint) = checkpoint {
-                work.resume(checkpoint)?;
-            }
-            draw(work)
-        })
+        Ok(())
     }
 }
 

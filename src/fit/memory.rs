@@ -1,8 +1,7 @@
 //! How much memory a fit will take, before it takes any.
 
-use super::config::Config;
-use super::plan::{Before, MAX_STROKES, Plan};
-use super::recipe::Recipe;
+use super::config::{Config, MAX_STROKES};
+use super::plan::{Before, Plan};
 use crate::image::Image;
 
 /// The program and its libraries.
@@ -19,7 +18,7 @@ const PER_STROKE: u64 = 2000;
 /// be an ordinary one.
 pub fn predicted_rss_bytes(picture: &Image, config: &Config) -> u64 {
     let pixels = picture.width() * picture.height();
-    let recipe = config.recipe.unwrap_or(Recipe::of(config.preset));
+    let recipe = config.recipe();
     let limit = config.budget.strokes.map(|n| n.min(MAX_STROKES));
     let strokes = Plan::new(config, &recipe, limit, Before::default(), pixels).strokes();
     BASE + PER_PIXEL * pixels as u64 + PER_STROKE * strokes as u64

@@ -75,38 +75,39 @@ impl CanvasLoss for Objective<'_> {
     }
 }
 
-/// What strokes lie on, and what they are to look like there.
+/// One term of the mean that a fit minimises: the loss of strokes on a backdrop against a target.
 #[derive(Clone, Copy)]
-pub(super) struct View<'a> {
-    pub(super) base: Backdrop<'a>,
+pub(super) struct Term<'a> {
+    pub(super) backdrop: Backdrop<'a>,
     pub(super) objective: Objective<'a>,
 }
 
-/// The mean loss of `strokes` over `views` and its derivatives, with the strokes' worth if so asked.
+/// The mean loss of `strokes` over `terms` and its derivatives, with the strokes' worth if so asked.
 pub(super) fn differentiate<const WITH_WORTH: bool>(
     renderer: &mut Renderer,
     strokes: &[Params],
-    softness: Softness,
-    views: &[View<'_>],
+    edge: Softness,
+    terms: &[Term<'_>],
     gradients: &mut Gradients,
 ) {
-    let mut run = |View { base, objective }: &View<'_>, gradients: &mut Gradients| {
+    let mut run = |term: &Term<'_>, gradients: &mut Gradients| {
+        let (backdrop, objective) = (term.backdrop, &term.objective);
         if WITH_WORTH {
-            renderer.backward_with_worth(strokes, softness, *base, objective, gradients);
+            renderer.backward_with_worth(strokes, edge, backdrop, objective, gradients);
         } else {
-            renderer.backward(strokes, softness, *base, objective, gradients);
+            renderer.backward(strokes, edge, backdrop, objective, gradients);
         }
     };
-    let Some((first, others)) = views.split_first() else {
+    let Some((first, others)) = terms.split_first() else {
         return;
     };
     run(first, gradients);
     let mut more = Gradients::default();
-    for view in others {
-        run(view, &mut more);
+    for term in others {
+        run(term, &mut more);
         gradients.add(&more);
     }
     if !others.is_empty() {
-        gradients.scale(1.0 / views.len() as f32);
+        gradients.scale(1.0 / terms.len() as f32);
     }
 }

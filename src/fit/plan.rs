@@ -3,17 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::base::Base;
-use super::config::Config;
-use super::recipe::Recipe;
-
-/// Strokes of the first stage when their total is not known beforehand.
-const FIRST: usize = 12;
-
-/// Pixels per stroke of an ordinary drawing; a guess for progress, and for `--stages` without a budget.
-const PIXELS_PER_STROKE: usize = 250;
-
-/// Most strokes of a drawing: renderers of SVG read a million elements.
-pub(super) const MAX_STROKES: usize = 900_000;
+use super::config::{Config, MAX_STROKES};
+use super::recipe::{Recipe, Stages};
 
 /// One planned stage.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -54,8 +45,7 @@ pub(super) struct Plan {
     /// Whether stages may follow the planned ones.
     open: bool,
     pixels: usize,
-    growth: f64,
-    scale: f32,
+    recipe: Stages,
 }
 
 impl Plan {
@@ -67,21 +57,21 @@ impl Plan {
         before: Before,
         pixels: usize,
     ) -> Self {
-        let stages = config.stages.unwrap_or(recipe.stages);
+        let recipe = recipe.stages;
+        let stages = config.stages.unwrap_or(recipe.count);
         let guess = config
             .stages
-            .map(|_| (pixels / PIXELS_PER_STROKE).max(FIRST));
+            .map(|_| (pixels / recipe.pixels_per_stroke).max(recipe.first));
         let counts = limit
             .or(guess)
             .map(|total| rest(&counts(total, stages, recipe.growth), before.strokes));
         Self {
             before: before.layers,
-            covered: covered(recipe.growth, before.strokes),
+            covered: covered(&recipe, before.strokes),
             open: counts.is_none(),
             counts: counts.unwrap_or_default(),
             pixels,
-            growth: recipe.growth,
-            scale: recipe.scale,
+            recipe,
         }
     }
 
@@ -93,7 +83,7 @@ impl Plan {
     /// Strokes of the stages to come; a guess where the plan is open.
     pub(super) fn strokes(&self) -> usize {
         if self.open {
-            (self.pixels / PIXELS_PER_STROKE).max(1)
+            (self.pixels / self.recipe.pixels_per_stroke).max(1)
         } else {
             self.counts.iter().sum()
         }
@@ -105,7 +95,8 @@ impl Plan {
         let count = match self.counts.get(step) {
             Some(&count) => count,
             None if self.open => {
-                let count = FIRST as f64 * self.growth.powi((self.covered + step) as i32);
+                let Stages { first, growth, .. } = self.recipe;
+                let count = first as f64 * growth.powi((self.covered + step) as i32);
                 (count as usize).min((self.pixels).min(MAX_STROKES).saturating_sub(before))
             }
             None => return None,
@@ -114,7 +105,7 @@ impl Plan {
         (count > 0).then_some(PlannedStage {
             index,
             count,
-            scale: self.scale * spacing,
+            scale: self.recipe.scale * spacing,
         })
     }
 }
@@ -154,10 +145,10 @@ fn rest(counts: &[usize], before: usize) -> Vec<usize> {
 }
 
 /// How many stages of an open plan `before` strokes make.
-fn covered(growth: f64, before: usize) -> usize {
+fn covered(Stages { first, growth, .. }: &Stages, before: usize) -> usize {
     let (mut stages, mut strokes) = (0, 0.0);
-    while strokes + FIRST as f64 * growth.powi(stages) <= before as f64 {
-        strokes += FIRST as f64 * growth.powi(stages);
+    while strokes + *first as f64 * growth.powi(stages) <= before as f64 {
+        strokes += *first as f64 * growth.powi(stages);
         stages += 1;
     }
     stages as usize

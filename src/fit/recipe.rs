@@ -1,48 +1,135 @@
-//! How much work each phase of a fit spends, and at what step sizes.
+//! All tuned numbers of a fit, each with what was measured when it was chosen.
+//!
+//! "±x dB" is the fidelity of the file as resvg draws it, at equal numbers of strokes; `docs/accuracy.md` names the
+//! pictures and has the whole tables. [`Recipe::of`] has the numbers of the presets, [`Recipe::check`] refuses
+//! those that no fit can run with. A checkpoint is bound to its recipe, so that no fit is half of one tuning and half of
+//! another.
 
-use super::config::Preset;
+use serde::{Deserialize, Serialize};
 
-/// The tuned numbers of a fit. [`Recipe::of`] has those of the presets.
+use crate::error::{Error, ErrorKind, Result};
+use crate::optim::AdamParams;
+use crate::seed::Probing;
+
+/// How much work to spend on a drawing.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Preset {
+    /// Quick look.
+    Draft,
+    /// The default.
+    #[default]
+    Balanced,
+    /// The last tenths of a dB.
+    Best,
+}
+
+/// The tuned numbers of a fit, by the phase that uses them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Recipe {
-    /// Stages, unless the configuration says.
-    pub stages: usize,
-    /// Each stage adds this many times the strokes of the one before.
+    /// How places for strokes are searched.
+    pub probing: Probing,
+    /// How strokes are added.
+    pub stages: Stages,
+    /// The soft edge.
+    pub edge: Edge,
+    /// What strokes may be.
+    pub domain: Domain,
+    /// The optimiser of all descents.
+    pub optimizer: Optimizer,
+    /// The joint fit of all strokes.
+    pub polish: Polish,
+    /// How strokes worth little make room for better ones during the joint fit.
+    pub relocation: Relocation,
+    /// How a drawing is brought to a palette.
+    pub coloring: Coloring,
+    /// How opaque strokes come to share pens.
+    pub pens: Pens,
+    /// The last steps against what the file looks like.
+    pub settling: Settling,
+    /// How the number of strokes is corrected until a fidelity is met.
+    pub correction: Correction,
+    /// How the background is chosen.
+    pub background: BackgroundChoice,
+    /// How a limited time is shared out.
+    pub time: TimeShares,
+}
+
+/// How strokes are added in stages, each fitted alone on what is frozen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stages {
+    /// Stages, unless the configuration says. More of them see more of what the earlier ones left over.
+    pub count: usize,
+    /// Each stage adds this many times the strokes of the one before. 1.35 instead of 1.6: +0.08 dB.
     pub growth: f64,
-    /// Typical radius of a stage's strokes, in units of `sqrt(pixels / strokes so far)`.
+    /// Strokes of the first stage when their total is not known beforehand.
+    pub first: usize,
+    /// Pixels per stroke of an ordinary drawing: a guess, for progress and where stages are asked for without a
+    /// budget.
+    pub pixels_per_stroke: usize,
+    /// Typical radius of a stage's strokes, in units of `sqrt(pixels / strokes so far)`. 0.3 instead of 0.4: +0.15 dB,
+    /// flat art +0.6; 0.35: −0.05. Drafts 0.25: +0.04.
     pub scale: f32,
-    /// Cells that are looked at per stroke wanted; the best of them are probed.
-    pub oversampling: f32,
-    /// Iterations of each stage's short fit.
-    pub stage_iterations: usize,
-    /// Step sizes of the stages.
-    pub stage_rates: Rates,
-    /// Iterations of the joint fit; 0 for none.
-    pub polish_iterations: usize,
-    /// Share of them at the resolution of the last stage, before the full one.
-    pub coarse_share: f32,
-    /// Step sizes of the joint fit.
-    pub polish_rates: Rates,
-    /// Iterations between relocations.
-    pub relocate_every: usize,
-    /// Share of the strokes that may be relocated at a time.
-    pub relocate_share: f32,
-    /// Scale of relocated strokes, in units of the last stage's.
-    pub relocate_scale: f32,
-    /// What a candidate is reckoned to gain once it is fitted, in units of its gain as it is proposed.
-    pub relocate_gain: f32,
-    /// Softness at the start of the joint fit, in units of the final one.
-    pub polish_softness: f32,
-    /// Rounds of settling against the rendered file; 0 for none.
-    pub settle_rounds: usize,
-    /// Iterations of each round.
-    pub settle_iterations: usize,
-    /// Their step sizes, in units of those of the joint fit.
-    pub settle_rate: f32,
+    /// Iterations of each stage's short fit. 200 instead of 100: +0.09 dB, gone once strokes were relocated: 120.
+    /// Drafts 20 of longer steps: 0.00 at 0.94 of the time of 30.
+    pub iterations: usize,
+    /// Step sizes. Ends by 0.3 instead of 0.15 px: +0.34 dB without polish; 1 px: +0.1.
+    pub rates: Rates,
+    /// Softness of a stage's first iteration at most, in units of the final one: the scale of its strokes, where that
+    /// is less.
+    pub softest: f32,
+    /// Where the picture decides on the number of strokes, stages end once less than this share of one is worth its
+    /// price.
+    pub paying_share: f64,
+    /// What polish adds to the fidelity of a staged drawing at least, dB: stages end this much short of the fidelity
+    /// asked for.
+    pub polish_gain_db: f64,
+    /// Strokes are fitted at the coarsest resolution that leaves them this typical radius, px. Less, and their edges are
+    /// fitted to pixels that are not there; more, and time goes to pixels that say nothing about them. A reduced picture
+    /// for large strokes: +0.15 dB at 0.8 of the time.
+    pub min_scale: f32,
+}
+
+/// The soft edge of strokes, which narrows during a fit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Edge {
+    /// Slope of the final edge at the outline, 1/px. A box of 1 px, which antialiasing rasterisers approximate, has
+    /// a slope between 1 (upright edges) and √2 (diagonal ones). 1.2 instead of 1.5: +0.15 dB at 1,000
+    /// strokes, +0.3 at 5,000, agreement with resvg +1.2.
+    pub final_slope: f64,
+    /// Share of a descent after which the edge has its final softness. 0.85: −0.07 dB.
+    pub annealed: f32,
+}
+
+/// What strokes may be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Domain {
+    /// Ends stay within so many px around the picture.
+    pub margin: f32,
+    /// Least radius, px: renderers draw widths of 1 px and less as hairlines, with other ink.
+    pub min_radius: f32,
+    /// Least opacity: renderers composite in 8 bits, and drift by levels under many layers fainter than this.
+    pub min_opacity: f32,
+}
+
+/// The optimiser of all descents.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Optimizer {
+    /// Adam for strokes. The memory of squares is short, since gradients shrink fast and change whenever neighbours are
+    /// relocated: with β₂ 0.99 drafts have 0.15 dB less and long fits 0.06. β₁ 0.8: −0.08, 0.95: +0.02. ε 1e-7: −0.21, since small
+    /// gradients are no longer normalised.
+    pub strokes: AdamParams,
+    /// Adam for the background.
+    pub background: AdamParams,
+    /// Radius, px, of a stroke whose geometry moves at the rates as they are. Others move with the root of their
+    /// radius: +0.04 dB over one rate for all, where large strokes are slow and small ones jitter. In proportion to
+    /// the radius: 0.00.
+    pub usual_radius: f32,
+    /// The factor of that root is kept between these.
+    pub radius_factors: [f32; 2],
 }
 
 /// Step sizes of the optimiser by kind of parameter, per iteration.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Rates {
     /// Ends of strokes, px.
     pub position: f32,
@@ -56,87 +143,498 @@ pub struct Rates {
     pub last: f64,
 }
 
+/// The joint fit of all strokes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Polish {
+    /// Iterations; 0 for none. 2,000 instead of 2,800: −0.12 dB at 0.75 of the time (photographs −0.05); drafts 140
+    /// instead of 130: +0.04 at 1.05.
+    pub iterations: usize,
+    /// Share of them at the resolution of the last stage, before the full one. 0.3: part of the +0.15 dB of reduced
+    /// pictures; 0.5: −0.06, 0.7: −0.13.
+    pub coarse_share: f32,
+    /// Step sizes. Ends by 0.1 → 0.4 → 0.8 → 1.2 → 2 → 2.5 px: +0.15, +0.05, +0.08, +0.06, +0.12 dB; 3 px: +0.05 on photographs and −0.17 on
+    /// flat art. A last rate of 3 % instead of 10 %: part of the +0.06. Radius 0.8: −0.01. Colours 0.03 and opacity 0.05: −0.01. Drafts, of few
+    /// iterations: ends by 1.3 px and a last rate of 20 %: +0.05 over 10 %.
+    pub rates: Rates,
+    /// Softness at the start, in units of the final one. 1, 1.5, 2.5: −0.19, 0, +0.17 dB; 3: −0.02 against 2.4.
+    pub softness: f32,
+}
+
+/// How strokes worth little make room for better ones during the joint fit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Relocation {
+    /// Iterations between relocations. 60, 30, 20: −0.10, 0, +0.06 dB at a fifth more time.
+    pub every: usize,
+    /// Share of the strokes that may be relocated at a time. 0.1, 0.2, 0.4: −0.06, 0, +0.12 dB; since gains count for
+    /// more, 0.15 and 0.5: −0.02, 0.00.
+    pub share: f32,
+    /// Scale of relocated strokes, in units of the last stage's. 0.25, 0.4, 0.6, 0.8: +0.03, 0, −0.10, −0.34 dB; 0.5 with steps of
+    /// 2.5 px: +0.12 together.
+    pub scale: f32,
+    /// What a candidate is reckoned to gain once it is fitted, in units of its gain as it is proposed. 1, 2, 3, 4, 5, 10: 0, +0.22, +0.28,
+    /// +0.25, +0.28, +0.15 dB; flat art gains 0.47 by 4. Drafts, with less time to fit newcomers: 3.
+    pub gain: f32,
+    /// Share of the joint fit after which nothing is relocated: newcomers need time to settle in. 0.8, 0.95: 0.00 dB.
+    pub until: f32,
+    /// A relocation that fills free places tries this many times as many candidates as it may exchange.
+    pub fill: usize,
+}
+
+/// Rounds of descent, between which colours or pens are chosen anew; one schedule of rates goes on over all of them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rounds {
+    /// How many.
+    pub count: usize,
+    /// Iterations of all rounds together, in units of those of the joint fit.
+    pub iterations: f64,
+    /// Step sizes, in units of those of the joint fit.
+    pub rate: f32,
+}
+
+/// How a drawing is brought to a palette.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coloring {
+    /// Rounds of choosing colours and fitting the rest.
+    pub rounds: Rounds,
+    /// Rounds at the end that relocate no stroke.
+    pub quiet_rounds: usize,
+    /// Share of its Newton step that a colour takes: the strokes under and over it take theirs as well.
+    pub damping: f32,
+    /// Iterations of k-means in a round.
+    pub means: usize,
+    /// Pixels that a stroke has to show in for its colour to matter.
+    pub min_shown: f32,
+}
+
+/// How opaque strokes come to share pens (a colour and a width), for the smallest form of a file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pens {
+    /// Rounds of fitting places to pens and colours of pens to places.
+    pub rounds: Rounds,
+    /// Pens per opaque stroke. Fewer pens make fewer bytes and cost fidelity: 600 strokes on seven samples take 41 to
+    /// 50 bytes each. At equal bytes (24,000 on the same), 0.6 has 0.1 to 1 dB less, 0.8 from 0.7 dB less to 0.1
+    /// more, and 1.0 from 0.8 dB less to 0.3 more.
+    pub share: f64,
+    /// Each width that a pen may have is this many times the one before.
+    pub ladder: f32,
+    /// Squared contrast at the edge of a typical stroke, summed over the channels: what a px of wrong radius costs for
+    /// each px of edge.
+    pub contrast: f32,
+    /// Strokes that may share pens: their pairs are all compared.
+    pub window: usize,
+}
+
+/// The last steps, against what the file really looks like.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settling {
+    /// Rounds; 0 for none. Settling as a whole: +0.1 dB at 34 dB, +1.8 at 40. Drafts have none: one round took a fifth
+    /// of a draft's time for 0.09 dB, and 40 more iterations of polish bring 0.11.
+    pub rounds: usize,
+    /// Iterations of each round. 150 instead of 20: +0.005 dB.
+    pub iterations: usize,
+    /// Step sizes, in units of those of the joint fit.
+    pub rate: f32,
+    /// How much farther than that colours and opacities go, as the strokes hardly move.
+    pub color_rate: f32,
+    /// How far strokes move in a round, in units of the round before. What programs make of an edge changes with its
+    /// place, so that a correction holds only for edges that stay where they are.
+    pub next_pace: f32,
+    /// By how many dB the browser's picture may be less faithful than resvg's. At 0 photographs would lose in resvg
+    /// what nobody sees in a browser; an engine counts as faithful within 0.6.
+    pub browser_db: f64,
+    /// Share of the offset that a round takes from the target. All of it is more than comes back on edges; with less
+    /// the browser stays behind.
+    pub offset_taken: f64,
+    /// How much a round adds to the browser's share for each dB that its picture is off the aim.
+    pub share_per_db: f64,
+}
+
+/// How the number of strokes is corrected until a fidelity is met.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Correction {
+    /// Corrections at most.
+    pub count: usize,
+    /// Fidelity gained by doubling the strokes, dB, until two drawings have told; Kodak ×5 gain 2.2 from 1,024 to 2,900
+    /// strokes for each doubling.
+    pub db_per_doubling: f64,
+    /// What two drawings tell is believed down to this part of that.
+    pub least_part: f64,
+    /// A fidelity is met well enough when exceeded by no more than this, dB.
+    pub excess_db: f64,
+    /// Share of the joint fit's iterations that follow a correction.
+    pub polish_share: f64,
+}
+
+/// How the background is chosen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BackgroundChoice {
+    /// Share of the pixels that one colour must have to be taken for the background; below it, the mean is.
+    pub prevailing_share: f64,
+    /// Share of the pixels in translucent areas that opaque strokes can leave out; beyond it, the picture is laid on
+    /// white for them.
+    pub translucent_share: f64,
+    /// Alpha between these is translucent.
+    pub translucent: [f32; 2],
+}
+
+/// How a limited time is shared out among descent, writing and judging. A "write" is the time that it takes to
+/// round, write and render the drawing once; all parts are told from it, since it is measured as the fit goes on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TimeShares {
+    /// A stroke takes as long to write and render as so many pixels do, about.
+    pub stroke_px: f64,
+    /// Looking at the file as a browser does: writes of the drawing …
+    pub browser: f64,
+    /// … and, whatever the strokes, writes of an empty page: our own render, and comparisons.
+    pub browser_page: f64,
+    /// What follows the fit, in writes of the drawing: the judge writes and renders it once more, the report packs it.
+    pub judging: f64,
+    /// The same of a transparent drawing, which is rendered on two mattes.
+    pub judging_transparent: f64,
+    /// What follows the fit whatever the strokes, in writes of an empty page: three comparisons, layers.
+    pub judging_page: f64,
+    /// Rounds of settling may take up to this part of the limit; they bring less than as much descent beyond.
+    pub settling: f64,
+    /// Share of a limit that is for the descent however long the rest takes.
+    pub min_descent: f64,
+    /// A joint fit takes this many writes at least, which are a hundred steps or more: it begins with soft edges and long
+    /// steps, and one of twenty leaves a drawing of 34 dB at 25.
+    pub min_polish: f64,
+    /// Measuring how long a write takes may take this part of the time.
+    pub rehearsals: f64,
+    /// Steps that make a round of settling worth its write.
+    pub min_round: f64,
+    /// Weight of a new measurement in the running mean of steps.
+    pub freshness: f64,
+    /// A search for less than one in so many of the strokes wanted is not worth a stage.
+    pub min_search: usize,
+}
+
+impl Rates {
+    /// Rates that leave colours as they are.
+    pub(super) fn without_color(self) -> Self {
+        Self { color: 0.0, ..self }
+    }
+
+    /// Rates that leave colours and widths as they are.
+    pub(super) fn without_pen(self) -> Self {
+        Self {
+            radius: 0.0,
+            ..self.without_color()
+        }
+    }
+}
+
 impl Recipe {
     /// The recipe of a preset.
     pub fn of(preset: Preset) -> Self {
-        let balanced = Self {
-            stages: 8,
-            growth: 1.35,
-            scale: 0.3,
-            oversampling: 2.5,
-            stage_iterations: 120,
-            stage_rates: Rates {
-                position: 1.0,
-                radius: 0.3,
-                color: 0.02,
-                opacity: 0.02,
-                last: 0.1,
-            },
-            polish_iterations: 2800,
-            coarse_share: 0.3,
-            polish_rates: Rates {
-                position: 2.5,
-                radius: 0.5,
-                color: 0.02,
-                opacity: 0.03,
-                last: 0.03,
-            },
-            relocate_every: 30,
-            relocate_share: 0.3,
-            relocate_scale: 0.5,
-            relocate_gain: 4.0,
-            polish_softness: 2.4,
-            settle_rounds: 5,
-            settle_iterations: 20,
-            settle_rate: 0.02,
-        };
         match preset {
-            Preset::Draft => Self {
-                scale: 0.25,
-                stage_iterations: 20,
-                stage_rates: Rates {
-                    position: 1.5,
-                    ..balanced.stage_rates
+            Preset::Draft => Self::draft(),
+            Preset::Balanced => BALANCED,
+            Preset::Best => Self {
+                polish: Polish {
+                    iterations: 8000,
+                    ..BALANCED.polish
                 },
-                polish_iterations: 130,
-                polish_rates: Rates {
+                relocation: Relocation {
+                    every: 20,
+                    ..BALANCED.relocation
+                },
+                ..BALANCED
+            },
+        }
+    }
+
+    /// Few, long steps.
+    fn draft() -> Self {
+        let Self {
+            stages,
+            polish,
+            relocation,
+            settling,
+            ..
+        } = BALANCED;
+        Self {
+            stages: Stages {
+                scale: 0.25,
+                iterations: 20,
+                rates: Rates {
+                    position: 1.5,
+                    ..stages.rates
+                },
+                ..stages
+            },
+            polish: Polish {
+                iterations: 130,
+                rates: Rates {
                     position: 1.3,
                     radius: 0.3,
                     last: 0.2,
-                    ..balanced.polish_rates
+                    ..polish.rates
                 },
-                relocate_every: 20,
-                relocate_scale: 0.4,
-                relocate_gain: 3.0,
-                // Iterations bring more than what a round takes.
-                settle_rounds: 0,
-                ..balanced
+                ..polish
             },
-            Preset::Balanced => balanced,
-            Preset::Best => Self {
-                polish_iterations: 8000,
-                relocate_every: 20,
-                ..balanced
+            relocation: Relocation {
+                every: 20,
+                scale: 0.4,
+                gain: 3.0,
+                ..relocation
             },
+            settling: Settling {
+                rounds: 0,
+                ..settling
+            },
+            ..BALANCED
         }
+    }
+
+    /// Refuses numbers that no fit can run with. Step sizes may be anything: a stroke that they throw out of all bounds
+    /// is brought back, and one whose numbers become NaN is dropped and counted.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Config`], naming the number, its value and its domain.
+    pub fn check(&self) -> Result<()> {
+        self.check_counts()?;
+        let lengths = [
+            ("stages.scale", self.stages.scale),
+            ("stages.min_scale", self.stages.min_scale),
+            ("relocation.scale", self.relocation.scale),
+            ("probing.radii", smallest(self.probing.radii)),
+            ("probing.lengths", smallest(self.probing.lengths)),
+            ("probing.cells", self.probing.cells),
+            ("domain.min_radius", self.domain.min_radius),
+            ("optimizer.usual_radius", self.optimizer.usual_radius),
+            ("pens.ladder − 1", self.pens.ladder - 1.0),
+            ("edge.final_slope", self.edge.final_slope as f32),
+            (
+                "correction.db_per_doubling",
+                self.correction.db_per_doubling as f32,
+            ),
+        ];
+        for (name, value) in lengths {
+            demand(name, value, value.is_finite() && value > 0.0, "above 0")?;
+        }
+        let shares = [
+            ("probing.probed", self.probing.probed),
+            ("edge.annealed", self.edge.annealed),
+            ("domain.min_opacity", self.domain.min_opacity),
+            ("polish.coarse_share", self.polish.coarse_share),
+            ("relocation.share", self.relocation.share),
+            ("relocation.until", self.relocation.until),
+            ("pens.share", self.pens.share as f32),
+            ("stages.paying_share", self.stages.paying_share as f32),
+        ];
+        for (name, value) in shares {
+            demand(name, value, (0.0..=1.0).contains(&value), "0 to 1")?;
+        }
+        Ok(())
+    }
+
+    fn check_counts(&self) -> Result<()> {
+        let growth = self.stages.growth;
+        // Stages that shrink never reach the number of strokes that is wanted.
+        let grows = (1.0..=MAX_GROWTH).contains(&growth);
+        demand("stages.growth", growth, grows, "1 to 100")?;
+        let counts = [
+            ("stages.count", self.stages.count),
+            ("stages.first", self.stages.first),
+            ("stages.pixels_per_stroke", self.stages.pixels_per_stroke),
+            ("relocation.every", self.relocation.every),
+            ("coloring.rounds.count", self.coloring.rounds.count),
+            ("pens.rounds.count", self.pens.rounds.count),
+            ("pens.window", self.pens.window),
+            ("time.min_search", self.time.min_search),
+        ];
+        let counts = counts.into_iter();
+        counts
+            .map(|(name, count)| demand(name, count, count > 0, "1 or more"))
+            .collect()
     }
 
     /// Iterations that a stroke takes part in, about: those of its stage, and of the polish if there is one.
     pub(super) fn iterations(&self, is_polished: bool) -> usize {
         let polish = if is_polished {
-            self.polish_iterations
+            self.polish.iterations
         } else {
             0
         };
-        self.stage_iterations + polish
-    }
-
-    /// Whether strokes are relocated before iteration `step`, when a share `done` of the polish is over:
-    /// newcomers need time to settle in.
-    pub(super) fn relocates(&self, step: usize, done: f32) -> bool {
-        step > 0 && step.is_multiple_of(self.relocate_every) && done < LAST_RELOCATION
+        self.stages.iterations + polish
     }
 }
 
-/// Share of the polish after which nothing is relocated.
-const LAST_RELOCATION: f32 = 0.9;
+/// Beyond it the second stage of any drawing is its last.
+const MAX_GROWTH: f64 = 100.0;
+
+fn smallest<const N: usize>(values: [f32; N]) -> f32 {
+    values.into_iter().fold(f32::INFINITY, f32::min)
+}
+
+fn demand(name: &str, value: impl std::fmt::Display, holds: bool, domain: &str) -> Result<()> {
+    if holds {
+        return Ok(());
+    }
+    let message = format!("the recipe's {name} of {value} is out of range: give {domain}");
+    Err(Error::new(ErrorKind::Config, message))
+}
+
+const BALANCED: Recipe = Recipe {
+    probing: Probing {
+        radii: [0.3, 0.55, 1.0],
+        lengths: [2.0, 4.5],
+        cells: 2.5,
+        probed: 0.6,
+    },
+    stages: Stages {
+        count: 8,
+        growth: 1.35,
+        first: 12,
+        pixels_per_stroke: 250,
+        scale: 0.3,
+        iterations: 120,
+        rates: Rates {
+            position: 1.0,
+            radius: 0.3,
+            color: 0.02,
+            opacity: 0.02,
+            last: 0.1,
+        },
+        softest: 4.0,
+        paying_share: 0.3,
+        polish_gain_db: 2.0,
+        min_scale: 2.5,
+    },
+    edge: Edge {
+        final_slope: 1.2,
+        annealed: 0.7,
+    },
+    domain: Domain {
+        margin: 8.0,
+        min_radius: 0.51,
+        min_opacity: 0.1,
+    },
+    optimizer: Optimizer {
+        strokes: AdamParams {
+            betas: [0.9, 0.9],
+            eps: 1e-10,
+        },
+        background: AdamParams {
+            betas: [0.9, 0.999],
+            eps: 1e-8,
+        },
+        usual_radius: 2.0,
+        radius_factors: [0.25, 4.0],
+    },
+    polish: Polish {
+        iterations: 2800,
+        coarse_share: 0.3,
+        rates: Rates {
+            position: 2.5,
+            radius: 0.5,
+            color: 0.02,
+            opacity: 0.03,
+            last: 0.03,
+        },
+        softness: 2.4,
+    },
+    relocation: Relocation {
+        every: 30,
+        share: 0.3,
+        scale: 0.5,
+        gain: 4.0,
+        until: 0.9,
+        fill: 2,
+    },
+    coloring: Coloring {
+        rounds: Rounds {
+            count: 12,
+            iterations: 0.6,
+            rate: 0.3,
+        },
+        quiet_rounds: 2,
+        damping: 0.7,
+        means: 10,
+        min_shown: 1e-3,
+    },
+    pens: Pens {
+        rounds: Rounds {
+            count: 8,
+            iterations: 0.2,
+            rate: 0.1,
+        },
+        share: 0.7,
+        ladder: 1.2,
+        contrast: 0.02,
+        window: 1024,
+    },
+    settling: Settling {
+        rounds: 5,
+        iterations: 20,
+        rate: 0.02,
+        color_rate: 5.0,
+        next_pace: 0.1,
+        browser_db: 0.4,
+        offset_taken: 0.7,
+        share_per_db: 0.15,
+    },
+    correction: Correction {
+        count: 6,
+        db_per_doubling: 2.8,
+        least_part: 0.125,
+        excess_db: 0.1,
+        polish_share: 0.4,
+    },
+    background: BackgroundChoice {
+        prevailing_share: 0.25,
+        translucent_share: 0.005,
+        translucent: [0.03, 0.97],
+    },
+    time: TimeShares {
+        stroke_px: 160.0,
+        browser: 0.25,
+        browser_page: 1.15,
+        judging: 1.75,
+        judging_transparent: 2.2,
+        judging_page: 2.6,
+        settling: 0.125,
+        min_descent: 0.25,
+        min_polish: 15.0,
+        rehearsals: 0.01,
+        min_round: 2.0,
+        freshness: 0.2,
+        min_search: 8,
+    },
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_recipes_of_all_presets_are_sound() {
+        for preset in [Preset::Draft, Preset::Balanced, Preset::Best] {
+            Recipe::of(preset).check().unwrap();
+        }
+    }
+
+    /// What `change` makes of the default recipe is refused, with the name and the value.
+    fn refused(change: impl Fn(&mut Recipe), name: &str, value: &str) {
+        let mut recipe = BALANCED;
+        change(&mut recipe);
+        let error = recipe.check().unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::Config);
+        let words = error.to_string();
+        assert!(words.contains(name) && words.contains(value), "{words}");
+    }
+
+    #[test]
+    fn what_no_fit_can_run_with_is_refused() {
+        refused(|r| r.stages.growth = 0.9, "stages.growth", "0.9");
+        refused(|r| r.stages.growth = f64::NAN, "stages.growth", "NaN");
+        refused(|r| r.stages.first = 0, "stages.first", "0");
+        refused(|r| r.stages.scale = 0.0, "stages.scale", "0");
+        refused(|r| r.probing.radii[1] = -1.0, "probing.radii", "-1");
+        refused(|r| r.edge.annealed = 1.5, "edge.annealed", "1.5");
+        refused(|r| r.relocation.every = 0, "relocation.every", "0");
+        refused(|r| r.relocation.share = f32::NAN, "relocation.share", "NaN");
+    }
+}

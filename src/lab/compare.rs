@@ -11,7 +11,7 @@ use super::Output;
 use super::article::{self, Descent, Drawing};
 use crate::coverage::{Coverage, CoverageSchedule};
 use crate::error::Result;
-use crate::fit::{self, Budget, Execution, Preset};
+use crate::fit::{Budget, Config, Execution, Fitter, Preset};
 use crate::image::Image;
 use crate::metrics::Quality;
 use crate::report::Table;
@@ -129,14 +129,14 @@ fn staged(
     ];
     let row = |(recipe, budget, preset, polish): (&str, _, _, _)| {
         let begin = Instant::now();
-        let config = fit::Config {
+        let config = Config {
             budget,
             preset,
             polish,
             seed: config.seed,
-            ..fit::Config::default()
+            ..Config::default()
         };
-        let fit = fit::fit(target, &config, &execution, &mut ())?;
+        let fit = Fitter::new(config).execution(execution).fit(target)?;
         let wall_s = begin.elapsed().as_secs_f64();
         Row::new(recipe.into(), target, &fit.soft, &fit.scene, wall_s)
     };

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::programs::Peer;
 use crate::coverage::{Coverage, CoverageSchedule};
 use crate::error::{Error, ErrorKind, Result};
-use crate::fit::{self, Budget, Config, Execution};
+use crate::fit::{self, Budget, Config, Execution, Fitter};
 use crate::image::Image;
 use crate::lab::article::{Descent, Drawing};
 use crate::metrics::Agreement;
@@ -228,7 +228,7 @@ fn fitted(
         seed,
         ..Config::default()
     };
-    let fit = fit::fit(picture, &config, &Execution::default(), &mut ())?;
+    let fit = Fitter::new(config).fit(picture)?;
     Ok(Drawn {
         text: svg::write(&fit.scene, &WriteOptions::default()),
         strokes: Some(fit.scene.len()),

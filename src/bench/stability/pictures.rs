@@ -2,7 +2,7 @@
 
 use super::{Check, Extent, Finding};
 use crate::error::Result;
-use crate::fit::{self, Budget, Config, Execution, Fit, Preset};
+use crate::fit::{Budget, Config, Execution, Fit, Fitter, Preset};
 use crate::image::Image;
 use crate::metrics;
 use crate::rng;
@@ -162,7 +162,9 @@ fn drawn(picture: &Image, config: &Config, threads: usize) -> Result<(Fit, Strin
         threads: Some(threads),
         ..Execution::default()
     };
-    let fit = fit::fit(picture, config, &execution, &mut ())?;
+    let fit = Fitter::new(config.clone())
+        .execution(execution)
+        .fit(picture)?;
     let text = svg::write(&fit.scene, &WriteOptions::default());
     Ok((fit, text))
 }

@@ -3,7 +3,7 @@
 use super::pictures::{Sound, sound};
 use super::{Check, Extent, Finding};
 use crate::error::Result;
-use crate::fit::{self, Budget, Config, Execution, Fit, Preset, Rates, Recipe};
+use crate::fit::{Budget, Config, Execution, Fit, Fitter, Polish, Preset, Rates, Recipe, Stages};
 use crate::image::Image;
 use crate::lab::article::{Descent, Drawing};
 use crate::metrics;
@@ -80,7 +80,7 @@ fn picture() -> Result<Image> {
 }
 
 fn fitted(recipe: Recipe) -> Result<(Fit, Sound)> {
-    let fit = fit::fit(&picture()?, &config(recipe), &Execution::default(), &mut ())?;
+    let fit = Fitter::new(config(recipe)).fit(&picture()?)?;
     let text = svg::write(&fit.scene, &WriteOptions::default());
     let sound = sound(&fit, &text)?;
     Ok((fit, sound))
@@ -98,8 +98,14 @@ fn with_rates(factor: f32) -> Result<Finding> {
         ..rates
     };
     let (fit, sound) = fitted(Recipe {
-        stage_rates: times(recipe.stage_rates),
-        polish_rates: times(recipe.polish_rates),
+        stages: Stages {
+            rates: times(recipe.stages.rates),
+            ..recipe.stages
+        },
+        polish: Polish {
+            rates: times(recipe.polish.rates),
+            ..recipe.polish
+        },
         ..recipe
     })?;
     let sensible = factor <= 1.0;
@@ -110,10 +116,9 @@ fn with_rates(factor: f32) -> Result<Finding> {
 }
 
 fn long_polish(steps: usize) -> Result<Finding> {
-    let (_, sound) = fitted(Recipe {
-        polish_iterations: steps,
-        ..Recipe::of(Preset::Draft)
-    })?;
+    let mut recipe = Recipe::of(Preset::Draft);
+    recipe.polish.iterations = steps;
+    let (_, sound) = fitted(recipe)?;
     Ok(Finding::new(sound.to_string(), sound.holds()))
 }
 

@@ -8,22 +8,22 @@ use crate::scene::{Scene, Stage};
 impl Drawing {
     /// Puts the strokes of `scene`, in px of the picture, on top of none.
     pub(in crate::fit) fn load(&mut self, scene: &Scene) {
-        let halvings = self.ground().halvings();
+        let halvings = self.surface().halvings();
         for (index, stage) in scene.stages.iter().enumerate() {
             let strokes = stage.strokes.iter().map(|s| reduced(pack(s), halvings));
             self.extend(strokes, index);
         }
     }
 
-    /// Our render of `scene` on each ground.
+    /// Our render of `scene` on each surface.
     pub(in crate::fit) fn soft(&mut self, scene: &Scene) -> Vec<Image> {
         let strokes: Vec<Params> = scene.strokes().map(pack).collect();
-        let mut canvas = self.ground().canvas.clone();
+        let mut canvas = self.surface().canvas.clone();
         let mut images = Vec::new();
-        for ground in &self.grounds {
-            let base = ground.base_of(scene);
+        for surface in &self.surfaces {
+            let backdrop = surface.backdrop_of(scene);
             self.renderer
-                .forward(&strokes, self.edge, base, &mut canvas);
+                .forward(&strokes, self.edge, backdrop, &mut canvas);
             images.push(canvas.to_image());
         }
         images
@@ -31,9 +31,9 @@ impl Drawing {
 
     /// The mean squared error after each layer of `scene`.
     pub(in crate::fit) fn layer_mses(&mut self, scene: &Scene) -> Vec<f64> {
-        let mut canvases: Vec<Canvas> = self.grounds.iter().map(|g| g.page(scene)).collect();
+        let mut canvases: Vec<Canvas> = self.surfaces.iter().map(|s| s.empty(scene)).collect();
         let mut below = canvases.clone();
-        let halvings = self.ground().halvings();
+        let halvings = self.surface().halvings();
         let mut mses = Vec::new();
         for stage in &scene.stages {
             let strokes: Vec<Params> = stage
@@ -43,27 +43,20 @@ impl Drawing {
                 .collect();
             std::mem::swap(&mut below, &mut canvases);
             for (below, canvas) in below.iter().zip(&mut canvases) {
-                let base = Backdrop::Canvas(below);
-                self.renderer.forward(&strokes, self.edge, base, canvas);
+                let backdrop = Backdrop::Canvas(below);
+                self.renderer.forward(&strokes, self.edge, backdrop, canvas);
             }
             mses.push(self.mse_of(canvases.iter()));
         }
         mses
     }
 
-    /// The mean squared error of finished canvases, one per ground.
-    pub(super) fn mse_of<'a>(&self, canvases: impl Iterator<Item = &'a Canvas>) -> f64 {
-        let pairs = self.grounds.iter().zip(canvases);
-        let losses = pairs.map(|(ground, canvas)| ground.loss_of(canvas));
-        losses.sum::<f64>() / self.grounds.len() as f64
-    }
-
-    /// The drawing as a scene in px of the picture, unrounded, with the background if it `has_ground`.
-    pub(in crate::fit) fn scene(&self, has_ground: bool) -> Scene {
-        let picture = self.ground().picture();
-        let background = self.background().filter(|_| has_ground);
+    /// The drawing as a scene in px of the picture, unrounded, with the background if it `has_background`.
+    pub(in crate::fit) fn scene(&self, has_background: bool) -> Scene {
+        let picture = self.surface().picture();
+        let background = self.background().filter(|_| has_background);
         let mut scene = Scene::empty(picture.width() as u32, picture.height() as u32, background);
-        let halvings = self.ground().halvings();
+        let halvings = self.surface().halvings();
         for (&stroke, &stage) in self.strokes.iter().zip(&self.stage_of) {
             if scene.stages.len() <= stage {
                 scene.stages.resize(stage + 1, Stage::default());

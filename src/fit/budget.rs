@@ -1,11 +1,10 @@
 //! What the budgets of a fit allow and ask for.
 
-use crate::fit::Stop;
-use crate::fit::base::Base;
-use crate::fit::config::{Budget, Config};
-use crate::fit::plan::MAX_STROKES;
-use crate::fit::recipe::Recipe;
-use crate::fit::settle::Written;
+use super::base::Base;
+use super::config::{Budget, Config, MAX_STROKES};
+use super::file::RenderedFile;
+use super::recipe::Recipe;
+use super::result::Stop;
 use crate::image::Image;
 use crate::math::Point;
 use crate::metrics::psnr_db;
@@ -49,17 +48,17 @@ fn typical_bytes(config: &Config, target: &Image) -> usize {
 
 /// Whether anything depends on what the file looks like, or on its bytes.
 pub(super) fn needs_file(budget: &Budget, recipe: &Recipe) -> bool {
-    recipe.settle_rounds > 0 || budget.psnr_db.is_some() || budget.bytes.is_some()
+    recipe.settling.rounds > 0 || budget.psnr_db.is_some() || budget.bytes.is_some()
 }
 
 /// The first budget that a drawing of so many `strokes`, written as it is, uses up or meets.
-pub(super) fn met(budget: &Budget, strokes: usize, written: &Written) -> Option<Stop> {
-    let is_reached = |db| psnr_db(written.mse) >= db;
+pub(super) fn met(budget: &Budget, strokes: usize, file: &RenderedFile) -> Option<Stop> {
+    let is_reached = |db| psnr_db(file.mse) >= db;
     if budget.strokes.is_some_and(|most| strokes >= most) {
         Some(Stop::Strokes)
     } else if budget.psnr_db.is_some_and(is_reached) {
         Some(Stop::Psnr)
-    } else if budget.bytes.is_some_and(|most| written.bytes >= most) {
+    } else if budget.bytes.is_some_and(|most| file.bytes >= most) {
         Some(Stop::Bytes)
     } else {
         None
@@ -68,9 +67,9 @@ pub(super) fn met(budget: &Budget, strokes: usize, written: &Written) -> Option<
 
 /// Whether a file serves the budget better than another: it has to have few enough bytes first, be faithful
 /// enough next, and have few strokes then, or where neither is faithful enough, little error.
-pub(super) fn is_better(budget: &Budget, new: &Written, old: &Written) -> bool {
-    let fits = |w: &Written| budget.bytes.is_none_or(|most| w.bytes <= most);
-    let reached = |w: &Written| budget.psnr_db.is_some_and(|db| psnr_db(w.mse) >= db);
+pub(super) fn is_better(budget: &Budget, new: &RenderedFile, old: &RenderedFile) -> bool {
+    let fits = |f: &RenderedFile| budget.bytes.is_none_or(|most| f.bytes <= most);
+    let reached = |f: &RenderedFile| budget.psnr_db.is_some_and(|db| psnr_db(f.mse) >= db);
     match (fits(new), fits(old)) {
         (true, true) => match (reached(new), reached(old)) {
             (true, true) => new.rounded.scene.len() < old.rounded.scene.len(),
@@ -88,8 +87,8 @@ mod tests {
     use crate::scene::Scene;
 
     /// A file of no strokes.
-    fn file(bytes: usize, mse: f64) -> Written {
-        Written {
+    fn file(bytes: usize, mse: f64) -> RenderedFile {
+        RenderedFile {
             rounded: Scene::empty(4, 3, None).quantized(2),
             drawn: Vec::new(),
             bytes,

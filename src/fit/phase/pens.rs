@@ -8,89 +8,67 @@ use std::collections::BinaryHeap;
 use std::f32::consts::TAU;
 use std::ops::Range;
 
-use super::anneal::Anneal;
-use super::control::Control;
-use super::descent::{Descent, MIN_RADIUS};
-use super::drawing::Drawing;
-use super::palette::without_color;
-use super::recipe::{Rates, Recipe};
-use super::rounds::Rounds;
+use super::rounds;
+use super::wishes::{set_colors, wishes};
+use crate::error::Result;
+use crate::fit::config::Colors;
+use crate::fit::drawing::Drawing;
+use crate::fit::recipe::Recipe;
+use crate::fit::session::Session;
 use crate::render::{AX, AY, BX, BY, OPACITY, Params, RADIUS, RED, unpack};
 use crate::scene::{Rgb, Written, color, quantum};
+use crate::svg::Form;
 
-/// Pens per opaque stroke. Fewer pens make fewer bytes and cost fidelity: 600 strokes on seven samples take 41 to
-/// 50 bytes each. Of equal bytes (24,000 on the same), 0.6 makes 0.1 to 1 dB less, 0.8 from 0.7 dB less to 0.1
-/// more, and 1.0 from 0.8 dB less to 0.3 more.
-const PENS: f64 = 0.7;
-/// Each width that a pen may have is this many times the one before.
-const LADDER: f32 = 1.2;
-/// Squared contrast at the edge of a typical stroke, summed over the channels: what a px of wrong radius costs for
-/// each px of edge.
-const EDGE: f32 = 0.02;
-/// Strokes that may share pens: their pairs are all compared.
-const WINDOW: usize = 1024;
-/// Rounds of fitting places to pens and colours of pens to places.
-pub(super) const ROUNDS: Rounds = Rounds {
-    count: 8,
-    iterations: 0.2,
-    rate: 0.1,
-};
-/// Share of its Newton step that a colour takes: those under and over it take theirs as well.
-const DAMPING: f32 = 0.7;
-
-/// Makes the strokes of each stage of `drawing` share pens, with one another's very colours if they `keep_colors`.
-/// All strokes must be free.
-pub(super) fn run(
-    drawing: &mut Drawing,
-    keep_colors: bool,
-    recipe: &Recipe,
-    anneal: Anneal,
-    control: &mut Control<'_>,
-) {
-    let mut pens = hand_out(drawing, keep_colors);
-    let rates = without_pen(recipe.polish_rates);
-    for round in 0..ROUNDS.count {
-        let descent = Descent::new(drawing.free(), rates, drawing.limits);
-        ROUNDS.descend(round, drawing, descent, recipe, anneal, control);
-        if round + 1 == ROUNDS.count {
+/// Makes the strokes of each stage share pens, where the file is to be of the smallest form; false where it is not.
+/// Colours of a palette are kept. All strokes must be free.
+pub(in crate::fit) fn run(session: &mut Session<'_>) -> Result<bool> {
+    if session.config.file.form != Form::Smallest {
+        return Ok(false);
+    }
+    let keeps_colors = session.config.colors != Colors::Free;
+    let recipe = session.recipe;
+    let (count, rates) = (recipe.pens.rounds.count, recipe.polish.rates.without_pen());
+    let mut pens = hand_out(&mut session.drawing, keeps_colors, &recipe);
+    for round in 0..count {
+        rounds::run(session, recipe.pens.rounds, round, rates)?;
+        if round + 1 == count {
             // Where strokes have come between those of a pen, others are to share one: most drawings get up to 6 %
             // shorter by that, as faithful as before.
-            pens = hand_out(drawing, keep_colors);
+            pens = hand_out(&mut session.drawing, keeps_colors, &recipe);
         }
-        if !keep_colors {
-            tint(drawing, &pens);
+        if !keeps_colors {
+            tint(&mut session.drawing, &pens, &recipe);
         }
     }
+    Ok(true)
 }
 
 /// Gives the strokes few pens, and says which share each.
-fn hand_out(drawing: &mut Drawing, keep_colors: bool) -> Vec<Vec<usize>> {
-    let weights: Vec<f32> = drawing.wishes(0.0).iter().map(|w| w.weight).collect();
-    let mut strokes = drawing.free().to_vec();
+fn hand_out(drawing: &mut Drawing, keep_colors: bool, recipe: &Recipe) -> Vec<Vec<usize>> {
+    let wishes = wishes(drawing, 0.0, recipe.coloring.min_shown);
+    let weights: Vec<f32> = wishes.iter().map(|w| w.weight).collect();
+    let windows = windows(&drawing.stage_sizes(), recipe.pens.window);
+    let strokes = drawing.free_mut();
     let mut pens = Vec::new();
-    for window in windows(&drawing.stage_sizes()) {
-        let shared = share(
-            &mut strokes[window.clone()],
-            &weights[window.clone()],
-            keep_colors,
-        );
+    for window in windows {
+        let (strokes, weights) = (&mut strokes[window.clone()], &weights[window.clone()]);
+        let shared = share(strokes, weights, keep_colors, recipe);
         let of_drawing = |pen: Vec<usize>| pen.iter().map(|i| i + window.start).collect();
         pens.extend(shared.into_iter().map(of_drawing));
     }
-    drawing.set_free(&strokes);
     pens
 }
 
-/// The ranges of strokes that may share pens.
-fn windows(stage_sizes: &[usize]) -> Vec<Range<usize>> {
+/// The ranges of at most so many strokes that may share pens.
+fn windows(stage_sizes: &[usize], most: usize) -> Vec<Range<usize>> {
     let mut windows = Vec::new();
     let mut start = 0;
     for size in stage_sizes {
         let end = start + size;
         windows.extend(
             (start..end)
-                .step_by(WINDOW)
-                .map(|at| at..(at + WINDOW).min(end)),
+                .step_by(most)
+                .map(|at| at..(at + most).min(end)),
         );
         start = end;
     }
@@ -98,8 +76,9 @@ fn windows(stage_sizes: &[usize]) -> Vec<Range<usize>> {
 }
 
 /// Gives each pen the mean of the colours that its strokes would like to have.
-fn tint(drawing: &mut Drawing, pens: &[Vec<usize>]) {
-    let mut wishes = drawing.wishes(DAMPING);
+fn tint(drawing: &mut Drawing, pens: &[Vec<usize>], recipe: &Recipe) {
+    let coloring = recipe.coloring;
+    let mut wishes = wishes(drawing, coloring.damping, coloring.min_shown);
     for pen in pens {
         let weight: f32 = pen.iter().map(|&i| wishes[i].weight).sum();
         let mean = [0, 1, 2].map(|c| {
@@ -115,15 +94,7 @@ fn tint(drawing: &mut Drawing, pens: &[Vec<usize>]) {
         }
     }
     let colors: Vec<Rgb> = wishes.iter().map(|wish| wish.color).collect();
-    drawing.set_colors(&colors);
-}
-
-/// Rates that leave colours and widths as they are.
-pub(super) fn without_pen(rates: Rates) -> Rates {
-    Rates {
-        radius: 0.0,
-        ..without_color(rates)
-    }
+    set_colors(drawing, &colors);
 }
 
 /// Strokes of one pen.
@@ -139,27 +110,27 @@ struct Pen {
 }
 
 impl Pen {
-    fn new(i: usize, p: &Params, weight: f32) -> Self {
+    fn new(i: usize, p: &Params, weight: f32, ladder: Ladder) -> Self {
         Self {
             members: vec![i],
             color: [p[RED], p[RED + 1], p[RED + 2]],
             area: weight,
-            radius: rung(p[RADIUS]),
+            radius: ladder.rung(p[RADIUS]),
             edge: 2.0 * (p[BX] - p[AX]).hypot(p[BY] - p[AY]) + TAU * p[RADIUS],
         }
     }
 
     /// What one pen for the strokes of both adds to the squared error.
-    fn cost(&self, other: &Self) -> f32 {
+    fn cost(&self, other: &Self, contrast: f32) -> f32 {
         let both = |a: f32, b: f32| a * b / (a + b).max(f32::MIN_POSITIVE);
         let away: f32 = (0..3)
             .map(|c| (self.color[c] - other.color[c]).powi(2))
             .sum();
         let wider = (self.radius - other.radius).powi(2);
-        both(self.area, other.area) * away + EDGE * both(self.edge, other.edge) * wider
+        both(self.area, other.area) * away + contrast * both(self.edge, other.edge) * wider
     }
 
-    fn join(&mut self, other: Self) {
+    fn join(&mut self, other: Self, ladder: Ladder) {
         let mean = |a: f32, b: f32, [wa, wb]: [f32; 2]| {
             (a * wa + b * wb) / (wa + wb).max(f32::MIN_POSITIVE)
         };
@@ -167,24 +138,49 @@ impl Pen {
         if self.color != other.color && areas != [0.0; 2] {
             self.color = [0, 1, 2].map(|c| mean(self.color[c], other.color[c], areas));
         }
-        self.radius = rung(mean(self.radius, other.radius, [self.edge, other.edge]));
+        self.radius = ladder.rung(mean(self.radius, other.radius, [self.edge, other.edge]));
         self.area += other.area;
         self.edge += other.edge;
         self.members.extend(other.members);
     }
 }
 
-/// The nearest radius that a pen may have.
-fn rung(radius: f32) -> f32 {
-    let steps = (radius / MIN_RADIUS).max(1.0).ln() / LADDER.ln();
-    MIN_RADIUS * LADDER.powf(steps.round())
+/// The radii that pens may have.
+#[derive(Debug, Clone, Copy)]
+struct Ladder {
+    /// The least one, px.
+    least: f32,
+    /// Each is this many times the one before.
+    step: f32,
+}
+
+impl Ladder {
+    fn of(recipe: &Recipe) -> Self {
+        Self {
+            least: recipe.domain.min_radius,
+            step: recipe.pens.ladder,
+        }
+    }
+
+    /// The nearest radius that a pen may have.
+    fn rung(self, radius: f32) -> f32 {
+        let steps = (radius / self.least).max(1.0).ln() / self.step.ln();
+        self.least * self.step.powf(steps.round())
+    }
 }
 
 /// Gives strokes of a window few pens, and says which share each.
-fn share(strokes: &mut [Params], weights: &[f32], keep_colors: bool) -> Vec<Vec<usize>> {
+fn share(
+    strokes: &mut [Params],
+    weights: &[f32],
+    keep_colors: bool,
+    recipe: &Recipe,
+) -> Vec<Vec<usize>> {
+    let (settings, ladder) = (recipe.pens, Ladder::of(recipe));
     let mut order = Order::new(strokes);
     let pens = strokes.iter().zip(weights).enumerate();
-    let mut pens: Vec<Option<Pen>> = pens.map(|(i, (p, &w))| Some(Pen::new(i, p, w))).collect();
+    let pen = |(i, (p, &w)): (usize, (&Params, &f32))| Some(Pen::new(i, p, w, ladder));
+    let mut pens: Vec<Option<Pen>> = pens.map(pen).collect();
     let may_share = |i: usize| strokes[i][OPACITY] == 1.0;
     let opaque: Vec<usize> = (0..strokes.len()).filter(|&i| may_share(i)).collect();
     let mut pairs = BinaryHeap::new();
@@ -194,7 +190,12 @@ fn share(strokes: &mut [Params], weights: &[f32], keep_colors: bool) -> Vec<Vec<
         {
             // Costs are not negative, so that their bits sort like their values.
             let members = (a.members.len(), b.members.len());
-            pairs.push(Reverse((a.cost(b).to_bits(), i, k, members)));
+            pairs.push(Reverse((
+                a.cost(b, settings.contrast).to_bits(),
+                i,
+                k,
+                members,
+            )));
         }
     };
     for (at, &i) in opaque.iter().enumerate() {
@@ -202,7 +203,7 @@ fn share(strokes: &mut [Params], weights: &[f32], keep_colors: bool) -> Vec<Vec<
             .iter()
             .for_each(|&k| put(&mut pairs, &pens, i, k));
     }
-    let mut excess = opaque.len() - (opaque.len() as f64 * PENS).ceil() as usize;
+    let mut excess = opaque.len() - (opaque.len() as f64 * settings.share).ceil() as usize;
     while excess > 0
         && let Some(Reverse((_, i, k, members))) = pairs.pop()
     {
@@ -214,7 +215,7 @@ fn share(strokes: &mut [Params], weights: &[f32], keep_colors: bool) -> Vec<Vec<
         }
         order.join(i, k);
         if let (Some(other), Some(pen)) = (pens[k].take(), pens[i].as_mut()) {
-            pen.join(other);
+            pen.join(other, ladder);
         }
         excess -= 1;
         opaque
@@ -323,6 +324,7 @@ fn unite(bits: &mut [u64], others: &[u64]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fit::recipe::Preset;
 
     /// Upright, at `x`, of a grey level.
     fn stroke(x: f32, level: f32) -> Params {
@@ -332,7 +334,8 @@ mod tests {
     fn levels(strokes: &[Params], keep_colors: bool) -> Vec<u8> {
         let mut strokes = strokes.to_vec();
         let worth = vec![100.0; strokes.len()];
-        share(&mut strokes, &worth, keep_colors);
+        let recipe = Recipe::of(Preset::Balanced);
+        share(&mut strokes, &worth, keep_colors, &recipe);
         strokes.iter().map(|p| quantum(p[RED])).collect()
     }
 
@@ -364,7 +367,12 @@ mod tests {
 
     #[test]
     fn widths_are_on_a_ladder() {
-        assert_eq!(rung(MIN_RADIUS), MIN_RADIUS);
-        assert!((rung(3.0) / 3.0 - 1.0).abs() < 0.06);
+        let ladder = Ladder {
+            least: 0.51,
+            step: 1.2,
+        };
+        assert_eq!(ladder.rung(0.51), 0.51);
+        assert!((ladder.rung(3.0) / 3.0 - 1.0).abs() < 0.06);
+        assert!((ladder.rung(ladder.rung(3.0)) - ladder.rung(3.0)).abs() < 1e-6);
     }
 }

@@ -6,73 +6,96 @@
 //! them would like: the rounds are those of k-means, with the drawing moving along. Strokes over each other make up
 //! for each other's missing colours in this way, as far as the palette allows.
 
-use std::collections::BTreeSet;
 use std::f32::consts::PI;
 
-use super::anneal::Anneal;
-use super::control::Control;
-use super::descent::Descent;
-use super::drawing::{Drawing, Wish};
-use super::polish::{self, Terms};
-use super::recipe::{Rates, Recipe};
-use super::rounds::Rounds;
+use super::polish::Shares;
+use super::rounds;
+use super::wishes::{Wish, set_colors, wishes};
+use crate::error::Result;
+use crate::fit::config::Colors;
+use crate::fit::relocation;
+use crate::fit::session::Session;
 use crate::render::{AX, AY, BX, BY, OPACITY, RADIUS, RED};
-use crate::scene::{Rgb, Scene, color, quantum};
+use crate::scene::{Rgb, color, quantum};
 use crate::seed::Candidate;
 
-/// Which colours a drawing may have, its background included.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub enum Colors {
-    /// Any.
-    #[default]
-    Free,
-    /// At most so many, chosen from the picture.
-    AtMost(usize),
-    /// These 8-bit ones.
-    Palette(Vec<[u8; 3]>),
+/// Gives every stroke a colour of the palette that the drawing has to have, and fits the rest to that; false where any
+/// colour will do. All strokes must be free.
+pub(in crate::fit) fn run(session: &mut Session<'_>) -> Result<bool> {
+    let Some(mut palette) = palette(session) else {
+        return Ok(false);
+    };
+    let until = Shares::of(session).palette;
+    session.timer.give_until(until);
+    fit_to(session, &mut palette)?;
+    session.timer.give_until(1.0);
+    Ok(true)
 }
 
-impl Colors {
-    /// Whether `scene` has no other colours already.
-    pub(super) fn allow(&self, scene: &Scene) -> bool {
-        let strokes = scene.strokes().map(|stroke| stroke.color);
-        let used: BTreeSet<_> = strokes
-            .chain(scene.background)
-            .map(|c| c.map(quantum))
-            .collect();
-        match self {
-            Self::Free => true,
-            Self::AtMost(most) => used.len() <= *most,
-            Self::Palette(palette) => used.iter().all(|color| palette.contains(color)),
+/// The palette of the drawing, if it has to have one.
+fn palette(session: &mut Session<'_>) -> Option<Palette> {
+    let (config, coloring) = (session.config, session.recipe.coloring);
+    if config.colors == Colors::Free {
+        return None;
+    }
+    let drawing = &mut session.drawing;
+    let has_background = session.writer.has_background;
+    let mut wishes = wishes(drawing, 0.0, coloring.min_shown);
+    if !has_background {
+        wishes.truncate(drawing.len());
+    }
+    let is_given = has_background && drawing.background_fixed;
+    let background = drawing.background().filter(|_| is_given);
+    Palette::new(&config.colors, &wishes, background)
+}
+
+/// Rounds of choosing colours and fitting the rest; the best of them is kept.
+fn fit_to(session: &mut Session<'_>, palette: &mut Palette) -> Result<()> {
+    let coloring = session.recipe.coloring;
+    let rates = session.recipe.polish.rates.without_color();
+    recolor(session, palette);
+    let mut best = (session.drawing.mse(), session.drawing.memento());
+    for round in 0..coloring.rounds.count {
+        if session.progress.stopped().is_some() {
+            break;
+        }
+        if round + coloring.quiet_rounds < coloring.rounds.count {
+            let limit = session.drawing.len();
+            relocation::relocate(session, limit, |candidate| palette.adapt(candidate));
+        }
+        rounds::run(session, coloring.rounds, round, rates)?;
+        recolor(session, palette);
+        let mse = session.drawing.mse();
+        if mse < best.0 {
+            best = (mse, session.drawing.memento());
         }
     }
+    session.drawing.revert(best.1);
+    Ok(())
 }
 
-/// Rounds of choosing colours and fitting the rest.
-pub(super) const ROUNDS: Rounds = Rounds {
-    count: 12,
-    iterations: 0.6,
-    rate: 0.3,
-};
-/// Rounds at the end that relocate no stroke.
-const QUIET_ROUNDS: usize = 2;
-/// Share of its Newton step that a stroke would like to take: those under and over it take theirs as well.
-const DAMPING: f32 = 0.7;
-/// Iterations of k-means in a round.
-const MEANS: usize = 10;
+/// Gives every stroke, and the background, the colour of the palette that is nearest to what it would like.
+fn recolor(session: &mut Session<'_>, palette: &mut Palette) {
+    let coloring = session.recipe.coloring;
+    let drawing = &mut session.drawing;
+    let wishes = wishes(drawing, coloring.damping, coloring.min_shown);
+    palette.follow(&wishes, coloring.means);
+    let colors: Vec<Rgb> = wishes.iter().map(|w| palette.nearest(w.color)).collect();
+    set_colors(drawing, &colors);
+}
 
 /// The colours of a drawing.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Palette {
+struct Palette {
     colors: Vec<Rgb>,
     /// How many of them, from the first on, are as they are; the others follow the strokes.
     fixed: usize,
 }
 
 impl Palette {
-    /// The palette that `colors` asks for, for a drawing that would like to have these colours; the `ground`, if it
+    /// The palette that `colors` asks for, for a drawing that would like to have these colours; the `background`, if it
     /// is given, has one of them. `None` where any colour will do.
-    pub(super) fn new(colors: &Colors, wishes: &[Wish], ground: Option<Rgb>) -> Option<Self> {
+    fn new(colors: &Colors, wishes: &[Wish], background: Option<Rgb>) -> Option<Self> {
         match colors {
             Colors::Free => None,
             Colors::Palette(given) => Some(Self {
@@ -81,8 +104,8 @@ impl Palette {
             }),
             Colors::AtMost(most) => {
                 let mut palette = Self {
-                    colors: ground.into_iter().collect(),
-                    fixed: usize::from(ground.is_some()),
+                    colors: background.into_iter().collect(),
+                    fixed: usize::from(background.is_some()),
                 };
                 palette.spread(*most, wishes);
                 Some(palette)
@@ -91,7 +114,7 @@ impl Palette {
     }
 
     /// The nearest colour.
-    pub(super) fn nearest(&self, wanted: Rgb) -> Rgb {
+    fn nearest(&self, wanted: Rgb) -> Rgb {
         self.index(wanted)
             .and_then(|k| self.colors.get(k).copied())
             .unwrap_or(wanted)
@@ -136,9 +159,10 @@ impl Palette {
         }
     }
 
-    /// Moves the colours that are free to the means of the wishes that are nearest to them.
-    fn follow(&mut self, wishes: &[Wish]) {
-        for _ in 0..MEANS {
+    /// Moves the colours that are free to the means of the wishes that are nearest to them, in so many iterations of
+    /// k-means.
+    fn follow(&mut self, wishes: &[Wish], iterations: usize) {
+        for _ in 0..iterations {
             let mut sums = vec![([0.0_f32; 3], 0.0_f32); self.colors.len()];
             for wish in wishes {
                 if let Some(k) = self.index(wish.color) {
@@ -166,66 +190,6 @@ fn dist2(a: Rgb, b: Rgb) -> f32 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
 }
 
-/// Gives all strokes of `drawing` colours of `palette`, and fits the rest to that. All strokes must be free.
-pub(super) fn run(
-    drawing: &mut Drawing,
-    palette: &mut Palette,
-    recipe: &Recipe,
-    anneal: Anneal,
-    terms: Terms,
-    control: &mut Control<'_>,
-) {
-    recolor(drawing, palette);
-    let mut best = (drawing.mse(), drawing.snapshot());
-    for round in 0..ROUNDS.count {
-        if control.stopped().is_some() {
-            break;
-        }
-        descend(drawing, palette, recipe, anneal, terms, round, control);
-        recolor(drawing, palette);
-        let mse = drawing.mse();
-        if mse < best.0 {
-            best = (mse, drawing.snapshot());
-        }
-    }
-    drawing.restore(best.1);
-}
-
-/// Gives every stroke, and the background, the colour of the palette that is nearest to what it would like.
-fn recolor(drawing: &mut Drawing, palette: &mut Palette) {
-    let wishes = drawing.wishes(DAMPING);
-    palette.follow(&wishes);
-    let colors: Vec<Rgb> = wishes.iter().map(|w| palette.nearest(w.color)).collect();
-    drawing.set_colors(&colors);
-}
-
-/// A round of descent on everything but colours; at its start strokes worth little go where more is to be gained.
-fn descend(
-    drawing: &mut Drawing,
-    palette: &Palette,
-    recipe: &Recipe,
-    anneal: Anneal,
-    terms: Terms,
-    round: usize,
-    control: &mut Control<'_>,
-) {
-    let rates = without_color(recipe.polish_rates);
-    let mut descent = Descent::new(drawing.free(), rates, drawing.limits);
-    if round + QUIET_ROUNDS < ROUNDS.count {
-        let adapt = |candidate| palette.adapt(candidate);
-        polish::relocate(drawing, recipe, terms, adapt, &mut descent);
-    }
-    ROUNDS.descend(round, drawing, descent, recipe, anneal, control);
-}
-
-/// Rates that leave colours as they are.
-pub(super) fn without_color(rates: Rates) -> Rates {
-    Rates {
-        color: 0.0,
-        ..rates
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -239,7 +203,7 @@ mod tests {
 
     fn learned(most: usize, wishes: &[Wish]) -> Vec<Rgb> {
         let mut palette = Palette::new(&Colors::AtMost(most), wishes, None).unwrap();
-        palette.follow(wishes);
+        palette.follow(wishes, 10);
         palette.colors
     }
 
@@ -261,13 +225,13 @@ mod tests {
         let wishes = [wish(0.3, 1.0), wish(0.9, 1.0)];
         let given = Colors::Palette(vec![[0; 3], [255; 3]]);
         let mut palette = Palette::new(&given, &wishes, None).unwrap();
-        palette.follow(&wishes);
+        palette.follow(&wishes, 10);
         assert_eq!(palette.colors, [[0.0; 3], [1.0; 3]]);
         assert_eq!(palette.nearest([0.9, 0.2, 0.8]), [1.0; 3]);
     }
 
     #[test]
-    fn a_given_ground_has_its_colour() {
+    fn a_given_background_has_its_colour() {
         let wishes = [wish(0.3, 9.0), wish(0.9, 1.0)];
         let palette = Palette::new(&Colors::AtMost(2), &wishes, Some([1.0; 3])).unwrap();
         assert_eq!(palette.colors, [[1.0; 3], rounded([0.3; 3])]);

@@ -1,0 +1,59 @@
+//! The finished fit, from the best of the files.
+
+use super::drawing::Drawing;
+use super::result::{Fit, StageRecord};
+use super::session::Session;
+use super::surface;
+use crate::error::Result;
+use crate::image::Image;
+use crate::metrics::psnr_db;
+use crate::scene::{Dropped, Quantized, Scene, Stage};
+
+/// Hands the best of the files over, or the drawing as it is where no file was looked at.
+pub(super) fn finish(mut session: Session<'_>) -> Result<Fit> {
+    let rounded = match session.best.take() {
+        Some(best) => best.rounded,
+        None => session.writer.round(&session.drawing),
+    };
+    let stages = records(&mut session, &rounded);
+    let soft = soft(&mut session.drawing, &rounded.scene)?;
+    Ok(Fit {
+        soft,
+        scene: rounded.scene,
+        base: session.base.cloned(),
+        file: session.config.file,
+        stop: session.cut_by().unwrap_or(session.journal.stop),
+        target: session.target,
+        stages,
+        dropped: Dropped {
+            non_finite: rounded.dropped.non_finite + session.drawing.counters.lost,
+            ..rounded.dropped
+        },
+    })
+}
+
+/// The records of the stages that have strokes in the finished drawing, numbered as its layers, with what
+/// became of them.
+fn records(session: &mut Session<'_>, rounded: &Quantized) -> Vec<StageRecord> {
+    let mses = session.drawing.layer_mses(&rounded.scene);
+    let layers = rounded.scene.stages.iter().zip(mses);
+    let origins = rounded.origins.iter().enumerate();
+    let record = |((number, &origin), (stage, mse)): ((_, _), (&Stage, _))| {
+        Some(StageRecord {
+            index: number + 1,
+            strokes: stage.strokes.len(),
+            layer_psnr_db: psnr_db(mse),
+            ..*session.journal.records.get(origin)?
+        })
+    };
+    origins.zip(layers).filter_map(record).collect()
+}
+
+/// Our own render of `scene`; with alpha where there is a matte of either colour.
+fn soft(drawing: &mut Drawing, scene: &Scene) -> Result<Image> {
+    let mut softs = drawing.soft(scene);
+    match softs.as_slice() {
+        [black, white] => surface::transparent(black, white),
+        _ => Ok(softs.remove(0)),
+    }
+}

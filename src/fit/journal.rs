@@ -1,0 +1,116 @@
+//! What has happened in a fit so far, apart from the drawing.
+
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
+use super::base::Base;
+use super::drawing::{Drawing, Memento};
+use super::plan::PlannedStage;
+use super::result::{StageRecord, Stop};
+use crate::metrics::psnr_db;
+
+/// What has happened in a fit so far, apart from the drawing.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct Journal {
+    /// One per stage, those of the base included.
+    pub(super) records: Vec<StageRecord>,
+    /// The stage under way, or the last one.
+    pub(super) stage: Option<OpenStage>,
+    /// What ended the stages, and in the end the fit.
+    pub(super) stop: Stop,
+    pub(super) corrections: Corrections,
+    /// What the best of the files was written from.
+    pub(super) best: Option<Memento>,
+}
+
+/// A stage that was seeded.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub(super) struct OpenStage {
+    pub(super) planned: PlannedStage,
+    /// When it began, since the fit began.
+    pub(super) began: Duration,
+    /// How many of its strokes were worth their price, once that is known.
+    pub(super) accepted: Option<usize>,
+}
+
+/// How a fidelity is approached by adding and removing strokes.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub(super) struct Corrections {
+    /// How often that was done.
+    pub(super) count: usize,
+    /// Strokes before the last time, and their fidelity, dB.
+    pub(super) before: Option<(usize, f64)>,
+    /// Fidelity of the last file, dB.
+    pub(super) last_db: f64,
+    /// Fidelity gained by doubling the strokes, dB.
+    pub(super) db_per_doubling: f64,
+}
+
+impl Journal {
+    /// The journal of a fit that has `records` of a base's layers.
+    pub(super) fn new(records: Vec<StageRecord>, db_per_doubling: f64) -> Self {
+        Self {
+            records,
+            stage: None,
+            stop: Stop::Strokes,
+            corrections: Corrections {
+                count: 0,
+                before: None,
+                last_db: 0.0,
+                db_per_doubling,
+            },
+            best: None,
+        }
+    }
+
+    /// Takes down how the stage under way went: so many `iterations`, and the mean squared error `mse` after them.
+    pub(super) fn record(&mut self, iterations: usize, elapsed: Duration, mse: f64) {
+        let Some(OpenStage { planned, began, .. }) = self.stage else {
+            return;
+        };
+        let psnr_db = psnr_db(mse);
+        match self.records.get_mut(planned.index) {
+            Some(topped_up) => {
+                topped_up.iterations += iterations;
+                topped_up.psnr_db = psnr_db;
+            }
+            None => self.records.push(StageRecord {
+                index: planned.index + 1,
+                strokes: 0,
+                iterations,
+                wall: elapsed.saturating_sub(began),
+                psnr_db,
+                layer_psnr_db: 0.0,
+            }),
+        }
+    }
+
+    /// Takes down why a fit ends that was to be as faithful as `wanted_db`, and whose best file has `best_db`.
+    pub(super) fn stop_at(&mut self, wanted_db: f64, best_db: f64) {
+        self.stop = match self.stop {
+            _ if best_db >= wanted_db => Stop::Psnr,
+            Stop::Psnr => Stop::Converged,
+            other => other,
+        };
+    }
+}
+
+/// Puts the strokes of `base` into `drawing`; returns the records of its layers.
+pub(super) fn load(drawing: &mut Drawing, base: &Base) -> Vec<StageRecord> {
+    drawing.load(&base.scene);
+    let mses = drawing.layer_mses(&base.scene).into_iter();
+    mses.enumerate().map(kept_layer).collect()
+}
+
+/// The record of a layer that was there before, from its index and the mean squared error after it.
+fn kept_layer((index, mse): (usize, f64)) -> StageRecord {
+    StageRecord {
+        index: index + 1,
+        strokes: 0,
+        iterations: 0,
+        wall: Duration::ZERO,
+        psnr_db: psnr_db(mse),
+        layer_psnr_db: 0.0,
+    }
+}

@@ -1,0 +1,52 @@
+//! The domain of each number of a stroke, at the resolution of a drawing.
+
+use super::recipe::Domain;
+use crate::render::{AX, BY, Grid, OPACITY, Params, RADIUS, RED};
+
+/// The domain of each number of a stroke; a step that leaves it is brought back.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Limits {
+    domain: Domain,
+    /// Sides of the picture, px.
+    sides: [f32; 2],
+}
+
+impl Limits {
+    /// The limits on a picture that is cut as `grid`; `opaque` if strokes may only be that.
+    pub(super) fn new(grid: Grid, domain: Domain, opaque: bool) -> Self {
+        let min_opacity = if opaque { 1.0 } else { domain.min_opacity };
+        Self {
+            domain: Domain {
+                min_opacity,
+                ..domain
+            },
+            sides: [grid.width as f32, grid.height as f32],
+        }
+    }
+
+    /// The same on a picture of another resolution.
+    pub(super) fn on(self, grid: Grid) -> Self {
+        Self {
+            sides: [grid.width as f32, grid.height as f32],
+            ..self
+        }
+    }
+
+    pub(super) fn min_opacity(&self) -> f32 {
+        self.domain.min_opacity
+    }
+
+    /// Brings `p` into the domain. Numbers that are not finite are left; the stroke is dropped later.
+    pub(super) fn apply(&self, p: &mut Params) {
+        let margin = self.domain.margin;
+        for k in AX..=BY {
+            p[k] = p[k].clamp(-margin, self.sides[k % 2] + margin);
+        }
+        let [width, height] = self.sides;
+        p[RADIUS] = p[RADIUS].clamp(self.domain.min_radius, width.max(height));
+        for color in &mut p[RED..OPACITY] {
+            *color = color.clamp(0.0, 1.0);
+        }
+        p[OPACITY] = p[OPACITY].clamp(self.domain.min_opacity, 1.0);
+    }
+}

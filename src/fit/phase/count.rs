@@ -1,0 +1,110 @@
+//! Counting: strokes are added and removed until the file is as faithful, and as short, as asked for.
+
+use super::{Outcome, Purpose, grow};
+use crate::error::Result;
+use crate::fit::budget;
+use crate::fit::recipe::Correction;
+use crate::fit::result::Stop;
+use crate::fit::session::Session;
+use crate::metrics::psnr_db;
+
+/// Ends the fit where the base as it is meets a budget already.
+pub(in crate::fit) fn try_base(session: &mut Session<'_>) -> Result<Outcome> {
+    let file = session.writer.render(&session.drawing)?;
+    let strokes = session.drawing.len();
+    let Some(stop) = budget::met(&session.config.budget, strokes, &file) else {
+        return Ok(Outcome::Over);
+    };
+    session.journal.stop = stop;
+    session.drawing.sharpen(0.0);
+    session.set_best(file);
+    Ok(Outcome::Met)
+}
+
+/// Adds or removes strokes where the last file is not as faithful as wanted, or more.
+pub(in crate::fit) fn meet_fidelity(session: &mut Session<'_>) -> Outcome {
+    let Some(wanted_db) = session.config.budget.psnr_db else {
+        return Outcome::Over;
+    };
+    let correction = session.recipe.correction;
+    let corrections = &mut session.journal.corrections;
+    let now = (session.drawing.len(), corrections.last_db);
+    // What the new strokes of a refined drawing bring depends on its base.
+    if let Some(before) = corrections.before.filter(|_| session.base.is_some()) {
+        corrections.db_per_doubling = slope(&correction, before, now);
+    }
+    corrections.before = Some(now);
+    let missing_db = wanted_db - corrections.last_db;
+    let doublings = missing_db / corrections.db_per_doubling;
+    let is_met = (0.0..=correction.excess_db).contains(&-missing_db);
+    let ends = is_met || corrections.count >= correction.count || session.cut_by().is_some();
+    let outcome = if ends {
+        Outcome::Over
+    } else {
+        resize(session, doublings)
+    };
+    if outcome == Outcome::Over {
+        let best_db = session.best.as_ref().map_or(0.0, |best| psnr_db(best.mse));
+        session.journal.stop_at(wanted_db, best_db);
+    }
+    outcome
+}
+
+/// Doubles or halves the strokes `doublings` times, at most once; is over where there is none to add or to remove.
+fn resize(session: &mut Session<'_>, doublings: f64) -> Outcome {
+    let (strokes, most) = (session.drawing.len(), session.limit);
+    let factor = doublings.clamp(-1.0, 1.0).exp2();
+    let wanted = ((strokes as f64 * factor) as usize).clamp(1, most);
+    let outcome = if doublings > 0.0 {
+        let added = wanted.max(strokes + 1).min(most).saturating_sub(strokes);
+        if added == 0 {
+            return Outcome::Over;
+        }
+        grow::seed_correction(session, added, wanted);
+        Outcome::Seeded(Purpose::Correct)
+    } else {
+        let removed = strokes.saturating_sub(wanted);
+        if removed == 0 {
+            return Outcome::Over;
+        }
+        session.drawing.remove_least(removed);
+        Outcome::Removed
+    };
+    session.journal.corrections.count += 1;
+    outcome
+}
+
+/// Fidelity gained by doubling the strokes, dB, told from two drawings of so many strokes and dB each.
+fn slope(
+    correction: &Correction,
+    (few, few_db): (usize, f64),
+    (many, many_db): (usize, f64),
+) -> f64 {
+    let usual = correction.db_per_doubling;
+    let doublings = (many.max(1) as f64 / few.max(1) as f64).log2();
+    let slope = (many_db - few_db) / doublings;
+    if slope.is_finite() {
+        slope.clamp(usual * correction.least_part, usual)
+    } else {
+        usual
+    }
+}
+
+/// Removes the strokes worth least where the best file has more bytes than allowed.
+pub(in crate::fit) fn meet_bytes(session: &mut Session<'_>) -> Outcome {
+    let bytes = session.best.as_ref().map_or(0, |best| best.bytes);
+    let most = session.config.budget.bytes.unwrap_or(usize::MAX);
+    if bytes <= most || session.drawing.len() == 0 {
+        return Outcome::Over;
+    }
+    if session.journal.stop != Stop::Bytes
+        && let Some(best) = session.journal.best.clone()
+    {
+        session.drawing.restore(best);
+    }
+    session.journal.stop = Stop::Bytes;
+    let share = (bytes - most) as f64 / bytes as f64;
+    let count = (session.drawing.len() as f64 * share).ceil() as usize;
+    session.drawing.remove_least(count.max(1));
+    Outcome::Removed
+}

@@ -1,0 +1,78 @@
+//! Polish: all free strokes, and the background, are fitted jointly, with relocation.
+
+use super::{Outcome, Purpose};
+use crate::error::Result;
+use crate::fit::config::Colors;
+use crate::fit::descend::descend;
+use crate::fit::descent::Course;
+use crate::fit::session::Session;
+use crate::svg::Form;
+
+/// Fits all strokes of the drawing jointly.
+pub(in crate::fit) fn polish(session: &mut Session<'_>, purpose: Purpose) -> Result<Outcome> {
+    let is_begun = session.resumed.is_some();
+    if !is_begun {
+        if session.progress.stopped().is_some() || !session.timer.allows_polish() {
+            return Ok(Outcome::Over);
+        }
+        session.drawing.thaw();
+        session.progress.enter(session.journal.records.len());
+    }
+    // A fidelity is met by as few strokes as may be: their number is corrected afterwards.
+    let limit = match session.config.budget.psnr_db {
+        Some(_) => session.drawing.len(),
+        None => session.limit,
+    };
+    let all = session.recipe.polish.iterations;
+    let iterations = match purpose {
+        Purpose::Correct => (all as f64 * session.recipe.correction.polish_share) as usize,
+        Purpose::Plan | Purpose::TopUp => all,
+    };
+    run(session, limit, iterations)?;
+    Ok(Outcome::Over)
+}
+
+/// A joint fit of the free strokes, which may make them so many that the drawing has `limit`.
+pub(super) fn run(session: &mut Session<'_>, limit: usize, iterations: usize) -> Result<()> {
+    session.progress.polish();
+    let polish = session.recipe.polish;
+    let course = Course {
+        iterations,
+        before: 0,
+        of: iterations,
+        rates: polish.rates,
+        pace: 1.0,
+        softness: Some(polish.softness),
+        until: Shares::of(session).polish,
+        joint: Some(limit),
+    };
+    let mut descent = session.descent(course);
+    descend(session, &mut descent, None)
+}
+
+/// The shares of a limited time for descent after which each phase has to be over; what is left after the last is
+/// for pens. Each has its part by its iterations.
+pub(super) struct Shares {
+    pub(super) polish: f32,
+    pub(super) palette: f32,
+}
+
+impl Shares {
+    pub(super) fn of(session: &Session<'_>) -> Self {
+        let (config, recipe) = (session.config, &session.recipe);
+        let polish = 1.0;
+        let palette = match config.colors {
+            Colors::Free => 0.0,
+            _ => recipe.coloring.rounds.iterations,
+        };
+        let pens = match config.file.form {
+            Form::Smallest => recipe.pens.rounds.iterations,
+            _ => 0.0,
+        };
+        let all = polish + palette + pens;
+        Self {
+            polish: (polish / all) as f32,
+            palette: ((polish + palette) / all) as f32,
+        }
+    }
+}

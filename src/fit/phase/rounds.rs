@@ -1,0 +1,32 @@
+//! Descent in rounds: colours or pens are chosen between them, and one schedule of rates goes on over all.
+
+use crate::error::Result;
+use crate::fit::descend::descend;
+use crate::fit::descent::Course;
+use crate::fit::recipe::{Rates, Rounds};
+use crate::fit::session::Session;
+
+/// Round `index`, from 0, with the final edge; less where the time for it is over, which is the same for each of the
+/// rounds that are left.
+pub(super) fn run(
+    session: &mut Session<'_>,
+    rounds: Rounds,
+    index: usize,
+    rates: Rates,
+) -> Result<()> {
+    let polish = session.recipe.polish;
+    let iterations = (polish.iterations as f64 * rounds.iterations) as usize / rounds.count;
+    let used = session.timer.used();
+    let course = Course {
+        iterations,
+        before: index * iterations,
+        of: rounds.count * iterations,
+        rates,
+        pace: rounds.rate,
+        softness: None,
+        until: used + (1.0 - used) / (rounds.count - index) as f32,
+        joint: None,
+    };
+    let mut descent = session.descent(course);
+    descend(session, &mut descent, None)
+}

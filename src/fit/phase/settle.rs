@@ -1,0 +1,135 @@
+//! Settling: the last steps are taken against what the file really looks like.
+//!
+//! A renderer of SVG rounds after every stroke to 8 bits and has its own antialiasing, so that its
+//! picture differs from our canvas by an offset that hardly changes when strokes move a little. Each
+//! round renders the rounded drawing as SVG, takes of the offsets of those who will look at it ([`renderers`]
+//! says of whose, and how much) from the target, and descends a few iterations; the best file is kept.
+//!
+//! Before that the drawing is brought to the colours and pens that it may have, since those change it by more than
+//! settling does.
+//!
+//! [`renderers`]: crate::fit::renderers
+
+use super::{Outcome, palette, pens};
+use crate::error::Result;
+use crate::fit::budget;
+use crate::fit::descend::descend;
+use crate::fit::descent::{Aim, Course};
+use crate::fit::drawing::Memento;
+use crate::fit::file::RenderedFile;
+use crate::fit::recipe::Rates;
+use crate::fit::renderers::Renderings;
+use crate::fit::result::Stop;
+use crate::fit::session::Session;
+use crate::metrics::psnr_db;
+
+/// Settles the drawing against its file, where anything depends on what that looks like.
+pub(in crate::fit) fn settle(session: &mut Session<'_>) -> Result<Outcome> {
+    session.drawing.thaw();
+    session.drawing.sharpen(0.0);
+    let rates = restrict(session)?;
+    let budget = &session.config.budget;
+    if budget::needs_file(budget, &session.recipe) {
+        let file = run(session, rates)?;
+        session.journal.corrections.last_db = psnr_db(file.mse);
+        let best = session.best.as_ref();
+        if best.is_none_or(|best| budget::is_better(budget, &file, best)) {
+            session.set_best(file);
+        }
+    }
+    Ok(Outcome::Over)
+}
+
+/// Brings the drawing to the colours and pens that it may have, and returns the rates that leave them as they are.
+fn restrict(session: &mut Session<'_>) -> Result<Rates> {
+    let mut rates = session.recipe.polish.rates;
+    if palette::run(session)? {
+        rates = rates.without_color();
+    }
+    if pens::run(session)? {
+        rates = rates.without_pen();
+    }
+    Ok(rates)
+}
+
+/// Descends against the file's own pictures and returns the best of the files; the drawing becomes the one that it
+/// was written from.
+fn run(session: &mut Session<'_>, rates: Rates) -> Result<RenderedFile> {
+    let settling = session.recipe.settling;
+    let mut file = session.render_file()?;
+    if !allows_round(session, 0) {
+        return Ok(file);
+    }
+    let mut seen = Renderings::of(&mut session.drawing, &file, settling)?;
+    let mut best = Best::of(session, &file, &seen);
+    let (mut share, mut pace) = (seen.first_share(), 1.0);
+    let mut round = 0;
+    while allows_round(session, round) && session.progress.tell(&session.drawing, file.mse) {
+        round += 1;
+        let targets = seen.targets(&session.drawing, &file, share);
+        let aim = Aim {
+            targets: &targets,
+            mse: file.mse,
+        };
+        let mut descent = session.descent(course(session, rates, pace));
+        descend(session, &mut descent, Some(aim))?;
+        if session.progress.is_interrupted() {
+            break;
+        }
+        file = session.render_file()?;
+        seen = Renderings::of(&mut session.drawing, &file, settling)?;
+        if seen.badness() < best.badness {
+            best = Best::of(session, &file, &seen);
+        }
+        share = seen.next_share(share);
+        pace *= settling.next_pace;
+    }
+    session.drawing.revert(best.memento);
+    Ok(best.file)
+}
+
+/// The best file so far, and what it was written from.
+struct Best {
+    file: RenderedFile,
+    memento: Memento,
+    badness: f64,
+}
+
+impl Best {
+    fn of(session: &Session<'_>, file: &RenderedFile, seen: &Renderings) -> Self {
+        Self {
+            file: file.clone(),
+            memento: session.drawing.memento(),
+            badness: seen.badness(),
+        }
+    }
+}
+
+/// Whether to settle for another round after so many: as many as planned or, where the limit made the descent shorter,
+/// as there is time for.
+fn allows_round(session: &Session<'_>, done: usize) -> bool {
+    let planned = session.recipe.settling.rounds;
+    let is_wanted = done < planned || (planned > 0 && session.cut_by() == Some(Stop::Time));
+    is_wanted && session.timer.allows_round()
+}
+
+/// The course of a round, with strokes moving by a share `pace` of what they do in the joint fit.
+fn course(session: &Session<'_>, rates: Rates, pace: f32) -> Course {
+    let settling = session.recipe.settling;
+    Course {
+        iterations: settling.iterations,
+        before: 0,
+        of: settling.iterations,
+        rates: Rates {
+            position: pace * rates.position,
+            radius: pace * rates.radius,
+            color: settling.color_rate * rates.color,
+            opacity: settling.color_rate * rates.opacity,
+            ..rates
+        },
+        pace: settling.rate,
+        softness: None,
+        until: f32::INFINITY,
+        joint: None,
+    }
+}

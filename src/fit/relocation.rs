@@ -1,0 +1,113 @@
+//! Relocation: strokes worth little make room for candidates that will gain more.
+//!
+//! The strokes worth least by exact leave-one-out, and those not worth their price, are taken away, and candidates
+//! are put on top instead. A candidate's closed-form gain is that before it is fitted, and a stroke's worth that before
+//! its neighbours take over, so that both speak for the stroke in place: the gain counts several times
+//! ([`Relocation::gain`]).
+//!
+//! [`Relocation::gain`]: super::recipe::Relocation::gain
+
+use super::search::search;
+use super::session::Session;
+use crate::render::Params;
+use crate::seed::Candidate;
+
+/// How many strokes may be relocated at a time.
+pub(super) fn wanted(session: &Session<'_>) -> usize {
+    let free = session.drawing.free().len();
+    (free as f32 * session.recipe.relocation.share).ceil() as usize
+}
+
+/// Swaps strokes for candidates that will gain more, and fills up to `limit` strokes with those that pay.
+/// `adapt` makes of a candidate what may come in its place. Says where each free stroke was before; `None` for a new
+/// one.
+pub(super) fn relocate(
+    session: &mut Session<'_>,
+    limit: usize,
+    adapt: impl Fn(Candidate) -> Candidate,
+) -> Vec<Option<usize>> {
+    let wanted = wanted(session);
+    let Session {
+        drawing,
+        recipe,
+        price,
+        config,
+        timer,
+        ..
+    } = session;
+    timer.searching(wanted, || {
+        let relocation = recipe.relocation;
+        let room = limit.saturating_sub(drawing.len());
+        let scale = drawing.spacing(drawing.len()) * recipe.stages.scale * relocation.scale;
+        let worth = drawing.judge().worth;
+        let prices: Vec<f32> = drawing.free().iter().map(|p| price.of(p)).collect();
+        let count = wanted.max(room.min(wanted * relocation.fill));
+        let candidates = search(drawing, count, scale, recipe.probing, config.seed);
+        let mut paying: Vec<Candidate> = candidates
+            .into_iter()
+            .map(adapt)
+            .filter(|c| c.gain > price.of(&c.stroke))
+            .collect();
+        paying.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        let gains: Vec<f32> = paying.iter().map(|c| c.gain * relocation.gain).collect();
+        let (keep, coming) = exchange(&worth, &prices, &gains, room);
+        let mut sources: Vec<Option<usize>> =
+            (0..keep.len()).filter(|&i| keep[i]).map(Some).collect();
+        // The best candidate is drawn last, so that none of lesser gain hides it.
+        let newcomers: Vec<Params> = paying[..coming].iter().rev().map(|c| c.stroke).collect();
+        sources.resize(sources.len() + newcomers.len(), None);
+        let stage = drawing.last_stage();
+        drawing.retain_free(&keep);
+        drawing.extend(newcomers, stage);
+        sources
+    })
+}
+
+/// Which strokes stay, and how many candidates come, of those that will gain `gains`, best first.
+///
+/// Strokes not worth their price go. Candidates first take the places that are free, then, the best of
+/// them against the worst of those, the places of strokes worth less than they gain.
+fn exchange(worth: &[f32], prices: &[f32], gains: &[f32], room: usize) -> (Vec<bool>, usize) {
+    let mut keep: Vec<bool> = worth
+        .iter()
+        .zip(prices)
+        .map(|(worth, price)| worth > price)
+        .collect();
+    let vacated = keep.iter().filter(|&&stays| !stays).count();
+    let mut coming = gains.len().min(room + vacated);
+    let mut order: Vec<usize> = (0..worth.len()).filter(|&i| keep[i]).collect();
+    order.sort_by(|&i, &j| worth[i].total_cmp(&worth[j]).then(i.cmp(&j)));
+    for (i, &gain) in order.into_iter().zip(&gains[coming..]) {
+        if gain <= worth[i] {
+            break;
+        }
+        keep[i] = false;
+        coming += 1;
+    }
+    (keep, coming)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strokes_worth_less_than_candidates_go() {
+        let worth = [4.0, 0.5, 2.0, 9.0, 0.1];
+        let (keep, coming) = exchange(&worth, &[0.0; 5], &[5.0, 3.0, 1.0], 0);
+        // 0.1 < 5 and 0.5 < 3, but 2 > 1.
+        assert_eq!((keep, coming), (vec![true, false, true, true, false], 2));
+    }
+
+    #[test]
+    fn strokes_not_worth_their_price_go_anyway() {
+        let (keep, coming) = exchange(&[4.0, -1.0, 0.5], &[1.0; 3], &[], 0);
+        assert_eq!((keep, coming), (vec![true, false, false], 0));
+    }
+
+    #[test]
+    fn free_places_are_filled_first() {
+        let (keep, coming) = exchange(&[4.0, 8.0], &[0.0; 2], &[3.0, 2.0], 2);
+        assert_eq!((keep, coming), (vec![true, true], 2));
+    }
+}

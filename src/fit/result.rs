@@ -1,0 +1,74 @@
+//! What a fit ends with.
+
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
+use super::base::Base;
+use crate::image::Image;
+use crate::scene::{Dropped, Scene};
+use crate::svg::WriteOptions;
+
+/// A finished drawing and how it came to be.
+#[derive(Debug, Clone)]
+pub struct Fit {
+    /// The drawing, rounded to what its SVG says. On a base that stays as it is, the new strokes alone.
+    pub scene: Scene,
+    /// What the drawing goes on from, if anything.
+    pub base: Option<Base>,
+    /// How the drawing is written: as it was fitted and settled for.
+    pub file: WriteOptions,
+    /// The picture that was drawn: with its alpha, or laid on the background.
+    pub target: Image,
+    /// Our own render of `scene` with the edge of a finished drawing; with alpha if the drawing has no
+    /// background and the picture has alpha.
+    pub soft: Image,
+    /// One record per stage of `scene`, those that were kept of a base included.
+    pub stages: Vec<StageRecord>,
+    /// Why no more was done.
+    pub stop: Stop,
+    /// Strokes that were dropped because they became non-finite or could not be seen.
+    pub dropped: Dropped,
+}
+
+impl Fit {
+    /// The drawing as SVG text, with the base that it was fitted on.
+    pub fn svg(&self) -> String {
+        Base::write(self.base.as_ref(), &self.scene, &self.file)
+    }
+}
+
+/// How one stage went.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct StageRecord {
+    /// From 1.
+    pub index: usize,
+    /// Strokes of this stage in the final drawing.
+    pub strokes: usize,
+    /// Iterations of the optimiser.
+    pub iterations: usize,
+    /// Wall time of the stage.
+    pub wall: Duration,
+    /// Fidelity of the soft render to the target after the stage, dB, at the resolution that the stage
+    /// was fitted at: large strokes are fitted to a reduced picture.
+    pub psnr_db: f64,
+    /// Fidelity of the finished drawing's layers up to this one, dB.
+    pub layer_psnr_db: f64,
+}
+
+/// Why a fit ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Stop {
+    /// The stroke budget is used.
+    Strokes,
+    /// The fidelity asked for is reached.
+    Psnr,
+    /// The byte budget is used.
+    Bytes,
+    /// The time is up.
+    Time,
+    /// No further stroke pays.
+    Converged,
+    /// The observer asked to stop, or the fit was cancelled.
+    Observer,
+}

@@ -1,0 +1,30 @@
+//! Candidates for strokes on a drawing.
+
+use super::drawing::Drawing;
+use super::surface::Surface;
+use crate::seed::{Candidate, Probing, Wanted, propose};
+
+/// Candidates for at most `count` strokes of `scale` px on top of all there are, best first; `seed` is the fit's.
+pub(super) fn search(
+    drawing: &mut Drawing,
+    count: usize,
+    scale: f32,
+    probing: Probing,
+    seed: u64,
+) -> Vec<Candidate> {
+    drawing.counters.searches += 1;
+    drawing.render();
+    let area = drawing.pixel_area();
+    let wanted = Wanted {
+        count,
+        scale: scale / area.sqrt(),
+        probing,
+        min_opacity: drawing.limits.min_opacity(),
+        level: drawing.surface().halvings(),
+        key: [seed, drawing.counters.searches],
+    };
+    let residuals: Vec<_> = drawing.surfaces.iter().map(Surface::residual).collect();
+    let mut candidates = propose(drawing.level, &residuals, wanted);
+    candidates.iter_mut().for_each(|c| c.gain *= area);
+    candidates
+}

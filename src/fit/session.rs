@@ -1,0 +1,241 @@
+//! A fit under way: what its phases hand around, and how it is kept.
+
+use std::time::{Duration, Instant};
+
+use fearless_simd::Level;
+
+use super::anneal::Annealing;
+use super::base::Base;
+use super::budget;
+use super::checkpoint::{self, Checkpoint};
+use super::config::Config;
+use super::deadline::{Deadline, Timer, Unlimited};
+use super::descent::{Course, Descent};
+use super::drawing::{Drawing, Memento};
+use super::file::{RenderedFile, Writer};
+use super::forecast::Forecast;
+use super::journal::{self, Journal};
+use super::limits::Limits;
+use super::phase::Phase;
+use super::plan::{Before, Plan};
+use super::price::Price;
+use super::progress::{CancelToken, Observer, Position, Tracker};
+use super::recipe::Recipe;
+use super::result::Stop;
+use super::surface::Prepared;
+use crate::error::Result;
+use crate::image::Image;
+
+/// A fit under way. What is fixed comes first, then what changes.
+pub(super) struct Session<'a> {
+    pub(super) config: &'a Config,
+    pub(super) recipe: Recipe,
+    pub(super) base: Option<&'a Base>,
+    /// The picture to be drawn.
+    pub(super) target: Image,
+    pub(super) annealing: Annealing,
+    pub(super) plan: Plan,
+    /// Strokes of the drawing at most.
+    pub(super) limit: usize,
+    /// What each has to be worth.
+    pub(super) price: Price,
+    pub(super) writer: Writer<'a>,
+
+    pub(super) drawing: Drawing,
+    pub(super) journal: Journal,
+    /// The best of the files.
+    pub(super) best: Option<RenderedFile>,
+    pub(super) progress: Tracker<'a>,
+    pub(super) timer: Timer,
+
+    /// What is done now.
+    pub(super) phase: Phase,
+    /// The descent that a resumed fit was cut off in, until its phase goes on with it.
+    pub(super) resumed: Option<Descent>,
+    keeper: Option<Keeper<'a>>,
+}
+
+/// Where the state is kept.
+struct Keeper<'a> {
+    checkpoint: &'a mut Checkpoint,
+    /// What it is the state of.
+    fingerprint: u64,
+    /// Whether the state is not to be kept any more.
+    is_final: bool,
+}
+
+/// All that a fit goes on from, as it is read from a checkpoint.
+type State = (Phase, Journal, Memento, Position, Duration, Option<Descent>);
+
+impl<'a> Session<'a> {
+    pub(super) fn new(
+        picture: &Image,
+        config: &'a Config,
+        base: Option<&'a Base>,
+        level: Level,
+        observer: &'a mut (dyn Observer + Send),
+        token: CancelToken,
+        started: Instant,
+    ) -> Result<Self> {
+        let recipe = config.recipe();
+        let limit = budget::strokes(config, base, picture);
+        let before = Before::of(base);
+        let pixels = picture.width() * picture.height();
+        let plan = Plan::new(config, &recipe, limit, before, pixels);
+        let coarsest = coarsest(&plan, before, config, base);
+        let Prepared {
+            target,
+            surfaces,
+            background_fixed,
+        } = Prepared::new(picture, config.background, base, &recipe, coarsest)?;
+        let annealing = Annealing {
+            coverage: config.coverage,
+            edge: recipe.edge,
+        };
+        let limits = Limits::new(surfaces[0].grid(), recipe.domain, config.opaque);
+        let edge = annealing.last();
+        let mut drawing = Drawing::new(surfaces, background_fixed, limits, edge, level);
+        let records = base.map_or_else(Vec::new, |base| journal::load(&mut drawing, base));
+        let deadline: Box<dyn Deadline> = match config.budget.time {
+            Some(limit) => {
+                let is_transparent = drawing.surfaces.len() > 1;
+                let needs_file = budget::needs_file(&config.budget, &recipe);
+                let forecast = Forecast::new(limit, pixels, is_transparent, needs_file, &recipe);
+                Box::new(forecast)
+            }
+            None => Box::new(Unlimited),
+        };
+        let planned = (plan.strokes() * recipe.iterations(config.polish)) as f64;
+        Ok(Self {
+            config,
+            recipe,
+            base,
+            target,
+            annealing,
+            limit: budget::max_strokes(limit, base),
+            price: Price::new(config.effective_quality(), config.file),
+            writer: Writer::of(config, base),
+            drawing,
+            journal: Journal::new(records, recipe.correction.db_per_doubling),
+            best: None,
+            progress: Tracker::new(observer, token, planned, plan.len()),
+            plan,
+            timer: Timer::new(started, deadline),
+            phase: Phase::first(config, base),
+            resumed: None,
+            keeper: None,
+        })
+    }
+
+    /// The descent that the fit was cut off in, or one that follows `course`.
+    pub(super) fn descent(&mut self, course: Course) -> Descent {
+        let (drawing, recipe, used) = (&self.drawing, &self.recipe, self.timer.used());
+        self.resumed
+            .take()
+            .unwrap_or_else(|| Descent::new(drawing, recipe, course, used))
+    }
+
+    /// Adds an iteration of the free strokes to what is done, whose mean squared error is `mse`, and says whether to
+    /// go on.
+    pub(super) fn advance(&mut self, mse: f64) -> bool {
+        self.timer.step(self.drawing.len());
+        let strokes = self.drawing.free().len();
+        self.progress.advance(strokes, self.timer.used());
+        if self.timer.is_over() {
+            self.progress.stop(Stop::Time);
+        }
+        self.progress.tell(&self.drawing, mse) && self.progress.stopped().is_none()
+    }
+
+    /// Writes and renders the drawing now and then, where the time is limited, so that it is known how long that takes.
+    pub(super) fn rehearse(&mut self) -> Result<()> {
+        if self.timer.wants_rehearsal() {
+            self.render_file()?;
+        }
+        Ok(())
+    }
+
+    /// Rounds, writes and renders the drawing.
+    pub(super) fn render_file(&mut self) -> Result<RenderedFile> {
+        let (writer, drawing) = (self.writer, &self.drawing);
+        self.timer.writing(drawing.len(), || writer.render(drawing))
+    }
+
+    /// Takes what was rendered of the drawing as it is for the best of the files.
+    pub(super) fn set_best(&mut self, file: RenderedFile) {
+        self.journal.best = Some(self.drawing.memento());
+        self.best = Some(file);
+    }
+
+    /// What the fit ended by, if it was not by its plan.
+    pub(super) fn cut_by(&self) -> Option<Stop> {
+        let hurried = self.timer.is_hurried().then_some(Stop::Time);
+        self.progress.stopped().or(hurried)
+    }
+
+    /// Keeps the state in `checkpoint` from now on, and goes on from the state that it has, if it has one.
+    pub(super) fn resume(&mut self, checkpoint: &'a mut Checkpoint) -> Result<()> {
+        let fingerprint =
+            checkpoint::fingerprint(&self.target, self.config, &self.recipe, self.base);
+        match checkpoint.load::<State>(fingerprint)? {
+            Some((phase, journal, drawing, position, elapsed, descent)) => {
+                if let Some(best) = journal.best.clone() {
+                    self.drawing.restore(best);
+                    self.best = Some(self.writer.render(&self.drawing)?);
+                }
+                self.drawing.restore(drawing);
+                (self.phase, self.journal, self.resumed) = (phase, journal, descent);
+                self.progress.position = position;
+                self.timer.resume(elapsed);
+            }
+            // What cannot be kept is said before any work is done.
+            None => checkpoint.write(fingerprint, &self.state(None))?,
+        }
+        self.keeper = Some(Keeper {
+            checkpoint,
+            fingerprint,
+            is_final: false,
+        });
+        Ok(())
+    }
+
+    /// What [`State`] is read from.
+    fn state<'s>(&'s self, descent: Option<&'s Descent>) -> impl serde::Serialize + 's {
+        (
+            self.phase,
+            &self.journal,
+            self.drawing.memento(),
+            self.progress.position,
+            self.timer.elapsed(),
+            descent,
+        )
+    }
+
+    /// Keeps the state, with the `descent` under way, where that is due: every so often, before a phase that cannot be
+    /// divided, at the end, and when the fit is interrupted, before the drawing is finished in haste.
+    pub(super) fn keep(&mut self, descent: Option<&Descent>) {
+        let Some(mut keeper) = self.keeper.take() else {
+            return;
+        };
+        let is_resumable = descent.is_none() || self.phase.is_divisible();
+        let is_interrupted = self.progress.is_interrupted();
+        let is_due = keeper.checkpoint.is_due() || is_interrupted || self.phase.is_milestone();
+        if is_resumable && is_due && !keeper.is_final {
+            keeper
+                .checkpoint
+                .keep(keeper.fingerprint, &self.state(descent));
+        }
+        keeper.is_final |= is_interrupted;
+        self.keeper = Some(keeper);
+    }
+}
+
+/// The scale of the first stage, px: the drawing begins at the resolution for it; 0 for that of the picture.
+fn coarsest(plan: &Plan, before: Before, config: &Config, base: Option<&Base>) -> f32 {
+    // A reduced picture flatters a base: whether a fidelity is reached is told at full resolution.
+    if base.is_some() && config.budget.psnr_db.is_some() {
+        return 0.0;
+    }
+    let first = plan.stage(before.layers, before.strokes);
+    first.map_or(0.0, |stage| stage.scale)
+}

@@ -1,0 +1,340 @@
+//! What strokes are composited over, and what they are to look like there.
+//!
+//! A drawing without alpha has one surface. A transparent one is fitted on two at once, laid on mattes of black and
+//! of white: a drawing of premultiplied colour P and alpha A looks like P + (1 − A)·g on a matte g, which is linear in
+//! every channel of g, so that what is right on black and on white is right on every matte. Losses, gradients, worths
+//! and gains are means over the surfaces.
+
+use super::background;
+use super::base::Base;
+use super::config::Background;
+use super::objective::{Objective, Term};
+use super::recipe::Recipe;
+use crate::error::Result;
+use crate::image::Image;
+use crate::loss::Loss;
+use crate::render::{Backdrop, Canvas, Grid, Params, Renderer, Softness};
+use crate::scene::{Rgb, Scene};
+use crate::seed::{Pyramid, Residual};
+use crate::verify;
+
+const BLACK: Rgb = [0.0; 3];
+const WHITE: Rgb = [1.0; 3];
+
+/// A picture as it is looked at during a fit.
+pub(super) struct Prepared {
+    /// The picture to be drawn: without alpha unless there are two surfaces.
+    pub(super) target: Image,
+    /// One, or two for a transparent drawing.
+    pub(super) surfaces: Vec<Surface>,
+    /// Whether the background is not to be fitted.
+    pub(super) background_fixed: bool,
+}
+
+impl Prepared {
+    /// The surfaces for drawing `picture` on `base`, or on a `background`, with strokes of `scale` px at first.
+    pub(super) fn new(
+        picture: &Image,
+        background: Background,
+        base: Option<&Base>,
+        recipe: &Recipe,
+        scale: f32,
+    ) -> Result<Self> {
+        let sizes = Sizes {
+            scale,
+            min_scale: recipe.stages.min_scale,
+        };
+        let Some(Base {
+            document, scene, ..
+        }) = base
+        else {
+            return Ok(Self::on_color(picture, background, recipe, sizes));
+        };
+        if let Some(document) = document {
+            return Self::on_document(picture, document.text(), sizes);
+        }
+        let background = scene.background.map_or(Background::None, Background::Color);
+        Ok(Self::on_color(picture, background, recipe, sizes))
+    }
+
+    fn on_color(picture: &Image, background: Background, recipe: &Recipe, sizes: Sizes) -> Self {
+        let mattes = mattes(picture, background);
+        let target = match *mattes {
+            [_] => picture.flattened(background::matte(background)),
+            _ => picture.clone(),
+        };
+        let (color, is_fixed) = background::choose(background, &target, &recipe.background);
+        let surface = |&matte: &Rgb| {
+            let color = if mattes.len() == 1 { color } else { matte };
+            Surface::new(target.flattened(matte), matte, Bottom::Color(color), sizes)
+        };
+        Self {
+            surfaces: mattes.iter().map(surface).collect(),
+            background_fixed: is_fixed || mattes.len() > 1,
+            target,
+        }
+    }
+
+    fn on_document(picture: &Image, svg: &str, sizes: Sizes) -> Result<Self> {
+        let surface = |&matte: &Rgb| {
+            let target = picture.flattened(matte);
+            let bottom = Pyramid::new(verify::render_like(svg, &target, matte)?);
+            Ok(Surface::new(target, matte, Bottom::Document(bottom), sizes))
+        };
+        let mattes = mattes(picture, Background::None);
+        Ok(Self {
+            target: picture.clone(),
+            surfaces: mattes.iter().map(surface).collect::<Result<_>>()?,
+            background_fixed: true,
+        })
+    }
+}
+
+/// The mattes that a drawing of `picture` is looked at on: it is transparent where the picture is, unless there is a
+/// background to lay the picture on.
+fn mattes(picture: &Image, background: Background) -> Vec<Rgb> {
+    match (picture.alpha(), background) {
+        (Some(_), Background::Auto | Background::None) => vec![BLACK, WHITE],
+        _ => vec![WHITE],
+    }
+}
+
+/// Typical radii, px of the picture.
+#[derive(Debug, Clone, Copy)]
+struct Sizes {
+    /// Of the first strokes.
+    scale: f32,
+    /// Of the smallest that are fitted to a reduced picture, in px of that.
+    min_scale: f32,
+}
+
+/// What lies under all strokes, at any resolution.
+enum Bottom {
+    Color(Rgb),
+    /// What the SVG of a base looks like.
+    Document(Pyramid),
+}
+
+impl Bottom {
+    fn canvas(&self, grid: Grid, halvings: usize) -> Canvas {
+        match self {
+            Self::Color(color) => Canvas::flat(grid, *color),
+            Self::Document(pyramid) => Canvas::from_image(pyramid.level(halvings)),
+        }
+    }
+
+    /// What strokes are composited over: the canvas `below` where it has `frozen` strokes or a document.
+    fn backdrop<'a>(&self, below: &'a Canvas, frozen: usize) -> Backdrop<'a> {
+        match self {
+            Self::Color(color) if frozen == 0 => Backdrop::Color(*color),
+            _ => Backdrop::Canvas(below),
+        }
+    }
+}
+
+/// Target, backdrop and canvas on one matte, at the resolution that the drawing has.
+pub(super) struct Surface {
+    /// What the SVG is laid on when it is rendered.
+    pub(super) matte: Rgb,
+    bottom: Bottom,
+    /// The picture on the matte, and its reductions.
+    pyramid: Pyramid,
+    /// How many times the picture is halved.
+    halvings: usize,
+    /// The typical radius that strokes keep in a reduced picture, px of that.
+    min_scale: f32,
+    /// The picture, halved.
+    target: Canvas,
+    /// The frozen strokes on the bottom.
+    frozen: Canvas,
+    /// All strokes as they were last rendered, with the final edge.
+    pub(super) canvas: Canvas,
+}
+
+impl Surface {
+    fn new(target: Image, matte: Rgb, bottom: Bottom, Sizes { scale, min_scale }: Sizes) -> Self {
+        let pyramid = Pyramid::new(target);
+        let halvings = halvings(&pyramid, scale, min_scale);
+        let target = Canvas::from_image(pyramid.level(halvings));
+        let frozen = bottom.canvas(target.grid(), halvings);
+        Self {
+            matte,
+            bottom,
+            halvings,
+            min_scale,
+            canvas: frozen.clone(),
+            frozen,
+            target,
+            pyramid,
+        }
+    }
+
+    /// How the picture is cut, at the current resolution.
+    pub(super) fn grid(&self) -> Grid {
+        self.target.grid()
+    }
+
+    /// How many times the picture is halved.
+    pub(super) fn halvings(&self) -> usize {
+        self.halvings
+    }
+
+    /// The picture at full resolution.
+    pub(super) fn picture(&self) -> &Image {
+        self.pyramid.level(0)
+    }
+
+    /// The background's colour, unless a document lies there.
+    pub(super) fn color(&self) -> Option<Rgb> {
+        match self.bottom {
+            Bottom::Color(color) => Some(color),
+            Bottom::Document(_) => None,
+        }
+    }
+
+    /// The same, to be changed.
+    pub(super) fn color_mut(&mut self) -> Option<&mut Rgb> {
+        match &mut self.bottom {
+            Bottom::Color(color) => Some(color),
+            Bottom::Document(_) => None,
+        }
+    }
+
+    /// How many halvings leave strokes of `scale` px, of the picture, their least radius.
+    pub(super) fn halvings_for(&self, scale: f32) -> usize {
+        halvings(&self.pyramid, scale, self.min_scale)
+    }
+
+    /// Goes to the picture halved so many times. Nothing is frozen then.
+    pub(super) fn halve(&mut self, halvings: usize) {
+        self.halvings = halvings;
+        self.target = Canvas::from_image(self.pyramid.level(halvings));
+        self.frozen = self.bottom.canvas(self.target.grid(), halvings);
+        self.canvas.clone_from(&self.frozen);
+    }
+
+    /// Takes the canvas for the backdrop of the free strokes.
+    pub(super) fn freeze(&mut self) {
+        self.frozen.clone_from(&self.canvas);
+    }
+
+    /// Takes the bottom for the backdrop of the free strokes.
+    pub(super) fn thaw(&mut self) {
+        if let Bottom::Document(pyramid) = &self.bottom {
+            self.frozen = Canvas::from_image(pyramid.level(self.halvings));
+        }
+    }
+
+    /// What the free strokes are composited over, where `frozen` others are frozen.
+    pub(super) fn backdrop(&self, frozen: usize) -> Backdrop<'_> {
+        self.bottom.backdrop(&self.frozen, frozen)
+    }
+
+    /// What the strokes of `scene` are composited over, in a drawing without frozen strokes.
+    pub(super) fn backdrop_of(&self, scene: &Scene) -> Backdrop<'_> {
+        scene.background.map_or(self.backdrop(0), Backdrop::Color)
+    }
+
+    /// The same as a canvas.
+    pub(super) fn empty(&self, scene: &Scene) -> Canvas {
+        match self.backdrop_of(scene) {
+            Backdrop::Color(color) => Canvas::flat(self.grid(), color),
+            Backdrop::Canvas(canvas) => canvas.clone(),
+        }
+    }
+
+    /// Renders the `free` strokes, on `frozen` others, to the canvas.
+    pub(super) fn render(
+        &mut self,
+        renderer: &mut Renderer,
+        free: &[Params],
+        edge: Softness,
+        frozen: usize,
+    ) {
+        let backdrop = self.bottom.backdrop(&self.frozen, frozen);
+        renderer.forward(free, edge, backdrop, &mut self.canvas);
+    }
+
+    /// The mean squared error of `canvas`, at the current resolution.
+    pub(super) fn mse_of(&self, canvas: &Canvas) -> f64 {
+        Objective::new(Loss::L2, &self.target).of(canvas)
+    }
+
+    /// The term of the loss that the free strokes have here: against the picture, or against `target`.
+    pub(super) fn term<'a>(&'a self, frozen: usize, target: Option<&'a Canvas>) -> Term<'a> {
+        Term {
+            backdrop: self.backdrop(frozen),
+            objective: Objective::new(Loss::L2, target.unwrap_or(&self.target)),
+        }
+    }
+
+    /// Picture and canvas, to search places for strokes in.
+    pub(super) fn residual(&self) -> Residual<'_> {
+        Residual {
+            target: &self.pyramid,
+            canvas: &self.canvas,
+        }
+    }
+}
+
+/// How many halvings leave strokes of `scale` px a scale of `min_scale`.
+fn halvings(pyramid: &Pyramid, scale: f32, min_scale: f32) -> usize {
+    // Rounded down: `halvings` alone would bring the scale below the least.
+    pyramid.halvings(0, scale / 2.0, min_scale)
+}
+
+/// The picture that looks like this on black and on white.
+pub(super) fn transparent(black: &Image, white: &Image) -> Result<Image> {
+    let channels = || black.planes().iter().zip(white.planes());
+    // P on black, P + (1 − A) on white: A is 1 less their difference, a mean over the channels.
+    let mut alpha = vec![1.0; black.width() * black.height()];
+    for (black, white) in channels() {
+        for ((a, b), w) in alpha.iter_mut().zip(black).zip(white) {
+            *a -= (w - b) / 3.0;
+        }
+    }
+    let straight = |plane: &[f32]| {
+        let pixels = plane.iter().zip(&alpha);
+        pixels
+            .map(|(&p, &a)| if a > 0.0 { p / a } else { 0.0 })
+            .collect()
+    };
+    let planes = [0, 1, 2].map(|c| straight(&black.planes()[c]));
+    Image::new(black.width(), black.height(), planes)?.with_alpha(alpha)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn glass() -> Image {
+        let plane = |k: f32| vec![0.25 * k, 0.1 * k, 0.5];
+        let image = Image::new(3, 1, [plane(1.0), plane(2.0), plane(3.0)]).unwrap();
+        image.with_alpha(vec![1.0, 0.5, 0.25]).unwrap()
+    }
+
+    #[test]
+    fn black_and_white_tell_colour_and_alpha() {
+        let glass = glass();
+        let seen = transparent(&glass.flattened(BLACK), &glass.flattened(WHITE)).unwrap();
+        for (a, b) in seen.planes().iter().zip(glass.planes()) {
+            assert!(
+                a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6),
+                "{a:?} {b:?}"
+            );
+        }
+        let alphas = seen.alpha().unwrap().iter().zip(glass.alpha().unwrap());
+        assert!(alphas.into_iter().all(|(a, b)| (a - b).abs() < 1e-6));
+    }
+
+    #[test]
+    fn only_a_picture_with_alpha_and_without_a_background_to_lie_on_is_transparent() {
+        let (glass, wall) = (glass(), Image::filled(3, 1, [0.5; 3]).unwrap());
+        let count = |picture, background| mattes(picture, background).len();
+        assert_eq!(count(&glass, Background::Auto), 2);
+        assert_eq!(count(&glass, Background::None), 2);
+        assert_eq!(count(&glass, Background::Color(WHITE)), 1);
+        assert_eq!(count(&wall, Background::Auto), 1);
+        assert_eq!(count(&wall, Background::None), 1);
+    }
+}
