@@ -12,9 +12,11 @@ use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use strokefit::fit::{Background, Budget, Config, Execution, Fitter, Preset, Recipe, Simd};
+use strokefit::fit::{
+    Background, Base, Budget, Colors, Config, Execution, Fitter, Preset, Recipe, Simd,
+};
 use strokefit::image::Image;
-use strokefit::svg::WriteOptions;
+use strokefit::svg::{Form, Group, WriteOptions};
 
 fn folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
@@ -31,32 +33,103 @@ fn samples() -> Vec<String> {
     names
 }
 
-/// Quick fits that between them pass through every part of the algorithm.
-fn option_sets() -> [(&'static str, Config); 3] {
-    let draft = |budget| Config {
+/// What is drawn for one row of the table.
+struct Case {
+    sample: String,
+    /// What sets it apart from the other rows of the sample.
+    name: &'static str,
+    config: Config,
+    /// The SVG that it goes on from.
+    base: Option<String>,
+}
+
+impl Case {
+    fn new(sample: &str, name: &'static str, config: Config) -> Self {
+        Self {
+            sample: sample.into(),
+            name,
+            config,
+            base: None,
+        }
+    }
+
+    fn on(self, base: String) -> Self {
+        Self {
+            base: Some(base),
+            ..self
+        }
+    }
+
+    fn picture(&self) -> Image {
+        let extension = if self.sample == "starry-night" {
+            "jpg"
+        } else {
+            "png"
+        };
+        Image::open(folder("samples").join(format!("{}.{extension}", self.sample))).unwrap()
+    }
+
+    fn drawn(&self, execution: Execution) -> String {
+        let picture = self.picture();
+        let fitter = Fitter::new(self.config.clone()).execution(execution);
+        let fitter = match &self.base {
+            Some(text) => fitter.on(Base::read(text.clone(), &picture, false).unwrap()),
+            None => fitter,
+        };
+        fitter.fit(&picture).unwrap().svg()
+    }
+}
+
+/// Every sample under each set of options, then single samples under options of their own. Between them the
+/// fits pass through every part of the algorithm; they are drafts, so that all take seconds.
+fn cases() -> Vec<Case> {
+    let every = samples().into_iter().flat_map(|sample| {
+        option_sets()
+            .into_iter()
+            .map(move |(name, config)| Case::new(&sample, name, config))
+    });
+    let mut cases: Vec<Case> = every.collect();
+    cases.extend(few_colors());
+    cases.extend(other_forms());
+    cases.extend(other_budgets());
+    cases.extend(on_bases());
+    cases
+}
+
+fn draft(budget: Budget) -> Config {
+    Config {
         budget,
         preset: Preset::Draft,
         ..Config::default()
-    };
-    let strokes = Some(150);
-    let most = Budget {
-        strokes,
+    }
+}
+
+fn at_most(strokes: usize) -> Budget {
+    Budget {
+        strokes: Some(strokes),
         ..Budget::default()
-    };
+    }
+}
+
+/// A draft is not settled against its file unless asked.
+fn settled() -> Option<Recipe> {
+    let mut recipe = Recipe::of(Preset::Draft);
+    recipe.settling.rounds = 2;
+    Some(recipe)
+}
+
+fn option_sets() -> [(&'static str, Config); 3] {
     let faithful = Budget {
         psnr_db: Some(22.0),
         bytes: Some(9000),
         ..Budget::default()
     };
-    // A draft is not settled against its file.
-    let mut settled = Recipe::of(Preset::Draft);
-    settled.settling.rounds = 2;
     [
-        ("150 strokes", draft(most)),
+        ("150 strokes", draft(at_most(150))),
         (
             "22 dB in 9 kB, settled",
             Config {
-                recipe: Some(settled),
+                recipe: settled(),
                 ..draft(faithful)
             },
         ),
@@ -72,17 +145,110 @@ fn option_sets() -> [(&'static str, Config); 3] {
                     ..WriteOptions::default()
                 },
                 seed: 7,
-                ..draft(most)
+                ..draft(at_most(150))
             },
         ),
     ]
 }
 
-fn drawn(sample: &str, config: &Config, execution: Execution) -> String {
-    let picture = Image::open(folder("samples").join(format!("{sample}.png"))).unwrap();
-    let fitter = Fitter::new(config.clone()).execution(execution);
-    let fit = fitter.fit(&picture).unwrap();
-    fit.svg()
+/// Colours that are chosen, translucent and opaque, and colours that are given.
+fn few_colors() -> [Case; 3] {
+    let translucent = Config {
+        colors: Colors::AtMost(12),
+        recipe: settled(),
+        ..draft(at_most(150))
+    };
+    let opaque = Config {
+        opaque: true,
+        colors: Colors::AtMost(6),
+        file: WriteOptions {
+            form: Form::Smallest,
+            group: Group::Color,
+            ..WriteOptions::default()
+        },
+        ..translucent.clone()
+    };
+    let palette = Config {
+        colors: Colors::Palette(vec![[255; 3], [40, 40, 60], [220, 60, 50], [120, 150, 200]]),
+        coverage: "tanh>smoothstep".parse().unwrap(),
+        ..draft(at_most(150))
+    };
+    [
+        Case::new("coffee-300", "12 colours, settled", translucent),
+        Case::new("bicycle", "6 colours, smallest, settled", opaque),
+        Case::new("noto-rocket", "a palette of 4, from tanh", palette),
+    ]
+}
+
+/// Pens, and outlines.
+fn other_forms() -> [Case; 2] {
+    let written = |form, precision| WriteOptions {
+        form,
+        precision,
+        ..WriteOptions::default()
+    };
+    let pens = Config {
+        opaque: true,
+        background: Background::Color([0.2, 0.4, 0.6]),
+        file: written(Form::Smallest, 1),
+        recipe: settled(),
+        ..draft(at_most(150))
+    };
+    let outlines = Config {
+        coverage: "sigmoid>smoothstep".parse().unwrap(),
+        file: written(Form::Outlines, 3),
+        ..draft(Budget {
+            bytes: Some(20_000),
+            ..Budget::default()
+        })
+    };
+    [
+        Case::new("noto-hibiscus", "pens on blue, settled", pens),
+        Case::new("noto-gem", "outlines in 20 kB, from sigmoid", outlines),
+    ]
+}
+
+/// The price of a stroke alone, the whole recipe of the default, and a picture from a JPEG.
+fn other_budgets() -> [Case; 3] {
+    let priced = Config {
+        quality: Some(24.0),
+        polish: false,
+        stages: Some(4),
+        ..draft(Budget::default())
+    };
+    let balanced = Config {
+        budget: at_most(60),
+        ..Config::default()
+    };
+    [
+        Case::new(
+            "noto-telescope",
+            "quality 24 in 4 stages, unpolished",
+            priced,
+        ),
+        Case::new("rocket-320", "60 strokes, balanced", balanced),
+        Case::new("starry-night", "150 strokes", draft(at_most(150))),
+    ]
+}
+
+/// A drawing of ours, taken up again, and a foreign SVG under strokes.
+fn on_bases() -> [Case; 2] {
+    let half = Case::new("coffee-300", "75 strokes", draft(at_most(75)));
+    let traced = fs::read_to_string(folder("tests/data/chelsea-traced.svg")).unwrap();
+    let on_traced = Config {
+        recipe: settled(),
+        ..draft(at_most(60))
+    };
+    [
+        Case::new("coffee-300", "75 strokes, then 75", draft(at_most(150)))
+            .on(half.drawn(Execution::default())),
+        Case::new(
+            "chelsea-cat",
+            "60 strokes on a traced file, settled",
+            on_traced,
+        )
+        .on(traced),
+    ]
 }
 
 /// FNV-1a, of 64 bits.
@@ -94,12 +260,11 @@ fn hash(text: &str) -> u64 {
 
 fn table() -> String {
     let mut table = String::new();
-    for sample in samples() {
-        for (name, config) in option_sets() {
-            let text = drawn(&sample, &config, Execution::default());
-            let (hash, bytes) = (hash(&text), text.len());
-            writeln!(table, "{hash:016x} {bytes:6} bytes  {sample}: {name}").unwrap();
-        }
+    for case in cases() {
+        let text = case.drawn(Execution::default());
+        let (hash, bytes) = (hash(&text), text.len());
+        let Case { sample, name, .. } = case;
+        writeln!(table, "{hash:016x} {bytes:6} bytes  {sample}: {name}").unwrap();
     }
     table
 }
@@ -123,30 +288,25 @@ fn samples_are_drawn_with_the_bytes_of_the_table() {
 
 #[test]
 fn how_it_is_run_changes_no_byte() {
-    let [_, (_, config), _] = option_sets();
+    let [_, (name, config), _] = option_sets();
+    let case = Case::new("rocket-320", name, config);
     let one = Execution {
         threads: Some(1),
         simd: Simd::Auto,
     };
-    let expected = drawn("rocket-320", &config, one);
+    let expected = case.drawn(one);
     for threads in [1, 2, 3, 8] {
         let execution = Execution {
             threads: Some(threads),
             ..one
         };
-        assert!(
-            drawn("rocket-320", &config, execution) == expected,
-            "{threads} threads"
-        );
+        assert!(case.drawn(execution) == expected, "{threads} threads");
     }
     for simd in Simd::ALL.into_iter().filter(|simd| simd.level().is_some()) {
         let execution = Execution {
             threads: Some(2),
             simd,
         };
-        assert!(
-            drawn("rocket-320", &config, execution) == expected,
-            "{simd}"
-        );
+        assert!(case.drawn(execution) == expected, "{simd}");
     }
 }
