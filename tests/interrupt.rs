@@ -7,10 +7,10 @@ mod support {
     pub(crate) mod place;
     pub(crate) mod report;
     pub(crate) mod signal;
+    pub(crate) mod skip;
 }
 
 use std::fs;
-use std::io::{self, Write};
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::process::{Child, Output, Stdio};
@@ -18,6 +18,7 @@ use std::time::{Duration, Instant};
 
 use support::place::{Place, STROKEFIT};
 use support::signal::send;
+use support::skip::skip;
 
 /// A fit that takes hours when it is left alone.
 const ENDLESS: [&str; 4] = ["--preset", "best", "--strokes", "30000"];
@@ -98,9 +99,10 @@ fn strokes(svg: &Path) -> usize {
 fn every_signal_leaves_the_drawing_so_far() {
     for (signal, wait_ms) in [(2, 300), (15, 0), (1, 1000)] {
         if is_in(std::process::id(), "SigIgn:", signal) {
-            // As shells start what runs in the background of a script. Not by `eprintln!`, which is kept back.
-            let reason = "is ignored from outside, and stays so";
-            let _ = writeln!(io::stderr(), "SKIPPED: signal {signal} {reason}");
+            // As shells start what runs in the background of a script.
+            skip(&format!(
+                "signal {signal} is ignored from outside, and stays so"
+            ));
             continue;
         }
         let place = Place::new();

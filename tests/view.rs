@@ -1,29 +1,26 @@
 //! The page to watch a drawing with, as browsers and others meet it.
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stderr,
-    missing_docs
-)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
 mod support {
+    pub(crate) mod engine;
     pub(crate) mod output;
     pub(crate) mod place;
     pub(crate) mod program;
     pub(crate) mod report;
     pub(crate) mod repository;
+    pub(crate) mod skip;
 }
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Child, ChildStderr, Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
+use support::engine::installed;
 use support::output::stderr;
 use support::place::{Place, STROKEFIT};
 use support::repository::committed;
@@ -301,20 +298,9 @@ fn nobody_looks_at_a_fit_that_nobody_watches() {
     assert!(answer.contains("\"time_s\""), "{answer:.600}");
 }
 
-fn chromium() -> Option<PathBuf> {
-    let path = std::env::var_os("PATH")?;
-    let folders = std::env::split_paths(&path);
-    let mut found =
-        folders.flat_map(|folder| ["chromium", "chromium-browser"].map(|name| folder.join(name)));
-    found.find(|program| program.is_file())
-}
-
-/// The page as Chromium has it after its script has run; without Chromium, a word about it.
+/// The page as Chromium has it after its script has run; `None` without Chromium.
 fn page(program: &Program, hash: &str) -> Option<String> {
-    let Some(chromium) = chromium() else {
-        eprintln!("skipped: no chromium on the path");
-        return None;
-    };
+    let (_, chromium) = installed("chromium")?;
     let address = format!("http://{}{}#{hash}", program.host, program.root);
     // Chromium counts virtual time, and on a busy machine now and then ends before the script does.
     let mut tries = (0..5).map(|_| dump(&chromium, &address));
