@@ -26,7 +26,8 @@
 //! Data flows one way, and a module imports only from those above its own:
 //!
 //! ```text
-//! image  sdf  coverage  scene     pictures, distances, soft edges, drawings
+//! error  math  rng                what went wrong, points, draws by counter
+//! sdf  coverage  scene  image     distances, soft edges, drawings, pictures
 //! metrics  loss  optim            how far, how much, which way
 //! render                          strokes → canvas, ∂L/∂canvas → ∂L/∂strokes, worth
 //! seed                            residual → candidates ranked by closed-form gain

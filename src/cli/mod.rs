@@ -19,6 +19,7 @@ mod output;
 mod pictures;
 mod progress;
 mod refine;
+mod refusal;
 mod render;
 mod settings;
 mod usage;

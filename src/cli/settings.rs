@@ -14,6 +14,7 @@ use clap::{Arg, ArgAction, ArgMatches, Command, Id, value_parser};
 use toml::{Spanned, Value};
 
 use super::hint::Hint;
+use super::refusal::parts;
 use super::{input, misuse};
 
 const CONFIG: &str = "config";
@@ -171,7 +172,7 @@ fn check(at: &str, command: &Command, flag: &OsString) -> Result<()> {
                 ErrorKind::InvalidValue | ErrorKind::ValueValidation
             ) =>
         {
-            let (wrong, advice) = super::usage::parts(&e);
+            let (wrong, advice) = parts(&e);
             let wrong = misuse(format!("{at}: {wrong}"));
             Err(Hint::maybe_on(wrong, advice))
         }

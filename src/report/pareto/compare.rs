@@ -2,10 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::peers::AgainstPeer;
-use super::recipe::{AtEqualStrokes, AtEqualTime};
-use super::{ParetoEntry, pictures};
-
 /// A claim, and whether it holds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
@@ -53,21 +49,4 @@ impl Comparison {
         } = self;
         format!("{picture}, {claim}: {figure}: {}", holds.word())
     }
-}
-
-/// What follows from `entries`. That fits beat the article's own run by so much is a claim, and a failure
-/// where it does not hold; all other comparisons are findings.
-pub fn comparisons(entries: &[ParetoEntry]) -> Vec<Comparison> {
-    let mut all = Vec::new();
-    for picture in pictures(entries) {
-        let here: Vec<&ParetoEntry> = entries.iter().filter(|e| e.picture == picture).collect();
-        all.extend(
-            AtEqualStrokes::all(&here)
-                .iter()
-                .map(AtEqualStrokes::comparison),
-        );
-        all.extend(AtEqualTime::all(&here).iter().map(AtEqualTime::comparison));
-        all.extend(AgainstPeer::all(&here).iter().map(AgainstPeer::comparison));
-    }
-    all
 }

@@ -16,13 +16,15 @@ mod tables;
 use serde::{Deserialize, Serialize};
 
 pub use charts::charts;
-pub use compare::{Comparison, Holds, comparisons};
+pub use compare::{Comparison, Holds};
 pub use front::front;
 pub use page::{Exhibit, page};
 pub use spread::{Spread, spreads};
 
 use super::{SCHEMA, StageEntry};
 use crate::metrics::Quality;
+use peers::AgainstPeer;
+use recipe::{AtEqualStrokes, AtEqualTime};
 
 /// The family of the drawings of the article's recipe.
 pub const ARTICLE: &str = "article";
@@ -160,6 +162,23 @@ impl ParetoReport {
             .filter(|c| c.holds == Holds::Refuted);
         failed.count() + refuted.count()
     }
+}
+
+/// What follows from `entries`. That fits beat the article's own run by so much is a claim, and a failure
+/// where it does not hold; all other comparisons are findings.
+pub fn comparisons(entries: &[ParetoEntry]) -> Vec<Comparison> {
+    let mut all = Vec::new();
+    for picture in pictures(entries) {
+        let here: Vec<&ParetoEntry> = entries.iter().filter(|e| e.picture == picture).collect();
+        all.extend(
+            AtEqualStrokes::all(&here)
+                .iter()
+                .map(AtEqualStrokes::comparison),
+        );
+        all.extend(AtEqualTime::all(&here).iter().map(AtEqualTime::comparison));
+        all.extend(AgainstPeer::all(&here).iter().map(AgainstPeer::comparison));
+    }
+    all
 }
 
 fn optional(value: Option<f64>, digits: usize) -> String {
