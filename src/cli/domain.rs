@@ -3,11 +3,8 @@
 
 use std::time::Duration;
 
-use strokefit::fit::Background;
+use strokefit::fit::{Background, MAX_STROKES};
 use strokefit::scene::MAX_PRECISION;
-
-/// resvg and everything built on it read at most a million elements.
-const MAX_STROKES: usize = 900_000;
 
 /// More are as good as any.
 const MAX_COLORS: usize = 4096;

@@ -1,18 +1,19 @@
-//! When an engine draws a file as it was meant.
+//! Whether an engine draws a file as it is meant.
 
 /// How far below resvg's fidelity an engine's may be, dB.
 pub const MAX_SHORTFALL_DB: f64 = 0.6;
 
-/// Agreement with resvg's render, dB, that is good enough whatever the fidelity. Engines round
-/// colours and edges differently, and agree to 39 to 56 dB on drawings that all of them draw right;
-/// what is more faithful than that in one of them cannot be so in all. Below this, a difference of
-/// 4 levels in every pixel, something is missing or in another place.
-pub const MIN_AGREEMENT_DB: f64 = 36.0;
+/// PSNR of an engine's render against resvg's, dB, that is good enough whatever the fidelity. Engines round
+/// colours and edges differently: on drawings that all of them draw right they are 39 to 56 dB apart, and no
+/// file can be more faithful than that in all of them. Below this bound, a difference of 4 levels in every
+/// pixel, something is missing or in another place.
+pub const MIN_DB_AGAINST_RESVG: f64 = 36.0;
 
-/// Whether an engine draws what resvg draws: it agrees with resvg to `agreement_db`, or its
-/// fidelity, where that is known, falls short of resvg's by no more than it may.
-pub fn passes(agreement_db: f64, shortfall_db: Option<f64>) -> bool {
-    agreement_db >= MIN_AGREEMENT_DB || shortfall_db.is_some_and(|db| db <= MAX_SHORTFALL_DB)
+/// Whether an engine draws what resvg draws: its render is close to resvg's, or its fidelity, where that is
+/// known, falls short of resvg's by no more than [`MAX_SHORTFALL_DB`].
+pub fn passes(against_resvg_db: f64, shortfall_db: Option<f64>) -> bool {
+    against_resvg_db >= MIN_DB_AGAINST_RESVG
+        || shortfall_db.is_some_and(|db| db <= MAX_SHORTFALL_DB)
 }
 
 #[cfg(test)]
@@ -21,7 +22,7 @@ mod tests {
 
     #[test]
     fn an_engine_must_be_as_faithful_or_agree() {
-        for (agreement_db, shortfall_db, verdict) in [
+        for (against_resvg_db, shortfall_db, verdict) in [
             (f64::INFINITY, None, true),
             (36.0, None, true),
             (35.9, None, false),
@@ -32,9 +33,9 @@ mod tests {
             (f64::NAN, Some(f64::NAN), false),
         ] {
             assert_eq!(
-                passes(agreement_db, shortfall_db),
+                passes(against_resvg_db, shortfall_db),
                 verdict,
-                "{agreement_db} {shortfall_db:?}"
+                "{against_resvg_db} {shortfall_db:?}"
             );
         }
     }

@@ -1,6 +1,6 @@
 //! Pictures without size, content or smoothness: whole fits of them, read back from their files.
 
-use super::{Check, Extent, Finding};
+use super::{Check, Extent, Observation};
 use crate::error::Result;
 use crate::fit::{Budget, Config, Execution, Fit, Fitter, Preset};
 use crate::image::Image;
@@ -18,8 +18,9 @@ const NO_WORSE: f64 = 1.01;
 /// And this much more: an 8-bit level, which a value between two levels may be off by.
 const ROUNDING: f64 = 1.0 / (255.0 * 255.0);
 
-/// How far an exception may be from what was fitted, dB: 26 levels root mean square.
-const MIN_AGREEMENT_DB: f64 = 20.0;
+/// Least agreement, dB, of a picture that is a known exception to the bound of ordinary drawings: 26 levels
+/// root mean square.
+const MIN_EXCEPTION_DB: f64 = 20.0;
 
 pub(super) fn checks(extent: Extent, given: &[(String, Image)]) -> Vec<Check<'_>> {
     let strokes = match extent {
@@ -43,14 +44,14 @@ pub(super) fn checks(extent: Extent, given: &[(String, Image)]) -> Vec<Check<'_>
 type Make = Box<dyn Fn() -> Result<Image>>;
 
 /// A picture of one kind of trouble.
-struct Hard {
+struct HardPicture {
     name: &'static str,
     what: &'static str,
     picture: Make,
     exception: &'static str,
 }
 
-impl Hard {
+impl HardPicture {
     fn new(name: &'static str, what: &'static str, picture: Make) -> Self {
         Self {
             name,
@@ -64,7 +65,7 @@ impl Hard {
 const THIN: &str = "strokes of 1.02 px at 45° in the highest contrast fill the picture, and each is drawn some 19 \
                     levels off: see agreement";
 
-fn hard() -> Vec<Hard> {
+fn hard() -> Vec<HardPicture> {
     let gray = |width: usize, height: usize, f: fn(usize, usize) -> f32| -> Make {
         Box::new(move || make(width, height, |x, y| [f(x, y); 3]))
     };
@@ -72,36 +73,36 @@ fn hard() -> Vec<Hard> {
         Box::new(move || make(width, height, f))
     };
     vec![
-        Hard::new("1x1", "one pixel", rgb(1, 1, |_, _| [0.2, 0.6, 0.4])),
-        Hard::new("1x4096", "a column of noise", rgb(1, 4096, noise)),
-        Hard::new("4096x1", "a row of noise", rgb(4096, 1, noise)),
-        Hard::new(
+        HardPicture::new("1x1", "one pixel", rgb(1, 1, |_, _| [0.2, 0.6, 0.4])),
+        HardPicture::new("1x4096", "a column of noise", rgb(1, 4096, noise)),
+        HardPicture::new("4096x1", "a row of noise", rgb(4096, 1, noise)),
+        HardPicture::new(
             "flat",
             "one colour",
             rgb(48, 40, |_, _| [77.0, 128.0, 179.0].map(|v: f32| v / 255.0)),
         ),
-        Hard::new("black", "black", gray(48, 40, |_, _| 0.0)),
-        Hard::new("white", "white", gray(48, 40, |_, _| 1.0)),
-        Hard {
+        HardPicture::new("black", "black", gray(48, 40, |_, _| 0.0)),
+        HardPicture::new("white", "white", gray(48, 40, |_, _| 1.0)),
+        HardPicture {
             exception: THIN,
-            ..Hard::new(
+            ..HardPicture::new(
                 "checkerboard",
                 "squares of 1 px",
                 gray(48, 40, |x, y| ((x + y) % 2) as f32),
             )
         },
-        Hard::new(
+        HardPicture::new(
             "bright-pixel",
             "one white pixel on black",
             gray(48, 40, |x, y| f32::from(u8::from((x, y) == (20, 17)))),
         ),
-        Hard::new(
+        HardPicture::new(
             "steep-gradients",
             "ramps from black to white within 8 px, jumps between",
             gray(64, 48, |x, _| (x % 8) as f32 / 7.0),
         ),
-        Hard::new("noise", "pure noise", rgb(64, 48, noise)),
-        Hard::new(
+        HardPicture::new("noise", "pure noise", rgb(64, 48, noise)),
+        HardPicture::new(
             "saturated",
             "the eight corners of the colour cube",
             rgb(64, 48, |x, y| {
@@ -109,7 +110,7 @@ fn hard() -> Vec<Hard> {
                 [corner & 1, corner >> 1 & 1, corner >> 2 & 1].map(|c| c as f32)
             }),
         ),
-        Hard::new(
+        HardPicture::new(
             "16-bit",
             "a ramp of 3,072 levels between two of 8 bits",
             gray(64, 48, |x, y| {
@@ -133,7 +134,7 @@ fn noise(x: usize, y: usize) -> [f32; 3] {
 
 /// Whether a drawing of the picture is sound; resvg may draw it otherwise than it was fitted if there is an
 /// `exception` for that.
-fn finding(picture: &Image, strokes: usize, exception: &'static str) -> Result<Finding> {
+fn finding(picture: &Image, strokes: usize, exception: &'static str) -> Result<Observation> {
     let config = Config {
         budget: Budget {
             strokes: Some(strokes),
@@ -147,13 +148,13 @@ fn finding(picture: &Image, strokes: usize, exception: &'static str) -> Result<F
     for drawn in &drawn {
         match drawn {
             Ok((_, text)) => texts.push(text.as_str()),
-            Err(error) => return Ok(Finding::new(error.to_string(), false)),
+            Err(error) => return Ok(Observation::new(error.to_string(), false)),
         }
     }
     let identical = texts.windows(2).all(|pair| pair[0] == pair[1]);
     match &drawn[0] {
         Ok((fit, text)) => sound(fit, text).map(|sound| sound.finding(identical, exception)),
-        Err(error) => Ok(Finding::new(error.to_string(), false)),
+        Err(error) => Ok(Observation::new(error.to_string(), false)),
     }
 }
 
@@ -216,11 +217,11 @@ impl Sound {
         self.finite && self.verdict.agrees()
     }
 
-    fn finding(&self, identical: bool, exception: &'static str) -> Finding {
+    fn finding(&self, identical: bool, exception: &'static str) -> Observation {
         let bytes = if identical { "the same" } else { "DIFFERENT" };
         let figure = format!("{self}; {bytes} bytes on 1, 1, 2 and 3 threads");
-        let finding = Finding::new(figure, self.holds() && identical);
-        let nearly = self.verdict.agreement.psnr_db >= MIN_AGREEMENT_DB;
+        let finding = Observation::new(figure, self.holds() && identical);
+        let nearly = self.verdict.agreement.psnr_db >= MIN_EXCEPTION_DB;
         if self.finite && self.useful && identical && nearly {
             finding.excepting(exception)
         } else {

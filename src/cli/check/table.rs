@@ -1,6 +1,6 @@
 //! What was found, for people.
 
-use strokefit::engines::MIN_AGREEMENT_DB;
+use strokefit::engines::MIN_DB_AGAINST_RESVG;
 use strokefit::report::{CheckReport, RendererEntry};
 
 /// One line for each program, then one for each finding of the lint.
@@ -50,7 +50,7 @@ pub(super) fn shortfall(entry: &RendererEntry) -> String {
     let agreement_db = entry.against_resvg.and_then(|other| other.psnr_db);
     format!(
         "{name}: draws the file otherwise than resvg, with which it agrees to {:.2} dB, not \
-         {MIN_AGREEMENT_DB}: see the findings, and --pictures DIR for where",
+         {MIN_DB_AGAINST_RESVG}: see the findings, and --pictures DIR for where",
         agreement_db.unwrap_or(f64::INFINITY)
     )
 }
