@@ -12,9 +12,9 @@
 use std::path::{Path, PathBuf};
 
 use strokefit::bench::child::{Runner, perform};
-use strokefit::bench::pareto::{self, Peer, Plan, Traced, Work};
+use strokefit::bench::pareto::{self, Peer, Sweep, Traced, Work};
 use strokefit::image::Image;
-use strokefit::lab::Output;
+use strokefit::lab::ResultFolder;
 use strokefit::report::Usage;
 use strokefit::{Error, ErrorKind, Result};
 use vtracer::{ColorImage, Config};
@@ -25,8 +25,8 @@ const CASE: &str = "--case";
 fn main() -> Result<()> {
     let args: Vec<String> = std::env::args().skip(1).collect();
     if let Some(at) = args.iter().position(|arg| arg == CASE) {
-        let task = args.get(at + 1).map_or("", String::as_str);
-        println!("{}", perform(task, &peers())?);
+        let measurement = args.get(at + 1).map_or("", String::as_str);
+        println!("{}", perform(measurement, &peers())?);
         return Ok(());
     }
     // Cargo passes --bench to benchmarks, unless it runs them as tests.
@@ -57,8 +57,8 @@ fn measure(args: &[String]) -> Result<()> {
     }
     let work = match (is_set("--peers"), is_set("--short")) {
         (true, _) => Work::Peers,
-        (false, true) => Work::Plan(Plan::short()),
-        (false, false) => Work::Plan(Plan::full()),
+        (false, true) => Work::Sweep(Sweep::short()),
+        (false, false) => Work::Sweep(Sweep::full()),
     };
     run(Path::new(folder), &pictures, &work)
 }
@@ -74,20 +74,20 @@ fn try_out() -> Result<()> {
     let picture = folder.path().join("ramp.png");
     let image = Image::new(48, 32, [ramp(1), ramp(2), ramp(5)])?;
     std::fs::write(&picture, image.encode_png()?).map_err(io)?;
-    let plan = Plan {
+    let sweep = Sweep {
         strokes: vec![10],
         article: [20, 5],
-        ..Plan::short()
+        ..Sweep::short()
     };
-    run(&folder.path().join("out"), &[picture], &Work::Plan(plan))
+    run(&folder.path().join("out"), &[picture], &Work::Sweep(sweep))
 }
 
 fn run(folder: &Path, pictures: &[PathBuf], work: &Work) -> Result<()> {
     let runner = Runner::new([CASE])?;
-    let measure = |task: &_| runner.run(task);
+    let measure = |case: &_, svg: &_| runner.case(case, svg);
     let mut say = |line: &str| println!("{line}");
-    let mut tell = |_: strokefit::lab::Event<'_>| {};
-    let mut output = Output::new(folder, &mut tell)?;
+    let mut tell = |_: strokefit::lab::Notice<'_>| {};
+    let mut output = ResultFolder::new(folder, &mut tell)?;
     let report = pareto::run(folder, pictures, work, &peers(), &measure, &mut say)?;
     pareto::publish(&mut output, folder, pictures, &report)?;
     match report.failures() {

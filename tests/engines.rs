@@ -21,7 +21,7 @@ use std::time::Duration;
 
 use serde_json::Value;
 use strokefit::browser;
-use strokefit::engines::{Engine, Page};
+use strokefit::engines::{Engine, Request};
 use strokefit::fit::{Budget, Config, Fitter};
 use strokefit::image::Image;
 use strokefit::metrics;
@@ -145,12 +145,12 @@ fn draws_fits_of_many_strokes_as_faithfully_as_resvg(name: &str) {
         return;
     };
     for Fitted { name, text, target } in fits() {
-        let page = Page {
+        let request = Request {
             svg: text,
             width: target.width(),
             height: target.height(),
         };
-        let drawn = engine.draw(&program, page, PATIENCE).unwrap().image;
+        let drawn = engine.draw(&program, request, PATIENCE).unwrap().image;
         let resvg = verify::fidelity(text, target).unwrap().psnr_db;
         let db = metrics::psnr(target, &drawn).unwrap();
         assert!(resvg > 40.0, "{name}: {resvg:.2} dB");
@@ -166,15 +166,15 @@ fn chromium_draws_as_it_is_foreseen() {
     };
     for Fitted { name, text, target } in fits() {
         let (width, height) = (target.width(), target.height());
-        let page = Page {
+        let request = Request {
             svg: text,
             width,
             height,
         };
-        let drawn = engine.draw(&program, page, PATIENCE).unwrap().image;
+        let drawn = engine.draw(&program, request, PATIENCE).unwrap().image;
         let scene = svg::read(text).unwrap();
-        let ground = scene.background.unwrap_or([1.0; 3]);
-        let page = Image::filled(width, height, ground).unwrap();
+        let background = scene.background.unwrap_or([1.0; 3]);
+        let page = Image::filled(width, height, background).unwrap();
         let foreseen = browser::draw(scene.strokes(), &[page]).remove(0);
         let db = metrics::psnr(&foreseen, &drawn).unwrap();
         assert!(db >= 50.0, "{name}: {db:.2} dB");
@@ -266,12 +266,12 @@ fn drawn_by_both(
     svg: &str,
     [width, height]: [u32; 2],
 ) -> [Image; 2] {
-    let page = Page {
+    let request = Request {
         svg,
         width: width as usize,
         height: height as usize,
     };
-    let drawn = engine.draw(program, page, PATIENCE).unwrap().image;
+    let drawn = engine.draw(program, request, PATIENCE).unwrap().image;
     let resvg = verify::render(svg, Size::Exact { width, height }, Some([1.0; 3])).unwrap();
     [drawn, resvg]
 }
@@ -285,8 +285,8 @@ fn draws_every_kind_of_stroke(name: &str) {
         let [drawn, resvg] = drawn_by_both(engine, &program, &text, [64, 48]);
         let db = metrics::psnr(&resvg, &drawn).unwrap();
         assert!(db >= 36.0, "{kind}: {db:.2} dB from resvg");
-        let ground = Image::filled(64, 48, [1.0, 0.9, 0.7]).unwrap();
-        let ink = |image| metrics::l1(&ground, image).unwrap();
+        let background = Image::filled(64, 48, [1.0, 0.9, 0.7]).unwrap();
+        let ink = |image| metrics::l1(&background, image).unwrap();
         let ratio = ink(&drawn) / ink(&resvg);
         assert!(
             (0.95..1.05).contains(&ratio),
@@ -321,7 +321,7 @@ fn scales_to_the_size_asked_for(name: &str) {
     let Some((engine, program)) = installed(name) else {
         return;
     };
-    // Without a ground: the page is white.
+    // Without a background: the page is white.
     let scene = Scene {
         background: None,
         ..kinds().swap_remove(4).1

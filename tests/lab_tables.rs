@@ -5,8 +5,8 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use strokefit::coverage::Coverage;
-use strokefit::lab::descent::{Descent, Method};
-use strokefit::lab::table::{SHOWN, STEPS, Setup};
+use strokefit::lab::descent::{Method, Trajectory};
+use strokefit::lab::table::{Experiment, SHOWN, STEPS};
 use strokefit::lab::{circle, star};
 use strokefit::math::Real;
 
@@ -76,7 +76,7 @@ impl Row {
     }
 
     fn descend<T: Real>(&self, nudge: f64) -> Vec<f64> {
-        let shown = |descent: Descent<T>| {
+        let shown = |descent: Trajectory<T>| {
             let steps = SHOWN.iter().chain(&[STEPS]);
             steps.map(|&step| descent.loss_at(step)).collect()
         };

@@ -20,7 +20,7 @@ mod count;
 mod limits;
 
 use strokefit::Result;
-use strokefit::bench::measure::{DEPTH, EDGE, Size, fastest, thread_counts};
+use strokefit::bench::measure::{DEPTH, EDGE, StrokeSize, fastest, thread_counts};
 use strokefit::fit::{Budget, Config, Fitter, Objective, Simd};
 use strokefit::image::Image;
 use strokefit::loss::Loss;
@@ -30,7 +30,7 @@ use count::{Count, Work};
 use limits::Limits;
 
 const PICTURE: &str = "samples/coffee-550x220.png";
-const GROUND: [f32; 3] = [0.5; 3];
+const BACKDROP: [f32; 3] = [0.5; 3];
 
 /// Sizes of random strokes: radius and length, px.
 const SIZES: [(&str, f32, f32); 3] = [
@@ -86,31 +86,31 @@ impl Options {
 }
 
 /// Strokes to measure, and the work that they are.
-struct Drawing {
+struct Workload {
     name: String,
     strokes: Vec<Params>,
-    ground: [f32; 3],
+    backdrop: [f32; 3],
     count: Count,
 }
 
-impl Drawing {
-    fn new(name: String, strokes: Vec<Params>, ground: [f32; 3], target: &Canvas) -> Self {
+impl Workload {
+    fn new(name: String, strokes: Vec<Params>, backdrop: [f32; 3], target: &Canvas) -> Self {
         let count = Count::of(target.grid(), &strokes);
         Self {
             name,
             strokes,
-            ground,
+            backdrop,
             count,
         }
     }
 }
 
-fn random(target: &Canvas) -> Vec<Drawing> {
+fn random(target: &Canvas) -> Vec<Workload> {
     let grid = target.grid();
     let mut drawings = Vec::new();
     for (name, radius_px, length_px) in SIZES {
         for opacity in OPACITIES {
-            let size = Size {
+            let size = StrokeSize {
                 radius_px,
                 length_px,
                 opacity,
@@ -118,14 +118,14 @@ fn random(target: &Canvas) -> Vec<Drawing> {
             let count = DEPTH * (grid.width * grid.height) as f32 / size.area_px();
             let strokes = size.strokes(grid, count as usize);
             let name = format!("{name} {opacity:.1}");
-            drawings.push(Drawing::new(name, strokes, GROUND, target));
+            drawings.push(Workload::new(name, strokes, BACKDROP, target));
         }
     }
     drawings
 }
 
 /// A fit of the picture, as it is when finished.
-fn settled(image: &Image, options: &Options) -> Result<Drawing> {
+fn settled(image: &Image, options: &Options) -> Result<Workload> {
     let config = Config {
         budget: Budget {
             strokes: Some(options.strokes),
@@ -136,9 +136,9 @@ fn settled(image: &Image, options: &Options) -> Result<Drawing> {
     };
     let scene = Fitter::new(config).fit(image)?.scene;
     let strokes = scene.strokes().map(pack).collect();
-    let ground = scene.background.unwrap_or([1.0; 3]);
+    let backdrop = scene.background.unwrap_or([1.0; 3]);
     let target = Canvas::from_image(image);
-    Ok(Drawing::new("settled".into(), strokes, ground, &target))
+    Ok(Workload::new("settled".into(), strokes, backdrop, &target))
 }
 
 /// Shortest times of one drawing on some number of threads, s.
@@ -151,7 +151,7 @@ struct Speed {
 }
 
 /// Prints pairs per second; returns the times by drawing and number of threads.
-fn speeds(drawings: &[Drawing], target: &Canvas, rounds: usize) -> Vec<Vec<Speed>> {
+fn speeds(drawings: &[Workload], target: &Canvas, rounds: usize) -> Vec<Vec<Speed>> {
     println!(
         "million pairs per second; forward+backward in `backward`, leave-one-out too in `worth`"
     );
@@ -174,7 +174,7 @@ fn speeds(drawings: &[Drawing], target: &Canvas, rounds: usize) -> Vec<Vec<Speed
         .collect()
 }
 
-fn speed(drawing: &Drawing, target: &Canvas, rounds: usize) -> Vec<Speed> {
+fn speed(drawing: &Workload, target: &Canvas, rounds: usize) -> Vec<Speed> {
     let grid = target.grid();
     let count = &drawing.count;
     let pixels = (grid.width * grid.height) as f64;
@@ -201,7 +201,7 @@ fn speed(drawing: &Drawing, target: &Canvas, rounds: usize) -> Vec<Speed> {
 }
 
 /// Times for every number of threads, which take turns.
-fn times(drawing: &Drawing, target: &Canvas, rounds: usize) -> Vec<Speed> {
+fn times(drawing: &Workload, target: &Canvas, rounds: usize) -> Vec<Speed> {
     let level = Simd::Auto.level().expect("every machine has a SIMD level");
     let mut benches: Vec<Bench<'_>> = thread_counts()
         .into_iter()
@@ -221,7 +221,7 @@ fn times(drawing: &Drawing, target: &Canvas, rounds: usize) -> Vec<Speed> {
 
 /// A drawing on a number of threads.
 struct Bench<'a> {
-    drawing: &'a Drawing,
+    drawing: &'a Workload,
     target: &'a Canvas,
     pool: rayon::ThreadPool,
     renderer: Renderer,
@@ -231,7 +231,7 @@ struct Bench<'a> {
 
 impl<'a> Bench<'a> {
     fn new(
-        drawing: &'a Drawing,
+        drawing: &'a Workload,
         target: &'a Canvas,
         level: fearless_simd::Level,
         threads: usize,
@@ -244,7 +244,7 @@ impl<'a> Bench<'a> {
             target,
             renderer: pool.install(|| Renderer::new(grid, level)),
             pool,
-            canvas: Canvas::flat(grid, GROUND),
+            canvas: Canvas::flat(grid, BACKDROP),
             gradients: Gradients::default(),
         }
     }
@@ -268,7 +268,7 @@ impl<'a> Bench<'a> {
             canvas,
             gradients,
         } = self;
-        let (strokes, backdrop) = (&drawing.strokes, Backdrop::Color(drawing.ground));
+        let (strokes, backdrop) = (&drawing.strokes, Backdrop::Color(drawing.backdrop));
         let objective = Objective::new(Loss::L2, target);
         pool.install(|| {
             let [forward] = fastest(
@@ -306,7 +306,7 @@ impl<'a> Bench<'a> {
 }
 
 /// Prints what the passes do per lane, what the machine can do, and the share of it that is reached.
-fn arithmetic(drawings: &[Drawing], speeds: &[Vec<Speed>], limits: &[Limits]) {
+fn arithmetic(drawings: &[Workload], speeds: &[Vec<Speed>], limits: &[Limits]) {
     println!("\nper lane visited, counted from the code");
     println!(
         "{:<14} {:>11} {:>6} {:>10}",
@@ -341,7 +341,7 @@ fn arithmetic(drawings: &[Drawing], speeds: &[Vec<Speed>], limits: &[Limits]) {
     }
 }
 
-fn share(drawing: &Drawing, speed: &Speed, limits: &Limits) {
+fn share(drawing: &Workload, speed: &Speed, limits: &Limits) {
     let work = drawing.count.work();
     let pairs = drawing.count.pairs as f64;
     let rate = work.operations / speed.worth / 1e9;
@@ -358,7 +358,7 @@ fn share(drawing: &Drawing, speed: &Speed, limits: &Limits) {
     );
 }
 
-fn busy(drawing: &Drawing, speed: &Speed, limits: &Limits) {
+fn busy(drawing: &Workload, speed: &Speed, limits: &Limits) {
     let work = drawing.count.work();
     let share = |amount: f64, limit: f64| 100.0 * amount / (limit * 1e9) / speed.worth;
     println!(
@@ -372,7 +372,7 @@ fn busy(drawing: &Drawing, speed: &Speed, limits: &Limits) {
 }
 
 /// Prints `backward` of a drawing at every level of this machine.
-fn levels(drawing: &Drawing, target: &Canvas, rounds: usize) {
+fn levels(drawing: &Workload, target: &Canvas, rounds: usize) {
     let levels = Simd::ALL
         .into_iter()
         .filter_map(|simd| Some((simd, simd.level()?)));

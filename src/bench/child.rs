@@ -1,8 +1,8 @@
-//! Measuring in processes of their own, so that the peak memory of a case is its own and a case that
-//! dies takes nothing with it.
+//! Runs each measurement in a process of its own: its peak memory is then that of one case, and a case
+//! that crashes ends nothing else.
 
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use serde::de::DeserializeOwned;
@@ -11,32 +11,29 @@ use serde::{Deserialize, Serialize};
 use super::pareto::{Case, Peer};
 use super::scaling::Point;
 use crate::error::{Error, ErrorKind, Result};
+use crate::report::pareto::ParetoEntry;
+use crate::report::scaling::PointEntry;
 
 /// What a child measures.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Task {
+enum Measurement {
     /// One drawing; its SVG goes to the file `svg`.
-    Case {
-        /// The drawing.
-        case: Case,
-        /// Where its SVG goes.
-        svg: PathBuf,
-    },
+    Case { case: Case, svg: PathBuf },
     /// One point of a series.
     Point(Point),
 }
 
-/// Does what [`Runner::run`] asked for; the answer is a line of JSON.
+/// Measures what a [`Runner`] asked for; the answer is a line of JSON.
 ///
 /// # Errors
-/// When `task` is none, or cannot be measured.
-pub fn perform(task: &str, peers: &[Box<dyn Peer>]) -> Result<String> {
-    let task: Task = serde_json::from_str(task)
+/// When `measurement` is none, or fails.
+pub fn perform(measurement: &str, peers: &[Box<dyn Peer>]) -> Result<String> {
+    let measurement: Measurement = serde_json::from_str(measurement)
         .map_err(|e| Error::new(ErrorKind::Config, format!("no task of a benchmark: {e}")))?;
-    let answer = match task {
-        Task::Case { case, svg } => serde_json::to_string(&case.measure(&svg, peers)?),
-        Task::Point(point) => serde_json::to_string(&point.measure()?),
+    let answer = match measurement {
+        Measurement::Case { case, svg } => serde_json::to_string(&case.measure(&svg, peers)?),
+        Measurement::Point(point) => serde_json::to_string(&point.measure()?),
     };
     answer.map_err(|e| Error::new(ErrorKind::Config, format!("the answer cannot be told: {e}")))
 }
@@ -45,7 +42,7 @@ pub fn perform(task: &str, peers: &[Box<dyn Peer>]) -> Result<String> {
 #[derive(Debug, Clone)]
 pub struct Runner {
     program: PathBuf,
-    /// What comes before the task.
+    /// What comes before the measurement.
     args: Vec<OsString>,
 }
 
@@ -68,15 +65,30 @@ impl Runner {
         })
     }
 
-    /// Has `task` done.
+    /// Makes and measures the drawing of `case` in a child, which writes its SVG to `svg`.
     ///
     /// # Errors
     /// [`ErrorKind::Io`], with the last line that the child said, when it did not answer.
-    pub fn run<T: DeserializeOwned>(&self, task: &Task) -> Result<T> {
+    pub fn case(&self, case: &Case, svg: &Path) -> Result<ParetoEntry> {
+        self.answer(&Measurement::Case {
+            case: case.clone(),
+            svg: svg.to_owned(),
+        })
+    }
+
+    /// Measures one point of a series in a child.
+    ///
+    /// # Errors
+    /// As [`Self::case`].
+    pub fn point(&self, point: &Point) -> Result<PointEntry> {
+        self.answer(&Measurement::Point(point.clone()))
+    }
+
+    fn answer<T: DeserializeOwned>(&self, measurement: &Measurement) -> Result<T> {
         let refuse = |what: String| Error::new(ErrorKind::Io, what);
-        let task = serde_json::to_string(task).map_err(|e| refuse(e.to_string()))?;
+        let text = serde_json::to_string(measurement).map_err(|e| refuse(e.to_string()))?;
         let mut command = Command::new(&self.program);
-        let output = command.args(&self.args).arg(task).output();
+        let output = command.args(&self.args).arg(text).output();
         let output =
             output.map_err(|e| refuse(format!("cannot start {}: {e}", self.program.display())))?;
         let answer = serde_json::from_slice(&output.stdout);

@@ -18,7 +18,7 @@ pub const DEPTH: f32 = 10.0;
 
 /// Strokes of one size.
 #[derive(Debug, Clone, Copy)]
-pub struct Size {
+pub struct StrokeSize {
     /// Half the width, px.
     pub radius_px: f32,
     /// From end to end of the centre line.
@@ -27,7 +27,7 @@ pub struct Size {
     pub opacity: f32,
 }
 
-impl Size {
+impl StrokeSize {
     /// Pixels that a stroke covers, its soft edge included.
     pub fn area_px(self) -> f32 {
         let outer = self.radius_px + EDGE.width / 2.0;
@@ -114,7 +114,7 @@ mod tests {
     fn strokes_cover_the_picture_as_often_as_is_said() {
         for count in [10, 1000, 100_000] {
             let pixels = 1e6;
-            let depth = Size::covering(pixels, count).area_px() * count as f32 / pixels;
+            let depth = StrokeSize::covering(pixels, count).area_px() * count as f32 / pixels;
             assert!((depth - DEPTH).abs() < 0.1, "{count}: {depth}");
         }
     }

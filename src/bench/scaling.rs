@@ -7,8 +7,7 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use super::child::Task as ChildTask;
-use super::measure::{EDGE, Size, fastest, thread_counts};
+use super::measure::{EDGE, StrokeSize, fastest, thread_counts};
 use crate::error::Result;
 use crate::fit::{Budget, Config, Execution, Fitter, Objective, Preset};
 use crate::image::Image;
@@ -18,7 +17,7 @@ use crate::report::Usage;
 use crate::report::scaling::{PointEntry, ScalingReport, SeriesEntry};
 use crate::rng;
 
-const GROUND: [f32; 3] = [0.5; 3];
+const BACKDROP: [f32; 3] = [0.5; 3];
 
 /// Pixels where strokes or threads vary, in millions, and strokes where pixels or threads do.
 const FIXED: (f64, usize) = (1.0, 5000);
@@ -34,7 +33,7 @@ const ROUNDS_S: f64 = 1.0;
 /// What is timed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Task {
+pub enum Workload {
     /// One call of `Renderer::backward`.
     Backward,
     /// A draft without polish, as quick as there is.
@@ -45,7 +44,7 @@ pub enum Task {
     Fit,
 }
 
-impl Task {
+impl Workload {
     /// The word for it.
     pub fn word(self) -> &'static str {
         match self {
@@ -79,7 +78,7 @@ impl Axis {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Point {
     /// What is timed.
-    pub task: Task,
+    pub workload: Workload,
     /// The picture, resampled to the size; a made one when `None`.
     pub picture: Option<PathBuf>,
     /// Its size, in millions of pixels.
@@ -92,7 +91,7 @@ pub struct Point {
 
 /// Points that differ in one thing.
 struct Series {
-    task: Task,
+    workload: Workload,
     axis: Axis,
     values: Vec<f64>,
 }
@@ -105,7 +104,7 @@ struct Series {
 pub fn run(
     short: bool,
     picture: Option<PathBuf>,
-    measure: &dyn Fn(&ChildTask) -> Result<PointEntry>,
+    measure: &dyn Fn(&Point) -> Result<PointEntry>,
     say: &mut dyn FnMut(&str),
 ) -> Result<ScalingReport> {
     if let Some(path) = &picture {
@@ -119,13 +118,13 @@ pub fn run(
     }
     if !short {
         let point = Point {
-            task: Task::Draft,
+            workload: Workload::Draft,
             picture,
             megapixels: LARGEST.0,
             strokes: LARGEST.1,
             threads: all_threads(),
         };
-        match measure(&ChildTask::Point(point)) {
+        match measure(&point) {
             Ok(point) => report.largest = Some(point),
             Err(error) => report.largest_failure = Some(error.to_string()),
         }
@@ -142,52 +141,52 @@ fn thorough() -> Vec<Series> {
     let decades = [100.0, 300.0, 1e3, 3e3, 1e4, 3e4, 1e5];
     let pixels = [0.05e6, 0.2e6, 1e6, 4e6, 24e6];
     vec![
-        Series::new(Task::Backward, Axis::Strokes, &decades),
-        Series::new(Task::Backward, Axis::Pixels, &pixels),
-        Series::of_threads(Task::Backward),
-        Series::new(Task::Stages, Axis::Strokes, &[100.0, 1e3, 1e4, 1e5]),
-        Series::new(Task::Stages, Axis::Pixels, &pixels),
-        Series::of_threads(Task::Stages),
-        Series::new(Task::Fit, Axis::Strokes, &[300.0, 1e3, 3e3]),
-        Series::new(Task::Fit, Axis::Pixels, &[0.05e6, 0.2e6, 0.8e6]),
-        Series::of_threads(Task::Fit),
+        Series::new(Workload::Backward, Axis::Strokes, &decades),
+        Series::new(Workload::Backward, Axis::Pixels, &pixels),
+        Series::of_threads(Workload::Backward),
+        Series::new(Workload::Stages, Axis::Strokes, &[100.0, 1e3, 1e4, 1e5]),
+        Series::new(Workload::Stages, Axis::Pixels, &pixels),
+        Series::of_threads(Workload::Stages),
+        Series::new(Workload::Fit, Axis::Strokes, &[300.0, 1e3, 3e3]),
+        Series::new(Workload::Fit, Axis::Pixels, &[0.05e6, 0.2e6, 0.8e6]),
+        Series::of_threads(Workload::Fit),
     ]
 }
 
 fn brief() -> Vec<Series> {
     vec![
-        Series::new(Task::Backward, Axis::Strokes, &[300.0, 3e3, 3e4]),
-        Series::new(Task::Backward, Axis::Pixels, &[0.05e6, 0.2e6, 1e6]),
-        Series::of_threads(Task::Backward),
-        Series::new(Task::Stages, Axis::Strokes, &[300.0, 1e3, 3e3]),
-        Series::new(Task::Stages, Axis::Pixels, &[0.05e6, 0.1e6, 0.2e6]),
-        Series::of_threads(Task::Stages),
+        Series::new(Workload::Backward, Axis::Strokes, &[300.0, 3e3, 3e4]),
+        Series::new(Workload::Backward, Axis::Pixels, &[0.05e6, 0.2e6, 1e6]),
+        Series::of_threads(Workload::Backward),
+        Series::new(Workload::Stages, Axis::Strokes, &[300.0, 1e3, 3e3]),
+        Series::new(Workload::Stages, Axis::Pixels, &[0.05e6, 0.1e6, 0.2e6]),
+        Series::of_threads(Workload::Stages),
     ]
 }
 
 impl Series {
-    fn new(task: Task, axis: Axis, values: &[f64]) -> Self {
+    fn new(workload: Workload, axis: Axis, values: &[f64]) -> Self {
         Self {
-            task,
+            workload,
             axis,
             values: values.to_vec(),
         }
     }
 
-    fn of_threads(task: Task) -> Self {
+    fn of_threads(workload: Workload) -> Self {
         let threads: Vec<f64> = thread_counts().iter().map(|&n| n as f64).collect();
-        Self::new(task, Axis::Threads, &threads)
+        Self::new(workload, Axis::Threads, &threads)
     }
 
     fn measured(
         &self,
         short: bool,
         picture: Option<&PathBuf>,
-        measure: &dyn Fn(&ChildTask) -> Result<PointEntry>,
+        measure: &dyn Fn(&Point) -> Result<PointEntry>,
     ) -> SeriesEntry {
         let (mut values, mut points, mut failures) = (Vec::new(), Vec::new(), Vec::new());
         for (&value, point) in self.values.iter().zip(self.points(short, picture)) {
-            match measure(&ChildTask::Point(point)) {
+            match measure(&point) {
                 Ok(point) => {
                     values.push(value);
                     points.push(point);
@@ -195,14 +194,14 @@ impl Series {
                 Err(error) => failures.push(format!("at {value}: {error}")),
             }
         }
-        SeriesEntry::new(self.task.word(), self.axis.word(), &values, points).failing(failures)
+        SeriesEntry::new(self.workload.word(), self.axis.word(), &values, points).failing(failures)
     }
 
     fn points(&self, short: bool, picture: Option<&PathBuf>) -> Vec<Point> {
         let (megapixels, strokes) = if short { FIXED_SHORT } else { FIXED };
         let point = |&value: &f64| {
             let point = Point {
-                task: self.task,
+                workload: self.workload,
                 picture: picture.cloned(),
                 megapixels,
                 strokes,
@@ -245,11 +244,11 @@ impl Point {
             Some(path) => resampled(&Image::open(path)?.flattened([1.0; 3]), pixels)?,
             None => made(pixels)?,
         };
-        let time = match self.task {
-            Task::Backward => self.backward(&picture)?,
-            Task::Stages => self.fit(&picture, Preset::Draft, false)?,
-            Task::Draft => self.fit(&picture, Preset::Draft, true)?,
-            Task::Fit => self.fit(&picture, Preset::Balanced, true)?,
+        let time = match self.workload {
+            Workload::Backward => self.backward(&picture)?,
+            Workload::Stages => self.fit(&picture, Preset::Draft, false)?,
+            Workload::Draft => self.fit(&picture, Preset::Draft, true)?,
+            Workload::Fit => self.fit(&picture, Preset::Balanced, true)?,
         };
         Ok(PointEntry {
             megapixels: self.megapixels,
@@ -273,14 +272,14 @@ impl Point {
     fn backward(&self, picture: &Image) -> Result<Time> {
         let target = Canvas::from_image(picture);
         let grid = target.grid();
-        let size = Size::covering((grid.width * grid.height) as f32, self.strokes);
+        let size = StrokeSize::covering((grid.width * grid.height) as f32, self.strokes);
         let strokes = size.strokes(grid, self.strokes);
         let objective = Objective::new(Loss::L2, &target);
         let level = self.execution().simd.require()?;
         Ok(self.execution().pool()?.install(|| {
             let mut renderer = Renderer::new(grid, level);
             let mut gradients = Gradients::default();
-            let backdrop = Backdrop::Color(GROUND);
+            let backdrop = Backdrop::Color(BACKDROP);
             let mut run =
                 || renderer.backward(&strokes, EDGE, backdrop, &objective, &mut gradients);
             let [once] = fastest(1, [&mut run]);
@@ -397,7 +396,7 @@ mod tests {
     #[test]
     fn a_point_has_its_time_and_memory() {
         let point = Point {
-            task: Task::Backward,
+            workload: Workload::Backward,
             picture: None,
             megapixels: 0.002,
             strokes: 10,

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::outline::{Edge, Outline};
+use super::outline::{Outline, Piece};
 use crate::math::Point;
 
 /// Sums up what lies to the right of edges.
@@ -63,7 +63,7 @@ impl Area {
     }
 
     /// Adds what lies to the right of `edge`, and says in which rows.
-    fn add(&mut self, edge: &Edge, sign: f32) -> Range<usize> {
+    fn add(&mut self, edge: &Piece, sign: f32) -> Range<usize> {
         let bottom = edge.bottom.y.min(self.height as f32);
         let mut upper = edge.at(edge.top.y.max(0.0));
         if upper.y >= bottom {

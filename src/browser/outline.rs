@@ -4,14 +4,14 @@ use crate::math::{Point, Vector};
 
 /// A straight piece of an outline, px.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Edge {
+pub(super) struct Piece {
     pub(super) top: Point,
     pub(super) bottom: Point,
     /// Whether its curve goes on below it.
     goes_on: bool,
 }
 
-impl Edge {
+impl Piece {
     fn height(&self) -> f32 {
         self.bottom.y - self.top.y
     }
@@ -30,7 +30,7 @@ impl Edge {
 /// An outline by its left and its right side, each from top to bottom.
 #[derive(Debug, Default)]
 pub(super) struct Outline {
-    pub(super) sides: [Vec<Edge>; 2],
+    pub(super) sides: [Vec<Piece>; 2],
 }
 
 impl Outline {
@@ -98,7 +98,7 @@ impl Outline {
     /// Adds an edge: what the outline, going round with its inside to the right, passes downwards is on the right.
     fn push(&mut self, is_down: bool, top: Point, bottom: Point, goes_on: bool) {
         if top.y < bottom.y {
-            let edge = Edge {
+            let edge = Piece {
                 top,
                 bottom,
                 goes_on,
@@ -166,13 +166,14 @@ fn snapped(p: Point) -> Point {
 
 /// The edges of `side` that begin within a row with a bend that is passed over: a slight one, and if the
 /// `other` side bends within a px of there, that is slight, too.
-fn unseen_bends(side: &[Edge], other: &[Edge]) -> Vec<usize> {
+fn unseen_bends(side: &[Piece], other: &[Piece]) -> Vec<usize> {
     let is_unseen = |&i: &usize| {
         let (upper, y) = (&side[i - 1], side[i].top.y);
         if y.fract() == 0.0 || !is_slight(side, i) {
             return false;
         }
-        let is_near = |edge: &Edge| edge.bottom.y > upper.top.y && (edge.bottom.y - y).abs() <= 1.0;
+        let is_near =
+            |edge: &Piece| edge.bottom.y > upper.top.y && (edge.bottom.y - y).abs() <= 1.0;
         let opposite = other.iter().position(is_near);
         opposite.is_none_or(|k| is_slight(other, k + 1))
     };
@@ -180,7 +181,7 @@ fn unseen_bends(side: &[Edge], other: &[Edge]) -> Vec<usize> {
 }
 
 /// Whether `side` hardly bends where its edge `i` begins, between two curves or lines.
-fn is_slight(side: &[Edge], i: usize) -> bool {
+fn is_slight(side: &[Piece], i: usize) -> bool {
     let (upper, Some(lower)) = (&side[i - 1], side.get(i)) else {
         return false;
     };
@@ -226,7 +227,7 @@ mod tests {
     #[test]
     fn a_dot_is_as_wide_as_its_stroke_and_bulges_between() {
         let Outline { sides } = outline([20.0, 20.0], [20.0, 20.0], 3.0);
-        let reach = |edge: &Edge| (edge.top - Point::new(20.0, 20.0)).norm();
+        let reach = |edge: &Piece| (edge.top - Point::new(20.0, 20.0)).norm();
         let reaches = sides.iter().flatten().map(reach);
         let most = reaches.fold(0.0_f32, f32::max);
         assert!((3.1..3.2).contains(&most), "{most}");

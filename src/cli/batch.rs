@@ -127,7 +127,7 @@ fn several(
     verbosity: Verbosity,
     draw: &Draw<'_>,
 ) -> Status {
-    let table = Table::of(jobs);
+    let table = NameColumn::of(jobs);
     verbosity.say(table.head());
     let (mut worst, mut done, mut failed) = (Status::Done, 0, 0);
     for (i, (job, outputs)) in jobs.iter().zip(outputs).enumerate() {
@@ -217,9 +217,9 @@ fn clash(path: &Path, jobs: usize) -> anyhow::Error {
 }
 
 /// The width of the pictures' names, in characters.
-struct Table(usize);
+struct NameColumn(usize);
 
-impl Table {
+impl NameColumn {
     fn of(jobs: &[Job<'_>]) -> Self {
         let widths = jobs
             .iter()

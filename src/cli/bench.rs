@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 use clap::{Subcommand, ValueEnum};
 use strokefit::bench::child::{Runner, perform};
-use strokefit::bench::pareto::{self, Plan, Preset, Work, installed, known, missing};
+use strokefit::bench::pareto::{self, Effort, Sweep, Work, installed, known, missing};
 use strokefit::bench::scaling;
 use strokefit::bench::stability::{self, Extent};
 use strokefit::coverage::CoverageSchedule;
-use strokefit::lab::{Event, Output};
+use strokefit::lab::{Notice, ResultFolder};
 
 use super::job::json;
 use super::{Status, Verbosity, domain, input, output};
@@ -89,7 +89,7 @@ enum PresetWord {
     Best,
 }
 
-impl From<PresetWord> for Preset {
+impl From<PresetWord> for Effort {
     fn from(word: PresetWord) -> Self {
         match word {
             PresetWord::Stages => Self::Stages,
@@ -120,7 +120,12 @@ struct Scaling {
 
 impl Benchmark {
     /// Runs it; how many cases failed.
-    fn run(&self, folder: &Path, files: &mut Output<'_>, verbosity: Verbosity) -> Result<usize> {
+    fn run(
+        &self,
+        folder: &Path,
+        files: &mut ResultFolder<'_>,
+        verbosity: Verbosity,
+    ) -> Result<usize> {
         match self {
             Self::Pareto(pareto) => pareto.run(folder, files, verbosity),
             Self::Stability(stability) => stability.run(files),
@@ -138,27 +143,32 @@ impl Pareto {
         if !self.svgs.is_empty() {
             return Work::Files(self.svgs.clone());
         }
-        let mut plan = if self.extents.short {
-            Plan::short()
+        let mut sweep = if self.extents.short {
+            Sweep::short()
         } else {
-            Plan::full()
+            Sweep::full()
         };
         if !self.strokes.is_empty() {
-            plan.strokes.clone_from(&self.strokes);
+            sweep.strokes.clone_from(&self.strokes);
         }
         if !self.preset.is_empty() {
-            plan.presets = self.preset.iter().map(|&word| word.into()).collect();
+            sweep.efforts = self.preset.iter().map(|&word| word.into()).collect();
         }
         if !self.coverage.is_empty() {
-            plan.coverages.clone_from(&self.coverage);
+            sweep.coverages.clone_from(&self.coverage);
         }
-        plan.seeds = self.seeds.unwrap_or(plan.seeds);
-        Work::Plan(plan)
+        sweep.seeds = self.seeds.unwrap_or(sweep.seeds);
+        Work::Sweep(sweep)
     }
 
-    fn run(&self, folder: &Path, files: &mut Output<'_>, verbosity: Verbosity) -> Result<usize> {
+    fn run(
+        &self,
+        folder: &Path,
+        files: &mut ResultFolder<'_>,
+        verbosity: Verbosity,
+    ) -> Result<usize> {
         let runner = Runner::new(CHILD)?;
-        let measure = |task: &_| runner.run(task);
+        let measure = |case: &_, svg: &_| runner.case(case, svg);
         let pictures = &self.pictures;
         let (work, peers) = (self.work(), installed());
         let report = pareto::run(folder, pictures, &work, &peers, &measure, &mut say)?;
@@ -173,7 +183,7 @@ impl Pareto {
 }
 
 impl Stability {
-    fn run(&self, files: &mut Output<'_>) -> Result<usize> {
+    fn run(&self, files: &mut ResultFolder<'_>) -> Result<usize> {
         let extent = if self.extents.short {
             Extent::Short
         } else {
@@ -193,9 +203,9 @@ impl Stability {
 }
 
 impl Scaling {
-    fn run(&self, files: &mut Output<'_>) -> Result<usize> {
+    fn run(&self, files: &mut ResultFolder<'_>) -> Result<usize> {
         let runner = Runner::new(CHILD)?;
-        let measure = |task: &_| runner.run(task);
+        let measure = |point: &_| runner.point(point);
         let report = scaling::run(self.extents.short, self.picture.clone(), &measure, &mut say)?;
         files.text("scaling.csv", &report.table().csv())?;
         files.text("scaling.md", &report.markdown())?;
@@ -226,12 +236,12 @@ pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
             return Ok(Status::Done);
         }
     };
-    let mut tell = |event: Event<'_>| {
-        if let Event::Wrote(path) = event {
+    let mut tell = |event: Notice<'_>| {
+        if let Notice::Wrote(path) = event {
             verbosity.detail(format_args!("wrote {}", path.display()));
         }
     };
-    let mut files = Output::new(folder, &mut tell)?;
+    let mut files = ResultFolder::new(folder, &mut tell)?;
     let failures = args.benchmark.run(folder, &mut files, verbosity)?;
     verbosity.say(format_args!("{}: {failures} failed", folder.display()));
     Ok(if failures == 0 {

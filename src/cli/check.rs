@@ -15,7 +15,7 @@ use strokefit::svg;
 use super::job::json;
 use super::output::Output;
 use super::{Status, Verbosity, complain, domain, input, misuse};
-use trial::{Pictures, Trial};
+use trial::{PictureFolder, Trial};
 
 /// The judge, always asked.
 const RESVG: &str = "resvg";
@@ -90,7 +90,11 @@ pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
         ));
     }
     let report = args.report.as_deref().map(Output::open).transpose()?;
-    let pictures = args.pictures.as_deref().map(Pictures::open).transpose()?;
+    let pictures = args
+        .pictures
+        .as_deref()
+        .map(PictureFolder::open)
+        .transpose()?;
     let record = judge(args, pictures)?;
     if let Some(output) = &report {
         output.write(&json(&record)?)?;
@@ -101,7 +105,7 @@ pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
     Ok(verdict(&record, args.renderer.is_some(), verbosity))
 }
 
-fn judge(args: &Args, pictures: Option<Pictures>) -> Result<CheckReport> {
+fn judge(args: &Args, pictures: Option<PictureFolder>) -> Result<CheckReport> {
     let svg = input::svg(&args.file)?;
     let target = args.input.as_deref().map(input::picture).transpose()?;
     let named = |error: anyhow::Error| match error.downcast::<strokefit::Error>() {

@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use anyhow::{Result, anyhow};
 use strokefit::fit::Progress;
-use strokefit::report::{Event, Phase};
+use strokefit::report::{Event, PhaseEntry};
 
 use super::output::{self, Output};
 
@@ -71,7 +71,7 @@ pub(super) struct Phases<'a> {
     events: &'a mut Events,
     started: Instant,
     /// Whether the part under way is polish, and what is known of it.
-    current: Option<(bool, Phase)>,
+    current: Option<(bool, PhaseEntry)>,
     path: String,
 }
 
@@ -113,7 +113,7 @@ impl<'a> Phases<'a> {
             .current
             .as_ref()
             .map_or(0, |(_, phase)| phase.iterations);
-        let phase = Phase {
+        let phase = PhaseEntry {
             path: self.path.clone(),
             stage: progress.stage,
             strokes: progress.strokes,

@@ -8,7 +8,7 @@ use clap::Subcommand;
 use strokefit::coverage::CoverageSchedule;
 use strokefit::fit::{Execution, Simd};
 use strokefit::image::Image;
-use strokefit::lab::{self, Event, Output, article};
+use strokefit::lab::{self, Notice, ResultFolder, article};
 
 use super::progress::Steps;
 use super::{Status, Verbosity, domain, input};
@@ -57,7 +57,7 @@ struct Article {
     #[command(flatten)]
     folder: Folder,
     #[command(flatten)]
-    recipe: Recipe,
+    recipe: RunArgs,
     /// Coverage function: smoothstep, sigmoid, tanh, atan[:K] or raw; A>B passes from one to another
     #[arg(long, value_name = "EDGE", default_value = "smoothstep")]
     coverage: CoverageSchedule,
@@ -78,11 +78,11 @@ struct Compare {
     #[command(flatten)]
     folder: Folder,
     #[command(flatten)]
-    recipe: Recipe,
+    recipe: RunArgs,
 }
 
 #[derive(Debug, clap::Args)]
-struct Recipe {
+struct RunArgs {
     /// How many strokes
     #[arg(long, value_name = "N", default_value = "5000", value_parser = domain::strokes, allow_negative_numbers = true)]
     strokes: usize,
@@ -97,13 +97,13 @@ struct Recipe {
     threads: Option<usize>,
 }
 
-impl Recipe {
-    fn config(&self) -> article::Config {
-        article::Config {
+impl RunArgs {
+    fn config(&self) -> article::Options {
+        article::Options {
             strokes: self.strokes,
             iterations: self.iterations,
             seed: self.seed,
-            ..article::Config::default()
+            ..article::Options::default()
         }
     }
 
@@ -129,7 +129,7 @@ impl Experiment {
         }
     }
 
-    fn run(&self, output: &mut Output<'_>) -> Result<()> {
+    fn run(&self, output: &mut ResultFolder<'_>) -> Result<()> {
         match self {
             Self::Sdf(_) => lab::sdf::run(output)?,
             Self::Field(_) => lab::field::run(output)?,
@@ -145,10 +145,10 @@ impl Experiment {
 }
 
 impl Article {
-    fn run(&self, output: &mut Output<'_>) -> Result<()> {
+    fn run(&self, output: &mut ResultFolder<'_>) -> Result<()> {
         let picture = opaque(&self.picture)?;
         let start = self.load.as_deref().map(load).transpose()?;
-        let config = article::Config {
+        let config = article::Options {
             coverage: self.coverage,
             every: self.every,
             ..self.recipe.config()
@@ -159,7 +159,7 @@ impl Article {
 }
 
 impl Compare {
-    fn run(&self, output: &mut Output<'_>) -> Result<()> {
+    fn run(&self, output: &mut ResultFolder<'_>) -> Result<()> {
         for path in &self.pictures {
             let picture = opaque(path)?;
             let stem = path.file_stem().unwrap_or_default().to_string_lossy();
@@ -176,25 +176,25 @@ fn opaque(path: &Path) -> Result<Image> {
     Ok(input::picture(path)?.flattened([1.0; 3]))
 }
 
-fn load(path: &Path) -> Result<article::Drawing> {
+fn load(path: &Path) -> Result<article::Capsules> {
     let name = path.display();
     let json = fs::read_to_string(path)
         .map_err(|e| anyhow!("{name}: cannot be read ({e}): give an article.json"))?;
-    Ok(article::Drawing::from_json(&json).map_err(|e| e.within(name))?)
+    Ok(article::Capsules::from_json(&json).map_err(|e| e.within(name))?)
 }
 
 pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
     let bar = Steps::new(verbosity.quiet);
     let mut files = 0;
-    let mut tell = |event: Event<'_>| match event {
-        Event::Doing { done, what } => bar.show(done, what),
-        Event::Wrote(path) => {
+    let mut tell = |event: Notice<'_>| match event {
+        Notice::Doing { done, what } => bar.show(done, what),
+        Notice::Wrote(path) => {
             files += 1;
             verbosity.detail(format_args!("wrote {}", path.display()));
         }
     };
     let folder = args.experiment.folder();
-    let outcome = Output::new(folder, &mut tell).map_err(Into::into);
+    let outcome = ResultFolder::new(folder, &mut tell).map_err(Into::into);
     let outcome = outcome.and_then(|mut output| args.experiment.run(&mut output));
     bar.clear();
     outcome?;

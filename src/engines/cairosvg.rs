@@ -9,9 +9,9 @@ pub(super) const ENGINE: Engine = Engine {
     arguments: |job| {
         Ok(vec![
             "--output-width".into(),
-            job.page.width.to_string().into(),
+            job.request.width.to_string().into(),
             "--output-height".into(),
-            job.page.height.to_string().into(),
+            job.request.height.to_string().into(),
             "--output".into(),
             job.png().into(),
             job.svg().into(),

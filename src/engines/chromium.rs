@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::fs;
 use std::io;
 
-use super::{Engine, Job, Page, SVG, process};
+use super::{Engine, Job, Request, SVG, process};
 
 pub(super) const ENGINE: Engine = Engine {
     name: "chromium",
@@ -33,13 +33,13 @@ const MARGIN: usize = 500;
 /// are dead.
 fn arguments(job: &Job<'_>) -> io::Result<Vec<OsString>> {
     let html = job.folder.join("page.html");
-    fs::write(&html, page(job.page))?;
+    fs::write(&html, page(job.request))?;
     let flag = |name: &str, value: OsString| {
         let mut flag = OsString::from(name);
         flag.push(value);
         flag
     };
-    let Page { width, height, .. } = job.page;
+    let Request { width, height, .. } = job.request;
     let mut arguments = vec![
         flag("--screenshot=", job.png().into()),
         flag("--user-data-dir=", job.folder.join("profile").into()),
@@ -71,8 +71,8 @@ const FLAGS: [&str; 14] = [
     "--log-level=0",
 ];
 
-fn page(page: Page<'_>) -> String {
-    let Page { width, height, .. } = page;
+fn page(request: Request<'_>) -> String {
+    let Request { width, height, .. } = request;
     format!(
         "<!doctype html><meta charset=\"utf-8\"><title>drawing</title>\
          <style>html,body{{margin:0;background:#fff}}\

@@ -8,14 +8,14 @@
 //!
 //! ```no_run
 //! use std::time::Duration;
-//! use strokefit::engines::{ENGINES, Page};
+//! use strokefit::engines::{ENGINES, Request};
 //!
 //! let svg = std::fs::read_to_string("photo.svg")?;
-//! let page = Page { svg: &svg, width: 640, height: 480 };
+//! let request = Request { svg: &svg, width: 640, height: 480 };
 //! for engine in &ENGINES {
 //!     match engine.locate() {
 //!         Some(program) => {
-//!             let drawn = engine.draw(&program, page, Duration::from_secs(60))?;
+//!             let drawn = engine.draw(&program, request, Duration::from_secs(60))?;
 //!             std::fs::write(format!("{}.png", engine.name), drawn.image.encode_png()?)?;
 //!         }
 //!         None => eprintln!("{} is not installed: {}", engine.name, engine.install),
@@ -46,7 +46,7 @@ use crate::svg::{self, Finding};
 use process::Outcome;
 
 pub use sheet::{DIFFERENCE_GAIN, compared};
-pub use verdict::{MAX_SHORTFALL_DB, MIN_AGREEMENT_DB, passes};
+pub use verdict::{MAX_SHORTFALL_DB, MIN_DB_AGAINST_RESVG, passes};
 
 /// All engines besides resvg.
 pub static ENGINES: [Engine; 4] = [
@@ -81,7 +81,7 @@ pub struct Engine {
 
 /// What to draw.
 #[derive(Debug, Clone, Copy)]
-pub struct Page<'a> {
+pub struct Request<'a> {
     /// The SVG text.
     pub svg: &'a str,
     /// Width of the picture, px; the page is scaled to it.
@@ -92,7 +92,7 @@ pub struct Page<'a> {
 
 /// What an engine made of a page.
 #[derive(Debug)]
-pub struct Drawn {
+pub struct Rendering {
     /// The picture, opaque, on white.
     pub image: Image,
     /// Version of the program, such as `1.2.2`.
@@ -104,7 +104,7 @@ pub struct Drawn {
 /// A page in the folder in which it is drawn.
 struct Job<'a> {
     folder: &'a Path,
-    page: Page<'a>,
+    request: Request<'a>,
 }
 
 impl Job<'_> {
@@ -129,19 +129,29 @@ impl Engine {
     /// [`ErrorKind::Svg`] when the page refers to anything outside itself; [`ErrorKind::Engine`]
     /// when the program cannot be started, fails, takes too long, or leaves no picture of the
     /// page's size.
-    pub fn draw(&self, program: &Path, page: Page<'_>, timeout: Duration) -> Result<Drawn> {
-        self.attempt(program, page, timeout)
+    pub fn draw(
+        &self,
+        program: &Path,
+        request: Request<'_>,
+        timeout: Duration,
+    ) -> Result<Rendering> {
+        self.attempt(program, request, timeout)
             .map_err(|e| e.within(self.name))
     }
 
-    fn attempt(&self, program: &Path, page: Page<'_>, timeout: Duration) -> Result<Drawn> {
-        refuse_external(page.svg)?;
+    fn attempt(
+        &self,
+        program: &Path,
+        request: Request<'_>,
+        timeout: Duration,
+    ) -> Result<Rendering> {
+        refuse_external(request.svg)?;
         let folder = private_folder().map_err(|e| unusable(&e))?;
         let job = Job {
             folder: folder.path(),
-            page,
+            request,
         };
-        fs::write(job.svg(), page.svg).map_err(|e| unusable(&e))?;
+        fs::write(job.svg(), request.svg).map_err(|e| unusable(&e))?;
         let arguments = (self.arguments)(&job).map_err(|e| unusable(&e))?;
         let version = self.version(program, folder.path(), timeout)?;
         let start = Instant::now();
@@ -154,7 +164,7 @@ impl Engine {
             Some(words) if outcome.messages.contains(words) => {
                 Err(fault("the program could not read the drawing"))
             }
-            _ => Ok(Drawn {
+            _ => Ok(Rendering {
                 image,
                 version,
                 wall,
@@ -184,7 +194,7 @@ impl Engine {
 
     /// The picture that the program left, on white.
     fn picture(&self, job: &Job<'_>) -> Result<Image> {
-        let Page { width, height, .. } = job.page;
+        let Request { width, height, .. } = job.request;
         let bytes = fs::read(job.png()).map_err(|_| fault("the program left no picture"))?;
         let image = Image::decode(&bytes, "its picture", Limits::default())?.flattened([1.0; 3]);
         let found = (image.width(), image.height());
@@ -250,13 +260,13 @@ mod tests {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"4\" height=\"2\" viewBox=\"0 0 4 2\"/>";
 
     fn draw(svg: &str, program: &str) -> Error {
-        let page = Page {
+        let request = Request {
             svg,
             width: 4,
             height: 2,
         };
         rsvg::ENGINE
-            .draw(Path::new(program), page, Duration::from_secs(20))
+            .draw(Path::new(program), request, Duration::from_secs(20))
             .unwrap_err()
     }
 

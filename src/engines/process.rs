@@ -71,7 +71,7 @@ pub(super) fn run(mut command: Command, folder: &Path, timeout: Duration) -> Res
         .stderr(file(MESSAGES).map_err(unusable)?);
     #[cfg(unix)]
     std::os::unix::process::CommandExt::process_group(&mut command, 0);
-    let mut group = Group(command.spawn().map_err(unusable)?);
+    let mut group = ProcessGroup(command.spawn().map_err(unusable)?);
     let Some(status) = group.wait(timeout).map_err(unusable)? else {
         let seconds = timeout.as_secs_f64();
         return Err(fault(format!(
@@ -87,9 +87,9 @@ pub(super) fn run(mut command: Command, folder: &Path, timeout: Duration) -> Res
 }
 
 /// A child and its descendants, which end with this value.
-struct Group(Child);
+struct ProcessGroup(Child);
 
-impl Group {
+impl ProcessGroup {
     /// How the child ended, or `None` after `timeout`.
     fn wait(&mut self, timeout: Duration) -> io::Result<Option<ExitStatus>> {
         let start = Instant::now();
@@ -105,7 +105,7 @@ impl Group {
     }
 }
 
-impl Drop for Group {
+impl Drop for ProcessGroup {
     fn drop(&mut self) {
         // Whoever has ended already is no reason to complain.
         #[cfg(unix)]

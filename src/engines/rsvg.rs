@@ -8,8 +8,8 @@ pub(super) const ENGINE: Engine = Engine {
     programs: &["rsvg-convert"],
     arguments: |job| {
         Ok(vec![
-            format!("--width={}", job.page.width).into(),
-            format!("--height={}", job.page.height).into(),
+            format!("--width={}", job.request.width).into(),
+            format!("--height={}", job.request.height).into(),
             "--background-color=white".into(),
             "--output".into(),
             job.png().into(),

@@ -11,7 +11,6 @@ use crate::scene::{MAX_PRECISION, Rgb, Scene, quantum};
 use crate::svg::WriteOptions;
 
 /// Most strokes of a drawing: resvg, and what is built on it, reads at most a million elements.
-pub const MAX_STROKES: usize = 900_000;
 
 /// What to fit. Equal configurations of equal pictures give equal bytes.
 #[derive(Debug, Clone, PartialEq)]

@@ -67,7 +67,7 @@ pub(super) fn decode(bytes: &[u8], limits: Limits) -> Result<Image> {
         return Err(truncated(format));
     }
     let ran_out = Cell::new(false);
-    let watched = Watched {
+    let watched = Supply {
         inner: Cursor::new(bytes),
         ran_out: &ran_out,
     };
@@ -119,7 +119,7 @@ fn check_size(width: u32, height: u32, limits: Limits) -> Result<()> {
 
 /// The decoded samples, turned as EXIF asks.
 fn samples(
-    bytes: Watched<'_>,
+    bytes: Supply<'_>,
     format: ImageFormat,
     limits: Limits,
 ) -> Result<Result<DynamicImage>, ImageError> {
@@ -187,12 +187,12 @@ fn one_line(error: &ImageError) -> String {
 
 /// The bytes of a file, and whether a reader asked for more than there are: the decoders disagree
 /// in how they report a file that is cut short, but all of them ask.
-struct Watched<'a> {
+struct Supply<'a> {
     inner: Cursor<&'a [u8]>,
     ran_out: &'a Cell<bool>,
 }
 
-impl Read for Watched<'_> {
+impl Read for Supply<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.inner.read(buffer)?;
         if count == 0 && !buffer.is_empty() {
@@ -202,7 +202,7 @@ impl Read for Watched<'_> {
     }
 }
 
-impl BufRead for Watched<'_> {
+impl BufRead for Supply<'_> {
     fn fill_buf(&mut self) -> io::Result<&[u8]> {
         let rest = self.inner.fill_buf()?;
         if rest.is_empty() {
@@ -216,7 +216,7 @@ impl BufRead for Watched<'_> {
     }
 }
 
-impl Seek for Watched<'_> {
+impl Seek for Supply<'_> {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         self.inner.seek(to)
     }

@@ -15,9 +15,9 @@ use std::time::Instant;
 use fearless_simd::Level;
 use rayon::ThreadPool;
 
-pub use drawing::{Drawing, Statistics};
+pub use drawing::{Capsules, Statistics};
 
-use super::Output;
+use super::ResultFolder;
 use crate::coverage::{Coverage, CoverageSchedule};
 use crate::error::Result;
 use crate::fit::{Execution, Objective};
@@ -52,7 +52,7 @@ const FRAME_MS: u32 = 80;
 
 /// What to run.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Config {
+pub struct Options {
     /// How many capsules, unless some are given.
     pub strokes: usize,
     /// How many steps.
@@ -66,7 +66,7 @@ pub struct Config {
 }
 
 /// The article's numbers.
-impl Default for Config {
+impl Default for Options {
     fn default() -> Self {
         Self {
             strokes: 5000,
@@ -79,11 +79,11 @@ impl Default for Config {
 }
 
 /// A drawing on its way.
-pub struct Descent {
+pub struct Reproduction {
     pool: ThreadPool,
     target: Canvas,
     renderer: Renderer,
-    drawing: Drawing,
+    drawing: Capsules,
     strokes: Adam<f32>,
     background: Adam<f32>,
     /// 1 for every number but the opacity, which stays as it is.
@@ -91,13 +91,13 @@ pub struct Descent {
     gradients: Gradients,
 }
 
-impl Descent {
+impl Reproduction {
     /// Starts from `drawing` towards `target`, which is as large.
     ///
     /// # Errors
     /// [`ErrorKind::Config`](crate::ErrorKind::Config) when `execution` asks for what this machine
     /// does not have.
-    pub fn new(target: &Image, drawing: Drawing, execution: Execution) -> Result<Self> {
+    pub fn new(target: &Image, drawing: Capsules, execution: Execution) -> Result<Self> {
         let level: Level = execution.simd.require()?;
         let pool = execution.pool()?;
         let grid = Grid::new(target.width(), target.height());
@@ -157,7 +157,7 @@ impl Descent {
     }
 
     /// The drawing as it is.
-    pub fn drawing(&self) -> &Drawing {
+    pub fn drawing(&self) -> &Capsules {
         &self.drawing
     }
 }
@@ -179,7 +179,7 @@ fn clamp(stroke: &mut Params, size: [f32; 2]) {
     }
 }
 
-impl Config {
+impl Options {
     /// The coverage function of step `step`, from 0.
     pub fn coverage_at(&self, step: usize) -> Coverage {
         if (step as f64) < EARLY * self.iterations as f64 {
@@ -193,26 +193,26 @@ impl Config {
 /// Runs the demo on `target`, from `start` or from a random drawing.
 ///
 /// Writes `article.csv` (a row per picture), `article.json` (the drawing, to be read by
-/// [`Drawing::from_json`]), `article.svg` with `article-svg.png` as resvg draws it,
+/// [`Capsules::from_json`]), `article.svg` with `article-svg.png` as resvg draws it,
 /// `article-initial.png`, `article-NNNNNN.png` every so many iterations, `article-final.png`, and
 /// the animations `article.gif` and, with legends, `article-legend.gif`.
 ///
 /// # Errors
 /// When a file cannot be written, or `start` is of another size than `target`.
 pub fn run(
-    output: &mut Output<'_>,
+    output: &mut ResultFolder<'_>,
     target: &Image,
-    config: &Config,
-    start: Option<Drawing>,
+    config: &Options,
+    start: Option<Capsules>,
     execution: Execution,
 ) -> Result<()> {
     let (width, height) = (target.width(), target.height());
     let start = match start {
         Some(drawing) => drawing.fitting(width, height)?,
-        None => Drawing::random(width, height, config.strokes, config.seed),
+        None => Capsules::random(width, height, config.strokes, config.seed),
     };
-    let mut descent = Descent::new(target, start, execution)?;
-    let mut film = Film::new();
+    let mut descent = Reproduction::new(target, start, execution)?;
+    let mut film = Recording::new();
     let begin = Instant::now();
     for step in 0..config.iterations {
         let shown = step % config.every.max(1) == 0;
@@ -238,11 +238,11 @@ pub fn run(
 }
 
 fn finish(
-    output: &mut Output<'_>,
-    mut film: Film,
+    output: &mut ResultFolder<'_>,
+    mut film: Recording,
     target: &Image,
-    config: &Config,
-    descent: &mut Descent,
+    config: &Options,
+    descent: &mut Reproduction,
     begin: Instant,
 ) -> Result<()> {
     let coverage = config.coverage.late;
@@ -321,13 +321,13 @@ impl Row {
 const CAPTION: usize = 380;
 
 /// The pictures so far.
-struct Film {
+struct Recording {
     table: Table,
     plain: Animation,
     legend: Animation,
 }
 
-impl Film {
+impl Recording {
     fn new() -> Self {
         let head = [
             "iteration",
@@ -353,7 +353,7 @@ impl Film {
             .push(&captioned(picture, &row.legend(), CAPTION)?, FRAME_MS)
     }
 
-    fn finish(self, output: &mut Output<'_>) -> Result<()> {
+    fn finish(self, output: &mut ResultFolder<'_>) -> Result<()> {
         output.bytes("article.gif", &self.plain.finish()?)?;
         output.bytes("article-legend.gif", &self.legend.finish()?)?;
         output.text("article.csv", &self.table.csv())
@@ -375,8 +375,8 @@ mod tests {
 
     #[test]
     fn the_loss_falls_and_numbers_stay_in_their_domain() {
-        let start = Drawing::random(24, 20, 60, 1);
-        let mut descent = Descent::new(&target(), start, Execution::default()).unwrap();
+        let start = Capsules::random(24, 20, 60, 1);
+        let mut descent = Reproduction::new(&target(), start, Execution::default()).unwrap();
         let first = descent.step(Coverage::Sigmoid);
         let last = (0..60)
             .map(|_| descent.step(Coverage::Sigmoid))
@@ -401,10 +401,10 @@ mod tests {
 
     #[test]
     fn a_mix_passes_to_its_second_function() {
-        let config = Config {
+        let config = Options {
             iterations: 10,
             coverage: "sigmoid>smoothstep".parse().unwrap(),
-            ..Config::default()
+            ..Options::default()
         };
         assert_eq!(config.coverage_at(6), Coverage::Sigmoid);
         assert_eq!(config.coverage_at(7), Coverage::Smoothstep);
@@ -413,13 +413,13 @@ mod tests {
     #[test]
     fn all_files_are_written_and_the_drawing_can_be_loaded() {
         let folder = tempfile::tempdir().unwrap();
-        let mut tell = |_: crate::lab::Event<'_>| {};
-        let mut output = Output::new(folder.path(), &mut tell).unwrap();
-        let config = Config {
+        let mut tell = |_: crate::lab::Notice<'_>| {};
+        let mut output = ResultFolder::new(folder.path(), &mut tell).unwrap();
+        let config = Options {
             strokes: 20,
             iterations: 5,
             every: 2,
-            ..Config::default()
+            ..Options::default()
         };
         run(&mut output, &target(), &config, None, Execution::default()).unwrap();
         let names = [
@@ -439,7 +439,7 @@ mod tests {
             );
         }
         let json = std::fs::read_to_string(folder.path().join("article.json")).unwrap();
-        let drawing = Drawing::from_json(&json).unwrap();
+        let drawing = Capsules::from_json(&json).unwrap();
         assert_eq!(drawing.strokes.len(), 20);
         run(
             &mut output,

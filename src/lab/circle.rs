@@ -11,10 +11,10 @@
 
 use rayon::prelude::*;
 
-use super::descent::{Descent, Method, descend};
-use super::matching::{Grid, Matching};
+use super::descent::{Method, Trajectory, descend};
+use super::matching::{Matching, Samples};
 use super::table::{self, STEPS};
-use super::{COVERAGES, Output, SIZE, sheet_of_step};
+use super::{COVERAGES, ResultFolder, SIZE, sheet_of_step};
 use crate::coverage::Coverage;
 use crate::error::Result;
 use crate::image::Image;
@@ -69,8 +69,8 @@ impl Setup {
 }
 
 /// The numbers are x, y and radius.
-impl table::Setup for Setup {
-    fn descend<T: Real>(&self) -> Descent<T> {
+impl table::Experiment for Setup {
+    fn descend<T: Real>(&self) -> Trajectory<T> {
         let grid = grid();
         let target = grid.draw::<Circle<T>>(&at(self.target), Coverage::Raw);
         let problem = Matching::<T, Circle<T>>::new(grid, self.coverage, target, RADII);
@@ -88,8 +88,8 @@ impl table::Setup for Setup {
     }
 }
 
-fn grid<T: Real>() -> Grid<T> {
-    Grid {
+fn grid<T: Real>() -> Samples<T> {
+    Samples {
         size: SIZE,
         origin: T::of(EPS),
         eps: T::zero(),
@@ -105,7 +105,7 @@ fn at<T: Real>(place: f64) -> [T; 3] {
 ///
 /// # Errors
 /// When a file cannot be written.
-pub fn run(output: &mut Output<'_>) -> Result<()> {
+pub fn run(output: &mut ResultFolder<'_>) -> Result<()> {
     let mut table = table::convergence();
     let all = TARGETS
         .iter()
@@ -130,10 +130,10 @@ pub fn run(output: &mut Output<'_>) -> Result<()> {
 }
 
 fn experiment(
-    output: &mut Output<'_>,
+    output: &mut ResultFolder<'_>,
     file: &str,
     setups: &[Setup],
-    ends: &[Descent<f64>],
+    ends: &[Trajectory<f64>],
 ) -> Result<()> {
     output.picture(
         &format!("{file}-loss.png"),
@@ -185,7 +185,7 @@ fn converged_of_nudged<T: Real>(setup: Setup) -> usize {
     let converged = |k: &usize| {
         let start = setup.start + (*k as f64 - (NUDGES / 2) as f64) * NUDGE;
         let nudged = Setup { start, ..setup };
-        table::Setup::descend::<T>(&nudged).loss_at(STEPS) < CONVERGED
+        table::Experiment::descend::<T>(&nudged).loss_at(STEPS) < CONVERGED
     };
     (0..NUDGES).into_par_iter().filter(converged).count()
 }
@@ -201,15 +201,20 @@ fn setups(target: f64, start: f64, method: Method) -> Vec<Setup> {
     coverages.map(setup).collect()
 }
 
-fn losses(title: &str, setups: &[Setup], descents: &[Descent<f64>]) -> Chart {
+fn losses(title: &str, setups: &[Setup], descents: &[Trajectory<f64>]) -> Chart {
     let names = setups.iter().map(|setup| setup.coverage.to_string());
     let losses = descents.iter().map(|descent| descent.losses.as_slice());
     Chart::of_losses(title, names.zip(losses))
 }
 
 /// The circles after `step` steps, their way there, and the target's outline.
-fn sheet(title: &str, setups: &[Setup], descents: &[Descent<f64>], step: usize) -> Result<Image> {
-    let panel = |(setup, descent): (&Setup, &Descent<f64>)| {
+fn sheet(
+    title: &str,
+    setups: &[Setup],
+    descents: &[Trajectory<f64>],
+    step: usize,
+) -> Result<Image> {
+    let panel = |(setup, descent): (&Setup, &Trajectory<f64>)| {
         let params = descent.params_at(step);
         let canvas = grid().draw::<Circle<f64>>(params, setup.coverage);
         let title = format!("{} {:.5}", setup.coverage, descent.loss_at(step));

@@ -7,10 +7,10 @@
 use rayon::prelude::*;
 
 use super::compose::{GRAY, reference, star};
-use super::descent::{Descent, Method, Problem, descend};
+use super::descent::{Method, Problem, Trajectory, descend};
 use super::star::START;
 use super::table::{self, STEPS};
-use super::{COVERAGES, Output, SIZE, sheet_of_step};
+use super::{COVERAGES, ResultFolder, SIZE, sheet_of_step};
 use crate::coverage::Coverage;
 use crate::error::Result;
 use crate::image::Image;
@@ -104,7 +104,7 @@ fn start() -> Vec<f64> {
 ///
 /// # Errors
 /// When a file cannot be written.
-pub fn run(output: &mut Output<'_>) -> Result<()> {
+pub fn run(output: &mut ResultFolder<'_>) -> Result<()> {
     let mut table = table::convergence();
     for (i, method) in METHODS.into_iter().enumerate() {
         let name = format!("colors-{method}");
@@ -135,7 +135,7 @@ pub fn run(output: &mut Output<'_>) -> Result<()> {
 }
 
 /// The target, and the drawings after `step` steps.
-fn sheet(title: &str, descents: &[Descent<f64>], step: usize) -> Result<Image> {
+fn sheet(title: &str, descents: &[Trajectory<f64>], step: usize) -> Result<Image> {
     let target = reference(Coverage::Raw).render(&star(1.0));
     let mut panels = vec![Panel::new(
         "target",

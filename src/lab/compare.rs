@@ -7,8 +7,8 @@
 
 use std::time::{Duration, Instant};
 
-use super::Output;
-use super::article::{self, Descent, Drawing};
+use super::ResultFolder;
+use super::article::{self, Capsules, Reproduction};
 use crate::coverage::{Coverage, CoverageSchedule};
 use crate::error::Result;
 use crate::fit::{Budget, Config, Execution, Fitter, Preset};
@@ -63,10 +63,10 @@ struct Row {
 /// # Errors
 /// When a file cannot be written or `execution` asks for what this machine does not have.
 pub fn run(
-    output: &mut Output<'_>,
+    output: &mut ResultFolder<'_>,
     name: &str,
     target: &Image,
-    config: &article::Config,
+    config: &article::Options,
     execution: Execution,
 ) -> Result<()> {
     let target = target.flattened(WHITE);
@@ -75,7 +75,7 @@ pub fn run(
     for (i, coverage) in schedules.iter().enumerate() {
         let done = i as f64 / (schedules.len() + 1) as f64;
         output.doing(done, &format!("{name}: the article's recipe, {coverage}"));
-        let config = article::Config {
+        let config = article::Options {
             coverage: *coverage,
             ..config.clone()
         };
@@ -91,10 +91,10 @@ pub fn run(
 }
 
 /// The article's recipe.
-fn at_once(target: &Image, config: &article::Config, execution: Execution) -> Result<Row> {
+fn at_once(target: &Image, config: &article::Options, execution: Execution) -> Result<Row> {
     let begin = Instant::now();
-    let start = Drawing::random(target.width(), target.height(), config.strokes, config.seed);
-    let mut descent = Descent::new(target, start, execution)?;
+    let start = Capsules::random(target.width(), target.height(), config.strokes, config.seed);
+    let mut descent = Reproduction::new(target, start, execution)?;
     for step in 0..config.iterations {
         descent.step(config.coverage_at(step));
     }
@@ -108,7 +108,7 @@ fn at_once(target: &Image, config: &article::Config, execution: Execution) -> Re
 /// The staged pipeline with as many strokes, and in as much time.
 fn staged(
     target: &Image,
-    config: &article::Config,
+    config: &article::Options,
     time_s: f64,
     execution: Execution,
 ) -> Result<Vec<Row>> {
@@ -197,7 +197,7 @@ fn table(rows: &[Row]) -> Table {
     table
 }
 
-fn markdown(name: &str, config: &article::Config, rows: &[Row]) -> String {
+fn markdown(name: &str, config: &article::Options, rows: &[Row]) -> String {
     format!(
         "# {name}: {} strokes, {} iterations, worst soft render first\n\n{}",
         config.strokes,
@@ -231,14 +231,14 @@ mod tests {
     #[test]
     fn every_recipe_has_its_row() {
         let folder = tempfile::tempdir().unwrap();
-        let mut tell = |_: crate::lab::Event<'_>| {};
-        let mut output = Output::new(folder.path(), &mut tell).unwrap();
+        let mut tell = |_: crate::lab::Notice<'_>| {};
+        let mut output = ResultFolder::new(folder.path(), &mut tell).unwrap();
         let ramp: Vec<f32> = (0..32 * 32).map(|i| (i % 32) as f32 / 31.0).collect();
         let target = Image::new(32, 32, [ramp.clone(), ramp.clone(), ramp]).unwrap();
-        let config = article::Config {
+        let config = article::Options {
             strokes: 10,
             iterations: 3,
-            ..article::Config::default()
+            ..article::Options::default()
         };
         run(&mut output, "ramp", &target, &config, Execution::default()).unwrap();
         let csv = std::fs::read_to_string(folder.path().join("ramp.csv")).unwrap();

@@ -5,7 +5,7 @@
 //! the canvas after each stroke; opaque, and with an opacity of ½.
 
 use super::star::STAR;
-use super::{COVERAGES, Output, SIZE};
+use super::{COVERAGES, ResultFolder, SIZE};
 use crate::coverage::Coverage;
 use crate::error::Result;
 use crate::image::Image;
@@ -54,7 +54,7 @@ pub fn star(opacity: f64) -> Scene {
 }
 
 /// One stroke laid on a canvas, pixel by pixel.
-struct Step {
+struct Overlay {
     /// `opacity·coverage`.
     m: Vec<f64>,
     /// `canvas·(1−m)`.
@@ -70,7 +70,7 @@ struct Step {
 ///
 /// # Errors
 /// When a file cannot be written.
-pub fn run(output: &mut Output<'_>) -> Result<()> {
+pub fn run(output: &mut ResultFolder<'_>) -> Result<()> {
     let mut table = Table::new(&["opacity", "stroke", "mean_m", "red", "green", "blue"]);
     for (opacity, name) in OPACITIES.into_iter().zip(["opaque", "half"]) {
         let steps = steps(&star(opacity), reference(Coverage::Smoothstep));
@@ -85,7 +85,7 @@ pub fn run(output: &mut Output<'_>) -> Result<()> {
     output.text("compose.csv", &table.csv())
 }
 
-fn steps(scene: &Scene, reference: Reference) -> Vec<Step> {
+fn steps(scene: &Scene, reference: Reference) -> Vec<Overlay> {
     let mut canvas = vec![scene.background; SIZE * SIZE];
     let step = |stroke: &Stroke| {
         let m = mask(scene, *stroke, reference);
@@ -94,7 +94,7 @@ fn steps(scene: &Scene, reference: Reference) -> Vec<Step> {
         let added: Vec<Rgb> = m.iter().map(|&m| stroke.color.map(|c| c * m)).collect();
         let sum = |(x, y): (&Rgb, &Rgb)| std::array::from_fn(|k| x[k] + y[k]);
         canvas = kept.iter().zip(&added).map(sum).collect();
-        Step {
+        Overlay {
             m,
             kept,
             added,
@@ -122,7 +122,7 @@ fn mean(canvas: &[Rgb]) -> Rgb {
     std::array::from_fn(|k| sum(k) / canvas.len() as f64)
 }
 
-fn sheet(opacity: f64, steps: &[Step]) -> Result<Image> {
+fn sheet(opacity: f64, steps: &[Overlay]) -> Result<Image> {
     let mut panels = Vec::new();
     for (i, step) in steps.iter().enumerate() {
         let n = i + 1;

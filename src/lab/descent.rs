@@ -102,14 +102,14 @@ impl fmt::Display for Method {
 
 /// The course of a descent.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Descent<T> {
+pub struct Trajectory<T> {
     /// The loss before each step and, last, after all of them.
     pub losses: Vec<f64>,
     /// The numbers at each of the losses.
     pub params: Vec<Vec<T>>,
 }
 
-impl<T> Descent<T> {
+impl<T> Trajectory<T> {
     /// The loss after `step` steps, or after the last one.
     pub fn loss_at(&self, step: usize) -> f64 {
         let last = self.losses.len().saturating_sub(1);
@@ -139,12 +139,12 @@ pub fn descend<T: Real>(
     start: &[T],
     method: Method,
     steps: usize,
-) -> Descent<T> {
+) -> Trajectory<T> {
     let mut params = start.to_vec();
     let mut gradient = vec![T::zero(); start.len()];
     let mut optimizer = method.optimizer(start.len());
     let scales = problem.scales(start.len());
-    let mut descent = Descent {
+    let mut descent = Trajectory {
         losses: Vec::with_capacity(steps + 1),
         params: Vec::with_capacity(steps + 1),
     };

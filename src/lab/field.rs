@@ -8,8 +8,8 @@
 use rayon::prelude::*;
 
 use super::descent::Problem;
-use super::matching::{Grid, Matching};
-use super::{COVERAGES, Output, SIZE};
+use super::matching::{Matching, Samples};
+use super::{COVERAGES, ResultFolder, SIZE};
 use crate::coverage::Coverage;
 use crate::error::Result;
 use crate::image::Image;
@@ -58,7 +58,7 @@ struct Field {
 ///
 /// # Errors
 /// When a file cannot be written.
-pub fn run(output: &mut Output<'_>) -> Result<()> {
+pub fn run(output: &mut ResultFolder<'_>) -> Result<()> {
     output.doing(
         0.0,
         "the loss at every position, for six coverage functions",
@@ -114,7 +114,7 @@ fn positions(step: usize) -> impl Iterator<Item = (usize, usize)> {
 
 impl Field {
     fn new(coverage: Coverage) -> Self {
-        let grid = Grid {
+        let grid = Samples {
             size: SIZE,
             origin: 0.0,
             eps: EPS,

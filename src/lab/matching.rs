@@ -9,7 +9,7 @@ use crate::math::{Point2, Real};
 use crate::sdf::{Capsule, Circle, Combination};
 
 /// A shape that is a few numbers, the last of them its radius.
-pub trait Shape<T: Real>: Sized {
+pub trait Parametric<T: Real>: Sized {
     /// How many numbers.
     const PARAMS: usize;
 
@@ -24,7 +24,7 @@ pub trait Shape<T: Real>: Sized {
 }
 
 /// `[x, y, radius]`.
-impl<T: Real> Shape<T> for Circle<T> {
+impl<T: Real> Parametric<T> for Circle<T> {
     const PARAMS: usize = 3;
 
     fn from_params(params: &[T]) -> Self {
@@ -45,7 +45,7 @@ impl<T: Real> Shape<T> for Circle<T> {
 }
 
 /// `[a.x, a.y, b.x, b.y, radius]`.
-impl<T: Real> Shape<T> for Capsule<T> {
+impl<T: Real> Parametric<T> for Capsule<T> {
     const PARAMS: usize = 5;
 
     fn from_params(params: &[T]) -> Self {
@@ -76,7 +76,7 @@ fn add<T: Real, const N: usize>(sum: &mut [T], weight: T, by: [T; N]) {
 
 /// A square of sample points one px apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Grid<T> {
+pub struct Samples<T> {
     /// Rows, and columns.
     pub size: usize,
     /// x and y of the first point, px.
@@ -85,7 +85,7 @@ pub struct Grid<T> {
     pub eps: T,
 }
 
-impl<T: Real> Grid<T> {
+impl<T: Real> Samples<T> {
     /// All points, row by row.
     pub fn points(self) -> impl Iterator<Item = Point2<T>> {
         let at = move |i: usize| T::of(i as f64) + self.origin;
@@ -93,20 +93,20 @@ impl<T: Real> Grid<T> {
     }
 
     /// Coverage of the union of the shapes of `params` at all points, with an edge of 1 px.
-    pub fn draw<S: Shape<T>>(self, params: &[T], coverage: Coverage) -> Vec<T> {
+    pub fn draw<S: Parametric<T>>(self, params: &[T], coverage: Coverage) -> Vec<T> {
         let shapes = shapes::<T, S>(params);
         let value = |p| coverage.value(union(&shapes, p, self.eps).1, T::one());
         self.points().map(value).collect()
     }
 }
 
-fn shapes<T: Real, S: Shape<T>>(params: &[T]) -> Vec<S> {
+fn shapes<T: Real, S: Parametric<T>>(params: &[T]) -> Vec<S> {
     params.chunks_exact(S::PARAMS).map(S::from_params).collect()
 }
 
 /// The distance to the union of `shapes` at `p`, with the index of the one that it is; where
 /// several tie, of the first.
-fn union<T: Real, S: Shape<T>>(shapes: &[S], p: Point2<T>, eps: T) -> (usize, T) {
+fn union<T: Real, S: Parametric<T>>(shapes: &[S], p: Point2<T>, eps: T) -> (usize, T) {
     let mut nearest = (0, T::of(f64::NEG_INFINITY));
     for (i, shape) in shapes.iter().enumerate() {
         let d = shape.distance(p, eps);
@@ -121,7 +121,7 @@ fn union<T: Real, S: Shape<T>>(shapes: &[S], p: Point2<T>, eps: T) -> (usize, T)
 /// The mean squared error between the coverage of a union of shapes `S` and a target.
 #[derive(Debug, Clone)]
 pub struct Matching<T, S> {
-    grid: Grid<T>,
+    grid: Samples<T>,
     coverage: Coverage,
     target: Vec<T>,
     /// Bounds of every radius, px.
@@ -129,10 +129,10 @@ pub struct Matching<T, S> {
     shapes: PhantomData<S>,
 }
 
-impl<T: Real, S: Shape<T>> Matching<T, S> {
+impl<T: Real, S: Parametric<T>> Matching<T, S> {
     /// Shapes covering by `coverage`, against `target`: one value per point of `grid`. Radii are
     /// kept within `radii`.
-    pub fn new(grid: Grid<T>, coverage: Coverage, target: Vec<T>, radii: [f64; 2]) -> Self {
+    pub fn new(grid: Samples<T>, coverage: Coverage, target: Vec<T>, radii: [f64; 2]) -> Self {
         Self {
             grid,
             coverage,
@@ -143,7 +143,7 @@ impl<T: Real, S: Shape<T>> Matching<T, S> {
     }
 }
 
-impl<T: Real, S: Shape<T>> Problem<T> for Matching<T, S> {
+impl<T: Real, S: Parametric<T>> Problem<T> for Matching<T, S> {
     fn evaluate(&self, params: &[T], gradient: &mut [T]) -> f64 {
         let shapes = shapes::<T, S>(params);
         let (eps, one) = (self.grid.eps, T::one());
@@ -174,8 +174,8 @@ impl<T: Real, S: Shape<T>> Problem<T> for Matching<T, S> {
 mod tests {
     use super::*;
 
-    fn check<S: Shape<f64>>(params: &[f64], target: &[f64]) {
-        let grid = Grid {
+    fn check<S: Parametric<f64>>(params: &[f64], target: &[f64]) {
+        let grid = Samples {
             size: 12,
             origin: 0.0,
             eps: 1e-4,

@@ -1,7 +1,7 @@
 //! The experiments of the article that this project starts from, and what they show beyond it.
 //!
 //! Each experiment is a file with a `run` that writes tables, pictures and animations to an
-//! [`Output`]; `strokefit lab` runs them by name. They use the same distances, coverage functions,
+//! [`ResultFolder`]; `strokefit lab` runs them by name. They use the same distances, coverage functions,
 //! optimisers and renderers as the fit.
 //!
 //! | experiment | question |
@@ -33,7 +33,7 @@ pub mod sdf;
 pub mod star;
 pub mod table;
 
-pub use output::{Event, Output};
+pub use output::{Notice, ResultFolder};
 
 use crate::coverage::Coverage;
 use crate::error::Result;

@@ -8,7 +8,7 @@ use crate::image::{Animation, AnimationFormat, Image};
 
 /// What an experiment is at.
 #[derive(Debug, Clone, Copy)]
-pub enum Event<'a> {
+pub enum Notice<'a> {
     /// Something is under way.
     Doing {
         /// Which part of the whole is done, 0..1.
@@ -21,18 +21,18 @@ pub enum Event<'a> {
 }
 
 /// A folder for results, and somebody to tell of them.
-pub struct Output<'a> {
+pub struct ResultFolder<'a> {
     dir: PathBuf,
-    tell: &'a mut dyn FnMut(Event<'_>),
+    tell: &'a mut dyn FnMut(Notice<'_>),
 }
 
-impl<'a> Output<'a> {
+impl<'a> ResultFolder<'a> {
     /// Results go to the folder `dir`, which is made if need be; `tell` is told of each file and of
     /// what is under way.
     ///
     /// # Errors
     /// [`ErrorKind::Io`](crate::ErrorKind::Io) when the folder cannot be made.
-    pub fn new(dir: impl Into<PathBuf>, tell: &'a mut dyn FnMut(Event<'_>)) -> Result<Self> {
+    pub fn new(dir: impl Into<PathBuf>, tell: &'a mut dyn FnMut(Notice<'_>)) -> Result<Self> {
         let dir = dir.into();
         fs::create_dir_all(&dir).map_err(|e| Error::unwritten(&dir, e))?;
         Ok(Self { dir, tell })
@@ -40,7 +40,7 @@ impl<'a> Output<'a> {
 
     /// Tells what is under way, and which part (0..1) of the whole is done.
     pub fn doing(&mut self, done: f64, what: &str) {
-        (self.tell)(Event::Doing { done, what });
+        (self.tell)(Notice::Doing { done, what });
     }
 
     /// Writes a text file.
@@ -84,7 +84,7 @@ impl<'a> Output<'a> {
     pub fn bytes(&mut self, name: &str, bytes: &[u8]) -> Result<()> {
         let path = self.dir.join(name);
         fs::write(&path, bytes).map_err(|e| Error::unwritten(&path, e))?;
-        (self.tell)(Event::Wrote(&path));
+        (self.tell)(Notice::Wrote(&path));
         Ok(())
     }
 }

@@ -4,7 +4,7 @@
 //! and of their union, intersection and subtraction; charts and a table of the coverage functions
 //! and their derivatives over the distance.
 
-use super::{Output, SIZE};
+use super::{ResultFolder, SIZE};
 use crate::coverage::Coverage;
 use crate::error::Result;
 use crate::math::Point2;
@@ -33,7 +33,7 @@ const SOFTNESS: f64 = 1.0;
 ///
 /// # Errors
 /// When a file cannot be written.
-pub fn run(output: &mut Output<'_>) -> Result<()> {
+pub fn run(output: &mut ResultFolder<'_>) -> Result<()> {
     output.text("sdf.csv", &table().csv())?;
     let derivative = |c: Coverage, d| c.derivative(d, SOFTNESS);
     let value = |c: Coverage, d| c.value(d, SOFTNESS);

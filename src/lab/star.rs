@@ -3,10 +3,10 @@
 //! The union of 16 capsules against a star that is drawn with `raw` coverage, 200 steps. The article
 //! does not give ε for this experiment; its losses come out at 1e-4, and are run at 1e-3 as well.
 
-use super::descent::{Descent, Method, descend};
-use super::matching::{Grid, Matching};
+use super::descent::{Method, Trajectory, descend};
+use super::matching::{Matching, Samples};
 use super::table::{self, STEPS};
-use super::{COVERAGES, Output, SIZE, sheet_of_step};
+use super::{COVERAGES, ResultFolder, SIZE, sheet_of_step};
 use crate::coverage::Coverage;
 use crate::error::Result;
 use crate::image::Image;
@@ -66,8 +66,8 @@ pub struct Setup {
 }
 
 impl Setup {
-    fn grid<T: Real>(&self) -> Grid<T> {
-        Grid {
+    fn grid<T: Real>(&self) -> Samples<T> {
+        Samples {
             size: SIZE,
             origin: T::zero(),
             eps: T::of(self.eps),
@@ -76,8 +76,8 @@ impl Setup {
 }
 
 /// The numbers are five per stroke, as in [`START`].
-impl table::Setup for Setup {
-    fn descend<T: Real>(&self) -> Descent<T> {
+impl table::Experiment for Setup {
+    fn descend<T: Real>(&self) -> Trajectory<T> {
         let grid = self.grid();
         let target = grid.draw::<Capsule<T>>(&flat(&STAR), Coverage::Raw);
         let problem = Matching::<T, Capsule<T>>::new(grid, self.coverage, target, RADII);
@@ -104,7 +104,7 @@ fn flat<T: Real>(rows: &[[f64; 5]]) -> Vec<T> {
 ///
 /// # Errors
 /// When a file cannot be written.
-pub fn run(output: &mut Output<'_>) -> Result<()> {
+pub fn run(output: &mut ResultFolder<'_>) -> Result<()> {
     let mut table = table::convergence();
     let atans = STEEPNESSES.map(|k| Coverage::Atan { k });
     let groups = METHODS.map(|method| (method.to_string(), method, COVERAGES));
@@ -133,7 +133,7 @@ fn setups(eps: f64, method: Method, coverages: [Coverage; 5]) -> Vec<Setup> {
 }
 
 fn experiment(
-    output: &mut Output<'_>,
+    output: &mut ResultFolder<'_>,
     table: &mut Table,
     name: &str,
     setups: &[Setup],
@@ -155,14 +155,19 @@ fn experiment(
     Ok(())
 }
 
-fn losses(title: &str, setups: &[Setup], descents: &[Descent<f64>]) -> Chart {
+fn losses(title: &str, setups: &[Setup], descents: &[Trajectory<f64>]) -> Chart {
     let names = setups.iter().map(|setup| setup.coverage.to_string());
     let losses = descents.iter().map(|descent| descent.losses.as_slice());
     Chart::of_losses(title, names.zip(losses))
 }
 
 /// The target, and the drawings after `step` steps.
-fn sheet(title: &str, setups: &[Setup], descents: &[Descent<f64>], step: usize) -> Result<Image> {
+fn sheet(
+    title: &str,
+    setups: &[Setup],
+    descents: &[Trajectory<f64>],
+    step: usize,
+) -> Result<Image> {
     let mut panels = Vec::new();
     if let Some(setup) = setups.first() {
         let target = setup

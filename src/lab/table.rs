@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::descent::Descent;
+use super::descent::Trajectory;
 use crate::math::Real;
 use crate::report::Table;
 
@@ -33,9 +33,9 @@ pub fn convergence() -> Table {
 }
 
 /// A descent that can be made in either precision.
-pub trait Setup: Sync {
+pub trait Experiment: Sync {
     /// The descent, all of it in the precision `T`.
-    fn descend<T: Real>(&self) -> Descent<T>;
+    fn descend<T: Real>(&self) -> Trajectory<T>;
 
     /// What it is of.
     fn labels(&self) -> Labels;
@@ -43,8 +43,13 @@ pub trait Setup: Sync {
 
 /// Makes all descents in both precisions and appends them to a [`convergence`] table; those in
 /// `f64` are given back.
-pub fn tabulated(table: &mut Table, setups: &[impl Setup]) -> Vec<Descent<f64>> {
-    let both = |setup: &_| (Setup::descend::<f64>(setup), Setup::descend::<f32>(setup));
+pub fn tabulated(table: &mut Table, setups: &[impl Experiment]) -> Vec<Trajectory<f64>> {
+    let both = |setup: &_| {
+        (
+            Experiment::descend::<f64>(setup),
+            Experiment::descend::<f32>(setup),
+        )
+    };
     let descents: Vec<_> = setups.par_iter().map(both).collect();
     for (setup, (double, single)) in setups.iter().zip(&descents) {
         push_descent(table, &setup.labels(), double);
@@ -54,7 +59,7 @@ pub fn tabulated(table: &mut Table, setups: &[impl Setup]) -> Vec<Descent<f64>> 
 }
 
 /// Appends a descent to a [`convergence`] table. The precision is `f64` or `f32`.
-pub fn push_descent<T: Real>(table: &mut Table, labels: &Labels, descent: &Descent<T>) {
+pub fn push_descent<T: Real>(table: &mut Table, labels: &Labels, descent: &Trajectory<T>) {
     let mut cells = labels.to_vec();
     cells.push(std::any::type_name::<T>().to_owned());
     let shown = SHOWN.iter().chain(&[STEPS]);

@@ -12,9 +12,9 @@ pub enum Event {
     /// The picture was read; work begins.
     Start(Input),
     /// The strokes of a stage were fitted.
-    Stage(Phase),
+    Stage(PhaseEntry),
     /// The strokes of all stages were fitted jointly; of one stage, where layers are polished alone.
-    Polish(Phase),
+    Polish(PhaseEntry),
     /// The files are written: the last event of a picture.
     Done(Box<FitReport>),
     /// Nothing was drawn: the last event of a picture.
@@ -28,7 +28,7 @@ pub enum Event {
 
 /// A part of a fit that has ended.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Phase {
+pub struct PhaseEntry {
     /// The picture as it was named.
     pub path: String,
     /// Index of the stage, from 1; one past the last for the polish of all. A stage that keeps no stroke in the
@@ -52,7 +52,7 @@ mod tests {
 
     #[test]
     fn an_event_is_a_flat_object_with_its_name() {
-        let phase = Phase {
+        let phase = PhaseEntry {
             path: "a.png".into(),
             stage: 2,
             strokes: 9,

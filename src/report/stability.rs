@@ -25,7 +25,7 @@ pub struct StabilityEntry {
     /// What was found.
     pub figure: String,
     /// Whether it holds.
-    pub verdict: Verdict,
+    pub verdict: Outcome,
     /// Why an exception is one.
     pub note: String,
     /// CPU time, s.
@@ -35,7 +35,7 @@ pub struct StabilityEntry {
 /// Whether a case holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Verdict {
+pub enum Outcome {
     /// It does.
     Pass,
     /// It does not, for a reason that is known and named, and that no drawing meets.
@@ -44,7 +44,7 @@ pub enum Verdict {
     Fail,
 }
 
-impl Verdict {
+impl Outcome {
     /// The word that a line of the table ends in.
     pub fn word(self) -> &'static str {
         match self {
@@ -66,7 +66,7 @@ impl StabilityReport {
 
     /// How many checks failed.
     pub fn failures(&self) -> usize {
-        let failed = |entry: &&StabilityEntry| entry.verdict == Verdict::Fail;
+        let failed = |entry: &&StabilityEntry| entry.verdict == Outcome::Fail;
         self.entries.iter().filter(failed).count()
     }
 
@@ -80,15 +80,15 @@ impl StabilityReport {
             figure,
             note,
             ..
-        } in of(Verdict::Exception)
+        } in of(Outcome::Exception)
         {
             exceptions.row([format!("`{group}/{name}`"), figure.clone(), note.clone()]);
         }
         format!(
             "# Hard cases\n\n{} cases: {} hold, {} are exceptions, {} failed.\n\n## Exceptions\n\n{}\n## All\n\n{}",
             self.entries.len(),
-            of(Verdict::Pass).count(),
-            of(Verdict::Exception).count(),
+            of(Outcome::Pass).count(),
+            of(Outcome::Exception).count(),
             self.failures(),
             exceptions.markdown(),
             self.table().markdown()
@@ -148,8 +148,8 @@ mod tests {
             cpu_s: None,
         };
         let report = StabilityReport::new(vec![
-            entry("a", Verdict::Pass, ""),
-            entry("b", Verdict::Exception, "a jump"),
+            entry("a", Outcome::Pass, ""),
+            entry("b", Outcome::Exception, "a jump"),
         ]);
         let text = report.markdown();
         assert!(

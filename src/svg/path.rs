@@ -79,7 +79,7 @@ pub(super) fn parse(d: &str, unit: Unit) -> Option<Parsed> {
         strokes: Vec::new(),
         has_corner: false,
     };
-    let mut pen = Pen::Nowhere;
+    let mut pen = Reached::Nowhere;
     let mut rest = d;
     while let Some(letter) = rest.chars().next() {
         let tail = &rest[letter.len_utf8()..];
@@ -87,12 +87,12 @@ pub(super) fn parse(d: &str, unit: Unit) -> Option<Parsed> {
         pen = pen.step(letter, Numbers(&tail[..end], unit), &mut parsed)?;
         rest = &tail[end..];
     }
-    matches!(pen, Pen::Drawn(_) | Pen::Dotted).then_some(parsed)
+    matches!(pen, Reached::Drawn(_) | Reached::Dotted).then_some(parsed)
 }
 
 /// Where the last step of a path led.
 #[derive(Clone, Copy)]
-enum Pen {
+enum Reached {
     Nowhere,
     /// To the start of a stroke.
     Put(Place),
@@ -102,7 +102,7 @@ enum Pen {
     Dotted,
 }
 
-impl Pen {
+impl Reached {
     fn step(self, letter: char, numbers: Numbers<'_>, parsed: &mut Parsed) -> Option<Self> {
         match (letter, self) {
             ('M', Self::Nowhere | Self::Drawn(_) | Self::Dotted) => {

@@ -11,7 +11,7 @@ use crate::coverage::{Coverage, CoverageSchedule};
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::{self, Budget, Config, Execution, Fitter};
 use crate::image::Image;
-use crate::lab::article::{Descent, Drawing};
+use crate::lab::article::{Capsules, Reproduction};
 use crate::metrics::Agreement;
 use crate::report::pareto::ParetoEntry;
 use crate::report::{StageEntry, Usage, gzip_bytes};
@@ -29,17 +29,17 @@ pub struct Case {
     /// The picture's file.
     pub picture: PathBuf,
     /// Who makes it, and how.
-    pub method: Method,
+    pub maker: Maker,
 }
 
 /// Who makes a drawing, and how.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Method {
+pub enum Maker {
     /// A fit.
     Fit {
         /// How much work.
-        preset: Preset,
+        effort: Effort,
         /// The coverage function or mix, in its own words.
         coverage: String,
         /// How many strokes.
@@ -75,7 +75,7 @@ pub enum Method {
 /// How much work a fit spends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Preset {
+pub enum Effort {
     /// The stages of a draft, without polish.
     Stages,
     /// `--preset draft`
@@ -86,7 +86,7 @@ pub enum Preset {
     Best,
 }
 
-impl Preset {
+impl Effort {
     /// The word for it.
     pub fn word(self) -> &'static str {
         match self {
@@ -104,17 +104,17 @@ impl Preset {
 pub enum Limit {
     /// After so many iterations.
     Iterations(usize),
-    /// After as much CPU time as the fit of this preset and as many strokes took.
+    /// After as much CPU time as the fit with this effort and as many strokes took.
     TimeOf {
         /// The fit.
-        preset: Preset,
+        effort: Effort,
         /// What it took, s.
         cpu_s: f64,
     },
 }
 
-/// A drawing as it was made.
-struct Drawn {
+/// A drawing as its maker left it.
+struct Made {
     text: String,
     strokes: Option<usize>,
     soft: Option<Image>,
@@ -123,7 +123,7 @@ struct Drawn {
     peak_rss_bytes: Option<u64>,
 }
 
-impl Drawn {
+impl Made {
     fn file(text: String) -> Self {
         Self {
             text,
@@ -135,7 +135,7 @@ impl Drawn {
     }
 }
 
-impl Method {
+impl Maker {
     /// Whose drawing it is.
     pub fn family(&self) -> &str {
         match self {
@@ -150,19 +150,19 @@ impl Method {
     pub fn label(&self) -> String {
         match self {
             Self::Fit {
-                preset,
+                effort,
                 coverage,
                 strokes,
                 seed,
-            } => format!("{} {strokes} {coverage} seed {seed}", preset.word()),
+            } => format!("{} {strokes} {coverage} seed {seed}", effort.word()),
             Self::Article {
                 strokes,
                 limit,
                 seed,
             } => match limit {
                 Limit::Iterations(n) => format!("{strokes} strokes, {n} iterations, seed {seed}"),
-                Limit::TimeOf { preset, .. } => {
-                    format!("{strokes} strokes, time of {}, seed {seed}", preset.word())
+                Limit::TimeOf { effort, .. } => {
+                    format!("{strokes} strokes, time of {}, seed {seed}", effort.word())
                 }
             },
             Self::Peer { settings, .. } => settings.clone(),
@@ -170,14 +170,14 @@ impl Method {
         }
     }
 
-    fn draw(&self, picture: &Image, peers: &[Box<dyn Peer>]) -> Result<Drawn> {
+    fn draw(&self, picture: &Image, peers: &[Box<dyn Peer>]) -> Result<Made> {
         match self {
             Self::Fit {
-                preset,
+                effort,
                 coverage,
                 strokes,
                 seed,
-            } => fitted(picture, *preset, coverage.parse()?, *strokes, *seed),
+            } => fitted(picture, *effort, coverage.parse()?, *strokes, *seed),
             Self::Article {
                 strokes,
                 limit,
@@ -189,12 +189,12 @@ impl Method {
                     Error::new(ErrorKind::Config, format!("{name} is not here: install it"))
                 })?;
                 let traced = peer.trace(picture, settings)?;
-                Ok(Drawn {
+                Ok(Made {
                     peak_rss_bytes: traced.peak_rss_bytes,
-                    ..Drawn::file(traced.svg)
+                    ..Made::file(traced.svg)
                 })
             }
-            Self::File { path, .. } => read(path).map(Drawn::file),
+            Self::File { path, .. } => read(path).map(Made::file),
         }
     }
 }
@@ -208,28 +208,28 @@ fn read(path: &Path) -> Result<String> {
 
 fn fitted(
     picture: &Image,
-    preset: Preset,
+    effort: Effort,
     coverage: CoverageSchedule,
     strokes: usize,
     seed: u64,
-) -> Result<Drawn> {
+) -> Result<Made> {
     let config = Config {
         budget: Budget {
             strokes: Some(strokes),
             ..Budget::default()
         },
-        preset: match preset {
-            Preset::Stages | Preset::Draft => fit::Preset::Draft,
-            Preset::Balanced => fit::Preset::Balanced,
-            Preset::Best => fit::Preset::Best,
+        preset: match effort {
+            Effort::Stages | Effort::Draft => fit::Preset::Draft,
+            Effort::Balanced => fit::Preset::Balanced,
+            Effort::Best => fit::Preset::Best,
         },
-        polish: preset != Preset::Stages,
+        polish: effort != Effort::Stages,
         coverage,
         seed,
         ..Config::default()
     };
     let fit = Fitter::new(config).fit(picture)?;
-    Ok(Drawn {
+    Ok(Made {
         text: svg::write(&fit.scene, &WriteOptions::default()),
         strokes: Some(fit.scene.len()),
         soft: Some(fit.soft),
@@ -238,14 +238,14 @@ fn fitted(
     })
 }
 
-fn article(picture: &Image, strokes: usize, limit: Limit, seed: u64) -> Result<Drawn> {
-    let start = Drawing::random(picture.width(), picture.height(), strokes, seed);
-    let mut descent = Descent::new(picture, start, Execution::default())?;
-    let clock = Clock::start();
+fn article(picture: &Image, strokes: usize, limit: Limit, seed: u64) -> Result<Made> {
+    let start = Capsules::random(picture.width(), picture.height(), strokes, seed);
+    let mut descent = Reproduction::new(picture, start, Execution::default())?;
+    let meter = Meter::start();
     let goes_on = |step: usize| match limit {
         Limit::Iterations(n) => step < n,
         Limit::TimeOf { cpu_s, .. } => {
-            !step.is_multiple_of(CLOCK_EVERY) || clock.cost().cpu_s.is_none_or(|used| used < cpu_s)
+            !step.is_multiple_of(CLOCK_EVERY) || meter.cost().cpu_s.is_none_or(|used| used < cpu_s)
         }
     };
     let mut step = 0;
@@ -255,14 +255,14 @@ fn article(picture: &Image, strokes: usize, limit: Limit, seed: u64) -> Result<D
     }
     let scene = descent.drawing().scene();
     // What it ends with may be thinner than any file has it: no soft render stands for the file.
-    Ok(Drawn {
+    Ok(Made {
         strokes: Some(scene.quantized(2).scene.len()),
-        ..Drawn::file(svg::write(&scene, &WriteOptions::default()))
+        ..Made::file(svg::write(&scene, &WriteOptions::default()))
     })
 }
 
-/// What has been used since a moment.
-struct Clock {
+/// Time and memory used since its start.
+struct Meter {
     start: Instant,
     before: Usage,
 }
@@ -275,7 +275,7 @@ struct Cost {
     peak_rss_bytes: Option<u64>,
 }
 
-impl Clock {
+impl Meter {
     fn start() -> Self {
         Self {
             start: Instant::now(),
@@ -300,27 +300,27 @@ impl Clock {
 impl Case {
     /// The record of this case before anything is known of the drawing.
     pub fn entry(&self, picture: &Image) -> ParetoEntry {
-        let (preset, coverage, seed) = match &self.method {
-            Method::Fit {
-                preset,
+        let (preset, coverage, seed) = match &self.maker {
+            Maker::Fit {
+                effort,
                 coverage,
                 seed,
                 ..
             } => (
-                Some(preset.word().to_owned()),
+                Some(effort.word().to_owned()),
                 Some(coverage.clone()),
                 Some(*seed),
             ),
-            Method::Article { seed, .. } => (None, None, Some(*seed)),
-            Method::Peer { .. } | Method::File { .. } => (None, None, None),
+            Maker::Article { seed, .. } => (None, None, Some(*seed)),
+            Maker::Peer { .. } | Maker::File { .. } => (None, None, None),
         };
         ParetoEntry {
             picture: stem(&self.picture),
             digest: digest(picture),
             width: picture.width(),
             height: picture.height(),
-            family: self.method.family().into(),
-            label: self.method.label(),
+            family: self.maker.family().into(),
+            label: self.maker.label(),
             preset,
             coverage,
             seed,
@@ -334,15 +334,15 @@ impl Case {
     /// When it cannot be made, written or drawn.
     pub fn measure(&self, svg_to: &Path, peers: &[Box<dyn Peer>]) -> Result<ParetoEntry> {
         let picture = open(&self.picture)?;
-        let clock = Clock::start();
-        let drawn = self.method.draw(&picture, peers)?;
-        let cost = clock.cost();
+        let meter = Meter::start();
+        let drawn = self.maker.draw(&picture, peers)?;
+        let cost = meter.cost();
         fs::write(svg_to, &drawn.text).map_err(|e| Error::unwritten(svg_to, e))?;
         let shown = verify::fidelity(&drawn.text, &picture)?;
         let agreement = drawn.soft.as_ref().map(|soft| agreement(&drawn.text, soft));
         let agreement_db = agreement.transpose()?.map(|a| a.psnr_db);
-        let timed = !matches!(self.method, Method::File { .. });
-        let foreign = matches!(self.method, Method::Peer { .. });
+        let timed = !matches!(self.maker, Maker::File { .. });
+        let foreign = matches!(self.maker, Maker::Peer { .. });
         Ok(ParetoEntry {
             strokes: drawn.strokes,
             wall_s: timed.then_some(cost.wall_s),

@@ -7,25 +7,24 @@
 mod case;
 mod gallery;
 mod journal;
-mod plan;
 mod programs;
+mod sweep;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-pub use case::{Case, Limit, Method, Preset};
-pub use plan::{Plan, Work};
+pub use case::{Case, Effort, Limit, Maker};
 pub use programs::{Peer, Traced, installed, known, missing};
+pub use sweep::{Sweep, Work};
 
-use super::child::Task;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
-use crate::lab::Output;
+use crate::lab::ResultFolder;
 use crate::report::pareto::{ParetoEntry, ParetoReport, charts, page};
 use journal::Journal;
 
-/// Measures one task, in a process of its own.
-pub type Measure<'a> = &'a dyn Fn(&Task) -> Result<ParetoEntry>;
+/// Measures one case, whose SVG goes to a file of the given name.
+pub type Measure<'a> = &'a dyn Fn(&Case, &Path) -> Result<ParetoEntry>;
 
 /// A run under way.
 struct Run<'a> {
@@ -82,11 +81,8 @@ impl Run<'_> {
             (self.say)(&known.line());
             return Ok(());
         }
-        let task = Task::Case {
-            case: case.clone(),
-            svg: self.folder.join("svg").join(blank.svg_name()),
-        };
-        let entry = (self.measure)(&task).unwrap_or_else(|error| ParetoEntry {
+        let svg = self.folder.join("svg").join(blank.svg_name());
+        let entry = (self.measure)(case, &svg).unwrap_or_else(|error| ParetoEntry {
             failure: Some(error.to_string()),
             ..blank
         });
@@ -100,7 +96,7 @@ impl Run<'_> {
 /// # Errors
 /// When a file cannot be written or a plot not be drawn.
 pub fn publish(
-    output: &mut Output<'_>,
+    output: &mut ResultFolder<'_>,
     folder: &Path,
     pictures: &[PathBuf],
     report: &ParetoReport,

@@ -3,18 +3,18 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::case::{Case, Limit, Method, Preset, stem};
+use super::case::{Case, Effort, Limit, Maker, stem};
 use super::programs::Peer;
 use super::unread;
 use crate::coverage::CoverageSchedule;
 use crate::error::{Error, ErrorKind, Result};
 use crate::report::pareto::{OWN, ParetoEntry};
 
-/// What a run does.
+/// What a run measures.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Work {
     /// Fits, the article's recipe and peers.
-    Plan(Plan),
+    Sweep(Sweep),
     /// Peers alone, at all of their settings.
     Peers,
     /// Scores the SVGs in these folders that are named as the pictures.
@@ -23,11 +23,11 @@ pub enum Work {
 
 /// Which fits are made, and how the article's recipe is run.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Plan {
-    /// Numbers of strokes, at every preset with the first coverage function.
+pub struct Sweep {
+    /// Numbers of strokes, with every effort and the first coverage function.
     pub strokes: Vec<usize>,
-    /// Presets.
-    pub presets: Vec<Preset>,
+    /// How much work the fits spend.
+    pub efforts: Vec<Effort>,
     /// The first for everything; the others for a draft of the usual number of strokes.
     pub coverages: Vec<CoverageSchedule>,
     /// How many seeds, for a balanced fit of the usual number of strokes.
@@ -44,12 +44,12 @@ const USUAL_STROKES: usize = 1000;
 /// The article's own strokes and iterations.
 const ARTICLE_RUN: [usize; 2] = [5000, 1500];
 
-impl Plan {
+impl Sweep {
     /// Less than a minute for a picture.
     pub fn short() -> Self {
         Self {
             strokes: vec![10, 100, 400],
-            presets: vec![Preset::Draft, Preset::Balanced],
+            efforts: vec![Effort::Draft, Effort::Balanced],
             coverages: coverages(&["smoothstep", "sigmoid>smoothstep"]),
             seeds: 2,
             article: ARTICLE_RUN,
@@ -61,11 +61,11 @@ impl Plan {
     pub fn full() -> Self {
         Self {
             strokes: vec![10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000],
-            presets: vec![
-                Preset::Stages,
-                Preset::Draft,
-                Preset::Balanced,
-                Preset::Best,
+            efforts: vec![
+                Effort::Stages,
+                Effort::Draft,
+                Effort::Balanced,
+                Effort::Best,
             ],
             // In a fit all edges are as steep, so that tanh is sigmoid, and atan:K is atan.
             coverages: coverages(&[
@@ -80,9 +80,9 @@ impl Plan {
         }
     }
 
-    fn fits(&self) -> Vec<Method> {
-        let fit = |preset, coverage: &CoverageSchedule, strokes, seed| Method::Fit {
-            preset,
+    fn fits(&self) -> Vec<Maker> {
+        let fit = |effort, coverage: &CoverageSchedule, strokes, seed| Maker::Fit {
+            effort,
             coverage: coverage.to_string(),
             strokes,
             seed,
@@ -92,10 +92,10 @@ impl Plan {
         };
         let usual = self.usual_strokes();
         // Tails make a fit take ten times as long: a draft shows as well what they do.
-        let [quick, balanced] = [Preset::Draft, Preset::Balanced].map(|preset| self.preset(preset));
+        let [quick, balanced] = [Effort::Draft, Effort::Balanced].map(|effort| self.effort(effort));
         let mut fits = Vec::new();
-        for &preset in &self.presets {
-            let of_strokes = |&strokes: &usize| fit(preset, first, strokes, 0);
+        for &effort in &self.efforts {
+            let of_strokes = |&strokes: &usize| fit(effort, first, strokes, 0);
             fits.extend(self.strokes.iter().map(of_strokes));
         }
         let others = self.coverages[1..].iter();
@@ -103,10 +103,10 @@ impl Plan {
         fits.extend((1..self.seeds).map(|seed| fit(balanced, first, usual, seed)));
         // What the article's recipe is compared with, at its own number of strokes.
         let beside =
-            [Preset::Stages, Preset::Draft].map(|preset| fit(preset, first, self.article[0], 0));
-        for method in beside {
-            if !fits.contains(&method) {
-                fits.push(method);
+            [Effort::Stages, Effort::Draft].map(|effort| fit(effort, first, self.article[0], 0));
+        for maker in beside {
+            if !fits.contains(&maker) {
+                fits.push(maker);
             }
         }
         fits
@@ -119,28 +119,28 @@ impl Plan {
         usual.copied().unwrap_or(USUAL_STROKES)
     }
 
-    /// `preset`, if it is one of the plan's, or the first of them.
-    fn preset(&self, preset: Preset) -> Preset {
-        let first = self.presets.first().copied().unwrap_or(preset);
-        let is_there = self.presets.contains(&preset);
-        if is_there { preset } else { first }
+    /// `effort`, if it is one of the sweep's, or the first of them.
+    fn effort(&self, effort: Effort) -> Effort {
+        let first = self.efforts.first().copied().unwrap_or(effort);
+        let is_there = self.efforts.contains(&effort);
+        if is_there { effort } else { first }
     }
 }
 
 /// At most `settings` of each peer's, spread over them.
-fn peer_methods(peers: &[Box<dyn Peer>], settings: usize) -> Vec<Method> {
-    let methods = peers.iter().flat_map(|peer| {
+fn peer_makers(peers: &[Box<dyn Peer>], settings: usize) -> Vec<Maker> {
+    let makers = peers.iter().flat_map(|peer| {
         let all = peer.settings();
         let step = all.len().div_ceil(settings.max(1)).max(1);
         let name = peer.name().to_owned();
         all.into_iter()
             .step_by(step)
-            .map(move |settings| Method::Peer {
+            .map(move |settings| Maker::Peer {
                 name: name.clone(),
                 settings,
             })
     });
-    methods.collect()
+    makers.collect()
 }
 
 /// Words of this file alone: each is a coverage function.
@@ -151,35 +151,35 @@ fn coverages(words: &[&str]) -> Vec<CoverageSchedule> {
 impl Work {
     /// The drawings of one picture.
     pub(super) fn cases(&self, picture: &Path, peers: &[Box<dyn Peer>]) -> Result<Vec<Case>> {
-        let methods = match self {
-            Self::Plan(plan) => {
-                let [strokes, iterations] = plan.article;
-                let article = Method::Article {
+        let makers = match self {
+            Self::Sweep(sweep) => {
+                let [strokes, iterations] = sweep.article;
+                let article = Maker::Article {
                     strokes,
                     limit: Limit::Iterations(iterations),
                     seed: 0,
                 };
-                let mut methods = plan.fits();
-                methods.push(article);
-                methods.extend(peer_methods(peers, plan.peer_settings));
-                methods
+                let mut makers = sweep.fits();
+                makers.push(article);
+                makers.extend(peer_makers(peers, sweep.peer_settings));
+                makers
             }
-            Self::Peers => peer_methods(peers, usize::MAX),
+            Self::Peers => peer_makers(peers, usize::MAX),
             Self::Files(folders) => files(folders, picture)?,
         };
-        let case = |method| Case {
+        let case = |maker| Case {
             picture: picture.to_owned(),
-            method,
+            maker,
         };
-        Ok(methods.into_iter().map(case).collect())
+        Ok(makers.into_iter().map(case).collect())
     }
 
     /// The article's recipe for as long as our own fits of as many strokes took.
     pub(super) fn at_equal_time(&self, picture: &Path, entries: &[ParetoEntry]) -> Option<Case> {
-        let Self::Plan(plan) = self else {
+        let Self::Sweep(sweep) = self else {
             return None;
         };
-        let (name, strokes) = (stem(picture), plan.article[0]);
+        let (name, strokes) = (stem(picture), sweep.article[0]);
         let draft = entries.iter().find(|e| {
             let asked = e.label.split(' ').nth(1) == Some(strokes.to_string().as_str());
             e.picture == name
@@ -188,10 +188,10 @@ impl Work {
                 && e.seed == Some(0)
                 && asked
         })?;
-        let method = Method::Article {
+        let maker = Maker::Article {
             strokes,
             limit: Limit::TimeOf {
-                preset: Preset::Draft,
+                effort: Effort::Draft,
                 cpu_s: draft.cpu_s?,
             },
             seed: 0,
@@ -199,31 +199,31 @@ impl Work {
 
         Some(Case {
             picture: picture.to_owned(),
-            method,
+            maker,
         })
     }
 }
 
 /// The SVGs in `folders` that have the picture's name; a family is called as its folder.
-fn files(folders: &[PathBuf], picture: &Path) -> Result<Vec<Method>> {
+fn files(folders: &[PathBuf], picture: &Path) -> Result<Vec<Maker>> {
     let name = format!("{}.svg", stem(picture));
-    let mut methods = Vec::new();
+    let mut makers = Vec::new();
     for folder in folders {
         let path = folder.join(&name);
         fs::read_dir(folder).map_err(|e| unread(folder, e))?;
         if path.is_file() {
             let family = folder.file_name().unwrap_or(folder.as_os_str());
-            methods.push(Method::File {
+            makers.push(Maker::File {
                 family: family.to_string_lossy().into_owned(),
                 path,
             });
         }
     }
-    if methods.is_empty() {
+    if makers.is_empty() {
         let message = format!("no folder of SVGs has a {name}: name the files as the pictures");
         return Err(Error::new(ErrorKind::Config, message));
     }
-    Ok(methods)
+    Ok(makers)
 }
 
 #[cfg(test)]
@@ -233,14 +233,14 @@ mod tests {
 
     #[test]
     fn the_words_of_this_file_are_understood() {
-        assert_eq!(Plan::short().coverages.len(), 2);
-        assert_eq!(Plan::full().coverages.len(), 4);
+        assert_eq!(Sweep::short().coverages.len(), 2);
+        assert_eq!(Sweep::full().coverages.len(), 4);
     }
 
     #[test]
     fn no_drawing_is_planned_twice() {
-        for plan in [Plan::short(), Plan::full()] {
-            let labels: Vec<String> = plan.fits().iter().map(Method::label).collect();
+        for sweep in [Sweep::short(), Sweep::full()] {
+            let labels: Vec<String> = sweep.fits().iter().map(Maker::label).collect();
             let mut unique = labels.clone();
             unique.sort();
             unique.dedup();
@@ -250,14 +250,14 @@ mod tests {
 
     #[test]
     fn the_articles_recipe_is_always_there() {
-        let plan = Plan {
+        let sweep = Sweep {
             strokes: vec![10],
-            ..Plan::short()
+            ..Sweep::short()
         };
-        let cases = Work::Plan(plan).cases(Path::new("a.png"), &[]).unwrap();
-        let families: Vec<_> = cases.iter().map(|c| c.method.family().to_owned()).collect();
+        let cases = Work::Sweep(sweep).cases(Path::new("a.png"), &[]).unwrap();
+        let families: Vec<_> = cases.iter().map(|c| c.maker.family().to_owned()).collect();
         assert!(families.contains(&ARTICLE.to_owned()));
-        let beside = cases.iter().filter(|c| c.method.label().contains(" 5000 "));
+        let beside = cases.iter().filter(|c| c.maker.label().contains(" 5000 "));
         assert_eq!(beside.count(), 2, "fits of as many strokes");
     }
 }

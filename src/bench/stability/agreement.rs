@@ -5,7 +5,7 @@
 //! another path in resvg, a hairline, which is why no drawing has them: see
 //! [`MIN_WIDTH`](crate::scene::MIN_WIDTH).
 
-use super::{Check, Extent, Finding};
+use super::{Check, Extent, Observation};
 use crate::coverage::Coverage;
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::{Simd, final_softness};
@@ -42,7 +42,7 @@ pub(super) fn checks(map: &AgreementMap) -> Vec<Check<'_>> {
     let check = |name: &'static str, what: &'static str, worst: f64, note: &'static str| {
         Check::new("agreement", name, what, move || {
             let figure = format!("at most {worst:.1} levels root mean square, bound {MOST:.1}");
-            Ok(Finding::new(figure, worst <= MOST).excepting(note))
+            Ok(Observation::new(figure, worst <= MOST).excepting(note))
         })
     };
     let thin = |width: f64| width < MIN_WIDTH;

@@ -1,8 +1,8 @@
 //! Gradients where there is a kink: a pixel on the centre line, at the clamp of `h`, at the end of the
 //! soft edge. There the gradient has to lie between the slopes of both sides, and `f32` has to agree.
 
-use super::oracle::{Gap, Page, oracle, pixels, random, slopes};
-use super::{Check, Finding, WITHIN};
+use super::oracle::{Gap, Specimen, oracle, pixels, random, slopes};
+use super::{Check, Observation, WITHIN};
 use crate::coverage::Coverage;
 use crate::error::Result;
 use crate::render::reference::{Scene, Stroke, squared_error};
@@ -82,10 +82,10 @@ pub(super) fn checks() -> Vec<Check<'static>> {
 }
 
 /// The stroke between two ordinary ones, so that there are gradients to compare with.
-fn around(stroke: Params) -> Page {
+fn around(stroke: Params) -> Specimen {
     let mut strokes = random(8, 24, 20, 2);
     strokes.insert(1, stroke);
-    Page::new(24, 20, strokes)
+    Specimen::new(24, 20, strokes)
 }
 
 /// A stroke along pixel centres, with ends on pixel centres.
@@ -106,7 +106,7 @@ struct Found {
 }
 
 impl Found {
-    fn on(page: &Page, functions: &[Coverage]) -> Result<Self> {
+    fn on(page: &Specimen, functions: &[Coverage]) -> Result<Self> {
         let mut outside: f64 = 0.0;
         for &coverage in functions {
             outside = outside.max(beyond_slopes(page, coverage)?);
@@ -119,16 +119,16 @@ impl Found {
         self.outside <= WITHIN
     }
 
-    fn finding(self) -> Finding {
+    fn finding(self) -> Observation {
         let Self { gap, outside } = self;
         let figure = format!("{gap}; beyond the one-sided slopes by {outside:.1e}");
-        Finding::new(figure, gap.holds() && self.is_between())
+        Observation::new(figure, gap.holds() && self.is_between())
     }
 }
 
 /// How far the gradients of the reference lie outside of the slopes on both sides, as a share of the
 /// largest of them.
-fn beyond_slopes(page: &Page, coverage: Coverage) -> Result<f64> {
+fn beyond_slopes(page: &Specimen, coverage: Coverage) -> Result<f64> {
     let (scene, target) = (page.naive(), pixels(&page.noise()?));
     let reference = oracle(coverage);
     let canvas = reference.render(&scene);

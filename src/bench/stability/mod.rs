@@ -25,7 +25,7 @@ pub use agreement::AgreementMap;
 use crate::error::Result;
 use crate::image::Image;
 use crate::report::Usage;
-use crate::report::stability::{StabilityEntry, StabilityReport, Verdict};
+use crate::report::stability::{Outcome, StabilityEntry, StabilityReport};
 
 /// Gradients and worths in `f32` may differ from `f64` by this share of the largest of their kind.
 pub const WITHIN: f64 = 1e-3;
@@ -40,16 +40,16 @@ pub enum Extent {
 }
 
 /// What a check found.
-struct Finding {
+struct Observation {
     figure: String,
-    verdict: Verdict,
+    verdict: Outcome,
     /// Why an exception is one.
     note: &'static str,
 }
 
-impl Finding {
+impl Observation {
     fn new(figure: String, holds: bool) -> Self {
-        let verdict = if holds { Verdict::Pass } else { Verdict::Fail };
+        let verdict = if holds { Outcome::Pass } else { Outcome::Fail };
         Self {
             figure,
             verdict,
@@ -60,8 +60,8 @@ impl Finding {
     /// The same, but a failure that is known and explained by `note` is an exception.
     fn excepting(self, note: &'static str) -> Self {
         match self.verdict {
-            Verdict::Fail if !note.is_empty() => Self {
-                verdict: Verdict::Exception,
+            Outcome::Fail if !note.is_empty() => Self {
+                verdict: Outcome::Exception,
                 note,
                 ..self
             },
@@ -75,7 +75,7 @@ struct Check<'a> {
     group: &'static str,
     name: String,
     what: String,
-    run: Box<dyn Fn() -> Result<Finding> + 'a>,
+    run: Box<dyn Fn() -> Result<Observation> + 'a>,
 }
 
 impl<'a> Check<'a> {
@@ -83,7 +83,7 @@ impl<'a> Check<'a> {
         group: &'static str,
         name: impl Into<String>,
         what: impl Into<String>,
-        run: impl Fn() -> Result<Finding> + 'a,
+        run: impl Fn() -> Result<Observation> + 'a,
     ) -> Self {
         Self {
             group,
@@ -96,7 +96,8 @@ impl<'a> Check<'a> {
     /// Runs it; an error is a failure, too.
     fn entry(&self) -> StabilityEntry {
         let before = Usage::now().cpu_s;
-        let finding = (self.run)().unwrap_or_else(|error| Finding::new(error.to_string(), false));
+        let finding =
+            (self.run)().unwrap_or_else(|error| Observation::new(error.to_string(), false));
         StabilityEntry {
             group: self.group.into(),
             name: self.name.clone(),

@@ -1,6 +1,6 @@
 //! The fast renderer in `f32` beside the naive one in `f64`.
 
-use super::{Finding, WITHIN};
+use super::{Observation, WITHIN};
 use crate::coverage::Coverage;
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::{Objective, Simd};
@@ -29,7 +29,7 @@ const KINDS: [std::ops::Range<usize>; 4] = [0..4, 4..5, 5..8, 8..9];
 
 /// Strokes on a page.
 #[derive(Debug, Clone)]
-pub(super) struct Page {
+pub(super) struct Specimen {
     pub(super) width: usize,
     pub(super) height: usize,
     pub(super) strokes: Vec<Params>,
@@ -65,8 +65,8 @@ impl Gap {
         self.canvas_holds() && self.gradients <= WITHIN && self.worth_holds()
     }
 
-    pub(super) fn finding(self) -> Finding {
-        Finding::new(self.to_string(), self.holds())
+    pub(super) fn finding(self) -> Observation {
+        Observation::new(self.to_string(), self.holds())
     }
 }
 
@@ -84,7 +84,7 @@ impl std::fmt::Display for Gap {
     }
 }
 
-impl Page {
+impl Specimen {
     pub(super) fn new(width: usize, height: usize, strokes: Vec<Params>) -> Self {
         Self {
             width,

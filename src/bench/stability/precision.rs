@@ -1,8 +1,8 @@
 //! `f32` against `f64` through many iterations: the same descent in both, and the kernels compared where
 //! the `f32` descent has come to.
 
-use super::oracle::{BACKGROUND, Page, oracle, pixels, random, slopes};
-use super::{Check, Finding};
+use super::oracle::{BACKGROUND, Specimen, oracle, pixels, random, slopes};
+use super::{Check, Observation};
 use crate::coverage::Coverage;
 use crate::error::Result;
 use crate::fit::{Execution, Objective};
@@ -35,8 +35,8 @@ pub(super) fn checks() -> Vec<Check<'static>> {
         .into()
 }
 
-fn after(iterations: usize) -> Result<Finding> {
-    let start = Page::new(SIDE, SIDE, random(6, SIDE, SIDE, STROKES));
+fn after(iterations: usize) -> Result<Observation> {
+    let start = Specimen::new(SIDE, SIDE, random(6, SIDE, SIDE, STROKES));
     let target = target()?;
     let (single, loss32) = descend32(start.clone(), &target, iterations)?;
     let (double, loss64) = descend64(start.naive(), &target, iterations);
@@ -47,7 +47,7 @@ fn after(iterations: usize) -> Result<Finding> {
     let gap = single.gap(&Coverage::EACH)?;
     let alike = loss32 <= LOSS_FACTOR * loss64;
     let figure = format!("{gap}; loss {loss32:.3e} in f32, {loss64:.3e} in f64");
-    Ok(Finding::new(figure, gap.holds() && alike && finite))
+    Ok(Observation::new(figure, gap.holds() && alike && finite))
 }
 
 /// A disc on a ramp.
@@ -67,7 +67,7 @@ fn target() -> Result<Image> {
 const SCHEDULE: Schedule = Schedule::Cosine { end: 0.01 };
 
 /// Descends in `f32`; the page it comes to and the loss there.
-fn descend32(mut page: Page, target: &Image, iterations: usize) -> Result<(Page, f64)> {
+fn descend32(mut page: Specimen, target: &Image, iterations: usize) -> Result<(Specimen, f64)> {
     let softness = Softness {
         coverage: Coverage::Smoothstep,
         width: 1.5,

@@ -1,11 +1,11 @@
 //! Learning rates and numbers gone wild, and very long runs: the drawing has to stay valid.
 
 use super::pictures::{Sound, sound};
-use super::{Check, Extent, Finding};
+use super::{Check, Extent, Observation};
 use crate::error::Result;
 use crate::fit::{Budget, Config, Execution, Fit, Fitter, Polish, Preset, Rates, Recipe, Stages};
 use crate::image::Image;
-use crate::lab::article::{Descent, Drawing};
+use crate::lab::article::{Capsules, Reproduction};
 use crate::metrics;
 use crate::svg::{self, WriteOptions};
 
@@ -88,7 +88,7 @@ fn fitted(recipe: Recipe) -> Result<(Fit, Sound)> {
 
 /// Sensible rates, or tiny ones, have to make a useful drawing; others a valid one. Rates that are no
 /// numbers poison every stroke: all have to be dropped and counted.
-fn with_rates(factor: f32) -> Result<Finding> {
+fn with_rates(factor: f32) -> Result<Observation> {
     let recipe = Recipe::of(Preset::Draft);
     let times = |rates: Rates| Rates {
         position: rates.position * factor,
@@ -112,21 +112,24 @@ fn with_rates(factor: f32) -> Result<Finding> {
     let useful = sound.holds() || !sensible;
     let counted = !factor.is_nan() || fit.dropped.total() > 0 && fit.scene.is_empty();
     let figure = format!("{sound}, {} dropped and counted", fit.dropped.total());
-    Ok(Finding::new(figure, sound.is_valid() && useful && counted))
+    Ok(Observation::new(
+        figure,
+        sound.is_valid() && useful && counted,
+    ))
 }
 
-fn long_polish(steps: usize) -> Result<Finding> {
+fn long_polish(steps: usize) -> Result<Observation> {
     let mut recipe = Recipe::of(Preset::Draft);
     recipe.polish.iterations = steps;
     let (_, sound) = fitted(recipe)?;
-    Ok(Finding::new(sound.to_string(), sound.holds()))
+    Ok(Observation::new(sound.to_string(), sound.holds()))
 }
 
 /// All numbers have to stay finite, and the end may not be much worse than the middle.
-fn long_descent(steps: usize) -> Result<Finding> {
+fn long_descent(steps: usize) -> Result<Observation> {
     let picture = picture()?;
-    let start = Drawing::random(picture.width(), picture.height(), STROKES, 1);
-    let mut descent = Descent::new(&picture, start, Execution::default())?;
+    let start = Capsules::random(picture.width(), picture.height(), STROKES, 1);
+    let mut descent = Reproduction::new(&picture, start, Execution::default())?;
     let coverage = crate::coverage::Coverage::Smoothstep;
     let mut l1_after = |count: usize| -> Result<f64> {
         (0..count).for_each(|_| {
@@ -144,5 +147,5 @@ fn long_descent(steps: usize) -> Result<Finding> {
     let (middle, end) = (l1_after(steps / 10)?, l1_after(steps - steps / 10)?);
     let figure =
         format!("L1 {middle:.4} after a tenth of the run, {end:.4} at its end, all finite");
-    Ok(Finding::new(figure, end <= 1.1 * middle))
+    Ok(Observation::new(figure, end <= 1.1 * middle))
 }

@@ -1,8 +1,8 @@
 //! Degenerate and absurd strokes: canvas, gradients and worths in `f32` against the reference, and the
 //! file that the scene is written to.
 
-use super::oracle::{BACKGROUND, Page, random};
-use super::{Check, Finding};
+use super::oracle::{BACKGROUND, Specimen, random};
+use super::{Check, Observation};
 use crate::coverage::Coverage;
 use crate::error::Result;
 use crate::render::{Params, unpack};
@@ -11,10 +11,10 @@ use crate::svg::{self, WriteOptions};
 use crate::verify;
 
 /// A scene of one kind of trouble.
-struct Hard {
+struct HardScene {
     name: &'static str,
     what: &'static str,
-    page: Page,
+    page: Specimen,
     functions: &'static [Coverage],
     exception: &'static str,
 }
@@ -30,10 +30,10 @@ pub(super) fn checks() -> Vec<Check<'static>> {
             let finding = gap.finding();
             let figure = format!("{}; {written}", finding.figure);
             if !is_right || !gap.canvas_holds() {
-                return Ok(Finding::new(figure, false));
+                return Ok(Observation::new(figure, false));
             }
             let finding = finding.excepting(hard.exception);
-            Ok(Finding { figure, ..finding })
+            Ok(Observation { figure, ..finding })
         })
     });
     gaps.chain([Check::new(
@@ -45,11 +45,11 @@ pub(super) fn checks() -> Vec<Check<'static>> {
     .collect()
 }
 
-fn scenes() -> Vec<Hard> {
-    let hard = |name, what, strokes: &[Params]| Hard {
+fn scenes() -> Vec<HardScene> {
+    let hard = |name, what, strokes: &[Params]| HardScene {
         name,
         what,
-        page: Page::new(40, 36, strokes.to_vec()),
+        page: Specimen::new(40, 36, strokes.to_vec()),
         functions: &Coverage::EACH,
         exception: "",
     };
@@ -100,8 +100,8 @@ fn scenes() -> Vec<Hard> {
                 red([9.0, 9.0], [30.0, 20.0], 3.0, 0.5),
             ],
         ),
-        Hard {
-            page: Page::new(
+        HardScene {
+            page: Specimen::new(
                 12,
                 12,
                 vec![red([3.0, 4.0], [9.0, 7.0], 2.0, 0.001); 10_000],
@@ -113,8 +113,8 @@ fn scenes() -> Vec<Hard> {
                 &[],
             )
         },
-        Hard {
-            page: Page::new(12, 12, vec![red([3.0, 4.0], [9.0, 7.0], 2.0, 1.0); 10_000]),
+        HardScene {
+            page: Specimen::new(12, 12, vec![red([3.0, 4.0], [9.0, 7.0], 2.0, 1.0); 10_000]),
             exception: HIDDEN,
             functions: &[Coverage::Smoothstep, Coverage::Sigmoid],
             ..hard(
@@ -145,7 +145,7 @@ fn opaque_stack() -> Vec<Params> {
     strokes
 }
 
-fn scene(page: &Page) -> Scene {
+fn scene(page: &Specimen) -> Scene {
     let (width, height) = (page.width as u32, page.height as u32);
     Scene {
         stages: vec![Stage {
@@ -157,7 +157,7 @@ fn scene(page: &Page) -> Scene {
 
 /// Writes, reads back and draws; says what became of the strokes, and whether they are read as they were
 /// written.
-fn written(page: &Page) -> Result<(String, bool)> {
+fn written(page: &Specimen) -> Result<(String, bool)> {
     let scene = scene(page);
     let quantized = scene.quantized(2);
     let text = svg::write(&scene, &WriteOptions::default());
@@ -172,8 +172,8 @@ fn written(page: &Page) -> Result<(String, bool)> {
 }
 
 /// Strokes with numbers that are none, among five that are sound.
-fn poisoned() -> Result<Finding> {
-    let sound = Page::new(40, 36, random(2, 40, 36, 5));
+fn poisoned() -> Result<Observation> {
+    let sound = Specimen::new(40, 36, random(2, 40, 36, 5));
     let kept = scene(&sound).quantized(2).scene.len();
     let (mut dropped, mut wrong) = (0, Vec::new());
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
@@ -201,7 +201,7 @@ fn poisoned() -> Result<Finding> {
     } else {
         format!("wrong: {}", wrong.join(", "))
     };
-    Ok(Finding::new(figure, wrong.is_empty() && dropped == 27))
+    Ok(Observation::new(figure, wrong.is_empty() && dropped == 27))
 }
 
 #[cfg(test)]
@@ -219,7 +219,7 @@ mod tests {
     #[test]
     fn identical_opaque_strokes_have_next_to_no_gradients() {
         let stroke = [3.0, 4.0, 9.0, 7.0, 2.0, 0.9, 0.2, 0.1, 1.0];
-        let page = Page::new(12, 12, vec![stroke; 1000]);
+        let page = Specimen::new(12, 12, vec![stroke; 1000]);
         let (scene, target) = (page.naive(), pixels(&page.noise().unwrap()));
         let reference = oracle(Coverage::Smoothstep);
         let canvas = reference.render(&scene);
@@ -236,7 +236,7 @@ mod tests {
 
     #[test]
     fn a_wrong_gradient_would_be_seen() {
-        let mut page = Page::new(20, 20, random(4, 20, 20, 5));
+        let mut page = Specimen::new(20, 20, random(4, 20, 20, 5));
         let target = page.noise().unwrap();
         let coverage = Coverage::Smoothstep;
         assert!(page.gap_under(coverage, &target).unwrap().holds());

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::{Result, anyhow};
-use strokefit::engines::{self, Drawn, Engine, Page};
+use strokefit::engines::{self, Engine, Rendering, Request};
 use strokefit::image::Image;
 use strokefit::metrics::{Agreement, Largest, Quality};
 use strokefit::report::{AgainstResvg, NotDrawn, RendererEntry};
@@ -15,9 +15,9 @@ use super::RESVG;
 use crate::cli::output::Output;
 
 /// A folder that takes what the programs draw.
-pub(super) struct Pictures(PathBuf);
+pub(super) struct PictureFolder(PathBuf);
 
-impl Pictures {
+impl PictureFolder {
     /// The folder, made if it does not exist.
     pub(super) fn open(path: &Path) -> Result<Self> {
         let unusable = |e| {
@@ -40,7 +40,7 @@ pub(super) struct Trial<'a> {
     target: Option<&'a Image>,
     resvg: Image,
     timeout: Duration,
-    pictures: Option<Pictures>,
+    pictures: Option<PictureFolder>,
     /// resvg first.
     pub(super) drawn: Vec<RendererEntry>,
     pub(super) not_drawn: Vec<NotDrawn>,
@@ -52,7 +52,7 @@ impl<'a> Trial<'a> {
         svg: &'a str,
         target: Option<&'a Image>,
         timeout: Duration,
-        pictures: Option<Pictures>,
+        pictures: Option<PictureFolder>,
     ) -> Result<Self> {
         let start = Instant::now();
         let resvg = match target {
@@ -92,12 +92,12 @@ impl<'a> Trial<'a> {
             return Ok(());
         };
         let (width, height) = (self.resvg.width(), self.resvg.height());
-        let page = Page {
+        let request = Request {
             svg: self.svg,
             width,
             height,
         };
-        match engine.draw(&program, page, self.timeout) {
+        match engine.draw(&program, request, self.timeout) {
             Ok(drawn) => self.compare(engine, &drawn),
             Err(error) => {
                 self.pass_over(engine, true, error.to_string());
@@ -115,7 +115,7 @@ impl<'a> Trial<'a> {
         });
     }
 
-    fn compare(&mut self, engine: &Engine, drawn: &Drawn) -> Result<()> {
+    fn compare(&mut self, engine: &Engine, drawn: &Rendering) -> Result<()> {
         let fidelity = self
             .target
             .map(|target| Quality::between(target, &drawn.image))

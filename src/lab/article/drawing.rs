@@ -12,7 +12,7 @@ const LENGTH: f32 = 4.0;
 
 /// Strokes on a background, as numbers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Drawing {
+pub struct Capsules {
     /// Width in px.
     pub width: usize,
     /// Height in px.
@@ -36,7 +36,7 @@ pub struct Statistics {
     pub deviation: f64,
 }
 
-impl Drawing {
+impl Capsules {
     /// `strokes` capsules at random on grey, as the article starts; `seed` is the key.
     pub fn random(width: usize, height: usize, strokes: usize, seed: u64) -> Self {
         let stroke = |i: u64| {
@@ -136,9 +136,9 @@ mod tests {
 
     #[test]
     fn a_random_drawing_is_as_the_article_says() {
-        let drawing = Drawing::random(100, 50, 2000, 3);
-        assert_eq!(drawing, Drawing::random(100, 50, 2000, 3));
-        assert_ne!(drawing, Drawing::random(100, 50, 2000, 4));
+        let drawing = Capsules::random(100, 50, 2000, 3);
+        assert_eq!(drawing, Capsules::random(100, 50, 2000, 3));
+        assert_ne!(drawing, Capsules::random(100, 50, 2000, 4));
         let squares = drawing
             .strokes
             .iter()
@@ -159,12 +159,12 @@ mod tests {
 
     #[test]
     fn json_keeps_every_bit() {
-        let drawing = Drawing::random(30, 20, 50, 1);
+        let drawing = Capsules::random(30, 20, 50, 1);
         let json = drawing.to_json().unwrap();
-        assert_eq!(Drawing::from_json(&json).unwrap(), drawing);
+        assert_eq!(Capsules::from_json(&json).unwrap(), drawing);
         assert!(drawing.fitting(30, 21).is_err());
         assert_eq!(
-            Drawing::from_json("{}").unwrap_err().kind(),
+            Capsules::from_json("{}").unwrap_err().kind(),
             ErrorKind::Config
         );
     }

@@ -29,14 +29,14 @@ pub(super) struct Outline {
     /// The highest number of a layer named as ours are.
     pub(super) stages: usize,
     /// Layers of ours, up to the end of the root.
-    pub(super) group: Option<Group>,
+    pub(super) group: Option<LayerGroup>,
     /// The name of the root element if it has no end tag.
     hollow: Option<String>,
 }
 
 /// A group of layers of ours.
 #[derive(Debug, Clone)]
-pub(super) struct Group {
+pub(super) struct LayerGroup {
     /// Width and height of the picture, px.
     size: String,
     pub(super) start: usize,
@@ -93,7 +93,7 @@ impl Outline {
         let number = number.and_then(|number| number.parse().ok());
         self.stages = self.stages.max(number.unwrap_or(0));
         if depth == 1 {
-            self.group = attribute(tag, MARK).map(|size| Group {
+            self.group = attribute(tag, MARK).map(|size| LayerGroup {
                 size,
                 start: at.start,
                 inside: at.end..at.end,
@@ -130,7 +130,7 @@ impl Outline {
     }
 }
 
-impl Group {
+impl LayerGroup {
     /// The layers in the group, numbered from `before` on.
     pub(super) fn scene(&self, text: &str, before: usize) -> Option<Scene> {
         let (width, height) = self.size.split_once(' ')?;

@@ -9,7 +9,7 @@ const HAIRLINE_PX: f64 = 1.0;
 
 /// What an element hands down to its children.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Pen {
+pub(super) struct Inherited {
     /// Whether a stroke is painted.
     painted: bool,
     /// Width in the element's units.
@@ -20,7 +20,7 @@ pub(super) struct Pen {
     pub(super) drawn: bool,
 }
 
-impl Pen {
+impl Inherited {
     /// The pen of a page with `scale` px per unit.
     pub(super) fn page(scale: f64) -> Self {
         Self {

@@ -8,7 +8,7 @@ use super::element::{Element, short};
 use super::number;
 use super::reference::References;
 use super::rules::{self, Rule};
-use super::stroke::Pen;
+use super::stroke::Inherited;
 use super::{Findings, element};
 use crate::svg::dialect::SVG_NAMESPACE;
 
@@ -87,7 +87,7 @@ struct Walk<'a, 'b> {
     /// Bytes before that line's event.
     at: usize,
     /// One for each open element.
-    pens: Vec<Pen>,
+    pens: Vec<Inherited>,
     references: References,
     /// Whether the text is a style sheet.
     in_style: bool,
@@ -191,7 +191,7 @@ impl<'a, 'b> Walk<'a, 'b> {
                     self.line,
                     format!("<{}>", short(&element.name)),
                 );
-                Pen::page(1.0)
+                Inherited::page(1.0)
             }
             Some(pen) => pen.within(&element),
         };
@@ -211,14 +211,14 @@ impl<'a, 'b> Walk<'a, 'b> {
     }
 
     /// Judges the size of the page; gives its pen.
-    fn page(&mut self, root: &Element) -> Pen {
+    fn page(&mut self, root: &Element) -> Inherited {
         let view = root.get("viewBox").map(number::all);
         let side = |key| root.get(key).and_then(number::length_px);
         let (width, height) = (side("width"), side("height"));
         let Some(&[x, y, w, h]) = view.as_deref() else {
             let found = "<svg> without a viewBox of four numbers";
             self.findings.add(&rules::PAGE_SIZE, self.line, found);
-            return Pen::page(1.0);
+            return Inherited::page(1.0);
         };
         if let Some(rule) = size_rule(width.zip(height), (w, h), (x, y)) {
             let size = |key| short(root.get(key).unwrap_or("none"));
@@ -227,10 +227,10 @@ impl<'a, 'b> Walk<'a, 'b> {
             self.findings.add(rule, self.line, found);
         }
         let scale = width.filter(|_| w > 0.0).map_or(1.0, |width| width / w);
-        Pen::page(scale).within(root)
+        Inherited::page(scale).within(root)
     }
 
-    fn look(&mut self, element: &Element, pen: Pen, is_root: bool) {
+    fn look(&mut self, element: &Element, pen: Inherited, is_root: bool) {
         self.references.note(element, self.line, self.findings);
         if !is_root {
             self.look_at_kind(element);
@@ -246,7 +246,7 @@ impl<'a, 'b> Walk<'a, 'b> {
         }
     }
 
-    fn look_at_stroke(&mut self, element: &Element, pen: Pen) {
+    fn look_at_stroke(&mut self, element: &Element, pen: Inherited) {
         if pen.has_zero_length(element) {
             let found = element::quote_shape(element);
             self.findings.add(&rules::ZERO_LENGTH, self.line, found);
