@@ -37,7 +37,7 @@ const FITTED: [&str; 3] = ["coffee-550x220", "chelsea-cat", "noto-gem"];
 /// Strokes of a drawing, where nothing else is said.
 const STROKES: usize = 5000;
 
-const GROUND: [f32; 3] = [0.5; 3];
+const BACKDROP: [f32; 3] = [0.5; 3];
 
 /// The edge that an antialiasing rasteriser draws.
 const EDGE: Softness = Softness {
@@ -103,7 +103,7 @@ fn seed(criterion: &mut Criterion, image: &Image) {
         b.iter_batched(|| image.clone(), Pyramid::new, BatchSize::LargeInput);
     });
     let level = Simd::Auto.level().unwrap();
-    let canvas = Canvas::flat(Canvas::from_image(image).grid(), GROUND);
+    let canvas = Canvas::flat(Canvas::from_image(image).grid(), BACKDROP);
     let pyramid = Pyramid::new(image.clone());
     for count in [100, STROKES] {
         let wanted = Wanted {
@@ -145,13 +145,13 @@ fn passes(
     target: &Canvas,
 ) {
     let mut renderer = Renderer::new(target.grid(), Simd::Auto.level().unwrap());
-    let backdrop = Backdrop::Color(GROUND);
+    let backdrop = Backdrop::Color(BACKDROP);
     let objective = Objective::new(Loss::L2, target);
     let mut gradients = Gradients::default();
     renderer.backward(strokes, EDGE, backdrop, &objective, &mut gradients);
     group.throughput(Throughput::Elements(gradients.blocks));
 
-    let mut canvas = Canvas::flat(target.grid(), GROUND);
+    let mut canvas = Canvas::flat(target.grid(), BACKDROP);
     group.bench_function(BenchmarkId::new("forward", name), |b| {
         b.iter(|| renderer.forward(black_box(strokes), EDGE, backdrop, &mut canvas));
     });
@@ -194,7 +194,7 @@ fn drawing(criterion: &mut Criterion, image: &Image) {
     let scene = scene(image);
     let options = WriteOptions::default();
     let text = svg::write(&scene, &options);
-    let drawn = verify::render(&text, verify::Size::Scale(1.0), Some(GROUND)).unwrap();
+    let drawn = verify::render(&text, verify::Size::Scale(1.0), Some(BACKDROP)).unwrap();
 
     let mut group = criterion.benchmark_group("svg");
     group.throughput(Throughput::Bytes(text.len() as u64));
@@ -258,7 +258,7 @@ fn scene(image: &Image) -> Scene {
     };
     Scene {
         stages: vec![stage],
-        ..Scene::empty(grid.width as u32, grid.height as u32, Some(GROUND))
+        ..Scene::empty(grid.width as u32, grid.height as u32, Some(BACKDROP))
     }
 }
 

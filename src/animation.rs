@@ -131,8 +131,8 @@ impl Film<'_> {
         let mut strokes = scene.strokes();
         let mut painting = None;
         self.parts(scene).into_iter().map(move |part| {
-            let ground = scene.background.filter(|_| part.start == 0);
-            let text = part_svg(scene, ground, strokes.by_ref().take(part.len()));
+            let background = scene.background.filter(|_| part.start == 0);
+            let text = part_svg(scene, background, strokes.by_ref().take(part.len()));
             let painting = match &mut painting {
                 Some(painting) => painting,
                 none => none.insert(Painting::new(&text, Size::Scale(self.scale), WHITE)?),
@@ -188,7 +188,7 @@ fn stage_ends(scene: &Scene) -> Vec<usize> {
 /// Some strokes of `scene` as SVG, not rounded any further.
 fn part_svg<'a>(
     scene: &Scene,
-    ground: Option<Rgb>,
+    background: Option<Rgb>,
     strokes: impl Iterator<Item = &'a Stroke>,
 ) -> String {
     let stage = Stage {
@@ -196,7 +196,7 @@ fn part_svg<'a>(
     };
     let part = Scene {
         stages: vec![stage],
-        ..Scene::empty(scene.width, scene.height, ground)
+        ..Scene::empty(scene.width, scene.height, background)
     };
     let exactly = WriteOptions {
         precision: MAX_PRECISION,
@@ -294,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn a_drawing_without_strokes_is_one_frame_of_its_ground() {
+    fn a_drawing_without_strokes_is_one_frame_of_its_background() {
         let frames: Vec<_> = film(None).frames(&scene(&[])).collect();
         assert_eq!(frames.len(), 1);
         let [r, g, b] = frames[0].as_ref().unwrap().planes();

@@ -172,16 +172,16 @@ impl Image {
         self.alpha.as_deref()
     }
 
-    /// The picture laid on `color`: opaque, composited in encoded values as SVG renderers do.
+    /// The picture laid on `matte`: opaque, composited in encoded values as SVG renderers do.
     #[must_use]
-    pub fn flattened(&self, color: Rgb) -> Self {
+    pub fn flattened(&self, matte: Rgb) -> Self {
         let Some(alpha) = &self.alpha else {
             return self.clone();
         };
         let mut planes = self.planes.clone();
-        for (plane, ground) in planes.iter_mut().zip(color) {
+        for (plane, matte) in planes.iter_mut().zip(matte) {
             for (value, &a) in plane.iter_mut().zip(alpha) {
-                *value = ground + a * (*value - ground);
+                *value = matte + a * (*value - matte);
             }
         }
         Self {

@@ -91,13 +91,13 @@ impl Verdict {
     }
 }
 
-/// Renders SVG text on `ground`, or with alpha when `None`.
+/// Renders SVG text on `matte`; with alpha when that is `None`.
 ///
 /// # Errors
 /// [`ErrorKind::Svg`] when the text is no SVG, or its render would have no pixels or more than
 /// 128 million; [`ErrorKind::Config`] when the scale is not a positive number.
-pub fn render(svg: &str, size: Size, ground: Option<Rgb>) -> Result<Image> {
-    draw(&parse(svg)?, size, ground)
+pub fn render(svg: &str, size: Size, matte: Option<Rgb>) -> Result<Image> {
+    draw(&parse(svg)?, size, matte)
 }
 
 /// Renders SVG text at the target's size on white and compares it.
@@ -120,9 +120,9 @@ pub fn verify(svg: &str, target: &Image, soft: &Image) -> Result<Verdict> {
     })
 }
 
-/// How faithful a drawing with transparency is wherever it is laid.
+/// How faithful a drawing with transparency is on each of three mattes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct OnGrounds {
+pub struct OnMattes {
     /// PSNR on black, dB.
     #[serde(deserialize_with = "null_is_infinite")]
     pub black_db: f64,
@@ -134,18 +134,15 @@ pub struct OnGrounds {
     pub magenta_db: f64,
 }
 
-/// Renders SVG text on black, on white and on magenta and compares it with `target`, laid on the same.
+/// Renders SVG text on black, white and magenta, and compares it with `target` on the same matte.
 ///
 /// # Errors
 /// As [`fidelity`].
-pub fn on_grounds(svg: &str, target: &Image) -> Result<OnGrounds> {
-    let on = |ground: Rgb| -> Result<f64> {
-        metrics::psnr(
-            &target.flattened(ground),
-            &render_like(svg, target, ground)?,
-        )
+pub fn on_mattes(svg: &str, target: &Image) -> Result<OnMattes> {
+    let on = |matte: Rgb| -> Result<f64> {
+        metrics::psnr(&target.flattened(matte), &render_like(svg, target, matte)?)
     };
-    Ok(OnGrounds {
+    Ok(OnMattes {
         black_db: on([0.0; 3])?,
         white_db: on([1.0; 3])?,
         magenta_db: on([1.0, 0.0, 1.0])?,
@@ -157,15 +154,15 @@ fn side(px: usize) -> u32 {
     u32::try_from(px).unwrap_or(u32::MAX)
 }
 
-/// Renders SVG text at the size of `target`, on `ground`.
+/// Renders SVG text at the size of `target`, on `matte`.
 ///
 /// # Errors
 /// As [`fidelity`].
-pub fn render_like(svg: &str, target: &Image, ground: Rgb) -> Result<Image> {
+pub fn render_like(svg: &str, target: &Image, matte: Rgb) -> Result<Image> {
     let tree = parse(svg)?;
     let (width, height) = (side(target.width()), side(target.height()));
     check_aspect(&tree, width, height)?;
-    draw(&tree, Size::Exact { width, height }, Some(ground))
+    draw(&tree, Size::Exact { width, height }, Some(matte))
 }
 
 /// Whether scaling the SVG to the target's width misses its height by no more than a px.
@@ -234,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn a_render_has_alpha_or_a_ground() {
+    fn a_render_has_alpha_or_a_matte() {
         let clear = render(RED, Size::Scale(1.0), None).unwrap();
         assert_eq!(
             clear.alpha(),

@@ -1,4 +1,4 @@
-//! Transparency is fitted: no ground is drawn, and a drawing looks right on whatever it is laid.
+//! Transparency is fitted: no background is drawn, and a drawing looks right on whatever it is laid.
 #![allow(clippy::unwrap_used, missing_docs)]
 
 mod support {
@@ -28,7 +28,7 @@ fn glass() -> Image {
 }
 
 #[test]
-fn pictures_look_right_on_every_ground() {
+fn pictures_look_right_on_every_matte() {
     for (name, strokes, min_db) in [
         ("noto-gem", 150, 36.0),
         ("noto-hibiscus", 150, 32.0),
@@ -36,7 +36,7 @@ fn pictures_look_right_on_every_ground() {
     ] {
         let picture = sample(name);
         let fit = drawn(&picture, &draft(strokes));
-        let seen = verify::on_grounds(&text(&fit), &picture).unwrap();
+        let seen = verify::on_mattes(&text(&fit), &picture).unwrap();
         for db in [seen.black_db, seen.white_db, seen.magenta_db] {
             assert!(db > min_db, "{name}: {seen:?}");
         }

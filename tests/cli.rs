@@ -303,7 +303,7 @@ fn fit_writes_a_file_that_check_and_render_understand() {
         "{record}"
     );
 
-    // What the report says is what anyone can measure; the gem's transparent ground is white.
+    // What the report says is what anyone can measure; the gem's transparent parts are laid on white.
     let check = place.run(&[
         "check",
         "gem.svg",

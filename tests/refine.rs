@@ -303,7 +303,7 @@ fn the_page_keeps_its_width() {
     assert!(read(&place, "more.svg").contains("width=\"120mm\" height=\"80mm\""));
 }
 
-/// What is clear in both stays clear, and no ground is drawn.
+/// What is clear in both stays clear, and no background is drawn.
 #[test]
 fn transparency_is_kept() {
     let place = Place::new();
@@ -403,12 +403,12 @@ fn usage_that_makes_no_sense_is_refused() {
         2,
         &["overwritten"],
     );
-    let ground = [
+    let background = [
         &refine("base.svg", "in.png", "out.svg")[..],
         &["--background", "none"],
     ]
     .concat();
-    assert_refused(&place, &ground, 2, &["--background"]);
+    assert_refused(&place, &background, 2, &["--background"]);
 }
 
 /// The colours of the strokes of a text, and of its background.
@@ -505,10 +505,10 @@ fn a_clear_drawing_keeps_few_colours() {
 fn a_base_whose_background_is_not_in_the_palette_is_refused() {
     let place = Place::new();
     let picture = committed("samples/coffee-300.png");
-    let ground = ["--background", "#a95327", "--strokes", "20"];
+    let background = ["--background", "#a95327", "--strokes", "20"];
     draft(
         &place,
-        &[&["fit", &picture], &ground[..]].concat(),
+        &[&["fit", &picture], &background[..]].concat(),
         "base.svg",
     );
     let refine = ["refine", "base.svg", &picture, "-q"];

@@ -132,16 +132,16 @@ thread_local! {
 /// The canvas and the gradients of `scene`, if all of them are finite.
 fn draw(scene: &Scene, softness: Softness) -> Option<()> {
     let strokes: Vec<Params> = scene.strokes().map(pack).collect();
-    let ground = scene.background.unwrap_or([1.0; 3]);
+    let background = scene.background.unwrap_or([1.0; 3]);
     let target = Image::filled(scene.width as usize, scene.height as usize, [0.5; 3]).ok()?;
     let target = Canvas::from_image(&target);
     let mut renderer = Renderer::new(target.grid(), Simd::Auto.level()?);
-    let mut canvas = Canvas::flat(target.grid(), ground);
-    renderer.forward(&strokes, softness, Backdrop::Color(ground), &mut canvas);
+    let mut canvas = Canvas::flat(target.grid(), background);
+    renderer.forward(&strokes, softness, Backdrop::Color(background), &mut canvas);
     let finite = |values: &[f32]| values.iter().all(|v| v.is_finite());
     let objective = Objective::new(Loss::L2, &target);
     GRADIENTS.with_borrow_mut(|gradients| {
-        let backdrop = Backdrop::Color(ground);
+        let backdrop = Backdrop::Color(background);
         renderer.backward_with_worth(&strokes, softness, backdrop, &objective, gradients);
         let picture = canvas.to_image();
         let is_finite = picture.planes().iter().all(|plane| finite(plane))

@@ -99,7 +99,7 @@ mod tests {
     use super::*;
     use crate::scene::Shape;
 
-    fn pixel(ground: u8, color: u8, opacity: f32) -> u8 {
+    fn pixel(backdrop: u8, color: u8, opacity: f32) -> u8 {
         let level = |v: u8| [f32::from(v) / 255.0; 3];
         let stroke = Stroke {
             shape: Shape::dot([4.0, 4.0].into()),
@@ -107,28 +107,28 @@ mod tests {
             color: level(color),
             opacity,
         };
-        let page = Image::filled(8, 8, level(ground)).unwrap();
+        let page = Image::filled(8, 8, level(backdrop)).unwrap();
         draw([&stroke].into_iter(), &[page])[0].to_rgb8()[3 * (4 * 8 + 4)]
     }
 
     #[test]
     fn levels_are_those_that_chromium_shows() {
-        for (ground, color, opacity, seen) in [
+        for (backdrop, color, opacity, seen) in [
             (17, 201, 0.83, 169),
             (90, 91, 0.7, 91),
             (255, 255, 0.2, 255),
             (200, 40, 1.0, 40),
         ] {
             assert_eq!(
-                pixel(ground, color, opacity),
+                pixel(backdrop, color, opacity),
                 seen,
-                "{ground} {color} {opacity}"
+                "{backdrop} {color} {opacity}"
             );
         }
     }
 
     #[test]
-    fn every_page_has_its_own_ground() {
+    fn every_page_has_its_own_backdrop() {
         let stroke = Stroke {
             shape: Shape::capsule([1.0, 2.0].into(), [1.0, 3.0].into()),
             radius: 0.8,

@@ -9,7 +9,7 @@ use strokefit::image::Image;
 use strokefit::metrics::Quality;
 use strokefit::report::{self, BaseEntry, Event, FitReport, Input, StageEntry, Usage};
 use strokefit::scene::{Dropped, Scene};
-use strokefit::verify::{self, MIN_AGREEMENT_DB, OnGrounds, Verdict};
+use strokefit::verify::{self, MIN_AGREEMENT_DB, OnMattes, Verdict};
 
 use super::events::{Events, Phases};
 use super::interrupt::Interrupt;
@@ -230,7 +230,7 @@ pub(super) struct Drawn {
     soft: Quality,
     pub(super) verdict: Verdict,
     /// Of a transparent drawing.
-    alpha: Option<OnGrounds>,
+    alpha: Option<OnMattes>,
     /// From the start of the job until the SVG is written.
     pub(super) wall: Duration,
 }
@@ -241,7 +241,7 @@ impl Drawn {
         let soft = Quality::between(&fit.target, &fit.soft)?;
         let verdict = verify::verify(&text, &fit.target, &fit.soft)?;
         let is_clear = fit.target.alpha().is_some();
-        let alpha = is_clear.then(|| verify::on_grounds(&text, &fit.target));
+        let alpha = is_clear.then(|| verify::on_mattes(&text, &fit.target));
         Ok(Self {
             fit,
             soft,

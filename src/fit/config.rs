@@ -10,8 +10,6 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::scene::{MAX_PRECISION, Rgb, Scene, quantum};
 use crate::svg::WriteOptions;
 
-/// Most strokes of a drawing: resvg, and what is built on it, reads at most a million elements.
-
 /// What to fit. Equal configurations of equal pictures give equal bytes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Config {
@@ -130,7 +128,7 @@ pub struct Execution {
 /// The quality of a drawing without a budget.
 pub const DEFAULT_QUALITY: f64 = 30.0;
 
-/// Most strokes of a drawing: renderers of SVG read a million elements.
+/// Most strokes of a drawing: resvg, and what is built on it, reads at most a million elements.
 pub const MAX_STROKES: usize = 900_000;
 
 /// Beyond it a stroke may cost less than one 8-bit level of one pixel.

@@ -10,7 +10,7 @@
 //! u = (Y + vX)/S           v = (X·Y/S − Z) / (Q − |X|²/S)
 //! ```
 //!
-//! On several grounds at once the sums add up, and so do the gains.
+//! On several backdrops at once the sums add up, and so do the gains.
 //!
 //! A place is probed with dots and with capsules of some sizes, the latter in directions evenly over half a
 //! turn. The direction is sought first, with capsules of one size, and then the size: a third of all shapes,
@@ -201,7 +201,7 @@ impl Probes {
     }
 
     /// Of the shapes that are tried, the one that gains most on all of `patches` together, the same place on
-    /// different grounds, and its probe.
+    /// different backdrops, and its probe.
     pub fn best(&self, patches: &[Box<Patch>], min_opacity: f32) -> Option<(&Params, Probe)> {
         let search = Search {
             probes: self,

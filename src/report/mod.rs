@@ -22,10 +22,10 @@ use crate::fit::{StageRecord, Stop};
 use crate::image::Image;
 use crate::metrics::{Agreement, Quality};
 use crate::scene::Dropped;
-use crate::verify::OnGrounds;
+use crate::verify::OnMattes;
 
 pub use check::{AgainstResvg, CheckReport, NotDrawn, RendererEntry};
-pub use event::{Event, Phase};
+pub use event::{Event, PhaseEntry};
 pub use size::{gzip_bytes, per_stroke};
 pub use table::Table;
 pub use usage::Usage;
@@ -74,7 +74,7 @@ pub struct FitReport {
     /// The SVG as rendered by resvg against our own soft render.
     pub agreement: Agreement,
     /// A transparent drawing on black, on white and on magenta; `null` for others.
-    pub alpha: Option<OnGrounds>,
+    pub alpha: Option<OnMattes>,
     /// The SVG that the drawing goes on from; `null` where there is none.
     pub base: Option<BaseEntry>,
 }
@@ -203,7 +203,7 @@ mod tests {
                 psnr_db: 41.0,
                 max_abs: 12,
             },
-            alpha: Some(OnGrounds {
+            alpha: Some(OnMattes {
                 black_db: 28.5,
                 white_db: f64::INFINITY,
                 magenta_db: 29.0,

@@ -306,11 +306,11 @@ mod tests {
             (q.color, q.opacity),
             ([128.0 / 255.0, 0.0, 1.0], 77.0 / 255.0)
         );
-        let ground = Scene::empty(1, 1, Some([0.5; 3]))
+        let background = Scene::empty(1, 1, Some([0.5; 3]))
             .quantized(2)
             .scene
             .background;
-        assert_eq!(ground, Some([128.0 / 255.0; 3]));
+        assert_eq!(background, Some([128.0 / 255.0; 3]));
     }
 
     #[test]

@@ -15,7 +15,7 @@ pub struct WriteOptions {
     pub form: Form,
     /// What a layer holds.
     pub group: Group,
-    /// Width of the page on paper or screen; its height follows. `None`: a px of the picture is a px.
+    /// Width of the page in print or on screen; its height follows. `None`: a px of the picture is a px.
     pub width: Option<Length>,
 }
 

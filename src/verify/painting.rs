@@ -17,14 +17,14 @@ pub struct Painting {
 }
 
 impl Painting {
-    /// Starts with the SVG text `first` on `ground`.
+    /// Starts with the SVG text `first` on `matte`.
     ///
     /// # Errors
     /// As [`render`](super::render).
-    pub fn new(first: &str, size: Size, ground: Rgb) -> Result<Self> {
+    pub fn new(first: &str, size: Size, matte: Rgb) -> Result<Self> {
         let tree = parse(first)?;
         let mut pixmap = Raster::new(&tree, size)?.pixmap()?;
-        pixmap.fill(opaque(ground));
+        pixmap.fill(opaque(matte));
         let mut painting = Self { pixmap, size };
         painting.add(first)?;
         Ok(painting)

@@ -11,12 +11,12 @@ use crate::scene::Rgb;
 /// Most pixels of a render: the raster takes 4 bytes each, its [`Image`] up to 16 more.
 const MAX_PIXELS: f64 = (1_u64 << 27) as f64;
 
-/// Draws the tree on `ground`, or on nothing.
-pub(super) fn draw(tree: &Tree, size: Size, ground: Option<Rgb>) -> Result<Image> {
+/// Draws the tree on `matte`, or on nothing.
+pub(super) fn draw(tree: &Tree, size: Size, matte: Option<Rgb>) -> Result<Image> {
     let raster = Raster::new(tree, size)?;
     raster.afford(tree)?;
     let mut pixmap = raster.pixmap()?;
-    if let Some(color) = ground {
+    if let Some(color) = matte {
         pixmap.fill(opaque(color));
     }
     guarded(|| resvg::render(tree, raster.transform, &mut pixmap.as_mut()))?;

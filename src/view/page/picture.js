@@ -24,7 +24,7 @@ function trace(context, points) {
   for (let k = 2; k < points.length; k += 2) context.lineTo(points[k], points[k + 1]);
 }
 
-// A ring around a stroke that shows on any ground; what is inside stays as it is. `px` is a CSS px.
+// A ring around a stroke that shows on any colour; what is inside stays as it is. `px` is a CSS px.
 export function drawRing(context, [points, radius], px) {
   const layer = new OffscreenCanvas(context.canvas.width, context.canvas.height).getContext("2d");
   layer.setTransform(context.getTransform());
@@ -84,7 +84,7 @@ export class Comparison {
     return this.context.getImageData(0, 0, this.canvas.width, this.canvas.height);
   }
 
-  // Starts with the bare ground; transparent pages are compared on white.
+  // Starts with the bare background; transparent pages are compared on white.
   clear(background) {
     this.context.fillStyle = background ?? "#fff";
     this.context.fillRect(...this.page);
