@@ -21,7 +21,7 @@ use std::time::Duration;
 
 use serde_json::Value;
 use strokefit::browser;
-use strokefit::engines::{Engine, Request};
+use strokefit::engines::{DrawRequest, Engine};
 use strokefit::fit::{Budget, Config, Fitter};
 use strokefit::image::Image;
 use strokefit::metrics;
@@ -145,7 +145,7 @@ fn draws_fits_of_many_strokes_as_faithfully_as_resvg(name: &str) {
         return;
     };
     for Fitted { name, text, target } in fits() {
-        let request = Request {
+        let request = DrawRequest {
             svg: text,
             width: target.width(),
             height: target.height(),
@@ -166,7 +166,7 @@ fn chromium_draws_as_it_is_foreseen() {
     };
     for Fitted { name, text, target } in fits() {
         let (width, height) = (target.width(), target.height());
-        let request = Request {
+        let request = DrawRequest {
             svg: text,
             width,
             height,
@@ -266,7 +266,7 @@ fn drawn_by_both(
     svg: &str,
     [width, height]: [u32; 2],
 ) -> [Image; 2] {
-    let request = Request {
+    let request = DrawRequest {
         svg,
         width: width as usize,
         height: height as usize,

@@ -6,7 +6,7 @@
 
 use strokefit::coverage::Coverage;
 use strokefit::lab::descent::{Method, Trajectory};
-use strokefit::lab::table::{Experiment, SHOWN, STEPS};
+use strokefit::lab::table::{EitherPrecision, SHOWN, STEPS};
 use strokefit::lab::{circle, star};
 use strokefit::math::Real;
 

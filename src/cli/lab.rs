@@ -98,12 +98,12 @@ struct RunArgs {
 }
 
 impl RunArgs {
-    fn config(&self) -> article::Options {
-        article::Options {
+    fn config(&self) -> article::ArticleRun {
+        article::ArticleRun {
             strokes: self.strokes,
             iterations: self.iterations,
             seed: self.seed,
-            ..article::Options::default()
+            ..article::ArticleRun::default()
         }
     }
 
@@ -148,7 +148,7 @@ impl Article {
     fn run(&self, output: &mut ResultFolder<'_>) -> Result<()> {
         let picture = opaque(&self.picture)?;
         let start = self.load.as_deref().map(load).transpose()?;
-        let config = article::Options {
+        let config = article::ArticleRun {
             coverage: self.coverage,
             every: self.every,
             ..self.recipe.config()

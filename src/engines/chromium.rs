@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::fs;
 use std::io;
 
-use super::{Engine, Job, Request, SVG, process};
+use super::{DrawRequest, Engine, Job, SVG, process};
 
 pub(super) const ENGINE: Engine = Engine {
     name: "chromium",
@@ -39,7 +39,7 @@ fn arguments(job: &Job<'_>) -> io::Result<Vec<OsString>> {
         flag.push(value);
         flag
     };
-    let Request { width, height, .. } = job.request;
+    let DrawRequest { width, height, .. } = job.request;
     let mut arguments = vec![
         flag("--screenshot=", job.png().into()),
         flag("--user-data-dir=", job.folder.join("profile").into()),
@@ -71,8 +71,8 @@ const FLAGS: [&str; 14] = [
     "--log-level=0",
 ];
 
-fn page(request: Request<'_>) -> String {
-    let Request { width, height, .. } = request;
+fn page(request: DrawRequest<'_>) -> String {
+    let DrawRequest { width, height, .. } = request;
     format!(
         "<!doctype html><meta charset=\"utf-8\"><title>drawing</title>\
          <style>html,body{{margin:0;background:#fff}}\

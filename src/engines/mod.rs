@@ -8,10 +8,10 @@
 //!
 //! ```no_run
 //! use std::time::Duration;
-//! use strokefit::engines::{ENGINES, Request};
+//! use strokefit::engines::{ENGINES, DrawRequest};
 //!
 //! let svg = std::fs::read_to_string("photo.svg")?;
-//! let request = Request { svg: &svg, width: 640, height: 480 };
+//! let request = DrawRequest { svg: &svg, width: 640, height: 480 };
 //! for engine in &ENGINES {
 //!     match engine.locate() {
 //!         Some(program) => {
@@ -81,7 +81,7 @@ pub struct Engine {
 
 /// What to draw.
 #[derive(Debug, Clone, Copy)]
-pub struct Request<'a> {
+pub struct DrawRequest<'a> {
     /// The SVG text.
     pub svg: &'a str,
     /// Width of the picture, px; the page is scaled to it.
@@ -104,7 +104,7 @@ pub struct Rendering {
 /// A page in the folder in which it is drawn.
 struct Job<'a> {
     folder: &'a Path,
-    request: Request<'a>,
+    request: DrawRequest<'a>,
 }
 
 impl Job<'_> {
@@ -132,7 +132,7 @@ impl Engine {
     pub fn draw(
         &self,
         program: &Path,
-        request: Request<'_>,
+        request: DrawRequest<'_>,
         timeout: Duration,
     ) -> Result<Rendering> {
         self.attempt(program, request, timeout)
@@ -142,7 +142,7 @@ impl Engine {
     fn attempt(
         &self,
         program: &Path,
-        request: Request<'_>,
+        request: DrawRequest<'_>,
         timeout: Duration,
     ) -> Result<Rendering> {
         refuse_external(request.svg)?;
@@ -194,7 +194,7 @@ impl Engine {
 
     /// The picture that the program left, on white.
     fn picture(&self, job: &Job<'_>) -> Result<Image> {
-        let Request { width, height, .. } = job.request;
+        let DrawRequest { width, height, .. } = job.request;
         let bytes = fs::read(job.png()).map_err(|_| fault("the program left no picture"))?;
         let image = Image::decode(&bytes, "its picture", Limits::default())?.flattened([1.0; 3]);
         let found = (image.width(), image.height());
@@ -260,7 +260,7 @@ mod tests {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"4\" height=\"2\" viewBox=\"0 0 4 2\"/>";
 
     fn draw(svg: &str, program: &str) -> Error {
-        let request = Request {
+        let request = DrawRequest {
             svg,
             width: 4,
             height: 2,

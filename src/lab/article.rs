@@ -52,7 +52,7 @@ const FRAME_MS: u32 = 80;
 
 /// What to run.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Options {
+pub struct ArticleRun {
     /// How many capsules, unless some are given.
     pub strokes: usize,
     /// How many steps.
@@ -66,7 +66,7 @@ pub struct Options {
 }
 
 /// The article's numbers.
-impl Default for Options {
+impl Default for ArticleRun {
     fn default() -> Self {
         Self {
             strokes: 5000,
@@ -179,7 +179,7 @@ fn clamp(stroke: &mut Params, size: [f32; 2]) {
     }
 }
 
-impl Options {
+impl ArticleRun {
     /// The coverage function of step `step`, from 0.
     pub fn coverage_at(&self, step: usize) -> Coverage {
         if (step as f64) < EARLY * self.iterations as f64 {
@@ -202,7 +202,7 @@ impl Options {
 pub fn run(
     output: &mut ResultFolder<'_>,
     target: &Image,
-    config: &Options,
+    config: &ArticleRun,
     start: Option<Capsules>,
     execution: Execution,
 ) -> Result<()> {
@@ -241,7 +241,7 @@ fn finish(
     output: &mut ResultFolder<'_>,
     mut film: Recording,
     target: &Image,
-    config: &Options,
+    config: &ArticleRun,
     descent: &mut Reproduction,
     begin: Instant,
 ) -> Result<()> {
@@ -401,10 +401,10 @@ mod tests {
 
     #[test]
     fn a_mix_passes_to_its_second_function() {
-        let config = Options {
+        let config = ArticleRun {
             iterations: 10,
             coverage: "sigmoid>smoothstep".parse().unwrap(),
-            ..Options::default()
+            ..ArticleRun::default()
         };
         assert_eq!(config.coverage_at(6), Coverage::Sigmoid);
         assert_eq!(config.coverage_at(7), Coverage::Smoothstep);
@@ -415,11 +415,11 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let mut tell = |_: crate::lab::Notice<'_>| {};
         let mut output = ResultFolder::new(folder.path(), &mut tell).unwrap();
-        let config = Options {
+        let config = ArticleRun {
             strokes: 20,
             iterations: 5,
             every: 2,
-            ..Options::default()
+            ..ArticleRun::default()
         };
         run(&mut output, &target(), &config, None, Execution::default()).unwrap();
         let names = [

@@ -69,7 +69,7 @@ impl Setup {
 }
 
 /// The numbers are x, y and radius.
-impl table::Experiment for Setup {
+impl table::EitherPrecision for Setup {
     fn descend<T: Real>(&self) -> Trajectory<T> {
         let grid = grid();
         let target = grid.draw::<Circle<T>>(&at(self.target), Coverage::Raw);
@@ -185,7 +185,7 @@ fn converged_of_nudged<T: Real>(setup: Setup) -> usize {
     let converged = |k: &usize| {
         let start = setup.start + (*k as f64 - (NUDGES / 2) as f64) * NUDGE;
         let nudged = Setup { start, ..setup };
-        table::Experiment::descend::<T>(&nudged).loss_at(STEPS) < CONVERGED
+        table::EitherPrecision::descend::<T>(&nudged).loss_at(STEPS) < CONVERGED
     };
     (0..NUDGES).into_par_iter().filter(converged).count()
 }

@@ -66,7 +66,7 @@ pub fn run(
     output: &mut ResultFolder<'_>,
     name: &str,
     target: &Image,
-    config: &article::Options,
+    config: &article::ArticleRun,
     execution: Execution,
 ) -> Result<()> {
     let target = target.flattened(WHITE);
@@ -75,7 +75,7 @@ pub fn run(
     for (i, coverage) in schedules.iter().enumerate() {
         let done = i as f64 / (schedules.len() + 1) as f64;
         output.doing(done, &format!("{name}: the article's recipe, {coverage}"));
-        let config = article::Options {
+        let config = article::ArticleRun {
             coverage: *coverage,
             ..config.clone()
         };
@@ -91,7 +91,7 @@ pub fn run(
 }
 
 /// The article's recipe.
-fn at_once(target: &Image, config: &article::Options, execution: Execution) -> Result<Row> {
+fn at_once(target: &Image, config: &article::ArticleRun, execution: Execution) -> Result<Row> {
     let begin = Instant::now();
     let start = Capsules::random(target.width(), target.height(), config.strokes, config.seed);
     let mut descent = Reproduction::new(target, start, execution)?;
@@ -108,7 +108,7 @@ fn at_once(target: &Image, config: &article::Options, execution: Execution) -> R
 /// The staged pipeline with as many strokes, and in as much time.
 fn staged(
     target: &Image,
-    config: &article::Options,
+    config: &article::ArticleRun,
     time_s: f64,
     execution: Execution,
 ) -> Result<Vec<Row>> {
@@ -197,7 +197,7 @@ fn table(rows: &[Row]) -> Table {
     table
 }
 
-fn markdown(name: &str, config: &article::Options, rows: &[Row]) -> String {
+fn markdown(name: &str, config: &article::ArticleRun, rows: &[Row]) -> String {
     format!(
         "# {name}: {} strokes, {} iterations, worst soft render first\n\n{}",
         config.strokes,
@@ -235,10 +235,10 @@ mod tests {
         let mut output = ResultFolder::new(folder.path(), &mut tell).unwrap();
         let ramp: Vec<f32> = (0..32 * 32).map(|i| (i % 32) as f32 / 31.0).collect();
         let target = Image::new(32, 32, [ramp.clone(), ramp.clone(), ramp]).unwrap();
-        let config = article::Options {
+        let config = article::ArticleRun {
             strokes: 10,
             iterations: 3,
-            ..article::Options::default()
+            ..article::ArticleRun::default()
         };
         run(&mut output, "ramp", &target, &config, Execution::default()).unwrap();
         let csv = std::fs::read_to_string(folder.path().join("ramp.csv")).unwrap();

@@ -76,7 +76,7 @@ impl Setup {
 }
 
 /// The numbers are five per stroke, as in [`START`].
-impl table::Experiment for Setup {
+impl table::EitherPrecision for Setup {
     fn descend<T: Real>(&self) -> Trajectory<T> {
         let grid = self.grid();
         let target = grid.draw::<Capsule<T>>(&flat(&STAR), Coverage::Raw);

@@ -33,7 +33,7 @@ pub fn convergence() -> Table {
 }
 
 /// A descent that can be made in either precision.
-pub trait Experiment: Sync {
+pub trait EitherPrecision: Sync {
     /// The descent, all of it in the precision `T`.
     fn descend<T: Real>(&self) -> Trajectory<T>;
 
@@ -43,11 +43,11 @@ pub trait Experiment: Sync {
 
 /// Makes all descents in both precisions and appends them to a [`convergence`] table; those in
 /// `f64` are given back.
-pub fn tabulated(table: &mut Table, setups: &[impl Experiment]) -> Vec<Trajectory<f64>> {
+pub fn tabulated(table: &mut Table, setups: &[impl EitherPrecision]) -> Vec<Trajectory<f64>> {
     let both = |setup: &_| {
         (
-            Experiment::descend::<f64>(setup),
-            Experiment::descend::<f32>(setup),
+            EitherPrecision::descend::<f64>(setup),
+            EitherPrecision::descend::<f32>(setup),
         )
     };
     let descents: Vec<_> = setups.par_iter().map(both).collect();

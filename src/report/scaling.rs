@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::plot::Chart;
-use super::stability::Outcome;
+use super::stability::CaseVerdict;
 use super::{SCHEMA, Table};
 use crate::error::Result;
 
@@ -58,7 +58,7 @@ pub struct SeriesEntry {
     /// Points that could not be measured, and why.
     pub failures: Vec<String>,
     /// Whether growth is no worse than it may be, and all points were measured.
-    pub verdict: Outcome,
+    pub verdict: CaseVerdict,
 }
 
 /// What one point took.
@@ -151,7 +151,11 @@ impl SeriesEntry {
             memory,
             points,
             failures: Vec::new(),
-            verdict: if holds { Outcome::Pass } else { Outcome::Fail },
+            verdict: if holds {
+                CaseVerdict::Pass
+            } else {
+                CaseVerdict::Fail
+            },
         }
     }
 
@@ -159,7 +163,7 @@ impl SeriesEntry {
     #[must_use]
     pub fn failing(mut self, failures: Vec<String>) -> Self {
         if !failures.is_empty() {
-            self.verdict = Outcome::Fail;
+            self.verdict = CaseVerdict::Fail;
         }
         self.failures = failures;
         self
@@ -192,7 +196,7 @@ impl ScalingReport {
     /// The line of the largest picture.
     pub fn largest_line(&self) -> Option<String> {
         if let Some(why) = &self.largest_failure {
-            return Some(format!("{why}: {}", Outcome::Fail.word()));
+            return Some(format!("{why}: {}", CaseVerdict::Fail.word()));
         }
         let point = self.largest?;
         let cpu_s = point.cpu_s.unwrap_or(f64::NAN);
@@ -209,11 +213,11 @@ impl ScalingReport {
 
     /// How many series, or the largest picture, are beyond their bounds or could not be measured.
     pub fn failures(&self) -> usize {
-        let unmeasured = self.largest_failure.iter().map(|_| Outcome::Fail);
+        let unmeasured = self.largest_failure.iter().map(|_| CaseVerdict::Fail);
         let largest = self.largest.as_ref().map(largest_verdict);
         let series = self.series.iter().map(|series| series.verdict);
         let all = series.chain(largest).chain(unmeasured);
-        all.filter(|verdict| *verdict == Outcome::Fail).count()
+        all.filter(|verdict| *verdict == CaseVerdict::Fail).count()
     }
 
     /// What is quoted: one row per series.
@@ -336,10 +340,10 @@ fn significant(seconds: f64) -> String {
     }
 }
 
-fn largest_verdict(point: &PointEntry) -> Outcome {
+fn largest_verdict(point: &PointEntry) -> CaseVerdict {
     match point.peak_rss_bytes {
-        Some(bytes) if bytes > MAX_BYTES => Outcome::Fail,
-        _ => Outcome::Pass,
+        Some(bytes) if bytes > MAX_BYTES => CaseVerdict::Fail,
+        _ => CaseVerdict::Pass,
     }
 }
 
@@ -371,7 +375,7 @@ mod tests {
 
     #[test]
     fn worse_than_linear_growth_fails() {
-        assert_eq!(series(1.4).verdict, Outcome::Fail);
+        assert_eq!(series(1.4).verdict, CaseVerdict::Fail);
     }
 
     #[test]

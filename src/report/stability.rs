@@ -25,7 +25,7 @@ pub struct StabilityEntry {
     /// What was found.
     pub figure: String,
     /// Whether it holds.
-    pub verdict: Outcome,
+    pub verdict: CaseVerdict,
     /// Why an exception is one.
     pub note: String,
     /// CPU time, s.
@@ -35,7 +35,7 @@ pub struct StabilityEntry {
 /// Whether a case holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Outcome {
+pub enum CaseVerdict {
     /// It does.
     Pass,
     /// It does not, for a reason that is known and named, and that no drawing meets.
@@ -44,7 +44,7 @@ pub enum Outcome {
     Fail,
 }
 
-impl Outcome {
+impl CaseVerdict {
     /// The word that a line of the table ends in.
     pub fn word(self) -> &'static str {
         match self {
@@ -66,7 +66,7 @@ impl StabilityReport {
 
     /// How many checks failed.
     pub fn failures(&self) -> usize {
-        let failed = |entry: &&StabilityEntry| entry.verdict == Outcome::Fail;
+        let failed = |entry: &&StabilityEntry| entry.verdict == CaseVerdict::Fail;
         self.entries.iter().filter(failed).count()
     }
 
@@ -80,15 +80,15 @@ impl StabilityReport {
             figure,
             note,
             ..
-        } in of(Outcome::Exception)
+        } in of(CaseVerdict::Exception)
         {
             exceptions.row([format!("`{group}/{name}`"), figure.clone(), note.clone()]);
         }
         format!(
             "# Hard cases\n\n{} cases: {} hold, {} are exceptions, {} failed.\n\n## Exceptions\n\n{}\n## All\n\n{}",
             self.entries.len(),
-            of(Outcome::Pass).count(),
-            of(Outcome::Exception).count(),
+            of(CaseVerdict::Pass).count(),
+            of(CaseVerdict::Exception).count(),
             self.failures(),
             exceptions.markdown(),
             self.table().markdown()
@@ -148,8 +148,8 @@ mod tests {
             cpu_s: None,
         };
         let report = StabilityReport::new(vec![
-            entry("a", Outcome::Pass, ""),
-            entry("b", Outcome::Exception, "a jump"),
+            entry("a", CaseVerdict::Pass, ""),
+            entry("b", CaseVerdict::Exception, "a jump"),
         ]);
         let text = report.markdown();
         assert!(

@@ -25,7 +25,7 @@ pub use agreement::AgreementMap;
 use crate::error::Result;
 use crate::image::Image;
 use crate::report::Usage;
-use crate::report::stability::{Outcome, StabilityEntry, StabilityReport};
+use crate::report::stability::{CaseVerdict, StabilityEntry, StabilityReport};
 
 /// Gradients and worths in `f32` may differ from `f64` by this share of the largest of their kind.
 pub const WITHIN: f64 = 1e-3;
@@ -42,14 +42,18 @@ pub enum Extent {
 /// What a check found.
 struct Observation {
     figure: String,
-    verdict: Outcome,
+    verdict: CaseVerdict,
     /// Why an exception is one.
     note: &'static str,
 }
 
 impl Observation {
     fn new(figure: String, holds: bool) -> Self {
-        let verdict = if holds { Outcome::Pass } else { Outcome::Fail };
+        let verdict = if holds {
+            CaseVerdict::Pass
+        } else {
+            CaseVerdict::Fail
+        };
         Self {
             figure,
             verdict,
@@ -60,8 +64,8 @@ impl Observation {
     /// The same, but a failure that is known and explained by `note` is an exception.
     fn excepting(self, note: &'static str) -> Self {
         match self.verdict {
-            Outcome::Fail if !note.is_empty() => Self {
-                verdict: Outcome::Exception,
+            CaseVerdict::Fail if !note.is_empty() => Self {
+                verdict: CaseVerdict::Exception,
                 note,
                 ..self
             },

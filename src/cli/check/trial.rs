@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::{Result, anyhow};
-use strokefit::engines::{self, Engine, Rendering, Request};
+use strokefit::engines::{self, DrawRequest, Engine, Rendering};
 use strokefit::image::Image;
 use strokefit::metrics::{Agreement, Largest, Quality};
 use strokefit::report::{AgainstResvg, NotDrawn, RendererEntry};
@@ -92,7 +92,7 @@ impl<'a> Trial<'a> {
             return Ok(());
         };
         let (width, height) = (self.resvg.width(), self.resvg.height());
-        let request = Request {
+        let request = DrawRequest {
             svg: self.svg,
             width,
             height,
