@@ -1,43 +1,9 @@
-//! strokefit turns a raster picture into an editable SVG made of *strokes*: line segments with round
-//! caps, which geometry calls capsules.
+//! strokefit turns a raster picture into an editable SVG made of *strokes*: line segments with round caps,
+//! which geometry calls capsules.
 //!
-//! It looks where picture and drawing differ most, puts strokes there, improves them for a moment by
-//! gradient descent through a differentiable renderer, keeps what pays, and repeats. Then it writes SVG,
-//! renders that SVG with resvg, and says how faithful the file is.
-//!
-//! # Words
-//!
-//! | word | meaning |
-//! | --- | --- |
-//! | target | the picture to reproduce, sRGB-encoded, 0..1 per channel |
-//! | stroke | a capsule with a radius (px), a colour (sRGB-encoded) and an opacity; see [`scene`] |
-//! | canvas | the picture that strokes render to; see [`render`] |
-//! | residual | target − canvas |
-//! | coverage | how much of a pixel a stroke covers, a soft function of the signed distance; see [`coverage`] |
-//! | softness | width of the soft edge, px; it anneals towards the hard edge |
-//! | worth | the squared error that a stroke removes: what leaving it out would add, exactly |
-//! | stage | seed where the residual is largest, fit the new strokes alone, accept |
-//! | polish | joint fit of all strokes, those worth least moving to where more is to be gained |
-//! | fidelity | the SVG as rendered by resvg against the target |
-//! | agreement | the SVG as rendered by resvg against our own render |
-//!
-//! # The pipeline
-//!
-//! Data flows one way, and a module imports only from those above its own:
-//!
-//! ```text
-//! error  math  rng                what went wrong, points, draws by counter
-//! sdf  coverage  scene  image     distances, soft edges, drawings, pictures
-//! metrics  loss  optim            how far, how much, which way
-//! render                          strokes → canvas, ∂L/∂canvas → ∂L/∂strokes, worth
-//! seed                            residual → candidates ranked by closed-form gain
-//! svg  verify                     drawing → text → what a renderer makes of it
-//! engines  browser                what other programs make of it
-//! fit                             stages, polish, settling, budgets
-//! report                          plain records, tables, plots
-//! animation  view                 frames of a drawing, a page that watches a fit
-//! lab  bench                      experiments, measurements
-//! ```
+//! It puts strokes where the drawing differs most from the picture, improves them by gradient descent
+//! through a differentiable renderer, keeps those that pay, and repeats. Then it writes SVG, renders that SVG with
+//! resvg, and reports how faithful the file is.
 //!
 //! # Quick start
 //!
@@ -62,6 +28,102 @@
 //! assert_eq!(row(12), "....################....");
 //! # Ok::<(), strokefit::Error>(())
 //! ```
+//!
+//! # The pipeline
+//!
+//! Data flows one way. A module imports only from modules above its own:
+//!
+//! ```text
+//! error  math  rng                what went wrong, points, draws by counter
+//! sdf  coverage  scene  image     distances, soft edges, drawings, pictures
+//! metrics  loss  optim            measures, losses, optimisers
+//! render                          strokes → canvas, ∂L/∂canvas → ∂L/∂strokes, worth
+//! seed                            residual → candidates, ranked by gain in closed form
+//! svg  verify                     drawing → SVG text → resvg's render of it
+//! engines  browser                other programs' renders of it
+//! fit                             stages, polish, settling, budgets
+//! report                          plain records, tables, plots
+//! animation  view                 frames of a drawing, a live page
+//! lab  bench                      experiments, measurements
+//! ```
+//!
+//! # Glossary
+//!
+//! Each word means one thing in code, messages and docs. Colours are sRGB-encoded, and channels are 0..1 unless a
+//! name says otherwise; lengths are in px of the picture, with pixel centres at +0.5. *Squared error* is summed over
+//! pixels and channels.
+//!
+//! Pictures and drawings:
+//!
+//! | word | meaning |
+//! | --- | --- |
+//! | target | the picture to reproduce, with or without alpha |
+//! | stroke | a capsule in one colour: two ends and a radius (px), a colour, an opacity (0..1); see [`scene`] |
+//! | capsule | all points within a radius (px) of a line segment; with equal ends it is a *dot*; see [`sdf`] |
+//! | scene | the drawing: size (px), background, and strokes from back to front, grouped in stages |
+//! | stage | strokes that are added together: seeded where the residual is largest, fitted with all earlier strokes frozen, kept if they pay |
+//! | layer | a group of the SVG, holding the strokes of one stage or of one colour |
+//! | background | the colour behind all strokes; part of the drawing and of the file; absent if the drawing is transparent |
+//! | backdrop | what strokes are composited over: a colour or a picture, such as the canvas of frozen strokes |
+//! | matte | the colour that a transparent picture is flattened onto, to be looked at or measured |
+//! | base | the SVG that a fit goes on from |
+//! | canvas | the picture that strokes render to; see [`render`] |
+//! | residual | target − canvas, per channel |
+//! | block, tile | 4×4 px and 32×32 px, the units of work of the renderer |
+//!
+//! Edges:
+//!
+//! | word | meaning |
+//! | --- | --- |
+//! | coverage | how much of a pixel a stroke covers, 0..1: a soft function of the signed distance; see [`coverage`] |
+//! | softness | width of the soft edge (px); it anneals towards the hard edge |
+//! | edge | a coverage function with its softness |
+//!
+//! The fit:
+//!
+//! | word | meaning |
+//! | --- | --- |
+//! | candidate | a stroke that seeding proposes, with its best colour and opacity |
+//! | gain | squared error that a candidate would remove, in closed form |
+//! | worth | squared error that leaving a stroke out would add, exactly |
+//! | price | squared error that a stroke has to remove to stay; it grows with the bytes of the stroke |
+//! | quality | sets the price: each byte has to remove as much squared error as one pixel has at this many dB |
+//! | frozen, free | strokes that are kept as they are; strokes that are fitted |
+//! | polish | joint fit of all free strokes |
+//! | relocation | moving the strokes of least worth to where candidates gain more, during the polish |
+//! | settle | last steps against renders of the written file, by resvg and by the model of a browser |
+//! | offset | difference between a renderer's picture of the file and our own canvas, per channel |
+//! | phase | one step in the order of a fit: a stage, the polish, the settling, … |
+//! | session | a fit under way: all that its phases hand around |
+//! | surface | one matte's target, backdrop and canvas; a drawing has one, a transparent drawing two |
+//! | course | how long a descent runs, at what step sizes and with which edge |
+//! | memento | what a drawing was, to the bit |
+//! | plan | how many strokes each stage adds, and their typical radius (px) |
+//! | recipe | the tuned numbers of a fit: iterations, step sizes, shares |
+//! | preset | a named recipe: draft, balanced, best |
+//! | budget | limits on strokes, fidelity (dB), bytes and time (s); the first one reached stops |
+//! | palette | the 8-bit colours that a drawing may have |
+//! | pen | a colour and a width that many opaque strokes share |
+//! | seed | key of all random draws; *seeding* is the search for candidates |
+//! | checkpoint | a file with the whole state of a fit, from which it goes on to the same bytes |
+//! | observer | is told of progress after every iteration, and may stop the fit |
+//!
+//! The file and its renders:
+//!
+//! | word | meaning |
+//! | --- | --- |
+//! | page | the area of an SVG file, in px or in units such as mm |
+//! | form | how strokes become elements: one each, polylines, the smallest file, outlines |
+//! | look | colour, width and opacity of a stroke as they are written; strokes of one look may share an element |
+//! | dialect | the part of SVG that strokefit writes, and reads as strokes |
+//! | fidelity | the file as resvg renders it, against the target: PSNR (dB), SSIM, MSE, L1 |
+//! | agreement | two renders against each other: PSNR (dB) and the largest difference (0..255) |
+//! | soft | our own render of the drawing, at the final softness |
+//! | shortfall | by how much a renderer's fidelity is below resvg's (dB) |
+//! | engine | a program other than resvg that renders SVG: Inkscape, rsvg-convert, Chromium, CairoSVG |
+//! | lint | findings in the text of an SVG that engines draw differently |
+//! | film | a finished drawing replayed as frames; see [`animation`] |
+//! | view | the live page that watches a fit, or shows a drawing |
 
 pub mod animation;
 pub mod bench;
