@@ -1,4 +1,4 @@
-//! A finished drawing, stroke by stroke: frames, animations and SVG that draws itself.
+//! Replays a finished drawing stroke by stroke: frames, animations, and SVG that draws itself.
 //!
 //! ```
 //! use strokefit::animation::{self, Film, Legend, Step};
@@ -59,7 +59,8 @@ impl FromStr for Step {
         let strokes = text.parse().ok().filter(|&n| n > 0).map(Self::Strokes);
         let step = strokes.or((text == "stage").then_some(Self::Stage));
         step.ok_or_else(|| {
-            let message = format!("\"{text}\" frames: say stage, or a number of strokes from 1");
+            let message =
+                format!("frames \"{text}\": give stage, or a number of strokes, 1 or more");
             Error::new(ErrorKind::Config, message)
         })
     }

@@ -1,8 +1,8 @@
-//! Soft coverage functions: how much of a pixel a stroke covers, 0..1, from the signed distance of
-//! the pixel's centre to the stroke's edge.
+//! Soft coverage functions. They map the signed distance from a pixel's centre to a stroke's edge to the
+//! covered part of the pixel, 0..1.
 //!
-//! `d` is a distance in px, positive inside ([`sdf`](crate::sdf)); `s > 0` is the softness in px,
-//! the width over which the edge passes from 0 to 1. `x = d/s`.
+//! `d` is the distance in px, positive inside ([`sdf`](crate::sdf)). `s > 0` is the softness in px, the width
+//! over which the edge rises from 0 to 1. `x = d/s`.
 //!
 //! | function | value | derivative by `d` | where it ends |
 //! | --- | --- | --- | --- |
@@ -12,12 +12,11 @@
 //! | atan | `atan(kx)/π + ½` | `k/(πs(1 + k²x²))` | never |
 //! | raw | `clamp(x, −1, 1)/2 + ½` | `1/2s` for `−1 ≤ x ≤ 1`, else 0 | `s` |
 //!
-//! All are monotone, and `σ(d) + σ(−d) = 1`; smoothstep only to 1.5e-4/(s + 1e-4), because of the
-//! 1e-4 in its denominator, which keeps it defined at s = 0 and is part of the golden data.
-//! Smoothstep at s = 1 is close to what an antialiasing rasteriser draws. `raw` is what the
-//! article's targets are drawn with.
+//! All are monotone, and `σ(d) + σ(−d) = 1`. For smoothstep this holds only to 1.5e-4/(s + 1e-4), because the
+//! 1e-4 in its denominator keeps it defined at s = 0; the golden data contain it too. Smoothstep at
+//! s = 1 is close to what an antialiasing rasteriser draws. The article draws its targets with `raw`.
 //!
-//! Ninths of coverage from 3 px outside to 3 px inside, at a softness of 1 px:
+//! Coverage in ninths, from 3 px outside to 3 px inside, at a softness of 1 px:
 //!
 //! ```
 //! use strokefit::coverage::Coverage;
@@ -34,8 +33,8 @@
 //!
 //! At infinite `d` the values are 0 and 1 and the derivatives 0.
 //!
-//! Source: the functions are those that the article behind this project compares (`strokefit lab`);
-//! smoothstep is Hermite's cubic, as in the OpenGL Shading Language.
+//! Source: the article that this project started from compares these functions (`strokefit lab`).
+//! Smoothstep is Hermite's cubic, as in the OpenGL Shading Language.
 
 use std::fmt;
 use std::str::FromStr;

@@ -1,7 +1,7 @@
 //! The one error type of the library.
 //!
-//! [`Error`] is opaque: [`ErrorKind`] says what class of thing went wrong, the message names the
-//! offending file or value and the remedy, and [`std::error::Error::source`] holds the cause.
+//! [`Error`] is opaque. [`ErrorKind`] is the class of the problem, the message names the offending file or
+//! value and the remedy, and [`std::error::Error::source`] holds the cause.
 
 use std::path::Path;
 use std::{fmt, io};

@@ -1,8 +1,8 @@
-//! Pictures: planar `f32`, sRGB-encoded. The one door of the crates `image`, `gif` and `crc32fast`.
+//! Pictures: planar `f32`, sRGB-encoded. This module alone uses the crates `image`, `gif` and `crc32fast`.
 //!
-//! PNG, JPEG, WebP, GIF and animated WebP (first frame), BMP and TIFF (first page) are read, 8 or
-//! 16 bit or float, grey or colour, with the orientation that EXIF asks for. Colours are taken as
-//! sRGB: colour profiles are not applied. Alpha is kept; [`Image::flattened`] lays it on a colour.
+//! It reads PNG, JPEG, WebP, GIF and animated WebP (first frame), BMP and TIFF (first page), with 8 or
+//! 16 bits or floats, grey or colour, and applies the orientation given by EXIF. It takes colours as
+//! sRGB and ignores colour profiles. It keeps alpha; [`Image::flattened`] composites onto a matte.
 
 mod animate;
 mod decode;
@@ -238,10 +238,7 @@ fn byte(value: f32) -> u8 {
 
 fn check_plane(plane: &[f32], pixels: usize) -> Result<()> {
     if plane.len() != pixels {
-        let message = format!(
-            "a plane of {} values does not fit {pixels} pixels",
-            plane.len()
-        );
+        let message = format!("a plane has {} values for {pixels} pixels", plane.len());
         return Err(Error::new(ErrorKind::Picture, message));
     }
     match plane.iter().position(|v| !v.is_finite()) {

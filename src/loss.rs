@@ -1,4 +1,4 @@
-//! What a canvas costs: mean absolute and mean squared error, with ∂L/∂canvas.
+//! Losses of a canvas: mean absolute and mean squared error, with ∂L/∂canvas.
 //!
 //! Per value, with `e = canvas − target`:
 //!
@@ -7,8 +7,8 @@
 //! L2 = e²      ∂L2/∂e = 2e
 //! ```
 //!
-//! Over pictures both are **means over all values**, rows·columns·3, as `PyTorch`'s `l1_loss` and
-//! `mse_loss` have them; the gradient is that of the mean.
+//! The loss of a picture is the **mean over all values**, rows·columns·3, as in `PyTorch`'s `l1_loss` and
+//! `mse_loss`. The gradient is that of the mean.
 
 use crate::math::Real;
 

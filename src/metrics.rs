@@ -1,7 +1,7 @@
-//! How far apart two pictures are: MSE, PSNR, SSIM, L1.
+//! Measures the difference between two pictures: MSE, PSNR, SSIM, L1.
 //!
-//! Everything is measured on 8-bit RGB, as a viewer shows it: both pictures are laid on white and
-//! rounded first. Errors are in channel values 0..1 and averaged over pixels and channels.
+//! All measures are over 8-bit RGB, as a viewer shows it: both pictures are first flattened onto a white matte and
+//! rounded. Errors are in channel values 0..1, averaged over pixels and channels.
 
 mod similarity;
 

@@ -1,9 +1,9 @@
 //! Counter-based random numbers.
 //!
-//! A draw is a pure function of (seed, stage, item, draw index), so that no result depends on the
-//! order in which threads ask, and a stage can be recomputed alone. The mixer is `SplitMix64`'s
-//! finaliser (Steele, Lea & Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014),
-//! applied once per word of the key.
+//! A draw is a pure function of (seed, stage, item, draw index). So no result depends on the order in which
+//! threads draw, and a stage can be recomputed alone. The mixer is the finaliser of `SplitMix64` (Steele,
+//! Lea & Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014), applied once per word of
+//! the key.
 
 /// 64 random bits for the key `(seed, stage, i, k)`.
 pub fn bits(seed: u64, stage: u64, i: u64, k: u64) -> u64 {

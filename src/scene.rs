@@ -1,7 +1,7 @@
-//! What is drawn: a [`Scene`] of [`Stroke`]s, back to front, grouped in [`Stage`]s.
+//! The drawing: a [`Scene`] of [`Stroke`]s, back to front, grouped in [`Stage`]s.
 //!
-//! Coordinates are px with pixel centres at +0.5; colours are sRGB-encoded, 0..1, and are
-//! composited in that encoding, as SVG renderers do.
+//! Coordinates are in px, with pixel centres at +0.5. Colours are sRGB-encoded, 0..1, and are composited in
+//! that encoding, as SVG renderers do.
 
 mod overlap;
 mod quantize;

@@ -1,7 +1,7 @@
 //! Signed distance fields of circles and capsules, and their combinations.
 //!
-//! **Distances are positive inside** the shape, zero on its edge and negative outside, in px. Much
-//! of the literature, this file's source included, has them the other way round (negative inside).
+//! **Distances are positive inside** the shape, zero on its edge and negative outside, in px. Much of the
+//! literature, including the source of this file, uses the opposite sign.
 //!
 //! ```text
 //! circle         d = r − √(|p−c|² + ε)
@@ -19,19 +19,18 @@
 //! ∂d/∂b =     hu + (u·(b−a)) ∂h/∂b      ∂h/∂b = ((p−a) − 2h(b−a)) / (|b−a|² + ε)
 //! ```
 //!
-//! where `∂h = 0` outside of `0 ≤ h ≤ 1` (the ends included in the inside, as `PyTorch`'s `clamp`
-//! has it). At ε = 0 the terms with `∂h` vanish, because `q` is then orthogonal to `b − a` wherever
-//! `h` is free.
+//! where `∂h = 0` if the clamp is active; at the limits themselves it is not, as in `PyTorch`'s `clamp`. At
+//! ε = 0 the terms with `∂h` vanish, because `q` is then orthogonal to `b − a` wherever the clamp is
+//! inactive.
 //!
-//! **Domain.** All finite parameters and ε ≥ 0, the radius of either sign. ε rounds off the kink of
-//! the distance on the centre line; it makes `d` smaller by at most `√ε`, there, and by `ε / 2|q|`
-//! further away.
+//! **Domain.** All finite parameters, ε ≥ 0, and a radius of either sign. ε rounds off the kink of the distance
+//! on the centre line. It makes `d` smaller by at most `√ε` there, and by `ε / 2|q|` further away.
 //!
-//! **Degenerate cases.** A capsule of zero length is a circle: `h = 0`, and the gradient of both
-//! ends goes to `a`. On the centre line `u = 0` at ε > 0; at ε = 0, where there is no derivative,
-//! it is taken to be 0 too. A combination divides its derivative evenly where its operands tie.
+//! **Degenerate cases.** A capsule of zero length is a circle: `h = 0`, and the gradient of both ends goes to
+//! `a`. On the centre line `u = 0` if ε > 0; at ε = 0, where no derivative exists, 0 is used as well. Where
+//! the operands of a combination tie, each gets half of the derivative.
 //!
-//! What it looks like, `#` deep inside, `+` inside and `.` just outside:
+//! An example, with `#` deep inside, `+` inside and `.` just outside:
 //!
 //! ```
 //! use strokefit::math::Point2;
@@ -62,8 +61,8 @@
 //! ]);
 //! ```
 //!
-//! Source: Inigo Quilez, "2D distance functions" (the segment and the boolean operators), with the
-//! sign turned and ε added as in the golden data of this crate's tests.
+//! Source: Inigo Quilez, "2D distance functions" (the segment and the boolean operators), with the sign
+//! reversed and ε added as in the golden data of this crate's tests.
 
 use crate::math::{Point2, Real, Vector2};
 

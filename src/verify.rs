@@ -176,8 +176,8 @@ fn check_aspect(tree: &Tree, width: u32, height: u32) -> Result<()> {
         return Ok(());
     }
     let message = format!(
-        "the SVG of {svg_width}×{svg_height} has another aspect ratio than the picture of \
-         {width}×{height} px: give the picture it was made from"
+        "the SVG ({svg_width}×{svg_height}) and the picture ({width}×{height} px) differ in aspect ratio: \
+         give the picture that the SVG was made from"
     );
     Err(Error::new(ErrorKind::Svg, message))
 }
@@ -190,7 +190,7 @@ fn guarded<R>(judge: impl FnOnce() -> R) -> Result<R> {
     GUARDED.set(false);
     outcome.map_err(|_| {
         let message =
-            "resvg cannot draw the SVG, its numbers are too large or too odd: simplify it";
+            "resvg cannot draw the SVG, because its numbers are too large or too extreme: simplify it";
         Error::new(ErrorKind::Svg, message)
     })
 }

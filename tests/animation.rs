@@ -134,7 +134,7 @@ fn outputs_that_make_no_sense_are_refused() {
         &place,
         "fit a.png -o b.jpg",
         2,
-        "b.jpg: .jpg is not written",
+        "b.jpg: strokefit does not write .jpg files",
     );
     refused(&place, "fit a.png -o b.gif", 2, "out.svg");
     refused(&place, "fit a.png -o b.svg -o c.svg", 2, "c.svg");

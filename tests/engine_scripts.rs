@@ -236,7 +236,7 @@ fn pictures_are_kept_beside_what_they_are_compared_with() {
     let output = place.check(&["a.png", "--pictures", "a.png"]);
     assert_eq!(output.status.code(), Some(1));
     assert!(
-        stderr(&output).contains("a.png: is no folder"),
+        stderr(&output).contains("a.png: pictures cannot be written to this folder"),
         "{}",
         stderr(&output)
     );
@@ -250,7 +250,7 @@ fn a_file_that_refers_to_others_is_given_to_no_program() {
     let output = place.check(&["a.png", "--report", "-"]);
     assert_eq!(output.status.code(), Some(1));
     assert!(
-        stderr(&output).contains("inkscape: not asked, since line 3"),
+        stderr(&output).contains("inkscape: not run, because line 3"),
         "{}",
         stderr(&output)
     );

@@ -281,7 +281,7 @@ fn what_is_passed_through_and_what_cannot_be_seen_is_said() {
         "3",
     ];
     let said = stderr(&place.done(&refine));
-    for words in ["passing through 3 elements", "fonts", "other files"] {
+    for words in ["keeping 3 elements", "fonts", "other files"] {
         assert!(said.contains(words), "no {words:?} in {said}");
     }
 }

@@ -27,15 +27,20 @@ enum Measurement {
 /// Measures what a [`Runner`] asked for; the answer is a line of JSON.
 ///
 /// # Errors
-/// When `measurement` is none, or fails.
+/// When `measurement` is not one, or cannot be measured.
 pub fn perform(measurement: &str, peers: &[Box<dyn Peer>]) -> Result<String> {
     let measurement: Measurement = serde_json::from_str(measurement)
-        .map_err(|e| Error::new(ErrorKind::Config, format!("no task of a benchmark: {e}")))?;
+        .map_err(|e| Error::new(ErrorKind::Config, format!("not a measurement of a benchmark: {e}")))?;
     let answer = match measurement {
         Measurement::Case { case, svg } => serde_json::to_string(&case.measure(&svg, peers)?),
         Measurement::Point(point) => serde_json::to_string(&point.measure()?),
     };
-    answer.map_err(|e| Error::new(ErrorKind::Config, format!("the answer cannot be told: {e}")))
+    answer.map_err(|e| {
+        Error::new(
+            ErrorKind::Config,
+            format!("the answer cannot be written as JSON: {e}"),
+        )
+    })
 }
 
 /// How children are started.
@@ -56,7 +61,7 @@ impl Runner {
         let program = std::env::current_exe().map_err(|e| {
             Error::new(
                 ErrorKind::Io,
-                format!("this program's own file cannot be found: {e}"),
+                format!("the file of this program cannot be found: {e}"),
             )
         })?;
         Ok(Self {

@@ -48,7 +48,7 @@ fn named(template: &Path, input: &Path) -> Result<PathBuf> {
     let Some(stem) = stem else {
         let (name, template) = (input::name(input), template.display());
         return Err(misuse(format!(
-            "{template}: {name} has no name to put for {STEM}: name the output"
+            "{template}: {name} has no file name to replace {STEM}: name the output"
         )));
     };
     let mut path = OsString::from(before);
@@ -61,7 +61,7 @@ fn named(template: &Path, input: &Path) -> Result<PathBuf> {
 pub(super) fn run(jobs: &[Job<'_>], verbosity: Verbosity, draw: &Draw<'_>) -> Result<Status> {
     if jobs.len() > 1 && jobs.iter().any(|job| job.options.checkpoint().is_some()) {
         return Err(misuse(
-            "--checkpoint keeps the state of one fit: give one picture",
+            "--checkpoint saves the state of one fit: give one picture",
         ));
     }
     let events = jobs.first().and_then(|job| job.options.events.as_deref());
@@ -153,7 +153,7 @@ fn several(
         done - failed,
         match jobs.len() - done {
             0 => String::new(),
-            left => format!(", {left} left out"),
+            left => format!(", {left} skipped"),
         }
     ));
     worst
@@ -208,11 +208,11 @@ fn keep_apart(jobs: &[Job<'_>], outputs: &[Outputs<'_>], events: Option<&Path>) 
 fn clash(path: &Path, jobs: usize) -> anyhow::Error {
     let name = output::name(path);
     let remedy = match jobs {
-        1 => "name another".into(),
-        _ => format!("use {STEM} in the name, and pictures whose names differ"),
+        1 => "name another output".into(),
+        _ => format!("use {STEM} in its name, and pictures with different names"),
     };
     misuse(format!(
-        "{name}: two outputs cannot go to the same place: {remedy}"
+        "{name}: two outputs would go to this file: {remedy}"
     ))
 }
 

@@ -14,10 +14,10 @@ use strokefit::lab::{Notice, ResultFolder};
 use super::job::json;
 use super::{Status, Verbosity, domain, input, output};
 
-/// Measure speed against error, hard cases, and growth
+/// Measure speed against error, hard cases, and growth with size
 ///
-/// Each case is a line of standard output that ends in its verdict; tables, plots and pages go to the
-/// folder. The exit status is 1 when a case fails.
+/// Each case prints a line to standard output that ends with its verdict. Tables, plots and pages go to
+/// the folder. The exit status is 1 if a case fails.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   strokefit bench pareto photo.png -o out --short
@@ -34,36 +34,36 @@ enum Benchmark {
     Pareto(Pareto),
     Stability(Stability),
     Scaling(Scaling),
-    /// Measures one case for another process of this program
+    /// Measure one case on behalf of another process of this program
     #[command(hide = true)]
     Case {
-        /// The case, as JSON
+        /// Case as JSON
         task: String,
     },
 }
 
 #[derive(Debug, clap::Args)]
 struct Extents {
-    /// The folder to write to; made if need be
+    /// Folder to write to; created if it does not exist
     #[arg(short, long = "output", value_name = "DIR")]
     output: PathBuf,
-    /// Fewer and smaller cases: a minute or less
+    /// Measure fewer and smaller cases, in a minute or less
     #[arg(long)]
     short: bool,
 }
 
-/// Time, memory, bytes and strokes against error: our fits, the article's recipe, and other programs
-/// where they are installed (vtracer, primitive, potrace, Inkscape)
+/// Measure time, memory, bytes and strokes against error, for fits, for the article's recipe, and for other
+/// programs that are installed (vtracer, primitive, potrace, Inkscape)
 ///
-/// Results are kept as they come: what is in the folder already is not measured again.
+/// Each result is saved at once. A case whose result is already in the folder is not measured again.
 #[derive(Debug, clap::Args)]
 struct Pareto {
-    /// The pictures to draw
+    /// Pictures to draw
     #[arg(required = true)]
     pictures: Vec<PathBuf>,
     #[command(flatten)]
     extents: Extents,
-    /// Instead of drawing, score the SVGs of this folder that are named as the pictures
+    /// Draw nothing; instead score the SVGs in this folder that have the names of the pictures
     #[arg(long, value_name = "DIR")]
     svgs: Vec<PathBuf>,
     /// Numbers of strokes [default: 10 to 10,000]
@@ -72,10 +72,10 @@ struct Pareto {
     /// Presets [default: all]
     #[arg(long, value_enum, value_name = "PRESET", value_delimiter = ',')]
     preset: Vec<PresetWord>,
-    /// Coverage functions: the first for everything, the others for one draft each
+    /// Coverage functions: the first for all fits, each other one for one draft
     #[arg(long, value_name = "EDGE", value_delimiter = ',')]
     coverage: Vec<CoverageSchedule>,
-    /// How many seeds, for the spread of balanced fits
+    /// Number of seeds that show the spread of balanced fits
     #[arg(long, value_name = "N")]
     seeds: Option<u64>,
 }
@@ -100,19 +100,19 @@ impl From<PresetWord> for Effort {
     }
 }
 
-/// Hard cases: degenerate strokes and pictures, precision, wild learning rates, thin strokes
+/// Try hard cases: degenerate strokes and pictures, precision, extreme learning rates, thin strokes
 #[derive(Debug, clap::Args)]
 struct Stability {
-    /// Pictures to fit beside the hard ones
+    /// Pictures to fit in addition to the hard ones
     pictures: Vec<PathBuf>,
     #[command(flatten)]
     extents: Extents,
 }
 
-/// Growth of time and memory with strokes, pixels and threads
+/// Measure how time and memory grow with strokes, pixels and threads
 #[derive(Debug, clap::Args)]
 struct Scaling {
-    /// The picture, resampled to every size [default: a made one]
+    /// Picture, resampled to every size [default: a generated one]
     picture: Option<PathBuf>,
     #[command(flatten)]
     extents: Extents,
@@ -175,7 +175,7 @@ impl Pareto {
         pareto::publish(files, folder, pictures, &report)?;
         for name in missing().into_iter().filter(|_| self.svgs.is_empty()) {
             verbosity.say(format_args!(
-                "{name}: not here, too old, or without a display: not measured"
+                "{name}: not measured: it is not installed, is too old, or lacks a display"
             ));
         }
         Ok(report.failures())

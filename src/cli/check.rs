@@ -20,19 +20,19 @@ use trial::{PictureFolder, Trial};
 /// The judge, always asked.
 const RESVG: &str = "resvg";
 
-/// Judge an SVG in every program that is there to draw it
+/// Compare renders of an SVG by several programs with a picture and with each other
 ///
-/// resvg always draws it; Inkscape, rsvg-convert, Chromium and CairoSVG do where they are
-/// installed. Each draws the file, whoever made it, at the picture's size on white, and is compared
-/// with the picture and with resvg over 8-bit RGB: PSNR in dB (more is better), SSIM (1 is equal),
-/// the largest difference from resvg (0 to 255) and where it is. The text of the file is searched
-/// for what programs disagree on.
+/// resvg is built in. Inkscape, rsvg-convert, Chromium and CairoSVG are used if they are installed.
+/// Each renders the file, whoever made it, at the picture's size on white. The render is compared over
+/// 8-bit RGB with the picture and with resvg's render: PSNR in dB (more is better), SSIM (1 is
+/// equal), and the largest difference from resvg (0 to 255) with its place. The text of the file is
+/// searched for constructs that programs draw differently.
 ///
-/// Without a picture, the programs are compared with resvg alone.
+/// Without a picture, the programs are compared with resvg only.
 ///
-/// Exit status 4: a program agrees with resvg to less than 36 dB and, where there is a picture, is
-/// more than 0.6 dB less faithful to it. Exit status 1: a program that is installed could not draw
-/// the file, or one named with --renderer is not installed.
+/// Exit status 4: a render differs from resvg's (less than 36 dB) and, if there is a picture, is
+/// more than 0.6 dB less faithful to it than resvg's. Exit status 1: an installed program could not draw
+/// the file, or a program named with --renderer is not installed.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   strokefit check photo.svg photo.jpg
@@ -40,21 +40,21 @@ const RESVG: &str = "resvg";
   strokefit check foreign.svg
   strokefit check photo.svg photo.jpg --report - | jq .renderers[0].fidelity.psnr_db")]
 pub(super) struct Args {
-    /// The SVG file; - for standard input
+    /// SVG file. - means standard input
     file: PathBuf,
-    /// The picture it should look like; - for standard input
+    /// Picture that the SVG should look like. - means standard input
     input: Option<PathBuf>,
-    /// Who draws the SVG besides resvg [default: every program that is installed]
+    /// Programs to use besides resvg [default: all that are installed]
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = renderer())]
     renderer: Option<Vec<Renderer>>,
-    /// Write into DIR what each program draws, NAME.png, and NAME-compared.png: the picture, the
-    /// render, its difference from the picture, 4 times, and from resvg's render, 16 times
+    /// Write each render to DIR as NAME.png, with NAME-compared.png beside it: the picture, the render, its
+    /// difference from the picture (× 4) and from resvg's render (× 16)
     #[arg(long, value_name = "DIR")]
     pictures: Option<PathBuf>,
-    /// Give each program at most so long
+    /// Time limit for each program
     #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = domain::seconds, allow_negative_numbers = true)]
     timeout: Duration,
-    /// Write the result as JSON; - for standard output, instead of the table
+    /// Write the result as JSON. - means standard output, instead of the table
     #[arg(long, value_name = "R.json")]
     report: Option<PathBuf>,
 }

@@ -10,10 +10,10 @@ use super::domain;
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Look")]
 pub(super) struct Args {
-    /// At most N colours, the background included
+    /// At most N colours, including the background
     #[arg(long, value_name = "N", value_parser = domain::colors, allow_negative_numbers = true)]
     colors: Option<usize>,
-    /// Only these colours: #rrggbb,#rrggbb,... or a file of one a line, or a GIMP palette
+    /// Only these colours: a list #rrggbb,#rrggbb,..., a file with one colour per line, or a GIMP palette
     #[arg(long, value_name = "LIST|FILE", conflicts_with = "colors", value_parser = palette)]
     palette: Option<Palette>,
 }
@@ -48,10 +48,11 @@ fn palette(text: &str) -> Result<Palette, String> {
             .split(',')
             .map(|word| (word, domain::channels(word.trim())));
         return distinct(list.map(|(word, color)| {
-            color.ok_or_else(|| format!("\"{word}\" is no colour: give #rrggbb,#rrggbb,..."))
+            color.ok_or_else(|| format!("\"{word}\" is not a colour: give #rrggbb,#rrggbb,..."))
         }));
     }
-    let remedy = "give #rrggbb,#rrggbb,... or a file of one such colour a line, or a GIMP palette";
+    let remedy =
+        "give #rrggbb,#rrggbb,..., a file with one such colour per line, or a GIMP palette";
     let unreadable = |e: std::io::Error| format!("cannot be read ({e}): {remedy}");
     let length = fs::metadata(text).map_err(unreadable)?.len();
     if length > MAX_BYTES {
@@ -105,7 +106,7 @@ fn distinct(colors: impl Iterator<Item = Result<[u8; 3], String>>) -> Result<Pal
         }
     }
     if palette.is_empty() {
-        return Err("there is no colour in it: give one #rrggbb or more".into());
+        return Err("it has no colour: give one #rrggbb or more".into());
     }
     Ok(Palette(palette))
 }
@@ -137,8 +138,8 @@ mod tests {
             (palette("no-such-file"), "cannot be read"),
             (file("#ff0000\nred"), "line 2 is \"red\""),
             (file("GIMP Palette\n300 0 0"), "line 2"),
-            (file("GIMP Palette\n#\n"), "no colour"),
-            (file(""), "no colour"),
+            (file("GIMP Palette\n#\n"), "has no colour"),
+            (file(""), "has no colour"),
         ];
         for (outcome, words) in cases {
             let message = outcome.unwrap_err();

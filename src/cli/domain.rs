@@ -43,7 +43,7 @@ pub(super) fn precision(text: &str) -> Parsed<u8> {
 }
 
 pub(super) fn psnr(text: &str) -> Parsed<f64> {
-    let remedy = "give decibels above 0 and up to 100, such as 32";
+    let remedy = "give decibels from above 0 to 100, such as 32";
     text.parse()
         .ok()
         .filter(|db| *db > 0.0 && *db <= 100.0)

@@ -8,10 +8,10 @@ use super::batch;
 use super::options::Options;
 use super::{Status, Verbosity};
 
-/// Draw pictures with strokes
+/// Turn pictures into SVGs made of strokes
 ///
-/// The SVG has one layer per stage, from large strokes to small. Equal pictures and options give
-/// equal bytes, on any number of threads.
+/// The SVG has one layer per stage, from large strokes to small. Equal pictures and options give equal
+/// bytes, for any number of threads.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   strokefit fit photo.jpg -o photo.svg
@@ -20,19 +20,19 @@ use super::{Status, Verbosity};
   strokefit fit *.jpg -o 'out/{stem}.svg' --psnr 30        one SVG for each picture
   strokefit fit --psnr 32 --opaque --print-config > fit.toml
   strokefit fit photo.jpg -o photo.svg --config fit.toml --seed 7
-  strokefit fit photo.jpg -o photo.svg --view                see it grow
+  strokefit fit photo.jpg -o photo.svg --view                watch it grow
   strokefit fit photo.jpg -o photo.svg -o photo.gif --frames stage --legend
   curl -s https://example.org/a.png | strokefit fit - -o - --psnr 30 > a.svg")]
 pub(super) struct Args {
-    /// PNG, JPEG, WebP, GIF (first frame), BMP or TIFF pictures; - for standard input
+    /// Pictures: PNG, JPEG, WebP, GIF (first frame), BMP or TIFF. - means standard input
     #[arg(required = true, value_name = "INPUT")]
     inputs: Vec<PathBuf>,
-    /// The SVG to write; - for standard output; {stem} stands for the picture's name without extension.
-    /// Again for more: .png is a render, .gif, .webp or .apng an animation, .animated.svg draws itself;
-    /// for single frames see Animation
+    /// SVG to write. - means standard output, {stem} the picture's name without folder and extension. Repeat
+    /// -o for more files: .png for a render, .gif, .webp or .apng for an animation, .animated.svg for an
+    /// SVG that draws itself; for single frames see Animation
     #[arg(short, long, value_name = "OUT.svg", required = true)]
     output: Vec<PathBuf>,
-    /// Write what was done as JSON; - for standard output; {stem} as above
+    /// Write a report as JSON. - means standard output; {stem} works as in --output
     #[arg(long, value_name = "R.json")]
     report: Option<PathBuf>,
     #[command(flatten)]

@@ -12,35 +12,35 @@ pub(super) struct Args {
     /// Decimals of coordinates and widths, 0 to 6
     #[arg(long, value_name = "N", default_value = "2", value_parser = domain::precision, allow_negative_numbers = true)]
     precision: u8,
-    /// What an element of the SVG holds
+    /// What one element of the SVG holds
     #[arg(long, value_enum, default_value_t = Form::Plain)]
     form: Form,
-    /// What a layer of the SVG holds
+    /// What one layer of the SVG holds
     #[arg(long, value_enum, default_value_t = Group::Stage)]
     group: Group,
-    /// Write outlines instead of strokes, for programs that ignore strokes
+    /// Write filled outlines instead of strokes, for programs that ignore strokes
     #[arg(long, conflicts_with = "form")]
     outline: bool,
-    /// Width of the page in mm, cm, in, pt or px, such as 120mm [default: a px for each of the picture]
+    /// Width of the page in mm, cm, in, pt or px, such as 120mm [default: one px per pixel of the picture]
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     width: Option<Length>,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum Form {
-    /// One stroke each
+    /// One stroke, always
     Elements,
-    /// One stroke, or an opaque polyline
+    /// One stroke, or a polyline of opaque strokes that lie end to end
     Plain,
-    /// As many strokes as fit: the fewest bytes, the hardest to edit
+    /// As many strokes as possible: fewest bytes, hardest to edit
     Smallest,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum Group {
-    /// The strokes that were added together
+    /// The strokes of one stage
     Stage,
-    /// Strokes of one colour, as far as that leaves the picture the same
+    /// Strokes of one colour, as far as the picture stays the same
     Color,
 }
 

@@ -76,7 +76,7 @@ impl Job<'_> {
     /// Says how much memory is about to be used.
     fn foretell(&self, picture: &Image, verbosity: Verbosity) {
         let bytes = fit::predicted_rss_bytes(picture, &self.options.config());
-        verbosity.detail(format_args!("about {} MiB of memory", bytes >> 20));
+        verbosity.detail(format_args!("needs about {} MiB of memory", bytes >> 20));
     }
 
     /// Draws, showing and telling how it goes.
@@ -161,14 +161,14 @@ impl Job<'_> {
         if let Some(signal) = Interrupt::caught() {
             if drawn.fit.stop == Stop::Observer {
                 complain(format_args!(
-                    "{name}: interrupted: it has what was drawn until then"
+                    "{name}: interrupted: the file holds the drawing as far as it had come"
                 ));
             }
             return Status::Interrupted(signal);
         }
         if !drawn.verdict.agrees() {
             complain(format_args!(
-                "{name}: fidelity check failed: resvg draws the file {:.2} dB from what was fitted, the bound is {MIN_AGREEMENT_DB} dB: \
+                "{name}: fidelity check failed: resvg's render agrees with the fit to {:.2} dB, less than {MIN_AGREEMENT_DB} dB: \
                  the file was kept; try --opaque or a higher --precision",
                 drawn.verdict.agreement.psnr_db
             ));
@@ -189,7 +189,7 @@ impl Job<'_> {
             .filter(|most| drawn.text.len() > *most)
         {
             complain(format_args!(
-                "{name}: target not reached: {} bytes, more than {most}: allow more",
+                "{name}: target not reached: {} bytes, more than {most}: allow more bytes",
                 drawn.text.len()
             ));
             return Status::TargetMissed;
@@ -290,7 +290,7 @@ fn tell_dropped(dropped: Dropped, verbosity: Verbosity) {
     } = dropped;
     if dropped.total() > 0 {
         verbosity.detail(format_args!(
-            "dropped: {non_finite} strokes with numbers that are none, {invisible} invisible, {off_page} off the page"
+            "dropped strokes: {non_finite} not finite, {invisible} invisible, {off_page} off the page"
         ));
     }
 }

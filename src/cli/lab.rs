@@ -13,7 +13,7 @@ use strokefit::lab::{self, Notice, ResultFolder, article};
 use super::progress::Steps;
 use super::{Status, Verbosity, domain, input};
 
-/// Run the experiments: tables, plots and animations
+/// Repeat the article's experiments, with tables, plots and animations
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   strokefit lab circle -o out
@@ -26,17 +26,17 @@ pub(super) struct Args {
 
 #[derive(Debug, Subcommand)]
 enum Experiment {
-    /// What distances, coverage functions and combinations look like
+    /// Plot signed distances, coverage functions and their combinations
     Sdf(Folder),
-    /// Which way the loss pulls a circle, from everywhere
+    /// Plot where the loss pulls a circle, from every start
     Field(Folder),
-    /// Whether a circle finds its target, by coverage function and optimiser
+    /// Move a circle to its target, with each coverage function and optimiser
     Circle(Folder),
-    /// Whether sixteen strokes find a star of four
+    /// Fit sixteen strokes to a star of four
     Star(Folder),
-    /// How coloured strokes make a picture, step by step
+    /// Composite coloured strokes to a picture, step by step
     Compose(Folder),
-    /// Whether coloured strokes find coloured strokes
+    /// Fit coloured strokes to coloured strokes
     Colors(Folder),
     Article(Article),
     Compare(Compare),
@@ -44,35 +44,35 @@ enum Experiment {
 
 #[derive(Debug, clap::Args)]
 struct Folder {
-    /// The folder to write to; made if need be
+    /// Folder to write to; created if it does not exist
     #[arg(short, long = "output", value_name = "DIR")]
     output: PathBuf,
 }
 
-/// The article's demo: all strokes at once, from a random start
+/// Run the article's demo: all strokes at once, from a random start
 #[derive(Debug, clap::Args)]
 struct Article {
-    /// The picture to draw; - for standard input
+    /// Picture to draw. - means standard input
     picture: PathBuf,
     #[command(flatten)]
     folder: Folder,
     #[command(flatten)]
     recipe: RunArgs,
-    /// Coverage function: smoothstep, sigmoid, tanh, atan[:K] or raw; A>B passes from one to another
+    /// Coverage function: smoothstep, sigmoid, tanh, atan[:K] or raw; A>B changes from A to B during the fit
     #[arg(long, value_name = "EDGE", default_value = "smoothstep")]
     coverage: CoverageSchedule,
-    /// Iterations between pictures
+    /// Iterations between two pictures of the progress
     #[arg(long, value_name = "N", default_value = "30", value_parser = domain::stages, allow_negative_numbers = true)]
     every: usize,
-    /// Go on from the article.json of another run
+    /// Continue from the article.json of another run
     #[arg(long, value_name = "FILE")]
     load: Option<PathBuf>,
 }
 
-/// Coverage functions, mixes and the staged fit on pictures, from worst to best
+/// Compare coverage functions, mixes of two, and the staged fit on pictures
 #[derive(Debug, clap::Args)]
 struct Compare {
-    /// The pictures to draw
+    /// Pictures to draw
     #[arg(required = true)]
     pictures: Vec<PathBuf>,
     #[command(flatten)]
@@ -83,13 +83,13 @@ struct Compare {
 
 #[derive(Debug, clap::Args)]
 struct RunArgs {
-    /// How many strokes
+    /// Number of strokes
     #[arg(long, value_name = "N", default_value = "5000", value_parser = domain::strokes, allow_negative_numbers = true)]
     strokes: usize,
-    /// How many iterations
+    /// Number of iterations
     #[arg(long, value_name = "N", default_value = "1500", value_parser = domain::stages, allow_negative_numbers = true)]
     iterations: usize,
-    /// Key of the random start
+    /// Seed of the random start
     #[arg(long, value_name = "S", default_value_t = 0)]
     seed: u64,
     /// Worker threads [default: all cores]

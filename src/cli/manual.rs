@@ -9,14 +9,14 @@ use clap_complete::Shell;
 use super::output::Output;
 use super::{Status, Verbosity};
 
-/// Print what makes a shell complete commands and options
+/// Print a completion script for a shell
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   strokefit completions bash > ~/.local/share/bash-completion/completions/strokefit
   strokefit completions zsh > ~/.zfunc/_strokefit
   strokefit completions fish > ~/.config/fish/completions/strokefit.fish")]
 pub(super) struct Completions {
-    /// The shell
+    /// Shell to complete in
     #[arg(value_enum)]
     shell: Shell,
 }
@@ -27,7 +27,7 @@ pub(super) struct Completions {
   strokefit man -o ~/.local/share/man/man1
   man strokefit-fit")]
 pub(super) struct Man {
-    /// The folder to write to; made if need be
+    /// Folder to write to; created if it does not exist
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
 }
@@ -47,7 +47,7 @@ pub(super) fn man(args: &Man, verbosity: Verbosity) -> Result<Status> {
     fs::create_dir_all(&args.output).map_err(unwritable)?;
     clap_mangen::generate_to(super::usage::command(), &args.output).map_err(unwritable)?;
     verbosity.say(format_args!(
-        "{folder}: manual pages of strokefit and its commands"
+        "{folder}: wrote the manual pages of strokefit and its commands"
     ));
     Ok(Status::Done)
 }

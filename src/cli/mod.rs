@@ -37,9 +37,9 @@ pub(crate) use usage::parse;
 
 /// Turns a raster picture into an editable SVG made of strokes.
 ///
-/// A stroke is a line segment with round caps. strokefit looks where picture and drawing differ
-/// most, puts strokes there, improves them by gradient descent, and repeats; then it writes the
-/// SVG, renders it with resvg and says how faithful it is.
+/// A stroke is a line segment with round caps. strokefit puts strokes where the drawing differs most from
+/// the picture, improves them by gradient descent, and repeats. Then it writes the SVG, renders it
+/// with resvg, and reports how faithful it is.
 #[derive(Debug, Parser)]
 #[command(version, after_help = EXAMPLES, after_long_help = EXAMPLES_AND_STATUSES)]
 pub(crate) struct Args {
@@ -72,25 +72,25 @@ const EXAMPLES: &str = "Examples:
 const EXAMPLES_AND_STATUSES: &str = "Examples:
   strokefit fit photo.jpg -o photo.svg                 all defaults
   strokefit fit logo.png -o logo.svg --strokes 300     at most 300 strokes
-  strokefit fit a.png -o a.svg --psnr 32 --time 60     until 32 dB, or a minute has passed
+  strokefit fit a.png -o a.svg --psnr 32 --time 60     until 32 dB or one minute
   strokefit fit *.jpg -o 'out/{stem}.svg'              one SVG for each picture
   cat a.png | strokefit fit - -o - > a.svg             in a pipe
-  strokefit refine a.svg a.png -o b.svg --strokes 900  more strokes on a drawing, or on any SVG
+  strokefit refine a.svg a.png -o b.svg --strokes 900  more strokes on any SVG
   strokefit check photo.svg photo.jpg                  how faithful is the file?
   strokefit render photo.svg -o large.png --scale 4    four times the size
 
 Exit status: 0 done, 1 failed, 2 wrong usage, 3 a target was not reached, 4 the fidelity check
-failed (the SVG is not drawn as it was fitted). Ctrl-C, SIGTERM or SIGHUP during a fit finishes
-what is drawn so far, within a second or so, and then ends the program as the signal does, which
-shells report as 130, 143 or 129; a second one ends it at once.";
+failed (a renderer does not draw the SVG as it was fitted). Ctrl-C, SIGTERM or SIGHUP during a fit
+makes the program write the drawing as far as it has come, within a second or so, and then end as the
+signal does; shells report status 130, 143 or 129. A second signal ends it at once.";
 
 /// How much to say on standard error.
 #[derive(Debug, Clone, Copy, clap::Args)]
 struct Verbosity {
-    /// Say nothing but errors
+    /// Print errors only
     #[arg(short, long, global = true, conflicts_with = "verbose")]
     quiet: bool,
-    /// Say what each stage did
+    /// Print a line for each stage
     #[arg(short, long, global = true)]
     verbose: bool,
 }

@@ -17,7 +17,7 @@ use super::{colors, complain, domain, form};
 /// The options of a command that draws.
 #[derive(Debug, clap::Args)]
 pub(super) struct Options {
-    /// Write what happens as it happens, one JSON object a line: each stage, then the report; - for
+    /// Stream events as JSON, one object per line: each stage as it ends, then the report. - means
     /// standard output
     #[arg(long, value_name = "E.jsonl")]
     pub(super) events: Option<PathBuf>,
@@ -31,8 +31,8 @@ pub(super) struct Options {
     pub(super) form: form::Args,
     #[command(flatten)]
     pub(super) film: FilmOptions,
-    /// Serve a page that shows the drawing as it grows, at an address that is printed. Afterwards the
-    /// program ends with the page's button Done, with Ctrl-C, or when no page has been open for two minutes
+    /// Serve a live page that shows the drawing as it grows, and print its address. After the fit the
+    /// program waits for the page's button Done, for Ctrl-C, or until no page has been open for two minutes
     #[arg(long, help_heading = "Watching")]
     pub(super) view: bool,
     #[command(flatten)]
@@ -45,13 +45,13 @@ pub(super) struct Budget {
     /// At most N strokes
     #[arg(long, value_name = "N", value_parser = domain::strokes, allow_negative_numbers = true)]
     pub(super) strokes: Option<usize>,
-    /// Until the file is this faithful, in dB of PSNR; 25 is rough, 30 fair, 35 good
+    /// Stop when the file reaches DB decibels of PSNR: 25 is rough, 30 fair, 35 good
     #[arg(long, value_name = "DB", value_parser = domain::psnr, allow_negative_numbers = true)]
     pub(super) psnr: Option<f64>,
     /// At most N bytes of SVG
     #[arg(long, value_name = "N", value_parser = domain::bytes, allow_negative_numbers = true)]
     pub(super) bytes: Option<usize>,
-    /// At most this long
+    /// At most this many seconds, from reading the picture to writing the SVG
     #[arg(long, value_name = "SECONDS", value_parser = domain::seconds, allow_negative_numbers = true)]
     pub(super) time: Option<Duration>,
 }
@@ -59,33 +59,36 @@ pub(super) struct Budget {
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Look")]
 pub(super) struct Look {
-    /// What a byte is worth, 0 to 60: a stroke stays while each of its bytes removes as much error as
-    /// one pixel has at Q dB [default: 30 without a budget of strokes, dB or bytes]
+    /// Price of a byte, 0 to 60: a stroke stays if each of its bytes removes at least as much squared error
+    /// as one pixel has at Q dB [default: 30, unless --strokes, --psnr or --bytes is given]
     #[arg(long, value_name = "Q", allow_negative_numbers = true)]
     quality: Option<f64>,
-    /// How much work to spend
+    /// How much time to spend for a better drawing
     #[arg(long, value_enum, default_value_t = Preset::Balanced)]
     preset: Preset,
-    /// Polish each layer on those below alone: a good drawing after every layer, some dB less in the end
+    /// Fit each layer for the layers below it only. The drawing is good after every layer, and some dB worse
+    /// in the end
     #[arg(long, conflicts_with = "no_polish")]
     progressive: bool,
-    /// Only opaque strokes: fewer dB, but flat colours that are easy to edit
+    /// Use opaque strokes only. They are easier to edit and cost some dB
     #[arg(long)]
     opaque: bool,
-    /// Soft edge while fitting: smoothstep, sigmoid, tanh or atan[:K]; A>B passes from one to another
+    /// Coverage function of soft edges: smoothstep, sigmoid, tanh or atan[:K]; A>B changes from A to B during
+    /// the fit. Here tanh draws the same as sigmoid, and atan:K the same as atan for any K, because a fit
+    /// gives all edges the same slope
     #[arg(long, value_name = "EDGE", default_value = "smoothstep")]
     coverage: CoverageSchedule,
-    /// Add the strokes in N stages, each a layer of the SVG [default: from the budget]
+    /// Number of stages, each a layer of the SVG [default: chosen from the budget]
     #[arg(long, value_name = "N", value_parser = domain::stages, allow_negative_numbers = true)]
     stages: Option<usize>,
-    /// Leave out the joint fit of all strokes after the stages: faster, some dB less
+    /// Skip the joint fit of all strokes after the stages. The fit is faster and some dB worse
     #[arg(long)]
     no_polish: bool,
-    /// Colour behind the strokes: auto, none or #rrggbb, on which transparency is laid. With auto a drawing is
-    /// transparent where the picture is, but opaque strokes for translucent areas are laid on white
+    /// Background colour: auto, none or #rrggbb. auto keeps transparency; with --opaque it flattens a picture
+    /// with translucent areas onto white. #rrggbb flattens onto that colour
     #[arg(long, value_name = "COLOR", default_value = "auto", value_parser = domain::background)]
     background: Background,
-    /// Key of every random draw: another seed, another drawing
+    /// Seed of all random choices. Another seed gives a slightly different drawing
     #[arg(long, value_name = "S", default_value_t = 0)]
     pub(super) seed: u64,
 }
@@ -99,25 +102,25 @@ pub(super) struct How {
     /// Instruction set: auto, avx512, avx2, sse4.2, sse2, neon or scalar
     #[arg(long, value_name = "LEVEL", default_value = "auto")]
     simd: Simd,
-    /// Refuse pictures of more than N pixels
+    /// Refuse pictures with more than N pixels
     #[arg(long, value_name = "N", value_parser = domain::pixels, allow_negative_numbers = true)]
     max_pixels: Option<u64>,
-    /// Keep the state of the fit in FILE now and then: if the fit is cut off, the same command goes on from
-    /// there; removed when the drawing is done
+    /// Save the state of the fit to FILE at intervals. If the fit is cut off, the same command resumes from
+    /// FILE. The file is removed when the drawing is done
     #[arg(long, value_name = "FILE")]
     checkpoint: Option<PathBuf>,
-    /// How often to keep it [default: 10]
+    /// Seconds between two checkpoints [default: 10]
     #[arg(long, value_name = "SECONDS", value_parser = domain::seconds, requires = "checkpoint", allow_negative_numbers = true)]
     checkpoint_every: Option<Duration>,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum Preset {
-    /// Quick look
+    /// A tenth of the time, about 1 dB worse
     Draft,
     /// The default
     Balanced,
-    /// The last tenths of a dB
+    /// Three times the time, up to 0.2 dB better
     Best,
 }
 
@@ -162,7 +165,7 @@ impl Options {
         })
     }
 
-    /// Draws with a fitter that is set up, keeping its state where that is asked for.
+    /// Configures a fitter, with a checkpoint if one was asked for, and draws with it.
     pub(super) fn fit(
         &self,
         observer: &mut (dyn Observer + Send),

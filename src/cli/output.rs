@@ -149,7 +149,7 @@ fn unwritable(path: &Path, error: &io::Error) -> anyhow::Error {
     let path = path.display();
     match error.kind() {
         io::ErrorKind::NotFound => {
-            anyhow!("{path}: cannot be written, its folder does not exist: make the folder first")
+            anyhow!("{path}: cannot be written, its folder does not exist: create the folder first")
         }
         io::ErrorKind::IsADirectory => {
             anyhow!("{path}: cannot be written, it is a folder: name a file in it")

@@ -23,10 +23,10 @@ const NOT_WRITTEN: [&str; 9] = [
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Animation (.gif, .webp, .apng, .animated.svg and {n}.png)")]
 pub(super) struct FilmOptions {
-    /// What each frame adds: a stage, or N strokes [default: what makes some 50 frames]
+    /// What each frame adds: a stage, or N strokes [default: as many as give about 50 frames]
     #[arg(long, value_name = "stage|N", allow_negative_numbers = true)]
     frames: Option<Step>,
-    /// Say beneath each frame how many strokes there are and, in fit, how faithful they are
+    /// Write the number of strokes below each frame and, in fit, the PSNR
     #[arg(long)]
     legend: bool,
 }
@@ -110,7 +110,8 @@ impl<'a> Pictures<'a> {
         }
         let FilmOptions { frames, legend } = self.options;
         if !self.moves() && (frames.is_some() || *legend) {
-            let message = "--frames and --legend are for animations: add one, as with -o out.gif";
+            let message =
+                "--frames and --legend apply to animations only: add one, such as -o out.gif";
             return Err(misuse(message));
         }
         Ok(())
@@ -139,7 +140,7 @@ impl<'a> Pictures<'a> {
                 }
                 (format, None) if format.moves() => {
                     return Err(misuse(format!(
-                        "{}: only a drawing of strokes alone can be drawn stroke by stroke: leave it out",
+                        "{}: the SVG is not made of strokes only, so it cannot be drawn stroke by stroke: leave this output out",
                         path.display()
                     )));
                 }
@@ -187,9 +188,9 @@ pub(super) fn split(paths: &[PathBuf]) -> Result<(&Path, Vec<&Path>)> {
         .partition(|path| is_svg(path));
     match svgs.as_slice() {
         [svg] => Ok((svg, others)),
-        [] => Err(misuse("no output is the SVG: add one, as with -o out.svg")),
+        [] => Err(misuse("no output is an SVG: add one, such as -o out.svg")),
         [_, second, ..] => Err(misuse(format!(
-            "{}: a second SVG: give one, and pictures and animations beside it",
+            "{}: is a second SVG: give one SVG, and any number of pictures and animations",
             second.display()
         ))),
     }
@@ -202,7 +203,7 @@ fn expect_written(path: &Path) -> Result<()> {
         return Ok(());
     };
     Err(misuse(format!(
-        "{}: .{other} is not written: name it .svg, .png, .gif, .webp or .apng",
+        "{}: strokefit does not write .{other} files: use .svg, .png, .gif, .webp or .apng",
         path.display()
     )))
 }

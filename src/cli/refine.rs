@@ -10,16 +10,16 @@ use super::job::Job;
 use super::options::Options;
 use super::{Status, Verbosity, batch, input, misuse, pictures};
 
-/// Add strokes to an SVG so that it comes closer to a picture
+/// Add strokes to an SVG to bring it closer to a picture
 ///
-/// The strokes of a drawing of strokefit's are taken up: fitted further, in their layers, together with
-/// the new ones, which come in new layers. Any other SVG stays as it is, byte for byte, and the new layers
-/// are laid on it, before the end of its root element; strokes that were laid on it so are taken up too.
-/// What was drawn from a picture of another size, or with --freeze-base, stays as it is.
+/// BASE is the SVG to go on from. If strokefit drew it, its strokes are fitted further, together with new
+/// strokes in new layers. Any other SVG stays byte for byte as it is; the new layers go before the end
+/// of its root element, and a later refine fits them further. With --freeze-base all strokes of BASE stay
+/// as they are, and so do those drawn from a picture of another size.
 ///
-/// Budgets count the whole file: --strokes the strokes taken up and the new ones, --psnr and --bytes the
-/// file that is written, and --stages plans the whole drawing, of which the stages that are there are left
-/// out. An SVG that meets a budget already is written as it is. The background is that of the SVG.
+/// Budgets count the whole file: --strokes counts old and new strokes, --psnr and --bytes apply to the
+/// written file, and --stages counts the stages that BASE already has. If BASE already meets a budget, it is
+/// written unchanged. The background is that of BASE.
 #[derive(Debug, clap::Args)]
 #[command(
     mut_arg("background", |background| background.hide(true)),
@@ -29,18 +29,18 @@ use super::{Status, Verbosity, batch, input, misuse, pictures};
   strokefit refine photo.svg photo.jpg -o more.svg --freeze-base --psnr 34"
 )]
 pub(super) struct Args {
-    /// The SVG to go on from; - for standard input
+    /// SVG to go on from. - means standard input
     base: PathBuf,
-    /// PNG, JPEG, WebP, GIF (first frame), BMP or TIFF picture; - for standard input
+    /// Picture: PNG, JPEG, WebP, GIF (first frame), BMP or TIFF. - means standard input
     input: PathBuf,
-    /// The SVG to write; - for standard output. Again for more: .png is a render, .gif, .webp or .apng an
-    /// animation, .animated.svg draws itself; for single frames see Animation
+    /// SVG to write. - means standard output. Repeat -o for more files: .png for a render, .gif, .webp or
+    /// .apng for an animation, .animated.svg for an SVG that draws itself; for single frames see Animation
     #[arg(short, long, value_name = "OUT.svg", required = true)]
     output: Vec<PathBuf>,
-    /// Write what was done as JSON; - for standard output
+    /// Write a report as JSON. - means standard output
     #[arg(long, value_name = "R.json")]
     report: Option<PathBuf>,
-    /// Leave all strokes as they are and lay the new layers on them
+    /// Keep the strokes of BASE as they are, and add new layers on top
     #[arg(long)]
     freeze_base: bool,
     #[command(flatten)]
@@ -55,7 +55,7 @@ pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
     }
     if args.options.config().background != Background::Auto {
         return Err(misuse(
-            "--background cannot be chosen when refining: the base is the background",
+            "--background cannot be chosen when refining: the drawing keeps that of the SVG",
         ));
     }
     let (output, others) = pictures::split(&args.output)?;
@@ -81,11 +81,11 @@ fn read(args: &Args, text: String, picture: &Image) -> Result<Base> {
     Ok(Base::read(text, picture, args.freeze_base).map_err(|error| error.within(name))?)
 }
 
-/// Says what becomes of the base.
+/// Tells the user how the base is used.
 fn tell(base: &Base, verbosity: Verbosity) {
     if !base.scene.is_empty() {
         verbosity.say(format_args!(
-            "taking up {} strokes in {} layers",
+            "continuing from {} strokes in {} layers",
             base.scene.len(),
             base.scene.stages.len()
         ));
@@ -94,22 +94,22 @@ fn tell(base: &Base, verbosity: Verbosity) {
         return;
     };
     verbosity.say(format_args!(
-        "passing through {} elements as they are",
+        "keeping {} elements as they are",
         document.elements()
     ));
     let unseen = [
         (
             document.texts(),
-            "text, and there are no fonts here: turn it into paths first",
+            "text, and no fonts are loaded: convert it to paths first",
         ),
         (
             document.references(),
-            "in other files, which are not read: embed them first",
+            "references to other files, which are not read: embed them first",
         ),
     ];
     for (count, why) in unseen.into_iter().filter(|(count, _)| *count > 0) {
         verbosity.say(format_args!(
-            "{count} of them cannot be seen and may be drawn over: they are {why}"
+            "{count} of these elements cannot be seen and may be drawn over: they are {why}"
         ));
     }
 }

@@ -10,20 +10,20 @@ use super::{Status, domain, input, misuse};
 
 /// Render an SVG to a PNG or an animation, as resvg draws it
 ///
-/// Any SVG will do. Files and addresses it refers to are not read, and no fonts are loaded, so
-/// text that is not outlines is not drawn. Where the SVG has no background, the PNG is transparent.
+/// Any SVG will do. Files and addresses that it refers to are not read. No fonts are loaded, so text
+/// is drawn only if it was converted to paths. Without a background, the PNG is transparent.
 ///
-/// Files of strokefit can be drawn stroke by stroke: an output named .gif, .webp or .apng is an
-/// animation, one named .animated.svg draws itself; for single frames see Animation.
+/// A file that strokefit wrote can be drawn stroke by stroke: an output named .gif, .webp or .apng is
+/// an animation, and an output named .animated.svg draws itself. For single frames see Animation.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   strokefit render photo.svg -o photo.png
   strokefit render photo.svg -o thumbnail.png --scale 0.25
   strokefit render photo.svg -o photo.gif --frames stage --legend")]
 pub(super) struct Args {
-    /// The SVG file; - for standard input
+    /// SVG file. - means standard input
     file: PathBuf,
-    /// The PNG or animation to write; - for standard output; may be given again
+    /// PNG or animation to write. - means standard output. Repeat -o for more files
     #[arg(short, long, value_name = "OUT.png", required = true)]
     output: Vec<PathBuf>,
     /// Pixels per unit of the SVG
@@ -45,7 +45,7 @@ pub(super) fn run(args: &Args) -> Result<Status> {
     let is_svg = |path: &&PathBuf| Format::of(path) == Some(Format::Svg);
     if let Some(path) = args.output.iter().find(is_svg) {
         return Err(misuse(format!(
-            "{}: an SVG, where a picture or an animation is written: name another output",
+            "{}: render writes pictures and animations, not SVG: name another output",
             path.display()
         )));
     }

@@ -49,10 +49,10 @@ fn options() -> [Arg; 2] {
     let config = Arg::new(CONFIG)
         .value_name("FIT.toml")
         .value_parser(value_parser!(PathBuf))
-        .help("Take options from a file with lines such as strokes = 500; flags override it");
+        .help("Read options from a file with lines such as strokes = 500. Flags override the file");
     let print = Arg::new(PRINT)
         .action(ArgAction::SetTrue)
-        .help("Print the options as such a file, and draw nothing");
+        .help("Print all options in the form of such a file, and draw nothing");
     [config.long("config"), print.long("print-config")]
 }
 
@@ -132,7 +132,7 @@ fn flags(path: &Path, text: &str, command: &Command) -> Result<Vec<OsString>> {
 /// The flag that one line stands for.
 fn flag(at: &str, command: &Command, key: &str, value: &Value) -> Result<OsString> {
     let Some(arg) = settable(command).find(|arg| arg.get_long() == Some(key)) else {
-        let error = misuse(format!("{at}: there is no option {key}"));
+        let error = misuse(format!("{at}: no option is called {key}"));
         let advice = similar(command, key).map_or_else(
             || format!("strokefit {} --help lists the options", command.get_name()),
             |near| format!("did you mean {near}?"),

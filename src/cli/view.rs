@@ -16,16 +16,16 @@ use super::{Status, complain, input, misuse};
 
 /// Look at a drawing, stroke by stroke, in a browser
 ///
-/// The page is served on this machine alone, at the address that is printed. The program ends with the
-/// button Done, with Ctrl-C, or when no page has been open for two minutes.
+/// The command prints the address of a page, which it serves on this machine only. The program ends with
+/// the button Done, with Ctrl-C, or when no page has been open for two minutes.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   strokefit view photo.svg photo.jpg
   strokefit view photo.svg")]
 pub(super) struct Args {
-    /// An SVG file as strokefit writes it; - for standard input
+    /// SVG file that strokefit wrote. - means standard input
     file: PathBuf,
-    /// The picture it should look like; - for standard input
+    /// Picture that the SVG should look like. - means standard input
     input: Option<PathBuf>,
 }
 

@@ -204,7 +204,7 @@ impl Engine {
             .and_then(|image| image.cropped(width, height));
         image.ok_or_else(|| {
             fault(format!(
-                "its picture is {}×{} px instead of {width}×{height}",
+                "its picture has {}×{} px instead of {width}×{height}",
                 found.0, found.1
             ))
         })
@@ -231,7 +231,7 @@ fn refuse_external(svg: &str) -> Result<()> {
     };
     let line = lines.first().copied().unwrap_or(1);
     let message = format!(
-        "not asked, since line {line} refers to {found}, outside the file: embed or remove it"
+        "not run, because line {line} refers to {found}, outside the file: embed or remove it"
     );
     Err(Error::new(ErrorKind::Svg, message))
 }

@@ -75,7 +75,7 @@ pub(super) fn run(mut command: Command, folder: &Path, timeout: Duration) -> Res
     let Some(status) = group.wait(timeout).map_err(unusable)? else {
         let seconds = timeout.as_secs_f64();
         return Err(fault(format!(
-            "ended after {seconds} s without a result: give it longer with --timeout"
+            "ended after {seconds} s without a result: allow more time with --timeout"
         )));
     };
     let text = |name| fs::read(folder.join(name)).map(|b| String::from_utf8_lossy(&b).into_owned());

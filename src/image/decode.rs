@@ -1,4 +1,4 @@
-//! The bytes of a picture file as an [`Image`].
+//! Decodes the bytes of a picture file to an [`Image`].
 
 use std::cell::Cell;
 use std::fs::File;
@@ -98,7 +98,7 @@ fn format(bytes: &[u8], limits: Limits) -> Result<ImageFormat> {
         .ok()
         .filter(|format| format.reading_enabled())
         .ok_or_else(|| {
-            bad("not a picture that can be read: give a PNG, JPEG, WebP, GIF, BMP or TIFF file")
+            bad("not a picture in a known format: give a PNG, JPEG, WebP, GIF, BMP or TIFF file")
         })
 }
 

@@ -1,4 +1,4 @@
-//! A picture as the bytes of a PNG file.
+//! Encodes a picture as PNG.
 
 use std::borrow::Cow;
 
@@ -38,7 +38,7 @@ fn size(image: &Image) -> Result<(u32, u32)> {
         .zip(side(image.height()))
         .ok_or_else(|| {
             let message = format!(
-                "a PNG cannot be {}×{} px: at most {} a side",
+                "a PNG of {}×{} px is not possible: at most {} px per side",
                 image.width(),
                 image.height(),
                 i32::MAX

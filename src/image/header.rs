@@ -1,5 +1,5 @@
-//! What the first bytes of a picture file say, where the decoders are silent or vague: a size of
-//! zero, and whether a JPEG is whole.
+//! Checks on the raw bytes of a picture file that the decoders lack or report vaguely: a size of zero,
+//! and a JPEG that is cut short.
 
 use std::io::Cursor;
 

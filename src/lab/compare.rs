@@ -216,7 +216,7 @@ fn sheet(name: &str, target: Image, rows: Vec<Row>) -> Result<Image> {
         )
     }));
     let sheet = Sheet {
-        title: format!("{name}: the SVGs as resvg draws them"),
+        title: format!("{name}: resvg's renders of the SVGs"),
         columns: 4,
         zoom,
         panels,

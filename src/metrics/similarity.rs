@@ -1,4 +1,4 @@
-//! Structural similarity: how alike means, variances and the course of the values are around each sample.
+//! Structural similarity (SSIM): compares means, variances and covariance in a window around each sample.
 
 use rayon::prelude::*;
 

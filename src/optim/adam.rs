@@ -1,18 +1,17 @@
-//! Adam: steps of the learning rate's size, along the mean gradient over its root mean square.
+//! Adam: a step is the learning rate times the mean gradient divided by its root mean square.
 //!
 //! ```text
 //! m ← β₁m + (1−β₁)g          v ← β₂v + (1−β₂)g²
 //! x ← x − rate · m/(1−β₁ᵗ) / (√(v/(1−β₂ᵗ)) + ε)
 //! ```
 //!
-//! `1−βᵗ` corrects the bias of averages that start from 0. It is the same average taken of the
-//! constant 1, and is kept as such for every value, so that values of different age `t` live in one
-//! slice.
+//! `1−βᵗ` corrects the bias of averages that start from 0. It equals the same average of the constant 1,
+//! and is stored as such for every value, so that one slice can hold values of different age `t`.
 //!
-//! Domain: finite gradients, `0 ≤ β < 1`, `ε > 0`. A gradient that is always 0 moves nothing.
+//! Domain: finite gradients, `0 ≤ β < 1`, `ε > 0`. A value whose gradient is always 0 does not move.
 //!
 //! Source: Kingma & Ba, "Adam: a method for stochastic optimization", ICLR 2015, algorithm 1, with
-//! ε outside of the root and of the correction, as `torch.optim.Adam` has it.
+//! ε outside the root and the correction, as in `torch.optim.Adam`.
 
 use std::ops::Range;
 

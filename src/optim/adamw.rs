@@ -1,14 +1,14 @@
-//! AdamW: [`Adam`] with weight decay that does not pass through the averages.
+//! AdamW: [`Adam`] with weight decay applied to the values directly, not through the averages.
 //!
 //! ```text
 //! x ← x − rate·λ·x, then a step of Adam
 //! ```
 //!
-//! The decay pulls every value towards 0, which for positions is a corner of the picture and for
-//! radii and opacities is nothing at all.
+//! The decay pulls every value towards 0. For positions, 0 is a corner of the picture; for radii and
+//! opacities, it is an invisible stroke.
 //!
 //! Source: Loshchilov & Hutter, "Decoupled weight decay regularization", ICLR 2019, algorithm 2,
-//! with the decay multiplied by the learning rate, as `torch.optim.AdamW` has it.
+//! with the decay multiplied by the learning rate, as in `torch.optim.AdamW`.
 
 use std::ops::Range;
 

@@ -1,10 +1,10 @@
 //! First-order optimisers over slices: [`Adam`], [`AdamW`] and [`RmsProp`], with `PyTorch`'s update
 //! formulas, and learning-rate [`Schedule`]s.
 //!
-//! An optimiser knows nothing but slices: how strokes are laid out in them, which values are
-//! positions and which colours, and what they are clamped to, is the caller's affair. State is
-//! allocated once; a step allocates nothing. Every value keeps its own bias correction, so a stroke
-//! that was put elsewhere starts afresh ([`Optimizer::reset`]) amid others that go on.
+//! An optimiser sees only slices. The caller decides how strokes are laid out in them, which values are
+//! positions or colours, and how they are clamped. State is allocated once; a step allocates nothing. Every
+//! value keeps its own bias correction, so a relocated stroke can start afresh ([`Optimizer::reset`])
+//! among others that continue.
 //!
 //! ```
 //! use strokefit::optim::{Adam, Optimizer};

@@ -1,4 +1,4 @@
-//! RMSprop: gradients over their root mean square, with momentum.
+//! RMSprop: gradients divided by their root mean square, with momentum.
 //!
 //! ```text
 //! v ← αv + (1−α)g²
@@ -6,14 +6,13 @@
 //! x ← x − rate·b
 //! ```
 //!
-//! The average is not corrected for its start from 0, so the first step is `1/√(1−α)` times as long
-//! as those of a steady gradient.
+//! The average starts from 0 without a correction, so the first step is `1/√(1−α)` times as long as
+//! later steps with the same gradient.
 //!
-//! Domain: finite gradients, `0 ≤ α, μ < 1`, `ε > 0`. A gradient that is always 0 moves nothing.
+//! Domain: finite gradients, `0 ≤ α, μ < 1`, `ε > 0`. A value whose gradient is always 0 does not move.
 //!
 //! Source: Tieleman & Hinton, "Lecture 6.5: RMSProp", COURSERA: Neural Networks for Machine
-//! Learning, 2012, with ε outside of the root and the momentum buffer as `torch.optim.RMSprop` has
-//! them.
+//! Learning, 2012, with ε outside the root and the momentum buffer as in `torch.optim.RMSprop`.
 
 use std::ops::Range;
 

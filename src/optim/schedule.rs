@@ -1,7 +1,7 @@
-//! Learning rates that change during a fit.
+//! Schedules of the learning rate over a fit.
 //!
-//! The cosine is that of Loshchilov & Hutter, "SGDR: stochastic gradient descent with warm
-//! restarts", ICLR 2017, equation 5, without restarts.
+//! Source of the cosine: Loshchilov & Hutter, "SGDR: stochastic gradient descent with warm restarts",
+//! ICLR 2017, equation 5, without restarts.
 
 use std::f64::consts::PI;
 

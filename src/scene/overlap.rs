@@ -1,4 +1,4 @@
-//! Which strokes may share a pixel, so that their order shows.
+//! Finds pairs of strokes that may share a pixel, so that their order matters.
 
 use super::quantize::{UNITS_PER_PX, Written};
 

@@ -1,8 +1,7 @@
-//! What an SVG can say of a stroke: decimals of a fixed number of places, 8-bit colour and opacity.
+//! Rounds strokes to what the SVG can hold: a fixed number of decimals, and 8-bit colour and opacity.
 //!
-//! [`Written`] is a stroke in exactly those integers. Scenes are quantised, SVG is written and SVG
-//! is read through it alone, so that reading back what was written gives the quantised scene to
-//! the bit.
+//! [`Written`] is a stroke in exactly these integers. Quantising, writing and reading all go through it, so
+//! reading a written file gives the quantised scene to the bit.
 
 use serde::{Deserialize, Serialize};
 

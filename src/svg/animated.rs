@@ -1,5 +1,5 @@
-//! A drawing that draws itself: SVG with animation in SMIL, which browsers play, in `<img>` too, and
-//! which other programs pass over, so that they show the finished drawing.
+//! SVG that draws itself, by SMIL animation. Browsers play it, even in `<img>`; other programs ignore the
+//! animation and show the finished drawing.
 
 use std::ops::Range;
 

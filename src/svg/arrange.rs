@@ -1,8 +1,8 @@
-//! Which strokes may change places, and in what order those of one look come together.
+//! Reorders strokes so that those of equal colour, width and opacity (of one *look*) become neighbours.
 //!
-//! Strokes that share no pixel, or have one colour, look the same in either order. Of all orders that leave
-//! the others as they are, a greedy one with few changes of look is taken. It depends on nothing but the
-//! strokes and which of them lies above which, so that arranging twice changes nothing.
+//! Two strokes may swap if they share no pixel or have the same colour. Among the orders that keep all other
+//! pairs as they are, a greedy search picks one with few changes of look. The result depends only on the
+//! strokes and on which lies above which, so arranging twice changes nothing.
 
 use std::collections::{BTreeMap, BTreeSet};
 

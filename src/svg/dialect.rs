@@ -1,4 +1,4 @@
-//! The words of the dialect that reader and writer share: names, numbers, colours.
+//! The vocabulary that reader and writer of the dialect share: names, numbers, colours.
 
 use crate::scene::{MAX_PRECISION, UNITS_PER_PX};
 

@@ -1,10 +1,9 @@
-//! Any SVG as a page to draw on: its text is kept byte for byte, and layers are put before the end of its
-//! root element.
+//! Adds layers to any SVG: its text stays byte for byte, and the layers go before the end of its root element.
 //!
-//! The layers stand in a group of their own, which declares its namespaces, undoes the `viewBox` by a
-//! `transform`, and resets what strokes inherit: the root may have a prefix, another unit and a stroke
-//! opacity, and the strokes are none the wiser. The group bears the size of the picture as
-//! `data-strokefit`, by which it is found again. A drawing of ours needs no such group.
+//! The layers are in a group of their own. The group declares its namespaces, undoes the `viewBox` by a
+//! `transform`, and resets the properties that strokes would inherit; so a prefix, another unit or a
+//! stroke opacity on the root does not affect them. The attribute `data-strokefit` holds the size of the
+//! picture and marks the group, so that it can be found again. A drawing by strokefit needs no such group.
 
 mod outline;
 

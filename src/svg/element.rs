@@ -1,4 +1,4 @@
-//! Strokes as elements: which share one, and which attributes neighbours share.
+//! Elements of the SVG: which strokes share one, and which attributes neighbours share.
 
 use std::collections::BTreeMap;
 

@@ -1,7 +1,6 @@
-//! Scenes as SVG text and back: [`fn@write`] and [`read`]. The one door of `quick-xml`.
+//! Writes scenes as SVG text, and reads them back: [`fn@write`] and [`read`]. This module alone uses `quick-xml`.
 //!
-//! The dialect is small on purpose, so that every renderer agrees on it and the file stays easy to
-//! edit:
+//! The dialect is small on purpose, so that all renderers agree on it and the file is easy to edit:
 //!
 //! ```text
 //! <svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="…" width="W" height="H" viewBox="0 0 W H">
@@ -14,28 +13,28 @@
 //! </svg>
 //! ```
 //!
-//! - One unit is one px of the picture, but in the smallest form. `width` and `height` equal the `viewBox`, unless the page has a
-//!   [`Length`] as its width.
-//! - In the plain form, strokes end to end of one look are one path, `M1 2L3 4L5 6`, if they are opaque; the layer
-//!   then has `stroke-linejoin="round"`.
-//! - In the smallest form any strokes of one look that follow each other are one path, `M1 2L3 4M7 8l1 2`, if
-//!   they are opaque or do not touch; attributes that neighbours share are on a `<g>` around them; the layer has
-//!   the `stroke-width` of most of its elements, colours may be `#rgb`, numbers count the last decimal where that is
-//!   shorter, by `transform="scale(0.1)"` on the layer, and [`arrange()`] has put strokes that do not
-//!   touch in an order that makes use of all that.
+//! - One unit is one px of the picture, except in the smallest form. `width` and `height` equal the `viewBox`,
+//!   unless the page has a [`Length`] as its width.
+//! - In the plain form, opaque strokes of equal colour and width that lie end to end are one path,
+//!   `M1 2L3 4L5 6`. The layer then has `stroke-linejoin="round"`.
+//! - In the smallest form, neighbours of equal colour, width and opacity are one path, `M1 2L3 4M7 8l1 2`,
+//!   if they are opaque or do not touch. A `<g>` holds the attributes that neighbours share, and the layer
+//!   holds the most common `stroke-width`. Colours may be `#rgb`. Where that is shorter, numbers count units of
+//!   the last decimal, and the layer has `transform="scale(0.1)"`. Before, [`arrange()`] reorders strokes
+//!   that do not touch so that all this saves the most.
 //! - Layers by colour have ids `color-1`, `color-2`, ….
 //! - A path's second point is absolute (`L`) or relative (`l`), whichever is shorter.
-//! - A dot is a segment of 0.01, because many programs drop a segment of length 0 although the
-//!   specification draws it. `h` marks a dot and nothing else. The 0.01 does not follow the
-//!   precision of the other numbers: it neither shows nor vanishes at any of them.
-//! - `stroke-opacity` is k/255 to 3 decimals, which k survives; it is left out at 1.
+//! - A dot is a segment of length 0.01, because many programs drop a segment of length 0 although the
+//!   specification draws it. `h` marks a dot and nothing else. The 0.01 is independent of the
+//!   precision: it is too short to be seen, and no precision rounds it to 0.
+//! - `stroke-opacity` is k/255 with 3 decimals, enough to recover k. It is omitted at 1.
 //! - Numbers are decimals without exponent; `0.5`, never `.5`.
-//! - No dates, no random names: equal scenes give equal bytes.
+//! - There are no dates and no random names: equal scenes give equal bytes.
 //!
-//! Outlines, [`Form::Outlines`], are closed paths of two lines and two arcs, and circles, with `fill`. They are for
-//! other programs: [`read`] refuses them.
+//! [`Form::Outlines`] writes filled outlines: closed paths of two lines and two arcs, and circles. They are for
+//! other programs; [`read`] refuses them.
 //!
-//! Reading gives the scene as it was quantised, and arranged by the smallest form or by colour, to the bit:
+//! Reading returns the scene to the bit as it was written: quantised, and arranged if the form asks for it.
 //!
 //! ```
 //! use strokefit::scene::{Scene, Shape, Stage, Stroke};

@@ -1,4 +1,4 @@
-//! How a scene is to be written.
+//! Options that say how a scene is written.
 
 use std::str::FromStr;
 

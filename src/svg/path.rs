@@ -1,4 +1,4 @@
-//! The `d` of a path: one stroke, or several of one look.
+//! The attribute `d` of a path, which holds one stroke or several of one look.
 
 use super::dialect::{MAX_UNITS, Unit};
 use crate::scene::UNITS_PER_PX;

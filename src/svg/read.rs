@@ -1,5 +1,5 @@
-//! SVG text of our own dialect as a scene. Strict: what the dialect does not say is an error, so
-//! that nothing is silently drawn otherwise than the file's other readers draw it.
+//! Reads SVG text of strokefit's own dialect as a scene. The reader is strict: whatever is not part of the
+//! dialect is an error, so a file never silently gives a scene that looks different from the file.
 
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::name::{Namespace, ResolveResult};
@@ -65,7 +65,10 @@ impl<'a> Parser<'a> {
         let scene = match self.next()? {
             Tag::Open(root) if root.name == "svg" => self.page(&root)?,
             Tag::Open(other) => {
-                return Err(format!("the root element is <{}>, not <svg>", other.name));
+                return Err(format!(
+                    "the root element is <{}>, not <svg>: give an SVG file",
+                    other.name
+                ));
             }
             Tag::Close | Tag::End => {
                 return Err("there is no <svg> element: give an SVG file".into());
@@ -178,7 +181,12 @@ impl<'a> Parser<'a> {
                 Event::Eof => return Ok(Tag::End),
                 Event::Text(text) if text.trim().is_empty() => {}
                 Event::Comment(_) | Event::Decl(_) | Event::PI(_) => {}
-                _ => return Err("text or a document type, which the dialect does not have".into()),
+                _ => {
+                    return Err(
+                        "text or a document type is not part of the dialect that strokefit reads"
+                            .into(),
+                    );
+                }
             }
         }
     }
@@ -217,7 +225,7 @@ impl Element {
         let text = self.get(key)?;
         parse(text).ok_or_else(|| {
             format!(
-                "<{}> has {key}=\"{}\", which the dialect does not have",
+                "<{}> has {key}=\"{}\", which is not part of the dialect that strokefit reads",
                 self.name,
                 short(text)
             )
@@ -250,7 +258,7 @@ impl Element {
             .find(|(key, _)| !keys.contains(&key.as_str()))
         {
             Some((key, _)) => Err(format!(
-                "<{}> has the attribute {key}, which the dialect does not have",
+                "<{}> has the attribute {key}, which is not part of the dialect that strokefit reads",
                 self.name
             )),
             None => Ok(()),
@@ -327,7 +335,7 @@ impl Look {
             .collect();
         element.only(&[own, free.as_slice()].concat())?;
         if own.is_empty() && element.attributes.is_empty() {
-            return Err("<g> says nothing: remove it".into());
+            return Err("<g> has no attribute: remove it".into());
         }
         Ok(Self {
             color: element.either("stroke", self.color, dialect::channels)?,
@@ -341,7 +349,9 @@ impl Look {
     fn strokes(&self, path: &Element) -> Parsed<Vec<Stroke>> {
         let parsed = path.parsed("d", |d| path::parse(d, self.unit))?;
         if parsed.has_corner && !self.has_join {
-            return Err("<path> has a corner, but its layer no stroke-linejoin=\"round\"".into());
+            return Err(
+                "<path> has a corner, but its layer has no stroke-linejoin=\"round\"".into(),
+            );
         }
         let missing = |key: &str| format!("<path> has no {key}");
         let width = self.width.or(self.layer_width);
@@ -382,7 +392,7 @@ fn check_namespace(namespace: &ResolveResult<'_>, tag: &BytesStart<'_>) -> Parse
 
 fn unexpected(element: &Element) -> String {
     format!(
-        "<{}> is not of the dialect here: give a file as strokefit writes it",
+        "<{}> is not part of the dialect at this place: give a file that strokefit wrote",
         short(&element.name)
     )
 }

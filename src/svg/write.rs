@@ -1,4 +1,4 @@
-//! A scene as SVG text.
+//! Writes a scene as SVG text.
 
 use super::arrange::{self, Layer};
 use super::dialect::{self, Unit};

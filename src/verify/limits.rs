@@ -44,7 +44,7 @@ impl Embedded {
     fn admit(&self, data: Arc<Vec<u8>>) -> Option<ImageKind> {
         let mut seen = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let Some((format, width, height)) = image::stated_size(&data) else {
-            seen.1 = Some("an embedded picture is no PNG, JPEG, GIF or WebP".into());
+            seen.1 = Some("an embedded picture is not a PNG, JPEG, GIF or WebP".into());
             return None;
         };
         seen.0 = seen.0.saturating_add(u64::from(width) * u64::from(height));
@@ -204,7 +204,7 @@ impl Reckoning {
         if self.written <= MAX_WRITTEN {
             Ok(())
         } else {
-            Err("it takes more than 2^35 pixels to be written one after the other")
+            Err("drawing it takes more than 2^35 writes of pixels")
         }
     }
 
@@ -217,7 +217,7 @@ impl Reckoning {
             .iter()
             .all(|&end| f64::from(end).abs() * scale <= MAX_SIDE)
         {
-            return Err("a part of it reaches more than 2^20 pixels beyond the page");
+            return Err("a part of it extends more than 2^20 pixels beyond the page");
         }
         let area = f64::from(bounds.width()) * f64::from(bounds.height()) * self.area;
         Ok(area.min(self.pixels))

@@ -19,9 +19,9 @@ pub(crate) fn placement(svg: &str, probe: &str, target: &Image) -> Result<[f64; 
     let path = untouched(tree.root(), probe).filter(|path| is_as_written(path));
     let placed = path.and_then(|path| path.abs_transform().invert());
     let Some(t) = placed else {
-        let message = "strokes laid on this SVG would not look as they are meant to: its root element or its \
-                       style sheet hides, repaints or filters them; put its contents into a group, and \
-                       the style on that";
+        let message = "strokes added to this SVG would look wrong, because its root element or its style sheet \
+                       hides, repaints or filters them: move its contents into a group, and the style \
+                       to that group";
         return Err(Error::new(ErrorKind::Svg, message));
     };
     let scale = |size: f32, px: usize| f64::from(size) / px as f64;

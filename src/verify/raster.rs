@@ -43,13 +43,13 @@ impl Raster {
                 (natural_height * scale).round().max(1.0),
             ),
             Size::Scale(scale) => {
-                let message = format!("the scale is {scale}: give a number above 0, such as 2");
+                let message = format!("the scale is {scale}: use a number above 0, such as 2");
                 return Err(Error::new(ErrorKind::Config, message));
             }
         };
         if width * height > MAX_PIXELS || width < 1.0 || height < 1.0 {
             let message = format!(
-                "a render of {width}×{height} px is not possible: 1 to {MAX_PIXELS} pixels are"
+                "a render of {width}×{height} px is not possible: choose a size of 1 to {MAX_PIXELS} pixels"
             );
             return Err(Error::new(ErrorKind::Svg, message));
         }

@@ -41,8 +41,8 @@ pub(super) fn parse(svg: &str) -> Result<Tree> {
 }
 
 fn too_much(error: resvg::usvg::Error) -> Error {
-    let message = "the SVG has more than a million elements, also counted through <use>, or more than 1,024 \
-                   levels of nesting, which resvg does not read: simplify it";
+    let message = "the SVG has more than a million elements, with <use> expanded, or more than 1,024 levels of \
+                   nesting, and resvg cannot read it: simplify it";
     Error::new(ErrorKind::Svg, message).caused_by(error)
 }
 
@@ -55,7 +55,7 @@ fn check_namespace(document: &Document<'_>) -> Result<()> {
     let (name, namespace) = (root.name(), root.namespace().unwrap_or_default());
     let message = format!(
         "the root element is <{name}> of the namespace \"{namespace}\", so nothing would be drawn: \
-         an SVG starts with <svg xmlns=\"{SVG_NAMESPACE}\">"
+         start the SVG with <svg xmlns=\"{SVG_NAMESPACE}\">"
     );
     Err(Error::new(ErrorKind::Svg, message))
 }

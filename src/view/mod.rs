@@ -65,7 +65,7 @@ impl Viewer {
     pub fn open() -> Result<Self> {
         let shared = Arc::new(Shared::new());
         let server = Server::start(Arc::clone(&shared)).map_err(|e| {
-            let message = format!("the page to watch cannot be served: {e}; do without it");
+            let message = format!("the live page cannot be served: {e}: run without --view");
             Error::new(ErrorKind::Io, message).caused_by(e)
         })?;
         Ok(Self { server, shared })

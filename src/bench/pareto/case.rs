@@ -186,7 +186,10 @@ impl Maker {
             Self::Peer { name, settings } => {
                 let peer = peers.iter().find(|peer| peer.name() == name);
                 let peer = peer.ok_or_else(|| {
-                    Error::new(ErrorKind::Config, format!("{name} is not here: install it"))
+                    Error::new(
+                        ErrorKind::Config,
+                        format!("{name}: not installed: install it"),
+                    )
                 })?;
                 let traced = peer.trace(picture, settings)?;
                 Ok(Made {
@@ -353,7 +356,7 @@ impl Case {
             fidelity: Some(shown),
             agreement_db,
             failure: agreement_db.filter(|db| *db < MIN_AGREEMENT_DB).map(|db| {
-                format!("resvg draws the file {db:.1} dB from what was fitted, the bound is {MIN_AGREEMENT_DB}")
+                format!("resvg's render agrees with the fit to {db:.1} dB, less than {MIN_AGREEMENT_DB} dB")
             }),
             stages: drawn.stages,
             ..self.entry(&picture)

@@ -53,8 +53,12 @@ impl Journal {
 
     /// Writes one more line.
     pub(super) fn append(&mut self, entry: ParetoEntry) -> Result<()> {
-        let line = serde_json::to_string(&entry)
-            .map_err(|e| Error::new(ErrorKind::Io, format!("a result cannot be told: {e}")))?;
+        let line = serde_json::to_string(&entry).map_err(|e| {
+            Error::new(
+                ErrorKind::Io,
+                format!("a result cannot be written as JSON: {e}"),
+            )
+        })?;
         let file = OpenOptions::new()
             .create(true)
             .append(true)

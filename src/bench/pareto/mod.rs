@@ -103,8 +103,12 @@ pub fn publish(
 ) -> Result<()> {
     output.text("pareto.csv", &report.table().csv())?;
     output.text("pareto.md", &report.markdown())?;
-    let json = serde_json::to_string_pretty(report)
-        .map_err(|e| Error::new(ErrorKind::Io, format!("the report cannot be told: {e}")))?;
+    let json = serde_json::to_string_pretty(report).map_err(|e| {
+        Error::new(
+            ErrorKind::Io,
+            format!("the report cannot be written as JSON: {e}"),
+        )
+    })?;
     output.text("pareto.json", &(json + "\n"))?;
     let mut exhibits = Vec::new();
     for path in pictures {
@@ -126,7 +130,7 @@ fn check_names(pictures: &[PathBuf]) -> Result<()> {
     for (i, path) in pictures.iter().enumerate() {
         let name = case::stem(path);
         if pictures[..i].iter().any(|other| case::stem(other) == name) {
-            let message = format!("two pictures are called {name}: give one of them another name");
+            let message = format!("two pictures are called {name}: rename one of them");
             return Err(Error::new(ErrorKind::Config, message));
         }
     }

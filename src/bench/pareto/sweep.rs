@@ -220,7 +220,9 @@ fn files(folders: &[PathBuf], picture: &Path) -> Result<Vec<Maker>> {
         }
     }
     if makers.is_empty() {
-        let message = format!("no folder of SVGs has a {name}: name the files as the pictures");
+        let message = format!(
+            "no folder of SVGs has a file {name}: give the files the names of the pictures"
+        );
         return Err(Error::new(ErrorKind::Config, message));
     }
     Ok(makers)

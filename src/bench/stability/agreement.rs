@@ -55,7 +55,7 @@ pub(super) fn checks(map: &AgreementMap) -> Vec<Check<'_>> {
         ),
         check(
             "thin-as-written",
-            "widths below 1.02 px as a file has them",
+            "widths below 1.02 px, widened as in a file",
             map.worst(&map.written, thin),
             "",
         ),
@@ -63,7 +63,7 @@ pub(super) fn checks(map: &AgreementMap) -> Vec<Check<'_>> {
             "thin-as-they-are",
             "widths from 0.1 to 1 px, not widened",
             map.worst(&map.raw, thin),
-            "resvg draws 1 px and less as a hairline of other ink; files of ours have no such width",
+            "resvg draws widths up to 1 px as a hairline with other ink; our files use at least 1.02 px",
         ),
     ]
 }

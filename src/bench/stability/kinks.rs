@@ -27,7 +27,7 @@ const JUMP: &str =
 const ANOTHER_END: f64 = 0.1;
 
 const DISC: &str = "a capsule of zero length is a disc by definition: the gradient of both ends goes to the first, \
-                    though the loss has a slope along the other, too, another on each side";
+                    although the loss also has a slope along the other, different on each side";
 
 pub(super) fn checks() -> Vec<Check<'static>> {
     let check = |name: &'static str, what: &'static str, stroke: Params| {

@@ -18,12 +18,12 @@ pub(super) fn checks(extent: Extent) -> Vec<Check<'static>> {
         ("rates-huge", "all learning rates × 10⁶", 1e6),
         (
             "rates-nan",
-            "learning rates that are not a number: every stroke is poisoned",
+            "NaN learning rates: every stroke becomes NaN",
             f32::NAN,
         ),
         (
             "rates-infinite",
-            "infinite learning rates: every stroke is thrown to the limits",
+            "infinite learning rates: every stroke moves to the limits",
             f32::INFINITY,
         ),
     ];

@@ -19,8 +19,8 @@ struct HardScene {
     exception: &'static str,
 }
 
-const HIDDEN: &str = "each stroke hides another of its own colour, so that all true gradients of ends are as good \
-                      as 0; what is left is the cut where less than 1/16384 of the light comes through";
+const HIDDEN: &str = "each stroke hides another of its own colour, so the true gradients of ends are almost 0; the \
+                      rest is the cutoff below 1/16384 of the light";
 
 pub(super) fn checks() -> Vec<Check<'static>> {
     let gaps = scenes().into_iter().map(|hard| {

@@ -49,8 +49,8 @@ pub(super) fn shortfall(entry: &RendererEntry) -> String {
     let name = &entry.renderer;
     let agreement_db = entry.against_resvg.and_then(|other| other.psnr_db);
     format!(
-        "{name}: draws the file otherwise than resvg, with which it agrees to {:.2} dB, not \
-         {MIN_DB_AGAINST_RESVG}: see the findings, and --pictures DIR for where",
+        "{name}: draws the file differently from resvg: they agree to {:.2} dB, less than \
+         {MIN_DB_AGAINST_RESVG}: see the findings, and use --pictures DIR to see where",
         agreement_db.unwrap_or(f64::INFINITY)
     )
 }

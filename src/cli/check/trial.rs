@@ -22,7 +22,7 @@ impl PictureFolder {
     pub(super) fn open(path: &Path) -> Result<Self> {
         let unusable = |e| {
             let path = path.display();
-            anyhow!("{path}: is no folder that pictures can be written to ({e}): name another one")
+            anyhow!("{path}: pictures cannot be written to this folder ({e}): name another one")
         };
         fs::create_dir_all(path).map_err(unusable)?;
         Ok(Self(path.to_owned()))

@@ -1,5 +1,5 @@
-//! Animated PNG: the data of still pictures in one file, after the specification of PNG, third
-//! edition, section 11.3.6.
+//! Animated PNG: combines the data of still PNGs in one file, as specified by PNG, third edition, section
+//! 11.3.6.
 
 use ::image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use ::image::{ExtendedColorType, ImageEncoder};

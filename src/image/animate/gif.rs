@@ -1,4 +1,4 @@
-//! GIF. The one door of the `gif` crate.
+//! Animated GIF. This file alone uses the `gif` crate.
 
 use ::gif::{DisposalMethod, EncodingError, Frame, Repeat};
 

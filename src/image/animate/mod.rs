@@ -1,8 +1,8 @@
-//! Pictures one after another: animated GIF, PNG and WebP.
+//! Animated GIF, PNG and WebP.
 //!
-//! Each frame but the first says only what changes: the rectangle around the pixels that differ from
-//! the frame before, transparent where they do not. GIF has at most 256 colours a frame; the others
-//! lose nothing.
+//! Each frame after the first holds only what changes: the rectangle around the pixels that differ from
+//! the previous frame, with equal pixels transparent. GIF allows 256 colours per frame; PNG and WebP are
+//! lossless.
 
 mod apng;
 mod gif;
@@ -97,7 +97,7 @@ impl Animation {
     /// [`ErrorKind::Picture`] when there is no frame.
     pub fn finish(self) -> Result<Vec<u8>> {
         let Some(encoder) = self.encoder else {
-            let message = "an animation without frames: push one at least";
+            let message = "the animation has no frames: push at least one";
             return Err(Error::new(ErrorKind::Picture, message));
         };
         encoder.finish()
@@ -109,12 +109,12 @@ impl Animation {
         let refused = |message| Err(Error::new(ErrorKind::Picture, message));
         if width.max(height) > most {
             return refused(format!(
-                "an animated {name} cannot be {width}×{height} px: at most {most} a side"
+                "an animated {name} of {width}×{height} px is not possible: at most {most} px per side"
             ));
         }
         match &self.shown {
             Some(first) if (first.width(), first.height()) != (width, height) => refused(format!(
-                "a frame of {width}×{height} px in an animation of {}×{}: make them equal",
+                "a frame has {width}×{height} px and the animation {}×{}: make them equal",
                 first.width(),
                 first.height()
             )),

@@ -1,4 +1,4 @@
-//! What changes from one frame to the next.
+//! The difference between a frame and the previous one.
 
 use super::super::Image;
 

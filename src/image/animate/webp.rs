@@ -1,4 +1,4 @@
-//! Animated WebP: lossless still pictures in one file, after the specification of the WebP container
+//! Animated WebP: combines lossless still pictures in one file, as the WebP container format specifies
 //! (RIFF: all numbers little-endian, chunks padded to even lengths).
 
 use ::image::codecs::webp::WebPEncoder;

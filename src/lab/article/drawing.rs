@@ -71,7 +71,7 @@ impl Capsules {
             return Ok(self);
         }
         let message = format!(
-            "the saved drawing is of {}×{} px, the picture of {width}×{height}: give the picture it was made from",
+            "the saved drawing has {}×{} px and the picture {width}×{height}: give the picture that it was made from",
             self.width, self.height
         );
         Err(Error::new(ErrorKind::Config, message))

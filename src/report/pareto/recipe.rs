@@ -83,13 +83,13 @@ impl<'a> AtEqualStrokes<'a> {
                 "{gain:+.2} dB ({}) in {share:.2} of its CPU time",
                 preset.unwrap_or_default()
             ),
-            None => format!("no fit of as many strokes took {MAX_TIME} of its {time:.2} s"),
+            None => format!("no fit of as many strokes took at most {MAX_TIME} of its {time:.2} s"),
         };
         let enough = self.gain().is_some_and(|[gain, _]| gain >= MIN_GAIN_DB);
         Comparison {
             picture: self.recipe.picture.clone(),
             claim: format!(
-                "{MIN_GAIN_DB} dB or more over the article's recipe ({}) in {MAX_TIME} or less of its CPU time",
+                "at least {MIN_GAIN_DB} dB above the article's recipe ({}) in at most {MAX_TIME} of its CPU time",
                 self.recipe.label
             ),
             figure,

@@ -5,11 +5,11 @@ use crate::metrics::Quality;
 use crate::report::Table;
 
 /// What the figures are.
-pub(super) const NOTE: &str = "Fidelity is that of the file as resvg draws it, over 8-bit RGB on white. Times are of \
-                               making the drawing, without reading the picture or judging the file; CPU time is \
-                               that of all threads, in hundredths of a second. Each case is a process of its own, \
-                               and memory is the most that it held, picture included; that of other programs is \
-                               looked at every 2 ms.";
+pub(super) const NOTE: &str = "Fidelity compares resvg's render of the file with the picture, over 8-bit RGB on white. \
+                               Times cover making the drawing, not reading the picture or judging the file. CPU \
+                               time is the sum over all threads, in hundredths of a second. Each case is a process \
+                               of its own, and memory is its maximum, including the picture; the memory of other \
+                               programs is sampled every 2 ms.";
 
 impl ParetoReport {
     /// One row per drawing.

@@ -1,4 +1,4 @@
-//! What has to be known of an SVG's text to put layers into it: where its root ends, and which layers it has.
+//! The facts about an SVG's text that are needed to insert layers: where its root ends, and which layers it has.
 
 use std::ops::Range;
 

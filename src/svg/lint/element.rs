@@ -1,4 +1,4 @@
-//! An element of any SVG: its name, attributes and properties.
+//! An element of an SVG: its name, attributes and properties.
 
 use quick_xml::events::BytesStart;
 

@@ -1,8 +1,7 @@
-//! What in an SVG other programs draw differently, or not at all: for files of the dialect and for
-//! any other.
+//! Finds constructs in an SVG that some programs draw differently, or not at all.
 //!
-//! The lint reads the text alone and draws nothing. Style sheets are not evaluated: it sees
-//! attributes and `style="…"`, and says so where a file has a `<style>`.
+//! The lint works on any SVG, reads only its text, and draws nothing. It sees attributes and `style="…"`. It does
+//! not evaluate style sheets, and reports a file that has a `<style>`.
 //!
 //! ```
 //! use strokefit::svg::lint;

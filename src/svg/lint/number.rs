@@ -1,4 +1,4 @@
-//! Numbers as SVG has them: side by side without a space, with units, in transforms.
+//! Numbers in SVG syntax: adjacent without a space, with units, in transforms.
 
 /// px per unit of length, for those that are fixed.
 const UNITS: [(&str, f64); 7] = [

@@ -1,4 +1,4 @@
-//! Path data: does it hold a stroke without length?
+//! Finds strokes of zero length in path data.
 
 use super::number;
 

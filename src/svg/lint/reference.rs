@@ -1,4 +1,4 @@
-//! What a file refers to: its own ids, other files, addresses.
+//! References in a file: to its own ids, to other files, to addresses.
 
 use std::collections::BTreeMap;
 

@@ -1,8 +1,8 @@
-//! The rules, in one table: what comes of each, and what to do.
+//! The rules of the lint: what each finding leads to, and the remedy.
 
 use super::Severity::{self, Error, Note, Warning};
 
-/// What may be wrong with a file.
+/// One kind of problem that a file can have.
 pub(super) struct Rule {
     pub(super) name: &'static str,
     pub(super) severity: Severity,
@@ -28,67 +28,67 @@ pub(super) const NOT_XML: Rule = rule(
     "not-xml",
     Error,
     "no program reads beyond this place",
-    "correct it, or get a complete copy",
+    "correct the XML, or get a complete copy",
 );
 pub(super) const NAMESPACE: Rule = rule(
     "namespace",
     Error,
-    "nothing of it is drawn",
+    "programs draw nothing of it",
     "write xmlns=\"http://www.w3.org/2000/svg\" on the root, with http",
 );
 pub(super) const EXTERNAL: Rule = rule(
     "external-reference",
     Error,
-    "it is drawn only where that file or address is at hand",
+    "it is drawn only where that file or address can be reached",
     "embed it as data:, or remove it",
 );
 pub(super) const MISSING_ID: Rule = rule(
     "missing-id",
     Error,
-    "no element has this id, so that some programs draw nothing and others the element as it is",
-    "give the id to the element that is meant",
+    "no element has this id; some programs then draw nothing, others ignore the reference",
+    "give this id to the intended element",
 );
 pub(super) const DUPLICATE_ID: Rule = rule(
     "duplicate-id",
     Warning,
-    "programs differ in which of the elements they take",
+    "programs differ in which of these elements they use",
     "make every id unique",
 );
 pub(super) const LAYER_ID: Rule = rule(
     "layer-id",
     Note,
-    "editors give the layer a new name each time",
+    "editors give the layer a new id at every save",
     "give the group an id that starts with a letter",
 );
 pub(super) const ID_START: Rule = rule(
     "id-start",
     Note,
     "style sheets and some programs cannot name such an id",
-    "let ids start with a letter",
+    "start ids with a letter",
 );
 pub(super) const PAGE_SIZE: Rule = rule(
     "page-size",
     Warning,
-    "programs differ in the size that the page gets",
+    "programs differ in the size of the page",
     "give a width and height, and a viewBox=\"0 0 W H\" of the same aspect ratio",
 );
 pub(super) const PAGE_SCALE: Rule = rule(
     "page-scale",
     Note,
-    "a unit of the file is not a px of the page",
-    "nothing, if it is meant so; else give the width, height and viewBox=\"0 0 W H\" the same numbers",
+    "one unit of the file is not one px of the page",
+    "nothing, if this is intended; otherwise use the same numbers in width, height and viewBox=\"0 0 W H\"",
 );
 pub(super) const ZERO_LENGTH: Rule = rule(
     "zero-length",
     Warning,
-    "many programs drop it, though with round caps it is a dot by the specification",
-    "make it a segment of 0.01, or a circle",
+    "many programs drop it, although the specification makes it a dot if it has round caps",
+    "use a segment of length 0.01, or a circle",
 );
 pub(super) const THIN_STROKE: Rule = rule(
     "thin-stroke",
     Warning,
-    "at a width of 1 px or less, resvg and browsers draw a tenth less ink than Cairo",
-    "make it at least 1.02 px wide, and less opaque",
+    "at widths up to 1 px, resvg and browsers draw a tenth less ink than Cairo",
+    "use a width of at least 1.02 px and a lower opacity",
 );
 pub(super) const COLOR_ALPHA: Rule = rule(
     "color-alpha",
@@ -99,7 +99,7 @@ pub(super) const COLOR_ALPHA: Rule = rule(
 pub(super) const GROUP_OPACITY: Rule = rule(
     "group-opacity",
     Warning,
-    "it takes a picture of its own to mix, which is slow, and some importers drop it",
+    "it needs a picture of its own for blending, which is slow, and some importers ignore it",
     "write stroke-opacity or fill-opacity on each element",
 );
 pub(super) const LEADING_DOT: Rule = rule(
@@ -111,48 +111,48 @@ pub(super) const LEADING_DOT: Rule = rule(
 pub(super) const SCRIPT: Rule = rule(
     "script",
     Warning,
-    "only browsers run it, and only in files that are opened by themselves",
+    "only browsers run it, and only if the file is opened directly",
     "remove it",
 );
 pub(super) const FEATURE: Rule = rule(
     "feature",
     Warning,
-    "programs differ in how, or whether, they draw it",
+    "programs draw it differently, or not at all",
     "draw it with paths, or expect differences",
 );
 pub(super) const TEXT: Rule = rule(
     "text",
     Warning,
-    "it looks as the fonts of each machine make it, and resvg draws none here",
+    "it looks different with the fonts of each machine, and resvg loads no fonts here",
     "convert it to paths",
 );
 pub(super) const STYLE_SHEET: Rule = rule(
     "style-sheet",
     Warning,
-    "many importers pass over style sheets, and so does this lint",
-    "write the properties on the elements",
+    "many importers ignore style sheets, and so does this lint",
+    "put the properties on the elements",
 );
 pub(super) const DOCTYPE: Rule = rule(
     "doctype",
     Note,
     "strict readers refuse document types and their entities",
-    "remove it and write the entities out",
+    "remove it and expand the entities",
 );
 pub(super) const DIALECT: Rule = rule(
     "dialect",
     Note,
-    "it is drawn alike, but strokefit writes no such element",
-    "nothing, unless the file should be edited as strokes",
+    "all programs draw it alike, but strokefit never writes such an element",
+    "nothing, unless strokefit should read the file as strokes",
 );
 pub(super) const LARGE_FILE: Rule = rule(
     "large-file",
     Error,
     "programs built on libxml2 stop at 10 MB",
-    "write fewer strokes or decimals",
+    "use fewer strokes or decimals",
 );
 pub(super) const DEEP: Rule = rule(
     "deep",
     Error,
     "programs built on libxml2 stop at 256 levels",
-    "ungroup",
+    "remove levels of groups",
 );

@@ -1,4 +1,4 @@
-//! How an element is stroked, with what it inherits: thin strokes, strokes without length.
+//! The stroke of an element, with inherited properties: finds thin strokes and strokes of zero length.
 
 use super::element::Element;
 use super::number;

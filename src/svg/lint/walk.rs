@@ -1,4 +1,4 @@
-//! From the beginning of the text to its end, element by element, each rule in turn.
+//! Walks through the text, element by element, and applies each rule.
 
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::name::{Namespace, ResolveResult};

@@ -62,7 +62,7 @@ async function ask() {
 }
 
 function end() {
-  element("phase").textContent = "the program has ended; this page stays as it is";
+  element("phase").textContent = "the program has ended; this page no longer changes";
   for (const id of ["stop", "more", "done", "download"]) element(id).hidden = true;
 }
 
