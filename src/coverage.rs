@@ -36,11 +36,12 @@
 //! Source: the article that this project started from compares these functions (`strokefit lab`).
 //! Smoothstep is Hermite's cubic, as in the OpenGL Shading Language.
 
+use std::f64::consts::PI;
 use std::fmt;
 use std::str::FromStr;
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::math::Real;
+use crate::math::{self, Real};
 
 /// Coverage below which a tail is dropped, by [`Coverage::support`]: half of one of 256 levels, so
 /// that a stroke of the highest contrast changes no 8-bit pixel there. Higher, and the cut shows as
@@ -90,9 +91,9 @@ impl Coverage {
                 let t = smoothstep_parameter(d, softness);
                 t * t * (T::of(3.0) - (t + t))
             }
-            Self::Sigmoid => one / (one + (-d / softness).exp()),
-            Self::Tanh => (d / softness).tanh() * half + half,
-            Self::Atan { k } => (steepness::<T>(k) * d / softness).atan() / T::pi() + half,
+            Self::Sigmoid => one / (one + math::exp(-d / softness)),
+            Self::Tanh => math::tanh(d / softness) * half + half,
+            Self::Atan { k } => math::atan(steepness::<T>(k) * d / softness) / T::pi() + half,
             Self::Raw => (d / softness).clamp(-one, one) * half + half,
         }
     }
@@ -111,7 +112,7 @@ impl Coverage {
                 value * (one - value) / softness
             }
             Self::Tanh => {
-                let tanh = (d / softness).tanh();
+                let tanh = math::tanh(d / softness);
                 (one - tanh * tanh) * half / softness
             }
             Self::Atan { k } => {
@@ -129,9 +130,9 @@ impl Coverage {
     pub fn support(self, softness: f64) -> f64 {
         match self {
             Self::Smoothstep => softness / 2.0,
-            Self::Sigmoid => softness * (1.0 / TAIL - 1.0).ln(),
-            Self::Tanh => softness * (1.0 / TAIL - 1.0).ln() / 2.0,
-            Self::Atan { k } => softness / (f64::from(k) * (std::f64::consts::PI * TAIL).tan()),
+            Self::Sigmoid => softness * math::ln(1.0 / TAIL - 1.0),
+            Self::Tanh => softness * math::ln(1.0 / TAIL - 1.0) / 2.0,
+            Self::Atan { k } => softness / (f64::from(k) * math::tan(PI * TAIL)),
             Self::Raw => softness,
         }
     }

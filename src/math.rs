@@ -1,5 +1,11 @@
-//! Geometry words of the crate: the one door of `nalgebra`.
+//! Geometry words of the crate and its elementary functions: the one door of `nalgebra`.
 
+mod elementary;
+
+pub use elementary::{
+    Elementary, atan, cbrt, cos, exp, exp2, hypot, ln, log2, log10, powf, powi, sin, sin_cos, tan,
+    tanh,
+};
 pub use nalgebra::{Point2, Vector2};
 
 /// A point of the picture plane in px; x to the right, y down, pixel centres at +0.5.
@@ -10,7 +16,7 @@ pub type Vector = Vector2<f32>;
 
 /// The numbers that the mathematics of the crate is written in: `f32` in the renderer and the fit,
 /// `f64` in the reference and the experiments.
-pub trait Real: nalgebra::RealField + Copy {
+pub trait Real: nalgebra::RealField + Elementary + Copy {
     /// `x`, rounded to this type.
     fn of(x: f64) -> Self;
 

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
+use crate::math;
 use crate::scene::Rgb;
 
 const WHITE: Rgb = [1.0; 3];
@@ -137,7 +138,7 @@ pub fn psnr(a: &Image, b: &Image) -> Result<f64> {
 /// Peak signal-to-noise ratio in dB of a mean squared error of values 0..1.
 pub fn psnr_db(mse: f64) -> f64 {
     if mse > 0.0 {
-        -10.0 * mse.log10()
+        -10.0 * math::log10(mse)
     } else {
         f64::INFINITY
     }

@@ -5,6 +5,10 @@
 //! Lea & Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014), applied once per word of
 //! the key.
 
+use std::f32::consts::TAU;
+
+use crate::math;
+
 /// 64 random bits for the key `(seed, stage, i, k)`.
 pub fn bits(seed: u64, stage: u64, i: u64, k: u64) -> u64 {
     [stage, i, k]
@@ -19,8 +23,8 @@ pub fn draw(seed: u64, stage: u64, i: u64, k: u64) -> f32 {
 
 /// A standard normal number for the key, by Box–Muller from draws `2k` and `2k + 1`.
 pub fn normal(seed: u64, stage: u64, i: u64, k: u64) -> f32 {
-    let radius = (-2.0 * (1.0 - draw(seed, stage, i, 2 * k)).ln()).sqrt();
-    radius * (std::f32::consts::TAU * draw(seed, stage, i, 2 * k + 1)).cos()
+    let radius = (-2.0 * math::ln(1.0 - draw(seed, stage, i, 2 * k))).sqrt();
+    radius * math::cos(TAU * draw(seed, stage, i, 2 * k + 1))
 }
 
 fn mix(z: u64) -> u64 {
@@ -47,7 +51,7 @@ mod tests {
     fn normals_have_unit_variance() {
         let n = 20_000;
         let variance = (0..n)
-            .map(|i| f64::from(normal(7, 1, i, 0)).powi(2))
+            .map(|i| math::powi(f64::from(normal(7, 1, i, 0)), 2))
             .sum::<f64>()
             / n as f64;
         assert!((variance - 1.0).abs() < 0.05, "variance {variance}");

@@ -29,8 +29,12 @@ enum Measurement {
 /// # Errors
 /// When `measurement` is not one, or cannot be measured.
 pub fn perform(measurement: &str, peers: &[Box<dyn Peer>]) -> Result<String> {
-    let measurement: Measurement = serde_json::from_str(measurement)
-        .map_err(|e| Error::new(ErrorKind::Config, format!("not a measurement of a benchmark: {e}")))?;
+    let measurement: Measurement = serde_json::from_str(measurement).map_err(|e| {
+        Error::new(
+            ErrorKind::Config,
+            format!("not a measurement of a benchmark: {e}"),
+        )
+    })?;
     let answer = match measurement {
         Measurement::Case { case, svg } => serde_json::to_string(&case.measure(&svg, peers)?),
         Measurement::Point(point) => serde_json::to_string(&point.measure()?),

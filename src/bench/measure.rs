@@ -4,6 +4,7 @@ use std::f32::consts::{PI, TAU};
 use std::time::Instant;
 
 use crate::coverage::Coverage;
+use crate::math;
 use crate::render::{Grid, Params, Softness};
 use crate::rng;
 
@@ -64,7 +65,7 @@ impl StrokeSize {
     fn stroke(self, grid: Grid, i: u64) -> Params {
         let draw = |k| rng::draw(0, 0, i, k);
         let (x, y) = (draw(0) * grid.width as f32, draw(1) * grid.height as f32);
-        let (sin, cos) = (draw(2) * TAU).sin_cos();
+        let (sin, cos) = math::sin_cos(draw(2) * TAU);
         let half = self.length_px / 2.0;
         let (dx, dy) = (cos * half, sin * half);
         let [red, green, blue] = [3, 4, 5].map(draw);

@@ -12,6 +12,7 @@ use crate::error::Result;
 use crate::fit::{Budget, Config, Execution, Fitter, Objective, Preset};
 use crate::image::Image;
 use crate::loss::Loss;
+use crate::math;
 use crate::render::{Backdrop, Canvas, Gradients, Renderer};
 use crate::report::Usage;
 use crate::report::scaling::{PointEntry, ScalingReport, SeriesEntry};
@@ -326,8 +327,8 @@ fn made(pixels: f64) -> Result<Image> {
         let wave = |k: u64| {
             let frequency = f32::from(1_u16 << k) * std::f32::consts::PI;
             let angle = std::f32::consts::TAU * rng::draw(1, 2, k, c);
-            let (sin, cos) = angle.sin_cos();
-            (frequency * (x * cos + y * sin) + angle).sin() / f32::from(1_u16 << k).sqrt()
+            let (sin, cos) = math::sin_cos(angle);
+            math::sin(frequency * (x * cos + y * sin) + angle) / f32::from(1_u16 << k).sqrt()
         };
         0.5 + (0..7).map(wave).sum::<f32>() / 6.0
     };

@@ -18,7 +18,7 @@ use super::{COVERAGES, ResultFolder, SIZE, sheet_of_step};
 use crate::coverage::Coverage;
 use crate::error::Result;
 use crate::image::Image;
-use crate::math::Real;
+use crate::math::{self, Real};
 use crate::report::Table;
 use crate::report::picture::{self, gray};
 use crate::report::plot::{Chart, Panel, Path};
@@ -234,7 +234,7 @@ fn sheet(
 
 fn outline(place: f64) -> Path {
     let point = |i: i32| {
-        let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / 48.0).sin_cos();
+        let (sin, cos) = math::sin_cos(f64::from(i) * std::f64::consts::TAU / 48.0);
         on_picture([place + RADIUS * cos, place + RADIUS * sin])
     };
     Path {

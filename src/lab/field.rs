@@ -13,6 +13,7 @@ use super::{COVERAGES, ResultFolder, SIZE};
 use crate::coverage::Coverage;
 use crate::error::Result;
 use crate::image::Image;
+use crate::math;
 use crate::report::Table;
 use crate::report::picture::{self, heat};
 use crate::report::plot::{Panel, Path, Sheet};
@@ -44,7 +45,7 @@ struct Slope {
 
 impl Slope {
     fn length(self) -> f64 {
-        self.d_x.hypot(self.d_y)
+        math::hypot(self.d_x, self.d_y)
     }
 }
 
@@ -152,7 +153,7 @@ impl Field {
         let arrow = |(x, y): (usize, usize)| {
             let slope = self.at(x, y);
             let length = slope.length();
-            let size = (length / steepest).cbrt() * ARROW_STEP as f64;
+            let size = math::cbrt(length / steepest) * ARROW_STEP as f64;
             let from = [x as f64 + 0.5, y as f64 + 0.5];
             let tip = [
                 from[0] - slope.d_x / length * size,
@@ -203,7 +204,7 @@ impl Field {
             sum[0] -= weight * slope.d_x;
             sum[1] -= weight * slope.d_y;
         }
-        let length = sum[0].hypot(sum[1]);
+        let length = math::hypot(sum[0], sum[1]);
         (length > FLAT).then(|| sum.map(|x| x / length))
     }
 }
@@ -232,6 +233,6 @@ mod tests {
     fn streams_end_at_the_target() {
         let field = Field::new(Coverage::Atan { k: 1.0 });
         let end = *field.stream([40.0, 52.0]).last().unwrap();
-        assert!((end[0] - 48.5).hypot(end[1] - 48.5) < 1.5, "{end:?}");
+        assert!(math::hypot(end[0] - 48.5, end[1] - 48.5) < 1.5, "{end:?}");
     }
 }

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::CHANNELS;
+use crate::math;
 
 /// Reach of the SSIM window: 11 × 11 px.
 const REACH: usize = 5;
@@ -37,7 +38,7 @@ pub(super) fn mean(a: &[u8], b: &[u8], width: usize) -> f64 {
 fn window() -> [f32; 2 * REACH + 1] {
     let weights = std::array::from_fn::<f64, { 2 * REACH + 1 }, _>(|k| {
         let x = k as f64 - REACH as f64;
-        (-x * x / (2.0 * SIGMA * SIGMA)).exp()
+        math::exp(-x * x / (2.0 * SIGMA * SIGMA))
     });
     let sum: f64 = weights.iter().sum();
     weights.map(|w| (w / sum) as f32)
@@ -174,8 +175,9 @@ mod tests {
                     if u < 0 || v < 0 || u >= w || v >= h {
                         continue;
                     }
-                    let weight =
-                        (-((u - x).pow(2) + (v - y).pow(2)) as f64 / (2.0 * SIGMA * SIGMA)).exp();
+                    let weight = math::exp(
+                        -((u - x).pow(2) + (v - y).pow(2)) as f64 / (2.0 * SIGMA * SIGMA),
+                    );
                     let (p, q) = (at(a, u, v), at(b, u, v));
                     for (sum, value) in m.iter_mut().zip([1.0, p, q, p * p, q * q, p * q]) {
                         *sum += weight * value;

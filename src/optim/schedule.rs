@@ -5,6 +5,8 @@
 
 use std::f64::consts::PI;
 
+use crate::math;
+
 /// How the learning rate changes, as a factor of its first value.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Schedule {
@@ -26,7 +28,7 @@ impl Schedule {
         let done = step.min(last) as f64 / last as f64;
         match self {
             Self::Constant => 1.0,
-            Self::Cosine { end } => end + (1.0 - end) * (1.0 + (PI * done).cos()) / 2.0,
+            Self::Cosine { end } => end + (1.0 - end) * (1.0 + math::cos(PI * done)) / 2.0,
         }
     }
 }

@@ -27,6 +27,7 @@ use super::grid::{BLOCK, BLOCKS, BlockSet, LANES, Lanes, TILE, TILE_BLOCKS, Tile
 use super::kernel::{Capsule, load, members, store, total};
 use super::strokes::{OPACITY, Params, RADIUS, RED};
 use crate::image::Image;
+use crate::math;
 
 /// Where the probed shapes are centred in a [`Patch`], px.
 const PATCH_CENTER: f32 = TILE as f32 / 2.0 + 0.5;
@@ -216,7 +217,10 @@ impl Probes {
 
 /// A shape about the centre of a patch.
 fn shape(radius: f32, length: f32, angle: f32) -> Params {
-    let (dx, dy) = (angle.cos() * length / 2.0, angle.sin() * length / 2.0);
+    let (dx, dy) = (
+        math::cos(angle) * length / 2.0,
+        math::sin(angle) * length / 2.0,
+    );
     let c = PATCH_CENTER;
     [c - dx, c - dy, c + dx, c + dy, radius, 0.0, 0.0, 0.0, 1.0]
 }
@@ -384,8 +388,8 @@ mod tests {
     fn bar(angle: f32) -> Image {
         let pixel = |i: usize| {
             let [x, y] = [i % SIDE, i / SIDE].map(|v| v as f32 - (SIDE / 2) as f32);
-            let along = x * angle.cos() + y * angle.sin();
-            let across = y * angle.cos() - x * angle.sin();
+            let along = x * math::cos(angle) + y * math::sin(angle);
+            let across = y * math::cos(angle) - x * math::sin(angle);
             let inside = along.abs() < 9.0 && across.abs() < 2.5;
             if inside { BAR } else { 0.0 }
         };

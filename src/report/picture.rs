@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::image::Image;
+use crate::math;
 
 /// A picture of `values`, row by row, each coloured by `color`. Rows have `width` values; an
 /// incomplete last row is left out.
@@ -32,13 +33,13 @@ pub fn distance(d: f64) -> [f64; 3] {
     } else {
         [[0.82, 0.9, 1.0], [0.1, 0.35, 0.7]]
     };
-    let depth = 1.0 - (-d.abs() / 12.0).exp();
+    let depth = 1.0 - math::exp(-d.abs() / 12.0);
     let line = if (d / 4.0 - (d / 4.0).round()).abs() < 0.1 {
         0.85
     } else {
         1.0
     };
-    let edge = (-(d * d) * 2.0).exp();
+    let edge = math::exp(-(d * d) * 2.0);
     std::array::from_fn(|k| {
         let color = (near[k] + depth * (far[k] - near[k])) * line;
         color + edge * (1.0 - color)

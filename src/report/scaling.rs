@@ -6,6 +6,7 @@ use super::plot::Chart;
 use super::stability::CaseVerdict;
 use super::{SCHEMA, Table};
 use crate::error::Result;
+use crate::math;
 
 /// CPU time and memory may grow with strokes or pixels by this exponent at most: linear, and noise.
 const MAX_GROWTH: f64 = 1.15;
@@ -117,12 +118,15 @@ impl Exponent {
 
 /// Slope of ln y over ln x by least squares.
 fn slope(points: &[(f64, f64)]) -> Option<f64> {
-    let logs: Vec<(f64, f64)> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
+    let logs: Vec<(f64, f64)> = points
+        .iter()
+        .map(|(x, y)| (math::ln(*x), math::ln(*y)))
+        .collect();
     let n = logs.len() as f64;
     let mean_x = logs.iter().map(|(x, _)| x).sum::<f64>() / n;
     let mean_y = logs.iter().map(|(_, y)| y).sum::<f64>() / n;
     let both: f64 = logs.iter().map(|(x, y)| (x - mean_x) * (y - mean_y)).sum();
-    let square: f64 = logs.iter().map(|(x, _)| (x - mean_x).powi(2)).sum();
+    let square: f64 = logs.iter().map(|(x, _)| math::powi(x - mean_x, 2)).sum();
     Some(both / square).filter(|slope| slope.is_finite())
 }
 
@@ -357,8 +361,8 @@ mod tests {
             megapixels: 1.0,
             strokes: x as usize,
             threads: 2,
-            wall_s: 0.5 * x.powf(exponent),
-            cpu_s: Some(x.powf(exponent)),
+            wall_s: 0.5 * math::powf(x, exponent),
+            cpu_s: Some(math::powf(x, exponent)),
             peak_rss_bytes: Some(1 << 20),
         };
         SeriesEntry::new("fit", "strokes", &values, values.map(point).to_vec())

@@ -1,6 +1,7 @@
 //! Finds pairs of strokes that may share a pixel, so that their order matters.
 
 use super::quantize::{UNITS_PER_PX, Written};
+use crate::math;
 
 impl Written {
     /// Whether it can be seen in which order the two are drawn.
@@ -45,7 +46,7 @@ fn gap([x, y]: [f64; 2], [a, b]: Segment) -> f64 {
     let length2 = dx * dx + dy * dy;
     let along = ((x - a[0]) * dx + (y - a[1]) * dy) / length2.max(f64::MIN_POSITIVE);
     let h = along.clamp(0.0, 1.0);
-    (x - a[0] - h * dx).hypot(y - a[1] - h * dy)
+    math::hypot(x - a[0] - h * dx, y - a[1] - h * dy)
 }
 
 fn cross(a: Segment, b: Segment) -> bool {

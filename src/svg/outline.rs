@@ -1,6 +1,7 @@
 //! The outline of a stroke: two lines and two arcs, or a circle.
 
 use super::dialect::{self, Unit};
+use crate::math;
 use crate::scene::{UNITS_PER_PX, Written};
 
 /// Appends the outline of `stroke` as an element of its own.
@@ -27,7 +28,7 @@ fn push_circle(out: &mut String, [x, y]: [i64; 2], width: i64) {
 /// same step, forth and back, and so are the chords of the arcs, so that rounding cannot open the outline.
 fn push_capsule(out: &mut String, a: [i64; 2], b: [i64; 2], width: i64) {
     let side = [b[0] - a[0], b[1] - a[1]];
-    let length = (side[0] as f64).hypot(side[1] as f64);
+    let length = math::hypot(side[0] as f64, side[1] as f64);
     let across = |along: i64| rounded(along as f64 / length * width as f64);
     let chord = [across(-side[1]), across(side[0])];
     // A radius too short for its chord is stretched to a half circle by definition; one too long would

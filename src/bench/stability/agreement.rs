@@ -10,6 +10,7 @@ use crate::coverage::Coverage;
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::{Simd, final_softness};
 use crate::image::Image;
+use crate::math;
 use crate::render::{Backdrop, Canvas, Grid, Params, Renderer, pack, unpack};
 use crate::report::Table;
 use crate::report::picture::{self, heat};
@@ -195,7 +196,7 @@ impl Bench {
             let theirs = verify::render(&text(&stroke), verify::Size::Scale(1.0), Some([1.0; 3]))?;
             for (&a, &b) in ours.planes()[0].iter().zip(&theirs.planes()[0]) {
                 if a < 1.0 || b < 1.0 {
-                    sum += f64::from(a - b).powi(2);
+                    sum += math::powi(f64::from(a - b), 2);
                     touched += 1.0;
                 }
             }
@@ -214,7 +215,7 @@ impl Bench {
 
 /// A black stroke about a centre.
 fn stroke([x, y]: [f64; 2], width: f64, angle: f64) -> Params {
-    let (sin, cos) = angle.to_radians().sin_cos();
+    let (sin, cos) = math::sin_cos(angle.to_radians());
     let (dx, dy) = (cos * LENGTH / 2.0, sin * LENGTH / 2.0);
     let ends = [x - dx, y - dy, x + dx, y + dy].map(|v| v as f32);
     let [ax, ay, bx, by] = ends;

@@ -6,6 +6,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::fit::{Objective, Simd};
 use crate::image::Image;
 use crate::loss::Loss;
+use crate::math;
 use crate::render::reference::{self, Reference, Rgb};
 use crate::render::{Backdrop, Canvas, Gradients, Grid, PARAMS, Params, Renderer, Softness};
 use crate::rng;
@@ -252,7 +253,7 @@ pub(super) fn random(seed: u64, width: usize, height: usize, count: usize) -> Ve
         let u = |k| rng::draw(seed, 9, i, k);
         let x = (u(0) * 1.2 - 0.1) * width as f32;
         let y = (u(1) * 1.2 - 0.1) * height as f32;
-        let (sin, cos) = (u(2) * std::f32::consts::TAU).sin_cos();
+        let (sin, cos) = math::sin_cos(u(2) * std::f32::consts::TAU);
         let length = u(3) * u(3) * width as f32;
         let radius = 0.2 + 0.2 * u(4) * u(4) * height as f32;
         let [red, green, blue] = [u(5), u(6), u(7)];

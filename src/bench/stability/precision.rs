@@ -8,6 +8,7 @@ use crate::error::Result;
 use crate::fit::{Execution, Objective};
 use crate::image::Image;
 use crate::loss::Loss;
+use crate::math;
 use crate::optim::{Adam, AdamParams, Optimizer, Schedule};
 use crate::render::reference::{Scene, Stroke};
 use crate::render::{Backdrop, Canvas, Gradients, Grid, PARAMS, Renderer, Softness};
@@ -54,7 +55,7 @@ fn after(iterations: usize) -> Result<Observation> {
 fn target() -> Result<Image> {
     let value = |c: usize, i: usize| {
         let (x, y) = ((i % SIDE) as f32, (i / SIDE) as f32);
-        if (x - 6.0).hypot(y - 8.0) < 4.0 {
+        if math::hypot(x - 6.0, y - 8.0) < 4.0 {
             0.2 + 0.3 * c as f32
         } else {
             x / SIDE as f32

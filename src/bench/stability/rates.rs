@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::fit::{Budget, Config, Execution, Fit, Fitter, Polish, Preset, Rates, Recipe, Stages};
 use crate::image::Image;
 use crate::lab::article::{Capsules, Reproduction};
+use crate::math;
 use crate::metrics;
 use crate::svg::{self, WriteOptions};
 
@@ -68,7 +69,7 @@ fn picture() -> Result<Image> {
     let (width, height) = (64, 48);
     let value = |c: usize, i: usize| {
         let (x, y) = ((i % width) as f32, (i / width) as f32);
-        let away = (x - 30.0).hypot(y - 24.0);
+        let away = math::hypot(x - 30.0, y - 24.0);
         if away < 14.0 {
             0.1 * c as f32 + away / 40.0
         } else {

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::math;
 use crate::render::{PARAMS, Params, RADIUS, unpack};
 use crate::rng;
 use crate::scene::{Scene, Stage};
@@ -115,7 +116,7 @@ impl Capsules {
         let radii = || self.strokes.iter().map(|p| f64::from(p[RADIUS]));
         let n = self.strokes.len().max(1) as f64;
         let mean_radius = radii().sum::<f64>() / n;
-        let variance = radii().map(|r| (r - mean_radius).powi(2)).sum::<f64>() / n;
+        let variance = radii().map(|r| math::powi(r - mean_radius, 2)).sum::<f64>() / n;
         Statistics {
             strokes: self.strokes.len(),
             at_zero: radii().filter(|&r| r == 0.0).count(),
@@ -142,7 +143,7 @@ mod tests {
         let squares = drawing
             .strokes
             .iter()
-            .map(|p| f64::from((p[2] - p[0]).powi(2)));
+            .map(|p| f64::from(math::powi(p[2] - p[0], 2)));
         let deviation = (squares.sum::<f64>() / 2000.0).sqrt();
         assert!((deviation - 4.0).abs() < 0.2, "{deviation}");
         let statistics = drawing.statistics();

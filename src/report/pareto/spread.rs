@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::ParetoEntry;
+use crate::math;
 
 /// Drawings that differ in their seed alone.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -61,7 +62,7 @@ pub fn spreads(entries: &[ParetoEntry]) -> Vec<Spread> {
 fn spread(values: impl Iterator<Item = f64> + Clone) -> [f64; 2] {
     let n = values.clone().count().max(1) as f64;
     let mean = values.clone().sum::<f64>() / n;
-    let variance = values.map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0);
+    let variance = values.map(|v| math::powi(v - mean, 2)).sum::<f64>() / (n - 1.0).max(1.0);
     [mean, variance.sqrt()]
 }
 

@@ -6,6 +6,7 @@ use plotters::prelude::*;
 use super::{Drawn, FONT, draw, register, undrawn};
 use crate::error::Result;
 use crate::image::Image;
+use crate::math;
 
 /// Colours that are told apart with any kind of colour vision: Okabe & Ito, "Color universal
 /// design", 2008, and a brown.
@@ -199,7 +200,7 @@ impl Chart {
 
     /// Points as they are drawn: on a logarithmic axis as logarithms.
     fn points(&self, points: &[[f64; 2]]) -> Vec<[f64; 2]> {
-        let along = |v: f64, logarithmic: bool| if logarithmic { v.log10() } else { v };
+        let along = |v: f64, logarithmic: bool| if logarithmic { math::log10(v) } else { v };
         let drawn = points
             .iter()
             .map(|&[x, y]| [along(x, self.logarithmic_x), along(y, self.logarithmic)]);
@@ -208,7 +209,7 @@ impl Chart {
 
     fn label_x(&self, v: f64) -> String {
         if self.logarithmic_x {
-            significant(10_f64.powf(v))
+            significant(math::powf(10.0, v))
         } else {
             format!("{v}")
         }
@@ -216,7 +217,7 @@ impl Chart {
 
     fn label_y(&self, v: f64) -> String {
         if self.logarithmic {
-            format!("{:.1e}", 10_f64.powf(v))
+            format!("{:.1e}", math::powf(10.0, v))
         } else {
             let text = format!("{v:.3}");
             text.trim_end_matches('0').trim_end_matches('.').into()
@@ -226,8 +227,16 @@ impl Chart {
 
 /// A number above 0 with two significant digits.
 fn significant(v: f64) -> String {
-    let digits = (1.0 - v.log10().floor()).clamp(0.0, 6.0) as usize;
-    let unit = 10_f64.powi(digits as i32 - if v >= 100.0 { v.log10() as i32 - 1 } else { 0 });
+    let digits = (1.0 - math::log10(v).floor()).clamp(0.0, 6.0) as usize;
+    let unit = math::powi(
+        10.0,
+        digits as i32
+            - if v >= 100.0 {
+                math::log10(v) as i32 - 1
+            } else {
+                0
+            },
+    );
     format!("{:.digits$}", (v * unit).round() / unit)
 }
 

@@ -7,6 +7,7 @@ use plotters::prelude::*;
 use super::{Drawn, FONT, Root, draw};
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
+use crate::math;
 
 /// A line over a picture.
 #[derive(Debug, Clone)]
@@ -173,7 +174,7 @@ fn draw_path(root: &Root<'_>, path: &Path, (x0, y0): (usize, usize), zoom: usize
 /// The head of an arrow: two wings of `size` px with the tip between them.
 fn wings(from: [f64; 2], tip: [f64; 2], size: f64) -> [[f64; 2]; 3] {
     let (dx, dy) = (tip[0] - from[0], tip[1] - from[1]);
-    let length = dx.hypot(dy).max(1e-9);
+    let length = math::hypot(dx, dy).max(1e-9);
     let (ux, uy) = (dx / length * size, dy / length * size);
     let wing = |side: f64| [tip[0] - ux + side * uy / 2.0, tip[1] - uy - side * ux / 2.0];
     [wing(1.0), tip, wing(-1.0)]
