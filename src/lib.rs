@@ -125,6 +125,8 @@
 //! | film | a finished drawing replayed as frames; see [`animation`] |
 //! | view | the live page that watches a fit, or shows a drawing |
 
+#![warn(clippy::disallowed_methods)]
+
 pub mod animation;
 pub mod bench;
 pub mod browser;

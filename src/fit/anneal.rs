@@ -2,6 +2,7 @@
 
 use super::recipe::{Edge, Preset, Recipe};
 use crate::coverage::{Coverage, CoverageSchedule};
+use crate::math;
 use crate::render::Softness;
 
 /// The edge of a finished drawing: the softness at which `coverage` has the slope of a rasterised edge.
@@ -33,7 +34,7 @@ impl Annealing {
         }
         let last = with_slope(self.coverage.early, self.edge.final_slope);
         Softness {
-            width: last.width * from.max(1.0).powf(1.0 - done / annealed),
+            width: last.width * math::powf(from.max(1.0), 1.0 - done / annealed),
             ..last
         }
     }

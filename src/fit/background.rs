@@ -90,12 +90,13 @@ fn translucent_share(image: &Image, choice: &BackgroundChoice) -> f64 {
 mod tests {
     use super::*;
     use crate::fit::recipe::{Preset, Recipe};
+    use crate::math;
 
     /// A grey disc with an antialiased edge, `alpha` inside.
     fn disc(alpha: f32) -> Image {
         let side = 40;
         let inside = |i: usize| {
-            let away = ((i % side) as f32 - 20.0).hypot((i / side) as f32 - 20.0);
+            let away = math::hypot((i % side) as f32 - 20.0, (i / side) as f32 - 20.0);
             alpha * (15.5 - away).clamp(0.0, 1.0)
         };
         Image::filled(side, side, [0.4; 3])

@@ -39,10 +39,11 @@ impl Limits {
     /// Brings `p` into the domain. Numbers that are not finite are left; the stroke is dropped later.
     pub(super) fn apply(&self, p: &mut Params) {
         let margin = self.domain.margin;
-        for k in AX..=BY {
-            p[k] = p[k].clamp(-margin, self.sides[k % 2] + margin);
-        }
         let [width, height] = self.sides;
+        for end in p[AX..=BY].as_chunks_mut::<2>().0 {
+            end[0] = end[0].clamp(-margin, width + margin);
+            end[1] = end[1].clamp(-margin, height + margin);
+        }
         p[RADIUS] = p[RADIUS].clamp(self.domain.min_radius, width.max(height));
         for color in &mut p[RED..OPACITY] {
             *color = color.clamp(0.0, 1.0);

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::base::Base;
 use super::config::{Config, MAX_STROKES};
 use super::recipe::{Recipe, Stages};
+use crate::math;
 
 /// One planned stage.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -96,7 +97,7 @@ impl Plan {
             Some(&count) => count,
             None if self.open => {
                 let Stages { first, growth, .. } = self.recipe;
-                let count = first as f64 * growth.powi((self.covered + step) as i32);
+                let count = first as f64 * math::powi(growth, (self.covered + step) as i32);
                 (count as usize).min((self.pixels).min(MAX_STROKES).saturating_sub(before))
             }
             None => return None,
@@ -112,7 +113,7 @@ impl Plan {
 
 /// `total` strokes in at most `stages` stages, each `growth` times the one before.
 fn counts(total: usize, stages: usize, growth: f64) -> Vec<usize> {
-    let weights: Vec<f64> = (0..stages).map(|k| growth.powi(k as i32)).collect();
+    let weights: Vec<f64> = (0..stages).map(|k| math::powi(growth, k as i32)).collect();
     let whole: f64 = weights.iter().sum();
     let (mut counts, mut before, mut reached) = (Vec::new(), 0, 0.0);
     for weight in weights {
@@ -147,8 +148,8 @@ fn rest(counts: &[usize], before: usize) -> Vec<usize> {
 /// How many stages of an open plan `before` strokes make.
 fn covered(Stages { first, growth, .. }: &Stages, before: usize) -> usize {
     let (mut stages, mut strokes) = (0, 0.0);
-    while strokes + *first as f64 * growth.powi(stages) <= before as f64 {
-        strokes += *first as f64 * growth.powi(stages);
+    while strokes + *first as f64 * math::powi(*growth, stages) <= before as f64 {
+        strokes += *first as f64 * math::powi(*growth, stages);
         stages += 1;
     }
     stages as usize

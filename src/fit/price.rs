@@ -1,5 +1,6 @@
 //! The exchange rate between error and bytes: what a stroke must be worth to be drawn.
 
+use crate::math;
 use crate::render::{Params, unpack};
 use crate::svg::{WriteOptions, stroke_bytes};
 
@@ -14,7 +15,7 @@ impl Price {
     /// At quality `q` a byte must remove as much squared error as one pixel has in a picture of `q` dB:
     /// 3·10^(−q/10). Without a quality every stroke that removes any error is worth drawing.
     pub(super) fn new(quality: Option<f64>, file: WriteOptions) -> Self {
-        let per_byte = quality.map_or(0.0, |q| 3.0 * 10f64.powf(-q / 10.0)) as f32;
+        let per_byte = quality.map_or(0.0, |q| 3.0 * math::powf(10.0, -q / 10.0)) as f32;
         Self { per_byte, file }
     }
 

@@ -445,10 +445,8 @@ impl Recipe {
             ("pens.window", self.pens.window),
             ("time.min_search", self.time.min_search),
         ];
-        let counts = counts.into_iter();
-        counts
-            .map(|(name, count)| demand(name, count, count > 0, "1 or more"))
-            .collect()
+        let mut counts = counts.into_iter();
+        counts.try_for_each(|(name, count)| demand(name, count, count > 0, "1 or more"))
     }
 
     /// Iterations that a stroke takes part in, about: those of its stage, and of the polish if there is one.

@@ -10,6 +10,7 @@ use super::recipe::Settling;
 use crate::browser;
 use crate::error::Result;
 use crate::image::Image;
+use crate::math;
 use crate::metrics;
 use crate::render::Canvas;
 
@@ -126,7 +127,7 @@ impl Errors {
     /// By how many dB the browser is less faithful than resvg.
     fn shortfall_db(&self) -> f64 {
         let [shown, drawn] = [self.shown, self.drawn].map(|mse| mse.max(MIN_ERROR));
-        10.0 * (shown / drawn).log10()
+        10.0 * math::log10(shown / drawn)
     }
 
     /// The share `s` that the browser has to have of the offset, so that it is `aim_db` behind: with a difference
@@ -148,7 +149,7 @@ impl Errors {
 const MIN_ERROR: f64 = 1e-9;
 
 fn ratio(db: f64) -> f64 {
-    10f64.powf(db / 10.0)
+    math::powf(10.0, db / 10.0)
 }
 
 #[cfg(test)]
@@ -178,7 +179,7 @@ mod tests {
             let errors = errors(1e-3, apart);
             let share = errors.fair_share(AIM_DB);
             let left = |share: f64| errors.soft + share * share * apart;
-            let shortfall_db = 10.0 * (left(1.0 - share) / left(share)).log10();
+            let shortfall_db = 10.0 * math::log10(left(1.0 - share) / left(share));
             assert!((shortfall_db - AIM_DB).abs() < 1e-9, "{apart}: {share}");
         }
     }

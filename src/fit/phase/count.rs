@@ -6,6 +6,7 @@ use crate::fit::budget;
 use crate::fit::recipe::Correction;
 use crate::fit::result::Stop;
 use crate::fit::session::Session;
+use crate::math;
 use crate::metrics::psnr_db;
 
 /// Ends the fit where the base as it is meets a budget already.
@@ -53,7 +54,7 @@ pub(in crate::fit) fn meet_fidelity(session: &mut Session<'_>) -> Outcome {
 /// Doubles or halves the strokes `doublings` times, at most once; is over where there is none to add or to remove.
 fn resize(session: &mut Session<'_>, doublings: f64) -> Outcome {
     let (strokes, most) = (session.drawing.len(), session.limit);
-    let factor = doublings.clamp(-1.0, 1.0).exp2();
+    let factor = math::exp2(doublings.clamp(-1.0, 1.0));
     let wanted = ((strokes as f64 * factor) as usize).clamp(1, most);
     let outcome = if doublings > 0.0 {
         let added = wanted.max(strokes + 1).min(most).saturating_sub(strokes);
@@ -81,7 +82,7 @@ fn slope(
     (many, many_db): (usize, f64),
 ) -> f64 {
     let usual = correction.db_per_doubling;
-    let doublings = (many.max(1) as f64 / few.max(1) as f64).log2();
+    let doublings = math::log2(many.max(1) as f64 / few.max(1) as f64);
     let slope = (many_db - few_db) / doublings;
     if slope.is_finite() {
         slope.clamp(usual * correction.least_part, usual)

@@ -15,6 +15,7 @@ use crate::error::Result;
 use crate::fit::config::Colors;
 use crate::fit::relocation;
 use crate::fit::session::Session;
+use crate::math;
 use crate::render::{AX, AY, BX, BY, OPACITY, RADIUS, RED};
 use crate::scene::{Rgb, color, quantum};
 use crate::seed::Candidate;
@@ -125,7 +126,7 @@ impl Palette {
         let p = &mut candidate.stroke;
         let wanted = [p[RED], p[RED + 1], p[RED + 2]];
         let color = self.nearest(wanted);
-        let length = (p[BX] - p[AX]).hypot(p[BY] - p[AY]);
+        let length = math::hypot(p[BX] - p[AX], p[BY] - p[AY]);
         let area = p[RADIUS] * (2.0 * length + PI * p[RADIUS]);
         candidate.gain -= area * p[OPACITY] * p[OPACITY] * dist2(color, wanted);
         p[RED..OPACITY].copy_from_slice(&color);

@@ -15,6 +15,7 @@ use crate::fit::config::Colors;
 use crate::fit::drawing::Drawing;
 use crate::fit::recipe::Recipe;
 use crate::fit::session::Session;
+use crate::math;
 use crate::render::{AX, AY, BX, BY, OPACITY, Params, RADIUS, RED, unpack};
 use crate::scene::{Rgb, Written, color, quantum};
 use crate::svg::Form;
@@ -116,7 +117,7 @@ impl Pen {
             color: [p[RED], p[RED + 1], p[RED + 2]],
             area: weight,
             radius: ladder.rung(p[RADIUS]),
-            edge: 2.0 * (p[BX] - p[AX]).hypot(p[BY] - p[AY]) + TAU * p[RADIUS],
+            edge: 2.0 * math::hypot(p[BX] - p[AX], p[BY] - p[AY]) + TAU * p[RADIUS],
         }
     }
 
@@ -124,9 +125,9 @@ impl Pen {
     fn cost(&self, other: &Self, contrast: f32) -> f32 {
         let both = |a: f32, b: f32| a * b / (a + b).max(f32::MIN_POSITIVE);
         let away: f32 = (0..3)
-            .map(|c| (self.color[c] - other.color[c]).powi(2))
+            .map(|c| math::powi(self.color[c] - other.color[c], 2))
             .sum();
-        let wider = (self.radius - other.radius).powi(2);
+        let wider = math::powi(self.radius - other.radius, 2);
         both(self.area, other.area) * away + contrast * both(self.edge, other.edge) * wider
     }
 
@@ -164,8 +165,8 @@ impl Ladder {
 
     /// The nearest radius that a pen may have.
     fn rung(self, radius: f32) -> f32 {
-        let steps = (radius / self.least).max(1.0).ln() / self.step.ln();
-        self.least * self.step.powf(steps.round())
+        let steps = math::ln((radius / self.least).max(1.0)) / math::ln(self.step);
+        self.least * math::powf(self.step, steps.round())
     }
 }
 

@@ -215,7 +215,7 @@ pub(super) fn drawing(
         fidelity: Some(Quality {
             psnr_db,
             ssim: 0.9,
-            mse: math::powf(10.0, -psnr_db / 10.0),
+            mse: crate::math::powf(10.0, -psnr_db / 10.0),
             l1: 0.01,
         }),
         ..ParetoEntry::default()
@@ -225,7 +225,6 @@ pub(super) fn drawing(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math;
 
     #[test]
     fn a_line_ends_in_its_verdict() {
