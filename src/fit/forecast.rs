@@ -1,15 +1,15 @@
-//! What is still to come of a fit whose time is limited, in seconds.
+//! How a limited time is shared out, in seconds.
 //!
-//! Descent is given all the time that what follows it does not need: the drawing is written and settled against
-//! its file, and at last the file is judged, which renders it again. All of that is reckoned from how long a
-//! writing took when one was last tried, and from how long steps, searches and rounds take.
+//! Descent gets all the time that what follows it does not need: the drawing is written and settled against its file,
+//! and in the end the file is judged, which renders it once more. All of these are estimated from how long the last
+//! write took, and from how long steps, searches and rounds take.
 
 use std::time::Duration;
 
 use super::deadline::Deadline;
 use super::recipe::{Recipe, TimeShares};
 
-/// What a limited fit knows of the time that its parts take.
+/// What a limited fit knows of the time that its parts take, s.
 #[derive(Debug, Clone)]
 pub(super) struct Forecast {
     limit: f64,
@@ -23,7 +23,7 @@ pub(super) struct Forecast {
     shares: TimeShares,
     /// How long a pixel takes to write.
     per_pixel: f64,
-    /// When a writing is to be tried next.
+    /// When to measure a write next.
     due: f64,
     /// How long a step of descent takes.
     step: f64,
@@ -32,8 +32,8 @@ pub(super) struct Forecast {
 }
 
 impl Forecast {
-    /// For a fit that may take `limit` in all, of a picture of so many pixels, `is_transparent` if it is transparent;
-    /// it `needs_file` if it looks at what it writes.
+    /// The forecast of a fit that may take `limit` in all, of a picture of so many pixels. A transparent drawing takes
+    /// longer to judge; a fit that `needs_file` looks at what it writes.
     pub(super) fn new(
         limit: Duration,
         pixels: usize,
@@ -62,7 +62,7 @@ impl Forecast {
         end.max(self.limit * self.shares.min_descent)
     }
 
-    /// Whether what is written from `now` on is judged in time.
+    /// Whether a file that is written from `now` on is judged in time.
     fn ends_in_time(&self, strokes: usize, now: f64) -> bool {
         now + self.seeing(strokes) + self.judging(strokes) < self.limit
     }
@@ -72,17 +72,18 @@ impl Forecast {
         self.pixels + self.shares.stroke_px * strokes as f64
     }
 
-    fn writing(&self, strokes: usize) -> f64 {
+    /// How long it takes to round, write and render a drawing of so many strokes.
+    fn write_s(&self, strokes: usize) -> f64 {
         self.per_pixel * self.size(strokes)
     }
 
-    /// A writing that is settled from.
+    /// A write that a round of settling starts from, and a look at it in the model of the browser.
     fn seeing(&self, strokes: usize) -> f64 {
-        (1.0 + self.shares.browser) * self.writing(strokes)
-            + self.shares.browser_page * self.writing(0)
+        (1.0 + self.shares.browser) * self.write_s(strokes)
+            + self.shares.browser_page * self.write_s(0)
     }
 
-    /// The time that is kept for the first writing and for rounds of settling; short rounds where it is short.
+    /// The time that is kept for the first write and for rounds of settling; short rounds where it is short.
     fn settling(&self, strokes: usize) -> f64 {
         let seeing = self.seeing(strokes);
         let round = |steps: f64| seeing + steps * self.step;
@@ -91,19 +92,19 @@ impl Forecast {
         if self.rounds > 0 && round(self.shares.min_round) < most {
             seeing + rounds.min(most)
         } else if self.needs_file {
-            self.writing(strokes)
+            self.write_s(strokes)
         } else {
             0.0
         }
     }
 
     fn judging(&self, strokes: usize) -> f64 {
-        let writings = if self.is_transparent {
+        let writes = if self.is_transparent {
             self.shares.judging_transparent
         } else {
             self.shares.judging
         };
-        writings * self.writing(strokes) + self.shares.judging_page * self.writing(0)
+        writes * self.write_s(strokes) + self.shares.judging_page * self.write_s(0)
     }
 }
 
@@ -145,7 +146,7 @@ impl Deadline for Forecast {
     }
 
     fn allows_polish(&self, strokes: usize, now: f64) -> bool {
-        now + self.shares.min_polish * self.writing(strokes) < self.end_of_descent(strokes)
+        now + self.shares.min_polish * self.write_s(strokes) < self.end_of_descent(strokes)
     }
 
     fn allows_round(&self, strokes: usize, now: f64) -> bool {
@@ -176,23 +177,23 @@ mod tests {
     }
 
     impl Machine {
-        fn writing(&self, strokes: usize) -> f64 {
+        fn write_s(&self, strokes: usize) -> f64 {
             self.per_pixel * (PIXELS as f64 + self.stroke_px * strokes as f64)
         }
 
         fn write(&mut self, forecast: &mut Forecast, strokes: usize) {
-            let span = self.writing(strokes);
+            let span = self.write_s(strokes);
             self.now += span;
             forecast.wrote(strokes, span, self.now);
         }
 
         fn look(&mut self, strokes: usize) {
             self.now +=
-                shares().browser * self.writing(strokes) + shares().browser_page * self.writing(0);
+                shares().browser * self.write_s(strokes) + shares().browser_page * self.write_s(0);
         }
 
         fn step(&mut self, forecast: &mut Forecast, strokes: usize) {
-            let span = self.writing(strokes) / 7.0;
+            let span = self.write_s(strokes) / 7.0;
             self.now += span;
             forecast.stepped(span);
         }
@@ -222,8 +223,8 @@ mod tests {
                 self.look(strokes);
             }
             self.now
-                + shares().judging * self.writing(strokes)
-                + shares().judging_page * self.writing(0)
+                + shares().judging * self.write_s(strokes)
+                + shares().judging_page * self.write_s(0)
         }
     }
 
@@ -270,7 +271,7 @@ mod tests {
     }
 
     #[test]
-    fn writings_are_tried_now_and_then() {
+    fn writes_are_measured_now_and_then() {
         let forecast = forecast(5);
         assert!(!forecast.wants_rehearsal(2.0) && forecast.wants_rehearsal(2.2));
     }
@@ -280,9 +281,9 @@ mod tests {
         let mut forecast = forecast(5);
         forecast.searched(100, 0.1);
         let left = forecast.end_of_descent(1000) - 3.0;
-        let affordable = forecast.affordable(10_000, 1000, 3.0);
+        let affordable = forecast.affordable(2_000, 1000, 3.0);
         assert!(affordable > 0 && affordable as f64 * 0.001 < left);
-        assert_eq!(forecast.affordable(10_000, 1000, 5.0), 0);
+        assert_eq!(forecast.affordable(2_000, 1000, 5.0), 0);
     }
 
     #[test]

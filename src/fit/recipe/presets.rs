@@ -1,0 +1,200 @@
+//! The numbers of the presets.
+
+use super::{
+    BackgroundChoice, Coloring, Correction, Domain, Edge, Optimizer, Pens, Polish, Preset, Rates,
+    Recipe, Relocation, Rounds, Settling, Stages, TimeShares,
+};
+use crate::optim::AdamParams;
+use crate::seed::Probing;
+
+impl Recipe {
+    /// The recipe of a preset.
+    pub fn of(preset: Preset) -> Self {
+        match preset {
+            Preset::Draft => Self::draft(),
+            Preset::Balanced => BALANCED,
+            Preset::Best => Self {
+                polish: Polish {
+                    iterations: 8000,
+                    ..BALANCED.polish
+                },
+                relocation: Relocation {
+                    every: 20,
+                    ..BALANCED.relocation
+                },
+                ..BALANCED
+            },
+        }
+    }
+
+    /// Few, long steps.
+    fn draft() -> Self {
+        let Self {
+            stages,
+            polish,
+            relocation,
+            settling,
+            ..
+        } = BALANCED;
+        Self {
+            stages: Stages {
+                scale: 0.25,
+                iterations: 20,
+                rates: Rates {
+                    position: 1.5,
+                    ..stages.rates
+                },
+                ..stages
+            },
+            polish: Polish {
+                iterations: 130,
+                rates: Rates {
+                    position: 1.3,
+                    radius: 0.3,
+                    last: 0.2,
+                    ..polish.rates
+                },
+                ..polish
+            },
+            relocation: Relocation {
+                every: 20,
+                scale: 0.4,
+                gain: 3.0,
+                ..relocation
+            },
+            settling: Settling {
+                rounds: 0,
+                ..settling
+            },
+            ..BALANCED
+        }
+    }
+}
+
+const BALANCED: Recipe = Recipe {
+    probing: Probing {
+        radii: [0.3, 0.55, 1.0],
+        lengths: [2.0, 4.5],
+        cells: 2.5,
+        probed: 0.6,
+    },
+    stages: Stages {
+        count: 8,
+        growth: 1.35,
+        first: 12,
+        pixels_per_stroke: 250,
+        scale: 0.3,
+        iterations: 120,
+        rates: Rates {
+            position: 1.0,
+            radius: 0.3,
+            color: 0.02,
+            opacity: 0.02,
+            last: 0.1,
+        },
+        softest: 4.0,
+        paying_share: 0.3,
+        polish_gain_db: 2.0,
+        min_scale: 2.5,
+    },
+    edge: Edge {
+        final_slope: 1.2,
+        annealed: 0.7,
+    },
+    domain: Domain {
+        margin: 8.0,
+        min_radius: 0.51,
+        min_opacity: 0.1,
+    },
+    optimizer: Optimizer {
+        strokes: AdamParams {
+            betas: [0.9, 0.9],
+            eps: 1e-10,
+        },
+        background: AdamParams {
+            betas: [0.9, 0.999],
+            eps: 1e-8,
+        },
+        usual_radius: 2.0,
+        radius_factors: [0.25, 4.0],
+    },
+    polish: Polish {
+        iterations: 2800,
+        coarse_share: 0.3,
+        rates: Rates {
+            position: 2.5,
+            radius: 0.5,
+            color: 0.02,
+            opacity: 0.03,
+            last: 0.03,
+        },
+        softness: 2.4,
+    },
+    relocation: Relocation {
+        every: 30,
+        share: 0.3,
+        scale: 0.5,
+        gain: 4.0,
+        until: 0.9,
+        fill: 2,
+    },
+    coloring: Coloring {
+        rounds: Rounds {
+            count: 12,
+            iterations: 0.6,
+            rate: 0.3,
+        },
+        quiet_rounds: 2,
+        damping: 0.7,
+        means: 10,
+        min_shown: 1e-3,
+    },
+    pens: Pens {
+        rounds: Rounds {
+            count: 8,
+            iterations: 0.2,
+            rate: 0.1,
+        },
+        share: 0.7,
+        ladder: 1.2,
+        contrast: 0.02,
+        window: 1024,
+    },
+    settling: Settling {
+        rounds: 5,
+        iterations: 20,
+        rate: 0.02,
+        color_rate: 5.0,
+        next_pace: 0.1,
+        browser_db: 0.4,
+        offset_taken: 0.7,
+        share_per_db: 0.15,
+    },
+    correction: Correction {
+        count: 6,
+        db_per_doubling: 2.8,
+        least_part: 0.125,
+        excess_db: 0.1,
+        polish_share: 0.4,
+    },
+    background: BackgroundChoice {
+        prevailing_share: 0.25,
+        translucent_share: 0.005,
+        translucent: [0.03, 0.97],
+    },
+    time: TimeShares {
+        stroke_px: 160.0,
+        browser: 0.25,
+        browser_page: 1.15,
+        judging: 1.75,
+        judging_transparent: 2.2,
+        judging_page: 2.6,
+        settling: 0.125,
+        min_descent: 0.25,
+        min_polish: 15.0,
+        rehearsals: 0.01,
+        min_round: 2.0,
+        freshness: 0.2,
+        min_search: 8,
+    },
+};

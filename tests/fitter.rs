@@ -1,0 +1,120 @@
+//! The door of the library: recipes are checked, other threads can cancel, a fit knows how it is written.
+#![allow(missing_docs, clippy::unwrap_used)]
+
+mod support {
+    pub(crate) mod drafts;
+    pub(crate) mod fits;
+    pub(crate) mod repository;
+}
+
+use std::ops::ControlFlow;
+use std::sync::mpsc;
+
+use strokefit::ErrorKind;
+use strokefit::fit::{CancelToken, Checkpoint, Config, Fitter, Preset, Progress, Recipe, Stop};
+use strokefit::image::Image;
+use strokefit::svg::{self, Form, WriteOptions};
+use support::drafts::draft;
+use support::fits::{drawn, sample};
+
+fn with_recipe(change: impl Fn(&mut Recipe)) -> Config {
+    let mut recipe = Recipe::of(Preset::Draft);
+    change(&mut recipe);
+    Config {
+        recipe: Some(recipe),
+        ..draft(60)
+    }
+}
+
+#[test]
+fn stages_that_shrink_are_refused_rather_than_never_end() {
+    // Without a budget the stages go on until they do not pay.
+    let config = Config {
+        budget: Default::default(),
+        ..with_recipe(|recipe| recipe.stages.growth = 0.5)
+    };
+    let picture = Image::filled(32, 32, [0.5; 3]).unwrap();
+    let error = Fitter::new(config).fit(&picture).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::Config);
+    let words = error.to_string();
+    assert!(words.contains("stages.growth of 0.5"), "{words}");
+}
+
+#[test]
+fn no_iterations_of_polish_are_none() {
+    let picture = sample("noto-gem");
+    let none = drawn(
+        &picture,
+        &with_recipe(|recipe| recipe.polish.iterations = 0),
+    );
+    let off = Config {
+        polish: false,
+        ..with_recipe(|_| ())
+    };
+    // Without polish strokes that were promised but not accepted are topped up, which is another stage.
+    let off = drawn(&picture, &off);
+    assert_eq!(
+        none.scene.stages,
+        off.scene.stages[..none.scene.stages.len()]
+    );
+}
+
+#[test]
+fn a_fit_is_written_as_it_was_fitted() {
+    let config = Config {
+        opaque: true,
+        file: WriteOptions {
+            form: Form::Smallest,
+            precision: 1,
+            ..WriteOptions::default()
+        },
+        ..draft(60)
+    };
+    let fit = drawn(&sample("noto-gem"), &config);
+    assert_eq!(fit.svg(), svg::write(&fit.scene, &config.file));
+    assert_ne!(fit.svg(), svg::write(&fit.scene, &WriteOptions::default()));
+}
+
+#[test]
+fn another_thread_cancels_a_fit() {
+    let (token, (began, begins)) = (CancelToken::default(), mpsc::channel());
+    let elsewhere = token.clone();
+    let canceller = std::thread::spawn(move || {
+        begins.recv().unwrap();
+        elsewhere.cancel();
+    });
+    // It would take minutes.
+    let mut recipe = Recipe::of(Preset::Best);
+    recipe.polish.iterations = 1_000_000;
+    let config = Config {
+        recipe: Some(recipe),
+        ..draft(200)
+    };
+    let mut watch = move |_: &Progress<'_>| {
+        // Nobody listens any more once the fit is cancelled.
+        let _ = began.send(());
+        ControlFlow::Continue(())
+    };
+    let fitter = Fitter::new(config).observer(&mut watch).cancelled_by(token);
+    let fit = fitter.fit(&sample("noto-gem")).unwrap();
+    canceller.join().unwrap();
+    assert_eq!(fit.stop, Stop::Observer);
+    assert!(!fit.scene.is_empty(), "what was drawn until then is there");
+}
+
+#[test]
+fn a_checkpoint_of_another_recipe_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("fit.state");
+    let picture = sample("noto-gem");
+    let fit = |config: &Config| {
+        let mut checkpoint = Checkpoint::new(&path);
+        let fitter = Fitter::new(config.clone()).checkpoint(&mut checkpoint);
+        fitter.fit(&picture)
+    };
+    let config = with_recipe(|_| ());
+    let first = fit(&config).unwrap();
+    let error = fit(&with_recipe(|recipe| recipe.relocation.gain = 3.1)).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::Config);
+    assert_eq!(fit(&config).unwrap().scene, first.scene);
+}
