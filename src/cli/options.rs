@@ -1,4 +1,4 @@
-//! What to draw and how to run, as the commands that draw share it.
+//! Options for what to draw and how to run, shared by the commands that draw.
 
 use std::path::PathBuf;
 use std::time::Duration;
