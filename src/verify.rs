@@ -1,9 +1,8 @@
 //! The independent judge: SVG *text* as `resvg` draws it. The one door of usvg, resvg and
 //! tiny-skia.
 //!
-//! Nothing outside the text is ever read: references to files and addresses are not followed, and
-//! no fonts are loaded, so text that is not outlines is not drawn. Pictures embedded as `data:`
-//! are.
+//! Nothing outside the text is ever read. References to files and addresses are not followed. No fonts are
+//! loaded, so text is drawn only where it is outlines. Pictures embedded as `data:` are drawn.
 //!
 //! ```
 //! use strokefit::verify::{self, Size};
@@ -75,7 +74,7 @@ pub enum Size {
     },
 }
 
-/// What the judge says of a drawing.
+/// How faithful a drawing is, and how close to our own render.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Verdict {
     /// The SVG as rendered against the target.

@@ -47,17 +47,17 @@ pub fn perform(measurement: &str, peers: &[Box<dyn Peer>]) -> Result<String> {
     })
 }
 
-/// How children are started.
+/// Starts children, each for one measurement.
 #[derive(Debug, Clone)]
 pub struct Runner {
     program: PathBuf,
-    /// What comes before the measurement.
+    /// Arguments before the measurement.
     args: Vec<OsString>,
 }
 
 impl Runner {
-    /// This program with `args`, which has to hand the argument after them to [`perform`] and to print
-    /// the answer.
+    /// Starts this program with `args` and one argument more. The program has to pass that argument to
+    /// [`perform`] and print the answer.
     ///
     /// # Errors
     /// [`ErrorKind::Io`] when the program cannot be found.
@@ -77,7 +77,7 @@ impl Runner {
     /// Makes and measures the drawing of `case` in a child, which writes its SVG to `svg`.
     ///
     /// # Errors
-    /// [`ErrorKind::Io`], with the last line that the child said, when it did not answer.
+    /// [`ErrorKind::Io`] when the child does not answer; the message is the last line that it printed.
     pub fn case(&self, case: &Case, svg: &Path) -> Result<ParetoEntry> {
         self.answer(&Measurement::Case {
             case: case.clone(),

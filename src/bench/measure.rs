@@ -1,4 +1,4 @@
-//! Strokes of one size and the clock, for measurements of the renderer.
+//! Random strokes of one size, and timing, for measurements of the renderer.
 
 use std::f32::consts::{PI, TAU};
 use std::time::Instant;
@@ -14,7 +14,7 @@ pub const EDGE: Softness = Softness {
     width: 1.25,
 };
 
-/// Pairs per pixel of random drawings.
+/// How many strokes cover a pixel of a random drawing, on average.
 pub const DEPTH: f32 = 10.0;
 
 /// Strokes of one size.
@@ -35,8 +35,8 @@ impl StrokeSize {
         2.0 * outer * self.length_px + PI * outer * outer
     }
 
-    /// The size, four radii long and half opaque, of which `count` strokes cover `pixels` [`DEPTH`]
-    /// times.
+    /// The size at which `count` strokes cover each of `pixels` [`DEPTH`] times on average; four radii long
+    /// and half opaque.
     pub fn covering(pixels: f32, count: usize) -> Self {
         let of_radius = |radius_px: f32| Self {
             radius_px,
@@ -44,7 +44,7 @@ impl StrokeSize {
             opacity: 0.5,
         };
         let wanted = DEPTH * pixels / count.max(1) as f32;
-        // The area grows with the radius: halve the interval until it is small.
+        // The area grows with the radius, so bisection finds it.
         let (mut low, mut high) = (0.0, pixels.sqrt());
         for _ in 0..40 {
             let middle = f32::midpoint(low, high);
@@ -84,8 +84,8 @@ impl StrokeSize {
     }
 }
 
-/// The shortest time of each of `jobs`, s, over `rounds` in which they take turns: what disturbs the
-/// machine disturbs all of them.
+/// The shortest time of each of `jobs`, s. The jobs take turns for `rounds` rounds, so that other load on the
+/// machine slows all of them alike.
 pub fn fastest<const N: usize>(rounds: usize, mut jobs: [&mut dyn FnMut(); N]) -> [f64; N] {
     let mut best = [f64::INFINITY; N];
     for _ in 0..rounds {

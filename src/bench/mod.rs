@@ -1,13 +1,13 @@
-//! Measurements: what a drawing costs and gains, whether fits hold on hard cases, and how they grow.
+//! Benchmarks of whole fits: cost against error, hard cases, growth.
 //!
 //! | benchmark | question |
 //! | --- | --- |
 //! | [`pareto`] | how much error is left for how much time, memory, bytes and strokes; who else is there? |
-//! | [`stability`] | do hard cases end in valid drawings, and `f32` near `f64`? |
+//! | [`stability`] | does every hard case give a valid drawing, and does `f32` stay close to `f64`? |
 //! | [`scaling`] | how do time and memory grow with strokes, pixels and threads? |
 //!
-//! Each makes plain records of [`report`](crate::report), which makes tables, plots and pages of them.
-//! `strokefit bench` runs them. [`child`] measures a case in a process of its own.
+//! Each returns plain records of [`report`](crate::report), which turns them into tables, plots and pages.
+//! `strokefit bench` runs them. [`child`] runs one case in a process of its own.
 
 pub mod child;
 pub mod measure;

@@ -1,6 +1,6 @@
 //! How time and memory grow with strokes, pixels and threads.
 //!
-//! Each point is a process of its own, so that its peak memory is its own.
+//! Each point runs in a process of its own, since a process has only one peak memory.
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -20,15 +20,15 @@ use crate::rng;
 
 const BACKDROP: [f32; 3] = [0.5; 3];
 
-/// Pixels where strokes or threads vary, in millions, and strokes where pixels or threads do.
+/// What a series does not vary: millions of pixels, and strokes.
 const FIXED: (f64, usize) = (1.0, 5000);
 /// The same in a short run.
 const FIXED_SHORT: (f64, usize) = (0.1, 1000);
 
-/// The largest picture that is tried, in millions of pixels, and its strokes.
+/// The largest case: millions of pixels, and strokes.
 const LARGEST: (f64, usize) = (24.0, 20_000);
 
-/// Time for the rounds of one point of the renderer, s.
+/// Time spent on one point of [`Workload::Backward`], s.
 const ROUNDS_S: f64 = 1.0;
 
 /// What is timed.
@@ -80,7 +80,7 @@ impl Axis {
 pub struct Point {
     /// What is timed.
     pub workload: Workload,
-    /// The picture, resampled to the size; a made one when `None`.
+    /// The picture, resampled to the size; a synthetic one when `None`.
     pub picture: Option<PathBuf>,
     /// Its size, in millions of pixels.
     pub megapixels: f64,
@@ -97,8 +97,8 @@ struct Series {
     values: Vec<f64>,
 }
 
-/// Measures all series on `picture`, or on a made one, telling a line for each. A point that cannot be
-/// measured is a failure of its series.
+/// Measures all series on `picture`, or on a synthetic one, and says a line for each. A point that cannot be
+/// measured counts as a failure of its series.
 ///
 /// # Errors
 /// When the picture cannot be read.
@@ -235,7 +235,7 @@ struct Time {
 }
 
 impl Point {
-    /// Measures this point in this process, whose peak memory is taken for the point's.
+    /// Measures this point. The peak memory of this process is reported as that of the point.
     ///
     /// # Errors
     /// When the picture cannot be read or there are too many threads.
@@ -268,8 +268,8 @@ impl Point {
         }
     }
 
-    /// Strokes of one size that cover the picture as often, whatever their number: the shortest of
-    /// several rounds, and their mean CPU time.
+    /// Times the backward pass on strokes of one size, chosen so that any number of them covers the picture
+    /// equally often: the shortest wall time of several rounds, and their mean CPU time.
     fn backward(&self, picture: &Image) -> Result<Time> {
         let target = Canvas::from_image(picture);
         let grid = target.grid();
@@ -368,7 +368,7 @@ fn resampled(image: &Image, pixels: f64) -> Result<Image> {
     Image::new(width, height, planes)
 }
 
-/// Where pixel `i` of `count` lies among `from`: the one before, and how far from it.
+/// Where pixel `i` of `count` lies among `from` pixels: the index before it, and the fraction beyond.
 fn between(i: usize, count: usize, from: usize) -> (usize, f32) {
     let at = (i as f64 + 0.5) * from as f64 / count as f64 - 0.5;
     let at = at.clamp(0.0, (from - 1) as f64);

@@ -5,7 +5,8 @@ use std::ops::Range;
 use super::outline::{Outline, Piece};
 use crate::math::Point;
 
-/// Sums up what lies to the right of edges.
+/// Accumulates coverage: each edge changes the coverage of everything to its right in its row, and the running
+/// sum of these changes along a row is the coverage.
 pub(super) struct Area {
     width: usize,
     height: usize,
@@ -53,6 +54,7 @@ impl Area {
             let changes = &mut self.changes[y * (self.width + BEYOND)..][start..end];
             let mut covered = 0.0;
             coverages.clear();
+            // Taking the changes leaves zeros for the next outline.
             coverages.extend(changes.iter_mut().map(|change| {
                 covered += std::mem::take(change);
                 (255.0 * covered.clamp(0.0, 1.0) + 0.5) as u8
@@ -87,7 +89,7 @@ impl Area {
             return self.change(y, 0, height, 0.0);
         }
         if right >= width {
-            // The row is covered up to there.
+            // The edge is off the picture: no coverage changes, but the row's span has to reach its end.
             self.change(y, self.width, 0.0, 0.0);
         }
         if left.floor() == right.floor() && left < width {

@@ -1,14 +1,14 @@
-//! What a browser makes of strokes: Chromium when it draws with the CPU, as Chromium 156 was seen to.
+//! A model of how a browser draws strokes: Chromium on the CPU, as version 156 was seen to.
 //!
-//! Its pictures of single strokes and of stacks of them show how they come about. A cap is two parabolas
-//! per half, up to 1/4 px outside of the circle; a parabola is a few chords; heights of chords' ends, and of
-//! lines', are rounded to quarters of a px; slight bends are put off to the next row of pixels. Of what
-//! that encloses, pixels have their exact area, 0 to 255. Products of colours, opacities, and coverages are
-//! rounded down, so that each translucent stroke darkens a picture by half a level, where tiny-skia
-//! brightens it.
+//! The rules were found from Chromium's pictures of single strokes and of stacks of them. Each half of a cap is
+//! two parabolas, up to 1/4 px outside of the circle. A parabola becomes a few chords. The y of every end of a
+//! chord or line is rounded to a quarter of a px, and a slight bend within a row of pixels is moved to the next
+//! row. A pixel's coverage is the exact area inside of this outline, 0 to 255. Products of colours, opacities
+//! and coverages are rounded down, so that each translucent stroke darkens a picture by half a level, where
+//! tiny-skia brightens it.
 //!
-//! Drawings of 2,000 strokes agree to 53 to 57 dB with Chromium's own pictures, to which resvg's agree
-//! to 39 to 47 (docs/engines.md).
+//! On drawings of 2,000 strokes the model agrees with Chromium to 53 to 57 dB, and resvg to 39 to 47
+//! (docs/engines.md).
 //!
 //! ```
 //! use strokefit::browser;

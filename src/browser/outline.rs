@@ -34,7 +34,7 @@ pub(super) struct Outline {
 }
 
 impl Outline {
-    /// Makes it that of the stroke from `a` to `b`: two lines and four quarters of circles.
+    /// Replaces the outline by that of the stroke from `a` to `b`: two lines and four quarter circles.
     pub(super) fn trace(&mut self, a: Point, b: Point, radius: f32) {
         self.sides.iter_mut().for_each(Vec::clear);
         let direction = (b - a).try_normalize(0.0);
@@ -59,8 +59,8 @@ impl Outline {
         self.push(is_down, snapped(top), snapped(bottom), false);
     }
 
-    /// An arc around `center`, from there to there, as parabolas that touch it at their ends; one would be
-    /// `bulge` px outside of it.
+    /// The arc around `center` from `from` to `to`, as parabolas that touch it at their ends. One parabola would
+    /// reach `bulge` px outside of the arc; beyond [`MAX_BULGE`] the arc is halved.
     fn arc(&mut self, center: Point, from: Vector, to: Vector, bulge: f32) {
         let sum = from + to;
         let cosine = from.dot(&to) / from.norm_squared();
@@ -76,8 +76,8 @@ impl Outline {
         }
     }
 
-    /// The chords of a parabola that does not turn back in y. All of it moves with its upper end, when that
-    /// is snapped; ends of chords are snapped in turn, but go nowhere beyond the lower end.
+    /// The chords of a parabola that does not turn back in y. Snapping its upper end shifts the whole parabola.
+    /// Ends of chords are snapped as well, but never below the snapped lower end.
     fn chords(&mut self, [from, knee, to]: [Point; 3]) {
         let is_down = from.y <= to.y;
         let (start, end) = if is_down { (from, to) } else { (to, from) };
@@ -95,7 +95,8 @@ impl Outline {
         }
     }
 
-    /// Adds an edge: what the outline, going round with its inside to the right, passes downwards is on the right.
+    /// Adds an edge to its side. The outline is traced with its inside on the right, so an edge that goes down
+    /// belongs to the right side.
     fn push(&mut self, is_down: bool, top: Point, bottom: Point, goes_on: bool) {
         if top.y < bottom.y {
             let edge = Piece {
@@ -107,7 +108,7 @@ impl Outline {
         }
     }
 
-    /// Where a side hardly bends within a row of pixels, the edge above goes on to the end of the row.
+    /// Where a side bends only slightly within a row of pixels, extends the upper edge to the end of that row.
     fn run_on(&mut self) {
         let [left, right] = &self.sides;
         let bends = [unseen_bends(left, right), unseen_bends(right, left)];
@@ -159,13 +160,13 @@ fn on_parabola(start: Point, knee: Point, end: Point, t: f32) -> Point {
     Point::from(start.coords * (u * u) + knee.coords * (2.0 * t * u) + end.coords * (t * t))
 }
 
-/// Heights are rounded to quarters of a px; what is there stays at its place in x.
+/// The point with its y rounded to a quarter of a px; x stays.
 fn snapped(p: Point) -> Point {
     Point::new(p.x, (4.0 * p.y + 0.5).floor() / 4.0)
 }
 
-/// The edges of `side` that begin within a row with a bend that is passed over: a slight one, and if the
-/// `other` side bends within a px of there, that is slight, too.
+/// Indices of the edges of `side` whose bend at the top is ignored: it lies within a row, it is slight, and a
+/// bend of the `other` side within a px of it is slight, too.
 fn unseen_bends(side: &[Piece], other: &[Piece]) -> Vec<usize> {
     let is_unseen = |&i: &usize| {
         let (upper, y) = (&side[i - 1], side[i].top.y);

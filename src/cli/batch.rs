@@ -1,4 +1,4 @@
-//! Drawings one after the other: none spoils another, and a table tells of all.
+//! Draws several pictures one after the other. One failure does not stop the rest; a table lists all outcomes.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -57,7 +57,7 @@ fn named(template: &Path, input: &Path) -> Result<PathBuf> {
     named(Path::new(&path), input)
 }
 
-/// Does the jobs in order. One alone tells its outcome in a line, several in a table.
+/// Does the jobs in order. The outcome is a line for a single job, a table for several.
 pub(super) fn run(jobs: &[Job<'_>], verbosity: Verbosity, draw: &Draw<'_>) -> Result<Status> {
     if jobs.len() > 1 && jobs.iter().any(|job| job.options.checkpoint().is_some()) {
         return Err(misuse(

@@ -1,4 +1,4 @@
-//! `strokefit check`: how faithful an SVG is to a picture, in every program that is there to draw it.
+//! `strokefit check`: how faithful an SVG is to a picture, in each installed program that draws SVG.
 
 mod table;
 mod trial;

@@ -1,4 +1,4 @@
-//! Options on the colours of a drawing, and the files that palettes come in.
+//! Options for the colours of a drawing, and the palette files they read.
 
 use std::fs;
 

@@ -1,4 +1,4 @@
-//! `--events`: what happens, as it happens, one JSON object a line.
+//! `--events`: reports events as they happen, one JSON object per line.
 
 use std::fs::File;
 use std::io::{self, Write};
@@ -38,7 +38,7 @@ impl Events {
         })
     }
 
-    /// Writes one event. The drawing matters more: what goes wrong here is told at the end.
+    /// Writes one event. The drawing matters more, so a failure to write is reported only at the end.
     pub(super) fn tell(&mut self, event: &Event) {
         let Some(to) = &mut self.to else {
             return;
@@ -66,7 +66,7 @@ fn unwritable(name: &str, error: &io::Error) -> anyhow::Error {
     anyhow!("{name}: events cannot be written ({error}): choose another place")
 }
 
-/// Watches one fit, and tells of each part that has ended.
+/// Observes one fit and reports each phase that has ended.
 pub(super) struct Phases<'a> {
     events: &'a mut Events,
     started: Instant,

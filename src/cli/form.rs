@@ -1,4 +1,4 @@
-//! Options on the form of the file, shared by the commands that write one.
+//! Options for the form of the file, shared by the commands that write one.
 
 use clap::ValueEnum;
 use strokefit::svg::{self, Length, WriteOptions};

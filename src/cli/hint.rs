@@ -1,4 +1,4 @@
-//! Advice on a line of its own, after the line that says what is wrong.
+//! Hints: advice on a line of its own, after the error message.
 
 use std::fmt;
 use std::fs;
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Error;
 
-/// Names less alike than this (Jaro–Winkler) are no suggestion.
+/// Least likeness (Jaro–Winkler) of a name that is suggested.
 const ALIKE: f64 = 0.85;
 
 /// Most names of a folder that are looked at.

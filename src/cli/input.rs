@@ -1,4 +1,4 @@
-//! Files to read, `-` being standard input.
+//! Reads input files; `-` is standard input.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -16,7 +16,7 @@ pub(super) fn is_stdin(path: &Path) -> bool {
     path == Path::new(STDIN)
 }
 
-/// What messages call the file.
+/// The name of the file in messages.
 pub(super) fn name(path: &Path) -> String {
     if is_stdin(path) {
         "standard input".into()

@@ -1,7 +1,7 @@
 //! Ctrl-C, SIGTERM and SIGHUP: the first asks a fit to end early, the second ends the program.
 //!
-//! While nothing is watched a signal ends the program, as it ends any other: before the fit there is
-//! nothing to keep. The one door of `signal-hook`.
+//! Outside of a fit a signal ends the program as it ends any other, since there is nothing to keep. The one door
+//! of `signal-hook`.
 
 use std::fs;
 use std::io;
@@ -18,7 +18,7 @@ const SIGNALS: [i32; 3] = [consts::SIGHUP, consts::SIGINT, consts::SIGTERM];
 #[cfg(not(unix))]
 const SIGNALS: [i32; 2] = [consts::SIGINT, consts::SIGTERM];
 
-/// Signals are of the process, and so is what notes them.
+/// Signals reach the whole process, so what records them is static.
 static WATCH: OnceLock<Interrupt> = OnceLock::new();
 
 /// Stops a fit when a signal has come; what was drawn until then is finished.
@@ -53,7 +53,7 @@ impl Interrupt {
     fn register() -> io::Result<Self> {
         let (is_last, caught) = (Arc::new(AtomicBool::new(false)), Arc::default());
         for signal in SIGNALS.into_iter().filter(|&signal| !is_ignored(signal)) {
-            // In this order: the flag that ends the program is still down when it first comes up.
+            // The order matters: the first signal must find the flag that ends the program still unset.
             flag::register_conditional_default(signal, Arc::clone(&is_last))?;
             flag::register(signal, Arc::clone(&is_last))?;
             flag::register_usize(signal, Arc::clone(&caught), signal.unsigned_abs() as usize)?;
@@ -93,8 +93,7 @@ impl Signal {
     }
 }
 
-/// Whether whoever started the program wants it to live through `signal`, as `nohup` does; known only
-/// on Linux.
+/// Whether `signal` was set to be ignored when the program started, as `nohup` does; known only on Linux.
 fn is_ignored(signal: i32) -> bool {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     ignored_signals(&status) >> (signal - 1) & 1 == 1

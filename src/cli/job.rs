@@ -32,7 +32,7 @@ pub(super) struct Job<'a> {
     pub(super) options: &'a Options,
 }
 
-/// What draws a picture, in time that began at the instant, telling the observer how it goes.
+/// Draws a picture; the time budget started at the given instant, and the observer is told of progress.
 pub(super) type Draw<'a> = dyn Fn(&Image, Instant, &mut (dyn Observer + Send)) -> Result<Fit> + 'a;
 
 impl Job<'_> {

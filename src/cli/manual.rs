@@ -1,4 +1,4 @@
-//! `strokefit completions` and `strokefit man`: what shells and `man` know of the command line.
+//! `strokefit completions` and `strokefit man`: completion scripts for shells, and manual pages.
 
 use std::fs;
 use std::path::PathBuf;

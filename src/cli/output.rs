@@ -1,4 +1,4 @@
-//! Files to write, `-` being standard output. A file appears whole under its name or not at all.
+//! Writes output files; `-` is standard output. A file appears complete under its name or not at all.
 
 use std::fs::{self, OpenOptions};
 use std::io::{self, Write};
@@ -19,7 +19,7 @@ pub(super) enum Output {
     Device(PathBuf),
 }
 
-/// What messages call the file.
+/// The name of the file in messages.
 pub(super) fn name(path: &Path) -> String {
     if path == Path::new(STDOUT) {
         "standard output".into()
@@ -57,7 +57,7 @@ impl Output {
     fn rehearse(&self) -> io::Result<()> {
         match self {
             Self::Stdout => Ok(()),
-            // Without a name, where the system can do that: nobody ever sees it.
+            // An unnamed file, where the system has those: nobody ever sees it.
             Self::File(path) => tempfile::tempfile_in(target_folder(path)?).map(drop),
             Self::Device(path) => OpenOptions::new().write(true).open(path).map(drop),
         }
@@ -126,7 +126,7 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if let Ok(existing) = fs::metadata(path) {
         file.as_file().set_permissions(existing.permissions())?;
     }
-    // Or a loss of power could leave the name with none of the bytes.
+    // Without this, a loss of power could leave the name on an empty file.
     file.as_file().sync_all()?;
     file.persist(path)?;
     Ok(())
@@ -139,7 +139,7 @@ fn temporary(path: &Path) -> io::Result<tempfile::NamedTempFile> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // As any new file: the umask takes its share.
+        // The mode of any new file, less the umask.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     builder.tempfile_in(target_folder(path)?)

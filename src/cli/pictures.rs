@@ -1,4 +1,4 @@
-//! Pictures and animations of a drawing, each in the format that its name tells.
+//! Pictures and animations of a drawing; the file name selects the format.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! A bar with an estimate of the time left, on a terminal only.
+//! A progress bar with an estimate of the time left, on a terminal only.
 
 use std::io::{self, IsTerminal};
 use std::time::Instant;
@@ -57,7 +57,7 @@ fn bar(quiet: bool) -> ProgressBar {
         return ProgressBar::hidden();
     }
     let bar = ProgressBar::with_draw_target(Some(STEPS), ProgressDrawTarget::stderr());
-    // What matters least is last: a narrow terminal cuts it off.
+    // The least important comes last, because a narrow terminal cuts it off.
     let template = "{prefix}{bar:16} {percent:>3} %, {eta} to go: {wide_msg}";
     if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style.progress_chars("━━╌"));

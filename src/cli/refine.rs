@@ -1,4 +1,4 @@
-//! `strokefit refine`: an SVG and a picture in, the SVG with more strokes out.
+//! `strokefit refine`: adds strokes to an SVG, to make it more like a picture.
 
 use std::path::PathBuf;
 

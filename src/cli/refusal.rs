@@ -1,4 +1,4 @@
-//! What clap says is wrong with arguments, in one line, and what to do about it.
+//! Turns clap's errors into one line that says what is wrong, and advice.
 
 use std::path::Path;
 
@@ -23,7 +23,7 @@ pub(super) fn parts(error: &clap::Error) -> (String, Option<String>) {
     (wrong, advice)
 }
 
-/// Where a picture stands in the place of the subcommand: the command that was meant.
+/// The command that was meant, where a picture stands in place of the subcommand.
 fn forgotten(error: &clap::Error) -> Option<String> {
     match error.get(ContextKind::InvalidSubcommand)? {
         ContextValue::String(word) if Path::new(word).is_file() => {
@@ -34,8 +34,8 @@ fn forgotten(error: &clap::Error) -> Option<String> {
     }
 }
 
-/// The help of the command whose usage is among the paragraphs; a value that is wrong has none, and says
-/// itself what would be right.
+/// Points to the help of the command whose usage is among the paragraphs. The message about a wrong value has
+/// no usage, and says itself what would be right.
 fn further(paragraphs: &[String]) -> Option<String> {
     let usage = paragraphs.iter().find_map(|p| p.strip_prefix("Usage: "))?;
     let words = usage

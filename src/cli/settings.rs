@@ -1,8 +1,8 @@
-//! A file that says what the flags would: `--config FILE`, and `--print-config`, which writes one.
+//! Configuration files: `--config FILE` reads one, `--print-config` writes one.
 //!
-//! A key is the long name of a flag, its value what would follow the flag. The file becomes flags put
-//! before those of the command line, so that every rule for flags holds for it, and later flags win.
-//! The one door of `toml`.
+//! A key is the long name of a flag, and its value is the flag's value. The file's entries are inserted as flags
+//! before those of the command line: all rules for flags apply to them, and flags on the command line win. The
+//! one door of `toml`.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;

@@ -1,4 +1,4 @@
-//! Parsing of the arguments: help that begins with examples, refusals of one line and a hint.
+//! Parses the arguments. Help begins with examples; a refusal is one line and a hint.
 
 use std::env;
 use std::ffi::OsString;

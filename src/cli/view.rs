@@ -1,4 +1,4 @@
-//! `strokefit view`: a drawing in a browser; and `--view`, a fit in one.
+//! `strokefit view` shows a drawing in a browser; `--view` shows a fit.
 
 use std::path::PathBuf;
 use std::time::Instant;

@@ -18,7 +18,7 @@ pub(super) const ENGINE: Engine = Engine {
         ])
     },
     failure: None,
-    // What pip installed for one user lies under the home.
+    // `pip install --user` installs into the home.
     keeps_home: true,
     has_margin: false,
 };

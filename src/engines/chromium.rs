@@ -22,11 +22,11 @@ pub(super) const ENGINE: Engine = Engine {
     has_margin: true,
 };
 
-/// What the page says on the browser's log when the drawing cannot be shown.
+/// The line that the page writes to the browser's log when the drawing cannot be shown.
 const UNREADABLE: &str = "strokefit: the drawing cannot be shown";
 
-/// Width and height, px, that a window has beyond the page. Windows may not be narrower than
-/// 500 px, and some versions count the frame of a window that nobody sees.
+/// How much larger than the picture the window is made, px. Windows cannot be narrower than 500 px, and some
+/// versions count the invisible window's frame as part of its size.
 const MARGIN: usize = 500;
 
 /// The drawing is shown as `<img>`: it is scaled to the picture, and scripts and references in it
@@ -46,7 +46,7 @@ fn arguments(job: &Job<'_>) -> io::Result<Vec<OsString>> {
         format!("--window-size={},{}", width + MARGIN, height + MARGIN).into(),
     ];
     arguments.extend(FLAGS.map(OsString::from));
-    // As root it does not start with its sandbox.
+    // Chromium refuses to start as root with its sandbox.
     if process::is_root() {
         arguments.push("--no-sandbox".into());
     }

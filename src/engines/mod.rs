@@ -1,10 +1,10 @@
 //! Other programs that draw SVG: what Inkscape, librsvg, Chromium and CairoSVG make of a file.
 //!
-//! resvg is the judge ([`verify`](crate::verify)); these tell whether other people see what it
-//! sees. Each is a program of its own, run without a window, in a folder of its own that is its
-//! home, its profile and its place for temporary files, and that is gone afterwards. A program that
-//! takes too long is ended with all that it started. None is given a file that refers to anything
-//! outside itself, so none has a reason to open a connection; see [`Engine::draw`].
+//! resvg is the judge ([`verify`](crate::verify)); the engines tell whether people who use another program see
+//! the same. Each engine runs as a child process without a window. A temporary folder serves as its home,
+//! profile and place for temporary files. A program that takes too long is ended, with all processes that it
+//! started. An SVG that refers to anything outside itself is refused, so no engine has a reason to open a
+//! connection; see [`Engine::draw`].
 //!
 //! ```no_run
 //! use std::time::Duration;
@@ -63,23 +63,23 @@ const PNG: &str = "drawing.png";
 /// A program that draws SVG.
 #[derive(Debug)]
 pub struct Engine {
-    /// What options and reports call it.
+    /// Its name in options and reports.
     pub name: &'static str,
     /// How to get it, in one line.
     pub install: &'static str,
     /// Names of the program, the best first.
     programs: &'static [&'static str],
-    /// What makes it draw a page.
+    /// The arguments that make it draw a request.
     arguments: fn(&Job<'_>) -> io::Result<Vec<OsString>>,
-    /// Words of its messages that mean that nothing was drawn, whatever the exit status.
+    /// Text in its messages that means that nothing was drawn, whatever the exit status.
     failure: Option<&'static str>,
-    /// Whether its program lives in the user's home, which it then must be told.
+    /// Whether the program may be installed in the user's home, so that `HOME` has to stay.
     keeps_home: bool,
-    /// Whether its picture has more to the right and below, to be cut off.
+    /// Whether its picture has a margin to the right and below, to be cut off.
     has_margin: bool,
 }
 
-/// What to draw.
+/// An SVG, and the size to draw it at.
 #[derive(Debug, Clone, Copy)]
 pub struct DrawRequest<'a> {
     /// The SVG text.
@@ -90,7 +90,7 @@ pub struct DrawRequest<'a> {
     pub height: usize,
 }
 
-/// What an engine made of a page.
+/// The picture that an engine drew.
 #[derive(Debug)]
 pub struct Rendering {
     /// The picture, opaque, on white.
@@ -101,7 +101,7 @@ pub struct Rendering {
     pub wall: Duration,
 }
 
-/// A page in the folder in which it is drawn.
+/// A request, and the folder in which it is carried out.
 struct Job<'a> {
     folder: &'a Path,
     request: DrawRequest<'a>,
@@ -123,12 +123,12 @@ impl Engine {
         self.programs.iter().find_map(|name| locate::program(name))
     }
 
-    /// Draws the page with `program`, on white; ends it after `timeout`.
+    /// Draws the SVG of `request` on white with `program`, which is ended after `timeout`.
     ///
     /// # Errors
-    /// [`ErrorKind::Svg`] when the page refers to anything outside itself; [`ErrorKind::Engine`]
+    /// [`ErrorKind::Svg`] when the SVG refers to anything outside itself; [`ErrorKind::Engine`]
     /// when the program cannot be started, fails, takes too long, or leaves no picture of the
-    /// page's size.
+    /// size that was asked for.
     pub fn draw(
         &self,
         program: &Path,
@@ -210,7 +210,7 @@ impl Engine {
         })
     }
 
-    /// Why there is no picture: what the program said last says more than that there is none.
+    /// Adds the program's last message to the error, since it says why there is no picture.
     fn explain(&self, error: Error, outcome: &Outcome) -> Error {
         let mut lines = outcome.messages.lines().rev().map(str::trim);
         let last = lines.find(|line| !line.is_empty());
@@ -223,7 +223,7 @@ impl Engine {
     }
 }
 
-/// Programs are not asked to open files and addresses that a drawing names.
+/// Refuses an SVG that names files or addresses, which a program would open.
 fn refuse_external(svg: &str) -> Result<()> {
     let findings = svg::lint(svg);
     let Some(Finding { lines, found, .. }) = findings.iter().find(|f| f.is_external()) else {

@@ -1,4 +1,4 @@
-//! A program as a child: apart from the user's files, and ended when it hangs.
+//! Runs a program as a child process, isolated from the user's files, and ends it when it hangs.
 
 use std::fs::{self, File};
 use std::io;
@@ -26,8 +26,8 @@ pub(super) struct Outcome {
     pub(super) messages: String,
 }
 
-/// Makes `folder` the program's home and place for settings, caches and temporary files, and hides
-/// displays and buses. `keeps_home` leaves the home itself as it is.
+/// Makes `folder` the program's home and its place for settings, caches and temporary files, and hides displays
+/// and message buses. With `keeps_home`, `HOME` itself stays.
 pub(super) fn isolate(command: &mut Command, folder: &Path, keeps_home: bool) {
     if !keeps_home {
         command.env("HOME", folder);
@@ -52,7 +52,7 @@ pub(super) fn isolate(command: &mut Command, folder: &Path, keeps_home: bool) {
     command.current_dir(folder);
 }
 
-/// Whether this process, and so its children, may do anything.
+/// Whether this process, and so its children, run as root.
 pub(super) fn is_root() -> bool {
     #[cfg(unix)]
     return rustix::process::geteuid().is_root();
@@ -60,8 +60,8 @@ pub(super) fn is_root() -> bool {
     return false;
 }
 
-/// Runs a program to its end, or ends it after `timeout` with all that it started. What it says
-/// goes to files in `folder`: a pipe could fill up, or be held open by a process that stays.
+/// Runs a program to its end; after `timeout`, ends it and all that it started. Its output goes to files in
+/// `folder`, because a pipe could fill up or be held open by a process that stays.
 pub(super) fn run(mut command: Command, folder: &Path, timeout: Duration) -> Result<Outcome> {
     let unusable = |e: io::Error| fault(format!("cannot be run ({e}): check the program"));
     let file = |name| File::create(folder.join(name));
@@ -86,7 +86,7 @@ pub(super) fn run(mut command: Command, folder: &Path, timeout: Duration) -> Res
     })
 }
 
-/// A child and its descendants, which end with this value.
+/// A child and its descendants. All of them are ended when this value is dropped.
 struct ProcessGroup(Child);
 
 impl ProcessGroup {
@@ -107,7 +107,7 @@ impl ProcessGroup {
 
 impl Drop for ProcessGroup {
     fn drop(&mut self) {
-        // Whoever has ended already is no reason to complain.
+        // This fails when all have ended already, which is as well.
         #[cfg(unix)]
         let _ = rustix::process::kill_process_group(
             rustix::process::Pid::from_child(&self.0),

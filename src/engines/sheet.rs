@@ -1,4 +1,4 @@
-//! Pictures side by side, with what differs made visible.
+//! Pictures side by side, with their differences made visible.
 
 use crate::error::Result;
 use crate::image::Image;

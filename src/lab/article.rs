@@ -50,7 +50,7 @@ const EARLY: f64 = 0.7;
 
 const FRAME_MS: u32 = 80;
 
-/// What to run.
+/// Number of strokes, steps and random start of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ArticleRun {
     /// How many capsules, unless some are given.
@@ -78,7 +78,7 @@ impl Default for ArticleRun {
     }
 }
 
-/// A drawing on its way.
+/// The article's descent, one step at a time.
 pub struct Reproduction {
     pool: ThreadPool,
     target: Canvas,

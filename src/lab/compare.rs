@@ -1,9 +1,9 @@
-//! Coverage functions on real pictures, from worst to best, and what is left of them in the file.
+//! Compares coverage functions on real pictures, in the soft render and in the file.
 //!
 //! The article's recipe ([`article`]) with each coverage function and with mixes, and
 //! the staged pipeline with as many strokes, without and with polish, and in as much time as the
-//! article's recipe took with smoothstep. Beside the fidelity of the soft render, which is what the article
-//! judges, stands that of the SVG as resvg draws it, which is what one gets.
+//! article's recipe took with smoothstep. The table has the fidelity of the soft render, which the article
+//! reports, beside that of the SVG as resvg draws it, which the user gets.
 
 use std::time::{Duration, Instant};
 

@@ -100,7 +100,7 @@ impl fmt::Display for Method {
     }
 }
 
-/// The course of a descent.
+/// What a descent passed through.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory<T> {
     /// The loss before each step and, last, after all of them.

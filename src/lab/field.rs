@@ -3,7 +3,7 @@
 //! The mean squared error of a circle of radius 8 against a target at 1.5 × the centre, (48, 48),
 //! for every position of the circle's centre, and its gradient by that position: as arrows, whose
 //! length is the cube root of the slope so that small ones show, and as stream lines over the loss.
-//! Where no arrow is drawn there is no slope, and no descent leads out.
+//! Where no arrow is drawn the slope is 0, and descent cannot leave.
 
 use rayon::prelude::*;
 

@@ -1,4 +1,4 @@
-//! Matching a picture in black and white: the coverage of a union of shapes against a target.
+//! A problem for descent: match the coverage of a union of shapes to a black-and-white target.
 
 use std::marker::PhantomData;
 
@@ -8,7 +8,7 @@ use crate::loss::Loss;
 use crate::math::{Point2, Real};
 use crate::sdf::{Capsule, Circle, Combination};
 
-/// A shape that is a few numbers, the last of them its radius.
+/// A shape given by a few numbers, the last of which is its radius.
 pub trait Parametric<T: Real>: Sized {
     /// How many numbers.
     const PARAMS: usize;

@@ -1,6 +1,6 @@
 //! The experiments of the article that this project starts from, and what they show beyond it.
 //!
-//! Each experiment is a file with a `run` that writes tables, pictures and animations to an
+//! Each experiment is a file with a function `run`, which writes tables, pictures and animations to a
 //! [`ResultFolder`]; `strokefit lab` runs them by name. They use the same distances, coverage functions,
 //! optimisers and renderers as the fit.
 //!
@@ -15,10 +15,10 @@
 //! | [`article`] | how far do thousands of strokes get, all at once from a random start? |
 //! | [`compare`] | which coverage function is best, in the render and in the file? |
 //!
-//! Beneath them: [`descent`] (a problem, an optimiser, its course), [`matching`] (a union of shapes
+//! They share [`descent`] (a problem, an optimiser, its trajectory), [`matching`] (a union of shapes
 //! against a target) and [`table`].
 //!
-//! The small experiments follow the article in sampling pixels at integer coordinates.
+//! Like the article, the small experiments sample pixels at integer coordinates.
 
 pub mod article;
 pub mod circle;

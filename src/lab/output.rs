@@ -1,4 +1,4 @@
-//! Where an experiment's files go, and who is told of them.
+//! The folder that an experiment writes to, and a callback for its progress.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::error::{Error, Result};
 use crate::image::{Animation, AnimationFormat, Image};
 
-/// What an experiment is at.
+/// Progress of an experiment.
 #[derive(Debug, Clone, Copy)]
 pub enum Notice<'a> {
     /// Something is under way.
@@ -20,7 +20,7 @@ pub enum Notice<'a> {
     Wrote(&'a Path),
 }
 
-/// A folder for results, and somebody to tell of them.
+/// A folder for results, and a callback that is told of each file.
 pub struct ResultFolder<'a> {
     dir: PathBuf,
     tell: &'a mut dyn FnMut(Notice<'_>),

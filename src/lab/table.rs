@@ -1,4 +1,4 @@
-//! Tables of descents: what they were of, and their losses.
+//! Tables of the losses of descents.
 
 use rayon::prelude::*;
 
@@ -12,7 +12,7 @@ pub const SHOWN: [usize; 6] = [0, 1, 10, 50, 100, 199];
 /// How many steps the small experiments make.
 pub const STEPS: usize = 200;
 
-/// What a descent was of: `[experiment, variant, coverage, optimizer, start]`.
+/// Labels of a descent: `[experiment, variant, coverage, optimizer, start]`.
 pub type Labels = [String; 5];
 
 /// A table of descents: the losses at [`SHOWN`], after all steps, the least, and where it ended.

@@ -5,8 +5,8 @@
 //! is made of than runs of a row do: for a capsule of radius 2 and length 10, 160 lanes are walked
 //! for 70 pixels covered, against about 220 in runs of 16.
 //!
-//! Tiles at the right and bottom edge are padded. Nothing is seen through the padding (its transmittance
-//! is 0 from the start), so that it stays 0, and is never read back.
+//! Tiles at the right and bottom edge are padded. The padding starts with a transmittance of 0, so that
+//! nothing shows there: it stays 0 and is never read back.
 
 use crate::image::Image;
 

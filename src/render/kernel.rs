@@ -3,7 +3,9 @@
 //! Pass 1 goes front to back: it accumulates the colour seen, `C ← C + T·m·c`, and the
 //! transmittance `T ← T·(1 − m)`, and keeps `T`, `m`, `o·σ'` and `1/|q|` of every block it visits.
 //! A block that stays opaque even when any one stroke is taken away leaves the set of live blocks, and
-//! nothing behind it is evaluated: neither a gradient nor a stroke's worth depends on it. Pass 2 goes back to front over the same blocks with the colour behind, `B`:
+//! nothing behind it is evaluated: neither a gradient nor a stroke's worth depends on it.
+//!
+//! Pass 2 goes back to front over the same blocks with the colour behind, `B`:
 //!
 //! ```text
 //! ∂L/∂m = T·g·(c − B)      ∂L/∂c = Σ T·m·g      ∂L/∂d = ∂L/∂m · o · σ'(d)
@@ -93,12 +95,12 @@ struct Visit {
 struct Veil {
     /// Transmittance.
     through: Lanes,
-    /// Transmittance were the most opaque stroke not there.
+    /// Largest transmittance that leaving out any one stroke gives.
     less_one: Lanes,
 }
 
 impl Veil {
-    /// Nothing in the way where `weights` is 1; nothing to be seen where it is 0.
+    /// Fully transparent where `weights` is 1, on the picture; opaque where it is 0, on the padding.
     fn clear(weights: &Lanes) -> Self {
         Self {
             through: *weights,
@@ -150,7 +152,7 @@ pub(super) struct TileJob<'a> {
     pub(super) origin: [f32; 2],
     /// What is behind all strokes.
     pub(super) backdrop: &'a TileRgb,
-    /// 1 on the picture, 0 on the padding: what is seen through the padding is nothing.
+    /// 1 on the picture, 0 on the padding, through which nothing is seen.
     pub(super) weights: &'a TileWeights,
     pub(super) edge: Edge,
     pub(super) reach: Reach,
@@ -284,6 +286,7 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
     kept_transmittance.clear();
     kept_edges.clear();
     let mut live = BlockSet::MAX;
+    // `ids` is back to front, so the walk starts at its end.
     for (slot, &id) in job.ids.iter().enumerate().rev() {
         let p = &job.strokes[id as usize];
         let capsule = Capsule::new(simd, p, job.origin);
@@ -318,6 +321,7 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
                 live &= !(1 << block);
             }
         }
+        // σ is 1 and σ' is 0 here: no distance to evaluate, and nothing but `T` to keep for pass 2.
         for block in members(visit.core) {
             kept_transmittance.push(veils[block].through);
             if see_through(simd, opacity, &rgb, &mut color[block], &mut veils[block]) {
@@ -328,6 +332,7 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
             break;
         }
     }
+    // The backdrop is the last thing seen, through whatever all strokes let through.
     for ((color, veil), backdrop) in color.iter_mut().zip(veils.iter()).zip(job.backdrop) {
         let t = load(simd, &veil.through);
         for (color, backdrop) in color.iter_mut().zip(backdrop) {
@@ -336,7 +341,7 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
     }
 }
 
-/// Adds one stroke, seen through what is before it, and says whether nothing behind it matters.
+/// Adds one stroke, seen through those in front of it. Returns whether nothing behind it can matter any more.
 #[inline(always)]
 fn see_through<S: Simd>(
     simd: S,
@@ -351,7 +356,8 @@ fn see_through<S: Simd>(
         store(load(simd, color) + weight * c, color);
     }
     let less_one = load(simd, &veil.less_one);
-    // Without the new stroke there is `t`; without the one left out so far, the new one dims the rest.
+    // The largest transmittance with any one stroke left out: `t` if it is the new one; otherwise that of before,
+    // dimmed by the new one. While this shows anything, worth still depends on what lies behind.
     let less_one = (less_one - less_one * alpha).max(t);
     store(t - weight, &mut veil.through);
     store(less_one, &mut veil.less_one);
@@ -430,6 +436,7 @@ fn back_to_front<S: Simd, const WITH_WORTH: bool>(
         kept_transmittance,
         kept_edges,
     } = scratch;
+    // Behind the rearmost stroke is the backdrop.
     behind.clone_from(job.backdrop);
     sums.fill([0.0; PARAMS + 1]);
     let mut backdrop = [f32x16::splat(simd, 0.0); 3];
@@ -438,6 +445,8 @@ fn back_to_front<S: Simd, const WITH_WORTH: bool>(
             *sum += load(simd, &veil.through) * load(simd, g);
         }
     }
+    // What pass 1 kept is read from its end: pass 2 visits the same strokes in reverse, and in each of them the
+    // same blocks in the same order.
     let (mut at, mut at_edge) = (kept_transmittance.len(), kept_edges.len());
     for visit in visits.iter().rev() {
         let p = &job.strokes[job.ids[visit.slot as usize] as usize];
@@ -463,6 +472,7 @@ fn back_to_front<S: Simd, const WITH_WORTH: bool>(
             );
             let (h, q) = capsule.nearest(capsule.offsets(simd, block));
             let d_distance = d_alpha * load(simd, &kept.slope);
+            // `∂L/∂d · u` is `pull · q`: pass 1 kept 1/|q|, which costs a root; `q` is computed again.
             let pull = d_distance * load(simd, &kept.inverse);
             stroke.radius += d_distance;
             for (axis, &q) in q.iter().enumerate() {
@@ -513,6 +523,7 @@ impl<S: Simd> Sums<S> {
             self.color[channel] += seen * g;
             store(back + alpha * contrast, &mut behind[channel]);
             if WITH_WORTH {
+                // This `delta` is −δ of the head, hence the minus before 2e.
                 let delta = seen * contrast;
                 let e = load(simd, &error[channel]);
                 change += delta * (delta - (e + e));

@@ -1,4 +1,4 @@
-//! What happens during a command, as it happens: records for one line of JSON each.
+//! Events of a running command: each is a record for one line of JSON.
 
 use serde::Serialize;
 

@@ -1,9 +1,9 @@
-//! What a command did, as plain records that serialise to JSON, and how they are shown: as tables, plots
-//! and pages.
+//! Reports of what commands did: plain records that serialise to JSON, and the tables, plots and pages made
+//! from them.
 //!
-//! Scripts rely on the field names; more may be added, none is renamed. Lengths of time are in
-//! seconds, errors as [`metrics`](crate::metrics) defines them. `psnr_db` is `null` where two
-//! pictures are equal, since JSON has no infinity; what could not be measured is `null` too.
+//! Scripts rely on the field names: fields may be added, none is renamed. Times are in seconds; errors are
+//! those of [`metrics`](crate::metrics). `psnr_db` is `null` where two pictures are equal, since JSON has no
+//! infinity. Fields that do not apply, or that could not be measured, are `null` as well.
 
 mod check;
 mod event;
@@ -58,9 +58,9 @@ pub struct FitReport {
     pub wall_s: f64,
     /// CPU time of the process, all threads, s.
     pub cpu_s: Option<f64>,
-    /// Most memory that the process held at once, bytes.
+    /// Peak memory of the process, bytes.
     pub peak_rss_bytes: Option<u64>,
-    /// What that was predicted to be.
+    /// The prediction of that, bytes.
     pub predicted_rss_bytes: u64,
     /// Why no more was done: `strokes`, `psnr`, `bytes`, `time`, `converged` or
     /// `interrupted`.

@@ -1,4 +1,4 @@
-//! Numbers as pictures.
+//! Pictures of arrays of numbers.
 
 use crate::error::Result;
 use crate::image::Image;

@@ -8,11 +8,11 @@ use super::{SCHEMA, Table};
 use crate::error::Result;
 use crate::math;
 
-/// CPU time and memory may grow with strokes or pixels by this exponent at most: linear, and noise.
+/// Largest exponent by which CPU time and memory may grow with strokes or pixels: linear growth, plus noise.
 const MAX_GROWTH: f64 = 1.15;
-/// CPU time may grow with threads by this exponent at most: what is shared costs no more, and noise.
+/// Largest exponent by which CPU time may grow with threads: none, plus noise.
 const MAX_OVERHEAD: f64 = 0.35;
-/// What the largest picture may take, bytes.
+/// Most memory that the largest picture may take, bytes.
 const MAX_BYTES: u64 = 4 << 30;
 
 /// All series of a run.

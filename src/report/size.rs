@@ -4,7 +4,7 @@ use std::io::Write;
 
 use flate2::{Compression, write::GzEncoder};
 
-/// Bytes of `text` as a web server sends it: compressed by gzip, as well as that can.
+/// Bytes of `text` after gzip at its highest level, as a web server may send it.
 pub fn gzip_bytes(text: &str) -> usize {
     let mut gzip = GzEncoder::new(Vec::new(), Compression::best());
     // Writing to memory cannot fail.

@@ -38,7 +38,7 @@ pub struct StabilityEntry {
 pub enum CaseVerdict {
     /// It does.
     Pass,
-    /// It does not, for a reason that is known and named, and that no drawing meets.
+    /// It does not, for a known reason that does not occur in ordinary drawings; the note names it.
     Exception,
     /// It does not.
     Fail,

@@ -1,4 +1,4 @@
-//! What the process has used so far, from `/proc` where there is one.
+//! CPU time and memory of the process, from `/proc` where the system has one.
 
 use std::fs;
 
@@ -6,7 +6,7 @@ use std::fs;
 /// every architecture in use.
 const TICKS_PER_S: f64 = 100.0;
 
-/// CPU time and memory of this process; `None` where the system does not tell.
+/// CPU time and memory of this process; `None` where the system does not report them.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Usage {
     /// CPU time, user and system, all threads, s; to a hundredth.

@@ -79,15 +79,15 @@ pub(super) fn parse(d: &str, unit: Unit) -> Option<Parsed> {
         strokes: Vec::new(),
         has_corner: false,
     };
-    let mut pen = Reached::Nowhere;
+    let mut reached = Reached::Nowhere;
     let mut rest = d;
     while let Some(letter) = rest.chars().next() {
         let tail = &rest[letter.len_utf8()..];
         let end = tail.find(|c: char| c.is_alphabetic()).unwrap_or(tail.len());
-        pen = pen.step(letter, Numbers(&tail[..end], unit), &mut parsed)?;
+        reached = reached.step(letter, Numbers(&tail[..end], unit), &mut parsed)?;
         rest = &tail[end..];
     }
-    matches!(pen, Reached::Drawn(_) | Reached::Dotted).then_some(parsed)
+    matches!(reached, Reached::Drawn(_) | Reached::Dotted).then_some(parsed)
 }
 
 /// Where the last step of a path led.

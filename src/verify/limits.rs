@@ -1,9 +1,8 @@
-//! What an SVG may cost to draw, known before it is drawn.
+//! Limits on what an SVG may cost to draw, checked before it is drawn.
 //!
 //! A few lines of SVG can ask for more memory and time than any machine has: pictures that unpack to
-//! terabytes, layers within layers, patterns of patterns of patterns. The cost of a tree is reckoned
-//! from the boxes of its parts, in pixels that are written, and the reckoning itself ends as soon as the
-//! limit is passed.
+//! terabytes, layers within layers, patterns of patterns. The cost of a tree is estimated from the bounding
+//! boxes of its parts, as a number of pixels written, and the estimate stops as soon as it exceeds the limit.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -32,7 +31,7 @@ const LEAST: f64 = 256.0;
 pub(super) struct Embedded(Arc<Mutex<(u64, Option<String>)>>);
 
 impl Embedded {
-    /// Lets pictures in `data:` addresses through as long as their pixels fit. Nothing else is read.
+    /// Accepts pictures in `data:` addresses while their pixels fit the limit. Nothing else is read.
     pub(super) fn resolver(&self) -> ImageHrefResolver<'static> {
         let embedded = self.clone();
         ImageHrefResolver {
@@ -200,7 +199,7 @@ impl Reckoning {
 
     fn write(&mut self, pixels: f64) -> Reckoned {
         self.written += pixels + LEAST;
-        // Also where the numbers are beyond all bounds.
+        // Compared this way round so that NaN is refused, too.
         if self.written <= MAX_WRITTEN {
             Ok(())
         } else {
@@ -212,7 +211,7 @@ impl Reckoning {
     fn seen(&self, bounds: Rect) -> Result<f64, &'static str> {
         let ends = [bounds.left(), bounds.top(), bounds.right(), bounds.bottom()];
         let scale = self.area.sqrt();
-        // Also where they are no numbers.
+        // Negated as a whole so that NaN is refused, too.
         if !ends
             .iter()
             .all(|&end| f64::from(end).abs() * scale <= MAX_SIDE)

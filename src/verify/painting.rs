@@ -1,4 +1,4 @@
-//! A picture that grows: SVG after SVG drawn over one another.
+//! A picture that grows: one SVG after another is drawn over it.
 
 use resvg::tiny_skia::Pixmap;
 

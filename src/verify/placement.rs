@@ -1,5 +1,5 @@
-//! Where strokes land that are put at the end of an SVG, and whether they stay themselves there: asked of the
-//! renderer, so that units, `viewBox`, style sheets and inheritance are resolved by the one that draws.
+//! Where strokes appended to an SVG are drawn, and whether they are drawn unchanged. resvg is asked, so that
+//! units, `viewBox`, style sheets and inheritance are resolved by the renderer itself.
 
 use resvg::usvg::{BlendMode, Color, Group, LineCap, Node, Opacity, Paint, Path, Stroke};
 

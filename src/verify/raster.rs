@@ -1,4 +1,4 @@
-//! How large a render is, and its pixels.
+//! The raster of a render: its size, its pixels, and how the SVG is scaled onto it.
 
 use resvg::tiny_skia::{Color, Pixmap, PremultipliedColorU8, Transform};
 use resvg::usvg::Tree;

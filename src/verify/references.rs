@@ -1,7 +1,7 @@
-//! How far an SVG unfolds when everything that refers to another part is replaced by that part.
+//! The size of an SVG once every reference is replaced by what it refers to.
 //!
-//! Ten patterns that draw the one before ten times are a dozen lines, and ten thousand million parts.
-//! resvg follows some of these references without counting, so they are counted before.
+//! Ten patterns that each draw the one before ten times are a dozen lines, and ten thousand million parts.
+//! resvg follows some of these references without counting, so they are counted beforehand.
 
 use std::collections::HashMap;
 
@@ -59,7 +59,7 @@ impl<'a, 'input: 'a> Unfolding<'a, 'input> {
             ));
         }
         if let Some(known) = self.parts.get(&node.id()) {
-            // What refers to itself is not followed by resvg.
+            // resvg does not follow an element that refers to itself.
             return Ok(known.unwrap_or(0.0));
         }
         self.parts.insert(node.id(), None);

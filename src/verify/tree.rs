@@ -1,4 +1,4 @@
-//! SVG text as the tree that resvg draws, or why there is none.
+//! Parses SVG text into the tree that resvg draws.
 
 use resvg::usvg::roxmltree::{self, Document, ParsingOptions};
 use resvg::usvg::{Options, Tree};
@@ -46,7 +46,7 @@ fn too_much(error: resvg::usvg::Error) -> Error {
     Error::new(ErrorKind::Svg, message).caused_by(error)
 }
 
-/// resvg passes over elements of other namespaces and calls the empty page a success.
+/// resvg ignores elements of other namespaces, and would call the empty page a success.
 fn check_namespace(document: &Document<'_>) -> Result<()> {
     let root = document.root_element().tag_name();
     if root.name() == "svg" && root.namespace() == Some(SVG_NAMESPACE) {

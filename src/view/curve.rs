@@ -1,4 +1,4 @@
-//! How the error fell: a bounded record of a fit of any length.
+//! The error over time, in a bounded number of points however long the fit.
 
 use serde::Serialize;
 
@@ -15,7 +15,7 @@ pub(super) struct Point {
     pub(super) psnr_db: f64,
 }
 
-/// Points at equal distances, the more apart the more there were.
+/// Evenly spaced points; the spacing doubles when there are too many.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Curve {
     points: Vec<Point>,

@@ -1,5 +1,5 @@
-//! As much of HTTP/1.1 as a page on this machine needs: one request a connection, without a body. The
-//! one door of `httparse`.
+//! The part of HTTP/1.1 that the page needs: one request per connection, without a body. The one door of
+//! `httparse`.
 
 use std::borrow::Cow;
 use std::io::{self, Read, Write};
@@ -21,12 +21,12 @@ pub(super) struct Request {
     /// What follows `?`.
     pub(super) query: String,
     pub(super) host: Option<String>,
-    /// The page that asks, where it says so.
+    /// The origin of the page that asks, if the browser names it.
     pub(super) origin: Option<String>,
 }
 
 impl Request {
-    /// Reads a head; `None` when it is none.
+    /// Reads a head; `None` when it is malformed.
     pub(super) fn read(from: &mut impl Read) -> io::Result<Option<Self>> {
         let mut from = from.take(MAX_HEAD);
         let (mut head, mut part) = (Vec::new(), [0; 2048]);
@@ -75,7 +75,7 @@ impl Request {
     }
 }
 
-/// What is answered.
+/// An answer to a request.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Response {
     status: &'static str,

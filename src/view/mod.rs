@@ -1,13 +1,12 @@
-//! A page to watch a drawing with: target, drawing and residual side by side, while it is fitted and
-//! after.
+//! A live page that shows target, drawing and residual side by side, during a fit and after it.
 //!
-//! [`Viewer::open`] serves the page from this process, on the loopback interface alone, at a random
-//! port, beneath a random token that only its [address](Viewer::address) tells. The page loads nothing
-//! from elsewhere. Requests whose `Host` is another than that address are refused, so that no foreign
-//! page can reach it by a name that resolves to this machine.
+//! [`Viewer::open`] serves the page from this process, on the loopback interface only, at a random port. Its
+//! path begins with a random token that only the [address](Viewer::address) contains. The page loads nothing
+//! from elsewhere. Requests for another `Host` are refused, so that no foreign page can reach the server
+//! through a name that resolves to this machine.
 //!
-//! A fit tells the page through the observer that [`Viewer::watch`] wraps. The drawing is looked at only
-//! while a page asks for it, and four times a second at most.
+//! [`Viewer::watch`] wraps a fit's observer and passes what it sees to the page. It copies the drawing only
+//! while a page asks for it, and at most four times a second.
 //!
 //! ```
 //! use strokefit::fit::{Budget, Config, Fitter};
@@ -44,11 +43,11 @@ use shared::Shared;
 
 pub use watch::Watched;
 
-/// How long [`Viewer::wait`] stays without a sign of a page. Browsers let pages in the background ask
-/// once a minute at least.
+/// How long [`Viewer::wait`] waits without a request from the page. Browsers let a page in the background ask
+/// at least once a minute.
 pub const PATIENCE: Duration = Duration::from_secs(120);
 
-/// Longest side of the target as the page gets it, px.
+/// Longest side of the target that is sent to the page, px.
 const MAX_SIDE: usize = 2048;
 
 /// A page that is being served. It is gone when this is dropped.

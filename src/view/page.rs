@@ -1,4 +1,4 @@
-//! The page: its files, and the records that its script reads.
+//! The files of the page, and the JSON that its script reads.
 
 use serde::Serialize;
 

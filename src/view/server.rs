@@ -1,4 +1,4 @@
-//! Connections, and who may ask for what.
+//! The server: accepts connections, checks where requests come from, and answers them.
 
 use std::io;
 use std::net::{Ipv4Addr, Shutdown, SocketAddr, TcpListener, TcpStream};
@@ -11,11 +11,11 @@ use super::http::{Request, Response};
 use super::page;
 use super::shared::{Shared, Wish};
 
-/// Connections at once; a browser opens six.
+/// Most connections at once; a browser opens six.
 const MAX_CONNECTIONS: usize = 32;
 /// Most strokes that a page may ask for at once.
 const MAX_MORE: usize = 100_000;
-/// How long a connection may say or take nothing.
+/// How long a connection may be idle.
 const TIMEOUT: Duration = Duration::from_secs(5);
 
 /// A server on a thread of its own, gone when this is dropped.
@@ -55,7 +55,7 @@ impl Server {
 impl Drop for Server {
     fn drop(&mut self) {
         self.closing.store(true, Ordering::Release);
-        // The listener looks up when somebody connects.
+        // A connection wakes the listener, which then sees that it is to end.
         drop(TcpStream::connect(self.socket));
     }
 }
@@ -79,7 +79,7 @@ fn listen(listener: &TcpListener, desk: &Arc<Desk>, closing: &AtomicBool) {
         }
         let own = Arc::clone(desk);
         let answer = move || {
-            // A page that left does not miss the answer.
+            // The page may have gone; then nobody misses the answer.
             let _ = own.serve(stream);
             own.connections.fetch_sub(1, Ordering::Relaxed);
         };

@@ -1,4 +1,4 @@
-//! What fit and server share: the drawing so far on the one side, wishes on the other.
+//! What the fit and the server share: the fit puts in the drawing so far, the page its requests.
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -8,19 +8,19 @@ use crate::fit::Progress;
 use crate::scene::Scene;
 use crate::svg::{self, WriteOptions};
 
-/// A page that has not asked for so long is not looking.
+/// A page that has not asked for this long is taken to be closed or hidden.
 const LOOKING: Duration = Duration::from_secs(3);
-/// Least time between two looks at the drawing.
+/// Least time between two copies of the drawing.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(250);
 
-/// What the page wants.
+/// What the page asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Wish {
-    /// The fit to end now.
+    /// End the fit now.
     Stop,
-    /// So many strokes on top, when the fit is over.
+    /// Add this many strokes when the fit is over.
     More(usize),
-    /// Nothing more.
+    /// Nothing more: the program may end.
     Leave,
 }
 
@@ -51,7 +51,7 @@ pub(super) struct Picture {
     pub(super) target: Option<Vec<u8>>,
 }
 
-/// Everything at one moment.
+/// All that the page shows, at one moment.
 #[derive(Clone, Default)]
 pub(super) struct State {
     pub(super) picture: Arc<Picture>,
@@ -125,13 +125,14 @@ impl Shared {
         self.lock().state.grows = offered;
     }
 
-    /// What is inside; a thread that panicked with it in hand left whole values behind.
+    /// Locks the state. A thread that panicked while it held the lock left only whole values behind, so a
+    /// poisoned lock is used as it is.
     fn lock(&self) -> MutexGuard<'_, Inside> {
         self.inside.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Notes how the fit goes, and looks at its drawing if a page wants to see it now. Says whether the
-    /// fit is to go on.
+    /// Takes note of a fit's progress, and copies its drawing if a page wants to see it now. Returns whether
+    /// the fit is to go on.
     pub(super) fn note(&self, progress: &Progress<'_>) -> bool {
         let now = Instant::now();
         let mut inside = self.lock();
@@ -162,7 +163,7 @@ impl Shared {
         inside.state.file = Some(file.into());
     }
 
-    /// What a page is told that asks.
+    /// What a page that asks is told.
     pub(super) fn asked(&self) -> State {
         let mut inside = self.lock();
         inside.asked = Some(Instant::now());
@@ -191,8 +192,8 @@ impl Shared {
         self.changed.notify_all();
     }
 
-    /// Stays until the page wants more strokes, and says how many, or nothing more, or has not asked for
-    /// as long as `patience`.
+    /// Waits until the page asks for more strokes, and returns how many; or until it asks for nothing more or
+    /// has not been heard of for `patience`.
     pub(super) fn wait(&self, patience: Duration) -> Option<usize> {
         let start = Instant::now();
         let mut inside = self.lock();

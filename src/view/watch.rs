@@ -1,11 +1,11 @@
-//! An observer that tells a page what it is told.
+//! The observer that passes a fit's progress on to the page.
 
 use std::ops::ControlFlow;
 
 use super::shared::Shared;
 use crate::fit::{Observer, Progress};
 
-/// Tells a page and another observer how a fit goes; either may stop it.
+/// Reports a fit to the page and to another observer; either may stop it.
 pub struct Watched<'a> {
     shared: &'a Shared,
     inner: &'a mut (dyn Observer + Send),

@@ -20,7 +20,7 @@ use crate::verify::{self, MIN_AGREEMENT_DB};
 
 const WHITE: [f32; 3] = [1.0; 3];
 
-/// Iterations of the article's recipe between looks at the clock.
+/// Iterations of the article's recipe between two readings of the clock.
 const CLOCK_EVERY: usize = 10;
 
 /// One drawing to make.
@@ -119,7 +119,7 @@ struct Made {
     strokes: Option<usize>,
     soft: Option<Image>,
     stages: Vec<StageEntry>,
-    /// Most memory of another program, bytes.
+    /// Peak memory of another program, bytes.
     peak_rss_bytes: Option<u64>,
 }
 
@@ -146,7 +146,7 @@ impl Maker {
         }
     }
 
-    /// What tells it from others of its family.
+    /// Tells it apart from other drawings of its family.
     pub fn label(&self) -> String {
         match self {
             Self::Fit {
@@ -257,7 +257,7 @@ fn article(picture: &Image, strokes: usize, limit: Limit, seed: u64) -> Result<M
         step += 1;
     }
     let scene = descent.drawing().scene();
-    // What it ends with may be thinner than any file has it: no soft render stands for the file.
+    // Strokes may end up thinner than a file can have them, so the soft render is not compared with the file.
     Ok(Made {
         strokes: Some(scene.quantized(2).scene.len()),
         ..Made::file(svg::write(&scene, &WriteOptions::default()))
@@ -273,7 +273,7 @@ struct Meter {
 #[derive(Debug, Clone, Copy)]
 struct Cost {
     wall_s: f64,
-    /// This process and the children that it waited for; wall time where the system does not tell.
+    /// CPU time of this process and of the children it waited for; `None` where the system does not report it.
     cpu_s: Option<f64>,
     peak_rss_bytes: Option<u64>,
 }
@@ -372,7 +372,7 @@ fn agreement(text: &str, soft: &Image) -> Result<Agreement> {
     Agreement::between(soft, &verify::render(text, size, Some(WHITE))?)
 }
 
-/// The picture as everybody is given it: its alpha laid on white.
+/// The picture as every maker gets it: transparency laid on white.
 pub(super) fn open(path: &Path) -> Result<Image> {
     Ok(Image::open(path)?.flattened(WHITE))
 }

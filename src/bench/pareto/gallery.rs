@@ -1,4 +1,4 @@
-//! Drawings worth looking at, with their differences from the picture.
+//! The drawings that the page shows, each with its difference from the picture.
 
 use std::fs;
 use std::path::Path;
@@ -9,13 +9,13 @@ use crate::report::pareto::{ARTICLE, Exhibit, OWN, ParetoEntry, front};
 use crate::report::picture::{self, heat};
 use crate::verify;
 
-/// Drawings of ours at most.
+/// Most drawings of ours on the page.
 const OURS: usize = 6;
 
-/// Pictures are halved until they are no wider, px.
+/// Widest picture on the page, px; wider ones are halved until they fit.
 const WIDEST: usize = 480;
 
-/// Longer SVGs are in the folder, not on the page, bytes.
+/// Longest SVG that the page embeds, bytes; longer ones are only in the folder.
 const LONGEST: usize = 200_000;
 
 /// A difference of a channel that is shown in the brightest colour, 0..1.

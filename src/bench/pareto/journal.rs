@@ -45,7 +45,7 @@ impl Journal {
         Ok(journal)
     }
 
-    /// The drawing of this id, unless it failed: that is tried again.
+    /// The drawing with this id, unless it failed: a failed one is tried again.
     pub(super) fn find(&self, id: &str) -> Option<&ParetoEntry> {
         let known = self.entries.iter().find(|entry| entry.id() == id);
         known.filter(|entry| entry.failure.is_none())
@@ -69,7 +69,7 @@ impl Journal {
         Ok(())
     }
 
-    /// A later result of one id takes the place of the earlier.
+    /// A later result replaces an earlier one with the same id.
     fn take(&mut self, entry: ParetoEntry) {
         match self
             .entries
@@ -81,7 +81,7 @@ impl Journal {
         }
     }
 
-    /// All results, but none of another picture that had the name of one of `pictures`.
+    /// All results, without those of another picture of the same name as one of `pictures`.
     pub(super) fn current(&self, pictures: &[PathBuf]) -> Result<Vec<ParetoEntry>> {
         let mut digests = Vec::new();
         for path in pictures {

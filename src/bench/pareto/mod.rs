@@ -1,8 +1,8 @@
-//! Cost against error: drawings of pictures by our fits at many settings, by the article's recipe and by
-//! peers, all judged alike: the file as resvg draws it.
+//! Cost against error: our fits at many settings, the article's recipe, and other programs draw the same
+//! pictures. All are judged by the file as resvg draws it.
 //!
-//! Results are written as they come, a line of `results.jsonl` and an SVG each, and what is there already
-//! is not measured again: a run that was stopped goes on where it was.
+//! Each result is written at once, as a line of `results.jsonl` and an SVG. A run that was stopped continues
+//! where it was, since what is in the folder is not measured again.
 
 mod case;
 mod gallery;

@@ -1,5 +1,5 @@
-//! Peers: who else turns pictures into SVG. Programs are run where they are installed, by the command
-//! lines that their manuals give; libraries are handed in by whoever links them.
+//! Peers: other programs and libraries that turn pictures into SVG. Programs are run where they are installed,
+//! with the command lines of their manuals. Libraries are passed in by the program that links them.
 
 use std::fmt::Display;
 use std::fs::{self, File};
@@ -13,10 +13,10 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
 use crate::report::Usage;
 
-/// Between two looks at the memory of a running program.
+/// Time between two readings of the memory of a running program.
 const LOOK_EVERY: Duration = Duration::from_millis(2);
 
-/// A program that takes longer hangs, and is ended.
+/// A program that takes longer is taken to hang, and is ended.
 const LONGEST: Duration = Duration::from_secs(600);
 
 /// Somebody else who turns pictures into SVG.
@@ -30,7 +30,7 @@ pub trait Peer {
     /// The drawing of an opaque `picture` at one of its settings.
     ///
     /// # Errors
-    /// When it makes none.
+    /// When the peer makes none.
     fn trace(&self, picture: &Image, settings: &str) -> Result<Traced>;
 }
 
@@ -39,8 +39,8 @@ pub trait Peer {
 pub struct Traced {
     /// The SVG.
     pub svg: String,
-    /// Most memory that was held, bytes: looked at every 2 ms while another program runs, so that a peak
-    /// just before its end may be missed.
+    /// Peak memory, bytes. Another program is sampled every 2 ms, so a peak just before its end may be
+    /// missed.
     pub peak_rss_bytes: Option<u64>,
 }
 
@@ -54,9 +54,9 @@ struct Program {
     /// The arguments; `{in}` and `{out}` stand for the files, `{settings}` for the words of
     /// the settings.
     args: &'static [&'static str],
-    /// An argument, and what its answer says where the program can do it at all.
+    /// An argument, and the text that the answer contains if the program is able to trace at all.
     can: Option<[&'static str; 2]>,
-    /// Whether it crashes where there is no display.
+    /// Whether it crashes without a display.
     needs_display: bool,
 }
 

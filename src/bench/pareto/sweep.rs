@@ -1,4 +1,4 @@
-//! Which drawings are made of a picture.
+//! Which drawings of a picture are made and measured.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -34,7 +34,7 @@ pub struct Sweep {
     pub seeds: u64,
     /// Strokes and iterations of the article's recipe.
     pub article: [usize; 2],
-    /// Settings of each peer at most, spread over its own.
+    /// Most settings of each peer, spread over all that it has.
     pub peer_settings: usize,
 }
 
@@ -67,7 +67,7 @@ impl Sweep {
                 Effort::Balanced,
                 Effort::Best,
             ],
-            // In a fit all edges are as steep, so that tanh is sigmoid, and atan:K is atan.
+            // Softness fixes the slope of the edge, so that in a fit tanh is sigmoid and atan:K is atan.
             coverages: coverages(&[
                 "smoothstep",
                 "raw>smoothstep",
@@ -91,7 +91,7 @@ impl Sweep {
             return Vec::new();
         };
         let usual = self.usual_strokes();
-        // Tails make a fit take ten times as long: a draft shows as well what they do.
+        // Functions with tails make a fit ten times as slow, and a draft shows their effect as well.
         let [quick, balanced] = [Effort::Draft, Effort::Balanced].map(|effort| self.effort(effort));
         let mut fits = Vec::new();
         for &effort in &self.efforts {
@@ -143,7 +143,7 @@ fn peer_makers(peers: &[Box<dyn Peer>], settings: usize) -> Vec<Maker> {
     makers.collect()
 }
 
-/// Words of this file alone: each is a coverage function.
+/// Parses words of this file, each of which is a coverage function.
 fn coverages(words: &[&str]) -> Vec<CoverageSchedule> {
     words.iter().filter_map(|word| word.parse().ok()).collect()
 }
@@ -174,7 +174,7 @@ impl Work {
         Ok(makers.into_iter().map(case).collect())
     }
 
-    /// The article's recipe for as long as our own fits of as many strokes took.
+    /// The article's recipe, run for as long as our own fit with as many strokes took.
     pub(super) fn at_equal_time(&self, picture: &Path, entries: &[ParetoEntry]) -> Option<Case> {
         let Self::Sweep(sweep) = self else {
             return None;
@@ -204,7 +204,7 @@ impl Work {
     }
 }
 
-/// The SVGs in `folders` that have the picture's name; a family is called as its folder.
+/// The SVGs in `folders` that have the picture's name; the folder's name is that of the family.
 fn files(folders: &[PathBuf], picture: &Path) -> Result<Vec<Maker>> {
     let name = format!("{}.svg", stem(picture));
     let mut makers = Vec::new();

@@ -1,4 +1,4 @@
-//! A stroke in our own render and as resvg draws it, over its width and its slant.
+//! How far our render of one stroke is from resvg's, as a map over its width and angle.
 //!
 //! The stroke is black on white, 40 px long, at four places within a pixel. The error is the root mean
 //! square over the pixels that either render touches, in 8-bit levels. Widths of 1 px and less take
@@ -21,8 +21,8 @@ use crate::verify;
 const SIDE: usize = 56;
 const LENGTH: f64 = 40.0;
 
-/// The error of a stroke that is drawn as it was fitted, at most, levels: half a step of resvg's four
-/// sampling rows per px, which is what an edge along an axis may be off by.
+/// Largest error, in levels, of a stroke that is drawn as it was fitted. resvg samples four rows per px, so an
+/// edge along an axis may be off by half of such a step.
 const MOST: f64 = 255.0 / 8.0;
 
 /// Px of the picture per cell of the map.

@@ -1,5 +1,5 @@
-//! Gradients where there is a kink: a pixel on the centre line, at the clamp of `h`, at the end of the
-//! soft edge. There the gradient has to lie between the slopes of both sides, and `f32` has to agree.
+//! Gradients at kinks: a pixel on the centre line, at the clamp of `h`, or at the end of the soft edge. There
+//! the gradient has to lie between the slopes of the two sides, and `f32` has to agree with `f64`.
 
 use super::oracle::{Gap, Specimen, oracle, pixels, random, slopes};
 use super::{Check, Observation, WITHIN};

@@ -1,12 +1,12 @@
-//! Whether fits hold on hard cases: a table of what was checked, the figure found, and a verdict.
+//! Hard cases for fits and renderer. Each check gives a figure and a verdict.
 //!
 //! | group | what is hard |
 //! | --- | --- |
 //! | `strokes` | degenerate and absurd strokes, `f32` against the `f64` reference |
 //! | `kinks` | pixels where a distance or an edge has no derivative |
 //! | `precision` | `f32` against `f64` through thousands of iterations |
-//! | `pictures` | pictures without size, content or smoothness |
-//! | `rates` | learning rates and numbers gone wild, and very long runs |
+//! | `pictures` | tiny, empty, noisy and extremely shaped pictures |
+//! | `rates` | extreme learning rates, non-finite numbers, very long runs |
 //! | `agreement` | thin and slanted strokes as resvg draws them |
 //!
 //! `f32` is *within x of `f64`* when no value differs by more than x times the largest value of its kind

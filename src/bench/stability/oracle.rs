@@ -1,4 +1,4 @@
-//! The fast renderer in `f32` beside the naive one in `f64`.
+//! Compares the fast `f32` renderer with the naive `f64` reference.
 
 use super::{Observation, WITHIN};
 use crate::coverage::Coverage;
@@ -14,10 +14,10 @@ use crate::rng;
 /// ε of the fast renderer's distances, px².
 const EPS: f64 = 1e-6;
 
-/// What may lie between two canvases: culling behind opaque strokes, and `f32`.
+/// Largest difference of two canvases, from culling behind opaque strokes and from `f32`.
 const CANVAS_WITHIN: f64 = 4e-4;
 
-/// Gradients and worths below this are as good as none.
+/// Gradients and worths below this count as 0.
 const FAINT: f64 = 1e-6;
 
 /// Width of the soft edge, px.

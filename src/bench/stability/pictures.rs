@@ -1,4 +1,4 @@
-//! Pictures without size, content or smoothness: whole fits of them, read back from their files.
+//! Whole fits of tiny, empty, noisy and extremely shaped pictures, judged by the files that they write.
 
 use super::{Check, Extent, Observation};
 use crate::error::Result;

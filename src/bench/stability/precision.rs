@@ -1,5 +1,5 @@
-//! `f32` against `f64` through many iterations: the same descent in both, and the kernels compared where
-//! the `f32` descent has come to.
+//! `f32` against `f64` over many iterations: the same descent runs in both, and the two renderers are compared
+//! at the strokes that the `f32` descent ends with.
 
 use super::oracle::{BACKGROUND, Specimen, oracle, pixels, random, slopes};
 use super::{Check, Observation};

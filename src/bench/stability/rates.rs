@@ -1,4 +1,4 @@
-//! Learning rates and numbers gone wild, and very long runs: the drawing has to stay valid.
+//! Extreme learning rates, non-finite numbers and very long runs: the drawing has to stay valid.
 
 use super::pictures::{Sound, sound};
 use super::{Check, Extent, Observation};

@@ -1,5 +1,5 @@
-//! Degenerate and absurd strokes: canvas, gradients and worths in `f32` against the reference, and the
-//! file that the scene is written to.
+//! Degenerate and absurd strokes. Canvas, gradients and worths in `f32` are compared with the reference, and
+//! the file of the scene has to be readable.
 
 use super::oracle::{BACKGROUND, Specimen, random};
 use super::{Check, Observation};

@@ -1,4 +1,4 @@
-//! What was found, for people.
+//! The table that `check` prints.
 
 use strokefit::engines::MIN_DB_AGAINST_RESVG;
 use strokefit::report::{CheckReport, RendererEntry};

@@ -1,4 +1,4 @@
-//! One file in one program after another.
+//! Draws one file with one program after another.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ use strokefit::verify::{self, Size};
 use super::RESVG;
 use crate::cli::output::Output;
 
-/// A folder that takes what the programs draw.
+/// The folder for the pictures that the programs draw.
 pub(super) struct PictureFolder(PathBuf);
 
 impl PictureFolder {
@@ -84,7 +84,7 @@ impl<'a> Trial<'a> {
         Ok(trial)
     }
 
-    /// Lets `engine` draw. That it is missing or fails is a result, not an error.
+    /// Draws with `engine`. A missing or failing program is a result, not an error.
     pub(super) fn ask(&mut self, engine: &Engine) -> Result<()> {
         let Some(program) = engine.locate() else {
             let reason = format!("{}: not installed: {}", engine.name, engine.install);

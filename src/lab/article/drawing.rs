@@ -1,4 +1,4 @@
-//! The demo's drawing: at random, as JSON, as a scene.
+//! The capsules of the demo: a random start, reading and writing JSON, conversion to a scene.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +11,7 @@ use crate::scene::{Scene, Stage};
 /// Standard deviation of `b − a`, px.
 const LENGTH: f32 = 4.0;
 
-/// Strokes on a background, as numbers.
+/// Capsules on a background, as the numbers that descent changes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Capsules {
     /// Width in px.

@@ -1,4 +1,4 @@
-//! What is claimed of fits, and whether it holds.
+//! Claims about fits, and whether they hold.
 
 use serde::{Deserialize, Serialize};
 

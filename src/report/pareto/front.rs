@@ -1,4 +1,4 @@
-//! The Pareto front.
+//! The Pareto front of a set of drawings.
 
 use super::ParetoEntry;
 

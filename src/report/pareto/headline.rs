@@ -1,4 +1,4 @@
-//! The figures that are quoted: a few rows for all pictures.
+//! The figures that README and docs quote: a few rows for all pictures.
 
 use super::peers::AgainstPeer;
 use super::recipe::{AtEqualStrokes, AtEqualTime};

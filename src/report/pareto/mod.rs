@@ -1,7 +1,7 @@
-//! What `strokefit bench pareto` found: cost against error of drawings, ours and others'.
+//! The report of `strokefit bench pareto`: cost against error of our drawings and others'.
 //!
-//! An entry is all there is to say of one drawing; fronts, comparisons, tables, plots and the page are
-//! made from entries alone, so that they can be made again without any fit.
+//! An entry holds all that is known of one drawing. Fronts, comparisons, tables, plots and the page are made
+//! from entries alone, so they can be made again without a fit.
 
 mod charts;
 mod compare;

@@ -1,4 +1,4 @@
-//! The report as one HTML page that needs nothing else: plots, pictures and drawings are in it.
+//! The report as a self-contained HTML page with its plots, pictures and drawings.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;

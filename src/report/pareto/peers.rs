@@ -1,4 +1,4 @@
-//! Our front against those of peers, at equal bytes after gzip.
+//! Compares our front with each peer's at equal bytes after gzip.
 
 use super::{ARTICLE, Comparison, Holds, OWN, ParetoEntry, front};
 

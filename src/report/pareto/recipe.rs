@@ -1,19 +1,19 @@
-//! Fits against the article's recipe: at equal strokes, and at equal time.
+//! Compares fits with the article's recipe, at equal strokes and at equal time.
 
 use super::{ARTICLE, Comparison, Holds, OWN, ParetoEntry};
 
-/// What a fit is to gain over the article's recipe at equal strokes, dB.
+/// Least gain of a fit over the article's recipe at equal strokes, dB.
 const MIN_GAIN_DB: f64 = 6.0;
-/// The share of the recipe's CPU time that it may take.
+/// Largest share of the recipe's CPU time that the fit may take.
 const MAX_TIME: f64 = 0.25;
 
-/// What CPU time is counted in: less is not told from none.
+/// Resolution of CPU time, s.
 const TICK_S: f64 = 0.01;
 
-/// The article's own run, as labels begin: what is claimed is claimed of this one.
+/// How the label of the article's own run begins. The claim is made of this run only.
 const OWN_RUN: &str = "5000 strokes, 1500 iterations";
-/// Pixels per stroke from which on it is: the article's demo has 24. Where strokes are as small as pixels,
-/// nobody has much to gain.
+/// Least pixels per stroke for the claim; the article's demo has 24. Where strokes are as small as pixels, there
+/// is little to gain.
 const MIN_ROOM: usize = 8;
 
 /// A run of the recipe, and the best fit of as many strokes that took at most a quarter of its time.

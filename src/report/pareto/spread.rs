@@ -1,4 +1,4 @@
-//! How much drawings differ that differ in their seed alone.
+//! The spread of drawings that differ only in their seed.
 
 use serde::{Deserialize, Serialize};
 

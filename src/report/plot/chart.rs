@@ -1,4 +1,4 @@
-//! Numbers over numbers.
+//! Line charts.
 
 use plotters::coord::Shift;
 use plotters::prelude::*;

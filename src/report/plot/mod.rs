@@ -1,7 +1,7 @@
 //! Charts of numbers and sheets of pictures. The one door of `plotters`.
 //!
-//! Charts are drawn into pictures or as SVG text, sheets into pictures. Text of pictures is set in a font
-//! that is part of the program, so that they look the same on every machine.
+//! Charts become pictures or SVG text; sheets become pictures. The text in pictures is set in a font that is
+//! part of the program, so that they look the same on every machine.
 
 mod chart;
 mod sheet;

@@ -1,4 +1,4 @@
-//! Pictures side by side, with titles, captions and lines over them.
+//! Sheets: pictures side by side, with titles, captions and overlaid lines.
 
 use std::fmt::Display;
 

@@ -7,9 +7,9 @@ use super::path;
 /// Widest stroke, px, that some renderers draw as a hairline. Exactly 1 px is one.
 const HAIRLINE_PX: f64 = 1.0;
 
-/// What an element hands down to its children.
+/// The stroke style that children of an element inherit.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Inherited {
+pub(super) struct StrokeStyle {
     /// Whether a stroke is painted.
     painted: bool,
     /// Width in the element's units.
@@ -20,8 +20,8 @@ pub(super) struct Inherited {
     pub(super) drawn: bool,
 }
 
-impl Inherited {
-    /// The pen of a page with `scale` px per unit.
+impl StrokeStyle {
+    /// The style at the root of a page with `scale` px per unit.
     pub(super) fn page(scale: f64) -> Self {
         Self {
             painted: false,
@@ -31,7 +31,7 @@ impl Inherited {
         }
     }
 
-    /// The pen within `element`.
+    /// The style within `element`.
     pub(super) fn within(self, element: &Element) -> Self {
         let painted = match element.property("stroke") {
             Some("inherit") | None => self.painted,

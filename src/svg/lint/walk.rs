@@ -8,7 +8,7 @@ use super::element::{Element, short};
 use super::number;
 use super::reference::References;
 use super::rules::{self, Rule};
-use super::stroke::Inherited;
+use super::stroke::StrokeStyle;
 use super::{Findings, element};
 use crate::svg::dialect::SVG_NAMESPACE;
 
@@ -87,7 +87,7 @@ struct Walk<'a, 'b> {
     /// Bytes before that line's event.
     at: usize,
     /// One for each open element.
-    pens: Vec<Inherited>,
+    styles: Vec<StrokeStyle>,
     references: References,
     /// Whether the text is a style sheet.
     in_style: bool,
@@ -103,7 +103,7 @@ impl<'a, 'b> Walk<'a, 'b> {
             xml,
             line: 1,
             at: 0,
-            pens: Vec::new(),
+            styles: Vec::new(),
             references: References::default(),
             in_style: false,
             findings,
@@ -122,12 +122,12 @@ impl<'a, 'b> Walk<'a, 'b> {
                 }
                 Event::End(_) => {
                     self.in_style = false;
-                    self.pens.pop();
+                    self.styles.pop();
                 }
                 Event::DocType(_) => self.doctype(),
                 Event::PI(_) => self.instruction(),
                 Event::Text(_) | Event::CData(_) => self.characters(),
-                Event::Eof if self.pens.is_empty() => return Ok(()),
+                Event::Eof if self.styles.is_empty() => return Ok(()),
                 Event::Eof => return Err("the file ends before its last element".into()),
                 _ => {}
             }
@@ -182,8 +182,8 @@ impl<'a, 'b> Walk<'a, 'b> {
 
     fn open(&mut self, tag: &BytesStart<'_>, is_svg: bool) -> Result<(), String> {
         let element = Element::new(tag)?;
-        let is_root = self.pens.is_empty();
-        let pen = match self.pens.last() {
+        let is_root = self.styles.is_empty();
+        let style = match self.styles.last() {
             None if is_svg && element.name == "svg" => self.page(&element),
             None => {
                 self.findings.add(
@@ -191,13 +191,13 @@ impl<'a, 'b> Walk<'a, 'b> {
                     self.line,
                     format!("<{}>", short(&element.name)),
                 );
-                Inherited::page(1.0)
+                StrokeStyle::page(1.0)
             }
-            Some(pen) => pen.within(&element),
+            Some(style) => style.within(&element),
         };
-        self.pens.push(pen);
+        self.styles.push(style);
         self.in_style = is_svg && element.name == "style";
-        if self.pens.len() > LIBXML2_LEVELS {
+        if self.styles.len() > LIBXML2_LEVELS {
             self.findings.add(
                 &rules::DEEP,
                 self.line,
@@ -205,20 +205,20 @@ impl<'a, 'b> Walk<'a, 'b> {
             );
         }
         if is_svg {
-            self.look(&element, pen, is_root);
+            self.look(&element, style, is_root);
         }
         Ok(())
     }
 
-    /// Judges the size of the page; gives its pen.
-    fn page(&mut self, root: &Element) -> Inherited {
+    /// Judges the size of the page; gives the style at its root.
+    fn page(&mut self, root: &Element) -> StrokeStyle {
         let view = root.get("viewBox").map(number::all);
         let side = |key| root.get(key).and_then(number::length_px);
         let (width, height) = (side("width"), side("height"));
         let Some(&[x, y, w, h]) = view.as_deref() else {
             let found = "<svg> without a viewBox of four numbers";
             self.findings.add(&rules::PAGE_SIZE, self.line, found);
-            return Inherited::page(1.0);
+            return StrokeStyle::page(1.0);
         };
         if let Some(rule) = size_rule(width.zip(height), (w, h), (x, y)) {
             let size = |key| short(root.get(key).unwrap_or("none"));
@@ -227,15 +227,15 @@ impl<'a, 'b> Walk<'a, 'b> {
             self.findings.add(rule, self.line, found);
         }
         let scale = width.filter(|_| w > 0.0).map_or(1.0, |width| width / w);
-        Inherited::page(scale).within(root)
+        StrokeStyle::page(scale).within(root)
     }
 
-    fn look(&mut self, element: &Element, pen: Inherited, is_root: bool) {
+    fn look(&mut self, element: &Element, style: StrokeStyle, is_root: bool) {
         self.references.note(element, self.line, self.findings);
         if !is_root {
             self.look_at_kind(element);
         }
-        self.look_at_stroke(element, pen);
+        self.look_at_stroke(element, style);
         self.look_at_values(element);
     }
 
@@ -246,12 +246,12 @@ impl<'a, 'b> Walk<'a, 'b> {
         }
     }
 
-    fn look_at_stroke(&mut self, element: &Element, pen: Inherited) {
-        if pen.has_zero_length(element) {
+    fn look_at_stroke(&mut self, element: &Element, style: StrokeStyle) {
+        if style.has_zero_length(element) {
             let found = element::quote_shape(element);
             self.findings.add(&rules::ZERO_LENGTH, self.line, found);
         }
-        if let Some(width_px) = pen.hairline_px(element) {
+        if let Some(width_px) = style.hairline_px(element) {
             let found = format!("<{}> with a stroke {width_px:.3} px wide", element.name);
             self.findings.add(&rules::THIN_STROKE, self.line, found);
         }
