@@ -9,7 +9,7 @@ use std::{fmt, io};
 /// The result of every fallible function of the library.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// What class of thing went wrong.
+/// The class of a problem.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ErrorKind {
@@ -21,11 +21,11 @@ pub enum ErrorKind {
     Svg,
     /// An option or argument is outside its domain.
     Config,
-    /// Another program that draws SVG is not there, or failed.
+    /// Another program that renders SVG is missing, or failed.
     Engine,
 }
 
-/// What went wrong, in one line, with its cause.
+/// A problem, described in one line, with its cause.
 #[derive(Debug)]
 pub struct Error {
     kind: ErrorKind,
@@ -36,7 +36,7 @@ pub struct Error {
 impl Error {
     /// An error of `kind`; `message` names the offending value and the remedy.
     pub fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
-        // What was read may be quoted, and causes have words of their own: a line it stays.
+        // Messages may quote input or the text of a cause; this keeps them on one line.
         let message: String = message.into();
         let breaks = |c: char| c.is_control() || matches!(c, '\u{2028}' | '\u{2029}');
         Self {
@@ -56,14 +56,14 @@ impl Error {
         self
     }
 
-    /// The same error, its message headed by `context` (a file name, say).
+    /// The same error, with `context` (such as a file name) before its message.
     #[must_use]
     pub fn within(mut self, context: impl fmt::Display) -> Self {
         self.message = format!("{context}: {}", self.message);
         self
     }
 
-    /// A file `path` of a folder of results could not be written.
+    /// The error for a file `path` of results that could not be written.
     pub(crate) fn unwritten(path: &Path, cause: io::Error) -> Self {
         let message = format!(
             "cannot write {}: {cause}; choose another folder with -o",
@@ -72,7 +72,7 @@ impl Error {
         Self::new(ErrorKind::Io, message).caused_by(cause)
     }
 
-    /// What class of thing went wrong.
+    /// The class of the problem.
     pub fn kind(&self) -> ErrorKind {
         self.kind
     }

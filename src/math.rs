@@ -14,7 +14,7 @@ pub type Point = Point2<f32>;
 /// A displacement in the picture plane in px.
 pub type Vector = Vector2<f32>;
 
-/// The numbers that the mathematics of the crate is written in: `f32` in the renderer and the fit,
+/// A floating-point type for generic formulas: `f32` in the renderer and the fit,
 /// `f64` in the reference and the experiments.
 pub trait Real: nalgebra::RealField + Elementary + Copy {
     /// `x`, rounded to this type.

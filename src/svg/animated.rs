@@ -6,20 +6,20 @@ use std::ops::Range;
 use super::{Form, Group, WriteOptions, write};
 use crate::scene::Scene;
 
-/// How long the parts of an animated drawing take.
+/// Durations in an animated drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Timing {
     /// From one part to the next, ms.
     pub part_ms: u32,
-    /// Of the finished drawing, before it starts again, ms.
+    /// Time for which the finished drawing is shown before it starts again, ms.
     pub last_ms: u32,
 }
 
-/// The scene with `precision` decimals, an element for each stroke, and the strokes of each of `parts` in
-/// a group that appears at its time; the first is there from the start. Parts are ranges of the strokes
-/// back to front, one after another. It repeats for ever.
+/// The scene with `precision` decimals and an element for each stroke. The strokes of each of `parts` are in
+/// a group that appears at its time; the first group is visible from the start. Parts are consecutive ranges
+/// of the strokes, back to front. The animation repeats for ever.
 ///
-/// A part that goes over the end of a stage is in two groups that appear together.
+/// A part that crosses the end of a stage is in two groups, which appear together.
 pub fn write_animated(
     scene: &Scene,
     parts: &[Range<usize>],
@@ -43,7 +43,7 @@ pub fn write_animated(
     };
     let mut strokes = 0;
     let mut part = 0;
-    // The writer puts every element on a line of its own.
+    // The writer puts each element on its own line.
     for line in write(&scene, &options).lines() {
         if !is_stroke(line) {
             groups.close();
@@ -60,7 +60,7 @@ pub fn write_animated(
     groups.out
 }
 
-/// Whether a line of the writer's is a stroke: what else it writes is groups, their titles, and the page.
+/// Whether a line of the writer is a stroke. All other lines are groups, their titles, and the background.
 fn is_stroke(line: &str) -> bool {
     !["<g", "</", "<title", "<svg", "<rect"]
         .iter()
@@ -73,7 +73,7 @@ struct Clock {
 }
 
 impl Clock {
-    /// What makes the group around it appear with part `part`, from 0.
+    /// The animation that makes the group around it appear with part `part`, from 0.
     fn entrance(&self, part: usize) -> String {
         if part == 0 {
             return String::new();
@@ -87,7 +87,7 @@ impl Clock {
     }
 }
 
-/// Text in which groups open and close.
+/// Text with groups that open and close.
 struct Groups {
     out: String,
     open: bool,
@@ -99,7 +99,7 @@ impl Groups {
         self.out.push('\n');
     }
 
-    /// Opens a group with `head` in it, unless one is open.
+    /// Opens a group that starts with `head`, unless one is open.
     fn ensure(&mut self, head: impl FnOnce() -> String) {
         if !self.open {
             self.push("<g>");

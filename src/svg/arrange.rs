@@ -11,7 +11,7 @@ use super::options::{Form, Group, WriteOptions};
 use super::path;
 use crate::scene::{Scene, Stage, Written};
 
-/// Strokes of a layer, and the colour that is all of theirs if that made the layer.
+/// Strokes of a layer, and their common colour if layers are by colour.
 #[derive(Debug, Clone)]
 pub(super) struct Layer {
     pub(super) strokes: Vec<Written>,
@@ -41,14 +41,14 @@ pub(super) fn layers(scene: &Scene, options: &WriteOptions) -> Vec<Layer> {
         for layer in &mut layers {
             let strokes = layer.strokes.iter_mut();
             strokes.for_each(|stroke| orient(stroke, options.unit()));
-            layer.strokes = arranged(std::mem::take(&mut layer.strokes), pen, |s| s.width);
+            layer.strokes = arranged(std::mem::take(&mut layer.strokes), look, |s| s.width);
         }
     }
     layers
 }
 
-/// The scene in the order and the layers of its file, unless that has outlines: what
-/// [`read`](super::read) reads from what [`write`](super::write()) wrote.
+/// The scene in the order and the layers of its file: what [`read`](super::read) returns for the text that
+/// [`write`](super::write()) wrote, unless it wrote outlines, which cannot be read.
 pub fn arrange(scene: &Scene, options: &WriteOptions) -> Scene {
     let stage = |layer: &Layer| Stage {
         strokes: layer.strokes.iter().map(Written::stroke).collect(),
@@ -60,7 +60,7 @@ pub fn arrange(scene: &Scene, options: &WriteOptions) -> Scene {
     }
 }
 
-/// Lets a stroke begin at the end that makes its path shorter.
+/// Starts a stroke at the end that makes its path shorter.
 fn orient(stroke: &mut Written, unit: Unit) {
     let length = |stroke: &Written| path::data([stroke.points.as_slice()], unit).len();
     let mut other = stroke.clone();
@@ -70,12 +70,12 @@ fn orient(stroke: &mut Written, unit: Unit) {
     }
 }
 
-/// What strokes have to have in common to be one path.
-pub(super) fn pen(stroke: &Written) -> (i64, [u8; 3], u8) {
+/// What strokes must have in common to be one path.
+pub(super) fn look(stroke: &Written) -> (i64, [u8; 3], u8) {
     (stroke.width, stroke.color, stroke.opacity)
 }
 
-/// Strokes that are arranged together: the pairs of more would take long to compare.
+/// Number of strokes that are arranged together. Comparing the pairs of more would take long.
 const WINDOW: usize = 4096;
 
 /// Layers of one colour.
@@ -89,7 +89,8 @@ fn by_color(strokes: Vec<Written>) -> Vec<Layer> {
     .collect()
 }
 
-/// The strokes with those of one `run` together as far as may be, and runs of one `kin` one after the other.
+/// Reorders strokes so that those of one `run` are together as far as possible, and runs of one `kin` follow each
+/// other.
 fn arranged<R: Ord, K: Ord>(
     mut strokes: Vec<Written>,
     run: impl Fn(&Written) -> R,
@@ -136,13 +137,13 @@ fn order<R: Ord, K: Ord>(
 /// The strokes of one look.
 #[derive(Default)]
 struct Run<'a> {
-    /// Those that may come next.
+    /// Strokes that may be placed next.
     ready: BTreeSet<(&'a Written, usize)>,
-    /// How many have not come yet, ready or not.
+    /// How many are not placed yet, ready or not.
     left: usize,
 }
 
-/// Takes a stroke that looks like the last one, or begins a run.
+/// Takes a stroke of the same look as the last one, or begins a run.
 fn take<R: Ord, K: Ord>(
     runs: &mut BTreeMap<R, Run<'_>>,
     last: Option<&Written>,
@@ -157,8 +158,8 @@ fn take<R: Ord, K: Ord>(
     run.ready.pop_first().map(|(_, i)| i)
 }
 
-/// The first stroke of the run to begin: one that may come as a whole before others, then one of the `last` kin, then
-/// of the kin that most such runs are of, then the one that most of may come.
+/// The first stroke of the next run. It prefers a run that can be placed as a whole, then one of the `last` kin,
+/// then one of the kin with the most such runs, then the run with the most strokes ready.
 fn begin<'a, R, K: Ord>(
     runs: &BTreeMap<R, Run<'a>>,
     last: Option<K>,
@@ -181,7 +182,7 @@ fn begin<'a, R, K: Ord>(
     ready().max_by_key(rank).map(|(_, first)| first)
 }
 
-/// For each stroke, the later ones that have to stay above it.
+/// For each stroke, the later ones that must stay above it.
 fn above(strokes: &[Written]) -> Vec<Vec<usize>> {
     let above = |(i, below): (usize, &Written)| {
         let later = strokes.iter().enumerate().skip(i + 1);
@@ -209,7 +210,7 @@ mod tests {
     }
 
     fn by_width(strokes: &[Written]) -> Vec<usize> {
-        order(strokes, pen, |s| s.width)
+        order(strokes, look, |s| s.width)
     }
 
     #[test]

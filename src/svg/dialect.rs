@@ -2,36 +2,36 @@
 
 use crate::scene::{MAX_PRECISION, UNITS_PER_PX};
 
-/// The namespace of SVG; with `http`, or nothing draws it.
+/// The namespace of SVG. It must have `http`; otherwise no program draws the file.
 pub(crate) const SVG_NAMESPACE: &str = "http://www.w3.org/2000/svg";
 
 /// The namespace that makes a group a layer in Inkscape.
 pub(super) const INKSCAPE_NAMESPACE: &str = "http://www.inkscape.org/namespaces/inkscape";
 
-/// Largest number that may be read, in units: the way between the two farthest points of a scene.
-/// All decimals up to here are exact in `f64`.
+/// Largest number that may be read, in units: the distance of the two farthest points of a scene. All
+/// decimals up to here are exact in `f64`.
 pub(super) const MAX_UNITS: i64 = 2_000_000_000 * UNITS_PER_PX;
 
-/// What the numbers of a text count: px or a decimal fraction of it, in 1/[`UNITS_PER_PX`] px.
+/// The unit of the numbers in a text: a px or a decimal fraction of it, in 1/[`UNITS_PER_PX`] px.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Unit(i64);
 
 impl Unit {
     pub(super) const PX: Self = Self(UNITS_PER_PX);
 
-    /// 10^−precision px, the 10^−6th at least.
+    /// 10^−precision px, at least 10^−6 px.
     pub(super) fn decimal(precision: u8) -> Self {
         Self(UNITS_PER_PX / 10_i64.pow(precision.min(MAX_PRECISION).into()))
     }
 
-    /// What a group says in whose elements numbers count this.
+    /// The attribute of a group whose elements have numbers in this unit.
     pub(super) fn transform(self) -> String {
         let mut out = String::from("scale(");
         Self::PX.push(&mut out, self.0);
         out + ")"
     }
 
-    /// The unit of a group that says so.
+    /// The unit that such an attribute of a group means.
     pub(super) fn of_transform(text: &str) -> Option<Self> {
         let mut units = (1..=MAX_PRECISION).map(Self::decimal);
         units.find(|unit| unit.transform() == text)
@@ -52,8 +52,8 @@ impl Unit {
         }
     }
 
-    /// What a decimal says, in 1/[`UNITS_PER_PX`] px, or `None` if it is no plain decimal, has more places than
-    /// that can hold, or is beyond ±2·10⁹ px.
+    /// The value of a decimal in 1/[`UNITS_PER_PX`] px. `None` if it is not a plain decimal, has too many places
+    /// for this unit, or is beyond ±2·10⁹ px.
     pub(super) fn parse(self, text: &str) -> Option<i64> {
         let (negative, magnitude) = match text.strip_prefix('-') {
             Some(rest) => (true, rest),
@@ -73,12 +73,12 @@ impl Unit {
             return None;
         }
         let whole = whole.parse::<i64>().ok()?.checked_mul(self.0)?;
-        // The zero before it is there where there are no places.
+        // The zero before it allows for no places at all.
         let units = whole.checked_add(format!("0{fraction:0<places$}").parse().ok()?)?;
         (units <= MAX_UNITS).then_some(if negative { -units } else { units })
     }
 
-    /// Decimals that a number can have.
+    /// Number of decimals.
     fn places(self) -> usize {
         self.0.ilog10() as usize
     }
@@ -89,7 +89,7 @@ pub(super) fn hex([r, g, b]: [u8; 3]) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// `#rgb` where that says the same as `#rrggbb`, which is written otherwise.
+/// `#rgb` if it means the same colour, else `#rrggbb`.
 pub(super) fn short_hex(channels: [u8; 3]) -> String {
     let twice = |c: u8| c.is_multiple_of(0x11);
     if channels.into_iter().all(twice) {
@@ -114,7 +114,7 @@ pub(super) fn channels(hex: &str) -> Option<[u8; 3]> {
     }
 }
 
-/// Opacity k/255 with 3 decimals, enough to find k again.
+/// Opacity k/255 with 3 decimals, enough to recover k.
 pub(super) fn opacity(k: u8) -> String {
     let mut out = String::new();
     let thousandths = (i64::from(k) * 1000 + 127) / 255;

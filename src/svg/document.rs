@@ -15,34 +15,34 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::scene::Scene;
 use outline::{MARK, Outline};
 
-/// Properties that strokes inherit and do not state themselves. As a style they overrule what the
-/// document's style sheets say of groups.
+/// Properties that strokes inherit and do not set themselves. As a style they override rules for groups in
+/// the document's style sheets.
 const RESET: &str = "stroke-opacity:1;stroke-dasharray:none;marker:none;paint-order:normal;\
                      shape-rendering:auto;visibility:visible";
 
-/// How px of a picture lie in the coordinates of a root element: `[a b c d e f]` of an SVG matrix.
+/// Maps px of a picture to the coordinates of a root element: `[a b c d e f]` of an SVG matrix.
 pub type Placement = [f64; 6];
 
 const IDENTITY: Placement = [1.0, 0.0, 0.0, 1.0, 0.0, 0.0];
 
-/// An SVG that strokes are laid on.
+/// An SVG to which strokes are added.
 #[derive(Debug, Clone)]
 pub struct Document {
     text: String,
     outline: Outline,
-    /// Whether the layers stand as those of our own drawings do.
+    /// Whether the layers need no group of their own, as in strokefit's drawings.
     is_ours: bool,
     placement: Placement,
-    /// Ids that the document does not have: of a stroke to try, and of the group of layers.
+    /// Ids that are new in the document: of a stroke to probe, and of the group of layers.
     probe: String,
     group: String,
 }
 
 impl Document {
-    /// The document of an SVG's text.
+    /// Reads the document from an SVG's text.
     ///
     /// # Errors
-    /// [`ErrorKind::Svg`] when the text is not well-formed XML or its root does not tell its size.
+    /// [`ErrorKind::Svg`] when the text is not well-formed XML or its root has no size.
     pub fn parse(mut text: String) -> Result<Self> {
         let refused = |message| Error::new(ErrorKind::Svg, message);
         let mut outline = Outline::of(&text).map_err(refused)?;
@@ -57,28 +57,28 @@ impl Document {
         })
     }
 
-    /// The text as it was given; only a root element without content has been given an end tag.
+    /// The text as it was given, except that a root element without content gets an end tag.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// How many elements there are within the root.
+    /// Number of elements within the root.
     pub fn elements(&self) -> usize {
         self.outline.elements
     }
 
-    /// How many of them are text, which is drawn with fonts.
+    /// Number of text elements, which need fonts.
     pub fn texts(&self) -> usize {
         self.outline.texts
     }
 
-    /// How many of them are in other files.
+    /// Number of elements that show something of another file.
     pub fn references(&self) -> usize {
         self.outline.references
     }
 
-    /// The document without the strokes that have been laid on it, and these, in px of their picture.
-    /// `None` where there are none, or they are not as they were written, or something lies on them.
+    /// The document without the strokes that strokefit added, and these strokes, in px of their picture. `None`
+    /// if there are none, if they were changed, or if something lies above them.
     pub(crate) fn split(&self) -> Option<(Self, Scene)> {
         let group = self.outline.group.as_ref()?;
         let (head, tail) = (&self.text[..group.start], &self.text[self.outline.end..]);
@@ -87,7 +87,7 @@ impl Document {
         Some((document, scene))
     }
 
-    /// Says how px of the picture lie in the coordinates of the root.
+    /// Sets how px of the picture map to the coordinates of the root.
     pub(crate) fn place(&mut self, placement: Placement) {
         let close = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-5;
         if !placement.iter().zip(&IDENTITY).all(close) {
@@ -100,7 +100,7 @@ impl Document {
         &self.probe
     }
 
-    /// The document with one stroke where layers go, of width 2 and colour #010203.
+    /// The document with a single stroke in the place of the layers, of width 2 and colour #010203.
     pub(crate) fn probed(&self) -> String {
         let probe = &self.probe;
         let layer = format!(
@@ -110,8 +110,8 @@ impl Document {
         self.with(&layer, [1, 1])
     }
 
-    /// The document with the stages of `scene`, in px of the picture, as layers on top; as it was if the
-    /// scene has no stroke. Layers are numbered on from those that there are.
+    /// The document with the stages of `scene`, in px of the picture, as layers on top. It is unchanged if the
+    /// scene has no stroke. The numbers of layers continue those of the document.
     pub fn with_layers(&self, scene: &Scene, options: &WriteOptions) -> String {
         if scene.is_empty() {
             return self.text.clone();
@@ -138,7 +138,7 @@ impl Document {
     }
 }
 
-/// An id like `name` that the text does not have.
+/// An id like `name` that is new in the text.
 fn unused(text: &str, name: &str) -> String {
     let is_used =
         |id: &str| text.contains(&format!("\"{id}\"")) || text.contains(&format!("'{id}'"));

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::arrange::pen;
+use super::arrange::look;
 use super::dialect::{self, Unit};
 use super::options::Form;
 use super::{outline, path};
@@ -26,7 +26,7 @@ pub(super) fn push(out: &mut String, strokes: &[Written], form: Form, unit: Unit
     }
 }
 
-/// Bytes of an element of one stroke. In the smallest form its width is taken to be shared with neighbours.
+/// Bytes of an element of one stroke. In the smallest form, its width is assumed to be shared with neighbours.
 pub(super) fn bytes(stroke: &Written, form: Form, unit: Unit) -> usize {
     let mut out = String::new();
     let alone = std::slice::from_ref(stroke);
@@ -40,7 +40,7 @@ pub(super) fn bytes(stroke: &Written, form: Form, unit: Unit) -> usize {
     out.len()
 }
 
-/// The attribute with which a layer of `strokes` says their usual width, or nothing.
+/// The attribute of a layer that holds the most common width of `strokes`, or nothing.
 pub(super) fn layer_width(strokes: &[Written], form: Form, unit: Unit) -> String {
     usual_width(strokes, form).map_or_else(String::new, |width| width_text(width, unit))
 }
@@ -51,7 +51,7 @@ fn width_text(width: i64, unit: Unit) -> String {
     out + "\""
 }
 
-/// In the smallest form, the width that most elements have, if that is more than one.
+/// In the smallest form, the most common width, if more than one element has it.
 fn usual_width(strokes: &[Written], form: Form) -> Option<i64> {
     let mut counts = BTreeMap::<i64, usize>::new();
     for element in split(strokes, form)
@@ -64,7 +64,7 @@ fn usual_width(strokes: &[Written], form: Form) -> Option<i64> {
     (count > 1).then_some(width)
 }
 
-/// Whether a stroke of a path goes on from the end of the one before.
+/// Whether a stroke of the path begins at the end of the previous one.
 pub(super) fn has_corner(strokes: &[Written], form: Form) -> bool {
     split(strokes, form)
         .iter()
@@ -85,9 +85,9 @@ fn split(strokes: &[Written], form: Form) -> Vec<&[Written]> {
     elements
 }
 
-/// Whether `next` may be part of a path of `strokes` without a change to the picture.
+/// Whether `next` can join the path of `strokes` without changing the picture.
 fn joins(strokes: &[Written], next: &Written, form: Form) -> bool {
-    let Some(last) = strokes.last().filter(|last| pen(last) == pen(next)) else {
+    let Some(last) = strokes.last().filter(|last| look(last) == look(next)) else {
         return false;
     };
     let opaque = next.opacity == u8::MAX;
@@ -104,7 +104,7 @@ fn is_chain(last: &Written, next: &Written) -> bool {
     lines && last.points.last() == next.points.first()
 }
 
-/// What the strokes of a path have in common.
+/// An attribute that the strokes of a path have in common.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Attribute {
     Color,
@@ -115,7 +115,7 @@ enum Attribute {
 impl Attribute {
     const ALL: [Self; 3] = [Self::Color, Self::Width, Self::Opacity];
 
-    /// As it is written, with a space before; nothing where the default says the same.
+    /// The attribute as text after a space; nothing if it equals the default.
     fn text(self, stroke: &Written, style: Style) -> String {
         match self {
             Self::Color if style == Style::Full => {
@@ -133,9 +133,9 @@ impl Attribute {
 /// How attributes are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Style {
-    /// All of them, colours with six digits.
+    /// In full, colours with six digits.
     Full,
-    /// As few characters as will do in a layer of this `width` with numbers in this `unit`.
+    /// As short as possible in a layer of this `width` with numbers in this `unit`.
     Short { width: Option<i64>, unit: Unit },
 }
 
@@ -172,7 +172,7 @@ fn push_path(out: &mut String, strokes: &[Written], shared: &[Attribute], style:
 /// Bytes of a group around elements, besides its attribute.
 const GROUP_BYTES: usize = "<g></g>".len();
 
-/// Appends `elements`, in groups where the attribute that most share is shorter on a group.
+/// Appends `elements`. Where it is shorter, a group holds the attribute that most of them share.
 fn push_runs(out: &mut String, elements: &[&[Written]], shared: &[Attribute], style: Style) {
     let mut rest = elements;
     while let Some((first, others)) = rest.split_first() {
@@ -189,7 +189,7 @@ fn push_runs(out: &mut String, elements: &[&[Written]], shared: &[Attribute], st
     }
 }
 
-/// The attribute that saves most bytes on a group around the elements from the first on, and how many share it.
+/// The attribute that saves most bytes on a group around the first elements, and how many of them share it.
 fn best_run(
     elements: &[&[Written]],
     shared: &[Attribute],

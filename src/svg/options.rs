@@ -6,21 +6,21 @@ use super::dialect::Unit;
 use crate::error::{Error, ErrorKind};
 use crate::scene::UNITS_PER_PX;
 
-/// How to write.
+/// How a scene is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WriteOptions {
-    /// Decimals of coordinates and widths, 0..=6; more are taken as 6.
+    /// Decimals of coordinates and widths, 0..=6; a larger number counts as 6.
     pub precision: u8,
     /// What an element holds.
     pub form: Form,
     /// What a layer holds.
     pub group: Group,
-    /// Width of the page in print or on screen; its height follows. `None`: a px of the picture is a px.
+    /// Width of the page; its height follows. `None`: one px per pixel of the picture.
     pub width: Option<Length>,
 }
 
 impl WriteOptions {
-    /// The unit in which numbers of the file are shortest.
+    /// The unit that makes the numbers of the file shortest.
     pub(super) fn unit(&self) -> Unit {
         match self.form {
             Form::Smallest => Unit::decimal(self.precision),
@@ -46,14 +46,14 @@ impl Default for WriteOptions {
 pub enum Form {
     /// One stroke, with all its attributes.
     Elements,
-    /// One stroke, or several end to end that look the same as one polyline.
+    /// One stroke, or several opaque strokes of one look that lie end to end, as a polyline.
     #[default]
     Plain,
-    /// As many strokes of one look as may be drawn together. Attributes that neighbours share are on a group
-    /// around them, and strokes that do not touch change places, and some their ends, for the sake of it.
-    /// Numbers are whole: they count the last decimal.
+    /// As many strokes of one look as can be drawn together. Groups hold the attributes that neighbours share.
+    /// To allow this, strokes that do not touch may swap places, and a stroke may swap its ends. Numbers are
+    /// whole: they count units of the last decimal.
     Smallest,
-    /// The outline of one stroke, filled: for programs that ignore strokes. It cannot be read back.
+    /// The filled outline of one stroke, for programs that ignore strokes. It cannot be read back.
     Outlines,
 }
 
@@ -63,8 +63,8 @@ pub enum Group {
     /// The strokes that were added together.
     #[default]
     Stage,
-    /// Strokes of one colour that may be drawn one after the other. A colour that others cover in one place
-    /// and that covers them in another has several layers.
+    /// Strokes of one colour that can be drawn one after the other. A colour has several layers if its strokes lie
+    /// below another colour in one place and above it in another.
     Color,
 }
 
@@ -85,14 +85,14 @@ const UNITS: [(&str, f64); 5] = [
     ("px", 1.0),
 ];
 
-/// Widest page in px of 1/96 inch; no raster of it would be larger than renderers allow.
+/// Widest page in px of 1/96 inch, so that a raster of it stays within the limits of renderers.
 const MAX_PAGE_PX: f64 = 100_000.0;
 
 /// 4 decimals of a unit: a ten-thousandth of a mm is finer than any plotter's grid.
 const STEP: i64 = UNITS_PER_PX / 10_000;
 
 impl Length {
-    /// This length times `numerator` / `denominator`, rounded to 4 decimals but no less than one of them.
+    /// This length times `numerator` / `denominator`, rounded to 4 decimals and never below 0.0001.
     pub(super) fn scaled(self, numerator: u32, denominator: u32) -> Self {
         let exact = i128::from(self.value) * i128::from(numerator) / i128::from(STEP);
         let steps = (2 * exact + i128::from(denominator)) / (2 * i128::from(denominator));
@@ -100,7 +100,7 @@ impl Length {
         Self { value, ..self }
     }
 
-    /// The length as an attribute says it.
+    /// The length as the value of an attribute.
     pub(super) fn text(self) -> String {
         let mut out = String::new();
         Unit::PX.push(&mut out, self.value);

@@ -24,14 +24,14 @@ fn push_circle(out: &mut String, [x, y]: [i64; 2], width: i64) {
     *out += &format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\"");
 }
 
-/// One side, an arc around the second end, the other side, an arc around the first. Both sides are the very
-/// same step, forth and back, and so are the chords of the arcs, so that rounding cannot open the outline.
+/// One side, an arc around the second end, the other side, an arc around the first. The two sides are the same
+/// step, forth and back, and so are the chords of the arcs; so rounding cannot open the outline.
 fn push_capsule(out: &mut String, a: [i64; 2], b: [i64; 2], width: i64) {
     let side = [b[0] - a[0], b[1] - a[1]];
     let length = math::hypot(side[0] as f64, side[1] as f64);
     let across = |along: i64| rounded(along as f64 / length * width as f64);
     let chord = [across(-side[1]), across(side[0])];
-    // A radius too short for its chord is stretched to a half circle by definition; one too long would
+    // By specification, a radius too short for its chord is stretched to a half circle; a longer one would
     // make a flatter arc.
     let r = number(floor(width / 2));
     let start = [a[0] - floor(chord[0] / 2), a[1] - floor(chord[1] / 2)];
@@ -47,7 +47,7 @@ fn push_capsule(out: &mut String, a: [i64; 2], b: [i64; 2], width: i64) {
     );
 }
 
-/// A ten-thousandth of a px: an arc shows the rounding of its ends more than a stroke does.
+/// A ten-thousandth of a px, because rounding of its ends shows more in an arc than in a stroke.
 const STEP: i64 = UNITS_PER_PX / 10_000;
 
 fn rounded(units: f64) -> i64 {

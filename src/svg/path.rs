@@ -3,14 +3,14 @@
 use super::dialect::{MAX_UNITS, Unit};
 use crate::scene::UNITS_PER_PX;
 
-/// The way from a dot to the end of its segment.
+/// The length of the segment that represents a dot.
 const DOT: i64 = UNITS_PER_PX / 100;
 
 /// A place in units of 1/[`UNITS_PER_PX`](crate::scene::UNITS_PER_PX) px.
 type Place = [i64; 2];
 
-/// The `d` of strokes with these corners. Each number pair is absolute or relative, whichever is shorter; a
-/// stroke that begins where the one before ends goes on from there.
+/// The `d` of strokes with these corners. Each pair of numbers is absolute or relative, whichever is shorter. A
+/// stroke that begins at the end of the previous one continues its line.
 pub(super) fn data<'a>(strokes: impl IntoIterator<Item = &'a [Place]>, unit: Unit) -> String {
     let mut out = String::new();
     let mut at = None;
@@ -29,14 +29,14 @@ pub(super) fn data<'a>(strokes: impl IntoIterator<Item = &'a [Place]>, unit: Uni
         if rest.is_empty() {
             out.push('h');
             unit.push(&mut out, DOT);
-            // Where the next relative step would start is 0.01 off.
+            // The next relative step would start 0.01 off.
             at = None;
         }
     }
     out
 }
 
-/// Appends the step from `at`, if that is known, to `to`.
+/// Appends the step from `at`, if known, to `to`.
 fn push_step(
     out: &mut String,
     [absolute, relative]: [char; 2],
@@ -47,7 +47,7 @@ fn push_step(
     let step = |letter: char, [x, y]: Place| {
         let mut text = String::from(letter);
         unit.push(&mut text, x);
-        // A minus sign separates by itself.
+        // A minus sign needs no separator.
         if y >= 0 {
             text.push(' ');
         }
@@ -64,16 +64,16 @@ fn push_step(
     );
 }
 
-/// What a `d` says.
+/// The content of a `d`.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Parsed {
     /// The corners of each stroke, neighbours different: two, or one for a dot.
     pub(super) strokes: Vec<Vec<Place>>,
-    /// Whether a stroke goes on from the end of the one before, so that the join shows.
+    /// Whether a stroke continues the line of the previous one, so that the shape of joins matters.
     pub(super) has_corner: bool,
 }
 
-/// The strokes of a `d`, or `None` if it is not of the dialect.
+/// The strokes of a `d`, or `None` if it is not part of the dialect.
 pub(super) fn parse(d: &str, unit: Unit) -> Option<Parsed> {
     let mut parsed = Parsed {
         strokes: Vec::new(),
@@ -90,7 +90,7 @@ pub(super) fn parse(d: &str, unit: Unit) -> Option<Parsed> {
     matches!(reached, Reached::Drawn(_) | Reached::Dotted).then_some(parsed)
 }
 
-/// Where the last step of a path led.
+/// What the last step of a path was.
 #[derive(Clone, Copy)]
 enum Reached {
     Nowhere,
@@ -126,7 +126,7 @@ impl Reached {
     }
 }
 
-/// What follows a letter, in this unit.
+/// Parses what follows a letter, in this unit.
 #[derive(Clone, Copy)]
 struct Numbers<'a>(&'a str, Unit);
 

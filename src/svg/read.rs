@@ -11,9 +11,9 @@ use super::path;
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::{Rgb, Scene, Stage, Stroke, Written, color};
 
-/// Reads what [`write`](super::write()) wrote in any form but outlines.
+/// Reads text that [`write`](super::write()) wrote, in any form except outlines.
 ///
-/// Comments, white space and attributes with a prefix (`inkscape:label`) do not matter.
+/// It ignores comments, white space and attributes with a prefix (`inkscape:label`).
 ///
 /// # Errors
 /// [`ErrorKind::Svg`] when the text is not well-formed XML, not SVG, or outside the dialect; the
@@ -26,7 +26,7 @@ pub fn read(text: &str) -> Result<Scene> {
     })
 }
 
-/// What is wrong, without the place.
+/// The problem, without its place.
 type Parsed<T> = Result<T, String>;
 
 struct Parser<'a> {
@@ -142,7 +142,7 @@ impl<'a> Parser<'a> {
                     stage.strokes.extend(look.of(&e, &["d"])?.strokes(&e)?);
                     self.close(&e)?;
                 }
-                // Each group has to say something new, which bounds their depth.
+                // Each group must set an attribute that is not set yet, which bounds their depth.
                 Tag::Open(e) if e.name == "g" => self.strokes(&look.of(&e, &[])?, stage)?,
                 Tag::Open(e) if e.name == "title" => self.close(&e)?,
                 Tag::Open(e) => return Err(unexpected(&e)),
@@ -152,7 +152,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// Passes over the text in `element` to its end.
+    /// Skips the text in `element` up to its end.
     fn close(&mut self, element: &Element) -> Parsed<()> {
         loop {
             match self.xml.read_event().map_err(|e| malformed(&e))? {
@@ -220,7 +220,7 @@ impl Element {
             .map(|(_, v)| v.as_str())
     }
 
-    /// The attribute as `parse` understands it.
+    /// The value of the attribute, read by `parse`.
     fn parsed<T>(&self, key: &str, parse: impl Fn(&str) -> Option<T>) -> Parsed<T> {
         let text = self.get(key)?;
         parse(text).ok_or_else(|| {
@@ -232,7 +232,7 @@ impl Element {
         })
     }
 
-    /// The attribute as `parse` understands it, or what is `known` without it.
+    /// The value of the attribute, read by `parse`, or `known` if it is absent.
     fn either<T>(
         &self,
         key: &str,
@@ -250,7 +250,7 @@ impl Element {
             .map_err(|e| format!("{e} (expected \"{value}\")"))
     }
 
-    /// Refuses attributes that would change the drawing in ways the scene cannot say.
+    /// Refuses attributes that would change the drawing in ways that a scene cannot represent.
     fn only(&self, keys: &[&str]) -> Parsed<()> {
         match self
             .attributes
@@ -266,7 +266,7 @@ impl Element {
     }
 }
 
-/// Width and height in px of the picture, which the `viewBox` has.
+/// Width and height of the picture in px, from the `viewBox`.
 fn page_size(root: &Element) -> Parsed<(u32, u32)> {
     root.only(&["width", "height", "viewBox"])?;
     let (width, height) = root.parsed("viewBox", |text| {
@@ -291,15 +291,15 @@ fn background(rect: &Element, width: u32, height: u32) -> Parsed<Rgb> {
     rect.parsed("fill", dialect::channels).map(color)
 }
 
-/// What groups say of the strokes in them.
+/// The attributes that groups set for the strokes in them.
 #[derive(Debug, Clone)]
 struct Look {
     color: Option<[u8; 3]>,
     width: Option<i64>,
     opacity: Option<u8>,
-    /// What holds where no width is said.
+    /// The default width.
     layer_width: Option<i64>,
-    /// What their numbers count.
+    /// The unit of their numbers.
     unit: Unit,
     /// Whether corners are round.
     has_join: bool,
@@ -321,7 +321,7 @@ impl Look {
         }
     }
 
-    /// What this and the attributes of `element` say together; other attributes it may have are `own`.
+    /// These attributes and those of `element` combined. `element` may set only what is not set yet, and `own`.
     fn of(&self, element: &Element, own: &[&str]) -> Parsed<Self> {
         let free = [
             ("stroke", self.color.is_none()),
@@ -345,7 +345,7 @@ impl Look {
         })
     }
 
-    /// The strokes of a path that looks so.
+    /// The strokes of a path with this look.
     fn strokes(&self, path: &Element) -> Parsed<Vec<Stroke>> {
         let parsed = path.parsed("d", |d| path::parse(d, self.unit))?;
         if parsed.has_corner && !self.has_join {

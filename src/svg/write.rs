@@ -6,8 +6,8 @@ use super::element;
 use super::options::{Form, WriteOptions};
 use crate::scene::{Scene, Stroke, Written, quantum};
 
-/// The scene as SVG text, in the order that [`arrange`](super::arrange()) says and as [`Scene::quantized`]
-/// rounds it; what that drops is not written.
+/// The scene as SVG text: rounded by [`Scene::quantized`], without the strokes that this drops, and in the order
+/// given by [`arrange`](super::arrange()).
 pub fn write(scene: &Scene, options: &WriteOptions) -> String {
     let mut out = head(scene, options);
     out.push_str(&layers(scene, options, 1));
@@ -15,8 +15,8 @@ pub fn write(scene: &Scene, options: &WriteOptions) -> String {
     out
 }
 
-/// The layers of the scene alone, to be put into a document of the scene's size. They are numbered from `first`;
-/// `xmlns:inkscape` must be declared around them.
+/// Only the layers of the scene, for a document of the scene's size. Their numbers start at `first`. The
+/// document must declare `xmlns:inkscape` around them.
 pub fn layers(scene: &Scene, options: &WriteOptions, first: usize) -> String {
     let mut out = String::new();
     for (index, layer) in arrange::layers(scene, options).iter().enumerate() {
@@ -25,8 +25,8 @@ pub fn layers(scene: &Scene, options: &WriteOptions, first: usize) -> String {
     out
 }
 
-/// Bytes that the stroke takes in a file, 0 when it would be dropped wherever it lay. In the smallest form, where
-/// that depends on its neighbours, a width that they share is taken to be theirs, and a colour the stroke's own.
+/// Bytes that the stroke takes in a file; 0 if it would be dropped at any place. In the smallest form this
+/// depends on its neighbours; the width then counts as shared, and the colour as the stroke's own.
 pub fn stroke_bytes(stroke: &Stroke, options: &WriteOptions) -> usize {
     Written::anywhere(stroke, options.precision).map_or(0, |stroke| {
         element::bytes(&stroke, options.form, options.unit())
@@ -51,7 +51,7 @@ fn head(scene: &Scene, options: &WriteOptions) -> String {
     out
 }
 
-/// The layer with numbers in px, or in the unit in which they are shortest, if that pays for saying so.
+/// The layer with numbers in px, or in the unit that makes them shortest, if this saves more than the attribute costs.
 fn shortest(number: usize, layer: &Layer, options: &WriteOptions) -> String {
     let text = |unit| text(number, layer, options.form, unit);
     let in_px = text(Unit::PX);
@@ -87,7 +87,7 @@ fn text(number: usize, layer: &Layer, form: Form, unit: Unit) -> String {
     out + "</g>\n"
 }
 
-/// The attributes of a layer that make its paths strokes.
+/// The attributes of a layer that turn its paths into strokes.
 fn look(layer: &Layer, form: Form) -> &'static str {
     if form == Form::Outlines {
         ""

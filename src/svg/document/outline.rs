@@ -9,16 +9,16 @@ use crate::scene::Scene;
 use crate::svg::dialect::{INKSCAPE_NAMESPACE, SVG_NAMESPACE};
 use crate::svg::{Length, read};
 
-/// What the ids of our layers begin with.
+/// The ids of our layers begin with this.
 const LAYERS: [&str; 2] = ["stage-", "color-"];
 
 /// The attribute of the group of layers: width and height of the picture, px.
 pub(super) const MARK: &str = "data-strokefit";
 
-/// What has to be known of a text to put layers into it.
+/// The facts about a text that are needed to insert layers.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Outline {
-    /// Where the end tag of the root element begins.
+    /// Position of the end tag of the root element.
     pub(super) end: usize,
     /// Elements within the root.
     pub(super) elements: usize,
@@ -26,9 +26,9 @@ pub(super) struct Outline {
     pub(super) texts: usize,
     /// Elements among them that show something of another file.
     pub(super) references: usize,
-    /// The highest number of a layer named as ours are.
+    /// The highest number of a layer with a name like ours.
     pub(super) stages: usize,
-    /// Layers of ours, up to the end of the root.
+    /// Our layers, if nothing follows them in the root.
     pub(super) group: Option<LayerGroup>,
     /// The name of the root element if it has no end tag.
     hollow: Option<String>,
@@ -103,7 +103,7 @@ impl Outline {
         Ok(())
     }
 
-    /// Takes note of the end tag of an element at `depth`.
+    /// Handles the end tag of an element at `depth`.
     fn close(&mut self, depth: usize, at: Range<usize>) {
         match (depth, &mut self.group) {
             (0, _) => self.end = at.start,
@@ -112,7 +112,7 @@ impl Outline {
         }
     }
 
-    /// Forgets the group unless nothing follows it but the end of its line.
+    /// Forgets the group if anything follows it besides the end of its line.
     fn on_top(mut self, text: &str) -> Self {
         let end = self.end;
         self.group = self
@@ -121,7 +121,7 @@ impl Outline {
         self
     }
 
-    /// Gives a root element without an end tag one.
+    /// Adds an end tag to a root element without one.
     pub(super) fn fill(&mut self, text: &mut String) {
         if let Some(name) = self.hollow.take() {
             text.replace_range(self.end..self.end + "/>".len(), &format!("></{name}>"));
@@ -131,7 +131,7 @@ impl Outline {
 }
 
 impl LayerGroup {
-    /// The layers in the group, numbered from `before` on.
+    /// The layers in the group, with numbers after `before`.
     pub(super) fn scene(&self, text: &str, before: usize) -> Option<Scene> {
         let (width, height) = self.size.split_once(' ')?;
         let mut layers = text[self.inside.clone()].to_owned();
@@ -149,7 +149,7 @@ impl LayerGroup {
     }
 }
 
-/// The width that the root of an SVG gives its page, if it has a unit.
+/// The width of the page in the root of an SVG, if it has a unit.
 pub fn page_width(text: &str) -> Option<Length> {
     let mut xml = Reader::from_str(text);
     loop {
@@ -163,12 +163,12 @@ pub fn page_width(text: &str) -> Option<Length> {
     }
 }
 
-/// How far the text has been read.
+/// Position up to which the text was read.
 fn position(xml: &Reader<&[u8]>) -> usize {
     usize::try_from(xml.buffer_position()).unwrap_or(usize::MAX)
 }
 
-/// Refuses what is no SVG, and a root whose size depends on what is drawn in it: layers would change it.
+/// Refuses text that is not SVG, and a root whose size depends on its content, because layers would change it.
 fn check_root(root: &BytesStart<'_>) -> Result<(), String> {
     let name = root.local_name();
     if name.as_ref() != "svg" {
@@ -184,7 +184,7 @@ fn check_root(root: &BytesStart<'_>) -> Result<(), String> {
     Err("the root element has neither a viewBox nor a width and height in px: add one".into())
 }
 
-/// Whether a length is a number with one of the units of SVG that do not depend on what is around.
+/// Whether a length is a number with an absolute unit of SVG.
 fn is_absolute(length: &str) -> bool {
     let length = length.trim();
     let number = length.trim_end_matches(|c: char| c.is_ascii_alphabetic());
@@ -192,7 +192,7 @@ fn is_absolute(length: &str) -> bool {
     number.parse::<f64>().is_ok() && units.contains(&&length[number.len()..])
 }
 
-/// Whether the element shows something that is in another file.
+/// Whether the element shows something of another file.
 fn refers_outside(tag: &BytesStart<'_>) -> bool {
     let shows = ["image", "use", "feImage"].contains(&tag.local_name().as_ref());
     let target = || attribute(tag, "href").or_else(|| attribute(tag, "xlink:href"));

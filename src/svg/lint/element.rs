@@ -2,7 +2,7 @@
 
 use quick_xml::events::BytesStart;
 
-/// An element, its attributes in order, values as they stand.
+/// An element with its attributes in order and their values unchanged.
 pub(super) struct Element {
     pub(super) name: String,
     attributes: Vec<(String, String)>,
@@ -38,7 +38,7 @@ impl Element {
             .map(|(_, value)| value.trim())
     }
 
-    /// A property, of `style="…"` before the attribute, as CSS has it.
+    /// A property. As in CSS, `style="…"` overrides the attribute.
     pub(super) fn property(&self, key: &str) -> Option<&str> {
         let mut styled = self
             .styles()
@@ -47,7 +47,7 @@ impl Element {
         styled.next_back().or_else(|| self.get(key))
     }
 
-    /// What `style="…"` says.
+    /// The value in `style="…"`.
     pub(super) fn styles(&self) -> impl DoubleEndedIterator<Item = (&str, &str)> {
         let style = self.get("style").unwrap_or_default();
         let pairs = style.split(';').filter_map(|pair| pair.split_once(':'));
@@ -69,7 +69,7 @@ impl Element {
     }
 }
 
-/// The element with what gives it its length, for a message.
+/// The element with the attribute that holds its geometry, for a message.
 pub(super) fn quote_shape(element: &Element) -> String {
     match element.name.as_str() {
         "path" => element.quote("d"),

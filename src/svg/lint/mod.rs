@@ -27,38 +27,38 @@ use serde::{Deserialize, Serialize};
 
 use rules::Rule;
 
-/// Bytes of a file that readers built on libxml2 stop at.
+/// File size at which readers built on libxml2 stop, bytes.
 const LIBXML2_BYTES: usize = 10_000_000;
 
-/// Lines that a finding's text names; the record has them all.
+/// Number of lines that a finding's text names; the record has all of them.
 const SHOWN_LINES: usize = 3;
 
-/// How much a finding matters.
+/// Severity of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
-    /// Some program draws nothing, or something else.
+    /// Some program draws nothing or something else.
     Error,
     /// Some programs draw it differently.
     Warning,
-    /// Drawn alike, but not of strokefit's dialect, or harder to edit.
+    /// Drawn alike, but not in strokefit's dialect, or harder to edit.
     Note,
 }
 
-/// One thing that was found, wherever it occurs.
+/// A finding, with all places where it occurs.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Finding {
     /// Name of the rule, such as `thin-stroke`.
     pub rule: String,
-    /// How much it matters.
+    /// Its severity.
     pub severity: Severity,
     /// Every line that has it, from 1, ascending.
     pub lines: Vec<usize>,
-    /// What stands there; of several places, at the first.
+    /// The text found there, at the first place if there are several.
     pub found: String,
-    /// What comes of it.
+    /// The consequence.
     pub why: String,
-    /// What to do about it.
+    /// The remedy.
     pub remedy: String,
 }
 
@@ -102,7 +102,7 @@ impl fmt::Display for Finding {
     }
 }
 
-/// Everything in SVG text that programs disagree on, the worst first.
+/// Finds constructs in SVG text that programs draw differently, the worst first.
 pub fn lint(text: &str) -> Vec<Finding> {
     let mut findings = Findings::default();
     if text.len() > LIBXML2_BYTES {
@@ -112,12 +112,12 @@ pub fn lint(text: &str) -> Vec<Finding> {
     findings.sorted()
 }
 
-/// What was found so far: one entry for each rule, or for each rule and element.
+/// The findings so far: one entry for each rule, or for each rule and element.
 #[derive(Default)]
 struct Findings(Vec<Finding>);
 
 impl Findings {
-    /// Notes that `rule` is broken on `line`, where `found` stands.
+    /// Notes that `found` on `line` breaks `rule`.
     fn add(&mut self, rule: &Rule, line: usize, found: impl Into<String>) {
         let at = self.0.iter().position(|f| f.rule == rule.name);
         self.insert(at, rule, line, found.into());

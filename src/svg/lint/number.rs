@@ -1,6 +1,6 @@
 //! Numbers in SVG syntax: adjacent without a space, with units, in transforms.
 
-/// px per unit of length, for those that are fixed.
+/// px per unit of length, for absolute units.
 const UNITS: [(&str, f64); 7] = [
     ("", 1.0),
     ("px", 1.0),
@@ -11,15 +11,15 @@ const UNITS: [(&str, f64); 7] = [
     ("in", 96.0),
 ];
 
-/// The number that `text` begins with, and the rest. `.5` and `1e3` are numbers; in `1.5.5` and
-/// `1-5` the second begins at its dot or sign.
+/// The number at the start of `text`, and the rest. `.5` and `1e3` are numbers; in `1.5.5` and `1-5` a second
+/// number begins at its dot or sign.
 pub(super) fn leading(text: &str) -> Option<(f64, &str)> {
     let end = length(text.as_bytes());
     let (number, rest) = text.split_at(end);
     Some((number.parse().ok()?, rest))
 }
 
-/// Bytes of the number at the beginning, 0 if there is none.
+/// Bytes of the number at the start, 0 if there is none.
 fn length(text: &[u8]) -> usize {
     let digits = |from: usize| {
         text[from..]
@@ -48,7 +48,7 @@ fn length(text: &[u8]) -> usize {
     at
 }
 
-/// All numbers in a text, whatever separates them.
+/// All numbers in a text, with any separators.
 pub(super) fn all(text: &str) -> Vec<f64> {
     let mut numbers = Vec::new();
     let mut rest = text;
@@ -63,7 +63,7 @@ pub(super) fn all(text: &str) -> Vec<f64> {
     numbers
 }
 
-/// Whether a number in the text begins with its dot.
+/// Whether a number in the text begins with a dot.
 pub(super) fn has_leading_dot(text: &str) -> bool {
     let mut rest = text;
     while let Some(first) = rest.chars().next() {
@@ -80,15 +80,15 @@ pub(super) fn has_leading_dot(text: &str) -> bool {
     false
 }
 
-/// A length in px; `None` for percentages, units of the font, and what is no length.
+/// A length in px; `None` for percentages, font units, and text that is not a length.
 pub(super) fn length_px(text: &str) -> Option<f64> {
     let (number, unit) = leading(text.trim())?;
     let px = UNITS.iter().find(|(name, _)| *name == unit.trim())?.1;
     Some(number * px)
 }
 
-/// By how much a `transform` widens strokes: the root of how much it widens areas. That of several
-/// is their product, and only matrices and scales widen anything.
+/// The factor by which a `transform` widens strokes: the root of the factor for areas. Only matrices and
+/// scales count; the factors of several transforms multiply.
 pub(super) fn transform_scale(transform: &str) -> f64 {
     let area: f64 = transform
         .split(')')

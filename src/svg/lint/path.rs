@@ -4,8 +4,8 @@ use super::number;
 
 type Point = [f64; 2];
 
-/// Whether a subpath has a segment, and all of its points are one. A lone `M` draws nothing
-/// anywhere, so it does not count.
+/// Whether a subpath has a segment and all its points coincide. A lone `M` draws nothing in any program, so
+/// it does not count.
 pub(super) fn has_zero_length(d: &str) -> bool {
     let mut walk = Walk::default();
     let mut rest = d;
@@ -30,7 +30,7 @@ struct Walk {
     here: Point,
     /// Segments since the last `M`.
     segments: usize,
-    /// Whether a point since the last `M` was elsewhere.
+    /// Whether a point since the last `M` differs from it.
     moved: bool,
     found: bool,
 }
@@ -75,7 +75,7 @@ impl Walk {
         }
     }
 
-    /// Segments of `count` arguments each, which are points from the index `first` on.
+    /// Segments of `count` arguments each, where points start at index `first`.
     fn points(&mut self, relative: bool, arguments: &[f64], count: usize, first: usize) {
         for segment in arguments.chunks_exact(count) {
             let mut to = self.here;

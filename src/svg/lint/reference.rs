@@ -8,14 +8,14 @@ use super::{Findings, rules};
 /// The ids of a file and the references to them.
 #[derive(Default)]
 pub(super) struct References {
-    /// Lines of the elements that have the id.
+    /// Lines of the elements with each id.
     ids: BTreeMap<String, Vec<usize>>,
-    /// Ids that are referred to, with their lines.
+    /// Referenced ids, with their lines.
     wanted: Vec<(String, usize)>,
 }
 
 impl References {
-    /// Notes what the element is called and refers to.
+    /// Notes the id and the references of the element.
     pub(super) fn note(&mut self, element: &Element, line: usize, findings: &mut Findings) {
         if let Some(id) = element.get("id") {
             self.ids.entry(id.to_owned()).or_default().push(line);
@@ -26,7 +26,7 @@ impl References {
         if element.get("inkscape:groupmode") == Some("layer") && element.get("id").is_none() {
             findings.add(&rules::LAYER_ID, line, "a layer without an id");
         }
-        // A link is followed by readers, not by renderers.
+        // People follow links; renderers do not.
         let hrefs = element
             .attributes()
             .filter(|(key, _)| element.name != "a" && is_href(key));
@@ -37,7 +37,7 @@ impl References {
         }
     }
 
-    /// Notes what a style sheet refers to.
+    /// Notes the references of a style sheet.
     pub(super) fn note_css(&mut self, css: &str, line: usize, findings: &mut Findings) {
         for target in urls(css) {
             self.refer(&target, line, findings);
@@ -55,7 +55,7 @@ impl References {
         }
     }
 
-    /// Judges the references, once all ids are known.
+    /// Checks the references, once all ids are known.
     pub(super) fn judge(&self, findings: &mut Findings) {
         for (id, lines) in self.ids.iter().filter(|(_, lines)| lines.len() > 1) {
             for &line in lines {
@@ -72,7 +72,7 @@ impl References {
     }
 }
 
-/// Whether the target is in the file, and itself refers to nothing: a drawing in a drawing may.
+/// Whether the target is in the file and is not itself an SVG, which could refer to something else.
 fn is_embedded(target: &str) -> bool {
     let kind = target
         .strip_prefix("data:")

@@ -4,7 +4,7 @@ use super::element::Element;
 use super::number;
 use super::path;
 
-/// Widest stroke, px, that some renderers draw as a hairline. Exactly 1 px is one.
+/// Widest stroke, px, that some renderers draw as a hairline (1 px included).
 const HAIRLINE_PX: f64 = 1.0;
 
 /// The stroke style that children of an element inherit.
@@ -16,7 +16,7 @@ pub(super) struct StrokeStyle {
     width: f64,
     /// px per unit.
     scale: f64,
-    /// Whether this is drawn where it stands, not a definition.
+    /// Whether the element is drawn in place, and is not a definition.
     pub(super) drawn: bool,
 }
 
@@ -60,7 +60,7 @@ impl StrokeStyle {
         (self.strokes(element) && thin).then_some(width_px)
     }
 
-    /// Whether the element has a stroke without length.
+    /// Whether the element has a stroke of zero length.
     pub(super) fn has_zero_length(self, element: &Element) -> bool {
         self.strokes(element) && is_point(element)
     }

@@ -12,10 +12,10 @@ use super::stroke::StrokeStyle;
 use super::{Findings, element};
 use crate::svg::dialect::SVG_NAMESPACE;
 
-/// Levels of elements that readers built on libxml2 stop at.
+/// Depth of elements at which readers built on libxml2 stop.
 const LIBXML2_LEVELS: usize = 256;
 
-/// By what part the aspect ratios of page and view may differ.
+/// Largest relative difference of the aspect ratios of page and `viewBox`.
 const ASPECT_TOLERANCE: f64 = 1e-3;
 
 /// Attributes that hold colours.
@@ -56,15 +56,15 @@ const NUMERIC: [&str; 24] = [
     "y2",
 ];
 
-/// Elements of the dialect, and those that draw nothing and say nothing of the drawing.
+/// Elements of the dialect, and elements that neither draw anything nor affect the drawing.
 const PLAIN: [&str; 9] = [
     "circle", "defs", "desc", "g", "metadata", "path", "rect", "svg", "title",
 ];
 
-/// Elements that every renderer draws alike.
+/// Elements that all renderers draw alike.
 const SHAPES: [&str; 4] = ["ellipse", "line", "polygon", "polyline"];
 
-/// Looks at all of the text.
+/// Walks through the whole text.
 pub(super) fn walk(text: &str, findings: &mut Findings) {
     let mut walk = Walk::new(text, findings);
     if let Err(message) = walk.document() {
@@ -146,7 +146,7 @@ impl<'a, 'b> Walk<'a, 'b> {
         usize::try_from(self.xml.buffer_position()).unwrap_or(usize::MAX)
     }
 
-    /// The event that was just read, as it stands in the file.
+    /// The text of the event that was just read.
     fn raw(&self) -> &'a str {
         self.text.get(self.at..self.here()).unwrap_or_default()
     }
@@ -210,7 +210,7 @@ impl<'a, 'b> Walk<'a, 'b> {
         Ok(())
     }
 
-    /// Judges the size of the page; gives the style at its root.
+    /// Checks the size of the page and returns the stroke style at its root.
     fn page(&mut self, root: &Element) -> StrokeStyle {
         let view = root.get("viewBox").map(number::all);
         let side = |key| root.get(key).and_then(number::length_px);
@@ -268,7 +268,7 @@ impl<'a, 'b> Walk<'a, 'b> {
     }
 }
 
-/// What the page's size in px, if it has one, says of its view.
+/// Compares the page's size in px, if it has one, with its `viewBox`.
 fn size_rule(
     size: Option<(f64, f64)>,
     view: (f64, f64),
@@ -277,7 +277,7 @@ fn size_rule(
     let Some((width, height)) = size else {
         return Some(&rules::PAGE_SIZE);
     };
-    // Sides are written with a few decimals.
+    // Files write sides with a few decimals.
     let misses = (width * view.1 - height * view.0).abs() > ASPECT_TOLERANCE * width * view.1;
     if misses {
         return Some(&rules::PAGE_SIZE);
@@ -285,7 +285,7 @@ fn size_rule(
     ((width, height) != view || origin != (0.0, 0.0)).then_some(&rules::PAGE_SCALE)
 }
 
-/// The rule that a value breaks.
+/// The rule that an attribute's value breaks.
 fn value_rule(key: &str, value: &str) -> Option<&'static Rule> {
     if key.len() > 4 && key.starts_with("on") {
         Some(&rules::SCRIPT)
@@ -300,7 +300,7 @@ fn value_rule(key: &str, value: &str) -> Option<&'static Rule> {
     }
 }
 
-/// The rule that an element breaks by being there.
+/// The rule that an element breaks by its presence.
 fn kind(name: &str) -> Option<&'static Rule> {
     match name {
         "script" => Some(&rules::SCRIPT),
