@@ -29,26 +29,26 @@ use crate::scene::{MAX_PRECISION, Rgb, Scene, Stage, Stroke};
 use crate::svg::{self, Form, Timing, WriteOptions};
 use crate::verify::{Painting, Size};
 
-/// How many frames there are about, when nothing else is asked for.
+/// Approximate number of frames by default.
 const USUAL_FRAMES: usize = 48;
-/// How long a whole film takes, as far as its frames stay within their bounds, ms.
+/// Duration of a whole film, as far as the bounds of its frames allow, ms.
 const FILM_MS: u32 = 6000;
-/// Time of a frame at least and at most, ms. Browsers slow down GIFs of less than 20.
+/// Shortest and longest time of a frame, ms. Browsers slow down GIFs with less than 20 ms.
 const FRAME_MS: [u32; 2] = [30, 800];
-/// How long the finished drawing is shown, ms.
+/// Time for which the finished drawing is shown, ms.
 const LAST_MS: u32 = 2500;
 
-/// Least width of a frame with a legend, px: some 25 letters.
+/// Smallest width of a frame with a legend, px: some 25 letters.
 const LEGEND: usize = 210;
 
 const WHITE: Rgb = [1.0; 3];
 
-/// What each frame adds to the one before.
+/// What each frame adds to the previous one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Step {
     /// A stage.
     Stage,
-    /// So many strokes.
+    /// This many strokes.
     Strokes(usize),
 }
 
@@ -66,14 +66,14 @@ impl FromStr for Step {
     }
 }
 
-/// What is written beneath each frame.
+/// The text below each frame.
 #[derive(Debug, Clone, Copy)]
 pub enum Legend<'a> {
     /// Nothing.
     None,
-    /// How many strokes.
+    /// The number of strokes.
     Strokes,
-    /// How many strokes, and how faithful they are to this picture, dB.
+    /// The number of strokes, and their PSNR against this picture, dB.
     Fidelity(&'a Image),
 }
 
@@ -96,16 +96,16 @@ impl Legend<'_> {
 /// How to film a drawing.
 #[derive(Debug, Clone, Copy)]
 pub struct Film<'a> {
-    /// What each frame adds, or `None` for some 50 frames.
+    /// What each frame adds; `None` for about 50 frames.
     pub step: Option<Step>,
-    /// What is written beneath.
+    /// The text below each frame.
     pub legend: Legend<'a>,
     /// Pixels per px of the drawing; 1 for a legend with fidelity.
     pub scale: f64,
 }
 
 impl Film<'_> {
-    /// The strokes that each frame adds, back to front; without strokes, one frame of nothing.
+    /// The strokes that each frame adds, back to front. A scene without strokes has one empty frame.
     pub fn parts(&self, scene: &Scene) -> Vec<Range<usize>> {
         let total = scene.len();
         let usual = Step::Strokes(total.div_ceil(USUAL_FRAMES));
@@ -123,7 +123,7 @@ impl Film<'_> {
         starts.zip(&ends).map(|(start, &end)| start..end).collect()
     }
 
-    /// The frames, drawn by resvg on white as they are asked for.
+    /// The frames, rendered by resvg on white when they are requested.
     ///
     /// # Errors
     /// Each as [`verify::render`](crate::verify::render); [`ErrorKind::Picture`] when a legend's
@@ -145,7 +145,7 @@ impl Film<'_> {
         })
     }
 
-    /// An animation of the frames, which repeats for ever; the last one stays for a while.
+    /// An animation of the frames. It repeats for ever and shows the last frame longer.
     ///
     /// # Errors
     /// As [`frames`](Self::frames), and [`Animation::push`].
@@ -176,7 +176,7 @@ fn timing(frames: usize) -> Timing {
     }
 }
 
-/// How many strokes there are after each stage that has any.
+/// The number of strokes after each stage that has any.
 fn stage_ends(scene: &Scene) -> Vec<usize> {
     let counts = scene.stages.iter().map(|stage| stage.strokes.len());
     let ends = counts.filter(|&count| count > 0).scan(0, |end, count| {
@@ -207,7 +207,7 @@ fn part_svg<'a>(
     svg::write(&part, &exactly)
 }
 
-/// The fewest decimals that say all of `scene`.
+/// The fewest decimals that represent `scene` exactly.
 fn precision(scene: &Scene) -> u8 {
     let says_all = |precision: &u8| scene.quantized(*precision).scene == *scene;
     (0..MAX_PRECISION).find(says_all).unwrap_or(MAX_PRECISION)

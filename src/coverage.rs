@@ -43,13 +43,13 @@ use std::str::FromStr;
 use crate::error::{Error, ErrorKind, Result};
 use crate::math::{self, Real};
 
-/// Coverage below which a tail is dropped, by [`Coverage::support`]: half of one of 256 levels, so
-/// that a stroke of the highest contrast changes no 8-bit pixel there. Higher, and the cut shows as
-/// a ring around soft strokes; lower, and every stroke of a tailed function pays for pixels that it
-/// does not change.
+/// Coverage below which [`Coverage::support`] drops a tail: half of one of 256 levels, so that even a stroke
+/// of the highest contrast changes no 8-bit pixel there. With a higher value the cut shows as a ring
+/// around soft strokes. With a lower one, every stroke with a tail spends time on pixels that it does not
+/// change.
 pub const TAIL: f64 = 1.0 / 512.0;
 
-/// Added to smoothstep's width, px; as the golden data has it.
+/// Added to smoothstep's width, px, as in the golden data.
 const SMOOTHSTEP_EPS: f64 = 1e-4;
 
 /// A soft coverage function.
@@ -71,8 +71,7 @@ pub enum Coverage {
 }
 
 impl Coverage {
-    /// One of each kind, and `atan` at both ends of its usual steepness: what holds for all of them is tried
-    /// with these.
+    /// One of each kind, and `atan` at both ends of its usual steepness, for tests of what holds for all.
     pub const EACH: [Self; 6] = [
         Self::Smoothstep,
         Self::Sigmoid,
@@ -125,8 +124,8 @@ impl Coverage {
         }
     }
 
-    /// Distance outside the edge, px, beyond which coverage is dropped: where it is exactly 0 or,
-    /// for functions with tails, below [`TAIL`].
+    /// Distance outside the edge, px, beyond which coverage is dropped because it is 0 or, for functions with
+    /// tails, below [`TAIL`].
     pub fn support(self, softness: f64) -> f64 {
         match self {
             Self::Smoothstep => softness / 2.0,
@@ -204,12 +203,12 @@ fn unknown(word: &str) -> Error {
     )
 }
 
-/// A coverage function that passes from one to another during a fit.
+/// A coverage function that may change from one to another during a fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CoverageSchedule {
     /// Used while the softness anneals.
     pub early: Coverage,
-    /// Used at the final softness, and to judge.
+    /// Used at the final softness, and to judge strokes.
     pub late: Coverage,
 }
 
@@ -219,7 +218,7 @@ impl Default for CoverageSchedule {
     }
 }
 
-/// The same function throughout.
+/// One function throughout.
 impl From<Coverage> for CoverageSchedule {
     fn from(coverage: Coverage) -> Self {
         Self {
@@ -239,10 +238,10 @@ impl fmt::Display for CoverageSchedule {
     }
 }
 
-/// Reads `A` (the same function throughout) or `A>B`.
+/// Reads `A` (one function throughout) or `A>B`.
 ///
 /// # Errors
-/// [`ErrorKind::Config`] where `A` or `B` is no coverage function.
+/// [`ErrorKind::Config`] if `A` or `B` is not a coverage function.
 impl FromStr for CoverageSchedule {
     type Err = Error;
 

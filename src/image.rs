@@ -36,7 +36,7 @@ impl Image {
     /// An opaque picture of `width × height` px from its red, green and blue planes, row by row.
     ///
     /// # Errors
-    /// [`ErrorKind::Picture`] when a side is 0, a plane has not `width·height` values, or a value
+    /// [`ErrorKind::Picture`] when a side is 0, a plane does not have `width·height` values, or a value
     /// is not finite.
     pub fn new(width: usize, height: usize, planes: [Vec<f32>; 3]) -> Result<Self> {
         let pixels = width
@@ -59,7 +59,7 @@ impl Image {
         })
     }
 
-    /// The picture at half the size (rounded up), each pixel the mean of up to 2×2; alpha is left out.
+    /// The picture at half the size (rounded up), each pixel the mean of up to 2×2; alpha is dropped.
     pub(crate) fn halved(&self) -> Self {
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
         let half = |plane: &Vec<f32>| {
@@ -81,7 +81,7 @@ impl Image {
         }
     }
 
-    /// The same without checks, for callers whose sizes agree by construction.
+    /// As [`Image::new`] without checks, for callers whose sizes agree by construction.
     pub(crate) fn from_planes(width: usize, height: usize, planes: [Vec<f32>; 3]) -> Self {
         debug_assert!(planes.iter().all(|plane| plane.len() == width * height));
         Self {
@@ -101,8 +101,8 @@ impl Image {
         Self::new(width, height, color.map(|c| vec![c; pixels]))
     }
 
-    /// The same picture with this alpha, `width·height` values 0..1. Alpha that is 1 everywhere
-    /// says nothing and is left out.
+    /// The same picture with this alpha, `width·height` values 0..1. Alpha that is 1 everywhere is
+    /// dropped.
     ///
     /// # Errors
     /// [`ErrorKind::Picture`] when there are not `width·height` values or one is not finite.
@@ -129,12 +129,12 @@ impl Image {
         decode::open(path.as_ref(), limits)
     }
 
-    /// Decodes the bytes of a picture file, whose format is told from the bytes alone. `name` is
-    /// what messages call the file.
+    /// Decodes the bytes of a picture file, and detects the format from the bytes only. Messages call the
+    /// file `name`.
     ///
     /// # Errors
-    /// [`ErrorKind::Picture`] when the bytes are none, no picture, cut short, damaged, of 0×0 px,
-    /// or beyond `limits`; limits are checked from the header, before memory is spent.
+    /// [`ErrorKind::Picture`] when there are no bytes, or they are not a picture, cut short, damaged, of 0×0
+    /// px, or beyond `limits`. The limits are checked on the header, before memory is spent.
     pub fn decode(bytes: &[u8], name: &str, limits: Limits) -> Result<Self> {
         decode::decode(bytes, limits).map_err(|error| error.within(name))
     }
@@ -142,7 +142,7 @@ impl Image {
     /// The picture as a PNG file: 8-bit RGB, or RGBA where there is alpha.
     ///
     /// # Errors
-    /// [`ErrorKind::Picture`] when a side exceeds what PNG can say.
+    /// [`ErrorKind::Picture`] when a side exceeds the maximum of PNG.
     pub fn encode_png(&self) -> Result<Vec<u8>> {
         encode::png(self)
     }
@@ -162,7 +162,7 @@ impl Image {
         &self.planes
     }
 
-    /// The planes, given away; alpha is dropped.
+    /// Returns the planes by value; alpha is dropped.
     pub fn into_planes(self) -> [Vec<f32>; 3] {
         self.planes
     }
@@ -172,7 +172,7 @@ impl Image {
         self.alpha.as_deref()
     }
 
-    /// The picture laid on `matte`: opaque, composited in encoded values as SVG renderers do.
+    /// The picture flattened onto `matte`: opaque, composited in encoded values as SVG renderers do.
     #[must_use]
     pub fn flattened(&self, matte: Rgb) -> Self {
         let Some(alpha) = &self.alpha else {
@@ -192,8 +192,8 @@ impl Image {
         }
     }
 
-    /// The upper left `width × height` px, without alpha, or `None` where the picture is smaller or
-    /// nothing would be left.
+    /// The upper left `width × height` px, without alpha. `None` if the picture is smaller or a side
+    /// is 0.
     pub(crate) fn cropped(&self, width: usize, height: usize) -> Option<Self> {
         if width > self.width || height > self.height || width == 0 || height == 0 {
             return None;
@@ -207,7 +207,7 @@ impl Image {
     }
 
     /// The colours as interleaved 8-bit RGB, row by row, each value rounded to the nearest of
-    /// 0..=255. Alpha plays no part: [flatten](Self::flattened) first.
+    /// 0..=255. Alpha is ignored: [flatten](Self::flattened) first.
     pub fn to_rgb8(&self) -> Vec<u8> {
         let [red, green, blue] = &self.planes;
         let pixels = red.iter().zip(green).zip(blue);
@@ -219,7 +219,7 @@ impl Image {
     }
 }
 
-/// Without the values: they would bury everything else.
+/// Omits the values, which would hide everything else.
 impl fmt::Debug for Image {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Image")
@@ -232,7 +232,7 @@ impl fmt::Debug for Image {
 
 /// The nearest of 0..=255 to a value of 0..1.
 fn byte(value: f32) -> u8 {
-    // `as` saturates, so values beyond 0..1 go to the nearer end.
+    // `as` saturates, so values beyond 0..1 become the nearer end.
     (value * 255.0 + 0.5) as u8
 }
 

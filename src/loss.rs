@@ -12,18 +12,18 @@
 
 use crate::math::Real;
 
-/// A measure of how far a canvas is from its target.
+/// A measure of the difference between a canvas and its target.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Loss {
-    /// Absolute error. Indifferent to how an error is spread, so it keeps edges sharp.
+    /// Absolute error. It does not favour spread-out errors, so it keeps edges sharp.
     L1,
-    /// Squared error. What PSNR and every closed-form gain are made of.
+    /// Squared error, on which PSNR and all closed-form gains are based.
     #[default]
     L2,
 }
 
 impl Loss {
-    /// What the error `e = canvas − target` of one value costs.
+    /// The loss of the error `e = canvas − target` of one value.
     #[inline]
     pub fn value<T: Real>(self, e: T) -> T {
         match self {
@@ -43,9 +43,9 @@ impl Loss {
         }
     }
 
-    /// The mean loss over all values, added up in `f64`; 0 for no values.
+    /// The mean loss over all values, summed in `f64`; 0 without values.
     ///
-    /// `canvas` and `target` are of equal length and in the same order, whatever it is.
+    /// `canvas` and `target` have equal length and the same order.
     pub fn mean<T: Real>(self, canvas: &[T], target: &[T]) -> f64 {
         debug_assert_eq!(canvas.len(), target.len());
         let values = canvas.iter().zip(target);

@@ -18,8 +18,8 @@ const CHANNELS: usize = 3;
 /// How faithful a picture is to another.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Quality {
-    /// Peak signal-to-noise ratio, `−10·log10(mse)` in dB; infinite for equal pictures, which JSON
-    /// shows as `null`.
+    /// Peak signal-to-noise ratio, `−10·log10(mse)` in dB; infinite for equal pictures, `null` in
+    /// JSON.
     #[serde(deserialize_with = "null_is_infinite")]
     pub psnr_db: f64,
     /// Structural similarity, 1 for equal pictures; see [`ssim`].
@@ -49,7 +49,7 @@ impl Quality {
     }
 }
 
-/// How well two renders of the same drawing agree.
+/// Agreement of two renders of the same drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Agreement {
     /// As [`Quality::psnr_db`].
@@ -74,12 +74,12 @@ impl Agreement {
     }
 }
 
-/// Where two pictures differ most.
+/// The largest difference of two pictures, and its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Largest {
     /// Largest difference of a channel of a pixel, 0..=255.
     pub max_abs: u8,
-    /// Column of the first pixel, row by row, that has it.
+    /// Column of the first such pixel, row by row.
     pub x: usize,
     /// Row of that pixel.
     pub y: usize,
@@ -147,9 +147,9 @@ pub fn psnr_db(mse: f64) -> f64 {
 /// Structural similarity (Wang, Bovik, Sheikh and Simoncelli 2004), −1..1, of 8-bit RGB on white.
 ///
 /// Window: Gaussian, 11 × 11 px, σ = 1.5 px, `K1 = 0.01`, `K2 = 0.03`; the mean over red, green
-/// and blue and over all pixels. At the border the window is cut at the picture's edge and its
-/// weights rescaled to sum 1, so that pictures smaller than the window need no special rule.
-/// Implementations that crop the border or work on luma give slightly other numbers.
+/// and blue and over all pixels. At the border the window is cut off, and its weights are rescaled to sum 1;
+/// so pictures smaller than the window need no special rule. Implementations that crop the border or work on
+/// luma give slightly different numbers.
 ///
 /// # Errors
 /// [`ErrorKind::Picture`] when the sizes differ.
@@ -175,7 +175,7 @@ fn levels_of_both(a: &Image, b: &Image) -> Result<(Vec<u8>, Vec<u8>)> {
     Ok((levels(a), levels(b)))
 }
 
-/// Sums over all differences, in integers, so that no order of summing matters.
+/// Sums over all differences, in integers, so that the order of summation does not matter.
 struct Sums {
     count: u64,
     squares: u64,

@@ -16,8 +16,8 @@ pub type Rgb = [f32; 3];
 
 /// The centre line of a stroke: a polyline of one point (a dot) or two (a capsule).
 ///
-/// Everything outside the renderer asks for [`points`](Self::points) and makes no assumption about
-/// their number, so that longer polylines can be added here and in the renderer alone.
+/// Code outside the renderer uses [`points`](Self::points) and makes no assumption about their number, so
+/// longer polylines need changes only here and in the renderer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Shape {
@@ -90,7 +90,7 @@ impl Stroke {
     }
 }
 
-/// Strokes that were added together; a layer of the SVG.
+/// Strokes that were added together: a layer of the SVG.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Stage {
     /// Back to front.
@@ -104,14 +104,14 @@ pub struct Scene {
     pub width: u32,
     /// Height in px, at least 1.
     pub height: u32,
-    /// The colour behind all strokes, or `None` for a transparent page.
+    /// The colour behind all strokes; `None` if the drawing is transparent.
     pub background: Option<Rgb>,
     /// Back to front.
     pub stages: Vec<Stage>,
 }
 
 impl Scene {
-    /// A page without strokes.
+    /// A scene without strokes.
     pub fn empty(width: u32, height: u32, background: Option<Rgb>) -> Self {
         Self {
             width,
@@ -126,12 +126,12 @@ impl Scene {
         self.stages.iter().flat_map(|stage| &stage.strokes)
     }
 
-    /// How many strokes there are.
+    /// Number of strokes.
     pub fn len(&self) -> usize {
         self.stages.iter().map(|stage| stage.strokes.len()).sum()
     }
 
-    /// Whether there is no stroke.
+    /// Whether the scene has no stroke.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

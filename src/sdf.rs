@@ -75,7 +75,7 @@ pub struct Circle<T: Real> {
     pub radius: T,
 }
 
-/// A circle's distance at a point, with its derivatives; that by the radius is always 1.
+/// A circle's distance at a point, with its derivatives. The one by the radius is always 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CircleJet<T: Real> {
     /// Signed distance, px, positive inside.
@@ -114,7 +114,7 @@ pub struct Capsule<T: Real> {
     pub radius: T,
 }
 
-/// A capsule's distance at a point, with its derivatives; that by the radius is always 1.
+/// A capsule's distance at a point, with its derivatives. The one by the radius is always 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CapsuleJet<T: Real> {
     /// Signed distance, px, positive inside.
@@ -164,9 +164,9 @@ impl<T: Real> Capsule<T> {
 pub enum Combination {
     /// Inside either: `max(d₁, d₂)`.
     Union,
-    /// Inside both: `min(d₁, d₂)`. A bound of the true distance, not the distance itself.
+    /// Inside both: `min(d₁, d₂)`. This is a bound of the true distance, not the distance itself.
     Intersection,
-    /// Inside the first but not the second: `min(d₁, −d₂)`. A bound, as above.
+    /// Inside the first but not the second: `min(d₁, −d₂)`. This is a bound as well.
     Subtraction,
 }
 
@@ -207,7 +207,7 @@ fn shares<T: Real>(x: T, y: T) -> (T, T) {
     (share, T::one() - share)
 }
 
-/// Where the foot of the perpendicular from `p` lies on the line, 0 at `a` and 1 at `b`.
+/// The foot of the perpendicular from `p` on the line, 0 at `a` and 1 at `b`.
 #[inline]
 fn foot<T: Real>(pa: &Vector2<T>, ba: &Vector2<T>, eps: T) -> T {
     let m = ba.dot(ba) + eps;
@@ -223,7 +223,7 @@ fn length<T: Real>(q: Vector2<T>, eps: T) -> T {
     (q.dot(&q) + eps).sqrt()
 }
 
-/// `q / length`, or zero where there is no direction.
+/// `q / length`, or zero if there is no direction.
 #[inline]
 fn direction<T: Real>(q: Vector2<T>, length: T) -> Vector2<T> {
     if length > T::zero() {

@@ -137,7 +137,7 @@ fn outputs_that_would_collide_are_refused_before_the_work() {
         ),
         (
             &["fit", "a.png", "in/a.png", "-o", "{stem}.svg"],
-            ["a.svg", "names differ"],
+            ["a.svg", "different names"],
         ),
         (
             &[

@@ -10,7 +10,7 @@ use ::image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
 use super::{Image, header};
 use crate::error::{Error, ErrorKind, Result};
 
-/// What a picture file may cost. Checked from the header, before memory is spent.
+/// Limits on the size of a picture file. They are checked on the header, before memory is spent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limits {
     /// Most pixels, width × height.
@@ -39,7 +39,7 @@ pub(super) fn open(path: &Path, limits: Limits) -> Result<Image> {
 
 fn read(path: &Path, limits: Limits) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    // One byte more than allowed tells a file at the limit from an endless one.
+    // One byte more than allowed distinguishes a file at the limit from a longer one.
     let mut input = File::open(path)
         .map_err(unreadable)?
         .take(limits.max_bytes.saturating_add(1));
@@ -81,7 +81,7 @@ pub(super) fn decode(bytes: &[u8], limits: Limits) -> Result<Image> {
     planar(picture)
 }
 
-/// The format that the bytes begin like.
+/// The format, by the first bytes.
 fn format(bytes: &[u8], limits: Limits) -> Result<ImageFormat> {
     if bytes.is_empty() {
         return Err(bad(
@@ -117,7 +117,7 @@ fn check_size(width: u32, height: u32, limits: Limits) -> Result<()> {
     Ok(())
 }
 
-/// The decoded samples, turned as EXIF asks.
+/// The decoded samples in the orientation given by EXIF.
 fn samples(
     bytes: Supply<'_>,
     format: ImageFormat,
@@ -134,7 +134,7 @@ fn samples(
     }
     allowed.reserve(decoder.total_bytes())?;
     decoder.set_limits(allowed)?;
-    // A picture whose metadata is damaged is still a picture.
+    // A picture with damaged metadata can still be used.
     let orientation = decoder
         .orientation()
         .unwrap_or(::image::metadata::Orientation::NoTransforms);
@@ -158,7 +158,7 @@ fn name(format: ImageFormat) -> String {
     format!("{format:?}").to_uppercase()
 }
 
-/// What the decoder's refusal means for the owner of the file.
+/// Explains the decoder's error to the owner of the file.
 fn refused(error: ImageError, format: ImageFormat) -> Error {
     let message = match &error {
         ImageError::Limits(_) => "the picture needs too much memory: scale it down".into(),
@@ -185,8 +185,8 @@ fn one_line(error: &ImageError) -> String {
         .join(" ")
 }
 
-/// The bytes of a file, and whether a reader asked for more than there are: the decoders disagree
-/// in how they report a file that is cut short, but all of them ask.
+/// The bytes of a file, and whether a reader wanted more than there are. Decoders report a file that is cut
+/// short in different ways, but all of them try to read on.
 struct Supply<'a> {
     inner: Cursor<&'a [u8]>,
     ran_out: &'a Cell<bool>,

@@ -18,8 +18,8 @@ pub(crate) enum Embeddable {
     WebP,
 }
 
-/// The format, width and height that a picture file states, if it is one that SVG files embed. No pixel
-/// is decoded.
+/// The format, width and height in the header of a picture file, if SVG can embed this format. No pixel is
+/// decoded.
 pub(crate) fn stated_size(bytes: &[u8]) -> Option<(Embeddable, u32, u32)> {
     let reader = ImageReader::new(Cursor::new(bytes))
         .with_guessed_format()
@@ -46,8 +46,8 @@ pub(super) fn size(bytes: &[u8], format: ImageFormat) -> Option<(u32, u32)> {
     }
 }
 
-/// Whether the JPEG's scans reach their end-of-image marker. The decoder fills what is missing
-/// with grey and says nothing.
+/// Whether the JPEG's scans reach their end-of-image marker. The decoder fills missing parts with grey and
+/// reports nothing.
 pub(super) fn jpeg_is_whole(bytes: &[u8]) -> bool {
     segments(bytes).any(|segment| segment.marker == 0xd9)
 }

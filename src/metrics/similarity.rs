@@ -9,7 +9,7 @@ use crate::math;
 const REACH: usize = 5;
 /// Standard deviation of the SSIM window, px.
 const SIGMA: f64 = 1.5;
-/// Keep SSIM stable where means (`C1`) or variances (`C2`) are near 0: `(0.01·L)²` and
+/// Constants that keep SSIM stable where means (`C1`) or variances (`C2`) are near 0: `(0.01·L)²` and
 /// `(0.03·L)²` for the range `L = 1`.
 const C1: f32 = 0.01 * 0.01;
 const C2: f32 = 0.03 * 0.03;
@@ -44,7 +44,7 @@ fn window() -> [f32; 2 * REACH + 1] {
     weights.map(|w| (w / sum) as f32)
 }
 
-/// The taps of the window along a row, and what rescales them where the row's ends cut it.
+/// The weights of the window along a row, and the factor that rescales them where the window is cut off.
 struct Cut<'a> {
     window: &'a [f32],
     step: usize,
@@ -64,7 +64,7 @@ impl<'a> Cut<'a> {
         cut
     }
 
-    /// Adds the window's taps of `from`, not rescaled, to `to`.
+    /// Adds the weighted samples of `from`, not rescaled, to `to`.
     fn sum(&self, from: &[f32], to: &mut [f32]) {
         for (k, &w) in self.window.iter().enumerate() {
             let shift = self.step * k.abs_diff(REACH);

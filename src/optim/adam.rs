@@ -20,7 +20,7 @@ use serde::{Deserialize, Serialize};
 use super::{Optimizer, clip};
 use crate::math::Real;
 
-/// What Adam needs beside the learning rate.
+/// Parameters of Adam besides the learning rate.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AdamParams {
     /// Decay of the mean gradient and of the mean squared gradient, each in 0..1.
@@ -42,7 +42,7 @@ impl Default for AdamParams {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Adam<T> {
     params: AdamParams,
-    /// The moving averages of the gradient, of its square, and of 1 with either decay.
+    /// The moving averages of the gradient, of its square, and of 1 with each decay.
     mean: Vec<T>,
     square: Vec<T>,
     mean_of_one: Vec<T>,
@@ -62,8 +62,8 @@ impl<T: Real> Adam<T> {
         }
     }
 
-    /// Follows a rearrangement of the values in groups of `group`: group `i` was `sources[i]`, or is
-    /// new and has no past.
+    /// Rearranges the state like the values, in groups of `group`: group `i` was `sources[i]`, or is new
+    /// and has no past.
     pub fn rearrange(&mut self, group: usize, sources: &[Option<usize>]) {
         for state in [
             &mut self.mean,
@@ -93,7 +93,7 @@ impl<T: Real> Adam<T> {
         let [keep1, keep2] = self.params.betas.map(T::of);
         let [take1, take2] = self.params.betas.map(|beta| T::of(1.0 - beta));
         let eps = T::of(self.params.eps);
-        // Equal lengths known beforehand are what lets the compiler vectorise the loop.
+        // Slices of known equal length let the compiler vectorise the loop.
         let n = self.mean.len().min(params.len()).min(gradients.len());
         let (params, gradients) = (&mut params[..n], &gradients[..n]);
         let (mean, square) = (&mut self.mean[..n], &mut self.square[..n]);

@@ -15,12 +15,12 @@ use std::ops::Range;
 use super::{Adam, AdamParams, Optimizer};
 use crate::math::Real;
 
-/// What AdamW needs beside the learning rate.
+/// Parameters of AdamW besides the learning rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AdamWParams {
-    /// The step's own.
+    /// Those of the step of Adam.
     pub adam: AdamParams,
-    /// λ, the fraction of a value that is lost per step at a learning rate of 1.
+    /// λ, the fraction by which a value shrinks per step at a learning rate of 1.
     pub decay: f64,
 }
 

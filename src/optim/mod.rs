@@ -32,20 +32,20 @@ pub use schedule::Schedule;
 
 use crate::math::Real;
 
-/// What all optimisers can do.
+/// The interface of all optimisers.
 ///
-/// The slices given to a step are as long as the `len` the optimiser was made with; what
-/// is beyond the shortest of them is left as it is.
+/// The slices given to a step are as long as the `len` of the optimiser. Values beyond the shortest of them
+/// do not change.
 pub trait Optimizer<T: Real> {
     /// Moves `params` down `gradients` with one learning `rate` for all.
     fn step(&mut self, params: &mut [T], gradients: &[T], rate: T);
 
-    /// The same with the learning rate `rate · scales[i]` for value `i`: positions, radii, colours
-    /// and opacities want different ones. `scales` are filled once, `rate` follows a [`Schedule`].
+    /// The same with the learning rate `rate · scales[i]` for value `i`, since positions, radii, colours and
+    /// opacities need different rates. `scales` are filled once; `rate` follows a [`Schedule`].
     fn step_scaled(&mut self, params: &mut [T], gradients: &[T], rate: T, scales: &[T]);
 
-    /// Forgets the past of the values in `range`, as if they had never made a step.
-    /// What is beyond the end is ignored.
+    /// Resets the state of the values in `range`, as if they had never made a step. Indices beyond the end
+    /// are ignored.
     fn reset(&mut self, range: Range<usize>);
 }
 

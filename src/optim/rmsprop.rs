@@ -19,12 +19,12 @@ use std::ops::Range;
 use super::{Optimizer, clip};
 use crate::math::Real;
 
-/// What RMSprop needs beside the learning rate.
+/// Parameters of RMSprop besides the learning rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RmsPropParams {
     /// α, decay of the mean squared gradient, in 0..1.
     pub alpha: f64,
-    /// μ, the part of the last step that is made again, in 0..1.
+    /// μ, the share of the previous step that is repeated, in 0..1.
     pub momentum: f64,
     /// Added to the root mean square.
     pub eps: f64,
@@ -62,7 +62,7 @@ impl<T: Real> RmsProp<T> {
     fn update(&mut self, params: &mut [T], gradients: &[T], rate: impl Fn(usize) -> T) {
         let (keep, take) = (T::of(self.params.alpha), T::of(1.0 - self.params.alpha));
         let (momentum, eps) = (T::of(self.params.momentum), T::of(self.params.eps));
-        // Equal lengths known beforehand are what lets the compiler vectorise the loop.
+        // Slices of known equal length let the compiler vectorise the loop.
         let n = self.square.len().min(params.len()).min(gradients.len());
         let (params, gradients) = (&mut params[..n], &gradients[..n]);
         let (square, buffer) = (&mut self.square[..n], &mut self.buffer[..n]);

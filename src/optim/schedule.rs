@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 use crate::math;
 
-/// How the learning rate changes, as a factor of its first value.
+/// The course of the learning rate, as a factor of its first value.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Schedule {
     /// 1 throughout.
@@ -21,8 +21,7 @@ pub enum Schedule {
 }
 
 impl Schedule {
-    /// The factor of step `step`, counted from 0, of `steps`. From the last step on it stays the
-    /// same.
+    /// The factor of step `step`, counted from 0, of `steps`. After the last step it stays constant.
     pub fn factor(self, step: usize, steps: usize) -> f64 {
         let last = steps.saturating_sub(1).max(1);
         let done = step.min(last) as f64 / last as f64;

@@ -4,7 +4,7 @@ use super::quantize::{UNITS_PER_PX, Written};
 use crate::math;
 
 impl Written {
-    /// Whether it can be seen in which order the two are drawn.
+    /// Whether the order of the two strokes can change the picture.
     pub(crate) fn meets(&self, other: &Self) -> bool {
         let (a, b) = (self, other);
         let reach = (a.width + b.width) / 2 + APART;

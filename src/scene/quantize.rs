@@ -11,41 +11,40 @@ use crate::math::Point;
 /// Most decimals of a coordinate or width.
 pub const MAX_PRECISION: u8 = 6;
 
-/// Narrowest stroke, px. Rasterisers of the Skia family draw a width of 1 px or less as a
-/// modulated hairline, with the wrong ink on diagonals; wider by too little, and rounding would
-/// fall back to it.
+/// Narrowest stroke, px. Rasterisers of the Skia family draw a width of 1 px or less as a hairline of lower
+/// opacity, with the wrong ink on diagonals. The excess over 1 px keeps rounding from reaching 1 px.
 pub const MIN_WIDTH: f64 = 1.02;
 
-/// Farthest that a coordinate may lie from the origin, px; all decimals up to here are exact.
+/// Largest absolute value of a coordinate, px. All decimals up to here are exact.
 const MAX_COORDINATE: f32 = 1e9;
 
-/// Parts of a px in which [`Written`] counts.
+/// Units of [`Written`] per px.
 pub(crate) const UNITS_PER_PX: i64 = 10_i64.pow(MAX_PRECISION as u32);
 
-/// A scene as its SVG says it, and what that leaves out.
+/// A scene rounded to what its SVG holds, and the strokes that were dropped.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Quantized {
-    /// What is written. No stage of it is empty.
+    /// The rounded scene. None of its stages is empty.
     pub scene: Scene,
-    /// Which stage of the original each of its stages is.
+    /// For each of its stages, the index in the original scene.
     pub origins: Vec<usize>,
-    /// What is not written.
+    /// Strokes that are not written.
     pub dropped: Dropped,
 }
 
-/// How many strokes are not written, by the reason.
+/// Number of strokes that are not written, by reason.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Dropped {
-    /// A number of theirs is none.
+    /// Strokes with NaN or infinite parameters.
     pub non_finite: usize,
-    /// They have no width, or an opacity that rounds to 0.
+    /// Strokes without width, or with an opacity that rounds to 0.
     pub invisible: usize,
-    /// They lie wholly off the page (judged by their bounding box), or absurdly far away.
+    /// Strokes with a bounding box off the page, or with a coordinate beyond the limit of the file.
     pub off_page: usize,
 }
 
 impl Dropped {
-    /// All of them.
+    /// The sum.
     pub fn total(self) -> usize {
         self.non_finite + self.invisible + self.off_page
     }
@@ -68,11 +67,11 @@ pub(crate) enum Unwritable {
 }
 
 impl Scene {
-    /// The scene as its SVG of `precision` decimals (at most [`MAX_PRECISION`]) says it.
+    /// The scene rounded to what its SVG with `precision` decimals (at most [`MAX_PRECISION`]) holds.
     ///
     /// Coordinates and widths are rounded, widths kept at [`MIN_WIDTH`] or more; colours and
     /// opacities become multiples of 1/255; a shape shorter than the precision becomes a dot.
-    /// [`Dropped`] says what is left out; stages without strokes are, too.
+    /// [`Dropped`] counts the strokes that are left out. Stages without strokes are left out as well.
     pub fn quantized(&self, precision: u8) -> Quantized {
         let mut quantized = Quantized {
             scene: Self {
@@ -104,10 +103,10 @@ impl Scene {
     }
 }
 
-/// A stroke in the integers that its SVG element is made of.
+/// A stroke as the integers of its SVG element.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Written {
-    /// Corners of the centre line in units of 1/[`UNITS_PER_PX`] px; neighbours differ; one makes
+    /// Corners of the centre line in units of 1/[`UNITS_PER_PX`] px. Neighbours differ. A single one makes
     /// a dot.
     pub(crate) points: Vec<[i64; 2]>,
     /// Width in the same units.
@@ -119,7 +118,7 @@ pub(crate) struct Written {
 }
 
 impl Written {
-    /// The stroke rounded to `precision` decimals, or why nothing of it would be seen on the page of
+    /// The stroke rounded to `precision` decimals, or the reason why it would be invisible on the page of
     /// `scene`.
     pub(crate) fn new(stroke: &Stroke, scene: &Scene, precision: u8) -> Result<Self, Unwritable> {
         let written = Self::anywhere(stroke, precision)?;
@@ -130,7 +129,7 @@ impl Written {
         }
     }
 
-    /// The stroke rounded to `precision` decimals, wherever it lies.
+    /// The stroke rounded to `precision` decimals, whatever its place.
     pub(crate) fn anywhere(stroke: &Stroke, precision: u8) -> Result<Self, Unwritable> {
         check(stroke)?;
         let grid = Grid::new(precision);
@@ -163,7 +162,7 @@ impl Written {
         })
     }
 
-    /// The stroke that is written.
+    /// The rounded stroke.
     pub(crate) fn stroke(&self) -> Stroke {
         let point = |p: &[i64; 2]| Point::new(px(p[0]), px(p[1]));
         let shape = match self.points.as_slice() {
@@ -180,7 +179,7 @@ impl Written {
     }
 }
 
-/// Refuses what no decimals make visible.
+/// Refuses strokes that are invisible at any precision.
 fn check(stroke: &Stroke) -> Result<(), Unwritable> {
     let far = |p: &Point| p.x.abs() > MAX_COORDINATE || p.y.abs() > MAX_COORDINATE;
     if !stroke.is_finite() {
@@ -212,13 +211,13 @@ impl Grid {
         (px * self.per_px as f64).round() as i64 * (UNITS_PER_PX / self.per_px)
     }
 
-    /// The least multiple that is no less than [`MIN_WIDTH`], in units.
+    /// The smallest multiple of at least [`MIN_WIDTH`], in units.
     fn min_width(&self) -> i64 {
         (MIN_WIDTH * self.per_px as f64).ceil() as i64 * (UNITS_PER_PX / self.per_px)
     }
 }
 
-/// Units as px. One division and one rounding: the nearest `f32` to the decimal that is written.
+/// Units as px. One division and one rounding give the `f32` nearest to the written decimal.
 fn px(units: i64) -> f32 {
     (units as f64 / UNITS_PER_PX as f64) as f32
 }
@@ -228,7 +227,7 @@ pub(crate) fn quantum(value: f32) -> u8 {
     (value * 255.0 + 0.5) as u8
 }
 
-/// The colour that 8-bit channels stand for.
+/// The colour of 8-bit channels.
 pub(crate) fn color(channels: [u8; 3]) -> Rgb {
     channels.map(|c| f32::from(c) / 255.0)
 }

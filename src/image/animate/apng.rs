@@ -8,15 +8,15 @@ use super::{Encoder, Patch, unencoded};
 use crate::error::{Error, ErrorKind, Result};
 
 const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
-/// Frames stay, and the next is laid over them.
+/// Frames stay, and the next one is composited over them.
 const KEEP_AND_BLEND: [u8; 2] = [0, 1];
 
-/// A PNG under way.
+/// An unfinished PNG.
 pub(super) struct Apng {
     width: u32,
     height: u32,
     frames: u32,
-    /// The number of the next chunk that is numbered.
+    /// Sequence number of the next chunk that has one.
     sequence: u32,
     /// Chunks of all frames.
     chunks: Vec<u8>,
@@ -71,7 +71,7 @@ impl Encoder for Apng {
         // 8 bits of RGBA, deflate, the usual filters, not interlaced.
         header.extend([8, 6, 0, 0, 0]);
         push_chunk(&mut file, b"IHDR", &header);
-        // 0 plays are for ever.
+        // 0 plays mean an endless loop.
         push_chunk(
             &mut file,
             b"acTL",
@@ -109,7 +109,7 @@ fn still(patch: &Patch) -> Result<Vec<u8>> {
     Ok(data)
 }
 
-/// Kind and content of the first chunk, and what follows it.
+/// Kind and content of the first chunk, and the bytes after it.
 fn split_chunk(bytes: &[u8]) -> Option<(&[u8], &[u8], &[u8])> {
     let (length, rest) = bytes.split_first_chunk::<4>()?;
     let (kind, rest) = rest.split_at_checked(4)?;

@@ -6,10 +6,10 @@ use super::{Encoder, Patch};
 use crate::error::{Error, ErrorKind, Result};
 
 /// How carefully each frame's 256 colours are chosen, from 1 (slowest) to 30. At 10 a frame of
-/// 100,000 px takes some 20 ms; below 5 it takes several times that, and nobody sees a difference.
+/// 100,000 px takes some 20 ms; below 5 it takes several times as long without a visible difference.
 const SPEED: i32 = 10;
 
-/// A GIF under way.
+/// An unfinished GIF.
 pub(super) struct Gif(::gif::Encoder<Vec<u8>>);
 
 impl Gif {

@@ -18,7 +18,7 @@ use patch::Patch;
 /// The format of an animation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AnimationFormat {
-    /// GIF: everywhere, 256 colours a frame.
+    /// GIF: plays everywhere, 256 colours per frame.
     Gif,
     /// Animated PNG: lossless.
     Apng,
@@ -27,7 +27,7 @@ pub enum AnimationFormat {
 }
 
 impl AnimationFormat {
-    /// Longest side that the format can say, px.
+    /// Longest side that the format allows, px.
     fn max_side(self) -> usize {
         match self {
             Self::Gif => usize::from(u16::MAX),
@@ -45,21 +45,21 @@ impl AnimationFormat {
     }
 }
 
-/// What joins patches to a file.
+/// Combines patches to a file.
 trait Encoder {
     /// Appends a frame that is shown for `ms` milliseconds.
     fn push(&mut self, patch: &Patch, ms: u32) -> Result<()>;
 
-    /// The file, complete.
+    /// Returns the complete file.
     fn finish(self: Box<Self>) -> Result<Vec<u8>>;
 }
 
-/// An animation under way. It repeats for ever.
+/// An unfinished animation. It repeats for ever.
 pub struct Animation {
     format: AnimationFormat,
-    /// Made for the size of the first frame.
+    /// Created with the size of the first frame.
     encoder: Option<Box<dyn Encoder + Send>>,
-    /// The frame before.
+    /// The previous frame.
     shown: Option<Image>,
 }
 
@@ -73,12 +73,12 @@ impl Animation {
         }
     }
 
-    /// Appends a frame that is shown for `ms` milliseconds, which GIF rounds to hundredths of a second;
-    /// its alpha plays no part.
+    /// Appends a frame that is shown for `ms` milliseconds, which GIF rounds to hundredths of a second.
+    /// Its alpha is ignored.
     ///
     /// # Errors
-    /// [`ErrorKind::Picture`] when a side is longer than the format can say, or the frame is not as
-    /// large as the first.
+    /// [`ErrorKind::Picture`] when a side is longer than the format allows, or the frame differs in size
+    /// from the first.
     pub fn push(&mut self, image: &Image, ms: u32) -> Result<()> {
         self.check(image)?;
         let patch = Patch::between(self.shown.as_ref(), image);
@@ -124,7 +124,7 @@ impl Animation {
 }
 
 fn start(format: AnimationFormat, first: &Image) -> Result<Box<dyn Encoder + Send>> {
-    // Sides are known to fit.
+    // The sides were checked before.
     let (width, height) = (first.width() as u32, first.height() as u32);
     Ok(match format {
         AnimationFormat::Gif => Box::new(gif::Gif::new(width, height)?),

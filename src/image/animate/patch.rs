@@ -5,7 +5,7 @@ use super::super::Image;
 /// A rectangle of RGBA pixels, transparent where nothing changes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Patch {
-    /// Left edge, px; even, as WebP wants it.
+    /// Left edge, px; even, as WebP requires.
     pub(super) x: u32,
     /// Upper edge, px; even.
     pub(super) y: u32,
@@ -19,8 +19,8 @@ pub(super) struct Patch {
 type Rgb8 = [u8; 3];
 
 impl Patch {
-    /// What makes `image` of `before`, of the same size; all of it without one. A frame that equals
-    /// the one before is a single transparent pixel.
+    /// The patch that turns `before` into `image`, of the same size; without `before`, the whole image. A
+    /// frame that equals the previous one is a single transparent pixel.
     pub(super) fn between(before: Option<&Image>, image: &Image) -> Self {
         let (width, height) = (image.width(), image.height());
         let after = pixels(image);

@@ -7,14 +7,14 @@ use ::image::{ExtendedColorType, ImageEncoder};
 use super::{Encoder, Patch, unencoded};
 use crate::error::{Error, ErrorKind, Result};
 
-/// Of the extended header: there is alpha, there is an animation.
+/// Flags of the extended header: has alpha, has an animation.
 const ALPHA_AND_ANIMATION: u8 = 0x12;
 /// Bytes before the chunks of a still picture: `RIFF`, length, `WEBP`.
 const HEAD: usize = 12;
 /// Longest time of a frame, ms.
 const MAX_MS: u32 = (1 << 24) - 1;
 
-/// A WebP under way.
+/// An unfinished WebP.
 pub(super) struct Webp {
     width: u32,
     height: u32,
@@ -39,7 +39,7 @@ impl Encoder for Webp {
         for number in numbers.into_iter().chain([ms.min(MAX_MS)]) {
             frame.extend(three_bytes(number));
         }
-        // Laid over the frame before, and kept.
+        // Composited over the previous frame, and kept.
         frame.push(0);
         frame.extend(&still(patch)?[HEAD..]);
         push_chunk(&mut self.chunks, b"ANMF", &frame);
@@ -52,7 +52,7 @@ impl Encoder for Webp {
         header.extend(three_bytes(self.width - 1));
         header.extend(three_bytes(self.height - 1));
         push_chunk(&mut body, b"VP8X", &header);
-        // White behind everything, 0 plays: for ever.
+        // White background; 0 plays mean an endless loop.
         push_chunk(&mut body, b"ANIM", &[255, 255, 255, 255, 0, 0]);
         body.extend(self.chunks);
         let mut file = Vec::with_capacity(body.len() + 8);
@@ -61,7 +61,7 @@ impl Encoder for Webp {
     }
 }
 
-/// The patch as a file of its own, which is a head and one chunk of lossless data.
+/// The patch as a file of its own: a head and one chunk of lossless data.
 fn still(patch: &Patch) -> Result<Vec<u8>> {
     let mut webp = Vec::new();
     WebPEncoder::new_lossless(&mut webp)
