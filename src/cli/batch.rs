@@ -212,7 +212,7 @@ fn clash(path: &Path, jobs: usize) -> anyhow::Error {
         _ => format!("use {STEM} in its name, and pictures with different names"),
     };
     misuse(format!(
-        "{name}: two outputs would go to this file: {remedy}"
+        "{name}: two outputs would go to the same place: {remedy}"
     ))
 }
 
