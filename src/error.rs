@@ -3,8 +3,9 @@
 //! [`Error`] is opaque. [`ErrorKind`] is the class of the problem, the message names the offending file or
 //! value and the remedy, and [`std::error::Error::source`] holds the cause.
 
-use std::path::Path;
-use std::{fmt, io};
+use std::fmt;
+#[cfg(feature = "cli")]
+use std::{io, path::Path};
 
 /// The result of every fallible function of the library.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
@@ -64,6 +65,7 @@ impl Error {
     }
 
     /// The error for a file `path` of results that could not be written.
+    #[cfg(feature = "cli")]
     pub(crate) fn unwritten(path: &Path, cause: io::Error) -> Self {
         let message = format!(
             "cannot write {}: {cause}; choose another folder with -o",

@@ -4,6 +4,7 @@
 //! 16 bits or floats, grey or colour, and applies the orientation given by EXIF. It takes colours as
 //! sRGB and ignores colour profiles. It keeps alpha; [`Image::flattened`] composites onto a matte.
 
+#[cfg(feature = "animation")]
 mod animate;
 mod decode;
 mod encode;
@@ -12,6 +13,7 @@ mod header;
 use std::fmt;
 use std::path::Path;
 
+#[cfg(feature = "animation")]
 pub use animate::{Animation, AnimationFormat};
 pub use decode::Limits;
 pub(crate) use header::{Embeddable, stated_size};
@@ -194,7 +196,7 @@ impl Image {
 
     /// The upper left `width × height` px, without alpha. `None` if the picture is smaller or a side
     /// is 0.
-    pub(crate) fn cropped(&self, width: usize, height: usize) -> Option<Self> {
+    pub fn cropped(&self, width: usize, height: usize) -> Option<Self> {
         if width > self.width || height > self.height || width == 0 || height == 0 {
             return None;
         }

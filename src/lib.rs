@@ -29,12 +29,24 @@
 //! # Ok::<(), strokefit::Error>(())
 //! ```
 //!
+//! # Features
+//!
+//! `default-features = false` builds the library alone: it reads PNG and interleaved rows, fits, writes SVG, judges it and
+//! reports. It also builds for `wasm32-unknown-unknown`, where a fit runs on the thread that asks for it.
+//!
+//! | feature | what it adds | on by default |
+//! | --- | --- | --- |
+//! | `formats` | JPEG, WebP, GIF, BMP and TIFF pictures, and pictures embedded in the SVG of a base | yes |
+//! | `animation` | the module `animation`, and charts in `report::plot`; needs `formats` | yes |
+//! | `cli` | the program and what it alone uses: `engines`, `view`, `lab`, `bench` and their reports; needs the others | yes |
+//!
 //! # The pipeline
 //!
 //! Data flows one way. A module imports only from modules above its own:
 //!
 //! ```text
-//! error  math  rng                what went wrong, points, draws by counter
+//! error  clock  threads           what went wrong, what a platform may lack
+//! math  rng                       points, draws by counter
 //! sdf  coverage  scene  image     distances, soft edges, drawings, pictures
 //! metrics  loss  optim            measures, losses, optimisers
 //! render                          strokes → canvas, ∂L/∂canvas → ∂L/∂strokes, worth
@@ -127,14 +139,19 @@
 
 #![warn(clippy::disallowed_methods)]
 
+#[cfg(feature = "animation")]
 pub mod animation;
+#[cfg(feature = "cli")]
 pub mod bench;
 pub mod browser;
+pub mod clock;
 pub mod coverage;
+#[cfg(feature = "cli")]
 pub mod engines;
 mod error;
 pub mod fit;
 pub mod image;
+#[cfg(feature = "cli")]
 pub mod lab;
 pub mod loss;
 pub mod math;
@@ -147,7 +164,9 @@ pub mod scene;
 pub mod sdf;
 pub mod seed;
 pub mod svg;
+mod threads;
 pub mod verify;
+#[cfg(feature = "cli")]
 pub mod view;
 
 pub use error::{Error, ErrorKind, Result};

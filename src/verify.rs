@@ -2,7 +2,8 @@
 //! tiny-skia.
 //!
 //! Nothing outside the text is ever read. References to files and addresses are not followed. No fonts are
-//! loaded, so text is drawn only where it is outlines. Pictures embedded as `data:` are drawn.
+//! loaded, so text is drawn only where it is outlines. Pictures embedded as `data:` are drawn; other formats than PNG
+//! need the feature `formats`.
 //!
 //! ```
 //! use strokefit::verify::{self, Size};
@@ -182,7 +183,7 @@ fn check_aspect(tree: &Tree, width: u32, height: u32) -> Result<()> {
 }
 
 /// What resvg does, a panic being an error: the judge does not fall with what it judges, and its arithmetic
-/// has corners that no check of ours foresees.
+/// has corners that no check of ours foresees. Where panics end the program, as in WebAssembly, this one does, too.
 fn guarded<R>(judge: impl FnOnce() -> R) -> Result<R> {
     GUARDED.set(true);
     let outcome = panic::catch_unwind(AssertUnwindSafe(judge));

@@ -8,7 +8,7 @@
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -16,6 +16,7 @@ use serde::de::DeserializeOwned;
 use super::base::Base;
 use super::config::Config;
 use super::recipe::Recipe;
+use crate::clock::Instant;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
 

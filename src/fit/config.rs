@@ -9,6 +9,7 @@ use crate::coverage::CoverageSchedule;
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::{MAX_PRECISION, Rgb, Scene, quantum};
 use crate::svg::WriteOptions;
+use crate::threads::Workers;
 
 /// What to fit. Equal configurations of equal pictures give equal bytes.
 #[derive(Debug, Clone, PartialEq)]
@@ -218,15 +219,7 @@ impl Config {
 
 impl Execution {
     /// The worker threads.
-    pub(crate) fn pool(&self) -> Result<rayon::ThreadPool> {
-        let threads = self.threads.unwrap_or(0);
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .map_err(|cause| {
-                let message =
-                    format!("cannot start {threads} worker threads: ask for fewer with --threads");
-                Error::new(ErrorKind::Config, message).caused_by(cause)
-            })
+    pub(crate) fn pool(&self) -> Result<Workers> {
+        Workers::new(self.threads.unwrap_or(0))
     }
 }

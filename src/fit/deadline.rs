@@ -1,6 +1,8 @@
 //! A limited time, or none: what a fit asks of it, and the clock that it is held against.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use crate::clock::Instant;
 
 /// What a fit is told of the time that it has. Times are in seconds since the fit began. The answers are those of a
 /// fit that may take as long as it likes; `Forecast` gives those of one that may not.

@@ -1,12 +1,11 @@
 //! A fit, set up step by step.
 
-use std::time::Instant;
-
 use super::background;
 use super::base::Base;
 use super::checkpoint::Checkpoint;
 use super::config::{Config, Execution};
 use super::progress::{CancelToken, Observer};
+use crate::clock::Instant;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
 use crate::scene::Scene;

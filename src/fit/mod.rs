@@ -42,8 +42,6 @@ mod session;
 mod simd;
 mod surface;
 
-use std::time::Instant;
-
 pub use anneal::final_softness;
 pub use base::Base;
 pub use checkpoint::Checkpoint;
@@ -59,6 +57,7 @@ pub use recipe::{
 pub use result::{Fit, StageRecord, Stop};
 pub use simd::Simd;
 
+use crate::clock::Instant;
 use crate::error::Result;
 use crate::image::Image;
 use phase::{Outcome, Phase, count, grow, polish, settle};

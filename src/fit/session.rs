@@ -1,6 +1,6 @@
 //! A fit under way: what its phases hand around, and how it is kept.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use fearless_simd::Level;
 
@@ -23,6 +23,7 @@ use super::progress::{CancelToken, Observer, Position, Tracker};
 use super::recipe::Recipe;
 use super::result::Stop;
 use super::surface::Prepared;
+use crate::clock::Instant;
 use crate::error::Result;
 use crate::image::Image;
 

@@ -23,18 +23,21 @@ pub enum Simd {
     Sse2,
     /// NEON, which every aarch64 has.
     Neon,
+    /// The vectors of WebAssembly, in a build for them.
+    Simd128,
     /// No vectors.
     Scalar,
 }
 
 impl Simd {
     /// Every name but `auto`, widest first.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Avx512,
         Self::Avx2,
         Self::Sse42,
         Self::Sse2,
         Self::Neon,
+        Self::Simd128,
         Self::Scalar,
     ];
 
@@ -54,6 +57,8 @@ impl Simd {
             Self::Sse2 => best.as_sse2().map(Level::Sse2),
             #[cfg(target_arch = "aarch64")]
             Self::Neon => best.as_neon().map(Level::Neon),
+            #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+            Self::Simd128 => best.as_wasm_simd128().map(Level::WasmSimd128),
             #[allow(unreachable_patterns, reason = "levels of other machines")]
             _ => None,
         }
@@ -88,6 +93,7 @@ impl fmt::Display for Simd {
             Self::Sse42 => "sse4.2",
             Self::Sse2 => "sse2",
             Self::Neon => "neon",
+            Self::Simd128 => "simd128",
             Self::Scalar => "scalar",
         })
     }
@@ -99,7 +105,7 @@ impl FromStr for Simd {
     fn from_str(word: &str) -> Result<Self> {
         let mut names = [Self::Auto].into_iter().chain(Self::ALL);
         names.find(|name| name.to_string() == word).ok_or_else(|| {
-            let message = format!("'{word}' is no instruction set: use auto, avx512, avx2, sse4.2, sse2, neon or scalar");
+            let message = format!("'{word}' is no instruction set: use auto, avx512, avx2, sse4.2, sse2, neon, simd128 or scalar");
             Error::new(ErrorKind::Config, message)
         })
     }

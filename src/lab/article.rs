@@ -13,7 +13,6 @@ mod drawing;
 use std::time::Instant;
 
 use fearless_simd::Level;
-use rayon::ThreadPool;
 
 pub use drawing::{Capsules, Statistics};
 
@@ -30,6 +29,7 @@ use crate::render::{
 use crate::report::Table;
 use crate::report::plot::captioned;
 use crate::svg::{self, WriteOptions};
+use crate::threads::Workers;
 use crate::verify;
 
 const RATE: f32 = 0.1;
@@ -80,7 +80,7 @@ impl Default for ArticleRun {
 
 /// The article's descent, one step at a time.
 pub struct Reproduction {
-    pool: ThreadPool,
+    pool: Workers,
     target: Canvas,
     renderer: Renderer,
     drawing: Capsules,

@@ -7,12 +7,18 @@
 
 mod check;
 mod event;
+#[cfg(feature = "cli")]
 pub mod pareto;
+#[cfg(feature = "animation")]
 pub mod picture;
+#[cfg(feature = "animation")]
 pub mod plot;
+#[cfg(feature = "cli")]
 pub mod scaling;
 mod size;
+#[cfg(feature = "cli")]
 pub mod stability;
+#[cfg(feature = "cli")]
 mod table;
 mod usage;
 
@@ -27,6 +33,7 @@ use crate::verify::OnMattes;
 pub use check::{AgainstResvg, CheckReport, NotDrawn, RendererEntry};
 pub use event::{Event, PhaseEntry};
 pub use size::{gzip_bytes, per_stroke};
+#[cfg(feature = "cli")]
 pub use table::Table;
 pub use usage::Usage;
 

@@ -42,6 +42,12 @@ impl Embedded {
 
     fn admit(&self, data: Arc<Vec<u8>>) -> Option<ImageKind> {
         let mut seen = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if !cfg!(feature = "formats") {
+            seen.1 = Some(
+                "an embedded picture is drawn only by a build with the feature `formats`".into(),
+            );
+            return None;
+        }
         let Some((format, width, height)) = image::stated_size(&data) else {
             seen.1 = Some("an embedded picture is not a PNG, JPEG, GIF or WebP".into());
             return None;

@@ -64,7 +64,7 @@ pub struct Finding {
 
 impl Finding {
     /// Whether the file refers to something outside itself.
-    pub(crate) fn is_external(&self) -> bool {
+    pub fn is_external(&self) -> bool {
         self.rule == rules::EXTERNAL.name
     }
 }
