@@ -9,6 +9,7 @@ mod animate;
 mod decode;
 mod encode;
 mod header;
+mod rows;
 
 use std::fmt;
 use std::path::Path;
@@ -17,6 +18,7 @@ use std::path::Path;
 pub use animate::{Animation, AnimationFormat};
 pub use decode::Limits;
 pub(crate) use header::{Embeddable, stated_size};
+pub use rows::{Rows, Sample};
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::Rgb;
@@ -59,6 +61,26 @@ impl Image {
             planes,
             alpha: None,
         })
+    }
+
+    /// The picture that interleaved rows of `u8` (0 to 255), `u16` (0 to 65535) or `f32` (0 to 1) hold.
+    ///
+    /// ```
+    /// use strokefit::image::{Image, Rows};
+    ///
+    /// // Two rows of one RGB pixel, each row padded to 4 bytes.
+    /// let samples = [255, 0, 0, 0, 0, 51, 255, 0];
+    /// let rows = Rows { stride: 4, ..Rows::packed(1, 2, 3, &samples) };
+    /// let picture = Image::from_rows(rows)?;
+    /// assert_eq!(picture.planes()[1], [0.0, 0.2]);
+    /// # Ok::<(), strokefit::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`ErrorKind::Picture`] when a side is 0, there are no 1 to 4 channels, rows overlap or are too few, or a
+    /// float is not finite or far outside 0..1.
+    pub fn from_rows<T: Sample>(rows: Rows<'_, T>) -> Result<Self> {
+        rows::image(rows)
     }
 
     /// The picture at half the size (rounded up), each pixel the mean of up to 2×2; alpha is dropped.

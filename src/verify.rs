@@ -2,8 +2,8 @@
 //! tiny-skia.
 //!
 //! Nothing outside the text is ever read. References to files and addresses are not followed. No fonts are
-//! loaded, so text is drawn only where it is outlines. Pictures embedded as `data:` are drawn; other formats than PNG
-//! need the feature `formats`.
+//! loaded, so text is drawn only where it is outlines. Pictures embedded as `data:` are drawn in a build with
+//! the feature `formats`.
 //!
 //! ```
 //! use strokefit::verify::{self, Size};

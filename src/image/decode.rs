@@ -7,6 +7,7 @@ use std::path::Path;
 
 use ::image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
 
+use super::rows::{self, Rows, Sample};
 use super::{Image, header};
 use crate::error::{Error, ErrorKind, Result};
 
@@ -29,6 +30,13 @@ impl Default for Limits {
         }
     }
 }
+
+/// The files that this build reads.
+const READABLE: &str = if cfg!(feature = "formats") {
+    "a PNG, JPEG, WebP, GIF, BMP or TIFF file"
+} else {
+    "a PNG file, or use a build with the feature `formats`"
+};
 
 /// Reads and decodes the file at `path`.
 pub(super) fn open(path: &Path, limits: Limits) -> Result<Image> {
@@ -78,15 +86,13 @@ pub(super) fn decode(bytes: &[u8], limits: Limits) -> Result<Image> {
         }
         refused(error, format)
     })??;
-    planar(picture)
+    planar(&picture)
 }
 
 /// The format, by the first bytes.
 fn format(bytes: &[u8], limits: Limits) -> Result<ImageFormat> {
     if bytes.is_empty() {
-        return Err(bad(
-            "the file is empty: give a PNG, JPEG, WebP, GIF, BMP or TIFF picture",
-        ));
+        return Err(bad(format!("the file is empty: give {READABLE}")));
     }
     if bytes.len() as u64 > limits.max_bytes {
         return Err(bad(format!(
@@ -97,9 +103,7 @@ fn format(bytes: &[u8], limits: Limits) -> Result<ImageFormat> {
     ::image::guess_format(bytes)
         .ok()
         .filter(|format| format.reading_enabled())
-        .ok_or_else(|| {
-            bad("not a picture in a known format: give a PNG, JPEG, WebP, GIF, BMP or TIFF file")
-        })
+        .ok_or_else(|| bad(format!("not a picture in a known format: give {READABLE}")))
 }
 
 fn check_size(width: u32, height: u32, limits: Limits) -> Result<()> {
@@ -222,52 +226,39 @@ impl Seek for Supply<'_> {
     }
 }
 
-fn planar(picture: DynamicImage) -> Result<Image> {
-    let (width, height) = (picture.width() as usize, picture.height() as usize);
-    let channels = usize::from(picture.color().channel_count());
-    let bits8 = |v: u8| f32::from(v) / 255.0;
-    let bits16 = |v: u16| f32::from(v) / 65535.0;
-    let float = |v: f32| if v.is_nan() { 0.0 } else { v.clamp(0.0, 1.0) };
-    let (planes, alpha) = match &picture {
-        DynamicImage::ImageLuma8(p) => split(p.as_raw(), channels, bits8),
-        DynamicImage::ImageLumaA8(p) => split(p.as_raw(), channels, bits8),
-        DynamicImage::ImageRgb8(p) => split(p.as_raw(), channels, bits8),
-        DynamicImage::ImageRgba8(p) => split(p.as_raw(), channels, bits8),
-        DynamicImage::ImageLuma16(p) => split(p.as_raw(), channels, bits16),
-        DynamicImage::ImageLumaA16(p) => split(p.as_raw(), channels, bits16),
-        DynamicImage::ImageRgb16(p) => split(p.as_raw(), channels, bits16),
-        DynamicImage::ImageRgba16(p) => split(p.as_raw(), channels, bits16),
-        DynamicImage::ImageRgb32F(p) => split(p.as_raw(), channels, float),
-        DynamicImage::ImageRgba32F(p) => split(p.as_raw(), channels, float),
-        other => split(other.to_rgba32f().as_raw(), 4, float),
-    };
-    let image = Image::new(width, height, planes)?;
-    match alpha {
-        Some(alpha) => image.with_alpha(alpha),
-        None => Ok(image),
+fn planar(picture: &DynamicImage) -> Result<Image> {
+    match picture {
+        DynamicImage::ImageLuma8(p) => levels(picture, p.as_raw()),
+        DynamicImage::ImageLumaA8(p) => levels(picture, p.as_raw()),
+        DynamicImage::ImageRgb8(p) => levels(picture, p.as_raw()),
+        DynamicImage::ImageRgba8(p) => levels(picture, p.as_raw()),
+        DynamicImage::ImageLuma16(p) => levels(picture, p.as_raw()),
+        DynamicImage::ImageLumaA16(p) => levels(picture, p.as_raw()),
+        DynamicImage::ImageRgb16(p) => levels(picture, p.as_raw()),
+        DynamicImage::ImageRgba16(p) => levels(picture, p.as_raw()),
+        DynamicImage::ImageRgb32F(p) => floats(picture, p.as_raw()),
+        DynamicImage::ImageRgba32F(p) => floats(picture, p.as_raw()),
+        other => {
+            let other = DynamicImage::from(other.to_rgba32f());
+            planar(&other)
+        }
     }
 }
 
-type Planes = ([Vec<f32>; 3], Option<Vec<f32>>);
+fn levels<T: Sample>(picture: &DynamicImage, samples: &[T]) -> Result<Image> {
+    rows::image(packed(picture, samples))
+}
 
-/// Interleaved samples (grey, grey and alpha, RGB, or RGBA) as planes.
-fn split<T: Copy>(samples: &[T], channels: usize, value: impl Fn(T) -> f32) -> Planes {
-    let plane = |c: usize| {
-        samples
-            .iter()
-            .skip(c)
-            .step_by(channels)
-            .map(|&v| value(v))
-            .collect::<Vec<_>>()
-    };
-    let planes = if channels < 3 {
-        let grey = plane(0);
-        [grey.clone(), grey.clone(), grey]
-    } else {
-        [plane(0), plane(1), plane(2)]
-    };
-    let alpha = channels.is_multiple_of(2).then(|| plane(channels - 1));
-    (planes, alpha)
+/// Whatever a file says: what is no number is 0, what is beyond the range at its end.
+fn floats(picture: &DynamicImage, samples: &[f32]) -> Result<Image> {
+    let level = |v: f32| if v.is_nan() { 0.0 } else { v.clamp(0.0, 1.0) };
+    rows::planar(packed(picture, samples), level)
+}
+
+fn packed<'a, T>(picture: &DynamicImage, samples: &'a [T]) -> Rows<'a, T> {
+    let (width, height) = (picture.width() as usize, picture.height() as usize);
+    let channels = usize::from(picture.color().channel_count());
+    Rows::packed(width, height, channels, samples)
 }
 
 #[cfg(test)]

@@ -128,6 +128,7 @@ fn le16(bytes: &[u8], at: usize) -> Option<u32> {
 }
 
 #[cfg(test)]
+#[cfg(feature = "formats")]
 mod tests {
     use super::*;
     use ::image::{DynamicImage, RgbImage};

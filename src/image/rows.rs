@@ -1,0 +1,264 @@
+//! Interleaved rows of samples, as other libraries hold pictures, taken apart into planes.
+
+use std::fmt;
+
+use super::Image;
+use crate::error::{Error, ErrorKind, Result};
+
+/// A picture as rows of interleaved samples: those of a pixel side by side.
+#[derive(Debug, Clone, Copy)]
+pub struct Rows<'a, T> {
+    /// Width in px.
+    pub width: usize,
+    /// Height in px.
+    pub height: usize,
+    /// Samples of a pixel: 1 is grey, 2 grey and alpha, 3 RGB, 4 RGBA. Alpha is straight, not premultiplied.
+    pub channels: usize,
+    /// Samples from the start of a row to the start of the next, `width·channels` or more.
+    pub stride: usize,
+    /// The rows; what follows the last pixel of a row is not looked at, and the last row needs nothing there.
+    pub samples: &'a [T],
+}
+
+impl<'a, T> Rows<'a, T> {
+    /// Rows without a gap between them.
+    pub fn packed(width: usize, height: usize, channels: usize, samples: &'a [T]) -> Self {
+        Self {
+            width,
+            height,
+            channels,
+            stride: width.saturating_mul(channels),
+            samples,
+        }
+    }
+
+    /// The samples of each pixel, row by row.
+    fn pixels(&self) -> impl Iterator<Item = &'a [T]> {
+        let Self {
+            width,
+            height,
+            channels,
+            stride,
+            samples,
+        } = *self;
+        let rows = samples.chunks(stride).take(height);
+        rows.flat_map(move |row| row.chunks_exact(channels).take(width))
+    }
+
+    /// Fails where there can be no such picture.
+    fn check(&self) -> Result<()> {
+        let Self {
+            width,
+            height,
+            channels,
+            stride,
+            samples,
+        } = *self;
+        let refuse = |message: String| Err(Error::new(ErrorKind::Picture, message));
+        if width == 0 || height == 0 {
+            return refuse(format!(
+                "a picture of {width}×{height} has no pixels: give both sides 1 px or more"
+            ));
+        }
+        if !(1..=4).contains(&channels) {
+            return refuse(format!(
+                "a pixel of {channels} samples has no meaning: \
+                 give 1 (grey), 2 (grey, alpha), 3 (RGB) or 4 (RGBA)"
+            ));
+        }
+        let row = width.checked_mul(channels).filter(|&row| row <= stride);
+        let Some(row) = row else {
+            return refuse(format!(
+                "rows {stride} samples apart overlap where one has {width} pixels of {channels} samples: \
+                 give a stride of width × channels or more"
+            ));
+        };
+        let needed = stride.checked_mul(height - 1);
+        let needed = needed.and_then(|before| before.checked_add(row));
+        match needed.filter(|&needed| needed <= samples.len()) {
+            Some(_) => Ok(()),
+            None => refuse(format!(
+                "{} samples are too few for {width}×{height} px of {channels} samples, rows {stride} apart: \
+                 give stride × (height − 1) + width × channels or more",
+                samples.len()
+            )),
+        }
+    }
+}
+
+/// A type that samples come in. What a file holds is encoded as sRGB, and so is what is taken here.
+pub trait Sample: Copy + fmt::Display + sealed::Sealed {
+    /// As a value of 0..1, or `None` where it is on no scale that is known.
+    fn level(self) -> Option<f32>;
+}
+
+/// 0 to 255.
+impl Sample for u8 {
+    fn level(self) -> Option<f32> {
+        Some(f32::from(self) / 255.0)
+    }
+}
+
+/// 0 to 65535.
+impl Sample for u16 {
+    fn level(self) -> Option<f32> {
+        Some(f32::from(self) / 65535.0)
+    }
+}
+
+/// 0 to 1. Filters overshoot a little, which is cut off; anything farther away is on another scale.
+impl Sample for f32 {
+    fn level(self) -> Option<f32> {
+        (-OVERSHOOT..=1.0 + OVERSHOOT)
+            .contains(&self)
+            .then(|| self.clamp(0.0, 1.0))
+    }
+}
+
+/// Sharpening and resampling overshoot by a fifth of a step at most; a scale of 0 to 255 is far beyond.
+const OVERSHOOT: f32 = 0.5;
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for u8 {}
+    impl Sealed for u16 {}
+    impl Sealed for f32 {}
+}
+
+/// The picture that the rows are.
+pub(super) fn image<T: Sample>(rows: Rows<'_, T>) -> Result<Image> {
+    rows.check()?;
+    if let Some(error) = off_scale(rows) {
+        return Err(error);
+    }
+    planar(rows, |sample| sample.level().unwrap_or(0.0))
+}
+
+/// The first sample that is on no scale.
+fn off_scale<T: Sample>(rows: Rows<'_, T>) -> Option<Error> {
+    rows.pixels().enumerate().find_map(|(i, pixel)| {
+        let sample = pixel.iter().find(|sample| sample.level().is_none())?;
+        let (x, y) = (i % rows.width, i / rows.width);
+        let message =
+            format!("a sample of the pixel ({x}, {y}) is {sample}: give numbers from 0 to 1");
+        Some(Error::new(ErrorKind::Picture, message))
+    })
+}
+
+/// The picture of rows that were checked, each sample as a value of 0..1.
+pub(super) fn planar<T: Copy>(rows: Rows<'_, T>, level: impl Fn(T) -> f32) -> Result<Image> {
+    let plane = |c: usize| {
+        rows.pixels()
+            .map(|pixel| level(pixel[c]))
+            .collect::<Vec<_>>()
+    };
+    let planes = if rows.channels < 3 {
+        let grey = plane(0);
+        [grey.clone(), grey.clone(), grey]
+    } else {
+        [plane(0), plane(1), plane(2)]
+    };
+    let image = Image::new(rows.width, rows.height, planes)?;
+    if rows.channels.is_multiple_of(2) {
+        image.with_alpha(plane(rows.channels - 1))
+    } else {
+        Ok(image)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 2×2 px; where a sample has no meaning it is 9.
+    fn rows(channels: usize, stride: usize, samples: &[u8]) -> Result<Image> {
+        let (width, height) = (2, 2);
+        image(Rows {
+            width,
+            height,
+            channels,
+            stride,
+            samples,
+        })
+    }
+
+    fn level(byte: u8) -> f32 {
+        f32::from(byte) / 255.0
+    }
+
+    #[test]
+    fn channels_and_strides_are_taken_apart() {
+        let grey = rows(1, 3, &[10, 20, 9, 30, 40]).unwrap();
+        for plane in grey.planes() {
+            assert_eq!(*plane, [10, 20, 30, 40].map(level));
+        }
+        let clear = rows(2, 5, &[10, 0, 20, 255, 9, 30, 51, 40, 255]).unwrap();
+        assert_eq!(clear.planes()[1], [10, 20, 30, 40].map(level));
+        assert_eq!(clear.alpha(), Some(&[0.0, 1.0, 0.2, 1.0][..]));
+        let rgb = rows(3, 7, &[1, 2, 3, 4, 5, 6, 9, 7, 8, 9, 10, 11, 12]).unwrap();
+        assert_eq!(rgb.planes()[0], [1, 4, 7, 10].map(level));
+        assert_eq!(rgb.planes()[2], [3, 6, 9, 12].map(level));
+        assert_eq!(rgb.alpha(), None);
+        let rgba = rows(
+            4,
+            8,
+            &[1, 2, 3, 255, 4, 5, 6, 255, 7, 8, 9, 255, 10, 11, 12, 0],
+        )
+        .unwrap();
+        assert_eq!(rgba.planes(), rgb.planes());
+        assert_eq!(rgba.alpha(), Some(&[1.0, 1.0, 1.0, 0.0][..]));
+    }
+
+    #[test]
+    fn every_type_of_sample_says_the_same() {
+        let bytes = image(Rows::packed(3, 1, 1, &[0_u8, 51, 255])).unwrap();
+        let words = image(Rows::packed(3, 1, 1, &[0_u16, 13107, 65535])).unwrap();
+        let floats = image(Rows::packed(3, 1, 1, &[-0.01_f32, 0.2, 1.01])).unwrap();
+        assert_eq!(bytes, words);
+        assert_eq!(bytes, floats);
+    }
+
+    #[test]
+    fn shapes_that_do_not_fit_are_refused_with_those_that_do() {
+        for (rows, words) in [
+            (Rows::packed(0, 2, 3, &[0_u8; 9]), "0×2"),
+            (Rows::packed(1, 1, 5, &[0; 9]), "give 1 (grey)"),
+            (Rows::packed(1, 1, 0, &[0; 9]), "give 1 (grey)"),
+            (
+                Rows {
+                    stride: 5,
+                    ..Rows::packed(2, 1, 3, &[0; 9])
+                },
+                "stride of width × channels",
+            ),
+            (Rows::packed(2, 2, 3, &[0; 9]), "9 samples are too few"),
+            (Rows::packed(usize::MAX, 2, 4, &[0; 9]), "overlap"),
+            (
+                Rows {
+                    stride: usize::MAX,
+                    ..Rows::packed(2, 3, 3, &[0; 9])
+                },
+                "too few",
+            ),
+        ] {
+            let error = image(rows).unwrap_err();
+            assert_eq!(error.kind(), ErrorKind::Picture);
+            assert!(error.to_string().contains(words), "{error}");
+        }
+    }
+
+    #[test]
+    fn floats_on_another_scale_are_refused_with_their_place() {
+        for (value, word) in [
+            (f32::NAN, "NaN"),
+            (200.0, "200"),
+            (f32::NEG_INFINITY, "-inf"),
+        ] {
+            let samples = [0.5, 0.5, 0.5, value];
+            let error = image(Rows::packed(1, 4, 1, &samples))
+                .unwrap_err()
+                .to_string();
+            assert!(error.contains("(0, 3)") && error.contains(word), "{error}");
+        }
+    }
+}
