@@ -114,7 +114,7 @@ fn one(
                 picture,
                 start,
                 observer,
-                &view::more(job.options, &drawn.fit, more),
+                &view::more(job.options, &drawn.judged.fit, more),
             )
         })?;
     }
@@ -238,13 +238,13 @@ impl NameColumn {
     fn row(&self, job: &Job<'_>, drawn: &Drawn) -> String {
         let (width, name) = (self.0, job.input.display().to_string());
         let (strokes, bytes, wall) = (
-            drawn.fit.scene.len(),
-            drawn.text.len(),
+            drawn.judged.fit.scene.len(),
+            drawn.judged.svg.len(),
             drawn.wall.as_secs_f64(),
         );
         let (fidelity, agreement) = (
-            drawn.verdict.fidelity.psnr_db,
-            drawn.verdict.agreement.psnr_db,
+            drawn.judged.verdict.fidelity.psnr_db,
+            drawn.judged.verdict.agreement.psnr_db,
         );
         format!(
             "{name:width$}  {strokes:>7} {bytes:>10} {wall:>8.2}  {fidelity:>5.2} dB   {agreement:>5.2} dB"

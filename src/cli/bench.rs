@@ -10,8 +10,8 @@ use strokefit::bench::scaling;
 use strokefit::bench::stability::{self, Extent};
 use strokefit::coverage::CoverageSchedule;
 use strokefit::lab::{Notice, ResultFolder};
+use strokefit::report::json;
 
-use super::job::json;
 use super::{Status, Verbosity, domain, input, output};
 
 /// Measure speed against error, hard cases, and growth with size
@@ -195,7 +195,7 @@ impl Stability {
         let table = report.table();
         files.text("stability.csv", &table.csv())?;
         files.text("stability.md", &report.markdown())?;
-        files.text("stability.json", &text(&report)?)?;
+        files.text("stability.json", &json(&report)?)?;
         files.text("agreement.csv", &map.table().csv())?;
         files.picture("agreement.png", &map.picture()?)?;
         Ok(report.failures())
@@ -209,16 +209,12 @@ impl Scaling {
         let report = scaling::run(self.extents.short, self.picture.clone(), &measure, &mut say)?;
         files.text("scaling.csv", &report.table().csv())?;
         files.text("scaling.md", &report.markdown())?;
-        files.text("scaling.json", &text(&report)?)?;
+        files.text("scaling.json", &json(&report)?)?;
         for (axis, chart) in report.charts()? {
             files.text(&format!("scaling-{axis}.svg"), &chart)?;
         }
         Ok(report.failures())
     }
-}
-
-fn text(record: &impl serde::Serialize) -> Result<String> {
-    Ok(String::from_utf8(json(record)?)?)
 }
 
 /// A line on standard output, which may be closed.

@@ -9,10 +9,9 @@ use std::time::Duration;
 use anyhow::Result;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use strokefit::engines::{ENGINES, Engine};
-use strokefit::report::{CheckReport, Input, SCHEMA};
+use strokefit::report::{self, CheckReport, Input, SCHEMA};
 use strokefit::svg;
 
-use super::job::json;
 use super::output::Output;
 use super::{Status, Verbosity, complain, domain, input, misuse};
 use trial::{PictureFolder, Trial};
@@ -97,7 +96,7 @@ pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
         .transpose()?;
     let record = judge(args, pictures)?;
     if let Some(output) = &report {
-        output.write(&json(&record)?)?;
+        output.write(report::json(&record)?.as_bytes())?;
     }
     if report != Some(Output::Stdout) {
         Output::Stdout.write(table::table(&record).as_bytes())?;

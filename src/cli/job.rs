@@ -4,12 +4,11 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::Result;
-use strokefit::fit::{self, Base, Fit, Observer, Progress, Stop};
+use strokefit::fit::{self, Fit, Observer, Progress, Stop};
 use strokefit::image::Image;
-use strokefit::metrics::Quality;
-use strokefit::report::{self, BaseEntry, Event, FitReport, Input, StageEntry, Usage};
-use strokefit::scene::{Dropped, Scene};
-use strokefit::verify::{self, MIN_AGREEMENT_DB, OnMattes, Verdict};
+use strokefit::report::{self, Event, FitReport, Input, Judged, Run, Usage};
+use strokefit::scene::Dropped;
+use strokefit::verify::MIN_AGREEMENT_DB;
 
 use super::events::{Events, Phases};
 use super::interrupt::Interrupt;
@@ -54,17 +53,20 @@ impl Job<'_> {
         let fit = self.watched(&picture, start, events, bar, draw)?;
         tell_stages(&fit, verbosity);
         tell_dropped(fit.dropped, verbosity);
-        let mut drawn = Drawn::new(fit)?;
-        outputs.svg.1.write(drawn.text.as_bytes())?;
-        drawn.wall = start.elapsed();
+        let judged = Judged::new(fit)?;
+        outputs.svg.1.write(judged.svg.as_bytes())?;
+        let drawn = Drawn {
+            judged,
+            wall: start.elapsed(),
+        };
         let record = self.record(&drawn);
         if let Some((_, output)) = &outputs.report {
-            output.write(&json(&record)?)?;
+            output.write(report::json(&record)?.as_bytes())?;
         }
         outputs.pictures.write(&Subject {
-            scene: drawn.all_strokes(),
-            text: &drawn.text,
-            target: Some(&drawn.fit.target),
+            scene: drawn.judged.whole(),
+            text: &drawn.judged.svg,
+            target: Some(&drawn.judged.fit.target),
             scale: 1.0,
         })?;
         events.tell(&Event::Done(Box::new(record)));
@@ -104,42 +106,22 @@ impl Job<'_> {
     /// Removes the checkpoint of a drawing that is written, unless there is more to be drawn of it.
     fn forget(&self, drawn: &Drawn) -> Result<()> {
         match self.options.checkpoint() {
-            Some(checkpoint) if drawn.fit.stop != Stop::Observer => Ok(checkpoint.remove()?),
+            Some(checkpoint) if drawn.judged.fit.stop != Stop::Observer => Ok(checkpoint.remove()?),
             _ => Ok(()),
         }
     }
 
     fn record(&self, drawn: &Drawn) -> FitReport {
-        let Usage {
-            cpu_s,
-            peak_rss_bytes,
-            ..
-        } = Usage::now();
-        FitReport {
-            schema: report::SCHEMA,
-            input: Input::new(self.input.display().to_string(), &drawn.fit.target),
-            strokes: drawn.fit.scene.len(),
-            dropped: drawn.fit.dropped.total(),
-            dropped_for: drawn.fit.dropped,
-            stages: drawn.fit.stages.iter().map(StageEntry::from).collect(),
-            svg_bytes: drawn.text.len(),
-            svg_gzip_bytes: report::gzip_bytes(&drawn.text),
-            bytes_per_stroke: report::per_stroke(drawn.text.len(), drawn.fit.scene.len()),
-            wall_s: drawn.wall.as_secs_f64(),
-            cpu_s,
-            peak_rss_bytes,
-            predicted_rss_bytes: fit::predicted_rss_bytes(
-                &drawn.fit.target,
-                &self.options.config(),
-            ),
-            stop: report::stop_word(drawn.fit.stop).into(),
-            seed: self.options.look.seed,
-            fidelity: drawn.verdict.fidelity,
-            soft: drawn.soft,
-            agreement: drawn.verdict.agreement,
-            alpha: drawn.alpha,
-            base: drawn.fit.base.as_ref().zip(self.base).map(base_entry),
-        }
+        let name = |path: &Path| path.display().to_string();
+        let (input, base) = (name(self.input), self.base.map(name));
+        let run = Run {
+            input: &input,
+            base: base.as_deref(),
+            config: &self.options.config(),
+            wall: drawn.wall,
+            usage: Usage::now(),
+        };
+        FitReport::of(&drawn.judged, &run)
     }
 
     /// How it went, in a line.
@@ -147,11 +129,11 @@ impl Job<'_> {
         format!(
             "{}: {} strokes, {} bytes, {:.2} s, fidelity {:.2} dB, agreement {:.2} dB",
             output::name(&self.output),
-            drawn.fit.scene.len(),
-            drawn.text.len(),
+            drawn.judged.fit.scene.len(),
+            drawn.judged.svg.len(),
             drawn.wall.as_secs_f64(),
-            drawn.verdict.fidelity.psnr_db,
-            drawn.verdict.agreement.psnr_db,
+            drawn.judged.verdict.fidelity.psnr_db,
+            drawn.judged.verdict.agreement.psnr_db,
         )
     }
 
@@ -159,24 +141,24 @@ impl Job<'_> {
     pub(super) fn judge(&self, drawn: &Drawn) -> Status {
         let name = output::name(&self.output);
         if let Some(signal) = Interrupt::caught() {
-            if drawn.fit.stop == Stop::Observer {
+            if drawn.judged.fit.stop == Stop::Observer {
                 complain(format_args!(
                     "{name}: interrupted: the file holds the drawing as far as it had come"
                 ));
             }
             return Status::Interrupted(signal);
         }
-        if !drawn.verdict.agrees() {
+        if !drawn.judged.verdict.agrees() {
             complain(format_args!(
                 "{name}: fidelity check failed: resvg's render agrees with the fit to {:.2} dB, less than {MIN_AGREEMENT_DB} dB: \
                  the file was kept; try --opaque or a higher --precision",
-                drawn.verdict.agreement.psnr_db
+                drawn.judged.verdict.agreement.psnr_db
             ));
             return Status::Disagrees;
         }
-        let reached = drawn.verdict.fidelity.psnr_db;
+        let reached = drawn.judged.verdict.fidelity.psnr_db;
         if let Some(wanted) = self.options.budget.psnr.filter(|wanted| reached < *wanted) {
-            let stop = report::stop_word(drawn.fit.stop);
+            let stop = report::stop_word(drawn.judged.fit.stop);
             complain(format_args!(
                 "{name}: target not reached: {reached:.2} dB of {wanted} (stopped by: {stop}): allow more strokes, bytes or time"
             ));
@@ -186,11 +168,11 @@ impl Job<'_> {
             .options
             .budget
             .bytes
-            .filter(|most| drawn.text.len() > *most)
+            .filter(|most| drawn.judged.svg.len() > *most)
         {
             complain(format_args!(
                 "{name}: target not reached: {} bytes, more than {most}: allow more bytes",
-                drawn.text.len()
+                drawn.judged.svg.len()
             ));
             return Status::TargetMissed;
         }
@@ -223,50 +205,11 @@ impl<'a> Outputs<'a> {
     }
 }
 
-/// A drawing with its text and the judgement of it.
+/// A drawing that was written.
 pub(super) struct Drawn {
-    pub(super) fit: Fit,
-    pub(super) text: String,
-    soft: Quality,
-    pub(super) verdict: Verdict,
-    /// Of a transparent drawing.
-    alpha: Option<OnMattes>,
+    pub(super) judged: Judged,
     /// From the start of the job until the SVG is written.
     pub(super) wall: Duration,
-}
-
-impl Drawn {
-    fn new(fit: Fit) -> Result<Self> {
-        let text = fit.svg();
-        let soft = Quality::between(&fit.target, &fit.soft)?;
-        let verdict = verify::verify(&text, &fit.target, &fit.soft)?;
-        let is_clear = fit.target.alpha().is_some();
-        let alpha = is_clear.then(|| verify::on_mattes(&text, &fit.target));
-        Ok(Self {
-            fit,
-            soft,
-            verdict,
-            wall: Duration::ZERO,
-            alpha: alpha.transpose()?,
-            text,
-        })
-    }
-}
-
-impl Drawn {
-    /// The drawing, unless its strokes lie on a document and are only a part of it.
-    fn all_strokes(&self) -> Option<&Scene> {
-        let lies_on_document = |base: &Base| base.document.is_some();
-        (!self.fit.base.as_ref().is_some_and(lies_on_document)).then_some(&self.fit.scene)
-    }
-}
-
-fn base_entry((base, path): (&Base, &Path)) -> BaseEntry {
-    BaseEntry {
-        path: path.display().to_string(),
-        strokes: base.scene.len(),
-        elements: base.elements(),
-    }
 }
 
 fn tell_stages(fit: &Fit, verbosity: Verbosity) {
@@ -293,11 +236,4 @@ fn tell_dropped(dropped: Dropped, verbosity: Verbosity) {
             "dropped strokes: {non_finite} not finite, {invisible} invisible, {off_page} off the page"
         ));
     }
-}
-
-/// A record as indented JSON.
-pub(super) fn json(record: &impl serde::Serialize) -> Result<Vec<u8>> {
-    let mut bytes = serde_json::to_vec_pretty(record)?;
-    bytes.push(b'\n');
-    Ok(bytes)
 }

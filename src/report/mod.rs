@@ -7,6 +7,8 @@
 
 mod check;
 mod event;
+mod fit;
+mod judged;
 #[cfg(feature = "cli")]
 pub mod pareto;
 #[cfg(feature = "animation")]
@@ -24,14 +26,13 @@ mod usage;
 
 use serde::{Deserialize, Serialize};
 
-use crate::fit::{StageRecord, Stop};
+use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
-use crate::metrics::{Agreement, Quality};
-use crate::scene::Dropped;
-use crate::verify::OnMattes;
 
 pub use check::{AgainstResvg, CheckReport, NotDrawn, RendererEntry};
 pub use event::{Event, PhaseEntry};
+pub use fit::{BaseEntry, FitReport, Run, StageEntry, stop_word};
+pub use judged::Judged;
 pub use size::{gzip_bytes, per_stroke};
 #[cfg(feature = "cli")]
 pub use table::Table;
@@ -39,63 +40,6 @@ pub use usage::Usage;
 
 /// Version of the records' layout.
 pub const SCHEMA: u32 = 1;
-
-/// What `strokefit fit` did.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct FitReport {
-    /// [`SCHEMA`].
-    pub schema: u32,
-    /// The picture.
-    pub input: Input,
-    /// Strokes in the drawing.
-    pub strokes: usize,
-    /// Strokes that were dropped because they became non-finite or could not be seen.
-    pub dropped: usize,
-    /// How many of them for which reason.
-    pub dropped_for: Dropped,
-    /// One per layer of the drawing, in order.
-    pub stages: Vec<StageEntry>,
-    /// Length of the SVG text in bytes.
-    pub svg_bytes: usize,
-    /// Its length when compressed by gzip.
-    pub svg_gzip_bytes: usize,
-    /// Its length, head and layers included, per stroke; `null` without strokes.
-    pub bytes_per_stroke: Option<f64>,
-    /// Wall time from the start of the command to the verdict, s.
-    pub wall_s: f64,
-    /// CPU time of the process, all threads, s.
-    pub cpu_s: Option<f64>,
-    /// Peak memory of the process, bytes.
-    pub peak_rss_bytes: Option<u64>,
-    /// The prediction of that, bytes.
-    pub predicted_rss_bytes: u64,
-    /// Why no more was done: `strokes`, `psnr`, `bytes`, `time`, `converged` or
-    /// `interrupted`.
-    pub stop: String,
-    /// Key of every random draw.
-    pub seed: u64,
-    /// The SVG as rendered by resvg against the picture.
-    pub fidelity: Quality,
-    /// Our own soft render against the picture.
-    pub soft: Quality,
-    /// The SVG as rendered by resvg against our own soft render.
-    pub agreement: Agreement,
-    /// A transparent drawing on black, on white and on magenta; `null` for others.
-    pub alpha: Option<OnMattes>,
-    /// The SVG that the drawing goes on from; `null` where there is none.
-    pub base: Option<BaseEntry>,
-}
-
-/// An SVG that was refined.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct BaseEntry {
-    /// As it was named; `-` for standard input.
-    pub path: String,
-    /// Strokes that were taken up.
-    pub strokes: usize,
-    /// Elements that were passed through as they are.
-    pub elements: usize,
-}
 
 /// A picture that was read.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -119,140 +63,17 @@ impl Input {
     }
 }
 
-/// How one stage went.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct StageEntry {
-    /// From 1; that of the layer.
-    pub index: usize,
-    /// Strokes of the stage in the drawing.
-    pub strokes: usize,
-    /// Iterations of the optimiser.
-    pub iterations: usize,
-    /// Wall time, s.
-    pub wall_s: f64,
-    /// Fidelity of the soft render after the stage, dB; `null` when perfect.
-    pub psnr_db: Option<f64>,
-    /// Fidelity of the finished drawing's layers up to this one, dB; `null` when perfect.
-    pub layer_psnr_db: Option<f64>,
-}
-
-impl From<&StageRecord> for StageEntry {
-    fn from(record: &StageRecord) -> Self {
-        Self {
-            index: record.index,
-            strokes: record.strokes,
-            iterations: record.iterations,
-            wall_s: record.wall.as_secs_f64(),
-            psnr_db: Some(record.psnr_db).filter(|db| db.is_finite()),
-            layer_psnr_db: Some(record.layer_psnr_db).filter(|db| db.is_finite()),
-        }
-    }
-}
-
-/// The word of [`FitReport::stop`].
-pub fn stop_word(stop: Stop) -> &'static str {
-    match stop {
-        Stop::Strokes => "strokes",
-        Stop::Psnr => "psnr",
-        Stop::Bytes => "bytes",
-        Stop::Time => "time",
-        Stop::Converged => "converged",
-        Stop::Observer => "interrupted",
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use std::time::Duration;
-
-    fn report() -> FitReport {
-        let quality = Quality {
-            psnr_db: f64::INFINITY,
-            ssim: 1.0,
-            mse: 0.0,
-            l1: 0.0,
-        };
-        let record = StageRecord {
-            index: 1,
-            strokes: 9,
-            iterations: 40,
-            wall: Duration::from_millis(250),
-            psnr_db: 31.5,
-            layer_psnr_db: 30.5,
-        };
-        FitReport {
-            schema: SCHEMA,
-            input: Input {
-                path: "a.png".into(),
-                width: 4,
-                height: 3,
-            },
-            strokes: 9,
-            dropped: 1,
-            dropped_for: Dropped {
-                off_page: 1,
-                ..Dropped::default()
-            },
-            stages: vec![StageEntry::from(&record)],
-            svg_bytes: 900,
-            svg_gzip_bytes: 400,
-            bytes_per_stroke: Some(100.0),
-            wall_s: 0.5,
-            cpu_s: Some(0.75),
-            peak_rss_bytes: None,
-            predicted_rss_bytes: 12_582_912,
-            stop: stop_word(Stop::Strokes).into(),
-            seed: 7,
-            fidelity: quality,
-            soft: quality,
-            agreement: Agreement {
-                psnr_db: 41.0,
-                max_abs: 12,
-            },
-            alpha: Some(OnMattes {
-                black_db: 28.5,
-                white_db: f64::INFINITY,
-                magenta_db: 29.0,
-            }),
-            base: Some(BaseEntry {
-                path: "b.svg".into(),
-                strokes: 4,
-                elements: 0,
-            }),
-        }
-    }
-
-    #[test]
-    fn the_fields_scripts_rely_on_are_there() {
-        let expected = serde_json::json!({
-            "schema": 1,
-            "input": {"path": "a.png", "width": 4, "height": 3},
-            "strokes": 9,
-            "dropped": 1,
-            "dropped_for": {"non_finite": 0, "invisible": 0, "off_page": 1},
-            "stages": [{"index": 1, "strokes": 9, "iterations": 40, "wall_s": 0.25, "psnr_db": 31.5, "layer_psnr_db": 30.5}],
-            "svg_bytes": 900,
-            "svg_gzip_bytes": 400,
-            "bytes_per_stroke": 100.0,
-            "wall_s": 0.5,
-            "cpu_s": 0.75,
-            "peak_rss_bytes": null,
-            "predicted_rss_bytes": 12_582_912,
-            "stop": "strokes",
-            "seed": 7,
-            "fidelity": {"psnr_db": null, "ssim": 1.0, "mse": 0.0, "l1": 0.0},
-            "soft": {"psnr_db": null, "ssim": 1.0, "mse": 0.0, "l1": 0.0},
-            "agreement": {"psnr_db": 41.0, "max_abs": 12},
-            "alpha": {"black_db": 28.5, "white_db": null, "magenta_db": 29.0},
-            "base": {"path": "b.svg", "strokes": 4, "elements": 0},
-        });
-        assert_eq!(serde_json::to_value(report()).unwrap(), expected);
-    }
-
-    #[test]
-    fn a_report_comes_back_from_its_json() {
-        let json = serde_json::to_string(&report()).unwrap();
-        assert_eq!(serde_json::from_str::<FitReport>(&json).unwrap(), report());
-    }
+/// A record as `--report` writes it: indented JSON, and a line break.
+///
+/// # Errors
+/// [`ErrorKind::Io`] when the record cannot be said in JSON, as none of this module.
+pub fn json(record: &impl Serialize) -> Result<String> {
+    let text = serde_json::to_string_pretty(record);
+    text.map(|text| text + "\n").map_err(|cause| {
+        Error::new(
+            ErrorKind::Io,
+            format!("a record cannot be written as JSON: {cause}"),
+        )
+        .caused_by(cause)
+    })
 }

@@ -1,0 +1,266 @@
+//! What `strokefit fit` and `strokefit refine` did.
+
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
+use super::{Input, Judged, SCHEMA, Usage, gzip_bytes, per_stroke};
+use crate::fit::{Base, Config, StageRecord, Stop, predicted_rss_bytes};
+use crate::metrics::{Agreement, Quality};
+use crate::scene::Dropped;
+use crate::verify::OnMattes;
+
+/// What `strokefit fit` did.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FitReport {
+    /// [`SCHEMA`].
+    pub schema: u32,
+    /// The picture.
+    pub input: Input,
+    /// Strokes in the drawing.
+    pub strokes: usize,
+    /// Strokes that were dropped because they became non-finite or could not be seen.
+    pub dropped: usize,
+    /// How many of them for which reason.
+    pub dropped_for: Dropped,
+    /// One per layer of the drawing, in order.
+    pub stages: Vec<StageEntry>,
+    /// Length of the SVG text in bytes.
+    pub svg_bytes: usize,
+    /// Its length when compressed by gzip.
+    pub svg_gzip_bytes: usize,
+    /// Its length, head and layers included, per stroke; `null` without strokes.
+    pub bytes_per_stroke: Option<f64>,
+    /// Wall time from the start of the command to the verdict, s.
+    pub wall_s: f64,
+    /// CPU time of the process, all threads, s.
+    pub cpu_s: Option<f64>,
+    /// Peak memory of the process, bytes.
+    pub peak_rss_bytes: Option<u64>,
+    /// The prediction of that, bytes.
+    pub predicted_rss_bytes: u64,
+    /// Why no more was done: `strokes`, `psnr`, `bytes`, `time`, `converged` or
+    /// `interrupted`.
+    pub stop: String,
+    /// Key of every random draw.
+    pub seed: u64,
+    /// The SVG as rendered by resvg against the picture.
+    pub fidelity: Quality,
+    /// Our own soft render against the picture.
+    pub soft: Quality,
+    /// The SVG as rendered by resvg against our own soft render.
+    pub agreement: Agreement,
+    /// A transparent drawing on black, on white and on magenta; `null` for others.
+    pub alpha: Option<OnMattes>,
+    /// The SVG that the drawing goes on from; `null` where there is none.
+    pub base: Option<BaseEntry>,
+}
+
+/// An SVG that was refined.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct BaseEntry {
+    /// As it was named; `-` for standard input.
+    pub path: String,
+    /// Strokes that were taken up.
+    pub strokes: usize,
+    /// Elements that were passed through as they are.
+    pub elements: usize,
+}
+
+/// How one stage went.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct StageEntry {
+    /// From 1; that of the layer.
+    pub index: usize,
+    /// Strokes of the stage in the drawing.
+    pub strokes: usize,
+    /// Iterations of the optimiser.
+    pub iterations: usize,
+    /// Wall time, s.
+    pub wall_s: f64,
+    /// Fidelity of the soft render after the stage, dB; `null` when perfect.
+    pub psnr_db: Option<f64>,
+    /// Fidelity of the finished drawing's layers up to this one, dB; `null` when perfect.
+    pub layer_psnr_db: Option<f64>,
+}
+
+impl From<&StageRecord> for StageEntry {
+    fn from(record: &StageRecord) -> Self {
+        Self {
+            index: record.index,
+            strokes: record.strokes,
+            iterations: record.iterations,
+            wall_s: record.wall.as_secs_f64(),
+            psnr_db: Some(record.psnr_db).filter(|db| db.is_finite()),
+            layer_psnr_db: Some(record.layer_psnr_db).filter(|db| db.is_finite()),
+        }
+    }
+}
+
+/// The word of [`FitReport::stop`].
+pub fn stop_word(stop: Stop) -> &'static str {
+    match stop {
+        Stop::Strokes => "strokes",
+        Stop::Psnr => "psnr",
+        Stop::Bytes => "bytes",
+        Stop::Time => "time",
+        Stop::Converged => "converged",
+        Stop::Observer => "interrupted",
+    }
+}
+
+/// What a report tells of a run and the drawing does not know.
+#[derive(Debug, Clone, Copy)]
+pub struct Run<'a> {
+    /// The picture as it was named; empty where it has no name.
+    pub input: &'a str,
+    /// The SVG that the drawing goes on from, as it was named; `None` keeps it out of the report.
+    pub base: Option<&'a str>,
+    /// What was asked for.
+    pub config: &'a Config,
+    /// Wall time that is told of.
+    pub wall: Duration,
+    /// What the process has used; [`Usage::default`] where that says nothing of the drawing.
+    pub usage: Usage,
+}
+
+impl FitReport {
+    /// The report of a drawing that was made in `run`.
+    pub fn of(judged: &Judged, run: &Run<'_>) -> Self {
+        let Judged {
+            fit,
+            svg,
+            soft,
+            verdict,
+            alpha,
+        } = judged;
+        let strokes = fit.scene.len();
+        Self {
+            schema: SCHEMA,
+            input: Input::new(run.input, &fit.target),
+            strokes,
+            dropped: fit.dropped.total(),
+            dropped_for: fit.dropped,
+            stages: fit.stages.iter().map(StageEntry::from).collect(),
+            svg_bytes: svg.len(),
+            svg_gzip_bytes: gzip_bytes(svg),
+            bytes_per_stroke: per_stroke(svg.len(), strokes),
+            wall_s: run.wall.as_secs_f64(),
+            cpu_s: run.usage.cpu_s,
+            peak_rss_bytes: run.usage.peak_rss_bytes,
+            predicted_rss_bytes: predicted_rss_bytes(&fit.target, run.config),
+            stop: stop_word(fit.stop).into(),
+            seed: run.config.seed,
+            fidelity: verdict.fidelity,
+            soft: *soft,
+            agreement: verdict.agreement,
+            alpha: *alpha,
+            base: fit.base.as_ref().zip(run.base).map(BaseEntry::of),
+        }
+    }
+}
+
+impl BaseEntry {
+    fn of((base, name): (&Base, &str)) -> Self {
+        Self {
+            path: name.into(),
+            strokes: base.scene.len(),
+            elements: base.elements(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn report() -> FitReport {
+        let quality = Quality {
+            psnr_db: f64::INFINITY,
+            ssim: 1.0,
+            mse: 0.0,
+            l1: 0.0,
+        };
+        let record = StageRecord {
+            index: 1,
+            strokes: 9,
+            iterations: 40,
+            wall: Duration::from_millis(250),
+            psnr_db: 31.5,
+            layer_psnr_db: 30.5,
+        };
+        FitReport {
+            schema: SCHEMA,
+            input: Input {
+                path: "a.png".into(),
+                width: 4,
+                height: 3,
+            },
+            strokes: 9,
+            dropped: 1,
+            dropped_for: Dropped {
+                off_page: 1,
+                ..Dropped::default()
+            },
+            stages: vec![StageEntry::from(&record)],
+            svg_bytes: 900,
+            svg_gzip_bytes: 400,
+            bytes_per_stroke: Some(100.0),
+            wall_s: 0.5,
+            cpu_s: Some(0.75),
+            peak_rss_bytes: None,
+            predicted_rss_bytes: 12_582_912,
+            stop: stop_word(Stop::Strokes).into(),
+            seed: 7,
+            fidelity: quality,
+            soft: quality,
+            agreement: Agreement {
+                psnr_db: 41.0,
+                max_abs: 12,
+            },
+            alpha: Some(OnMattes {
+                black_db: 28.5,
+                white_db: f64::INFINITY,
+                magenta_db: 29.0,
+            }),
+            base: Some(BaseEntry {
+                path: "b.svg".into(),
+                strokes: 4,
+                elements: 0,
+            }),
+        }
+    }
+
+    #[test]
+    fn the_fields_scripts_rely_on_are_there() {
+        let expected = serde_json::json!({
+            "schema": 1,
+            "input": {"path": "a.png", "width": 4, "height": 3},
+            "strokes": 9,
+            "dropped": 1,
+            "dropped_for": {"non_finite": 0, "invisible": 0, "off_page": 1},
+            "stages": [{"index": 1, "strokes": 9, "iterations": 40, "wall_s": 0.25, "psnr_db": 31.5, "layer_psnr_db": 30.5}],
+            "svg_bytes": 900,
+            "svg_gzip_bytes": 400,
+            "bytes_per_stroke": 100.0,
+            "wall_s": 0.5,
+            "cpu_s": 0.75,
+            "peak_rss_bytes": null,
+            "predicted_rss_bytes": 12_582_912,
+            "stop": "strokes",
+            "seed": 7,
+            "fidelity": {"psnr_db": null, "ssim": 1.0, "mse": 0.0, "l1": 0.0},
+            "soft": {"psnr_db": null, "ssim": 1.0, "mse": 0.0, "l1": 0.0},
+            "agreement": {"psnr_db": 41.0, "max_abs": 12},
+            "alpha": {"black_db": 28.5, "white_db": null, "magenta_db": 29.0},
+            "base": {"path": "b.svg", "strokes": 4, "elements": 0},
+        });
+        assert_eq!(serde_json::to_value(report()).unwrap(), expected);
+    }
+
+    #[test]
+    fn a_report_comes_back_from_its_json() {
+        let json = serde_json::to_string(&report()).unwrap();
+        assert_eq!(serde_json::from_str::<FitReport>(&json).unwrap(), report());
+    }
+}

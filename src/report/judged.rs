@@ -1,0 +1,50 @@
+//! A drawing as a file, and what is to be said of it.
+
+use crate::error::Result;
+use crate::fit::{Base, Fit};
+use crate::metrics::Quality;
+use crate::scene::Scene;
+use crate::verify::{self, OnMattes, Verdict};
+
+/// A finished drawing with its file, which resvg has drawn.
+#[derive(Debug, Clone)]
+pub struct Judged {
+    /// The drawing.
+    pub fit: Fit,
+    /// Text of the file.
+    pub svg: String,
+    /// Our own soft render against the picture.
+    pub soft: Quality,
+    /// The file as drawn by resvg.
+    pub verdict: Verdict,
+    /// The same on black, on white and on magenta, where the picture has alpha.
+    pub alpha: Option<OnMattes>,
+}
+
+impl Judged {
+    /// Writes the drawing, and judges what is written.
+    ///
+    /// # Errors
+    /// As [`verify::verify`].
+    pub fn new(fit: Fit) -> Result<Self> {
+        let svg = fit.svg();
+        let soft = Quality::between(&fit.target, &fit.soft)?;
+        let verdict = verify::verify(&svg, &fit.target, &fit.soft)?;
+        let has_alpha = fit.target.alpha().is_some();
+        let alpha = has_alpha.then(|| verify::on_mattes(&svg, &fit.target));
+        Ok(Self {
+            soft,
+            verdict,
+            alpha: alpha.transpose()?,
+            svg,
+            fit,
+        })
+    }
+
+    /// The scene, unless its strokes lie on a document and are only a part of the drawing.
+    pub fn whole(&self) -> Option<&Scene> {
+        let lies_on_document = |base: &Base| base.document.is_some();
+        let is_part = self.fit.base.as_ref().is_some_and(lies_on_document);
+        (!is_part).then_some(&self.fit.scene)
+    }
+}
