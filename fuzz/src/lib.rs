@@ -6,7 +6,10 @@
 mod drive;
 mod scene;
 
-use strokefit::fit::Simd;
+use std::fmt::Display;
+use std::str::FromStr;
+
+use strokefit::fit::{Background, Colors, Preset, Simd};
 use strokefit::image::{Image, Limits};
 use strokefit::verify::{self, Size};
 use strokefit::{coverage, svg};
@@ -82,7 +85,13 @@ pub fn words(data: &[u8]) {
         text.parse::<coverage::CoverageSchedule>()
             .err()
             .map(|e| e.to_string()),
-        text.parse::<Simd>().err().map(|e| e.to_string()),
+        word::<Simd>(text),
+        word::<Preset>(text),
+        word::<Background>(text),
+        word::<Colors>(text),
+        word::<svg::Form>(text),
+        word::<svg::Group>(text),
+        word::<svg::Length>(text),
         domain::strokes(text).err(),
         domain::bytes(text).err(),
         domain::stages(text).err(),
@@ -92,9 +101,21 @@ pub fn words(data: &[u8]) {
         domain::psnr(text).err(),
         domain::seconds(text).err(),
         domain::scale(text).err(),
-        domain::background(text).err(),
     ];
     if !text.contains(char::is_control) {
         assert!(refusals.iter().flatten().all(|line| !line.contains('\n')));
+    }
+}
+
+/// What is read is written as what is read the same; why it is not read otherwise.
+fn word<T: Display + FromStr<Err = strokefit::Error>>(text: &str) -> Option<String> {
+    match text.parse::<T>() {
+        Ok(value) => {
+            let written = value.to_string();
+            let again = written.parse::<T>().expect("what is written can be read");
+            assert_eq!(again.to_string(), written);
+            None
+        }
+        Err(error) => Some(error.to_string()),
     }
 }

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
-use clap::{Subcommand, ValueEnum};
+use clap::Subcommand;
+use clap::builder::TypedValueParser;
 use strokefit::bench::child::{Runner, perform};
 use strokefit::bench::pareto::{self, Effort, Sweep, Work, installed, known, missing};
 use strokefit::bench::scaling;
@@ -12,7 +13,7 @@ use strokefit::coverage::CoverageSchedule;
 use strokefit::lab::{Notice, ResultFolder};
 use strokefit::report::json;
 
-use super::{Status, Verbosity, domain, input, output};
+use super::{Status, Verbosity, domain, input, output, words};
 
 /// Measure speed against error, hard cases, and growth with size
 ///
@@ -70,8 +71,8 @@ struct Pareto {
     #[arg(long, value_name = "N", value_delimiter = ',', value_parser = domain::strokes)]
     strokes: Vec<usize>,
     /// Presets [default: all]
-    #[arg(long, value_enum, value_name = "PRESET", value_delimiter = ',')]
-    preset: Vec<PresetWord>,
+    #[arg(long, value_name = "PRESET", value_delimiter = ',', value_parser = effort())]
+    preset: Vec<Effort>,
     /// Coverage functions: the first for all fits, each other one for one draft
     #[arg(long, value_name = "EDGE", value_delimiter = ',')]
     coverage: Vec<CoverageSchedule>,
@@ -80,24 +81,14 @@ struct Pareto {
     seeds: Option<u64>,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum PresetWord {
-    /// A draft without polish
-    Stages,
-    Draft,
-    Balanced,
-    Best,
-}
-
-impl From<PresetWord> for Effort {
-    fn from(word: PresetWord) -> Self {
-        match word {
-            PresetWord::Stages => Self::Stages,
-            PresetWord::Draft => Self::Draft,
-            PresetWord::Balanced => Self::Balanced,
-            PresetWord::Best => Self::Best,
-        }
-    }
+/// The presets, and what comes before them.
+fn effort() -> impl TypedValueParser<Value = Effort> {
+    words::one_of([
+        (Effort::Stages, "A draft without polish"),
+        (Effort::Draft, "As --preset draft"),
+        (Effort::Balanced, "As --preset balanced"),
+        (Effort::Best, "As --preset best"),
+    ])
 }
 
 /// Try hard cases: degenerate strokes and pictures, precision, extreme learning rates, thin strokes
@@ -152,7 +143,7 @@ impl Pareto {
             sweep.strokes.clone_from(&self.strokes);
         }
         if !self.preset.is_empty() {
-            sweep.efforts = self.preset.iter().map(|&word| word.into()).collect();
+            sweep.efforts.clone_from(&self.preset);
         }
         if !self.coverage.is_empty() {
             sweep.coverages.clone_from(&self.coverage);

@@ -3,11 +3,8 @@
 
 use std::time::Duration;
 
-use strokefit::fit::{Background, MAX_STROKES};
+use strokefit::fit::{Colors, MAX_STROKES};
 use strokefit::scene::MAX_PRECISION;
-
-/// More are as good as any.
-const MAX_COLORS: usize = 4096;
 
 /// More threads than any machine has cores only waste memory.
 const MAX_THREADS: usize = 1024;
@@ -19,7 +16,7 @@ pub(super) fn strokes(text: &str) -> Parsed<usize> {
 }
 
 pub(super) fn colors(text: &str) -> Parsed<usize> {
-    whole(text, 1..=MAX_COLORS)
+    whole(text, 1..=Colors::MAX)
 }
 
 pub(super) fn bytes(text: &str) -> Parsed<usize> {
@@ -66,29 +63,6 @@ pub(super) fn scale(text: &str) -> Parsed<f64> {
         .ok_or_else(|| remedy.into())
 }
 
-pub(super) fn background(text: &str) -> Parsed<Background> {
-    match text {
-        "auto" => Ok(Background::Auto),
-        "none" => Ok(Background::None),
-        _ => color(text)
-            .map(Background::Color)
-            .ok_or_else(|| "give auto, none or a colour such as #ffffff".into()),
-    }
-}
-
-fn color(text: &str) -> Option<[f32; 3]> {
-    channels(text).map(|rgb| rgb.map(|c| f32::from(c) / 255.0))
-}
-
-/// The channels of `#rrggbb`.
-pub(super) fn channels(text: &str) -> Option<[u8; 3]> {
-    let digits = text
-        .strip_prefix('#')
-        .filter(|d| d.len() == 6 && d.bytes().all(|b| b.is_ascii_hexdigit()))?;
-    let [_, channels @ ..] = u32::from_str_radix(digits, 16).ok()?.to_be_bytes();
-    Some(channels)
-}
-
 fn whole(text: &str, range: std::ops::RangeInclusive<usize>) -> Parsed<usize> {
     text.parse()
         .ok()
@@ -118,9 +92,6 @@ mod tests {
             );
         }
         assert!(precision("7").is_err() && precision("-1").is_err());
-        for text in ["", "#fff", "white", "#gggggg", "#+12345", "ffffff"] {
-            assert!(background(text).is_err(), "{text}");
-        }
     }
 
     #[test]
@@ -129,9 +100,5 @@ mod tests {
         assert_eq!(precision("0"), Ok(0));
         assert_eq!(psnr("32.5"), Ok(32.5));
         assert_eq!(seconds("0.5"), Ok(Duration::from_millis(500)));
-        assert_eq!(
-            background("#00fF00"),
-            Ok(Background::Color([0.0, 1.0, 0.0]))
-        );
     }
 }

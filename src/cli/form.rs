@@ -1,9 +1,9 @@
 //! Options for the form of the file, shared by the commands that write one.
 
-use clap::ValueEnum;
-use strokefit::svg::{self, Length, WriteOptions};
+use clap::builder::TypedValueParser;
+use strokefit::svg::{Form, Group, Length, WriteOptions};
 
-use super::domain;
+use super::{domain, words};
 
 /// How the SVG is written.
 #[derive(Debug, clap::Args)]
@@ -13,10 +13,10 @@ pub(super) struct Args {
     #[arg(long, value_name = "N", default_value = "2", value_parser = domain::precision, allow_negative_numbers = true)]
     precision: u8,
     /// What one element of the SVG holds
-    #[arg(long, value_enum, default_value_t = Form::Plain)]
+    #[arg(long, default_value_t, value_parser = form())]
     form: Form,
     /// What one layer of the SVG holds
-    #[arg(long, value_enum, default_value_t = Group::Stage)]
+    #[arg(long, default_value_t, value_parser = group())]
     group: Group,
     /// Write filled outlines instead of strokes, for programs that ignore strokes
     #[arg(long, conflicts_with = "form")]
@@ -26,38 +26,42 @@ pub(super) struct Args {
     width: Option<Length>,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum Form {
-    /// One stroke, always
-    Elements,
-    /// One stroke, or a polyline of opaque strokes that lie end to end
-    Plain,
-    /// As many strokes as possible: fewest bytes, hardest to edit
-    Smallest,
+/// The forms that a file of strokes can have, with their help; outlines have a flag of their own.
+fn form() -> impl TypedValueParser<Value = Form> {
+    words::one_of([
+        (Form::Elements, "One stroke, always"),
+        (
+            Form::Plain,
+            "One stroke, or a polyline of opaque strokes that lie end to end",
+        ),
+        (
+            Form::Smallest,
+            "As many strokes as possible: fewest bytes, hardest to edit",
+        ),
+    ])
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum Group {
-    /// The strokes of one stage
-    Stage,
-    /// Strokes of one colour, as far as the picture stays the same
-    Color,
+/// The groupings, with their help.
+fn group() -> impl TypedValueParser<Value = Group> {
+    words::one_of([
+        (Group::Stage, "The strokes of one stage"),
+        (
+            Group::Color,
+            "Strokes of one colour, as far as the picture stays the same",
+        ),
+    ])
 }
 
 impl Args {
     pub(super) fn options(&self) -> WriteOptions {
         WriteOptions {
             precision: self.precision,
-            form: match self.form {
-                _ if self.outline => svg::Form::Outlines,
-                Form::Elements => svg::Form::Elements,
-                Form::Plain => svg::Form::Plain,
-                Form::Smallest => svg::Form::Smallest,
+            form: if self.outline {
+                Form::Outlines
+            } else {
+                self.form
             },
-            group: match self.group {
-                Group::Stage => svg::Group::Stage,
-                Group::Color => svg::Group::Color,
-            },
+            group: self.group,
             width: self.width,
         }
     }

@@ -24,6 +24,7 @@ mod render;
 mod settings;
 mod usage;
 mod view;
+mod words;
 
 use std::fmt::Display;
 use std::io::{self, Write};

@@ -4,15 +4,15 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use anyhow::Result;
-use clap::ValueEnum;
+use clap::builder::TypedValueParser;
 use strokefit::coverage::CoverageSchedule;
 use strokefit::fit::{
-    self, Background, Checkpoint, Config, Execution, Fit, Fitter, Observer, Simd,
+    self, Background, Checkpoint, Config, Execution, Fit, Fitter, Observer, Preset, Simd,
 };
 use strokefit::image::Limits;
 
 use super::pictures::FilmOptions;
-use super::{colors, complain, domain, form};
+use super::{colors, complain, domain, form, words};
 
 /// The options of a command that draws.
 #[derive(Debug, clap::Args)]
@@ -64,7 +64,7 @@ pub(super) struct Look {
     #[arg(long, value_name = "Q", allow_negative_numbers = true)]
     quality: Option<f64>,
     /// How much time to spend for a better drawing
-    #[arg(long, value_enum, default_value_t = Preset::Balanced)]
+    #[arg(long, default_value_t, value_parser = preset())]
     preset: Preset,
     /// Fit each layer for the layers below it only. The drawing is good after every layer, and some dB worse
     /// in the end
@@ -86,7 +86,7 @@ pub(super) struct Look {
     no_polish: bool,
     /// Background colour: auto, none or #rrggbb. auto keeps transparency; with --opaque it flattens a picture
     /// with translucent areas onto white. #rrggbb flattens onto that colour
-    #[arg(long, value_name = "COLOR", default_value = "auto", value_parser = domain::background)]
+    #[arg(long, value_name = "COLOR", default_value_t)]
     background: Background,
     /// Seed of all random choices. Another seed gives a slightly different drawing
     #[arg(long, value_name = "S", default_value_t = 0)]
@@ -114,14 +114,13 @@ pub(super) struct How {
     checkpoint_every: Option<Duration>,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum Preset {
-    /// A tenth of the time, about 1 dB worse
-    Draft,
-    /// The default
-    Balanced,
-    /// Three times the time, up to 0.2 dB better
-    Best,
+/// The presets, with their help.
+fn preset() -> impl TypedValueParser<Value = Preset> {
+    words::one_of([
+        (Preset::Draft, "A tenth of the time, about 1 dB worse"),
+        (Preset::Balanced, "The default"),
+        (Preset::Best, "Three times the time, up to 0.2 dB better"),
+    ])
 }
 
 impl Options {
@@ -129,7 +128,7 @@ impl Options {
         let look = &self.look;
         Config {
             budget: self.budget.limits(),
-            preset: look.preset.into(),
+            preset: look.preset,
             quality: look.quality,
             progressive: look.progressive,
             opaque: look.opaque,
@@ -199,16 +198,6 @@ impl Budget {
             psnr_db: self.psnr,
             bytes: self.bytes,
             time: self.time,
-        }
-    }
-}
-
-impl From<Preset> for fit::Preset {
-    fn from(preset: Preset) -> Self {
-        match preset {
-            Preset::Draft => Self::Draft,
-            Preset::Balanced => Self::Balanced,
-            Preset::Best => Self::Best,
         }
     }
 }

@@ -41,6 +41,7 @@ mod search;
 mod session;
 mod simd;
 mod surface;
+mod words;
 
 pub use anneal::final_softness;
 pub use base::Base;

@@ -1,5 +1,6 @@
 //! Options that say how a scene is written.
 
+use std::fmt;
 use std::str::FromStr;
 
 use super::dialect::Unit;
@@ -68,6 +69,67 @@ pub enum Group {
     Color,
 }
 
+impl Form {
+    /// Every form.
+    pub const ALL: [Self; 4] = [Self::Elements, Self::Plain, Self::Smallest, Self::Outlines];
+}
+
+impl fmt::Display for Form {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Elements => "elements",
+            Self::Plain => "plain",
+            Self::Smallest => "smallest",
+            Self::Outlines => "outlines",
+        })
+    }
+}
+
+impl FromStr for Form {
+    type Err = Error;
+
+    /// `elements`, `plain`, `smallest` or `outlines`.
+    fn from_str(text: &str) -> Result<Self, Error> {
+        let mut forms = Self::ALL.into_iter();
+        forms.find(|form| form.to_string() == text).ok_or_else(|| {
+            let right = "elements, plain, smallest or outlines";
+            Error::new(
+                ErrorKind::Config,
+                format!("'{text}' is not a form: give {right}"),
+            )
+        })
+    }
+}
+
+impl Group {
+    /// Every grouping.
+    pub const ALL: [Self; 2] = [Self::Stage, Self::Color];
+}
+
+impl fmt::Display for Group {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Stage => "stage",
+            Self::Color => "color",
+        })
+    }
+}
+
+impl FromStr for Group {
+    type Err = Error;
+
+    /// `stage` or `color`.
+    fn from_str(text: &str) -> Result<Self, Error> {
+        let mut groups = Self::ALL.into_iter();
+        groups
+            .find(|group| group.to_string() == text)
+            .ok_or_else(|| {
+                let message = format!("'{text}' is not a grouping: give stage or color");
+                Error::new(ErrorKind::Config, message)
+            })
+    }
+}
+
 /// A length with its unit, exact to 4 decimals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Length {
@@ -100,14 +162,7 @@ impl Length {
         Self { value, ..self }
     }
 
-    /// The length as the value of an attribute.
-    pub(super) fn text(self) -> String {
-        let mut out = String::new();
-        Unit::PX.push(&mut out, self.value);
-        out + self.unit
-    }
-
-    /// The length that [`text`](Self::text) wrote.
+    /// The length that an attribute says.
     pub(super) fn parse(text: &str) -> Option<Self> {
         let &(unit, _) = UNITS.iter().find(|(unit, _)| text.ends_with(unit))?;
         let value = Unit::PX.parse(text.strip_suffix(unit)?)?;
@@ -121,6 +176,14 @@ impl Length {
     }
 }
 
+impl fmt::Display for Length {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut number = String::new();
+        Unit::PX.push(&mut number, self.value);
+        write!(f, "{number}{}", self.unit)
+    }
+}
+
 impl FromStr for Length {
     type Err = Error;
 
@@ -129,8 +192,9 @@ impl FromStr for Length {
         Self::parse(text)
             .filter(|length| (1.0..=MAX_PAGE_PX).contains(&length.px()))
             .ok_or_else(|| {
-                let message =
-                    "give a length of 1 px to 100000 px with mm, cm, in, pt or px, such as 120mm";
+                let message = format!(
+                    "'{text}' is not a length of 1 px to 100000 px: give one with mm, cm, in, pt or px, such as 120mm"
+                );
                 Error::new(ErrorKind::Config, message)
             })
     }
@@ -143,8 +207,28 @@ mod tests {
     #[test]
     fn lengths_keep_their_unit_and_their_decimals() {
         for text in ["120mm", "12.5cm", "4.75in", "1pt", "600px", "0.5in"] {
-            assert_eq!(text.parse::<Length>().unwrap().text(), text);
+            assert_eq!(text.parse::<Length>().unwrap().to_string(), text);
         }
+    }
+
+    #[test]
+    fn forms_and_groupings_are_read_as_they_are_written() {
+        for form in Form::ALL {
+            assert_eq!(form.to_string().parse::<Form>().unwrap(), form);
+        }
+        for group in Group::ALL {
+            assert_eq!(group.to_string().parse::<Group>().unwrap(), group);
+        }
+        let error = "small".parse::<Form>().unwrap_err().to_string();
+        assert!(
+            error.contains("'small'") && error.contains("smallest"),
+            "{error}"
+        );
+        let error = "".parse::<Group>().unwrap_err().to_string();
+        assert!(
+            error.contains("''") && error.contains("stage or color"),
+            "{error}"
+        );
     }
 
     #[test]
@@ -172,7 +256,7 @@ mod tests {
     #[test]
     fn the_height_follows_the_width() {
         let width: Length = "120mm".parse().unwrap();
-        assert_eq!(width.scaled(225, 300).text(), "90mm");
-        assert_eq!(width.scaled(1, 7).text(), "17.1429mm");
+        assert_eq!(width.scaled(225, 300).to_string(), "90mm");
+        assert_eq!(width.scaled(1, 7).to_string(), "17.1429mm");
     }
 }

@@ -275,7 +275,7 @@ fn page_size(root: &Element) -> Parsed<(u32, u32)> {
         Some((side(width)?, side(height)?))
     })?;
     match root.find("width").and_then(Length::parse) {
-        Some(length) => root.expect("height", &length.scaled(height, width).text())?,
+        Some(length) => root.expect("height", &length.scaled(height, width).to_string())?,
         None => {
             root.expect("width", &width.to_string())?;
             root.expect("height", &height.to_string())?;

@@ -37,7 +37,7 @@ fn head(scene: &Scene, options: &WriteOptions) -> String {
     let Scene { width, height, .. } = *scene;
     let (svg, inkscape) = (dialect::SVG_NAMESPACE, dialect::INKSCAPE_NAMESPACE);
     let (page_width, page_height) = match options.width {
-        Some(length) => (length.text(), length.scaled(height, width).text()),
+        Some(length) => (length.to_string(), length.scaled(height, width).to_string()),
         None => (width.to_string(), height.to_string()),
     };
     let mut out = format!(

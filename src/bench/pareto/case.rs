@@ -1,15 +1,16 @@
 //! One drawing: who makes it, how, and what it costs and gains.
 
-use std::fs;
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 use std::time::Instant;
+use std::{fmt, fs};
 
 use serde::{Deserialize, Serialize};
 
 use super::programs::Peer;
 use crate::coverage::{Coverage, CoverageSchedule};
 use crate::error::{Error, ErrorKind, Result};
-use crate::fit::{self, Budget, Config, Execution, Fitter};
+use crate::fit::{Budget, Config, Execution, Fitter, Preset};
 use crate::image::Image;
 use crate::lab::article::{Capsules, Reproduction};
 use crate::metrics::Agreement;
@@ -87,14 +88,42 @@ pub enum Effort {
 }
 
 impl Effort {
-    /// The word for it.
-    pub fn word(self) -> &'static str {
+    /// Every effort, the least first.
+    pub const ALL: [Self; 4] = [Self::Stages, Self::Draft, Self::Balanced, Self::Best];
+
+    /// The preset that it takes its recipe from.
+    fn preset(self) -> Preset {
         match self {
-            Self::Stages => "stages",
-            Self::Draft => "draft",
-            Self::Balanced => "balanced",
-            Self::Best => "best",
+            Self::Stages | Self::Draft => Preset::Draft,
+            Self::Balanced => Preset::Balanced,
+            Self::Best => Preset::Best,
         }
+    }
+}
+
+impl fmt::Display for Effort {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Stages => f.write_str("stages"),
+            Self::Draft | Self::Balanced | Self::Best => self.preset().fmt(f),
+        }
+    }
+}
+
+impl FromStr for Effort {
+    type Err = Error;
+
+    /// `stages`, or the word of a preset.
+    fn from_str(text: &str) -> Result<Self> {
+        let mut all = Self::ALL.into_iter();
+        all.find(|effort| effort.to_string() == text)
+            .ok_or_else(|| {
+                let right = "stages, draft, balanced or best";
+                Error::new(
+                    ErrorKind::Config,
+                    format!("'{text}' is not a preset: give {right}"),
+                )
+            })
     }
 }
 
@@ -154,7 +183,7 @@ impl Maker {
                 coverage,
                 strokes,
                 seed,
-            } => format!("{} {strokes} {coverage} seed {seed}", effort.word()),
+            } => format!("{effort} {strokes} {coverage} seed {seed}"),
             Self::Article {
                 strokes,
                 limit,
@@ -162,7 +191,7 @@ impl Maker {
             } => match limit {
                 Limit::Iterations(n) => format!("{strokes} strokes, {n} iterations, seed {seed}"),
                 Limit::TimeOf { effort, .. } => {
-                    format!("{strokes} strokes, time of {}, seed {seed}", effort.word())
+                    format!("{strokes} strokes, time of {effort}, seed {seed}")
                 }
             },
             Self::Peer { settings, .. } => settings.clone(),
@@ -221,11 +250,7 @@ fn fitted(
             strokes: Some(strokes),
             ..Budget::default()
         },
-        preset: match effort {
-            Effort::Stages | Effort::Draft => fit::Preset::Draft,
-            Effort::Balanced => fit::Preset::Balanced,
-            Effort::Best => fit::Preset::Best,
-        },
+        preset: effort.preset(),
         polish: effort != Effort::Stages,
         coverage,
         seed,
@@ -310,7 +335,7 @@ impl Case {
                 seed,
                 ..
             } => (
-                Some(effort.word().to_owned()),
+                Some(effort.to_string()),
                 Some(coverage.clone()),
                 Some(*seed),
             ),

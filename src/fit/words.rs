@@ -1,0 +1,291 @@
+//! The words for what a fit can be asked for, as they stand on the command line and in bindings.
+//!
+//! Every error names the value and says what would be right.
+
+use std::fmt;
+use std::str::FromStr;
+
+use super::{Background, Colors, Preset};
+use crate::error::{Error, ErrorKind, Result};
+use crate::scene::{color, quantum};
+
+impl Preset {
+    /// Every preset, the quickest first.
+    pub const ALL: [Self; 3] = [Self::Draft, Self::Balanced, Self::Best];
+}
+
+impl fmt::Display for Preset {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Draft => "draft",
+            Self::Balanced => "balanced",
+            Self::Best => "best",
+        })
+    }
+}
+
+impl FromStr for Preset {
+    type Err = Error;
+
+    /// `draft`, `balanced` or `best`.
+    fn from_str(text: &str) -> Result<Self> {
+        let mut presets = Self::ALL.into_iter();
+        presets
+            .find(|preset| preset.to_string() == text)
+            .ok_or_else(|| {
+                refusal(format!(
+                    "'{}' is not a preset: give draft, balanced or best",
+                    short(text)
+                ))
+            })
+    }
+}
+
+impl fmt::Display for Background {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Auto => f.write_str("auto"),
+            Self::None => f.write_str("none"),
+            Self::Color(rgb) => write_color(f, rgb.map(quantum)),
+        }
+    }
+}
+
+impl FromStr for Background {
+    type Err = Error;
+
+    /// `auto`, `none` or `#rrggbb`.
+    fn from_str(text: &str) -> Result<Self> {
+        let unknown = || {
+            refusal(format!(
+                "'{}' is not a background: give auto, none or a colour such as #ffffff",
+                short(text)
+            ))
+        };
+        match text {
+            "auto" => Ok(Self::Auto),
+            "none" => Ok(Self::None),
+            _ => channels(text)
+                .map(|rgb| Self::Color(color(rgb)))
+                .ok_or_else(unknown),
+        }
+    }
+}
+
+/// The first line of a GIMP palette.
+const GIMP: &str = "GIMP Palette";
+
+impl Colors {
+    /// Most colours that can be asked for; more are as good as any.
+    pub const MAX: usize = 4096;
+
+    /// The palette that `text` is: colours `#rrggbb` with commas between, or one a line, or a GIMP palette.
+    /// A colour that comes twice counts once.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Config`] when there is not a colour or more than 4,096, or one is written in another way.
+    pub fn palette(text: &str) -> Result<Self> {
+        let text = text.trim_start_matches('\u{feff}');
+        if text.starts_with(GIMP) {
+            return gimp(text);
+        }
+        if text.trim().lines().count() > 1 {
+            return distinct(lines(text), channels, "#rrggbb");
+        }
+        let words = text.split(',').map(str::trim);
+        distinct(
+            words
+                .filter(|_| !text.trim().is_empty())
+                .map(|word| (None, word)),
+            channels,
+            "#rrggbb,#rrggbb,...",
+        )
+    }
+}
+
+impl fmt::Display for Colors {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Free => f.write_str("free"),
+            Self::AtMost(most) => write!(f, "{most}"),
+            Self::Palette(palette) => palette.iter().enumerate().try_for_each(|(i, &color)| {
+                f.write_str(if i > 0 { "," } else { "" })?;
+                write_color(f, color)
+            }),
+        }
+    }
+}
+
+impl FromStr for Colors {
+    type Err = Error;
+
+    /// `free`, a number of colours, or a palette as [`Colors::palette`] takes it.
+    fn from_str(text: &str) -> Result<Self> {
+        if text == "free" {
+            return Ok(Self::Free);
+        }
+        if !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit()) {
+            let count = text.parse().ok();
+            let count = count.filter(|count| (1..=Self::MAX).contains(count));
+            return count.map(Self::AtMost).ok_or_else(|| {
+                refusal(format!(
+                    "{} colours cannot be drawn with: give 1 to {}",
+                    short(text),
+                    Self::MAX
+                ))
+            });
+        }
+        Self::palette(text)
+    }
+}
+
+/// The lines that say something, each with its number.
+fn lines(text: &str) -> impl Iterator<Item = (Option<usize>, &str)> {
+    let numbered = text.lines().map(str::trim).enumerate();
+    numbered
+        .filter(|(_, line)| !line.is_empty())
+        .map(|(i, line)| (Some(i + 1), line))
+}
+
+/// A GIMP palette: after its head and comments, a line for each colour.
+fn gimp(text: &str) -> Result<Colors> {
+    let is_color = |(_, line): &(Option<usize>, &str)| {
+        !(line.starts_with(GIMP) || line.starts_with('#') || line.contains(':'))
+    };
+    distinct(
+        lines(text).filter(is_color),
+        levels,
+        "three levels of 0 to 255",
+    )
+}
+
+/// The first three numbers of a line of a GIMP palette; a name may follow.
+fn levels(line: &str) -> Option<[u8; 3]> {
+    let mut words = line.split_ascii_whitespace().map(|word| word.parse().ok());
+    Some([words.next()??, words.next()??, words.next()??])
+}
+
+/// The channels of `#rrggbb`.
+fn channels(text: &str) -> Option<[u8; 3]> {
+    let digits = text
+        .strip_prefix('#')
+        .filter(|d| d.len() == 6 && d.bytes().all(|b| b.is_ascii_hexdigit()))?;
+    let [_, channels @ ..] = u32::from_str_radix(digits, 16).ok()?.to_be_bytes();
+    Some(channels)
+}
+
+/// The palette of these texts, which have a line number where they are lines.
+fn distinct<'a>(
+    texts: impl Iterator<Item = (Option<usize>, &'a str)>,
+    read: impl Fn(&str) -> Option<[u8; 3]>,
+    right: &str,
+) -> Result<Colors> {
+    let mut palette = Vec::new();
+    for (line, text) in texts {
+        let color = read(text).ok_or_else(|| {
+            let place = line.map_or(String::new(), |line| format!("line {line}: "));
+            refusal(format!(
+                "{place}'{}' is not a colour: give {right}",
+                short(text)
+            ))
+        })?;
+        if !palette.contains(&color) {
+            palette.push(color);
+        }
+        if palette.len() > Colors::MAX {
+            return Err(refusal(format!(
+                "the palette has more than {} colours: give fewer",
+                Colors::MAX
+            )));
+        }
+    }
+    if palette.is_empty() {
+        return Err(refusal("the palette has no colour: give one or more"));
+    }
+    Ok(Colors::Palette(palette))
+}
+
+fn write_color(f: &mut fmt::Formatter<'_>, [r, g, b]: [u8; 3]) -> fmt::Result {
+    write!(f, "#{r:02x}{g:02x}{b:02x}")
+}
+
+fn refusal(message: impl Into<String>) -> Error {
+    Error::new(ErrorKind::Config, message)
+}
+
+/// The beginning of a text, for a message.
+fn short(text: &str) -> String {
+    text.chars().take(40).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn red_and_ink() -> Colors {
+        Colors::Palette(vec![[255, 0, 0], [16, 32, 48]])
+    }
+
+    fn message<T: FromStr<Err = Error> + fmt::Debug>(text: &str) -> String {
+        text.parse::<T>().unwrap_err().to_string()
+    }
+
+    #[test]
+    fn every_word_is_read_as_it_is_written() {
+        for preset in Preset::ALL {
+            assert_eq!(preset.to_string().parse::<Preset>().unwrap(), preset);
+        }
+        let green = Background::Color([0.0, 1.0, 0.0]);
+        for background in [Background::Auto, Background::None, green] {
+            let word = background.to_string();
+            assert_eq!(word.parse::<Background>().unwrap(), background);
+        }
+        for colors in [Colors::Free, Colors::AtMost(8), red_and_ink()] {
+            assert_eq!(colors.to_string().parse::<Colors>().unwrap(), colors);
+        }
+    }
+
+    #[test]
+    fn lists_lines_and_gimp_palettes_say_the_same() {
+        let gimp = "GIMP Palette\nName: two\nColumns: 2\n#\n255   0   0\tRed\n 16  32  48\n";
+        for text in [
+            "#ff0000,#102030, #FF0000",
+            "#ff0000\n\n#102030\r\n",
+            "\u{feff}#ff0000\n#102030",
+            gimp,
+        ] {
+            assert_eq!(Colors::palette(text).unwrap(), red_and_ink(), "{text}");
+        }
+        let red = Colors::Palette(vec![[255, 0, 0]]);
+        assert_eq!(Colors::palette("#ff0000\n").unwrap(), red);
+    }
+
+    #[test]
+    fn what_is_no_palette_is_refused_with_its_place() {
+        for (text, words) in [
+            ("#ff0000,#12", "'#12' is not a colour"),
+            ("no-such-file", "'no-such-file' is not a colour"),
+            ("#ff0000\nred", "line 2: 'red'"),
+            ("GIMP Palette\n300 0 0", "line 2: '300 0 0'"),
+            ("GIMP Palette\n#\n", "no colour"),
+            ("", "no colour"),
+            (" \n", "no colour"),
+        ] {
+            let error = Colors::palette(text).unwrap_err().to_string();
+            assert!(error.contains(words), "{error}");
+        }
+    }
+
+    #[test]
+    fn errors_name_the_value_and_the_remedy() {
+        let drft = message::<Preset>("drft");
+        assert!(drft.contains("'drft'") && drft.contains("draft, balanced or best"));
+        for text in ["", "#fff", "white", "#gggggg", "#+12345", "ffffff"] {
+            let error = message::<Background>(text);
+            assert!(error.contains(&format!("'{text}'")) && error.contains("auto, none"));
+        }
+        for text in ["0", "4097", "99999999999999999999999"] {
+            assert!(message::<Colors>(text).contains("give 1 to 4096"));
+        }
+    }
+}
