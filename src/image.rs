@@ -69,7 +69,7 @@ impl Image {
     /// use strokefit::image::{Image, Rows};
     ///
     /// // Two rows of one RGB pixel, each row padded to 4 bytes.
-    /// let samples = [255, 0, 0, 0, 0, 51, 255, 0];
+    /// let samples = [255_u8, 0, 0, 0, 0, 51, 255, 0];
     /// let rows = Rows { stride: 4, ..Rows::packed(1, 2, 3, &samples) };
     /// let picture = Image::from_rows(rows)?;
     /// assert_eq!(picture.planes()[1], [0.0, 0.2]);

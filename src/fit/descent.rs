@@ -109,7 +109,7 @@ impl Descent {
             Some(from) => annealing.at(from, done),
             None => annealing.last(),
         };
-        drawing.differentiate(edge, aim.map(|aim| aim.targets), &mut self.gradients);
+        drawing.differentiate::<false>(edge, aim.map(|aim| aim.targets), &mut self.gradients);
         let rate = course.rate(step, done);
         let flat = self.gradients.strokes.as_flattened();
         let limits = drawing.limits;

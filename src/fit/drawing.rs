@@ -6,9 +6,8 @@ mod scene;
 use fearless_simd::Level;
 
 use super::limits::Limits;
-use super::objective::{Term, differentiate};
 use super::surface::Surface;
-use crate::render::{Canvas, Gradients, Params, Renderer, Softness};
+use crate::render::{Canvas, CanvasLoss, Gradients, Params, Renderer, Softness};
 use crate::scene::Rgb;
 pub(super) use memento::Memento;
 use scene::enlarged;
@@ -209,25 +208,39 @@ impl Drawing {
         self.stage_of.last().copied().unwrap_or(0)
     }
 
-    /// Derivatives of the loss by the free strokes, at softness `edge`: against the picture, or against `targets`,
-    /// one per surface.
-    pub(super) fn differentiate(
+    /// The mean loss of the free strokes over the surfaces at softness `edge`, and its derivatives, with the strokes'
+    /// worth if so asked: against the picture, or against `targets`, one per surface.
+    pub(super) fn differentiate<const WITH_WORTH: bool>(
         &mut self,
         edge: Softness,
         targets: Option<&[Canvas]>,
         gradients: &mut Gradients,
     ) {
-        let terms = terms(&self.surfaces, self.frozen, targets);
         let free = &self.strokes[self.frozen..];
-        differentiate::<false>(&mut self.renderer, free, edge, &terms, gradients);
+        let mut more = Gradients::default();
+        for (i, surface) in self.surfaces.iter().enumerate() {
+            let out = if i == 0 { &mut *gradients } else { &mut more };
+            let backdrop = surface.backdrop(self.frozen);
+            let objective = surface.objective(targets.and_then(|targets| targets.get(i)));
+            let renderer = &mut self.renderer;
+            if WITH_WORTH {
+                renderer.backward_with_worth(free, edge, backdrop, &objective, out);
+            } else {
+                renderer.backward(free, edge, backdrop, &objective, out);
+            }
+            if i > 0 {
+                gradients.add(&more);
+            }
+        }
+        if self.surfaces.len() > 1 {
+            gradients.scale(1.0 / self.surfaces.len() as f32);
+        }
     }
 
     /// Loss, gradients and worth of the free strokes at the final edge.
     pub(super) fn judge(&mut self) -> Gradients {
         let mut gradients = Gradients::default();
-        let terms = terms(&self.surfaces, self.frozen, None);
-        let free = &self.strokes[self.frozen..];
-        differentiate::<true>(&mut self.renderer, free, self.edge, &terms, &mut gradients);
+        self.differentiate::<true>(self.edge, None, &mut gradients);
         let area = self.pixel_area();
         gradients.worth.iter_mut().for_each(|worth| *worth *= area);
         gradients
@@ -242,11 +255,7 @@ impl Drawing {
     }
 
     /// The derivatives of some other loss by all strokes, which must be free, on the first surface.
-    pub(super) fn backward(
-        &mut self,
-        loss: &impl crate::render::CanvasLoss,
-        gradients: &mut Gradients,
-    ) {
+    pub(super) fn backward(&mut self, loss: &impl CanvasLoss, gradients: &mut Gradients) {
         let backdrop = self.surfaces[0].backdrop(0);
         self.renderer
             .backward(&self.strokes, self.edge, backdrop, loss, gradients);
@@ -264,18 +273,4 @@ impl Drawing {
         let losses = pairs.map(|(surface, canvas)| surface.mse_of(canvas));
         losses.sum::<f64>() / self.surfaces.len() as f64
     }
-}
-
-/// The terms of the loss that the free strokes have, on `frozen` others; against `targets` rather than the picture, if
-/// there are any.
-fn terms<'a>(
-    surfaces: &'a [Surface],
-    frozen: usize,
-    targets: Option<&'a [Canvas]>,
-) -> Vec<Term<'a>> {
-    let target = |i: usize| targets.and_then(|targets| targets.get(i));
-    let surfaces = surfaces.iter().enumerate();
-    surfaces
-        .map(|(i, surface)| surface.term(frozen, target(i)))
-        .collect()
 }

@@ -7,7 +7,7 @@
 //! the file really looks like. At last strokes are added or removed, and fitted again, until the file is as
 //! faithful and as short as the budgets ask for.
 //!
-//! [`Fitter::fit`] runs the phases; `phase` says in which order they come, and has a file for each. Between two
+//! [`Fitter::fit`] runs the phases: `order` says which follows which, and `phase` has a file for each. Between two
 //! phases, and between two iterations of most, all there is to know is in the session, so that it can be kept in a
 //! [`Checkpoint`] and gone on with in another process.
 
@@ -29,6 +29,7 @@ mod journal;
 mod limits;
 mod memory;
 mod objective;
+mod order;
 mod phase;
 mod plan;
 mod price;
@@ -61,7 +62,8 @@ pub use simd::Simd;
 use crate::clock::Instant;
 use crate::error::Result;
 use crate::image::Image;
-use phase::{Outcome, Phase, count, grow, polish, settle};
+use order::{Outcome, Phase};
+use phase::{count, grow, polish, settle};
 use session::Session;
 
 impl Fitter<'_> {
@@ -90,7 +92,7 @@ impl Fitter<'_> {
             }
             while session.phase != Phase::Done {
                 let outcome = run(&mut session)?;
-                session.phase = phase::next(session.phase, outcome, config);
+                session.phase = order::next(session.phase, outcome, config);
                 session.keep(None);
             }
             finish::finish(session)

@@ -3,9 +3,7 @@
 use rayon::prelude::*;
 
 use crate::loss::Loss;
-use crate::render::{
-    Backdrop, Canvas, CanvasLoss, Gradients, Lanes, Params, Renderer, Softness, TileRgb,
-};
+use crate::render::{Canvas, CanvasLoss, Lanes, TileRgb};
 
 /// The mean of `loss` over width·height·3 values against `target`.
 #[derive(Debug, Clone, Copy)]
@@ -72,42 +70,5 @@ impl CanvasLoss for Objective<'_> {
             }
         }
         sums.0.iter().map(|&s| f64::from(s)).sum::<f64>() * f64::from(self.scale)
-    }
-}
-
-/// One term of the mean that a fit minimises: the loss of strokes on a backdrop against a target.
-#[derive(Clone, Copy)]
-pub(super) struct Term<'a> {
-    pub(super) backdrop: Backdrop<'a>,
-    pub(super) objective: Objective<'a>,
-}
-
-/// The mean loss of `strokes` over `terms` and its derivatives, with the strokes' worth if so asked.
-pub(super) fn differentiate<const WITH_WORTH: bool>(
-    renderer: &mut Renderer,
-    strokes: &[Params],
-    edge: Softness,
-    terms: &[Term<'_>],
-    gradients: &mut Gradients,
-) {
-    let mut run = |term: &Term<'_>, gradients: &mut Gradients| {
-        let (backdrop, objective) = (term.backdrop, &term.objective);
-        if WITH_WORTH {
-            renderer.backward_with_worth(strokes, edge, backdrop, objective, gradients);
-        } else {
-            renderer.backward(strokes, edge, backdrop, objective, gradients);
-        }
-    };
-    let Some((first, others)) = terms.split_first() else {
-        return;
-    };
-    run(first, gradients);
-    let mut more = Gradients::default();
-    for term in others {
-        run(term, &mut more);
-        gradients.add(&more);
-    }
-    if !others.is_empty() {
-        gradients.scale(1.0 / terms.len() as f32);
     }
 }

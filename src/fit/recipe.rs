@@ -345,6 +345,7 @@ impl Recipe {
             ("domain.min_radius", self.domain.min_radius),
             ("optimizer.usual_radius", self.optimizer.usual_radius),
             ("pens.ladder − 1", self.pens.ladder - 1.0),
+            ("optimizer.radius_factors", self.optimizer.radius_factors[0]),
             ("edge.final_slope", self.edge.final_slope as f32),
             (
                 "correction.db_per_doubling",
@@ -367,7 +368,34 @@ impl Recipe {
         for (name, value) in shares {
             demand(name, value, (0.0..=1.0).contains(&value), "0 to 1")?;
         }
-        Ok(())
+        self.check_ranges()
+    }
+
+    fn check_ranges(&self) -> Result<()> {
+        let margin = self.domain.margin;
+        demand(
+            "domain.margin",
+            margin,
+            (0.0..=1e6).contains(&margin),
+            "0 to 1000000",
+        )?;
+        let [least, most] = self.optimizer.radius_factors;
+        demand(
+            "optimizer.radius_factors",
+            most,
+            most >= least,
+            "the smaller one first",
+        )?;
+        // The largest shape has to fit a patch.
+        let radius = self.probing.radii.into_iter().fold(0.0, f32::max);
+        demand("probing.radii", radius, radius <= MAX_RADIUS, "at most 1")?;
+        let length = self.probing.lengths.into_iter().fold(0.0, f32::max);
+        demand(
+            "probing.lengths",
+            length,
+            length <= MAX_LENGTH,
+            "at most 4.5",
+        )
     }
 
     fn check_counts(&self) -> Result<()> {
@@ -402,6 +430,9 @@ impl Recipe {
 
 /// Beyond it the second stage of any drawing is its last.
 const MAX_GROWTH: f64 = 100.0;
+/// Radius and length of the largest shape that can be probed, in units of the scale.
+const MAX_RADIUS: f32 = 1.0;
+const MAX_LENGTH: f32 = 4.5;
 
 fn smallest<const N: usize>(values: [f32; N]) -> f32 {
     values.into_iter().fold(f32::INFINITY, f32::min)
@@ -443,6 +474,13 @@ mod tests {
         refused(|r| r.stages.first = 0, "stages.first", "0");
         refused(|r| r.stages.scale = 0.0, "stages.scale", "0");
         refused(|r| r.probing.radii[1] = -1.0, "probing.radii", "-1");
+        refused(|r| r.probing.lengths[0] = 9.0, "probing.lengths", "9");
+        refused(|r| r.domain.margin = f32::NAN, "domain.margin", "NaN");
+        refused(
+            |r| r.optimizer.radius_factors = [4.0, 0.25],
+            "radius_factors",
+            "0.25",
+        );
         refused(|r| r.edge.annealed = 1.5, "edge.annealed", "1.5");
         refused(|r| r.relocation.every = 0, "relocation.every", "0");
         refused(|r| r.relocation.share = f32::NAN, "relocation.share", "NaN");

@@ -16,7 +16,7 @@ use super::file::{RenderedFile, Writer};
 use super::forecast::Forecast;
 use super::journal::{self, Journal};
 use super::limits::Limits;
-use super::phase::Phase;
+use super::order::Phase;
 use super::plan::{Before, Plan};
 use super::price::Price;
 use super::progress::{CancelToken, Observer, Position, Tracker};
@@ -97,15 +97,7 @@ impl<'a> Session<'a> {
         let edge = annealing.last();
         let mut drawing = Drawing::new(surfaces, background_fixed, limits, edge, level);
         let records = base.map_or_else(Vec::new, |base| journal::load(&mut drawing, base));
-        let deadline: Box<dyn Deadline> = match config.budget.time {
-            Some(limit) => {
-                let is_transparent = drawing.surfaces.len() > 1;
-                let needs_file = budget::needs_file(&config.budget, &recipe);
-                let forecast = Forecast::new(limit, pixels, is_transparent, needs_file, &recipe);
-                Box::new(forecast)
-            }
-            None => Box::new(Unlimited),
-        };
+        let deadline = deadline(config, &recipe, &drawing);
         let planned = (plan.strokes() * recipe.iterations(config.polish)) as f64;
         Ok(Self {
             config,
@@ -229,6 +221,23 @@ impl<'a> Session<'a> {
         keeper.is_final |= is_interrupted;
         self.keeper = Some(keeper);
     }
+}
+
+/// What the fit is told of the time that it has.
+fn deadline(config: &Config, recipe: &Recipe, drawing: &Drawing) -> Box<dyn Deadline> {
+    let Some(limit) = config.budget.time else {
+        return Box::new(Unlimited);
+    };
+    let is_transparent = drawing.surfaces.len() > 1;
+    let needs_file = budget::needs_file(&config.budget, recipe);
+    let pixels = drawing.pixels();
+    Box::new(Forecast::new(
+        limit,
+        pixels,
+        is_transparent,
+        needs_file,
+        recipe,
+    ))
 }
 
 /// The scale of the first stage, px: the drawing begins at the resolution for it; 0 for that of the picture.

@@ -8,7 +8,7 @@
 use super::background;
 use super::base::Base;
 use super::config::Background;
-use super::objective::{Objective, Term};
+use super::objective::Objective;
 use super::recipe::Recipe;
 use crate::error::Result;
 use crate::image::Image;
@@ -257,15 +257,12 @@ impl Surface {
 
     /// The mean squared error of `canvas`, at the current resolution.
     pub(super) fn mse_of(&self, canvas: &Canvas) -> f64 {
-        Objective::new(Loss::L2, &self.target).of(canvas)
+        self.objective(None).of(canvas)
     }
 
-    /// The term of the loss that the free strokes have here: against the picture, or against `target`.
-    pub(super) fn term<'a>(&'a self, frozen: usize, target: Option<&'a Canvas>) -> Term<'a> {
-        Term {
-            backdrop: self.backdrop(frozen),
-            objective: Objective::new(Loss::L2, target.unwrap_or(&self.target)),
-        }
+    /// The loss against the picture, or against `target`.
+    pub(super) fn objective<'a>(&'a self, target: Option<&'a Canvas>) -> Objective<'a> {
+        Objective::new(Loss::L2, target.unwrap_or(&self.target))
     }
 
     /// Picture and canvas, to search places for strokes in.

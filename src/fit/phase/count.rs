@@ -1,8 +1,9 @@
 //! Counting: strokes are added and removed until the file is as faithful, and as short, as asked for.
 
-use super::{Outcome, Purpose, grow};
+use super::grow;
 use crate::error::Result;
 use crate::fit::budget;
+use crate::fit::order::{Outcome, Purpose};
 use crate::fit::recipe::Correction;
 use crate::fit::result::Stop;
 use crate::fit::session::Session;

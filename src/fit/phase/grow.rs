@@ -1,16 +1,17 @@
 //! Growing: stages are seeded where the residual is largest, fitted alone on what is frozen, and keep what pays.
 
-use super::{Outcome, Purpose};
+use super::polish;
 use crate::error::Result;
 use crate::fit::descend::descend;
 use crate::fit::descent::Course;
+use crate::fit::drawing::Drawing;
 use crate::fit::journal::OpenStage;
+use crate::fit::order::{Outcome, Purpose};
 use crate::fit::plan::PlannedStage;
 use crate::fit::price::Price;
 use crate::fit::result::Stop;
 use crate::fit::search::search;
 use crate::fit::session::Session;
-use crate::fit::{drawing::Drawing, phase::polish};
 use crate::metrics::psnr_db;
 
 /// Seeds the next stage, as long as the plan or a budget does not end.

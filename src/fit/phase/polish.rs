@@ -1,10 +1,10 @@
 //! Polish: all free strokes, and the background, are fitted jointly, with relocation.
 
-use super::{Outcome, Purpose};
 use crate::error::Result;
 use crate::fit::config::Colors;
 use crate::fit::descend::descend;
 use crate::fit::descent::Course;
+use crate::fit::order::{Outcome, Purpose};
 use crate::fit::session::Session;
 use crate::svg::Form;
 

@@ -10,13 +10,14 @@
 //!
 //! [`renderers`]: crate::fit::renderers
 
-use super::{Outcome, palette, pens};
+use super::{palette, pens};
 use crate::error::Result;
 use crate::fit::budget;
 use crate::fit::descend::descend;
 use crate::fit::descent::{Aim, Course};
 use crate::fit::drawing::Memento;
 use crate::fit::file::RenderedFile;
+use crate::fit::order::Outcome;
 use crate::fit::recipe::Rates;
 use crate::fit::renderers::Renderings;
 use crate::fit::result::Stop;

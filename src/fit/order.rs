@@ -1,0 +1,216 @@
+//! The order of a fit: its phases, and which follows which.
+//!
+//! ```text
+//! base ─→ grow ⇄ stage        strokes are added, stage by stage
+//!           ↓
+//!         polish              all are fitted jointly
+//!           ↓
+//!         settle              and against what the file looks like
+//!           ↓
+//!         fidelity ─→ stage ─→ polish ─→ settle ─→ fidelity     until the file is as faithful as asked for
+//!           ↓
+//!         bytes ─→ shorten ─→ bytes                             until it is as short as asked for
+//! ```
+
+use serde::{Deserialize, Serialize};
+
+use super::base::Base;
+use super::config::Config;
+
+/// What a fit does at a time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum Phase {
+    /// Leave the base as it is, if it meets a budget already.
+    Base,
+    /// Seed the next stage, if another is planned and pays.
+    Grow,
+    /// Fit the strokes of a stage alone, and keep what pays.
+    Stage(Purpose),
+    /// Fit all strokes jointly after a stage, in a progressive drawing.
+    StagePolish(Purpose),
+    /// Fit all strokes jointly.
+    Polish(Purpose),
+    /// Bring the drawing to its colours and pens, and settle it against its file.
+    Settle,
+    /// Add or remove strokes where the file is not as faithful as asked for, or more.
+    MeetFidelity,
+    /// Remove strokes where the file has more bytes than asked for.
+    MeetBytes,
+    /// Settle the drawing again after that.
+    Shorten,
+    /// Hand the best of the files over.
+    Done,
+}
+
+/// What a stage is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum Purpose {
+    /// To draw what is planned.
+    Plan,
+    /// To add the strokes that were promised but not accepted.
+    TopUp,
+    /// To come closer to a fidelity.
+    Correct,
+}
+
+/// What came of a phase, as far as its order depends on that.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Outcome {
+    /// It has done its part, or had none.
+    Over,
+    /// A budget is met: nothing more is to be done.
+    Met,
+    /// Strokes were added, which are to be fitted alone first.
+    Seeded(Purpose),
+    /// Strokes were removed.
+    Removed,
+    /// None of the strokes of a stage was worth its price.
+    Rejected,
+}
+
+/// The phase that follows `phase`, by what came of it.
+pub(super) fn next(phase: Phase, outcome: Outcome, config: &Config) -> Phase {
+    use Outcome::{Met, Rejected, Removed, Seeded};
+    match (phase, outcome) {
+        (Phase::Base, Met) => Phase::Done,
+        (Phase::Base, _) => Phase::Grow,
+
+        (Phase::Grow, Seeded(purpose)) => Phase::Stage(purpose),
+        // The layers of a progressive drawing have all been polished.
+        (Phase::Grow, _) if config.polish && !config.progressive => Phase::Polish(Purpose::Plan),
+        (Phase::Grow, _) => Phase::Settle,
+
+        (Phase::Stage(purpose), _) if config.progressive => Phase::StagePolish(purpose),
+        (Phase::Stage(purpose) | Phase::StagePolish(purpose), outcome) => match purpose {
+            Purpose::Plan => Phase::Grow,
+            Purpose::TopUp => Phase::Settle,
+            // No stroke is left that helps.
+            Purpose::Correct if outcome == Rejected => Phase::MeetBytes,
+            Purpose::Correct => Phase::Polish(Purpose::Correct),
+        },
+
+        (Phase::Polish(_), _) => Phase::Settle,
+        (Phase::Settle, _) => Phase::MeetFidelity,
+
+        (Phase::MeetFidelity, Seeded(purpose)) => Phase::Stage(purpose),
+        (Phase::MeetFidelity, Removed) => Phase::Polish(Purpose::Correct),
+        (Phase::MeetFidelity, _) => Phase::MeetBytes,
+
+        (Phase::MeetBytes, Removed) => Phase::Shorten,
+        (Phase::Shorten, _) => Phase::MeetBytes,
+        (Phase::MeetBytes | Phase::Done, _) => Phase::Done,
+    }
+}
+
+impl Phase {
+    /// Where a fit begins.
+    pub(super) fn first(config: &Config, base: Option<&Base>) -> Self {
+        // A base of other colours than are allowed cannot stay as it is.
+        match base {
+            Some(base) if config.colors.allow(&base.scene) => Self::Base,
+            _ => Self::Grow,
+        }
+    }
+
+    /// Whether its state in the middle of a descent can be gone on with.
+    pub(super) fn is_divisible(self) -> bool {
+        matches!(
+            self,
+            Self::Stage(_) | Self::StagePolish(_) | Self::Polish(_)
+        )
+    }
+
+    /// Whether the state before it is worth keeping at any time: what follows takes long and cannot be divided, or
+    /// there is nothing left to do.
+    pub(super) fn is_milestone(self) -> bool {
+        matches!(self, Self::Settle | Self::Shorten | Self::Done)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The phases from the first to the last, each with the outcome that `outcome` gives it.
+    fn order(config: &Config, outcome: impl Fn(Phase, usize) -> Outcome) -> Vec<Phase> {
+        let mut phases = vec![Phase::Grow];
+        while let Some(&phase) = phases.last().filter(|&&phase| phase != Phase::Done) {
+            let visits = phases.iter().filter(|&&p| p == phase).count();
+            phases.push(next(phase, outcome(phase, visits), config));
+            assert!(phases.len() < 100, "{phases:?}");
+        }
+        phases
+    }
+
+    #[test]
+    fn a_plain_fit_goes_straight_through() {
+        let phases = order(&Config::default(), |phase, visits| match phase {
+            Phase::Grow if visits <= 2 => Outcome::Seeded(Purpose::Plan),
+            _ => Outcome::Over,
+        });
+        let stage = [Phase::Grow, Phase::Stage(Purpose::Plan)];
+        let rest = [
+            Phase::Grow,
+            Phase::Polish(Purpose::Plan),
+            Phase::Settle,
+            Phase::MeetFidelity,
+            Phase::MeetBytes,
+            Phase::Done,
+        ];
+        assert_eq!(phases, [&stage[..], &stage, &rest].concat());
+    }
+
+    #[test]
+    fn what_a_correction_adds_or_removes_is_polished_and_settled() {
+        let phases = order(&Config::default(), |phase, visits| match (phase, visits) {
+            (Phase::MeetFidelity, 1) => Outcome::Seeded(Purpose::Correct),
+            (Phase::MeetFidelity, 2) => Outcome::Removed,
+            _ => Outcome::Over,
+        });
+        let first = phases.iter().position(|&p| p == Phase::MeetFidelity);
+        let fitted = [
+            Phase::Polish(Purpose::Correct),
+            Phase::Settle,
+            Phase::MeetFidelity,
+        ];
+        let stage = [Phase::MeetFidelity, Phase::Stage(Purpose::Correct)];
+        let end = [Phase::MeetBytes, Phase::Done];
+        let expected = [&stage[..], &fitted, &fitted, &end].concat();
+        assert_eq!(phases[first.unwrap()..], expected);
+    }
+
+    #[test]
+    fn a_correction_that_adds_nothing_ends_the_corrections() {
+        let phases = order(&Config::default(), |phase, _| match phase {
+            Phase::MeetFidelity => Outcome::Seeded(Purpose::Correct),
+            Phase::Stage(_) => Outcome::Rejected,
+            _ => Outcome::Over,
+        });
+        let visits = phases.iter().filter(|&&p| p == Phase::MeetFidelity);
+        assert_eq!(visits.count(), 1);
+    }
+
+    #[test]
+    fn a_file_is_shortened_until_it_is_short_enough() {
+        let phases = order(&Config::default(), |phase, visits| match phase {
+            Phase::MeetBytes if visits <= 3 => Outcome::Removed,
+            _ => Outcome::Over,
+        });
+        let shortened = phases.iter().filter(|&&p| p == Phase::Shorten).count();
+        assert_eq!(shortened, 3);
+    }
+
+    #[test]
+    fn layers_of_a_progressive_drawing_are_polished_one_by_one() {
+        let config = Config {
+            progressive: true,
+            ..Config::default()
+        };
+        let phases = order(&config, |phase, visits| match phase {
+            Phase::Grow if visits == 1 => Outcome::Seeded(Purpose::Plan),
+            _ => Outcome::Over,
+        });
+        assert_eq!(phases[2], Phase::StagePolish(Purpose::Plan));
+        assert!(!phases.contains(&Phase::Polish(Purpose::Plan)));
+    }
+}
