@@ -22,11 +22,11 @@ pub(crate) enum Number<'a> {
 }
 
 impl Number<'_> {
-    fn value(&self) -> f64 {
+    fn value(&self) -> String {
         match self {
-            Self::Single(x) => f64::from(**x),
-            Self::Double(x) => **x,
-            Self::Count(x) => **x as f64,
+            Self::Single(x) => x.to_string(),
+            Self::Double(x) => x.to_string(),
+            Self::Count(x) => x.to_string(),
         }
     }
 

@@ -43,7 +43,7 @@ use std::time::{Duration, Instant};
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::{Image, Limits};
 use crate::svg::{self, Finding};
-use process::Outcome;
+use process::Exit;
 
 pub use sheet::{DIFFERENCE_GAIN, compared};
 pub use verdict::{MAX_SHORTFALL_DB, MIN_DB_AGAINST_RESVG, passes};
@@ -155,13 +155,13 @@ impl Engine {
         let arguments = (self.arguments)(&job).map_err(|e| unusable(&e))?;
         let version = self.version(program, folder.path(), timeout)?;
         let start = Instant::now();
-        let outcome = self.run(program, &arguments, folder.path(), timeout)?;
+        let exit = self.run(program, &arguments, folder.path(), timeout)?;
         let wall = start.elapsed();
         let image = self
             .picture(&job)
-            .map_err(|error| self.explain(error, &outcome))?;
+            .map_err(|error| self.explain(error, &exit))?;
         match self.failure {
-            Some(words) if outcome.messages.contains(words) => {
+            Some(words) if exit.messages.contains(words) => {
                 Err(fault("the program could not read the drawing"))
             }
             _ => Ok(Rendering {
@@ -173,8 +173,8 @@ impl Engine {
     }
 
     fn version(&self, program: &Path, folder: &Path, timeout: Duration) -> Result<String> {
-        let outcome = self.run(program, &["--version".into()], folder, timeout)?;
-        let mut words = outcome.output.split_whitespace();
+        let exit = self.run(program, &["--version".into()], folder, timeout)?;
+        let mut words = exit.output.split_whitespace();
         let number = words.find(|word| word.starts_with(|c: char| c.is_ascii_digit()));
         Ok(number.unwrap_or("unknown").to_owned())
     }
@@ -185,7 +185,7 @@ impl Engine {
         arguments: &[OsString],
         folder: &Path,
         timeout: Duration,
-    ) -> Result<Outcome> {
+    ) -> Result<Exit> {
         let mut command = Command::new(program);
         command.args(arguments);
         process::isolate(&mut command, folder, self.keeps_home);
@@ -211,13 +211,13 @@ impl Engine {
     }
 
     /// Adds the program's last message to the error, since it says why there is no picture.
-    fn explain(&self, error: Error, outcome: &Outcome) -> Error {
-        let mut lines = outcome.messages.lines().rev().map(str::trim);
+    fn explain(&self, error: Error, exit: &Exit) -> Error {
+        let mut lines = exit.messages.lines().rev().map(str::trim);
         let last = lines.find(|line| !line.is_empty());
         let said = last.map(|line| format!(", and its last message is: {line}"));
         fault(format!(
             "{error} ({}{})",
-            outcome.status,
+            exit.status,
             said.unwrap_or_default()
         ))
     }

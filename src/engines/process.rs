@@ -18,7 +18,7 @@ const MESSAGES: &str = "stderr";
 const PATIENCE: Duration = Duration::from_millis(5);
 
 /// How a program ended.
-pub(super) struct Outcome {
+pub(super) struct Exit {
     pub(super) status: ExitStatus,
     /// Its standard output.
     pub(super) output: String,
@@ -62,7 +62,7 @@ pub(super) fn is_root() -> bool {
 
 /// Runs a program to its end; after `timeout`, ends it and all that it started. Its output goes to files in
 /// `folder`, because a pipe could fill up or be held open by a process that stays.
-pub(super) fn run(mut command: Command, folder: &Path, timeout: Duration) -> Result<Outcome> {
+pub(super) fn run(mut command: Command, folder: &Path, timeout: Duration) -> Result<Exit> {
     let unusable = |e: io::Error| fault(format!("cannot be run ({e}): check the program"));
     let file = |name| File::create(folder.join(name));
     command
@@ -79,7 +79,7 @@ pub(super) fn run(mut command: Command, folder: &Path, timeout: Duration) -> Res
         )));
     };
     let text = |name| fs::read(folder.join(name)).map(|b| String::from_utf8_lossy(&b).into_owned());
-    Ok(Outcome {
+    Ok(Exit {
         status,
         output: text(OUTPUT).map_err(unusable)?,
         messages: text(MESSAGES).map_err(unusable)?,
@@ -123,7 +123,7 @@ impl Drop for ProcessGroup {
 mod tests {
     use super::*;
 
-    fn shell(script: &str, timeout_s: u64) -> Result<Outcome> {
+    fn shell(script: &str, timeout_s: u64) -> Result<Exit> {
         let folder = tempfile::tempdir().unwrap();
         let mut command = Command::new("/bin/sh");
         command.args(["-c", script]);
