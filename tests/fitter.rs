@@ -117,3 +117,46 @@ fn a_checkpoint_of_another_recipe_is_refused() {
     assert_eq!(error.kind(), ErrorKind::Config);
     assert_eq!(fit(&config).unwrap().scene, first.scene);
 }
+
+/// Every phase is interrupted somewhere, between two rounds of settling too.
+#[test]
+fn a_fit_that_is_stopped_at_any_call_goes_on_to_the_same_drawing() {
+    let folder = tempfile::tempdir().unwrap();
+    let plane = |k: usize| {
+        (0..32 * 24)
+            .map(|i| (i * i * k % 97) as f32 / 96.0)
+            .collect()
+    };
+    let picture = Image::new(32, 24, [plane(3), plane(5), plane(7)]).unwrap();
+    let config = with_recipe(|recipe| {
+        (recipe.stages.count, recipe.stages.iterations) = (2, 3);
+        recipe.polish.iterations = 5;
+        (recipe.settling.rounds, recipe.settling.iterations) = (3, 2);
+    });
+    let whole = drawn(&picture, &config).scene;
+    let mut failed = Vec::new();
+    for last in 1.. {
+        let path = folder.path().join(format!("{last}.state"));
+        let fit = |last: usize| {
+            let mut calls = 0;
+            let mut watch = |_: &Progress<'_>| {
+                calls += 1;
+                if calls == last {
+                    ControlFlow::Break(())
+                } else {
+                    ControlFlow::Continue(())
+                }
+            };
+            let mut checkpoint = Checkpoint::new(&path);
+            let fitter = Fitter::new(config.clone()).observer(&mut watch);
+            fitter.checkpoint(&mut checkpoint).fit(&picture).unwrap()
+        };
+        if fit(last).stop != Stop::Observer {
+            break;
+        }
+        if fit(usize::MAX).scene != whole {
+            failed.push(last);
+        }
+    }
+    assert!(failed.is_empty(), "stopped at calls {failed:?}");
+}

@@ -44,7 +44,9 @@ impl Limits {
             end[0] = end[0].clamp(-margin, width + margin);
             end[1] = end[1].clamp(-margin, height + margin);
         }
-        p[RADIUS] = p[RADIUS].clamp(self.domain.min_radius, width.max(height));
+        // A recipe may ask for strokes that are wider than a small picture.
+        let min_radius = self.domain.min_radius;
+        p[RADIUS] = p[RADIUS].clamp(min_radius, width.max(height).max(min_radius));
         for color in &mut p[RED..OPACITY] {
             *color = color.clamp(0.0, 1.0);
         }

@@ -363,6 +363,7 @@ impl Recipe {
             ("relocation.share", self.relocation.share),
             ("relocation.until", self.relocation.until),
             ("pens.share", self.pens.share as f32),
+            ("correction.least_part", self.correction.least_part as f32),
             ("stages.paying_share", self.stages.paying_share as f32),
         ];
         for (name, value) in shares {
@@ -484,5 +485,6 @@ mod tests {
         refused(|r| r.edge.annealed = 1.5, "edge.annealed", "1.5");
         refused(|r| r.relocation.every = 0, "relocation.every", "0");
         refused(|r| r.relocation.share = f32::NAN, "relocation.share", "NaN");
+        refused(|r| r.correction.least_part = 2.0, "least_part", "2");
     }
 }

@@ -221,6 +221,14 @@ impl<'a> Session<'a> {
         keeper.is_final |= is_interrupted;
         self.keeper = Some(keeper);
     }
+
+    /// Stops keeping the state if the fit was interrupted: a phase that was cut short is nothing to go on from.
+    pub(super) fn seal(&mut self) {
+        let is_interrupted = self.progress.is_interrupted();
+        if let Some(keeper) = &mut self.keeper {
+            keeper.is_final |= is_interrupted;
+        }
+    }
 }
 
 /// What the fit is told of the time that it has.

@@ -38,6 +38,8 @@ pub(in crate::fit) fn settle(session: &mut Session<'_>) -> Result<Outcome> {
             session.set_best(file);
         }
     }
+    // An observer may stop the fit between two rounds, where no state is kept.
+    session.seal();
     Ok(Outcome::Over)
 }
 
