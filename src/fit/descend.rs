@@ -1,14 +1,14 @@
-//! The one loop that descends: every phase runs its strokes through it.
+//! The loop of gradient descent, which all phases share.
 //!
-//! An iteration is one step of the optimiser ([`Descent::step`]). A joint course also goes to full resolution and
-//! relocates strokes as it goes. After every iteration whoever watches is told, and the state can be kept.
+//! An iteration is one step of the optimiser ([`Descent::step`]). A joint course also switches to full resolution and
+//! relocates strokes between its steps. After every iteration the observer is called, and the state can be kept.
 
 use super::descent::{Aim, Descent};
 use super::relocation;
 use super::session::Session;
 use crate::error::Result;
 
-/// Runs `descent` to its end, or as far as time and observer let it; towards the picture, or towards an `aim`.
+/// Runs `descent`, towards the picture or towards an `aim`, until its end or until time or observer stop it.
 pub(super) fn descend(
     session: &mut Session<'_>,
     descent: &mut Descent,
@@ -38,8 +38,8 @@ pub(super) fn descend(
     Ok(())
 }
 
-/// What a joint course does between its steps: it goes to full resolution once a share is over, and relocates
-/// strokes every so often.
+/// What a joint course does between its steps: it switches to full resolution after its coarse share, and relocates
+/// strokes at intervals.
 fn rearrange(session: &mut Session<'_>, descent: &mut Descent, step: usize, done: f32) {
     let Some(limit) = descent.course.joint else {
         return;

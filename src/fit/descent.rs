@@ -1,7 +1,7 @@
-//! A descent of the strokes of a drawing: how it is set up, and one step of it.
+//! Gradient descent on the strokes of a drawing: its parameters and its single step.
 //!
-//! A [`Course`] says how long, at what step sizes and with which edge; a [`Descent`] is a course under way, with the
-//! optimiser's memory, so that it can be kept and gone on with.
+//! A [`Course`] sets length, step sizes and edge. A [`Descent`] is a course under way; it includes the state of the
+//! optimiser, so that a checkpoint can keep it.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,53 +12,54 @@ use super::recipe::{Rates, Recipe};
 use crate::optim::{Adam, Optimizer, Schedule};
 use crate::render::{AX, Canvas, Gradients, PARAMS, Params, RADIUS};
 
-/// How long to descend, at what step sizes, and with which edge.
+/// The length, the step sizes and the edge of a descent.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub(super) struct Course {
     /// Iterations.
     pub(super) iterations: usize,
-    /// The schedule of step sizes that they are a part of: how many iterations come before, and how many there are.
+    /// Iterations of the same schedule of step sizes that come before these.
     pub(super) before: usize,
+    /// Iterations of that schedule in all.
     pub(super) of: usize,
     pub(super) rates: Rates,
-    /// Factor of the rates.
+    /// Factor on all rates.
     pub(super) pace: f32,
     /// Softness of the first iteration, in units of the final one; `None` for the final edge throughout.
     pub(super) softness: Option<f32>,
-    /// The share of a limited time for descent after which the course has to be over.
+    /// Share of a limited time for descent by which the course has to end.
     pub(super) until: f32,
-    /// For a joint course: strokes of the drawing at most, frozen ones included.
+    /// Set for a joint course: most strokes of the drawing, frozen ones included.
     pub(super) joint: Option<usize>,
 }
 
-/// What to descend towards, other than the picture: settling takes the offset of other renderers from it.
+/// Targets other than the picture: settling corrects it for the offsets of the renderers.
 #[derive(Clone, Copy)]
 pub(super) struct Aim<'a> {
     /// One per surface.
     pub(super) targets: &'a [Canvas],
-    /// The mean squared error of the file, for whoever watches.
+    /// The mean squared error of the file, for the observer.
     pub(super) mse: f64,
 }
 
-/// A course under way, of the free strokes of a drawing.
+/// A course under way, for the free strokes of a drawing.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Descent {
     pub(super) course: Course,
-    /// Iterations that are done.
+    /// Iterations done.
     step: usize,
-    /// Share of a limited time for descent that was used before.
+    /// Share of a limited time for descent that was used before it began.
     used_before: f32,
     adam: Adam<f32>,
     background: Adam<f32>,
-    /// The step sizes of all numbers of the strokes.
+    /// Step size of each parameter of each stroke.
     scales: Vec<f32>,
-    /// Those of the last step.
+    /// Gradients of the last step.
     #[serde(skip)]
     pub(super) gradients: Gradients,
 }
 
 impl Descent {
-    /// The descent of the free strokes of `drawing`, begun when a share `used_before` of a limited time is used.
+    /// A descent for the free strokes of `drawing`, which begins when a share `used_before` of a limited time is used.
     pub(super) fn new(
         drawing: &Drawing,
         recipe: &Recipe,
@@ -76,8 +77,8 @@ impl Descent {
         }
     }
 
-    /// The next iteration and the share of the course that is over; `None` when all of it is. Where the time
-    /// runs faster than the count, the share follows the time.
+    /// The index of the next iteration and the share of the course that is over, or `None` at its end. If a limited
+    /// time runs out faster than the iterations, the share follows the time.
     pub(super) fn tick(&mut self, timer: &mut Timer) -> Option<(usize, f32)> {
         let Course {
             iterations, until, ..
@@ -96,7 +97,7 @@ impl Descent {
         Some((self.step - 1, by_count.max(by_time)))
     }
 
-    /// One step of the free strokes down the gradient, and of the background in a joint course.
+    /// Moves the free strokes, and in a joint course the background, one step down the gradient.
     pub(super) fn step(
         &mut self,
         drawing: &mut Drawing,
@@ -124,13 +125,13 @@ impl Descent {
         }
     }
 
-    /// Forgets the past of all strokes, as after a change of resolution: gradients are of another size then.
+    /// Resets the optimiser after a change of resolution, which changes the size of all gradients.
     pub(super) fn forget(&mut self, drawing: &Drawing, recipe: &Recipe) {
         self.adam = Adam::new(drawing.free().len() * PARAMS, recipe.optimizer.strokes);
         self.scales = scales(&self.course.rates, drawing.free(), recipe);
     }
 
-    /// Follows a rearrangement of the free strokes: the i-th was the `sources[i]`-th, or is new.
+    /// Rearranges the state of the optimiser like the free strokes: stroke `i` was stroke `sources[i]`, or is new.
     pub(super) fn follow(&mut self, sources: &[Option<usize>], drawing: &Drawing, recipe: &Recipe) {
         self.adam.rearrange(PARAMS, sources);
         self.scales = scales(&self.course.rates, drawing.free(), recipe);
@@ -141,7 +142,7 @@ impl Course {
     /// The factor of the step sizes of iteration `step`, when a share `done` of the course is over.
     fn rate(&self, step: usize, done: f32) -> f32 {
         let at = match self.joint {
-            // Time may have hurried the course on.
+            // A time limit may have shortened the course.
             Some(_) => (done * self.iterations as f32) as usize,
             None => step,
         };
@@ -150,7 +151,7 @@ impl Course {
     }
 }
 
-/// The step sizes of all numbers of `strokes`: the geometry of large ones moves farther.
+/// The step size of each parameter of `strokes`. The geometry of large strokes moves farther.
 fn scales(rates: &Rates, strokes: &[Params], recipe: &Recipe) -> Vec<f32> {
     let Rates {
         position,

@@ -1,4 +1,4 @@
-//! The drawing under work: strokes, how many of them are frozen, and the resolution that they are fitted at.
+//! The drawing in progress: its strokes, how many of them are frozen, and the resolution that they are fitted at.
 
 mod memento;
 mod scene;
@@ -12,15 +12,15 @@ use crate::scene::Rgb;
 pub(super) use memento::Memento;
 use scene::enlarged;
 
-/// A drawing under work. What is fitted, judged and relocated are its *free* strokes; the frozen ones
-/// below them are a picture. Large strokes are fitted to a reduced picture: the numbers of strokes are
-/// in px of the current level of the pyramid, what goes in and out of the methods in px of the picture.
+/// A drawing in progress. The *free* strokes are fitted, judged and relocated; the frozen ones behind them are
+/// rendered once, as their backdrop. Large strokes are fitted to a reduced picture. The parameters of strokes are in
+/// px of the current level of the pyramid; lengths that methods take and return are in px of the picture.
 pub(super) struct Drawing {
-    /// What it is fitted on: one surface, or two for a transparent drawing; all of one size and resolution.
+    /// One surface, or two for a transparent drawing; both have the same size and resolution.
     pub(super) surfaces: Vec<Surface>,
     pub(super) renderer: Renderer,
     pub(super) level: Level,
-    /// Whether the background is not to be fitted.
+    /// Whether the background keeps its colour.
     pub(super) background_fixed: bool,
     /// Back to front.
     strokes: Vec<Params>,
@@ -34,17 +34,17 @@ pub(super) struct Drawing {
     pub(super) counters: Counters,
 }
 
-/// What is counted in the course of a fit.
+/// Counters of a whole fit.
 #[derive(Debug, Clone, Copy, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Counters {
-    /// How often places for strokes were searched: no two searches cut the picture alike.
+    /// Searches for candidates. The count is part of the random key, so that no two searches use the same cells.
     pub(super) searches: u64,
-    /// How many strokes became non-finite and were taken out.
+    /// Strokes that were removed because they became non-finite.
     pub(super) lost: usize,
 }
 
 impl Drawing {
-    /// An empty drawing on `surfaces`, of which there is at least one.
+    /// An empty drawing on one or more `surfaces`.
     pub(super) fn new(
         surfaces: Vec<Surface>,
         background_fixed: bool,
@@ -66,7 +66,7 @@ impl Drawing {
         }
     }
 
-    /// How many strokes there are, frozen ones included.
+    /// The number of strokes, frozen ones included.
     pub(super) fn len(&self) -> usize {
         self.strokes.len()
     }
@@ -76,13 +76,13 @@ impl Drawing {
         &self.strokes[self.frozen..]
     }
 
-    /// The same, to be changed.
+    /// Mutable access to the free strokes.
     pub(super) fn free_mut(&mut self) -> &mut [Params] {
         &mut self.strokes[self.frozen..]
     }
 
-    /// Goes to the resolution for strokes of `scale` px, if that is finer than the current one; says
-    /// whether it did. All strokes are free then.
+    /// Switches to the resolution for strokes of `scale` px if that is finer than the current one, and frees all
+    /// strokes. Returns whether it did.
     pub(super) fn sharpen(&mut self, scale: f32) -> bool {
         let now = self.surface().halvings();
         let halvings = self.surface().halvings_for(scale);
@@ -96,7 +96,7 @@ impl Drawing {
         true
     }
 
-    /// Goes to the picture halved so many times; the numbers of strokes are left, and all are free.
+    /// Switches to the picture halved `halvings` times and frees all strokes. Their parameters are not converted.
     fn halve(&mut self, halvings: usize) {
         self.surfaces.iter_mut().for_each(|s| s.halve(halvings));
         let grid = self.surface().grid();
@@ -105,12 +105,12 @@ impl Drawing {
         self.frozen = 0;
     }
 
-    /// The first surface; all agree in size and resolution.
+    /// The first surface. All have the same size and resolution.
     pub(super) fn surface(&self) -> &Surface {
         &self.surfaces[0]
     }
 
-    /// The background's colour, unless the drawing is transparent or lies on a document.
+    /// The background's colour, unless the drawing is transparent or on top of a document.
     pub(super) fn background(&self) -> Option<Rgb> {
         match self.surfaces.as_slice() {
             [surface] => surface.color(),
@@ -118,42 +118,41 @@ impl Drawing {
         }
     }
 
-    /// Changes the background's colour, if there is one, and brings it into its domain.
+    /// Changes the background's colour, if there is one, and clamps it to its domain.
     pub(super) fn change_background(&mut self, change: impl FnOnce(&mut Rgb)) {
         if let Some(color) = self.surfaces[0].color_mut() {
             let mut moved = *color;
             change(&mut moved);
-            // A step to nowhere is not taken: no stroke could make up for a page without a colour.
+            // No stroke could make up for a background that is not finite.
             if moved.iter().all(|c| c.is_finite()) {
                 *color = moved.map(|c| c.clamp(0.0, 1.0));
             }
         }
     }
 
-    /// Pixels of the picture in one of the current resolution.
+    /// Pixels of the picture per pixel of the current resolution.
     pub(super) fn pixel_area(&self) -> f32 {
         (1 << (2 * self.surface().halvings())) as f32
     }
 
-    /// Whether there are no frozen strokes, so that the background shows through to the fit.
+    /// Whether no stroke is frozen, so that the background can be fitted.
     pub(super) fn is_thawed(&self) -> bool {
         self.frozen == 0
     }
 
-    /// The picture's number of pixels.
+    /// Pixels of the picture.
     pub(super) fn pixels(&self) -> usize {
         let picture = self.surface().picture();
         picture.width() * picture.height()
     }
 
-    /// Side of the square that each of `count` strokes would have to itself, px.
+    /// Side of the square that each of `count` strokes has to itself on average, px.
     pub(super) fn spacing(&self, count: usize) -> f32 {
         (self.pixels() as f32 / count.max(1) as f32).sqrt()
     }
 
-    /// Freezes all strokes that there are. Their picture is made from nothing but them: made from that of
-    /// earlier frozen ones it would differ in the last bits, and could not be made again from a
-    /// [`Memento`].
+    /// Freezes all strokes. They are rendered from scratch: rendered on top of the canvas of earlier frozen strokes, they
+    /// would differ in the last bits from what a [`Memento`] restores.
     pub(super) fn freeze(&mut self) {
         self.thaw();
         self.render();
@@ -167,7 +166,7 @@ impl Drawing {
         self.frozen = 0;
     }
 
-    /// Puts `strokes` on top, as part of stage `stage`.
+    /// Adds `strokes` on top, as part of stage `stage`.
     pub(super) fn extend(&mut self, strokes: impl IntoIterator<Item = Params>, stage: usize) {
         self.strokes.extend(strokes);
         self.stage_of.resize(self.strokes.len(), stage);
@@ -187,7 +186,7 @@ impl Drawing {
         self.stage_of.retain(|_| i.next().is_some_and(kept));
     }
 
-    /// Removes the `count` free strokes worth least.
+    /// Removes the `count` free strokes of least worth.
     pub(super) fn remove_least(&mut self, count: usize) {
         let worth = self.judge().worth;
         let mut order: Vec<usize> = (0..worth.len()).collect();
@@ -197,19 +196,19 @@ impl Drawing {
         self.retain_free(&keep);
     }
 
-    /// How many strokes each stage has, back to front; a stage without any may be missing.
+    /// The number of strokes of each stage, back to front, without empty stages.
     pub(super) fn stage_sizes(&self) -> Vec<usize> {
         let stages = self.stage_of.chunk_by(|a, b| a == b);
         stages.map(<[usize]>::len).collect()
     }
 
-    /// The number of the stage on top, from 0.
+    /// The index of the topmost stage, from 0.
     pub(super) fn last_stage(&self) -> usize {
         self.stage_of.last().copied().unwrap_or(0)
     }
 
-    /// The mean loss of the free strokes over the surfaces at softness `edge`, and its derivatives, with the strokes'
-    /// worth if so asked: against the picture, or against `targets`, one per surface.
+    /// The mean loss over the surfaces with softness `edge`, its derivatives with respect to the free strokes and,
+    /// `WITH_WORTH`, the worth of each. The loss is against the picture, or against `targets`, one per surface.
     pub(super) fn differentiate<const WITH_WORTH: bool>(
         &mut self,
         edge: Softness,
@@ -246,7 +245,7 @@ impl Drawing {
         gradients
     }
 
-    /// Renders everything.
+    /// Renders all strokes to the canvases.
     pub(super) fn render(&mut self) {
         let free = &self.strokes[self.frozen..];
         for surface in &mut self.surfaces {
@@ -254,20 +253,20 @@ impl Drawing {
         }
     }
 
-    /// The derivatives of some other loss by all strokes, which must be free, on the first surface.
+    /// The derivatives of another `loss` on the first surface, with respect to all strokes, which must be free.
     pub(super) fn backward(&mut self, loss: &impl CanvasLoss, gradients: &mut Gradients) {
         let backdrop = self.surfaces[0].backdrop(0);
         self.renderer
             .backward(&self.strokes, self.edge, backdrop, loss, gradients);
     }
 
-    /// The mean squared error of the drawing; at a reduced resolution, of what can be seen there.
+    /// The mean squared error of the drawing, at the current resolution.
     pub(super) fn mse(&mut self) -> f64 {
         self.render();
         self.mse_of(self.surfaces.iter().map(|surface| &surface.canvas))
     }
 
-    /// The mean squared error of finished canvases, one per surface.
+    /// The mean squared error of rendered canvases, one per surface.
     fn mse_of<'a>(&self, canvases: impl Iterator<Item = &'a Canvas>) -> f64 {
         let pairs = self.surfaces.iter().zip(canvases);
         let losses = pairs.map(|(surface, canvas)| surface.mse_of(canvas));

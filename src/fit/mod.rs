@@ -1,15 +1,15 @@
 //! The fit: picture in, drawing out.
 //!
 //! A [`Fitter`] adds strokes in stages, on a background or on a [`Base`]. Each stage seeds new strokes where
-//! the residual is largest, fits them alone for a moment on the frozen canvas of those below, and keeps what
-//! pays. Then all strokes are polished jointly, those worth least moving to where more is to be gained; where
-//! the file may have few colours or pens only, they are brought to those; and they are settled against what
-//! the file really looks like. At last strokes are added or removed, and fitted again, until the file is as
+//! the residual is largest, fits them briefly with all earlier strokes frozen, and keeps those that pay. The polish
+//! then fits all strokes jointly, and relocates those of least worth to where more is to be gained. If the file may have
+//! only a few colours or pens, the strokes are restricted to those. Settling takes the last steps against what the
+//! written file really looks like. Finally the fit adds or removes strokes, and fits them again, until the file is as
 //! faithful and as short as the budgets ask for.
 //!
-//! [`Fitter::fit`] runs the phases: `order` says which follows which, and `phase` has a file for each. Between two
-//! phases, and between two iterations of most, all there is to know is in the session, so that it can be kept in a
-//! [`Checkpoint`] and gone on with in another process.
+//! [`Fitter::fit`] runs the phases: `order` says which follows which, and `phase` has a file for each. The session holds
+//! the whole state of a fit. Between two phases, and between two iterations of most phases, a [`Checkpoint`] can keep
+//! that state, and another process can go on from it.
 
 mod anneal;
 mod background;
@@ -69,14 +69,14 @@ use session::Session;
 impl Fitter<'_> {
     /// Draws `picture`.
     ///
-    /// Where the picture has alpha the drawing is transparent, unless there is a background colour for it
-    /// to lie on.
+    /// A picture with alpha gives a transparent drawing, unless a background colour is set.
     ///
     /// # Errors
-    /// [`ErrorKind::Config`](crate::ErrorKind::Config) when an option is outside its domain, the base is of another size
-    /// than the picture or on a background that the palette lacks, or the checkpoint of another fit;
-    /// [`ErrorKind::Svg`](crate::ErrorKind::Svg) when the base cannot be rendered;
-    /// [`ErrorKind::Io`](crate::ErrorKind::Io) when the checkpoint is damaged or its place cannot be written.
+    /// - [`ErrorKind::Config`](crate::ErrorKind::Config) when an option is outside its domain, the size of the base
+    ///   differs from that of the picture, the palette lacks the background of the base, or the checkpoint belongs to
+    ///   another fit.
+    /// - [`ErrorKind::Svg`](crate::ErrorKind::Svg) when the base cannot be rendered.
+    /// - [`ErrorKind::Io`](crate::ErrorKind::Io) when the checkpoint is damaged or cannot be written.
     pub fn fit(mut self, picture: &Image) -> Result<Fit> {
         let since = self.since.unwrap_or_else(Instant::now);
         self.prepare(picture)?;

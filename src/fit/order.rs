@@ -1,11 +1,11 @@
 //! The order of a fit: its phases, and which follows which.
 //!
 //! ```text
-//! base ─→ grow ⇄ stage        strokes are added, stage by stage
+//! base ─→ grow ⇄ stage        add strokes, stage by stage
 //!           ↓
-//!         polish              all are fitted jointly
+//!         polish              fit all strokes jointly
 //!           ↓
-//!         settle              and against what the file looks like
+//!         settle              fit them to what the file looks like
 //!           ↓
 //!         fidelity ─→ stage ─→ polish ─→ settle ─→ fidelity     until the file is as faithful as asked for
 //!           ↓
@@ -17,50 +17,50 @@ use serde::{Deserialize, Serialize};
 use super::base::Base;
 use super::config::Config;
 
-/// What a fit does at a time.
+/// One step in the order of a fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Phase {
-    /// Leave the base as it is, if it meets a budget already.
+    /// Keep the base as it is if it already meets a budget.
     Base,
-    /// Seed the next stage, if another is planned and pays.
+    /// Seed the next stage, if one is planned and the last one paid.
     Grow,
     /// Fit the strokes of a stage alone, and keep what pays.
     Stage(Purpose),
-    /// Fit all strokes jointly after a stage, in a progressive drawing.
+    /// Polish the strokes of a stage of a progressive drawing.
     StagePolish(Purpose),
     /// Fit all strokes jointly.
     Polish(Purpose),
-    /// Bring the drawing to its colours and pens, and settle it against its file.
+    /// Restrict the drawing to its palette and pens, and settle it against its file.
     Settle,
-    /// Add or remove strokes where the file is not as faithful as asked for, or more.
+    /// Add or remove strokes if the file misses or exceeds the fidelity asked for.
     MeetFidelity,
-    /// Remove strokes where the file has more bytes than asked for.
+    /// Remove strokes if the file has more bytes than asked for.
     MeetBytes,
-    /// Settle the drawing again after that.
+    /// Settle the drawing again after strokes were removed for bytes.
     Shorten,
-    /// Hand the best of the files over.
+    /// Hand over the best file.
     Done,
 }
 
 /// What a stage is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Purpose {
-    /// To draw what is planned.
+    /// To draw a planned stage.
     Plan,
-    /// To add the strokes that were promised but not accepted.
+    /// To fill up the budget of strokes, which rejected strokes have left short.
     TopUp,
-    /// To come closer to a fidelity.
+    /// To reach the fidelity asked for.
     Correct,
 }
 
-/// What came of a phase, as far as its order depends on that.
+/// The result of a phase, as far as the next phase depends on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Outcome {
-    /// It has done its part, or had none.
+    /// The phase has done its part, or had nothing to do.
     Over,
-    /// A budget is met: nothing more is to be done.
+    /// A budget is met, so that the fit ends.
     Met,
-    /// Strokes were added, which are to be fitted alone first.
+    /// Strokes were added; a stage has to fit them first.
     Seeded(Purpose),
     /// Strokes were removed.
     Removed,
@@ -68,7 +68,7 @@ pub(super) enum Outcome {
     Rejected,
 }
 
-/// The phase that follows `phase`, by what came of it.
+/// The phase that follows `phase`, given its outcome.
 pub(super) fn next(phase: Phase, outcome: Outcome, config: &Config) -> Phase {
     use Outcome::{Met, Rejected, Removed, Seeded};
     match (phase, outcome) {
@@ -76,7 +76,7 @@ pub(super) fn next(phase: Phase, outcome: Outcome, config: &Config) -> Phase {
         (Phase::Base, _) => Phase::Grow,
 
         (Phase::Grow, Seeded(purpose)) => Phase::Stage(purpose),
-        // The layers of a progressive drawing have all been polished.
+        // Each layer of a progressive drawing has been polished already.
         (Phase::Grow, _) if config.polish && !config.progressive => Phase::Polish(Purpose::Plan),
         (Phase::Grow, _) => Phase::Settle,
 
@@ -84,7 +84,7 @@ pub(super) fn next(phase: Phase, outcome: Outcome, config: &Config) -> Phase {
         (Phase::Stage(purpose) | Phase::StagePolish(purpose), outcome) => match purpose {
             Purpose::Plan => Phase::Grow,
             Purpose::TopUp => Phase::Settle,
-            // No stroke is left that helps.
+            // No further stroke helps.
             Purpose::Correct if outcome == Rejected => Phase::MeetBytes,
             Purpose::Correct => Phase::Polish(Purpose::Correct),
         },
@@ -103,16 +103,16 @@ pub(super) fn next(phase: Phase, outcome: Outcome, config: &Config) -> Phase {
 }
 
 impl Phase {
-    /// Where a fit begins.
+    /// The first phase of a fit.
     pub(super) fn first(config: &Config, base: Option<&Base>) -> Self {
-        // A base of other colours than are allowed cannot stay as it is.
+        // A base that uses colours outside the palette cannot stay as it is.
         match base {
             Some(base) if config.colors.allow(&base.scene) => Self::Base,
             _ => Self::Grow,
         }
     }
 
-    /// Whether its state in the middle of a descent can be gone on with.
+    /// Whether a fit can go on from a state in the middle of this phase.
     pub(super) fn is_divisible(self) -> bool {
         matches!(
             self,
@@ -120,8 +120,8 @@ impl Phase {
         )
     }
 
-    /// Whether the state before it is worth keeping at any time: what follows takes long and cannot be divided, or
-    /// there is nothing left to do.
+    /// Whether to keep the state before this phase even if the checkpoint is not due: the phase takes long and cannot be
+    /// divided, or nothing is left to do.
     pub(super) fn is_milestone(self) -> bool {
         matches!(self, Self::Settle | Self::Shorten | Self::Done)
     }

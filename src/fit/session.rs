@@ -1,4 +1,4 @@
-//! A fit under way: what its phases hand around, and how it is kept.
+//! A fit under way: the state that its phases share, and how a checkpoint keeps it.
 
 use std::time::Duration;
 
@@ -27,45 +27,45 @@ use crate::clock::Instant;
 use crate::error::Result;
 use crate::image::Image;
 
-/// A fit under way. What is fixed comes first, then what changes.
+/// A fit under way: first the fields that are fixed, then those that change.
 pub(super) struct Session<'a> {
     pub(super) config: &'a Config,
     pub(super) recipe: Recipe,
     pub(super) base: Option<&'a Base>,
-    /// The picture to be drawn.
+    /// The picture to reproduce.
     pub(super) target: Image,
     pub(super) annealing: Annealing,
     pub(super) plan: Plan,
-    /// Strokes of the drawing at most.
+    /// Most strokes of the drawing.
     pub(super) limit: usize,
-    /// What each has to be worth.
+    /// What each stroke has to be worth.
     pub(super) price: Price,
     pub(super) writer: Writer<'a>,
 
     pub(super) drawing: Drawing,
     pub(super) journal: Journal,
-    /// The best of the files.
+    /// The best file so far.
     pub(super) best: Option<RenderedFile>,
     pub(super) progress: Tracker<'a>,
     pub(super) timer: Timer,
 
-    /// What is done now.
+    /// The current phase.
     pub(super) phase: Phase,
-    /// The descent that a resumed fit was cut off in, until its phase goes on with it.
+    /// The descent in which a resumed fit was cut off, until its phase takes it up again.
     pub(super) resumed: Option<Descent>,
     keeper: Option<Keeper<'a>>,
 }
 
-/// Where the state is kept.
+/// The checkpoint that the state is written to.
 struct Keeper<'a> {
     checkpoint: &'a mut Checkpoint,
-    /// What it is the state of.
+    /// Identifies the fit.
     fingerprint: u64,
-    /// Whether the state is not to be kept any more.
+    /// Whether the last state has been kept.
     is_final: bool,
 }
 
-/// All that a fit goes on from, as it is read from a checkpoint.
+/// The state of a fit as a checkpoint holds it.
 type State = (Phase, Journal, Memento, Position, Duration, Option<Descent>);
 
 impl<'a> Session<'a> {
@@ -120,7 +120,7 @@ impl<'a> Session<'a> {
         })
     }
 
-    /// The descent that the fit was cut off in, or one that follows `course`.
+    /// The descent in which the fit was cut off, or else a new one that follows `course`.
     pub(super) fn descent(&mut self, course: Course) -> Descent {
         let (drawing, recipe, used) = (&self.drawing, &self.recipe, self.timer.used());
         self.resumed
@@ -128,8 +128,7 @@ impl<'a> Session<'a> {
             .unwrap_or_else(|| Descent::new(drawing, recipe, course, used))
     }
 
-    /// Adds an iteration of the free strokes to what is done, whose mean squared error is `mse`, and says whether to
-    /// go on.
+    /// Counts an iteration of the free strokes, after which the mean squared error is `mse`. Returns whether to go on.
     pub(super) fn advance(&mut self, mse: f64) -> bool {
         self.timer.step(self.drawing.len());
         let strokes = self.drawing.free().len();
@@ -140,7 +139,7 @@ impl<'a> Session<'a> {
         self.progress.tell(&self.drawing, mse) && self.progress.stopped().is_none()
     }
 
-    /// Writes and renders the drawing now and then, where the time is limited, so that it is known how long that takes.
+    /// Measures from time to time, if the time is limited, how long it takes to write and render the drawing.
     pub(super) fn rehearse(&mut self) -> Result<()> {
         if self.timer.wants_rehearsal() {
             self.render_file()?;
@@ -154,19 +153,19 @@ impl<'a> Session<'a> {
         self.timer.writing(drawing.len(), || writer.render(drawing))
     }
 
-    /// Takes what was rendered of the drawing as it is for the best of the files.
+    /// Makes `file`, rendered from the current drawing, the best file so far.
     pub(super) fn set_best(&mut self, file: RenderedFile) {
         self.journal.best = Some(self.drawing.memento());
         self.best = Some(file);
     }
 
-    /// What the fit ended by, if it was not by its plan.
+    /// What cut the fit short, if anything did.
     pub(super) fn cut_by(&self) -> Option<Stop> {
         let hurried = self.timer.is_hurried().then_some(Stop::Time);
         self.progress.stopped().or(hurried)
     }
 
-    /// Keeps the state in `checkpoint` from now on, and goes on from the state that it has, if it has one.
+    /// Goes on from the state in `checkpoint`, if it holds one, and keeps the state there from now on.
     pub(super) fn resume(&mut self, checkpoint: &'a mut Checkpoint) -> Result<()> {
         let fingerprint =
             checkpoint::fingerprint(&self.target, self.config, &self.recipe, self.base);
@@ -181,7 +180,7 @@ impl<'a> Session<'a> {
                 self.progress.position = position;
                 self.timer.resume(elapsed);
             }
-            // What cannot be kept is said before any work is done.
+            // A checkpoint that cannot be written is refused before any work is done.
             None => checkpoint.write(fingerprint, &self.state(None))?,
         }
         self.keeper = Some(Keeper {
@@ -192,7 +191,7 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// What [`State`] is read from.
+    /// The current [`State`], to be written.
     fn state<'s>(&'s self, descent: Option<&'s Descent>) -> impl serde::Serialize + 's {
         (
             self.phase,
@@ -204,8 +203,9 @@ impl<'a> Session<'a> {
         )
     }
 
-    /// Keeps the state, with the `descent` under way, where that is due: every so often, before a phase that cannot be
-    /// divided, at the end, and when the fit is interrupted, before the drawing is finished in haste.
+    /// Keeps the state, with the `descent` under way, if that is due: at intervals, before a phase that cannot be
+    /// divided, at the end, and when the fit is interrupted. What an interrupted fit does after that, to finish its
+    /// drawing quickly, is not kept.
     pub(super) fn keep(&mut self, descent: Option<&Descent>) {
         let Some(mut keeper) = self.keeper.take() else {
             return;
@@ -231,7 +231,7 @@ impl<'a> Session<'a> {
     }
 }
 
-/// What the fit is told of the time that it has.
+/// The deadline that the time budget sets.
 fn deadline(config: &Config, recipe: &Recipe, drawing: &Drawing) -> Box<dyn Deadline> {
     let Some(limit) = config.budget.time else {
         return Box::new(Unlimited);
@@ -248,9 +248,9 @@ fn deadline(config: &Config, recipe: &Recipe, drawing: &Drawing) -> Box<dyn Dead
     ))
 }
 
-/// The scale of the first stage, px: the drawing begins at the resolution for it; 0 for that of the picture.
+/// The scale of the first stage, px, which sets the resolution that the drawing begins at; 0 for full resolution.
 fn coarsest(plan: &Plan, before: Before, config: &Config, base: Option<&Base>) -> f32 {
-    // A reduced picture flatters a base: whether a fidelity is reached is told at full resolution.
+    // A reduced picture flatters a base, so that its fidelity has to be measured at full resolution.
     if base.is_some() && config.budget.psnr_db.is_some() {
         return 0.0;
     }

@@ -1,4 +1,4 @@
-//! What a drawing was, to go back to or to go on from.
+//! Copies of a drawing, to go back to or to go on from.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,11 +6,11 @@ use super::{Counters, Drawing};
 use crate::render::Params;
 use crate::scene::Rgb;
 
-/// What a drawing is made again from, to the bit.
+/// A copy of a drawing's state, from which it is restored to the bit.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(in crate::fit) struct Memento {
     halvings: usize,
-    /// The background's colour, unless a document lies there.
+    /// The background's colour, unless the drawing is on top of a document.
     color: Option<Rgb>,
     strokes: Vec<Params>,
     stage_of: Vec<usize>,
@@ -19,7 +19,7 @@ pub(in crate::fit) struct Memento {
 }
 
 impl Drawing {
-    /// What the drawing is.
+    /// A copy of the current state.
     pub(in crate::fit) fn memento(&self) -> Memento {
         Memento {
             halvings: self.surface().halvings(),
@@ -31,7 +31,7 @@ impl Drawing {
         }
     }
 
-    /// Makes the drawing what it was, its counters too.
+    /// Restores the drawing, its counters included.
     pub(in crate::fit) fn restore(&mut self, memento: Memento) {
         if let (Some(color), Some(was)) = (self.surfaces[0].color_mut(), memento.color) {
             *color = was;
@@ -41,7 +41,7 @@ impl Drawing {
         self.stage_of = memento.stage_of;
         self.counters = memento.counters;
         if memento.frozen > 0 {
-            // The frozen ones are rendered before the free ones are back.
+            // Only the frozen strokes may be there when they are rendered.
             let free = self
                 .strokes
                 .split_off(memento.frozen.min(self.strokes.len()));
@@ -50,7 +50,7 @@ impl Drawing {
         }
     }
 
-    /// Goes back to what the drawing was. What was counted since then stays counted, so that no search is repeated.
+    /// Restores the drawing, but keeps its counters, so that no search repeats the random draws of an earlier one.
     pub(in crate::fit) fn revert(&mut self, memento: Memento) {
         let counters = self.counters;
         self.restore(Memento {

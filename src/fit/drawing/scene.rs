@@ -1,4 +1,4 @@
-//! From scenes to drawings and back, and what a finished scene looks like.
+//! Conversion between scenes and drawings, and our render of a finished scene.
 
 use super::Drawing;
 use crate::image::Image;
@@ -6,7 +6,7 @@ use crate::render::{AX, Backdrop, Canvas, Params, RADIUS, pack, unpack};
 use crate::scene::{Scene, Stage};
 
 impl Drawing {
-    /// Puts the strokes of `scene`, in px of the picture, on top of none.
+    /// Adds the strokes of `scene`, in px of the picture, to an empty drawing.
     pub(in crate::fit) fn load(&mut self, scene: &Scene) {
         let halvings = self.surface().halvings();
         for (index, stage) in scene.stages.iter().enumerate() {
@@ -51,7 +51,7 @@ impl Drawing {
         mses
     }
 
-    /// The drawing as a scene in px of the picture, unrounded, with the background if it `has_background`.
+    /// The drawing as a scene in px of the picture, unrounded, with its background if `has_background`.
     pub(in crate::fit) fn scene(&self, has_background: bool) -> Scene {
         let picture = self.surface().picture();
         let background = self.background().filter(|_| has_background);
@@ -69,7 +69,7 @@ impl Drawing {
     }
 }
 
-/// The stroke at a resolution that is twice as fine `doublings` times.
+/// The stroke at a resolution `2^doublings` times as fine.
 pub(super) fn enlarged(mut stroke: Params, doublings: usize) -> Params {
     let factor = (1_u32 << doublings) as f32;
     for length in &mut stroke[AX..=RADIUS] {
@@ -78,7 +78,7 @@ pub(super) fn enlarged(mut stroke: Params, doublings: usize) -> Params {
     stroke
 }
 
-/// The stroke at a resolution that is half as fine `halvings` times.
+/// The stroke at a resolution `2^halvings` times as coarse.
 fn reduced(mut stroke: Params, halvings: usize) -> Params {
     let factor = (1_u32 << halvings) as f32;
     for length in &mut stroke[AX..=RADIUS] {
