@@ -1,42 +1,42 @@
-//! A limited time, or none: what a fit asks of it, and the clock that it is held against.
+//! The deadline of a fit, if it has one, and the clock that measures it.
 
 use std::time::Duration;
 
 use crate::clock::Instant;
 
-/// What a fit is told of the time that it has. Times are in seconds since the fit began. The answers are those of a
-/// fit that may take as long as it likes; `Forecast` gives those of one that may not.
+/// Answers what a fit still has time for. Times are in seconds since the fit began. The methods provided here are
+/// those of a fit without a limit; `Forecast` implements a limit.
 pub(super) trait Deadline: Send {
-    /// Takes down that to write and render so many strokes took `span`, and was done at `now`.
+    /// Records that writing and rendering `strokes` strokes took `span` and ended at `now`.
     fn wrote(&mut self, _strokes: usize, _span: f64, _now: f64) {}
 
-    /// Takes down that a step of descent took `span`.
+    /// Records that a step of descent took `span`.
     fn stepped(&mut self, _span: f64) {}
 
-    /// Takes down that the search for so many strokes took `span`.
+    /// Records that the search for `strokes` candidates took `span`.
     fn searched(&mut self, _strokes: usize, _span: f64) {}
 
-    /// Whether the drawing is to be written once, so that it is known how long that takes.
+    /// Whether to write the drawing once, to measure how long that takes.
     fn wants_rehearsal(&self, _now: f64) -> bool {
         false
     }
 
-    /// The share of the time for descent that is used, of a drawing of so many strokes.
+    /// The share of the time for descent that is used, for a drawing of `strokes` strokes.
     fn used(&self, _strokes: usize, _now: f64) -> f32 {
         0.0
     }
 
-    /// For how many of `wanted` strokes there is time to search on a drawing of so many; 0 if for too few.
+    /// How many of `wanted` candidates there is time to search for, on a drawing of `strokes` strokes; 0 if too few.
     fn affordable(&self, wanted: usize, _strokes: usize, _now: f64) -> usize {
         wanted
     }
 
-    /// Whether there is time for a joint fit that is not too short to be of use.
+    /// Whether there is time for a polish that is long enough to be of use.
     fn allows_polish(&self, _strokes: usize, _now: f64) -> bool {
         true
     }
 
-    /// Whether another round of settling, if only of a few steps, ends in time.
+    /// Whether another round of settling, of a few steps at least, ends in time.
     fn allows_round(&self, _strokes: usize, _now: f64) -> bool {
         true
     }
@@ -47,24 +47,24 @@ pub(super) trait Deadline: Send {
     }
 }
 
-/// A fit that may take as long as it likes.
+/// No deadline.
 pub(super) struct Unlimited;
 
 impl Deadline for Unlimited {}
 
-/// The clock of a fit, and the deadline that it is held against.
+/// The clock of a fit, and its deadline.
 pub(super) struct Timer {
     started: Instant,
-    /// What the fit took before it was resumed.
+    /// Time that the fit took before it was resumed.
     before: Duration,
     deadline: Box<dyn Deadline>,
-    /// The share of the time for descent after which it is the turn of others.
+    /// The share of the time for descent by which the current phase has to end.
     until: f32,
-    /// Strokes of the drawing, when it was last seen.
+    /// Strokes of the drawing, when they were last counted.
     strokes: usize,
     /// When the last step ended.
     stepped: Option<Duration>,
-    /// Whether the limit made anything shorter than it was planned.
+    /// Whether the limit made anything shorter than planned.
     is_hurried: bool,
 }
 
@@ -81,12 +81,12 @@ impl Timer {
         }
     }
 
-    /// Time since the fit began, what it took before it was resumed included.
+    /// Time that the fit has taken, before and after it was resumed.
     pub(super) fn elapsed(&self) -> Duration {
         self.before + self.started.elapsed()
     }
 
-    /// Goes on from a fit that took `before`.
+    /// Adds the time that the fit took before it was resumed.
     pub(super) fn resume(&mut self, before: Duration) {
         self.before = before;
     }
@@ -95,17 +95,17 @@ impl Timer {
         self.elapsed().as_secs_f64()
     }
 
-    /// Whether the limit made anything shorter than it was planned.
+    /// Whether the limit made anything shorter than planned.
     pub(super) fn is_hurried(&self) -> bool {
         self.is_hurried
     }
 
-    /// Takes down that the limit makes something shorter than it was planned.
+    /// Records that the limit makes something shorter than planned.
     pub(super) fn hurry(&mut self) {
         self.is_hurried = true;
     }
 
-    /// Does `work`, which writes and renders a drawing of so many strokes, and takes down how long that takes.
+    /// Runs and times `work`, which writes and renders a drawing of `strokes` strokes.
     pub(super) fn writing<T>(&mut self, strokes: usize, work: impl FnOnce() -> T) -> T {
         self.strokes = strokes;
         let (done, span) = timed(work);
@@ -114,7 +114,7 @@ impl Timer {
         done
     }
 
-    /// The same of `work` that searches places for so many strokes.
+    /// Runs and times `work`, which searches for `wanted` candidates.
     pub(super) fn searching<T>(&mut self, wanted: usize, work: impl FnOnce() -> T) -> T {
         let (done, span) = timed(work);
         self.deadline.searched(wanted, span);
@@ -123,7 +123,7 @@ impl Timer {
         done
     }
 
-    /// Takes down that a step of a drawing of so many strokes has ended.
+    /// Records the end of a step of a drawing of `strokes` strokes.
     pub(super) fn step(&mut self, strokes: usize) {
         let now = self.elapsed();
         if let Some(before) = self.stepped {
@@ -132,13 +132,12 @@ impl Timer {
         (self.strokes, self.stepped) = (strokes, Some(now));
     }
 
-    /// Whether the drawing is to be written once, so that it is known how long that takes.
+    /// Whether to write the drawing once, to measure how long that takes.
     pub(super) fn wants_rehearsal(&self) -> bool {
         self.deadline.wants_rehearsal(self.now())
     }
 
-    /// How many of the strokes wanted there is time to search places for, if not too few; the first ones in any
-    /// case.
+    /// How many of `wanted` candidates there is time to search for; 0 if too few. The first search is never limited.
     pub(super) fn affordable(&mut self, wanted: usize) -> usize {
         if self.strokes == 0 {
             return wanted;
@@ -148,7 +147,7 @@ impl Timer {
         affordable
     }
 
-    /// Whether there is time for a joint fit that is not too short to be of use.
+    /// Whether there is time for a polish that is long enough to be of use.
     pub(super) fn allows_polish(&mut self) -> bool {
         let allows = self.deadline.allows_polish(self.strokes, self.now());
         self.is_hurried |= !allows;
@@ -165,23 +164,23 @@ impl Timer {
         self.deadline.allows_step(self.strokes, self.now())
     }
 
-    /// Gives what follows the time for descent up to a share `until` of all there is.
+    /// Ends the time of what follows at a share `until` of the whole time for descent.
     pub(super) fn give_until(&mut self, until: f32) {
         self.until = until;
     }
 
-    /// The share that is used up of the time given; 0 without a limit.
+    /// The share of that time that is used; 0 without a limit.
     pub(super) fn used(&self) -> f32 {
         self.deadline.used(self.strokes, self.now()) / self.until
     }
 
-    /// Whether all the time for descent is used up.
+    /// Whether the whole time for descent is used.
     pub(super) fn is_over(&self) -> bool {
         self.used() * self.until >= 1.0
     }
 }
 
-/// What `work` makes, and how many seconds that takes.
+/// The result of `work`, and the seconds that it took.
 fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     let start = Instant::now();
     let made = work();

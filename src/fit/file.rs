@@ -1,4 +1,4 @@
-//! The drawing as its file says it, and what that looks like.
+//! The drawing as it is written to a file, and resvg's render of that.
 
 use super::base::Base;
 use super::config::{Background, Config};
@@ -13,20 +13,20 @@ use crate::{metrics, verify};
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Writer<'a> {
     base: Option<&'a Base>,
-    /// Whether there is a rectangle of the background's colour.
+    /// Whether the file has a rectangle of the background's colour.
     pub(super) has_background: bool,
     options: WriteOptions,
 }
 
-/// A drawing as its file says it, and what that looks like.
+/// A drawing as it is written to a file, and resvg's render of that.
 #[derive(Debug, Clone)]
 pub(super) struct RenderedFile {
     pub(super) rounded: Quantized,
-    /// What resvg draws, one picture per surface.
+    /// resvg's renders, one per surface.
     pub(super) drawn: Vec<Image>,
     /// Bytes of SVG.
     pub(super) bytes: usize,
-    /// The mean squared error on the matte where it is largest.
+    /// The mean squared error, on the matte where it is largest.
     pub(super) mse: f64,
 }
 
@@ -43,7 +43,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Rounds `drawing` to what its file says.
+    /// Rounds `drawing` to the numbers that its file holds.
     pub(super) fn round(&self, drawing: &Drawing) -> Quantized {
         let scene = drawing.scene(self.has_background);
         scene.quantized(self.options.precision)

@@ -1,4 +1,4 @@
-//! The finished fit, from the best of the files.
+//! The end of a fit: its result, from the best file.
 
 use super::drawing::Drawing;
 use super::result::{Fit, StageRecord};
@@ -9,7 +9,7 @@ use crate::image::Image;
 use crate::metrics::psnr_db;
 use crate::scene::{Dropped, Quantized, Scene, Stage};
 
-/// Hands the best of the files over, or the drawing as it is where no file was looked at.
+/// The result of the fit: the best file or, if no file was looked at, the drawing as it is.
 pub(super) fn finish(mut session: Session<'_>) -> Result<Fit> {
     let rounded = match session.best.take() {
         Some(best) => best.rounded,
@@ -32,8 +32,8 @@ pub(super) fn finish(mut session: Session<'_>) -> Result<Fit> {
     })
 }
 
-/// The records of the stages that have strokes in the finished drawing, numbered as its layers, with what
-/// became of them.
+/// The records of the stages that have strokes in the finished drawing, numbered like its layers, with the final number
+/// of strokes and the fidelity of each layer.
 fn records(session: &mut Session<'_>, rounded: &Quantized) -> Vec<StageRecord> {
     let mses = session.drawing.layer_mses(&rounded.scene);
     let layers = rounded.scene.stages.iter().zip(mses);
@@ -49,7 +49,7 @@ fn records(session: &mut Session<'_>, rounded: &Quantized) -> Vec<StageRecord> {
     origins.zip(layers).filter_map(record).collect()
 }
 
-/// Our own render of `scene`; with alpha where there is a matte of either colour.
+/// Our own render of `scene`; with alpha if the drawing is transparent.
 fn soft(drawing: &mut Drawing, scene: &Scene) -> Result<Image> {
     let mut softs = drawing.soft(scene);
     match softs.as_slice() {

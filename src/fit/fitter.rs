@@ -1,4 +1,4 @@
-//! A fit, set up step by step.
+//! The builder of a fit.
 
 use super::background;
 use super::base::Base;
@@ -38,7 +38,7 @@ pub struct Fitter<'a> {
 }
 
 impl<'a> Fitter<'a> {
-    /// A fitter of drawings as `config` wants them.
+    /// A fitter with this configuration.
     pub fn new(config: Config) -> Self {
         Self {
             config,
@@ -51,14 +51,14 @@ impl<'a> Fitter<'a> {
         }
     }
 
-    /// How to run.
+    /// Sets how to run.
     #[must_use]
     pub fn execution(self, execution: Execution) -> Self {
         Self { execution, ..self }
     }
 
-    /// What to go on from. Budgets count the strokes that it brings and all its bytes; a base that meets
-    /// one already stays as it is. It decides on the background.
+    /// Sets the drawing to go on from. Budgets include its strokes and all its bytes, and a base that already meets a
+    /// budget stays as it is. The background is that of the base.
     #[must_use]
     pub fn on(self, base: Base) -> Self {
         Self {
@@ -67,7 +67,7 @@ impl<'a> Fitter<'a> {
         }
     }
 
-    /// Who is told of progress, and may stop the fit.
+    /// Sets the observer, which is told of progress and may stop the fit.
     #[must_use]
     pub fn observer(self, observer: &'a mut (dyn Observer + Send)) -> Self {
         Self {
@@ -76,14 +76,14 @@ impl<'a> Fitter<'a> {
         }
     }
 
-    /// What may stop the fit from another thread.
+    /// Sets the token that stops the fit from another thread.
     #[must_use]
     pub fn cancelled_by(self, token: CancelToken) -> Self {
         Self { token, ..self }
     }
 
-    /// Where the state is kept, and found again when the same fit was cut off before. It changes nothing of
-    /// the drawing.
+    /// Sets the checkpoint that keeps the state. If it already holds a state of the same fit, the fit goes on from there.
+    /// The drawing does not depend on it.
     #[must_use]
     pub fn checkpoint(self, checkpoint: &'a mut Checkpoint) -> Self {
         Self {
@@ -92,7 +92,7 @@ impl<'a> Fitter<'a> {
         }
     }
 
-    /// Start of the time budget; the start of the fit unless set.
+    /// Sets the start of the time budget, which otherwise starts with the fit.
     #[must_use]
     pub fn since(self, start: Instant) -> Self {
         Self {
@@ -101,7 +101,7 @@ impl<'a> Fitter<'a> {
         }
     }
 
-    /// Refuses what cannot be fitted to `picture`, and says which background strokes can be drawn on.
+    /// Checks the configuration and the base against `picture`, and decides on the background for opaque strokes.
     pub(super) fn prepare(&mut self, picture: &Image) -> Result<()> {
         let config = &mut self.config;
         config.check()?;
@@ -110,7 +110,7 @@ impl<'a> Fitter<'a> {
             background::for_strokes(config.background, config.opaque, picture, &choice);
         if let Some(base) = &self.base {
             check_size(&base.scene, picture)?;
-            // The background of a document stays with it.
+            // The palette does not apply to a document, whose background is its own.
             if let (None, Some(color)) = (&base.document, base.scene.background) {
                 config.check_background(color, ", since the base stays on it")?;
             }

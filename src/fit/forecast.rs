@@ -1,39 +1,40 @@
-//! How a limited time is shared out, in seconds.
+//! How a time limit is divided among the parts of a fit, in seconds.
 //!
-//! Descent gets all the time that what follows it does not need: the drawing is written and settled against its file,
-//! and in the end the file is judged, which renders it once more. All of these are estimated from how long the last
-//! write took, and from how long steps, searches and rounds take.
+//! Descent gets all the time that later parts do not need. After it, the drawing is written and settled against its
+//! file, and finally the file is judged, which renders it once more. The forecast estimates all of these from the
+//! duration of the last write, and of steps and searches.
 
 use std::time::Duration;
 
 use super::deadline::Deadline;
 use super::recipe::{Recipe, TimeShares};
 
-/// What a limited fit knows of the time that its parts take, s.
+/// Measured durations, s, and what they leave for the parts of a fit.
 #[derive(Debug, Clone)]
 pub(super) struct Forecast {
     limit: f64,
     pixels: f64,
     is_transparent: bool,
-    /// Whether the drawing is written before it is judged.
+    /// Whether the fit itself looks at the file, before it is judged.
     needs_file: bool,
-    /// Rounds of settling, and steps of each.
+    /// Rounds of settling.
     rounds: usize,
+    /// Steps of each round.
     steps: usize,
     shares: TimeShares,
-    /// How long a pixel takes to write.
+    /// Duration of a write, per pixel of its size.
     per_pixel: f64,
-    /// When to measure a write next.
+    /// Time of the next measurement of a write.
     due: f64,
-    /// How long a step of descent takes.
+    /// Duration of a step of descent, a running mean.
     step: f64,
-    /// How long the search for a stroke takes.
+    /// Duration of the search for a candidate.
     search: f64,
 }
 
 impl Forecast {
-    /// The forecast of a fit that may take `limit` in all, of a picture of so many pixels. A transparent drawing takes
-    /// longer to judge; a fit that `needs_file` looks at what it writes.
+    /// The forecast of a fit to a picture of `pixels` pixels that may take `limit` in all. A transparent drawing takes
+    /// longer to judge. A fit that `needs_file` looks at the file that it writes.
     pub(super) fn new(
         limit: Duration,
         pixels: usize,
@@ -56,34 +57,34 @@ impl Forecast {
         }
     }
 
-    /// When the descent of a drawing of so many strokes has to end.
+    /// The time by which the descent of a drawing of `strokes` strokes has to end.
     pub(super) fn end_of_descent(&self, strokes: usize) -> f64 {
         let end = self.limit - self.settling(strokes) - self.judging(strokes);
         end.max(self.limit * self.shares.min_descent)
     }
 
-    /// Whether a file that is written from `now` on is judged in time.
+    /// Whether a file whose writing begins at `now` can be looked at and judged in time.
     fn ends_in_time(&self, strokes: usize, now: f64) -> bool {
         now + self.seeing(strokes) + self.judging(strokes) < self.limit
     }
 
-    /// How much there is to write, in pixels.
+    /// The size of a write, in pixels.
     fn size(&self, strokes: usize) -> f64 {
         self.pixels + self.shares.stroke_px * strokes as f64
     }
 
-    /// How long it takes to round, write and render a drawing of so many strokes.
+    /// Duration of rounding, writing and rendering a drawing of `strokes` strokes.
     fn write_s(&self, strokes: usize) -> f64 {
         self.per_pixel * self.size(strokes)
     }
 
-    /// A write that a round of settling starts from, and a look at it in the model of the browser.
+    /// Duration of a write that a round of settling starts from, and of its render by the model of a browser.
     fn seeing(&self, strokes: usize) -> f64 {
         (1.0 + self.shares.browser) * self.write_s(strokes)
             + self.shares.browser_page * self.write_s(0)
     }
 
-    /// The time that is kept for the first write and for rounds of settling; short rounds where it is short.
+    /// The time reserved for the first write and the rounds of settling, which are shorter if the limit is short.
     fn settling(&self, strokes: usize) -> f64 {
         let seeing = self.seeing(strokes);
         let round = |steps: f64| seeing + steps * self.step;
@@ -98,6 +99,7 @@ impl Forecast {
         }
     }
 
+    /// The time reserved for what follows the fit.
     fn judging(&self, strokes: usize) -> f64 {
         let writes = if self.is_transparent {
             self.shares.judging_transparent
@@ -133,7 +135,7 @@ impl Deadline for Forecast {
         (now / self.end_of_descent(strokes)) as f32
     }
 
-    /// There has to be time to fit the strokes for a few steps as well.
+    /// Leaves time for a few steps that fit the new strokes.
     fn affordable(&self, wanted: usize, strokes: usize, now: f64) -> usize {
         let left = self.end_of_descent(strokes) - now - self.steps as f64 * self.step;
         let affordable = (left / self.search.max(f64::MIN_POSITIVE)) as usize;

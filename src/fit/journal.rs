@@ -1,4 +1,4 @@
-//! What has happened in a fit so far, apart from the drawing.
+//! The history of a fit, apart from the drawing.
 
 use std::time::Duration;
 
@@ -10,17 +10,17 @@ use super::plan::PlannedStage;
 use super::result::{StageRecord, Stop};
 use crate::metrics::psnr_db;
 
-/// What has happened in a fit so far, apart from the drawing.
+/// The history of a fit, apart from the drawing.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Journal {
-    /// One per stage, those of the base included.
+    /// One record per stage, those of the base included.
     pub(super) records: Vec<StageRecord>,
-    /// The stage under way, or the last one.
+    /// The current stage, or the last one.
     pub(super) stage: Option<OpenStage>,
     /// What ended the stages, and in the end the fit.
     pub(super) stop: Stop,
     pub(super) corrections: Corrections,
-    /// What the best of the files was written from.
+    /// The drawing that the best file was written from.
     pub(super) best: Option<Memento>,
 }
 
@@ -28,18 +28,18 @@ pub(super) struct Journal {
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub(super) struct OpenStage {
     pub(super) planned: PlannedStage,
-    /// When it began, since the fit began.
+    /// Time from the beginning of the fit to that of the stage.
     pub(super) began: Duration,
-    /// How many of its strokes were worth their price, once that is known.
+    /// How many of its strokes were worth their price; `None` while they are being fitted.
     pub(super) accepted: Option<usize>,
 }
 
-/// How a fidelity is approached by adding and removing strokes.
+/// Corrections of the number of strokes, towards the fidelity asked for.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub(super) struct Corrections {
-    /// How often that was done.
+    /// Corrections so far.
     pub(super) count: usize,
-    /// Strokes before the last time, and their fidelity, dB.
+    /// Strokes before the last correction, and their fidelity, dB.
     pub(super) before: Option<(usize, f64)>,
     /// Fidelity of the last file, dB.
     pub(super) last_db: f64,
@@ -48,7 +48,7 @@ pub(super) struct Corrections {
 }
 
 impl Journal {
-    /// The journal of a fit that has `records` of a base's layers.
+    /// The journal of a new fit, with the `records` of its base's layers.
     pub(super) fn new(records: Vec<StageRecord>, db_per_doubling: f64) -> Self {
         Self {
             records,
@@ -64,7 +64,7 @@ impl Journal {
         }
     }
 
-    /// Takes down how the stage under way went: so many `iterations`, and the mean squared error `mse` after them.
+    /// Records the current stage: its `iterations`, and the mean squared error `mse` after them.
     pub(super) fn record(&mut self, iterations: usize, elapsed: Duration, mse: f64) {
         let Some(OpenStage { planned, began, .. }) = self.stage else {
             return;
@@ -86,7 +86,7 @@ impl Journal {
         }
     }
 
-    /// Takes down why a fit ends that was to be as faithful as `wanted_db`, and whose best file has `best_db`.
+    /// Sets why a fit ends that aims at a fidelity of `wanted_db`, and whose best file has `best_db`.
     pub(super) fn stop_at(&mut self, wanted_db: f64, best_db: f64) {
         self.stop = match self.stop {
             _ if best_db >= wanted_db => Stop::Psnr,
@@ -96,14 +96,14 @@ impl Journal {
     }
 }
 
-/// Puts the strokes of `base` into `drawing`; returns the records of its layers.
+/// Adds the strokes of `base` to `drawing`, and returns the records of its layers.
 pub(super) fn load(drawing: &mut Drawing, base: &Base) -> Vec<StageRecord> {
     drawing.load(&base.scene);
     let mses = drawing.layer_mses(&base.scene).into_iter();
     mses.enumerate().map(kept_layer).collect()
 }
 
-/// The record of a layer that was there before, from its index and the mean squared error after it.
+/// The record of a layer of the base, from its index and the mean squared error after it.
 fn kept_layer((index, mse): (usize, f64)) -> StageRecord {
     StageRecord {
         index: index + 1,

@@ -1,4 +1,4 @@
-//! Progress and cancellation, one path: whoever watches a fit is told after every iteration, and may end it.
+//! Progress and cancellation: the observer is called after every iteration, and may stop the fit.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use super::result::Stop;
 use crate::metrics::psnr_db;
 use crate::scene::Scene;
 
-/// What has just happened in a fit.
+/// The state of a fit after an iteration.
 #[derive(Clone, Copy)]
 #[non_exhaustive]
 pub struct Progress<'a> {
@@ -19,9 +19,9 @@ pub struct Progress<'a> {
     pub done: f64,
     /// Index of the stage under way, from 1; one past the last during polish.
     pub stage: usize,
-    /// How many stages are planned; 0 where the picture decides as it goes.
+    /// How many stages are planned; 0 if that depends on how much each of them gains.
     pub stages: usize,
-    /// Whether strokes of several stages are fitted jointly, or those of this stage once more.
+    /// Whether the strokes are being polished: those of all stages or, in a progressive drawing, those of this one.
     pub polishing: bool,
     /// Strokes in the drawing.
     pub strokes: usize,
@@ -31,13 +31,13 @@ pub struct Progress<'a> {
 }
 
 impl Progress<'_> {
-    /// The drawing so far: unrounded, in px of the picture, on its background. Made anew at every call.
+    /// The drawing so far: unrounded, in px of the picture, on its background. Each call builds a new scene.
     pub fn scene(&self) -> Scene {
         self.drawing.scene(true)
     }
 }
 
-/// Told of progress; may stop the fit. Stopping is no error: what is finished is a valid scene.
+/// Is told of progress, and may stop the fit. A stopped fit is no error: it returns the drawing as far as it has come.
 pub trait Observer {
     /// Called after every iteration, always on the same thread; it should return soon.
     fn observe(&mut self, progress: &Progress<'_>) -> ControlFlow<()>;
@@ -56,7 +56,7 @@ impl<F: FnMut(&Progress<'_>) -> ControlFlow<()>> Observer for F {
     }
 }
 
-/// Ends a fit from another thread, as an observer does that stops it: what is finished is a valid scene.
+/// Stops a fit from another thread. A stopped fit is no error: it returns the drawing as far as it has come.
 ///
 /// ```
 /// use strokefit::fit::{CancelToken, Config, Fitter, Stop};
@@ -76,7 +76,7 @@ impl<F: FnMut(&Progress<'_>) -> ControlFlow<()>> Observer for F {
 pub struct CancelToken(Arc<AtomicBool>);
 
 impl CancelToken {
-    /// Ends every fit that has this token or a clone of it, after the iteration that is under way.
+    /// Stops every fit that has this token or a clone of it, after its current iteration.
     pub fn cancel(&self) {
         self.0.store(true, Ordering::Relaxed);
     }
@@ -92,14 +92,15 @@ impl CancelToken {
 pub(super) struct Position {
     /// Work done, in strokes × iterations.
     done: f64,
-    /// The fraction that the observer was told.
+    /// The fraction last reported to the observer.
     fraction: f64,
-    /// The stage under way, and whether it is polished.
+    /// The current stage, from 1.
     stage: usize,
+    /// Whether strokes are being polished.
     polishing: bool,
 }
 
-/// Keeps account of progress, tells the observer of it, and knows whether the fit has to end.
+/// Counts progress, reports it to the observer, and knows whether the fit has to stop.
 pub(super) struct Tracker<'a> {
     observer: &'a mut (dyn Observer + Send),
     token: CancelToken,
@@ -128,33 +129,33 @@ impl<'a> Tracker<'a> {
         }
     }
 
-    /// Why the fit has to end now, if it has to.
+    /// Why the fit has to stop now, if it has to.
     pub(super) fn stopped(&self) -> Option<Stop> {
         self.stopped
     }
 
-    /// Whether an observer or a token ended the fit.
+    /// Whether an observer or a token stopped the fit.
     pub(super) fn is_interrupted(&self) -> bool {
         self.stopped == Some(Stop::Observer)
     }
 
-    /// Ends the fit, unless something else did before.
+    /// Stops the fit, unless something else already did.
     pub(super) fn stop(&mut self, stop: Stop) {
         self.stopped.get_or_insert(stop);
     }
 
-    /// Announces stage `stage`, from 0.
+    /// Begins stage `stage`, from 0.
     pub(super) fn enter(&mut self, stage: usize) {
         self.position.stage = stage + 1;
         self.position.polishing = false;
     }
 
-    /// Announces a joint fit.
+    /// Begins a polish.
     pub(super) fn polish(&mut self) {
         self.position.polishing = true;
     }
 
-    /// Adds an iteration of so many strokes to what is done, when a share `time_used` of a limited time is used.
+    /// Counts an iteration of `strokes` strokes, when a share `time_used` of a limited time is used.
     pub(super) fn advance(&mut self, strokes: usize, time_used: f32) {
         let position = &mut self.position;
         position.done += strokes as f64;
@@ -162,7 +163,7 @@ impl<'a> Tracker<'a> {
         position.fraction = done.clamp(position.fraction, 1.0);
     }
 
-    /// Tells the observer of `drawing`, whose mean squared error is `mse`, and says whether it lets the fit go on.
+    /// Reports `drawing`, whose mean squared error is `mse`, to the observer. Returns whether to go on.
     pub(super) fn tell(&mut self, drawing: &Drawing, mse: f64) -> bool {
         if self.is_interrupted() {
             return false;

@@ -1,9 +1,9 @@
-//! What strokes are composited over, and what they are to look like there.
+//! The surfaces of a drawing: for each matte the target, the backdrop and the canvas.
 //!
-//! A drawing without alpha has one surface. A transparent one is fitted on two at once, laid on mattes of black and
-//! of white: a drawing of premultiplied colour P and alpha A looks like P + (1 − A)·g on a matte g, which is linear in
-//! every channel of g, so that what is right on black and on white is right on every matte. Losses, gradients, worths
-//! and gains are means over the surfaces.
+//! A drawing without alpha has one surface. A transparent drawing is fitted on two at once, a black and a white matte.
+//! A drawing with premultiplied colour P and alpha A looks like P + (1 − A)·g on a matte g. That is linear in every
+//! channel of g, so that a drawing that is right on black and on white is right on every matte. Losses, gradients,
+//! worths and gains are means over the surfaces.
 
 use super::background;
 use super::base::Base;
@@ -21,18 +21,19 @@ use crate::verify;
 const BLACK: Rgb = [0.0; 3];
 const WHITE: Rgb = [1.0; 3];
 
-/// A picture as it is looked at during a fit.
+/// A picture, prepared for a fit.
 pub(super) struct Prepared {
-    /// The picture to be drawn: without alpha unless there are two surfaces.
+    /// The picture to reproduce: without alpha unless there are two surfaces.
     pub(super) target: Image,
     /// One, or two for a transparent drawing.
     pub(super) surfaces: Vec<Surface>,
-    /// Whether the background is not to be fitted.
+    /// Whether the background keeps its colour.
     pub(super) background_fixed: bool,
 }
 
 impl Prepared {
-    /// The surfaces for drawing `picture` on `base`, or on a `background`, with strokes of `scale` px at first.
+    /// The surfaces for a drawing of `picture` on `base`, or on a `background`, whose first strokes have a scale of
+    /// `scale` px.
     pub(super) fn new(
         picture: &Image,
         background: Background,
@@ -90,8 +91,7 @@ impl Prepared {
     }
 }
 
-/// The mattes that a drawing of `picture` is looked at on: it is transparent where the picture is, unless there is a
-/// background to lay the picture on.
+/// The mattes that a drawing of `picture` is fitted on: two if the picture has alpha and no background colour is set.
 fn mattes(picture: &Image, background: Background) -> Vec<Rgb> {
     match (picture.alpha(), background) {
         (Some(_), Background::Auto | Background::None) => vec![BLACK, WHITE],
@@ -102,16 +102,16 @@ fn mattes(picture: &Image, background: Background) -> Vec<Rgb> {
 /// Typical radii, px of the picture.
 #[derive(Debug, Clone, Copy)]
 struct Sizes {
-    /// Of the first strokes.
+    /// The scale of the first strokes.
     scale: f32,
-    /// Of the smallest that are fitted to a reduced picture, in px of that.
+    /// The least scale of strokes that are fitted to a reduced picture, in px of that picture.
     min_scale: f32,
 }
 
-/// What lies under all strokes, at any resolution.
+/// The backdrop of all strokes, frozen and free, at any resolution.
 enum Bottom {
     Color(Rgb),
-    /// What the SVG of a base looks like.
+    /// The render of a base's document.
     Document(Pyramid),
 }
 
@@ -123,7 +123,7 @@ impl Bottom {
         }
     }
 
-    /// What strokes are composited over: the canvas `below` where it has `frozen` strokes or a document.
+    /// The backdrop of the free strokes: the canvas `below` if it holds `frozen` strokes or a document.
     fn backdrop<'a>(&self, below: &'a Canvas, frozen: usize) -> Backdrop<'a> {
         match self {
             Self::Color(color) if frozen == 0 => Backdrop::Color(*color),
@@ -132,22 +132,22 @@ impl Bottom {
     }
 }
 
-/// Target, backdrop and canvas on one matte, at the resolution that the drawing has.
+/// Target, backdrop and canvas on one matte, at the current resolution of the drawing.
 pub(super) struct Surface {
-    /// What the SVG is laid on when it is rendered.
+    /// The matte that the SVG is rendered on.
     pub(super) matte: Rgb,
     bottom: Bottom,
     /// The picture on the matte, and its reductions.
     pyramid: Pyramid,
     /// How many times the picture is halved.
     halvings: usize,
-    /// The typical radius that strokes keep in a reduced picture, px of that.
+    /// The least scale of strokes in a reduced picture, px of that picture.
     min_scale: f32,
     /// The picture, halved.
     target: Canvas,
-    /// The frozen strokes on the bottom.
+    /// The frozen strokes, rendered over the bottom.
     frozen: Canvas,
-    /// All strokes as they were last rendered, with the final edge.
+    /// The last render of all strokes, with the final edge.
     pub(super) canvas: Canvas,
 }
 
@@ -169,7 +169,7 @@ impl Surface {
         }
     }
 
-    /// How the picture is cut, at the current resolution.
+    /// The grid of the canvases, at the current resolution.
     pub(super) fn grid(&self) -> Grid {
         self.target.grid()
     }
@@ -184,7 +184,7 @@ impl Surface {
         self.pyramid.level(0)
     }
 
-    /// The background's colour, unless a document lies there.
+    /// The background's colour, unless the drawing is on top of a document.
     pub(super) fn color(&self) -> Option<Rgb> {
         match self.bottom {
             Bottom::Color(color) => Some(color),
@@ -192,7 +192,7 @@ impl Surface {
         }
     }
 
-    /// The same, to be changed.
+    /// Mutable access to the background's colour.
     pub(super) fn color_mut(&mut self) -> Option<&mut Rgb> {
         match &mut self.bottom {
             Bottom::Color(color) => Some(color),
@@ -200,12 +200,12 @@ impl Surface {
         }
     }
 
-    /// How many halvings leave strokes of `scale` px, of the picture, their least radius.
+    /// How many halvings leave strokes of `scale` px of the picture at their least scale or above.
     pub(super) fn halvings_for(&self, scale: f32) -> usize {
         halvings(&self.pyramid, scale, self.min_scale)
     }
 
-    /// Goes to the picture halved so many times. Nothing is frozen then.
+    /// Switches to the picture halved `halvings` times, with nothing frozen.
     pub(super) fn halve(&mut self, halvings: usize) {
         self.halvings = halvings;
         self.target = Canvas::from_image(self.pyramid.level(halvings));
@@ -213,29 +213,29 @@ impl Surface {
         self.canvas.clone_from(&self.frozen);
     }
 
-    /// Takes the canvas for the backdrop of the free strokes.
+    /// Makes the canvas the backdrop of the free strokes.
     pub(super) fn freeze(&mut self) {
         self.frozen.clone_from(&self.canvas);
     }
 
-    /// Takes the bottom for the backdrop of the free strokes.
+    /// Makes the bottom the backdrop of the free strokes.
     pub(super) fn thaw(&mut self) {
         if let Bottom::Document(pyramid) = &self.bottom {
             self.frozen = Canvas::from_image(pyramid.level(self.halvings));
         }
     }
 
-    /// What the free strokes are composited over, where `frozen` others are frozen.
+    /// The backdrop of the free strokes if `frozen` others are frozen.
     pub(super) fn backdrop(&self, frozen: usize) -> Backdrop<'_> {
         self.bottom.backdrop(&self.frozen, frozen)
     }
 
-    /// What the strokes of `scene` are composited over, in a drawing without frozen strokes.
+    /// The backdrop of the strokes of `scene`, in a drawing without frozen strokes.
     pub(super) fn backdrop_of(&self, scene: &Scene) -> Backdrop<'_> {
         scene.background.map_or(self.backdrop(0), Backdrop::Color)
     }
 
-    /// The same as a canvas.
+    /// The same backdrop, as a canvas.
     pub(super) fn empty(&self, scene: &Scene) -> Canvas {
         match self.backdrop_of(scene) {
             Backdrop::Color(color) => Canvas::flat(self.grid(), color),
@@ -243,7 +243,7 @@ impl Surface {
         }
     }
 
-    /// Renders the `free` strokes, on `frozen` others, to the canvas.
+    /// Renders the `free` strokes, on top of `frozen` others, to the canvas.
     pub(super) fn render(
         &mut self,
         renderer: &mut Renderer,
@@ -265,7 +265,7 @@ impl Surface {
         Objective::new(Loss::L2, target.unwrap_or(&self.target))
     }
 
-    /// Picture and canvas, to search places for strokes in.
+    /// Picture and canvas, to search for candidates in.
     pub(super) fn residual(&self) -> Residual<'_> {
         Residual {
             target: &self.pyramid,
@@ -274,13 +274,13 @@ impl Surface {
     }
 }
 
-/// How many halvings leave strokes of `scale` px a scale of `min_scale`.
+/// How many halvings leave strokes of `scale` px a scale of `min_scale` or more.
 fn halvings(pyramid: &Pyramid, scale: f32, min_scale: f32) -> usize {
-    // Rounded down: `halvings` alone would bring the scale below the least.
+    // `Pyramid::halvings` rounds up; with half the scale it leaves one halving less.
     pyramid.halvings(0, scale / 2.0, min_scale)
 }
 
-/// The picture that looks like this on black and on white.
+/// The transparent picture that looks like these on black and on white.
 pub(super) fn transparent(black: &Image, white: &Image) -> Result<Image> {
     let channels = || black.planes().iter().zip(white.planes());
     // P on black, P + (1 − A) on white: A is 1 less their difference, a mean over the channels.
