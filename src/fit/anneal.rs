@@ -1,4 +1,4 @@
-//! The soft edge narrows during a fit.
+//! Annealing: the soft edge narrows during a descent.
 
 use super::recipe::{Edge, Preset, Recipe};
 use crate::coverage::{Coverage, CoverageSchedule};
@@ -12,12 +12,12 @@ pub fn final_softness(coverage: Coverage) -> Softness {
 
 /// The softness at which `coverage` has the slope `slope` at the outline, 1/px.
 fn with_slope(coverage: Coverage, slope: f64) -> Softness {
-    // All coverage functions are functions of d/s, so that the slope at 0 is inverse to the softness.
+    // Coverage depends on d/s alone, so that the slope at 0 is inversely proportional to the softness s.
     let width = (coverage.derivative(0.0, 1.0) / slope) as f32;
     Softness { coverage, width }
 }
 
-/// The passage from a soft edge to the final one.
+/// The schedule from a soft edge to the final one.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Annealing {
     pub(super) coverage: CoverageSchedule,
@@ -25,8 +25,8 @@ pub(super) struct Annealing {
 }
 
 impl Annealing {
-    /// The softness when a share `done` of a descent is over that began `from` times softer than the final edge, at
-    /// least 1; it shrinks geometrically.
+    /// The softness when a share `done` of a descent is over. It begins at `from` times the final one, at least at 1, and
+    /// shrinks geometrically.
     pub(super) fn at(&self, from: f32, done: f32) -> Softness {
         let annealed = self.edge.annealed;
         if done >= annealed {
@@ -39,7 +39,7 @@ impl Annealing {
         }
     }
 
-    /// The edge of the finished drawing.
+    /// The final edge.
     pub(super) fn last(&self) -> Softness {
         with_slope(self.coverage.late, self.edge.final_slope)
     }

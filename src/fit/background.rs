@@ -1,12 +1,12 @@
-//! Which background a drawing gets.
+//! The choice of the background.
 
 use super::config::Background;
 use super::recipe::BackgroundChoice;
 use crate::image::Image;
 use crate::scene::Rgb;
 
-/// The background that opaque strokes can be drawn on: they cannot show what is translucent, a soft shadow or glass, so
-/// that a picture with such areas is laid on white for them.
+/// The background, replaced by white where opaque strokes need that: they cannot reproduce translucent areas, such as
+/// soft shadows or glass, so that a picture with such areas is flattened onto white for them.
 pub(super) fn for_strokes(
     background: Background,
     opaque: bool,
@@ -21,7 +21,7 @@ pub(super) fn for_strokes(
     }
 }
 
-/// The colour that a picture with alpha is laid on where the drawing is not transparent.
+/// The matte that a picture with alpha is flattened onto if the drawing is not transparent.
 pub(super) fn matte(background: Background) -> Rgb {
     match background {
         Background::Color(color) => color,
@@ -29,7 +29,7 @@ pub(super) fn matte(background: Background) -> Rgb {
     }
 }
 
-/// The colour that a fit to `target` starts from, and whether it stays that colour.
+/// The background that a fit to `target` starts with, and whether it keeps its colour.
 pub(super) fn choose(
     background: Background,
     target: &Image,
@@ -42,7 +42,7 @@ pub(super) fn choose(
     }
 }
 
-/// The commonest colour where it has a large enough share, otherwise the mean colour.
+/// The most common colour if its share is large enough, otherwise the mean colour.
 fn prevailing_color(image: &Image, choice: &BackgroundChoice) -> Rgb {
     let pixels = image.width() * image.height();
     let levels = image.to_rgb8();
@@ -66,8 +66,8 @@ fn prevailing_color(image: &Image, choice: &BackgroundChoice) -> Rgb {
     }
 }
 
-/// Share of the pixels that are translucent and have four translucent neighbours: the edge of an opaque
-/// shape is a pixel wide.
+/// Share of the pixels that are translucent and have only translucent neighbours. This leaves out the antialiased edges
+/// of opaque shapes, which are a pixel wide.
 fn translucent_share(image: &Image, choice: &BackgroundChoice) -> f64 {
     let Some(alpha) = image.alpha() else {
         return 0.0;

@@ -1,4 +1,4 @@
-//! What a fit goes on from: a drawing of ours, or any SVG.
+//! The base that a fit goes on from: a drawing of ours, or any SVG.
 
 use crate::error::Result;
 use crate::image::Image;
@@ -6,27 +6,26 @@ use crate::scene::Scene;
 use crate::svg::{self, Document, Length, WriteOptions};
 use crate::verify;
 
-/// What a fit goes on from: a page that stays as it is, strokes that are fitted on, or both.
+/// What a fit goes on from: a document that stays as it is, strokes that are fitted further, or both.
 #[derive(Debug, Clone)]
 pub struct Base {
-    /// Any SVG: it stays as it is, byte for byte, and strokes are laid on it.
+    /// Any SVG. It stays as it is, byte for byte, and strokes are added on top.
     pub document: Option<Document>,
-    /// Strokes on top, to be fitted together with the new ones, each in its layer.
+    /// Strokes on top, which are fitted together with the new ones and keep their layers.
     pub scene: Scene,
-    /// Width of the page of a drawing of ours, if it says one; kept unless another is asked for.
+    /// Width of the page, if a drawing of ours states one. It is kept unless the configuration sets another.
     pub width: Option<Length>,
 }
 
 impl Base {
-    /// The base that the text of an SVG is for a drawing of `picture`.
+    /// Reads the text of an SVG as a base for a drawing of `picture`.
     ///
-    /// Strokes are taken up from a drawing of ours and from the layers that we have laid on another SVG,
-    /// provided that they were fitted to a picture of this size. Everything else, and all of it if it is
-    /// to be `kept`, stays as it is.
+    /// Strokes are taken from a drawing of ours, and from the layers that we have added to another SVG, provided that
+    /// they were fitted to a picture of this size. Everything else stays as it is; with `kept` the strokes do, too.
     ///
     /// # Errors
-    /// [`ErrorKind::Svg`](crate::ErrorKind::Svg) when the text is no SVG, of another aspect ratio than the
-    /// picture, or one that would change the strokes laid on it.
+    /// [`ErrorKind::Svg`](crate::ErrorKind::Svg) when the text is no SVG, when its aspect ratio differs from that of the
+    /// picture, or when it would change the strokes on top of it.
     pub fn read(text: String, picture: &Image, kept: bool) -> Result<Self> {
         let of_its_size = |scene: &Scene| {
             (scene.width as usize, scene.height as usize) == (picture.width(), picture.height())
@@ -52,7 +51,7 @@ impl Base {
         })
     }
 
-    /// The SVG of `scene`, fitted on `base` if there was one.
+    /// The SVG of `scene`, which was fitted on `base` if there is one.
     pub fn write(base: Option<&Self>, scene: &Scene, options: &WriteOptions) -> String {
         let Some(base) = base else {
             return svg::write(scene, options);
@@ -64,19 +63,19 @@ impl Base {
         svg::write(scene, &WriteOptions { width, ..*options })
     }
 
-    /// The elements that stay as they are.
+    /// The number of elements that stay as they are.
     pub fn elements(&self) -> usize {
         self.document.as_ref().map_or(0, Document::elements)
     }
 
-    /// The bytes that stay as they are.
+    /// The number of bytes that stay as they are.
     pub(super) fn bytes(&self) -> usize {
         let document = self.document.as_ref();
         document.map_or(0, |document| document.text().len())
     }
 }
 
-/// A page of the picture's size.
+/// An empty scene of the picture's size.
 fn blank(picture: &Image) -> Scene {
     Scene::empty(picture.width() as u32, picture.height() as u32, None)
 }

@@ -1,4 +1,4 @@
-//! What the budgets of a fit allow and ask for.
+//! The budgets of a fit: what they allow, and when they are met.
 
 use super::base::Base;
 use super::config::{Budget, Config, MAX_STROKES};
@@ -11,7 +11,7 @@ use crate::metrics::psnr_db;
 use crate::scene::{Shape, Stroke};
 use crate::svg;
 
-/// The strokes that the budgets allow, as far as that can be told beforehand, those of `base` included.
+/// An estimate of how many strokes the budgets allow, those of `base` included; `None` if they set no limit.
 pub(super) fn strokes(config: &Config, base: Option<&Base>, target: &Image) -> Option<usize> {
     let kept = base.map_or(0, Base::bytes);
     let by_bytes = config
@@ -24,15 +24,15 @@ pub(super) fn strokes(config: &Config, base: Option<&Base>, target: &Image) -> O
         .min()
 }
 
-/// Most strokes of the drawing where the budgets allow `limit`.
+/// Most strokes of the drawing if the budgets allow `limit`.
 pub(super) fn max_strokes(limit: Option<usize>, base: Option<&Base>) -> usize {
     let most = MAX_STROKES.saturating_sub(base.map_or(0, Base::elements));
     limit.map_or(most, |limit| limit.min(most))
 }
 
-/// Bytes of a typical stroke, for the first guess at what a budget of bytes holds.
+/// Bytes of a typical stroke, to estimate how many strokes a budget of bytes allows.
 fn typical_bytes(config: &Config, target: &Image) -> usize {
-    // Two thirds of the way, so that no decimal is 0, and as short as most strokes are.
+    // At two thirds of the picture no decimal is 0; and most strokes are about as short as this one.
     let place = |share: f32, step: f32| {
         let [x, y] = [target.width(), target.height()].map(|side| side as f32 * share);
         Point::new(x + step, y - step)
@@ -46,12 +46,12 @@ fn typical_bytes(config: &Config, target: &Image) -> usize {
     svg::stroke_bytes(&stroke, &config.file).max(1)
 }
 
-/// Whether anything depends on what the file looks like, or on its bytes.
+/// Whether the fit depends on the render of its file, or on the file's bytes.
 pub(super) fn needs_file(budget: &Budget, recipe: &Recipe) -> bool {
     recipe.settling.rounds > 0 || budget.psnr_db.is_some() || budget.bytes.is_some()
 }
 
-/// The first budget that a drawing of so many `strokes`, written as it is, uses up or meets.
+/// The first budget that a drawing of `strokes` strokes, written as `file`, meets.
 pub(super) fn met(budget: &Budget, strokes: usize, file: &RenderedFile) -> Option<Stop> {
     let is_reached = |db| psnr_db(file.mse) >= db;
     if budget.strokes.is_some_and(|most| strokes >= most) {
@@ -65,8 +65,8 @@ pub(super) fn met(budget: &Budget, strokes: usize, file: &RenderedFile) -> Optio
     }
 }
 
-/// Whether a file serves the budget better than another: it has to have few enough bytes first, be faithful
-/// enough next, and have few strokes then, or where neither is faithful enough, little error.
+/// Whether `new` serves the budget better than `old`. Few enough bytes count first, then enough fidelity. Of two files
+/// that have both, the one with fewer strokes is better; of two that lack fidelity, the one with less error.
 pub(super) fn is_better(budget: &Budget, new: &RenderedFile, old: &RenderedFile) -> bool {
     let fits = |f: &RenderedFile| budget.bytes.is_none_or(|most| f.bytes <= most);
     let reached = |f: &RenderedFile| budget.psnr_db.is_some_and(|db| psnr_db(f.mse) >= db);

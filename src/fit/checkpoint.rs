@@ -1,9 +1,9 @@
-//! Files from which a fit that was cut off goes on, with the bytes that it would have had.
+//! Checkpoint files, from which a fit that was cut off goes on to the same bytes.
 //!
-//! A checkpoint is the whole state of a fit, numbers to the last bit, behind a head that says what it is
-//! of: the version of the format, a fingerprint of picture and configuration, and a checksum. It is
-//! written beside its name and renamed, so that there is a whole one at any moment. When it is written has
-//! no influence on the drawing. The one door of `postcard`.
+//! A checkpoint holds the whole state of a fit, all numbers to the last bit. Its head has the version of the format, a
+//! fingerprint of picture and configuration, and a checksum. It is written under another name and then renamed, so that
+//! a complete file exists at any moment. The times at which it is written do not influence the drawing. Only this module
+//! uses `postcard`.
 
 use std::fs::{self, File};
 use std::io::{self, Write};
@@ -20,31 +20,31 @@ use crate::clock::Instant;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
 
-/// What every checkpoint begins with; the number counts the layouts that were released.
+/// The first bytes of every checkpoint; the number counts the released layouts.
 const MAGIC: &[u8; 24] = b"strokefit checkpoint 02\n";
-/// Magic, fingerprint and checksum.
+/// Length of the head, bytes: magic, fingerprint and checksum.
 const HEAD: usize = MAGIC.len() + 8 + 8;
 
-/// Time between two writings, unless it is set.
+/// Default time between two writes.
 const EVERY: Duration = Duration::from_secs(10);
-/// Writing takes at most this share of the time.
+/// Writes take at most one part in this many of the time.
 const MAX_SHARE: u32 = 20;
 
-/// Where a fit keeps its state, so that it can be resumed after it was cut off.
+/// A file that keeps the state of a fit, so that the fit can be resumed after it was cut off.
 ///
-/// A fit that finds the file there goes on from it. The file stays when the fit ends, so that nothing is
-/// lost before the drawing is safe: [`remove`](Self::remove) it then.
+/// If the file exists, the fit goes on from it. The file stays when the fit ends: [`remove`](Self::remove) it once the
+/// drawing is saved.
 #[derive(Debug)]
 pub struct Checkpoint {
     path: PathBuf,
     every: Duration,
-    /// When the file is to be written next.
+    /// Time of the next write.
     due: Instant,
     trouble: Option<Error>,
 }
 
 impl Checkpoint {
-    /// A checkpoint in the file `path`, which need not be there.
+    /// A checkpoint in the file `path`, which need not exist.
     pub fn new(path: impl Into<PathBuf>) -> Self {
         Self {
             path: path.into(),
@@ -54,8 +54,8 @@ impl Checkpoint {
         }
     }
 
-    /// The same, written whenever `span` has passed since the last time; 10 s unless set. Where a writing
-    /// takes longer than a twentieth of that, it is done less often.
+    /// Sets the time between two writes, 10 s by default. If a write takes longer than a twentieth of that, writes are
+    /// less frequent.
     #[must_use]
     pub fn every(self, span: Duration) -> Self {
         Self {
@@ -78,12 +78,12 @@ impl Checkpoint {
         }
     }
 
-    /// Why the state could not be kept lately, if it could not. The fit goes on all the same.
+    /// Why the last write failed, if it did. The fit goes on all the same.
     pub fn trouble(&self) -> Option<&Error> {
         self.trouble.as_ref()
     }
 
-    /// The state that the file holds of the fit with this fingerprint; `None` where there is no file.
+    /// The state that the file holds, which must be of the fit with this fingerprint; `None` if there is no file.
     pub(super) fn load<T: DeserializeOwned>(&self, fingerprint: u64) -> Result<Option<T>> {
         let bytes = match fs::read(&self.path) {
             Ok(bytes) => bytes,
@@ -99,7 +99,7 @@ impl Checkpoint {
         Ok(Some(state))
     }
 
-    /// What follows the head, which must be that of an intact file of the fit with this fingerprint.
+    /// The bytes after the head, if the file is intact and of the fit with this fingerprint.
     fn payload<'a>(&self, bytes: &'a [u8], fingerprint: u64) -> Result<&'a [u8]> {
         let foreign =
             "is no checkpoint of this version of strokefit: name another file, or remove it";
@@ -138,7 +138,7 @@ impl Checkpoint {
         Instant::now() >= self.due
     }
 
-    /// Writes `state`. A failure is noted: it is no reason to lose what was drawn.
+    /// Writes `state`. A failure is recorded as [`trouble`](Self::trouble), and does not end the fit.
     pub(super) fn keep(&mut self, fingerprint: u64, state: &impl Serialize) {
         let start = Instant::now();
         self.trouble = self.write(fingerprint, state).err();
@@ -146,7 +146,7 @@ impl Checkpoint {
         self.due = end + self.every.max((end - start) * MAX_SHARE);
     }
 
-    /// Writes `state`, as [`keep`](Self::keep), and fails where that is not possible.
+    /// Writes `state`, or returns why it cannot be written.
     pub(super) fn write(&self, fingerprint: u64, state: &impl Serialize) -> Result<()> {
         let unwritable = |cause: &dyn std::fmt::Display| {
             let message = format!("cannot be written ({cause}): name another file");
@@ -164,19 +164,19 @@ impl Checkpoint {
     }
 }
 
-/// Puts a file of these parts in the place of what is there.
+/// Replaces the file at `path` by one that consists of `parts`.
 fn replace(path: &Path, parts: &[&[u8]]) -> io::Result<()> {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(".new");
     let beside = path.with_file_name(name);
     let mut file = File::create(&beside)?;
     parts.iter().try_for_each(|part| file.write_all(part))?;
-    // Or a loss of power could leave the new name with none of the new bytes.
+    // Without this, a loss of power could leave the renamed file empty.
     file.sync_all()?;
     fs::rename(beside, path)
 }
 
-/// What tells one fit from another: all that its bytes depend on.
+/// A hash of everything that the bytes of a fit depend on.
 pub(super) fn fingerprint(
     target: &Image,
     config: &Config,
@@ -184,7 +184,7 @@ pub(super) fn fingerprint(
     base: Option<&Base>,
 ) -> u64 {
     let size = [target.width() as u64, target.height() as u64];
-    // The recipe of a preset may change from version to version, and from build to build of one.
+    // The recipe of a preset may differ between two builds of one version.
     let version = env!("CARGO_PKG_VERSION");
     let words = format!("{version} {config:?} {recipe:?} {base:?}");
     let planes = target.planes().iter().flatten();
@@ -197,7 +197,7 @@ pub(super) fn fingerprint(
     )
 }
 
-/// FNV-1a, of 64 bits: against accidents, not against forgers.
+/// 64-bit FNV-1a: it detects accidents, not forgeries.
 fn hash(bytes: impl Iterator<Item = u8>) -> u64 {
     bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)

@@ -1,4 +1,4 @@
-//! *What* to fit ([`Config`]) and *how* to run ([`Execution`]); *how* never changes a byte.
+//! What to fit ([`Config`]) and how to run ([`Execution`]). How a fit runs never changes a byte of the drawing.
 
 use std::collections::BTreeSet;
 use std::time::Duration;
@@ -16,31 +16,31 @@ use crate::threads::Workers;
 pub struct Config {
     /// When to stop adding strokes.
     pub budget: Budget,
-    /// What a byte is worth: a stroke stays while each of its bytes removes as much squared error as one
-    /// pixel has in a picture of this many dB. `None`: [`DEFAULT_QUALITY`] without a budget of strokes,
-    /// fidelity or bytes, and with one any stroke that removes error may stay.
+    /// Sets the price of a stroke: each of its bytes has to remove as much squared error as one pixel has at this many
+    /// dB. If it is `None`, a budget of strokes, fidelity or bytes makes strokes free, so that every stroke that removes
+    /// error stays; without such a budget [`DEFAULT_QUALITY`] applies.
     pub quality: Option<f64>,
     /// How much work to spend.
     pub preset: Preset,
-    /// Whether every layer is polished alone, so that the drawing is good after each.
+    /// Whether each layer is polished on its own, so that the drawing looks finished after each.
     pub progressive: bool,
-    /// Only strokes of opacity 1.
+    /// Whether all strokes have opacity 1.
     pub opaque: bool,
-    /// The coverage function, or the two between which a fit passes.
+    /// The coverage function, or two: one while the edge is soft, and one for the final edge.
     pub coverage: CoverageSchedule,
-    /// How many stages to add the strokes in; chosen from the budget when `None`.
+    /// The number of stages; `None` lets the preset and the budget decide.
     pub stages: Option<usize>,
-    /// Whether all strokes are fitted jointly after the stages.
+    /// Whether strokes are polished after the stages.
     pub polish: bool,
-    /// Which colours it may have.
+    /// The colours that the drawing may have.
     pub colors: Colors,
-    /// How the drawing is written, which says what it looks like and what its bytes are.
+    /// How the drawing is written. The fit takes its bytes and its render into account.
     pub file: WriteOptions,
     /// The colour behind all strokes.
     pub background: Background,
-    /// Key of every random draw.
+    /// Key of all random draws.
     pub seed: u64,
-    /// The numbers behind the preset, when they are to be others than [`Recipe::of`] gives.
+    /// The tuned numbers; [`Recipe::of`] the preset if `None`.
     pub recipe: Option<Recipe>,
 }
 
@@ -69,28 +69,28 @@ impl Default for Config {
 pub struct Budget {
     /// At most this many strokes.
     pub strokes: Option<usize>,
-    /// Until this fidelity in dB.
+    /// Stop at this fidelity, dB.
     pub psnr_db: Option<f64>,
     /// At most this many bytes of SVG.
     pub bytes: Option<usize>,
-    /// At most this long.
+    /// At most this much wall time.
     pub time: Option<Duration>,
 }
 
-/// Which colours a drawing may have, its background included.
+/// The colours that a drawing may have, its background included.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub enum Colors {
-    /// Any.
+    /// Any colours.
     #[default]
     Free,
-    /// At most so many, chosen from the picture.
+    /// At most this many colours, chosen from the picture.
     AtMost(usize),
-    /// These 8-bit ones.
+    /// These 8-bit colours.
     Palette(Vec<[u8; 3]>),
 }
 
 impl Colors {
-    /// Whether `scene` has no other colours already.
+    /// Whether all colours of `scene` are allowed.
     pub(super) fn allow(&self, scene: &Scene) -> bool {
         let strokes = scene.strokes().map(|stroke| stroke.color);
         let used: BTreeSet<_> = strokes
@@ -108,40 +108,40 @@ impl Colors {
 /// The colour behind all strokes.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Background {
-    /// Chosen from the picture; a picture with alpha has none.
+    /// Chosen from the picture; a picture with alpha gets none.
     #[default]
     Auto,
-    /// No background; where the picture has no alpha it is laid on white.
+    /// No background. A drawing of a picture without alpha is fitted on white.
     None,
     /// This colour.
     Color(Rgb),
 }
 
-/// How to run. Never changes the result.
+/// How to run. It never changes the drawing.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Execution {
-    /// Worker threads; all cores when `None`.
+    /// Worker threads; one per core if `None`.
     pub threads: Option<usize>,
     /// The instruction set of the renderer.
     pub simd: Simd,
 }
 
-/// The quality of a drawing without a budget.
+/// The quality of a drawing without a budget, dB.
 pub const DEFAULT_QUALITY: f64 = 30.0;
 
-/// Most strokes of a drawing: resvg, and what is built on it, reads at most a million elements.
+/// Most strokes of a drawing: resvg reads at most a million elements.
 pub const MAX_STROKES: usize = 900_000;
 
-/// Beyond it a stroke may cost less than one 8-bit level of one pixel.
+/// Beyond this quality, dB, a stroke may cost less than one 8-bit level of one pixel.
 const MAX_QUALITY: f64 = 60.0;
 
 impl Config {
-    /// The numbers to fit by.
+    /// The recipe to fit by.
     pub(super) fn recipe(&self) -> Recipe {
         self.recipe.unwrap_or(Recipe::of(self.preset))
     }
 
-    /// The quality that sets the price of a stroke, if strokes have one.
+    /// The quality that sets the price of a stroke, unless strokes are free.
     pub(super) fn effective_quality(&self) -> Option<f64> {
         let Budget {
             strokes,
@@ -153,7 +153,7 @@ impl Config {
         self.quality.or((!bounded).then_some(DEFAULT_QUALITY))
     }
 
-    /// Refuses what is outside its domain.
+    /// Refuses options that are outside their domains.
     pub(super) fn check(&self) -> Result<()> {
         let refuse = |message: String| Err(Error::new(ErrorKind::Config, message));
         let Budget { psnr_db, time, .. } = self.budget;
@@ -202,7 +202,7 @@ impl Config {
         }
     }
 
-    /// Refuses a colour behind all strokes that the palette lacks; what helps besides adding it is said last.
+    /// Refuses a background that the palette lacks. The message suggests to add it, and ends with `other_remedy`.
     pub(super) fn check_background(&self, color: Rgb, other_remedy: &str) -> Result<()> {
         let [r, g, b] = color.map(quantum);
         match &self.colors {

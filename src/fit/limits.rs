@@ -1,9 +1,9 @@
-//! The domain of each number of a stroke, at the resolution of a drawing.
+//! The domains of a stroke's parameters, at the resolution of a drawing.
 
 use super::recipe::Domain;
 use crate::render::{AX, BY, Grid, OPACITY, Params, RADIUS, RED};
 
-/// The domain of each number of a stroke; a step that leaves it is brought back.
+/// The domains of a stroke's parameters, to which each step of descent is clamped.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Limits {
     domain: Domain,
@@ -12,7 +12,7 @@ pub(super) struct Limits {
 }
 
 impl Limits {
-    /// The limits on a picture that is cut as `grid`; `opaque` if strokes may only be that.
+    /// The limits for a picture of `grid`'s size; `opaque` fixes the opacity at 1.
     pub(super) fn new(grid: Grid, domain: Domain, opaque: bool) -> Self {
         let min_opacity = if opaque { 1.0 } else { domain.min_opacity };
         Self {
@@ -24,7 +24,7 @@ impl Limits {
         }
     }
 
-    /// The same on a picture of another resolution.
+    /// The same limits at another resolution.
     pub(super) fn on(self, grid: Grid) -> Self {
         Self {
             sides: [grid.width as f32, grid.height as f32],
@@ -36,7 +36,7 @@ impl Limits {
         self.domain.min_opacity
     }
 
-    /// Brings `p` into the domain. Numbers that are not finite are left; the stroke is dropped later.
+    /// Clamps `p` to its domain. NaN stays; such a stroke is dropped later.
     pub(super) fn apply(&self, p: &mut Params) {
         let margin = self.domain.margin;
         let [width, height] = self.sides;

@@ -1,21 +1,20 @@
-//! How much memory a fit will take, before it takes any.
+//! A prediction of the memory that a fit takes.
 
 use super::config::{Config, MAX_STROKES};
 use super::plan::{Before, Plan};
 use crate::image::Image;
 
-/// The program and its libraries.
+/// Bytes for the program and its libraries.
 const BASE: u64 = 12 << 20;
-/// The picture, its reductions, canvases, renders, and the judging of them; measured: 143 at 6 Mpx, 145 at
-/// 1.6 Mpx, 148 at 0.4 Mpx beside the base.
+/// Bytes per pixel for the picture, its reductions, canvases and renders, and for judging them. Measured, without the
+/// base: 143 at 6 Mpx, 145 at 1.6 Mpx, 148 at 0.4 Mpx.
 const PER_PIXEL: u64 = 143;
-/// Parameters, the optimiser's memory, text and its tree; measured: 1,200 to 2,600, less in large pictures,
-/// whose own memory is largest when that of strokes is not.
+/// Bytes per stroke for parameters, the optimiser's state, the SVG text and its tree. Measured: 1,200 to 2,600; less
+/// in large pictures, where the peaks of pixels and of strokes come at different times.
 const PER_STROKE: u64 = 2000;
 
-/// The most memory that a process which draws `picture` and judges the drawing will hold, bytes: within a
-/// third of what it is, for pictures of more than 100×100 px. A fit without a budget of strokes is taken to
-/// be an ordinary one.
+/// The predicted peak memory, bytes, of a process that draws `picture` and judges the drawing. It is within a third of
+/// the true peak for pictures of more than 100×100 px. Without a budget of strokes it assumes an ordinary drawing.
 pub fn predicted_rss_bytes(picture: &Image, config: &Config) -> u64 {
     let pixels = picture.width() * picture.height();
     let recipe = config.recipe();

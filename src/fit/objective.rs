@@ -1,4 +1,4 @@
-//! What a fit minimises: a loss over all pixels against a target, tile by tile.
+//! The objective of a fit: the mean loss over all pixels against a target, computed tile by tile.
 
 use rayon::prelude::*;
 
@@ -46,7 +46,7 @@ impl Objective<'_> {
     }
 }
 
-/// The padding of a canvas made from a picture is 0, as the renderer's is, and adds nothing.
+/// Padding adds nothing: it is 0 both in a canvas made from a picture and in the renderer's.
 impl CanvasLoss for Objective<'_> {
     #[inline(always)]
     fn tile(

@@ -1,4 +1,4 @@
-//! How many strokes each stage adds, and how large they are.
+//! The plan: how many strokes each stage adds, and how large they are.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,7 +18,7 @@ pub(super) struct PlannedStage {
     pub(super) scale: f32,
 }
 
-/// What is there before a fit.
+/// The layers and strokes of the base.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Before {
     pub(super) layers: usize,
@@ -37,20 +37,20 @@ impl Before {
 /// The stages of a fit, coarse to fine.
 #[derive(Debug, Clone)]
 pub(super) struct Plan {
-    /// Layers that are there already; the stages are numbered on from them.
+    /// Layers of the base; the numbers of the stages follow theirs.
     before: usize,
-    /// Stages whose strokes are there already.
+    /// Stages of an open plan that the strokes of the base stand for.
     covered: usize,
-    /// The strokes of the stages to come.
+    /// Strokes of each planned stage.
     counts: Vec<usize>,
-    /// Whether stages may follow the planned ones.
+    /// Whether stages are added as long as they pay.
     open: bool,
     pixels: usize,
     recipe: Stages,
 }
 
 impl Plan {
-    /// Stages for `limit` strokes, or for as many as will pay, less those whose strokes are there `before`.
+    /// A plan for `limit` strokes, or for as many as will pay, less the strokes that are there `before`.
     pub(super) fn new(
         config: &Config,
         recipe: &Recipe,
@@ -76,12 +76,12 @@ impl Plan {
         }
     }
 
-    /// How many layers there are and are planned, as far as that is known.
+    /// The number of layers, those of the base and those planned so far.
     pub(super) fn len(&self) -> usize {
         self.before + self.counts.len()
     }
 
-    /// Strokes of the stages to come; a guess where the plan is open.
+    /// Strokes of all planned stages; a guess if the plan is open.
     pub(super) fn strokes(&self) -> usize {
         if self.open {
             (self.pixels / self.recipe.pixels_per_stroke).max(1)
@@ -90,7 +90,7 @@ impl Plan {
         }
     }
 
-    /// Stage `index`, on top of `before` strokes.
+    /// Stage `index`, on top of `before` strokes; `None` after the last stage.
     pub(super) fn stage(&self, index: usize, before: usize) -> Option<PlannedStage> {
         let step = index.checked_sub(self.before)?;
         let count = match self.counts.get(step) {
@@ -127,8 +127,8 @@ fn counts(total: usize, stages: usize, growth: f64) -> Vec<usize> {
     counts
 }
 
-/// What is left of planned stages when there are `before` strokes. A stage that is more than half there is
-/// added to the next.
+/// What is left of planned stages if there are `before` strokes already. What remains of a stage that is more than half
+/// done is added to the next.
 fn rest(counts: &[usize], before: usize) -> Vec<usize> {
     let (mut rest, mut there, mut carried) = (Vec::new(), before, 0);
     for &count in counts {
@@ -145,7 +145,7 @@ fn rest(counts: &[usize], before: usize) -> Vec<usize> {
     rest
 }
 
-/// How many stages of an open plan `before` strokes make.
+/// How many stages of an open plan `before` strokes stand for.
 fn covered(Stages { first, growth, .. }: &Stages, before: usize) -> usize {
     let (mut stages, mut strokes) = (0, 0.0);
     while strokes + *first as f64 * math::powi(*growth, stages) <= before as f64 {

@@ -1,10 +1,10 @@
-//! The exchange rate between error and bytes: what a stroke must be worth to be drawn.
+//! The price of a stroke: the squared error that its bytes have to remove.
 
 use crate::math;
 use crate::render::{Params, unpack};
 use crate::svg::{WriteOptions, stroke_bytes};
 
-/// What a stroke costs, as squared error summed over pixels and channels.
+/// The price of strokes, as squared error summed over pixels and channels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Price {
     per_byte: f32,
@@ -12,8 +12,8 @@ pub(super) struct Price {
 }
 
 impl Price {
-    /// At quality `q` a byte must remove as much squared error as one pixel has in a picture of `q` dB:
-    /// 3·10^(−q/10). Without a quality every stroke that removes any error is worth drawing.
+    /// At quality `q` each byte has to remove as much squared error as one pixel has at `q` dB: 3·10^(−q/10). Without a
+    /// quality strokes are free.
     pub(super) fn new(quality: Option<f64>, file: WriteOptions) -> Self {
         let per_byte = quality.map_or(0.0, |q| 3.0 * math::powf(10.0, -q / 10.0)) as f32;
         Self { per_byte, file }

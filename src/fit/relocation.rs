@@ -1,9 +1,9 @@
-//! Relocation: strokes worth little make room for candidates that will gain more.
+//! Relocation: strokes of little worth make room for candidates that will gain more.
 //!
-//! The strokes worth least by exact leave-one-out, and those not worth their price, are taken away, and candidates
-//! are put on top instead. A candidate's closed-form gain is that before it is fitted, and a stroke's worth that before
-//! its neighbours take over, so that both speak for the stroke in place: the gain counts several times
-//! ([`Relocation::gain`]).
+//! The strokes of least worth, by exact leave-one-out, and those not worth their price are removed, and candidates are
+//! added on top instead. Both measures favour the stroke in place: a candidate's closed-form gain does not know what
+//! fitting it will add, and a stroke's worth does not know what its neighbours will make up for. So the gain of a
+//! candidate is multiplied ([`Relocation::gain`]).
 //!
 //! [`Relocation::gain`]: super::recipe::Relocation::gain
 
@@ -12,15 +12,15 @@ use super::session::Session;
 use crate::render::Params;
 use crate::seed::Candidate;
 
-/// How many strokes may be relocated at a time.
+/// How many strokes one relocation may move.
 pub(super) fn wanted(session: &Session<'_>) -> usize {
     let free = session.drawing.free().len();
     (free as f32 * session.recipe.relocation.share).ceil() as usize
 }
 
-/// Swaps strokes for candidates that will gain more, and fills up to `limit` strokes with those that pay.
-/// `adapt` makes of a candidate what may come in its place. Says where each free stroke was before; `None` for a new
-/// one.
+/// Replaces strokes by candidates that will gain more, and fills up to `limit` strokes with candidates that pay.
+/// `adapt` changes a candidate to what the drawing may have. Returns the former index of each free stroke, `None` for a
+/// new one.
 pub(super) fn relocate(
     session: &mut Session<'_>,
     limit: usize,
@@ -63,10 +63,10 @@ pub(super) fn relocate(
     })
 }
 
-/// Which strokes stay, and how many candidates come, of those that will gain `gains`, best first.
+/// Which strokes stay, and how many candidates are added, of those that will gain `gains`, best first.
 ///
-/// Strokes not worth their price go. Candidates first take the places that are free, then, the best of
-/// them against the worst of those, the places of strokes worth less than they gain.
+/// Strokes not worth their price go. Candidates take the free places first. Then the best remaining candidate replaces
+/// the stroke of least worth, and so on, as long as its gain exceeds the worth.
 fn exchange(worth: &[f32], prices: &[f32], gains: &[f32], room: usize) -> (Vec<bool>, usize) {
     let mut keep: Vec<bool> = worth
         .iter()

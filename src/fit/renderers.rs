@@ -1,8 +1,8 @@
 //! The renderers that a file is settled for: resvg, the judge, and the browser, which differs most from it.
 //!
 //! A drawing that is tuned to resvg alone is off in every other renderer by the full difference between the two:
-//! tiny-skia rounds up after every translucent stroke, Cairo and Skia do not, and each has edges of its own. So resvg is
-//! left with a share of the difference, just as large as keeps the browser within [`Settling::browser_db`].
+//! tiny-skia rounds up after every translucent stroke, Cairo and Skia do not, and each has edges of its own. So settling
+//! corrects for a mean of the two: the browser's share is just large enough to keep it within [`Settling::browser_db`].
 
 use super::drawing::Drawing;
 use super::file::RenderedFile;
@@ -14,12 +14,12 @@ use crate::math;
 use crate::metrics;
 use crate::render::Canvas;
 
-/// What the browser and our own renderer make of a file, beside resvg; on each surface.
+/// Renders of a file by the model of a browser and by our own renderer, beside resvg's; one per surface.
 pub(super) struct Renderings {
     settling: Settling,
-    /// What the browser draws.
+    /// The browser's renders.
     shown: Vec<Image>,
-    /// Our own render.
+    /// Our own renders.
     soft: Vec<Image>,
     errors: Vec<Errors>,
 }
@@ -43,8 +43,8 @@ impl Renderings {
         let scene = &file.rounded.scene;
         let soft = drawing.soft(scene);
         let surfaces = &drawing.surfaces;
-        let pages: Vec<Image> = surfaces.iter().map(|s| s.empty(scene).to_image()).collect();
-        let shown = browser::draw(scene.strokes(), &pages);
+        let backdrops: Vec<Image> = surfaces.iter().map(|s| s.empty(scene).to_image()).collect();
+        let shown = browser::draw(scene.strokes(), &backdrops);
         let drawn = &file.drawn;
         let mut errors = Vec::new();
         for (i, surface) in surfaces.iter().enumerate() {
@@ -64,17 +64,17 @@ impl Renderings {
         })
     }
 
-    /// The largest on any matte.
+    /// The largest value over all mattes.
     fn largest(&self, of: impl Fn(&Errors) -> f64) -> f64 {
         self.errors.iter().map(of).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// The share of the browser in the first round.
+    /// The browser's share of the offset in the first round.
     pub(super) fn first_share(&self) -> f64 {
         self.largest(|errors| errors.fair_share(self.settling.browser_db))
     }
 
-    /// Its share in the next round, after one in which it had `share`.
+    /// The browser's share in the next round, after one with `share`.
     pub(super) fn next_share(&self, share: f64) -> f64 {
         let shortfall_db = self.largest(Errors::shortfall_db);
         let Settling {
@@ -85,14 +85,14 @@ impl Renderings {
         (share + share_per_db * (shortfall_db - browser_db)).clamp(0.0, 1.0)
     }
 
-    /// How bad the file is: its error in resvg, or in the browser less what it may be more there.
+    /// The error by which files are compared: that in resvg, or in the browser divided by what is allowed there, if larger.
     pub(super) fn badness(&self) -> f64 {
         let allowed = ratio(self.settling.browser_db);
         self.largest(|errors| errors.drawn.max(errors.shown / allowed))
     }
 
-    /// What is to be drawn on each surface of `drawing`: the picture, less a part of what the renderings differ by from
-    /// our own render, of which `share` is the browser's.
+    /// The targets of the next round, one per surface: the picture less a part of the renderers' offset from our own
+    /// render. The browser has `share` of that offset, resvg the rest.
     pub(super) fn targets(
         &self,
         drawing: &Drawing,
@@ -130,8 +130,8 @@ impl Errors {
         10.0 * math::log10(shown / drawn)
     }
 
-    /// The share `s` that the browser has to have of the offset, so that it is `aim_db` behind: with a difference
-    /// `d²` between the two and an error `e²` that both have, resvg's is `e² + s²·d²` then, and the browser's
+    /// The browser's share `s` of the offset that leaves the browser `aim_db` behind resvg. With a difference `d²`
+    /// between the two and an error `e²` that both have, resvg's error is then `e² + s²·d²`, and the browser's
     /// `e² + (1 − s)²·d²`.
     fn fair_share(&self, aim_db: f64) -> f64 {
         let (ratio, d2) = (ratio(aim_db), self.apart / self.soft.max(MIN_ERROR));
@@ -145,7 +145,7 @@ impl Errors {
     }
 }
 
-/// Less than any picture of 8 bits can tell.
+/// Less than any difference between two 8-bit pictures.
 const MIN_ERROR: f64 = 1e-9;
 
 fn ratio(db: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! What a fit ends with.
+//! The result of a fit.
 
 use std::time::Duration;
 
@@ -12,33 +12,33 @@ use crate::svg::WriteOptions;
 /// A finished drawing and how it came to be.
 #[derive(Debug, Clone)]
 pub struct Fit {
-    /// The drawing, rounded to what its SVG says. On a base that stays as it is, the new strokes alone.
+    /// The drawing, rounded like the numbers of its SVG. On a document it holds only the strokes on top.
     pub scene: Scene,
-    /// What the drawing goes on from, if anything.
+    /// The base, if there was one.
     pub base: Option<Base>,
-    /// How the drawing is written: as it was fitted and settled for.
+    /// How the drawing is written. It was fitted and settled for these options.
     pub file: WriteOptions,
-    /// The picture that was drawn: with its alpha, or laid on the background.
+    /// The target: the picture with its alpha, or flattened onto the background.
     pub target: Image,
     /// Our own render of `scene` with the edge of a finished drawing; with alpha if the drawing has no
     /// background and the picture has alpha.
     pub soft: Image,
-    /// One record per stage of `scene`, those that were kept of a base included.
+    /// One record per stage of `scene`, those of the base included.
     pub stages: Vec<StageRecord>,
-    /// Why no more was done.
+    /// Why the fit ended.
     pub stop: Stop,
     /// Strokes that were dropped because they became non-finite or could not be seen.
     pub dropped: Dropped,
 }
 
 impl Fit {
-    /// The drawing as SVG text, with the base that it was fitted on.
+    /// The drawing as SVG text, together with its base.
     pub fn svg(&self) -> String {
         Base::write(self.base.as_ref(), &self.scene, &self.file)
     }
 }
 
-/// How one stage went.
+/// The record of one stage.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct StageRecord {
     /// From 1.
@@ -69,6 +69,6 @@ pub enum Stop {
     Time,
     /// No further stroke pays.
     Converged,
-    /// The observer asked to stop, or the fit was cancelled.
+    /// The observer or a [`CancelToken`](super::CancelToken) stopped the fit.
     Observer,
 }

@@ -4,7 +4,7 @@ use super::drawing::Drawing;
 use super::surface::Surface;
 use crate::seed::{Candidate, Probing, Wanted, propose};
 
-/// Candidates for at most `count` strokes of `scale` px on top of all there are, best first; `seed` is the fit's.
+/// At most `count` candidates of `scale` px on top of `drawing`, best first; `seed` is that of the fit.
 pub(super) fn search(
     drawing: &mut Drawing,
     count: usize,

@@ -1,4 +1,4 @@
-//! Names for SIMD levels, and the levels that this machine has.
+//! SIMD levels by name, and those that this machine has.
 
 use std::fmt;
 use std::str::FromStr;
@@ -7,7 +7,7 @@ use fearless_simd::{Fallback, Level};
 
 use crate::error::{Error, ErrorKind, Result};
 
-/// The instruction set of the renderer. All give the same bits.
+/// The instruction set of the renderer. All of them give the same bits.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Simd {
     /// The widest that this machine has.
@@ -23,7 +23,7 @@ pub enum Simd {
     Sse2,
     /// NEON, which every aarch64 has.
     Neon,
-    /// The vectors of WebAssembly, in a build for them.
+    /// The 128-bit vectors of WebAssembly, in a build with that feature.
     Simd128,
     /// No vectors.
     Scalar,

@@ -1,4 +1,4 @@
-//! The words for what a fit can be asked for, as they stand on the command line and in bindings.
+//! Options of a fit as text, for the command line and for bindings.
 //!
 //! Every error names the value and says what would be right.
 
