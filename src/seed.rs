@@ -1,11 +1,11 @@
 //! Seeding: from the residual to candidate strokes, ranked by closed-form gain.
 //!
-//! The picture is cut in cells, and in each the pixel is found where the smoothed squared residual is
-//! largest. Where it is largest of all, shapes are probed, dots and capsules of three radii, two lengths
-//! and eight angles, each with its best colour and opacity in closed form ([`crate::render::probe`]); the
-//! best one is the cell's candidate. More cells are probed than strokes are wanted and the best are kept.
+//! The picture is divided into cells, and each cell is represented by the pixel with the largest smoothed squared
+//! residual. In the cells where that is largest, seeding probes dots and capsules of three radii, two lengths and eight
+//! angles around the pixel, each with its best colour and opacity in closed form ([`crate::render::probe`]). The best
+//! shape is the candidate of the cell. There are more cells than strokes wanted, and the best candidates are kept.
 //!
-//! Large strokes are sought in a reduced picture, so that a probe costs the same at every scale.
+//! Large strokes are searched for in a reduced picture, so that a probe costs the same at every scale.
 
 use std::ops::Range;
 
@@ -18,61 +18,61 @@ use crate::render::probe::{Patch, Probes};
 use crate::render::{Canvas, Params};
 use crate::rng;
 
-/// Least radius of a probed shape, px of the reduced picture: half a pixel and the edge.
+/// Least radius of a probed shape, px of the reduced picture: a little more than half a pixel.
 const MIN_RADIUS: f32 = 0.52;
-/// The scale is brought below this, px, by halving the picture: the largest shape, 4.5 + 2 scales
-/// long, must fit the 32 px of a patch.
+/// The picture is halved until the scale is at most this, px: the largest shape, 4.5 + 2 scales long, has to fit the
+/// 32 px of a patch.
 const SCALE_LIMIT: f32 = 4.0;
 
-/// How hard places are searched: what a fit tunes of it.
+/// The tuned numbers of seeding.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Probing {
     /// Radii of the probed shapes, in units of the scale.
     pub radii: [f32; 3],
-    /// Lengths of the probed capsules, in units of the scale; the longest of at most 4.5, which fits a patch. A third
-    /// one of 7.5 in a larger patch: −0.01 dB.
+    /// Lengths of the probed capsules, in units of the scale, at most 4.5, so that they fit a patch. A third one of 7.5,
+    /// in a larger patch: −0.01 dB.
     pub lengths: [f32; 2],
-    /// Cells per stroke wanted, at least 1; the best candidates are kept. 1, 2, 4: −0.49, 0, +0.09 dB; more is worse, since
-    /// all candidates land on the same few spots. Drafts 1.5: −0.18.
+    /// Cells per stroke wanted; the best candidates are kept. 1, 2, 4: −0.49, 0, +0.09 dB. More is worse, since all
+    /// candidates are in the same few spots. Drafts 1.5: −0.18.
     pub cells: f32,
-    /// Share of the cells that are probed, those of the largest residual. From the others comes hardly a candidate that
+    /// Share of the cells that are probed, those with the largest residual. The others hardly ever give a candidate that
     /// is kept: with all of them a draft gains 0.01 dB and takes 3 % longer.
     pub probed: f32,
 }
 
-/// What is sought.
+/// What to search for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wanted {
-    /// How many strokes.
+    /// Most candidates.
     pub count: usize,
     /// Their typical radius, px.
     pub scale: f32,
-    /// How hard they are searched.
+    /// The tuned numbers of the search.
     pub probing: Probing,
-    /// Candidates less opaque than this are not proposed; 1 for opaque drawings.
+    /// Least opacity of a candidate; 1 for opaque drawings.
     pub min_opacity: f32,
-    /// The level of the pyramid that the canvas is of; all lengths are in its px.
+    /// The pyramid level of the canvas; all lengths are in its px.
     pub level: usize,
-    /// Key of the random shift of the cells: the seed of the fit, and a number for each call, so that
-    /// no two calls cut the picture alike.
+    /// Key of the random shift of the cells: the seed of the fit and the number of the call, so that no two calls use
+    /// the same cells.
     pub key: [u64; 2],
 }
 
-/// A proposed stroke and the squared error (summed over pixels and channels) it would remove alone.
+/// A proposed stroke and its gain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Candidate {
     /// The stroke.
     pub stroke: Params,
-    /// Above 0.
+    /// Squared error that the stroke alone would remove, summed over pixels and channels; above 0.
     pub gain: f32,
 }
 
-/// The picture and what is drawn of it so far, as they look on one matte.
+/// The picture and the drawing so far, on one matte.
 #[derive(Debug, Clone, Copy)]
 pub struct Residual<'a> {
     /// The picture.
     pub target: &'a Pyramid,
-    /// The drawing, of the size of the level that is wanted.
+    /// The drawing, of the size of the level [`Wanted::level`].
     pub canvas: &'a Canvas,
 }
 
@@ -101,21 +101,22 @@ impl Pyramid {
         &self.levels[level]
     }
 
-    /// How many levels there are, at least 1.
+    /// The number of levels, at least 1.
     #[allow(clippy::len_without_is_empty, reason = "never empty")]
     pub fn len(&self) -> usize {
         self.levels.len()
     }
 
-    /// How many times level `from` is halved to bring `scale` px to at most `limit`.
+    /// How many times to halve level `from` so that a length of `scale` px becomes at most `limit`, as far as there are
+    /// levels.
     pub fn halvings(&self, from: usize, scale: f32, limit: f32) -> usize {
         let halvings = math::log2(scale / limit).ceil().max(0.0) as usize;
         halvings.min(self.levels.len() - 1 - from)
     }
 }
 
-/// Candidates for strokes on top of the canvases of `residuals`, which are of one size, best first;
-/// at most `wanted.count`, and only such as remove error. Their gain is the mean over them.
+/// Proposes at most `wanted.count` strokes on top of the canvases of `residuals`, which have one size, best first. Each
+/// of them removes error; its gain is the mean over the residuals.
 pub fn propose(level: Level, residuals: &[Residual<'_>], wanted: Wanted) -> Vec<Candidate> {
     let Some(first) = residuals.first() else {
         return Vec::new();
@@ -159,7 +160,7 @@ pub fn propose(level: Level, residuals: &[Residual<'_>], wanted: Wanted) -> Vec<
     candidates
 }
 
-/// A residual at the resolution that strokes are sought at.
+/// A residual at the resolution of the search.
 struct Reduced<'a> {
     target: &'a Image,
     canvas: Image,
@@ -198,7 +199,7 @@ fn smoothed_energy(residuals: &[Reduced<'_>], radius: usize) -> Vec<f32> {
     energy
 }
 
-/// Sums over windows of `2·radius + 1` values, cut at both ends.
+/// Sums over windows of `2·radius + 1` values, clipped at both ends.
 fn box_sums<'a>(
     values: impl Iterator<Item = f32> + Clone,
     radius: usize,
@@ -213,7 +214,7 @@ fn box_sums<'a>(
     }
 }
 
-/// Sums over `2·radius + 1` rows of `width` values, cut at both ends.
+/// Sums over windows of `2·radius + 1` rows of `width` values, clipped at both ends.
 fn column_sums(values: &[f32], width: usize, radius: usize, out: &mut [f32]) {
     let row = |y: usize| values.get(y * width..(y + 1) * width).unwrap_or_default();
     let mut sums = vec![0.0_f64; width];
@@ -237,14 +238,14 @@ fn column_sums(values: &[f32], width: usize, radius: usize, out: &mut [f32]) {
     }
 }
 
-/// The picture cut in about `count` nearly square cells, shifted at random.
+/// A grid of square cells over the picture, shifted at random.
 #[derive(Debug, Clone, Copy)]
 struct Cells {
     width: usize,
     height: usize,
     /// Side of a cell, px.
     side: f32,
-    /// How much of the first column and row is cut off, px.
+    /// How much of the first column and row is outside the picture, px.
     shift: [f32; 2],
     columns: usize,
     rows: usize,
@@ -276,8 +277,8 @@ impl Cells {
         edge(i)..edge(i + 1)
     }
 
-    /// The pixels where `energy` is largest, one per cell, of the share `kept` of the cells where it is largest;
-    /// of more cells where it is equal in several.
+    /// The pixel of largest `energy` of each cell, for the share `kept` of the cells in which it is largest. Ties may keep
+    /// more cells.
     fn peaks(&self, energy: &[f32], kept: f32) -> Vec<(usize, usize)> {
         let energy_at = |&(x, y): &(usize, usize)| energy[y * self.width + x];
         let cells = 0..self.len();
@@ -291,7 +292,7 @@ impl Cells {
         peaks
     }
 
-    /// The pixel of a cell where `energy` is largest, the first of equals; `None` in an empty cell.
+    /// The pixel of a cell with the largest `energy`, the first one of equals; `None` in an empty cell.
     fn peak(&self, cell: usize, energy: &[f32]) -> Option<(usize, usize)> {
         let xs = self.span(cell % self.columns, self.shift[0], self.width);
         let ys = self.span(cell / self.columns, self.shift[1], self.height);

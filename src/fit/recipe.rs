@@ -1,9 +1,8 @@
 //! All tuned numbers of a fit, each with what was measured when it was chosen.
 //!
-//! "±x dB" is the fidelity of the file as resvg draws it, at equal numbers of strokes; `docs/accuracy.md` names the
-//! pictures and has the whole tables. [`Recipe::of`] has the numbers of the presets, [`Recipe::check`] refuses
-//! those that no fit can run with. A checkpoint is bound to its recipe, so that no fit is half of one tuning and half of
-//! another.
+//! "±x dB" is the change of fidelity at equal numbers of strokes; `docs/accuracy.md` names the pictures and has the
+//! complete tables. [`Recipe::of`] has the numbers of the presets, and [`Recipe::check`] refuses numbers that no fit can
+//! run with. A checkpoint is bound to its recipe, so that no fit mixes two tunings.
 
 mod presets;
 
@@ -16,57 +15,57 @@ use crate::seed::Probing;
 /// How much work to spend on a drawing.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Preset {
-    /// Quick look.
+    /// For a quick look.
     Draft,
     /// The default.
     #[default]
     Balanced,
-    /// The last tenths of a dB.
+    /// For the last tenths of a dB.
     Best,
 }
 
 /// The tuned numbers of a fit, by the phase that uses them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Recipe {
-    /// How places for strokes are searched.
+    /// How candidates are searched for.
     pub probing: Probing,
     /// How strokes are added.
     pub stages: Stages,
     /// The soft edge.
     pub edge: Edge,
-    /// What strokes may be.
+    /// The domains of stroke parameters.
     pub domain: Domain,
     /// The optimiser of all descents.
     pub optimizer: Optimizer,
     /// The joint fit of all strokes.
     pub polish: Polish,
-    /// How strokes worth little make room for better ones during the joint fit.
+    /// How strokes of little worth make room for better ones during the polish.
     pub relocation: Relocation,
-    /// How a drawing is brought to a palette.
+    /// How a drawing is restricted to a palette.
     pub coloring: Coloring,
     /// How opaque strokes come to share pens.
     pub pens: Pens,
-    /// The last steps against what the file looks like.
+    /// The last steps, against renders of the written file.
     pub settling: Settling,
-    /// How the number of strokes is corrected until a fidelity is met.
+    /// How the number of strokes is corrected to meet a fidelity.
     pub correction: Correction,
     /// How the background is chosen.
     pub background: BackgroundChoice,
-    /// How a limited time is shared out.
+    /// How a time limit is divided.
     pub time: TimeShares,
 }
 
-/// How strokes are added in stages, each fitted alone on what is frozen.
+/// How strokes are added in stages, each fitted with all earlier strokes frozen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stages {
-    /// Stages, unless the configuration says. More of them see more of what the earlier ones left over.
+    /// Number of stages, unless the configuration sets it. With more stages, seeding sees the residual more often.
     pub count: usize,
-    /// Each stage adds this many times the strokes of the one before. 1.35 instead of 1.6: +0.08 dB.
+    /// Strokes of a stage, in units of those of the stage before. 1.35 instead of 1.6: +0.08 dB.
     pub growth: f64,
-    /// Strokes of the first stage when their total is not known beforehand.
+    /// Strokes of the first stage if the total is not known in advance.
     pub first: usize,
-    /// Pixels per stroke of an ordinary drawing: a guess, for progress and where stages are asked for without a
-    /// budget.
+    /// Pixels per stroke of an ordinary drawing: a guess, for the report of progress and for a number of stages without
+    /// a budget.
     pub pixels_per_stroke: usize,
     /// Typical radius of a stage's strokes, in units of `sqrt(pixels / strokes so far)`. 0.3 instead of 0.4: +0.15 dB,
     /// flat art +0.6; 0.35: −0.05. Drafts 0.25: +0.04.
@@ -76,18 +75,17 @@ pub struct Stages {
     pub iterations: usize,
     /// Step sizes. Ends by 0.3 instead of 0.15 px: +0.34 dB without polish; 1 px: +0.1.
     pub rates: Rates,
-    /// Softness of a stage's first iteration at most, in units of the final one: the scale of its strokes, where that
-    /// is less.
+    /// Greatest softness of a stage's first iteration, in units of the final one. A stage begins with the scale of its
+    /// strokes (px) if that is less.
     pub softest: f32,
-    /// Where the picture decides on the number of strokes, stages end once less than this share of one is worth its
-    /// price.
+    /// Growing ends when less than this share of a stage's strokes is worth its price.
     pub paying_share: f64,
-    /// What polish adds to the fidelity of a staged drawing at least, dB: stages end this much short of the fidelity
-    /// asked for.
+    /// The least that the polish adds to the fidelity of the stages, dB. Growing ends this much below the fidelity asked
+    /// for.
     pub polish_gain_db: f64,
-    /// Strokes are fitted at the coarsest resolution that leaves them this typical radius, px. Less, and their edges are
-    /// fitted to pixels that are not there; more, and time goes to pixels that say nothing about them. A reduced picture
-    /// for large strokes: +0.15 dB at 0.8 of the time.
+    /// Strokes are fitted at the coarsest resolution that leaves them this typical radius, px. At a smaller one their
+    /// edges are finer than the pixels; at a larger one time goes to pixels that add nothing. A reduced picture for large
+    /// strokes: +0.15 dB at 0.8 of the time.
     pub min_scale: f32,
 }
 
@@ -102,31 +100,31 @@ pub struct Edge {
     pub annealed: f32,
 }
 
-/// What strokes may be.
+/// The domains of stroke parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Domain {
-    /// Ends stay within so many px around the picture.
+    /// Ends stay within this many px around the picture.
     pub margin: f32,
-    /// Least radius, px: renderers draw widths of 1 px and less as hairlines, with other ink.
+    /// Least radius, px. Renderers draw widths of 1 px and less as hairlines, by another method.
     pub min_radius: f32,
-    /// Least opacity: renderers composite in 8 bits, and drift by levels under many layers fainter than this.
+    /// Least opacity. Renderers composite in 8 bits, and their rounding adds up to whole levels under many fainter strokes.
     pub min_opacity: f32,
 }
 
 /// The optimiser of all descents.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Optimizer {
-    /// Adam for strokes. The memory of squares is short, since gradients shrink fast and change whenever neighbours are
-    /// relocated: with β₂ 0.99 drafts have 0.15 dB less and long fits 0.06. β₁ 0.8: −0.08, 0.95: +0.02. ε 1e-7: −0.21, since small
-    /// gradients are no longer normalised.
+    /// Adam for strokes. β₂ is small because gradients shrink fast and change whenever neighbours are relocated.
+    /// β₂ 0.99: −0.15 dB for drafts, −0.06 for long fits. β₁ 0.8: −0.08; 0.95: +0.02. ε 1e-7, which no longer normalises
+    /// small gradients: −0.21.
     pub strokes: AdamParams,
     /// Adam for the background.
     pub background: AdamParams,
-    /// Radius, px, of a stroke whose geometry moves at the rates as they are. Others move with the root of their
-    /// radius: +0.04 dB over one rate for all, where large strokes are slow and small ones jitter. In proportion to
-    /// the radius: 0.00.
+    /// Radius, px, of a stroke whose geometry moves at the rates as given. Other strokes move in proportion to the square
+    /// root of their radius: +0.04 dB over one rate for all, with which large strokes are slow and small ones jitter. In
+    /// proportion to the radius itself: 0.00.
     pub usual_radius: f32,
-    /// The factor of that root is kept between these.
+    /// Bounds of the factor that this gives.
     pub radius_factors: [f32; 2],
 }
 
@@ -141,7 +139,7 @@ pub struct Rates {
     pub color: f32,
     /// Opacity.
     pub opacity: f32,
-    /// Factor of the last iteration; the way there is half a cosine.
+    /// Factor on all rates in the last iteration, reached along half a cosine.
     pub last: f64,
 }
 
@@ -151,8 +149,8 @@ pub struct Polish {
     /// Iterations; 0 for none. 2,000 instead of 2,800: −0.12 dB at 0.75 of the time (photographs −0.05); drafts 140
     /// instead of 130: +0.04 at 1.05.
     pub iterations: usize,
-    /// Share of them at the resolution of the last stage, before the full one. 0.3: part of the +0.15 dB of reduced
-    /// pictures; 0.5: −0.06, 0.7: −0.13.
+    /// Share of the iterations that keep the resolution of the last stage; the rest are at full resolution. 0.3: part of
+    /// the +0.15 dB of reduced pictures; 0.5: −0.06; 0.7: −0.13.
     pub coarse_share: f32,
     /// Step sizes. Ends by 0.1 → 0.4 → 0.8 → 1.2 → 2 → 2.5 px: +0.15, +0.05, +0.08, +0.06, +0.12 dB; 3 px: +0.05 on photographs and −0.17 on
     /// flat art. A last rate of 3 % instead of 10 %: part of the +0.06. Radius 0.8: −0.01. Colours 0.03 and opacity 0.05: −0.01. Drafts, of few
@@ -162,163 +160,166 @@ pub struct Polish {
     pub softness: f32,
 }
 
-/// How strokes worth little make room for better ones during the joint fit.
+/// How strokes of little worth make room for better ones during the polish.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Relocation {
     /// Iterations between relocations. 60, 30, 20: −0.10, 0, +0.06 dB at a fifth more time.
     pub every: usize,
-    /// Share of the strokes that may be relocated at a time. 0.1, 0.2, 0.4: −0.06, 0, +0.12 dB; since gains count for
-    /// more, 0.15 and 0.5: −0.02, 0.00.
+    /// Share of the strokes that one relocation may move. 0.1, 0.2, 0.4: −0.06, 0, +0.12 dB; since gains are multiplied,
+    /// 0.15 and 0.5: −0.02, 0.00.
     pub share: f32,
     /// Scale of relocated strokes, in units of the last stage's. 0.25, 0.4, 0.6, 0.8: +0.03, 0, −0.10, −0.34 dB; 0.5 with steps of
     /// 2.5 px: +0.12 together.
     pub scale: f32,
-    /// What a candidate is reckoned to gain once it is fitted, in units of its gain as it is proposed. 1, 2, 3, 4, 5, 10: 0, +0.22, +0.28,
+    /// What a candidate is expected to gain once it is fitted, in units of its closed-form gain. 1, 2, 3, 4, 5, 10: 0, +0.22, +0.28,
     /// +0.25, +0.28, +0.15 dB; flat art gains 0.47 by 4. Drafts, with less time to fit newcomers: 3.
     pub gain: f32,
-    /// Share of the joint fit after which nothing is relocated: newcomers need time to settle in. 0.8, 0.95: 0.00 dB.
+    /// Share of the polish after which nothing is relocated, so that new strokes have time to be fitted. 0.8, 0.95:
+    /// 0.00 dB.
     pub until: f32,
-    /// A relocation that fills free places tries this many times as many candidates as it may exchange.
+    /// A relocation that has free places to fill asks for up to this many times as many candidates as it may move strokes.
     pub fill: usize,
 }
 
-/// Rounds of descent, between which colours or pens are chosen anew; one schedule of rates goes on over all of them.
+/// Rounds of descent, between which colours or pens are chosen again. One schedule of rates spans all of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rounds {
-    /// How many.
+    /// Number of rounds.
     pub count: usize,
-    /// Iterations of all rounds together, in units of those of the joint fit.
+    /// Iterations of all rounds together, in units of those of the polish.
     pub iterations: f64,
-    /// Step sizes, in units of those of the joint fit.
+    /// Step sizes, in units of those of the polish.
     pub rate: f32,
 }
 
-/// How a drawing is brought to a palette.
+/// How a drawing is restricted to a palette.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coloring {
     /// Rounds of choosing colours and fitting the rest.
     pub rounds: Rounds,
-    /// Rounds at the end that relocate no stroke.
+    /// Rounds at the end without relocation.
     pub quiet_rounds: usize,
-    /// Share of its Newton step that a colour takes: the strokes under and over it take theirs as well.
+    /// Share of its Newton step that a colour takes. It is below 1 because the strokes under and over it move as well.
     pub damping: f32,
     /// Iterations of k-means in a round.
     pub means: usize,
-    /// Pixels that a stroke has to show in for its colour to matter.
+    /// A stroke keeps its colour if it shows in fewer pixels than this.
     pub min_shown: f32,
 }
 
 /// How opaque strokes come to share pens (a colour and a width), for the smallest form of a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pens {
-    /// Rounds of fitting places to pens and colours of pens to places.
+    /// Rounds of fitting positions to pens, and colours of pens to positions.
     pub rounds: Rounds,
     /// Pens per opaque stroke. Fewer pens make fewer bytes and cost fidelity: 600 strokes on seven samples take 41 to
     /// 50 bytes each. At equal bytes (24,000 on the same), 0.6 has 0.1 to 1 dB less, 0.8 from 0.7 dB less to 0.1
     /// more, and 1.0 from 0.8 dB less to 0.3 more.
     pub share: f64,
-    /// Each width that a pen may have is this many times the one before.
+    /// Ratio between neighbouring widths that a pen may have.
     pub ladder: f32,
-    /// Squared contrast at the edge of a typical stroke, summed over the channels: what a px of wrong radius costs for
+    /// Squared contrast at the edge of a typical stroke, summed over the channels: the cost of 1 px of wrong radius for
     /// each px of edge.
     pub contrast: f32,
-    /// Strokes that may share pens: their pairs are all compared.
+    /// Most strokes that may share pens with each other. The time grows with the square, as all pairs are compared.
     pub window: usize,
 }
 
-/// The last steps, against what the file really looks like.
+/// The last steps, against renders of the written file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settling {
-    /// Rounds; 0 for none. Settling as a whole: +0.1 dB at 34 dB, +1.8 at 40. Drafts have none: one round took a fifth
-    /// of a draft's time for 0.09 dB, and 40 more iterations of polish bring 0.11.
+    /// Number of rounds; 0 for none. Settling as a whole: +0.1 dB at 34 dB, +1.8 at 40. Drafts have none: one round took
+    /// a fifth of a draft's time for 0.09 dB, and 40 more iterations of polish bring 0.11.
     pub rounds: usize,
     /// Iterations of each round. 150 instead of 20: +0.005 dB.
     pub iterations: usize,
-    /// Step sizes, in units of those of the joint fit.
+    /// Step sizes, in units of those of the polish.
     pub rate: f32,
-    /// How much farther than that colours and opacities go, as the strokes hardly move.
+    /// Additional factor on the rates of colours and opacities, as the strokes hardly move.
     pub color_rate: f32,
-    /// How far strokes move in a round, in units of the round before. What programs make of an edge changes with its
-    /// place, so that a correction holds only for edges that stay where they are.
+    /// How far strokes move in a round, in units of the round before. How a renderer antialiases an edge depends on the
+    /// position of the edge, so that a correction holds only for edges that stay where they are.
     pub next_pace: f32,
-    /// By how many dB the browser's picture may be less faithful than resvg's. At 0 photographs would lose in resvg
-    /// what nobody sees in a browser; an engine counts as faithful within 0.6.
+    /// Shortfall that the browser may have, dB. At 0, photographs would lose fidelity in resvg for a gain in the browser
+    /// that nobody sees. The check of engines passes up to 0.6.
     pub browser_db: f64,
-    /// Share of the offset that a round takes from the target. All of it is more than comes back on edges; with less
-    /// the browser stays behind.
+    /// Share of the offset that a round subtracts from the target. A share of 1 overcorrects edges; with a smaller one
+    /// the browser falls behind.
     pub offset_taken: f64,
-    /// How much a round adds to the browser's share for each dB that its picture is off the aim.
+    /// What a round adds to the browser's share of the offset for each dB of shortfall beyond `browser_db`.
     pub share_per_db: f64,
 }
 
-/// How the number of strokes is corrected until a fidelity is met.
+/// How the number of strokes is corrected to meet a fidelity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Correction {
-    /// Corrections at most.
+    /// Most corrections.
     pub count: usize,
-    /// Fidelity gained by doubling the strokes, dB, until two drawings have told; Kodak ×5 gain 2.2 from 1,024 to 2,900
-    /// strokes for each doubling.
+    /// Fidelity gained by doubling the strokes, dB, until it is measured on two drawings. Kodak ×5 gain 2.2 per doubling
+    /// from 1,024 to 2,900 strokes.
     pub db_per_doubling: f64,
-    /// What two drawings tell is believed down to this part of that.
+    /// Lower bound of the measured value, in units of `db_per_doubling`, which is its upper bound.
     pub least_part: f64,
-    /// A fidelity is met well enough when exceeded by no more than this, dB.
+    /// A fidelity is met if it is exceeded by no more than this, dB.
     pub excess_db: f64,
-    /// Share of the joint fit's iterations that follow a correction.
+    /// Iterations of polish after a correction, in units of those of the first polish.
     pub polish_share: f64,
 }
 
 /// How the background is chosen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BackgroundChoice {
-    /// Share of the pixels that one colour must have to be taken for the background; below it, the mean is.
+    /// The most common colour becomes the background if at least this share of the pixels has it; otherwise the mean
+    /// colour does.
     pub prevailing_share: f64,
-    /// Share of the pixels in translucent areas that opaque strokes can leave out; beyond it, the picture is laid on
+    /// Share of the pixels in translucent areas that opaque strokes may miss. Beyond it, the picture is flattened onto
     /// white for them.
     pub translucent_share: f64,
-    /// Alpha between these is translucent.
+    /// Pixels with alpha between these are translucent.
     pub translucent: [f32; 2],
 }
 
-/// How a limited time is shared out among descent, writing and judging. A "write" is the time that it takes to
-/// round, write and render the drawing once; all parts are told from it, since it is measured as the fit goes on.
+/// How a time limit is divided among descent, writing and judging. The unit of most durations is a *write*: the time to
+/// round, write and render the drawing once, which is measured during the fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TimeShares {
-    /// A stroke takes as long to write and render as so many pixels do, about.
+    /// Time to write and render a stroke, in units of that for a pixel.
     pub stroke_px: f64,
-    /// Looking at the file as a browser does: writes of the drawing …
+    /// Cost of one browser render that depends on the strokes, in writes of the drawing.
     pub browser: f64,
-    /// … and, whatever the strokes, writes of an empty page: our own render, and comparisons.
+    /// Cost of one browser render that does not, with our own render and the comparisons, in writes of an empty drawing.
     pub browser_page: f64,
-    /// What follows the fit, in writes of the drawing: the judge writes and renders it once more, the report packs it.
+    /// Cost of judging and reporting after the fit, in writes of the drawing: it is written and rendered once more, and
+    /// compressed for the report.
     pub judging: f64,
-    /// The same of a transparent drawing, which is rendered on two mattes.
+    /// The same cost for a transparent drawing, which is rendered on two mattes.
     pub judging_transparent: f64,
-    /// What follows the fit whatever the strokes, in writes of an empty page: three comparisons, layers.
+    /// Cost after the fit that does not depend on the strokes, in writes of an empty drawing: three comparisons, layers.
     pub judging_page: f64,
-    /// Rounds of settling may take up to this part of the limit; they bring less than as much descent beyond.
+    /// Most of the limit, as a share, that rounds of settling take. Beyond it, descent gains more in the same time.
     pub settling: f64,
-    /// Share of a limit that is for the descent however long the rest takes.
+    /// Least share of the limit for descent, however long the rest takes.
     pub min_descent: f64,
-    /// A joint fit takes this many writes at least, which are a hundred steps or more: it begins with soft edges and long
-    /// steps, and one of twenty leaves a drawing of 34 dB at 25.
+    /// Least duration of a polish, in writes: this is a hundred steps or more. A polish begins with soft edges and long
+    /// steps, so that one of 20 steps takes a drawing from 34 dB to 25.
     pub min_polish: f64,
-    /// Measuring how long a write takes may take this part of the time.
+    /// Share of the time that measuring writes may take.
     pub rehearsals: f64,
-    /// Steps that make a round of settling worth its write.
+    /// Least number of steps that make a round of settling worth its write.
     pub min_round: f64,
-    /// Weight of a new measurement in the running mean of steps.
+    /// Weight of a new measurement in the running mean of the duration of steps.
     pub freshness: f64,
-    /// A search for less than one in so many of the strokes wanted is not worth a stage.
+    /// A stage is left out if there is time to search for less than one in this many of the strokes wanted.
     pub min_search: usize,
 }
 
 impl Rates {
-    /// Rates that leave colours as they are.
+    /// The same rates, but colours stay as they are.
     pub(super) fn without_color(self) -> Self {
         Self { color: 0.0, ..self }
     }
 
-    /// Rates that leave colours and widths as they are.
+    /// The same rates, but colours and radii stay as they are.
     pub(super) fn without_pen(self) -> Self {
         Self {
             radius: 0.0,
@@ -328,8 +329,8 @@ impl Rates {
 }
 
 impl Recipe {
-    /// Refuses numbers that no fit can run with. Step sizes may be anything: a stroke that they throw out of all bounds
-    /// is brought back, and one whose numbers become NaN is dropped and counted.
+    /// Refuses numbers that no fit can run with. Step sizes are not checked: parameters that leave their domain are
+    /// clamped to it, and a stroke with NaN parameters is dropped and counted.
     ///
     /// # Errors
     /// [`ErrorKind::Config`], naming the number, its value and its domain.
@@ -418,7 +419,7 @@ impl Recipe {
         counts.try_for_each(|(name, count)| demand(name, count, count > 0, "1 or more"))
     }
 
-    /// Iterations that a stroke takes part in, about: those of its stage, and of the polish if there is one.
+    /// Iterations that a stroke takes part in: those of its stage and, `is_polished`, those of the polish.
     pub(super) fn iterations(&self, is_polished: bool) -> usize {
         let polish = if is_polished {
             self.polish.iterations
@@ -429,7 +430,7 @@ impl Recipe {
     }
 }
 
-/// Beyond it the second stage of any drawing is its last.
+/// With greater growth, the second stage of any drawing would be its last.
 const MAX_GROWTH: f64 = 100.0;
 /// Radius and length of the largest shape that can be probed, in units of the scale.
 const MAX_RADIUS: f32 = 1.0;
