@@ -2,10 +2,10 @@
 //!
 //! | file | what happens there |
 //! | --- | --- |
-//! | `grow` | stages are seeded, fitted alone, and keep what pays |
+//! | `grow` | stages are seeded, fitted on frozen strokes, and keep what pays |
 //! | `polish` | all strokes are fitted jointly, with relocation |
-//! | `palette`, `pens` | the drawing is brought to few colours and few pens |
-//! | `settle` | the last steps are taken against what the file looks like |
+//! | `palette`, `pens` | the drawing is restricted to few colours and few pens |
+//! | `settle` | the last steps are taken against renders of the written file |
 //! | `count` | strokes are added and removed until budgets are met |
 
 pub(super) mod count;

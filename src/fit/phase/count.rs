@@ -1,4 +1,4 @@
-//! Counting: strokes are added and removed until the file is as faithful, and as short, as asked for.
+//! Counting: strokes are added and removed until the file is as faithful and as short as asked for.
 
 use super::grow;
 use crate::error::Result;
@@ -10,7 +10,7 @@ use crate::fit::session::Session;
 use crate::math;
 use crate::metrics::psnr_db;
 
-/// Ends the fit where the base as it is meets a budget already.
+/// Ends the fit if the base, as it is, already meets a budget.
 pub(in crate::fit) fn try_base(session: &mut Session<'_>) -> Result<Outcome> {
     let file = session.writer.render(&session.drawing)?;
     let strokes = session.drawing.len();
@@ -23,7 +23,7 @@ pub(in crate::fit) fn try_base(session: &mut Session<'_>) -> Result<Outcome> {
     Ok(Outcome::Met)
 }
 
-/// Adds or removes strokes where the last file is not as faithful as wanted, or more.
+/// Adds or removes strokes if the last file misses or exceeds the fidelity asked for.
 pub(in crate::fit) fn meet_fidelity(session: &mut Session<'_>) -> Outcome {
     let Some(wanted_db) = session.config.budget.psnr_db else {
         return Outcome::Over;
@@ -31,7 +31,7 @@ pub(in crate::fit) fn meet_fidelity(session: &mut Session<'_>) -> Outcome {
     let correction = session.recipe.correction;
     let corrections = &mut session.journal.corrections;
     let now = (session.drawing.len(), corrections.last_db);
-    // What the new strokes of a refined drawing bring depends on its base.
+    // What new strokes gain on a base depends on that base, so that it is measured.
     if let Some(before) = corrections.before.filter(|_| session.base.is_some()) {
         corrections.db_per_doubling = slope(&correction, before, now);
     }
@@ -52,7 +52,8 @@ pub(in crate::fit) fn meet_fidelity(session: &mut Session<'_>) -> Outcome {
     outcome
 }
 
-/// Doubles or halves the strokes `doublings` times, at most once; is over where there is none to add or to remove.
+/// Multiplies the number of strokes by `2^doublings`, within ½ and 2. The outcome is `Over` if none can be added or
+/// removed.
 fn resize(session: &mut Session<'_>, doublings: f64) -> Outcome {
     let (strokes, most) = (session.drawing.len(), session.limit);
     let factor = math::exp2(doublings.clamp(-1.0, 1.0));
@@ -76,7 +77,7 @@ fn resize(session: &mut Session<'_>, doublings: f64) -> Outcome {
     outcome
 }
 
-/// Fidelity gained by doubling the strokes, dB, told from two drawings of so many strokes and dB each.
+/// Fidelity gained by doubling the strokes, dB, measured on two drawings with these numbers of strokes and fidelities.
 fn slope(
     correction: &Correction,
     (few, few_db): (usize, f64),
@@ -92,7 +93,7 @@ fn slope(
     }
 }
 
-/// Removes the strokes worth least where the best file has more bytes than allowed.
+/// Removes the strokes of least worth if the best file has more bytes than allowed.
 pub(in crate::fit) fn meet_bytes(session: &mut Session<'_>) -> Outcome {
     let bytes = session.best.as_ref().map_or(0, |best| best.bytes);
     let most = session.config.budget.bytes.unwrap_or(usize::MAX);

@@ -1,4 +1,4 @@
-//! Growing: stages are seeded where the residual is largest, fitted alone on what is frozen, and keep what pays.
+//! Growing: each stage is seeded where the residual is largest, fitted on frozen strokes, and keeps what pays.
 
 use super::polish;
 use crate::error::Result;
@@ -14,7 +14,7 @@ use crate::fit::search::search;
 use crate::fit::session::Session;
 use crate::metrics::psnr_db;
 
-/// Seeds the next stage, as long as the plan or a budget does not end.
+/// Seeds the next stage, unless the plan or a budget has ended.
 pub(in crate::fit) fn next_stage(session: &mut Session<'_>) -> Result<Outcome> {
     if session.progress.stopped().is_some() {
         return Ok(Outcome::Over);
@@ -36,7 +36,7 @@ pub(in crate::fit) fn next_stage(session: &mut Session<'_>) -> Result<Outcome> {
     Ok(Outcome::Seeded(Purpose::Plan))
 }
 
-/// What makes further stages superfluous, if anything does.
+/// Why further stages are superfluous, if they are.
 fn enough(session: &Session<'_>) -> Option<Stop> {
     let stages = session.recipe.stages;
     let OpenStage {
@@ -44,7 +44,7 @@ fn enough(session: &Session<'_>) -> Option<Stop> {
     } = session.journal.stage?;
     let pays = accepted? as f64 >= stages.paying_share * planned.count as f64;
     let staged_db = session.journal.records.last()?.psnr_db;
-    // A base has been finished before, and gains less from polish than stages do.
+    // A base has been polished before, and gains less from another polish than new stages do.
     let gains = session.config.polish && session.base.is_none();
     let later_db = if gains { stages.polish_gain_db } else { 0.0 };
     let wanted_db = session.config.budget.psnr_db;
@@ -57,7 +57,7 @@ fn enough(session: &Session<'_>) -> Option<Stop> {
     }
 }
 
-/// Where nothing is polished, seeds the strokes that were promised but not accepted as a part of the last stage.
+/// Without polish, which would fill up the budget of strokes, adds the strokes missing from it to the last stage.
 fn top_up(session: &mut Session<'_>) -> Outcome {
     let config = session.config;
     let promised = config.budget.strokes.is_some() && !config.polish;
@@ -75,7 +75,7 @@ fn top_up(session: &mut Session<'_>) -> Outcome {
     Outcome::Seeded(Purpose::TopUp)
 }
 
-/// Seeds a stage of `count` strokes on top of all others, of the scale for a drawing of `in_all` strokes.
+/// Seeds a stage of `count` strokes on top of all others, at the scale for a drawing of `in_all` strokes.
 pub(super) fn seed_correction(session: &mut Session<'_>, count: usize, in_all: usize) {
     let planned = PlannedStage {
         index: session.journal.records.len(),
@@ -85,12 +85,12 @@ pub(super) fn seed_correction(session: &mut Session<'_>, count: usize, in_all: u
     seed(session, planned);
 }
 
-/// Typical radius of the last strokes of a drawing of so many, px.
+/// Typical radius, px, of the last strokes of a drawing of `strokes` strokes.
 fn scale(session: &Session<'_>, strokes: usize) -> f32 {
     session.recipe.stages.scale * session.drawing.spacing(strokes)
 }
 
-/// Puts the planned strokes on top of all others, which are frozen.
+/// Adds the planned strokes on top of all others, which it freezes.
 fn seed(session: &mut Session<'_>, planned: PlannedStage) {
     let began = session.timer.elapsed();
     session.progress.enter(planned.index);
@@ -120,7 +120,7 @@ fn seed(session: &mut Session<'_>, planned: PlannedStage) {
     });
 }
 
-/// Fits the strokes of the stage alone, and keeps those that pay.
+/// Fits the strokes of the stage on the frozen ones, and keeps those that pay.
 pub(in crate::fit) fn stage(session: &mut Session<'_>, purpose: Purpose) -> Result<Outcome> {
     let scale = session.journal.stage.map_or(1.0, |s| s.planned.scale);
     let stages = session.recipe.stages;
@@ -153,7 +153,7 @@ pub(in crate::fit) fn stage(session: &mut Session<'_>, purpose: Purpose) -> Resu
     Ok(Outcome::Rejected)
 }
 
-/// Fits all strokes jointly after a stage, filling up to the strokes that it was to have.
+/// Polishes the strokes of a stage, and fills it up to its planned number of strokes.
 pub(in crate::fit) fn stage_polish(session: &mut Session<'_>) -> Result<Outcome> {
     let Some(OpenStage {
         planned, accepted, ..
@@ -172,7 +172,7 @@ pub(in crate::fit) fn stage_polish(session: &mut Session<'_>) -> Result<Outcome>
     })
 }
 
-/// Takes the free strokes that are not worth their `price` away, and says how many are left.
+/// Removes the free strokes that are not worth their `price`, and returns how many are left.
 fn accept(drawing: &mut Drawing, price: Price) -> usize {
     let worth = drawing.judge().worth;
     let strokes = drawing.free().iter().zip(worth);

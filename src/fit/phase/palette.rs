@@ -1,10 +1,10 @@
-//! Few colours: strokes, and the background, take theirs from a palette.
+//! Few colours: strokes and background take their colours from a palette.
 //!
-//! A drawing of any colours is made first. Then each round finds the colour that every stroke would like to have,
-//! by a Newton step on its own colour, gives it the nearest one of the palette, and fits everything but colours to
-//! what that did. Where the palette is not given, its colours are the weighted means of what the strokes that have
-//! them would like: the rounds are those of k-means, with the drawing moving along. Strokes over each other make up
-//! for each other's missing colours in this way, as far as the palette allows.
+//! The drawing has first been fitted in any colours. Each round finds the colour that would suit every stroke best, by a
+//! Newton step on its own colour, gives the stroke the nearest colour of the palette, and then fits everything but
+//! colours. A palette that is not given is found by k-means during these rounds: each of its colours is the weighted
+//! mean of what would suit its strokes best. In this way strokes that overlap make up for colours that the palette lacks,
+//! as far as it allows.
 
 use std::f32::consts::PI;
 
@@ -20,8 +20,8 @@ use crate::render::{AX, AY, BX, BY, OPACITY, RADIUS, RED};
 use crate::scene::{Rgb, color, quantum};
 use crate::seed::Candidate;
 
-/// Gives every stroke a colour of the palette that the drawing has to have, and fits the rest to that; false where any
-/// colour will do. All strokes must be free.
+/// Restricts the drawing to the configured palette and fits the rest to that. Returns false if any colours are allowed.
+/// All strokes must be free.
 pub(in crate::fit) fn run(session: &mut Session<'_>) -> Result<bool> {
     let Some(mut palette) = palette(session) else {
         return Ok(false);
@@ -33,7 +33,7 @@ pub(in crate::fit) fn run(session: &mut Session<'_>) -> Result<bool> {
     Ok(true)
 }
 
-/// The palette of the drawing, if it has to have one.
+/// The palette for the drawing, unless any colours are allowed.
 fn palette(session: &mut Session<'_>) -> Option<Palette> {
     let (config, coloring) = (session.config, session.recipe.coloring);
     if config.colors == Colors::Free {
@@ -50,7 +50,7 @@ fn palette(session: &mut Session<'_>) -> Option<Palette> {
     Palette::new(&config.colors, &wishes, background)
 }
 
-/// Rounds of choosing colours and fitting the rest; the best of them is kept.
+/// Runs the rounds of choosing colours and fitting the rest, and keeps the best drawing.
 fn fit_to(session: &mut Session<'_>, palette: &mut Palette) -> Result<()> {
     let coloring = session.recipe.coloring;
     let rates = session.recipe.polish.rates.without_color();
@@ -75,7 +75,7 @@ fn fit_to(session: &mut Session<'_>, palette: &mut Palette) -> Result<()> {
     Ok(())
 }
 
-/// Gives every stroke, and the background, the colour of the palette that is nearest to what it would like.
+/// Gives every stroke, and the background, the colour of the palette nearest to the one that suits it best.
 fn recolor(session: &mut Session<'_>, palette: &mut Palette) {
     let coloring = session.recipe.coloring;
     let drawing = &mut session.drawing;
@@ -89,13 +89,13 @@ fn recolor(session: &mut Session<'_>, palette: &mut Palette) {
 #[derive(Debug, Clone, PartialEq)]
 struct Palette {
     colors: Vec<Rgb>,
-    /// How many of them, from the first on, are as they are; the others follow the strokes.
+    /// How many of them, from the first on, are fixed. The others follow the strokes.
     fixed: usize,
 }
 
 impl Palette {
-    /// The palette that `colors` asks for, for a drawing that would like to have these colours; the `background`, if it
-    /// is given, has one of them. `None` where any colour will do.
+    /// The palette that `colors` asks for, chosen from these `wishes` unless it is given. It includes the colour of a
+    /// fixed `background`. `None` if any colours are allowed.
     fn new(colors: &Colors, wishes: &[Wish], background: Option<Rgb>) -> Option<Self> {
         match colors {
             Colors::Free => None,
@@ -121,7 +121,7 @@ impl Palette {
             .unwrap_or(wanted)
     }
 
-    /// The candidate in the nearest colour, with what is left of its gain.
+    /// The candidate in the nearest colour of the palette, with the gain that it has then.
     fn adapt(&self, mut candidate: Candidate) -> Candidate {
         let p = &mut candidate.stroke;
         let wanted = [p[RED], p[RED + 1], p[RED + 2]];
@@ -138,7 +138,7 @@ impl Palette {
         (0..self.colors.len()).min_by(|j, k| away(j).total_cmp(&away(k)))
     }
 
-    /// Adds the colour that is missed most until there are `most`, or none is missed.
+    /// Adds, one by one, the colour whose absence costs most, until there are `most` or none is missing.
     fn spread(&mut self, most: usize, wishes: &[Wish]) {
         while self.colors.len() < most {
             let missed = |wish: &Wish| match self.index(wish.color) {
@@ -160,8 +160,7 @@ impl Palette {
         }
     }
 
-    /// Moves the colours that are free to the means of the wishes that are nearest to them, in so many iterations of
-    /// k-means.
+    /// Moves the colours that are not fixed to the weighted means of the nearest wishes, by k-means.
     fn follow(&mut self, wishes: &[Wish], iterations: usize) {
         for _ in 0..iterations {
             let mut sums = vec![([0.0_f32; 3], 0.0_f32); self.colors.len()];
@@ -182,7 +181,7 @@ impl Palette {
     }
 }
 
-/// The colour that 8 bits can say.
+/// The nearest 8-bit colour.
 fn rounded(rgb: Rgb) -> Rgb {
     color(rgb.map(quantum))
 }

@@ -1,7 +1,7 @@
-//! Few pens: opaque strokes that look nearly alike get one look, and the rest is fitted to that.
+//! Few pens: opaque strokes that look nearly alike come to share a pen, and the rest is fitted to that.
 //!
-//! The smallest form of a file has one path for all strokes of a pen (colour and width) that may be drawn one after
-//! the other. The pairs that cost least are given one pen, as long as no stroke has to be drawn between them.
+//! The smallest form of a file has one path for all strokes of a pen that can be drawn directly one after the other.
+//! Pens are merged pair by pair, the cheapest pair first, as long as no other stroke has to be drawn between the two.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -20,8 +20,8 @@ use crate::render::{AX, AY, BX, BY, OPACITY, Params, RADIUS, RED, unpack};
 use crate::scene::{Rgb, Written, color, quantum};
 use crate::svg::Form;
 
-/// Makes the strokes of each stage share pens, where the file is to be of the smallest form; false where it is not.
-/// Colours of a palette are kept. All strokes must be free.
+/// Makes the strokes of each stage share pens if the file has the smallest form, and returns whether it has. Strokes keep
+/// the colours of a palette. All strokes must be free.
 pub(in crate::fit) fn run(session: &mut Session<'_>) -> Result<bool> {
     if session.config.file.form != Form::Smallest {
         return Ok(false);
@@ -33,8 +33,8 @@ pub(in crate::fit) fn run(session: &mut Session<'_>) -> Result<bool> {
     for round in 0..count {
         rounds::run(session, recipe.pens.rounds, round, rates)?;
         if round + 1 == count {
-            // Where strokes have come between those of a pen, others are to share one: most drawings get up to 6 %
-            // shorter by that, as faithful as before.
+            // Strokes may have moved between those of a pen, so that pens are chosen once more: most drawings get up
+            // to 6 % shorter, with the same fidelity.
             pens = hand_out(&mut session.drawing, keeps_colors, &recipe);
         }
         if !keeps_colors {
@@ -44,7 +44,7 @@ pub(in crate::fit) fn run(session: &mut Session<'_>) -> Result<bool> {
     Ok(true)
 }
 
-/// Gives the strokes few pens, and says which share each.
+/// Chooses the pens of all strokes, and returns the strokes of each pen.
 fn hand_out(drawing: &mut Drawing, keep_colors: bool, recipe: &Recipe) -> Vec<Vec<usize>> {
     let wishes = wishes(drawing, 0.0, recipe.coloring.min_shown);
     let weights: Vec<f32> = wishes.iter().map(|w| w.weight).collect();
@@ -60,7 +60,7 @@ fn hand_out(drawing: &mut Drawing, keep_colors: bool, recipe: &Recipe) -> Vec<Ve
     pens
 }
 
-/// The ranges of at most so many strokes that may share pens.
+/// Ranges of at most `most` strokes of one stage, within which strokes may share pens.
 fn windows(stage_sizes: &[usize], most: usize) -> Vec<Range<usize>> {
     let mut windows = Vec::new();
     let mut start = 0;
@@ -76,7 +76,7 @@ fn windows(stage_sizes: &[usize], most: usize) -> Vec<Range<usize>> {
     windows
 }
 
-/// Gives each pen the mean of the colours that its strokes would like to have.
+/// Gives each pen the weighted mean of the colours that suit its strokes best.
 fn tint(drawing: &mut Drawing, pens: &[Vec<usize>], recipe: &Recipe) {
     let coloring = recipe.coloring;
     let mut wishes = wishes(drawing, coloring.damping, coloring.min_shown);
@@ -98,12 +98,12 @@ fn tint(drawing: &mut Drawing, pens: &[Vec<usize>], recipe: &Recipe) {
     set_colors(drawing, &colors);
 }
 
-/// Strokes of one pen.
+/// A pen and its strokes.
 #[derive(Debug, Clone)]
 struct Pen {
     members: Vec<usize>,
     color: Rgb,
-    /// How the squared error grows with the squared distance from the colour.
+    /// Growth of the squared error with the squared distance from the colour.
     area: f32,
     radius: f32,
     /// Length of all outlines, px.
@@ -121,7 +121,7 @@ impl Pen {
         }
     }
 
-    /// What one pen for the strokes of both adds to the squared error.
+    /// Squared error that one pen for the strokes of both would add.
     fn cost(&self, other: &Self, contrast: f32) -> f32 {
         let both = |a: f32, b: f32| a * b / (a + b).max(f32::MIN_POSITIVE);
         let away: f32 = (0..3)
@@ -146,12 +146,12 @@ impl Pen {
     }
 }
 
-/// The radii that pens may have.
+/// The radii that pens may have, a geometric series.
 #[derive(Debug, Clone, Copy)]
 struct Ladder {
-    /// The least one, px.
+    /// The least radius, px.
     least: f32,
-    /// Each is this many times the one before.
+    /// The ratio of neighbouring radii.
     step: f32,
 }
 
@@ -170,7 +170,7 @@ impl Ladder {
     }
 }
 
-/// Gives strokes of a window few pens, and says which share each.
+/// Chooses the pens of the strokes of a window, and returns the strokes of each pen.
 fn share(
     strokes: &mut [Params],
     weights: &[f32],
@@ -210,7 +210,7 @@ fn share(
     {
         let size =
             |pens: &[Option<Pen>], i: usize| pens[i].as_ref().map_or(0, |pen| pen.members.len());
-        // Both have to be what they were when the cost was told.
+        // Either may have grown since this cost was computed; a new cost is in the queue then.
         if (size(&pens, i), size(&pens, k)) != members || !order.may_join(i, k) {
             continue;
         }
@@ -235,18 +235,18 @@ fn share(
     pens.into_iter().flatten().map(draw_with).collect()
 }
 
-/// Which strokes have to be drawn before which, those of one pen at once.
+/// Which strokes have to be drawn before which; those of one pen are drawn together.
 struct Order {
-    /// For each stroke or pen, by its first stroke, a bit for each that comes later.
+    /// For each stroke, or the first stroke of each pen, a bit for each that has to come later.
     later: Vec<Vec<u64>>,
-    /// And for each that comes earlier.
+    /// The same for those that have to come earlier.
     earlier: Vec<Vec<u64>>,
 }
 
 impl Order {
     fn new(strokes: &[Params]) -> Self {
         let count = strokes.len();
-        // The decimals do not matter for what meets what.
+        // Which strokes meet does not depend on the decimals.
         let written: Vec<_> = strokes
             .iter()
             .map(|p| Written::anywhere(&unpack(p), 2))
@@ -273,7 +273,7 @@ impl Order {
         order
     }
 
-    /// Whether nothing has to be drawn between the two.
+    /// Whether no stroke has to be drawn between the two.
     fn may_join(&self, i: usize, k: usize) -> bool {
         let between = |from: usize, to: usize| {
             let bits = self.later[from].iter().zip(&self.earlier[to]);
@@ -282,7 +282,7 @@ impl Order {
         !between(i, k) && !between(k, i)
     }
 
-    /// Makes `k` a part of `i`.
+    /// Merges `k` into `i`.
     fn join(&mut self, i: usize, k: usize) {
         for of in [&mut self.later, &mut self.earlier] {
             let other = of[k].clone();

@@ -1,4 +1,4 @@
-//! Polish: all free strokes, and the background, are fitted jointly, with relocation.
+//! Polish: all free strokes and the background are fitted jointly, with relocation.
 
 use crate::error::Result;
 use crate::fit::config::Colors;
@@ -18,7 +18,7 @@ pub(in crate::fit) fn polish(session: &mut Session<'_>, purpose: Purpose) -> Res
         session.drawing.thaw();
         session.progress.enter(session.journal.records.len());
     }
-    // A fidelity is met by as few strokes as may be: their number is corrected afterwards.
+    // A fidelity is to be met by as few strokes as possible; their number is corrected afterwards.
     let limit = match session.config.budget.psnr_db {
         Some(_) => session.drawing.len(),
         None => session.limit,
@@ -32,7 +32,7 @@ pub(in crate::fit) fn polish(session: &mut Session<'_>, purpose: Purpose) -> Res
     Ok(Outcome::Over)
 }
 
-/// A joint fit of the free strokes, which may make them so many that the drawing has `limit`.
+/// Fits the free strokes jointly, and may add strokes until the drawing has `limit`.
 pub(super) fn run(session: &mut Session<'_>, limit: usize, iterations: usize) -> Result<()> {
     session.progress.polish();
     let polish = session.recipe.polish;
@@ -50,8 +50,8 @@ pub(super) fn run(session: &mut Session<'_>, limit: usize, iterations: usize) ->
     descend(session, &mut descent, None)
 }
 
-/// The shares of a limited time for descent after which each phase has to be over; what is left after the last is
-/// for pens. Each has its part by its iterations.
+/// The shares of a limited time for descent by which polish and palette have to end. The rest is for pens. Each part is
+/// in proportion to its iterations.
 pub(super) struct Shares {
     pub(super) polish: f32,
     pub(super) palette: f32,

@@ -1,4 +1,4 @@
-//! Descent in rounds: colours or pens are chosen between them, and one schedule of rates goes on over all.
+//! Descent in rounds: colours or pens are chosen between them, and one schedule of rates spans all of them.
 
 use crate::error::Result;
 use crate::fit::descend::descend;
@@ -6,8 +6,8 @@ use crate::fit::descent::Course;
 use crate::fit::recipe::{Rates, Rounds};
 use crate::fit::session::Session;
 
-/// Round `index`, from 0, with the final edge; less where the time for it is over, which is the same for each of the
-/// rounds that are left.
+/// Runs round `index`, from 0, with the final edge. A time limit may shorten it: what is left is divided equally among
+/// the remaining rounds.
 pub(super) fn run(
     session: &mut Session<'_>,
     rounds: Rounds,

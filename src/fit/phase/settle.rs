@@ -1,12 +1,11 @@
-//! Settling: the last steps are taken against what the file really looks like.
+//! Settling: the last steps are taken against renders of the written file.
 //!
-//! A renderer of SVG rounds after every stroke to 8 bits and has its own antialiasing, so that its
-//! picture differs from our canvas by an offset that hardly changes when strokes move a little. Each
-//! round renders the rounded drawing as SVG, takes of the offsets of those who will look at it ([`renderers`]
-//! says of whose, and how much) from the target, and descends a few iterations; the best file is kept.
+//! An SVG renderer rounds to 8 bits after every stroke and has its own antialiasing. So its picture differs from our
+//! canvas by an offset, which hardly changes when strokes move a little. Each round writes and renders the drawing,
+//! subtracts a part of that offset from the target, and descends for a few iterations. The best file is kept.
+//! [`renderers`] says which renderers count, and how much.
 //!
-//! Before that the drawing is brought to the colours and pens that it may have, since those change it by more than
-//! settling does.
+//! Before that, the drawing is restricted to its palette and pens, which change it by more than settling does.
 //!
 //! [`renderers`]: crate::fit::renderers
 
@@ -24,7 +23,7 @@ use crate::fit::result::Stop;
 use crate::fit::session::Session;
 use crate::metrics::psnr_db;
 
-/// Settles the drawing against its file, where anything depends on what that looks like.
+/// Restricts the drawing to its palette and pens, and settles it if the fit depends on its file.
 pub(in crate::fit) fn settle(session: &mut Session<'_>) -> Result<Outcome> {
     session.drawing.thaw();
     session.drawing.sharpen(0.0);
@@ -43,7 +42,7 @@ pub(in crate::fit) fn settle(session: &mut Session<'_>) -> Result<Outcome> {
     Ok(Outcome::Over)
 }
 
-/// Brings the drawing to the colours and pens that it may have, and returns the rates that leave them as they are.
+/// Restricts the drawing to its palette and pens, and returns rates that keep those.
 fn restrict(session: &mut Session<'_>) -> Result<Rates> {
     let mut rates = session.recipe.polish.rates;
     if palette::run(session)? {
@@ -55,8 +54,7 @@ fn restrict(session: &mut Session<'_>) -> Result<Rates> {
     Ok(rates)
 }
 
-/// Descends against the file's own pictures and returns the best of the files; the drawing becomes the one that it
-/// was written from.
+/// Descends against renders of the file and returns the best file. The drawing becomes the one that it was written from.
 fn run(session: &mut Session<'_>, rates: Rates) -> Result<RenderedFile> {
     let settling = session.recipe.settling;
     let mut file = session.render_file()?;
@@ -91,7 +89,7 @@ fn run(session: &mut Session<'_>, rates: Rates) -> Result<RenderedFile> {
     Ok(best.file)
 }
 
-/// The best file so far, and what it was written from.
+/// The best file so far, and the drawing that it was written from.
 struct Best {
     file: RenderedFile,
     memento: Memento,
@@ -108,15 +106,15 @@ impl Best {
     }
 }
 
-/// Whether to settle for another round after so many: as many as planned or, where the limit made the descent shorter,
-/// as there is time for.
+/// Whether to run another round after `done` rounds. If the time limit cut the descent short, rounds go on past their
+/// planned number as long as there is time.
 fn allows_round(session: &Session<'_>, done: usize) -> bool {
     let planned = session.recipe.settling.rounds;
     let is_wanted = done < planned || (planned > 0 && session.cut_by() == Some(Stop::Time));
     is_wanted && session.timer.allows_round()
 }
 
-/// The course of a round, with strokes moving by a share `pace` of what they do in the joint fit.
+/// The course of a round; `pace` is a factor on the rates of the geometry.
 fn course(session: &Session<'_>, rates: Rates, pace: f32) -> Course {
     let settling = session.recipe.settling;
     Course {

@@ -1,18 +1,18 @@
-//! The colours that strokes would like to have, and those that they are given.
+//! Wishes: the colour that would suit each stroke best.
 
 use crate::fit::drawing::Drawing;
 use crate::render::{CanvasLoss, Gradients, Lanes, OPACITY, Params, RED, TileRgb};
 use crate::scene::Rgb;
 
-/// The colour that a stroke, or the background, would like to have if the others stayed as they are.
+/// The colour of a stroke, or of the background, that minimises the squared error if all others stay as they are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Wish {
     pub(super) color: Rgb,
-    /// By how much the squared error grows with the squared distance from it.
+    /// Growth of the squared error with the squared distance from that colour.
     pub(super) weight: f32,
 }
 
-/// Sums each stroke's share of the pixels that it shows in, as the derivative by its red.
+/// A loss whose derivative with respect to a stroke's red is the stroke's share of all pixels, summed.
 struct Shown;
 
 impl CanvasLoss for Shown {
@@ -24,11 +24,12 @@ impl CanvasLoss for Shown {
     }
 }
 
-/// The colours that the strokes of `drawing`, and at last the background if there is one, would like to have after a
-/// share `damping` of their Newton steps; a stroke that shows in fewer than `min_shown` px wishes for what it has. All strokes must be free.
+/// The wishes of the strokes of `drawing`, followed by that of the background if there is one, each after a share
+/// `damping` of its Newton step. A stroke that shows in fewer than `min_shown` px keeps its colour. All strokes must be
+/// free.
 pub(super) fn wishes(drawing: &mut Drawing, damping: f32, min_shown: f32) -> Vec<Wish> {
     let slopes = drawing.judge();
-    // What a stroke shows of itself is the same on every matte.
+    // How much of a stroke shows does not depend on the matte.
     let mut shown = Gradients::default();
     drawing.backward(&Shown, &mut shown);
     // The loss is a mean over pixels and channels.
@@ -54,8 +55,8 @@ pub(super) fn wishes(drawing: &mut Drawing, damping: f32, min_shown: f32) -> Vec
     wishes.chain(background).collect()
 }
 
-/// Gives the strokes of `drawing`, and at last the background unless it is fixed, these colours. All strokes must be
-/// free.
+/// Sets the colours of the strokes of `drawing` and, if one more colour follows, of the background unless that is fixed.
+/// All strokes must be free.
 pub(super) fn set_colors(drawing: &mut Drawing, colors: &[Rgb]) {
     let mut colors = colors.iter();
     for (stroke, color) in drawing.free_mut().iter_mut().zip(colors.by_ref()) {
