@@ -29,14 +29,14 @@ const SCALE_LIMIT: f32 = 4.0;
 pub struct Probing {
     /// Radii of the probed shapes, in units of the scale.
     pub radii: [f32; 3],
-    /// Lengths of the probed capsules, in units of the scale, at most 4.5, so that they fit a patch. A third one of 7.5,
-    /// in a larger patch: −0.01 dB.
+    /// Lengths of the probed capsules, in units of the scale, at most 4.5, so that they fit a patch. A third one of
+    /// 7.5, in a larger patch: −0.01 dB.
     pub lengths: [f32; 2],
     /// Cells per stroke wanted; the best candidates are kept. 1, 2, 4: −0.49, 0, +0.09 dB. More is worse, since all
     /// candidates are in the same few spots. Drafts 1.5: −0.18.
     pub cells: f32,
-    /// Share of the cells that are probed, those with the largest residual. The others hardly ever give a candidate that
-    /// is kept: with all of them a draft gains 0.01 dB and takes 3 % longer.
+    /// Share of the cells that are probed, those with the largest residual. The others hardly ever give a candidate
+    /// that is kept: with all of them a draft gains 0.01 dB and takes 3 % longer.
     pub probed: f32,
 }
 
@@ -277,8 +277,8 @@ impl Cells {
         edge(i)..edge(i + 1)
     }
 
-    /// The pixel of largest `energy` of each cell, for the share `kept` of the cells in which it is largest. Ties may keep
-    /// more cells.
+    /// The pixel of largest `energy` of each cell, for the share `kept` of the cells in which it is largest. Ties may
+    /// keep more cells.
     fn peaks(&self, energy: &[f32], kept: f32) -> Vec<(usize, usize)> {
         let energy_at = |&(x, y): &(usize, usize)| energy[y * self.width + x];
         let cells = 0..self.len();

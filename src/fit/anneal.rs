@@ -25,8 +25,8 @@ pub(super) struct Annealing {
 }
 
 impl Annealing {
-    /// The softness when a share `done` of a descent is over. It begins at `from` times the final one, at least at 1, and
-    /// shrinks geometrically.
+    /// The softness when a share `done` of a descent is over. It begins at `from` times the final one, at least at 1,
+    /// and shrinks geometrically.
     pub(super) fn at(&self, from: f32, done: f32) -> Softness {
         let annealed = self.edge.annealed;
         if done >= annealed {

@@ -17,8 +17,8 @@ pub struct Config {
     /// When to stop adding strokes.
     pub budget: Budget,
     /// Sets the price of a stroke: each of its bytes has to remove as much squared error as one pixel has at this many
-    /// dB. If it is `None`, a budget of strokes, fidelity or bytes makes strokes free, so that every stroke that removes
-    /// error stays; without such a budget [`DEFAULT_QUALITY`] applies.
+    /// dB. If it is `None`, a budget of strokes, fidelity or bytes makes strokes free, so that every stroke that
+    /// removes error stays; without such a budget [`DEFAULT_QUALITY`] applies.
     pub quality: Option<f64>,
     /// How much work to spend.
     pub preset: Preset,

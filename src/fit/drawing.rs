@@ -151,8 +151,8 @@ impl Drawing {
         (self.pixels() as f32 / count.max(1) as f32).sqrt()
     }
 
-    /// Freezes all strokes. They are rendered from scratch: rendered on top of the canvas of earlier frozen strokes, they
-    /// would differ in the last bits from what a [`Memento`] restores.
+    /// Freezes all strokes. They are rendered from scratch: rendered on top of the canvas of earlier frozen strokes,
+    /// they would differ in the last bits from what a [`Memento`] restores.
     pub(super) fn freeze(&mut self) {
         self.thaw();
         self.render();

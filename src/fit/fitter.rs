@@ -82,8 +82,8 @@ impl<'a> Fitter<'a> {
         Self { token, ..self }
     }
 
-    /// Sets the checkpoint that keeps the state. If it already holds a state of the same fit, the fit goes on from there.
-    /// The drawing does not depend on it.
+    /// Sets the checkpoint that keeps the state. If it already holds a state of the same fit, the fit goes on from
+    /// there. The drawing does not depend on it.
     #[must_use]
     pub fn checkpoint(self, checkpoint: &'a mut Checkpoint) -> Self {
         Self {

@@ -120,8 +120,8 @@ impl Phase {
         )
     }
 
-    /// Whether to keep the state before this phase even if the checkpoint is not due: the phase takes long and cannot be
-    /// divided, or nothing is left to do.
+    /// Whether to keep the state before this phase even if the checkpoint is not due: the phase takes long and cannot
+    /// be divided, or nothing is left to do.
     pub(super) fn is_milestone(self) -> bool {
         matches!(self, Self::Settle | Self::Shorten | Self::Done)
     }

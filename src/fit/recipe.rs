@@ -80,12 +80,12 @@ pub struct Stages {
     pub softest: f32,
     /// Growing ends when less than this share of a stage's strokes is worth its price.
     pub paying_share: f64,
-    /// The least that the polish adds to the fidelity of the stages, dB. Growing ends this much below the fidelity asked
-    /// for.
+    /// The least that the polish adds to the fidelity of the stages, dB. Growing ends this much below the fidelity
+    /// asked for.
     pub polish_gain_db: f64,
     /// Strokes are fitted at the coarsest resolution that leaves them this typical radius, px. At a smaller one their
-    /// edges are finer than the pixels; at a larger one time goes to pixels that add nothing. A reduced picture for large
-    /// strokes: +0.15 dB at 0.8 of the time.
+    /// edges are finer than the pixels; at a larger one time goes to pixels that add nothing. A reduced picture for
+    /// large strokes: +0.15 dB at 0.8 of the time.
     pub min_scale: f32,
 }
 
@@ -107,22 +107,23 @@ pub struct Domain {
     pub margin: f32,
     /// Least radius, px. Renderers draw widths of 1 px and less as hairlines, by another method.
     pub min_radius: f32,
-    /// Least opacity. Renderers composite in 8 bits, and their rounding adds up to whole levels under many fainter strokes.
+    /// Least opacity. Renderers composite in 8 bits, and their rounding adds up to whole levels under many fainter
+    /// strokes.
     pub min_opacity: f32,
 }
 
 /// The optimiser of all descents.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Optimizer {
-    /// Adam for strokes. β₂ is small because gradients shrink fast and change whenever neighbours are relocated.
-    /// β₂ 0.99: −0.15 dB for drafts, −0.06 for long fits. β₁ 0.8: −0.08; 0.95: +0.02. ε 1e-7, which no longer normalises
+    /// Adam for strokes. β₂ is small because gradients shrink fast and change whenever neighbours are relocated. β₂
+    /// 0.99: −0.15 dB for drafts, −0.06 for long fits. β₁ 0.8: −0.08; 0.95: +0.02. ε 1e-7, which no longer normalises
     /// small gradients: −0.21.
     pub strokes: AdamParams,
     /// Adam for the background.
     pub background: AdamParams,
-    /// Radius, px, of a stroke whose geometry moves at the rates as given. Other strokes move in proportion to the square
-    /// root of their radius: +0.04 dB over one rate for all, with which large strokes are slow and small ones jitter. In
-    /// proportion to the radius itself: 0.00.
+    /// Radius, px, of a stroke whose geometry moves at the rates as given. Other strokes move in proportion to the
+    /// square root of their radius: +0.04 dB over one rate for all, with which large strokes are slow and small ones
+    /// jitter. In proportion to the radius itself: 0.00.
     pub usual_radius: f32,
     /// Bounds of the factor that this gives.
     pub radius_factors: [f32; 2],
@@ -149,12 +150,13 @@ pub struct Polish {
     /// Iterations; 0 for none. 2,000 instead of 2,800: −0.12 dB at 0.75 of the time (photographs −0.05); drafts 140
     /// instead of 130: +0.04 at 1.05.
     pub iterations: usize,
-    /// Share of the iterations that keep the resolution of the last stage; the rest are at full resolution. 0.3: part of
-    /// the +0.15 dB of reduced pictures; 0.5: −0.06; 0.7: −0.13.
+    /// Share of the iterations that keep the resolution of the last stage; the rest are at full resolution. 0.3: part
+    /// of the +0.15 dB of reduced pictures; 0.5: −0.06; 0.7: −0.13.
     pub coarse_share: f32,
-    /// Step sizes. Ends by 0.1 → 0.4 → 0.8 → 1.2 → 2 → 2.5 px: +0.15, +0.05, +0.08, +0.06, +0.12 dB; 3 px: +0.05 on photographs and −0.17 on
-    /// flat art. A last rate of 3 % instead of 10 %: part of the +0.06. Radius 0.8: −0.01. Colours 0.03 and opacity 0.05: −0.01. Drafts, of few
-    /// iterations: ends by 1.3 px and a last rate of 20 %: +0.05 over 10 %.
+    /// Step sizes. Ends by 0.1 → 0.4 → 0.8 → 1.2 → 2 → 2.5 px: +0.15, +0.05, +0.08, +0.06, +0.12 dB; 3 px: +0.05 on
+    /// photographs and −0.17 on flat art. A last rate of 3 % instead of 10 %: part of the +0.06. Radius 0.8: −0.01.
+    /// Colours 0.03 and opacity 0.05: −0.01. Drafts, of few iterations: ends by 1.3 px and a last rate of 20 %: +0.05
+    /// over 10 %.
     pub rates: Rates,
     /// Softness at the start, in units of the final one. 1, 1.5, 2.5: −0.19, 0, +0.17 dB; 3: −0.02 against 2.4.
     pub softness: f32,
@@ -171,13 +173,14 @@ pub struct Relocation {
     /// Scale of relocated strokes, in units of the last stage's. 0.25, 0.4, 0.6, 0.8: +0.03, 0, −0.10, −0.34 dB; 0.5 with steps of
     /// 2.5 px: +0.12 together.
     pub scale: f32,
-    /// What a candidate is expected to gain once it is fitted, in units of its closed-form gain. 1, 2, 3, 4, 5, 10: 0, +0.22, +0.28,
-    /// +0.25, +0.28, +0.15 dB; flat art gains 0.47 by 4. Drafts, with less time to fit newcomers: 3.
+    /// What a candidate is expected to gain once it is fitted, in units of its closed-form gain. 1, 2, 3, 4, 5, 10: 0,
+    /// +0.22, +0.28, +0.25, +0.28, +0.15 dB; flat art gains 0.47 by 4. Drafts, with less time to fit newcomers: 3.
     pub gain: f32,
     /// Share of the polish after which nothing is relocated, so that new strokes have time to be fitted. 0.8, 0.95:
     /// 0.00 dB.
     pub until: f32,
-    /// A relocation that has free places to fill asks for up to this many times as many candidates as it may move strokes.
+    /// A relocation that has free places to fill asks for up to this many times as many candidates as it may move
+    /// strokes.
     pub fill: usize,
 }
 
@@ -228,8 +231,8 @@ pub struct Pens {
 /// The last steps, against renders of the written file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settling {
-    /// Number of rounds; 0 for none. Settling as a whole: +0.1 dB at 34 dB, +1.8 at 40. Drafts have none: one round took
-    /// a fifth of a draft's time for 0.09 dB, and 40 more iterations of polish bring 0.11.
+    /// Number of rounds; 0 for none. Settling as a whole: +0.1 dB at 34 dB, +1.8 at 40. Drafts have none: one round
+    /// took a fifth of a draft's time for 0.09 dB, and 40 more iterations of polish bring 0.11.
     pub rounds: usize,
     /// Iterations of each round. 150 instead of 20: +0.005 dB.
     pub iterations: usize,
@@ -240,8 +243,8 @@ pub struct Settling {
     /// How far strokes move in a round, in units of the round before. How a renderer antialiases an edge depends on the
     /// position of the edge, so that a correction holds only for edges that stay where they are.
     pub next_pace: f32,
-    /// Shortfall that the browser may have, dB. At 0, photographs would lose fidelity in resvg for a gain in the browser
-    /// that nobody sees. The check of engines passes up to 0.6.
+    /// Shortfall that the browser may have, dB. At 0, photographs would lose fidelity in resvg for a gain in the
+    /// browser that nobody sees. The check of engines passes up to 0.6.
     pub browser_db: f64,
     /// Share of the offset that a round subtracts from the target. A share of 1 overcorrects edges; with a smaller one
     /// the browser falls behind.
@@ -255,8 +258,8 @@ pub struct Settling {
 pub struct Correction {
     /// Most corrections.
     pub count: usize,
-    /// Fidelity gained by doubling the strokes, dB, until it is measured on two drawings. Kodak ×5 gain 2.2 per doubling
-    /// from 1,024 to 2,900 strokes.
+    /// Fidelity gained by doubling the strokes, dB, until it is measured on two drawings. Kodak ×5 gain 2.2 per
+    /// doubling from 1,024 to 2,900 strokes.
     pub db_per_doubling: f64,
     /// Lower bound of the measured value, in units of `db_per_doubling`, which is its upper bound.
     pub least_part: f64,
@@ -287,14 +290,16 @@ pub struct TimeShares {
     pub stroke_px: f64,
     /// Cost of one browser render that depends on the strokes, in writes of the drawing.
     pub browser: f64,
-    /// Cost of one browser render that does not, with our own render and the comparisons, in writes of an empty drawing.
+    /// Cost of one browser render that does not, with our own render and the comparisons, in writes of an empty
+    /// drawing.
     pub browser_page: f64,
     /// Cost of judging and reporting after the fit, in writes of the drawing: it is written and rendered once more, and
     /// compressed for the report.
     pub judging: f64,
     /// The same cost for a transparent drawing, which is rendered on two mattes.
     pub judging_transparent: f64,
-    /// Cost after the fit that does not depend on the strokes, in writes of an empty drawing: three comparisons, layers.
+    /// Cost after the fit that does not depend on the strokes, in writes of an empty drawing: three comparisons,
+    /// layers.
     pub judging_page: f64,
     /// Most of the limit, as a share, that rounds of settling take. Beyond it, descent gains more in the same time.
     pub settling: f64,

@@ -85,7 +85,8 @@ impl Renderings {
         (share + share_per_db * (shortfall_db - browser_db)).clamp(0.0, 1.0)
     }
 
-    /// The error by which files are compared: that in resvg, or in the browser divided by what is allowed there, if larger.
+    /// The error by which files are compared: that in resvg, or in the browser divided by what is allowed there, if
+    /// larger.
     pub(super) fn badness(&self) -> f64 {
         let allowed = ratio(self.settling.browser_db);
         self.largest(|errors| errors.drawn.max(errors.shown / allowed))

@@ -20,8 +20,8 @@ use crate::render::{AX, AY, BX, BY, OPACITY, Params, RADIUS, RED, unpack};
 use crate::scene::{Rgb, Written, color, quantum};
 use crate::svg::Form;
 
-/// Makes the strokes of each stage share pens if the file has the smallest form, and returns whether it has. Strokes keep
-/// the colours of a palette. All strokes must be free.
+/// Makes the strokes of each stage share pens if the file has the smallest form, and returns whether it has. Strokes
+/// keep the colours of a palette. All strokes must be free.
 pub(in crate::fit) fn run(session: &mut Session<'_>) -> Result<bool> {
     if session.config.file.form != Form::Smallest {
         return Ok(false);

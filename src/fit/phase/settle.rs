@@ -54,7 +54,8 @@ fn restrict(session: &mut Session<'_>) -> Result<Rates> {
     Ok(rates)
 }
 
-/// Descends against renders of the file and returns the best file. The drawing becomes the one that it was written from.
+/// Descends against renders of the file and returns the best file. The drawing becomes the one that it was written
+/// from.
 fn run(session: &mut Session<'_>, rates: Rates) -> Result<RenderedFile> {
     let settling = session.recipe.settling;
     let mut file = session.render_file()?;

@@ -55,8 +55,8 @@ pub(super) fn wishes(drawing: &mut Drawing, damping: f32, min_shown: f32) -> Vec
     wishes.chain(background).collect()
 }
 
-/// Sets the colours of the strokes of `drawing` and, if one more colour follows, of the background unless that is fixed.
-/// All strokes must be free.
+/// Sets the colours of the strokes of `drawing` and, if one more colour follows, of the background unless that is
+/// fixed. All strokes must be free.
 pub(super) fn set_colors(drawing: &mut Drawing, colors: &[Rgb]) {
     let mut colors = colors.iter();
     for (stroke, color) in drawing.free_mut().iter_mut().zip(colors.by_ref()) {
