@@ -1,6 +1,6 @@
 //! Annealing: the soft edge narrows during a descent.
 
-use super::recipe::{Edge, Preset, Recipe};
+use super::recipe::{EdgeShape, Preset, Recipe};
 use crate::coverage::{Coverage, CoverageSchedule};
 use crate::math;
 use crate::render::Softness;
@@ -21,7 +21,7 @@ fn with_slope(coverage: Coverage, slope: f64) -> Softness {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Annealing {
     pub(super) coverage: CoverageSchedule,
-    pub(super) edge: Edge,
+    pub(super) edge: EdgeShape,
 }
 
 impl Annealing {

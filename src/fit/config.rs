@@ -64,7 +64,7 @@ impl Default for Config {
     }
 }
 
-/// Limits on the drawing; the first one reached stops.
+/// Bounds on the drawing; the first one reached stops.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Budget {
     /// At most this many strokes.

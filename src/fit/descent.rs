@@ -113,11 +113,11 @@ impl Descent {
         drawing.differentiate::<false>(edge, aim.map(|aim| aim.targets), &mut self.gradients);
         let rate = course.rate(step, done);
         let flat = self.gradients.strokes.as_flattened();
-        let limits = drawing.limits;
+        let bounds = drawing.bounds;
         let strokes = drawing.free_mut();
         self.adam
             .step_scaled(strokes.as_flattened_mut(), flat, rate, &self.scales);
-        strokes.iter_mut().for_each(|p| limits.apply(p));
+        strokes.iter_mut().for_each(|p| bounds.apply(p));
         if course.joint.is_some() && drawing.is_thawed() && !drawing.background_fixed {
             let rate = rate * course.rates.color;
             let (slope, background) = (&self.gradients.backdrop, &mut self.background);

@@ -5,7 +5,7 @@ mod scene;
 
 use fearless_simd::Level;
 
-use super::limits::Limits;
+use super::bounds::Bounds;
 use super::surface::Surface;
 use crate::render::{Canvas, CanvasLoss, Gradients, Params, Renderer, Softness};
 use crate::scene::Rgb;
@@ -28,7 +28,7 @@ pub(super) struct Drawing {
     stage_of: Vec<usize>,
     /// How many strokes, from the back, are frozen.
     frozen: usize,
-    pub(super) limits: Limits,
+    pub(super) bounds: Bounds,
     /// The edge of the finished drawing.
     edge: Softness,
     pub(super) counters: Counters,
@@ -48,7 +48,7 @@ impl Drawing {
     pub(super) fn new(
         surfaces: Vec<Surface>,
         background_fixed: bool,
-        limits: Limits,
+        bounds: Bounds,
         edge: Softness,
         level: Level,
     ) -> Self {
@@ -60,7 +60,7 @@ impl Drawing {
             strokes: Vec::new(),
             stage_of: Vec::new(),
             frozen: 0,
-            limits,
+            bounds,
             edge,
             counters: Counters::default(),
         }
@@ -101,7 +101,7 @@ impl Drawing {
         self.surfaces.iter_mut().for_each(|s| s.halve(halvings));
         let grid = self.surface().grid();
         self.renderer = Renderer::new(grid, self.level);
-        self.limits = self.limits.on(grid);
+        self.bounds = self.bounds.on(grid);
         self.frozen = 0;
     }
 

@@ -22,7 +22,7 @@ pub(super) fn finish(mut session: Session<'_>) -> Result<Fit> {
         scene: rounded.scene,
         base: session.base.cloned(),
         file: session.config.file,
-        stop: session.cut_by().unwrap_or(session.journal.stop),
+        stop: session.cut_by().unwrap_or(session.history.stop),
         target: session.target,
         stages,
         dropped: Dropped {
@@ -43,7 +43,7 @@ fn records(session: &mut Session<'_>, rounded: &Quantized) -> Vec<StageRecord> {
             index: number + 1,
             strokes: stage.strokes.len(),
             layer_psnr_db: psnr_db(mse),
-            ..*session.journal.records.get(origin)?
+            ..*session.history.records.get(origin)?
         })
     };
     origins.zip(layers).filter_map(record).collect()

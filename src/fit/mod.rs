@@ -14,6 +14,7 @@
 mod anneal;
 mod background;
 mod base;
+mod bounds;
 mod budget;
 mod checkpoint;
 mod config;
@@ -25,8 +26,7 @@ mod file;
 mod finish;
 mod fitter;
 mod forecast;
-mod journal;
-mod limits;
+mod history;
 mod memory;
 mod objective;
 mod order;
@@ -53,8 +53,8 @@ pub use memory::predicted_rss_bytes;
 pub use objective::Objective;
 pub use progress::{CancelToken, Observer, Progress};
 pub use recipe::{
-    BackgroundChoice, Coloring, Correction, Domain, Edge, Optimizer, Pens, Polish, Preset, Rates,
-    Recipe, Relocation, Rounds, Settling, Stages, TimeShares,
+    AdamSettings, BackgroundChoice, Correction, Domain, EdgeShape, Pens, Polish, Preset, Rates,
+    Recipe, Recoloring, Relocation, Rounds, Settling, Stages, TimeShares,
 };
 pub use result::{Fit, StageRecord, Stop};
 pub use simd::Simd;

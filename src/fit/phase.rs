@@ -13,6 +13,6 @@ pub(super) mod grow;
 mod palette;
 mod pens;
 pub(super) mod polish;
+mod preferences;
 mod rounds;
 pub(super) mod settle;
-mod wishes;

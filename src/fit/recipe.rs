@@ -32,17 +32,17 @@ pub struct Recipe {
     /// How strokes are added.
     pub stages: Stages,
     /// The soft edge.
-    pub edge: Edge,
+    pub edge: EdgeShape,
     /// The domains of stroke parameters.
     pub domain: Domain,
     /// The optimiser of all descents.
-    pub optimizer: Optimizer,
+    pub optimizer: AdamSettings,
     /// The joint fit of all strokes.
     pub polish: Polish,
     /// How strokes of little worth make room for better ones during the polish.
     pub relocation: Relocation,
     /// How a drawing is restricted to a palette.
-    pub coloring: Coloring,
+    pub coloring: Recoloring,
     /// How opaque strokes come to share pens.
     pub pens: Pens,
     /// The last steps, against renders of the written file.
@@ -91,7 +91,7 @@ pub struct Stages {
 
 /// The soft edge of strokes, which narrows during a fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Edge {
+pub struct EdgeShape {
     /// Slope of the final edge at the outline, 1/px. A box of 1 px, which antialiasing rasterisers approximate, has
     /// a slope between 1 (upright edges) and √2 (diagonal ones). 1.2 instead of 1.5: +0.15 dB at 1,000
     /// strokes, +0.3 at 5,000, agreement with resvg +1.2.
@@ -114,7 +114,7 @@ pub struct Domain {
 
 /// The optimiser of all descents.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Optimizer {
+pub struct AdamSettings {
     /// Adam for strokes. β₂ is small because gradients shrink fast and change whenever neighbours are relocated. β₂
     /// 0.99: −0.15 dB for drafts, −0.06 for long fits. β₁ 0.8: −0.08; 0.95: +0.02. ε 1e-7, which no longer normalises
     /// small gradients: −0.21.
@@ -197,7 +197,7 @@ pub struct Rounds {
 
 /// How a drawing is restricted to a palette.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Coloring {
+pub struct Recoloring {
     /// Rounds of choosing colours and fitting the rest.
     pub rounds: Rounds,
     /// Rounds at the end without relocation.

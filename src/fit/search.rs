@@ -19,7 +19,7 @@ pub(super) fn search(
         count,
         scale: scale / area.sqrt(),
         probing,
-        min_opacity: drawing.limits.min_opacity(),
+        min_opacity: drawing.bounds.min_opacity(),
         level: drawing.surface().halvings(),
         key: [seed, drawing.counters.searches],
     };

@@ -6,6 +6,7 @@ use fearless_simd::Level;
 
 use super::anneal::Annealing;
 use super::base::Base;
+use super::bounds::Bounds;
 use super::budget;
 use super::checkpoint::{self, Checkpoint};
 use super::config::Config;
@@ -14,8 +15,7 @@ use super::descent::{Course, Descent};
 use super::drawing::{Drawing, Memento};
 use super::file::{RenderedFile, Writer};
 use super::forecast::Forecast;
-use super::journal::{self, Journal};
-use super::limits::Limits;
+use super::history::{self, History};
 use super::order::Phase;
 use super::plan::{Before, Plan};
 use super::price::Price;
@@ -43,7 +43,7 @@ pub(super) struct Session<'a> {
     pub(super) writer: Writer<'a>,
 
     pub(super) drawing: Drawing,
-    pub(super) journal: Journal,
+    pub(super) history: History,
     /// The best file so far.
     pub(super) best: Option<RenderedFile>,
     pub(super) progress: Tracker<'a>,
@@ -66,7 +66,7 @@ struct Keeper<'a> {
 }
 
 /// The state of a fit as a checkpoint holds it.
-type State = (Phase, Journal, Memento, Position, Duration, Option<Descent>);
+type State = (Phase, History, Memento, Position, Duration, Option<Descent>);
 
 impl<'a> Session<'a> {
     pub(super) fn new(
@@ -93,10 +93,10 @@ impl<'a> Session<'a> {
             coverage: config.coverage,
             edge: recipe.edge,
         };
-        let limits = Limits::new(surfaces[0].grid(), recipe.domain, config.opaque);
+        let bounds = Bounds::new(surfaces[0].grid(), recipe.domain, config.opaque);
         let edge = annealing.last();
-        let mut drawing = Drawing::new(surfaces, background_fixed, limits, edge, level);
-        let records = base.map_or_else(Vec::new, |base| journal::load(&mut drawing, base));
+        let mut drawing = Drawing::new(surfaces, background_fixed, bounds, edge, level);
+        let records = base.map_or_else(Vec::new, |base| history::load(&mut drawing, base));
         let deadline = deadline(config, &recipe, &drawing);
         let planned = (plan.strokes() * recipe.iterations(config.polish)) as f64;
         Ok(Self {
@@ -109,7 +109,7 @@ impl<'a> Session<'a> {
             price: Price::new(config.effective_quality(), config.file),
             writer: Writer::of(config, base),
             drawing,
-            journal: Journal::new(records, recipe.correction.db_per_doubling),
+            history: History::new(records, recipe.correction.db_per_doubling),
             best: None,
             progress: Tracker::new(observer, token, planned, plan.len()),
             plan,
@@ -155,7 +155,7 @@ impl<'a> Session<'a> {
 
     /// Makes `file`, rendered from the current drawing, the best file so far.
     pub(super) fn set_best(&mut self, file: RenderedFile) {
-        self.journal.best = Some(self.drawing.memento());
+        self.history.best = Some(self.drawing.memento());
         self.best = Some(file);
     }
 
@@ -170,13 +170,13 @@ impl<'a> Session<'a> {
         let fingerprint =
             checkpoint::fingerprint(&self.target, self.config, &self.recipe, self.base);
         match checkpoint.load::<State>(fingerprint)? {
-            Some((phase, journal, drawing, position, elapsed, descent)) => {
-                if let Some(best) = journal.best.clone() {
+            Some((phase, history, drawing, position, elapsed, descent)) => {
+                if let Some(best) = history.best.clone() {
                     self.drawing.restore(best);
                     self.best = Some(self.writer.render(&self.drawing)?);
                 }
                 self.drawing.restore(drawing);
-                (self.phase, self.journal, self.resumed) = (phase, journal, descent);
+                (self.phase, self.history, self.resumed) = (phase, history, descent);
                 self.progress.position = position;
                 self.timer.resume(elapsed);
             }
@@ -195,7 +195,7 @@ impl<'a> Session<'a> {
     fn state<'s>(&'s self, descent: Option<&'s Descent>) -> impl serde::Serialize + 's {
         (
             self.phase,
-            &self.journal,
+            &self.history,
             self.drawing.memento(),
             self.progress.position,
             self.timer.elapsed(),

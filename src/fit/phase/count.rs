@@ -17,7 +17,7 @@ pub(in crate::fit) fn try_base(session: &mut Session<'_>) -> Result<Outcome> {
     let Some(stop) = budget::met(&session.config.budget, strokes, &file) else {
         return Ok(Outcome::Over);
     };
-    session.journal.stop = stop;
+    session.history.stop = stop;
     session.drawing.sharpen(0.0);
     session.set_best(file);
     Ok(Outcome::Met)
@@ -29,7 +29,7 @@ pub(in crate::fit) fn meet_fidelity(session: &mut Session<'_>) -> Outcome {
         return Outcome::Over;
     };
     let correction = session.recipe.correction;
-    let corrections = &mut session.journal.corrections;
+    let corrections = &mut session.history.corrections;
     let now = (session.drawing.len(), corrections.last_db);
     // What new strokes gain on a base depends on that base, so that it is measured.
     if let Some(before) = corrections.before.filter(|_| session.base.is_some()) {
@@ -47,7 +47,7 @@ pub(in crate::fit) fn meet_fidelity(session: &mut Session<'_>) -> Outcome {
     };
     if outcome == Outcome::Over {
         let best_db = session.best.as_ref().map_or(0.0, |best| psnr_db(best.mse));
-        session.journal.stop_at(wanted_db, best_db);
+        session.history.stop_at(wanted_db, best_db);
     }
     outcome
 }
@@ -73,7 +73,7 @@ fn resize(session: &mut Session<'_>, doublings: f64) -> Outcome {
         session.drawing.remove_least(removed);
         Outcome::Removed
     };
-    session.journal.corrections.count += 1;
+    session.history.corrections.count += 1;
     outcome
 }
 
@@ -100,12 +100,12 @@ pub(in crate::fit) fn meet_bytes(session: &mut Session<'_>) -> Outcome {
     if bytes <= most || session.drawing.len() == 0 {
         return Outcome::Over;
     }
-    if session.journal.stop != Stop::Bytes
-        && let Some(best) = session.journal.best.clone()
+    if session.history.stop != Stop::Bytes
+        && let Some(best) = session.history.best.clone()
     {
         session.drawing.restore(best);
     }
-    session.journal.stop = Stop::Bytes;
+    session.history.stop = Stop::Bytes;
     let share = (bytes - most) as f64 / bytes as f64;
     let count = (session.drawing.len() as f64 * share).ceil() as usize;
     session.drawing.remove_least(count.max(1));

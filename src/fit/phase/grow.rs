@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::fit::descend::descend;
 use crate::fit::descent::Course;
 use crate::fit::drawing::Drawing;
-use crate::fit::journal::OpenStage;
+use crate::fit::history::OpenStage;
 use crate::fit::order::{Outcome, Purpose};
 use crate::fit::plan::PlannedStage;
 use crate::fit::price::Price;
@@ -20,11 +20,11 @@ pub(in crate::fit) fn next_stage(session: &mut Session<'_>) -> Result<Outcome> {
         return Ok(Outcome::Over);
     }
     if let Some(enough) = enough(session) {
-        session.journal.stop = enough;
+        session.history.stop = enough;
         return Ok(Outcome::Over);
     }
     session.rehearse()?;
-    let index = session.journal.records.len();
+    let index = session.history.records.len();
     let Some(planned) = session.plan.stage(index, session.drawing.len()) else {
         return Ok(top_up(session));
     };
@@ -41,9 +41,9 @@ fn enough(session: &Session<'_>) -> Option<Stop> {
     let stages = session.recipe.stages;
     let OpenStage {
         planned, accepted, ..
-    } = session.journal.stage?;
+    } = session.history.stage?;
     let pays = accepted? as f64 >= stages.paying_share * planned.count as f64;
-    let staged_db = session.journal.records.last()?.psnr_db;
+    let staged_db = session.history.records.last()?.psnr_db;
     // A base has been polished before, and gains less from another polish than new stages do.
     let gains = session.config.polish && session.base.is_none();
     let later_db = if gains { stages.polish_gain_db } else { 0.0 };
@@ -62,7 +62,7 @@ fn top_up(session: &mut Session<'_>) -> Outcome {
     let config = session.config;
     let promised = config.budget.strokes.is_some() && !config.polish;
     let count = session.limit.saturating_sub(session.drawing.len());
-    let last = session.journal.records.last();
+    let last = session.history.records.last();
     let Some(last) = last.filter(|_| promised && count > 0) else {
         return Outcome::Over;
     };
@@ -78,7 +78,7 @@ fn top_up(session: &mut Session<'_>) -> Outcome {
 /// Seeds a stage of `count` strokes on top of all others, at the scale for a drawing of `in_all` strokes.
 pub(super) fn seed_correction(session: &mut Session<'_>, count: usize, in_all: usize) {
     let planned = PlannedStage {
-        index: session.journal.records.len(),
+        index: session.history.records.len(),
         count,
         scale: scale(session, in_all),
     };
@@ -113,7 +113,7 @@ fn seed(session: &mut Session<'_>, planned: PlannedStage) {
         // The best candidate is drawn last, so that none of lesser gain hides it.
         drawing.extend(candidates.iter().rev().map(|c| c.stroke), index);
     });
-    session.journal.stage = Some(OpenStage {
+    session.history.stage = Some(OpenStage {
         planned,
         began,
         accepted: None,
@@ -122,7 +122,7 @@ fn seed(session: &mut Session<'_>, planned: PlannedStage) {
 
 /// Fits the strokes of the stage on the frozen ones, and keeps those that pay.
 pub(in crate::fit) fn stage(session: &mut Session<'_>, purpose: Purpose) -> Result<Outcome> {
-    let scale = session.journal.stage.map_or(1.0, |s| s.planned.scale);
+    let scale = session.history.stage.map_or(1.0, |s| s.planned.scale);
     let stages = session.recipe.stages;
     let course = Course {
         iterations: stages.iterations,
@@ -137,7 +137,7 @@ pub(in crate::fit) fn stage(session: &mut Session<'_>, purpose: Purpose) -> Resu
     let mut descent = session.descent(course);
     descend(session, &mut descent, None)?;
     let accepted = accept(&mut session.drawing, session.price);
-    if let Some(stage) = &mut session.journal.stage {
+    if let Some(stage) = &mut session.history.stage {
         stage.accepted = Some(accepted);
     }
     if !session.config.progressive {
@@ -148,7 +148,7 @@ pub(in crate::fit) fn stage(session: &mut Session<'_>, purpose: Purpose) -> Resu
     }
     if let (Purpose::Correct, Some(wanted_db)) = (purpose, session.config.budget.psnr_db) {
         let best_db = session.best.as_ref().map_or(0.0, |best| psnr_db(best.mse));
-        session.journal.stop_at(wanted_db, best_db);
+        session.history.stop_at(wanted_db, best_db);
     }
     Ok(Outcome::Rejected)
 }
@@ -157,7 +157,7 @@ pub(in crate::fit) fn stage(session: &mut Session<'_>, purpose: Purpose) -> Resu
 pub(in crate::fit) fn stage_polish(session: &mut Session<'_>) -> Result<Outcome> {
     let Some(OpenStage {
         planned, accepted, ..
-    }) = session.journal.stage
+    }) = session.history.stage
     else {
         return Ok(Outcome::Over);
     };
@@ -186,5 +186,5 @@ fn accept(drawing: &mut Drawing, price: Price) -> usize {
 fn record(session: &mut Session<'_>, iterations: usize) {
     let mse = session.drawing.mse();
     let elapsed = session.timer.elapsed();
-    session.journal.record(iterations, elapsed, mse);
+    session.history.record(iterations, elapsed, mse);
 }

@@ -9,8 +9,8 @@
 use std::f32::consts::PI;
 
 use super::polish::Shares;
+use super::preferences::{PreferredColor, preferences, set_colors};
 use super::rounds;
-use super::wishes::{Wish, set_colors, wishes};
 use crate::error::Result;
 use crate::fit::config::Colors;
 use crate::fit::relocation;
@@ -41,13 +41,13 @@ fn palette(session: &mut Session<'_>) -> Option<Palette> {
     }
     let drawing = &mut session.drawing;
     let has_background = session.writer.has_background;
-    let mut wishes = wishes(drawing, 0.0, coloring.min_shown);
+    let mut preferences = preferences(drawing, 0.0, coloring.min_shown);
     if !has_background {
-        wishes.truncate(drawing.len());
+        preferences.truncate(drawing.len());
     }
     let is_given = has_background && drawing.background_fixed;
     let background = drawing.background().filter(|_| is_given);
-    Palette::new(&config.colors, &wishes, background)
+    Palette::new(&config.colors, &preferences, background)
 }
 
 /// Runs the rounds of choosing colours and fitting the rest, and keeps the best drawing.
@@ -79,9 +79,12 @@ fn fit_to(session: &mut Session<'_>, palette: &mut Palette) -> Result<()> {
 fn recolor(session: &mut Session<'_>, palette: &mut Palette) {
     let coloring = session.recipe.coloring;
     let drawing = &mut session.drawing;
-    let wishes = wishes(drawing, coloring.damping, coloring.min_shown);
-    palette.follow(&wishes, coloring.means);
-    let colors: Vec<Rgb> = wishes.iter().map(|w| palette.nearest(w.color)).collect();
+    let preferences = preferences(drawing, coloring.damping, coloring.min_shown);
+    palette.follow(&preferences, coloring.means);
+    let colors: Vec<Rgb> = preferences
+        .iter()
+        .map(|w| palette.nearest(w.color))
+        .collect();
     set_colors(drawing, &colors);
 }
 
@@ -94,9 +97,13 @@ struct Palette {
 }
 
 impl Palette {
-    /// The palette that `colors` asks for, chosen from these `wishes` unless it is given. It includes the colour of a
+    /// The palette that `colors` asks for, chosen from these `preferences` unless it is given. It includes the colour of a
     /// fixed `background`. `None` if any colours are allowed.
-    fn new(colors: &Colors, wishes: &[Wish], background: Option<Rgb>) -> Option<Self> {
+    fn new(
+        colors: &Colors,
+        preferences: &[PreferredColor],
+        background: Option<Rgb>,
+    ) -> Option<Self> {
         match colors {
             Colors::Free => None,
             Colors::Palette(given) => Some(Self {
@@ -108,7 +115,7 @@ impl Palette {
                     colors: background.into_iter().collect(),
                     fixed: usize::from(background.is_some()),
                 };
-                palette.spread(*most, wishes);
+                palette.spread(*most, preferences);
                 Some(palette)
             }
         }
@@ -139,16 +146,16 @@ impl Palette {
     }
 
     /// Adds, one by one, the colour whose absence costs most, until there are `most` or none is missing.
-    fn spread(&mut self, most: usize, wishes: &[Wish]) {
+    fn spread(&mut self, most: usize, preferences: &[PreferredColor]) {
         while self.colors.len() < most {
-            let missed = |wish: &Wish| match self.index(wish.color) {
-                Some(k) => wish.weight * dist2(self.colors[k], wish.color),
-                None => wish.weight,
+            let missed = |preference: &PreferredColor| match self.index(preference.color) {
+                Some(k) => preference.weight * dist2(self.colors[k], preference.color),
+                None => preference.weight,
             };
-            let worst = wishes
+            let worst = preferences
                 .iter()
                 .max_by(|a, b| missed(a).total_cmp(&missed(b)))
-                .filter(|wish| missed(wish) > 0.0);
+                .filter(|preference| missed(preference) > 0.0);
             let Some(worst) = worst else {
                 return;
             };
@@ -160,17 +167,17 @@ impl Palette {
         }
     }
 
-    /// Moves the colours that are not fixed to the weighted means of the nearest wishes, by k-means.
-    fn follow(&mut self, wishes: &[Wish], iterations: usize) {
+    /// Moves the colours that are not fixed to the weighted means of the nearest preferences, by k-means.
+    fn follow(&mut self, preferences: &[PreferredColor], iterations: usize) {
         for _ in 0..iterations {
             let mut sums = vec![([0.0_f32; 3], 0.0_f32); self.colors.len()];
-            for wish in wishes {
-                if let Some(k) = self.index(wish.color) {
+            for preference in preferences {
+                if let Some(k) = self.index(preference.color) {
                     let (sum, weight) = &mut sums[k];
                     sum.iter_mut()
-                        .zip(wish.color)
-                        .for_each(|(s, c)| *s += wish.weight * c);
-                    *weight += wish.weight;
+                        .zip(preference.color)
+                        .for_each(|(s, c)| *s += preference.weight * c);
+                    *weight += preference.weight;
                 }
             }
             let moved = self.colors.iter_mut().zip(sums).skip(self.fixed);
@@ -194,46 +201,54 @@ fn dist2(a: Rgb, b: Rgb) -> f32 {
 mod tests {
     use super::*;
 
-    fn wish(level: f32, weight: f32) -> Wish {
-        Wish {
+    fn preference(level: f32, weight: f32) -> PreferredColor {
+        PreferredColor {
             color: [level; 3],
             weight,
         }
     }
 
-    fn learned(most: usize, wishes: &[Wish]) -> Vec<Rgb> {
-        let mut palette = Palette::new(&Colors::AtMost(most), wishes, None).unwrap();
-        palette.follow(wishes, 10);
+    fn learned(most: usize, preferences: &[PreferredColor]) -> Vec<Rgb> {
+        let mut palette = Palette::new(&Colors::AtMost(most), preferences, None).unwrap();
+        palette.follow(preferences, 10);
         palette.colors
     }
 
     #[test]
-    fn a_palette_is_the_means_of_what_is_wished() {
-        let wishes = [wish(0.0, 3.0), wish(0.2, 1.0), wish(1.0, 1.0)];
-        let colors = learned(2, &wishes);
+    fn a_palette_is_the_means_of_what_is_preferred() {
+        let preferences = [
+            preference(0.0, 3.0),
+            preference(0.2, 1.0),
+            preference(1.0, 1.0),
+        ];
+        let colors = learned(2, &preferences);
         assert_eq!(colors, [rounded([0.05; 3]), [1.0; 3]]);
     }
 
     #[test]
-    fn no_more_colours_are_taken_than_are_wished() {
-        let wishes = [wish(0.0, 3.0), wish(1.0, 1.0), wish(1.0, 2.0)];
-        assert_eq!(learned(16, &wishes), [[0.0; 3], [1.0; 3]]);
+    fn no_more_colours_are_taken_than_are_preferred() {
+        let preferences = [
+            preference(0.0, 3.0),
+            preference(1.0, 1.0),
+            preference(1.0, 2.0),
+        ];
+        assert_eq!(learned(16, &preferences), [[0.0; 3], [1.0; 3]]);
     }
 
     #[test]
     fn given_colours_stay() {
-        let wishes = [wish(0.3, 1.0), wish(0.9, 1.0)];
+        let preferences = [preference(0.3, 1.0), preference(0.9, 1.0)];
         let given = Colors::Palette(vec![[0; 3], [255; 3]]);
-        let mut palette = Palette::new(&given, &wishes, None).unwrap();
-        palette.follow(&wishes, 10);
+        let mut palette = Palette::new(&given, &preferences, None).unwrap();
+        palette.follow(&preferences, 10);
         assert_eq!(palette.colors, [[0.0; 3], [1.0; 3]]);
         assert_eq!(palette.nearest([0.9, 0.2, 0.8]), [1.0; 3]);
     }
 
     #[test]
     fn a_given_background_has_its_colour() {
-        let wishes = [wish(0.3, 9.0), wish(0.9, 1.0)];
-        let palette = Palette::new(&Colors::AtMost(2), &wishes, Some([1.0; 3])).unwrap();
+        let preferences = [preference(0.3, 9.0), preference(0.9, 1.0)];
+        let palette = Palette::new(&Colors::AtMost(2), &preferences, Some([1.0; 3])).unwrap();
         assert_eq!(palette.colors, [[1.0; 3], rounded([0.3; 3])]);
     }
 }

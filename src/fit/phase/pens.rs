@@ -8,8 +8,8 @@ use std::collections::BinaryHeap;
 use std::f32::consts::TAU;
 use std::ops::Range;
 
+use super::preferences::{preferences, set_colors};
 use super::rounds;
-use super::wishes::{set_colors, wishes};
 use crate::error::Result;
 use crate::fit::config::Colors;
 use crate::fit::drawing::Drawing;
@@ -46,8 +46,8 @@ pub(in crate::fit) fn run(session: &mut Session<'_>) -> Result<bool> {
 
 /// Chooses the pens of all strokes, and returns the strokes of each pen.
 fn hand_out(drawing: &mut Drawing, keep_colors: bool, recipe: &Recipe) -> Vec<Vec<usize>> {
-    let wishes = wishes(drawing, 0.0, recipe.coloring.min_shown);
-    let weights: Vec<f32> = wishes.iter().map(|w| w.weight).collect();
+    let preferences = preferences(drawing, 0.0, recipe.coloring.min_shown);
+    let weights: Vec<f32> = preferences.iter().map(|w| w.weight).collect();
     let windows = windows(&drawing.stage_sizes(), recipe.pens.window);
     let strokes = drawing.free_mut();
     let mut pens = Vec::new();
@@ -79,22 +79,25 @@ fn windows(stage_sizes: &[usize], most: usize) -> Vec<Range<usize>> {
 /// Gives each pen the weighted mean of the colours that suit its strokes best.
 fn tint(drawing: &mut Drawing, pens: &[Vec<usize>], recipe: &Recipe) {
     let coloring = recipe.coloring;
-    let mut wishes = wishes(drawing, coloring.damping, coloring.min_shown);
+    let mut preferences = preferences(drawing, coloring.damping, coloring.min_shown);
     for pen in pens {
-        let weight: f32 = pen.iter().map(|&i| wishes[i].weight).sum();
+        let weight: f32 = pen.iter().map(|&i| preferences[i].weight).sum();
         let mean = [0, 1, 2].map(|c| {
             let sum: f32 = pen
                 .iter()
-                .map(|&i| wishes[i].weight * wishes[i].color[c])
+                .map(|&i| preferences[i].weight * preferences[i].color[c])
                 .sum();
             sum / weight
         });
         if weight > 0.0 {
             let shared = color(mean.map(quantum));
-            pen.iter().for_each(|&i| wishes[i].color = shared);
+            pen.iter().for_each(|&i| preferences[i].color = shared);
         }
     }
-    let colors: Vec<Rgb> = wishes.iter().map(|wish| wish.color).collect();
+    let colors: Vec<Rgb> = preferences
+        .iter()
+        .map(|preference| preference.color)
+        .collect();
     set_colors(drawing, &colors);
 }
 

@@ -16,7 +16,7 @@ pub(in crate::fit) fn polish(session: &mut Session<'_>, purpose: Purpose) -> Res
             return Ok(Outcome::Over);
         }
         session.drawing.thaw();
-        session.progress.enter(session.journal.records.len());
+        session.progress.enter(session.history.records.len());
     }
     // A fidelity is to be met by as few strokes as possible; their number is corrected afterwards.
     let limit = match session.config.budget.psnr_db {

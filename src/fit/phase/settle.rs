@@ -31,7 +31,7 @@ pub(in crate::fit) fn settle(session: &mut Session<'_>) -> Result<Outcome> {
     let budget = &session.config.budget;
     if budget::needs_file(budget, &session.recipe) {
         let file = run(session, rates)?;
-        session.journal.corrections.last_db = psnr_db(file.mse);
+        session.history.corrections.last_db = psnr_db(file.mse);
         let best = session.best.as_ref();
         if best.is_none_or(|best| budget::is_better(budget, &file, best)) {
             session.set_best(file);

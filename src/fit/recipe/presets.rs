@@ -1,8 +1,8 @@
 //! The numbers of the presets.
 
 use super::{
-    BackgroundChoice, Coloring, Correction, Domain, Edge, Optimizer, Pens, Polish, Preset, Rates,
-    Recipe, Relocation, Rounds, Settling, Stages, TimeShares,
+    AdamSettings, BackgroundChoice, Correction, Domain, EdgeShape, Pens, Polish, Preset, Rates,
+    Recipe, Recoloring, Relocation, Rounds, Settling, Stages, TimeShares,
 };
 use crate::optim::AdamParams;
 use crate::seed::Probing;
@@ -97,7 +97,7 @@ const BALANCED: Recipe = Recipe {
         polish_gain_db: 2.0,
         min_scale: 2.5,
     },
-    edge: Edge {
+    edge: EdgeShape {
         final_slope: 1.2,
         annealed: 0.7,
     },
@@ -106,7 +106,7 @@ const BALANCED: Recipe = Recipe {
         min_radius: 0.51,
         min_opacity: 0.1,
     },
-    optimizer: Optimizer {
+    optimizer: AdamSettings {
         strokes: AdamParams {
             betas: [0.9, 0.9],
             eps: 1e-10,
@@ -138,7 +138,7 @@ const BALANCED: Recipe = Recipe {
         until: 0.9,
         fill: 2,
     },
-    coloring: Coloring {
+    coloring: Recoloring {
         rounds: Rounds {
             count: 12,
             iterations: 0.6,

@@ -5,14 +5,14 @@ use crate::render::{AX, BY, Grid, OPACITY, Params, RADIUS, RED};
 
 /// The domains of a stroke's parameters, to which each step of descent is clamped.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Limits {
+pub(super) struct Bounds {
     domain: Domain,
     /// Sides of the picture, px.
     sides: [f32; 2],
 }
 
-impl Limits {
-    /// The limits for a picture of `grid`'s size; `opaque` fixes the opacity at 1.
+impl Bounds {
+    /// The bounds for a picture of `grid`'s size; `opaque` fixes the opacity at 1.
     pub(super) fn new(grid: Grid, domain: Domain, opaque: bool) -> Self {
         let min_opacity = if opaque { 1.0 } else { domain.min_opacity };
         Self {
@@ -24,7 +24,7 @@ impl Limits {
         }
     }
 
-    /// The same limits at another resolution.
+    /// The same bounds at another resolution.
     pub(super) fn on(self, grid: Grid) -> Self {
         Self {
             sides: [grid.width as f32, grid.height as f32],

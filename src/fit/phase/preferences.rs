@@ -6,7 +6,7 @@ use crate::scene::Rgb;
 
 /// The colour of a stroke, or of the background, that minimises the squared error if all others stay as they are.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Wish {
+pub(super) struct PreferredColor {
     pub(super) color: Rgb,
     /// Growth of the squared error with the squared distance from that colour.
     pub(super) weight: f32,
@@ -24,17 +24,21 @@ impl CanvasLoss for Shown {
     }
 }
 
-/// The wishes of the strokes of `drawing`, followed by that of the background if there is one, each after a share
+/// The preferences of the strokes of `drawing`, followed by that of the background if there is one, each after a share
 /// `damping` of its Newton step. A stroke that shows in fewer than `min_shown` px keeps its colour. All strokes must be
 /// free.
-pub(super) fn wishes(drawing: &mut Drawing, damping: f32, min_shown: f32) -> Vec<Wish> {
+pub(super) fn preferences(
+    drawing: &mut Drawing,
+    damping: f32,
+    min_shown: f32,
+) -> Vec<PreferredColor> {
     let slopes = drawing.judge();
     // How much of a stroke shows does not depend on the matte.
     let mut shown = Gradients::default();
     drawing.backward(&Shown, &mut shown);
     // The loss is a mean over pixels and channels.
     let values = (3 * drawing.pixels()) as f32 / drawing.pixel_area();
-    let wish = |color: Rgb, slope: Rgb, weight: f32| {
+    let preference = |color: Rgb, slope: Rgb, weight: f32| {
         let step = if weight > min_shown {
             damping * values / (2.0 * weight)
         } else {
@@ -42,17 +46,17 @@ pub(super) fn wishes(drawing: &mut Drawing, damping: f32, min_shown: f32) -> Vec
         };
         let moved = |c: usize| color[c] - (step * slope[c]).clamp(-1.0, 1.0);
         let color = [0, 1, 2].map(|c| moved(c).clamp(0.0, 1.0));
-        Wish { color, weight }
+        PreferredColor { color, weight }
     };
     let rgb = |p: &Params| [p[RED], p[RED + 1], p[RED + 2]];
     let strokes = drawing.free().iter().zip(&slopes.strokes);
-    let wishes = strokes.zip(&shown.strokes).map(|((stroke, slope), shown)| {
+    let preferences = strokes.zip(&shown.strokes).map(|((stroke, slope), shown)| {
         // The square of a share is at most the share times the opacity.
-        wish(rgb(stroke), rgb(slope), shown[RED] * stroke[OPACITY])
+        preference(rgb(stroke), rgb(slope), shown[RED] * stroke[OPACITY])
     });
     let background = drawing.background();
-    let background = background.map(|color| wish(color, slopes.backdrop, shown.backdrop[0]));
-    wishes.chain(background).collect()
+    let background = background.map(|color| preference(color, slopes.backdrop, shown.backdrop[0]));
+    preferences.chain(background).collect()
 }
 
 /// Sets the colours of the strokes of `drawing` and, if one more colour follows, of the background unless that is

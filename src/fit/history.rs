@@ -12,7 +12,7 @@ use crate::metrics::psnr_db;
 
 /// The history of a fit, apart from the drawing.
 #[derive(Debug, Serialize, Deserialize)]
-pub(super) struct Journal {
+pub(super) struct History {
     /// One record per stage, those of the base included.
     pub(super) records: Vec<StageRecord>,
     /// The current stage, or the last one.
@@ -47,8 +47,8 @@ pub(super) struct Corrections {
     pub(super) db_per_doubling: f64,
 }
 
-impl Journal {
-    /// The journal of a new fit, with the `records` of its base's layers.
+impl History {
+    /// The history of a new fit, with the `records` of its base's layers.
     pub(super) fn new(records: Vec<StageRecord>, db_per_doubling: f64) -> Self {
         Self {
             records,
