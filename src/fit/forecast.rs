@@ -81,7 +81,7 @@ impl Forecast {
     /// Duration of a write that a round of settling starts from, and of its render by the model of a browser.
     fn seeing(&self, strokes: usize) -> f64 {
         (1.0 + self.shares.browser) * self.write_s(strokes)
-            + self.shares.browser_page * self.write_s(0)
+            + self.shares.browser_empty * self.write_s(0)
     }
 
     /// The time reserved for the first write and the rounds of settling, which are shorter if the limit is short.
@@ -106,7 +106,7 @@ impl Forecast {
         } else {
             self.shares.judging
         };
-        writes * self.write_s(strokes) + self.shares.judging_page * self.write_s(0)
+        writes * self.write_s(strokes) + self.shares.judging_empty * self.write_s(0)
     }
 }
 
@@ -191,7 +191,7 @@ mod tests {
 
         fn look(&mut self, strokes: usize) {
             self.now +=
-                shares().browser * self.write_s(strokes) + shares().browser_page * self.write_s(0);
+                shares().browser * self.write_s(strokes) + shares().browser_empty * self.write_s(0);
         }
 
         fn step(&mut self, forecast: &mut Forecast, strokes: usize) {
@@ -226,7 +226,7 @@ mod tests {
             }
             self.now
                 + shares().judging * self.write_s(strokes)
-                + shares().judging_page * self.write_s(0)
+                + shares().judging_empty * self.write_s(0)
         }
     }
 

@@ -185,10 +185,10 @@ const BALANCED: Recipe = Recipe {
     time: TimeShares {
         stroke_px: 160.0,
         browser: 0.25,
-        browser_page: 1.15,
+        browser_empty: 1.15,
         judging: 1.75,
         judging_transparent: 2.2,
-        judging_page: 2.6,
+        judging_empty: 2.6,
         settling: 0.125,
         min_descent: 0.25,
         min_polish: 15.0,
