@@ -81,9 +81,9 @@ const EXAMPLES_AND_STATUSES: &str = "Examples:
   strokefit render photo.svg -o large.png --scale 4    four times the size
 
 Exit status: 0 done, 1 failed, 2 wrong usage, 3 a target was not reached, 4 the fidelity check
-failed (a renderer does not draw the SVG as it was fitted). Ctrl-C, SIGTERM or SIGHUP during a fit
-makes the program write the drawing as far as it has come, within a second or so, and then end as the
-signal does; shells report status 130, 143 or 129. A second signal ends it at once.";
+failed (a renderer does not draw the SVG as it was fitted). On Ctrl-C, SIGTERM or SIGHUP during a
+fit, the program writes the drawing as far as it has come, within a second or so, and then ends as
+the signal does; shells report status 130, 143 or 129. A second signal ends it at once.";
 
 /// How much to say on standard error.
 #[derive(Debug, Clone, Copy, clap::Args)]
