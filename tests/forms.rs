@@ -270,7 +270,7 @@ fn options_that_make_no_sense_are_refused() {
 fn bad_palettes_are_refused() {
     assert_refused(&["--colors", "0"], "whole number");
     assert_refused(&["--palette", "#12,#ffffff"], "'#12' is not a colour");
-    assert_refused(&["--palette", "none.gpl"], "cannot be read");
+    assert_refused(&["--palette", "none.gpl"], "no such file");
     assert_refused(&["--palette", "bad.gpl"], "line 2");
     assert_refused(&["--palette", "#ffffff", "--colors", "3"], "--colors");
     let ground = ["--palette", "#ffffff", "--background", "#000000"];

@@ -1,6 +1,8 @@
 //! Options for the colours of a drawing, and the palette files they read.
 
 use std::fs;
+use std::io;
+use std::path::Path;
 
 use strokefit::fit::Colors;
 
@@ -34,12 +36,15 @@ const MAX_BYTES: u64 = 1 << 20;
 /// A list, or what a file says.
 fn palette(text: &str) -> Result<Colors, String> {
     let read = |text: &str| Colors::palette(text).map_err(|error| error.to_string());
-    if text.starts_with('#') {
+    if text.starts_with('#') || text.contains(',') && !Path::new(text).exists() {
         return read(text);
     }
     let remedy =
         "give #rrggbb,#rrggbb,..., a file with one such colour per line, or a GIMP palette";
-    let unreadable = |e: std::io::Error| format!("cannot be read ({e}): {remedy}");
+    let unreadable = |e: io::Error| match e.kind() {
+        io::ErrorKind::NotFound => format!("no such file: {remedy}"),
+        _ => format!("cannot be read ({e}): {remedy}"),
+    };
     let length = fs::metadata(text).map_err(unreadable)?.len();
     if length > MAX_BYTES {
         return Err(format!("the file is longer than 1 MiB: {remedy}"));
@@ -58,6 +63,12 @@ mod tests {
         let red = Colors::Palette(vec![[255, 0, 0]]);
         assert_eq!(palette("#ff0000"), Ok(red));
         let message = palette("no-such-file").unwrap_err();
-        assert!(message.contains("cannot be read"), "{message}");
+        assert!(message.contains("no such file"), "{message}");
+    }
+
+    #[test]
+    fn a_list_of_names_is_refused_by_its_first_name() {
+        let message = palette("red,blue").unwrap_err();
+        assert!(message.contains("'red' is not a colour"), "{message}");
     }
 }
