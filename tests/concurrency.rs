@@ -76,9 +76,9 @@ fn each_can_be_stopped_alone() {
     });
     for (index, (fit, calls)) in fits.iter().enumerate() {
         if index % 2 == 1 {
-            assert_eq!((fit.stop, *calls), (Stop::Observer, 3 * index + 1));
+            assert_eq!((fit.stop, *calls), (Stop::Interrupted, 3 * index + 1));
         } else {
-            assert_ne!(fit.stop, Stop::Observer);
+            assert_ne!(fit.stop, Stop::Interrupted);
         }
         svg::read(&text(fit)).unwrap();
     }

@@ -39,7 +39,7 @@ fn observer_sees_the_drawing_grow_and_stops_it_before_its_time() {
     let mut patience = observer::Patience::default();
     let picture = Image::open(committed("samples/noto-gem.png")).unwrap();
     let drawing = observer::draw(&picture, &mut patience).unwrap();
-    assert_eq!(drawing.stop, Stop::Observer);
+    assert_eq!(drawing.stop, Stop::Interrupted);
     assert!(patience.strokes.len() > 2, "{:?}", patience.strokes);
     assert!(patience.strokes.is_sorted(), "{:?}", patience.strokes);
     assert!(!drawing.scene.is_empty());

@@ -236,7 +236,7 @@ fn an_observer_sees_progress_and_may_stop() {
         .observer(&mut watch)
         .fit(&picture)
         .unwrap();
-    assert_eq!(fit.stop, Stop::Observer);
+    assert_eq!(fit.stop, Stop::Interrupted);
     assert_eq!(seen.len(), 40);
     assert!(
         seen.windows(2).all(|w| w[0] <= w[1]) && seen.iter().all(|done| (0.0..=1.0).contains(done))

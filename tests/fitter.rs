@@ -97,7 +97,7 @@ fn another_thread_cancels_a_fit() {
     let fitter = Fitter::new(config).observer(&mut watch).cancelled_by(token);
     let fit = fitter.fit(&sample("noto-gem")).unwrap();
     canceller.join().unwrap();
-    assert_eq!(fit.stop, Stop::Observer);
+    assert_eq!(fit.stop, Stop::Interrupted);
     assert!(!fit.scene.is_empty(), "what was drawn until then is there");
 }
 
@@ -151,7 +151,7 @@ fn a_fit_that_is_stopped_at_any_call_goes_on_to_the_same_drawing() {
             let fitter = Fitter::new(config.clone()).observer(&mut watch);
             fitter.checkpoint(&mut checkpoint).fit(&picture).unwrap()
         };
-        if fit(last).stop != Stop::Observer {
+        if fit(last).stop != Stop::Interrupted {
             break;
         }
         if fit(usize::MAX).scene != whole {

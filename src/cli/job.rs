@@ -106,7 +106,7 @@ impl Job<'_> {
     /// Removes the checkpoint of a drawing that is written, unless there is more to be drawn of it.
     fn forget(&self, drawn: &Drawn) -> Result<()> {
         match self.options.checkpoint() {
-            Some(checkpoint) if drawn.judged.fit.stop != Stop::Observer => Ok(checkpoint.remove()?),
+            Some(checkpoint) if drawn.judged.fit.stop != Stop::Interrupted => Ok(checkpoint.remove()?),
             _ => Ok(()),
         }
     }
@@ -141,7 +141,7 @@ impl Job<'_> {
     pub(super) fn judge(&self, drawn: &Drawn) -> Status {
         let name = output::name(&self.output);
         if let Some(signal) = Interrupt::caught() {
-            if drawn.judged.fit.stop == Stop::Observer {
+            if drawn.judged.fit.stop == Stop::Interrupted {
                 complain(format_args!(
                     "{name}: interrupted: the file holds the drawing as far as it had come"
                 ));

@@ -69,7 +69,7 @@ impl<F: FnMut(&Progress<'_>) -> ControlFlow<()>> Observer for F {
 /// let plane: Vec<f32> = (0..32 * 32).map(|i| (i % 7) as f32 / 6.0).collect();
 /// let picture = Image::new(32, 32, [plane.clone(), plane.clone(), plane])?;
 /// let fit = Fitter::new(Config::default()).cancelled_by(token).fit(&picture)?;
-/// assert_eq!(fit.stop, Stop::Observer);
+/// assert_eq!(fit.stop, Stop::Interrupted);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, Default)]
@@ -136,7 +136,7 @@ impl<'a> Tracker<'a> {
 
     /// Whether an observer or a token stopped the fit.
     pub(super) fn is_interrupted(&self) -> bool {
-        self.stopped == Some(Stop::Observer)
+        self.stopped == Some(Stop::Interrupted)
     }
 
     /// Stops the fit, unless something else already did.
@@ -178,7 +178,7 @@ impl<'a> Tracker<'a> {
             drawing,
         };
         if self.observer.observe(&progress).is_break() || self.token.is_cancelled() {
-            self.stopped = Some(Stop::Observer);
+            self.stopped = Some(Stop::Interrupted);
         }
         !self.is_interrupted()
     }

@@ -70,5 +70,5 @@ pub enum Stop {
     /// No further stroke pays.
     Converged,
     /// The observer or a [`CancelToken`](super::CancelToken) stopped the fit.
-    Observer,
+    Interrupted,
 }

@@ -105,7 +105,7 @@ pub fn stop_word(stop: Stop) -> &'static str {
         Stop::Bytes => "bytes",
         Stop::Time => "time",
         Stop::Converged => "converged",
-        Stop::Observer => "interrupted",
+        Stop::Interrupted => "interrupted",
     }
 }
 
