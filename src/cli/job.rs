@@ -106,7 +106,9 @@ impl Job<'_> {
     /// Removes the checkpoint of a drawing that is written, unless there is more to be drawn of it.
     fn forget(&self, drawn: &Drawn) -> Result<()> {
         match self.options.checkpoint() {
-            Some(checkpoint) if drawn.judged.fit.stop != Stop::Interrupted => Ok(checkpoint.remove()?),
+            Some(checkpoint) if drawn.judged.fit.stop != Stop::Interrupted => {
+                Ok(checkpoint.remove()?)
+            }
             _ => Ok(()),
         }
     }
