@@ -109,23 +109,45 @@ pub fn stop_word(stop: Stop) -> &'static str {
     }
 }
 
-/// What a report tells of a run and the drawing does not know.
+/// Facts about a run that a report has and a drawing lacks.
 #[derive(Debug, Clone, Copy)]
 pub struct Run<'a> {
-    /// The picture as it was named; empty where it has no name.
+    /// Name of the picture; empty if it has none.
     pub input: &'a str,
-    /// The SVG that the drawing goes on from, as it was named; `None` keeps it out of the report.
+    /// Name of the SVG that the drawing goes on from; `None` leaves it out of the report.
     pub base: Option<&'a str>,
-    /// What was asked for.
+    /// The configuration of the fit.
     pub config: &'a Config,
-    /// Wall time that is told of.
+    /// Wall time to report.
     pub wall: Duration,
-    /// What the process has used; [`Usage::default`] where that says nothing of the drawing.
+    /// Resources that the process has used; [`Usage::default`] if that says nothing about this fit.
     pub usage: Usage,
 }
 
 impl FitReport {
     /// The report of a drawing that was made in `run`.
+    ///
+    /// ```
+    /// use std::time::Duration;
+    /// use strokefit::fit::{Config, Fitter};
+    /// use strokefit::image::Image;
+    /// use strokefit::report::{self, FitReport, Judged, Run, Usage};
+    ///
+    /// let picture = Image::filled(32, 32, [0.8, 0.2, 0.1])?;
+    /// let config = Config::default();
+    /// let judged = Judged::new(Fitter::new(config.clone()).fit(&picture)?)?;
+    /// let run = Run {
+    ///     input: "red.png",
+    ///     base: None,
+    ///     config: &config,
+    ///     wall: Duration::from_millis(20),
+    ///     usage: Usage::default(),
+    /// };
+    /// let report = FitReport::of(&judged, &run);
+    /// assert_eq!(report.strokes, 0);
+    /// assert!(report::json(&report)?.starts_with("{\n  \"schema\": 1"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn of(judged: &Judged, run: &Run<'_>) -> Self {
         let Judged {
             fit,

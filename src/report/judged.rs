@@ -1,4 +1,4 @@
-//! A drawing as a file, and what is to be said of it.
+//! A finished drawing, its file, and the verdict on it.
 
 use crate::error::Result;
 use crate::fit::{Base, Fit};
@@ -6,7 +6,7 @@ use crate::metrics::Quality;
 use crate::scene::Scene;
 use crate::verify::{self, OnMattes, Verdict};
 
-/// A finished drawing with its file, which resvg has drawn.
+/// A finished drawing with its file, judged by resvg's render.
 #[derive(Debug, Clone)]
 pub struct Judged {
     /// The drawing.
@@ -15,14 +15,14 @@ pub struct Judged {
     pub svg: String,
     /// Our own soft render against the picture.
     pub soft: Quality,
-    /// The file as drawn by resvg.
+    /// The file as rendered by resvg, against the picture and our own render.
     pub verdict: Verdict,
-    /// The same on black, on white and on magenta, where the picture has alpha.
+    /// Fidelity on mattes of black, white and magenta, if the picture has alpha.
     pub alpha: Option<OnMattes>,
 }
 
 impl Judged {
-    /// Writes the drawing, and judges what is written.
+    /// Writes the drawing as SVG text, renders it with resvg, and compares.
     ///
     /// # Errors
     /// As [`verify::verify`].
@@ -41,7 +41,7 @@ impl Judged {
         })
     }
 
-    /// The scene, unless its strokes lie on a document and are only a part of the drawing.
+    /// The scene; `None` if its strokes lie on another SVG and are only a part of the drawing.
     pub fn whole(&self) -> Option<&Scene> {
         let lies_on_document = |base: &Base| base.document.is_some();
         let is_part = self.fit.base.as_ref().is_some_and(lies_on_document);
