@@ -110,6 +110,9 @@
 //! | surface | one matte's target, backdrop and canvas; a drawing has one, a transparent drawing two |
 //! | course | how long a descent runs, at what step sizes and with which edge |
 //! | memento | what a drawing was, to the bit |
+//! | aim | what settling descends towards: the target less the renderers' offset |
+//! | preferred colour | the colour that a stroke would have if it were fitted alone |
+//! | rehearsal | writing and rendering an unfinished drawing only to learn how long that takes |
 //! | plan | how many strokes each stage adds, and their typical radius (px) |
 //! | recipe | the tuned numbers of a fit: iterations, step sizes, shares |
 //! | preset | a named recipe: draft, balanced, best |
