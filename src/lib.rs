@@ -111,7 +111,7 @@
 //! | course | how long a descent runs, at what step sizes and with which edge |
 //! | memento | what a drawing was, to the bit |
 //! | aim | what settling descends towards: the target less the renderers' offset |
-//! | preferred colour | the colour that a stroke would have if it were fitted alone |
+//! | preferred colour | the colour of a stroke that fits best while all other strokes stay as they are |
 //! | rehearsal | writing and rendering an unfinished drawing only to learn how long that takes |
 //! | plan | how many strokes each stage adds, and their typical radius (px) |
 //! | recipe | the tuned numbers of a fit: iterations, step sizes, shares |
