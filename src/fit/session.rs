@@ -26,6 +26,7 @@ use super::surface::Prepared;
 use crate::clock::Instant;
 use crate::error::Result;
 use crate::image::Image;
+use crate::metrics::psnr_db;
 
 /// A fit under way: first the fields that are fixed, then those that change.
 pub(super) struct Session<'a> {
@@ -159,6 +160,12 @@ impl<'a> Session<'a> {
         self.best = Some(file);
     }
 
+    /// Takes down why a fit ends that aims at a fidelity of `wanted_db`.
+    pub(super) fn stop_at(&mut self, wanted_db: f64) {
+        let best_db = self.best.as_ref().map_or(0.0, |best| psnr_db(best.mse));
+        self.history.stop_at(wanted_db, best_db);
+    }
+
     /// What cut the fit short, if anything did.
     pub(super) fn cut_by(&self) -> Option<Stop> {
         let hurried = self.timer.is_hurried().then_some(Stop::Time);
@@ -207,7 +214,7 @@ impl<'a> Session<'a> {
     /// divided, at the end, and when the fit is interrupted. What an interrupted fit does after that, to finish its
     /// drawing quickly, is not kept.
     pub(super) fn keep(&mut self, descent: Option<&Descent>) {
-        let Some(mut keeper) = self.keeper.take() else {
+        let Some(keeper) = self.keeper.take() else {
             return;
         };
         let is_resumable = descent.is_none() || self.phase.is_divisible();
@@ -218,8 +225,8 @@ impl<'a> Session<'a> {
                 .checkpoint
                 .keep(keeper.fingerprint, &self.state(descent));
         }
-        keeper.is_final |= is_interrupted;
         self.keeper = Some(keeper);
+        self.seal();
     }
 
     /// Stops keeping the state if the fit was interrupted: a phase that was cut short is nothing to go on from.

@@ -8,7 +8,6 @@ use crate::fit::recipe::Correction;
 use crate::fit::result::Stop;
 use crate::fit::session::Session;
 use crate::math;
-use crate::metrics::psnr_db;
 
 /// Ends the fit if the base, as it is, already meets a budget.
 pub(in crate::fit) fn try_base(session: &mut Session<'_>) -> Result<Outcome> {
@@ -46,8 +45,7 @@ pub(in crate::fit) fn meet_fidelity(session: &mut Session<'_>) -> Outcome {
         resize(session, doublings)
     };
     if outcome == Outcome::Over {
-        let best_db = session.best.as_ref().map_or(0.0, |best| psnr_db(best.mse));
-        session.history.stop_at(wanted_db, best_db);
+        session.stop_at(wanted_db);
     }
     outcome
 }

@@ -12,7 +12,6 @@ use crate::fit::price::Price;
 use crate::fit::result::Stop;
 use crate::fit::search::search;
 use crate::fit::session::Session;
-use crate::metrics::psnr_db;
 
 /// Seeds the next stage, unless the plan or a budget has ended.
 pub(in crate::fit) fn next_stage(session: &mut Session<'_>) -> Result<Outcome> {
@@ -147,8 +146,7 @@ pub(in crate::fit) fn stage(session: &mut Session<'_>, purpose: Purpose) -> Resu
         return Ok(Outcome::Over);
     }
     if let (Purpose::Correct, Some(wanted_db)) = (purpose, session.config.budget.psnr_db) {
-        let best_db = session.best.as_ref().map_or(0.0, |best| psnr_db(best.mse));
-        session.history.stop_at(wanted_db, best_db);
+        session.stop_at(wanted_db);
     }
     Ok(Outcome::Rejected)
 }
