@@ -3,9 +3,9 @@
 //! ```
 //! use strokefit::animation::{self, Film, Legend, Step};
 //! use strokefit::image::AnimationFormat;
-//! use strokefit::scene::{Scene, Shape, Stage, Stroke};
+//! use strokefit::scene::{Scene, Path, Stage, Stroke};
 //!
-//! let stroke = |x| Stroke { shape: Shape::dot([x, 4.0].into()), radius: 2.0, color: [0.1; 3], opacity: 1.0 };
+//! let stroke = |x| Stroke { path: Path::dot([x, 4.0].into()), radius: 2.0, color: [0.1; 3], opacity: 1.0 };
 //! let scene = Scene {
 //!     stages: vec![Stage { strokes: [3.0, 8.0, 13.0].map(stroke).to_vec() }],
 //!     ..Scene::empty(16, 8, Some([1.0; 3]))
@@ -193,7 +193,7 @@ fn part_svg<'a>(
     strokes: impl Iterator<Item = &'a Stroke>,
 ) -> String {
     let stage = Stage {
-        strokes: strokes.copied().collect(),
+        strokes: strokes.cloned().collect(),
     };
     let part = Scene {
         stages: vec![stage],
@@ -216,12 +216,12 @@ fn precision(scene: &Scene) -> u8 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Shape;
+    use crate::scene::Path;
     use crate::verify;
 
     fn scene(stages: &[usize]) -> Scene {
         let stroke = |k: usize| Stroke {
-            shape: Shape::capsule(
+            path: Path::line(
                 [(k * 7 % 30) as f32, 3.0].into(),
                 [20.0, (k * 5 % 24) as f32].into(),
             ),

@@ -4,71 +4,21 @@
 //! that encoding, as SVG renderers do.
 
 mod overlap;
+mod path;
 mod quantize;
 
-use crate::math::Point;
-
+pub use path::{MAX_POINTS, Path, PathPoint, Piece};
 pub use quantize::{Dropped, MAX_PRECISION, MIN_WIDTH, Quantized};
 pub(crate) use quantize::{UNITS_PER_PX, Written, color, quantum};
 
 /// An sRGB-encoded colour, 0..1 per channel.
 pub type Rgb = [f32; 3];
 
-/// The centre line of a stroke: a polyline of one point (a dot) or two (a capsule).
-///
-/// Code outside the renderer uses [`points`](Self::points) and makes no assumption about their number, so
-/// longer polylines need changes only here and in the renderer.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum Shape {
-    /// A disc: one point.
-    Dot([Point; 1]),
-    /// A line segment with round caps: two points.
-    Capsule([Point; 2]),
-}
-
-impl Shape {
-    /// A disc centred on `p`.
-    pub fn dot(p: Point) -> Self {
-        Self::Dot([p])
-    }
-
-    /// A capsule from `a` to `b`.
-    pub fn capsule(a: Point, b: Point) -> Self {
-        Self::Capsule([a, b])
-    }
-
-    /// The points of the centre line, in drawing order; never empty.
-    pub fn points(&self) -> &[Point] {
-        match self {
-            Self::Dot(p) => p,
-            Self::Capsule(p) => p,
-        }
-    }
-
-    /// First and last point; the same for a dot.
-    pub fn ends(&self) -> (Point, Point) {
-        match *self {
-            Self::Dot([p]) => (p, p),
-            Self::Capsule([a, b]) => (a, b),
-        }
-    }
-
-    /// The same shape with `f` applied to every point.
-    #[must_use]
-    pub fn map(self, f: impl Fn(Point) -> Point) -> Self {
-        match self {
-            Self::Dot(p) => Self::Dot(p.map(f)),
-            Self::Capsule(p) => Self::Capsule(p.map(f)),
-        }
-    }
-}
-
-/// One stroke: a shape swept by a disc, in one colour.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// One stroke: a path swept by a disc, in one colour.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Stroke {
     /// The centre line, px.
-    pub shape: Shape,
+    pub path: Path,
     /// Half the stroke width, px.
     pub radius: f32,
     /// sRGB-encoded colour, 0..1.
@@ -80,10 +30,10 @@ pub struct Stroke {
 impl Stroke {
     /// Whether every number of the stroke is finite.
     pub fn is_finite(&self) -> bool {
-        self.shape
+        self.path
             .points()
             .iter()
-            .all(|p| p.x.is_finite() && p.y.is_finite())
+            .all(|p| p.at.x.is_finite() && p.at.y.is_finite())
             && self.radius.is_finite()
             && self.color.iter().all(|c| c.is_finite())
             && self.opacity.is_finite()

@@ -214,7 +214,7 @@ pub fn silence_panics() {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Scene, Shape, Stage, Stroke};
+    use crate::scene::{Path, Scene, Stage, Stroke};
     use crate::svg::{self, WriteOptions};
 
     const RED: &str = r##"<svg xmlns="http://www.w3.org/2000/svg" width="4" height="2" viewBox="0 0 4 2"><rect width="2" height="2" fill="#ff0000"/></svg>"##;
@@ -335,14 +335,14 @@ mod tests {
     }
 
     fn drawing() -> String {
-        let stroke = |shape| Stroke {
-            shape,
+        let stroke = |path| Stroke {
+            path,
             radius: 3.0,
             color: [0.8, 0.2, 0.4],
             opacity: 1.0,
         };
-        let dot = stroke(Shape::dot([30.5, 10.5].into()));
-        let line = stroke(Shape::capsule([5.0, 5.0].into(), [20.0, 15.0].into()));
+        let dot = stroke(Path::dot([30.5, 10.5].into()));
+        let line = stroke(Path::line([5.0, 5.0].into(), [20.0, 15.0].into()));
         let page = Scene::empty(40, 20, Some([0.2, 0.4, 0.6]));
         svg::write(
             &Scene {

@@ -25,7 +25,7 @@ use strokefit::engines::{DrawRequest, Engine};
 use strokefit::fit::{Budget, Config, Fitter};
 use strokefit::image::Image;
 use strokefit::metrics;
-use strokefit::scene::{Scene, Shape, Stage, Stroke};
+use strokefit::scene::{Path, Scene, Stage, Stroke};
 use strokefit::svg::{self, Form, WriteOptions};
 use strokefit::verify::{self, Size};
 use support::engine::installed;
@@ -183,9 +183,9 @@ fn chromium_draws_as_it_is_foreseen() {
 
 fn capsule(a: [f32; 2], b: [f32; 2], width: f32) -> Stroke {
     let shape = if a == b {
-        Shape::dot(a.into())
+        Path::dot(a.into())
     } else {
-        Shape::capsule(a.into(), b.into())
+        Path::line(a.into(), b.into())
     };
     Stroke {
         shape,

@@ -265,7 +265,7 @@ fn the_drawing_can_be_seen_while_it_grows() {
     let reach = |scene: &Scene| {
         scene
             .strokes()
-            .map(|s| s.shape.ends().0.x)
+            .map(|s| s.path.ends().0.x)
             .fold(0.0, f32::max)
     };
     assert!(reach(&seen[seen.len() / 3]) > 200.0);

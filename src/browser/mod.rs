@@ -13,9 +13,9 @@
 //! ```
 //! use strokefit::browser;
 //! use strokefit::image::Image;
-//! use strokefit::scene::{Shape, Stroke};
+//! use strokefit::scene::{Path, Stroke};
 //!
-//! let shape = Shape::capsule([3.0, 2.5].into(), [9.0, 2.5].into());
+//! let shape = Path::line([3.0, 2.5].into(), [9.0, 2.5].into());
 //! let stroke = Stroke { shape, radius: 1.0, color: [0.0; 3], opacity: 0.5 };
 //! let page = Image::filled(12, 5, [1.0; 3])?;
 //! let picture = browser::draw([&stroke].into_iter(), &[page]).remove(0);
@@ -40,7 +40,7 @@ pub fn draw<'a>(strokes: impl Iterator<Item = &'a Stroke>, pages: &[Image]) -> V
     let (mut outline, mut area) = (Outline::default(), Area::new(width, height));
     let mut pictures: Vec<Vec<u8>> = pages.iter().map(Image::to_rgb8).collect();
     for stroke in strokes {
-        let (a, b) = stroke.shape.ends();
+        let (a, b) = stroke.path.ends();
         outline.trace(a, b, stroke.radius);
         let paint = Paint::of(stroke);
         area.fill(&outline, |y, x, coverages| {
@@ -97,12 +97,12 @@ fn product(a: u32, b: u32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Shape;
+    use crate::scene::Path;
 
     fn pixel(backdrop: u8, color: u8, opacity: f32) -> u8 {
         let level = |v: u8| [f32::from(v) / 255.0; 3];
         let stroke = Stroke {
-            shape: Shape::dot([4.0, 4.0].into()),
+            path: Path::dot([4.0, 4.0].into()),
             radius: 3.0,
             color: level(color),
             opacity,
@@ -130,7 +130,7 @@ mod tests {
     #[test]
     fn every_page_has_its_own_backdrop() {
         let stroke = Stroke {
-            shape: Shape::capsule([1.0, 2.0].into(), [1.0, 3.0].into()),
+            path: Path::line([1.0, 2.0].into(), [1.0, 3.0].into()),
             radius: 0.8,
             color: [0.2, 0.4, 0.6],
             opacity: 1.0,

@@ -8,7 +8,7 @@ use super::result::Stop;
 use crate::image::Image;
 use crate::math::Point;
 use crate::metrics::psnr_db;
-use crate::scene::{Shape, Stroke};
+use crate::scene::{Path, Stroke};
 use crate::svg;
 
 /// An estimate of how many strokes the budgets allow, those of `base` included; `None` if they set no limit.
@@ -38,7 +38,7 @@ fn typical_bytes(config: &Config, target: &Image) -> usize {
         Point::new(x + step, y - step)
     };
     let stroke = Stroke {
-        shape: Shape::capsule(place(2.0 / 3.0, 0.0), place(2.0 / 3.0, 10.0 / 3.0)),
+        path: Path::line(place(2.0 / 3.0, 0.0), place(2.0 / 3.0, 10.0 / 3.0)),
         radius: 5.0 / 3.0,
         color: [1.0 / 3.0; 3].map(|c: f32| c + 0.01),
         opacity: if config.opaque { 1.0 } else { 2.0 / 3.0 },

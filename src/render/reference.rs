@@ -104,7 +104,7 @@ impl From<&scene::Scene> for Scene {
 
 impl From<&scene::Stroke> for Stroke {
     fn from(stroke: &scene::Stroke) -> Self {
-        let (a, b) = stroke.shape.ends();
+        let (a, b) = stroke.path.ends();
         Self {
             a: [f64::from(a.x), f64::from(a.y)],
             b: [f64::from(b.x), f64::from(b.y)],
@@ -404,7 +404,7 @@ mod tests {
         let mut scene = scene::Scene::empty(1, 1, None);
         scene.stages.push(scene::Stage {
             strokes: vec![scene::Stroke {
-                shape: scene::Shape::dot(Point::new(0.5, 0.5)),
+                path: scene::Path::dot(Point::new(0.5, 0.5)),
                 radius: 5.0,
                 color: [1.0, 0.0, 0.0],
                 opacity: 0.5,

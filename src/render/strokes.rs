@@ -1,7 +1,7 @@
 //! Strokes as the renderer and the optimiser see them: rows of numbers.
 
 use crate::math::Point;
-use crate::scene::{Shape, Stroke};
+use crate::scene::{Path, Stroke};
 
 /// Numbers per stroke, in the order of the constants below.
 pub const PARAMS: usize = 9;
@@ -26,7 +26,7 @@ pub type Params = [f32; PARAMS];
 
 /// The numbers of `stroke`.
 pub fn pack(stroke: &Stroke) -> Params {
-    let (a, b) = stroke.shape.ends();
+    let (a, b) = stroke.path.ends();
     let [red, green, blue] = stroke.color;
     [
         a.x,
@@ -44,7 +44,7 @@ pub fn pack(stroke: &Stroke) -> Params {
 /// The stroke of these numbers, always a capsule.
 pub fn unpack(p: &Params) -> Stroke {
     Stroke {
-        shape: Shape::capsule(Point::new(p[AX], p[AY]), Point::new(p[BX], p[BY])),
+        path: Path::line(Point::new(p[AX], p[AY]), Point::new(p[BX], p[BY])),
         radius: p[RADIUS],
         color: [p[RED], p[RED + 1], p[RED + 2]],
         opacity: p[OPACITY],

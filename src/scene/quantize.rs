@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Rgb, Scene, Shape, Stage, Stroke};
+use super::{Path, PathPoint, Rgb, Scene, Stage, Stroke};
 use crate::math::Point;
 
 /// Most decimals of a coordinate or width.
@@ -134,10 +134,10 @@ impl Written {
         check(stroke)?;
         let grid = Grid::new(precision);
         let mut points: Vec<_> = stroke
-            .shape
+            .path
             .points()
             .iter()
-            .map(|p| [p.x, p.y].map(|v| grid.units(v.into())))
+            .map(|p| [p.at.x, p.at.y].map(|v| grid.units(v.into())))
             .collect();
         points.dedup();
         let width = grid
@@ -165,13 +165,13 @@ impl Written {
     /// The rounded stroke.
     pub(crate) fn stroke(&self) -> Stroke {
         let point = |p: &[i64; 2]| Point::new(px(p[0]), px(p[1]));
-        let shape = match self.points.as_slice() {
-            [a, .., b] => Shape::capsule(point(a), point(b)),
-            [a] => Shape::dot(point(a)),
-            [] => Shape::dot(Point::origin()),
+        let path = match self.points.as_slice() {
+            [a, .., b] => Path::line(point(a), point(b)),
+            [a] => Path::dot(point(a)),
+            [] => Path::dot(Point::origin()),
         };
         Stroke {
-            shape,
+            path,
             radius: (self.width as f64 / (2 * UNITS_PER_PX) as f64) as f32,
             color: color(self.color),
             opacity: f32::from(self.opacity) / 255.0,
@@ -181,12 +181,12 @@ impl Written {
 
 /// Refuses strokes that are invisible at any precision.
 fn check(stroke: &Stroke) -> Result<(), Unwritable> {
-    let far = |p: &Point| p.x.abs() > MAX_COORDINATE || p.y.abs() > MAX_COORDINATE;
+    let far = |p: &PathPoint| p.at.x.abs() > MAX_COORDINATE || p.at.y.abs() > MAX_COORDINATE;
     if !stroke.is_finite() {
         Err(Unwritable::NonFinite)
     } else if stroke.radius <= 0.0 || quantum(stroke.opacity) == 0 {
         Err(Unwritable::Invisible)
-    } else if stroke.radius > MAX_COORDINATE || stroke.shape.points().iter().any(far) {
+    } else if stroke.radius > MAX_COORDINATE || stroke.path.points().iter().any(far) {
         Err(Unwritable::OffPage)
     } else {
         Ok(())
@@ -240,9 +240,9 @@ fn quantized_color(rgb: Rgb) -> Rgb {
 mod tests {
     use super::*;
 
-    fn stroke(shape: Shape) -> Stroke {
+    fn stroke(path: Path) -> Stroke {
         Stroke {
-            shape,
+            path,
             radius: 2.0,
             color: [0.2, 0.5, 1.0],
             opacity: 1.0,
@@ -250,7 +250,7 @@ mod tests {
     }
 
     fn capsule(a: [f32; 2], b: [f32; 2]) -> Stroke {
-        stroke(Shape::capsule(a.into(), b.into()))
+        stroke(Path::line(a.into(), b.into()))
     }
 
     fn scene(strokes: Vec<Stroke>) -> Scene {
@@ -274,7 +274,7 @@ mod tests {
         let mut s = capsule([1.2345, 2.0], [-0.004, 3.999]);
         s.radius = 1.114;
         let q = quantized(s, 2).unwrap();
-        assert_eq!(q.shape, capsule([1.23, 2.0], [0.0, 4.0]).shape);
+        assert_eq!(q.path, capsule([1.23, 2.0], [0.0, 4.0]).path);
         assert_eq!(q.radius, 1.115, "the width 2.228 becomes 2.23");
     }
 
@@ -291,7 +291,7 @@ mod tests {
     #[test]
     fn a_shape_shorter_than_the_precision_becomes_a_dot() {
         let q = quantized(capsule([1.001, 2.0], [1.004, 2.003]), 2).unwrap();
-        assert_eq!(q.shape, Shape::dot(Point::new(1.0, 2.0)));
+        assert_eq!(q.path, Path::dot(Point::new(1.0, 2.0)));
     }
 
     #[test]

@@ -119,12 +119,12 @@ impl Groups {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Shape, Stage, Stroke};
+    use crate::scene::{Path, Stage, Stroke};
     use crate::verify::{Size, render};
 
     fn scene() -> Scene {
         let stroke = |k: usize| Stroke {
-            shape: Shape::capsule([k as f32, 2.0].into(), [k as f32 + 3.0, 8.0].into()),
+            path: Path::line([k as f32, 2.0].into(), [k as f32 + 3.0, 8.0].into()),
             radius: 1.0,
             color: [k as f32 / 7.0, 0.5, 0.2],
             opacity: 0.8,

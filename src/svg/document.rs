@@ -154,7 +154,7 @@ fn unused(text: &str, name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Shape, Stage, Stroke};
+    use crate::scene::{Path, Stage, Stroke};
 
     const SVG: &str = "xmlns=\"http://www.w3.org/2000/svg\"";
 
@@ -164,7 +164,7 @@ mod tests {
 
     fn scene() -> Scene {
         let stroke = Stroke {
-            shape: Shape::capsule([1.0, 1.0].into(), [5.0, 5.0].into()),
+            path: Path::line([1.0, 1.0].into(), [5.0, 5.0].into()),
             radius: 1.0,
             color: [1.0, 0.0, 0.0],
             opacity: 1.0,

@@ -37,10 +37,10 @@
 //! Reading returns the scene to the bit as it was written: quantised, and arranged if the form asks for it.
 //!
 //! ```
-//! use strokefit::scene::{Scene, Shape, Stage, Stroke};
+//! use strokefit::scene::{Scene, Path, Stage, Stroke};
 //! use strokefit::svg::{self, WriteOptions};
 //!
-//! let shape = Shape::capsule([1.25, 2.0].into(), [30.0, 4.0].into());
+//! let shape = Path::line([1.25, 2.0].into(), [30.0, 4.0].into());
 //! let stroke = Stroke { shape, radius: 1.5, color: [1.0, 0.4, 0.0], opacity: 0.5 };
 //! let page = Scene::empty(40, 10, Some([1.0; 3]));
 //! let scene = Scene { stages: vec![Stage { strokes: vec![stroke] }], ..page };

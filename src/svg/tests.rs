@@ -4,7 +4,7 @@ use super::*;
 use crate::error::ErrorKind;
 use crate::math::Point;
 use crate::metrics::Agreement;
-use crate::scene::{Dropped, Scene, Shape, Stage, Stroke};
+use crate::scene::{Dropped, Path, Scene, Stage, Stroke};
 use crate::verify;
 
 fn point() -> impl Strategy<Value = Point> {
@@ -12,10 +12,10 @@ fn point() -> impl Strategy<Value = Point> {
     (coordinate.clone(), coordinate).prop_map(|(x, y)| Point::new(x, y))
 }
 
-fn shape() -> impl Strategy<Value = Shape> {
+fn shape() -> impl Strategy<Value = Path> {
     prop_oneof![
-        point().prop_map(Shape::dot),
-        (point(), point()).prop_map(|(a, b)| Shape::capsule(a, b))
+        point().prop_map(Path::dot),
+        (point(), point()).prop_map(|(a, b)| Path::line(a, b))
     ]
 }
 
@@ -31,8 +31,8 @@ fn stroke() -> impl Strategy<Value = Stroke> {
     };
     let radius = prop_oneof![0.0..20.0_f32, Just(0.5), 0.0..0.01_f32];
     (shape(), radius, unit(), unit(), unit(), unit()).prop_map(
-        |(shape, radius, r, g, b, opacity)| Stroke {
-            shape,
+        |(path, radius, r, g, b, opacity)| Stroke {
+            path,
             radius,
             color: [r, g, b],
             opacity,
@@ -62,7 +62,7 @@ fn alike() -> impl Strategy<Value = Stroke> {
     let place = || (0..5_u8, 0..5_u8).prop_map(|(x, y)| Point::new(x.into(), y.into()) * 9.5);
     let look = (0..2_u8, 0..2_u8, 0..3_u8);
     (place(), place(), look).prop_map(|(a, b, (color, width, opacity))| Stroke {
-        shape: Shape::capsule(a, b),
+        path: Path::line(a, b),
         radius: 1.0 + f32::from(width),
         color: [f32::from(color), 0.2, 0.6],
         opacity: if opacity == 0 { 0.5 } else { 1.0 },
@@ -117,7 +117,7 @@ proptest! {
     fn arranging_takes_no_stroke_away(scene in scene_of_few_looks(), options in options()) {
         let sorted = |scene: &Scene| {
             let ends = |s: &Stroke| {
-                let mut ends = s.shape.points().iter().map(|p| [p.x, p.y]).collect::<Vec<_>>();
+                let mut ends = s.path.points().iter().map(|p| [p.at.x, p.at.y]).collect::<Vec<_>>();
                 ends.sort_by(|a, b| a.partial_cmp(b).unwrap());
                 format!("{ends:?} {} {:?} {}", s.radius, s.color, s.opacity)
             };
@@ -185,13 +185,13 @@ fn agreement(a: &str, b: &str) -> f64 {
 
 fn sample() -> Scene {
     let line = Stroke {
-        shape: Shape::capsule(Point::new(100.25, 20.5), Point::new(97.04, 25.06)),
+        path: Path::line(Point::new(100.25, 20.5), Point::new(97.04, 25.06)),
         radius: 1.5,
         color: [1.0, 0.4, 0.0],
         opacity: 1.0,
     };
     let dot = Stroke {
-        shape: Shape::dot(Point::new(3.0, 4.0)),
+        path: Path::dot(Point::new(3.0, 4.0)),
         opacity: 0.5,
         ..line
     };
@@ -231,7 +231,7 @@ fn the_dialect_is_this() {
 fn opaque_strokes_end_to_end_are_one_polyline_in_the_plain_form() {
     let corners = [[5.0, 5.0], [15.0, 8.0], [12.0, 20.0], [30.0, 20.0]].map(Point::from);
     let stroke = |ends: &[Point]| Stroke {
-        shape: Shape::capsule(ends[0], ends[1]),
+        path: Path::line(ends[0], ends[1]),
         ..sample().stages[0].strokes[0]
     };
     let mut strokes: Vec<_> = corners.windows(2).map(stroke).collect();

@@ -105,9 +105,9 @@ impl SceneRecord {
 
 impl StrokeRecord {
     fn of(stroke: &Stroke) -> Self {
-        let points = stroke.shape.points().iter();
+        let points = stroke.path.points().iter();
         Self(
-            points.flat_map(|p| [p.x, p.y]).collect(),
+            points.flat_map(|p| [p.at.x, p.at.y]).collect(),
             stroke.radius,
             css(stroke.color),
             stroke.opacity,

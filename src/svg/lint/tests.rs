@@ -1,5 +1,5 @@
 use super::*;
-use crate::scene::{Scene, Shape, Stage, Stroke};
+use crate::scene::{Path, Scene, Stage, Stroke};
 use crate::svg::{Form, WriteOptions, write};
 
 fn page(body: &str) -> String {
@@ -15,15 +15,15 @@ fn names(text: &str) -> Vec<String> {
 
 #[test]
 fn what_strokefit_writes_has_nothing() {
-    let stroke = |shape| Stroke {
-        shape,
+    let stroke = |path| Stroke {
+        path,
         radius: 0.2,
         color: [0.5; 3],
         opacity: 0.3,
     };
     let strokes = vec![
-        stroke(Shape::dot([4.0, 4.0].into())),
-        stroke(Shape::capsule([0.5, 1.0].into(), [0.25, 8.0].into())),
+        stroke(Path::dot([4.0, 4.0].into())),
+        stroke(Path::line([0.5, 1.0].into(), [0.25, 8.0].into())),
     ];
     let scene = Scene {
         stages: vec![Stage { strokes }],
