@@ -1,7 +1,7 @@
 //! The domains of a stroke's parameters, at the resolution of a drawing.
 
 use super::recipe::Domain;
-use crate::render::{AX, BY, Grid, OPACITY, Params, RADIUS, RED};
+use crate::render::{Grid, StrokeMut};
 
 /// The domains of a stroke's parameters, to which each step of descent is clamped.
 #[derive(Debug, Clone, Copy)]
@@ -36,20 +36,21 @@ impl Bounds {
         self.domain.min_opacity
     }
 
-    /// Clamps `p` to its domain. NaN stays; such a stroke is dropped later.
-    pub(super) fn apply(&self, p: &mut Params) {
+    /// Clamps a stroke to its domain. NaN stays; such a stroke is dropped later.
+    pub(super) fn apply(&self, stroke: StrokeMut<'_>) {
         let margin = self.domain.margin;
         let [width, height] = self.sides;
-        for end in p[AX..=BY].as_chunks_mut::<2>().0 {
+        for end in stroke.points {
             end[0] = end[0].clamp(-margin, width + margin);
             end[1] = end[1].clamp(-margin, height + margin);
         }
         // A recipe may ask for strokes that are wider than a small picture.
         let min_radius = self.domain.min_radius;
-        p[RADIUS] = p[RADIUS].clamp(min_radius, width.max(height).max(min_radius));
-        for color in &mut p[RED..OPACITY] {
+        let [radius, color @ .., opacity] = stroke.look;
+        *radius = radius.clamp(min_radius, width.max(height).max(min_radius));
+        for color in color {
             *color = color.clamp(0.0, 1.0);
         }
-        p[OPACITY] = p[OPACITY].clamp(self.domain.min_opacity, 1.0);
+        *opacity = opacity.clamp(self.domain.min_opacity, 1.0);
     }
 }

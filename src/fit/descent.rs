@@ -10,7 +10,7 @@ use super::deadline::Timer;
 use super::drawing::Drawing;
 use super::recipe::{Rates, Recipe};
 use crate::optim::{Adam, Optimizer, Schedule};
-use crate::render::{AX, Canvas, Gradients, PARAMS, Params, RADIUS};
+use crate::render::{Canvas, Gradients, LOOK, Strokes};
 
 /// The length, the step sizes and the edge of a descent.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
@@ -70,7 +70,7 @@ impl Descent {
             course,
             step: 0,
             used_before,
-            adam: Adam::new(drawing.free().len() * PARAMS, recipe.optimizer.strokes),
+            adam: Adam::new(drawing.free().numbers().len(), recipe.optimizer.strokes),
             background: Adam::new(3, recipe.optimizer.background),
             scales: scales(&course.rates, drawing.free(), recipe),
             gradients: Gradients::default(),
@@ -112,12 +112,12 @@ impl Descent {
         };
         drawing.differentiate::<false>(edge, aim.map(|aim| aim.targets), &mut self.gradients);
         let rate = course.rate(step, done);
-        let flat = self.gradients.strokes.as_flattened();
         let bounds = drawing.bounds;
         let strokes = drawing.free_mut();
+        let slopes = &self.gradients.strokes;
         self.adam
-            .step_scaled(strokes.as_flattened_mut(), flat, rate, &self.scales);
-        strokes.iter_mut().for_each(|p| bounds.apply(p));
+            .step_scaled(strokes.numbers_mut(), slopes, rate, &self.scales);
+        strokes.change(|_, stroke| bounds.apply(stroke));
         if course.joint.is_some() && drawing.is_thawed() && !drawing.background_fixed {
             let rate = rate * course.rates.color;
             let (slope, background) = (&self.gradients.backdrop, &mut self.background);
@@ -127,13 +127,14 @@ impl Descent {
 
     /// Resets the optimiser after a change of resolution, which changes the size of all gradients.
     pub(super) fn forget(&mut self, drawing: &Drawing, recipe: &Recipe) {
-        self.adam = Adam::new(drawing.free().len() * PARAMS, recipe.optimizer.strokes);
+        self.adam = Adam::new(drawing.free().numbers().len(), recipe.optimizer.strokes);
         self.scales = scales(&self.course.rates, drawing.free(), recipe);
     }
 
-    /// Rearranges the state of the optimiser like the free strokes: stroke `i` was stroke `sources[i]`, or is new.
+    /// Rearranges the state of the optimiser like the numbers of the free strokes: number `i` was number `sources[i]`, or
+    /// is new.
     pub(super) fn follow(&mut self, sources: &[Option<usize>], drawing: &Drawing, recipe: &Recipe) {
-        self.adam.rearrange(PARAMS, sources);
+        self.adam.rearrange(1, sources);
         self.scales = scales(&self.course.rates, drawing.free(), recipe);
     }
 }
@@ -151,8 +152,8 @@ impl Course {
     }
 }
 
-/// The step size of each parameter of `strokes`. The geometry of large strokes moves farther.
-fn scales(rates: &Rates, strokes: &[Params], recipe: &Recipe) -> Vec<f32> {
+/// The step size of each number of `strokes`. The geometry of large strokes moves farther.
+fn scales(rates: &Rates, strokes: &Strokes, recipe: &Recipe) -> Vec<f32> {
     let Rates {
         position,
         radius,
@@ -160,17 +161,14 @@ fn scales(rates: &Rates, strokes: &[Params], recipe: &Recipe) -> Vec<f32> {
         opacity,
         ..
     } = *rates;
-    let rates: Params = [
-        position, position, position, position, radius, color, color, color, opacity,
-    ];
     let usual = recipe.optimizer.usual_radius;
     let [least, most] = recipe.optimizer.radius_factors;
-    let mut scales = rates.repeat(strokes.len());
-    for (rates, stroke) in scales.chunks_exact_mut(PARAMS).zip(strokes) {
-        let factor = (stroke[RADIUS] / usual).sqrt().clamp(least, most);
-        rates[AX..=RADIUS]
-            .iter_mut()
-            .for_each(|rate| *rate *= factor);
+    let mut scales = Vec::with_capacity(strokes.numbers().len());
+    for stroke in strokes.iter() {
+        let factor = (stroke.radius() / usual).sqrt().clamp(least, most);
+        scales.resize(scales.len() + 2 * stroke.points.len(), position * factor);
+        let look: [f32; LOOK] = [radius * factor, color, color, color, opacity];
+        scales.extend(look);
     }
     scales
 }

@@ -7,10 +7,10 @@ use fearless_simd::Level;
 
 use super::bounds::Bounds;
 use super::surface::Surface;
-use crate::render::{Canvas, CanvasLoss, Gradients, Params, Renderer, Softness};
+use crate::render::{Canvas, CanvasLoss, Gradients, Params, Renderer, Softness, Strokes};
 use crate::scene::Rgb;
 pub(super) use memento::Memento;
-use scene::enlarged;
+use scene::enlarge;
 
 /// A drawing in progress. The *free* strokes are fitted, judged and relocated; the frozen ones behind them are
 /// rendered once, as their backdrop. Large strokes are fitted to a reduced picture. The parameters of strokes are in
@@ -22,12 +22,11 @@ pub(super) struct Drawing {
     pub(super) level: Level,
     /// Whether the background keeps its colour.
     pub(super) background_fixed: bool,
-    /// Back to front.
-    strokes: Vec<Params>,
+    /// The strokes that are kept as they are, back to front, and on top of them those that are fitted.
+    frozen: Strokes,
+    free: Strokes,
     /// The stage of each stroke, counted from 0, never decreasing.
     stage_of: Vec<usize>,
-    /// How many strokes, from the back, are frozen.
-    frozen: usize,
     pub(super) bounds: Bounds,
     /// The edge of the finished drawing.
     edge: Softness,
@@ -57,9 +56,9 @@ impl Drawing {
             surfaces,
             level,
             background_fixed,
-            strokes: Vec::new(),
+            frozen: Strokes::new(),
+            free: Strokes::new(),
             stage_of: Vec::new(),
-            frozen: 0,
             bounds,
             edge,
             counters: Counters::default(),
@@ -68,17 +67,24 @@ impl Drawing {
 
     /// The number of strokes, frozen ones included.
     pub(super) fn len(&self) -> usize {
-        self.strokes.len()
+        self.frozen.len() + self.free.len()
     }
 
     /// The strokes that are not frozen, back to front.
-    pub(super) fn free(&self) -> &[Params] {
-        &self.strokes[self.frozen..]
+    pub(super) fn free(&self) -> &Strokes {
+        &self.free
     }
 
     /// Mutable access to the free strokes.
-    pub(super) fn free_mut(&mut self) -> &mut [Params] {
-        &mut self.strokes[self.frozen..]
+    pub(super) fn free_mut(&mut self) -> &mut Strokes {
+        &mut self.free
+    }
+
+    /// A copy of all strokes, back to front.
+    fn all(&self) -> Strokes {
+        let mut all = self.frozen.clone();
+        all.append(&mut self.free.clone());
+        all
     }
 
     /// Switches to the resolution for strokes of `scale` px if that is finer than the current one, and frees all
@@ -90,9 +96,7 @@ impl Drawing {
             return false;
         }
         self.halve(halvings);
-        for stroke in &mut self.strokes {
-            *stroke = enlarged(*stroke, now - halvings);
-        }
+        enlarge(&mut self.free, now - halvings);
         true
     }
 
@@ -102,7 +106,7 @@ impl Drawing {
         let grid = self.surface().grid();
         self.renderer = Renderer::new(grid, self.level);
         self.bounds = self.bounds.on(grid);
-        self.frozen = 0;
+        self.free_all();
     }
 
     /// The first surface. All have the same size and resolution.
@@ -137,7 +141,7 @@ impl Drawing {
 
     /// Whether no stroke is frozen, so that the background can be fitted.
     pub(super) fn is_thawed(&self) -> bool {
-        self.frozen == 0
+        self.frozen.is_empty()
     }
 
     /// Pixels of the picture.
@@ -157,33 +161,37 @@ impl Drawing {
         self.thaw();
         self.render();
         self.surfaces.iter_mut().for_each(Surface::freeze);
-        self.frozen = self.strokes.len();
+        self.frozen = std::mem::take(&mut self.free);
     }
 
     /// Frees all strokes.
     pub(super) fn thaw(&mut self) {
         self.surfaces.iter_mut().for_each(Surface::thaw);
-        self.frozen = 0;
+        self.free_all();
     }
 
-    /// Adds `strokes` on top, as part of stage `stage`.
-    pub(super) fn extend(&mut self, strokes: impl IntoIterator<Item = Params>, stage: usize) {
-        self.strokes.extend(strokes);
-        self.stage_of.resize(self.strokes.len(), stage);
+    fn free_all(&mut self) {
+        self.frozen.append(&mut self.free);
+        std::mem::swap(&mut self.frozen, &mut self.free);
+    }
+
+    /// Adds `capsules` on top, as part of stage `stage`.
+    pub(super) fn extend(&mut self, capsules: impl IntoIterator<Item = Params>, stage: usize) {
+        for capsule in capsules {
+            self.free.push_capsule(&capsule);
+        }
+        self.stage_of.resize(self.len(), stage);
     }
 
     /// Keeps the free strokes for which `keep` is true.
     pub(super) fn retain_free(&mut self, keep: &[bool]) {
-        let frozen = self.frozen;
+        let frozen = self.frozen.len();
         let gone = self.free().iter().zip(keep).filter(|(_, keep)| !**keep);
-        self.counters.lost += gone
-            .filter(|(p, _)| !p.iter().all(|v| v.is_finite()))
-            .count();
+        self.counters.lost += gone.filter(|(stroke, _)| !stroke.is_finite()).count();
         let kept = |i: usize| i < frozen || keep.get(i - frozen).copied().unwrap_or(false);
         let mut i = 0..;
-        self.strokes.retain(|_| i.next().is_some_and(kept));
-        let mut i = 0..;
         self.stage_of.retain(|_| i.next().is_some_and(kept));
+        self.free.retain(keep);
     }
 
     /// Removes the `count` free strokes of least worth.
@@ -215,11 +223,11 @@ impl Drawing {
         targets: Option<&[Canvas]>,
         gradients: &mut Gradients,
     ) {
-        let free = &self.strokes[self.frozen..];
+        let (free, frozen) = (&self.free, self.frozen.len());
         let mut more = Gradients::default();
         for (i, surface) in self.surfaces.iter().enumerate() {
             let out = if i == 0 { &mut *gradients } else { &mut more };
-            let backdrop = surface.backdrop(self.frozen);
+            let backdrop = surface.backdrop(frozen);
             let objective = surface.objective(targets.and_then(|targets| targets.get(i)));
             let renderer = &mut self.renderer;
             if WITH_WORTH {
@@ -247,9 +255,9 @@ impl Drawing {
 
     /// Renders all strokes to the canvases.
     pub(super) fn render(&mut self) {
-        let free = &self.strokes[self.frozen..];
+        let (free, frozen) = (&self.free, self.frozen.len());
         for surface in &mut self.surfaces {
-            surface.render(&mut self.renderer, free, self.edge, self.frozen);
+            surface.render(&mut self.renderer, free, self.edge, frozen);
         }
     }
 
@@ -257,7 +265,7 @@ impl Drawing {
     pub(super) fn backward(&mut self, loss: &impl CanvasLoss, gradients: &mut Gradients) {
         let backdrop = self.surfaces[0].backdrop(0);
         self.renderer
-            .backward(&self.strokes, self.edge, backdrop, loss, gradients);
+            .backward(&self.free, self.edge, backdrop, loss, gradients);
     }
 
     /// The mean squared error of the drawing, at the current resolution.

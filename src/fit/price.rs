@@ -1,7 +1,7 @@
 //! The price of a stroke: the squared error that its bytes have to remove.
 
 use crate::math;
-use crate::render::{Params, unpack};
+use crate::render::{Params, StrokeRef, Strokes};
 use crate::svg::{WriteOptions, stroke_bytes};
 
 /// The price of strokes, as squared error summed over pixels and channels.
@@ -20,11 +20,16 @@ impl Price {
     }
 
     /// The price of `stroke`.
-    pub(super) fn of(&self, stroke: &Params) -> f32 {
+    pub(super) fn of(&self, stroke: StrokeRef<'_>) -> f32 {
         if self.per_byte == 0.0 {
             return 0.0;
         }
-        self.per_byte * stroke_bytes(&unpack(stroke), &self.file) as f32
+        self.per_byte * stroke_bytes(&stroke.to_stroke(), &self.file) as f32
+    }
+
+    /// The price of a capsule.
+    pub(super) fn of_capsule(&self, capsule: &Params) -> f32 {
+        self.of(Strokes::from_iter([capsule]).get(0))
     }
 }
 
@@ -41,11 +46,11 @@ mod tests {
     #[test]
     fn ten_db_are_a_tenth_of_the_price() {
         let (dear, cheap) = (price(Some(20.0)), price(Some(30.0)));
-        assert!((dear.of(&STROKE) / cheap.of(&STROKE) - 10.0).abs() < 1e-3);
+        assert!((dear.of_capsule(&STROKE) / cheap.of_capsule(&STROKE) - 10.0).abs() < 1e-3);
     }
 
     #[test]
     fn without_a_quality_strokes_are_free() {
-        assert_eq!(price(None).of(&STROKE), 0.0);
+        assert_eq!(price(None).of_capsule(&STROKE), 0.0);
     }
 }

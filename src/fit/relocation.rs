@@ -19,8 +19,8 @@ pub(super) fn wanted(session: &Session<'_>) -> usize {
 }
 
 /// Replaces strokes by candidates that will gain more, and fills up to `limit` strokes with candidates that pay.
-/// `adapt` changes a candidate to what the drawing may have. Returns the former index of each free stroke, `None` for a
-/// new one.
+/// `adapt` changes a candidate to what the drawing may have. Returns the former index of each number of the free strokes,
+/// `None` for a new one.
 pub(super) fn relocate(
     session: &mut Session<'_>,
     limit: usize,
@@ -46,19 +46,21 @@ pub(super) fn relocate(
         let mut paying: Vec<Candidate> = candidates
             .into_iter()
             .map(adapt)
-            .filter(|c| c.gain > price.of(&c.stroke))
+            .filter(|c| c.gain > price.of_capsule(&c.stroke))
             .collect();
         paying.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         let gains: Vec<f32> = paying.iter().map(|c| c.gain * relocation.gain).collect();
         let (keep, coming) = exchange(&worth, &prices, &gains, room);
-        let mut sources: Vec<Option<usize>> =
-            (0..keep.len()).filter(|&i| keep[i]).map(Some).collect();
+        let kept = (0..keep.len()).filter(|&i| keep[i]);
+        let mut sources: Vec<Option<usize>> = kept
+            .flat_map(|i| drawing.free().range(i).map(Some))
+            .collect();
         // The best candidate is drawn last, so that none of lesser gain hides it.
         let newcomers: Vec<Params> = paying[..coming].iter().rev().map(|c| c.stroke).collect();
-        sources.resize(sources.len() + newcomers.len(), None);
         let stage = drawing.last_stage();
         drawing.retain_free(&keep);
         drawing.extend(newcomers, stage);
+        sources.resize(drawing.free().numbers().len(), None);
         sources
     })
 }

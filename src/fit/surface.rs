@@ -13,7 +13,7 @@ use super::recipe::Recipe;
 use crate::error::Result;
 use crate::image::Image;
 use crate::loss::Loss;
-use crate::render::{Backdrop, Canvas, Grid, Params, Renderer, Softness};
+use crate::render::{Backdrop, Canvas, Grid, Renderer, Softness, Strokes};
 use crate::scene::{Rgb, Scene};
 use crate::seed::{Pyramid, Residual};
 use crate::verify;
@@ -247,7 +247,7 @@ impl Surface {
     pub(super) fn render(
         &mut self,
         renderer: &mut Renderer,
-        free: &[Params],
+        free: &Strokes,
         edge: Softness,
         frozen: usize,
     ) {

@@ -123,14 +123,14 @@ impl Reproduction {
         let (renderer, gradients) = (&mut self.renderer, &mut self.gradients);
         self.pool.install(|| {
             renderer.backward(
-                &drawing.strokes,
+                &drawing.strokes.iter().collect(),
                 softness(coverage),
                 backdrop,
                 &objective,
                 gradients,
             );
         });
-        let flat = gradients.strokes.as_flattened();
+        let flat = &gradients.strokes;
         let params = drawing.strokes.as_flattened_mut();
         self.strokes.step_scaled(params, flat, RATE, &self.scales);
         self.background
@@ -151,8 +151,14 @@ impl Reproduction {
         } = self;
         let backdrop = Backdrop::Color(drawing.background);
         let out = &mut canvas;
-        self.pool
-            .install(|| renderer.forward(&drawing.strokes, softness(coverage), backdrop, out));
+        self.pool.install(|| {
+            renderer.forward(
+                &drawing.strokes.iter().collect(),
+                softness(coverage),
+                backdrop,
+                out,
+            )
+        });
         canvas.to_image()
     }
 

@@ -25,12 +25,15 @@
 
 use fearless_simd::{Level, dispatch, f32x8, f32x16, prelude::*};
 
-use super::CanvasLoss;
+use std::ops::Range;
+
 use super::edge::{Edge, Reach, SoftEdge};
+use super::flat::Flat;
 use super::grid::{
     BLOCK, BLOCKS, BlockRgb, BlockSet, LANES, Lanes, TILE_BLOCKS, TileRgb, TileWeights, flat_tile,
 };
-use super::strokes::{AX, AY, BX, BY, OPACITY, PARAMS, Params, RADIUS, RED};
+use super::strokes::LOOK;
+use super::{CanvasLoss, Listed};
 
 /// Guard in `1/|b−a|²` and in `|q| = sqrt(q·q + ε)`, px². Larger would blunt the distance near the
 /// centre line (by 1e-3 px at this value); smaller would let `1/|q|` overflow the gradient there.
@@ -63,10 +66,12 @@ const fn lattice(columns: usize, side: f32) -> [Lanes; 2] {
     centers
 }
 
-/// `∂L` of one stroke over one tile: its [`PARAMS`] in order, then its worth.
-pub(super) type StrokeSums = [f32; PARAMS + 1];
+/// `∂L` of the look of one stroke over one tile, then its worth.
+pub(super) type LookSums = [f32; LOOK + 1];
 /// Index of the leave-one-out change of the squared error.
-pub(super) const WORTH: usize = PARAMS;
+pub(super) const WORTH: usize = LOOK;
+/// `∂L` of the two ends of one segment over one tile, then the stiffness of each.
+pub(super) type EndSums = [f32; 6];
 
 /// What pass 1 keeps of a block on the soft edge.
 #[derive(Debug, Clone, Copy)]
@@ -82,7 +87,7 @@ struct EdgeBlock {
 /// One stroke's blocks, as pass 1 visited them.
 #[derive(Debug, Clone, Copy)]
 struct Visit {
-    /// Position in the tile's list of strokes.
+    /// Index in the tile's list of strokes.
     slot: u32,
     /// Blocks on the soft edge, visited first.
     edge: BlockSet,
@@ -119,6 +124,12 @@ pub(super) struct Scratch {
     visits: Vec<Visit>,
     kept_transmittance: Vec<Lanes>,
     kept_edges: Vec<EdgeBlock>,
+    /// For each block on the soft edge of a stroke of several segments, which of them is the nearest to each pixel.
+    kept_nearest: Vec<Lanes>,
+    /// For each listed segment of a stroke that has several, the blocks that have it as the nearest somewhere.
+    near: Vec<BlockSet>,
+    /// Squared distances of the blocks' centres from each segment of a stroke.
+    centers: Vec<[Lanes; BLOCKS / LANES]>,
 }
 
 impl Scratch {
@@ -131,6 +142,9 @@ impl Scratch {
             visits: Vec::new(),
             kept_transmittance: Vec::new(),
             kept_edges: Vec::new(),
+            kept_nearest: Vec::new(),
+            near: Vec::new(),
+            centers: Vec::new(),
         })
     }
 
@@ -143,9 +157,11 @@ impl Scratch {
 /// One tile's share of the work.
 pub(super) struct TileJob<'a> {
     /// All strokes of the call.
-    pub(super) strokes: &'a [Params],
+    pub(super) flat: &'a Flat,
     /// The strokes that may touch this tile, back to front.
-    pub(super) ids: &'a [u32],
+    pub(super) listed: &'a [Listed],
+    /// Their segments that may, each by its first vertex.
+    pub(super) segments: &'a [u32],
     /// The tile's number.
     pub(super) tile: usize,
     /// The tile's top left corner, px.
@@ -156,6 +172,28 @@ pub(super) struct TileJob<'a> {
     pub(super) weights: &'a TileWeights,
     pub(super) edge: Edge,
     pub(super) reach: Reach,
+}
+
+impl TileJob<'_> {
+    /// Where the segments of a listed stroke are in the list.
+    fn segments_of(&self, slot: usize) -> Range<usize> {
+        let end = self.listed.get(slot + 1);
+        let end = end.map_or(self.segments.len(), |next| next.first as usize);
+        self.listed[slot].first as usize..end
+    }
+
+    /// Radius, red, green, blue and opacity of a listed stroke.
+    fn look(&self, slot: usize) -> &[f32; LOOK] {
+        &self.flat.looks[self.listed[slot].stroke as usize]
+    }
+
+    /// A listed segment, swept by a disc of `radius`.
+    #[inline(always)]
+    fn capsule<S: Simd>(&self, simd: S, segment: usize, radius: f32) -> Capsule<S> {
+        let at = self.segments[segment] as usize;
+        let (a, b) = (self.flat.vertices[at], self.flat.vertices[at + 1]);
+        Capsule::new(simd, [a, b], radius, self.origin)
+    }
 }
 
 /// Sums of one tile over its pixels.
@@ -169,7 +207,7 @@ pub(super) struct TileSums {
     pub(super) blocks: u64,
 }
 
-/// A stroke, splatted for the lanes, relative to its tile.
+/// A segment swept by a disc, splatted for the lanes, relative to its tile.
 #[derive(Clone, Copy)]
 pub(super) struct Capsule<S: Simd> {
     a: [f32; 2],
@@ -181,14 +219,14 @@ pub(super) struct Capsule<S: Simd> {
 
 impl<S: Simd> Capsule<S> {
     #[inline(always)]
-    pub(super) fn new(simd: S, p: &Params, origin: [f32; 2]) -> Self {
-        let axis = [p[BX] - p[AX], p[BY] - p[AY]];
+    pub(super) fn new(simd: S, [a, b]: [[f32; 2]; 2], radius: f32, origin: [f32; 2]) -> Self {
+        let axis = [b[0] - a[0], b[1] - a[1]];
         let length2 = axis[0] * axis[0] + axis[1] * axis[1];
         Self {
-            a: [p[AX] - origin[0], p[AY] - origin[1]],
+            a: [a[0] - origin[0], a[1] - origin[1]],
             axis: [f32x16::splat(simd, axis[0]), f32x16::splat(simd, axis[1])],
             inverse_length2: f32x16::splat(simd, 1.0 / (length2 + EPSILON)),
-            radius: f32x16::splat(simd, p[RADIUS]),
+            radius: f32x16::splat(simd, radius),
         }
     }
 
@@ -223,16 +261,22 @@ impl<S: Simd> Capsule<S> {
         let inner = (radius - reach.inside - BLOCK_RADIUS).max(0.0);
         let (mut touched, mut core) = (0, 0);
         for row in 0..BLOCKS / LANES {
-            let y = (row * LANES / TILE_BLOCKS * BLOCK) as f32 - self.a[1];
-            let (_, q) = self.nearest([
-                load(simd, &CENTERS[0]) - self.a[0],
-                load(simd, &CENTERS[1]) + y,
-            ]);
-            let distance2 = q[0] * q[0] + q[1] * q[1];
+            let distance2 = self.from_centers(simd, row);
             touched |= distance2.simd_lt(outer * outer).to_bitmask() << (row * LANES);
             core |= distance2.simd_lt(inner * inner).to_bitmask() << (row * LANES);
         }
         (touched, core)
+    }
+
+    /// The squared distances of the centres of 16 blocks, a quarter of the tile.
+    #[inline(always)]
+    fn from_centers(&self, simd: S, row: usize) -> f32x16<S> {
+        let y = (row * LANES / TILE_BLOCKS * BLOCK) as f32 - self.a[1];
+        let (_, q) = self.nearest([
+            load(simd, &CENTERS[0]) - self.a[0],
+            load(simd, &CENTERS[1]) + y,
+        ]);
+        q[0] * q[0] + q[1] * q[1]
     }
 }
 
@@ -247,11 +291,11 @@ pub(super) fn store<S: Simd>(value: f32x16<S>, lanes: &mut Lanes) {
 }
 
 #[inline(always)]
-fn splat_rgb<S: Simd>(simd: S, p: &Params) -> [f32x16<S>; 3] {
+fn splat_rgb<S: Simd>(simd: S, &[_, red, green, blue, _]: &[f32; LOOK]) -> [f32x16<S>; 3] {
     [
-        f32x16::splat(simd, p[RED]),
-        f32x16::splat(simd, p[RED + 1]),
-        f32x16::splat(simd, p[RED + 2]),
+        f32x16::splat(simd, red),
+        f32x16::splat(simd, green),
+        f32x16::splat(simd, blue),
     ]
 }
 
@@ -267,6 +311,78 @@ pub(super) fn members(mut set: BlockSet) -> impl Iterator<Item = usize> {
     })
 }
 
+/// The blocks that a stroke of several segments touches, and those wholly in its hard core. Writes for each segment the
+/// blocks in which it is the nearest to some pixel.
+///
+/// A pixel is within [`BLOCK_RADIUS`] of its block's centre. So a segment that is farther from the centre than another
+/// one by twice that is the nearest nowhere in the block.
+#[inline(always)]
+fn union_blocks<S: Simd>(
+    simd: S,
+    job: &TileJob<'_>,
+    segments: Range<usize>,
+    radius: f32,
+    centers: &mut Vec<[Lanes; BLOCKS / LANES]>,
+    near: &mut [BlockSet],
+) -> (BlockSet, BlockSet) {
+    let reach = job.reach;
+    let outer = (radius + reach.outside + BLOCK_RADIUS).max(0.0);
+    let inner = (radius - reach.inside - BLOCK_RADIUS).max(0.0);
+    centers.clear();
+    centers.resize(segments.len(), [Lanes::splat(0.0); BLOCKS / LANES]);
+    for (segment, centers) in segments.clone().zip(centers.iter_mut()) {
+        let capsule = job.capsule(simd, segment, radius);
+        for (row, centers) in centers.iter_mut().enumerate() {
+            store(capsule.from_centers(simd, row), centers);
+        }
+    }
+    let (mut touched, mut core) = (0, 0);
+    for segment in segments.clone() {
+        near[segment] = 0;
+    }
+    for row in 0..BLOCKS / LANES {
+        let mut least = f32x16::splat(simd, f32::INFINITY);
+        for centers in centers.iter() {
+            least = least.min(load(simd, &centers[row]));
+        }
+        touched |= least.simd_lt(outer * outer).to_bitmask() << (row * LANES);
+        core |= least.simd_lt(inner * inner).to_bitmask() << (row * LANES);
+        let limit = (least.sqrt() + 2.0 * BLOCK_RADIUS).min(outer);
+        let limit2 = limit * limit;
+        for (segment, centers) in segments.clone().zip(centers.iter()) {
+            let is_near = load(simd, &centers[row]).simd_le(limit2);
+            near[segment] |= is_near.to_bitmask() << (row * LANES);
+        }
+    }
+    (touched, core)
+}
+
+/// Of the segments that are near `block`, the squared distance of the nearest one to each pixel, and which one that is.
+#[inline(always)]
+fn union_distance<S: Simd>(
+    simd: S,
+    job: &TileJob<'_>,
+    segments: Range<usize>,
+    near: &[BlockSet],
+    block: usize,
+) -> (f32x16<S>, f32x16<S>) {
+    let mut least = f32x16::splat(simd, f32::INFINITY);
+    let mut nearest = f32x16::splat(simd, -1.0);
+    for segment in segments.clone() {
+        if near[segment] >> block & 1 == 0 {
+            continue;
+        }
+        let capsule = job.capsule(simd, segment, 0.0);
+        let (_, q) = capsule.nearest(capsule.offsets(simd, block));
+        let distance2 = q[0] * q[0] + q[1] * q[1];
+        let index = f32x16::splat(simd, (segment - segments.start) as f32);
+        let is_nearer = distance2.simd_lt(least);
+        nearest = is_nearer.select(index, nearest);
+        least = least.min(distance2);
+    }
+    (least, nearest)
+}
+
 /// Pass 1, for one kind of edge.
 #[inline(always)]
 fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scratch: &mut Scratch) {
@@ -276,6 +392,9 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
         visits,
         kept_transmittance,
         kept_edges,
+        kept_nearest,
+        near,
+        centers,
         ..
     } = scratch;
     *color = flat_tile([0.0; 3]);
@@ -285,12 +404,21 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
     visits.clear();
     kept_transmittance.clear();
     kept_edges.clear();
+    kept_nearest.clear();
+    near.resize(job.segments.len(), 0);
     let mut live = BlockSet::MAX;
-    // `ids` is back to front, so the walk starts at its end.
-    for (slot, &id) in job.ids.iter().enumerate().rev() {
-        let p = &job.strokes[id as usize];
-        let capsule = Capsule::new(simd, p, job.origin);
-        let (touched, core) = capsule.blocks(simd, p[RADIUS], job.reach);
+    // The list is back to front, so the walk starts at its end.
+    for slot in (0..job.listed.len()).rev() {
+        let look = job.look(slot);
+        let segments = job.segments_of(slot);
+        let is_capsule = segments.len() == 1;
+        let radius = look[0];
+        let capsule = job.capsule(simd, segments.start, radius);
+        let (touched, core) = if is_capsule {
+            capsule.blocks(simd, radius, job.reach)
+        } else {
+            union_blocks(simd, job, segments.clone(), radius, centers, near)
+        };
         let visit = Visit {
             slot: slot as u32,
             edge: touched & !core & live,
@@ -300,11 +428,20 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
             continue;
         }
         visits.push(visit);
-        let rgb = splat_rgb(simd, p);
-        let opacity = f32x16::splat(simd, p[OPACITY].max(FAINTEST));
+        let rgb = splat_rgb(simd, look);
+        let opacity = f32x16::splat(simd, look[LOOK - 1].max(FAINTEST));
         for block in members(visit.edge) {
-            let (_, q) = capsule.nearest(capsule.offsets(simd, block));
-            let length = (q[0] * q[0] + q[1] * q[1] + EPSILON).sqrt();
+            let distance2 = if is_capsule {
+                let (_, q) = capsule.nearest(capsule.offsets(simd, block));
+                q[0] * q[0] + q[1] * q[1]
+            } else {
+                let (least, nearest) = union_distance(simd, job, segments.clone(), near, block);
+                let mut kept = Lanes::splat(0.0);
+                store(nearest, &mut kept);
+                kept_nearest.push(kept);
+                least
+            };
+            let length = (distance2 + EPSILON).sqrt();
             let (value, derivative) = edge.eval(capsule.radius - length);
             let alpha = opacity * value;
             let mut kept = EdgeBlock {
@@ -369,10 +506,6 @@ struct Sums<S: Simd> {
     color: [f32x16<S>; 3],
     opacity: f32x16<S>,
     radius: f32x16<S>,
-    /// `Σ ∂L/∂d · u`.
-    shift: [f32x16<S>; 2],
-    /// `Σ ∂L/∂d · u · h`.
-    shift_b: [f32x16<S>; 2],
     worth: f32x16<S>,
 }
 
@@ -384,20 +517,13 @@ impl<S: Simd> Sums<S> {
             color: [zero; 3],
             opacity: zero,
             radius: zero,
-            shift: [zero; 2],
-            shift_b: [zero; 2],
             worth: zero,
         }
     }
 
     #[inline(always)]
-    fn finish(&self, opacity: f32) -> StrokeSums {
-        let (bx, by) = (total(self.shift_b[0]), total(self.shift_b[1]));
+    fn finish(&self, opacity: f32) -> LookSums {
         [
-            total(self.shift[0]) - bx,
-            total(self.shift[1]) - by,
-            bx,
-            by,
             total(self.radius),
             total(self.color[0]),
             total(self.color[1]),
@@ -405,6 +531,56 @@ impl<S: Simd> Sums<S> {
             total(self.opacity) / opacity,
             total(self.worth),
         ]
+    }
+}
+
+/// Sums of one segment in lanes.
+struct Shifts<S: Simd> {
+    /// `Σ ∂L/∂d · u`.
+    whole: [f32x16<S>; 2],
+    /// `Σ ∂L/∂d · u · h`.
+    of_b: [f32x16<S>; 2],
+    /// `Σ k` and `Σ k · h`, where k is twice the squared derivative of the canvas by the distance.
+    stiffness: [f32x16<S>; 2],
+}
+
+impl<S: Simd> Shifts<S> {
+    #[inline(always)]
+    fn new(simd: S) -> Self {
+        let zero = f32x16::splat(simd, 0.0);
+        Self {
+            whole: [zero; 2],
+            of_b: [zero; 2],
+            stiffness: [zero; 2],
+        }
+    }
+
+    /// Adds a block in which `∂L/∂d · u` is `pull · q`.
+    #[inline(always)]
+    fn add(&mut self, pull: f32x16<S>, q: [f32x16<S>; 2], h: f32x16<S>) {
+        for (axis, &q) in q.iter().enumerate() {
+            let shift = pull * q;
+            self.whole[axis] += shift;
+            self.of_b[axis] += shift * h;
+        }
+    }
+
+    #[inline(always)]
+    fn stiffen(&mut self, k: f32x16<S>, h: f32x16<S>) {
+        self.stiffness[0] += k;
+        self.stiffness[1] += k * h;
+    }
+
+    #[inline(always)]
+    fn finish<const WITH_WORTH: bool>(&self) -> EndSums {
+        let (bx, by) = (total(self.of_b[0]), total(self.of_b[1]));
+        let [ax, ay] = [total(self.whole[0]) - bx, total(self.whole[1]) - by];
+        let (mut of_a, mut of_b) = (0.0, 0.0);
+        if WITH_WORTH {
+            of_b = total(self.stiffness[1]);
+            of_a = total(self.stiffness[0]) - of_b;
+        }
+        [ax, ay, bx, by, of_a, of_b]
     }
 }
 
@@ -425,7 +601,8 @@ fn back_to_front<S: Simd, const WITH_WORTH: bool>(
     simd: S,
     job: &TileJob<'_>,
     scratch: &mut Scratch,
-    sums: &mut [StrokeSums],
+    looks: &mut [LookSums],
+    ends: &mut [EndSums],
 ) -> [f32; 3] {
     let Scratch {
         color: behind,
@@ -435,10 +612,12 @@ fn back_to_front<S: Simd, const WITH_WORTH: bool>(
         visits,
         kept_transmittance,
         kept_edges,
+        kept_nearest,
+        near,
+        ..
     } = scratch;
     // Behind the rearmost stroke is the backdrop.
     behind.clone_from(job.backdrop);
-    sums.fill([0.0; PARAMS + 1]);
     let mut backdrop = [f32x16::splat(simd, 0.0); 3];
     for (veil, g) in veils.iter().zip(gradient.iter()) {
         for (sum, g) in backdrop.iter_mut().zip(g) {
@@ -448,40 +627,56 @@ fn back_to_front<S: Simd, const WITH_WORTH: bool>(
     // What pass 1 kept is read from its end: pass 2 visits the same strokes in reverse, and in each of them the
     // same blocks in the same order.
     let (mut at, mut at_edge) = (kept_transmittance.len(), kept_edges.len());
+    let mut at_nearest = kept_nearest.len();
     for visit in visits.iter().rev() {
-        let p = &job.strokes[job.ids[visit.slot as usize] as usize];
-        let capsule = Capsule::new(simd, p, job.origin);
-        let rgb = splat_rgb(simd, p);
+        let slot = visit.slot as usize;
+        let look = job.look(slot);
+        let segments = job.segments_of(slot);
+        let is_capsule = segments.len() == 1;
+        let capsule = job.capsule(simd, segments.start, look[0]);
+        let rgb = splat_rgb(simd, look);
         let mut stroke = Sums::new(simd);
+        let mut shifts = Shifts::new(simd);
         at -= (visit.edge.count_ones() + visit.core.count_ones()) as usize;
         at_edge -= visit.edge.count_ones() as usize;
         let mut seen_through = kept_transmittance[at..].iter();
         for ((block, kept), t) in members(visit.edge)
-            .zip(&kept_edges[at_edge..])
+            .zip(&mut kept_edges[at_edge..])
             .zip(&mut seen_through)
         {
             let alpha = load(simd, &kept.alpha);
-            let d_alpha = stroke.blend::<WITH_WORTH>(
+            let t = load(simd, t);
+            let (d_alpha, contrast2) = stroke.blend::<WITH_WORTH>(
                 simd,
                 alpha,
-                load(simd, t),
+                t,
                 &rgb,
                 &mut behind[block],
                 &gradient[block],
                 &error[block],
             );
-            let (h, q) = capsule.nearest(capsule.offsets(simd, block));
-            let d_distance = d_alpha * load(simd, &kept.slope);
+            let slope = load(simd, &kept.slope);
+            let d_distance = d_alpha * slope;
             // `∂L/∂d · u` is `pull · q`: pass 1 kept 1/|q|, which costs a root; `q` is computed again.
             let pull = d_distance * load(simd, &kept.inverse);
             stroke.radius += d_distance;
-            for (axis, &q) in q.iter().enumerate() {
-                let shift = pull * q;
-                stroke.shift[axis] += shift;
-                stroke.shift_b[axis] += shift * h;
+            let seen = t * slope;
+            let stiffness = 2.0 * (seen * seen) * contrast2;
+            if is_capsule {
+                let (h, q) = capsule.nearest(capsule.offsets(simd, block));
+                shifts.add(pull, q, h);
+                if WITH_WORTH {
+                    shifts.stiffen(stiffness, h);
+                }
+            } else {
+                // What the segments need, in the place of what is not needed any more.
+                store(pull, &mut kept.slope);
+                if WITH_WORTH {
+                    store(stiffness, &mut kept.inverse);
+                }
             }
         }
-        let opacity = f32x16::splat(simd, p[OPACITY].max(FAINTEST));
+        let opacity = f32x16::splat(simd, look[LOOK - 1].max(FAINTEST));
         for (block, t) in members(visit.core).zip(seen_through) {
             stroke.blend::<WITH_WORTH>(
                 simd,
@@ -493,13 +688,64 @@ fn back_to_front<S: Simd, const WITH_WORTH: bool>(
                 &error[block],
             );
         }
-        sums[visit.slot as usize] = stroke.finish(p[OPACITY].max(FAINTEST));
+        looks[slot] = stroke.finish(look[LOOK - 1].max(FAINTEST));
+        if is_capsule {
+            ends[segments.start] = shifts.finish::<WITH_WORTH>();
+            continue;
+        }
+        at_nearest -= visit.edge.count_ones() as usize;
+        let kept = Kept {
+            edge: visit.edge,
+            blocks: &kept_edges[at_edge..],
+            nearest: &kept_nearest[at_nearest..],
+        };
+        for segment in segments.clone() {
+            let capsule = job.capsule(simd, segment, 0.0);
+            let index = (segment - segments.start) as f32;
+            ends[segment] = kept.ends::<_, WITH_WORTH>(simd, &capsule, index, near[segment]);
+        }
     }
     [total(backdrop[0]), total(backdrop[1]), total(backdrop[2])]
 }
 
+/// What was kept of a stroke of several segments.
+struct Kept<'a> {
+    /// Its blocks on the soft edge.
+    edge: BlockSet,
+    /// For each of these, `pull` in `slope`, and the stiffness in `inverse`.
+    blocks: &'a [EdgeBlock],
+    nearest: &'a [Lanes],
+}
+
+impl Kept<'_> {
+    /// The sums of the segment number `index`, over the pixels that have it as the nearest.
+    #[inline(always)]
+    fn ends<S: Simd, const WITH_WORTH: bool>(
+        &self,
+        simd: S,
+        capsule: &Capsule<S>,
+        index: f32,
+        near: BlockSet,
+    ) -> EndSums {
+        let zero = f32x16::splat(simd, 0.0);
+        let mut shifts = Shifts::new(simd);
+        for block in members(near & self.edge) {
+            let k = (self.edge & ((1 << block) - 1)).count_ones() as usize;
+            let is_nearest = load(simd, &self.nearest[k]).simd_eq(index);
+            let (h, q) = capsule.nearest(capsule.offsets(simd, block));
+            let pull = is_nearest.select(load(simd, &self.blocks[k].slope), zero);
+            shifts.add(pull, q, h);
+            if WITH_WORTH {
+                let stiffness = load(simd, &self.blocks[k].inverse);
+                shifts.stiffen(is_nearest.select(stiffness, zero), h);
+            }
+        }
+        shifts.finish::<WITH_WORTH>()
+    }
+}
+
 impl<S: Simd> Sums<S> {
-    /// Lays the stroke on what is behind it in one block; returns `∂L/∂m`.
+    /// Lays the stroke on what is behind it in one block; returns `∂L/∂m` and, `WITH_WORTH`, the squared contrast.
     #[inline(always)]
     #[allow(clippy::too_many_arguments)]
     fn blend<const WITH_WORTH: bool>(
@@ -511,10 +757,10 @@ impl<S: Simd> Sums<S> {
         behind: &mut BlockRgb,
         gradient: &BlockRgb,
         error: &BlockRgb,
-    ) -> f32x16<S> {
+    ) -> (f32x16<S>, f32x16<S>) {
         let zero = f32x16::splat(simd, 0.0);
         let seen = t * alpha;
-        let (mut along, mut change) = (zero, zero);
+        let (mut along, mut change, mut contrast2) = (zero, zero, zero);
         for channel in 0..3 {
             let back = load(simd, &behind[channel]);
             let contrast = rgb[channel] - back;
@@ -527,6 +773,7 @@ impl<S: Simd> Sums<S> {
                 let delta = seen * contrast;
                 let e = load(simd, &error[channel]);
                 change += delta * (delta - (e + e));
+                contrast2 += contrast * contrast;
             }
         }
         if WITH_WORTH {
@@ -534,7 +781,7 @@ impl<S: Simd> Sums<S> {
         }
         let d_alpha = t * along;
         self.opacity += d_alpha * alpha;
-        d_alpha
+        (d_alpha, contrast2)
     }
 }
 
@@ -546,18 +793,20 @@ pub(super) fn draw(level: Level, job: &TileJob<'_>, scratch: &mut Scratch) {
     }
 }
 
-/// After pass 1: the tile's loss and the derivatives of it. `sums` has one row per stroke of the job.
+/// After pass 1: the tile's loss and the derivatives of it. `looks` has one row per stroke of the job, and `ends` one per
+/// segment, all 0.
 pub(super) fn differentiate<L: CanvasLoss, const WITH_WORTH: bool>(
     level: Level,
     job: &TileJob<'_>,
     loss: &L,
     scratch: &mut Scratch,
-    sums: &mut [StrokeSums],
+    looks: &mut [LookSums],
+    ends: &mut [EndSums],
 ) -> TileSums {
     dispatch!(level, simd => {
         let Scratch { color, error, gradient, .. } = scratch;
         let value = loss.tile(job.tile, color, error, gradient);
-        let backdrop = back_to_front::<_, WITH_WORTH>(simd, job, scratch, sums);
+        let backdrop = back_to_front::<_, WITH_WORTH>(simd, job, scratch, looks, ends);
         TileSums { loss: value, backdrop, blocks: scratch.kept_transmittance.len() as u64 }
     })
 }

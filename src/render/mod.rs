@@ -45,6 +45,7 @@
 //! [`mod@reference`] is the same in naive `f64`, against which all of this is tested.
 
 mod edge;
+mod flat;
 mod grid;
 mod kernel;
 pub mod probe;
@@ -57,12 +58,16 @@ use fearless_simd::Level;
 use rayon::prelude::*;
 
 pub use grid::{BlockRgb, Canvas, Grid, Lanes, TILE, TileRgb};
-pub use strokes::{AX, AY, BX, BY, OPACITY, PARAMS, Params, RADIUS, RED, pack, unpack};
+pub use strokes::{
+    AX, AY, BX, BY, LOOK, OPACITY, PARAMS, Params, RADIUS, RED, StrokeMut, StrokeRef, Strokes,
+    pack, unpack,
+};
 
 use crate::coverage::Coverage;
 use edge::{Edge, Reach};
+use flat::{Flat, walk};
 use grid::{FULL, TileWeights, edge_weights, flat_tile};
-use kernel::{Scratch, StrokeSums, TileJob, TileSums, WORTH};
+use kernel::{EndSums, LookSums, Scratch, TileJob, TileSums, WORTH};
 
 /// A differentiable loss over the canvas, told tile by tile while the tile is still in cache.
 pub trait CanvasLoss: Sync {
@@ -100,52 +105,92 @@ pub struct Softness {
 pub struct Gradients {
     /// The loss itself.
     pub loss: f64,
-    /// `∂L/∂(parameters)`, one row per stroke.
-    pub strokes: Vec<Params>,
+    /// `∂L/∂` each of [`Strokes::numbers`], in their order.
+    pub strokes: Vec<f32>,
     /// `∂L/∂backdrop`, summed over the pixels.
     pub backdrop: [f32; 3],
     /// By how much the squared error (summed over pixels and channels) grows when the stroke is
-    /// left out, exactly; filled by [`Renderer::backward_with_worth`] alone.
+    /// left out, exactly; filled by [`Renderer::backward_with_worth`] and [`Renderer::survey`] alone.
     pub worth: Vec<f32>,
     /// Blocks of 16 px that were visited: the work done.
     pub blocks: u64,
 }
 
+/// How the loss depends on the vertices of polylines that are as fine as their points could become.
+#[derive(Debug, Clone, Default)]
+pub struct Survey {
+    /// The first vertex of each stroke, and behind the last stroke the number of all vertices.
+    pub firsts: Vec<u32>,
+    /// The vertices, px.
+    pub vertices: Vec<[f32; 2]>,
+    /// `∂L/∂vertex`.
+    pub slopes: Vec<[f32; 2]>,
+    /// An upper bound of the second derivative of the squared error (summed over pixels and channels) by a shift of the vertex across the stroke, after
+    /// Gauss and Newton.
+    pub stiffness: Vec<f32>,
+}
+
 impl Gradients {
     /// Adds the derivatives of another loss by the same strokes.
     pub(crate) fn add(&mut self, other: &Self) {
-        let add = |sums: &mut [f32], parts: &[f32]| {
-            for (sum, part) in sums.iter_mut().zip(parts) {
-                *sum += part;
-            }
-        };
         self.loss += other.loss;
         self.blocks += other.blocks;
         add(&mut self.backdrop, &other.backdrop);
         add(&mut self.worth, &other.worth);
-        add(
-            self.strokes.as_flattened_mut(),
-            other.strokes.as_flattened(),
-        );
+        add(&mut self.strokes, &other.strokes);
     }
 
     /// Multiplies the loss, its derivatives and the worth by `factor`.
     pub(crate) fn scale(&mut self, factor: f32) {
         self.loss *= f64::from(factor);
-        let values = self.strokes.as_flattened_mut().iter_mut();
+        let values = self.strokes.iter_mut();
         for value in values.chain(&mut self.backdrop).chain(&mut self.worth) {
             *value *= factor;
         }
     }
 }
 
+impl Survey {
+    /// Adds the derivatives of another loss by the same strokes.
+    pub(crate) fn add(&mut self, other: &Self) {
+        add(self.slopes.as_flattened_mut(), other.slopes.as_flattened());
+        add(&mut self.stiffness, &other.stiffness);
+    }
+
+    /// Multiplies all derivatives by `factor`.
+    pub(crate) fn scale(&mut self, factor: f32) {
+        let slopes = self.slopes.as_flattened_mut().iter_mut();
+        slopes.chain(&mut self.stiffness).for_each(|v| *v *= factor);
+    }
+}
+
+fn add(sums: &mut [f32], parts: &[f32]) {
+    for (sum, part) in sums.iter_mut().zip(parts) {
+        *sum += part;
+    }
+}
+
 /// One tile's list of strokes and its results.
 #[derive(Debug, Default)]
 struct TileWork {
-    ids: Vec<u32>,
-    sums: Vec<StrokeSums>,
+    /// The strokes that may touch the tile, back to front.
+    listed: Vec<Listed>,
+    /// Those of their segments that may, each by its first vertex.
+    segments: Vec<u32>,
+    /// One row for each listed stroke.
+    looks: Vec<LookSums>,
+    /// One row for each listed segment.
+    ends: Vec<EndSums>,
     total: TileSums,
     weights: Option<Box<TileWeights>>,
+}
+
+/// A stroke that may touch a tile.
+#[derive(Debug, Clone, Copy)]
+struct Listed {
+    stroke: u32,
+    /// The index of its first segment in the tile's list; the next stroke's segments follow.
+    first: u32,
 }
 
 /// Renders strokes on pictures of one size; keeps its memory from call to call.
@@ -153,6 +198,11 @@ struct TileWork {
 pub struct Renderer {
     grid: Grid,
     level: Level,
+    flat: Flat,
+    /// The least number of segments that `flat` has for each line and each curve.
+    least: usize,
+    /// `∂L/∂vertex`.
+    slopes: Vec<[f32; 2]>,
     tiles: Vec<TileWork>,
     scratch: Vec<Mutex<Box<Scratch>>>,
 }
@@ -168,6 +218,9 @@ impl Renderer {
         Self {
             grid,
             level,
+            flat: Flat::default(),
+            least: 1,
+            slopes: Vec::new(),
             tiles: (0..grid.len()).map(tile).collect(),
             scratch: (0..rayon::current_num_threads())
                 .map(|_| Mutex::new(Scratch::new()))
@@ -183,15 +236,16 @@ impl Renderer {
     /// Renders `strokes`, back to front, on `backdrop` into `out`.
     pub fn forward(
         &mut self,
-        strokes: &[Params],
+        strokes: &Strokes,
         softness: Softness,
         backdrop: Backdrop<'_>,
         out: &mut Canvas,
     ) {
-        let frame = Frame::new(self.grid, strokes, softness, backdrop);
-        self.bin(strokes, frame.reach);
+        let frame = Frame::new(self.grid, softness, backdrop);
+        self.bin(strokes, 1, frame.reach);
         let Self {
             level,
+            ref flat,
             ref mut tiles,
             ref scratch,
             ..
@@ -202,8 +256,8 @@ impl Renderer {
             .enumerate()
             .with_max_len(1);
         tiles.for_each(|(tile, (work, out))| {
-            let job = frame.job(tile, work);
-            if job.ids.is_empty() {
+            let job = frame.job(flat, tile, work);
+            if job.listed.is_empty() {
                 out.clone_from(job.backdrop);
                 return;
             }
@@ -219,44 +273,71 @@ impl Renderer {
     /// Tiles that no stroke touches take part with their loss and `∂L/∂backdrop`.
     pub fn backward<L: CanvasLoss>(
         &mut self,
-        strokes: &[Params],
+        strokes: &Strokes,
         softness: Softness,
         backdrop: Backdrop<'_>,
         loss: &L,
         gradients: &mut Gradients,
     ) {
-        self.run_backward::<L, false>(
-            &Frame::new(self.grid, strokes, softness, backdrop),
-            loss,
-            gradients,
-        );
+        let frame = Frame::new(self.grid, softness, backdrop);
+        self.run_backward::<L, false>(strokes, 1, &frame, loss);
+        self.reduce(strokes, false, gradients);
     }
 
     /// The same, and every stroke's worth.
     pub fn backward_with_worth<L: CanvasLoss>(
         &mut self,
-        strokes: &[Params],
+        strokes: &Strokes,
         softness: Softness,
         backdrop: Backdrop<'_>,
         loss: &L,
         gradients: &mut Gradients,
     ) {
-        self.run_backward::<L, true>(
-            &Frame::new(self.grid, strokes, softness, backdrop),
-            loss,
-            gradients,
-        );
+        let frame = Frame::new(self.grid, softness, backdrop);
+        self.run_backward::<L, true>(strokes, 1, &frame, loss);
+        self.reduce(strokes, true, gradients);
+    }
+
+    /// Every stroke's worth, and how `loss` depends on the vertices of polylines with at least `least` segments for each
+    /// line and each curve.
+    #[allow(clippy::too_many_arguments)]
+    pub fn survey<L: CanvasLoss>(
+        &mut self,
+        strokes: &Strokes,
+        least: usize,
+        softness: Softness,
+        backdrop: Backdrop<'_>,
+        loss: &L,
+        gradients: &mut Gradients,
+        survey: &mut Survey,
+    ) {
+        let frame = Frame::new(self.grid, softness, backdrop);
+        self.run_backward::<L, true>(strokes, least, &frame, loss);
+        self.reduce(strokes, true, gradients);
+        survey.firsts.clone_from(&self.flat.firsts);
+        survey.vertices.clone_from(&self.flat.vertices);
+        survey.slopes.clone_from(&self.slopes);
+        survey.stiffness.clear();
+        survey.stiffness.resize(self.flat.vertices.len(), 0.0);
+        for work in &self.tiles {
+            for (&segment, ends) in work.segments.iter().zip(&work.ends) {
+                survey.stiffness[segment as usize] += ends[4];
+                survey.stiffness[segment as usize + 1] += ends[5];
+            }
+        }
     }
 
     fn run_backward<L: CanvasLoss, const WITH_WORTH: bool>(
         &mut self,
+        strokes: &Strokes,
+        least: usize,
         frame: &Frame<'_>,
         loss: &L,
-        gradients: &mut Gradients,
     ) {
-        self.bin(frame.strokes, frame.reach);
+        self.bin(strokes, least, frame.reach);
         let Self {
             level,
+            ref flat,
             ref mut tiles,
             ref scratch,
             ..
@@ -266,75 +347,134 @@ impl Renderer {
             .enumerate()
             .with_max_len(1)
             .for_each(|(tile, work)| {
-                let mut sums = std::mem::take(&mut work.sums);
-                sums.resize(work.ids.len(), [0.0; PARAMS + 1]);
-                let job = frame.job(tile, work);
+                let mut looks = std::mem::take(&mut work.looks);
+                let mut ends = std::mem::take(&mut work.ends);
+                looks.clear();
+                looks.resize(work.listed.len(), LookSums::default());
+                ends.clear();
+                ends.resize(work.segments.len(), EndSums::default());
+                let job = frame.job(flat, tile, work);
                 let total = with_scratch(scratch, |scratch| {
                     kernel::draw(level, &job, scratch);
-                    kernel::differentiate::<L, WITH_WORTH>(level, &job, loss, scratch, &mut sums)
+                    kernel::differentiate::<L, WITH_WORTH>(
+                        level, &job, loss, scratch, &mut looks, &mut ends,
+                    )
                 });
                 work.total = total;
-                work.sums = sums;
+                (work.looks, work.ends) = (looks, ends);
             });
-        self.reduce(frame.strokes.len(), WITH_WORTH, gradients);
     }
 
-    /// Lists for each tile the strokes whose extent touches it, back to front.
-    fn bin(&mut self, strokes: &[Params], reach: Reach) {
+    /// Flattens the strokes and lists for each tile the segments whose extent touches it, back to front.
+    fn bin(&mut self, strokes: &Strokes, least: usize, reach: Reach) {
+        self.flat.fill(strokes, least);
+        self.least = least;
         for work in &mut self.tiles {
-            work.ids.clear();
+            work.listed.clear();
+            work.segments.clear();
         }
-        for (id, p) in strokes.iter().enumerate() {
-            let margin = p[RADIUS] + reach.outside;
-            let [columns, rows] = self.grid.tiles_touched(
-                p[AX].min(p[BX]) - margin,
-                p[AY].min(p[BY]) - margin,
-                p[AX].max(p[BX]) + margin,
-                p[AY].max(p[BY]) + margin,
-            );
-            for row in rows {
-                for column in columns.clone() {
-                    self.tiles[row * self.grid.columns + column]
-                        .ids
-                        .push(id as u32);
+        let Flat {
+            vertices,
+            firsts,
+            looks,
+        } = &self.flat;
+        for (id, look) in looks.iter().enumerate() {
+            let margin = look[0] + reach.outside;
+            for segment in firsts[id]..firsts[id + 1] - 1 {
+                let ([ax, ay], [bx, by]) =
+                    (vertices[segment as usize], vertices[segment as usize + 1]);
+                let [columns, rows] = self.grid.tiles_touched(
+                    ax.min(bx) - margin,
+                    ay.min(by) - margin,
+                    ax.max(bx) + margin,
+                    ay.max(by) + margin,
+                );
+                for row in rows {
+                    for column in columns.clone() {
+                        let tile = &mut self.tiles[row * self.grid.columns + column];
+                        tile.list(id as u32, segment);
+                    }
                 }
             }
         }
     }
 
     /// Adds the tiles' sums in tile order.
-    fn reduce(&self, strokes: usize, with_worth: bool, gradients: &mut Gradients) {
+    fn reduce(&mut self, strokes: &Strokes, with_worth: bool, gradients: &mut Gradients) {
+        let clear = |values: &mut Vec<f32>, len: usize| {
+            values.clear();
+            values.resize(len, 0.0);
+        };
         gradients.loss = 0.0;
         gradients.backdrop = [0.0; 3];
         gradients.blocks = 0;
-        gradients.strokes.clear();
-        gradients.strokes.resize(strokes, [0.0; PARAMS]);
-        gradients.worth.clear();
-        gradients
-            .worth
-            .resize(if with_worth { strokes } else { 0 }, 0.0);
+        clear(&mut gradients.strokes, strokes.numbers().len());
+        clear(
+            &mut gradients.worth,
+            if with_worth { strokes.len() } else { 0 },
+        );
+        self.slopes.clear();
+        self.slopes.resize(self.flat.vertices.len(), [0.0; 2]);
         for work in &self.tiles {
             gradients.loss += work.total.loss;
             gradients.blocks += work.total.blocks;
-            for (sum, backdrop) in gradients.backdrop.iter_mut().zip(work.total.backdrop) {
-                *sum += backdrop;
-            }
-            for (&id, sums) in work.ids.iter().zip(&work.sums) {
-                for (sum, part) in gradients.strokes[id as usize].iter_mut().zip(sums) {
-                    *sum += part;
-                }
+            add(&mut gradients.backdrop, &work.total.backdrop);
+            for (listed, sums) in work.listed.iter().zip(&work.looks) {
+                let stroke = listed.stroke as usize;
+                let end = strokes.range(stroke).end;
+                add(&mut gradients.strokes[end - LOOK..end], sums);
                 if with_worth {
-                    gradients.worth[id as usize] += sums[WORTH];
+                    gradients.worth[stroke] += sums[WORTH];
                 }
+            }
+            for (&segment, ends) in work.segments.iter().zip(&work.ends) {
+                let slopes = &mut self.slopes[segment as usize..][..2];
+                add(slopes.as_flattened_mut(), ends);
             }
         }
+        self.hand_back(strokes, gradients);
+    }
+
+    /// The derivatives by points, from those by vertices.
+    fn hand_back(&self, strokes: &Strokes, gradients: &mut Gradients) {
+        for (i, stroke) in strokes.iter().enumerate() {
+            let slopes =
+                &self.slopes[self.flat.firsts[i] as usize..self.flat.firsts[i + 1] as usize];
+            let points = &mut gradients.strokes[strokes.range(i)];
+            if slopes.len() == stroke.points.len() && stroke.is_straight() {
+                add(points, slopes.as_flattened());
+                continue;
+            }
+            let mut slopes = slopes.iter();
+            walk(stroke, self.least, |vertex| {
+                let Some(slope) = slopes.next() else {
+                    return;
+                };
+                for (&k, weight) in vertex.of.iter().zip(vertex.weights) {
+                    points[2 * k] += weight * slope[0];
+                    points[2 * k + 1] += weight * slope[1];
+                }
+            });
+        }
+    }
+}
+
+impl TileWork {
+    /// Adds a segment of a stroke to the lists.
+    fn list(&mut self, stroke: u32, segment: u32) {
+        if self.listed.last().is_none_or(|last| last.stroke != stroke) {
+            self.listed.push(Listed {
+                stroke,
+                first: self.segments.len() as u32,
+            });
+        }
+        self.segments.push(segment);
     }
 }
 
 /// What one call renders.
 struct Frame<'a> {
     grid: Grid,
-    strokes: &'a [Params],
     backdrop: Backdrop<'a>,
     /// A tile of the backdrop's colour, if it is flat.
     flat: TileRgb,
@@ -343,7 +483,7 @@ struct Frame<'a> {
 }
 
 impl<'a> Frame<'a> {
-    fn new(grid: Grid, strokes: &'a [Params], softness: Softness, backdrop: Backdrop<'a>) -> Self {
+    fn new(grid: Grid, softness: Softness, backdrop: Backdrop<'a>) -> Self {
         let (edge, reach) = Edge::new(softness.coverage, softness.width);
         let flat = match backdrop {
             Backdrop::Color(color) => flat_tile(color),
@@ -351,7 +491,6 @@ impl<'a> Frame<'a> {
         };
         Self {
             grid,
-            strokes,
             backdrop,
             flat,
             edge,
@@ -360,13 +499,14 @@ impl<'a> Frame<'a> {
     }
 
     /// The share of tile `tile`.
-    fn job<'b>(&'b self, tile: usize, work: &'b TileWork) -> TileJob<'b> {
+    fn job<'b>(&'b self, flat: &'b Flat, tile: usize, work: &'b TileWork) -> TileJob<'b> {
         let (x, y) = self.grid.origin(tile);
         TileJob {
             tile,
             origin: [x as f32, y as f32],
-            strokes: self.strokes,
-            ids: &work.ids,
+            flat,
+            listed: &work.listed,
+            segments: &work.segments,
             backdrop: match self.backdrop {
                 Backdrop::Color(_) => &self.flat,
                 Backdrop::Canvas(canvas) => &canvas.tiles()[tile],

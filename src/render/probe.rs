@@ -134,8 +134,9 @@ fn cover<S: Simd>(simd: S, shape: &Params) -> Vec<(usize, Lanes)> {
         inside: f32::INFINITY,
     };
     let edge = Smoothstep::new(1.0);
-    let capsule = Capsule::new(simd, shape, [0.0; 2]);
-    let (touched, _) = capsule.blocks(simd, shape[RADIUS], reach);
+    let &[ax, ay, bx, by, radius, ..] = shape;
+    let capsule = Capsule::new(simd, [[ax, ay], [bx, by]], radius, [0.0; 2]);
+    let (touched, _) = capsule.blocks(simd, radius, reach);
     members(touched)
         .map(|block| {
             let mut coverage = Lanes::splat(0.0);

@@ -1,9 +1,11 @@
-//! Strokes as the renderer and the optimiser see them: rows of numbers.
+//! Strokes as the renderer and the optimiser see them: numbers in a row.
+
+use serde::{Deserialize, Serialize};
 
 use crate::math::Point;
-use crate::scene::{Path, Stroke};
+use crate::scene::{Path, PathPoint, Rgb, Stroke};
 
-/// Numbers per stroke, in the order of the constants below.
+/// Numbers of a capsule, in the order of the constants below.
 pub const PARAMS: usize = 9;
 
 /// x of the first end, px.
@@ -21,32 +23,300 @@ pub const RED: usize = 5;
 /// 0..1.
 pub const OPACITY: usize = 8;
 
-/// The numbers of one stroke.
+/// The numbers of a capsule: the strokes that seeding proposes.
 pub type Params = [f32; PARAMS];
 
-/// The numbers of `stroke`.
+/// The numbers of `stroke` as a capsule from its first point to its last.
 pub fn pack(stroke: &Stroke) -> Params {
     let (a, b) = stroke.path.ends();
     let [red, green, blue] = stroke.color;
-    [
-        a.x,
-        a.y,
-        b.x,
-        b.y,
-        stroke.radius,
-        red,
-        green,
-        blue,
-        stroke.opacity,
-    ]
+    let Stroke {
+        radius, opacity, ..
+    } = *stroke;
+    [a.x, a.y, b.x, b.y, radius, red, green, blue, opacity]
 }
 
-/// The stroke of these numbers, always a capsule.
+/// The stroke of these numbers.
 pub fn unpack(p: &Params) -> Stroke {
     Stroke {
         path: Path::line(Point::new(p[AX], p[AY]), Point::new(p[BX], p[BY])),
         radius: p[RADIUS],
         color: [p[RED], p[RED + 1], p[RED + 2]],
         opacity: p[OPACITY],
+    }
+}
+
+/// How many numbers a stroke has besides its points: radius, red, green, blue, opacity.
+pub const LOOK: usize = 5;
+
+/// Strokes, back to front, as one row of numbers.
+///
+/// Each stroke has the x and y of its points, px, and then its *look*: radius (px), red, green, blue and opacity. So the
+/// numbers of a stroke of two points are those of [`Params`].
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Strokes {
+    numbers: Vec<f32>,
+    /// Whether each point, of all strokes, is off its path.
+    off: Vec<bool>,
+    outlines: Vec<Outline>,
+}
+
+/// What the numbers of a stroke mean.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+struct Outline {
+    /// The index after its last point, among those of all strokes.
+    end: u32,
+    closed: bool,
+}
+
+/// One of [`Strokes`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StrokeRef<'a> {
+    /// The points of its path, px.
+    pub points: &'a [[f32; 2]],
+    /// Whether each point is off the path.
+    pub off: &'a [bool],
+    /// Whether the last point is joined to the first.
+    pub closed: bool,
+    /// Radius, red, green, blue, opacity.
+    pub look: &'a [f32; LOOK],
+}
+
+/// One of [`Strokes`], to be changed.
+#[derive(Debug)]
+pub struct StrokeMut<'a> {
+    /// The points of its path, px.
+    pub points: &'a mut [[f32; 2]],
+    /// Radius, red, green, blue, opacity.
+    pub look: &'a mut [f32; LOOK],
+}
+
+impl StrokeRef<'_> {
+    /// Half the stroke width, px.
+    pub fn radius(&self) -> f32 {
+        self.look[0]
+    }
+
+    /// sRGB-encoded, 0..1.
+    pub fn color(&self) -> Rgb {
+        let [_, red, green, blue, _] = *self.look;
+        [red, green, blue]
+    }
+
+    /// 0..1.
+    pub fn opacity(&self) -> f32 {
+        self.look[4]
+    }
+
+    /// Whether the path has no curve.
+    pub fn is_straight(&self) -> bool {
+        !self.off.contains(&true)
+    }
+
+    /// Whether every number is finite.
+    pub fn is_finite(&self) -> bool {
+        let points = self.points.as_flattened().iter();
+        points.chain(self.look).all(|v| v.is_finite())
+    }
+
+    /// The stroke as a part of a scene.
+    pub fn to_stroke(&self) -> Stroke {
+        let points = self.points.iter().zip(self.off);
+        let points = points.map(|(&[x, y], &is_off)| PathPoint {
+            at: Point::new(x, y),
+            is_on: !is_off,
+        });
+        Stroke {
+            path: Path::of_points(points.collect(), self.closed),
+            radius: self.radius(),
+            color: self.color(),
+            opacity: self.opacity(),
+        }
+    }
+}
+
+impl StrokeMut<'_> {
+    /// The colour, to be changed.
+    pub fn color_mut(&mut self) -> &mut [f32] {
+        &mut self.look[1..4]
+    }
+}
+
+impl Strokes {
+    /// No strokes.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Number of strokes.
+    pub fn len(&self) -> usize {
+        self.outlines.len()
+    }
+
+    /// Whether there is no stroke.
+    pub fn is_empty(&self) -> bool {
+        self.outlines.is_empty()
+    }
+
+    /// Number of points, of all strokes together.
+    pub fn points(&self) -> usize {
+        self.off.len()
+    }
+
+    /// All numbers, stroke after stroke.
+    pub fn numbers(&self) -> &[f32] {
+        &self.numbers
+    }
+
+    /// All numbers, to be changed.
+    pub fn numbers_mut(&mut self) -> &mut [f32] {
+        &mut self.numbers
+    }
+
+    /// The index of the first point of stroke `i`, among those of all strokes.
+    fn first_point(&self, i: usize) -> usize {
+        i.checked_sub(1)
+            .map_or(0, |before| self.outlines[before].end as usize)
+    }
+
+    /// Where the numbers of stroke `i` are.
+    pub fn range(&self, i: usize) -> std::ops::Range<usize> {
+        let start = 2 * self.first_point(i) + LOOK * i;
+        start..2 * self.outlines[i].end as usize + LOOK * (i + 1)
+    }
+
+    /// Stroke `i`, counted from the back.
+    ///
+    /// # Panics
+    /// When there are not as many.
+    pub fn get(&self, i: usize) -> StrokeRef<'_> {
+        let Outline { end, closed } = self.outlines[i];
+        let (points, look) = self.numbers[self.range(i)]
+            .split_last_chunk()
+            .unwrap_or((&[], &NO_LOOK));
+        StrokeRef {
+            points: points.as_chunks().0,
+            off: &self.off[self.first_point(i)..end as usize],
+            closed,
+            look,
+        }
+    }
+
+    /// Calls `change` with every stroke.
+    pub fn change(&mut self, mut change: impl FnMut(usize, StrokeMut<'_>)) {
+        for i in 0..self.len() {
+            let range = self.range(i);
+            if let Some((points, look)) = self.numbers[range].split_last_chunk_mut() {
+                let points = points.as_chunks_mut().0;
+                change(i, StrokeMut { points, look });
+            }
+        }
+    }
+
+    /// The strokes, back to front.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = StrokeRef<'_>> {
+        (0..self.len()).map(|i| self.get(i))
+    }
+
+    /// Adds a stroke on top.
+    pub fn push(&mut self, stroke: StrokeRef<'_>) {
+        self.numbers.extend(stroke.points.as_flattened());
+        self.numbers.extend(stroke.look);
+        self.off.extend(stroke.off);
+        self.outlines.push(Outline {
+            end: self.off.len() as u32,
+            closed: stroke.closed,
+        });
+    }
+
+    /// Adds a capsule on top.
+    pub fn push_capsule(&mut self, capsule: &Params) {
+        if let Some((points, look)) = capsule.split_last_chunk() {
+            self.push(StrokeRef {
+                points: points.as_chunks().0,
+                off: &[false; 2],
+                closed: false,
+                look,
+            });
+        }
+    }
+
+    /// Adds a stroke of a scene on top.
+    pub fn push_stroke(&mut self, stroke: &Stroke) {
+        let points = stroke.path.points();
+        let places: Vec<[f32; 2]> = points.iter().map(|p| [p.at.x, p.at.y]).collect();
+        let off: Vec<bool> = points.iter().map(|p| !p.is_on).collect();
+        let [red, green, blue] = stroke.color;
+        self.push(StrokeRef {
+            points: &places,
+            off: &off,
+            closed: stroke.path.is_closed(),
+            look: &[stroke.radius, red, green, blue, stroke.opacity],
+        });
+    }
+
+    /// Adds all of `others` on top, and leaves none there.
+    pub fn append(&mut self, others: &mut Self) {
+        let points = self.off.len() as u32;
+        self.numbers.append(&mut others.numbers);
+        self.off.append(&mut others.off);
+        let outlines = others.outlines.drain(..);
+        self.outlines.extend(outlines.map(|outline| Outline {
+            end: outline.end + points,
+            ..outline
+        }));
+    }
+
+    /// Takes away the strokes from number `at` on.
+    #[must_use]
+    pub fn split_off(&mut self, at: usize) -> Self {
+        let at = at.min(self.len());
+        let first = self.first_point(at);
+        let outlines = self.outlines.split_off(at).into_iter();
+        Self {
+            numbers: self.numbers.split_off(2 * first + LOOK * at),
+            off: self.off.split_off(first),
+            outlines: outlines
+                .map(|outline| Outline {
+                    end: outline.end - first as u32,
+                    ..outline
+                })
+                .collect(),
+        }
+    }
+
+    /// Keeps the strokes for which `keep` is true.
+    pub fn retain(&mut self, keep: &[bool]) {
+        let kept = self.iter().zip(keep).filter(|(_, keep)| **keep);
+        *self = kept.map(|(stroke, _)| stroke).collect();
+    }
+}
+
+/// What a stroke without numbers would look like.
+static NO_LOOK: [f32; LOOK] = [0.0; LOOK];
+
+impl<'a> FromIterator<StrokeRef<'a>> for Strokes {
+    fn from_iter<I: IntoIterator<Item = StrokeRef<'a>>>(strokes: I) -> Self {
+        let mut all = Self::new();
+        strokes.into_iter().for_each(|stroke| all.push(stroke));
+        all
+    }
+}
+
+impl<'a> FromIterator<&'a Params> for Strokes {
+    fn from_iter<I: IntoIterator<Item = &'a Params>>(capsules: I) -> Self {
+        let mut all = Self::new();
+        capsules.into_iter().for_each(|p| all.push_capsule(p));
+        all
+    }
+}
+
+impl<'a> FromIterator<&'a Stroke> for Strokes {
+    fn from_iter<I: IntoIterator<Item = &'a Stroke>>(strokes: I) -> Self {
+        let mut all = Self::new();
+        strokes
+            .into_iter()
+            .for_each(|stroke| all.push_stroke(stroke));
+        all
     }
 }

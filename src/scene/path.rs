@@ -84,6 +84,11 @@ impl Path {
         }
     }
 
+    /// The path of points that are known to be a path.
+    pub(crate) fn of_points(points: Vec<PathPoint>, closed: bool) -> Self {
+        Self { points, closed }
+    }
+
     /// A dot.
     pub fn dot(p: Point) -> Self {
         Self {

@@ -207,8 +207,12 @@ impl Bench {
     fn soft(&mut self, stroke: &Params) -> Image {
         let edge = final_softness(Coverage::Smoothstep);
         let backdrop = Backdrop::Color([1.0; 3]);
-        self.renderer
-            .forward(&[*stroke], edge, backdrop, &mut self.canvas);
+        self.renderer.forward(
+            &[stroke].into_iter().collect(),
+            edge,
+            backdrop,
+            &mut self.canvas,
+        );
         self.canvas.to_image()
     }
 }

@@ -121,7 +121,12 @@ impl Specimen {
             canvas: largest_difference(&canvas, &pixels),
             gradients: KINDS
                 .iter()
-                .map(|kind| relative(flat(&gradients.strokes, kind), flat64(&slow, kind)))
+                .map(|kind| {
+                    relative(
+                        flat(gradients.strokes.as_chunks().0, kind),
+                        flat64(&slow, kind),
+                    )
+                })
                 .fold(0.0, f64::max),
             worth: relative(gradients.worth.iter().copied(), worth.into_iter()),
         })
@@ -139,12 +144,17 @@ impl Specimen {
         let mut renderer = Renderer::new(grid, level);
         let mut canvas = Canvas::flat(grid, [0.0; 3]);
         let backdrop = Backdrop::Color(BACKGROUND);
-        renderer.forward(&self.strokes, softness, backdrop, &mut canvas);
+        renderer.forward(
+            &self.strokes.iter().collect(),
+            softness,
+            backdrop,
+            &mut canvas,
+        );
         let target = Canvas::from_image(target);
         let objective = Objective::new(Loss::L2, &target);
         let mut gradients = Gradients::default();
         renderer.backward_with_worth(
-            &self.strokes,
+            &self.strokes.iter().collect(),
             softness,
             backdrop,
             &objective,

@@ -83,21 +83,21 @@ fn descend32(mut page: Specimen, target: &Image, iterations: usize) -> Result<(S
     let backdrop = Backdrop::Color(BACKGROUND);
     for step in 0..iterations {
         renderer.backward(
-            &page.strokes,
+            &page.strokes.iter().collect(),
             softness,
             backdrop,
             &objective,
             &mut gradients,
         );
         let rate = SCHEDULE.factor(step, iterations) as f32;
-        let flat = gradients.strokes.as_flattened();
+        let flat = &gradients.strokes;
         adam.step_scaled(page.strokes.as_flattened_mut(), flat, rate, &scales);
         page.strokes
             .iter_mut()
             .for_each(|p| p[8] = p[8].clamp(0.05, 1.0));
     }
     renderer.backward(
-        &page.strokes,
+        &page.strokes.iter().collect(),
         softness,
         backdrop,
         &objective,

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Counters, Drawing};
-use crate::render::Params;
+use crate::render::Strokes;
 use crate::scene::Rgb;
 
 /// A copy of a drawing's state, from which it is restored to the bit.
@@ -12,7 +12,7 @@ pub(in crate::fit) struct Memento {
     halvings: usize,
     /// The background's colour, unless the drawing is on top of a document.
     color: Option<Rgb>,
-    strokes: Vec<Params>,
+    strokes: Strokes,
     stage_of: Vec<usize>,
     frozen: usize,
     counters: Counters,
@@ -24,9 +24,9 @@ impl Drawing {
         Memento {
             halvings: self.surface().halvings(),
             color: self.surface().color(),
-            strokes: self.strokes.clone(),
+            strokes: self.all(),
             stage_of: self.stage_of.clone(),
-            frozen: self.frozen,
+            frozen: self.frozen.len(),
             counters: self.counters,
         }
     }
@@ -37,16 +37,14 @@ impl Drawing {
             *color = was;
         }
         self.halve(memento.halvings);
-        self.strokes = memento.strokes;
+        self.free = memento.strokes;
         self.stage_of = memento.stage_of;
         self.counters = memento.counters;
         if memento.frozen > 0 {
             // Only the frozen strokes may be there when they are rendered.
-            let free = self
-                .strokes
-                .split_off(memento.frozen.min(self.strokes.len()));
+            let free = self.free.split_off(memento.frozen);
             self.freeze();
-            self.strokes.extend(free);
+            self.free = free;
         }
     }
 

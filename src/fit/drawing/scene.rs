@@ -2,22 +2,23 @@
 
 use super::Drawing;
 use crate::image::Image;
-use crate::render::{AX, Backdrop, Canvas, Params, RADIUS, pack, unpack};
-use crate::scene::{Scene, Stage};
+use crate::render::{Backdrop, Canvas, Strokes};
+use crate::scene::{Scene, Stage, Stroke};
 
 impl Drawing {
     /// Adds the strokes of `scene`, in px of the picture, to an empty drawing.
     pub(in crate::fit) fn load(&mut self, scene: &Scene) {
         let halvings = self.surface().halvings();
         for (index, stage) in scene.stages.iter().enumerate() {
-            let strokes = stage.strokes.iter().map(|s| reduced(pack(s), halvings));
-            self.extend(strokes, index);
+            let mut strokes = reduced(&stage.strokes, halvings);
+            self.free.append(&mut strokes);
+            self.stage_of.resize(self.len(), index);
         }
     }
 
     /// Our render of `scene` on each surface.
     pub(in crate::fit) fn soft(&mut self, scene: &Scene) -> Vec<Image> {
-        let strokes: Vec<Params> = scene.strokes().map(pack).collect();
+        let strokes: Strokes = scene.strokes().collect();
         let mut canvas = self.surface().canvas.clone();
         let mut images = Vec::new();
         for surface in &self.surfaces {
@@ -36,11 +37,7 @@ impl Drawing {
         let halvings = self.surface().halvings();
         let mut mses = Vec::new();
         for stage in &scene.stages {
-            let strokes: Vec<Params> = stage
-                .strokes
-                .iter()
-                .map(|s| reduced(pack(s), halvings))
-                .collect();
+            let strokes = reduced(&stage.strokes, halvings);
             std::mem::swap(&mut below, &mut canvases);
             for (below, canvas) in below.iter().zip(&mut canvases) {
                 let backdrop = Backdrop::Canvas(below);
@@ -56,33 +53,35 @@ impl Drawing {
         let picture = self.surface().picture();
         let background = self.background().filter(|_| has_background);
         let mut scene = Scene::empty(picture.width() as u32, picture.height() as u32, background);
-        let halvings = self.surface().halvings();
-        for (&stroke, &stage) in self.strokes.iter().zip(&self.stage_of) {
+        let mut strokes = self.all();
+        enlarge(&mut strokes, self.surface().halvings());
+        for (stroke, &stage) in strokes.iter().zip(&self.stage_of) {
             if scene.stages.len() <= stage {
                 scene.stages.resize(stage + 1, Stage::default());
             }
-            scene.stages[stage]
-                .strokes
-                .push(unpack(&enlarged(stroke, halvings)));
+            scene.stages[stage].strokes.push(stroke.to_stroke());
         }
         scene
     }
 }
 
-/// The stroke at a resolution `2^doublings` times as fine.
-pub(super) fn enlarged(mut stroke: Params, doublings: usize) -> Params {
-    let factor = (1_u32 << doublings) as f32;
-    for length in &mut stroke[AX..=RADIUS] {
-        *length *= factor;
-    }
-    stroke
+/// Makes the strokes fit a resolution `2^doublings` times as fine.
+pub(super) fn enlarge(strokes: &mut Strokes, doublings: usize) {
+    scale(strokes, (1_u32 << doublings) as f32);
 }
 
-/// The stroke at a resolution `2^halvings` times as coarse.
-fn reduced(mut stroke: Params, halvings: usize) -> Params {
-    let factor = (1_u32 << halvings) as f32;
-    for length in &mut stroke[AX..=RADIUS] {
-        *length /= factor;
-    }
-    stroke
+/// The strokes at a resolution `2^halvings` times as coarse.
+fn reduced(strokes: &[Stroke], halvings: usize) -> Strokes {
+    let mut strokes: Strokes = strokes.iter().collect();
+    scale(&mut strokes, 1.0 / (1_u32 << halvings) as f32);
+    strokes
+}
+
+/// Multiplies all lengths by a power of two, which changes no digit.
+fn scale(strokes: &mut Strokes, factor: f32) {
+    strokes.change(|_, stroke| {
+        let [radius, ..] = stroke.look;
+        let lengths = stroke.points.as_flattened_mut().iter_mut();
+        lengths.chain([radius]).for_each(|length| *length *= factor);
+    });
 }

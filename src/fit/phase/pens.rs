@@ -16,7 +16,7 @@ use crate::fit::drawing::Drawing;
 use crate::fit::recipe::Recipe;
 use crate::fit::session::Session;
 use crate::math;
-use crate::render::{AX, AY, BX, BY, OPACITY, Params, RADIUS, RED, unpack};
+use crate::render::{StrokeRef, Strokes};
 use crate::scene::{Rgb, Written, color, quantum};
 use crate::svg::Form;
 
@@ -49,15 +49,32 @@ fn hand_out(drawing: &mut Drawing, keep_colors: bool, recipe: &Recipe) -> Vec<Ve
     let preferences = preferences(drawing, 0.0, recipe.coloring.min_shown);
     let weights: Vec<f32> = preferences.iter().map(|w| w.weight).collect();
     let windows = windows(&drawing.stage_sizes(), recipe.pens.window);
-    let strokes = drawing.free_mut();
+    let strokes = drawing.free();
     let mut pens = Vec::new();
     for window in windows {
-        let (strokes, weights) = (&mut strokes[window.clone()], &weights[window.clone()]);
-        let shared = share(strokes, weights, keep_colors, recipe);
-        let of_drawing = |pen: Vec<usize>| pen.iter().map(|i| i + window.start).collect();
-        pens.extend(shared.into_iter().map(of_drawing));
+        let members: Strokes = window.clone().map(|i| strokes.get(i)).collect();
+        let mut shared = share(&members, &weights[window.clone()], keep_colors, recipe);
+        let of_drawing = |pen: &mut Pen| pen.members.iter_mut().for_each(|i| *i += window.start);
+        shared.iter_mut().for_each(of_drawing);
+        pens.extend(shared);
     }
-    pens
+    draw_with(&pens, drawing.free_mut());
+    pens.into_iter().map(|pen| pen.members).collect()
+}
+
+/// Gives the members of each pen its radius and colour.
+fn draw_with(pens: &[Pen], strokes: &mut Strokes) {
+    let mut pen_of = vec![None; strokes.len()];
+    for pen in pens {
+        pen.members.iter().for_each(|&i| pen_of[i] = Some(pen));
+    }
+    strokes.change(|i, mut stroke| {
+        if let Some(pen) = pen_of[i] {
+            stroke.look[0] = pen.radius;
+            let color = color(pen.color.map(quantum));
+            stroke.color_mut().copy_from_slice(&color);
+        }
+    });
 }
 
 /// Ranges of at most `most` strokes of one stage, within which strokes may share pens.
@@ -114,13 +131,13 @@ struct Pen {
 }
 
 impl Pen {
-    fn new(i: usize, p: &Params, weight: f32, ladder: Ladder) -> Self {
+    fn new(i: usize, stroke: StrokeRef<'_>, weight: f32, ladder: Ladder) -> Self {
         Self {
             members: vec![i],
-            color: [p[RED], p[RED + 1], p[RED + 2]],
+            color: stroke.color(),
             area: weight,
-            radius: ladder.rung(p[RADIUS]),
-            edge: 2.0 * math::hypot(p[BX] - p[AX], p[BY] - p[AY]) + TAU * p[RADIUS],
+            radius: ladder.rung(stroke.radius()),
+            edge: 2.0 * length(stroke) + TAU * stroke.radius(),
         }
     }
 
@@ -173,19 +190,23 @@ impl Ladder {
     }
 }
 
-/// Chooses the pens of the strokes of a window, and returns the strokes of each pen.
-fn share(
-    strokes: &mut [Params],
-    weights: &[f32],
-    keep_colors: bool,
-    recipe: &Recipe,
-) -> Vec<Vec<usize>> {
+/// Length of the lines through the points of a stroke, px.
+fn length(stroke: StrokeRef<'_>) -> f32 {
+    let steps = stroke.points.windows(2);
+    steps
+        .map(|step| math::hypot(step[1][0] - step[0][0], step[1][1] - step[0][1]))
+        .sum()
+}
+
+/// Chooses the pens of the strokes of a window.
+fn share(strokes: &Strokes, weights: &[f32], keep_colors: bool, recipe: &Recipe) -> Vec<Pen> {
     let (settings, ladder) = (recipe.pens, Ladder::of(recipe));
     let mut order = Order::new(strokes);
     let pens = strokes.iter().zip(weights).enumerate();
-    let pen = |(i, (p, &w)): (usize, (&Params, &f32))| Some(Pen::new(i, p, w, ladder));
+    let pen =
+        |(i, (stroke, &w)): (usize, (StrokeRef<'_>, &f32))| Some(Pen::new(i, stroke, w, ladder));
     let mut pens: Vec<Option<Pen>> = pens.map(pen).collect();
-    let may_share = |i: usize| strokes[i][OPACITY] == 1.0;
+    let may_share = |i: usize| strokes.get(i).opacity() == 1.0;
     let opaque: Vec<usize> = (0..strokes.len()).filter(|&i| may_share(i)).collect();
     let mut pairs = BinaryHeap::new();
     let put = |pairs: &mut BinaryHeap<_>, pens: &[Option<Pen>], i: usize, k: usize| {
@@ -227,15 +248,7 @@ fn share(
             .filter(|&&other| other != i)
             .for_each(|&other| put(&mut pairs, &pens, i.min(other), i.max(other)));
     }
-    let draw_with = |pen: Pen| {
-        for &i in &pen.members {
-            let p = &mut strokes[i];
-            p[RADIUS] = pen.radius;
-            p[RED..OPACITY].copy_from_slice(&color(pen.color.map(quantum)));
-        }
-        pen.members
-    };
-    pens.into_iter().flatten().map(draw_with).collect()
+    pens.into_iter().flatten().collect()
 }
 
 /// Which strokes have to be drawn before which; those of one pen are drawn together.
@@ -247,12 +260,12 @@ struct Order {
 }
 
 impl Order {
-    fn new(strokes: &[Params]) -> Self {
+    fn new(strokes: &Strokes) -> Self {
         let count = strokes.len();
         // Which strokes meet does not depend on the decimals.
         let written: Vec<_> = strokes
             .iter()
-            .map(|p| Written::anywhere(&unpack(p), 2))
+            .map(|stroke| Written::anywhere(&stroke.to_stroke(), 2))
             .collect();
         let meet =
             |i: usize, k: usize| matches!((&written[i], &written[k]), (Ok(a), Ok(b)) if a.meets(b));
@@ -331,16 +344,17 @@ mod tests {
     use crate::fit::recipe::Preset;
 
     /// Upright, at `x`, of a grey level.
-    fn stroke(x: f32, level: f32) -> Params {
+    fn stroke(x: f32, level: f32) -> [f32; 9] {
         [x, 10.0, x, 50.0, 2.0, level, level, level, 1.0]
     }
 
-    fn levels(strokes: &[Params], keep_colors: bool) -> Vec<u8> {
-        let mut strokes = strokes.to_vec();
+    fn levels(strokes: &[[f32; 9]], keep_colors: bool) -> Vec<u8> {
+        let mut strokes: Strokes = strokes.iter().collect();
         let worth = vec![100.0; strokes.len()];
         let recipe = Recipe::of(Preset::Balanced);
-        share(&mut strokes, &worth, keep_colors, &recipe);
-        strokes.iter().map(|p| quantum(p[RED])).collect()
+        let pens = share(&strokes, &worth, keep_colors, &recipe);
+        draw_with(&pens, &mut strokes);
+        strokes.iter().map(|s| quantum(s.color()[0])).collect()
     }
 
     #[test]

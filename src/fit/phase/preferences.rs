@@ -1,7 +1,7 @@
 //! Wishes: the colour that would suit each stroke best.
 
 use crate::fit::drawing::Drawing;
-use crate::render::{CanvasLoss, Gradients, Lanes, OPACITY, Params, RED, TileRgb};
+use crate::render::{CanvasLoss, Gradients, LOOK, Lanes, TileRgb};
 use crate::scene::Rgb;
 
 /// The colour of a stroke, or of the background, that minimises the squared error if all others stay as they are.
@@ -48,11 +48,12 @@ pub(super) fn preferences(
         let color = [0, 1, 2].map(|c| moved(c).clamp(0.0, 1.0));
         PreferredColor { color, weight }
     };
-    let rgb = |p: &Params| [p[RED], p[RED + 1], p[RED + 2]];
-    let strokes = drawing.free().iter().zip(&slopes.strokes);
-    let preferences = strokes.zip(&shown.strokes).map(|((stroke, slope), shown)| {
+    let strokes = drawing.free();
+    let preferences = strokes.iter().enumerate().map(|(i, stroke)| {
+        let red = strokes.range(i).end - LOOK + 1;
+        let slope = [0, 1, 2].map(|k| slopes.strokes[red + k]);
         // The square of a share is at most the share times the opacity.
-        preference(rgb(stroke), rgb(slope), shown[RED] * stroke[OPACITY])
+        preference(stroke.color(), slope, shown.strokes[red] * stroke.opacity())
     });
     let background = drawing.background();
     let background = background.map(|color| preference(color, slopes.backdrop, shown.backdrop[0]));
@@ -63,9 +64,11 @@ pub(super) fn preferences(
 /// fixed. All strokes must be free.
 pub(super) fn set_colors(drawing: &mut Drawing, colors: &[Rgb]) {
     let mut colors = colors.iter();
-    for (stroke, color) in drawing.free_mut().iter_mut().zip(colors.by_ref()) {
-        stroke[RED..OPACITY].copy_from_slice(color);
-    }
+    drawing.free_mut().change(|_, mut stroke| {
+        if let Some(color) = colors.next() {
+            stroke.color_mut().copy_from_slice(color);
+        }
+    });
     if let Some(&background) = colors.next().filter(|_| !drawing.background_fixed) {
         drawing.change_background(|color| *color = background);
     }
