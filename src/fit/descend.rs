@@ -4,6 +4,7 @@
 //! relocates strokes between its steps. After every iteration the observer is called, and the state can be kept.
 
 use super::descent::{Aim, Descent};
+use super::points;
 use super::relocation;
 use super::session::Session;
 use crate::error::Result;
@@ -56,5 +57,9 @@ fn rearrange(session: &mut Session<'_>, descent: &mut Descent, step: usize, done
     if session.timer.affordable(wanted) == wanted {
         let sources = relocation::relocate(session, limit, std::convert::identity);
         descent.follow(&sources, &session.drawing, &session.recipe);
+        if done > points::knob("P_FROM", 0.1) && points::knob("P_ON", 1.0) > 0.0 {
+            let sources = points::rearrange(session, done);
+            descent.follow(&sources, &session.drawing, &session.recipe);
+        }
     }
 }

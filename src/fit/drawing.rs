@@ -7,7 +7,7 @@ use fearless_simd::Level;
 
 use super::bounds::Bounds;
 use super::surface::Surface;
-use crate::render::{Canvas, CanvasLoss, Gradients, Params, Renderer, Softness, Strokes};
+use crate::render::{Canvas, CanvasLoss, Gradients, Params, Renderer, Softness, Strokes, Survey};
 use crate::scene::Rgb;
 pub(super) use memento::Memento;
 use scene::enlarge;
@@ -242,6 +242,30 @@ impl Drawing {
         if self.surfaces.len() > 1 {
             gradients.scale(1.0 / self.surfaces.len() as f32);
         }
+    }
+
+    /// Worth and survey of the free strokes at the final edge, at the current resolution.
+    pub(super) fn surveyed(&mut self, least: usize) -> (Gradients, Survey) {
+        let (mut gradients, mut survey) = (Gradients::default(), Survey::default());
+        let (mut more, mut another) = (Gradients::default(), Survey::default());
+        for (i, surface) in self.surfaces.iter().enumerate() {
+            let backdrop = surface.backdrop(self.frozen.len());
+            let objective = surface.objective(None);
+            let (to, into) = if i == 0 {
+                (&mut gradients, &mut survey)
+            } else {
+                (&mut more, &mut another)
+            };
+            self.renderer.survey(&self.free, least, self.edge, backdrop, &objective, to, into);
+            if i > 0 {
+                gradients.add(&more);
+                survey.add(&another);
+            }
+        }
+        let part = 1.0 / self.surfaces.len() as f32;
+        gradients.scale(part);
+        survey.scale(part);
+        (gradients, survey)
     }
 
     /// Loss, gradients and worth of the free strokes at the final edge.

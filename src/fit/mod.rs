@@ -32,6 +32,7 @@ mod objective;
 mod order;
 mod phase;
 mod plan;
+mod points;
 mod price;
 mod progress;
 mod recipe;

@@ -27,6 +27,11 @@ impl Price {
         self.per_byte * stroke_bytes(&stroke.to_stroke(), &self.file) as f32
     }
 
+    /// The price of points.
+    pub(super) fn of_points(&self, count: usize) -> f32 {
+        self.per_byte * 10.0 * count as f32
+    }
+
     /// The price of a capsule.
     pub(super) fn of_capsule(&self, capsule: &Params) -> f32 {
         self.of(Strokes::from_iter([capsule]).get(0))

@@ -65,6 +65,7 @@ pub use strokes::{
 
 use crate::coverage::Coverage;
 use edge::{Edge, Reach};
+pub(crate) use flat::{Knot, Piece, Pieces};
 use flat::{Flat, walk};
 use grid::{FULL, TileWeights, edge_weights, flat_tile};
 use kernel::{EndSums, LookSums, Scratch, TileJob, TileSums, WORTH};
@@ -516,6 +517,13 @@ impl<'a> Frame<'a> {
             reach: self.reach,
         }
     }
+}
+
+/// The vertices of one stroke's polyline.
+pub(crate) fn flattened(stroke: StrokeRef<'_>) -> Vec<[f32; 2]> {
+    let mut vertices = Vec::new();
+    walk(stroke, 1, |vertex| vertices.push(vertex.place(stroke.points)));
+    vertices
 }
 
 /// Runs `f` with the scratch of this worker.
