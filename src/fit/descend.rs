@@ -57,9 +57,10 @@ fn rearrange(session: &mut Session<'_>, descent: &mut Descent, step: usize, done
     if session.timer.affordable(wanted) == wanted {
         let sources = relocation::relocate(session, limit, std::convert::identity);
         descent.follow(&sources, &session.drawing, &session.recipe);
-        if done > points::knob("P_FROM", 0.1) && points::knob("P_ON", 1.0) > 0.0 {
-            let sources = points::rearrange(session, done);
-            descent.follow(&sources, &session.drawing, &session.recipe);
-        }
+    }
+    let lasts = (session.recipe.points.from..session.recipe.points.until).contains(&done);
+    if lasts && points::are_allowed(session.config) {
+        let sources = points::rearrange(session);
+        descent.follow(&sources, &session.drawing, &session.recipe);
     }
 }

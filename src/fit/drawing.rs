@@ -244,28 +244,21 @@ impl Drawing {
         }
     }
 
-    /// Worth and survey of the free strokes at the final edge, at the current resolution.
-    pub(super) fn surveyed(&mut self, least: usize) -> (Gradients, Survey) {
-        let (mut gradients, mut survey) = (Gradients::default(), Survey::default());
-        let (mut more, mut another) = (Gradients::default(), Survey::default());
+    /// A survey of the free strokes at the final edge, at the current resolution.
+    pub(super) fn survey_at_resolution(&mut self, least: usize) -> Survey {
+        let (mut survey, mut more) = (Survey::default(), Survey::default());
         for (i, surface) in self.surfaces.iter().enumerate() {
             let backdrop = surface.backdrop(self.frozen.len());
             let objective = surface.objective(None);
-            let (to, into) = if i == 0 {
-                (&mut gradients, &mut survey)
-            } else {
-                (&mut more, &mut another)
-            };
-            self.renderer.survey(&self.free, least, self.edge, backdrop, &objective, to, into);
+            let into = if i == 0 { &mut survey } else { &mut more };
+            let (renderer, free) = (&mut self.renderer, &self.free);
+            renderer.survey(free, least, self.edge, backdrop, &objective, into);
             if i > 0 {
-                gradients.add(&more);
-                survey.add(&another);
+                survey.add(&more);
             }
         }
-        let part = 1.0 / self.surfaces.len() as f32;
-        gradients.scale(part);
-        survey.scale(part);
-        (gradients, survey)
+        survey.scale(1.0 / self.surfaces.len() as f32);
+        survey
     }
 
     /// Loss, gradients and worth of the free strokes at the final edge.

@@ -8,7 +8,7 @@
 use super::strokes::{LOOK, StrokeRef, Strokes};
 
 /// Largest distance between a curve and its polyline, px.
-const TOLERANCE: f32 = 0.04;
+const TOLERANCE: f32 = 0.08;
 
 /// Most segments of one curve.
 const MAX_STEPS: usize = 64;
@@ -151,6 +151,15 @@ impl Piece {
         let length2 = bend[0] * bend[0] + bend[1] * bend[1];
         let steps = (length2.sqrt() / (4.0 * TOLERANCE)).sqrt().ceil();
         (steps as usize).clamp(1, MAX_STEPS).max(least)
+    }
+
+    /// Whether the piece changes with point `k`.
+    pub(crate) fn depends_on(&self, k: usize) -> bool {
+        let of = |knot: Knot| match knot {
+            Knot::Point(i) => i == k,
+            Knot::Between(i, j) => i == k || j == k,
+        };
+        self.control == Some(k) || of(self.from) || of(self.to)
     }
 
     /// The vertex at parameter `t` between the knots.
