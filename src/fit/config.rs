@@ -7,7 +7,7 @@ use super::recipe::{Preset, Recipe};
 use super::simd::Simd;
 use crate::coverage::CoverageSchedule;
 use crate::error::{Error, ErrorKind, Result};
-use crate::scene::{MAX_PRECISION, Rgb, Scene, quantum};
+use crate::scene::{MAX_POINTS, MAX_PRECISION, Rgb, Scene, quantum};
 use crate::svg::WriteOptions;
 use crate::threads::Workers;
 
@@ -178,6 +178,11 @@ impl Config {
         self.recipe().check()?;
         if self.stages == Some(0) {
             return refuse("0 stages add no stroke: give 1 or more".into());
+        }
+        if let Some(points) = self.points.filter(|n| !(2..=MAX_POINTS).contains(n)) {
+            return refuse(format!(
+                "{points} points of a stroke are out of range: give 2 to {MAX_POINTS}"
+            ));
         }
         if self.file.precision > MAX_PRECISION {
             return refuse(format!(

@@ -7,6 +7,7 @@
 //! no room left, points that gain more take the place of points that are missed less.
 
 mod edits;
+mod joins;
 mod terrain;
 
 use rayon::prelude::*;
@@ -25,6 +26,16 @@ const LEAST: usize = 4;
 /// Changes the points of the free strokes where that pays. Returns the former index of each number of the free strokes,
 /// `None` for a new one.
 pub(super) fn rearrange(session: &mut Session<'_>) -> Vec<Option<usize>> {
+    let joined = joins::join(session);
+    let edited = edit(session);
+    match joined {
+        None => edited,
+        Some(joined) => edited.iter().map(|source| joined[(*source)?]).collect(),
+    }
+}
+
+/// Chooses an edit for each stroke that gains by one.
+fn edit(session: &mut Session<'_>) -> Vec<Option<usize>> {
     let (points, price) = (session.recipe.points, session.price.of_point());
     let room = room(session);
     let most = session.config.points.unwrap_or(usize::MAX);
@@ -106,7 +117,9 @@ fn choose(
         *chosen = leaving.or_else(|| options.toggle.take_if(|edit| edit.gain > price * 0.1));
     }
     let wanted = (points.share * count as f32).ceil() as usize;
-    let mut coming = sorted(&mut options, |o| o.insertion.take_if(|edit| edit.gain > price));
+    let mut coming = sorted(&mut options, |o| {
+        o.insertion.take_if(|edit| edit.gain > price)
+    });
     coming.retain(|edit| chosen[edit.stroke].is_none());
     let mut coming = coming.into_iter();
     for edit in coming.by_ref().take(wanted.min(room)) {

@@ -146,7 +146,11 @@ impl Piece {
         };
         // At most a quarter of the second difference lies between a curve and its chord, and each halving of the step
         // quarters that.
-        let (a, c, b) = (self.from.place(points), points[control], self.to.place(points));
+        let (a, c, b) = (
+            self.from.place(points),
+            points[control],
+            self.to.place(points),
+        );
         let bend = [0, 1].map(|k| a[k] - 2.0 * c[k] + b[k]);
         let length2 = bend[0] * bend[0] + bend[1] * bend[1];
         let steps = (length2.sqrt() / (4.0 * TOLERANCE)).sqrt().ceil();

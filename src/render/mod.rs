@@ -65,8 +65,8 @@ pub use strokes::{
 
 use crate::coverage::Coverage;
 use edge::{Edge, Reach};
-pub(crate) use flat::{Knot, Piece, Pieces};
 use flat::{Flat, walk};
+pub(crate) use flat::{Knot, Piece, Pieces};
 use grid::{FULL, TileWeights, edge_weights, flat_tile};
 use kernel::{EndSums, LookSums, Scratch, TileJob, TileSums, WORTH};
 
@@ -526,7 +526,9 @@ impl<'a> Frame<'a> {
 /// The vertices of one stroke's polyline.
 pub(crate) fn flattened(stroke: StrokeRef<'_>) -> Vec<[f32; 2]> {
     let mut vertices = Vec::new();
-    walk(stroke, 1, |vertex| vertices.push(vertex.place(stroke.points)));
+    walk(stroke, 1, |vertex| {
+        vertices.push(vertex.place(stroke.points))
+    });
     vertices
 }
 

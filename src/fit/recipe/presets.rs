@@ -1,8 +1,8 @@
 //! The numbers of the presets.
 
 use super::{
-    AdamSettings, BackgroundChoice, Correction, Domain, EdgeShape, Pens, Points, Polish, Preset, Rates,
-    Recipe, Recoloring, Relocation, Rounds, Settling, Stages, TimeShares,
+    AdamSettings, BackgroundChoice, Correction, Domain, EdgeShape, Joins, Pens, Points, Polish,
+    Preset, Rates, Recipe, Recoloring, Relocation, Rounds, Settling, Stages, TimeShares,
 };
 use crate::optim::AdamParams;
 use crate::seed::Probing;
@@ -149,6 +149,13 @@ const BALANCED: Recipe = Recipe {
         reach: 0.5,
         shortest: 0.5,
         smoothness: 0.7,
+        joins: Joins {
+            reach: 8.0,
+            gap: 0.6,
+            alike: 0.15,
+            share: 0.1,
+            spared: 0.1,
+        },
     },
     coloring: Recoloring {
         rounds: Rounds {
