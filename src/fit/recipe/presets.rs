@@ -119,7 +119,7 @@ const BALANCED: Recipe = Recipe {
         radius_factors: [0.25, 4.0],
     },
     polish: Polish {
-        iterations: 2800,
+        iterations: 1200,
         coarse_share: 0.3,
         rates: Rates {
             position: 2.5,
@@ -143,7 +143,7 @@ const BALANCED: Recipe = Recipe {
         until: 0.85,
         share: 0.5,
         swapped: 0.2,
-        per_stroke: 6.0,
+        per_stroke: 7.0,
         capsules: 0.85,
         filled: 0.995,
         reach: 0.5,
@@ -152,7 +152,7 @@ const BALANCED: Recipe = Recipe {
         joins: Joins {
             reach: 8.0,
             gap: 0.6,
-            alike: 0.15,
+            alike: 0.3,
             share: 0.1,
             spared: 0.1,
         },
