@@ -25,7 +25,7 @@ use strokefit::engines::{DrawRequest, Engine};
 use strokefit::fit::{Budget, Config, Fitter};
 use strokefit::image::Image;
 use strokefit::metrics;
-use strokefit::scene::{Path, Scene, Stage, Stroke};
+use strokefit::scene::{self, Scene, Stage, Stroke};
 use strokefit::svg::{self, Form, WriteOptions};
 use strokefit::verify::{self, Size};
 use support::engine::installed;
@@ -182,13 +182,13 @@ fn chromium_draws_as_it_is_foreseen() {
 }
 
 fn capsule(a: [f32; 2], b: [f32; 2], width: f32) -> Stroke {
-    let shape = if a == b {
-        Path::dot(a.into())
+    let path = if a == b {
+        scene::Path::dot(a.into())
     } else {
-        Path::line(a.into(), b.into())
+        scene::Path::line(a.into(), b.into())
     };
     Stroke {
-        shape,
+        path,
         radius: width / 2.0,
         color: [0.1, 0.3, 0.8],
         opacity: 1.0,

@@ -102,7 +102,7 @@ fn assert_refused(options: &[&str], words: &str) {
 
 #[test]
 fn one_element_is_one_stroke() {
-    let drawn = drawn("coffee-300", &["--form", "elements"]);
+    let drawn = drawn("coffee-300", &[]);
     let elements = drawn.text.matches("<path").count();
     assert_eq!(elements as f64, drawn.number("strokes"));
 }
@@ -263,6 +263,10 @@ fn options_that_make_no_sense_are_refused() {
     assert_refused(&["--width", "-3mm"], "such as 120mm");
     assert_refused(&["--outline", "--form", "smallest"], "--outline");
     assert_refused(&["--form", "tiny"], "smallest");
+    assert_refused(
+        &["--form", "elements"],
+        "give plain, which has one element per stroke now",
+    );
     assert_refused(&["--group", "size"], "color");
 }
 

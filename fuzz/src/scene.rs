@@ -10,7 +10,7 @@ use strokefit::coverage::Coverage;
 use strokefit::fit::{Objective, Simd};
 use strokefit::loss::Loss;
 use strokefit::render::{Backdrop, Canvas, Gradients, Params, Renderer, Softness, pack};
-use strokefit::scene::{Quantized, Scene, Shape, Stage, Stroke};
+use strokefit::scene::{Path, PathPoint, Quantized, Scene, Stage, Stroke};
 use strokefit::verify::{self, Size};
 use strokefit::{image::Image, svg};
 
@@ -43,15 +43,29 @@ impl Source<'_> {
 
     fn stroke(&mut self) -> Stroke {
         let [ax, ay, bx, by, radius, red, green, blue, opacity] = [(); 9].map(|()| self.float());
+        let (a, b) = ([ax, ay].into(), [bx, by].into());
         Stroke {
-            shape: match self.byte() % 4 {
-                0 => Shape::dot([ax, ay].into()),
-                _ => Shape::capsule([ax, ay].into(), [bx, by].into()),
+            path: match self.byte() % 8 {
+                0 | 1 => Path::dot(a),
+                2 => self.path([PathPoint::on(a), PathPoint::on(b)], false),
+                3 => self.path([PathPoint::on(a), PathPoint::off(b)], true),
+                _ => Path::line(a, b),
             },
             radius,
             color: [red, green, blue],
             opacity,
         }
+    }
+
+    /// A path with up to seven more points between these two, on or off it.
+    fn path(&mut self, [start, end]: [PathPoint; 2], closed: bool) -> Path {
+        let kinds = self.byte();
+        let between = (0..kinds % 8).map(|i| PathPoint {
+            at: [self.float(), self.float()].into(),
+            is_on: kinds >> (i + 1) & 1 == 1,
+        });
+        let points = [start].into_iter().chain(between).chain([end]).collect();
+        Path::new(points, closed).expect("an open path has its ends on it")
     }
 
     fn scene(&mut self) -> Scene {
