@@ -9,8 +9,8 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use strokefit::coverage::Coverage;
 use strokefit::fit::{Objective, Simd};
 use strokefit::loss::Loss;
-use strokefit::render::{Backdrop, Canvas, Gradients, Params, Renderer, Softness, pack};
-use strokefit::scene::{Quantized, Scene, Shape, Stage, Stroke};
+use strokefit::render::{Backdrop, Canvas, Gradients, Renderer, Softness, Strokes};
+use strokefit::scene::{Path, PathPoint, Quantized, Scene, Stage, Stroke};
 use strokefit::verify::{self, Size};
 use strokefit::{image::Image, svg};
 
@@ -41,13 +41,26 @@ impl Source<'_> {
         }
     }
 
+    /// A path of one to six points of both kinds, open or closed.
+    fn path(&mut self) -> Path {
+        let (kinds, closed) = (self.byte(), self.byte().is_multiple_of(2));
+        let points = (0..=self.byte() % 6).map(|i| PathPoint {
+            at: [self.float(), self.float()].into(),
+            is_on: kinds >> i & 1 == 0,
+        });
+        let mut points: Vec<PathPoint> = points.collect();
+        let last = points.len() - 1;
+        for end in [0, last] {
+            points[end].is_on |= !closed || last == 0;
+        }
+        Path::new(points, closed).expect("its ends are on it")
+    }
+
     fn stroke(&mut self) -> Stroke {
-        let [ax, ay, bx, by, radius, red, green, blue, opacity] = [(); 9].map(|()| self.float());
+        let path = self.path();
+        let [radius, red, green, blue, opacity] = [(); 5].map(|()| self.float());
         Stroke {
-            shape: match self.byte() % 4 {
-                0 => Shape::dot([ax, ay].into()),
-                _ => Shape::capsule([ax, ay].into(), [bx, by].into()),
-            },
+            path,
             radius,
             color: [red, green, blue],
             opacity,
@@ -131,7 +144,7 @@ thread_local! {
 
 /// The canvas and the gradients of `scene`, if all of them are finite.
 fn draw(scene: &Scene, softness: Softness) -> Option<()> {
-    let strokes: Vec<Params> = scene.strokes().map(pack).collect();
+    let strokes: Strokes = scene.strokes().collect();
     let background = scene.background.unwrap_or([1.0; 3]);
     let target = Image::filled(scene.width as usize, scene.height as usize, [0.5; 3]).ok()?;
     let target = Canvas::from_image(&target);
@@ -145,7 +158,7 @@ fn draw(scene: &Scene, softness: Softness) -> Option<()> {
         renderer.backward_with_worth(&strokes, softness, backdrop, &objective, gradients);
         let picture = canvas.to_image();
         let is_finite = picture.planes().iter().all(|plane| finite(plane))
-            && finite(gradients.strokes.as_flattened())
+            && finite(&gradients.strokes)
             && finite(&gradients.worth);
         is_finite.then_some(())
     })

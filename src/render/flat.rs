@@ -1,17 +1,14 @@
 //! Flattening: paths to polylines, and derivatives by the vertices of polylines to derivatives by points of paths.
 //!
 //! The renderer knows polylines alone. Each line of a path is one segment or more, and each quadratic Bézier curve as
-//! many as keep within [`TOLERANCE`] of it, at equal steps of its parameter. So every vertex is a mean of at most three
+//! many as [`sdf`](crate::sdf) says, at equal steps of its parameter. So every vertex is a mean of at most three
 //! points with fixed weights: flattening is linear, and the derivative by a point is the same weights times the
 //! derivatives by the vertices.
 
+use crate::math::Vector;
+use crate::sdf;
+
 use super::strokes::{LOOK, StrokeRef, Strokes};
-
-/// Largest distance between a curve and its polyline, px.
-const TOLERANCE: f32 = 0.04;
-
-/// Most segments of one curve.
-const MAX_STEPS: usize = 64;
 
 /// Strokes as polylines.
 #[derive(Debug, Default)]
@@ -170,7 +167,8 @@ fn curve(
     least: usize,
     visit: &mut impl FnMut(Vertex),
 ) {
-    let steps = steps(from.place(points), points[control], to.place(points)).max(least);
+    let (a, b, c) = (from.place(points), points[control], to.place(points));
+    let steps = sdf::steps(Vector::from([0, 1].map(|k| a[k] - 2.0 * b[k] + c[k]))).max(least);
     let (start, [of_start, start_of_control]) = from.shares(control);
     let (end, [of_end, end_of_control]) = to.shares(control);
     for k in 1..steps {
@@ -186,13 +184,4 @@ fn curve(
         });
     }
     visit(to.vertex());
-}
-
-/// How many segments keep within the tolerance of a curve. At most a quarter of the second difference lies between a
-/// curve and its chord, and each halving of the step quarters that.
-fn steps(a: [f32; 2], control: [f32; 2], b: [f32; 2]) -> usize {
-    let bend = [0, 1].map(|k| a[k] - 2.0 * control[k] + b[k]);
-    let length2 = bend[0] * bend[0] + bend[1] * bend[1];
-    let steps = (length2.sqrt() / (4.0 * TOLERANCE)).sqrt().ceil();
-    (steps as usize).clamp(1, MAX_STEPS)
 }
