@@ -201,7 +201,7 @@ fn part_svg<'a>(
     };
     let exactly = WriteOptions {
         precision: MAX_PRECISION,
-        form: Form::Elements,
+        form: Form::Plain,
         ..WriteOptions::default()
     };
     svg::write(&part, &exactly)
@@ -325,7 +325,7 @@ mod tests {
     #[test]
     fn animated_svg_has_the_numbers_of_the_file() {
         let scene = scene(&[3, 4]);
-        let form = Form::Elements;
+        let form = Form::Plain;
         let file = svg::write(
             &scene,
             &WriteOptions {

@@ -6,10 +6,12 @@
 mod overlap;
 mod path;
 mod quantize;
+mod written_path;
 
 pub use path::{MAX_POINTS, Path, PathPoint, Piece};
 pub use quantize::{Dropped, MAX_PRECISION, MIN_WIDTH, Quantized};
 pub(crate) use quantize::{UNITS_PER_PX, Written, color, quantum};
+pub(crate) use written_path::{WrittenPath, WrittenPoint};
 
 /// An sRGB-encoded colour, 0..1 per channel.
 pub type Rgb = [f32; 3];

@@ -305,7 +305,7 @@ fn draws_every_form_of_file(name: &str) {
         stages,
         ..Scene::empty(64, 48, Some([1.0, 0.9, 0.7]))
     };
-    for form in [Form::Elements, Form::Plain, Form::Smallest, Form::Outlines] {
+    for form in Form::ALL {
         let options = WriteOptions {
             form,
             ..WriteOptions::default()

@@ -510,19 +510,18 @@ fn gradients_are_central_differences() {
 }
 
 /// What a survey says of `case`, with at least `least` segments for each line and curve.
-fn surveyed(case: &Case, simd: Simd, least: usize, softness: Softness) -> (Gradients, Survey) {
+fn surveyed(case: &Case, least: usize, softness: Softness) -> Survey {
     let target = Canvas::from_image(&target(case));
-    let (mut gradients, mut survey) = (Gradients::default(), Survey::default());
-    renderer(case, simd).survey(
+    let mut survey = Survey::default();
+    renderer(case, Simd::Auto).survey(
         &case.strokes,
         least,
         softness,
         Backdrop::Color(BACKGROUND),
         &Objective::new(Loss::L2, &target),
-        &mut gradients,
         &mut survey,
     );
-    (gradients, survey)
+    survey
 }
 
 /// The strokes of a case as the polylines of a survey, for the reference.
@@ -553,7 +552,7 @@ fn surveys_are_the_oracles() {
     let mut failures = Vec::new();
     let cases = along_paths().into_iter().chain([random_paths(2, 64, 64, 8), random(2, 64, 64, 8)]);
     for (case, least) in cases.zip([1, 2, 4].into_iter().cycle()) {
-        let (_, survey) = surveyed(&case, Simd::Auto, least, softness);
+        let survey = surveyed(&case, least, softness);
         let (scene, oracle) = (polylines(&case, &survey), oracle(softness.coverage, softness.width));
         let canvas = oracle.render(&scene);
         let slow = oracle.gradients(&scene, &slopes(Loss::L2, &canvas, &pixels(&target(&case))));
@@ -584,36 +583,6 @@ fn surveys_are_the_oracles() {
                 by_place(vertices, |k| f64::from(survey.stiffness[range.start + k])),
                 by_place(vertices, |k| stiffness[i][k]),
             );
-        }
-    }
-    report(failures);
-}
-
-/// A survey of finer polylines sees the same strokes: worths, and derivatives by points, are those of a backward pass.
-#[test]
-fn a_survey_has_the_gradients_of_a_backward_pass() {
-    let softness = Softness {
-        coverage: Coverage::Smoothstep,
-        width: 1.5,
-    };
-    let mut failures = Vec::new();
-    let straight = |case: &Case| case.strokes.iter().all(|stroke| stroke.is_straight());
-    for case in along_paths().into_iter().filter(straight) {
-        let expected = differentiated(&case, Simd::Auto, softness, Loss::L2);
-        let (got, survey) = surveyed(&case, Simd::Auto, 3, softness);
-        assert!(survey.vertices.len() > case.strokes.points(), "{}", case.name);
-        let of = |g: &Gradients| -> Vec<(String, usize, f64)> {
-            let values: Vec<f64> = g.strokes.iter().copied().map(f64::from).collect();
-            numbered(&case.strokes, &values)
-        };
-        let largest = of(&expected).iter().fold([FAINT; 4], |mut most, (_, kind, v)| {
-            most[*kind] = v.abs().max(most[*kind]);
-            most
-        });
-        for ((name, kind, expected), (.., got)) in of(&expected).iter().zip(of(&got)) {
-            if (got - expected).abs() > 2.0 * case.tolerance * largest[*kind] {
-                failures.push(format!("{}: {name}: {got} not {expected}", case.name));
-            }
         }
     }
     report(failures);

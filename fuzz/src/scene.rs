@@ -41,30 +41,31 @@ impl Source<'_> {
         }
     }
 
-    /// A path of one to six points of both kinds, open or closed.
-    fn path(&mut self) -> Path {
-        let (kinds, closed) = (self.byte(), self.byte().is_multiple_of(2));
-        let points = (0..=self.byte() % 6).map(|i| PathPoint {
-            at: [self.float(), self.float()].into(),
-            is_on: kinds >> i & 1 == 0,
-        });
-        let mut points: Vec<PathPoint> = points.collect();
-        let last = points.len() - 1;
-        for end in [0, last] {
-            points[end].is_on |= !closed || last == 0;
-        }
-        Path::new(points, closed).expect("its ends are on it")
-    }
-
     fn stroke(&mut self) -> Stroke {
-        let path = self.path();
-        let [radius, red, green, blue, opacity] = [(); 5].map(|()| self.float());
+        let [ax, ay, bx, by, radius, red, green, blue, opacity] = [(); 9].map(|()| self.float());
+        let (a, b) = ([ax, ay].into(), [bx, by].into());
         Stroke {
-            path,
+            path: match self.byte() % 8 {
+                0 | 1 => Path::dot(a),
+                2 => self.path([PathPoint::on(a), PathPoint::on(b)], false),
+                3 => self.path([PathPoint::on(a), PathPoint::off(b)], true),
+                _ => Path::line(a, b),
+            },
             radius,
             color: [red, green, blue],
             opacity,
         }
+    }
+
+    /// A path with up to seven more points between these two, on or off it.
+    fn path(&mut self, [start, end]: [PathPoint; 2], closed: bool) -> Path {
+        let kinds = self.byte();
+        let between = (0..kinds % 8).map(|i| PathPoint {
+            at: [self.float(), self.float()].into(),
+            is_on: kinds >> (i + 1) & 1 == 1,
+        });
+        let points = [start].into_iter().chain(between).chain([end]).collect();
+        Path::new(points, closed).expect("an open path has its ends on it")
     }
 
     fn scene(&mut self) -> Scene {

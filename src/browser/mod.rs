@@ -15,8 +15,8 @@
 //! use strokefit::image::Image;
 //! use strokefit::scene::{Path, Stroke};
 //!
-//! let shape = Path::line([3.0, 2.5].into(), [9.0, 2.5].into());
-//! let stroke = Stroke { shape, radius: 1.0, color: [0.0; 3], opacity: 0.5 };
+//! let path = Path::line([3.0, 2.5].into(), [9.0, 2.5].into());
+//! let stroke = Stroke { path, radius: 1.0, color: [0.0; 3], opacity: 0.5 };
 //! let page = Image::filled(12, 5, [1.0; 3])?;
 //! let picture = browser::draw([&stroke].into_iter(), &[page]).remove(0);
 //! assert_eq!(picture.to_rgb8()[3 * (2 * 12 + 6)], 127);

@@ -29,11 +29,7 @@ pub(super) struct Args {
 /// The forms that a file of strokes can have, with their help; outlines have a flag of their own.
 fn form() -> impl TypedValueParser<Value = Form> {
     words::one_of([
-        (Form::Elements, "One stroke, always"),
-        (
-            Form::Plain,
-            "One stroke, or a polyline of opaque strokes that lie end to end",
-        ),
+        (Form::Plain, "One stroke"),
         (
             Form::Smallest,
             "As many strokes as possible: fewest bytes, hardest to edit",

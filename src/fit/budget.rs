@@ -3,6 +3,7 @@
 use super::base::Base;
 use super::config::{Budget, Config, MAX_STROKES};
 use super::file::RenderedFile;
+use super::points;
 use super::recipe::Recipe;
 use super::result::Stop;
 use crate::image::Image;
@@ -12,12 +13,23 @@ use crate::scene::{Path, Stroke};
 use crate::svg;
 
 /// An estimate of how many strokes the budgets allow, those of `base` included; `None` if they set no limit.
-pub(super) fn strokes(config: &Config, base: Option<&Base>, target: &Image) -> Option<usize> {
+pub(super) fn strokes(
+    config: &Config,
+    recipe: &Recipe,
+    base: Option<&Base>,
+    target: &Image,
+) -> Option<usize> {
     let kept = base.map_or(0, Base::bytes);
+    let share = if points::are_allowed(config) {
+        recipe.points.capsules
+    } else {
+        1.0
+    };
     let by_bytes = config
         .budget
         .bytes
-        .map(|bytes| (bytes.saturating_sub(kept) / typical_bytes(config, target)).max(1));
+        .map(|bytes| bytes.saturating_sub(kept) as f32 * share)
+        .map(|bytes| (bytes as usize / typical_bytes(config, target)).max(1));
     [config.budget.strokes, by_bytes]
         .into_iter()
         .flatten()

@@ -28,6 +28,8 @@ pub struct Config {
     pub opaque: bool,
     /// The coverage function, or two: one while the edge is soft, and one for the final edge.
     pub coverage: CoverageSchedule,
+    /// Most points of a stroke, at least 2, which makes all strokes capsules; `None` for as many as pay.
+    pub points: Option<usize>,
     /// The number of stages; `None` lets the preset and the budget decide.
     pub stages: Option<usize>,
     /// Whether strokes are polished after the stages.
@@ -53,6 +55,7 @@ impl Default for Config {
             progressive: false,
             opaque: false,
             coverage: CoverageSchedule::default(),
+            points: None,
             stages: None,
             polish: true,
             colors: Colors::default(),

@@ -4,6 +4,7 @@
 //! relocates strokes between its steps. After every iteration the observer is called, and the state can be kept.
 
 use super::descent::{Aim, Descent};
+use super::points;
 use super::relocation;
 use super::session::Session;
 use crate::error::Result;
@@ -55,6 +56,11 @@ fn rearrange(session: &mut Session<'_>, descent: &mut Descent, step: usize, done
     let wanted = relocation::wanted(session);
     if session.timer.affordable(wanted) == wanted {
         let sources = relocation::relocate(session, limit, std::convert::identity);
+        descent.follow(&sources, &session.drawing, &session.recipe);
+    }
+    let lasts = (session.recipe.points.from..session.recipe.points.until).contains(&done);
+    if lasts && points::are_allowed(session.config) {
+        let sources = points::rearrange(session);
         descent.follow(&sources, &session.drawing, &session.recipe);
     }
 }

@@ -7,7 +7,7 @@ use fearless_simd::Level;
 
 use super::bounds::Bounds;
 use super::surface::Surface;
-use crate::render::{Canvas, CanvasLoss, Gradients, Params, Renderer, Softness, Strokes};
+use crate::render::{Canvas, CanvasLoss, Gradients, Params, Renderer, Softness, Strokes, Survey};
 use crate::scene::Rgb;
 pub(super) use memento::Memento;
 use scene::enlarge;
@@ -242,6 +242,23 @@ impl Drawing {
         if self.surfaces.len() > 1 {
             gradients.scale(1.0 / self.surfaces.len() as f32);
         }
+    }
+
+    /// A survey of the free strokes at the final edge, at the current resolution.
+    pub(super) fn survey_at_resolution(&mut self, least: usize) -> Survey {
+        let (mut survey, mut more) = (Survey::default(), Survey::default());
+        for (i, surface) in self.surfaces.iter().enumerate() {
+            let backdrop = surface.backdrop(self.frozen.len());
+            let objective = surface.objective(None);
+            let into = if i == 0 { &mut survey } else { &mut more };
+            let (renderer, free) = (&mut self.renderer, &self.free);
+            renderer.survey(free, least, self.edge, backdrop, &objective, into);
+            if i > 0 {
+                survey.add(&more);
+            }
+        }
+        survey.scale(1.0 / self.surfaces.len() as f32);
+        survey
     }
 
     /// Loss, gradients and worth of the free strokes at the final edge.

@@ -32,6 +32,7 @@ mod objective;
 mod order;
 mod phase;
 mod plan;
+mod points;
 mod price;
 mod progress;
 mod recipe;
@@ -53,7 +54,7 @@ pub use memory::predicted_rss_bytes;
 pub use objective::Objective;
 pub use progress::{CancelToken, Observer, Progress};
 pub use recipe::{
-    AdamSettings, BackgroundChoice, Correction, Domain, EdgeShape, Pens, Polish, Preset, Rates,
+    AdamSettings, BackgroundChoice, Correction, Domain, EdgeShape, Pens, Points, Polish, Preset, Rates,
     Recipe, Recoloring, Relocation, Rounds, Settling, Stages, TimeShares,
 };
 pub use result::{Fit, StageRecord, Stop};

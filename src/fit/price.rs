@@ -27,6 +27,25 @@ impl Price {
         self.per_byte * stroke_bytes(&stroke.to_stroke(), &self.file) as f32
     }
 
+    /// Bytes of a stroke.
+    pub(super) fn bytes_of(&self, stroke: StrokeRef<'_>) -> usize {
+        stroke_bytes(&stroke.to_stroke(), &self.file)
+    }
+
+    /// Bytes of a point beside another one, on average: a letter or a sign, two digits before and `precision` digits
+    /// behind the decimal point for the one coordinate, a digit less for the other.
+    pub(super) fn point_bytes(&self) -> usize {
+        match self.file.precision {
+            0 => 5,
+            decimals => 7 + 2 * usize::from(decimals),
+        }
+    }
+
+    /// The price of a point.
+    pub(super) fn of_point(&self) -> f32 {
+        self.per_byte * self.point_bytes() as f32
+    }
+
     /// The price of a capsule.
     pub(super) fn of_capsule(&self, capsule: &Params) -> f32 {
         self.of(Strokes::from_iter([capsule]).get(0))

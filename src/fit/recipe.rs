@@ -43,6 +43,8 @@ pub struct Recipe {
     pub polish: Polish,
     /// How strokes of little worth make room for better ones during the polish.
     pub relocation: Relocation,
+    /// How strokes get and lose points during the polish.
+    pub points: Points,
     /// How a drawing is restricted to a palette.
     pub coloring: Recoloring,
     /// How opaque strokes come to share pens.
@@ -188,6 +190,32 @@ pub struct Relocation {
     /// A relocation that has free places to fill asks for up to this many times as many candidates as it may move
     /// strokes. Half, twice: 0.00 dB.
     pub fill: usize,
+}
+
+/// How strokes get and lose points during the polish. After each relocation, points are chosen once.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Points {
+    /// Share of the polish before which all strokes stay as they are.
+    pub from: f32,
+    /// Share of the polish after which no point comes or goes.
+    pub until: f32,
+    /// Share of the strokes that may get a point at a time.
+    pub share: f32,
+    /// Share of the strokes that may lose a point to another stroke at a time, where the budget has no room left.
+    pub swapped: f32,
+    /// Most points per stroke, on average, of a drawing whose budget is in strokes or in dB. Bytes, or a quality, limit
+    /// the points of others.
+    pub per_stroke: f32,
+    /// Share of a budget of bytes that is planned for strokes of two points; the rest is for more points.
+    pub capsules: f32,
+    /// Share of a budget of bytes that is filled with points before the file is written.
+    pub filled: f32,
+    /// Farthest that a new corner moves from its line at once, in units of the line's length.
+    pub reach: f32,
+    /// Lines and curves shorter than this, px, get no point.
+    pub shortest: f32,
+    /// What a control point is taken to gain, in units of what it is found to.
+    pub smoothness: f32,
 }
 
 /// Rounds of descent, between which colours or pens are chosen again. One schedule of rates spans all of them.

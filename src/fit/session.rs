@@ -80,7 +80,7 @@ impl<'a> Session<'a> {
         started: Instant,
     ) -> Result<Self> {
         let recipe = config.recipe();
-        let limit = budget::strokes(config, base, picture);
+        let limit = budget::strokes(config, &recipe, base, picture);
         let before = Before::of(base);
         let pixels = picture.width() * picture.height();
         let plan = Plan::new(config, &recipe, limit, before, pixels);
@@ -152,6 +152,14 @@ impl<'a> Session<'a> {
     pub(super) fn render_file(&mut self) -> Result<RenderedFile> {
         let (writer, drawing) = (self.writer, &self.drawing);
         self.timer.writing(drawing.len(), || writer.render(drawing))
+    }
+
+    /// About how many bytes the drawing has as a file.
+    pub(super) fn bytes(&self) -> usize {
+        let strokes = self.drawing.free().iter();
+        let strokes: usize = strokes.map(|stroke| self.price.bytes_of(stroke)).sum();
+        let layers = self.history.records.len();
+        self.base.map_or(FILE_BYTES, Base::bytes) + LAYER_BYTES * layers + strokes
     }
 
     /// Makes `file`, rendered from the current drawing, the best file so far.
@@ -237,6 +245,11 @@ impl<'a> Session<'a> {
         }
     }
 }
+
+/// Bytes of a file without layers.
+const FILE_BYTES: usize = 240;
+/// Bytes of a layer without strokes.
+const LAYER_BYTES: usize = 170;
 
 /// The deadline that the time budget sets.
 fn deadline(config: &Config, recipe: &Recipe, drawing: &Drawing) -> Box<dyn Deadline> {

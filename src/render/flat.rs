@@ -76,43 +76,26 @@ impl Flat {
 
 /// Calls `visit` with the vertices of a path, in order.
 pub(super) fn walk(stroke: StrokeRef<'_>, least: usize, mut visit: impl FnMut(Vertex)) {
-    let (points, count) = (stroke.points, stroke.points.len());
-    let is_off = |i: usize| stroke.off[i % count];
-    let first = stroke.off.iter().position(|off| !off);
-    // All points of a closed path may be off: it starts halfway between the last one and the first.
-    let start = first.map_or(Knot::Between(count - 1, 0), Knot::Point);
-    visit(start.vertex());
-    if count == 1 {
-        visit(start.vertex());
+    let mut pieces = Pieces::of(stroke).peekable();
+    let Some(first) = pieces.peek() else {
+        visit(Vertex::at(0));
+        visit(Vertex::at(0));
         return;
-    }
-    let mut next = first.map_or(0, |first| first + 1);
-    let end = if stroke.closed { next + count } else { count };
-    let mut from = start;
-    while next < end {
-        let control = next % count;
-        next += 1;
-        if !is_off(control) {
-            let to = Knot::Point(control);
-            line(from.index(), control, least, &mut visit);
-            from = to;
-            continue;
+    };
+    visit(first.from.vertex());
+    for piece in pieces {
+        let steps = piece.steps(stroke.points, least);
+        for step in 1..steps {
+            visit(piece.vertex(step as f32 / steps as f32));
         }
-        let after = next % count;
-        let to = if is_off(after) {
-            Knot::Between(control, after)
-        } else {
-            next += 1;
-            Knot::Point(after)
-        };
-        curve(points, [from, to], control, least, &mut visit);
-        from = to;
+        visit(piece.to.vertex());
     }
 }
 
 /// A point that a path goes through.
-#[derive(Debug, Clone, Copy)]
-enum Knot {
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Knot {
+    /// A point on the path.
     Point(usize),
     /// Halfway between two points off the path.
     Between(usize, usize),
@@ -129,13 +112,6 @@ impl Knot {
         }
     }
 
-    /// The point, where a line begins.
-    fn index(self) -> usize {
-        match self {
-            Self::Point(i) | Self::Between(i, _) => i,
-        }
-    }
-
     /// The point other than `control` that the knot depends on, and the shares of both.
     fn shares(self, control: usize) -> (usize, [f32; 2]) {
         match self {
@@ -144,44 +120,121 @@ impl Knot {
         }
     }
 
-    fn place(self, points: &[[f32; 2]]) -> [f32; 2] {
+    /// The place of the knot.
+    pub(crate) fn place(self, points: &[[f32; 2]]) -> [f32; 2] {
         self.vertex().place(points)
     }
 }
 
-fn line(from: usize, to: usize, least: usize, visit: &mut impl FnMut(Vertex)) {
-    for k in 1..least {
-        let t = k as f32 / least as f32;
-        visit(Vertex {
-            of: [from, to, to],
-            weights: [1.0 - t, t, 0.0],
-        });
-    }
-    visit(Vertex::at(to));
+/// A line, or a curve with one control point, as indices of points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Piece {
+    pub(crate) from: Knot,
+    /// The point off the path between the two knots.
+    pub(crate) control: Option<usize>,
+    pub(crate) to: Knot,
 }
 
-fn curve(
-    points: &[[f32; 2]],
-    [from, to]: [Knot; 2],
-    control: usize,
-    least: usize,
-    visit: &mut impl FnMut(Vertex),
-) {
-    let (a, b, c) = (from.place(points), points[control], to.place(points));
-    let steps = sdf::steps(Vector::from([0, 1].map(|k| a[k] - 2.0 * b[k] + c[k]))).max(least);
-    let (start, [of_start, start_of_control]) = from.shares(control);
-    let (end, [of_end, end_of_control]) = to.shares(control);
-    for k in 1..steps {
-        let t = k as f32 / steps as f32;
+impl Piece {
+    /// How many segments the piece becomes.
+    pub(crate) fn steps(&self, points: &[[f32; 2]], least: usize) -> usize {
+        let Some(control) = self.control else {
+            return least;
+        };
+        let (a, c, b) = (self.from.place(points), points[control], self.to.place(points));
+        let bend = [0, 1].map(|k| a[k] - 2.0 * c[k] + b[k]);
+        sdf::steps(Vector::from(bend)).max(least)
+    }
+
+    /// Whether the piece changes with point `k`.
+    pub(crate) fn depends_on(&self, k: usize) -> bool {
+        let of = |knot: Knot| match knot {
+            Knot::Point(i) => i == k,
+            Knot::Between(i, j) => i == k || j == k,
+        };
+        self.control == Some(k) || of(self.from) || of(self.to)
+    }
+
+    /// The vertex at parameter `t` between the knots.
+    fn vertex(&self, t: f32) -> Vertex {
+        let Some(control) = self.control else {
+            let index = |knot: Knot| knot.shares(usize::MAX).0;
+            return Vertex {
+                of: [index(self.from), index(self.to), index(self.to)],
+                weights: [1.0 - t, t, 0.0],
+            };
+        };
         let (a, b, c) = ((1.0 - t) * (1.0 - t), 2.0 * t * (1.0 - t), t * t);
-        visit(Vertex {
+        let (start, [of_start, start_of_control]) = self.from.shares(control);
+        let (end, [of_end, end_of_control]) = self.to.shares(control);
+        Vertex {
             of: [start, control, end],
             weights: [
                 a * of_start,
                 b + a * start_of_control + c * end_of_control,
                 c * of_end,
             ],
-        });
+        }
     }
-    visit(to.vertex());
+}
+
+/// The pieces of a path, in drawing order; none for a dot.
+#[derive(Debug, Clone)]
+pub(crate) struct Pieces<'a> {
+    off: &'a [bool],
+    from: Knot,
+    /// The index of the next point; a closed path goes on from 0 beyond its last point.
+    next: usize,
+    end: usize,
+}
+
+impl<'a> Pieces<'a> {
+    /// The pieces of `stroke`.
+    pub(crate) fn of(stroke: StrokeRef<'a>) -> Self {
+        let (off, count) = (stroke.off, stroke.off.len());
+        let first = off.iter().position(|off| !off);
+        // All points of a closed path may be off: it starts halfway between the last one and the first.
+        let (from, next) = match first {
+            Some(first) => (Knot::Point(first), first + 1),
+            None => (Knot::Between(count.saturating_sub(1), 0), 0),
+        };
+        let end = match (count, stroke.closed) {
+            (0 | 1, _) => 0,
+            (_, true) => next + count,
+            (_, false) => count,
+        };
+        Self {
+            off,
+            from,
+            next,
+            end,
+        }
+    }
+}
+
+impl Iterator for Pieces<'_> {
+    type Item = Piece;
+
+    fn next(&mut self) -> Option<Piece> {
+        if self.next >= self.end {
+            return None;
+        }
+        let (count, from) = (self.off.len(), self.from);
+        let point = self.next % count;
+        self.next += 1;
+        let control = self.off[point].then_some(point);
+        self.from = match control {
+            None => Knot::Point(point),
+            Some(_) if self.off[self.next % count] => Knot::Between(point, self.next % count),
+            Some(_) => {
+                self.next += 1;
+                Knot::Point((self.next - 1) % count)
+            }
+        };
+        Some(Piece {
+            from,
+            control,
+            to: self.from,
+        })
+    }
 }

@@ -75,6 +75,7 @@ pub use strokes::{
 
 use crate::coverage::Coverage;
 use edge::{Edge, Reach};
+pub(crate) use flat::{Knot, Piece, Pieces};
 use flat::{Flat, walk};
 use grid::{FULL, TileWeights, edge_weights, flat_tile};
 use kernel::{EndSums, LookSums, Scratch, TileJob, TileSums, WORTH};
@@ -120,7 +121,7 @@ pub struct Gradients {
     /// `∂L/∂backdrop`, summed over the pixels.
     pub backdrop: [f32; 3],
     /// By how much the squared error (summed over pixels and channels) grows when the stroke is
-    /// left out, exactly; filled by [`Renderer::backward_with_worth`] and [`Renderer::survey`] alone.
+    /// left out, exactly; filled by [`Renderer::backward_with_worth`] alone.
     pub worth: Vec<f32>,
     /// Blocks of 16 px that were visited: the work done.
     pub blocks: u64,
@@ -308,9 +309,7 @@ impl Renderer {
         self.reduce(strokes, true, gradients);
     }
 
-    /// Every stroke's worth, and how `loss` depends on the vertices of polylines with at least `least` segments for each
-    /// line and each curve.
-    #[allow(clippy::too_many_arguments)]
+    /// How `loss` depends on the vertices of polylines with at least `least` segments for each line and each curve.
     pub fn survey<L: CanvasLoss>(
         &mut self,
         strokes: &Strokes,
@@ -318,12 +317,11 @@ impl Renderer {
         softness: Softness,
         backdrop: Backdrop<'_>,
         loss: &L,
-        gradients: &mut Gradients,
         survey: &mut Survey,
     ) {
         let frame = Frame::new(self.grid, softness, backdrop);
         self.run_backward::<L, true>(strokes, least, &frame, loss);
-        self.reduce(strokes, true, gradients);
+        self.sum_slopes();
         survey.firsts.clone_from(&self.flat.firsts);
         survey.vertices.clone_from(&self.flat.vertices);
         survey.slopes.clone_from(&self.slopes);
@@ -427,8 +425,6 @@ impl Renderer {
             &mut gradients.worth,
             if with_worth { strokes.len() } else { 0 },
         );
-        self.slopes.clear();
-        self.slopes.resize(self.flat.vertices.len(), [0.0; 2]);
         for work in &self.tiles {
             gradients.loss += work.total.loss;
             gradients.blocks += work.total.blocks;
@@ -441,12 +437,21 @@ impl Renderer {
                     gradients.worth[stroke] += sums[WORTH];
                 }
             }
+        }
+        self.sum_slopes();
+        self.hand_back(strokes, gradients);
+    }
+
+    /// Adds the tiles' derivatives by vertices, in tile order.
+    fn sum_slopes(&mut self) {
+        self.slopes.clear();
+        self.slopes.resize(self.flat.vertices.len(), [0.0; 2]);
+        for work in &self.tiles {
             for (&segment, ends) in work.segments.iter().zip(&work.ends) {
                 let slopes = &mut self.slopes[segment as usize..][..2];
                 add(slopes.as_flattened_mut(), ends);
             }
         }
-        self.hand_back(strokes, gradients);
     }
 
     /// The derivatives by points, from those by vertices.
@@ -530,6 +535,13 @@ impl<'a> Frame<'a> {
             reach: self.reach,
         }
     }
+}
+
+/// The vertices of one stroke's polyline.
+pub(crate) fn flattened(stroke: StrokeRef<'_>) -> Vec<[f32; 2]> {
+    let mut vertices = Vec::new();
+    walk(stroke, 1, |vertex| vertices.push(vertex.place(stroke.points)));
+    vertices
 }
 
 /// Runs `f` with the scratch of this worker.

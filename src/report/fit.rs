@@ -222,6 +222,7 @@ mod tests {
             dropped: 1,
             dropped_for: Dropped {
                 off_page: 1,
+                points: 5,
                 ..Dropped::default()
             },
             stages: vec![StageEntry::from(&record)],
@@ -260,7 +261,7 @@ mod tests {
             "input": {"path": "a.png", "width": 4, "height": 3},
             "strokes": 9,
             "dropped": 1,
-            "dropped_for": {"non_finite": 0, "invisible": 0, "off_page": 1},
+            "dropped_for": {"non_finite": 0, "invisible": 0, "off_page": 1, "points": 5},
             "stages": [{"index": 1, "strokes": 9, "iterations": 40, "wall_s": 0.25, "psnr_db": 31.5, "layer_psnr_db": 30.5}],
             "svg_bytes": 900,
             "svg_gzip_bytes": 400,

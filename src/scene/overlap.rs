@@ -6,38 +6,63 @@ use crate::math;
 impl Written {
     /// Whether the order of the two strokes can change the picture.
     pub(crate) fn meets(&self, other: &Self) -> bool {
-        let (a, b) = (self, other);
-        let reach = (a.width + b.width) / 2 + APART;
-        let near = |axis: usize| {
-            let ends = |s: &Written| {
-                let along = || s.points.iter().map(|p| p[axis]);
-                (along().min().unwrap_or(0), along().max().unwrap_or(0))
-            };
-            let ((a_near, a_far), (b_near, b_far)) = (ends(a), ends(b));
+        let reach = (self.width + other.width) / 2 + APART;
+        let (a, b) = (self.bounds(), other.bounds());
+        let are_near = |axis: usize| {
+            let ([a_near, a_far], [b_near, b_far]) = (a[axis], b[axis]);
             a_near - b_far < reach && b_near - a_far < reach
         };
-        near(0) && near(1) && distance(a, b) < reach as f64
+        are_near(0) && are_near(1) && is_nearer(&self.segments(), &other.segments(), reach as f64)
+    }
+
+    /// From where to where the points lie along each axis, in units.
+    fn bounds(&self) -> [[i64; 2]; 2] {
+        [0, 1].map(|axis| {
+            let along = || self.path.points().iter().map(|p| p.at[axis]);
+            [along().min().unwrap_or(0), along().max().unwrap_or(0)]
+        })
+    }
+
+    /// The centre line as segments that are at most [`TOLERANCE`] away from it; that of a dot has no length.
+    fn segments(&self) -> Vec<Segment> {
+        let mut segments = self.path.segments(TOLERANCE);
+        if let ([dot], []) = (self.path.points(), segments.as_slice()) {
+            segments.push([dot.at; 2]);
+        }
+        let float = |p: [i64; 2]| p.map(|units| units as f64);
+        segments.into_iter().map(|ends| ends.map(float)).collect()
     }
 }
 
-/// Strokes farther apart than the diagonal of a pixel have no pixel in common.
+/// Strokes farther apart than the diagonal of a pixel have no pixel in common. What chords are away from their curve is
+/// within the rest.
 const APART: i64 = UNITS_PER_PX * 3 / 2;
 
-/// Distance of the centre lines, in units.
-fn distance(a: &Written, b: &Written) -> f64 {
-    let (a, b) = (ends(a), ends(b));
+/// How far segments may be from their curve, px: less than half of what [`APART`] is above the diagonal of a pixel.
+const TOLERANCE: f64 = 0.04;
+
+type Segment = [[f64; 2]; 2];
+
+/// Whether some of these segments come nearer to each other than this.
+fn is_nearer(a: &[Segment], b: &[Segment], reach: f64) -> bool {
+    let is_near = |&a: &Segment, &b: &Segment| {
+        (0..2).all(|axis| {
+            let far = |s: Segment| s[0][axis].max(s[1][axis]);
+            let near = |s: Segment| s[0][axis].min(s[1][axis]);
+            near(a) - far(b) < reach && near(b) - far(a) < reach
+        })
+    };
+    a.iter()
+        .any(|a| b.iter().any(|b| is_near(a, b) && distance(*a, *b) < reach))
+}
+
+/// Distance of two segments, in units.
+fn distance(a: Segment, b: Segment) -> f64 {
     if cross(a, b) {
         return 0.0;
     }
     let gaps = [gap(a[0], b), gap(a[1], b), gap(b[0], a), gap(b[1], a)];
     gaps.into_iter().fold(f64::INFINITY, f64::min)
-}
-
-type Segment = [[f64; 2]; 2];
-
-fn ends(stroke: &Written) -> Segment {
-    let place = |p: Option<&[i64; 2]>| p.map_or([0.0; 2], |p| p.map(|units| units as f64));
-    [place(stroke.points.first()), place(stroke.points.last())]
 }
 
 /// From a point to a segment.
@@ -59,12 +84,13 @@ fn cross(a: Segment, b: Segment) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{PathPoint, WrittenPath};
 
     const PX: i64 = UNITS_PER_PX;
 
     fn stroke(x: i64, width: i64) -> Written {
         Written {
-            points: vec![[x * PX, 10 * PX], [x * PX, 90 * PX]],
+            path: WrittenPath::line([x * PX, 10 * PX], [x * PX, 90 * PX]),
             width: width * PX,
             color: [0; 3],
             opacity: 255,
@@ -77,7 +103,7 @@ mod tests {
         let touches = [13, 14, 15].map(|x| base.meets(&stroke(x, 2)));
         assert_eq!(touches, [true, true, false]);
         let beyond = Written {
-            points: vec![[10 * PX, 96 * PX]],
+            path: WrittenPath::line([10 * PX, 96 * PX], [10 * PX, 96 * PX]),
             ..base.clone()
         };
         assert!(!base.meets(&beyond));
@@ -86,9 +112,29 @@ mod tests {
     #[test]
     fn crossing_strokes_touch() {
         let across = Written {
-            points: vec![[-500 * PX, 50 * PX], [500 * PX, 51 * PX]],
+            path: WrittenPath::line([-500 * PX, 50 * PX], [500 * PX, 51 * PX]),
             ..stroke(0, 1)
         };
         assert!(stroke(10, 1).meets(&across));
+    }
+
+    #[test]
+    fn a_path_touches_where_it_goes_and_nowhere_else() {
+        let points = [(10, true), (50, false), (90, true)].map(|(x, is_on)| PathPoint {
+            at: [x * PX, if is_on { 10 } else { 90 } * PX],
+            is_on,
+        });
+        let arch = Written {
+            path: WrittenPath::new(points.into(), false),
+            ..stroke(0, 2)
+        };
+        let dot = |x: i64, y: i64| Written {
+            path: WrittenPath::line([x * PX, y * PX], [x * PX, y * PX]),
+            ..stroke(0, 2)
+        };
+        // The top of the curve is at (50, 50).
+        let found =
+            [(50, 53), (50, 54), (50, 70), (50, 10), (20, 26)].map(|(x, y)| arch.meets(&dot(x, y)));
+        assert_eq!(found, [true, false, false, false, true]);
     }
 }

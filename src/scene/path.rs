@@ -23,24 +23,36 @@ use crate::math::Point;
 /// Most points of a path.
 pub const MAX_POINTS: usize = 65_535;
 
-/// A point of a path, px.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PathPoint {
+/// A point of a path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct PathPoint<P = Point> {
     /// The place, px.
-    pub at: Point,
+    pub at: P,
     /// Whether the path goes through it; otherwise it is the control point of a curve.
     pub is_on: bool,
 }
 
-impl PathPoint {
+impl<P> PathPoint<P> {
     /// A point that the path goes through.
-    pub fn on(at: Point) -> Self {
+    pub fn on(at: P) -> Self {
         Self { at, is_on: true }
     }
 
     /// A control point.
-    pub fn off(at: Point) -> Self {
+    pub fn off(at: P) -> Self {
         Self { at, is_on: false }
+    }
+}
+
+/// A place between two of which there is a middle.
+pub(super) trait Place: Copy {
+    /// The place halfway between two.
+    fn middle(a: Self, b: Self) -> Self;
+}
+
+impl Place for Point {
+    fn middle(a: Self, b: Self) -> Self {
+        Self::from((a.coords + b.coords) * 0.5)
     }
 }
 
@@ -53,11 +65,55 @@ pub struct Path {
 
 /// A part of a path between two on-points, implied ones included.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Piece {
+pub enum Piece<P = Point> {
     /// From one point to another.
-    Line([Point; 2]),
+    Line([P; 2]),
     /// A quadratic Bézier curve: start, control point, end.
-    Curve([Point; 3]),
+    Curve([P; 3]),
+}
+
+/// Most steps of a flattened curve. They are enough for 0.05 px along curves of 10,000 px.
+const MAX_STEPS: f64 = 256.0;
+
+/// Equal steps of its parameter that a curve takes, so that its chords are at most `tolerance` away from it, where
+/// `bend` is |a − 2c + b| (Wang's formula).
+pub(super) fn steps(bend: f64, tolerance: f64) -> u16 {
+    let steps = (bend / (4.0 * tolerance)).sqrt().ceil();
+    steps.clamp(1.0, MAX_STEPS) as u16
+}
+
+impl<P: Copy> Piece<P> {
+    /// Where the piece starts.
+    pub fn start(self) -> P {
+        match self {
+            Self::Line([start, _]) | Self::Curve([start, ..]) => start,
+        }
+    }
+
+    /// Where the piece ends.
+    pub fn end(self) -> P {
+        match self {
+            Self::Line([_, end]) | Self::Curve([.., end]) => end,
+        }
+    }
+}
+
+impl Piece {
+    /// Appends what follows the start of the piece, as corners of a polyline within `tolerance` px of it.
+    fn flatten(self, tolerance: f32, out: &mut Vec<Point>) {
+        let [a, c, b] = match self {
+            Self::Line([_, end]) => return out.push(end),
+            Self::Curve(points) => points.map(|p| p.coords),
+        };
+        let bend = (a - c * 2.0 + b).norm();
+        let steps = steps(bend.into(), tolerance.into());
+        let inner = (1..steps).map(|i| f32::from(i) / f32::from(steps));
+        out.extend(inner.map(|t| {
+            let u = 1.0 - t;
+            Point::from(a * (u * u) + c * (2.0 * u * t) + b * (t * t))
+        }));
+        out.push(Point::from(b));
+    }
 }
 
 impl Path {
@@ -105,6 +161,11 @@ impl Path {
         }
     }
 
+    /// The path of points that keep the rules of [`new`](Self::new).
+    pub(super) fn of_valid(points: Vec<PathPoint>, closed: bool) -> Self {
+        Self { points, closed }
+    }
+
     /// The points, in drawing order; never empty.
     pub fn points(&self) -> &[PathPoint] {
         &self.points
@@ -133,29 +194,54 @@ impl Path {
 
     /// The lines and curves of the path, in drawing order; none for a dot.
     pub fn pieces(&self) -> impl Iterator<Item = Piece> {
-        Pieces::new(&self.points, self.closed)
+        pieces(&self.points, self.closed)
+    }
+
+    /// The corners of a polyline that is at most `tolerance` px away from the path. That of a closed path ends where
+    /// it starts; a dot is one point.
+    pub fn flattened(&self, tolerance: f32) -> Vec<Point> {
+        let mut out = Vec::new();
+        for piece in self.pieces() {
+            if out.is_empty() {
+                out.push(piece.start());
+            }
+            piece.flatten(tolerance, &mut out);
+        }
+        if out.is_empty() {
+            out.extend(self.points.first().map(|p| p.at));
+        }
+        out
     }
 }
 
+/// The lines and curves of a path of these points.
+pub(super) fn pieces<P: Place>(
+    points: &[PathPoint<P>],
+    closed: bool,
+) -> impl Iterator<Item = Piece<P>> {
+    Pieces::new(points, closed)
+}
+
 /// The pieces of a path that are still to come.
-struct Pieces<'a> {
-    points: &'a [PathPoint],
+struct Pieces<'a, P> {
+    points: &'a [PathPoint<P>],
     /// The index of the point after the next piece's start; a closed path goes on from 0 beyond its last point.
     next: usize,
     /// The index at which the path has come to its end.
     end: usize,
-    at: Point,
+    /// Where the next piece starts; nowhere if the path has no point.
+    at: Option<P>,
 }
 
-impl<'a> Pieces<'a> {
-    fn new(points: &'a [PathPoint], closed: bool) -> Self {
+impl<'a, P: Place> Pieces<'a, P> {
+    fn new(points: &'a [PathPoint<P>], closed: bool) -> Self {
         let count = points.len();
         let first_on = points.iter().position(|p| p.is_on);
         let (next, at) = match (first_on, points) {
-            (Some(first), _) => (first + 1, points[first].at),
+            (Some(first), _) => (first + 1, Some(points[first].at)),
             // All points of a closed path may be off: it starts halfway between the last one and the first.
-            (None, [first, .., last]) => (0, middle(last.at, first.at)),
-            _ => (0, Point::origin()),
+            (None, [first, .., last]) => (0, Some(P::middle(last.at, first.at))),
+            _ => (0, None),
         };
         let end = match (count, closed) {
             (0 | 1, _) => next,
@@ -170,38 +256,34 @@ impl<'a> Pieces<'a> {
         }
     }
 
-    fn point(&self, i: usize) -> PathPoint {
+    fn point(&self, i: usize) -> PathPoint<P> {
         self.points[i % self.points.len()]
     }
 }
 
-impl Iterator for Pieces<'_> {
-    type Item = Piece;
+impl<P: Place> Iterator for Pieces<'_, P> {
+    type Item = Piece<P>;
 
-    fn next(&mut self) -> Option<Piece> {
+    fn next(&mut self) -> Option<Piece<P>> {
         if self.next >= self.end {
             return None;
         }
-        let (from, knot) = (self.at, self.point(self.next));
+        let (from, knot) = (self.at?, self.point(self.next));
         self.next += 1;
         if knot.is_on {
-            self.at = knot.at;
+            self.at = Some(knot.at);
             return Some(Piece::Line([from, knot.at]));
         }
         let after = self.point(self.next);
-        self.at = if after.is_on {
+        let to = if after.is_on {
             self.next += 1;
             after.at
         } else {
-            middle(knot.at, after.at)
+            P::middle(knot.at, after.at)
         };
-        Some(Piece::Curve([from, knot.at, self.at]))
+        self.at = Some(to);
+        Some(Piece::Curve([from, knot.at, to]))
     }
-}
-
-/// The point halfway between two.
-fn middle(a: Point, b: Point) -> Point {
-    Point::from((a.coords + b.coords) * 0.5)
 }
 
 #[cfg(test)]
@@ -217,10 +299,7 @@ mod tests {
     }
 
     fn ends(piece: Piece) -> [Point; 2] {
-        match piece {
-            Piece::Line(ends) => ends,
-            Piece::Curve([a, _, b]) => [a, b],
-        }
+        [piece.start(), piece.end()]
     }
 
     #[test]

@@ -5,8 +5,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Path, PathPoint, Rgb, Scene, Stage, Stroke};
-use crate::math::Point;
+use super::written_path::WrittenPath;
+use super::{PathPoint, Rgb, Scene, Stage, Stroke};
 
 /// Most decimals of a coordinate or width.
 pub const MAX_PRECISION: u8 = 6;
@@ -21,18 +21,18 @@ const MAX_COORDINATE: f32 = 1e9;
 /// Units of [`Written`] per px.
 pub(crate) const UNITS_PER_PX: i64 = 10_i64.pow(MAX_PRECISION as u32);
 
-/// A scene rounded to what its SVG holds, and the strokes that were dropped.
+/// A scene rounded to what its SVG holds, and what was dropped.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Quantized {
     /// The rounded scene. None of its stages is empty.
     pub scene: Scene,
     /// For each of its stages, the index in the original scene.
     pub origins: Vec<usize>,
-    /// Strokes that are not written.
+    /// What is not written.
     pub dropped: Dropped,
 }
 
-/// Number of strokes that are not written, by reason.
+/// Number of strokes that are not written, by reason, and of points.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Dropped {
     /// Strokes with NaN or infinite parameters.
@@ -41,10 +41,14 @@ pub struct Dropped {
     pub invisible: usize,
     /// Strokes with a bounding box off the page, or with a coordinate beyond the limit of the file.
     pub off_page: usize,
+    /// Points of strokes that are written: those that coincide with their neighbours once they are rounded, or that
+    /// others imply.
+    #[serde(default)]
+    pub points: usize,
 }
 
 impl Dropped {
-    /// The sum.
+    /// The sum of all strokes.
     pub fn total(self) -> usize {
         self.non_finite + self.invisible + self.off_page
     }
@@ -70,8 +74,9 @@ impl Scene {
     /// The scene rounded to what its SVG with `precision` decimals (at most [`MAX_PRECISION`]) holds.
     ///
     /// Coordinates and widths are rounded, widths kept at [`MIN_WIDTH`] or more; colours and
-    /// opacities become multiples of 1/255; a shape shorter than the precision becomes a dot.
-    /// [`Dropped`] counts the strokes that are left out. Stages without strokes are left out as well.
+    /// opacities become multiples of 1/255; a path shorter than the precision becomes a dot. Off-points are
+    /// rounded so that the file also holds the on-points that they imply.
+    /// [`Dropped`] counts what is left out. Stages without strokes are left out as well.
     pub fn quantized(&self, precision: u8) -> Quantized {
         let mut quantized = Quantized {
             scene: Self {
@@ -95,9 +100,11 @@ impl Scene {
 
     /// The strokes of `stage` that can be written; the others are counted.
     fn written(&self, stage: &Stage, precision: u8, dropped: &mut Dropped) -> Vec<Written> {
-        let written = |stroke| {
+        let written = |stroke: &Stroke| {
             let written = Written::new(stroke, self, precision);
-            written.map_err(|reason| dropped.count(reason)).ok()
+            let written = written.map_err(|reason| dropped.count(reason)).ok()?;
+            dropped.points += stroke.path.points().len() - written.path.points().len();
+            Some(written)
         };
         stage.strokes.iter().filter_map(written).collect()
     }
@@ -106,10 +113,9 @@ impl Scene {
 /// A stroke as the integers of its SVG element.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Written {
-    /// Corners of the centre line in units of 1/[`UNITS_PER_PX`] px. Neighbours differ. A single one makes
-    /// a dot.
-    pub(crate) points: Vec<[i64; 2]>,
-    /// Width in the same units.
+    /// The centre line.
+    pub(crate) path: WrittenPath,
+    /// Width in units of 1/[`UNITS_PER_PX`] px.
     pub(crate) width: i64,
     /// 8-bit red, green and blue.
     pub(crate) color: [u8; 3],
@@ -133,18 +139,11 @@ impl Written {
     pub(crate) fn anywhere(stroke: &Stroke, precision: u8) -> Result<Self, Unwritable> {
         check(stroke)?;
         let grid = Grid::new(precision);
-        let mut points: Vec<_> = stroke
-            .path
-            .points()
-            .iter()
-            .map(|p| [p.at.x, p.at.y].map(|v| grid.units(v.into())))
-            .collect();
-        points.dedup();
         let width = grid
             .units(2.0 * f64::from(stroke.radius))
             .max(grid.min_width());
         Ok(Self {
-            points,
+            path: WrittenPath::rounded(&stroke.path, &grid),
             width,
             color: stroke.color.map(quantum),
             opacity: quantum(stroke.opacity),
@@ -155,7 +154,7 @@ impl Written {
     fn touches(&self, width: u32, height: u32) -> bool {
         let reach = self.width / 2;
         [width, height].iter().enumerate().all(|(axis, &side)| {
-            let along = || self.points.iter().map(|p| p[axis]);
+            let along = || self.path.points().iter().map(|p| p.at[axis]);
             let far_end = along().max().unwrap_or(0) + reach;
             let near_end = along().min().unwrap_or(0) - reach;
             far_end > 0 && near_end < i64::from(side) * UNITS_PER_PX
@@ -164,14 +163,8 @@ impl Written {
 
     /// The rounded stroke.
     pub(crate) fn stroke(&self) -> Stroke {
-        let point = |p: &[i64; 2]| Point::new(px(p[0]), px(p[1]));
-        let path = match self.points.as_slice() {
-            [a, .., b] => Path::line(point(a), point(b)),
-            [a] => Path::dot(point(a)),
-            [] => Path::dot(Point::origin()),
-        };
         Stroke {
-            path,
+            path: self.path.path(),
             radius: (self.width as f64 / (2 * UNITS_PER_PX) as f64) as f32,
             color: color(self.color),
             opacity: f32::from(self.opacity) / 255.0,
@@ -193,33 +186,43 @@ fn check(stroke: &Stroke) -> Result<(), Unwritable> {
     }
 }
 
-/// The multiples of 10^−precision px.
-struct Grid {
+/// The multiples of 10^−precision px, or of some steps of it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Grid {
     /// 10^precision, at most 10^6.
     per_px: i64,
+    /// How many multiples its points are apart.
+    step: i64,
 }
 
 impl Grid {
-    fn new(precision: u8) -> Self {
+    pub(super) fn new(precision: u8) -> Self {
         Self {
             per_px: 10_i64.pow(precision.min(MAX_PRECISION).into()),
+            step: 1,
         }
     }
 
-    /// The nearest multiple to `px`, in units.
-    fn units(&self, px: f64) -> i64 {
-        (px * self.per_px as f64).round() as i64 * (UNITS_PER_PX / self.per_px)
+    /// The grid with only each `step`th point.
+    pub(super) fn coarser(self, step: i64) -> Self {
+        Self { step, ..self }
+    }
+
+    /// Multiples of 10^−precision in a px.
+    pub(super) fn per_px(&self) -> f64 {
+        self.per_px as f64
+    }
+
+    /// The nearest point of the grid to `px`, in units.
+    pub(super) fn units(&self, px: f64) -> i64 {
+        let steps = (px * self.per_px as f64 / self.step as f64).round();
+        steps as i64 * self.step * (UNITS_PER_PX / self.per_px)
     }
 
     /// The smallest multiple of at least [`MIN_WIDTH`], in units.
     fn min_width(&self) -> i64 {
         (MIN_WIDTH * self.per_px as f64).ceil() as i64 * (UNITS_PER_PX / self.per_px)
     }
-}
-
-/// Units as px. One division and one rounding give the `f32` nearest to the written decimal.
-fn px(units: i64) -> f32 {
-    (units as f64 / UNITS_PER_PX as f64) as f32
 }
 
 /// The nearest of 0..=255 to a value of 0..1.
@@ -239,6 +242,8 @@ fn quantized_color(rgb: Rgb) -> Rgb {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::Point;
+    use crate::scene::Path;
 
     fn stroke(path: Path) -> Stroke {
         Stroke {
@@ -266,7 +271,7 @@ mod tests {
             .scene
             .strokes()
             .next()
-            .copied()
+            .cloned()
     }
 
     #[test]
@@ -284,7 +289,8 @@ mod tests {
             radius: 0.1,
             ..capsule([1.0, 1.0], [5.0, 5.0])
         };
-        let radii = [0, 1, 2, 3, 9].map(|precision| quantized(thin, precision).unwrap().radius);
+        let radii =
+            [0, 1, 2, 3, 9].map(|precision| quantized(thin.clone(), precision).unwrap().radius);
         assert_eq!(radii, [1.0, 0.55, 0.51, 0.51, 0.51]);
     }
 
@@ -315,18 +321,18 @@ mod tests {
     fn what_cannot_be_seen_is_dropped_and_counted() {
         let seen = capsule([1.0, 1.0], [5.0, 5.0]);
         let strokes = vec![
-            seen,
+            seen.clone(),
             Stroke {
                 opacity: 0.001,
-                ..seen
+                ..seen.clone()
             },
             Stroke {
                 opacity: f32::NAN,
-                ..seen
+                ..seen.clone()
             },
             Stroke {
                 radius: 0.0,
-                ..seen
+                ..seen.clone()
             },
             Stroke {
                 color: [f32::INFINITY; 3],
@@ -342,6 +348,7 @@ mod tests {
             non_finite: 3,
             invisible: 2,
             off_page: 3,
+            points: 0,
         };
         assert_eq!((scene.len(), dropped), (1, expected));
         assert_eq!(dropped.total(), 8);
@@ -351,9 +358,14 @@ mod tests {
     fn stages_without_strokes_are_none() {
         let seen = capsule([1.0, 1.0], [5.0, 5.0]);
         let away = capsule([-9.0, 5.0], [-2.5, 5.0]);
-        let stages = [vec![], vec![seen], vec![away], vec![away, seen, seen]]
-            .map(|strokes| Stage { strokes })
-            .to_vec();
+        let stages = [
+            vec![],
+            vec![seen.clone()],
+            vec![away.clone()],
+            vec![away, seen.clone(), seen],
+        ]
+        .map(|strokes| Stage { strokes })
+        .to_vec();
         let scene = Scene {
             stages,
             ..scene(vec![])

@@ -14,13 +14,13 @@
 //! crosses itself, the distance has a kink, and this is the slope on one side.
 //!
 //! **Degenerate cases.** A path of one point is a disc. Segments of no length are discs, too, and lose ties to an earlier
-//! neighbour. As many as [`MAX_STEPS`] segments replace a curve, so one of more than some 650 px may be off by more.
+//! neighbour. As many as [`MAX_STEPS`] segments replace a curve, so one of more than some 1,300 px may be off by more.
 
 use super::{Capsule, CapsuleJet};
 use crate::math::{Point2, Real, Vector2};
 
 /// Largest distance between a curve and its segments, px.
-pub(crate) const FLATNESS: f64 = 0.04;
+pub(crate) const FLATNESS: f64 = 0.08;
 
 /// Most segments of one curve.
 pub(crate) const MAX_STEPS: usize = 64;

@@ -29,7 +29,7 @@ pub fn write_animated(
     let scene = scene.quantized(precision).scene;
     let options = WriteOptions {
         precision,
-        form: Form::Elements,
+        form: Form::Plain,
         group: Group::Stage,
         width: None,
     };

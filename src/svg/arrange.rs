@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::dialect::Unit;
 use super::options::{Form, Group, WriteOptions};
 use super::path;
-use crate::scene::{Scene, Stage, Written};
+use crate::scene::{Scene, Stage, Written, WrittenPath};
 
 /// Strokes of a layer, and their common colour if layers are by colour.
 #[derive(Debug, Clone)]
@@ -62,11 +62,10 @@ pub fn arrange(scene: &Scene, options: &WriteOptions) -> Scene {
 
 /// Starts a stroke at the end that makes its path shorter.
 fn orient(stroke: &mut Written, unit: Unit) {
-    let length = |stroke: &Written| path::data([stroke.points.as_slice()], unit).len();
-    let mut other = stroke.clone();
-    other.points.reverse();
-    if length(&other) < length(stroke) {
-        *stroke = other;
+    let length = |path: &WrittenPath| path::data([path], unit).len();
+    let reversed = stroke.path.reversed();
+    if length(&reversed) < length(&stroke.path) {
+        stroke.path = reversed;
     }
 }
 
@@ -202,7 +201,7 @@ mod tests {
 
     fn stroke(x: i64, color: u8, width: i64) -> Written {
         Written {
-            points: vec![[x * PX, 10 * PX], [x * PX, 90 * PX]],
+            path: WrittenPath::line([x * PX, 10 * PX], [x * PX, 90 * PX]),
             width: width * PX,
             color: [color; 3],
             opacity: 255,

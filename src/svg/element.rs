@@ -11,16 +11,16 @@ use crate::scene::Written;
 /// Appends the elements of `strokes`, in the smallest form with numbers in `unit`.
 pub(super) fn push(out: &mut String, strokes: &[Written], form: Form, unit: Unit) {
     match form {
-        Form::Elements | Form::Plain => {
-            for element in split(strokes, form) {
-                push_path(out, element, &[], Style::Full);
+        Form::Plain => {
+            for stroke in strokes {
+                push_path(out, std::slice::from_ref(stroke), &[], Style::Full);
                 out.push('\n');
             }
         }
         Form::Smallest => {
-            let width = usual_width(strokes, form);
+            let width = usual_width(strokes);
             let style = Style::Short { width, unit };
-            push_runs(out, &split(strokes, form), &[], style);
+            push_runs(out, &split(strokes), &[], style);
         }
         Form::Outlines => strokes.iter().for_each(|stroke| outline::push(out, stroke)),
     }
@@ -40,9 +40,10 @@ pub(super) fn bytes(stroke: &Written, form: Form, unit: Unit) -> usize {
     out.len()
 }
 
-/// The attribute of a layer that holds the most common width of `strokes`, or nothing.
+/// The attribute of a layer that, in the smallest form, holds the most common width of `strokes`, or nothing.
 pub(super) fn layer_width(strokes: &[Written], form: Form, unit: Unit) -> String {
-    usual_width(strokes, form).map_or_else(String::new, |width| width_text(width, unit))
+    let width = usual_width(strokes).filter(|_| form == Form::Smallest);
+    width.map_or_else(String::new, |width| width_text(width, unit))
 }
 
 fn width_text(width: i64, unit: Unit) -> String {
@@ -51,32 +52,22 @@ fn width_text(width: i64, unit: Unit) -> String {
     out + "\""
 }
 
-/// In the smallest form, the most common width, if more than one element has it.
-fn usual_width(strokes: &[Written], form: Form) -> Option<i64> {
+/// The most common width in the smallest form, if more than one element has it.
+fn usual_width(strokes: &[Written]) -> Option<i64> {
     let mut counts = BTreeMap::<i64, usize>::new();
-    for element in split(strokes, form)
-        .iter()
-        .filter(|_| form == Form::Smallest)
-    {
+    for element in split(strokes) {
         *counts.entry(element[0].width).or_default() += 1;
     }
     let (width, count) = counts.into_iter().max_by_key(|&(_, count)| count)?;
     (count > 1).then_some(width)
 }
 
-/// Whether a stroke of the path begins at the end of the previous one.
-pub(super) fn has_corner(strokes: &[Written], form: Form) -> bool {
-    split(strokes, form)
-        .iter()
-        .any(|element| element.windows(2).any(|w| is_chain(&w[0], &w[1])))
-}
-
-/// The strokes of each element.
-fn split(strokes: &[Written], form: Form) -> Vec<&[Written]> {
+/// The strokes of each element in the smallest form.
+fn split(strokes: &[Written]) -> Vec<&[Written]> {
     let mut elements = Vec::new();
     let mut rest = strokes;
     while !rest.is_empty() {
-        let joins = |&k: &usize| joins(&rest[..k], &rest[k], form);
+        let joins = |&k: &usize| joins(&rest[..k], &rest[k]);
         let length = 1 + (1..rest.len()).take_while(joins).count();
         let (element, later) = rest.split_at(length);
         elements.push(element);
@@ -85,23 +76,10 @@ fn split(strokes: &[Written], form: Form) -> Vec<&[Written]> {
     elements
 }
 
-/// Whether `next` can join the path of `strokes` without changing the picture.
-fn joins(strokes: &[Written], next: &Written, form: Form) -> bool {
-    let Some(last) = strokes.last().filter(|last| look(last) == look(next)) else {
-        return false;
-    };
-    let opaque = next.opacity == u8::MAX;
-    match form {
-        Form::Plain => opaque && is_chain(last, next),
-        Form::Smallest => opaque || !strokes.iter().any(|stroke| stroke.meets(next)),
-        Form::Elements | Form::Outlines => false,
-    }
-}
-
-/// Whether `next` begins where `last` ends.
-fn is_chain(last: &Written, next: &Written) -> bool {
-    let lines = [last, next].iter().all(|stroke| stroke.points.len() > 1);
-    lines && last.points.last() == next.points.first()
+/// Whether `next` can join the element of `strokes` without changing the picture.
+fn joins(strokes: &[Written], next: &Written) -> bool {
+    let is_alike = strokes.last().is_some_and(|last| look(last) == look(next));
+    is_alike && (next.opacity == u8::MAX || !strokes.iter().any(|stroke| stroke.meets(next)))
 }
 
 /// An attribute that the strokes of a path have in common.
@@ -157,8 +135,7 @@ impl Style {
 
 /// Appends the path of `strokes` with the attributes that are not `shared`.
 fn push_path(out: &mut String, strokes: &[Written], shared: &[Attribute], style: Style) {
-    let lines = strokes.iter().map(|stroke| stroke.points.as_slice());
-    let d = path::data(lines, style.unit());
+    let d = path::data(strokes.iter().map(|stroke| &stroke.path), style.unit());
     *out += &format!("<path d=\"{d}\"");
     let own = Attribute::ALL.iter().filter(|a| !shared.contains(a));
     for attribute in own {

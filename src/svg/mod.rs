@@ -40,8 +40,8 @@
 //! use strokefit::scene::{Scene, Path, Stage, Stroke};
 //! use strokefit::svg::{self, WriteOptions};
 //!
-//! let shape = Path::line([1.25, 2.0].into(), [30.0, 4.0].into());
-//! let stroke = Stroke { shape, radius: 1.5, color: [1.0, 0.4, 0.0], opacity: 0.5 };
+//! let path = Path::line([1.25, 2.0].into(), [30.0, 4.0].into());
+//! let stroke = Stroke { path, radius: 1.5, color: [1.0, 0.4, 0.0], opacity: 0.5 };
 //! let page = Scene::empty(40, 10, Some([1.0; 3]));
 //! let scene = Scene { stages: vec![Stage { strokes: vec![stroke] }], ..page };
 //!

@@ -25,7 +25,7 @@ impl WriteOptions {
     pub(super) fn unit(&self) -> Unit {
         match self.form {
             Form::Smallest => Unit::decimal(self.precision),
-            Form::Elements | Form::Plain | Form::Outlines => Unit::PX,
+            Form::Plain | Form::Outlines => Unit::PX,
         }
     }
 }
@@ -46,8 +46,6 @@ impl Default for WriteOptions {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Form {
     /// One stroke, with all its attributes.
-    Elements,
-    /// One stroke, or several opaque strokes of one look that lie end to end, as a polyline.
     #[default]
     Plain,
     /// As many strokes of one look as can be drawn together. Groups hold the attributes that neighbours share.
@@ -71,13 +69,12 @@ pub enum Group {
 
 impl Form {
     /// Every form.
-    pub const ALL: [Self; 4] = [Self::Elements, Self::Plain, Self::Smallest, Self::Outlines];
+    pub const ALL: [Self; 3] = [Self::Plain, Self::Smallest, Self::Outlines];
 }
 
 impl fmt::Display for Form {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Elements => "elements",
             Self::Plain => "plain",
             Self::Smallest => "smallest",
             Self::Outlines => "outlines",
@@ -88,11 +85,11 @@ impl fmt::Display for Form {
 impl FromStr for Form {
     type Err = Error;
 
-    /// `elements`, `plain`, `smallest` or `outlines`.
+    /// `plain`, `smallest` or `outlines`.
     fn from_str(text: &str) -> Result<Self, Error> {
         let mut forms = Self::ALL.into_iter();
         forms.find(|form| form.to_string() == text).ok_or_else(|| {
-            let right = "elements, plain, smallest or outlines";
+            let right = "plain, smallest or outlines";
             Error::new(
                 ErrorKind::Config,
                 format!("'{text}' is not a form: give {right}"),

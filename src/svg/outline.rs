@@ -4,18 +4,30 @@ use super::dialect::{self, Unit};
 use crate::math;
 use crate::scene::{UNITS_PER_PX, Written};
 
+/// How far the segments of a curve may be from it, px: less than any rasteriser shows.
+const TOLERANCE: f64 = 0.02;
+
 /// Appends the outline of `stroke` as an element of its own.
 pub(super) fn push(out: &mut String, stroke: &Written) {
-    match stroke.points.as_slice() {
-        [a, .., b] => push_capsule(out, *a, *b, stroke.width),
-        [centre] => push_circle(out, *centre, stroke.width),
-        [] => return,
+    match stroke.path.points() {
+        [centre] => push_circle(out, centre.at, stroke.width),
+        _ => push_capsules(out, stroke),
     }
     *out += &format!(" fill=\"{}\"", dialect::hex(stroke.color));
     if stroke.opacity < u8::MAX {
         *out += &format!(" fill-opacity=\"{}\"", dialect::opacity(stroke.opacity));
     }
     out.push_str("/>\n");
+}
+
+/// The outlines of all segments. They turn the same way, so that the rule `nonzero` fills each place once, where the
+/// stroke bends or crosses itself as well.
+fn push_capsules(out: &mut String, stroke: &Written) {
+    out.push_str("<path d=\"");
+    for [a, b] in stroke.path.segments(TOLERANCE) {
+        push_capsule(out, a, b, stroke.width);
+    }
+    out.push('"');
 }
 
 fn push_circle(out: &mut String, [x, y]: [i64; 2], width: i64) {
@@ -38,7 +50,7 @@ fn push_capsule(out: &mut String, a: [i64; 2], b: [i64; 2], width: i64) {
     let arc = |step| format!("a{r} {r} 0 0 1{}", pair(step, true));
     let back = |step: [i64; 2]| step.map(|units| -units);
     *out += &format!(
-        "<path d=\"M{}l{}{}l{}{}z\"",
+        "M{}l{}{}l{}{}z",
         pair(start, false),
         pair(side, false),
         arc(chord),
@@ -79,13 +91,12 @@ fn pair([x, y]: [i64; 2], spaced: bool) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{PathPoint, WrittenPath};
 
     fn written(points: &[[i64; 2]], opacity: u8) -> String {
+        let point = |p: &[i64; 2]| PathPoint::on(p.map(|px| px * UNITS_PER_PX));
         let stroke = Written {
-            points: points
-                .iter()
-                .map(|p| p.map(|px| px * UNITS_PER_PX))
-                .collect(),
+            path: WrittenPath::new(points.iter().map(point).collect(), false),
             width: 3 * UNITS_PER_PX,
             color: [255, 102, 0],
             opacity,

@@ -1,7 +1,7 @@
 //! The attribute `d` of a path, which holds one stroke or several of one look.
 
 use super::dialect::{MAX_UNITS, Unit};
-use crate::scene::UNITS_PER_PX;
+use crate::scene::{PathPoint, Piece, UNITS_PER_PX, WrittenPath, WrittenPoint};
 
 /// The length of the segment that represents a dot.
 const DOT: i64 = UNITS_PER_PX / 100;
@@ -9,146 +9,259 @@ const DOT: i64 = UNITS_PER_PX / 100;
 /// A place in units of 1/[`UNITS_PER_PX`](crate::scene::UNITS_PER_PX) px.
 type Place = [i64; 2];
 
-/// The `d` of strokes with these corners. Each pair of numbers is absolute or relative, whichever is shorter. A
-/// stroke that begins at the end of the previous one continues its line.
-pub(super) fn data<'a>(strokes: impl IntoIterator<Item = &'a [Place]>, unit: Unit) -> String {
-    let mut out = String::new();
-    let mut at = None;
-    for points in strokes {
-        let Some((&start, rest)) = points.split_first() else {
-            continue;
+/// The `d` of strokes with these centre lines. The places of each step are absolute or relative, whichever is shorter.
+pub(super) fn data<'a>(paths: impl IntoIterator<Item = &'a WrittenPath>, unit: Unit) -> String {
+    let mut writer = Writer {
+        out: String::new(),
+        unit,
+        at: None,
+        letter: None,
+    };
+    paths.into_iter().for_each(|path| writer.push(path));
+    writer.out
+}
+
+struct Writer {
+    out: String,
+    unit: Unit,
+    /// Where the last step ended, if a relative one may follow.
+    at: Option<Place>,
+    /// The letter of the last step, if another one may do without it.
+    letter: Option<char>,
+}
+
+impl Writer {
+    fn push(&mut self, path: &WrittenPath) {
+        let mut pieces = path.pieces().peekable();
+        let Some(first) = pieces.peek().copied() else {
+            return self.push_dot(path);
         };
-        if at != Some(start) || rest.is_empty() {
-            push_step(&mut out, ['M', 'm'], at, start, unit);
+        self.push_step('M', &[first.start()]);
+        self.letter = None;
+        let mut control = None;
+        while let Some(piece) = pieces.next() {
+            match piece {
+                // What closes the path draws this line.
+                Piece::Line(_) if path.is_closed() && pieces.peek().is_none() => {}
+                Piece::Line([_, to]) => self.push_step('L', &[to]),
+                Piece::Curve([from, knee, to])
+                    if control.map(|c| mirrored(c, from)) == Some(knee) =>
+                {
+                    self.push_step('T', &[to]);
+                }
+                Piece::Curve([_, knee, to]) => self.push_step('Q', &[knee, to]),
+            }
+            control = match piece {
+                Piece::Line(_) => None,
+                Piece::Curve([_, knee, _]) => Some(knee),
+            };
         }
-        at = Some(start);
-        for &point in rest {
-            push_step(&mut out, ['L', 'l'], at, point, unit);
-            at = Some(point);
-        }
-        if rest.is_empty() {
-            out.push('h');
-            unit.push(&mut out, DOT);
-            // The next relative step would start 0.01 off.
-            at = None;
+        if path.is_closed() {
+            self.out.push('z');
+            (self.at, self.letter) = (Some(first.start()), None);
         }
     }
-    out
-}
 
-/// Appends the step from `at`, if known, to `to`.
-fn push_step(
-    out: &mut String,
-    [absolute, relative]: [char; 2],
-    at: Option<Place>,
-    to: Place,
-    unit: Unit,
-) {
-    let step = |letter: char, [x, y]: Place| {
-        let mut text = String::from(letter);
-        unit.push(&mut text, x);
-        // A minus sign needs no separator.
-        if y >= 0 {
-            text.push(' ');
+    fn push_dot(&mut self, path: &WrittenPath) {
+        for point in path.points() {
+            self.push_step('M', &[point.at]);
+            self.out.push('h');
+            self.unit.push(&mut self.out, DOT);
+            // The next relative step would start 0.01 off.
+            (self.at, self.letter) = (None, None);
         }
-        unit.push(&mut text, y);
+    }
+
+    /// Appends a step to the last of these places in its shortest form. It does without a letter where that of the last
+    /// step serves, and that is no longer.
+    fn push_step(&mut self, letter: char, places: &[Place]) {
+        let from_page = self.lettered(letter, &self.numbers([0, 0], places));
+        let from_here = self.at.map(|at| {
+            let letter = letter.to_ascii_lowercase();
+            self.lettered(letter, &self.numbers(at, places))
+        });
+        let steps = [Some(from_page), from_here].into_iter().flatten();
+        let shortest =
+            steps.min_by_key(|(letter, text)| (text.len(), self.letter != Some(*letter)));
+        if let Some((letter, text)) = shortest {
+            self.out.push_str(&text);
+            (self.at, self.letter) = (places.last().copied(), Some(letter));
+        }
+    }
+
+    /// The numbers of some places as seen from `origin`. A minus sign needs no separator.
+    fn numbers(&self, origin: Place, places: &[Place]) -> String {
+        let mut text = String::new();
+        for [x, y] in places
+            .iter()
+            .map(|to| [to[0] - origin[0], to[1] - origin[1]])
+        {
+            for units in [x, y] {
+                if units >= 0 && !text.is_empty() {
+                    text.push(' ');
+                }
+                self.unit.push(&mut text, units);
+            }
+        }
         text
-    };
-    let from_page = step(absolute, to);
-    let from_here = at.map(|[x, y]| step(relative, [to[0] - x, to[1] - y]));
-    out.push_str(
-        from_here
-            .as_ref()
-            .filter(|text| text.len() < from_page.len())
-            .unwrap_or(&from_page),
-    );
+    }
+
+    /// A step with its letter and as text.
+    fn lettered(&self, letter: char, numbers: &str) -> (char, String) {
+        let separator = match self.letter {
+            Some(last) if last == letter && numbers.starts_with('-') => String::new(),
+            Some(last) if last == letter => " ".into(),
+            _ => letter.into(),
+        };
+        (letter, separator + numbers)
+    }
 }
 
-/// The content of a `d`.
-#[derive(Debug, PartialEq, Eq)]
-pub(super) struct Parsed {
-    /// The corners of each stroke, neighbours different: two, or one for a dot.
-    pub(super) strokes: Vec<Vec<Place>>,
-    /// Whether a stroke continues the line of the previous one, so that the shape of joins matters.
-    pub(super) has_corner: bool,
+/// The place opposite of `point` as seen from `center`.
+fn mirrored(point: Place, center: Place) -> Place {
+    [0, 1].map(|axis| 2 * center[axis] - point[axis])
 }
 
-/// The strokes of a `d`, or `None` if it is not part of the dialect.
-pub(super) fn parse(d: &str, unit: Unit) -> Option<Parsed> {
-    let mut parsed = Parsed {
-        strokes: Vec::new(),
-        has_corner: false,
-    };
-    let mut reached = Reached::Nowhere;
+/// The centre lines of a `d`, or `None` if it is not part of the dialect.
+pub(super) fn parse(d: &str, unit: Unit) -> Option<Vec<WrittenPath>> {
+    let mut parser = Parser::default();
     let mut rest = d;
     while let Some(letter) = rest.chars().next() {
         let tail = &rest[letter.len_utf8()..];
         let end = tail.find(|c: char| c.is_alphabetic()).unwrap_or(tail.len());
-        reached = reached.step(letter, Numbers(&tail[..end], unit), &mut parsed)?;
+        parser.step(letter, &tail[..end], unit)?;
         rest = &tail[end..];
     }
-    matches!(reached, Reached::Drawn(_) | Reached::Dotted).then_some(parsed)
+    parser.end()?;
+    Some(parser.paths).filter(|paths| !paths.is_empty())
 }
 
-/// What the last step of a path was.
-#[derive(Clone, Copy)]
-enum Reached {
-    Nowhere,
-    /// To the start of a stroke.
-    Put(Place),
-    /// To the end of a stroke.
-    Drawn(Place),
-    /// To a dot.
-    Dotted,
+/// Reads one step after the other.
+#[derive(Default)]
+struct Parser {
+    paths: Vec<WrittenPath>,
+    /// The points of the stroke that has begun.
+    points: Vec<WrittenPoint>,
+    /// Where a relative step starts; nowhere after a dot.
+    at: Option<Place>,
+    /// The control point of the last step, if that was a curve.
+    control: Option<Place>,
 }
 
-impl Reached {
-    fn step(self, letter: char, numbers: Numbers<'_>, parsed: &mut Parsed) -> Option<Self> {
-        match (letter, self) {
-            ('M', Self::Nowhere | Self::Drawn(_) | Self::Dotted) => {
-                numbers.place([0, 0]).map(Self::Put)
+impl Parser {
+    /// What a letter and the text after it say.
+    fn step(&mut self, letter: char, text: &str, unit: Unit) -> Option<()> {
+        match letter {
+            'h' => return self.dot(unit.parse(text)?),
+            'z' | 'Z' => return text.is_empty().then(|| self.close())?,
+            _ => {}
+        }
+        let pairs = pairs(text, unit)?;
+        let (size, most) = match letter.to_ascii_uppercase() {
+            'M' => (1, 1),
+            'L' | 'T' => (1, usize::MAX),
+            'Q' => (2, usize::MAX),
+            _ => return None,
+        };
+        let steps = pairs.chunks(size);
+        if steps.len() > most || pairs.is_empty() {
+            return None;
+        }
+        for step in steps {
+            self.draw(letter, step)?;
+        }
+        Some(())
+    }
+
+    /// One step with these numbers.
+    fn draw(&mut self, letter: char, pairs: &[Place]) -> Option<()> {
+        let is_relative = letter.is_ascii_lowercase();
+        let [x, y] = if is_relative { self.at? } else { [0, 0] };
+        let place = |&[dx, dy]: &Place| within([x + dx, y + dy]);
+        match (letter.to_ascii_uppercase(), pairs) {
+            ('M', [start]) => {
+                self.end()?;
+                let start = place(start)?;
+                self.points.push(PathPoint::on(start));
+                (self.at, self.control) = (Some(start), None);
+                Some(())
             }
-            ('m', Self::Drawn(at)) => numbers.place(at).map(Self::Put),
-            ('L' | 'l', Self::Put(at) | Self::Drawn(at)) => {
-                parsed.has_corner |= matches!(self, Self::Drawn(_));
-                let to = numbers.place(if letter == 'l' { at } else { [0, 0] })?;
-                let mut points = vec![at, to];
-                points.dedup();
-                parsed.strokes.push(points);
-                Some(Self::Drawn(to))
-            }
-            ('h', Self::Put(at)) if numbers.one() == Some(DOT) => {
-                parsed.strokes.push(vec![at]);
-                Some(Self::Dotted)
+            ('L', [to]) => self.extend(None, place(to)?),
+            ('Q', [knee, to]) => self.extend(Some(place(knee)?), place(to)?),
+            ('T', [to]) => {
+                let knee = within(mirrored(self.control?, self.at?))?;
+                self.extend(Some(knee), place(to)?)
             }
             _ => None,
         }
     }
+
+    /// Draws a line or, with a control point, a curve.
+    fn extend(&mut self, control: Option<Place>, to: Place) -> Option<()> {
+        if self.points.is_empty() {
+            return None;
+        }
+        self.points.extend(control.map(PathPoint::off));
+        self.points.push(PathPoint::on(to));
+        (self.at, self.control) = (Some(to), control);
+        Some(())
+    }
+
+    fn dot(&mut self, length: i64) -> Option<()> {
+        if self.points.len() != 1 || length != DOT {
+            return None;
+        }
+        self.push(false);
+        self.at = None;
+        Some(())
+    }
+
+    fn close(&mut self) -> Option<()> {
+        self.at = self.points.first().map(|start| start.at);
+        if self.points.len() < 2 {
+            return None;
+        }
+        self.push(true);
+        Some(())
+    }
+
+    /// Ends the stroke that has begun, if any.
+    fn end(&mut self) -> Option<()> {
+        match self.points.len() {
+            0 => {}
+            1 => return None,
+            _ => self.push(false),
+        }
+        Some(())
+    }
+
+    fn push(&mut self, closed: bool) {
+        let points = std::mem::take(&mut self.points);
+        self.paths.push(WrittenPath::new(points, closed));
+        self.control = None;
+    }
 }
 
-/// Parses what follows a letter, in this unit.
-#[derive(Clone, Copy)]
-struct Numbers<'a>(&'a str, Unit);
+/// The place, if it is not too far away to be exact.
+fn within(place: Place) -> Option<Place> {
+    let is_near = place.iter().all(|units| units.abs() <= MAX_UNITS);
+    is_near.then_some(place)
+}
 
-impl Numbers<'_> {
-    fn one(self) -> Option<i64> {
-        self.1.parse(self.0)
+/// Pairs of numbers, each separated from the last by a space or by its minus sign.
+fn pairs(text: &str, unit: Unit) -> Option<Vec<Place>> {
+    let mut numbers = Vec::new();
+    for part in text.split(' ') {
+        let mut rest = part;
+        while let Some(minus) = rest.get(1..).and_then(|tail| tail.find('-')) {
+            let (number, others) = rest.split_at(minus + 1);
+            numbers.push(unit.parse(number)?);
+            rest = others;
+        }
+        numbers.push(unit.parse(rest)?);
     }
-
-    /// Two numbers, separated by a space or the minus sign of the second, as steps from `origin`.
-    fn place(self, origin: Place) -> Option<Place> {
-        let Self(text, unit) = self;
-        let minus = text.bytes().skip(1).position(|b| b == b'-');
-        let (x, y) = match text.split_once(' ') {
-            Some(pair) => pair,
-            None => text.split_at_checked(minus? + 1)?,
-        };
-        let place = [origin[0] + unit.parse(x)?, origin[1] + unit.parse(y)?];
-        place
-            .iter()
-            .all(|units| units.abs() <= MAX_UNITS)
-            .then_some(place)
-    }
+    let (pairs, others) = numbers.as_chunks();
+    others.is_empty().then(|| pairs.to_vec())
 }
 
 #[cfg(test)]
@@ -159,57 +272,115 @@ mod tests {
         [x * UNITS_PER_PX, y * UNITS_PER_PX]
     }
 
-    /// Writes, and checks that reading gives the same.
-    fn written(strokes: &[&[Place]], has_corner: bool) -> String {
-        let d = data(strokes.iter().copied(), Unit::PX);
-        let strokes = strokes.iter().map(|points| points.to_vec()).collect();
-        let expected = Parsed {
-            strokes,
-            has_corner,
+    /// The path of these points, in px; each is on it unless it says `false`.
+    fn path(points: &[(i64, i64, bool)], closed: bool) -> WrittenPath {
+        let point = |&(x, y, is_on): &(i64, i64, bool)| PathPoint {
+            at: px(x, y),
+            is_on,
         };
-        assert_eq!(parse(&d, Unit::PX), Some(expected), "{d}");
+        WrittenPath::new(points.iter().map(point).collect(), closed)
+    }
+
+    fn line(places: &[(i64, i64)]) -> WrittenPath {
+        let points: Vec<_> = places.iter().map(|&(x, y)| (x, y, true)).collect();
+        path(&points, false)
+    }
+
+    /// Writes, and checks that reading gives the same.
+    fn written(paths: &[WrittenPath]) -> String {
+        let d = data(paths, Unit::PX);
+        assert_eq!(parse(&d, Unit::PX).as_deref(), Some(paths), "{d}");
         d
     }
 
     #[test]
     fn a_step_is_absolute_or_relative_whichever_is_shorter() {
-        let one = |a, b| written(&[&[a, b]], false);
-        assert_eq!(one(px(1, 2), px(3, 4)), "M1 2L3 4");
-        assert_eq!(one(px(100, 200), px(103, 199)), "M100 200l3-1");
-        assert_eq!(one(px(-1, -2), px(-3, 4)), "M-1-2L-3 4");
+        let one = |a, b| written(&[line(&[a, b])]);
+        assert_eq!(one((1, 2), (3, 4)), "M1 2L3 4");
+        assert_eq!(one((100, 200), (103, 199)), "M100 200l3-1");
+        assert_eq!(one((-1, -2), (-3, 4)), "M-1-2L-3 4");
     }
 
     #[test]
     fn a_dot_is_a_short_segment() {
-        assert_eq!(written(&[&[px(5, 6)]], false), "M5 6h0.01");
+        assert_eq!(written(&[line(&[(5, 6)])]), "M5 6h0.01");
         for (precision, expected) in [(1, "M50 60h0.1"), (2, "M500 600h1"), (3, "M5000 6000h10")] {
             let unit = Unit::decimal(precision);
-            let d = data([&[px(5, 6)][..]], unit);
+            let dot = line(&[(5, 6)]);
+            let d = data([&dot], unit);
             assert_eq!(d, expected);
-            assert_eq!(parse(&d, unit).unwrap().strokes, [[px(5, 6)]]);
+            assert_eq!(parse(&d, unit).unwrap(), [dot]);
         }
     }
 
     #[test]
-    fn strokes_end_to_end_are_a_polyline() {
-        let (a, b, c) = (px(1, 2), px(3, 4), px(5, 6));
-        assert_eq!(written(&[&[a, b], &[b, c]], true), "M1 2L3 4L5 6");
+    fn a_letter_is_written_once() {
+        let bend = line(&[(1, 2), (3, 4), (5, 6)]);
+        assert_eq!(written(&[bend]), "M1 2L3 4 5 6");
+        let zigzag = line(&[(100, 100), (103, 99), (102, 98), (112, 91), (1, 2)]);
+        assert_eq!(written(&[zigzag]), "M100 100l3-1-1-1 10-7L1 2");
+    }
+
+    #[test]
+    fn a_curve_says_its_control_point_once() {
+        let arch = path(&[(1, 5, true), (3, 1, false), (5, 5, true)], false);
+        assert_eq!(written(&[arch]), "M1 5Q3 1 5 5");
+        let wave = [
+            (1, 5, true),
+            (3, 1, false),
+            (5, 9, false),
+            (9, 5, false),
+            (9, 9, true),
+        ];
+        assert_eq!(written(&[path(&wave, false)]), "M1 5Q3 1 4 5T7 7 9 9");
+        let far = wave.map(|(x, y, is_on)| (x + 100, y + 100, is_on));
+        assert_eq!(written(&[path(&far, false)]), "M101 105q2-4 3 0t3 2 2 2");
+    }
+
+    #[test]
+    fn a_closed_path_comes_back_to_its_start() {
+        let corners = [(1, 2, true), (9, 2, true), (5, 8, true)];
+        assert_eq!(written(&[path(&corners, true)]), "M1 2L9 2 5 8z");
+        let drop = [(1, 2, true), (9, 2, true), (5, 8, false)];
+        assert_eq!(written(&[path(&drop, true)]), "M1 2L9 2Q5 8 1 2z");
+        let ring = [(0, 0, false), (8, 0, false), (8, 8, false), (0, 8, false)];
+        assert_eq!(written(&[path(&ring, true)]), "M0 4Q0 0 4 0T8 4 4 8 0 4z");
     }
 
     #[test]
     fn strokes_apart_are_parts_of_a_path() {
-        let (a, b, c) = (px(100, 100), px(110, 100), px(112, 90));
-        assert_eq!(
-            written(&[&[a, b], &[c, a]], false),
-            "M100 100l10 0m2-10l-12 10"
-        );
+        let (a, b, c) = ((100, 100), (110, 100), (112, 90));
+        let two = [line(&[a, b]), line(&[c, a])];
+        assert_eq!(written(&two), "M100 100l10 0m2-10l-12 10");
+        let closed = path(&[(100, 100, true), (110, 100, true), (112, 90, true)], true);
+        let after = line(&[(101, 101), (108, 99)]);
+        assert_eq!(written(&[closed, after]), "M100 100l10 0 2-10zm1 1l7-2");
+    }
+
+    #[test]
+    fn strokes_end_to_end_stay_two() {
+        let (a, b, c) = ((1, 2), (3, 4), (5, 6));
+        assert_eq!(written(&[line(&[a, b]), line(&[b, c])]), "M1 2L3 4M3 4L5 6");
     }
 
     #[test]
     fn after_a_dot_steps_are_absolute() {
-        let (a, b) = (px(100, 100), px(101, 100));
-        let d = written(&[&[a], &[a], &[a, b]], false);
+        let dot = || line(&[(100, 100)]);
+        let d = written(&[dot(), dot(), line(&[(100, 100), (101, 100)])]);
         assert_eq!(d, "M100 100h0.01M100 100h0.01M100 100l1 0");
+    }
+
+    #[test]
+    fn points_that_change_nothing_are_not_read() {
+        for (d, expected) in [
+            ("M1 2L1 2", "M1 2h0.01"),
+            ("M1 2L3 4L3 4L5 6", "M1 2L3 4 5 6"),
+            ("M1 2Q1 2 5 6", "M1 2L5 6"),
+            ("M1 2L9 2L5 8L1 2Z", "M1 2L9 2 5 8z"),
+            ("M1 5Q3 1 4 5Q5 9 9 9", "M1 5Q3 1 4 5T9 9"),
+        ] {
+            assert_eq!(data(&parse(d, Unit::PX).unwrap(), Unit::PX), expected);
+        }
     }
 
     #[test]
@@ -232,10 +403,26 @@ mod tests {
             "M1 2h0.01L3 4",
             "M1 2h0.01m3 4l5 6",
             "M1 2L3 4m5 6",
-            "M1 2L3 4Z",
+            "M1 2z",
+            "M1 2L3 4z1",
+            "M1 2L3 4zL5 6",
+            "M1 2L3 4zz",
+            "M1 2h0.01z",
+            "z",
+            "M1 2T3 4",
+            "M1 2L3 4T5 6",
+            "M1 2Q3 4 5 6L7 8T9 9",
+            "M1 2Q3 4",
+            "M1 2Q3 4 5 6 7 8",
+            "M1 2C3 4 5 6 7 8",
+            "M1 2A3 3 0 0 1 5 6",
+            "M1 2H5",
+            "M1 2V5",
             "M1 2L3  4",
             "M1 2 L3 4",
+            "M1 2L3 4 ",
             "M2000000000 1l2000000000 1l1 1",
+            "M1 2Q2000000000 1-2000000000 1T0 0",
         ];
         for d in refused {
             assert_eq!(parse(d, Unit::PX), None, "{d}");

@@ -9,7 +9,7 @@ use super::dialect::{self, Unit};
 use super::options::Length;
 use super::path;
 use crate::error::{Error, ErrorKind, Result};
-use crate::scene::{Rgb, Scene, Stage, Stroke, Written, color};
+use crate::scene::{MAX_POINTS, Rgb, Scene, Stage, Stroke, Written, WrittenPath, color};
 
 /// Reads text that [`write`](super::write()) wrote, in any form except outlines.
 ///
@@ -347,27 +347,36 @@ impl Look {
 
     /// The strokes of a path with this look.
     fn strokes(&self, path: &Element) -> Parsed<Vec<Stroke>> {
-        let parsed = path.parsed("d", |d| path::parse(d, self.unit))?;
-        if parsed.has_corner && !self.has_join {
+        let paths = path.parsed("d", |d| path::parse(d, self.unit))?;
+        if !self.has_join && paths.iter().any(WrittenPath::has_joins) {
             return Err(
                 "<path> has a corner, but its layer has no stroke-linejoin=\"round\"".into(),
             );
+        }
+        if let Some(count) = paths
+            .iter()
+            .map(|p| p.points().len())
+            .find(|&n| n > MAX_POINTS)
+        {
+            return Err(format!(
+                "<path> has a stroke of {count} points: split it, so that each part has at most {MAX_POINTS}"
+            ));
         }
         let missing = |key: &str| format!("<path> has no {key}");
         let width = self.width.or(self.layer_width);
         let width = width.ok_or_else(|| missing("stroke-width"))?;
         let color = self.color.ok_or_else(|| missing("stroke"))?;
-        let stroke = |points| {
-            let opacity = self.opacity.unwrap_or(u8::MAX);
+        let opacity = self.opacity.unwrap_or(u8::MAX);
+        let stroke = |path| {
             Written {
-                points,
+                path,
                 width,
                 color,
                 opacity,
             }
             .stroke()
         };
-        Ok(parsed.strokes.into_iter().map(stroke).collect())
+        Ok(paths.into_iter().map(stroke).collect())
     }
 }
 

@@ -91,7 +91,7 @@ fn text(number: usize, layer: &Layer, form: Form, unit: Unit) -> String {
 fn look(layer: &Layer, form: Form) -> &'static str {
     if form == Form::Outlines {
         ""
-    } else if element::has_corner(&layer.strokes, form) {
+    } else if layer.strokes.iter().any(|stroke| stroke.path.has_joins()) {
         " fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\""
     } else {
         " fill=\"none\" stroke-linecap=\"round\""

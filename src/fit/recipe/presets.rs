@@ -1,7 +1,7 @@
 //! The numbers of the presets.
 
 use super::{
-    AdamSettings, BackgroundChoice, Correction, Domain, EdgeShape, Pens, Polish, Preset, Rates,
+    AdamSettings, BackgroundChoice, Correction, Domain, EdgeShape, Pens, Points, Polish, Preset, Rates,
     Recipe, Recoloring, Relocation, Rounds, Settling, Stages, TimeShares,
 };
 use crate::optim::AdamParams;
@@ -137,6 +137,18 @@ const BALANCED: Recipe = Recipe {
         gain: 4.0,
         until: 0.9,
         fill: 2,
+    },
+    points: Points {
+        from: 0.1,
+        until: 0.85,
+        share: 0.5,
+        swapped: 0.2,
+        per_stroke: 6.0,
+        capsules: 0.85,
+        filled: 0.995,
+        reach: 0.5,
+        shortest: 0.5,
+        smoothness: 0.7,
     },
     coloring: Recoloring {
         rounds: Rounds {

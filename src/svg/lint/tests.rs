@@ -29,7 +29,7 @@ fn what_strokefit_writes_has_nothing() {
         stages: vec![Stage { strokes }],
         ..Scene::empty(9, 9, Some([1.0; 3]))
     };
-    for form in [Form::Elements, Form::Plain, Form::Smallest, Form::Outlines] {
+    for form in Form::ALL {
         for precision in 0..=6 {
             let options = WriteOptions {
                 precision,

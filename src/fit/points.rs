@@ -1,0 +1,237 @@
+//! Points at their price: strokes get points where these gain more than their bytes cost, and lose points that gain less.
+//!
+//! A survey tells how the squared error depends on the vertices of all strokes ([`terrain`]), and so what every change of
+//! a stroke's points would gain ([`edits`]): a new corner or control point, a point that is taken away, a corner that
+//! becomes smooth or a control point that becomes a corner. Each stroke may change by one edit at a time; descent then
+//! fits it. The rule is the one for strokes: what does not pay its price goes, what pays comes, and where the budget has
+//! no room left, points that gain more take the place of points that are missed less.
+
+mod edits;
+mod terrain;
+
+use rayon::prelude::*;
+
+use super::config::Config;
+use super::drawing::Drawing;
+use super::recipe::Points;
+use super::session::Session;
+use crate::render::{StrokeRef, Strokes, Survey};
+use edits::Edit;
+use terrain::Terrain;
+
+/// Least segments of a line or a curve in a survey.
+const LEAST: usize = 4;
+
+/// Changes the points of the free strokes where that pays. Returns the former index of each number of the free strokes,
+/// `None` for a new one.
+pub(super) fn rearrange(session: &mut Session<'_>) -> Vec<Option<usize>> {
+    let (points, price) = (session.recipe.points, session.price.of_point());
+    let room = room(session);
+    let most = session.config.points.unwrap_or(usize::MAX);
+    let drawing = &mut session.drawing;
+    let survey = drawing.survey(LEAST);
+    let strokes = drawing.free();
+    let options = |i: usize| Options::new(&survey, strokes.get(i), i, most, &points);
+    let options: Vec<Options> = (0..strokes.len()).into_par_iter().map(options).collect();
+    let chosen = choose(options, room, price, &points);
+    drawing.edit(&chosen)
+}
+
+/// How many more points the drawing may have.
+fn room(session: &Session<'_>) -> usize {
+    let (config, strokes) = (session.config, session.drawing.free());
+    let by_strokes = match (config.budget.bytes, config.effective_quality()) {
+        // Bytes or a price limit them.
+        (Some(_), _) | (_, Some(_)) => usize::MAX,
+        (None, None) => {
+            let most = session.recipe.points.per_stroke * strokes.len() as f32;
+            (most as usize).saturating_sub(strokes.points())
+        }
+    };
+    let by_bytes = config.budget.bytes.map_or(usize::MAX, |bytes| {
+        let left = bytes as f32 * session.recipe.points.filled - session.bytes() as f32;
+        (left.max(0.0) / session.price.point_bytes() as f32) as usize
+    });
+    by_strokes.min(by_bytes)
+}
+
+/// Whether strokes of this fit may have more than two points.
+pub(super) fn are_allowed(config: &Config) -> bool {
+    config.points.is_none_or(|most| most > 2)
+}
+
+/// The best edit of each kind of one stroke.
+#[derive(Debug, Default)]
+struct Options {
+    insertion: Option<Edit>,
+    removal: Option<Edit>,
+    toggle: Option<Edit>,
+}
+
+impl Options {
+    fn new(
+        survey: &Survey,
+        stroke: StrokeRef<'_>,
+        index: usize,
+        most: usize,
+        points: &Points,
+    ) -> Self {
+        if !stroke.is_finite() {
+            return Self::default();
+        }
+        let terrain = Terrain::new(survey, stroke, index);
+        let may_grow = stroke.points.len() < most;
+        Self {
+            insertion: may_grow
+                .then(|| edits::best_insertion(&terrain, points))
+                .flatten(),
+            removal: edits::best_removal(&terrain),
+            toggle: edits::best_toggle(&terrain),
+        }
+    }
+}
+
+/// At most one edit of each stroke. A point costs `price`, and at most `room` points may be added.
+fn choose(
+    mut options: Vec<Options>,
+    room: usize,
+    price: f32,
+    points: &Points,
+) -> Vec<Option<Edit>> {
+    let count = options.len();
+    let mut chosen: Vec<Option<Edit>> = (0..count).map(|_| None).collect();
+    // Points that are not worth their price go, and corners change where that alone gains something.
+    for (chosen, options) in chosen.iter_mut().zip(&mut options) {
+        let leaving = options.removal.take_if(|edit| -edit.gain < price);
+        *chosen = leaving.or_else(|| options.toggle.take_if(|edit| edit.gain > price * 0.1));
+    }
+    let wanted = (points.share * count as f32).ceil() as usize;
+    let mut coming = sorted(&mut options, |o| o.insertion.take_if(|edit| edit.gain > price));
+    coming.retain(|edit| chosen[edit.stroke].is_none());
+    let mut coming = coming.into_iter();
+    for edit in coming.by_ref().take(wanted.min(room)) {
+        let stroke = edit.stroke;
+        chosen[stroke] = Some(edit);
+    }
+    if room < wanted {
+        let leaving = sorted(&mut options, |o| o.removal.take());
+        let swaps = (points.swapped * count as f32) as usize;
+        swap(&mut chosen, coming, leaving, swaps);
+    }
+    chosen
+}
+
+/// The edits that `take` takes, the most gaining first.
+fn sorted(options: &mut [Options], take: impl Fn(&mut Options) -> Option<Edit>) -> Vec<Edit> {
+    let mut edits: Vec<Edit> = options.iter_mut().filter_map(take).collect();
+    edits.sort_by(|a, b| b.gain.total_cmp(&a.gain).then(a.stroke.cmp(&b.stroke)));
+    edits
+}
+
+/// The most gaining new point takes the place of the one that is missed least, and so on, at most `count` times, as long
+/// as this gains something.
+fn swap(
+    chosen: &mut [Option<Edit>],
+    coming: impl Iterator<Item = Edit>,
+    leaving: Vec<Edit>,
+    count: usize,
+) {
+    for (new, old) in coming.zip(leaving).take(count) {
+        if new.gain + old.gain <= 0.0 {
+            return;
+        }
+        let (i, k) = (new.stroke, old.stroke);
+        if i != k && chosen[i].is_none() && chosen[k].is_none() {
+            (chosen[i], chosen[k]) = (Some(new), Some(old));
+        }
+    }
+}
+
+impl Drawing {
+    /// A survey of the free strokes, in squared error, summed over the channels and the pixels of the picture.
+    fn survey(&mut self, least: usize) -> Survey {
+        let mut survey = self.survey_at_resolution(least);
+        // The slopes are of the mean, the stiffness is of the sum at this resolution.
+        let (values, area) = (3.0 * self.pixels() as f32, self.pixel_area());
+        let slopes = survey.slopes.as_flattened_mut().iter_mut();
+        slopes.for_each(|slope| *slope *= values);
+        survey.stiffness.iter_mut().for_each(|k| *k *= area);
+        survey
+    }
+
+    /// Applies the edits, at most one for each free stroke.
+    fn edit(&mut self, edits: &[Option<Edit>]) -> Vec<Option<usize>> {
+        let strokes = self.free();
+        let mut edited = Strokes::new();
+        let mut sources = Vec::with_capacity(strokes.numbers().len());
+        for (i, stroke) in strokes.iter().enumerate() {
+            let range = strokes.range(i);
+            let Some(edit) = &edits[i] else {
+                edited.push(stroke);
+                sources.extend(range.map(Some));
+                continue;
+            };
+            edited.push(edit.of(stroke));
+            for source in &edit.sources {
+                let at = source.map(|k| range.start + 2 * k);
+                sources.extend([at, at.map(|at| at + 1)]);
+            }
+            let look = range.start + 2 * stroke.points.len()..range.end;
+            sources.extend(look.map(Some));
+        }
+        *self.free_mut() = edited;
+        sources
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn edit(stroke: usize, gain: f32) -> Option<Edit> {
+        Some(Edit {
+            stroke,
+            gain,
+            points: Vec::new(),
+            off: Vec::new(),
+            sources: Vec::new(),
+        })
+    }
+
+    /// What is chosen of strokes with a new point and a removal of these gains each.
+    fn gains(options: &[(f32, f32)], room: usize, price: f32) -> Vec<Option<f32>> {
+        let options = options.iter().enumerate();
+        let options = options.map(|(i, &(new, old))| Options {
+            insertion: edit(i, new),
+            removal: edit(i, old),
+            toggle: None,
+        });
+        let points = crate::fit::Recipe::of(crate::fit::Preset::Balanced).points;
+        let points = Points {
+            share: 1.0,
+            swapped: 1.0,
+            ..points
+        };
+        let chosen = choose(options.collect(), room, price, &points);
+        let gain = |edit: Option<Edit>| edit.map(|edit| edit.gain);
+        chosen.into_iter().map(gain).collect()
+    }
+
+    #[test]
+    fn points_that_pay_come_and_points_that_do_not_go() {
+        let chosen = gains(&[(5.0, -9.0), (1.0, -9.0), (1.0, -1.0)], 9, 2.0);
+        assert_eq!(chosen, [Some(5.0), None, Some(-1.0)]);
+    }
+
+    #[test]
+    fn the_most_gaining_points_come_first() {
+        let chosen = gains(&[(3.0, -9.0), (5.0, -9.0), (4.0, -9.0)], 2, 0.0);
+        assert_eq!(chosen, [None, Some(5.0), Some(4.0)]);
+    }
+
+    #[test]
+    fn without_room_points_take_the_places_of_others() {
+        let chosen = gains(&[(1.0, -0.5), (8.0, -9.0), (1.0, -3.0)], 0, 0.0);
+        assert_eq!(chosen, [Some(-0.5), Some(8.0), None]);
+    }
+}

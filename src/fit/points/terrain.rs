@@ -1,0 +1,110 @@
+//! The survey around one stroke: what a shift of its vertices does to the squared error.
+//!
+//! With the slope g and the stiffness H of each vertex, a shift δ changes the squared error by about
+//! `Σ g·δ + ½ Σ H|δ|²`. The stiffness is a bound, after Gauss and Newton, so that gains are underestimated and losses
+//! overestimated, as long as the shift is short.
+
+use super::LEAST;
+use crate::render::{Piece, Pieces, StrokeRef, Survey, flattened};
+
+/// One stroke and the survey of its vertices.
+pub(super) struct Terrain<'a> {
+    /// The index of the stroke.
+    pub(super) index: usize,
+    pub(super) stroke: StrokeRef<'a>,
+    /// Its lines and curves, in drawing order.
+    pub(super) pieces: Vec<Cut>,
+    vertices: &'a [[f32; 2]],
+    slopes: &'a [[f32; 2]],
+    stiffness: &'a [f32],
+}
+
+/// A piece, cut into segments.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cut {
+    pub(super) piece: Piece,
+    /// The index of its first vertex.
+    pub(super) first: usize,
+    /// The number of its segments.
+    pub(super) steps: usize,
+}
+
+impl<'a> Terrain<'a> {
+    pub(super) fn new(survey: &'a Survey, stroke: StrokeRef<'a>, index: usize) -> Self {
+        let range = survey.firsts[index] as usize..survey.firsts[index + 1] as usize;
+        let mut first = 0;
+        let cut = |piece: Piece| {
+            let steps = piece.steps(stroke.points, LEAST);
+            first += steps;
+            Cut {
+                piece,
+                first: first - steps,
+                steps,
+            }
+        };
+        Self {
+            index,
+            stroke,
+            pieces: Pieces::of(stroke).map(cut).collect(),
+            vertices: &survey.vertices[range.clone()],
+            slopes: &survey.slopes[range.clone()],
+            stiffness: &survey.stiffness[range],
+        }
+    }
+
+    /// The best shift in the direction `across`, of at most `most` px, of the vertices from `first` on, each by its part
+    /// of `weights`; and its gain.
+    pub(super) fn shift(
+        &self,
+        first: usize,
+        weights: impl Iterator<Item = f32>,
+        across: [f32; 2],
+        most: f32,
+    ) -> (f32, f32) {
+        let (mut slope, mut stiffness) = (0.0, 0.0);
+        let vertices = self.slopes.iter().zip(self.stiffness).skip(first);
+        for ((g, k), w) in vertices.zip(weights) {
+            slope += w * (g[0] * across[0] + g[1] * across[1]);
+            stiffness += w * w * k;
+        }
+        if stiffness <= 0.0 {
+            return (0.0, 0.0);
+        }
+        let shift = (-slope / stiffness).clamp(-most, most);
+        (shift, -(slope * shift + 0.5 * stiffness * shift * shift))
+    }
+
+    /// What changing the stroke to `changed` gains, if the vertices of the pieces that depend on point `k` shift to the
+    /// nearest places of the new path.
+    pub(super) fn gain(&self, changed: StrokeRef<'_>, k: usize) -> f32 {
+        let line = flattened(changed);
+        let touched = self.pieces.iter().filter(|cut| cut.piece.depends_on(k));
+        let vertices = touched.flat_map(|cut| cut.first..=cut.first + cut.steps);
+        let growth = |i: usize| {
+            let (v, g) = (self.vertices[i], self.slopes[i]);
+            let to = nearest(&line, v);
+            let shift = [to[0] - v[0], to[1] - v[1]];
+            let length2 = shift[0] * shift[0] + shift[1] * shift[1];
+            g[0] * shift[0] + g[1] * shift[1] + 0.5 * self.stiffness[i] * length2
+        };
+        -vertices.map(growth).sum::<f32>()
+    }
+}
+
+/// The place on a polyline that is nearest to `p`.
+fn nearest(line: &[[f32; 2]], p: [f32; 2]) -> [f32; 2] {
+    let mut best = (f32::INFINITY, p);
+    for ends in line.windows(2) {
+        let (a, b) = (ends[0], ends[1]);
+        let axis = [b[0] - a[0], b[1] - a[1]];
+        let length2 = (axis[0] * axis[0] + axis[1] * axis[1]).max(f32::MIN_POSITIVE);
+        let h = ((p[0] - a[0]) * axis[0] + (p[1] - a[1]) * axis[1]) / length2;
+        let h = h.clamp(0.0, 1.0);
+        let q = [a[0] + h * axis[0], a[1] + h * axis[1]];
+        let away2 = (p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]);
+        if away2 < best.0 {
+            best = (away2, q);
+        }
+    }
+    best.1
+}

@@ -1,0 +1,379 @@
+//! Paths as the integers that a file holds.
+//!
+//! A file says every on-point, implied ones included. So between two neighbouring off-points of a [`WrittenPath`] lies
+//! a multiple of its grid, and none of the numbers in the file is rounded. The path is in canonical form: of all lists
+//! of points with its pieces it is one that no rule makes shorter, so that reading gives the points that were written.
+
+use super::path::{self, Path, PathPoint, Piece, Place};
+use super::quantize::{Grid, UNITS_PER_PX};
+use crate::math::{self, Point};
+
+/// A point in units of 1/[`UNITS_PER_PX`] px.
+pub(crate) type WrittenPoint = PathPoint<[i64; 2]>;
+
+impl Place for [i64; 2] {
+    /// Exact where the sum is even, as it is between the off-points of a written path.
+    fn middle(a: Self, b: Self) -> Self {
+        [0, 1].map(|axis| (a[axis] + b[axis]) / 2)
+    }
+}
+
+/// The path of a written stroke, in canonical form.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct WrittenPath {
+    points: Vec<WrittenPoint>,
+    closed: bool,
+}
+
+impl WrittenPath {
+    /// The path through these points and around these off-points, which has their pieces. Each on-point that lies
+    /// exactly halfway between two off-points becomes an implied one.
+    pub(crate) fn new(points: Vec<WrittenPoint>, closed: bool) -> Self {
+        let mut path = Self { points, closed };
+        loop {
+            let before = path.points.len();
+            path.shorten();
+            if path.points.len() == before {
+                return path;
+            }
+        }
+    }
+
+    /// The path with its points on the `grid`. An off-point may be one step of the grid away from where it was, so that
+    /// implied on-points are on the grid, too.
+    pub(super) fn rounded(path: &Path, grid: &Grid) -> Self {
+        let mut points = path.points().to_vec();
+        let first_on = points.iter().position(|p| p.is_on);
+        points.rotate_left(first_on.unwrap_or(0));
+        let step = if points.iter().all(|p| p.is_on) {
+            1
+        } else {
+            step(path, grid)
+        };
+        let coarse = grid.coarser(step);
+        let mut rounded: Vec<WrittenPoint> = Vec::with_capacity(points.len());
+        for point in points {
+            let place = [point.at.x, point.at.y].map(f64::from);
+            let at = match rounded.last() {
+                Some(last) if !last.is_on && !point.is_on => [0, 1].map(|axis| {
+                    let halfway = f64::midpoint(last.at[axis] as f64 / PX, place[axis]);
+                    2 * coarse.units(halfway) - last.at[axis]
+                }),
+                _ => place.map(|px| coarse.units(px)),
+            };
+            rounded.push(PathPoint {
+                at,
+                is_on: point.is_on,
+            });
+        }
+        let rounded = Self::new(rounded, path.is_closed());
+        if step > 1 && rounded.points.iter().all(|p| p.is_on) {
+            // No curve is left, so that a reader would not use the coarser grid.
+            return Self::rounded(&rounded.path(), grid);
+        }
+        rounded
+    }
+
+    /// The line from one place to another, of units.
+    #[cfg(test)]
+    pub(crate) fn line(a: [i64; 2], b: [i64; 2]) -> Self {
+        Self::new([a, b].map(PathPoint::on).into(), false)
+    }
+
+    /// The points, in drawing order. A closed path starts on the path, unless all its points are off it.
+    pub(crate) fn points(&self) -> &[WrittenPoint] {
+        &self.points
+    }
+
+    /// Whether the last point is joined to the first.
+    pub(crate) fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    /// The lines and curves of the path, in drawing order; none for a dot.
+    pub(crate) fn pieces(&self) -> impl Iterator<Item = Piece<[i64; 2]>> {
+        path::pieces(&self.points, self.closed)
+    }
+
+    /// The segments of a polyline at most `tolerance` px away from the path, with corners in whole units. None of them
+    /// has no length, so that a dot has none.
+    pub(crate) fn segments(&self, tolerance: f64) -> Vec<[[i64; 2]; 2]> {
+        let mut segments = Vec::new();
+        for piece in self.pieces() {
+            match piece {
+                Piece::Line(ends) => segments.push(ends),
+                Piece::Curve(points) => push_chords(&mut segments, points, tolerance),
+            }
+        }
+        segments.retain(|[a, b]| a != b);
+        segments
+    }
+
+    /// Whether pieces meet, so that the shape of joins matters.
+    pub(crate) fn has_joins(&self) -> bool {
+        self.closed || self.pieces().nth(1).is_some()
+    }
+
+    /// The path drawn the other way.
+    pub(crate) fn reversed(&self) -> Self {
+        let mut reversed = self.clone();
+        reversed.points.reverse();
+        if self.closed && self.points.first().is_some_and(|p| p.is_on) {
+            reversed.points.rotate_right(1);
+        }
+        reversed
+    }
+
+    /// The path in px.
+    pub(super) fn path(&self) -> Path {
+        // One division and one rounding give the `f32` nearest to the written decimal.
+        let px = |units: i64| (units as f64 / PX) as f32;
+        let point = |p: &WrittenPoint| PathPoint {
+            at: Point::new(px(p.at[0]), px(p.at[1])),
+            is_on: p.is_on,
+        };
+        Path::of_valid(self.points.iter().map(point).collect(), self.closed)
+    }
+
+    /// Applies the rules of the canonical form once. None of them changes the shape of a piece.
+    fn shorten(&mut self) {
+        self.retain(|[before, point, after]| !is_implied(before, point, after));
+        let coincide = |p: &WrittenPoint, q: &WrittenPoint| p.is_on && q.is_on && p.at == q.at;
+        self.points.dedup_by(|next, kept| coincide(next, kept));
+        while self.closed
+            && self.points.len() > 1
+            && self.ends().is_some_and(|[a, b]| coincide(&a, &b))
+        {
+            self.points.pop();
+        }
+        self.retain(|[before, point, after]| !is_straight(before, point, after));
+        if let Some([first, _]) = self
+            .ends()
+            .filter(|[first, _]| self.points.iter().all(|p| p.at == first.at))
+        {
+            self.points = vec![PathPoint::on(first.at)];
+        }
+        self.closed &= self.points.len() > 1;
+        if self.closed {
+            let first_on = self.points.iter().position(|p| p.is_on);
+            self.points.rotate_left(first_on.unwrap_or(0));
+        }
+    }
+
+    fn ends(&self) -> Option<[WrittenPoint; 2]> {
+        Some([*self.points.first()?, *self.points.last()?])
+    }
+
+    /// Keeps the points that have no neighbour on one side, and those for which `keeps` says so. It is given the point
+    /// between its neighbours.
+    fn retain(&mut self, keeps: impl Fn([&WrittenPoint; 3]) -> bool) {
+        let points = std::mem::take(&mut self.points);
+        let count = points.len();
+        let is_end = |i: usize| !self.closed && (i == 0 || i + 1 == count);
+        let around = |i: usize| [i + count - 1, i, i + 1].map(|k| &points[k % count]);
+        self.points = (0..count)
+            .filter(|&i| is_end(i) || keeps(around(i)))
+            .map(|i| points[i])
+            .collect();
+    }
+}
+
+/// Whether an on-point lies where one between these off-points is implied.
+fn is_implied(before: &WrittenPoint, point: &WrittenPoint, after: &WrittenPoint) -> bool {
+    let is_halfway = |axis: usize| before.at[axis] + after.at[axis] == 2 * point.at[axis];
+    point.is_on && !before.is_on && !after.is_on && is_halfway(0) && is_halfway(1)
+}
+
+/// Whether an off-point makes a line, because it lies at one of the two on-points beside it.
+fn is_straight(before: &WrittenPoint, point: &WrittenPoint, after: &WrittenPoint) -> bool {
+    let are_on = before.is_on && after.is_on;
+    !point.is_on && are_on && [before.at, after.at].contains(&point.at)
+}
+
+/// Appends the chords of a curve.
+fn push_chords(out: &mut Vec<[[i64; 2]; 2]>, [a, c, b]: [[i64; 2]; 3], tolerance: f64) {
+    let bend = [0, 1].map(|k| (a[k] - 2 * c[k] + b[k]) as f64 / PX);
+    let count = path::steps(math::hypot(bend[0], bend[1]), tolerance);
+    let at = |i: u16| {
+        let t = f64::from(i) / f64::from(count);
+        let u = 1.0 - t;
+        let along =
+            |k: usize| a[k] as f64 * u * u + 2.0 * c[k] as f64 * u * t + b[k] as f64 * t * t;
+        [0, 1].map(|k| along(k).round() as i64)
+    };
+    out.extend((0..count).map(|i| [at(i), at(i + 1)]));
+}
+
+const PX: f64 = UNITS_PER_PX as f64;
+
+/// The grid's step, in its multiples, on which `f32` tells neighbouring points of the path apart. Otherwise what is
+/// read could have another rounding.
+fn step(path: &Path, grid: &Grid) -> i64 {
+    let far = path.points().iter().flat_map(|p| [p.at.x, p.at.y]);
+    let far = far.fold(0.0_f32, |far, px| far.max(px.abs()));
+    let spacing = f64::from(far.next_up() - far) * grid.per_px();
+    (spacing.ceil() as u64).next_power_of_two() as i64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Points by their places, each on the path if it says so.
+    fn points(list: &[(f32, f32, bool)]) -> Vec<PathPoint> {
+        let point = |&(x, y, is_on): &(f32, f32, bool)| PathPoint {
+            at: Point::new(x, y),
+            is_on,
+        };
+        list.iter().map(point).collect()
+    }
+
+    /// The path rounded to a decimal, in tenths of a px.
+    fn rounded(list: &[(f32, f32, bool)], closed: bool) -> (Vec<(i64, i64, bool)>, bool) {
+        let path = Path::new(points(list), closed).unwrap();
+        let written = WrittenPath::rounded(&path, &Grid::new(1));
+        let tenths = |units: i64| units / (UNITS_PER_PX / 10);
+        let points = written.points().iter();
+        let points = points
+            .map(|p| (tenths(p.at[0]), tenths(p.at[1]), p.is_on))
+            .collect();
+        (points, written.is_closed())
+    }
+
+    const ON: bool = true;
+    const OFF: bool = false;
+
+    #[test]
+    fn every_implied_point_is_on_the_grid_and_no_point_is_a_step_away() {
+        let list = [
+            (0.0, 0.0, ON),
+            (1.06, 0.04, OFF),
+            (2.11, 1.36, OFF),
+            (3.98, 1.03, OFF),
+            (5.07, 2.0, OFF),
+            (6.0, 0.0, ON),
+        ];
+        for closed in [false, true] {
+            let path = Path::new(points(&list), closed).unwrap();
+            let written = WrittenPath::rounded(&path, &Grid::new(1));
+            for (before, after) in path.points().iter().zip(written.path().points()) {
+                let away = (before.at - after.at).abs().max();
+                assert!(
+                    away <= if before.is_on { 0.0501 } else { 0.1001 },
+                    "{after:?}"
+                );
+            }
+            for piece in written.pieces() {
+                assert_eq!(piece.end().map(|units| units % (UNITS_PER_PX / 10)), [0; 2]);
+            }
+        }
+    }
+
+    #[test]
+    fn points_that_coincide_are_one() {
+        let line = [
+            (1.0, 2.0, ON),
+            (1.01, 2.0, ON),
+            (4.0, 2.0, ON),
+            (4.02, 2.01, ON),
+        ];
+        assert_eq!(rounded(&line, false).0, [(10, 20, ON), (40, 20, ON)]);
+        let ring = [
+            (1.0, 2.0, ON),
+            (4.0, 2.0, ON),
+            (3.0, 6.0, ON),
+            (1.01, 2.02, ON),
+        ];
+        assert_eq!(rounded(&ring, true).0.len(), 3);
+        for kind in [ON, OFF] {
+            let speck = [
+                (1.0, 2.0, ON),
+                (1.01, 2.01, kind),
+                (1.02, 2.02, kind),
+                (1.0, 2.0, ON),
+            ];
+            for closed in [false, true] {
+                assert_eq!(rounded(&speck, closed), (vec![(10, 20, ON)], false));
+            }
+        }
+    }
+
+    #[test]
+    fn a_control_point_at_an_end_makes_a_line() {
+        let start = [(1.0, 2.0, ON), (1.01, 2.0, OFF), (4.0, 2.0, ON)];
+        let end = [(1.0, 2.0, ON), (4.01, 2.0, OFF), (4.0, 2.0, ON)];
+        for list in [start, end] {
+            assert_eq!(rounded(&list, false).0, [(10, 20, ON), (40, 20, ON)]);
+        }
+        // Here it makes the first half of the path straight, and the second one starts there in its direction.
+        let spline = [
+            (1.0, 2.0, ON),
+            (1.0, 2.0, OFF),
+            (4.0, 2.0, OFF),
+            (4.0, 6.0, ON),
+        ];
+        assert_eq!(rounded(&spline, false).0.len(), 4);
+    }
+
+    #[test]
+    fn points_halfway_between_control_points_are_implied() {
+        let wave = [
+            (0.0, 0.0, ON),
+            (1.0, 1.0, OFF),
+            (2.01, 1.0, ON),
+            (3.0, 1.0, OFF),
+            (4.0, 0.0, ON),
+        ];
+        let expected = [(0, 0, ON), (10, 10, OFF), (30, 10, OFF), (40, 0, ON)];
+        assert_eq!(rounded(&wave, false).0, expected);
+        let ring = [
+            (0.0, 1.0, ON),
+            (0.0, 0.0, OFF),
+            (4.0, 0.0, OFF),
+            (0.0, 2.0, OFF),
+        ];
+        let expected = [(0, 0, OFF), (40, 0, OFF), (0, 20, OFF)];
+        assert_eq!(rounded(&ring, true), (expected.to_vec(), true));
+    }
+
+    #[test]
+    fn a_closed_path_starts_on_the_path() {
+        let drop = [
+            (4.0, 0.0, OFF),
+            (4.0, 4.0, OFF),
+            (0.0, 0.0, ON),
+            (1.0, -3.0, ON),
+        ];
+        let expected = [(0, 0, ON), (10, -30, ON), (40, 0, OFF), (40, 40, OFF)];
+        assert_eq!(rounded(&drop, true), (expected.to_vec(), true));
+    }
+
+    #[test]
+    fn the_other_way_has_the_same_pieces() {
+        let list = [
+            (0.0, 0.0, ON),
+            (4.0, 0.0, OFF),
+            (4.0, 4.0, OFF),
+            (0.0, 4.0, ON),
+        ];
+        let off = list.map(|(x, y, _)| (x, y, OFF));
+        for (list, closed) in [(list, false), (list, true), (off, true)] {
+            let path = Path::new(points(&list), closed).unwrap();
+            let written = WrittenPath::rounded(&path, &Grid::new(1));
+            let turned = |piece: Piece<[i64; 2]>| match piece {
+                Piece::Line([a, b]) => vec![b, a],
+                Piece::Curve([a, c, b]) => vec![b, c, a],
+            };
+            let kept = |piece: Piece<[i64; 2]>| match piece {
+                Piece::Line(ends) => ends.to_vec(),
+                Piece::Curve(points) => points.to_vec(),
+            };
+            let mut pieces: Vec<_> = written.pieces().map(turned).collect();
+            let mut reversed: Vec<_> = written.reversed().pieces().map(kept).collect();
+            pieces.sort();
+            reversed.sort();
+            assert_eq!(pieces, reversed);
+            assert_eq!(written.reversed().reversed().pieces().count(), pieces.len());
+        }
+    }
+}
