@@ -11,8 +11,8 @@ use strokefit::fit::Simd;
 use strokefit::image::Image;
 use strokefit::optim::{Adam, Optimizer, Schedule};
 use strokefit::render::{
-    AX, BY, Backdrop, Canvas, CanvasLoss, Gradients, Grid, OPACITY, PARAMS, Params, RADIUS, RED,
-    Renderer, Softness, TileRgb, unpack,
+    Backdrop, Canvas, CanvasLoss, Gradients, Grid, PARAMS, Params, Renderer, Softness, StrokeMut,
+    Strokes, TileRgb,
 };
 use strokefit::scene::{Scene, Stage};
 use strokefit::svg::{self, WriteOptions};
@@ -63,10 +63,10 @@ pub(crate) fn draw(picture: &Image) -> strokefit::Result<Scene> {
     let loss = Brightness {
         target: Canvas::from_image(picture),
     };
-    let mut strokes: Vec<Params> = (0..STROKES as u64).map(|i| random(i, picture)).collect();
+    let mut strokes: Strokes = (0..STROKES as u64).map(|i| random(i, picture)).collect();
     descend(&mut strokes, &loss, picture)?;
     let stage = Stage {
-        strokes: strokes.iter().map(unpack).collect(),
+        strokes: strokes.iter().map(|stroke| stroke.to_stroke()).collect(),
     };
     let (width, height) = (picture.width() as u32, picture.height() as u32);
     Ok(Scene {
@@ -93,7 +93,7 @@ fn random(i: u64, picture: &Image) -> Params {
     ]
 }
 
-fn descend(strokes: &mut [Params], loss: &Brightness, picture: &Image) -> strokefit::Result<()> {
+fn descend(strokes: &mut Strokes, loss: &Brightness, picture: &Image) -> strokefit::Result<()> {
     let level = Simd::Auto
         .level()
         .ok_or_else(|| Error::new(ErrorKind::Config, "no SIMD level on this machine"))?;
@@ -116,21 +116,22 @@ fn descend(strokes: &mut [Params], loss: &Brightness, picture: &Image) -> stroke
             &mut gradients,
         );
         let rate = schedule.factor(step, STEPS) as f32;
-        let slopes = gradients.strokes.as_flattened();
-        adam.step_scaled(strokes.as_flattened_mut(), slopes, rate, &scales);
-        strokes.iter_mut().for_each(|stroke| clamp(stroke, picture));
+        adam.step_scaled(strokes.numbers_mut(), &gradients.strokes, rate, &scales);
+        strokes.change(|_, stroke| clamp(stroke, picture));
     }
     Ok(())
 }
 
 /// Brings a stroke back to where it can be seen.
-fn clamp(stroke: &mut Params, picture: &Image) {
+fn clamp(stroke: StrokeMut<'_>, picture: &Image) {
     let far = [picture.width() as f32, picture.height() as f32];
-    for k in AX..=BY {
-        stroke[k] = stroke[k].clamp(0.0, far[k % 2]);
+    for [x, y] in stroke.points {
+        *x = x.clamp(0.0, far[0]);
+        *y = y.clamp(0.0, far[1]);
     }
-    stroke[RADIUS] = stroke[RADIUS].clamp(0.6, far[0]);
-    for shade in &mut stroke[RED..=OPACITY] {
+    let [radius, shades @ ..] = stroke.look;
+    *radius = radius.clamp(0.6, far[0]);
+    for shade in shades {
         *shade = shade.clamp(0.0, 1.0);
     }
 }

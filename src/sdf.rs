@@ -1,4 +1,4 @@
-//! Signed distance fields of circles and capsules, and their combinations.
+//! Signed distance fields of circles, capsules and paths, and their combinations.
 //!
 //! **Distances are positive inside** the shape, zero on its edge and negative outside, in px. Much of the
 //! literature, including the source of this file, uses the opposite sign.
@@ -7,6 +7,7 @@
 //! circle         d = r − √(|p−c|² + ε)
 //! capsule        d = r − √(|q|² + ε)
 //!                q = (p−a) − h(b−a),   h = clamp((p−a)·(b−a) / (|b−a|² + ε), 0, 1)
+//! path           d = max dₛ over the capsules of its segments
 //! union          d = max(d₁, d₂)
 //! intersection   d = min(d₁, d₂)
 //! subtraction    d = min(d₁, −d₂)
@@ -28,7 +29,8 @@
 //!
 //! **Degenerate cases.** A capsule of zero length is a circle: `h = 0`, and the gradient of both ends goes to
 //! `a`. On the centre line `u = 0` if ε > 0; at ε = 0, where no derivative exists, 0 is used as well. Where
-//! the operands of a combination tie, each gets half of the derivative.
+//! the operands of a combination tie, each gets half of the derivative. Where segments of a path tie, the first gets all
+//! of it.
 //!
 //! An example, with `#` deep inside, `+` inside and `.` just outside:
 //!
@@ -63,6 +65,11 @@
 //!
 //! Source: Inigo Quilez, "2D distance functions" (the segment and the boolean operators), with the sign
 //! reversed and ε added as in the golden data of this crate's tests.
+
+mod path;
+
+pub(crate) use path::steps;
+pub use path::{Flattened, Mean, Path, PathJet, Polyline, PolylineJet};
 
 use crate::math::{Point2, Real, Vector2};
 

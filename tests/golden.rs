@@ -12,6 +12,7 @@ use strokefit::loss::Loss;
 use strokefit::math::Point2;
 use strokefit::optim::{Adam, AdamParams, Optimizer};
 use strokefit::render::reference::{Gradients, Reference, Rgb, Scene, Stroke};
+use strokefit::render::{OPACITY, PARAMS};
 use strokefit::sdf::Capsule;
 
 const TOLERANCE: f64 = 1e-9;
@@ -71,8 +72,9 @@ impl Params {
         let turned = |[row, column]: [f64; 2]| [column, row];
         (0..self.r.len())
             .map(|i| Stroke {
-                a: turned(self.a[i]),
-                b: turned(self.b[i]),
+                points: vec![turned(self.a[i]), turned(self.b[i])],
+                off: vec![false; 2],
+                closed: false,
                 radius: self.r[i],
                 color: self.c[i],
                 opacity: 1.0,
@@ -137,8 +139,8 @@ impl Tally {
         theirs: &Params,
     ) {
         let known = |stroke: &Stroke| {
-            let mut params = stroke.to_params().to_vec();
-            params.truncate(Stroke::PARAMS - 1);
+            let mut params = stroke.to_params();
+            params.truncate(OPACITY);
             params
         };
         let flat = |strokes: &[Stroke]| strokes.iter().flat_map(known).collect::<Vec<_>>();
@@ -179,8 +181,8 @@ fn signed_distances() {
     for case in golden().cases {
         for (i, (stroke, theirs)) in case.scene().strokes.iter().zip(&case.sdf).enumerate() {
             let capsule = Capsule {
-                a: stroke.a.into(),
-                b: stroke.b.into(),
+                a: stroke.points[0].into(),
+                b: stroke.points[1].into(),
                 radius: stroke.radius,
             };
             for (y, row) in theirs.iter().enumerate() {
@@ -242,15 +244,15 @@ fn clamped(params: &[f64], case: &Case) -> Scene {
     let (width, height) = (case.cols as f64, case.rows as f64);
     let unit = |rgb: Rgb| rgb.map(|c| c.clamp(0.0, 1.0));
     let inside = |[x, y]: [f64; 2]| [x.clamp(0.0, width), y.clamp(0.0, height)];
-    let (strokes, background) = params.as_chunks::<{ Stroke::PARAMS }>();
+    let (strokes, background) = params.as_chunks::<PARAMS>();
     let strokes = strokes.iter().map(|&params| {
-        let stroke = Stroke::from_params(params);
+        let stroke = Stroke::capsule(params);
         Stroke {
-            a: inside(stroke.a),
-            b: inside(stroke.b),
+            points: stroke.points.into_iter().map(inside).collect(),
             radius: stroke.radius.clamp(0.0, 16.0),
             color: unit(stroke.color),
             opacity: 1.0,
+            ..stroke
         }
     });
     Scene {

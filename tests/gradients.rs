@@ -2,10 +2,14 @@
 //! out is what its removal does. On random scenes, and on the degenerate ones that a fit runs into.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+#[path = "support/paths.rs"]
+mod paths;
+
 use strokefit::coverage::Coverage;
 use strokefit::loss::Loss;
 use strokefit::render::reference::{Reference, Rgb, Scene, Stroke};
-use strokefit::rng;
+use strokefit::render::{LOOK, PARAMS};
+use strokefit::{rng, scene};
 
 /// The step of a central difference, and the error that it is good for.
 #[derive(Clone, Copy)]
@@ -33,8 +37,9 @@ fn stroke(seed: u64, i: u64, size: f64) -> Stroke {
     let place = |k| draw(seed, i, k) * (size + 4.0) - 2.0;
     let value = |k| draw(seed, i, k);
     Stroke {
-        a: [place(0), place(1)],
-        b: [place(2), place(3)],
+        points: vec![[place(0), place(1)], [place(2), place(3)]],
+        off: vec![false; 2],
+        closed: false,
         radius: 0.2 + 2.0 * value(4),
         color: [value(5), value(6), value(7)],
         opacity: 0.1 + 0.8 * value(8),
@@ -57,37 +62,50 @@ fn random() -> Vec<(String, Scene)> {
         .collect()
 }
 
+/// A stroke of a path of every kind, with ordinary ones around.
+fn of_paths() -> Vec<(String, Scene)> {
+    let with = |path: &scene::Path| Stroke {
+        points: path
+            .points()
+            .iter()
+            .map(|p| [p.at.x, p.at.y].map(f64::from))
+            .collect(),
+        off: path.points().iter().map(|p| !p.is_on).collect(),
+        closed: path.is_closed(),
+        ..stroke(9, 0, 8.0)
+    };
+    let paths = paths::paths(9.0, 7.0).into_iter();
+    paths
+        .map(|(name, path)| (name.to_owned(), around(with(&path))))
+        .collect()
+}
+
+fn around(kind: Stroke) -> Scene {
+    scene(vec![stroke(5, 1, 8.0), kind, stroke(5, 2, 8.0)])
+}
+
 /// A stroke of every degenerate kind, with ordinary ones around.
 fn degenerate() -> Vec<(String, Scene)> {
     let plain = stroke(9, 0, 8.0);
+    let between = |a, b| Stroke {
+        points: vec![a, b],
+        ..plain.clone()
+    };
     let kinds = [
-        (
-            "zero length",
-            Stroke {
-                b: plain.a,
-                ..plain
-            },
-        ),
+        ("zero length", between(plain.points[0], plain.points[0])),
         (
             "radius zero",
             Stroke {
                 radius: 0.0,
-                ..plain
+                ..plain.clone()
             },
         ),
-        (
-            "off canvas",
-            Stroke {
-                a: [-90.0, 3.0],
-                b: [-80.0, 4.0],
-                ..plain
-            },
-        ),
+        ("off canvas", between([-90.0, 3.0], [-80.0, 4.0])),
         (
             "invisible",
             Stroke {
                 opacity: 0.0,
-                ..plain
+                ..plain.clone()
             },
         ),
         (
@@ -95,30 +113,19 @@ fn degenerate() -> Vec<(String, Scene)> {
             Stroke {
                 opacity: 1.0,
                 radius: 9.0,
-                ..plain
+                ..plain.clone()
             },
         ),
-        (
-            "through pixel centres",
-            Stroke {
-                a: [1.5, 2.5],
-                b: [7.5, 2.5],
-                ..plain
-            },
-        ),
-        (
-            "dot on a pixel centre",
-            Stroke {
-                a: [3.5, 3.5],
-                b: [3.5, 3.5],
-                ..plain
-            },
-        ),
+        ("through pixel centres", between([1.5, 2.5], [7.5, 2.5])),
+        ("dot on a pixel centre", between([3.5, 3.5], [3.5, 3.5])),
     ];
-    let around = |kind| scene(vec![stroke(5, 1, 8.0), kind, stroke(5, 2, 8.0)]);
     kinds
         .map(|(name, kind)| (name.to_owned(), around(kind)))
         .into()
+}
+
+fn all() -> impl Iterator<Item = (String, Scene)> {
+    random().into_iter().chain(degenerate()).chain(of_paths())
 }
 
 fn target(scene: &Scene) -> Vec<Rgb> {
@@ -135,15 +142,38 @@ fn flat(strokes: &[Stroke], background: Rgb) -> Vec<f64> {
 }
 
 fn with_params(like: &Scene, params: &[f64]) -> Scene {
-    let (strokes, background) = params.as_chunks::<{ Stroke::PARAMS }>();
+    let mut rest = params;
+    let stroke = |stroke: &Stroke| {
+        let (params, others) = rest.split_at(2 * stroke.points.len() + LOOK);
+        rest = others;
+        stroke.with_params(params)
+    };
+    let strokes = like.strokes.iter().map(stroke).collect();
     Scene {
-        background: background.try_into().unwrap(),
-        strokes: strokes
-            .iter()
-            .map(|&params| Stroke::from_params(params))
-            .collect(),
+        background: rest.try_into().unwrap(),
+        strokes,
         ..*like
     }
+}
+
+/// The numbers that move together: those of points that coincide, since the derivatives by each of them alone are
+/// different on its two sides. Each number is in one set.
+fn sets(scene: &Scene) -> Vec<Vec<usize>> {
+    let (mut sets, mut first) = (Vec::new(), 0);
+    for stroke in &scene.strokes {
+        for (i, point) in stroke.points.iter().enumerate() {
+            let is_same = |k: &usize| stroke.points[*k] == *point;
+            if !(0..i).any(|k| is_same(&k)) {
+                let same = || (i..stroke.points.len()).filter(is_same);
+                sets.extend([0, 1].map(|axis| same().map(|k| first + 2 * k + axis).collect()));
+            }
+        }
+        let look = first + 2 * stroke.points.len();
+        sets.extend((look..look + LOOK).map(|k| vec![k]));
+        first = look + LOOK;
+    }
+    sets.extend((first..first + 3).map(|k| vec![k]));
+    sets
 }
 
 /// The parameters whose derivative is not its central difference.
@@ -159,18 +189,19 @@ fn differing(name: &str, reference: &Reference, scene: &Scene, accuracy: Accurac
     let d_canvas = Loss::L2.gradient(canvas.as_flattened(), target.as_flattened());
     let gradients = reference.gradients(scene, d_canvas.as_chunks().0);
     let params = flat(&scene.strokes, scene.background);
-    for (k, analytic) in flat(&gradients.strokes, gradients.background)
-        .into_iter()
-        .enumerate()
-    {
+    let slopes = flat(&gradients.strokes, gradients.background);
+    for set in sets(scene) {
         let (mut low, mut high) = (params.clone(), params.clone());
-        low[k] -= step;
-        high[k] += step;
+        for &k in &set {
+            low[k] -= step;
+            high[k] += step;
+        }
+        let analytic: f64 = set.iter().map(|&k| slopes[k]).sum();
         let numeric = (loss(&high) - loss(&low)) / (2.0 * step);
         let gap = (numeric - analytic).abs();
         if gap > tolerance * analytic.abs().max(1.0) || gap.is_nan() {
             failures.push(format!(
-                "{name}, parameter {k}: {analytic} against {numeric}"
+                "{name}, parameters {set:?}: {analytic} against {numeric}"
             ));
         }
     }
@@ -205,8 +236,13 @@ fn gradients_are_central_differences_in_degenerate_scenes() {
 }
 
 #[test]
+fn gradients_are_central_differences_along_paths() {
+    expect_central_differences(of_paths(), KINKED);
+}
+
+#[test]
 fn gradients_are_finite_without_eps() {
-    for (name, scene) in random().into_iter().chain(degenerate()) {
+    for (name, scene) in all() {
         for coverage in Coverage::EACH {
             let reference = Reference::new(coverage, 1.0);
             let d_canvas = vec![[1.0; 3]; scene.width * scene.height];
@@ -231,14 +267,14 @@ fn an_opaque_stroke_hides_what_is_behind() {
     let reference = Reference::new(Coverage::Smoothstep, 1.0);
     let d_canvas = vec![[1.0; 3]; scene.width * scene.height];
     let gradients = reference.gradients(&scene, &d_canvas);
-    assert_eq!(gradients.strokes[0].to_params(), [0.0; Stroke::PARAMS]);
+    assert_eq!(gradients.strokes[0].to_params(), [0.0; PARAMS]);
     assert_eq!(gradients.background, [0.0; 3]);
 }
 
 #[test]
 fn leaving_out_is_removing() {
     let mut failures = Vec::new();
-    for (name, scene) in random().into_iter().chain(degenerate()) {
+    for (name, scene) in all() {
         for coverage in Coverage::EACH {
             for cut in [false, true] {
                 let reference = Reference {

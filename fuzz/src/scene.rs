@@ -9,7 +9,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use strokefit::coverage::Coverage;
 use strokefit::fit::{Objective, Simd};
 use strokefit::loss::Loss;
-use strokefit::render::{Backdrop, Canvas, Gradients, Params, Renderer, Softness, pack};
+use strokefit::render::{Backdrop, Canvas, Gradients, Renderer, Softness, Strokes};
 use strokefit::scene::{Path, PathPoint, Quantized, Scene, Stage, Stroke};
 use strokefit::verify::{self, Size};
 use strokefit::{image::Image, svg};
@@ -145,7 +145,7 @@ thread_local! {
 
 /// The canvas and the gradients of `scene`, if all of them are finite.
 fn draw(scene: &Scene, softness: Softness) -> Option<()> {
-    let strokes: Vec<Params> = scene.strokes().map(pack).collect();
+    let strokes: Strokes = scene.strokes().collect();
     let background = scene.background.unwrap_or([1.0; 3]);
     let target = Image::filled(scene.width as usize, scene.height as usize, [0.5; 3]).ok()?;
     let target = Canvas::from_image(&target);
@@ -159,7 +159,7 @@ fn draw(scene: &Scene, softness: Softness) -> Option<()> {
         renderer.backward_with_worth(&strokes, softness, backdrop, &objective, gradients);
         let picture = canvas.to_image();
         let is_finite = picture.planes().iter().all(|plane| finite(plane))
-            && finite(gradients.strokes.as_flattened())
+            && finite(&gradients.strokes)
             && finite(&gradients.worth);
         is_finite.then_some(())
     })

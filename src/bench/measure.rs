@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use crate::coverage::Coverage;
 use crate::math;
-use crate::render::{Grid, Params, Softness};
+use crate::render::{Grid, Params, Softness, Strokes};
 use crate::rng;
 
 /// The soft edge of a finished drawing.
@@ -58,7 +58,7 @@ impl StrokeSize {
     }
 
     /// `count` strokes of random place, direction and colour, the same in every run.
-    pub fn strokes(self, grid: Grid, count: usize) -> Vec<Params> {
+    pub fn strokes(self, grid: Grid, count: usize) -> Strokes {
         (0..count as u64).map(|i| self.stroke(grid, i)).collect()
     }
 

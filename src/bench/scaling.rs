@@ -13,7 +13,7 @@ use crate::fit::{Budget, Config, Execution, Fitter, Objective, Preset};
 use crate::image::Image;
 use crate::loss::Loss;
 use crate::math;
-use crate::render::{Backdrop, Canvas, Gradients, Renderer, Strokes};
+use crate::render::{Backdrop, Canvas, Gradients, Renderer};
 use crate::report::Usage;
 use crate::report::scaling::{PointEntry, ScalingReport, SeriesEntry};
 use crate::rng;
@@ -274,7 +274,7 @@ impl Point {
         let target = Canvas::from_image(picture);
         let grid = target.grid();
         let size = StrokeSize::covering((grid.width * grid.height) as f32, self.strokes);
-        let strokes: Strokes = size.strokes(grid, self.strokes).iter().collect();
+        let strokes = size.strokes(grid, self.strokes);
         let objective = Objective::new(Loss::L2, &target);
         let level = self.execution().simd.require()?;
         Ok(self.execution().pool()?.install(|| {

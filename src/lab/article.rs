@@ -24,7 +24,7 @@ use crate::image::{Animation, AnimationFormat, Image};
 use crate::loss::Loss;
 use crate::optim::{Adam, AdamParams, Optimizer};
 use crate::render::{
-    Backdrop, Canvas, Gradients, Grid, OPACITY, PARAMS, Params, RADIUS, RED, Renderer, Softness,
+    Backdrop, Canvas, Gradients, Grid, OPACITY, PARAMS, Renderer, Softness, StrokeMut,
 };
 use crate::report::Table;
 use crate::report::plot::captioned;
@@ -123,7 +123,7 @@ impl Reproduction {
         let (renderer, gradients) = (&mut self.renderer, &mut self.gradients);
         self.pool.install(|| {
             renderer.backward(
-                &drawing.strokes.iter().collect(),
+                &drawing.strokes,
                 softness(coverage),
                 backdrop,
                 &objective,
@@ -131,15 +131,13 @@ impl Reproduction {
             );
         });
         let flat = &gradients.strokes;
-        let params = drawing.strokes.as_flattened_mut();
+        let params = drawing.strokes.numbers_mut();
         self.strokes.step_scaled(params, flat, RATE, &self.scales);
         self.background
             .step(&mut drawing.background, &gradients.backdrop, RATE);
         drawing.background = drawing.background.map(|c| c.clamp(0.0, 1.0));
         let size = [drawing.width as f32, drawing.height as f32];
-        for stroke in &mut drawing.strokes {
-            clamp(stroke, size);
-        }
+        drawing.strokes.change(|_, stroke| clamp(stroke, size));
         gradients.loss
     }
 
@@ -151,14 +149,8 @@ impl Reproduction {
         } = self;
         let backdrop = Backdrop::Color(drawing.background);
         let out = &mut canvas;
-        self.pool.install(|| {
-            renderer.forward(
-                &drawing.strokes.iter().collect(),
-                softness(coverage),
-                backdrop,
-                out,
-            )
-        });
+        self.pool
+            .install(|| renderer.forward(&drawing.strokes, softness(coverage), backdrop, out));
         canvas.to_image()
     }
 
@@ -175,14 +167,14 @@ fn softness(coverage: Coverage) -> Softness {
     }
 }
 
-fn clamp(stroke: &mut Params, size: [f32; 2]) {
-    for (k, x) in stroke[..RADIUS].iter_mut().enumerate() {
+fn clamp(mut stroke: StrokeMut<'_>, size: [f32; 2]) {
+    for (k, x) in stroke.points.as_flattened_mut().iter_mut().enumerate() {
         *x = x.clamp(0.0, size[k % 2]);
     }
-    stroke[RADIUS] = stroke[RADIUS].clamp(0.0, LARGEST);
-    for c in &mut stroke[RED..OPACITY] {
+    for c in stroke.color_mut() {
         *c = c.clamp(0.0, 1.0);
     }
+    stroke.look[0] = stroke.look[0].clamp(0.0, LARGEST);
 }
 
 impl ArticleRun {
@@ -389,19 +381,13 @@ mod tests {
             .last()
             .unwrap();
         assert!(last < 0.8 * first, "{first} {last}");
-        for p in &descent.drawing().strokes {
-            assert!(
-                (0.0..=24.0).contains(&p[0]) && (0.0..=20.0).contains(&p[1]),
-                "{p:?}"
-            );
-            assert!(
-                (0.0..=LARGEST).contains(&p[RADIUS]) && p[OPACITY] == 1.0,
-                "{p:?}"
-            );
-            assert!(
-                p[RED..OPACITY].iter().all(|c| (0.0..=1.0).contains(c)),
-                "{p:?}"
-            );
+        for stroke in descent.drawing().strokes.iter() {
+            let inside = |[x, y]: &[f32; 2]| (0.0..=24.0).contains(x) && (0.0..=20.0).contains(y);
+            assert!(stroke.points.iter().all(inside), "{stroke:?}");
+            let is_radius = (0.0..=LARGEST).contains(&stroke.radius());
+            assert!(is_radius && stroke.opacity() == 1.0, "{stroke:?}");
+            let color = stroke.color();
+            assert!(color.iter().all(|c| (0.0..=1.0).contains(c)), "{stroke:?}");
         }
     }
 

@@ -15,6 +15,7 @@ use crate::coverage::Coverage;
 use crate::error::Result;
 use crate::image::Image;
 use crate::loss::Loss;
+use crate::render::OPACITY;
 use crate::render::reference::{Reference, Rgb, Scene, Stroke};
 use crate::report::picture;
 use crate::report::plot::{Chart, Panel};
@@ -23,7 +24,7 @@ use crate::rng;
 const METHODS: [Method; 2] = [Method::adam(0.5), Method::rmsprop(0.1)];
 
 /// Ends, radius and colour; no opacity.
-const PARAMS: usize = Stroke::PARAMS - 1;
+const PARAMS: usize = OPACITY;
 
 /// Where the colour begins among them.
 const RED: usize = 5;
@@ -77,12 +78,8 @@ impl Problem<f64> for Coloring {
 }
 
 fn scene(params: &[f64]) -> Scene {
-    let opaque = |&[ax, ay, bx, by, radius, red, green, blue]: &[f64; PARAMS]| Stroke {
-        a: [ax, ay],
-        b: [bx, by],
-        radius,
-        color: [red, green, blue],
-        opacity: 1.0,
+    let opaque = |&[ax, ay, bx, by, radius, red, green, blue]: &[f64; PARAMS]| {
+        Stroke::capsule([ax, ay, bx, by, radius, red, green, blue, 1.0])
     };
     Scene {
         width: SIZE,

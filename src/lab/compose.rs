@@ -38,12 +38,8 @@ pub fn reference(coverage: Coverage) -> Reference {
 
 /// The star in its colours, on grey.
 pub fn star(opacity: f64) -> Scene {
-    let stroke = |(&[ax, ay, bx, by, radius], color): (&[f64; 5], Rgb)| Stroke {
-        a: [ax, ay],
-        b: [bx, by],
-        radius,
-        color,
-        opacity,
+    let stroke = |(&[ax, ay, bx, by, radius], [red, green, blue]): (&[f64; 5], Rgb)| {
+        Stroke::capsule([ax, ay, bx, by, radius, red, green, blue, opacity])
     };
     Scene {
         width: SIZE,
@@ -88,7 +84,7 @@ pub fn run(output: &mut ResultFolder<'_>) -> Result<()> {
 fn steps(scene: &Scene, reference: Reference) -> Vec<Overlay> {
     let mut canvas = vec![scene.background; SIZE * SIZE];
     let step = |stroke: &Stroke| {
-        let m = mask(scene, *stroke, reference);
+        let m = mask(scene, stroke.clone(), reference);
         let pixels = || canvas.iter().zip(&m);
         let kept: Vec<Rgb> = pixels().map(|(c, &m)| c.map(|c| c * (1.0 - m))).collect();
         let added: Vec<Rgb> = m.iter().map(|&m| stroke.color.map(|c| c * m)).collect();

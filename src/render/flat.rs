@@ -1,17 +1,14 @@
 //! Flattening: paths to polylines, and derivatives by the vertices of polylines to derivatives by points of paths.
 //!
 //! The renderer knows polylines alone. Each line of a path is one segment or more, and each quadratic Bézier curve as
-//! many as keep within [`TOLERANCE`] of it, at equal steps of its parameter. So every vertex is a mean of at most three
+//! many as [`sdf`](crate::sdf) says, at equal steps of its parameter. So every vertex is a mean of at most three
 //! points with fixed weights: flattening is linear, and the derivative by a point is the same weights times the
 //! derivatives by the vertices.
 
+use crate::math::Vector;
+use crate::sdf;
+
 use super::strokes::{LOOK, StrokeRef, Strokes};
-
-/// Largest distance between a curve and its polyline, px.
-const TOLERANCE: f32 = 0.08;
-
-/// Most segments of one curve.
-const MAX_STEPS: usize = 64;
 
 /// Strokes as polylines.
 #[derive(Debug, Default)]
@@ -144,17 +141,13 @@ impl Piece {
         let Some(control) = self.control else {
             return least;
         };
-        // At most a quarter of the second difference lies between a curve and its chord, and each halving of the step
-        // quarters that.
         let (a, c, b) = (
             self.from.place(points),
             points[control],
             self.to.place(points),
         );
         let bend = [0, 1].map(|k| a[k] - 2.0 * c[k] + b[k]);
-        let length2 = bend[0] * bend[0] + bend[1] * bend[1];
-        let steps = (length2.sqrt() / (4.0 * TOLERANCE)).sqrt().ceil();
-        (steps as usize).clamp(1, MAX_STEPS).max(least)
+        sdf::steps(Vector::from(bend)).max(least)
     }
 
     /// Whether the piece changes with point `k`.

@@ -17,8 +17,10 @@
 //! derivatives: at the nearest point the distance does not change with `h` (envelope theorem), up
 //! to the guard [`EPSILON`].
 //!
-//! Degenerate cases: a zero-length capsule is a disc; a stroke with a non-finite number touches no
-//! block; on the centre line `u` tends to 0 with the guard instead of being undefined.
+//! A stroke of several segments is the union of their capsules, with one coverage: at each pixel, `d` and its derivatives
+//! are those of the nearest segment, the first of them where several are.
+//!
+//! Degenerate cases: a zero-length capsule is a disc; on the centre line `u` tends to 0 with the guard instead of being undefined.
 
 // Lanes are never passed through closures of `array::map`: those are compiled on their own, without the
 // instruction set of their caller.

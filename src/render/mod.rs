@@ -9,27 +9,38 @@
 //! Work is proportional to the (stroke, block) pairs that can be seen; memory to pixels, strokes
 //! per tile, and the pairs of one tile per worker.
 //!
-//! A dark bar, and on it a dot of white, of opacity 0.6; a character is 1×2 px:
+//! A dark hook: a line, a corner and a curve, in one colour and with one coverage, and on it a dot of white, of opacity 0.6. A
+//! character is 1×2 px:
 //!
 //! ```
 //! use strokefit::coverage::Coverage;
 //! use strokefit::fit::Simd;
-//! use strokefit::render::{Backdrop, Canvas, Grid, Renderer, Softness};
+//! use strokefit::math::Point;
+//! use strokefit::render::{Backdrop, Canvas, Grid, Renderer, Softness, Strokes};
+//! use strokefit::scene::{Path, PathPoint, Stroke};
 //!
-//! // Two ends, radius, colour, opacity.
-//! let bar = [8.0, 4.0, 40.0, 12.0, 3.0, 0.0, 0.0, 0.0, 1.0];
-//! let dot = [36.0, 5.0, 36.0, 5.0, 4.5, 1.0, 1.0, 1.0, 0.6];
+//! let [on, off] = [PathPoint::on, PathPoint::off];
+//! let points = vec![
+//!     on(Point::new(6.0, 4.0)),
+//!     on(Point::new(30.0, 4.0)),
+//!     off(Point::new(50.0, 16.0)),
+//!     on(Point::new(12.0, 20.0)),
+//! ];
+//! let path = Path::new(points, false)?;
+//! let hook = Stroke { path, radius: 2.5, color: [0.0; 3], opacity: 0.9 };
+//! let dot = Stroke { path: Path::dot(Point::new(29.0, 5.0)), radius: 4.5, color: [1.0; 3], opacity: 0.6 };
+//! let strokes = Strokes::from_iter([&hook, &dot]);
 //!
-//! let grid = Grid::new(48, 16);
+//! let grid = Grid::new(48, 24);
 //! let level = Simd::Auto.level().ok_or("no level")?;
 //! let softness = Softness { coverage: Coverage::Smoothstep, width: 1.0 };
 //! let mut canvas = Canvas::flat(grid, [1.0; 3]);
-//! Renderer::new(grid, level).forward(&[bar, dot], softness, Backdrop::Color([1.0; 3]), &mut canvas);
+//! Renderer::new(grid, level).forward(&strokes, softness, Backdrop::Color([1.0; 3]), &mut canvas);
 //!
 //! let dark = |x, y| 1.0 - canvas.pixel(x, y)[0];
 //! let shade = |x, y| char::from(b" .:-=+*#%@"[(9.0 * dark(x, y)).round() as usize]);
 //! let row = |y| (0..48).map(|x| shade(x, y)).collect::<String>();
-//! let picture = (2..16).step_by(2).map(|y| row(y).trim_end().to_owned()).collect::<Vec<_>>();
+//! let picture = (0..24).step_by(2).map(|y| row(y).trim_end().to_owned()).collect::<Vec<_>>();
 //! assert_eq!(picture, [
 //!     "     *@@@@@@@#=.",
 //!     "     @@@@@@@@@@@@@@@@#=.",
@@ -39,7 +50,7 @@
 //!     "                            .=#@@@@@@@@@@@@",
 //!     "                                    .=#@@*",
 //! ]);
-//! # Ok::<(), &str>(())
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! [`mod@reference`] is the same in naive `f64`, against which all of this is tested.
@@ -60,7 +71,6 @@ use rayon::prelude::*;
 pub use grid::{BlockRgb, Canvas, Grid, Lanes, TILE, TileRgb};
 pub use strokes::{
     AX, AY, BX, BY, LOOK, OPACITY, PARAMS, Params, RADIUS, RED, StrokeMut, StrokeRef, Strokes,
-    pack, unpack,
 };
 
 use crate::coverage::Coverage;
@@ -363,7 +373,8 @@ impl Renderer {
             });
     }
 
-    /// Flattens the strokes and lists for each tile the segments whose extent touches it, back to front.
+    /// Flattens the strokes and lists for each tile the segments whose extent touches it, back to front. Strokes with
+    /// numbers that are not finite are on no list, so they draw nothing and their derivatives are 0.
     fn bin(&mut self, strokes: &Strokes, least: usize, reach: Reach) {
         self.flat.fill(strokes, least);
         self.least = least;
@@ -376,7 +387,10 @@ impl Renderer {
             firsts,
             looks,
         } = &self.flat;
-        for (id, look) in looks.iter().enumerate() {
+        for (id, (stroke, look)) in strokes.iter().zip(looks).enumerate() {
+            if !stroke.is_finite() {
+                continue;
+            }
             let margin = look[0] + reach.outside;
             for segment in firsts[id]..firsts[id + 1] - 1 {
                 let ([ax, ay], [bx, by]) =

@@ -17,12 +17,18 @@
 //! ∂L/∂opacity = ∂L/∂m·σ(d)  ∂L/∂d = ∂L/∂m·opacity·σ'(d)
 //! ```
 //!
-//! and from `∂L/∂d` on by the chain rule. Nothing is divided by `1 − m`, so opaque strokes are no
+//! and from `∂L/∂d` on by the chain rule: to the ends of the nearest segment of the flattened path, and from its vertices to
+//! the points that they are means of. Nothing is divided by `1 − m`, so opaque strokes are no
 //! special case.
 //!
 //! **Leave-one-out.** Without stroke `i` a pixel changes by `δ = −T·m·(c − B)`, so the squared
 //! error changes by `Σ(2e·δ + δ²)`, exactly, with `e = canvas − target`.
 //! [`Reference::leave_one_out_by_removal`] really removes each stroke.
+//!
+//! **Stiffness.** A shift of a vertex by x across the stroke changes the distance at a pixel by at most `w·x`, with `w` the
+//! share of the vertex in the nearest point of the path. So the squared error has, after Gauss and Newton, a second
+//! derivative by x of at most `Σ k·w`, `k = 2|∂C/∂d|²` and `∂C/∂d = T·opacity·σ'(d)·(c − B)`, since `w² ≤ w`. Sums of
+//! these bounds also hold for vertices that move together, because the `w` of a pixel add up to 1.
 //!
 //! Domain: any finite parameters; a radius of 0 or below leaves what the coverage function has
 //! outside of the edge.
@@ -32,20 +38,24 @@
 //! division.
 
 use crate::coverage::Coverage;
-use crate::math::Point2;
+use crate::math::{Point2, Vector2};
 use crate::scene;
-use crate::sdf::Capsule;
+use crate::sdf::{Flattened, Path};
+
+use super::strokes::{LOOK, PARAMS, StrokeRef, Strokes};
 
 /// A colour: three values, 0..1 in any sensible scene.
 pub type Rgb = [f64; 3];
 
-/// A capsule in one colour.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+/// A path swept by a disc, in one colour.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Stroke {
-    /// Where the centre line starts, px: x, y.
-    pub a: [f64; 2],
-    /// Where it ends, px: x, y.
-    pub b: [f64; 2],
+    /// The points of the centre line, px: x, y.
+    pub points: Vec<[f64; 2]>,
+    /// Whether each point is off the path, the control point of a curve.
+    pub off: Vec<bool>,
+    /// Whether the last point is joined to the first.
+    pub closed: bool,
     /// Half the stroke width, px.
     pub radius: f64,
     /// sRGB-encoded.
@@ -55,25 +65,53 @@ pub struct Stroke {
 }
 
 impl Stroke {
-    /// How many numbers a stroke is.
-    pub const PARAMS: usize = 9;
-
-    /// `[a.x, a.y, b.x, b.y, radius, red, green, blue, opacity]`.
-    pub fn to_params(self) -> [f64; Self::PARAMS] {
-        let ([ax, ay], [bx, by], [red, green, blue]) = (self.a, self.b, self.color);
-        [ax, ay, bx, by, self.radius, red, green, blue, self.opacity]
-    }
-
-    /// The inverse of [`to_params`](Self::to_params).
-    pub fn from_params(params: [f64; Self::PARAMS]) -> Self {
-        let [ax, ay, bx, by, radius, red, green, blue, opacity] = params;
+    /// The capsule of `[a.x, a.y, b.x, b.y, radius, red, green, blue, opacity]`.
+    pub fn capsule([ax, ay, bx, by, radius, red, green, blue, opacity]: [f64; PARAMS]) -> Self {
         Self {
-            a: [ax, ay],
-            b: [bx, by],
+            points: vec![[ax, ay], [bx, by]],
+            off: vec![false; 2],
+            closed: false,
             radius,
             color: [red, green, blue],
             opacity,
         }
+    }
+
+    /// The numbers of the stroke, in the order of [`Strokes`]: x and y of its points, then radius, red, green, blue, opacity.
+    pub fn to_params(&self) -> Vec<f64> {
+        let [red, green, blue] = self.color;
+        let look = [self.radius, red, green, blue, self.opacity];
+        [self.points.as_flattened(), &look].concat()
+    }
+
+    /// A stroke of the same kinds of points with these numbers, as many as [`to_params`](Self::to_params) gives.
+    #[must_use]
+    pub fn with_params(&self, params: &[f64]) -> Self {
+        let (points, look) = params.split_at(2 * self.points.len());
+        let &[radius, red, green, blue, opacity] = look.first_chunk().unwrap_or(&[f64::NAN; LOOK]);
+        Self {
+            points: points.as_chunks().0.to_vec(),
+            radius,
+            color: [red, green, blue],
+            opacity,
+            ..self.clone()
+        }
+    }
+
+    /// The path as a polyline.
+    fn flattened(&self) -> Flattened<f64> {
+        let path = Path {
+            points: self.points.iter().map(|&p| p.into()).collect(),
+            off: self.off.clone(),
+            closed: self.closed,
+            radius: self.radius,
+        };
+        path.flattened()
+    }
+
+    /// A stroke of the same kinds of points, all of whose numbers are 0.
+    fn zero(&self) -> Self {
+        self.with_params(&vec![0.0; 2 * self.points.len() + LOOK])
     }
 }
 
@@ -90,27 +128,28 @@ pub struct Scene {
     pub strokes: Vec<Stroke>,
 }
 
-/// A dot becomes a capsule of zero length, a missing background white.
+/// A missing background becomes white.
 impl From<&scene::Scene> for Scene {
     fn from(scene: &scene::Scene) -> Self {
+        let strokes: Strokes = scene.strokes().collect();
         Self {
             width: scene.width as usize,
             height: scene.height as usize,
             background: scene.background.unwrap_or([1.0; 3]).map(f64::from),
-            strokes: scene.strokes().map(Stroke::from).collect(),
+            strokes: strokes.iter().map(Stroke::from).collect(),
         }
     }
 }
 
-impl From<&scene::Stroke> for Stroke {
-    fn from(stroke: &scene::Stroke) -> Self {
-        let (a, b) = stroke.path.ends();
+impl From<StrokeRef<'_>> for Stroke {
+    fn from(stroke: StrokeRef<'_>) -> Self {
         Self {
-            a: [f64::from(a.x), f64::from(a.y)],
-            b: [f64::from(b.x), f64::from(b.y)],
-            radius: f64::from(stroke.radius),
-            color: stroke.color.map(f64::from),
-            opacity: f64::from(stroke.opacity),
+            points: stroke.points.iter().map(|p| p.map(f64::from)).collect(),
+            off: stroke.off.to_vec(),
+            closed: stroke.closed,
+            radius: f64::from(stroke.radius()),
+            color: stroke.color().map(f64::from),
+            opacity: f64::from(stroke.opacity()),
         }
     }
 }
@@ -156,15 +195,13 @@ impl Reference {
 
     /// The picture of `scene`.
     pub fn render(&self, scene: &Scene) -> Vec<Rgb> {
+        let shapes = flattened(scene);
         self.samples(scene)
             .map(|p| {
-                let strokes = scene.strokes.iter();
-                strokes.fold(scene.background, |behind, stroke| {
-                    over(
-                        behind,
-                        stroke.color,
-                        stroke.opacity * self.covered(stroke, p).0,
-                    )
+                let strokes = scene.strokes.iter().zip(&shapes);
+                strokes.fold(scene.background, |behind, (stroke, shape)| {
+                    let m = stroke.opacity * self.covered(shape, p).0;
+                    over(behind, stroke.color, m)
                 })
             })
             .collect()
@@ -172,30 +209,67 @@ impl Reference {
 
     /// The derivatives of a loss by every number of `scene`, from `d_canvas = ∂L/∂canvas`.
     pub fn gradients(&self, scene: &Scene, d_canvas: &[Rgb]) -> Gradients {
-        let mut gradients = Gradients {
-            background: [0.0; 3],
-            strokes: vec![Stroke::default(); scene.strokes.len()],
-        };
+        let shapes = flattened(scene);
+        let mut background = [0.0; 3];
+        let mut strokes: Vec<Stroke> = scene.strokes.iter().map(Stroke::zero).collect();
+        let vertices = |shape: &Flattened<f64>| vec![Vector2::zeros(); shape.means.len()];
+        let mut slopes: Vec<Vec<Vector2<f64>>> = shapes.iter().map(vertices).collect();
         for (p, &g) in self.samples(scene).zip(d_canvas) {
-            let layers = self.layers(scene, p);
+            let layers = self.layers(scene, &shapes, p);
             let through = layers
                 .first()
                 .map_or(1.0, |back| back.transmittance * (1.0 - back.m));
-            add(&mut gradients.background, through, g);
+            add(&mut background, through, g);
             for (i, layer) in layers.iter().enumerate() {
-                self.accumulate(&mut gradients.strokes[i], &scene.strokes[i], layer, p, g);
+                let stroke = &scene.strokes[i];
+                let d_distance = accumulate(&mut strokes[i], stroke, layer, g);
+                let jet = shapes[i].polyline.jet(p, self.eps);
+                for (end, by) in jet.ends.into_iter().zip(jet.by_ends) {
+                    slopes[i][end] += by * d_distance;
+                }
             }
         }
-        gradients
+        for ((stroke, shape), slopes) in strokes.iter_mut().zip(&shapes).zip(slopes) {
+            let mut by_points = vec![Vector2::zeros(); stroke.points.len()];
+            for (mean, slope) in shape.means.iter().zip(slopes) {
+                mean.hand_back(slope, &mut by_points);
+            }
+            stroke.points = by_points.into_iter().map(Into::into).collect();
+        }
+        Gradients {
+            background,
+            strokes,
+        }
+    }
+
+    /// The stiffness of every vertex of the flattened path of each stroke.
+    pub fn stiffness(&self, scene: &Scene) -> Vec<Vec<f64>> {
+        let shapes = flattened(scene);
+        let mut stiffness: Vec<Vec<f64>> =
+            shapes.iter().map(|s| vec![0.0; s.means.len()]).collect();
+        for p in self.samples(scene) {
+            for (i, layer) in self.layers(scene, &shapes, p).iter().enumerate() {
+                let stroke = &scene.strokes[i];
+                let reach = reach(stroke, layer);
+                let by_distance = layer.transmittance * stroke.opacity * layer.slope;
+                let k = 2.0 * by_distance * by_distance * dot(reach, reach);
+                let jet = shapes[i].polyline.jet(p, 0.0);
+                // The derivatives by both ends are u·(1−h) and u·h, so their lengths are the shares.
+                for (end, by) in jet.ends.into_iter().zip(jet.by_ends) {
+                    stiffness[i][end] += k * by.norm();
+                }
+            }
+        }
+        stiffness
     }
 
     /// By how much the sum of squared errors over all values would change if a stroke were removed,
     /// for each stroke. Positive where a stroke is worth having.
     pub fn leave_one_out(&self, scene: &Scene, target: &[Rgb]) -> Vec<f64> {
         let mut changes = vec![0.0; scene.strokes.len()];
-        let canvas = self.render(scene);
+        let (canvas, shapes) = (self.render(scene), flattened(scene));
         for (k, p) in self.samples(scene).enumerate().take(target.len()) {
-            for (i, layer) in self.layers(scene, p).iter().enumerate() {
+            for (i, layer) in self.layers(scene, &shapes, p).iter().enumerate() {
                 for channel in 0..3 {
                     let e = canvas[k][channel] - target[k][channel];
                     let reach = scene.strokes[i].color[channel] - layer.behind[channel];
@@ -228,8 +302,8 @@ impl Reference {
     }
 
     /// Coverage and its derivative by the distance.
-    fn covered(&self, stroke: &Stroke, p: Point2<f64>) -> (f64, f64) {
-        let d = capsule(stroke).distance(p, self.eps);
+    fn covered(&self, shape: &Flattened<f64>, p: Point2<f64>) -> (f64, f64) {
+        let d = shape.polyline.distance(p, self.eps);
         if self.cut && d < -self.coverage.support(self.softness) {
             return (0.0, 0.0);
         }
@@ -238,11 +312,11 @@ impl Reference {
     }
 
     /// What each stroke is at the sample point `p`, back to front.
-    fn layers(&self, scene: &Scene, p: Point2<f64>) -> Vec<Layer> {
+    fn layers(&self, scene: &Scene, shapes: &[Flattened<f64>], p: Point2<f64>) -> Vec<Layer> {
         let mut behind = scene.background;
         let mut layers = Vec::with_capacity(scene.strokes.len());
-        for stroke in &scene.strokes {
-            let (coverage, slope) = self.covered(stroke, p);
+        for (stroke, shape) in scene.strokes.iter().zip(shapes) {
+            let (coverage, slope) = self.covered(shape, p);
             let m = stroke.opacity * coverage;
             layers.push(Layer {
                 coverage,
@@ -259,19 +333,6 @@ impl Reference {
             transmittance *= 1.0 - layer.m;
         }
         layers
-    }
-
-    /// Adds what one pixel with `∂L/∂canvas = g` has to say about `stroke`.
-    fn accumulate(&self, sum: &mut Stroke, stroke: &Stroke, layer: &Layer, p: Point2<f64>, g: Rgb) {
-        let reach = std::array::from_fn(|k| stroke.color[k] - layer.behind[k]);
-        let d_m = layer.transmittance * dot(g, reach);
-        let d_distance = d_m * stroke.opacity * layer.slope;
-        let jet = capsule(stroke).jet(p, self.eps);
-        add(&mut sum.a, d_distance, jet.by_a.into());
-        add(&mut sum.b, d_distance, jet.by_b.into());
-        sum.radius += d_distance;
-        add(&mut sum.color, layer.transmittance * layer.m, g);
-        sum.opacity += d_m * layer.coverage;
     }
 }
 
@@ -294,12 +355,24 @@ struct Layer {
     transmittance: f64,
 }
 
-fn capsule(stroke: &Stroke) -> Capsule<f64> {
-    Capsule {
-        a: stroke.a.into(),
-        b: stroke.b.into(),
-        radius: stroke.radius,
-    }
+/// The paths of all strokes as polylines.
+fn flattened(scene: &Scene) -> Vec<Flattened<f64>> {
+    scene.strokes.iter().map(Stroke::flattened).collect()
+}
+
+/// Adds what one pixel with `∂L/∂canvas = g` has to say about the look of `stroke`; returns `∂L/∂d` there.
+fn accumulate(sum: &mut Stroke, stroke: &Stroke, layer: &Layer, g: Rgb) -> f64 {
+    let d_m = layer.transmittance * dot(g, reach(stroke, layer));
+    let d_distance = d_m * stroke.opacity * layer.slope;
+    sum.radius += d_distance;
+    add(&mut sum.color, layer.transmittance * layer.m, g);
+    sum.opacity += d_m * layer.coverage;
+    d_distance
+}
+
+/// `c − B`.
+fn reach(stroke: &Stroke, layer: &Layer) -> Rgb {
+    std::array::from_fn(|k| stroke.color[k] - layer.behind[k])
 }
 
 fn over(behind: Rgb, color: Rgb, m: f64) -> Rgb {
@@ -334,8 +407,9 @@ mod tests {
 
     fn red(opacity: f64) -> Stroke {
         Stroke {
-            a: [0.5, 0.5],
-            b: [0.5, 0.5],
+            points: vec![[0.5, 0.5]],
+            off: vec![false],
+            closed: false,
             radius: 5.0,
             color: RED,
             opacity,
@@ -365,8 +439,7 @@ mod tests {
     fn pixels_are_sampled_where_they_are_said_to_be() {
         let mut reference = Reference::new(Coverage::Raw, 1.0);
         let dot = Stroke {
-            a: [1.0, 0.0],
-            b: [1.0, 0.0],
+            points: vec![[1.0, 0.0]],
             radius: 0.0,
             ..red(1.0)
         };
@@ -418,6 +491,16 @@ mod tests {
     #[test]
     fn params_are_a_strokes_numbers() {
         let params = std::array::from_fn(|k| k as f64);
-        assert_eq!(Stroke::from_params(params).to_params(), params);
+        assert_eq!(Stroke::capsule(params).to_params(), params);
+        let spline = Stroke {
+            points: vec![[0.0; 2]; 5],
+            off: vec![true, false, true, true, false],
+            closed: true,
+            ..Stroke::default()
+        };
+        let params: Vec<f64> = (0..15).map(f64::from).collect();
+        let moved = spline.with_params(&params);
+        assert_eq!(moved.to_params(), params);
+        assert_eq!((&moved.off, moved.closed), (&spline.off, true));
     }
 }

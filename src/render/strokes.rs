@@ -26,26 +26,6 @@ pub const OPACITY: usize = 8;
 /// The numbers of a capsule: the strokes that seeding proposes.
 pub type Params = [f32; PARAMS];
 
-/// The numbers of `stroke` as a capsule from its first point to its last.
-pub fn pack(stroke: &Stroke) -> Params {
-    let (a, b) = stroke.path.ends();
-    let [red, green, blue] = stroke.color;
-    let Stroke {
-        radius, opacity, ..
-    } = *stroke;
-    [a.x, a.y, b.x, b.y, radius, red, green, blue, opacity]
-}
-
-/// The stroke of these numbers.
-pub fn unpack(p: &Params) -> Stroke {
-    Stroke {
-        path: Path::line(Point::new(p[AX], p[AY]), Point::new(p[BX], p[BY])),
-        radius: p[RADIUS],
-        color: [p[RED], p[RED + 1], p[RED + 2]],
-        opacity: p[OPACITY],
-    }
-}
-
 /// How many numbers a stroke has besides its points: radius, red, green, blue, opacity.
 pub const LOOK: usize = 5;
 
@@ -307,6 +287,14 @@ impl<'a> FromIterator<&'a Params> for Strokes {
     fn from_iter<I: IntoIterator<Item = &'a Params>>(capsules: I) -> Self {
         let mut all = Self::new();
         capsules.into_iter().for_each(|p| all.push_capsule(p));
+        all
+    }
+}
+
+impl FromIterator<Params> for Strokes {
+    fn from_iter<I: IntoIterator<Item = Params>>(capsules: I) -> Self {
+        let mut all = Self::new();
+        capsules.into_iter().for_each(|p| all.push_capsule(&p));
         all
     }
 }

@@ -10,12 +10,12 @@ use crate::coverage::Coverage;
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::{Simd, final_softness};
 use crate::image::Image;
-use crate::math;
-use crate::render::{Backdrop, Canvas, Grid, Params, Renderer, pack, unpack};
+use crate::math::{self, Point};
+use crate::render::{Backdrop, Canvas, Grid, Renderer, Strokes};
 use crate::report::Table;
 use crate::report::picture::{self, heat};
 use crate::report::plot::{Panel, Sheet, captioned};
-use crate::scene::{MIN_WIDTH, Scene, Stage};
+use crate::scene::{MIN_WIDTH, Path, Scene, Stage, Stroke};
 use crate::verify;
 
 const SIDE: usize = 56;
@@ -204,47 +204,50 @@ impl Bench {
         Ok(255.0 * (sum / f64::max(touched, 1.0)).sqrt())
     }
 
-    fn soft(&mut self, stroke: &Params) -> Image {
+    fn soft(&mut self, stroke: &Stroke) -> Image {
         let edge = final_softness(Coverage::Smoothstep);
         let backdrop = Backdrop::Color([1.0; 3]);
-        self.renderer.forward(
-            &[stroke].into_iter().collect(),
-            edge,
-            backdrop,
-            &mut self.canvas,
-        );
+        let strokes = Strokes::from_iter([stroke]);
+        self.renderer
+            .forward(&strokes, edge, backdrop, &mut self.canvas);
         self.canvas.to_image()
     }
 }
 
 /// A black stroke about a centre.
-fn stroke([x, y]: [f64; 2], width: f64, angle: f64) -> Params {
+fn stroke([x, y]: [f64; 2], width: f64, angle: f64) -> Stroke {
     let (sin, cos) = math::sin_cos(angle.to_radians());
     let (dx, dy) = (cos * LENGTH / 2.0, sin * LENGTH / 2.0);
-    let ends = [x - dx, y - dy, x + dx, y + dy].map(|v| v as f32);
-    let [ax, ay, bx, by] = ends;
-    [ax, ay, bx, by, width as f32 / 2.0, 0.0, 0.0, 0.0, 1.0]
+    let end = |x: f64, y: f64| Point::new(x as f32, y as f32);
+    Stroke {
+        path: Path::line(end(x - dx, y - dy), end(x + dx, y + dy)),
+        radius: width as f32 / 2.0,
+        color: [0.0; 3],
+        opacity: 1.0,
+    }
 }
 
 /// The stroke as a file of ours says it.
-fn rounded(stroke: &Params) -> Params {
+fn rounded(stroke: &Stroke) -> Stroke {
     let stage = Stage {
-        strokes: vec![unpack(stroke)],
+        strokes: vec![stroke.clone()],
     };
     let scene = Scene {
         stages: vec![stage],
         ..Scene::empty(SIDE as u32, SIDE as u32, None)
     };
     let written = scene.quantized(2).scene;
-    written.strokes().next().map_or(*stroke, pack)
+    written.strokes().next().unwrap_or(stroke).clone()
 }
 
 /// The stroke as SVG, at its very width.
-fn text(&[ax, ay, bx, by, radius, ..]: &Params) -> String {
-    let width = 2.0 * radius;
+fn text(stroke: &Stroke) -> String {
+    let (a, b) = stroke.path.ends();
+    let width = 2.0 * stroke.radius;
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{SIDE}\" height=\"{SIDE}\">\
-         <path d=\"M{ax} {ay}L{bx} {by}\" fill=\"none\" stroke=\"#000000\" stroke-width=\"{width}\" \
-         stroke-linecap=\"round\"/></svg>"
+         <path d=\"M{} {}L{} {}\" fill=\"none\" stroke=\"#000000\" stroke-width=\"{width}\" \
+         stroke-linecap=\"round\"/></svg>",
+        a.x, a.y, b.x, b.y
     )
 }

@@ -5,8 +5,8 @@ use super::oracle::{Gap, Specimen, oracle, pixels, random, slopes};
 use super::{Check, Observation, WITHIN};
 use crate::coverage::Coverage;
 use crate::error::Result;
-use crate::render::reference::{Scene, Stroke, squared_error};
-use crate::render::{PARAMS, Params};
+use crate::render::reference::{Scene, squared_error};
+use crate::render::{Params, Strokes};
 
 /// Step of the one-sided differences, px or channel values.
 const STEP: f64 = 1e-6;
@@ -83,8 +83,11 @@ pub(super) fn checks() -> Vec<Check<'static>> {
 
 /// The stroke between two ordinary ones, so that there are gradients to compare with.
 fn around(stroke: Params) -> Specimen {
-    let mut strokes = random(8, 24, 20, 2);
-    strokes.insert(1, stroke);
+    let others = random(8, 24, 20, 2);
+    let mut strokes = Strokes::new();
+    strokes.push(others.get(0));
+    strokes.push_capsule(&stroke);
+    strokes.push(others.get(1));
     Specimen::new(24, 20, strokes)
 }
 
@@ -153,9 +156,9 @@ fn beyond_slopes(page: &Specimen, coverage: Coverage) -> Result<f64> {
 fn one_sided(scene: &Scene, i: usize, k: usize, loss: &impl Fn(&Scene) -> f64) -> [f64; 2] {
     let at = |step: f64| {
         let mut moved = scene.clone();
-        let mut params: [f64; PARAMS] = moved.strokes[i].to_params();
+        let mut params = moved.strokes[i].to_params();
         params[k] += step;
-        moved.strokes[i] = Stroke::from_params(params);
+        moved.strokes[i] = moved.strokes[i].with_params(&params);
         loss(&moved)
     };
     let here = at(0.0);

@@ -8,7 +8,7 @@ use crate::image::Image;
 use crate::loss::Loss;
 use crate::math;
 use crate::render::reference::{self, Reference, Rgb};
-use crate::render::{Backdrop, Canvas, Gradients, Grid, PARAMS, Params, Renderer, Softness};
+use crate::render::{Backdrop, Canvas, Gradients, Grid, LOOK, Renderer, Softness, Strokes};
 use crate::rng;
 
 /// ε of the fast renderer's distances, px².
@@ -25,15 +25,18 @@ const SOFTNESS: f32 = 1.5;
 
 pub(super) const BACKGROUND: [f32; 3] = [0.3, 0.6, 0.8];
 
-/// The kinds of numbers of a stroke that have one unit.
-const KINDS: [std::ops::Range<usize>; 4] = [0..4, 4..5, 5..8, 8..9];
+/// Kinds of numbers of a stroke: points, radius, colour, opacity. Those of one kind have one unit.
+const KINDS: usize = 4;
+
+/// The kinds of the last numbers of a stroke.
+const LOOK_KINDS: [usize; LOOK] = [1, 2, 2, 2, 3];
 
 /// Strokes on a page.
 #[derive(Debug, Clone)]
 pub(super) struct Specimen {
     pub(super) width: usize,
     pub(super) height: usize,
-    pub(super) strokes: Vec<Params>,
+    pub(super) strokes: Strokes,
 }
 
 /// How far `f32` is from `f64`, each relative to the largest value of its kind; the canvas in absolute
@@ -86,7 +89,7 @@ impl std::fmt::Display for Gap {
 }
 
 impl Specimen {
-    pub(super) fn new(width: usize, height: usize, strokes: Vec<Params>) -> Self {
+    pub(super) fn new(width: usize, height: usize, strokes: Strokes) -> Self {
         Self {
             width,
             height,
@@ -115,17 +118,15 @@ impl Specimen {
         let scene = self.naive();
         let (pixels, expected) = (naive.render(&scene), pixels(target));
         let slow = naive.gradients(&scene, &slopes(&pixels, &expected));
-        let slow: Vec<[f64; PARAMS]> = slow.strokes.iter().map(|s| s.to_params()).collect();
+        let slow: Vec<f64> = slow.strokes.iter().flat_map(|s| s.to_params()).collect();
+        let kinds = kinds(&self.strokes);
         let worth = naive.leave_one_out(&scene, &expected);
         Ok(Gap {
             canvas: largest_difference(&canvas, &pixels),
-            gradients: KINDS
-                .iter()
+            gradients: (0..KINDS)
                 .map(|kind| {
-                    relative(
-                        flat(gradients.strokes.as_chunks().0, kind),
-                        flat64(&slow, kind),
-                    )
+                    let got = of_kind(&gradients.strokes, &kinds, kind);
+                    relative(got, of_kind(&slow, &kinds, kind))
                 })
                 .fold(0.0, f64::max),
             worth: relative(gradients.worth.iter().copied(), worth.into_iter()),
@@ -144,17 +145,12 @@ impl Specimen {
         let mut renderer = Renderer::new(grid, level);
         let mut canvas = Canvas::flat(grid, [0.0; 3]);
         let backdrop = Backdrop::Color(BACKGROUND);
-        renderer.forward(
-            &self.strokes.iter().collect(),
-            softness,
-            backdrop,
-            &mut canvas,
-        );
+        renderer.forward(&self.strokes, softness, backdrop, &mut canvas);
         let target = Canvas::from_image(target);
         let objective = Objective::new(Loss::L2, &target);
         let mut gradients = Gradients::default();
         renderer.backward_with_worth(
-            &self.strokes.iter().collect(),
+            &self.strokes,
             softness,
             backdrop,
             &objective,
@@ -165,12 +161,11 @@ impl Specimen {
 
     /// The same scene for the reference.
     pub(super) fn naive(&self) -> reference::Scene {
-        let stroke = |p: &Params| reference::Stroke::from_params(p.map(f64::from));
         reference::Scene {
             width: self.width,
             height: self.height,
             background: BACKGROUND.map(f64::from),
-            strokes: self.strokes.iter().map(stroke).collect(),
+            strokes: self.strokes.iter().map(reference::Stroke::from).collect(),
         }
     }
 
@@ -237,28 +232,23 @@ fn largest(values: impl Iterator<Item = f64>) -> f64 {
     })
 }
 
-fn flat<'a>(
-    strokes: &'a [Params],
-    kind: &std::ops::Range<usize>,
-) -> impl Iterator<Item = f32> + 'a {
-    let kind = kind.clone();
-    strokes
-        .iter()
-        .flat_map(move |p| p[kind.clone()].iter().copied())
+/// The kind of each number.
+fn kinds(strokes: &Strokes) -> Vec<usize> {
+    let of = |points: usize| std::iter::repeat_n(0, 2 * points).chain(LOOK_KINDS);
+    strokes.iter().flat_map(|s| of(s.points.len())).collect()
 }
 
-fn flat64<'a>(
-    strokes: &'a [[f64; PARAMS]],
-    kind: &std::ops::Range<usize>,
-) -> impl Iterator<Item = f64> + Clone + 'a {
-    let kind = kind.clone();
-    strokes
-        .iter()
-        .flat_map(move |p| p[kind.clone()].iter().copied())
+fn of_kind<T: Copy>(
+    numbers: &[T],
+    kinds: &[usize],
+    kind: usize,
+) -> impl Iterator<Item = T> + Clone {
+    let pairs = numbers.iter().zip(kinds);
+    pairs.filter(move |(_, k)| **k == kind).map(|(v, _)| *v)
 }
 
 /// Random strokes of mixed size and opacity, some off the page.
-pub(super) fn random(seed: u64, width: usize, height: usize, count: usize) -> Vec<Params> {
+pub(super) fn random(seed: u64, width: usize, height: usize, count: usize) -> Strokes {
     let stroke = |i: u64| {
         let u = |k| rng::draw(seed, 9, i, k);
         let x = (u(0) * 1.2 - 0.1) * width as f32;

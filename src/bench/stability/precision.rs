@@ -10,8 +10,8 @@ use crate::image::Image;
 use crate::loss::Loss;
 use crate::math;
 use crate::optim::{Adam, AdamParams, Optimizer, Schedule};
-use crate::render::reference::{Scene, Stroke};
-use crate::render::{Backdrop, Canvas, Gradients, Grid, PARAMS, Renderer, Softness};
+use crate::render::reference::Scene;
+use crate::render::{Backdrop, Canvas, Gradients, Grid, LOOK, PARAMS, Renderer, Softness};
 
 const SIDE: usize = 16;
 const STROKES: usize = 6;
@@ -83,21 +83,22 @@ fn descend32(mut page: Specimen, target: &Image, iterations: usize) -> Result<(S
     let backdrop = Backdrop::Color(BACKGROUND);
     for step in 0..iterations {
         renderer.backward(
-            &page.strokes.iter().collect(),
+            &page.strokes,
             softness,
             backdrop,
             &objective,
             &mut gradients,
         );
         let rate = SCHEDULE.factor(step, iterations) as f32;
-        let flat = &gradients.strokes;
-        adam.step_scaled(page.strokes.as_flattened_mut(), flat, rate, &scales);
-        page.strokes
-            .iter_mut()
-            .for_each(|p| p[8] = p[8].clamp(0.05, 1.0));
+        let (numbers, slopes) = (page.strokes.numbers_mut(), &gradients.strokes);
+        adam.step_scaled(numbers, slopes, rate, &scales);
+        page.strokes.change(|_, stroke| {
+            let [.., opacity] = stroke.look;
+            *opacity = opacity.clamp(0.05, 1.0);
+        });
     }
     renderer.backward(
-        &page.strokes.iter().collect(),
+        &page.strokes,
         softness,
         backdrop,
         &objective,
@@ -126,8 +127,10 @@ fn descend64(mut scene: Scene, target: &Image, iterations: usize) -> (Scene, f64
             SCHEDULE.factor(step, iterations),
             &scales,
         );
-        for (stroke, params) in scene.strokes.iter_mut().zip(params.as_chunks::<PARAMS>().0) {
-            *stroke = Stroke::from_params(*params);
+        let mut rest = params.as_slice();
+        for stroke in &mut scene.strokes {
+            *stroke = stroke.with_params(rest);
+            rest = &rest[2 * stroke.points.len() + LOOK..];
             stroke.opacity = stroke.opacity.clamp(0.05, 1.0);
         }
     }

@@ -139,8 +139,8 @@ fn long_descent(steps: usize) -> Result<Observation> {
         let finite = descent
             .drawing()
             .strokes
+            .numbers()
             .iter()
-            .flatten()
             .all(|v| v.is_finite());
         let l1 = metrics::l1(&picture, &descent.render(coverage))?;
         Ok(if finite { l1 } else { f64::NAN })

@@ -5,7 +5,7 @@ use super::oracle::{BACKGROUND, Specimen, random};
 use super::{Check, Observation};
 use crate::coverage::Coverage;
 use crate::error::Result;
-use crate::render::{Params, unpack};
+use crate::render::{Params, Strokes};
 use crate::scene::{Quantized, Scene, Stage};
 use crate::svg::{self, WriteOptions};
 use crate::verify;
@@ -49,7 +49,7 @@ fn scenes() -> Vec<HardScene> {
     let hard = |name, what, strokes: &[Params]| HardScene {
         name,
         what,
-        page: Specimen::new(40, 36, strokes.to_vec()),
+        page: Specimen::new(40, 36, strokes.iter().collect()),
         functions: &Coverage::EACH,
         exception: "",
     };
@@ -58,11 +58,10 @@ fn scenes() -> Vec<HardScene> {
     };
     let across = |radius, opacity| red([5.2, 6.1], [30.4, 25.7], radius, opacity);
     vec![
-        hard(
-            "random",
-            "30 strokes of mixed size and opacity",
-            &random(1, 40, 36, 30),
-        ),
+        HardScene {
+            page: Specimen::new(40, 36, random(1, 40, 36, 30)),
+            ..hard("random", "30 strokes of mixed size and opacity", &[])
+        },
         hard(
             "coincident-ends",
             "both ends in one place",
@@ -87,11 +86,10 @@ fn scenes() -> Vec<HardScene> {
         ),
         hard("opacity-0", "an opacity of 0", &[across(3.0, 0.0)]),
         hard("opacity-1", "an opacity of 1", &[across(3.0, 1.0)]),
-        hard(
-            "opaque-stack",
-            "30 opaque strokes, stacked",
-            &opaque_stack(),
-        ),
+        HardScene {
+            page: Specimen::new(40, 36, opaque_stack()),
+            ..hard("opaque-stack", "30 opaque strokes, stacked", &[])
+        },
         hard(
             "covers-everything",
             "one opaque stroke over the canvas, one on top",
@@ -101,11 +99,7 @@ fn scenes() -> Vec<HardScene> {
             ],
         ),
         HardScene {
-            page: Specimen::new(
-                12,
-                12,
-                vec![red([3.0, 4.0], [9.0, 7.0], 2.0, 0.001); 10_000],
-            ),
+            page: pile(10_000, red([3.0, 4.0], [9.0, 7.0], 2.0, 0.001)),
             functions: &[Coverage::Smoothstep, Coverage::Sigmoid],
             ..hard(
                 "identical-strokes",
@@ -114,7 +108,7 @@ fn scenes() -> Vec<HardScene> {
             )
         },
         HardScene {
-            page: Specimen::new(12, 12, vec![red([3.0, 4.0], [9.0, 7.0], 2.0, 1.0); 10_000]),
+            page: pile(10_000, red([3.0, 4.0], [9.0, 7.0], 2.0, 1.0)),
             exception: HIDDEN,
             functions: &[Coverage::Smoothstep, Coverage::Sigmoid],
             ..hard(
@@ -136,12 +130,18 @@ fn scenes() -> Vec<HardScene> {
     ]
 }
 
-fn opaque_stack() -> Vec<Params> {
+/// The same stroke `count` times.
+fn pile(count: usize, stroke: Params) -> Specimen {
+    Specimen::new(12, 12, std::iter::repeat_n(stroke, count).collect())
+}
+
+fn opaque_stack() -> Strokes {
     let mut strokes = random(3, 40, 36, 30);
-    for p in &mut strokes {
-        p[8] = 1.0;
-        p[4] += 4.0;
-    }
+    strokes.change(|_, stroke| {
+        let [radius, .., opacity] = stroke.look;
+        *radius += 4.0;
+        *opacity = 1.0;
+    });
     strokes
 }
 
@@ -149,7 +149,7 @@ fn scene(page: &Specimen) -> Scene {
     let (width, height) = (page.width as u32, page.height as u32);
     Scene {
         stages: vec![Stage {
-            strokes: page.strokes.iter().map(unpack).collect(),
+            strokes: page.strokes.iter().map(|s| s.to_stroke()).collect(),
         }],
         ..Scene::empty(width, height, Some(BACKGROUND))
     }
@@ -179,9 +179,9 @@ fn poisoned() -> Result<Observation> {
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         for k in 0..9 {
             let mut page = sound.clone();
-            let mut stroke = page.strokes[0];
-            stroke[k] = bad;
-            page.strokes.push(stroke);
+            page.strokes.push(sound.strokes.get(0));
+            let number = page.strokes.range(5).start + k;
+            page.strokes.numbers_mut()[number] = bad;
             let Quantized {
                 scene: quantized,
                 dropped: out,
@@ -219,12 +219,12 @@ mod tests {
     #[test]
     fn identical_opaque_strokes_have_next_to_no_gradients() {
         let stroke = [3.0, 4.0, 9.0, 7.0, 2.0, 0.9, 0.2, 0.1, 1.0];
-        let page = Specimen::new(12, 12, vec![stroke; 1000]);
+        let page = pile(1000, stroke);
         let (scene, target) = (page.naive(), pixels(&page.noise().unwrap()));
         let reference = oracle(Coverage::Smoothstep);
         let canvas = reference.render(&scene);
         let gradients = reference.gradients(&scene, &slopes(&canvas, &target));
-        let ends = gradients.strokes.iter().flat_map(|s| [s.a, s.b]).flatten();
+        let ends = gradients.strokes.iter().flat_map(|s| &s.points).flatten();
         let steepest = ends.fold(0.0, |most: f64, v| most.max(v.abs()));
         let worths = reference.leave_one_out(&scene, &target).into_iter();
         let dearest = worths.fold(0.0, |most: f64, v| most.max(v.abs()));
@@ -240,7 +240,7 @@ mod tests {
         let target = page.noise().unwrap();
         let coverage = Coverage::Smoothstep;
         assert!(page.gap_under(coverage, &target).unwrap().holds());
-        page.strokes[0][0] = f32::NAN;
+        page.strokes.numbers_mut()[0] = f32::NAN;
         assert!(!page.gap_under(coverage, &target).unwrap().holds());
     }
 }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::math;
-use crate::render::{PARAMS, Params, RADIUS, unpack};
+use crate::render::{PARAMS, Params, Strokes};
 use crate::rng;
 use crate::scene::{Scene, Stage};
 
@@ -13,6 +13,7 @@ const LENGTH: f32 = 4.0;
 
 /// Capsules on a background, as the numbers that descent changes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(from = "Saved", into = "Saved")]
 pub struct Capsules {
     /// Width in px.
     pub width: usize,
@@ -20,8 +21,40 @@ pub struct Capsules {
     pub height: usize,
     /// The colour behind all strokes.
     pub background: [f32; 3],
-    /// Back to front: ax, ay, bx, by, radius, red, green, blue, opacity.
-    pub strokes: Vec<Params>,
+    /// Back to front, each of two points.
+    pub strokes: Strokes,
+}
+
+/// The same as it is saved.
+#[derive(Serialize, Deserialize)]
+struct Saved {
+    width: usize,
+    height: usize,
+    background: [f32; 3],
+    /// ax, ay, bx, by, radius, red, green, blue, opacity.
+    strokes: Vec<Params>,
+}
+
+impl From<Saved> for Capsules {
+    fn from(saved: Saved) -> Self {
+        Self {
+            width: saved.width,
+            height: saved.height,
+            background: saved.background,
+            strokes: saved.strokes.iter().collect(),
+        }
+    }
+}
+
+impl From<Capsules> for Saved {
+    fn from(drawing: Capsules) -> Self {
+        Self {
+            width: drawing.width,
+            height: drawing.height,
+            background: drawing.background,
+            strokes: drawing.strokes.numbers().as_chunks().0.to_vec(),
+        }
+    }
 }
 
 /// The radii of a drawing, in short.
@@ -104,7 +137,11 @@ impl Capsules {
     pub fn scene(&self) -> Scene {
         let side = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
         let page = Scene::empty(side(self.width), side(self.height), Some(self.background));
-        let strokes = self.strokes.iter().map(unpack).collect();
+        let strokes = self
+            .strokes
+            .iter()
+            .map(|stroke| stroke.to_stroke())
+            .collect();
         Scene {
             stages: vec![Stage { strokes }],
             ..page
@@ -113,7 +150,7 @@ impl Capsules {
 
     /// The radii in short.
     pub fn statistics(&self) -> Statistics {
-        let radii = || self.strokes.iter().map(|p| f64::from(p[RADIUS]));
+        let radii = || self.strokes.iter().map(|stroke| f64::from(stroke.radius()));
         let n = self.strokes.len().max(1) as f64;
         let mean_radius = radii().sum::<f64>() / n;
         let variance = radii().map(|r| math::powi(r - mean_radius, 2)).sum::<f64>() / n;
@@ -143,7 +180,7 @@ mod tests {
         let squares = drawing
             .strokes
             .iter()
-            .map(|p| f64::from(math::powi(p[2] - p[0], 2)));
+            .map(|stroke| f64::from(math::powi(stroke.points[1][0] - stroke.points[0][0], 2)));
         let deviation = (squares.sum::<f64>() / 2000.0).sqrt();
         assert!((deviation - 4.0).abs() < 0.2, "{deviation}");
         let statistics = drawing.statistics();

@@ -1,0 +1,234 @@
+//! Distances of polylines and of paths with curves.
+//!
+//! ```text
+//! polyline   d = max dₛ over its segments, each a capsule
+//! path       the polyline through Σ w Pⱼ, with weights w fixed by the kinds of its points Pⱼ
+//! ```
+//!
+//! The points of a path are **on** it or **off** it, as [`scene::Path`](crate::scene::Path) says. Each of its quadratic
+//! curves becomes segments at equal steps of the curve's parameter, as many as keep within [`FLATNESS`] of it. Flattening
+//! is linear in the points, so the derivative by a point is the sum of the derivatives by the vertices times their weights.
+//!
+//! **Ties.** Where several segments are equally near, all of the derivative goes to the first of them in drawing order. At
+//! a joint that makes no difference: both segments have their end there. On the medial axis of a path, and where it
+//! crosses itself, the distance has a kink, and this is the slope on one side.
+//!
+//! **Degenerate cases.** A path of one point is a disc. Segments of no length are discs, too, and lose ties to an earlier
+//! neighbour. As many as [`MAX_STEPS`] segments replace a curve, so one of more than some 1,300 px may be off by more.
+
+use super::{Capsule, CapsuleJet};
+use crate::math::{Point2, Real, Vector2};
+
+/// Largest distance between a curve and its segments, px.
+pub(crate) const FLATNESS: f64 = 0.08;
+
+/// Most segments of one curve.
+pub(crate) const MAX_STEPS: usize = 64;
+
+/// Points joined by line segments, swept by a disc: the union of the segments' capsules.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Polyline<T: Real> {
+    /// The vertices of the centre line, px, at least one.
+    pub points: Vec<Point2<T>>,
+    /// Whether the last vertex is joined to the first.
+    pub closed: bool,
+    /// Radius, px.
+    pub radius: T,
+}
+
+/// A polyline's distance at a point, with its derivatives. The one by the radius is always 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PolylineJet<T: Real> {
+    /// Signed distance, px, positive inside.
+    pub d: T,
+    /// The vertices at both ends of the nearest segment; the derivatives by all others are 0.
+    pub ends: [usize; 2],
+    /// `∂d/∂` these two. If they are the same vertex, its derivative is the sum.
+    pub by_ends: [Vector2<T>; 2],
+}
+
+impl<T: Real> Polyline<T> {
+    /// Signed distance from `p` to the edge in px, positive inside.
+    pub fn distance(&self, p: Point2<T>, eps: T) -> T {
+        let (_, capsule) = self.nearest(p);
+        capsule.distance(p, eps)
+    }
+
+    /// The distance at `p` with its derivatives.
+    pub fn jet(&self, p: Point2<T>, eps: T) -> PolylineJet<T> {
+        let (ends, capsule) = self.nearest(p);
+        let CapsuleJet { d, by_a, by_b } = capsule.jet(p, eps);
+        PolylineJet {
+            d,
+            ends,
+            by_ends: [by_a, by_b],
+        }
+    }
+
+    /// The vertices of each segment, in drawing order: at least one segment, if there is a vertex.
+    pub fn segments(&self) -> impl Iterator<Item = [usize; 2]> + use<T> {
+        let count = self.points.len();
+        let open = (1..count).map(|i| [i - 1, i]);
+        let is_joined = count == 1 || self.closed && count > 0;
+        open.chain(is_joined.then(|| [count - 1, 0]))
+    }
+
+    /// The first of the segments that are nearest to `p`. Without ε, since it moves the distances of short segments more
+    /// than those of long ones.
+    fn nearest(&self, p: Point2<T>) -> ([usize; 2], Capsule<T>) {
+        let capsule = |[a, b]: [usize; 2]| Capsule {
+            a: self.points[a],
+            b: self.points[b],
+            radius: self.radius,
+        };
+        let measured = |ends| (capsule(ends).distance(p, T::zero()), ends);
+        let nearer = |best: (T, [usize; 2]), other: (T, [usize; 2])| {
+            if other.0 > best.0 { other } else { best }
+        };
+        let nearest = self.segments().map(measured).reduce(nearer);
+        let ends = nearest.map_or([0, 0], |(_, ends)| ends);
+        (ends, capsule(ends))
+    }
+}
+
+/// A path swept by a disc.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Path<T: Real> {
+    /// The points, px, at least one.
+    pub points: Vec<Point2<T>>,
+    /// Whether each point is off the path: the control point of a curve. The ends of an open path are on it.
+    pub off: Vec<bool>,
+    /// Whether the last point is joined to the first.
+    pub closed: bool,
+    /// Radius, px.
+    pub radius: T,
+}
+
+/// A path's distance at a point, with its derivatives. The one by the radius is always 1.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PathJet<T: Real> {
+    /// Signed distance, px, positive inside.
+    pub d: T,
+    /// `∂d/∂` every point.
+    pub by_points: Vec<Vector2<T>>,
+}
+
+/// A vertex as a weighted mean of points of a path: their indices and weights, which sum to 1.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mean<T>(pub Vec<(usize, T)>);
+
+/// A path as a polyline.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Flattened<T: Real> {
+    /// The polyline. It is open; that of a closed path ends where it starts.
+    pub polyline: Polyline<T>,
+    /// What each of its vertices is a mean of.
+    pub means: Vec<Mean<T>>,
+}
+
+impl<T: Real> Path<T> {
+    /// Signed distance from `p` to the edge in px, positive inside.
+    pub fn distance(&self, p: Point2<T>, eps: T) -> T {
+        self.flattened().polyline.distance(p, eps)
+    }
+
+    /// The distance at `p` with its derivatives.
+    pub fn jet(&self, p: Point2<T>, eps: T) -> PathJet<T> {
+        let flattened = self.flattened();
+        let jet = flattened.polyline.jet(p, eps);
+        let mut by_points = vec![Vector2::zeros(); self.points.len()];
+        for (end, by) in jet.ends.into_iter().zip(jet.by_ends) {
+            flattened.means[end].hand_back(by, &mut by_points);
+        }
+        PathJet {
+            d: jet.d,
+            by_points,
+        }
+    }
+
+    /// The path as a polyline.
+    pub fn flattened(&self) -> Flattened<T> {
+        let knots = self.knots();
+        let mut means = vec![knots[0].0.clone()];
+        let mut at = 1;
+        while at < knots.len() {
+            let from = &knots[at - 1].0;
+            if knots[at].1 {
+                let (control, to) = (&knots[at].0, &knots[at + 1].0);
+                let [a, b, c] = [from, control, to].map(|mean| mean.place(&self.points));
+                let steps = steps(a - b * T::of(2.0) + c.coords);
+                for k in 1..=steps {
+                    let t = T::of(k as f64) / T::of(steps as f64);
+                    means.push(bernstein([from, control, to], t));
+                }
+                at += 2;
+            } else {
+                means.push(knots[at].0.clone());
+                at += 1;
+            }
+        }
+        let places = means.iter().map(|mean| mean.place(&self.points));
+        Flattened {
+            polyline: Polyline {
+                points: places.collect(),
+                closed: false,
+                radius: self.radius,
+            },
+            means,
+        }
+    }
+
+    /// The points with all implied ones, each with whether it is off the path. The first and the last are on it.
+    fn knots(&self) -> Vec<(Mean<T>, bool)> {
+        let count = self.points.len();
+        let mut knots = Vec::new();
+        for i in 0..count {
+            let before = (i + count - 1) % count;
+            if self.off[i] && self.off[before] {
+                let half = T::of(0.5);
+                knots.push((Mean(vec![(before, half), (i, half)]), false));
+            }
+            knots.push((Mean(vec![(i, T::one())]), self.off[i]));
+        }
+        if self.closed && count > 1 {
+            let is_point = |knot: &(Mean<T>, bool)| !knot.1 && knot.0.0.len() == 1;
+            let start = knots.iter().position(is_point).unwrap_or(0);
+            knots.rotate_left(start);
+            knots.push(knots[0].clone());
+        }
+        knots
+    }
+}
+
+impl<T: Real> Mean<T> {
+    /// The place of the vertex.
+    pub fn place(&self, points: &[Point2<T>]) -> Point2<T> {
+        let sum = |sum: Vector2<T>, &(i, weight): &(usize, T)| sum + points[i].coords * weight;
+        Point2::from(self.0.iter().fold(Vector2::zeros(), sum))
+    }
+
+    /// Adds the share of each point in the derivative `by` this vertex.
+    pub fn hand_back(&self, by: Vector2<T>, by_points: &mut [Vector2<T>]) {
+        for &(i, weight) in &self.0 {
+            by_points[i] += by * weight;
+        }
+    }
+}
+
+/// The vertex at the parameter `t` of a curve.
+fn bernstein<T: Real>([from, control, to]: [&Mean<T>; 3], t: T) -> Mean<T> {
+    let s = T::one() - t;
+    let parts = [(from, s * s), (control, T::of(2.0) * s * t), (to, t * t)];
+    let weighted =
+        parts.map(|(mean, share)| mean.0.iter().map(move |&(i, weight)| (i, weight * share)));
+    Mean(weighted.into_iter().flatten().collect())
+}
+
+/// How many segments keep within [`FLATNESS`] of a curve, from its second difference `a − 2b + c`.
+///
+/// A curve is at most a quarter of that from its chord, and each halving of the step quarters the distance. The hair that
+/// is taken off keeps curves in round numbers, whose ratio is a whole number, from hanging on rounding.
+pub(crate) fn steps<T: Real>(bend: Vector2<T>) -> usize {
+    let ratio = bend.dot(&bend).sqrt().to_f64() / (4.0 * FLATNESS);
+    ((ratio.sqrt() - 1e-3).ceil() as usize).clamp(1, MAX_STEPS)
+}
