@@ -78,7 +78,9 @@ use edge::{Edge, Reach};
 use flat::{Flat, walk};
 pub(crate) use flat::{Knot, Piece, Pieces};
 use grid::{FULL, TileWeights, edge_weights, flat_tile};
-use kernel::{EndSums, LookSums, Scratch, TileJob, TileSums, WORTH};
+use kernel::{
+    EndSums, Extras, LookSums, Nothing, Scratch, Stiffnesses, TileJob, TileSums, WORTH, Worths,
+};
 
 /// A differentiable loss over the canvas, told tile by tile while the tile is still in cache.
 pub trait CanvasLoss: Sync {
@@ -291,7 +293,7 @@ impl Renderer {
         gradients: &mut Gradients,
     ) {
         let frame = Frame::new(self.grid, softness, backdrop);
-        self.run_backward::<L, false>(strokes, 1, &frame, loss);
+        self.run_backward::<L, Nothing>(strokes, 1, &frame, loss);
         self.reduce(strokes, false, gradients);
     }
 
@@ -305,7 +307,7 @@ impl Renderer {
         gradients: &mut Gradients,
     ) {
         let frame = Frame::new(self.grid, softness, backdrop);
-        self.run_backward::<L, true>(strokes, 1, &frame, loss);
+        self.run_backward::<L, Worths>(strokes, 1, &frame, loss);
         self.reduce(strokes, true, gradients);
     }
 
@@ -320,7 +322,7 @@ impl Renderer {
         survey: &mut Survey,
     ) {
         let frame = Frame::new(self.grid, softness, backdrop);
-        self.run_backward::<L, true>(strokes, least, &frame, loss);
+        self.run_backward::<L, Stiffnesses>(strokes, least, &frame, loss);
         self.sum_slopes();
         survey.firsts.clone_from(&self.flat.firsts);
         survey.vertices.clone_from(&self.flat.vertices);
@@ -335,7 +337,7 @@ impl Renderer {
         }
     }
 
-    fn run_backward<L: CanvasLoss, const WITH_WORTH: bool>(
+    fn run_backward<L: CanvasLoss, X: Extras>(
         &mut self,
         strokes: &Strokes,
         least: usize,
@@ -364,7 +366,7 @@ impl Renderer {
                 let job = frame.job(flat, tile, work);
                 let total = with_scratch(scratch, |scratch| {
                     kernel::draw(level, &job, scratch);
-                    kernel::differentiate::<L, WITH_WORTH>(
+                    kernel::differentiate::<L, X>(
                         level, &job, loss, scratch, &mut looks, &mut ends,
                     )
                 });

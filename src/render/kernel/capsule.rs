@@ -1,0 +1,152 @@
+//! A segment swept by a disc: its distances from the pixels of a block, and from the centres of a tile's blocks.
+
+use fearless_simd::{f32x16, prelude::*};
+
+use super::super::edge::Reach;
+use super::super::grid::{BLOCK, BLOCKS, BlockSet, LANES, Lanes, TILE_BLOCKS};
+use super::lanes::load;
+
+/// Guard in `1/|b−a|²` and in `|q| = sqrt(q·q + ε)`, px². Larger would blunt the distance near the
+/// centre line (by 1e-3 px at this value); smaller would let `1/|q|` overflow the gradient there.
+pub(super) const EPSILON: f32 = 1e-6;
+
+/// Distance from a block's centre to its outermost pixel centres, px, rounded up.
+pub(super) const BLOCK_RADIUS: f32 = 2.121_5;
+
+/// Rows of 16 block centres that a tile has.
+pub(super) const ROWS: usize = BLOCKS / LANES;
+
+/// x and y of the pixel centres of a block, px.
+const PIXELS: [Lanes; 2] = lattice(BLOCK, 1.0);
+/// x and y of the centres of a tile's first 16 blocks, px.
+const CENTERS: [Lanes; 2] = lattice(TILE_BLOCKS, BLOCK as f32);
+
+/// The centres of 16 cells of side `side`, `columns` in a row.
+const fn lattice(columns: usize, side: f32) -> [Lanes; 2] {
+    let mut centers = [Lanes::splat(0.0); 2];
+    let mut i = 0;
+    while i < LANES {
+        centers[0].0[i] = ((i % columns) as f32 + 0.5) * side;
+        centers[1].0[i] = ((i / columns) as f32 + 0.5) * side;
+        i += 1;
+    }
+    centers
+}
+
+/// A segment swept by a disc, splatted for the lanes, relative to its tile.
+#[derive(Clone, Copy)]
+pub(in crate::render) struct Capsule<S: Simd> {
+    a: [f32; 2],
+    axis: [f32x16<S>; 2],
+    /// `|b−a|²`.
+    pub(super) length2: f32,
+    /// `1/(|b−a|² + ε)`.
+    inverse_length2: f32x16<S>,
+    pub(super) radius: f32x16<S>,
+}
+
+/// How a segment lies to some pixels or centres.
+#[derive(Clone, Copy)]
+pub(super) struct Nearest<S: Simd> {
+    /// `(p−a)·(b−a)`.
+    pub(super) dot: f32x16<S>,
+    /// Where on the segment the nearest point is, 0 at `a` and 1 at `b`.
+    pub(super) h: f32x16<S>,
+    /// From there to the pixel, `p − a − h(b−a)`.
+    pub(super) q: [f32x16<S>; 2],
+}
+
+impl<S: Simd> Nearest<S> {
+    /// The squared distance.
+    #[inline(always)]
+    pub(super) fn distance2(&self) -> f32x16<S> {
+        self.q[0] * self.q[0] + self.q[1] * self.q[1]
+    }
+}
+
+impl<S: Simd> Capsule<S> {
+    #[inline(always)]
+    pub(in crate::render) fn new(
+        simd: S,
+        [a, b]: [[f32; 2]; 2],
+        radius: f32,
+        origin: [f32; 2],
+    ) -> Self {
+        let axis = [b[0] - a[0], b[1] - a[1]];
+        let length2 = axis[0] * axis[0] + axis[1] * axis[1];
+        Self {
+            a: [a[0] - origin[0], a[1] - origin[1]],
+            axis: [f32x16::splat(simd, axis[0]), f32x16::splat(simd, axis[1])],
+            length2,
+            inverse_length2: f32x16::splat(simd, 1.0 / (length2 + EPSILON)),
+            radius: f32x16::splat(simd, radius),
+        }
+    }
+
+    /// The nearest points to those at `pa = p − a`.
+    #[inline(always)]
+    fn nearest(&self, pa: [f32x16<S>; 2]) -> Nearest<S> {
+        let dot = pa[0] * self.axis[0] + pa[1] * self.axis[1];
+        let h = (dot * self.inverse_length2).max(0.0).min(1.0);
+        let q = [pa[0] - h * self.axis[0], pa[1] - h * self.axis[1]];
+        Nearest { dot, h, q }
+    }
+
+    /// The nearest points to the pixels of a block.
+    #[inline(always)]
+    pub(super) fn from_pixels(&self, simd: S, block: usize) -> Nearest<S> {
+        let x = (block % TILE_BLOCKS * BLOCK) as f32 - self.a[0];
+        let y = (block / TILE_BLOCKS * BLOCK) as f32 - self.a[1];
+        self.nearest([load(simd, &PIXELS[0]) + x, load(simd, &PIXELS[1]) + y])
+    }
+
+    /// The nearest points to the centres of 16 blocks, a quarter of the tile.
+    #[inline(always)]
+    pub(super) fn from_centers(&self, simd: S, row: usize) -> Nearest<S> {
+        let y = (row * LANES / TILE_BLOCKS * BLOCK) as f32 - self.a[1];
+        self.nearest([
+            load(simd, &CENTERS[0]) - self.a[0],
+            load(simd, &CENTERS[1]) + y,
+        ])
+    }
+
+    /// The signed distance at the pixels of a block.
+    #[inline(always)]
+    pub(in crate::render) fn distance(&self, simd: S, block: usize) -> f32x16<S> {
+        self.radius - length(self.from_pixels(simd, block).distance2())
+    }
+
+    /// The blocks that the stroke widened by its soft edge can touch, and those wholly in its hard
+    /// core, from the distances of the blocks' centres.
+    #[inline(always)]
+    pub(in crate::render) fn blocks(
+        &self,
+        simd: S,
+        radius: f32,
+        reach: Reach,
+    ) -> (BlockSet, BlockSet) {
+        let [outer, inner] = limits(radius, reach);
+        let (mut touched, mut core) = (0, 0);
+        for row in 0..ROWS {
+            let distance2 = self.from_centers(simd, row).distance2();
+            touched |= distance2.simd_lt(outer * outer).to_bitmask() << (row * LANES);
+            core |= distance2.simd_lt(inner * inner).to_bitmask() << (row * LANES);
+        }
+        (touched, core)
+    }
+}
+
+/// How near to the centre line a block's centre is if a stroke touches the block, and if it covers all of it, px.
+#[inline(always)]
+pub(super) fn limits(radius: f32, reach: Reach) -> [f32; 2] {
+    [
+        (radius + reach.outside + BLOCK_RADIUS).max(0.0),
+        (radius - reach.inside - BLOCK_RADIUS).max(0.0),
+    ]
+}
+
+/// `|q|` from `q·q`, with the guard.
+#[inline(always)]
+pub(super) fn length<S: Simd>(distance2: f32x16<S>) -> f32x16<S> {
+    (distance2 + EPSILON).sqrt()
+}
