@@ -144,6 +144,11 @@ impl Config {
         self.recipe.unwrap_or(Recipe::of(self.preset))
     }
 
+    /// Whether strokes may have more than two points.
+    pub(super) fn allows_points(&self) -> bool {
+        self.points.is_none_or(|most| most > 2)
+    }
+
     /// The quality that sets the price of a stroke, unless strokes are free.
     pub(super) fn effective_quality(&self) -> Option<f64> {
         let Budget {

@@ -59,7 +59,7 @@ fn rearrange(session: &mut Session<'_>, descent: &mut Descent, step: usize, done
         descent.follow(&sources, &session.drawing, &session.recipe);
     }
     let lasts = (session.recipe.points.from..session.recipe.points.until).contains(&done);
-    if lasts && points::are_allowed(session.config) {
+    if lasts && session.config.allows_points() {
         let sources = points::rearrange(session);
         descent.follow(&sources, &session.drawing, &session.recipe);
     }

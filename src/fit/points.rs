@@ -12,7 +12,7 @@ mod terrain;
 
 use rayon::prelude::*;
 
-use super::config::Config;
+use super::budget::typical_bytes;
 use super::drawing::Drawing;
 use super::recipe::Points;
 use super::session::Session;
@@ -26,17 +26,34 @@ const LEAST: usize = 4;
 /// Changes the points of the free strokes where that pays. Returns the former index of each number of the free strokes,
 /// `None` for a new one.
 pub(super) fn rearrange(session: &mut Session<'_>) -> Vec<Option<usize>> {
-    let joined = joins::join(session);
-    let edited = edit(session);
+    let spare = spare(session);
+    let joined = joins::join(session, spare);
+    let edited = edit(session, spare);
     match joined {
         None => edited,
         Some(joined) => edited.iter().map(|source| joined[(*source)?]).collect(),
     }
 }
 
-/// Chooses an edit for each stroke that gains by one.
-fn edit(session: &mut Session<'_>) -> Vec<Option<usize>> {
-    let (points, price) = (session.recipe.points, session.price.of_point());
+/// What a stroke is worth that could be spared. A freed stroke would be used where it is worth more, and a point has to
+/// be worth as much for its bytes.
+fn spare(session: &mut Session<'_>) -> f32 {
+    let share = session.recipe.points.spared;
+    let mut worth = session.drawing.judge().worth;
+    if worth.is_empty() {
+        return 0.0;
+    }
+    let at = (share * worth.len() as f32) as usize;
+    let at = at.min(worth.len() - 1);
+    worth.select_nth_unstable_by(at, f32::total_cmp).1.max(0.0)
+}
+
+/// Chooses an edit for each stroke that gains by one. A stroke could be spared that is worth `spare`.
+fn edit(session: &mut Session<'_>, spare: f32) -> Vec<Option<usize>> {
+    let points = session.recipe.points;
+    let stroke_bytes = typical_bytes(session.config, &session.target) as f32;
+    let share = session.price.point_bytes() as f32 / stroke_bytes;
+    let price = session.price.of_point().max(spare * share / points.gain);
     let room = room(session);
     let most = session.config.points.unwrap_or(usize::MAX);
     let drawing = &mut session.drawing;
@@ -64,11 +81,6 @@ fn room(session: &Session<'_>) -> usize {
         (left.max(0.0) / session.price.point_bytes() as f32) as usize
     });
     by_strokes.min(by_bytes)
-}
-
-/// Whether strokes of this fit may have more than two points.
-pub(super) fn are_allowed(config: &Config) -> bool {
-    config.points.is_none_or(|most| most > 2)
 }
 
 /// The best edit of each kind of one stroke.

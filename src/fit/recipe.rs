@@ -214,8 +214,12 @@ pub struct Points {
     pub reach: f32,
     /// Lines and curves shorter than this, px, get no point.
     pub shortest: f32,
+    /// What a point is expected to gain once it is fitted, in units of the gain that is found.
+    pub gain: f32,
     /// What a control point is taken to gain, in units of what it is found to.
     pub smoothness: f32,
+    /// The strokes could spare one that is worth as much as the stroke that this share of them is worth less than.
+    pub spared: f32,
     /// Which strokes may be joined end to end.
     pub joins: Joins,
 }
@@ -231,8 +235,6 @@ pub struct Joins {
     pub alike: f32,
     /// Most pairs at a time, as a share of the strokes.
     pub share: f32,
-    /// A stroke that a join frees is taken to be worth as much as the stroke that this share of all is worth less than.
-    pub spared: f32,
 }
 
 /// Rounds of descent, between which colours or pens are chosen again. One schedule of rates spans all of them.
@@ -412,6 +414,7 @@ impl Recipe {
             ("optimizer.radius_factors", self.optimizer.radius_factors[0]),
             ("edge.final_slope", self.edge.final_slope as f32),
             ("points.per_stroke", self.points.per_stroke),
+            ("points.gain", self.points.gain),
             ("points.reach", self.points.reach),
             ("points.shortest", self.points.shortest),
             ("points.smoothness", self.points.smoothness),

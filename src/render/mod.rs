@@ -366,9 +366,7 @@ impl Renderer {
                 let job = frame.job(flat, tile, work);
                 let total = with_scratch(scratch, |scratch| {
                     kernel::draw(level, &job, scratch);
-                    kernel::differentiate::<L, X>(
-                        level, &job, loss, scratch, &mut looks, &mut ends,
-                    )
+                    kernel::differentiate::<L, X>(level, &job, loss, scratch, &mut looks, &mut ends)
                 });
                 work.total = total;
                 (work.looks, work.ends) = (looks, ends);

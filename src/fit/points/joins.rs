@@ -11,8 +11,8 @@ use crate::fit::session::Session;
 use crate::render::{LOOK, StrokeRef, Strokes};
 
 /// Joins free strokes where that pays. Returns the former index of each number of the free strokes, `None` for a new
-/// one; nothing if no two strokes are joined.
-pub(super) fn join(session: &mut Session<'_>) -> Option<Vec<Option<usize>>> {
+/// one; nothing if no two strokes are joined. A stroke could be spared that is worth `spare`.
+pub(super) fn join(session: &mut Session<'_>, spare: f32) -> Option<Vec<Option<usize>>> {
     let (joins, price) = (session.recipe.points.joins, session.price);
     let most = session.config.points.unwrap_or(usize::MAX);
     let drawing = &mut session.drawing;
@@ -23,12 +23,7 @@ pub(super) fn join(session: &mut Session<'_>) -> Option<Vec<Option<usize>>> {
     let least = joins.share * drawing.free().len() as f32;
     pairs.truncate(least.ceil() as usize);
     let before = drawing.squared_error();
-    let worth = drawing.judge().worth;
-    let saved = |pair: &Pair| {
-        price
-            .of(drawing.free().get(pair.lower))
-            .max(spare(&worth, &joins))
-    };
+    let saved = |pair: &Pair| price.of(drawing.free().get(pair.lower)).max(spare);
     let saved: Vec<f32> = pairs.iter().map(saved).collect();
     let memento = drawing.memento();
     while !pairs.is_empty() {
@@ -41,14 +36,6 @@ pub(super) fn join(session: &mut Session<'_>) -> Option<Vec<Option<usize>>> {
         pairs.truncate(pairs.len() / 2);
     }
     None
-}
-
-/// What a stroke is worth that could be spared: a freed stroke is used where it is worth at least as much.
-fn spare(worth: &[f32], joins: &Joins) -> f32 {
-    let mut worth = worth.to_vec();
-    let at = (joins.spared * worth.len() as f32) as usize;
-    let at = at.min(worth.len().saturating_sub(1));
-    *worth.select_nth_unstable_by(at, f32::total_cmp).1
 }
 
 /// Two strokes that meet.

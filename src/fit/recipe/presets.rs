@@ -148,13 +148,14 @@ const BALANCED: Recipe = Recipe {
         filled: 0.995,
         reach: 0.5,
         shortest: 0.5,
+        gain: 60.0,
         smoothness: 0.7,
+        spared: 0.3,
         joins: Joins {
             reach: 8.0,
             gap: 0.6,
             alike: 0.3,
             share: 0.1,
-            spared: 0.1,
         },
     },
     coloring: Recoloring {
