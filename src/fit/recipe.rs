@@ -393,6 +393,13 @@ impl Rates {
     }
 }
 
+impl Points {
+    /// Whether points come and go when a share `done` of the polish is over.
+    pub(super) fn lasts(&self, done: f32) -> bool {
+        (self.from..self.until).contains(&done)
+    }
+}
+
 impl Recipe {
     /// Refuses numbers that no fit can run with. Step sizes are not checked: parameters that leave their domain are
     /// clamped to it, and a stroke with NaN parameters is dropped and counted.

@@ -236,7 +236,9 @@ mod tests {
 
     #[test]
     fn a_stroke_is_in_one_pair() {
-        assert_eq!(found(&[A, from(9.5, 0.51), from(9.4, 0.5)]), [(0, 2)]);
+        let far = |x: f32, level: f32| [x, 1.5, 20.0 + 9.0 * x, 9.0, 2.0, level, level, level, 1.0];
+        let apart = [A, far(11.0, 0.56), far(8.5, 0.5)];
+        assert_eq!(found(&apart), [(0, 2)]);
     }
 
     #[test]

@@ -15,7 +15,7 @@ impl Recipe {
             Preset::Balanced => BALANCED,
             Preset::Best => Self {
                 polish: Polish {
-                    iterations: 8000,
+                    iterations: 3600,
                     ..BALANCED.polish
                 },
                 relocation: Relocation {
