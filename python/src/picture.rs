@@ -64,11 +64,12 @@ fn array<T: Sample + Element>(object: &Bound<'_, PyAny>) -> Option<Result<Image,
         Err(failure) => return Some(Err(failure)),
     };
     let [height, width, channels] = shape(&view);
-    Some(match view.as_slice() {
-        Ok(samples) => Image::from_rows(Rows::packed(width, height, channels, samples))
-            .map_err(Failure::Library),
-        Err(_) => strided(&view, |sample: T| sample),
-    })
+    // In the order of the axes: NumPy also calls columns contiguous that lie one after the other.
+    let image = match view.as_array().as_slice() {
+        Some(samples) => Image::from_rows(Rows::packed(width, height, channels, samples)),
+        None => return Some(strided(&view, |sample: T| sample)),
+    };
+    Some(image.map_err(Failure::Library))
 }
 
 /// The picture that an array with any strides holds.
