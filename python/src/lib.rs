@@ -34,7 +34,9 @@ use picture::Picture;
 /// A drawing as Python takes it: the SVG, the report as JSON, and the strokes.
 type Drawn<'py> = (String, String, Columns<'py>);
 
-/// Stops fits from other threads.
+/// Ends fits from other threads: give one as `cancel`, and call its method `cancel()`.
+///
+/// A fit that was cancelled returns the drawing as far as it has come; its report says `interrupted`.
 #[pyclass(frozen, module = "strokefit")]
 #[derive(Default)]
 struct CancelToken(fit::CancelToken);
@@ -46,10 +48,12 @@ impl CancelToken {
         Self::default()
     }
 
+    /// Ends all fits that were given this token, now and from now on.
     fn cancel(&self) {
         self.0.cancel();
     }
 
+    /// Whether `cancel()` was called.
     #[getter]
     fn cancelled(&self) -> bool {
         self.0.is_cancelled()

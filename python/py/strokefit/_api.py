@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
     from ._report import Fidelity, Report
 
-    Svg = Union[str, "os.PathLike[str]", Drawing]
-    Palette = Union[str, "os.PathLike[str]", Iterable[str]]
-    Progress = Callable[[float, int, float], object]
+Svg = Union[str, "os.PathLike[str]", Drawing]
+Palette = Union[str, "os.PathLike[str]", Iterable[str]]
+Progress = Callable[[float, int, float], object]
 
 
 def fit(

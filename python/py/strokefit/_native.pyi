@@ -1,7 +1,7 @@
 """What the package takes from Rust."""
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Optional, Union
+from typing import Optional, Union, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,9 @@ _Columns = tuple[
     NDArray[np.int64],
 ]
 
+__all__ = ["CancelToken", "draw", "judge", "main", "render"]
+
+@final
 class CancelToken:
     def __new__(cls) -> CancelToken: ...
     def cancel(self) -> None: ...
