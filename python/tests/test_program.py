@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.metadata
 import json
 import os
 import signal
@@ -17,6 +18,7 @@ from PIL import Image
 
 import strokefit
 
+VERSION = f"strokefit {importlib.metadata.version('strokefit')}\n".encode()
 PYTHON = [sys.executable, "-m", "strokefit"]
 
 
@@ -87,7 +89,7 @@ def test_rendering_is_what_render_writes(program: list[str], tmp_path: Path) -> 
 
 
 def test_the_program_is_whole() -> None:
-    assert run("--version").stdout == b"strokefit 0.1.0\n"
+    assert run("--version").stdout == VERSION
     help = run("fit", "--help")
     assert help.returncode == 0 and b"strokefit fit photo.jpg -o photo.svg" in help.stdout
     misused = run("fit", "a.png")
@@ -100,7 +102,7 @@ def test_the_program_is_whole() -> None:
 
 def test_the_command_is_installed() -> None:
     command = Path(sys.executable).parent / "strokefit"
-    assert subprocess.check_output([command, "--version"]) == b"strokefit 0.1.0\n"
+    assert subprocess.check_output([command, "--version"]) == VERSION
 
 
 def test_pipes_are_read_and_written() -> None:
