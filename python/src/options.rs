@@ -29,12 +29,12 @@ impl<'a, 'py> Options<'a, 'py> {
         let standard = Config::default();
         Ok(Config {
             budget: self.budget()?,
-            quality: self.number("quality")?,
+            quality: self.get("quality")?,
             preset: self.word("preset")?.unwrap_or_default(),
             progressive: self.flag("progressive")?,
             opaque: self.flag("opaque")?,
             stages: self.whole("stages", 1..=MAX_STROKES)?,
-            polish: self.flag("polish")?,
+            polish: self.get("polish")?.unwrap_or(standard.polish),
             colors: self.colors()?,
             file: self.file()?,
             background: self.word("background")?.unwrap_or_default(),
@@ -52,12 +52,12 @@ impl<'a, 'py> Options<'a, 'py> {
     }
 
     fn budget(&self) -> PyResult<Budget> {
-        let time = self.number("time")?.map(|seconds| {
+        let time = self.get("time")?.map(|seconds: f64| {
             let span = Duration::try_from_secs_f64(seconds).ok();
             span.filter(|span| !span.is_zero())
                 .ok_or_else(|| refusal("time", seconds, "seconds above 0, such as 10 or 0.5"))
         });
-        let psnr_db = self.number("psnr")?;
+        let psnr_db: Option<f64> = self.get("psnr")?;
         if let Some(db) = psnr_db.filter(|db| !(*db > 0.0 && *db <= 100.0)) {
             return Err(refusal(
                 "psnr",
@@ -106,10 +106,6 @@ impl<'a, 'py> Options<'a, 'py> {
 
     fn flag(&self, name: &str) -> PyResult<bool> {
         self.get(name).map(Option::unwrap_or_default)
-    }
-
-    fn number(&self, name: &str) -> PyResult<Option<f64>> {
-        self.get(name)
     }
 
     /// What the text of an option says.

@@ -7,6 +7,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
 use strokefit::image::{Image, Limits, Rows, Sample};
+use strokefit::{Error, ErrorKind};
 
 use crate::failure::{Failure, expect_memory};
 
@@ -93,7 +94,7 @@ fn borrowed<'py, T: Element>(
     let array = object.cast::<PyArray3<T>>().ok()?;
     let Ok(view) = array.try_readonly() else {
         let message = "the array is being written to: wait until that is done";
-        return Some(Err(Failure::Memory(message.into())));
+        return Some(Err(Error::new(ErrorKind::Picture, message).into()));
     };
     let [height, width, _] = shape(&view);
     let bytes = PLANES.saturating_mul(width).saturating_mul(height);
