@@ -57,6 +57,7 @@
 //! report                          plain records, tables, plots
 //! animation  view                 frames of a drawing, a live page
 //! lab  bench                      experiments, measurements
+//! cli                             the command line
 //! ```
 //!
 //! # Glossary
@@ -149,6 +150,8 @@ pub mod animation;
 #[cfg(feature = "cli")]
 pub mod bench;
 pub mod browser;
+#[cfg(feature = "cli")]
+pub mod cli;
 pub mod clock;
 pub mod coverage;
 #[cfg(feature = "cli")]
@@ -173,5 +176,9 @@ mod threads;
 pub mod verify;
 #[cfg(feature = "cli")]
 pub mod view;
+
+// The program calls the library by its name, as any other user does.
+#[cfg(feature = "cli")]
+extern crate self as strokefit;
 
 pub use error::{Error, ErrorKind, Result};

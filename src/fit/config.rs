@@ -235,4 +235,13 @@ impl Execution {
     pub(crate) fn pool(&self) -> Result<Workers> {
         Workers::new(self.threads.unwrap_or(0))
     }
+
+    /// Runs `work`, such as the judging of a drawing, with these worker threads. Without this, it takes the threads
+    /// of the whole process, which a process that was forked does not have.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Config`] when the system does not start so many threads.
+    pub fn install<R: Send>(&self, work: impl FnOnce() -> R + Send) -> Result<R> {
+        Ok(self.pool()?.install(work))
+    }
 }

@@ -1,0 +1,89 @@
+"""The strokes of a drawing, one by one or as columns."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, NamedTuple, Union, overload
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ._native import _Columns
+
+
+class Stroke(NamedTuple):
+    """A line with round caps, in one colour."""
+
+    #: Points of the centre line, n × 2, px; one point is a dot. Read-only.
+    points: NDArray[np.float32]
+    #: In px.
+    width: float
+    #: Red, green and blue, 0..1, sRGB-encoded.
+    color: tuple[float, float, float]
+    #: 0..1.
+    opacity: float
+
+
+class Strokes(Sequence[Stroke]):
+    """The strokes of a drawing, back to front.
+
+    Each stroke is a `Stroke`. The columns hold all of them at once, as read-only arrays:
+
+    >>> import numpy as np, strokefit
+    >>> picture = np.full((24, 48), 255, np.uint8)
+    >>> picture[10:14, 8:40] = 50
+    >>> strokes = strokefit.fit(picture, strokes=4).strokes
+    >>> [len(strokes), len(strokes.widths)] == [strokes.colors.shape[0]] * 2
+    True
+    >>> strokes.points[strokes.starts[0]:strokes.starts[1]].shape == strokes[0].points.shape
+    True
+    """
+
+    #: Points of all strokes, m × 2, px.
+    points: NDArray[np.float32]
+    #: Stroke i has the points `points[starts[i]:starts[i + 1]]`; n + 1 numbers.
+    starts: NDArray[np.int64]
+    #: n widths, px.
+    widths: NDArray[np.float32]
+    #: n × 3, 0..1, sRGB-encoded.
+    colors: NDArray[np.float32]
+    #: n opacities, 0..1.
+    opacities: NDArray[np.float32]
+    #: The layer of each stroke, from 0.
+    layers: NDArray[np.int64]
+
+    def __init__(self, columns: _Columns) -> None:
+        for column in columns:
+            column.flags.writeable = False
+        self.points, self.starts, self.widths, self.colors, self.opacities, self.layers = columns
+
+    def __len__(self) -> int:
+        return len(self.widths)
+
+    @overload
+    def __getitem__(self, index: int) -> Stroke: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[Stroke]: ...
+    def __getitem__(self, index: Union[int, slice]) -> Union[Stroke, list[Stroke]]:
+        if isinstance(index, slice):
+            return [self[i] for i in range(*index.indices(len(self)))]
+        i = range(len(self))[index]
+        red, green, blue = self.colors[i].tolist()
+        return Stroke(
+            points=self.points[self.starts[i] : self.starts[i + 1]],
+            width=float(self.widths[i]),
+            color=(red, green, blue),
+            opacity=float(self.opacities[i]),
+        )
+
+    def __iter__(self) -> Iterator[Stroke]:
+        return (self[i] for i in range(len(self)))
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} strokes>"
+
+    def __reduce__(self) -> tuple[type[Strokes], tuple[_Columns]]:
+        columns = (self.points, self.starts, self.widths, self.colors, self.opacities, self.layers)
+        return Strokes, (columns,)
