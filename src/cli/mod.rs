@@ -52,7 +52,7 @@ pub fn main(args: Vec<OsString>, host: &[OsString]) -> u8 {
 
 /// Turns a raster picture into an editable SVG made of strokes.
 ///
-/// A stroke is a line segment with round caps. strokefit puts strokes where the drawing differs most from
+/// A stroke is a line, a bent line or a curve with round caps. strokefit puts strokes where the drawing differs most from
 /// the picture, improves them by gradient descent, and repeats. Then it writes the SVG, renders it
 /// with resvg, and reports how faithful it is.
 #[derive(Debug, Parser)]
