@@ -83,6 +83,13 @@ impl Scene {
         self.stages.iter().map(|stage| stage.strokes.len()).sum()
     }
 
+    /// Number of points of all strokes together.
+    pub fn points(&self) -> usize {
+        self.strokes()
+            .map(|stroke| stroke.path.points().len())
+            .sum()
+    }
+
     /// Whether the scene has no stroke.
     pub fn is_empty(&self) -> bool {
         self.len() == 0

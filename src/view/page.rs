@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::curve::Point;
 use super::http::Response;
 use super::shared::{Shared, Shown, State};
-use crate::scene::{Rgb, Scene, Stroke};
+use crate::scene::{Path, PathPoint, Rgb, Scene, Stroke};
 
 /// A file of the page.
 pub(super) fn file(name: &str) -> Option<Response> {
@@ -85,9 +85,9 @@ struct SceneRecord {
     stages: Vec<Vec<StrokeRecord>>,
 }
 
-/// Points x, y, x, y, …, radius, colour and opacity.
+/// Points x, y, x, y, …, radius, colour, opacity and kinds of points.
 #[derive(Serialize)]
-struct StrokeRecord(Vec<f32>, f32, String, f32);
+struct StrokeRecord(Vec<f32>, f32, String, f32, String);
 
 impl SceneRecord {
     fn of(scene: &Scene) -> Self {
@@ -111,8 +111,16 @@ impl StrokeRecord {
             stroke.radius,
             css(stroke.color),
             stroke.opacity,
+            kinds(&stroke.path),
         )
     }
+}
+
+/// A letter for each point, `o` on the path and `c` for a control point, and then `z` if the path is closed.
+fn kinds(path: &Path) -> String {
+    let kind = |p: &PathPoint| if p.is_on { 'o' } else { 'c' };
+    let end = path.is_closed().then_some('z');
+    path.points().iter().map(kind).chain(end).collect()
 }
 
 /// `#rrggbb`.

@@ -1,7 +1,7 @@
 // Asks for the state, and shows it. What is shown is in the address after #, so that it can be kept.
 
 import { drawChart } from "./chart.js";
-import { Comparison, bounds, drawRing, drawStrokes, strokeAt } from "./picture.js";
+import { Comparison, bounds, drawPoints, drawRing, drawStrokes, strokeAt } from "./picture.js";
 
 // Time between two questions, ms: while a drawing is fitted, and after, to say that the page is there.
 const ASK_LIVE = 300;
@@ -180,10 +180,20 @@ function showSelected() {
   element("numbers").replaceChildren(...(found ? describe(found) : []));
 }
 
-function describe({ stroke: [points, radius, color, opacity], number, stage }) {
-  const round = (value) => Number(value.toFixed(2));
-  const pairs = points.flatMap((x, k) => (k % 2 ? [] : [`${round(x)}, ${round(points[k + 1])}`]));
-  const rows = [["number", `${number} of ${strokes.length}, stage ${stage}`], ["points", pairs.join("  →  ")]];
+// How many points of a stroke are told.
+const TOLD_POINTS = 24;
+
+function describe({ stroke: [points, radius, color, opacity, kinds], number, stage }) {
+  const round = (value) => Number(value.toFixed(2)), count = points.length / 2;
+  const rows = [["number", `${number} of ${strokes.length}, stage ${stage}`]];
+  // Control points are in parentheses.
+  const pairs = Array.from({ length: Math.min(count, TOLD_POINTS) }, (_, k) => {
+    const pair = `${round(points[2 * k])}, ${round(points[2 * k + 1])}`;
+    return kinds[k] === "o" ? pair : `(${pair})`;
+  });
+  if (count > TOLD_POINTS) pairs.push(`${count - TOLD_POINTS} more`);
+  if (kinds.endsWith("z")) pairs.push("start");
+  rows.push(["points", pairs.join("  →  ")]);
   rows.push(["width", `${round(2 * radius)} px`], ["colour", color], ["opacity", opacity.toFixed(3)]);
   return rows.flatMap(([name, value]) => {
     const term = document.createElement("dt"), text = document.createElement("dd");
@@ -208,7 +218,9 @@ function redraw() {
   paint(drawing, (context, px) => {
     if (scene.background) fillPage(context, scene.background);
     drawStrokes(context, list);
-    if (found) drawRing(context, found.stroke, px);
+    if (!found) return;
+    drawRing(context, found.stroke, px);
+    drawPoints(context, found.stroke, px);
   });
   if (comparison) {
     paint(target, (context) => context.drawImage(targetImage, 0, 0, scene.width, scene.height));
