@@ -4,8 +4,8 @@
 //! a multiple of its grid, and none of the numbers in the file is rounded. The path is in canonical form: of all lists
 //! of points with its pieces it is one that no rule makes shorter, so that reading gives the points that were written.
 
+use super::grid::{Grid, UNITS_PER_PX};
 use super::path::{self, Path, PathPoint, Piece, Place};
-use super::quantize::{Grid, UNITS_PER_PX};
 use crate::math::{self, Point};
 
 /// A point in units of 1/[`UNITS_PER_PX`] px.
