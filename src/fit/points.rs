@@ -104,14 +104,26 @@ impl Options {
         }
         let terrain = Terrain::new(survey, stroke, index);
         let may_grow = stroke.points.len() < most;
+        let fits = |edit: &Edit| written_points(edit.of(stroke)) <= most;
+        let insertion = || edits::best_insertion(&terrain, points).filter(fits);
         Self {
-            insertion: may_grow
-                .then(|| edits::best_insertion(&terrain, points))
-                .flatten(),
+            insertion: may_grow.then(insertion).flatten(),
             removal: edits::best_removal(&terrain),
-            toggle: edits::best_toggle(&terrain),
+            toggle: edits::best_toggle(&terrain).filter(fits),
         }
     }
+}
+
+/// Most points of a stroke in its file. A curve that turns back is written as a corner, and then the implied points at its
+/// ends are points.
+fn written_points(stroke: StrokeRef<'_>) -> usize {
+    let next = stroke.off.iter().cycle().skip(1);
+    let pairs = stroke.off.iter().zip(next);
+    let last = usize::from(!stroke.closed);
+    let implied = pairs
+        .take(stroke.off.len() - last)
+        .filter(|(a, b)| **a && **b);
+    stroke.points.len() + implied.count()
 }
 
 /// At most one edit of each stroke. A point costs `price`, and at most `room` points may be added.

@@ -5,6 +5,7 @@
 
 use std::collections::BTreeMap;
 
+use super::written_points;
 use crate::fit::drawing::Drawing;
 use crate::fit::recipe::Joins;
 use crate::fit::session::Session;
@@ -67,7 +68,7 @@ fn pairs(strokes: &Strokes, most: usize, joins: &Joins) -> Vec<Pair> {
             let near = (-1..=1).flat_map(|y| (-1..=1).map(move |x| [column + x, row + y]));
             for &(k, other_is_end) in near.filter_map(|place| cells.get(&place)).flatten() {
                 let other = strokes.get(k);
-                let count = stroke.points.len() + other.points.len() - 1;
+                let count = written_points(stroke) + written_points(other) - 1;
                 let gap = distance(at, end(other, other_is_end));
                 let width = stroke.radius() + other.radius();
                 if k != i && count <= most && gap <= joins.reach.min(width * joins.gap) {

@@ -144,7 +144,7 @@ const BALANCED: Recipe = Recipe {
         share: 0.5,
         swapped: 0.2,
         per_stroke: 7.0,
-        capsules: 0.85,
+        capsules: 0.8,
         filled: 0.995,
         reach: 0.5,
         shortest: 0.5,
