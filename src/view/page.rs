@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::curve::Point;
 use super::http::Response;
 use super::shared::{Shared, Shown, State};
-use crate::scene::{Rgb, Scene, Stroke};
+use crate::report::SceneRecord;
 
 /// A file of the page.
 pub(super) fn file(name: &str) -> Option<Response> {
@@ -49,7 +49,7 @@ pub(super) fn state(shared: &Shared, seen: Option<u64>) -> Option<Vec<u8>> {
         scene: shown
             .as_ref()
             .filter(|shown| seen != Some(shown.version))
-            .map(|Shown { scene, .. }| SceneRecord::of(scene)),
+            .map(|Shown { scene, .. }| SceneRecord::from(&**scene)),
     };
     serde_json::to_vec(&record).ok()
 }
@@ -74,49 +74,4 @@ struct StateRecord<'a> {
     curve: &'a [Point],
     version: u64,
     scene: Option<SceneRecord>,
-}
-
-#[derive(Serialize)]
-struct SceneRecord {
-    width: u32,
-    height: u32,
-    background: Option<String>,
-    /// Strokes back to front, stage by stage.
-    stages: Vec<Vec<StrokeRecord>>,
-}
-
-/// Points x, y, x, y, …, radius, colour and opacity.
-#[derive(Serialize)]
-struct StrokeRecord(Vec<f32>, f32, String, f32);
-
-impl SceneRecord {
-    fn of(scene: &Scene) -> Self {
-        let stages = scene.stages.iter();
-        Self {
-            width: scene.width,
-            height: scene.height,
-            background: scene.background.map(css),
-            stages: stages
-                .map(|stage| stage.strokes.iter().map(StrokeRecord::of).collect())
-                .collect(),
-        }
-    }
-}
-
-impl StrokeRecord {
-    fn of(stroke: &Stroke) -> Self {
-        let points = stroke.shape.points().iter();
-        Self(
-            points.flat_map(|p| [p.x, p.y]).collect(),
-            stroke.radius,
-            css(stroke.color),
-            stroke.opacity,
-        )
-    }
-}
-
-/// `#rrggbb`.
-fn css(color: Rgb) -> String {
-    let [r, g, b] = color.map(|c| (c * 255.0 + 0.5) as u8);
-    format!("#{r:02x}{g:02x}{b:02x}")
 }
