@@ -6,6 +6,7 @@ mod observed;
 mod options;
 mod target;
 
+use std::cell::RefCell;
 use std::panic;
 
 use strokefit::animation::{Film, Legend};
@@ -25,19 +26,30 @@ pub use target::Target;
 #[wasm_bindgen(getter_with_clone)]
 pub struct Drawing {
     /// Text of the file.
+    #[wasm_bindgen(readonly)]
     pub svg: String,
     /// The report, as JSON.
+    #[wasm_bindgen(readonly)]
     pub report: String,
     /// The drawing for canvases, as JSON; of a foreign base, only what lies on it.
+    #[wasm_bindgen(readonly)]
     pub scene: String,
 }
 
-/// Says what a panic was, which ends in a trap that says nothing.
+thread_local! {
+    static PANIC: RefCell<Option<String>> = const { RefCell::new(None) };
+}
+
+/// Takes note of panics: they end in a trap, which does not say why.
 #[wasm_bindgen(start)]
 pub fn start() {
-    panic::set_hook(Box::new(|panic| {
-        wasm_bindgen::throw_str(&panic.to_string())
-    }));
+    panic::set_hook(Box::new(|panic| PANIC.set(Some(panic.to_string()))));
+}
+
+/// Why the last call trapped, if it panicked.
+#[wasm_bindgen(js_name = lastPanic)]
+pub fn last_panic() -> Option<String> {
+    PANIC.take()
 }
 
 /// Draws `target`. `options` is read by [`Options::read`]; `watcher` is told of every iteration.

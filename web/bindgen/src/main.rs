@@ -1,6 +1,6 @@
 //! `strokefit-web-bindgen IN.wasm OUT`: writes `OUT/wasm.js` and `OUT/wasm_bg.wasm`.
 //!
-//! This is what `wasm-bindgen --target web --no-typescript` does. That program would have to be installed, in the
+//! This is what `wasm-bindgen --target web --no-typescript --experimental-reset-state-function` does. That program would have to be installed, in the
 //! version of the crate `wasm-bindgen`; here the lock file says the version of both.
 
 use std::env;
@@ -21,6 +21,8 @@ fn main() -> Result<()> {
         .typescript(false)
         .remove_name_section(true)
         .remove_producers_section(true)
+        // A trap leaves the memory as it is in the middle of something: `web/js/api.js` then starts anew.
+        .reset_state_function(true)
         .web(true)?
         .generate(folder)?;
     Ok(())
