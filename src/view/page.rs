@@ -7,17 +7,24 @@ use super::http::Response;
 use super::shared::{Shared, Shown, State};
 use crate::report::SceneRecord;
 
-/// A file of the page.
+/// A file of the page. All but `index.html` and `page.js` are also those of the page of `web/`, which fits by itself.
 pub(super) fn file(name: &str) -> Option<Response> {
     let (kind, text) = match name {
-        "" => ("text/html", include_str!("page/index.html")),
+        "" => return Some(Response::of("text/html", index().into_bytes())),
         "page.css" => ("text/css", include_str!("page/page.css")),
         "page.js" => ("text/javascript", include_str!("page/page.js")),
+        "viewer.js" => ("text/javascript", include_str!("page/viewer.js")),
         "chart.js" => ("text/javascript", include_str!("page/chart.js")),
         "picture.js" => ("text/javascript", include_str!("page/picture.js")),
         _ => return None,
     };
     Some(Response::of(kind, text.as_bytes()))
+}
+
+/// The page, with the part that it shares put in its place.
+fn index() -> String {
+    let page = include_str!("page/index.html");
+    page.replace("<!-- viewer.html -->\n", include_str!("page/viewer.html"))
 }
 
 /// The state as JSON; the drawing only if it is not the one with the number `seen`.
