@@ -1,0 +1,61 @@
+// Fits in workers, one after the other: a fit begins with a fresh one, so that nothing of the last is left.
+
+// Compiled once, for all workers.
+let compiled = null;
+
+async function compile() {
+  const answer = await fetch("strokefit/wasm_bg.wasm");
+  if (!answer.ok) throw new Error(`the program cannot be loaded (${answer.status}): load the page again`);
+  return WebAssembly.compile(await answer.arrayBuffer());
+}
+
+export function load() {
+  compiled ??= compile();
+  return compiled;
+}
+
+let current = null;
+
+// Ends the fit that is under way, without a result, and starts another. `tell` gets the messages of worker.js.
+export async function start(picture, options, tell) {
+  cancel();
+  const fit = { running: URL.createObjectURL(new Blob(["running"])), worker: null };
+  current = fit;
+  const over = (message) => {
+    if (current !== fit) return;
+    tell(message);
+    if (message.drawing || message.error) cancel();
+  };
+  try {
+    const module = await load();
+    if (current !== fit) return;
+    fit.worker = work();
+    fit.worker.onmessage = ({ data }) => over(data);
+    fit.worker.onerror = (event) => over({ error: `the fit broke off (${event.message ?? "its worker failed"}): try again` });
+    fit.worker.postMessage({ module, picture, options, running: fit.running });
+  } catch (error) {
+    compiled = null;
+    over({ error: error.message });
+  }
+}
+
+// Lets the fit end with what it has drawn.
+export function stop() {
+  if (current) URL.revokeObjectURL(current.running);
+}
+
+function cancel() {
+  stop();
+  current?.worker?.terminate();
+  current = null;
+}
+
+// A worker from a blob has the content security policy of the page; one from a file would have none of its own.
+function work() {
+  const code = `import ${JSON.stringify(new URL("worker.js", import.meta.url).href)};`;
+  const address = URL.createObjectURL(new Blob([code], { type: "text/javascript" }));
+  const worker = new Worker(address, { type: "module" });
+  // It has been read when the first message comes.
+  worker.addEventListener("message", () => URL.revokeObjectURL(address), { once: true });
+  return worker;
+}
