@@ -26,15 +26,10 @@ export function connect(locate) {
 
 function draw(read, options = {}, onProgress) {
   return guarded(() => {
-    const target = read();
-    try {
-      const drawing = fitTarget(target, JSON.stringify(words(options)), onProgress && watcher(onProgress));
-      const { svg, report, scene } = drawing;
-      drawing.free();
-      return { svg, report: JSON.parse(report), scene: JSON.parse(scene) };
-    } finally {
-      target.free();
-    }
+    const drawing = fitTarget(read(), JSON.stringify(words(options)), onProgress && watcher(onProgress));
+    const { svg, report, scene } = drawing;
+    drawing.free();
+    return { svg, report: JSON.parse(report), scene: JSON.parse(scene) };
   });
 }
 

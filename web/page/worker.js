@@ -29,7 +29,7 @@ function watcher(running) {
     const now = performance.now();
     if (now - told < TELL) return true;
     told = now;
-    const last = { time_s: (now - start) / 1000, strokes, psnr_db: psnrDb };
+    const last = { time_s: (now - start) / 1000, strokes, psnr_db: Number.isFinite(psnrDb) ? psnrDb : null };
     const message = { progress: { done, stage, stages, polishing, last } };
     if (now - shown >= pause) {
       message.scene = scene();

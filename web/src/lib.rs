@@ -57,10 +57,10 @@ pub fn last_panic() -> Option<String> {
 /// # Errors
 /// An `Error` where the library has one; what the watcher threw, as it is.
 #[wasm_bindgen]
-pub fn fit(target: &Target, options: &str, watcher: Option<Watcher>) -> Result<Drawing, JsValue> {
+pub fn fit(target: Target, options: &str, watcher: Option<Watcher>) -> Result<Drawing, JsValue> {
     let start = Instant::now();
     let mut observed = Observed::new(watcher);
-    let drawn = draw(target, options, start, &mut observed);
+    let drawn = draw(&target, options, start, &mut observed);
     match observed.thrown() {
         Some(thrown) => Err(thrown),
         None => drawn.map_err(|e| JsError::from(e).into()),

@@ -158,7 +158,7 @@ describe("the page with little memory", { skip: !program }, () => {
     try {
       const page = await browser.open(server.address);
       await page.value(`${set("strokes", 50)}; ${set("preset", "draft")}`);
-      const large = `new OffscreenCanvas(1000, 1000).convertToBlob().then((blob) => {
+      const large = `Object.assign(document.createElement("canvas"), { width: 1000, height: 1000 }).toBlob((blob) => {
         const pasted = new DataTransfer();
         pasted.items.add(new File([blob], "large.png"));
         dispatchEvent(new ClipboardEvent("paste", { clipboardData: pasted }));

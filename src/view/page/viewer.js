@@ -103,7 +103,10 @@ function underway() {
   if (!state.last) return "starting";
   const known = state.stages ? ` of ${state.stages}` : "";
   const place = state.polishing ? "polish" : `stage ${state.stage}${known}`;
-  return `${place}, ${state.last.strokes} strokes, ${state.last.psnr_db?.toFixed(2)} dB, ${state.last.time_s.toFixed(1)} s`;
+  const { strokes: count, psnr_db, time_s } = state.last;
+  // Without any error there is no number of dB.
+  const fidelity = psnr_db === null ? "" : `, ${psnr_db.toFixed(2)} dB`;
+  return `${place}, ${count} strokes${fidelity}, ${time_s.toFixed(1)} s`;
 }
 
 // dB of the finished drawing as strokes are added, by the browser's renderer.
@@ -338,7 +341,11 @@ export function listen({ stop, add }) {
   });
 }
 
-addEventListener("resize", redraw);
+addEventListener("resize", () => {
+  if (!scene) return;
+  showState();
+  redraw();
+});
 addEventListener("hashchange", () => {
   readAddress();
   redraw();
