@@ -150,5 +150,5 @@ form.addEventListener("submit", (event) => {
 listen({ stop: fitting.stop, add });
 
 // The program is fetched before it is needed, and kept for when there is no network.
-fitting.load().catch((error) => say(error.message));
+fitting.prepare().catch((error) => say(error.message));
 navigator.serviceWorker?.register("offline.js").catch((error) => console.info(`the page is not kept: ${error.message}`));

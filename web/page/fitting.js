@@ -9,12 +9,24 @@ async function compile() {
   return WebAssembly.compile(await answer.arrayBuffer());
 }
 
-export function load() {
-  compiled ??= compile();
+function load() {
+  // What failed may work later.
+  compiled ??= compile().catch((error) => {
+    compiled = null;
+    throw error;
+  });
   return compiled;
 }
 
+// The fit under way, and a worker that waits for the next one.
 let current = null;
+let spare = null;
+
+// Makes ready for a fit, so that it begins at once.
+export async function prepare() {
+  const module = await load();
+  spare ??= work(module);
+}
 
 // Ends the fit that is under way, without a result, and starts another. `tell` gets the messages of worker.js.
 export async function start(picture, options, tell) {
@@ -24,17 +36,20 @@ export async function start(picture, options, tell) {
   const over = (message) => {
     if (current !== fit) return;
     tell(message);
-    if (message.drawing || message.error) cancel();
+    if (message.drawing || message.error) {
+      cancel();
+      // The next fit says so if this fails.
+      prepare().catch(() => {});
+    }
   };
   try {
-    const module = await load();
+    await prepare();
     if (current !== fit) return;
-    fit.worker = work();
+    [fit.worker, spare] = [spare, null];
     fit.worker.onmessage = ({ data }) => over(data);
     fit.worker.onerror = (event) => over({ error: `the fit broke off (${event.message ?? "its worker failed"}): try again` });
-    fit.worker.postMessage({ module, picture, options, running: fit.running });
+    fit.worker.postMessage({ picture, options, running: fit.running });
   } catch (error) {
-    compiled = null;
     over({ error: error.message });
   }
 }
@@ -51,11 +66,12 @@ function cancel() {
 }
 
 // A worker from a blob has the content security policy of the page; one from a file would have none of its own.
-function work() {
+function work(module) {
   const code = `import ${JSON.stringify(new URL("worker.js", import.meta.url).href)};`;
   const address = URL.createObjectURL(new Blob([code], { type: "text/javascript" }));
   const worker = new Worker(address, { type: "module" });
   // It has been read when the first message comes.
   worker.addEventListener("message", () => URL.revokeObjectURL(address), { once: true });
+  worker.postMessage({ module });
   return worker;
 }

@@ -8,19 +8,22 @@ const SHOW = 250;
 // The fit needs the processor: it goes on so many times as long as it took to copy the drawing.
 const REST = 30;
 
-onmessage = async ({ data: { module, picture, options, running } }) => {
-  try {
-    await init(module);
-    const { png, pixels, width, height } = picture;
-    const watch = watcher(running);
-    const drawing = await (png ? fitPng(png, options, watch) : fit(pixels, width, height, options, watch));
-    // Outlines, and what lies on a foreign SVG, cannot be animated.
-    const animation = await animate(drawing.svg).catch(() => null);
-    postMessage({ drawing, animation });
-  } catch (error) {
-    postMessage({ error: error.message });
-  }
+// The first message has the WebAssembly, the second one a picture.
+let ready;
+
+onmessage = ({ data }) => {
+  if (data.module) ready = init(data.module);
+  else draw(data).catch(({ message }) => postMessage({ error: message }));
 };
+
+async function draw({ picture: { png, pixels, width, height }, options, running }) {
+  await ready;
+  const watch = watcher(running);
+  const drawing = await (png ? fitPng(png, options, watch) : fit(pixels, width, height, options, watch));
+  // Outlines, and what lies on a foreign SVG, cannot be animated.
+  const animation = await animate(drawing.svg).catch(() => null);
+  postMessage({ drawing, animation });
+}
 
 function watcher(running) {
   const start = performance.now();
