@@ -3,13 +3,13 @@
 import { execFileSync } from "node:child_process";
 import { appendFileSync, existsSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { join } from "node:path";
+import { join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 
 export const root = fileURLToPath(new URL("../../../", import.meta.url));
 
 // `STROKEFIT` names it; else it is where `cargo build --release` puts it.
-const strokefit = process.env.STROKEFIT ?? join(root, "target/release/strokefit");
+const strokefit = resolve(process.env.STROKEFIT ?? join(root, "target/release/strokefit"));
 if (!existsSync(strokefit)) throw new Error(`${strokefit} is missing: run cargo build --release`);
 
 export const sample = (name) => readFileSync(join(root, "samples", name));
