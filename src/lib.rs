@@ -37,7 +37,7 @@
 //! | feature | what it adds | on by default |
 //! | --- | --- | --- |
 //! | `formats` | JPEG, WebP, GIF, BMP and TIFF pictures, and pictures embedded in the SVG of a base | yes |
-//! | `animation` | the module `animation`, and charts in `report::plot`; needs `formats` | yes |
+//! | `animation` | frames and GIF, WebP or PNG files in the module `animation`, and charts in `report::plot`; needs `formats` | yes |
 //! | `cli` | the program and what it alone uses: `engines`, `view`, `lab`, `bench` and their reports; needs the others | yes |
 //!
 //! # The pipeline
@@ -145,7 +145,6 @@
 
 #![warn(clippy::disallowed_methods)]
 
-#[cfg(feature = "animation")]
 pub mod animation;
 #[cfg(feature = "cli")]
 pub mod bench;
