@@ -22,6 +22,8 @@ export interface Options {
   opaque?: boolean;
   /** Coverage function of soft edges: `smoothstep`, `sigmoid`, `tanh` or `atan[:K]`; `A>B` changes from A to B during the fit. */
   coverage?: string;
+  /** Most points of a stroke, 2 or more; as many as pay if it is left out. */
+  points?: number;
   /** Number of stages, each a layer of the SVG. */
   stages?: number;
   /** Whether all strokes are fitted jointly after the stages; true if it is left out. */
@@ -46,8 +48,11 @@ export interface Options {
   freezeBase?: boolean;
 }
 
-/** Points x, y, x, y, … and radius, px; colour `#rrggbb`; opacity, 0 to 1. */
-export type Stroke = [points: number[], radius: number, color: string, opacity: number];
+/**
+ * Points x, y, x, y, … and radius, px; colour `#rrggbb`; opacity, 0 to 1; kinds of the points, `o` on the path and `c` for
+ * a control point, and then `z` if the path is closed.
+ */
+export type Stroke = [points: number[], radius: number, color: string, opacity: number, kinds: string];
 
 /** A drawing as canvases draw it. */
 export interface Scene {

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use serde_json::Value;
 use strokefit::fit::{Config, MAX_STROKES};
+use strokefit::scene::MAX_POINTS;
 use strokefit::{Error, ErrorKind, Result};
 
 /// What to draw, and what to go on from.
@@ -49,6 +50,7 @@ impl Options {
             "progressive" => config.progressive = entry.switch()?,
             "opaque" => config.opaque = entry.switch()?,
             "coverage" => config.coverage = entry.word()?,
+            "points" => config.points = Some(entry.whole(MAX_POINTS)?),
             "stages" => config.stages = Some(entry.whole(MAX_STROKES)?),
             "polish" => config.polish = entry.switch()?,
             "background" => config.background = entry.word()?,
@@ -124,7 +126,7 @@ impl Entry<'_> {
     fn unknown(&self) -> Error {
         refusal(format!(
             "no option is called {}: give strokes, psnr, bytes, time, quality, preset, progressive, opaque, coverage, \
-             stages, polish, background, seed, colors, form, group, precision, width, base or freezeBase",
+             points, stages, polish, background, seed, colors, form, group, precision, width, base or freezeBase",
             self.key
         ))
     }
@@ -155,7 +157,7 @@ mod tests {
     fn every_option_arrives() {
         let json = r##"{
             "strokes": 500, "psnr": 32, "bytes": 9000, "time": 1.5, "quality": 25, "preset": "draft", "progressive": true,
-            "opaque": true, "coverage": "sigmoid", "stages": 3, "polish": false, "background": "#ff0000", "seed": 7,
+            "opaque": true, "coverage": "sigmoid", "points": 6, "stages": 3, "polish": false, "background": "#ff0000", "seed": 7,
             "colors": "8", "form": "smallest", "group": "color", "precision": 1, "width": "120mm", "base": "<svg/>",
             "freezeBase": true
         }"##;
@@ -178,6 +180,7 @@ mod tests {
             progressive: true,
             opaque: true,
             coverage: "sigmoid".parse().unwrap(),
+            points: Some(6),
             stages: Some(3),
             polish: false,
             colors: Colors::AtMost(8),
