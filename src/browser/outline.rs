@@ -154,22 +154,30 @@ impl Outline {
         }
     }
 
-    /// The chords of a parabola that does not turn back in y. Snapping its upper end shifts the whole parabola.
-    /// Ends of chords are snapped as well, but never below the snapped lower end.
+    /// The chords of a parabola that does not turn back in y. Snapping its upper end shifts the whole parabola. The
+    /// end of a tall chord moves along it to a whole px, that of another only in y, but never below the snapped
+    /// lower end.
     fn chords(&mut self, [from, knee, to]: [Point; 3]) {
         let is_down = from.y <= to.y;
         let (start, end) = if is_down { (from, to) } else { (to, from) };
         let (mut top, last) = (snapped(start), snapped(end));
         let shift = Vector::new(0.0, top.y - start.y);
         let count = chord_count(start, knee, end);
+        let mut before = top;
         for i in 1..=count {
-            let moved = || on_parabola(start, knee, end, i as f32 / count as f32) + shift;
-            let mut bottom = if i < count { snapped(moved()) } else { last };
+            let place = on_parabola(start, knee, end, i as f32 / count as f32) + shift;
+            let mut bottom = if i == count { last } else { snapped(place) };
+            if i < count && place.y - before.y >= TALL {
+                let y = place.y.round().min(last.y);
+                let slope = (place.x - top.x) / (place.y - top.y);
+                bottom = Point::new(place.x - slope * (place.y - y), y);
+            }
             bottom.y = bottom.y.min(last.y);
             if bottom.y > top.y {
                 self.push(is_down, top, bottom, i < count);
                 top = bottom;
             }
+            before = place;
         }
     }
 
@@ -286,6 +294,9 @@ fn chord_count(start: Point, knee: Point, end: Point) -> u32 {
 }
 
 const MAX_CHORDS: u32 = 64;
+
+/// Height of a tall chord, px.
+const TALL: f32 = 2.0;
 
 fn on_parabola(start: Point, knee: Point, end: Point, t: f32) -> Point {
     let u = 1.0 - t;
