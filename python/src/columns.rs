@@ -58,10 +58,13 @@ pub(crate) fn flattened<'py>(
         return Err(PyValueError::new_err(message));
     }
     let (points, kinds) = (points.as_array(), on_path.as_array());
-    let points = points.outer_iter().zip(kinds).map(|(at, &is_on)| PathPoint {
-        at: Point::new(at[0], at[1]),
-        is_on,
-    });
+    let points = points
+        .outer_iter()
+        .zip(kinds)
+        .map(|(at, &is_on)| PathPoint {
+            at: Point::new(at[0], at[1]),
+            is_on,
+        });
     let path = Path::new(points.collect(), closed).map_err(Failure::Library)?;
     places(on_path.py(), path.flattened(tolerance))
 }
