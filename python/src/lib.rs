@@ -14,7 +14,7 @@ use std::ffi::OsString;
 use std::panic;
 use std::time::Instant;
 
-use numpy::{PyArray1, PyArray3, PyArrayMethods};
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use strokefit::cli;
@@ -89,6 +89,17 @@ fn draw<'py>(
     Ok((judged.svg, report, columns))
 }
 
+/// The centre line of a stroke as a polyline, n × 2, at most `tolerance` px away from it.
+#[pyfunction]
+fn flatten<'py>(
+    points: PyReadonlyArray2<'py, f32>,
+    on_path: PyReadonlyArray1<'py, bool>,
+    closed: bool,
+    tolerance: f32,
+) -> PyResult<Bound<'py, PyArray2<f32>>> {
+    columns::flattened(&points, &on_path, closed, tolerance)
+}
+
 /// The render of an SVG, height × width × 3 with a background, else × 4.
 #[pyfunction]
 fn render<'py>(
@@ -150,6 +161,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     verify::silence_panics();
     module.add_class::<CancelToken>()?;
     module.add_function(wrap_pyfunction!(draw, module)?)?;
+    module.add_function(wrap_pyfunction!(flatten, module)?)?;
     module.add_function(wrap_pyfunction!(render, module)?)?;
     module.add_function(wrap_pyfunction!(judge, module)?)?;
     module.add_function(wrap_pyfunction!(main, module)?)

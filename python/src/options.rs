@@ -8,7 +8,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use strokefit::fit::{Budget, Colors, Config, Execution, MAX_STROKES};
-use strokefit::scene::MAX_PRECISION;
+use strokefit::scene::{MAX_POINTS, MAX_PRECISION};
 use strokefit::svg::WriteOptions;
 
 use crate::failure::Failure;
@@ -33,6 +33,7 @@ impl<'a, 'py> Options<'a, 'py> {
             preset: self.word("preset")?.unwrap_or_default(),
             progressive: self.flag("progressive")?,
             opaque: self.flag("opaque")?,
+            points: self.whole("points", 2..=MAX_POINTS)?,
             stages: self.whole("stages", 1..=MAX_STROKES)?,
             polish: self.get("polish")?.unwrap_or(standard.polish),
             colors: self.colors()?,

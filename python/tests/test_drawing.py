@@ -14,6 +14,12 @@ import pytest
 import strokefit
 
 
+# Coordinates of a place, px.
+Place = tuple[float, ...]
+# A line: start, end; or a quadratic curve: start, control point, end.
+Piece = tuple[Place, ...]
+
+
 @pytest.fixture(scope="module")
 def drawing() -> strokefit.Drawing:
     y, x = np.mgrid[:40, :56]
@@ -25,7 +31,8 @@ def test_it_survives_pickling_and_copying(drawing: strokefit.Drawing) -> None:
         assert other == drawing and hash(other) == hash(drawing)
         assert other.report == drawing.report
         for mine, its in zip(drawing.strokes, other.strokes):
-            assert (mine.points == its.points).all() and mine[1:] == its[1:]
+            assert (mine.points == its.points).all() and (mine.on_path == its.on_path).all()
+            assert mine[2:] == its[2:]
 
 
 def test_equality_is_that_of_the_files(drawing: strokefit.Drawing, waves: np.ndarray) -> None:
@@ -45,17 +52,118 @@ def test_it_is_shown_and_saved_as_svg(drawing: strokefit.Drawing, tmp_path: Path
         drawing.save(tmp_path / "no" / "a.svg")
 
 
-def test_strokes_are_those_of_the_file(drawing: strokefit.Drawing) -> None:
-    strokes = drawing.strokes
-    assert len(strokes) == drawing.report["strokes"] == drawing.svg.count("<path")
-    first = strokes[0]
-    element = next(line for line in drawing.svg.splitlines() if line.startswith("<path"))
-    attributes = dict(re.findall(r'(\S+)="([^"]*)"', element))
-    start = [float(number) for number in re.findall(r"-?[\d.]+", attributes["d"])[:2]]
-    assert first.points[0].tolist() == pytest.approx(start)
-    assert first.width == pytest.approx(float(attributes["stroke-width"]))
-    assert "#" + "".join(f"{round(255 * c):02x}" for c in first.color) == attributes["stroke"]
-    assert first.opacity == pytest.approx(float(attributes.get("stroke-opacity", 1)), abs=0.001)
+@pytest.fixture(scope="module")
+def bent() -> strokefit.Drawing:
+    """A closed spline, a curve with a corner at its end, a polyline, and a dot, as a drawing has them."""
+    paths = [
+        '<path d="M8 20Q8 8 20 8T32 20 20 32 8 20z" stroke="#204060" stroke-width="3"/>',
+        '<path d="M36 6Q48 6 48 14L38 20" stroke="#a03010" stroke-width="2.5" stroke-opacity="0.8"/>',
+        '<path d="M36 36L44 24 52 36" stroke="#108040" stroke-width="2"/>',
+        '<path d="M20 20h0.01" stroke="#000000" stroke-width="4"/>',
+    ]
+    svg = f"""<svg xmlns="http://www.w3.org/2000/svg" width="56" height="40" viewBox="0 0 56 40">
+<rect width="56" height="40" fill="#ffffff"/>
+<g id="stage-1" fill="none" stroke-linecap="round" stroke-linejoin="round">
+{"".join(paths)}
+</g>
+</svg>"""
+    picture = strokefit.render(svg, background="#ffffff")
+    return strokefit.refine(svg, picture, strokes=len(paths), preset="draft")
+
+
+def test_strokes_are_those_of_the_file(drawing: strokefit.Drawing, bent: strokefit.Drawing) -> None:
+    for some in (drawing, bent):
+        elements = re.findall("<path[^>]*>", some.svg)
+        assert len(some.strokes) == some.report["strokes"] == len(elements)
+        for stroke, element in zip(some.strokes, elements):
+            attributes = dict(re.findall(r'(\S+)="([^"]*)"', element))
+            expected, closed = pieces_of_data(attributes["d"])
+            pieces = pieces_of_stroke(stroke)
+            assert [len(piece) for piece in pieces] == [len(piece) for piece in expected]
+            for piece, its in zip(pieces, expected):
+                assert np.array(piece) == pytest.approx(np.array(its), abs=1e-4)
+            assert stroke.closed == closed
+            assert stroke.width == pytest.approx(float(attributes["stroke-width"]))
+            assert "#" + "".join(f"{round(255 * c):02x}" for c in stroke.color) == attributes["stroke"]
+            assert stroke.opacity == pytest.approx(float(attributes.get("stroke-opacity", 1)), abs=0.001)
+
+
+def pieces_of_data(d: str) -> tuple[list[Piece], bool]:
+    """The lines and curves of an attribute `d` of one stroke, and whether it is closed. A dot has none."""
+    pieces: list[Piece] = []
+    at = start = (0.0, 0.0)
+    for letter, text in re.findall(r"([a-zA-Z])([^a-zA-Z]*)", d):
+        numbers = [float(number) for number in re.findall(r"-?[\d.]+", text)]
+        size = {"M": 2, "L": 2, "T": 2, "Q": 4, "H": 1, "Z": 1}[letter.upper()]
+        for i in range(0, len(numbers), size):
+            origin = at if letter.islower() else (0.0, 0.0)
+            places = [(origin[0] + x, origin[1] + y) for x, y in zip(*[iter(numbers[i : i + size])] * 2)]
+            if letter in "mM":
+                start = places[0]
+            elif letter in "lLqQ":
+                pieces.append((at, *places))
+            elif letter in "tT":
+                before, knee, _ = pieces[-1]
+                pieces.append((at, (2 * at[0] - knee[0], 2 * at[1] - knee[1]), *places))
+            at = places[-1] if places else at
+        if letter in "zZ" and at != start:
+            pieces.append((at, start))
+    return pieces, d[-1] in "zZ"
+
+
+def pieces_of_stroke(stroke: strokefit.Stroke) -> list[Piece]:
+    """The lines and curves of a stroke, by the rules of docs/python.md."""
+    # With the implied points, every point off the path has neighbours on it.
+    points: list[tuple[Place, bool]] = []
+    for place, is_on in zip(map(tuple, stroke.points.tolist()), stroke.on_path.tolist()):
+        if points and not points[-1][1] and not is_on:
+            points.append((middle(points[-1][0], place), True))
+        points.append((place, is_on))
+    if stroke.closed:
+        (first, first_is_on), (last, last_is_on) = points[0], points[-1]
+        if not first_is_on:
+            assert not last_is_on
+            points.insert(0, (middle(last, first), True))
+        points.append(points[0])
+    pieces: list[Piece] = []
+    for (place, is_on), (after, after_is_on) in zip(points, points[1:]):
+        if is_on:
+            pieces.append((place, after))
+        else:
+            assert after_is_on
+            pieces[-1] = (*pieces[-1], after)
+    return pieces
+
+
+def middle(a: Place, b: Place) -> Place:
+    return tuple((np.array(a) + b) / 2)
+
+
+def test_strokes_tell_curves_and_closed_paths(bent: strokefit.Drawing) -> None:
+    ring, curve, polyline, dot = bent.strokes
+    assert bent.strokes.closed.tolist() == [True, False, False, False]
+    assert ring.closed and ring.on_path.sum() <= 1 and (~ring.on_path).sum() >= 4
+    assert curve.on_path.tolist() == [True, False, True, True]
+    assert polyline.on_path.tolist() == [True] * 3 and len(dot.points) == len(dot.on_path) == 1
+    assert (np.concatenate([stroke.on_path for stroke in bent.strokes]) == bent.strokes.on_path).all()
+    with pytest.raises(ValueError, match="read-only"):
+        ring.on_path[0] = True
+
+
+def test_flattened_paths_are_close_to_their_curves(bent: strokefit.Drawing) -> None:
+    ring, _, polyline, dot = bent.strokes
+    line = ring.flattened(0.01)
+    assert line.dtype == np.float32 and (line[0] == line[-1]).all()
+    # A spline of four control points at the corners of a square is within 6 % of a circle.
+    radii = np.hypot(*(line - [20, 20]).T)
+    assert 11 < radii.min() and radii.max() < 13.5
+    assert len(ring.flattened(0.5)) < len(ring.flattened()) < len(line)
+    assert (polyline.flattened() == polyline.points).all() and (dot.flattened() == dot.points).all()
+    for tolerance in (0, -1, float("nan")):
+        with pytest.raises(ValueError, match="give px above 0"):
+            ring.flattened(tolerance)
+    with pytest.raises(ValueError, match="start and end with points on it"):
+        ring._replace(closed=False).flattened()
 
 
 def test_strokes_are_a_sequence_with_columns(drawing: strokefit.Drawing) -> None:
@@ -63,6 +171,8 @@ def test_strokes_are_a_sequence_with_columns(drawing: strokefit.Drawing) -> None
     n = len(strokes)
     assert strokes.starts.shape == (n + 1,) and strokes.starts[-1] == len(strokes.points)
     assert strokes.points.shape[1] == 2 and strokes.colors.shape == (n, 3)
+    assert strokes.on_path.shape == (len(strokes.points),) and strokes.on_path.dtype == np.bool_
+    assert strokes.closed.shape == (n,) and strokes.closed.dtype == np.bool_
     assert strokes.widths.shape == strokes.opacities.shape == strokes.layers.shape == (n,)
     assert [s.width for s in strokes] == strokes.widths.tolist()
     assert strokes[-1].opacity == strokes[n - 1].opacity == strokes[-2:][1].opacity

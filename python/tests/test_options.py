@@ -26,13 +26,17 @@ def test_looks_are_kept(waves: np.ndarray) -> None:
     black_white = strokefit.fit(waves, palette=["#000000", "#FFFFFF"], **few)
     assert set(black_white.strokes.colors.ravel().tolist()) <= {0.0, 1.0}
     assert strokefit.fit(waves, palette="#000000,#ffffff", **few) == black_white
+    capsules = strokefit.fit(waves, points=2, **few)
+    assert np.diff(capsules.strokes.starts).max() == 2 and capsules.strokes.on_path.all()
+    assert not capsules.strokes.closed.any()
+    assert np.diff(strokefit.fit(waves, **few).strokes.starts).max() > 2
     four = strokefit.fit(waves, colors=4, **few)
     assert len(np.unique(four.strokes.colors, axis=0)) <= 4
     assert strokefit.fit(waves, background="#102030", **few).svg.count('fill="#102030"') == 1
     assert 'width="120mm"' in strokefit.fit(waves, width="120mm", **few).svg
     assert 'id="color-1"' in strokefit.fit(waves, group="color", **few).svg
     assert "stroke-width" not in strokefit.fit(waves, form="outlines", **few).svg
-    assert not re.search(r"\.\d\d", strokefit.fit(waves, precision=1, form="elements", opaque=True, **few).svg)
+    assert not re.search(r"\.\d\d", strokefit.fit(waves, precision=1, opaque=True, **few).svg)
     assert len(strokefit.fit(waves, stages=1, **few).report["stages"]) == 1
     assert strokefit.fit(waves, polish=False, **few) != strokefit.fit(waves, **few)
     assert strokefit.fit(waves, seed=2**64 - 1, **few) != strokefit.fit(waves, **few)
@@ -77,12 +81,15 @@ def test_numpy_numbers_are_numbers(waves: np.ndarray) -> None:
         ("background", "white", "'white' is not a background: give auto, none"),
         ("colors", 0, "colors=0: give a whole number from 1 to 4096"),
         ("palette", ["red"], "'red' is not a colour"),
-        ("form", "tiny", "'tiny' is not a form"),
+        ("form", "tiny", "'tiny' is not a form: give plain, smallest or outlines"),
         ("group", "hue", "'hue' is not a grouping"),
         ("width", "12", "'12' is not a length"),
         ("seed", -1, "seed=-1: give a whole number from 0 to 18446744073709551615"),
         ("threads", 0, "threads=0: give a whole number from 1 to 1024"),
         ("stages", 0, "stages=0: give"),
+        ("points", 1, "points=1: give a whole number from 2 to 65535"),
+        ("points", 70_000, "points=70000: give a whole number from 2 to 65535"),
+        ("points", -2, "points=-2: give a whole number from 2 to 65535"),
     ],
 )
 def test_values_out_of_range_are_refused(waves: np.ndarray, option: str, value: object, words: str) -> None:
@@ -90,7 +97,7 @@ def test_values_out_of_range_are_refused(waves: np.ndarray, option: str, value: 
         strokefit.fit(waves, **{option: value})
 
 
-@pytest.mark.parametrize("option", ["strokes", "psnr", "time", "preset", "opaque", "seed", "threads", "polish"])
+@pytest.mark.parametrize("option", ["strokes", "psnr", "time", "preset", "opaque", "points", "seed", "threads", "polish"])
 def test_other_types_are_refused_by_name(waves: np.ndarray, option: str) -> None:
     with pytest.raises(TypeError, match=option):
         strokefit.fit(waves, **{option: object()})

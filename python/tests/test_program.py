@@ -47,6 +47,8 @@ def test_bytes_are_those_of_the_command_line(sample: Path, program: list[str], t
         (["--quality", "18", "--background", "#ffffff", "--seed", "5"], {"quality": 18, "background": "#ffffff", "seed": 5}),
         (["--strokes", "60", "--progressive", "--group", "color"], {"strokes": 60, "progressive": True, "group": "color"}),
         (["--strokes", "60", "--no-polish", "--stages", "2"], {"strokes": 60, "polish": False, "stages": 2}),
+        (["--strokes", "60", "--points", "2"], {"strokes": 60, "points": 2}),
+        (["--strokes", "60", "--points", "4"], {"strokes": 60, "points": 4}),
         (["--strokes", "60", "--outline", "--width", "9cm"], {"strokes": 60, "form": "outlines", "width": "9cm"}),
         (["--strokes", "60", "--palette", "#000000,#ff8800"], {"strokes": 60, "palette": ["#000000", "#ff8800"]}),
     ],

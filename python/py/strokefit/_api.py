@@ -34,6 +34,7 @@ def fit(
     quality: Optional[float] = None,
     preset: str = "balanced",
     opaque: bool = False,
+    points: Optional[int] = None,
     precision: int = 2,
     background: str = "auto",
     colors: Optional[int] = None,
@@ -68,12 +69,14 @@ def fit(
             as one pixel has at so many dB. 30 unless there is a budget of strokes, psnr or bytes.
         preset: `draft`, `balanced` or `best`: how much time to spend.
         opaque: Use opaque strokes only.
+        points: Most points of a stroke, 2 to 65535; 2 draws line segments alone. As many as pay by default.
         precision: Decimals of coordinates and widths, 0 to 6.
         background: `auto` keeps transparency, `#rrggbb` flattens onto that colour, `none` draws no background.
         colors: At most so many colours, the background included.
         palette: Only these colours: `["#102030", …]`, `"#102030,…"`, or a file with one colour a line or a GIMP
             palette.
-        form: What one element holds: `elements`, `plain`, `smallest` or `outlines`.
+        form: What one element holds: a stroke (`plain`), all strokes of one look that can be drawn together
+            (`smallest`), or the filled outline of a stroke (`outlines`).
         group: What one layer holds: `stage` or `color`.
         width: Width of the page, such as `120mm`; one px per pixel of the picture by default.
         stages: The number of stages, each a layer.
@@ -115,6 +118,7 @@ def fit(
         quality=quality,
         preset=preset,
         opaque=opaque,
+        points=points,
         precision=precision,
         background=background,
         colors=colors,
@@ -142,6 +146,7 @@ def refine(
     quality: Optional[float] = None,
     preset: str = "balanced",
     opaque: bool = False,
+    points: Optional[int] = None,
     precision: int = 2,
     colors: Optional[int] = None,
     palette: Optional[Palette] = None,
@@ -189,6 +194,7 @@ def refine(
         quality=quality,
         preset=preset,
         opaque=opaque,
+        points=points,
         precision=precision,
         colors=colors,
         palette=_palette(palette),

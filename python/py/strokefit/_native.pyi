@@ -8,14 +8,16 @@ from numpy.typing import NDArray
 
 _Columns = tuple[
     NDArray[np.float32],
+    NDArray[np.bool_],
     NDArray[np.int64],
+    NDArray[np.bool_],
     NDArray[np.float32],
     NDArray[np.float32],
     NDArray[np.float32],
     NDArray[np.int64],
 ]
 
-__all__ = ["CancelToken", "draw", "judge", "main", "render"]
+__all__ = ["CancelToken", "draw", "flatten", "judge", "main", "render"]
 
 @final
 class CancelToken:
@@ -31,6 +33,9 @@ def draw(
     progress: Optional[Callable[[float, int, float], object]],
     cancel: Optional[CancelToken],
 ) -> tuple[str, str, _Columns]: ...
+def flatten(
+    points: NDArray[np.float32], on_path: NDArray[np.bool_], closed: bool, tolerance: float
+) -> NDArray[np.float32]: ...
 def render(svg: str, scale: float, background: str) -> NDArray[np.uint8]: ...
 def judge(svg: str, picture: Union[str, bytes, NDArray[np.generic]]) -> str: ...
 def main(args: Sequence[str], host: Sequence[str]) -> int: ...

@@ -20,11 +20,13 @@ class Input(TypedDict):
 
 
 class Dropped(TypedDict):
-    """How many strokes were dropped, by reason."""
+    """How many strokes were dropped, by reason, and how many points."""
 
     non_finite: int
     invisible: int
     off_page: int
+    #: Points of strokes that stay; rounding made them superfluous.
+    points: int
 
 
 class StageEntry(TypedDict):
