@@ -68,8 +68,8 @@
 
 mod path;
 
-pub use path::{Flattened, Mean, Path, PathJet, Polyline, PolylineJet};
 pub(crate) use path::steps;
+pub use path::{Flattened, Mean, Path, PathJet, Polyline, PolylineJet};
 
 use crate::math::{Point2, Real, Vector2};
 

@@ -11,8 +11,8 @@ use strokefit::coverage::Coverage;
 use strokefit::loss::Loss;
 use strokefit::math::Point2;
 use strokefit::optim::{Adam, AdamParams, Optimizer};
-use strokefit::render::{OPACITY, PARAMS};
 use strokefit::render::reference::{Gradients, Reference, Rgb, Scene, Stroke};
+use strokefit::render::{OPACITY, PARAMS};
 use strokefit::sdf::Capsule;
 
 const TOLERANCE: f64 = 1e-9;

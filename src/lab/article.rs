@@ -149,14 +149,8 @@ impl Reproduction {
         } = self;
         let backdrop = Backdrop::Color(drawing.background);
         let out = &mut canvas;
-        self.pool.install(|| {
-            renderer.forward(
-                &drawing.strokes,
-                softness(coverage),
-                backdrop,
-                out,
-            )
-        });
+        self.pool
+            .install(|| renderer.forward(&drawing.strokes, softness(coverage), backdrop, out));
         canvas.to_image()
     }
 

@@ -137,7 +137,11 @@ impl Capsules {
     pub fn scene(&self) -> Scene {
         let side = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
         let page = Scene::empty(side(self.width), side(self.height), Some(self.background));
-        let strokes = self.strokes.iter().map(|stroke| stroke.to_stroke()).collect();
+        let strokes = self
+            .strokes
+            .iter()
+            .map(|stroke| stroke.to_stroke())
+            .collect();
         Scene {
             stages: vec![Stage { strokes }],
             ..page

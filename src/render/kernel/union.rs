@@ -171,7 +171,10 @@ impl Union {
                 let least = load(simd, &self.distances2[block]);
                 let nearest = load(simd, &self.nearest[block]);
                 let is_nearer = distance2.simd_lt(least);
-                store(is_nearer.select(distance2, least), &mut self.distances2[block]);
+                store(
+                    is_nearer.select(distance2, least),
+                    &mut self.distances2[block],
+                );
                 store(is_nearer.select(index, nearest), &mut self.nearest[block]);
             }
             seen |= near;
