@@ -22,12 +22,18 @@ use std::ops::Range;
 use std::str::FromStr;
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::image::{Animation, AnimationFormat, Image};
-use crate::metrics;
-use crate::report::plot::captioned;
-use crate::scene::{MAX_PRECISION, Rgb, Scene, Stage, Stroke};
-use crate::svg::{self, Form, Timing, WriteOptions};
-use crate::verify::{Painting, Size};
+use crate::image::Image;
+use crate::scene::{MAX_PRECISION, Scene};
+use crate::svg::{self, Timing};
+#[cfg(feature = "animation")]
+use crate::{
+    image::{Animation, AnimationFormat},
+    metrics,
+    report::plot::captioned,
+    scene::{Rgb, Stage, Stroke},
+    svg::{Form, WriteOptions},
+    verify::{Painting, Size},
+};
 
 /// Approximate number of frames by default.
 const USUAL_FRAMES: usize = 48;
@@ -38,9 +44,11 @@ const FRAME_MS: [u32; 2] = [30, 800];
 /// Time for which the finished drawing is shown, ms.
 const LAST_MS: u32 = 2500;
 
+#[cfg(feature = "animation")]
 /// Smallest width of a frame with a legend, px: some 25 letters.
 const LEGEND: usize = 210;
 
+#[cfg(feature = "animation")]
 const WHITE: Rgb = [1.0; 3];
 
 /// What each frame adds to the previous one.
@@ -77,6 +85,7 @@ pub enum Legend<'a> {
     Fidelity(&'a Image),
 }
 
+#[cfg(feature = "animation")]
 impl Legend<'_> {
     fn lay(&self, frame: Image, strokes: usize) -> Result<Image> {
         let text = match self {
@@ -123,6 +132,7 @@ impl Film<'_> {
         starts.zip(&ends).map(|(start, &end)| start..end).collect()
     }
 
+    #[cfg(feature = "animation")]
     /// The frames, rendered by resvg on white when they are requested.
     ///
     /// # Errors
@@ -145,6 +155,7 @@ impl Film<'_> {
         })
     }
 
+    #[cfg(feature = "animation")]
     /// An animation of the frames. It repeats for ever and shows the last frame longer.
     ///
     /// # Errors
@@ -186,6 +197,7 @@ fn stage_ends(scene: &Scene) -> Vec<usize> {
     ends.collect()
 }
 
+#[cfg(feature = "animation")]
 /// Some strokes of `scene` as SVG, not rounded any further.
 fn part_svg<'a>(
     scene: &Scene,
@@ -213,7 +225,7 @@ fn precision(scene: &Scene) -> u8 {
     (0..MAX_PRECISION).find(says_all).unwrap_or(MAX_PRECISION)
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "animation"))]
 mod tests {
     use super::*;
     use crate::scene::Path;

@@ -83,6 +83,28 @@ impl Image {
         rows::image(rows)
     }
 
+    /// The picture whose channel `c` of the pixel in column `x` and row `y` is `sample(x, y, c)`: for samples that do
+    /// not lie in rows. Samples and channels are those of [`Rows`].
+    ///
+    /// ```
+    /// use strokefit::image::Image;
+    ///
+    /// let ramp = Image::from_fn(3, 1, 1, |x, _, _| x as f32 / 2.0)?;
+    /// assert_eq!(ramp.planes()[2], [0.0, 0.5, 1.0]);
+    /// # Ok::<(), strokefit::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Image::from_rows`].
+    pub fn from_fn<T: Sample>(
+        width: usize,
+        height: usize,
+        channels: usize,
+        sample: impl Fn(usize, usize, usize) -> T,
+    ) -> Result<Self> {
+        rows::sampled(width, height, channels, sample)
+    }
+
     /// The picture at half the size (rounded up), each pixel the mean of up to 2×2; alpha is dropped.
     pub(crate) fn halved(&self) -> Self {
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));

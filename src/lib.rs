@@ -1,5 +1,5 @@
-//! strokefit turns a raster picture into an editable SVG made of *strokes*: line segments with round caps,
-//! which geometry calls capsules.
+//! strokefit turns a raster picture into an editable SVG made of *strokes*: paths with round caps and joins, each in
+//! one colour.
 //!
 //! It puts strokes where the drawing differs most from the picture, improves them by gradient descent
 //! through a differentiable renderer, keeps those that pay, and repeats. Then it writes SVG, renders that SVG with
@@ -37,7 +37,7 @@
 //! | feature | what it adds | on by default |
 //! | --- | --- | --- |
 //! | `formats` | JPEG, WebP, GIF, BMP and TIFF pictures, and pictures embedded in the SVG of a base | yes |
-//! | `animation` | the module `animation`, and charts in `report::plot`; needs `formats` | yes |
+//! | `animation` | frames and GIF, WebP or PNG files in the module `animation`, and charts in `report::plot`; needs `formats` | yes |
 //! | `cli` | the program and what it alone uses: `engines`, `view`, `lab`, `bench` and their reports; needs the others | yes |
 //!
 //! # The pipeline
@@ -57,6 +57,7 @@
 //! report                          plain records, tables, plots
 //! animation  view                 frames of a drawing, a live page
 //! lab  bench                      experiments, measurements
+//! cli                             the command line
 //! ```
 //!
 //! # Glossary
@@ -70,8 +71,10 @@
 //! | word | meaning |
 //! | --- | --- |
 //! | target | the picture to reproduce, with or without alpha |
-//! | stroke | a capsule in one colour: two ends and a radius (px), a colour, an opacity (0..1); see [`scene`] |
-//! | capsule | all points within a radius (px) of a line segment; with equal ends it is a *dot*; see [`sdf`] |
+//! | stroke | all points within a radius (px) of a path, with a colour and an opacity (0..1); see [`scene`] |
+//! | path | the centre line of a stroke: *points*, open or closed; see [`scene::Path`] |
+//! | point | of a path: *on* it, joined to the next by a line, or *off* it, where it is the control point of a curve |
+//! | capsule | the stroke of two on-points; with equal ends it is a *dot*, the stroke of one point; see [`sdf`] |
 //! | scene | the drawing: size (px), background, and strokes from back to front, grouped in stages |
 //! | stage | strokes that are added together: seeded where the residual is largest, fitted with all earlier strokes frozen, kept if they pay |
 //! | layer | a group of the SVG, holding the strokes of one stage or of one colour |
@@ -128,7 +131,7 @@
 //! | word | meaning |
 //! | --- | --- |
 //! | page | the area of an SVG file, in px or in units such as mm |
-//! | form | how strokes become elements: one each, polylines, the smallest file, outlines |
+//! | form | how strokes become elements: one each, the smallest file, outlines |
 //! | look | colour, width and opacity of a stroke as they are written; strokes of one look may share an element |
 //! | dialect | the part of SVG that strokefit writes, and reads as strokes |
 //! | fidelity | the file as resvg renders it, against the target: PSNR (dB), SSIM, MSE, L1 |
@@ -142,11 +145,12 @@
 
 #![warn(clippy::disallowed_methods)]
 
-#[cfg(feature = "animation")]
 pub mod animation;
 #[cfg(feature = "cli")]
 pub mod bench;
 pub mod browser;
+#[cfg(feature = "cli")]
+pub mod cli;
 pub mod clock;
 pub mod coverage;
 #[cfg(feature = "cli")]
@@ -171,5 +175,9 @@ mod threads;
 pub mod verify;
 #[cfg(feature = "cli")]
 pub mod view;
+
+// The program calls the library by its name, as any other user does.
+#[cfg(feature = "cli")]
+extern crate self as strokefit;
 
 pub use error::{Error, ErrorKind, Result};

@@ -3,14 +3,17 @@
 //! Coordinates are in px, with pixel centres at +0.5. Colours are sRGB-encoded, 0..1, and are composited in
 //! that encoding, as SVG renderers do.
 
+mod grid;
 mod overlap;
 mod path;
 mod quantize;
 mod written_path;
 
+pub use grid::MAX_PRECISION;
+pub(crate) use grid::UNITS_PER_PX;
 pub use path::{MAX_POINTS, Path, PathPoint, Piece};
-pub use quantize::{Dropped, MAX_PRECISION, MIN_WIDTH, Quantized};
-pub(crate) use quantize::{UNITS_PER_PX, Written, color, quantum};
+pub use quantize::{Dropped, MIN_WIDTH, Quantized};
+pub(crate) use quantize::{Written, color, quantum};
 pub(crate) use written_path::{WrittenPath, WrittenPoint};
 
 /// An sRGB-encoded colour, 0..1 per channel.
@@ -81,6 +84,13 @@ impl Scene {
     /// Number of strokes.
     pub fn len(&self) -> usize {
         self.stages.iter().map(|stage| stage.strokes.len()).sum()
+    }
+
+    /// Number of points of all strokes together.
+    pub fn points(&self) -> usize {
+        self.strokes()
+            .map(|stroke| stroke.path.points().len())
+            .sum()
     }
 
     /// Whether the scene has no stroke.

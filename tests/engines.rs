@@ -25,7 +25,7 @@ use strokefit::engines::{DrawRequest, Engine};
 use strokefit::fit::{Budget, Config, Fitter};
 use strokefit::image::Image;
 use strokefit::metrics;
-use strokefit::scene::{Path, Scene, Stage, Stroke};
+use strokefit::scene::{self, PathPoint, Scene, Stage, Stroke};
 use strokefit::svg::{self, Form, WriteOptions};
 use strokefit::verify::{self, Size};
 use support::engine::installed;
@@ -181,18 +181,107 @@ fn chromium_draws_as_it_is_foreseen() {
     }
 }
 
+/// Where strokes bend as well. Curves are the least alike.
+#[test]
+fn chromium_bends_strokes_as_it_is_foreseen() {
+    let Some((engine, program)) = installed("chromium") else {
+        return;
+    };
+    for (kind, strokes) in bent_kinds() {
+        let scene = Scene {
+            stages: vec![Stage { strokes }],
+            ..Scene::empty(64, 48, Some([1.0; 3]))
+        };
+        let text = svg::write(&scene, &WriteOptions::default());
+        let [drawn, _] = drawn_by_both(engine, &program, &text, [64, 48]);
+        let page = Image::filled(64, 48, [1.0; 3]).unwrap();
+        let foreseen = browser::draw(scene.strokes(), &[page]).remove(0);
+        let db = metrics::psnr(&foreseen, &drawn).unwrap();
+        assert!(db >= 40.0, "{kind}: {db:.2} dB");
+    }
+}
+
 fn capsule(a: [f32; 2], b: [f32; 2], width: f32) -> Stroke {
-    let shape = if a == b {
-        Path::dot(a.into())
+    let path = if a == b {
+        scene::Path::dot(a.into())
     } else {
-        Path::line(a.into(), b.into())
+        scene::Path::line(a.into(), b.into())
     };
     Stroke {
-        shape,
+        path,
         radius: width / 2.0,
         color: [0.1, 0.3, 0.8],
         opacity: 1.0,
     }
+}
+
+/// A path of points, each on it or off it.
+fn bent(points: &[(f32, f32, bool)], closed: bool, width: f32, opacity: f32) -> Stroke {
+    let point = |&(x, y, is_on): &(f32, f32, bool)| PathPoint {
+        at: [x, y].into(),
+        is_on,
+    };
+    let points = points.iter().map(point).collect();
+    Stroke {
+        path: scene::Path::new(points, closed).unwrap(),
+        opacity,
+        ..capsule([0.0; 2], [0.0; 2], width)
+    }
+}
+
+/// Paths that bend, turn back, close and cross themselves.
+fn bent_kinds() -> Vec<(&'static str, Vec<Stroke>)> {
+    const ON: bool = true;
+    const OFF: bool = false;
+    let corners = [
+        (8.0, 8.0, ON),
+        (50.0, 12.0, ON),
+        (14.0, 20.0, ON),
+        (54.0, 40.0, ON),
+    ];
+    let cusp = [(8.0, 30.0, ON), (56.0, 18.0, ON), (20.0, 27.5, ON)];
+    let wave = [
+        (6.0, 24.0, ON),
+        (16.0, 2.0, OFF),
+        (30.0, 44.0, OFF),
+        (46.0, 4.0, OFF),
+        (58.0, 30.0, ON),
+    ];
+    let knot = [
+        (6.0, 40.0, ON),
+        (60.0, 30.0, OFF),
+        (40.0, 0.0, OFF),
+        (18.0, 44.0, OFF),
+        (58.0, 44.0, ON),
+    ];
+    let ring = [
+        (8.0, 8.0, OFF),
+        (56.0, 8.0, OFF),
+        (56.0, 40.0, OFF),
+        (8.0, 40.0, OFF),
+    ];
+    let drop = [(32.0, 4.0, ON), (58.0, 44.0, OFF), (6.0, 44.0, OFF)];
+    let tight = [(20.0, 40.0, ON), (30.0, 6.0, OFF), (36.0, 40.0, ON)];
+    vec![
+        ("corners", vec![bent(&corners, false, 3.0, 1.0)]),
+        ("translucent corners", vec![bent(&corners, false, 9.0, 0.4)]),
+        ("cusps", vec![bent(&cusp, false, 6.0, 0.6)]),
+        ("curves", vec![bent(&wave, false, 4.0, 1.0)]),
+        ("thin curves", vec![bent(&wave, false, 1.02, 1.0)]),
+        (
+            "curves that cross themselves",
+            vec![bent(&knot, false, 8.0, 0.4)],
+        ),
+        (
+            "bends tighter than the width",
+            vec![bent(&tight, false, 14.0, 0.6)],
+        ),
+        ("closed corners", vec![bent(&corners, true, 3.0, 0.6)]),
+        (
+            "loops",
+            vec![bent(&ring, true, 5.0, 0.6), bent(&drop, true, 2.0, 1.0)],
+        ),
+    ]
 }
 
 /// Kinds of strokes that programs might treat apart, each a drawing of its own, 64×48 px.
@@ -219,7 +308,10 @@ fn kinds() -> Vec<(&'static str, Scene)> {
         })
     };
     let faint = |strokes: Vec<Stroke>| strokes.into_iter().map(|s| Stroke { opacity: 0.2, ..s });
-    vec![
+    let bent = bent_kinds()
+        .into_iter()
+        .map(|(kind, strokes)| (kind, of(strokes)));
+    let mut kinds = vec![
         ("large dots", of(grid(4.6).collect())),
         ("smallest dots", of(grid(1.02).collect())),
         ("thinnest strokes", of(fan(1.02).collect())),
@@ -256,7 +348,9 @@ fn kinds() -> Vec<(&'static str, Scene)> {
                 8
             ]),
         ),
-    ]
+    ];
+    kinds.extend(bent);
+    kinds
 }
 
 /// What the engine draws of `svg` at this size, and what resvg does.

@@ -102,7 +102,7 @@ fn assert_refused(options: &[&str], words: &str) {
 
 #[test]
 fn one_element_is_one_stroke() {
-    let drawn = drawn("coffee-300", &["--form", "elements"]);
+    let drawn = drawn("coffee-300", &[]);
     let elements = drawn.text.matches("<path").count();
     assert_eq!(elements as f64, drawn.number("strokes"));
 }
@@ -120,10 +120,11 @@ fn the_smallest_file_of_as_many_strokes_is_a_fifth_shorter() {
 }
 
 #[test]
-fn an_opaque_stroke_of_the_smallest_file_takes_52_bytes_at_most() {
+fn an_opaque_capsule_of_the_smallest_file_takes_52_bytes_at_most() {
     for name in ["coffee-300", "noto-hibiscus", "noto-telescope"] {
         let options = ["--opaque", "--precision", "1", "--form", "smallest"];
-        let drawn = fitted(name, &[&["--strokes", "600"], &options[..]].concat());
+        let capsules = ["--strokes", "600", "--points", "2"];
+        let drawn = fitted(name, &[&capsules, &options[..]].concat());
         let bytes = drawn.number("bytes_per_stroke");
         assert_eq!(drawn.number("strokes"), 600.0);
         assert!(bytes <= 52.0, "{name}: {bytes}");
@@ -263,6 +264,10 @@ fn options_that_make_no_sense_are_refused() {
     assert_refused(&["--width", "-3mm"], "such as 120mm");
     assert_refused(&["--outline", "--form", "smallest"], "--outline");
     assert_refused(&["--form", "tiny"], "smallest");
+    assert_refused(
+        &["--form", "elements"],
+        "give plain, which has one element per stroke now",
+    );
     assert_refused(&["--group", "size"], "color");
 }
 

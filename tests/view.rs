@@ -152,7 +152,14 @@ fn strokes(state: &Value) -> usize {
 fn the_page_needs_nothing_from_elsewhere() {
     let place = drawn();
     let program = Program::start(&place, &["view", "a.svg", &sample()]);
-    for name in ["", "page.css", "page.js", "chart.js", "picture.js"] {
+    for name in [
+        "",
+        "page.css",
+        "page.js",
+        "viewer.js",
+        "chart.js",
+        "picture.js",
+    ] {
         let (status, body) = program.get(name);
         assert_eq!(status, 200, "{name}");
         let text = String::from_utf8(body).unwrap();

@@ -74,6 +74,19 @@ impl Runner {
         })
     }
 
+    /// Starts children with the command `host`, which starts this program inside another one, such as
+    /// `python -m strokefit`. An empty command changes nothing.
+    #[must_use]
+    pub fn within(self, host: &[OsString]) -> Self {
+        let Some((program, before)) = host.split_first() else {
+            return self;
+        };
+        Self {
+            program: program.into(),
+            args: [before, &self.args].concat(),
+        }
+    }
+
     /// Makes and measures the drawing of `case` in a child, which writes its SVG to `svg`.
     ///
     /// # Errors

@@ -37,13 +37,67 @@ impl Area {
 
     /// Calls `paint` with each row that `outline` covers, the first pixel, and the coverage, 0 to 255, of that
     /// and those to its right.
-    pub(super) fn fill(&mut self, outline: &Outline, mut paint: impl FnMut(usize, usize, &[u8])) {
+    pub(super) fn fill(&mut self, outline: &Outline, paint: impl FnMut(usize, usize, &[u8])) {
         let mut rows = NOWHERE;
         for (side, sign) in outline.sides.iter().zip([1.0, -1.0]) {
             for edge in side {
                 rows = union(&rows, &self.add(edge, sign));
             }
         }
+        self.paint(rows, paint);
+    }
+
+    /// As [`fill`](Self::fill) with an outline that may turn anywhere and cross itself. What is within it is filled by
+    /// the rule `nonzero`, once. All heights are quarters of a px, so that no edge ends within a quarter of a row.
+    pub(super) fn fill_winding(
+        &mut self,
+        outline: &Outline,
+        paint: impl FnMut(usize, usize, &[u8]),
+    ) {
+        let mut slices = Vec::new();
+        for (side, turn) in outline.sides.iter().zip([1, -1]) {
+            side.iter()
+                .for_each(|edge| self.slice(edge, turn, &mut slices));
+        }
+        slices.sort_by(|a, b| {
+            a.quarter
+                .cmp(&b.quarter)
+                .then(a.middle().total_cmp(&b.middle()))
+        });
+        let mut rows = NOWHERE;
+        for quarter in slices.chunk_by(|a, b| a.quarter == b.quarter) {
+            let y = quarter[0].quarter / 4;
+            let mut winding = 0;
+            for slice in quarter {
+                let before = winding;
+                winding += slice.turn;
+                let sign = match (before, winding) {
+                    (0, _) => 1.0,
+                    (_, 0) => -1.0,
+                    _ => continue,
+                };
+                let [top, bottom] = slice.x;
+                self.add_piece(y, Point::new(top, 0.0), Point::new(bottom, 0.25), sign);
+            }
+            rows = union(&rows, &(y..y + 1));
+        }
+        self.paint(rows, paint);
+    }
+
+    /// Appends the parts of an edge in each quarter of a row on the picture.
+    fn slice(&self, edge: &Piece, turn: i32, slices: &mut Vec<Slice>) {
+        let quarter = |y: f32| (4.0 * y).max(0.0) as usize;
+        let (top, bottom) = (quarter(edge.top.y), quarter(edge.bottom.y));
+        let x = |quarter: usize| edge.at(quarter as f32 / 4.0).x;
+        slices.extend((top..bottom.min(4 * self.height)).map(|quarter| Slice {
+            quarter,
+            x: [x(quarter), x(quarter + 1)],
+            turn,
+        }));
+    }
+
+    /// Calls `paint` with what has changed in some rows.
+    fn paint(&mut self, rows: Range<usize>, mut paint: impl FnMut(usize, usize, &[u8])) {
         let mut coverages = Vec::new();
         for y in rows {
             let span = std::mem::replace(&mut self.spans[y], NOWHERE);
@@ -114,6 +168,23 @@ impl Area {
         self.changes[at] += height * (1.0 - middle);
         self.changes[at + 1] += height * middle;
         self.spans[y] = union(&self.spans[y], &(x..x + 2));
+    }
+}
+
+/// The part of an edge in a quarter of a row.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Slice {
+    /// The quarter, counted from the top.
+    quarter: usize,
+    /// Where it begins and ends, px.
+    x: [f32; 2],
+    /// What it adds to the winding number of what is to its right.
+    turn: i32,
+}
+
+impl Slice {
+    fn middle(&self) -> f32 {
+        0.5 * (self.x[0] + self.x[1])
     }
 }
 

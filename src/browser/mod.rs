@@ -24,6 +24,7 @@
 //! ```
 
 mod area;
+mod bend;
 mod outline;
 
 use area::Area;
@@ -40,14 +41,27 @@ pub fn draw<'a>(strokes: impl Iterator<Item = &'a Stroke>, pages: &[Image]) -> V
     let (mut outline, mut area) = (Outline::default(), Area::new(width, height));
     let mut pictures: Vec<Vec<u8>> = pages.iter().map(Image::to_rgb8).collect();
     for stroke in strokes {
-        let (a, b) = stroke.path.ends();
-        outline.trace(a, b, stroke.radius);
         let paint = Paint::of(stroke);
-        area.fill(&outline, |y, x, coverages| {
+        let lay = |y: usize, x: usize, coverages: &[u8]| {
             for picture in &mut pictures {
                 paint.lay(&mut picture[3 * (y * width + x)..], coverages);
             }
-        });
+        };
+        match stroke.path.points() {
+            [only] => {
+                outline.trace(only.at, only.at, stroke.radius);
+                area.fill(&outline, lay);
+            }
+            [a, b] if a.is_on && b.is_on => {
+                outline.trace(a.at, b.at, stroke.radius);
+                area.fill(&outline, lay);
+            }
+            _ => {
+                outline.clear();
+                bend::trace(&stroke.path, stroke.radius, &mut outline);
+                area.fill_winding(&outline, lay);
+            }
+        }
     }
     let pictures = pictures.iter();
     pictures.map(|rgb| image(rgb, width, height)).collect()

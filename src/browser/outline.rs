@@ -36,21 +36,99 @@ pub(super) struct Outline {
 impl Outline {
     /// Replaces the outline by that of the stroke from `a` to `b`: two lines and four quarter circles.
     pub(super) fn trace(&mut self, a: Point, b: Point, radius: f32) {
-        self.sides.iter_mut().for_each(Vec::clear);
+        self.clear();
         let direction = (b - a).try_normalize(0.0);
         let along = direction.unwrap_or(Vector::new(1.0, 0.0)) * radius;
-        let across = Vector::new(along.y, -along.x);
-        let bulge = QUARTER_BULGE * radius;
+        let across = left_of(along);
         self.line(a + across, b + across);
-        self.arc(b, across, along, bulge);
-        self.arc(b, along, -across, bulge);
+        self.turn(b, across, along);
+        self.turn(b, along, -across);
         self.line(b - across, a - across);
-        self.arc(a, -across, -along, bulge);
-        self.arc(a, -along, across, bulge);
+        self.turn(a, -across, -along);
+        self.turn(a, -along, across);
         for side in &mut self.sides {
             side.sort_by(|e, f| e.top.y.total_cmp(&f.top.y));
         }
         self.run_on();
+    }
+
+    /// Takes everything away.
+    pub(super) fn clear(&mut self) {
+        self.sides.iter_mut().for_each(Vec::clear);
+    }
+
+    /// Adds the rectangle around the segment from `a` to `b`; `along` is the radius in its direction.
+    pub(super) fn add_line(&mut self, a: Point, b: Point, along: Vector) {
+        let across = left_of(along);
+        self.line(a + across, b + across);
+        self.line(b + across, b - across);
+        self.line(b - across, a - across);
+        self.line(a - across, a + across);
+    }
+
+    /// Adds the area that a line across a curve sweeps.
+    pub(super) fn add_curve(&mut self, curve: Curve, radius: f32) {
+        let ends = |curve: Curve| [0.0, 1.0].map(|t| curve.beside(t, radius).0);
+        let [[start, end], [back, home]] = [curve, curve.reversed()].map(ends);
+        self.beside(curve, radius, [0.0, 1.0], MAX_HALVINGS);
+        self.line(end, back);
+        self.beside(curve.reversed(), radius, [0.0, 1.0], MAX_HALVINGS);
+        self.line(home, start);
+    }
+
+    /// Adds the half disc beyond the end `b` of a stroke that comes `along`.
+    pub(super) fn add_cap(&mut self, b: Point, along: Vector) {
+        let across = left_of(along);
+        self.turn(b, across, along);
+        self.turn(b, along, -across);
+        self.line(b - across, b + across);
+    }
+
+    /// Adds the sector of a disc on the outside of a bend at `p`, from the direction `before` to `after`. If it is more
+    /// than a quarter, its first arc is a quarter.
+    pub(super) fn add_join(&mut self, p: Point, before: Vector, after: Vector) {
+        let turns_left = before.perp(&after) < 0.0;
+        let [from, to] = if turns_left {
+            [left_of(-after), left_of(-before)]
+        } else {
+            [left_of(before), left_of(after)]
+        };
+        self.line(p, p + from);
+        if before.dot(&after) > 0.0 {
+            self.turn(p, from, to);
+        } else {
+            self.turn(p, from, before);
+            self.turn(p, before, to);
+        }
+        self.line(p + to, p);
+    }
+
+    /// The left side of a part of a curve, as parabolas. One that is [`MAX_BULGE`] away in its middle is halved.
+    fn beside(&mut self, curve: Curve, radius: f32, [start, end]: [f32; 2], halvings: u32) {
+        let half = 0.5 * (start + end);
+        let [(from, d_from), (middle, _), (to, d_to)] =
+            [start, half, end].map(|t| curve.beside(t, radius));
+        let (gap, turn) = (to - from, d_from.perp(&d_to));
+        // How far it is along both tangents to where they cross.
+        let (ahead, behind) = (gap.perp(&d_to) / turn, d_from.perp(&gap) / turn);
+        let knee = if ahead * behind > 0.0 {
+            from + d_from * ahead
+        } else {
+            from + gap * 0.5
+        };
+        let is_close = (on_parabola(from, knee, to, 0.5) - middle).norm() <= MAX_BULGE;
+        let is_plain = ahead * behind > 0.0 || d_from.dot(&d_to) > 0.0;
+        if halvings == 0 || is_close && is_plain {
+            monotone([from, knee, to]).for_each(|part| self.chords(part));
+            return;
+        }
+        self.beside(curve, radius, [start, half], halvings - 1);
+        self.beside(curve, radius, [half, end], halvings - 1);
+    }
+
+    /// An arc of a quarter or less.
+    fn turn(&mut self, center: Point, from: Vector, to: Vector) {
+        self.arc(center, from, to, QUARTER_BULGE * from.norm());
     }
 
     fn line(&mut self, from: Point, to: Point) {
@@ -76,22 +154,30 @@ impl Outline {
         }
     }
 
-    /// The chords of a parabola that does not turn back in y. Snapping its upper end shifts the whole parabola.
-    /// Ends of chords are snapped as well, but never below the snapped lower end.
+    /// The chords of a parabola that does not turn back in y. Snapping its upper end shifts the whole parabola. The
+    /// end of a tall chord moves along it to a whole px, that of another only in y, but never below the snapped
+    /// lower end.
     fn chords(&mut self, [from, knee, to]: [Point; 3]) {
         let is_down = from.y <= to.y;
         let (start, end) = if is_down { (from, to) } else { (to, from) };
         let (mut top, last) = (snapped(start), snapped(end));
         let shift = Vector::new(0.0, top.y - start.y);
         let count = chord_count(start, knee, end);
+        let mut before = top;
         for i in 1..=count {
-            let moved = || on_parabola(start, knee, end, i as f32 / count as f32) + shift;
-            let mut bottom = if i < count { snapped(moved()) } else { last };
+            let place = on_parabola(start, knee, end, i as f32 / count as f32) + shift;
+            let mut bottom = if i == count { last } else { snapped(place) };
+            if i < count && place.y - before.y >= TALL {
+                let y = place.y.round().min(last.y);
+                let slope = (place.x - top.x) / (place.y - top.y);
+                bottom = Point::new(place.x - slope * (place.y - y), y);
+            }
             bottom.y = bottom.y.min(last.y);
             if bottom.y > top.y {
                 self.push(is_down, top, bottom, i < count);
                 top = bottom;
             }
+            before = place;
         }
     }
 
@@ -121,6 +207,60 @@ impl Outline {
             }
         }
     }
+}
+
+/// Enough for the sharpest bend of a parabola.
+const MAX_HALVINGS: u32 = 10;
+
+/// A parabola whose control point is at neither end.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Curve(pub(super) [Point; 3]);
+
+impl Curve {
+    fn reversed(self) -> Self {
+        let Self([a, c, b]) = self;
+        Self([b, c, a])
+    }
+
+    /// The direction at `t`; that of the end where the curve comes to a halt.
+    pub(super) fn direction(self, t: f32) -> Vector {
+        let Self([a, c, b]) = self;
+        let speed = (c - a) * (1.0 - t) + (b - c) * t;
+        let direction = speed.try_normalize(0.0).or((b - c).try_normalize(0.0));
+        direction.unwrap_or(Vector::new(1.0, 0.0))
+    }
+
+    /// The point `radius` to the left of that at `t`, and the direction there.
+    fn beside(self, t: f32, radius: f32) -> (Point, Vector) {
+        let Self([a, c, b]) = self;
+        let direction = self.direction(t);
+        (
+            on_parabola(a, c, b, t) + left_of(direction) * radius,
+            direction,
+        )
+    }
+
+    /// The point where a curve turns back that lies on a line, or nearly so.
+    pub(super) fn turning_point(self) -> Option<Point> {
+        let Self([a, c, b]) = self;
+        let (there, back) = (c - a, b - c);
+        let longer = if there.norm() > back.norm() {
+            there
+        } else {
+            back
+        };
+        let is_straight = there.perp(&back).abs() <= FLAT * longer.norm();
+        let t = there.dot(&longer) / (there - back).dot(&longer);
+        (is_straight && there.dot(&back) < 0.0).then(|| on_parabola(a, c, b, t))
+    }
+}
+
+/// Width in px within which a curve is a line.
+const FLAT: f32 = 0.01;
+
+/// The vector to the left of another, of its length, as seen with y down.
+fn left_of(along: Vector) -> Vector {
+    Vector::new(along.y, -along.x)
 }
 
 /// How far the parabola of a quarter is outside of a circle of radius 1. That of half an arc is a quarter as far.
@@ -154,6 +294,9 @@ fn chord_count(start: Point, knee: Point, end: Point) -> u32 {
 }
 
 const MAX_CHORDS: u32 = 64;
+
+/// Height of a tall chord, px.
+const TALL: f32 = 2.0;
 
 fn on_parabola(start: Point, knee: Point, end: Point, t: f32) -> Point {
     let u = 1.0 - t;

@@ -230,15 +230,17 @@ impl NameColumn {
     fn head(&self) -> String {
         let width = self.0;
         format!(
-            "{:width$}  strokes      bytes        s  fidelity  agreement",
+            "{:width$}  strokes   points      bytes        s  fidelity  agreement",
             "picture"
         )
     }
 
     fn row(&self, job: &Job<'_>, drawn: &Drawn) -> String {
         let (width, name) = (self.0, job.input.display().to_string());
-        let (strokes, bytes, wall) = (
-            drawn.judged.fit.scene.len(),
+        let scene = &drawn.judged.fit.scene;
+        let (strokes, points, bytes, wall) = (
+            scene.len(),
+            scene.points(),
             drawn.judged.svg.len(),
             drawn.wall.as_secs_f64(),
         );
@@ -247,7 +249,7 @@ impl NameColumn {
             drawn.judged.verdict.agreement.psnr_db,
         );
         format!(
-            "{name:width$}  {strokes:>7} {bytes:>10} {wall:>8.2}  {fidelity:>5.2} dB   {agreement:>5.2} dB"
+            "{name:width$}  {strokes:>7} {points:>8} {bytes:>10} {wall:>8.2}  {fidelity:>5.2} dB   {agreement:>5.2} dB"
         )
     }
 }

@@ -1,5 +1,6 @@
 //! `strokefit bench`: measurements.
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
@@ -115,12 +116,13 @@ impl Benchmark {
         &self,
         folder: &Path,
         files: &mut ResultFolder<'_>,
+        host: &[OsString],
         verbosity: Verbosity,
     ) -> Result<usize> {
         match self {
-            Self::Pareto(pareto) => pareto.run(folder, files, verbosity),
+            Self::Pareto(pareto) => pareto.run(folder, files, host, verbosity),
             Self::Stability(stability) => stability.run(files),
-            Self::Scaling(scaling) => scaling.run(files),
+            Self::Scaling(scaling) => scaling.run(files, host),
             Self::Case { .. } => Ok(0),
         }
     }
@@ -156,9 +158,10 @@ impl Pareto {
         &self,
         folder: &Path,
         files: &mut ResultFolder<'_>,
+        host: &[OsString],
         verbosity: Verbosity,
     ) -> Result<usize> {
-        let runner = Runner::new(CHILD)?;
+        let runner = Runner::new(CHILD)?.within(host);
         let measure = |case: &_, svg: &_| runner.case(case, svg);
         let pictures = &self.pictures;
         let (work, peers) = (self.work(), installed());
@@ -194,8 +197,8 @@ impl Stability {
 }
 
 impl Scaling {
-    fn run(&self, files: &mut ResultFolder<'_>) -> Result<usize> {
-        let runner = Runner::new(CHILD)?;
+    fn run(&self, files: &mut ResultFolder<'_>, host: &[OsString]) -> Result<usize> {
+        let runner = Runner::new(CHILD)?.within(host);
         let measure = |point: &_| runner.point(point);
         let report = scaling::run(self.extents.short, self.picture.clone(), &measure, &mut say)?;
         files.text("scaling.csv", &report.table().csv())?;
@@ -213,7 +216,7 @@ fn say(line: &str) {
     let _ = output::Output::Stdout.write(format!("{line}\n").as_bytes());
 }
 
-pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
+pub(super) fn run(args: &Args, host: &[OsString], verbosity: Verbosity) -> Result<Status> {
     let folder = match &args.benchmark {
         Benchmark::Pareto(Pareto { extents, .. })
         | Benchmark::Stability(Stability { extents, .. })
@@ -229,7 +232,7 @@ pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
         }
     };
     let mut files = ResultFolder::new(folder, &mut tell)?;
-    let failures = args.benchmark.run(folder, &mut files, verbosity)?;
+    let failures = args.benchmark.run(folder, &mut files, host, verbosity)?;
     verbosity.say(format_args!("{}: {failures} failed", folder.display()));
     Ok(if failures == 0 {
         Status::Done

@@ -4,7 +4,7 @@
 use std::time::Duration;
 
 use strokefit::fit::{Colors, MAX_STROKES};
-use strokefit::scene::MAX_PRECISION;
+use strokefit::scene::{MAX_POINTS, MAX_PRECISION};
 
 /// More threads than any machine has cores only waste memory.
 const MAX_THREADS: usize = 1024;
@@ -25,6 +25,10 @@ pub(super) fn bytes(text: &str) -> Parsed<usize> {
 
 pub(super) fn stages(text: &str) -> Parsed<usize> {
     whole(text, 1..=MAX_STROKES)
+}
+
+pub(super) fn points(text: &str) -> Parsed<usize> {
+    whole(text, 2..=MAX_POINTS)
 }
 
 pub(super) fn threads(text: &str) -> Parsed<usize> {

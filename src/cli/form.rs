@@ -28,13 +28,14 @@ pub(super) struct Args {
 
 /// The forms that a file of strokes can have, with their help; outlines have a flag of their own.
 fn form() -> impl TypedValueParser<Value = Form> {
-    words::one_of([
+    let forms = [
         (Form::Plain, "One stroke"),
         (
             Form::Smallest,
             "As many strokes as possible: fewest bytes, hardest to edit",
         ),
-    ])
+    ];
+    words::one_of_or_former(forms, &["elements"])
 }
 
 /// The groupings, with their help.

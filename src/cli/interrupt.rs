@@ -81,12 +81,12 @@ impl Observer for Interrupt {
 
 /// A signal that asked the program to end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Signal(u8);
+pub(super) struct Signal(u8);
 
 impl Signal {
     /// Ends the program the way the signal does, so that a shell's loop over files ends with it. Where
     /// that is not possible, gives the status that shells report for it.
-    pub(crate) fn end(self) -> u8 {
+    pub(super) fn end(self) -> u8 {
         #[cfg(unix)]
         let _ = signal_hook::low_level::emulate_default_handler(self.0.into());
         128 + self.0

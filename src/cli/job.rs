@@ -232,10 +232,16 @@ fn tell_dropped(dropped: Dropped, verbosity: Verbosity) {
         non_finite,
         invisible,
         off_page,
+        points,
     } = dropped;
     if dropped.total() > 0 {
         verbosity.detail(format_args!(
             "dropped strokes: {non_finite} not finite, {invisible} invisible, {off_page} off the page"
+        ));
+    }
+    if points > 0 {
+        verbosity.detail(format_args!(
+            "dropped points that rounding made superfluous: {points}"
         ));
     }
 }

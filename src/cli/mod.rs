@@ -1,4 +1,6 @@
-//! Arguments, subcommands and exit statuses.
+//! The command line: arguments, subcommands and exit statuses.
+//!
+//! [`main`] is the whole program. Packages for other languages start it as `strokefit` does.
 
 mod batch;
 mod bench;
@@ -26,24 +28,36 @@ mod usage;
 mod view;
 mod words;
 
+use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::{self, Write};
-use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
 use hint::Hint;
 use interrupt::Signal;
-pub(crate) use usage::parse;
+use usage::parse;
+
+/// Runs the program and returns its exit status. `args` begin with the program's name. `host` is the command that starts
+/// the program inside another one, such as `python -m strokefit`; it is empty for a program of its own.
+pub fn main(args: Vec<OsString>, host: &[OsString]) -> u8 {
+    let status = match parse(args) {
+        Ok(args) => run(&args, host).unwrap_or_else(|error| fail(&error)),
+        Err(status) => status,
+    };
+    // Another program's end does not write what is left here.
+    let _ = io::stdout().flush();
+    status.leave()
+}
 
 /// Turns a raster picture into an editable SVG made of strokes.
 ///
-/// A stroke is a line segment with round caps. strokefit puts strokes where the drawing differs most from
+/// A stroke is a line, a bent line or a curve with round caps. strokefit puts strokes where the drawing differs most from
 /// the picture, improves them by gradient descent, and repeats. Then it writes the SVG, renders it
 /// with resvg, and reports how faithful it is.
 #[derive(Debug, Parser)]
 #[command(version, after_help = EXAMPLES, after_long_help = EXAMPLES_AND_STATUSES)]
-pub(crate) struct Args {
+struct Args {
     #[command(subcommand)]
     command: Command,
     #[command(flatten)]
@@ -114,7 +128,7 @@ impl Verbosity {
 
 /// How the command ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Status {
+enum Status {
     /// All is well.
     Done,
     /// Nothing was made.
@@ -147,28 +161,28 @@ impl Status {
         }
     }
 
-    /// Leaves with this status, by the signal where one was the cause.
-    pub(crate) fn leave(self) -> ExitCode {
-        ExitCode::from(match self {
+    /// The number of this status. If a signal was the cause, it ends the process.
+    fn leave(self) -> u8 {
+        match self {
             Self::Done => 0,
             Self::Failed => 1,
             Self::Usage => 2,
             Self::TargetMissed => 3,
             Self::Disagrees => 4,
             Self::Interrupted(signal) => signal.end(),
-        })
+        }
     }
 }
 
 /// Does what the arguments ask for.
-pub(crate) fn run(args: &Args) -> anyhow::Result<Status> {
+fn run(args: &Args, host: &[OsString]) -> anyhow::Result<Status> {
     strokefit::verify::silence_panics();
     match &args.command {
         Command::Fit(fit) => fit::run(fit, args.verbosity),
         Command::Refine(refine) => refine::run(refine, args.verbosity),
         Command::Check(check) => check::run(check, args.verbosity),
         Command::Render(render) => render::run(render),
-        Command::Bench(bench) => bench::run(bench, args.verbosity),
+        Command::Bench(bench) => bench::run(bench, host, args.verbosity),
         Command::View(view) => view::run(view),
         Command::Lab(lab) => lab::run(lab, args.verbosity),
         Command::Completions(completions) => manual::complete(completions),
@@ -177,7 +191,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Status> {
 }
 
 /// Says what went wrong in one line, and what to do in another where there is advice.
-pub(crate) fn fail(error: &anyhow::Error) -> Status {
+fn fail(error: &anyhow::Error) -> Status {
     let (wrong, hint) = Hint::split(error);
     complain(format_args!("error: {wrong}"));
     if let Some(hint) = hint {

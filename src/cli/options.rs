@@ -78,6 +78,9 @@ pub(super) struct Look {
     /// gives all edges the same slope
     #[arg(long, value_name = "EDGE", default_value = "smoothstep")]
     coverage: CoverageSchedule,
+    /// Most points of a stroke, 2 or more. 2 draws line segments alone [default: as many as pay]
+    #[arg(long, value_name = "N", value_parser = domain::points, allow_negative_numbers = true)]
+    points: Option<usize>,
     /// Number of stages, each a layer of the SVG [default: chosen from the budget]
     #[arg(long, value_name = "N", value_parser = domain::stages, allow_negative_numbers = true)]
     stages: Option<usize>,
@@ -133,6 +136,7 @@ impl Options {
             progressive: look.progressive,
             opaque: look.opaque,
             coverage: look.coverage,
+            points: look.points,
             stages: look.stages,
             polish: !look.no_polish,
             colors: self.colors.colors(),

@@ -1,6 +1,5 @@
 //! Parses the arguments. Help begins with examples; a refusal is one line and a hint.
 
-use std::env;
 use std::ffi::OsString;
 use std::io;
 
@@ -26,9 +25,9 @@ pub(super) fn command() -> Command {
     })
 }
 
-/// The arguments of the process, or the status to leave with: help was shown, or an error.
-pub(crate) fn parse() -> Result<Args, Status> {
-    match understand(env::args_os().collect()) {
+/// The parsed arguments, or the status to leave with: help was shown, or an error.
+pub(super) fn parse(args: Vec<OsString>) -> Result<Args, Status> {
+    match understand(args) {
         Ok(Understood::Run(args)) => Ok(*args),
         Ok(Understood::Print(text)) => Err(match Output::Stdout.write(text.as_bytes()) {
             Ok(()) => Status::Done,

@@ -3,7 +3,6 @@
 use super::base::Base;
 use super::config::{Budget, Config, MAX_STROKES};
 use super::file::RenderedFile;
-use super::points;
 use super::recipe::Recipe;
 use super::result::Stop;
 use crate::image::Image;
@@ -20,7 +19,7 @@ pub(super) fn strokes(
     target: &Image,
 ) -> Option<usize> {
     let kept = base.map_or(0, Base::bytes);
-    let share = if points::are_allowed(config) {
+    let share = if config.allows_points() {
         recipe.points.capsules
     } else {
         1.0
@@ -43,7 +42,7 @@ pub(super) fn max_strokes(limit: Option<usize>, base: Option<&Base>) -> usize {
 }
 
 /// Bytes of a typical stroke, to estimate how many strokes a budget of bytes allows.
-fn typical_bytes(config: &Config, target: &Image) -> usize {
+pub(super) fn typical_bytes(config: &Config, target: &Image) -> usize {
     // At two thirds of the picture no decimal is 0; and most strokes are about as short as this one.
     let place = |share: f32, step: f32| {
         let [x, y] = [target.width(), target.height()].map(|side| side as f32 * share);

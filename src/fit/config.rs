@@ -7,7 +7,7 @@ use super::recipe::{Preset, Recipe};
 use super::simd::Simd;
 use crate::coverage::CoverageSchedule;
 use crate::error::{Error, ErrorKind, Result};
-use crate::scene::{MAX_PRECISION, Rgb, Scene, quantum};
+use crate::scene::{MAX_POINTS, MAX_PRECISION, Rgb, Scene, quantum};
 use crate::svg::WriteOptions;
 use crate::threads::Workers;
 
@@ -144,6 +144,11 @@ impl Config {
         self.recipe.unwrap_or(Recipe::of(self.preset))
     }
 
+    /// Whether strokes may have more than two points.
+    pub(super) fn allows_points(&self) -> bool {
+        self.points.is_none_or(|most| most > 2)
+    }
+
     /// The quality that sets the price of a stroke, unless strokes are free.
     pub(super) fn effective_quality(&self) -> Option<f64> {
         let Budget {
@@ -178,6 +183,11 @@ impl Config {
         self.recipe().check()?;
         if self.stages == Some(0) {
             return refuse("0 stages add no stroke: give 1 or more".into());
+        }
+        if let Some(points) = self.points.filter(|n| !(2..=MAX_POINTS).contains(n)) {
+            return refuse(format!(
+                "{points} points of a stroke are out of range: give 2 to {MAX_POINTS}"
+            ));
         }
         if self.file.precision > MAX_PRECISION {
             return refuse(format!(
@@ -224,5 +234,14 @@ impl Execution {
     /// The worker threads.
     pub(crate) fn pool(&self) -> Result<Workers> {
         Workers::new(self.threads.unwrap_or(0))
+    }
+
+    /// Runs `work`, such as the judging of a drawing, with these worker threads. Without this, it takes the threads
+    /// of the whole process, which a process that was forked does not have.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Config`] when the system does not start so many threads.
+    pub fn install<R: Send>(&self, work: impl FnOnce() -> R + Send) -> Result<R> {
+        Ok(self.pool()?.install(work))
     }
 }

@@ -39,8 +39,8 @@ pub(super) fn descend(
     Ok(())
 }
 
-/// What a joint course does between its steps: it switches to full resolution after its coarse share, and relocates
-/// strokes at intervals.
+/// What a joint course does between its steps: it switches to full resolution after its coarse share, and at intervals it
+/// changes the points of strokes and relocates strokes.
 fn rearrange(session: &mut Session<'_>, descent: &mut Descent, step: usize, done: f32) {
     let Some(limit) = descent.course.joint else {
         return;
@@ -53,14 +53,15 @@ fn rearrange(session: &mut Session<'_>, descent: &mut Descent, step: usize, done
     if step == 0 || !step.is_multiple_of(relocation.every) || done >= relocation.until {
         return;
     }
+    let changes_points = session.recipe.points.lasts(done) && session.config.allows_points();
+    if changes_points {
+        let sources = points::rearrange(session);
+        descent.follow(&sources, &session.drawing, &session.recipe);
+    }
+    // Relocation comes last, because it fills the places that joined strokes have left.
     let wanted = relocation::wanted(session);
     if session.timer.affordable(wanted) == wanted {
         let sources = relocation::relocate(session, limit, std::convert::identity);
-        descent.follow(&sources, &session.drawing, &session.recipe);
-    }
-    let lasts = (session.recipe.points.from..session.recipe.points.until).contains(&done);
-    if lasts && points::are_allowed(session.config) {
-        let sources = points::rearrange(session);
         descent.follow(&sources, &session.drawing, &session.recipe);
     }
 }

@@ -54,8 +54,8 @@ pub use memory::predicted_rss_bytes;
 pub use objective::Objective;
 pub use progress::{CancelToken, Observer, Progress};
 pub use recipe::{
-    AdamSettings, BackgroundChoice, Correction, Domain, EdgeShape, Pens, Points, Polish, Preset, Rates,
-    Recipe, Recoloring, Relocation, Rounds, Settling, Stages, TimeShares,
+    AdamSettings, BackgroundChoice, Correction, Domain, EdgeShape, Joins, Pens, Points, Polish,
+    Preset, Rates, Recipe, Recoloring, Relocation, Rounds, Settling, Stages, TimeShares,
 };
 pub use result::{Fit, StageRecord, Stop};
 pub use simd::Simd;

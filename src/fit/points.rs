@@ -7,11 +7,12 @@
 //! no room left, points that gain more take the place of points that are missed less.
 
 mod edits;
+mod joins;
 mod terrain;
 
 use rayon::prelude::*;
 
-use super::config::Config;
+use super::budget::typical_bytes;
 use super::drawing::Drawing;
 use super::recipe::Points;
 use super::session::Session;
@@ -25,7 +26,34 @@ const LEAST: usize = 4;
 /// Changes the points of the free strokes where that pays. Returns the former index of each number of the free strokes,
 /// `None` for a new one.
 pub(super) fn rearrange(session: &mut Session<'_>) -> Vec<Option<usize>> {
-    let (points, price) = (session.recipe.points, session.price.of_point());
+    let spare = spare(session);
+    let joined = joins::join(session, spare);
+    let edited = edit(session, spare);
+    match joined {
+        None => edited,
+        Some(joined) => edited.iter().map(|source| joined[(*source)?]).collect(),
+    }
+}
+
+/// What a stroke is worth that could be spared. A freed stroke would be used where it is worth more, and a point has to
+/// be worth as much for its bytes.
+fn spare(session: &mut Session<'_>) -> f32 {
+    let share = session.recipe.points.spared;
+    let mut worth = session.drawing.judge().worth;
+    if worth.is_empty() {
+        return 0.0;
+    }
+    let at = (share * worth.len() as f32) as usize;
+    let at = at.min(worth.len() - 1);
+    worth.select_nth_unstable_by(at, f32::total_cmp).1.max(0.0)
+}
+
+/// Chooses an edit for each stroke that gains by one. A stroke could be spared that is worth `spare`.
+fn edit(session: &mut Session<'_>, spare: f32) -> Vec<Option<usize>> {
+    let points = session.recipe.points;
+    let stroke_bytes = typical_bytes(session.config, &session.target) as f32;
+    let share = session.price.point_bytes() as f32 / stroke_bytes;
+    let price = session.price.of_point().max(spare * share / points.gain);
     let room = room(session);
     let most = session.config.points.unwrap_or(usize::MAX);
     let drawing = &mut session.drawing;
@@ -55,11 +83,6 @@ fn room(session: &Session<'_>) -> usize {
     by_strokes.min(by_bytes)
 }
 
-/// Whether strokes of this fit may have more than two points.
-pub(super) fn are_allowed(config: &Config) -> bool {
-    config.points.is_none_or(|most| most > 2)
-}
-
 /// The best edit of each kind of one stroke.
 #[derive(Debug, Default)]
 struct Options {
@@ -81,14 +104,26 @@ impl Options {
         }
         let terrain = Terrain::new(survey, stroke, index);
         let may_grow = stroke.points.len() < most;
+        let fits = |edit: &Edit| written_points(edit.of(stroke)) <= most;
+        let insertion = || edits::best_insertion(&terrain, points).filter(fits);
         Self {
-            insertion: may_grow
-                .then(|| edits::best_insertion(&terrain, points))
-                .flatten(),
+            insertion: may_grow.then(insertion).flatten(),
             removal: edits::best_removal(&terrain),
-            toggle: edits::best_toggle(&terrain),
+            toggle: edits::best_toggle(&terrain).filter(fits),
         }
     }
+}
+
+/// Most points of a stroke in its file. A curve that turns back is written as a corner, and then the implied points at its
+/// ends are points.
+fn written_points(stroke: StrokeRef<'_>) -> usize {
+    let next = stroke.off.iter().cycle().skip(1);
+    let pairs = stroke.off.iter().zip(next);
+    let last = usize::from(!stroke.closed);
+    let implied = pairs
+        .take(stroke.off.len() - last)
+        .filter(|(a, b)| **a && **b);
+    stroke.points.len() + implied.count()
 }
 
 /// At most one edit of each stroke. A point costs `price`, and at most `room` points may be added.
@@ -106,7 +141,9 @@ fn choose(
         *chosen = leaving.or_else(|| options.toggle.take_if(|edit| edit.gain > price * 0.1));
     }
     let wanted = (points.share * count as f32).ceil() as usize;
-    let mut coming = sorted(&mut options, |o| o.insertion.take_if(|edit| edit.gain > price));
+    let mut coming = sorted(&mut options, |o| {
+        o.insertion.take_if(|edit| edit.gain > price)
+    });
     coming.retain(|edit| chosen[edit.stroke].is_none());
     let mut coming = coming.into_iter();
     for edit in coming.by_ref().take(wanted.min(room)) {

@@ -214,8 +214,27 @@ pub struct Points {
     pub reach: f32,
     /// Lines and curves shorter than this, px, get no point.
     pub shortest: f32,
+    /// What a point is expected to gain once it is fitted, in units of the gain that is found.
+    pub gain: f32,
     /// What a control point is taken to gain, in units of what it is found to.
     pub smoothness: f32,
+    /// The strokes could spare one that is worth as much as the stroke that this share of them is worth less than.
+    pub spared: f32,
+    /// Which strokes may be joined end to end.
+    pub joins: Joins,
+}
+
+/// Which strokes may be joined end to end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Joins {
+    /// Farthest that two ends may be apart, px.
+    pub reach: f32,
+    /// The same in units of the mean width of both strokes.
+    pub gap: f32,
+    /// Largest difference of channels, of opacities, and of radii in units of the larger one.
+    pub alike: f32,
+    /// Most pairs at a time, as a share of the strokes.
+    pub share: f32,
 }
 
 /// Rounds of descent, between which colours or pens are chosen again. One schedule of rates spans all of them.
@@ -374,6 +393,13 @@ impl Rates {
     }
 }
 
+impl Points {
+    /// Whether points come and go when a share `done` of the polish is over.
+    pub(super) fn lasts(&self, done: f32) -> bool {
+        (self.from..self.until).contains(&done)
+    }
+}
+
 impl Recipe {
     /// Refuses numbers that no fit can run with. Step sizes are not checked: parameters that leave their domain are
     /// clamped to it, and a stroke with NaN parameters is dropped and counted.
@@ -394,6 +420,11 @@ impl Recipe {
             ("pens.ladder − 1", self.pens.ladder - 1.0),
             ("optimizer.radius_factors", self.optimizer.radius_factors[0]),
             ("edge.final_slope", self.edge.final_slope as f32),
+            ("points.per_stroke", self.points.per_stroke),
+            ("points.gain", self.points.gain),
+            ("points.reach", self.points.reach),
+            ("points.shortest", self.points.shortest),
+            ("points.smoothness", self.points.smoothness),
             (
                 "correction.db_per_doubling",
                 self.correction.db_per_doubling as f32,
@@ -409,6 +440,12 @@ impl Recipe {
             ("polish.coarse_share", self.polish.coarse_share),
             ("relocation.share", self.relocation.share),
             ("relocation.until", self.relocation.until),
+            ("points.from", self.points.from),
+            ("points.until", self.points.until),
+            ("points.share", self.points.share),
+            ("points.swapped", self.points.swapped),
+            ("points.capsules", self.points.capsules),
+            ("points.filled", self.points.filled),
             ("pens.share", self.pens.share as f32),
             ("correction.least_part", self.correction.least_part as f32),
             ("stages.paying_share", self.stages.paying_share as f32),

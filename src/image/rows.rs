@@ -54,18 +54,8 @@ impl<'a, T> Rows<'a, T> {
             stride,
             samples,
         } = *self;
+        check_shape(width, height, channels)?;
         let refuse = |message: String| Err(Error::new(ErrorKind::Picture, message));
-        if width == 0 || height == 0 {
-            return refuse(format!(
-                "a picture of {width}×{height} has no pixels: give both sides 1 px or more"
-            ));
-        }
-        if !(1..=4).contains(&channels) {
-            return refuse(format!(
-                "a pixel of {channels} samples has no meaning: \
-                 give 1 (grey), 2 (grey, alpha), 3 (RGB) or 4 (RGBA)"
-            ));
-        }
         let row = width.checked_mul(channels).filter(|&row| row <= stride);
         let Some(row) = row else {
             return refuse(format!(
@@ -125,6 +115,23 @@ mod sealed {
     impl Sealed for f32 {}
 }
 
+/// Fails where there can be no picture of these sides and samples per pixel.
+fn check_shape(width: usize, height: usize, channels: usize) -> Result<()> {
+    let refuse = |message: String| Err(Error::new(ErrorKind::Picture, message));
+    if width == 0 || height == 0 {
+        return refuse(format!(
+            "a picture of {width}×{height} has no pixels: give both sides 1 px or more"
+        ));
+    }
+    if !(1..=4).contains(&channels) {
+        return refuse(format!(
+            "a pixel of {channels} samples has no meaning: \
+             give 1 (grey), 2 (grey, alpha), 3 (RGB) or 4 (RGBA)"
+        ));
+    }
+    Ok(())
+}
+
 /// The picture that the rows are.
 pub(super) fn image<T: Sample>(rows: Rows<'_, T>) -> Result<Image> {
     rows.check()?;
@@ -134,15 +141,46 @@ pub(super) fn image<T: Sample>(rows: Rows<'_, T>) -> Result<Image> {
     planar(rows, |sample| sample.level().unwrap_or(0.0))
 }
 
+/// The picture whose channel `c` of the pixel (x, y) is `sample(x, y, c)`.
+pub(super) fn sampled<T: Sample>(
+    width: usize,
+    height: usize,
+    channels: usize,
+    sample: impl Fn(usize, usize, usize) -> T,
+) -> Result<Image> {
+    check_shape(width, height, channels)?;
+    let mut foreign = None;
+    let plane = |c: usize| {
+        let mut plane = Vec::with_capacity(width.saturating_mul(height));
+        for y in 0..height {
+            plane.extend((0..width).map(|x| {
+                let sample = sample(x, y, c);
+                sample.level().unwrap_or_else(|| {
+                    foreign.get_or_insert_with(|| no_level(x, y, sample));
+                    0.0
+                })
+            }));
+        }
+        plane
+    };
+    let image = assembled(width, height, channels, plane);
+    match foreign {
+        Some(error) => Err(error),
+        None => image,
+    }
+}
+
 /// The first sample that is on no scale.
 fn off_scale<T: Sample>(rows: Rows<'_, T>) -> Option<Error> {
     rows.pixels().enumerate().find_map(|(i, pixel)| {
         let sample = pixel.iter().find(|sample| sample.level().is_none())?;
-        let (x, y) = (i % rows.width, i / rows.width);
-        let message =
-            format!("a sample of the pixel ({x}, {y}) is {sample}: give numbers from 0 to 1");
-        Some(Error::new(ErrorKind::Picture, message))
+        Some(no_level(i % rows.width, i / rows.width, sample))
     })
+}
+
+fn no_level(x: usize, y: usize, sample: impl fmt::Display) -> Error {
+    let message = format!("a sample of the pixel ({x}, {y}) is {sample}: give numbers from 0 to 1");
+    Error::new(ErrorKind::Picture, message)
 }
 
 /// The picture of rows that were checked, each sample as a value of 0..1.
@@ -152,15 +190,25 @@ pub(super) fn planar<T: Copy>(rows: Rows<'_, T>, level: impl Fn(T) -> f32) -> Re
             .map(|pixel| level(pixel[c]))
             .collect::<Vec<_>>()
     };
-    let planes = if rows.channels < 3 {
+    assembled(rows.width, rows.height, rows.channels, plane)
+}
+
+/// The picture of the planes of 1 to 4 channels.
+fn assembled(
+    width: usize,
+    height: usize,
+    channels: usize,
+    mut plane: impl FnMut(usize) -> Vec<f32>,
+) -> Result<Image> {
+    let planes = if channels < 3 {
         let grey = plane(0);
         [grey.clone(), grey.clone(), grey]
     } else {
         [plane(0), plane(1), plane(2)]
     };
-    let image = Image::new(rows.width, rows.height, planes)?;
-    if rows.channels.is_multiple_of(2) {
-        image.with_alpha(plane(rows.channels - 1))
+    let image = Image::new(width, height, planes)?;
+    if channels.is_multiple_of(2) {
+        image.with_alpha(plane(channels - 1))
     } else {
         Ok(image)
     }
@@ -207,6 +255,23 @@ mod tests {
         .unwrap();
         assert_eq!(rgba.planes(), rgb.planes());
         assert_eq!(rgba.alpha(), Some(&[1.0, 1.0, 1.0, 0.0][..]));
+    }
+
+    #[test]
+    fn a_function_of_the_place_says_the_same() {
+        let samples: Vec<u8> = (0..24).map(|i| 10 * i).collect();
+        for channels in 1..=4 {
+            let packed = image(Rows::packed(3, 2, channels, &samples)).unwrap();
+            let at = |x, y, c| samples[(3 * y + x) * channels + c];
+            assert_eq!(sampled(3, 2, channels, at).unwrap(), packed);
+        }
+        let message = |width, channels, value: f32| {
+            let outcome = sampled(width, 2, channels, |x, y, _| [0.0, value][x * y]);
+            outcome.unwrap_err().to_string()
+        };
+        assert!(message(0, 3, 0.0).contains("0×2"));
+        assert!(message(2, 5, 0.0).contains("give 1 (grey)"));
+        assert!(message(2, 3, 9.0).contains("(1, 1) is 9"));
     }
 
     #[test]

@@ -19,6 +19,8 @@ pub struct FitReport {
     pub input: Input,
     /// Strokes in the drawing.
     pub strokes: usize,
+    /// Points of all their paths together.
+    pub points: usize,
     /// Strokes that were dropped because they became non-finite or could not be seen.
     pub dropped: usize,
     /// How many of them for which reason.
@@ -161,6 +163,7 @@ impl FitReport {
             schema: SCHEMA,
             input: Input::new(run.input, &fit.target),
             strokes,
+            points: fit.scene.points(),
             dropped: fit.dropped.total(),
             dropped_for: fit.dropped,
             stages: fit.stages.iter().map(StageEntry::from).collect(),
@@ -219,6 +222,7 @@ mod tests {
                 height: 3,
             },
             strokes: 9,
+            points: 20,
             dropped: 1,
             dropped_for: Dropped {
                 off_page: 1,
@@ -260,6 +264,7 @@ mod tests {
             "schema": 1,
             "input": {"path": "a.png", "width": 4, "height": 3},
             "strokes": 9,
+            "points": 20,
             "dropped": 1,
             "dropped_for": {"non_finite": 0, "invisible": 0, "off_page": 1, "points": 5},
             "stages": [{"index": 1, "strokes": 9, "iterations": 40, "wall_s": 0.25, "psnr_db": 31.5, "layer_psnr_db": 30.5}],

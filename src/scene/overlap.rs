@@ -1,6 +1,7 @@
 //! Finds pairs of strokes that may share a pixel, so that their order matters.
 
-use super::quantize::{UNITS_PER_PX, Written};
+use super::grid::UNITS_PER_PX;
+use super::quantize::Written;
 use crate::math;
 
 impl Written {

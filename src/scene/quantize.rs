@@ -5,11 +5,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::grid::{Grid, UNITS_PER_PX};
 use super::written_path::WrittenPath;
 use super::{PathPoint, Rgb, Scene, Stage, Stroke};
-
-/// Most decimals of a coordinate or width.
-pub const MAX_PRECISION: u8 = 6;
 
 /// Narrowest stroke, px. Rasterisers of the Skia family draw a width of 1 px or less as a hairline of lower
 /// opacity, with the wrong ink on diagonals. The excess over 1 px keeps rounding from reaching 1 px.
@@ -17,9 +15,6 @@ pub const MIN_WIDTH: f64 = 1.02;
 
 /// Largest absolute value of a coordinate, px. All decimals up to here are exact.
 const MAX_COORDINATE: f32 = 1e9;
-
-/// Units of [`Written`] per px.
-pub(crate) const UNITS_PER_PX: i64 = 10_i64.pow(MAX_PRECISION as u32);
 
 /// A scene rounded to what its SVG holds, and what was dropped.
 #[derive(Debug, Clone, PartialEq)]
@@ -141,7 +136,7 @@ impl Written {
         let grid = Grid::new(precision);
         let width = grid
             .units(2.0 * f64::from(stroke.radius))
-            .max(grid.min_width());
+            .max(grid.units_above(MIN_WIDTH));
         Ok(Self {
             path: WrittenPath::rounded(&stroke.path, &grid),
             width,
@@ -183,45 +178,6 @@ fn check(stroke: &Stroke) -> Result<(), Unwritable> {
         Err(Unwritable::OffPage)
     } else {
         Ok(())
-    }
-}
-
-/// The multiples of 10^−precision px, or of some steps of it.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Grid {
-    /// 10^precision, at most 10^6.
-    per_px: i64,
-    /// How many multiples its points are apart.
-    step: i64,
-}
-
-impl Grid {
-    pub(super) fn new(precision: u8) -> Self {
-        Self {
-            per_px: 10_i64.pow(precision.min(MAX_PRECISION).into()),
-            step: 1,
-        }
-    }
-
-    /// The grid with only each `step`th point.
-    pub(super) fn coarser(self, step: i64) -> Self {
-        Self { step, ..self }
-    }
-
-    /// Multiples of 10^−precision in a px.
-    pub(super) fn per_px(&self) -> f64 {
-        self.per_px as f64
-    }
-
-    /// The nearest point of the grid to `px`, in units.
-    pub(super) fn units(&self, px: f64) -> i64 {
-        let steps = (px * self.per_px as f64 / self.step as f64).round();
-        steps as i64 * self.step * (UNITS_PER_PX / self.per_px)
-    }
-
-    /// The smallest multiple of at least [`MIN_WIDTH`], in units.
-    fn min_width(&self) -> i64 {
-        (MIN_WIDTH * self.per_px as f64).ceil() as i64 * (UNITS_PER_PX / self.per_px)
     }
 }
 

@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use super::{Form, Group, WriteOptions, write};
-use crate::scene::Scene;
+use crate::scene::{Scene, Stroke};
 
 /// Durations in an animated drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -17,7 +17,8 @@ pub struct Timing {
 
 /// The scene with `precision` decimals and an element for each stroke. The strokes of each of `parts` are in
 /// a group that appears at its time; the first group is visible from the start. Parts are consecutive ranges
-/// of the strokes, back to front. The animation repeats for ever.
+/// of the strokes, back to front. A stroke of several pieces, or of a curve, is drawn along its length until the next
+/// part appears. The animation repeats for ever.
 ///
 /// A part that crosses the end of a stage is in two groups, which appear together.
 pub fn write_animated(
@@ -41,6 +42,7 @@ pub fn write_animated(
         out: String::new(),
         open: false,
     };
+    let mut shapes = scene.strokes();
     let mut strokes = 0;
     let mut part = 0;
     // The writer puts each element on its own line.
@@ -54,6 +56,10 @@ pub fn write_animated(
             }
             groups.ensure(|| clock.entrance(part));
             strokes += 1;
+            if shapes.next().is_some_and(is_long) {
+                groups.push(&clock.along(line, part));
+                continue;
+            }
         }
         groups.push(line);
     }
@@ -67,6 +73,11 @@ fn is_stroke(line: &str) -> bool {
         .any(|other| line.starts_with(other))
 }
 
+/// Whether to see the stroke grow tells more than to see it appear.
+fn is_long(stroke: &Stroke) -> bool {
+    stroke.path.points().len() > 2 || stroke.path.is_closed()
+}
+
 struct Clock {
     whole_ms: u32,
     part_ms: u32,
@@ -78,12 +89,29 @@ impl Clock {
         if part == 0 {
             return String::new();
         }
-        let at = part as f64 * f64::from(self.part_ms) / f64::from(self.whole_ms);
+        let at = self.start(part);
         format!(
             "<animate attributeName=\"visibility\" calcMode=\"discrete\" values=\"hidden;visible\" \
              keyTimes=\"0;{at:.4}\" dur=\"{}ms\" repeatCount=\"indefinite\"/>\n",
             self.whole_ms
         )
+    }
+
+    /// The `element` of a path of part `part`, with an animation that draws it: a single dash that grows. Only
+    /// the animation says so, so that other programs draw no dash.
+    fn along(&self, element: &str, part: usize) -> String {
+        let [start, end] = [part, part + 1].map(|part| self.start(part));
+        let open = element.strip_suffix("/>").unwrap_or(element);
+        format!(
+            "{open} pathLength=\"1\"><animate attributeName=\"stroke-dasharray\" values=\"0 1;0 1;1 0;1 0\" \
+             keyTimes=\"0;{start:.4};{end:.4};1\" dur=\"{}ms\" repeatCount=\"indefinite\"/></path>",
+            self.whole_ms
+        )
+    }
+
+    /// When a part appears, of the whole.
+    fn start(&self, part: usize) -> f64 {
+        part as f64 * f64::from(self.part_ms) / f64::from(self.whole_ms)
     }
 }
 
@@ -119,7 +147,7 @@ impl Groups {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Path, Stage, Stroke};
+    use crate::scene::{Path, PathPoint, Stage};
     use crate::verify::{Size, render};
 
     fn scene() -> Scene {
@@ -155,6 +183,19 @@ mod tests {
         assert_eq!(times, ["0.1000", "0.1000", "0.2000", "0.3000"]);
         assert_eq!(text.matches("dur=\"1000ms\"").count(), 4);
         assert_eq!(text.matches("<path").count(), 7);
+    }
+
+    #[test]
+    fn a_long_path_is_drawn_along_its_length() {
+        let mut scene = scene();
+        let points = [[1.0, 1.0], [9.0, 1.0], [5.0, 9.0]].map(|p| PathPoint::on(p.into()));
+        scene.stages[1].strokes[0].path = Path::new(points.into(), true).unwrap();
+        let text = write_animated(&scene, &[0..2, 2..5, 5..6, 6..7], TIMING, 2);
+        assert_eq!(text.matches("stroke-dasharray").count(), 1);
+        assert!(text.contains("z\" stroke="), "{text}");
+        assert!(text.contains("keyTimes=\"0;0.1000;0.2000;1\""), "{text}");
+        let draw = |text: &str| render(text, Size::Scale(3.0), None).unwrap();
+        assert!(draw(&text) == draw(&write(&scene, &WriteOptions::default())));
     }
 
     #[test]

@@ -9,21 +9,26 @@
 //! <title>Stage 1: 2 strokes</title>
 //! <path d="M1.5 2L30.25 4" stroke="#rrggbb" stroke-width="2.5"/>      a capsule
 //! <path d="M1.5 2h0.01" stroke="#rrggbb" stroke-width="8" stroke-opacity="0.502"/>   a dot
+//! <path d="M1 2L3 4 9 8Q12 9 12 6T15 3z" stroke="#rrggbb" stroke-width="2.5"/>   a closed path of lines and curves
 //! </g>
 //! </svg>
 //! ```
 //!
 //! - One unit is one px of the picture, except in the smallest form. `width` and `height` equal the `viewBox`,
 //!   unless the page has a [`Length`] as its width.
-//! - In the plain form, opaque strokes of equal colour and width that lie end to end are one path,
-//!   `M1 2L3 4L5 6`. The layer then has `stroke-linejoin="round"`.
+//! - Each `M` begins a stroke, `L` draws lines, `Q` and `T` quadratic curves, and `z` closes a path. The numbers of a
+//!   step are absolute or, after a small letter, relative, whichever is shorter. A step does without a letter if that of
+//!   the last one serves and nothing is longer, but never after `M`.
+//! - `T` draws a curve whose control point mirrors the last one. So a run of off-points takes one pair of numbers for
+//!   each, and one more at its end: the on-points that they imply are in the file, and off-points are rounded so
+//!   that these are exact.
+//! - The layer has `stroke-linejoin="round"` if a stroke in it has a join.
 //! - In the smallest form, neighbours of equal colour, width and opacity are one path, `M1 2L3 4M7 8l1 2`,
 //!   if they are opaque or do not touch. A `<g>` holds the attributes that neighbours share, and the layer
 //!   holds the most common `stroke-width`. Colours may be `#rgb`. Where that is shorter, numbers count units of
 //!   the last decimal, and the layer has `transform="scale(0.1)"`. Before, [`arrange()`] reorders strokes
 //!   that do not touch so that all this saves the most.
 //! - Layers by colour have ids `color-1`, `color-2`, ….
-//! - A path's second point is absolute (`L`) or relative (`l`), whichever is shorter.
 //! - A dot is a segment of length 0.01, because many programs drop a segment of length 0 although the
 //!   specification draws it. `h` marks a dot and nothing else. The 0.01 is independent of the
 //!   precision: it is too short to be seen, and no precision rounds it to 0.
@@ -31,8 +36,13 @@
 //! - Numbers are decimals without exponent; `0.5`, never `.5`.
 //! - There are no dates and no random names: equal scenes give equal bytes.
 //!
-//! [`Form::Outlines`] writes filled outlines: closed paths of two lines and two arcs, and circles. They are for
+//! [`Form::Outlines`] writes filled outlines: two lines and two arcs for each segment, and circles. They are for
 //! other programs; [`read`] refuses them.
+//!
+//! A path with any other step (`C`, `S`, `A`, `H`, `V`, a `T` after a line) is not of this dialect, and neither is one of
+//! more than [`MAX_POINTS`](crate::scene::MAX_POINTS) points: [`read`] refuses the file, and a [`Document`] keeps it as
+//! it is, below new strokes. What has no effect is left out when it is read: points that coincide, on-points
+//! exactly halfway between two off-points.
 //!
 //! Reading returns the scene to the bit as it was written: quantised, and arranged if the form asks for it.
 //!

@@ -72,6 +72,9 @@ impl Form {
     pub const ALL: [Self; 3] = [Self::Plain, Self::Smallest, Self::Outlines];
 }
 
+/// A form of former versions, in which each stroke had an element of its own while the plain form joined strokes.
+const FORMER_PLAIN: &str = "elements";
+
 impl fmt::Display for Form {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -89,11 +92,12 @@ impl FromStr for Form {
     fn from_str(text: &str) -> Result<Self, Error> {
         let mut forms = Self::ALL.into_iter();
         forms.find(|form| form.to_string() == text).ok_or_else(|| {
-            let right = "plain, smallest or outlines";
-            Error::new(
-                ErrorKind::Config,
-                format!("'{text}' is not a form: give {right}"),
-            )
+            let remedy = match text {
+                FORMER_PLAIN => "give plain, which has one element per stroke now",
+                _ => "give plain, smallest or outlines",
+            };
+            let message = format!("'{text}' is not a form: {remedy}");
+            Error::new(ErrorKind::Config, message)
         })
     }
 }
@@ -221,6 +225,8 @@ mod tests {
             error.contains("'small'") && error.contains("smallest"),
             "{error}"
         );
+        let error = FORMER_PLAIN.parse::<Form>().unwrap_err().to_string();
+        assert!(error.contains("one element per stroke"), "{error}");
         let error = "".parse::<Group>().unwrap_err().to_string();
         assert!(
             error.contains("''") && error.contains("stage or color"),

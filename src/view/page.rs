@@ -5,19 +5,26 @@ use serde::Serialize;
 use super::curve::Point;
 use super::http::Response;
 use super::shared::{Shared, Shown, State};
-use crate::scene::{Rgb, Scene, Stroke};
+use crate::report::SceneRecord;
 
-/// A file of the page.
+/// A file of the page. All but `index.html` and `page.js` are also those of the page of `web/`, which fits by itself.
 pub(super) fn file(name: &str) -> Option<Response> {
     let (kind, text) = match name {
-        "" => ("text/html", include_str!("page/index.html")),
+        "" => return Some(Response::of("text/html", index().into_bytes())),
         "page.css" => ("text/css", include_str!("page/page.css")),
         "page.js" => ("text/javascript", include_str!("page/page.js")),
+        "viewer.js" => ("text/javascript", include_str!("page/viewer.js")),
         "chart.js" => ("text/javascript", include_str!("page/chart.js")),
         "picture.js" => ("text/javascript", include_str!("page/picture.js")),
         _ => return None,
     };
     Some(Response::of(kind, text.as_bytes()))
+}
+
+/// The page, with the part that it shares put in its place.
+fn index() -> String {
+    let page = include_str!("page/index.html");
+    page.replace("<!-- viewer.html -->\n", include_str!("page/viewer.html"))
 }
 
 /// The state as JSON; the drawing only if it is not the one with the number `seen`.
@@ -49,7 +56,7 @@ pub(super) fn state(shared: &Shared, seen: Option<u64>) -> Option<Vec<u8>> {
         scene: shown
             .as_ref()
             .filter(|shown| seen != Some(shown.version))
-            .map(|Shown { scene, .. }| SceneRecord::of(scene)),
+            .map(|Shown { scene, .. }| SceneRecord::from(&**scene)),
     };
     serde_json::to_vec(&record).ok()
 }
@@ -74,49 +81,4 @@ struct StateRecord<'a> {
     curve: &'a [Point],
     version: u64,
     scene: Option<SceneRecord>,
-}
-
-#[derive(Serialize)]
-struct SceneRecord {
-    width: u32,
-    height: u32,
-    background: Option<String>,
-    /// Strokes back to front, stage by stage.
-    stages: Vec<Vec<StrokeRecord>>,
-}
-
-/// Points x, y, x, y, …, radius, colour and opacity.
-#[derive(Serialize)]
-struct StrokeRecord(Vec<f32>, f32, String, f32);
-
-impl SceneRecord {
-    fn of(scene: &Scene) -> Self {
-        let stages = scene.stages.iter();
-        Self {
-            width: scene.width,
-            height: scene.height,
-            background: scene.background.map(css),
-            stages: stages
-                .map(|stage| stage.strokes.iter().map(StrokeRecord::of).collect())
-                .collect(),
-        }
-    }
-}
-
-impl StrokeRecord {
-    fn of(stroke: &Stroke) -> Self {
-        let points = stroke.path.points().iter();
-        Self(
-            points.flat_map(|p| [p.at.x, p.at.y]).collect(),
-            stroke.radius,
-            css(stroke.color),
-            stroke.opacity,
-        )
-    }
-}
-
-/// `#rrggbb`.
-fn css(color: Rgb) -> String {
-    let [r, g, b] = color.map(|c| (c * 255.0 + 0.5) as u8);
-    format!("#{r:02x}{g:02x}{b:02x}")
 }

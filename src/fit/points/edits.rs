@@ -62,10 +62,12 @@ pub(super) fn best_insertion(terrain: &Terrain<'_>, points: &Points) -> Option<E
     let cuts = terrain.pieces.iter().enumerate();
     let insertions = cuts.flat_map(|(i, &cut)| {
         let chord = Chord::of(terrain, cut.piece).filter(|chord| chord.length > points.shortest);
-        chord.into_iter().flat_map(move |chord| match cut.piece.control {
-            None => within_line(terrain, cut, chord, points),
-            Some(control) => Vec::from_iter(within_curve(terrain, i, control, chord, points)),
-        })
+        chord
+            .into_iter()
+            .flat_map(move |chord| match cut.piece.control {
+                None => within_line(terrain, cut, chord, points),
+                Some(control) => Vec::from_iter(within_curve(terrain, i, control, chord, points)),
+            })
     });
     best(insertions)
 }
@@ -205,7 +207,8 @@ fn within_curve(
     match (cut.piece.from, cut.piece.to) {
         (Knot::Point(_), Knot::Point(_)) => {
             let c = terrain.stroke.points[control];
-            let halves = [chord.a, chord.b].map(|end| [0, 1].map(|axis| 0.5 * (end[axis] + c[axis])));
+            let halves =
+                [chord.a, chord.b].map(|end| [0, 1].map(|axis| 0.5 * (end[axis] + c[axis])));
             let at = |k: usize| k as f32 / cut.steps as f32;
             let first = (0..=cut.steps).map(|k| of_first_half(at(k)));
             let second = (0..=cut.steps).map(|k| of_first_half(1.0 - at(k)));

@@ -1,8 +1,8 @@
 //! The numbers of the presets.
 
 use super::{
-    AdamSettings, BackgroundChoice, Correction, Domain, EdgeShape, Pens, Points, Polish, Preset, Rates,
-    Recipe, Recoloring, Relocation, Rounds, Settling, Stages, TimeShares,
+    AdamSettings, BackgroundChoice, Correction, Domain, EdgeShape, Joins, Pens, Points, Polish,
+    Preset, Rates, Recipe, Recoloring, Relocation, Rounds, Settling, Stages, TimeShares,
 };
 use crate::optim::AdamParams;
 use crate::seed::Probing;
@@ -15,7 +15,7 @@ impl Recipe {
             Preset::Balanced => BALANCED,
             Preset::Best => Self {
                 polish: Polish {
-                    iterations: 8000,
+                    iterations: 3600,
                     ..BALANCED.polish
                 },
                 relocation: Relocation {
@@ -119,7 +119,7 @@ const BALANCED: Recipe = Recipe {
         radius_factors: [0.25, 4.0],
     },
     polish: Polish {
-        iterations: 2800,
+        iterations: 1200,
         coarse_share: 0.3,
         rates: Rates {
             position: 2.5,
@@ -143,12 +143,20 @@ const BALANCED: Recipe = Recipe {
         until: 0.85,
         share: 0.5,
         swapped: 0.2,
-        per_stroke: 6.0,
-        capsules: 0.85,
+        per_stroke: 7.0,
+        capsules: 0.8,
         filled: 0.995,
         reach: 0.5,
         shortest: 0.5,
+        gain: 60.0,
         smoothness: 0.7,
+        spared: 0.3,
+        joins: Joins {
+            reach: 8.0,
+            gap: 0.6,
+            alike: 0.3,
+            share: 0.1,
+        },
     },
     coloring: Recoloring {
         rounds: Rounds {

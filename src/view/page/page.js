@@ -1,58 +1,24 @@
-// Asks for the state, and shows it. What is shown is in the address after #, so that it can be kept.
+// Asks the program for the state of its drawing, and shows it.
 
-import { drawChart } from "./chart.js";
-import { Comparison, bounds, drawRing, drawStrokes, strokeAt } from "./picture.js";
+import { listen, show } from "./viewer.js";
 
 // Time between two questions, ms: while a drawing is fitted, and after, to say that the page is there.
 const ASK_LIVE = 300;
 const ASK_IDLE = 5000;
 // The fit may need the processor: the page rests so many times as long as it took to show the drawing.
 const REST = 30;
-// How often the finished drawing is measured on the way from no stroke to all.
-const MEASURED = 60;
 
 const element = (id) => document.getElementById(id);
-const [target, drawing, residual] = ["target", "drawing", "residual"].map(element);
 
-let state = { version: 0, curve: [] };
-let scene = null;
-// All strokes as { stroke, number, stage }, numbers and stages from 1.
-let strokes = [];
-let targetImage = null;
-let comparison = null;
-let measured = [];
-// What part of the picture is seen: px of the picture per CSS px is 1 / zoom.
-let view = { zoom: 0, x: 0, y: 0 };
-let hidden = new Set();
-// How many strokes from the back are shown; all when it is Infinity, also of a growing drawing.
-let shown = Infinity;
-let selected = null;
-
-function readAddress() {
-  const wanted = new URLSearchParams(location.hash.slice(1));
-  shown = wanted.has("shown") ? Number(wanted.get("shown")) : Infinity;
-  selected = Number(wanted.get("stroke")) || null;
-  hidden = new Set((wanted.get("hidden") ?? "").split(",").filter(Boolean).map(Number));
-  const [x, y, zoom] = (wanted.get("view") ?? "").split(",").map(Number);
-  view = zoom > 0 ? { x, y, zoom } : { x: 0, y: 0, zoom: 0 };
-}
-
-function writeAddress() {
-  const say = new URLSearchParams();
-  if (shown < strokes.length) say.set("shown", shown);
-  if (selected) say.set("stroke", selected);
-  if (hidden.size) say.set("hidden", [...hidden].join());
-  if (view.zoom) say.set("view", [view.x, view.y, view.zoom].map((v) => Number(v.toFixed(2))).join());
-  history.replaceState(null, "", say.size ? `#${say}` : location.pathname);
-}
+let [picture, version, target] = [0, 0, null];
 
 async function ask() {
   try {
-    const answer = await fetch(`state?seen=${state.version}`);
+    const answer = await fetch(`state?seen=${version}`);
     if (!answer.ok) throw new Error(answer.statusText);
-    const next = await answer.json();
+    const state = await answer.json();
     const start = performance.now();
-    await take(next);
+    await take(state);
     const live = Math.max(ASK_LIVE, REST * (performance.now() - start));
     setTimeout(ask, state.finished ? ASK_IDLE : Math.min(live, ASK_IDLE));
   } catch (error) {
@@ -61,34 +27,11 @@ async function ask() {
   }
 }
 
-function end() {
-  element("phase").textContent = "the program has ended; this page no longer changes";
-  for (const id of ["stop", "more", "done", "download"]) element(id).hidden = true;
-}
-
-async function take(next) {
-  const another = next.picture !== state.picture;
-  const finishedNow = next.finished && (another || !state.finished);
-  state = next;
-  if (another) await begin();
-  if (state.scene) takeScene(state.scene);
-  showState();
-  if (state.scene || finishedNow) redraw();
-  if (finishedNow && comparison) measure();
-  document.body.dataset.ready = state.finished;
-}
-
-async function begin() {
-  [scene, comparison, strokes, measured] = [null, null, [], []];
-  targetImage = state.has_target ? await load(`target.png?picture=${state.picture}`) : null;
-}
-
-function takeScene(next) {
-  scene = next;
-  let number = 0;
-  strokes = scene.stages.flatMap((list, k) => list.map((stroke) => ({ stroke, number: ++number, stage: k + 1 })));
-  if (targetImage && !comparison) comparison = new Comparison(targetImage, scene.width, scene.height);
-  showControls();
+async function take(state) {
+  if (state.picture !== picture) target = state.has_target ? await load(`target.png?picture=${state.picture}`) : null;
+  ({ picture, version } = state);
+  show({ ...state, target });
+  element("done").hidden = !state.finished;
 }
 
 function load(address) {
@@ -100,251 +43,13 @@ function load(address) {
   });
 }
 
-// Numbers and curves.
-
-function showState() {
-  element("title").textContent = document.title = `strokefit: ${state.title}`;
-  element("phase").textContent = phase();
-  element("progress").value = state.finished ? 1 : (state.done ?? 0);
-  element("progress").hidden = state.done === null;
-  element("stop").hidden = state.finished || state.done === null;
-  element("more").hidden = !state.grows;
-  element("done").hidden = !state.finished;
-  element("download").hidden = !scene;
-  for (const id of ["target-panel", "residual-panel"]) element(id).hidden = !state.has_target;
-  element("stroke-chart").hidden = !state.has_target || !state.finished;
-  element("time-chart").hidden = state.curve.length === 0;
-  drawChart(element("over-time"), state.curve.map(({ time_s, psnr_db }) => [time_s, psnr_db ?? NaN]));
+function end() {
+  element("phase").textContent = "the program has ended; this page no longer changes";
+  for (const id of ["stop", "more", "done", "download"]) element(id).hidden = true;
 }
 
-function phase() {
-  const queued = state.more && !state.finished ? `, then ${state.more} more` : "";
-  return underway() + queued;
-}
+const post = (wish) => fetch(wish, { method: "POST" });
 
-function underway() {
-  if (state.finished) return `${strokes.length} strokes, ${state.svg_bytes} bytes`;
-  if (!state.last) return "starting";
-  const known = state.stages ? ` of ${state.stages}` : "";
-  const place = state.polishing ? "polish" : `stage ${state.stage}${known}`;
-  return `${place}, ${state.last.strokes} strokes, ${state.last.psnr_db?.toFixed(2)} dB, ${state.last.time_s.toFixed(1)} s`;
-}
-
-// dB of the finished drawing as strokes are added, by the browser's renderer.
-function measure() {
-  comparison.clear(scene.background);
-  measured = [[0, comparison.psnr()]];
-  const step = Math.max(1, Math.ceil(strokes.length / MEASURED));
-  for (let k = 0; k < strokes.length; k += step) {
-    const part = strokes.slice(k, k + step);
-    comparison.add(part.map(({ stroke }) => stroke));
-    measured.push([k + part.length, comparison.psnr()]);
-  }
-  redraw();
-}
-
-// Controls.
-
-function showControls() {
-  const total = strokes.length;
-  element("shown").max = element("stroke").max = total;
-  element("stage").max = scene.stages.length;
-  const boxes = element("layers");
-  while (boxes.children.length > scene.stages.length) boxes.lastChild.remove();
-  scene.stages.forEach((list, k) => showLayer(boxes.children[k] ?? boxes.appendChild(layerBox(k + 1)), k + 1, list));
-}
-
-function layerBox(stage) {
-  const label = document.createElement("label");
-  const box = document.createElement("input");
-  box.type = "checkbox";
-  box.addEventListener("change", () => {
-    if (box.checked) hidden.delete(stage);
-    else hidden.add(stage);
-    redraw();
-  });
-  label.append(box, document.createElement("span"));
-  return label;
-}
-
-function showLayer(label, stage, list) {
-  const [box, text] = label.children;
-  box.checked = !hidden.has(stage);
-  text.textContent = ` ${stage}: ${list.length} stroke${list.length === 1 ? "" : "s"}`;
-}
-
-function showSelected() {
-  const found = strokes[selected - 1];
-  element("zoom").disabled = !found;
-  if (document.activeElement !== element("stroke")) element("stroke").value = found ? selected : "";
-  element("numbers").replaceChildren(...(found ? describe(found) : []));
-}
-
-function describe({ stroke: [points, radius, color, opacity], number, stage }) {
-  const round = (value) => Number(value.toFixed(2));
-  const pairs = points.flatMap((x, k) => (k % 2 ? [] : [`${round(x)}, ${round(points[k + 1])}`]));
-  const rows = [["number", `${number} of ${strokes.length}, stage ${stage}`], ["points", pairs.join("  →  ")]];
-  rows.push(["width", `${round(2 * radius)} px`], ["colour", color], ["opacity", opacity.toFixed(3)]);
-  return rows.flatMap(([name, value]) => {
-    const term = document.createElement("dt"), text = document.createElement("dd");
-    term.textContent = name;
-    if (name === "colour") {
-      const swatch = text.appendChild(document.createElement("span"));
-      swatch.className = "swatch";
-      swatch.style.background = color;
-    }
-    text.append(value);
-    return [term, text];
-  });
-}
-
-// Pictures.
-
-function redraw() {
-  if (!scene) return;
-  const visible = strokes.filter(({ number, stage }) => number <= shown && !hidden.has(stage));
-  const list = visible.map(({ stroke }) => stroke);
-  const found = strokes[selected - 1];
-  paint(drawing, (context, px) => {
-    if (scene.background) fillPage(context, scene.background);
-    drawStrokes(context, list);
-    if (found) drawRing(context, found.stroke, px);
-  });
-  if (comparison) {
-    paint(target, (context) => context.drawImage(targetImage, 0, 0, scene.width, scene.height));
-    comparison.clear(scene.background);
-    comparison.add(list);
-    element("shown-db").textContent = `${comparison.psnr().toFixed(2)} dB`;
-    comparison.subtract();
-    paint(residual, (context) => context.drawImage(comparison.residual, 0, 0, scene.width, scene.height));
-  }
-  showSliders(visible.length);
-  showSelected();
-  writeAddress();
-}
-
-function showSliders(visible) {
-  const total = strokes.length, count = Math.min(shown, total);
-  const begun = strokes[count - 1]?.stage ?? 0;
-  element("shown").value = count;
-  element("shown-count").value = `${count} of ${total}`;
-  element("stage").value = begun;
-  element("stage-count").value = `${begun} of ${scene.stages.length}`;
-  element("shown-label").textContent = `${visible} strokes`;
-  [...element("layers").children].forEach((label, k) => (label.firstChild.checked = !hidden.has(k + 1)));
-  const here = measured.find(([strokes]) => strokes >= count);
-  if (state.finished) drawChart(element("over-strokes"), measured, here ? [here] : []);
-}
-
-function fillPage(context, color) {
-  context.fillStyle = color;
-  context.fillRect(0, 0, scene.width, scene.height);
-}
-
-// Lets `draw` draw in px of the picture; it is told how many of them are one CSS px.
-function paint(canvas, draw) {
-  const ratio = devicePixelRatio || 1;
-  const width = canvas.clientWidth;
-  canvas.width = Math.round(width * ratio);
-  canvas.height = Math.round((width * ratio * scene.height) / scene.width);
-  const context = canvas.getContext("2d");
-  const zoom = view.zoom || width / scene.width;
-  context.setTransform(zoom * ratio, 0, 0, zoom * ratio, -view.x * zoom * ratio, -view.y * zoom * ratio);
-  context.imageSmoothingEnabled = zoom < 3;
-  draw(context, 1 / zoom);
-}
-
-// Mouse and buttons.
-
-function currentZoom() {
-  return view.zoom || drawing.clientWidth / scene.width;
-}
-
-function place(event) {
-  const zoom = currentZoom();
-  return [view.x + event.offsetX / zoom, view.y + event.offsetY / zoom];
-}
-
-function zoomAt(event) {
-  event.preventDefault();
-  if (!scene) return;
-  const [x, y] = place(event);
-  const least = drawing.clientWidth / scene.width;
-  const zoom = Math.max(least, Math.min(100, currentZoom() * 1.0015 ** -event.deltaY));
-  view = zoom > least ? { zoom, x: x - event.offsetX / zoom, y: y - event.offsetY / zoom } : { zoom: 0, x: 0, y: 0 };
-  redraw();
-}
-
-function zoomTo({ stroke }) {
-  const [left, top, right, bottom] = bounds(stroke);
-  const [width, height] = [drawing.clientWidth, drawing.clientHeight];
-  const zoom = Math.min(40, width / (right - left) / 2, height / (bottom - top) / 2);
-  view = { zoom, x: (left + right) / 2 - width / zoom / 2, y: (top + bottom) / 2 - height / zoom / 2 };
-  redraw();
-}
-
-let drag = null;
-
-function startDrag(event) {
-  if (!scene) return;
-  drag = { from: place(event), moved: false };
-  event.target.setPointerCapture(event.pointerId);
-}
-
-function moveDrag(event) {
-  if (!drag) return;
-  const [x, y] = place(event);
-  const [dx, dy] = [drag.from[0] - x, drag.from[1] - y];
-  drag.moved ||= Math.hypot(dx, dy) * currentZoom() > 3;
-  if (!drag.moved) return;
-  view = { zoom: currentZoom(), x: view.x + dx, y: view.y + dy };
-  redraw();
-}
-
-function endDrag(event) {
-  if (drag && !drag.moved) {
-    const visible = strokes.filter(({ number, stage }) => number <= shown && !hidden.has(stage));
-    selected = strokeAt(visible, ...place(event))?.number ?? null;
-    redraw();
-  }
-  drag = null;
-}
-
-for (const canvas of [target, drawing, residual]) {
-  canvas.addEventListener("wheel", zoomAt, { passive: false });
-  canvas.addEventListener("pointerdown", startDrag);
-  canvas.addEventListener("pointermove", moveDrag);
-  canvas.addEventListener("pointerup", endDrag);
-}
-
-function on(id, event, action) {
-  element(id).addEventListener(event, () => {
-    action(element(id));
-    redraw();
-  });
-}
-
-on("shown", "input", ({ value }) => (shown = Number(value) < strokes.length ? Number(value) : Infinity));
-on("stage", "input", ({ value }) => {
-  const count = scene.stages.slice(0, Number(value)).flat().length;
-  shown = count < strokes.length ? count : Infinity;
-});
-on("stroke", "input", ({ value }) => (selected = Number(value) || null));
-on("all", "click", () => hidden.clear());
-on("none", "click", () => scene?.stages.forEach((_, k) => hidden.add(k + 1)));
-on("reset", "click", () => (view = { zoom: 0, x: 0, y: 0 }));
-element("zoom").addEventListener("click", () => zoomTo(strokes[selected - 1]));
-element("stop").addEventListener("click", () => fetch("stop", { method: "POST" }));
-element("more").addEventListener("submit", (event) => {
-  event.preventDefault();
-  fetch(`more?strokes=${element("strokes").value}`, { method: "POST" });
-});
-element("done").addEventListener("click", () => fetch("done", { method: "POST" }).then(end));
-addEventListener("resize", redraw);
-addEventListener("hashchange", () => {
-  readAddress();
-  redraw();
-});
-
-readAddress();
+listen({ stop: () => post("stop"), add: (strokes) => post(`more?strokes=${strokes}`) });
+element("done").addEventListener("click", () => post("done").then(end));
 ask();

@@ -1,39 +1,68 @@
-// Strokes on canvases. A stroke is [points, radius, colour, opacity]; points are x, y, x, y, … in px of
-// the picture, back to front as in the SVG.
+// Strokes on canvases. A stroke is [points, radius, colour, opacity, kinds]; points are x, y, x, y, … in px of
+// the picture, back to front as in the SVG. Kinds has a letter for each point, "o" on the path and "c" for the control
+// point of a curve, and then "z" if the path is closed.
 
 // Longest side, px, at which drawing and target are compared: more takes time that a fit could use.
 const MAX_COMPARED = 1024;
 
 export function drawStrokes(context, strokes) {
   context.lineCap = context.lineJoin = "round";
-  for (const [points, radius, color, opacity] of strokes) {
+  for (const stroke of strokes) {
+    const [, radius, color, opacity] = stroke;
     context.globalAlpha = opacity;
     context.strokeStyle = color;
     context.lineWidth = 2 * radius;
-    trace(context, points);
+    trace(context, stroke);
     context.stroke();
   }
   context.globalAlpha = 1;
 }
 
-function trace(context, points) {
+function trace(context, stroke) {
+  const { start, pieces, closed } = walk(stroke);
   context.beginPath();
-  context.moveTo(points[0], points[1]);
+  context.moveTo(...start);
+  for (const piece of pieces) {
+    const places = piece.flat();
+    if (piece.length > 1) context.quadraticCurveTo(...places);
+    else context.lineTo(...places);
+  }
   // Canvases draw no line of length 0: a dot is a short one, as in the file.
-  if (points.length === 2) context.lineTo(points[0] + 0.01, points[1]);
-  for (let k = 2; k < points.length; k += 2) context.lineTo(points[k], points[k + 1]);
+  if (pieces.length === 0) context.lineTo(start[0] + 0.01, start[1]);
+  if (closed) context.closePath();
+}
+
+// A path as its start and its pieces, each an end, or a control point and an end. Halfway between two control points
+// lies an end that the file of the drawing implies.
+function walk([points, , , , kinds]) {
+  const closed = kinds.endsWith("z"), middle = (a, b) => [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
+  const places = points.flatMap((x, k) => (k % 2 ? [] : [[x, points[k + 1]]]));
+  const isOn = places.map((_, k) => kinds[k] === "o");
+  const first = Math.max(0, isOn.indexOf(true));
+  const start = isOn[first] ? places[first] : middle(places.at(-1), places[0]);
+  const order = places.map((_, k) => (first + k) % places.length).slice(isOn[first] ? 1 : 0);
+  const pieces = [];
+  let control = null;
+  for (const k of order) {
+    if (control) pieces.push([control, isOn[k] ? places[k] : middle(control, places[k])]);
+    else if (isOn[k]) pieces.push([places[k]]);
+    control = isOn[k] ? null : places[k];
+  }
+  if (control) pieces.push([control, start]);
+  else if (closed) pieces.push([start]);
+  return { start, pieces, closed };
 }
 
 // A ring around a stroke that shows on any colour; what is inside stays as it is. `px` is a CSS px.
-export function drawRing(context, [points, radius], px) {
+export function drawRing(context, stroke, px) {
   const layer = new OffscreenCanvas(context.canvas.width, context.canvas.height).getContext("2d");
   layer.setTransform(context.getTransform());
   layer.lineCap = layer.lineJoin = "round";
   for (const [color, width] of [["#000", 6], ["#ff0", 4], [null, 0]]) {
     layer.globalCompositeOperation = color ? "source-over" : "destination-out";
     layer.strokeStyle = color ?? "#000";
-    layer.lineWidth = 2 * radius + width * px;
-    trace(layer, points);
+    layer.lineWidth = 2 * stroke[1] + width * px;
+    trace(layer, stroke);
     layer.stroke();
   }
   context.save();
@@ -42,21 +71,64 @@ export function drawRing(context, [points, radius], px) {
   context.restore();
 }
 
-// The topmost of numbered strokes at (x, y), or undefined.
-export function strokeAt(numbered, x, y) {
-  return numbered.findLast(({ stroke: [points, radius] }) => distance(points, x, y) <= radius);
+// The points of a stroke that is more than a capsule: squares on the path, circles where control points are.
+export function drawPoints(context, [points, , , , kinds], px) {
+  const count = points.length / 2, closed = kinds.endsWith("z");
+  if (count < 3 && !kinds.includes("c")) return;
+  context.lineWidth = px;
+  context.strokeStyle = "#06c";
+  context.setLineDash([3 * px, 3 * px]);
+  context.beginPath();
+  for (let k = 0; k < count; k++) context.lineTo(points[2 * k], points[2 * k + 1]);
+  if (closed) context.closePath();
+  context.stroke();
+  context.setLineDash([]);
+  for (let k = 0; k < count; k++) {
+    const [x, y, side] = [points[2 * k], points[2 * k + 1], 7 * px];
+    context.beginPath();
+    if (kinds[k] === "o") context.rect(x - side / 2, y - side / 2, side, side);
+    else context.arc(x, y, side / 2, 0, 2 * Math.PI);
+    context.fillStyle = kinds[k] === "o" ? "#fff" : "#9cf";
+    context.fill();
+    context.stroke();
+  }
 }
 
-function distance(points, x, y) {
-  let least = Math.hypot(x - points[0], y - points[1]);
-  for (let k = 2; k < points.length; k += 2) {
-    const [ax, ay, bx, by] = points.slice(k - 2, k + 2);
-    const [dx, dy] = [bx - ax, by - ay];
-    const along = ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy || 1);
-    const h = Math.min(1, Math.max(0, along));
-    least = Math.min(least, Math.hypot(x - ax - h * dx, y - ay - h * dy));
+// The topmost of numbered strokes at (x, y), or undefined.
+export function strokeAt(numbered, x, y) {
+  return numbered.findLast(({ stroke }) => distance(stroke, x, y) <= stroke[1]);
+}
+
+// Chords of a curve, as far as a pointer can tell.
+const CHORDS = 16;
+
+function distance(stroke, x, y) {
+  const { start, pieces } = walk(stroke);
+  let [from, least] = [start, Math.hypot(x - start[0], y - start[1])];
+  for (const piece of pieces) {
+    for (const to of chords(from, piece)) {
+      least = Math.min(least, gap(from, to, x, y));
+      from = to;
+    }
   }
   return least;
+}
+
+function chords([ax, ay], piece) {
+  if (piece.length === 1) return piece;
+  const [[cx, cy], [bx, by]] = piece;
+  return Array.from({ length: CHORDS }, (_, i) => {
+    const t = (i + 1) / CHORDS, u = 1 - t;
+    return [ax * u * u + 2 * cx * u * t + bx * t * t, ay * u * u + 2 * cy * u * t + by * t * t];
+  });
+}
+
+// From (x, y) to the segment from a to b.
+function gap([ax, ay], [bx, by], x, y) {
+  const [dx, dy] = [bx - ax, by - ay];
+  const along = ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy || 1);
+  const h = Math.min(1, Math.max(0, along));
+  return Math.hypot(x - ax - h * dx, y - ay - h * dy);
 }
 
 // Left, top, right, bottom of a stroke.

@@ -1,0 +1,37 @@
+"""Turns raster pictures into editable SVGs made of strokes.
+
+>>> import numpy as np
+>>> import strokefit
+>>> picture = np.full((24, 48, 3), 255, np.uint8)  # height × width × RGB
+>>> picture[10:14, 8:40] = 50  # a dark bar
+>>> drawing = strokefit.fit(picture, strokes=4)
+>>> drawing.svg[:4]
+'<svg'
+>>> drawing.report["input"]["width"], drawing.report["input"]["height"]
+(48, 24)
+
+`fit` draws a picture, `refine` goes on from an SVG, `render` and `judge` show and measure any SVG. Lengths are in
+px of the picture, with pixel centres at +0.5. The command line is `python -m strokefit`.
+"""
+
+from ._api import fit, judge, refine, render
+from ._drawing import Drawing
+from ._native import CancelToken
+from ._picture import Picture
+from ._report import Agreement, Fidelity, Report
+from ._strokes import Stroke, Strokes
+
+__all__ = [
+    "Agreement",
+    "CancelToken",
+    "Drawing",
+    "Fidelity",
+    "Picture",
+    "Report",
+    "Stroke",
+    "Strokes",
+    "fit",
+    "judge",
+    "refine",
+    "render",
+]

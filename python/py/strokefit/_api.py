@@ -1,0 +1,274 @@
+"""The functions of the package."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Optional, Union, cast
+
+from . import _native
+from ._drawing import Drawing
+from ._picture import Picture, native
+from ._strokes import Strokes
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from ._report import Fidelity, Report
+
+Svg = Union[str, "os.PathLike[str]", Drawing]
+Palette = Union[str, "os.PathLike[str]", Iterable[str]]
+Progress = Callable[[float, int, float], object]
+
+
+def fit(
+    picture: Picture,
+    *,
+    strokes: Optional[int] = None,
+    psnr: Optional[float] = None,
+    bytes: Optional[int] = None,
+    time: Optional[float] = None,
+    quality: Optional[float] = None,
+    preset: str = "balanced",
+    opaque: bool = False,
+    points: Optional[int] = None,
+    precision: int = 2,
+    background: str = "auto",
+    colors: Optional[int] = None,
+    palette: Optional[Palette] = None,
+    form: str = "plain",
+    group: str = "stage",
+    width: Optional[str] = None,
+    stages: Optional[int] = None,
+    polish: bool = True,
+    progressive: bool = False,
+    seed: int = 0,
+    threads: Optional[int] = None,
+    progress: Optional[Progress] = None,
+    cancel: Optional[_native.CancelToken] = None,
+) -> Drawing:
+    """Draws a picture with strokes.
+
+    Equal pictures and options give equal bytes, those of `strokefit fit`, for any number of threads.
+
+    Args:
+        picture: A path, bytes, a binary file, a PIL image, or an array of height × width, height × width × 1, 3
+            (RGB) or 4 (RGBA), of uint8, uint16, or floats of 0..1.
+
+    Budget; the first one reached stops:
+        strokes: At most so many strokes.
+        psnr: Stop when the file reaches so many dB: 25 is rough, 30 fair, 35 good.
+        bytes: At most so many bytes of SVG.
+        time: At most so many seconds, from the call to the verdict.
+
+    Look:
+        quality: Price of a byte, 0 to 60: a stroke stays if each of its bytes removes at least as much squared error
+            as one pixel has at so many dB. 30 unless there is a budget of strokes, psnr or bytes.
+        preset: `draft`, `balanced` or `best`: how much time to spend.
+        opaque: Use opaque strokes only.
+        points: Most points of a stroke, 2 to 65535; 2 draws line segments alone. As many as pay by default.
+        precision: Decimals of coordinates and widths, 0 to 6.
+        background: `auto` keeps transparency, `#rrggbb` flattens onto that colour, `none` draws no background.
+        colors: At most so many colours, the background included.
+        palette: Only these colours: `["#102030", …]`, `"#102030,…"`, or a file with one colour a line or a GIMP
+            palette.
+        form: What one element holds: a stroke (`plain`), all strokes of one look that can be drawn together
+            (`smallest`), or the filled outline of a stroke (`outlines`).
+        group: What one layer holds: `stage` or `color`.
+        width: Width of the page, such as `120mm`; one px per pixel of the picture by default.
+        stages: The number of stages, each a layer.
+        polish: Whether all strokes are fitted jointly after the stages.
+        progressive: Whether each layer is good without those above it.
+        seed: Key of all random choices.
+
+    How to run; this never changes the drawing:
+        threads: Worker threads; one per core by default.
+        progress: Called as `progress(done, strokes, psnr_db)` on this thread, with `done` from 0 to 1. What it
+            raises ends the fit.
+        cancel: Ends the fit from another thread; the drawing as far as it has come is returned.
+
+    Raises:
+        ValueError: An option or the picture is not as it has to be.
+        TypeError: An argument is of a type that is not known.
+        FileNotFoundError: There is no such file.
+        MemoryError: The picture takes more memory than the system gives.
+        KeyboardInterrupt: On Ctrl-C, within 0.2 s.
+
+    >>> import numpy as np, strokefit
+    >>> y, x = np.mgrid[:64, :64]
+    >>> disc = np.where((x - 32) ** 2 + (y - 32) ** 2 < 400, 40, 240).astype(np.uint8)  # height × width
+    >>> drawing = strokefit.fit(disc, psnr=30)
+    >>> drawing.report["fidelity"]["psnr_db"] >= 30
+    True
+    >>> drawing == strokefit.fit(disc / 255, psnr=30)  # floats of 0..1
+    True
+    """
+    return _drawing(
+        picture,
+        None,
+        progress,
+        cancel,
+        strokes=strokes,
+        psnr=psnr,
+        bytes=bytes,
+        time=time,
+        quality=quality,
+        preset=preset,
+        opaque=opaque,
+        points=points,
+        precision=precision,
+        background=background,
+        colors=colors,
+        palette=_palette(palette),
+        form=form,
+        group=group,
+        width=width,
+        stages=stages,
+        polish=polish,
+        progressive=progressive,
+        seed=seed,
+        threads=threads,
+    )
+
+
+def refine(
+    base: Svg,
+    picture: Picture,
+    *,
+    freeze_base: bool = False,
+    strokes: Optional[int] = None,
+    psnr: Optional[float] = None,
+    bytes: Optional[int] = None,
+    time: Optional[float] = None,
+    quality: Optional[float] = None,
+    preset: str = "balanced",
+    opaque: bool = False,
+    points: Optional[int] = None,
+    precision: int = 2,
+    colors: Optional[int] = None,
+    palette: Optional[Palette] = None,
+    form: str = "plain",
+    group: str = "stage",
+    width: Optional[str] = None,
+    stages: Optional[int] = None,
+    polish: bool = True,
+    progressive: bool = False,
+    seed: int = 0,
+    threads: Optional[int] = None,
+    progress: Optional[Progress] = None,
+    cancel: Optional[_native.CancelToken] = None,
+) -> Drawing:
+    """Adds strokes to an SVG to bring it closer to a picture.
+
+    The strokes of a drawing by strokefit are fitted further, together with new ones; any other SVG stays byte for byte,
+    and strokes are laid on it. Budgets count the whole file, and the background is that of the base.
+
+    Args:
+        base: A `Drawing`, the text of an SVG (it contains `<`), or the path of one.
+        picture: As for `fit`, in the proportions of the base.
+        freeze_base: Whether the strokes of the base stay as they are.
+
+    All other options are those of `fit`, and so are the exceptions.
+
+    >>> import numpy as np, strokefit
+    >>> y, x = np.mgrid[:48, :64]
+    >>> waves = 0.5 + 0.4 * np.sin(x / 5) * np.cos(y / 7)  # height × width, 0..1
+    >>> rough = strokefit.fit(waves, strokes=10)
+    >>> fine = strokefit.refine(rough, waves, strokes=40)
+    >>> fine.report["fidelity"]["psnr_db"] > rough.report["fidelity"]["psnr_db"]
+    True
+    """
+    text, name = _svg(base)
+    return _drawing(
+        picture,
+        (text, name, freeze_base),
+        progress,
+        cancel,
+        strokes=strokes,
+        psnr=psnr,
+        bytes=bytes,
+        time=time,
+        quality=quality,
+        preset=preset,
+        opaque=opaque,
+        points=points,
+        precision=precision,
+        colors=colors,
+        palette=_palette(palette),
+        form=form,
+        group=group,
+        width=width,
+        stages=stages,
+        polish=polish,
+        progressive=progressive,
+        seed=seed,
+        threads=threads,
+    )
+
+
+def render(svg: Svg, scale: float = 1.0, background: str = "none") -> NDArray[np.uint8]:
+    """An SVG as resvg renders it, 0..255, sRGB-encoded.
+
+    Args:
+        svg: A `Drawing`, the text of an SVG (it contains `<`), or the path of one.
+        scale: Pixels per unit of the SVG.
+        background: `#rrggbb` gives height × width × 3 on that colour; `none` height × width × 4, with straight alpha.
+
+    >>> import strokefit
+    >>> red = '<svg xmlns="http://www.w3.org/2000/svg" width="4" height="2"><path d="M0 0h2v2h-2" fill="#f00"/></svg>'
+    >>> strokefit.render(red).shape, strokefit.render(red, scale=3, background="#ffffff").shape
+    ((2, 4, 4), (6, 12, 3))
+    >>> strokefit.render(red)[0].tolist()
+    [[255, 0, 0, 255], [255, 0, 0, 255], [0, 0, 0, 0], [0, 0, 0, 0]]
+    """
+    return _native.render(_svg(svg)[0], scale, background)
+
+
+def judge(svg: Svg, picture: Picture) -> Fidelity:
+    """How faithful an SVG is to a picture, as resvg renders it: what `strokefit check` says of resvg.
+
+    Args:
+        svg: A `Drawing`, the text of an SVG (it contains `<`), or the path of one, in the picture's proportions.
+        picture: As for `fit`.
+
+    >>> import numpy as np, strokefit
+    >>> white = np.ones((8, 8))
+    >>> strokefit.judge('<svg xmlns="http://www.w3.org/2000/svg" width="8" height="8"/>', white)
+    {'psnr_db': None, 'ssim': 1.0, 'mse': 0.0, 'l1': 0.0}
+    """
+    return cast("Fidelity", json.loads(_native.judge(_svg(svg)[0], native(picture))))
+
+
+def _drawing(
+    picture: Picture,
+    base: Optional[tuple[str, str, bool]],
+    progress: Optional[Progress],
+    cancel: Optional[_native.CancelToken],
+    **options: object,
+) -> Drawing:
+    svg, report, columns = _native.draw(native(picture), base, options, progress, cancel)
+    return Drawing(svg, cast("Report", json.loads(report)), Strokes(columns))
+
+
+def _svg(svg: Svg) -> tuple[str, str]:
+    """The text and its name."""
+    if isinstance(svg, Drawing):
+        return svg.svg, "the drawing"
+    if isinstance(svg, str) and "<" in svg:
+        return svg, "the SVG"
+    path = Path(svg)
+    return path.read_bytes().decode(), str(path)
+
+
+def _palette(palette: Optional[Palette]) -> Optional[str]:
+    """The colours as text."""
+    if palette is None:
+        return None
+    if isinstance(palette, str) and ("#" in palette or "," in palette):
+        return palette
+    if isinstance(palette, (str, os.PathLike)):
+        return Path(palette).read_text(encoding="utf-8")
+    return ",".join(palette)

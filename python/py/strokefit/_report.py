@@ -1,0 +1,118 @@
+"""The report of a fit: the fields of `strokefit fit --report`.
+
+Times are in seconds. A field that does not apply, or is not known, is `None`.
+"""
+
+from __future__ import annotations
+
+from typing import Optional, TypedDict
+
+
+class Input(TypedDict):
+    """The picture."""
+
+    #: As it was named; empty for bytes and arrays.
+    path: str
+    #: In px.
+    width: int
+    #: In px.
+    height: int
+
+
+class Dropped(TypedDict):
+    """How many strokes were dropped, by reason, and how many points."""
+
+    non_finite: int
+    invisible: int
+    off_page: int
+    #: Points of strokes that stay; rounding made them superfluous.
+    points: int
+
+
+class StageEntry(TypedDict):
+    """One layer of the drawing."""
+
+    #: From 1.
+    index: int
+    strokes: int
+    #: Iterations of the optimiser.
+    iterations: int
+    wall_s: float
+    #: After the stage, at the resolution that it was fitted at.
+    psnr_db: Optional[float]
+    #: Of the finished drawing's layers up to this one.
+    layer_psnr_db: Optional[float]
+
+
+class Fidelity(TypedDict):
+    """A picture against another, over 8-bit RGB on white."""
+
+    #: Peak signal-to-noise ratio; `None` for equal pictures.
+    psnr_db: Optional[float]
+    #: Structural similarity; 1 for equal pictures.
+    ssim: float
+    #: Mean squared error, 0..1.
+    mse: float
+    #: Mean absolute error, 0..1.
+    l1: float
+
+
+class Agreement(TypedDict):
+    """Two renders of one drawing against each other."""
+
+    #: `None` for equal renders.
+    psnr_db: Optional[float]
+    #: Largest difference of a channel of a pixel, 0..255.
+    max_abs: int
+
+
+class OnMattes(TypedDict):
+    """PSNR of a transparent drawing on three colours; `None` for equal pictures."""
+
+    black_db: Optional[float]
+    white_db: Optional[float]
+    magenta_db: Optional[float]
+
+
+class BaseEntry(TypedDict):
+    """The SVG that a drawing goes on from."""
+
+    path: str
+    #: Strokes that were taken up.
+    strokes: int
+    #: Elements that stay as they are.
+    elements: int
+
+
+class Report(TypedDict):
+    """What a fit did."""
+
+    #: Version of this layout.
+    schema: int
+    input: Input
+    strokes: int
+    #: Strokes that were dropped.
+    dropped: int
+    dropped_for: Dropped
+    stages: list[StageEntry]
+    svg_bytes: int
+    svg_gzip_bytes: int
+    bytes_per_stroke: Optional[float]
+    #: From the call to the verdict.
+    wall_s: float
+    #: Always `None`: Python's process does other things, too.
+    cpu_s: Optional[float]
+    #: Always `None`, likewise.
+    peak_rss_bytes: Optional[int]
+    predicted_rss_bytes: int
+    #: `strokes`, `psnr`, `bytes`, `time`, `converged` or `interrupted`.
+    stop: str
+    seed: int
+    #: The SVG as resvg renders it, against the picture.
+    fidelity: Fidelity
+    #: Our own soft render against the picture.
+    soft: Fidelity
+    #: The SVG as resvg renders it, against our own soft render.
+    agreement: Agreement
+    alpha: Optional[OnMattes]
+    base: Optional[BaseEntry]

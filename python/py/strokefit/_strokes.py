@@ -1,0 +1,121 @@
+"""The strokes of a drawing, one by one or as columns."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, NamedTuple, Union, overload
+
+import numpy as np
+
+from . import _native
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ._native import _Columns
+
+
+class Stroke(NamedTuple):
+    """A path with round caps and joins, in one colour.
+
+    Two points in a row that are on the path are joined by a line. A point off the path is the control point of a
+    quadratic Bézier curve; between two such points in a row, the path goes through the middle, without a corner.
+    """
+
+    #: Points of the centre line, n × 2, px; one point is a dot. Read-only.
+    points: NDArray[np.float32]
+    #: Which of the n points are on the path. Read-only.
+    on_path: NDArray[np.bool_]
+    #: Whether the last point is joined to the first.
+    closed: bool
+    #: In px.
+    width: float
+    #: Red, green and blue, 0..1, sRGB-encoded.
+    color: tuple[float, float, float]
+    #: 0..1.
+    opacity: float
+
+    def flattened(self, tolerance: float = 0.1) -> NDArray[np.float32]:
+        """The centre line as the corners of a polyline at most `tolerance` px away from it, m × 2, px.
+
+        That of a closed path ends where it starts; a dot is one point.
+
+        >>> import numpy as np, strokefit
+        >>> points = np.array([[0, 0], [4, 0], [4, 4]], np.float32)
+        >>> bend = strokefit.Stroke(points, np.array([True, False, True]), False, 1.0, (0.0, 0.0, 0.0), 1.0)
+        >>> bend.flattened(0.5).tolist()
+        [[0.0, 0.0], [3.0, 1.0], [4.0, 4.0]]
+        """
+        return _native.flatten(self.points, self.on_path, self.closed, tolerance)
+
+
+class Strokes(Sequence[Stroke]):
+    """The strokes of a drawing, back to front.
+
+    Each stroke is a `Stroke`. The columns hold all of them at once, as read-only arrays:
+
+    >>> import numpy as np, strokefit
+    >>> picture = np.full((24, 48), 255, np.uint8)
+    >>> picture[10:14, 8:40] = 50
+    >>> strokes = strokefit.fit(picture, strokes=4).strokes
+    >>> [len(strokes), len(strokes.widths)] == [strokes.colors.shape[0]] * 2
+    True
+    >>> strokes.points[strokes.starts[0]:strokes.starts[1]].shape == strokes[0].points.shape
+    True
+    """
+
+    #: Points of all strokes, m × 2, px.
+    points: NDArray[np.float32]
+    #: Which of the m points are on their path.
+    on_path: NDArray[np.bool_]
+    #: Stroke i has the points `points[starts[i]:starts[i + 1]]`; n + 1 numbers.
+    starts: NDArray[np.int64]
+    #: Which of the n paths are closed.
+    closed: NDArray[np.bool_]
+    #: n widths, px.
+    widths: NDArray[np.float32]
+    #: n × 3, 0..1, sRGB-encoded.
+    colors: NDArray[np.float32]
+    #: n opacities, 0..1.
+    opacities: NDArray[np.float32]
+    #: The layer of each stroke, from 0.
+    layers: NDArray[np.int64]
+
+    def __init__(self, columns: _Columns) -> None:
+        for column in columns:
+            column.flags.writeable = False
+        self.points, self.on_path, self.starts, self.closed = columns[:4]
+        self.widths, self.colors, self.opacities, self.layers = columns[4:]
+
+    def __len__(self) -> int:
+        return len(self.widths)
+
+    @overload
+    def __getitem__(self, index: int) -> Stroke: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[Stroke]: ...
+    def __getitem__(self, index: Union[int, slice]) -> Union[Stroke, list[Stroke]]:
+        if isinstance(index, slice):
+            return [self[i] for i in range(*index.indices(len(self)))]
+        i = range(len(self))[index]
+        red, green, blue = self.colors[i].tolist()
+        own = slice(self.starts[i], self.starts[i + 1])
+        return Stroke(
+            points=self.points[own],
+            on_path=self.on_path[own],
+            closed=bool(self.closed[i]),
+            width=float(self.widths[i]),
+            color=(red, green, blue),
+            opacity=float(self.opacities[i]),
+        )
+
+    def __iter__(self) -> Iterator[Stroke]:
+        return (self[i] for i in range(len(self)))
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} strokes>"
+
+    def __reduce__(self) -> tuple[type[Strokes], tuple[_Columns]]:
+        paths = (self.points, self.on_path, self.starts, self.closed)
+        looks = (self.widths, self.colors, self.opacities, self.layers)
+        return Strokes, ((*paths, *looks),)

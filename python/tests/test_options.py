@@ -1,0 +1,108 @@
+"""Options mean what they mean on the command line, and wrong ones are refused with what would be right."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import strokefit
+
+
+def test_budgets_are_kept(waves: np.ndarray) -> None:
+    assert 0 < len(strokefit.fit(waves, strokes=12).strokes) <= 12
+    assert strokefit.fit(waves, psnr=26).report["fidelity"]["psnr_db"] >= 26
+    assert len(strokefit.fit(waves, bytes=2000).svg) <= 2000
+    limited = strokefit.fit(waves, time=0.2, quality=50)
+    assert limited.report["stop"] == "time" and limited.report["wall_s"] < 1
+
+
+def test_looks_are_kept(waves: np.ndarray) -> None:
+    few = {"strokes": 25, "preset": "draft"}
+    opaque = strokefit.fit(waves, opaque=True, **few)
+    assert (opaque.strokes.opacities == 1).all()
+    black_white = strokefit.fit(waves, palette=["#000000", "#FFFFFF"], **few)
+    assert set(black_white.strokes.colors.ravel().tolist()) <= {0.0, 1.0}
+    assert strokefit.fit(waves, palette="#000000,#ffffff", **few) == black_white
+    capsules = strokefit.fit(waves, points=2, **few)
+    assert np.diff(capsules.strokes.starts).max() == 2 and capsules.strokes.on_path.all()
+    assert not capsules.strokes.closed.any()
+    assert np.diff(strokefit.fit(waves, **few).strokes.starts).max() > 2
+    four = strokefit.fit(waves, colors=4, **few)
+    assert len(np.unique(four.strokes.colors, axis=0)) <= 4
+    assert strokefit.fit(waves, background="#102030", **few).svg.count('fill="#102030"') == 1
+    assert 'width="120mm"' in strokefit.fit(waves, width="120mm", **few).svg
+    assert 'id="color-1"' in strokefit.fit(waves, group="color", **few).svg
+    assert "stroke-width" not in strokefit.fit(waves, form="outlines", **few).svg
+    assert not re.search(r"\.\d\d", strokefit.fit(waves, precision=1, opaque=True, **few).svg)
+    assert len(strokefit.fit(waves, stages=1, **few).report["stages"]) == 1
+    assert strokefit.fit(waves, polish=False, **few) != strokefit.fit(waves, **few)
+    assert strokefit.fit(waves, seed=2**64 - 1, **few) != strokefit.fit(waves, **few)
+    assert strokefit.fit(waves, progressive=True, **few) != strokefit.fit(waves, **few)
+
+
+def test_threads_change_nothing(waves: np.ndarray) -> None:
+    assert strokefit.fit(waves, strokes=40, threads=1) == strokefit.fit(waves, strokes=40, threads=3)
+
+
+def test_a_palette_may_be_a_file(waves: np.ndarray, tmp_path: Path) -> None:
+    colors = tmp_path / "two.gpl"
+    colors.write_text("GIMP Palette\n#\n0 0 0 black\n255 255 255 white\n")
+    options = {"strokes": 15, "preset": "draft"}
+    expected = strokefit.fit(waves, palette=["#000000", "#ffffff"], **options)
+    assert strokefit.fit(waves, palette=colors, **options) == expected
+    assert strokefit.fit(waves, palette=str(colors), **options) == expected
+    with pytest.raises(FileNotFoundError):
+        strokefit.fit(waves, palette="no-such.gpl")
+
+
+def test_numpy_numbers_are_numbers(waves: np.ndarray) -> None:
+    plain = strokefit.fit(waves, strokes=9, preset="draft", quality=20, seed=3)
+    other = strokefit.fit(waves, strokes=np.int64(9), preset="draft", quality=np.float32(20), seed=np.uint8(3))
+    assert plain == other
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "words"),
+    [
+        ("strokes", 0, "strokes=0: give a whole number from 1 to 900000"),
+        ("strokes", -3, "strokes=-3: give a whole number from 1"),
+        ("strokes", 10**30, "give a whole number from 1"),
+        ("psnr", 0, "psnr=0: give decibels from above 0 to 100"),
+        ("psnr", float("nan"), "psnr=NaN: give decibels"),
+        ("bytes", 0, "bytes=0: give a whole number of 1 or more"),
+        ("time", 0, "time=0: give seconds above 0"),
+        ("time", -1, "time=-1: give seconds above 0"),
+        ("quality", 99, "a quality of 99 is out of range: give 0 to 60"),
+        ("preset", "fast", "preset: 'fast' is not a preset: give draft, balanced or best"),
+        ("precision", 7, "precision=7: give a whole number from 0 to 6"),
+        ("background", "white", "'white' is not a background: give auto, none"),
+        ("colors", 0, "colors=0: give a whole number from 1 to 4096"),
+        ("palette", ["red"], "'red' is not a colour"),
+        ("form", "tiny", "'tiny' is not a form: give plain, smallest or outlines"),
+        ("group", "hue", "'hue' is not a grouping"),
+        ("width", "12", "'12' is not a length"),
+        ("seed", -1, "seed=-1: give a whole number from 0 to 18446744073709551615"),
+        ("threads", 0, "threads=0: give a whole number from 1 to 1024"),
+        ("stages", 0, "stages=0: give"),
+        ("points", 1, "points=1: give a whole number from 2 to 65535"),
+        ("points", 70_000, "points=70000: give a whole number from 2 to 65535"),
+        ("points", -2, "points=-2: give a whole number from 2 to 65535"),
+    ],
+)
+def test_values_out_of_range_are_refused(waves: np.ndarray, option: str, value: object, words: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(words)):
+        strokefit.fit(waves, **{option: value})
+
+
+@pytest.mark.parametrize("option", ["strokes", "psnr", "time", "preset", "opaque", "points", "seed", "threads", "polish"])
+def test_other_types_are_refused_by_name(waves: np.ndarray, option: str) -> None:
+    with pytest.raises(TypeError, match=option):
+        strokefit.fit(waves, **{option: object()})
+
+
+def test_colors_and_a_palette_exclude_each_other(waves: np.ndarray) -> None:
+    with pytest.raises(ValueError, match="give one of them"):
+        strokefit.fit(waves, colors=3, palette=["#000000"])

@@ -1,0 +1,261 @@
+//! Joins: two strokes of about one look that meet end to end become one, if this costs less than the bytes of a stroke.
+//!
+//! Pairs are found by their ends and looks. What joining them costs is then rendered: if all joins together cost more
+//! than they save, the less alike half of the pairs is left out, and so on.
+
+use std::collections::BTreeMap;
+
+use super::written_points;
+use crate::fit::drawing::Drawing;
+use crate::fit::recipe::Joins;
+use crate::fit::session::Session;
+use crate::render::{LOOK, StrokeRef, Strokes};
+
+/// Joins free strokes where that pays. Returns the former index of each number of the free strokes, `None` for a new
+/// one; nothing if no two strokes are joined. A stroke could be spared that is worth `spare`.
+pub(super) fn join(session: &mut Session<'_>, spare: f32) -> Option<Vec<Option<usize>>> {
+    let (joins, price) = (session.recipe.points.joins, session.price);
+    let most = session.config.points.unwrap_or(usize::MAX);
+    let drawing = &mut session.drawing;
+    let mut pairs = pairs(drawing.free(), most, &joins);
+    if pairs.is_empty() {
+        return None;
+    }
+    let least = joins.share * drawing.free().len() as f32;
+    pairs.truncate(least.ceil() as usize);
+    let before = drawing.squared_error();
+    let saved = |pair: &Pair| price.of(drawing.free().get(pair.lower)).max(spare);
+    let saved: Vec<f32> = pairs.iter().map(saved).collect();
+    let memento = drawing.memento();
+    while !pairs.is_empty() {
+        let sources = drawing.join(&pairs);
+        let cost = drawing.squared_error() - before;
+        if cost < saved[..pairs.len()].iter().map(|&v| f64::from(v)).sum() {
+            return Some(sources);
+        }
+        drawing.revert(memento.clone());
+        pairs.truncate(pairs.len() / 2);
+    }
+    None
+}
+
+/// Two strokes that meet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Pair {
+    lower: usize,
+    upper: usize,
+    /// Whether the end of each is the one that meets; otherwise it is the start.
+    ends: [bool; 2],
+    /// How different they look.
+    unlike: f32,
+}
+
+/// The pairs of strokes that may be joined, the most alike first, each stroke in one pair at most.
+fn pairs(strokes: &Strokes, most: usize, joins: &Joins) -> Vec<Pair> {
+    let mut cells: BTreeMap<[i32; 2], Vec<(usize, bool)>> = BTreeMap::new();
+    let cell = |p: [f32; 2]| p.map(|v| (v / joins.reach).floor() as i32);
+    let may_join = |stroke: StrokeRef<'_>| {
+        !stroke.closed
+            && stroke.points.len() > 1
+            && stroke.points.len() < most
+            && stroke.is_finite()
+    };
+    let mut pairs = Vec::new();
+    for (i, stroke) in strokes.iter().enumerate().filter(|(_, s)| may_join(*s)) {
+        for is_end in [false, true] {
+            let at = end(stroke, is_end);
+            let [column, row] = cell(at);
+            let near = (-1..=1).flat_map(|y| (-1..=1).map(move |x| [column + x, row + y]));
+            for &(k, other_is_end) in near.filter_map(|place| cells.get(&place)).flatten() {
+                let other = strokes.get(k);
+                let count = written_points(stroke) + written_points(other) - 1;
+                let gap = distance(at, end(other, other_is_end));
+                let width = stroke.radius() + other.radius();
+                if k != i && count <= most && gap <= joins.reach.min(width * joins.gap) {
+                    let unlike = unlike(stroke, other) + gap / width * joins.alike;
+                    pairs.push(Pair {
+                        lower: k,
+                        upper: i,
+                        ends: [other_is_end, is_end],
+                        unlike,
+                    });
+                }
+            }
+        }
+        for is_end in [false, true] {
+            let place = cell(end(stroke, is_end));
+            cells.entry(place).or_default().push((i, is_end));
+        }
+    }
+    pairs.retain(|pair| pair.unlike < joins.alike);
+    pairs.sort_by(|a, b| a.unlike.total_cmp(&b.unlike).then(a.upper.cmp(&b.upper)));
+    let mut taken = vec![false; strokes.len()];
+    pairs.retain(|pair| {
+        let is_free = !taken[pair.lower] && !taken[pair.upper];
+        if is_free {
+            (taken[pair.lower], taken[pair.upper]) = (true, true);
+        }
+        is_free
+    });
+    pairs
+}
+
+/// How different two strokes look: the largest difference of their channels and opacities, and of their radii in units
+/// of the larger one.
+fn unlike(a: StrokeRef<'_>, b: StrokeRef<'_>) -> f32 {
+    let colors = a.color().into_iter().zip(b.color());
+    let colors = colors.map(|(a, b)| (a - b).abs());
+    let opacities = (a.opacity() - b.opacity()).abs();
+    let radii = (a.radius() - b.radius()).abs() / a.radius().max(b.radius());
+    colors.chain([opacities, radii]).fold(0.0, f32::max)
+}
+
+fn end(stroke: StrokeRef<'_>, is_end: bool) -> [f32; 2] {
+    let end = if is_end {
+        stroke.points.last()
+    } else {
+        stroke.points.first()
+    };
+    end.copied().unwrap_or_default()
+}
+
+fn distance(a: [f32; 2], b: [f32; 2]) -> f32 {
+    let [x, y] = [a[0] - b[0], a[1] - b[1]];
+    (x * x + y * y).sqrt()
+}
+
+impl Drawing {
+    /// The squared error, summed over channels and the pixels of the picture.
+    fn squared_error(&mut self) -> f64 {
+        self.mse() * 3.0 * self.pixels() as f64
+    }
+
+    /// Joins pairs of free strokes. The joined stroke lies where the upper one lay.
+    fn join(&mut self, pairs: &[Pair]) -> Vec<Option<usize>> {
+        let strokes = self.free();
+        let mut pair_of = vec![None; strokes.len()];
+        pairs
+            .iter()
+            .for_each(|pair| pair_of[pair.upper] = Some(pair));
+        let mut keep = vec![true; strokes.len()];
+        pairs.iter().for_each(|pair| keep[pair.lower] = false);
+        let (mut joined, mut sources) = (Strokes::new(), Vec::new());
+        for (i, stroke) in strokes.iter().enumerate() {
+            match pair_of[i] {
+                Some(pair) => push_joined(&mut joined, &mut sources, strokes, pair),
+                None => {
+                    joined.push(stroke);
+                    if keep[i] {
+                        sources.extend(strokes.range(i).map(Some));
+                    }
+                }
+            }
+        }
+        *self.free_mut() = joined;
+        self.retain_free(&keep);
+        sources
+    }
+}
+
+/// Adds the joined stroke: the lower one up to where they meet, a point there, and the upper one from there on.
+fn push_joined(
+    joined: &mut Strokes,
+    sources: &mut Vec<Option<usize>>,
+    strokes: &Strokes,
+    pair: &Pair,
+) {
+    let numbered = |i: usize, is_reversed: bool| {
+        let (stroke, start) = (strokes.get(i), strokes.range(i).start);
+        let points = stroke.points.iter().zip(stroke.off).enumerate();
+        let mut points: Vec<_> = points
+            .map(|(k, (&at, &is_off))| (at, is_off, Some(start + 2 * k)))
+            .collect();
+        if is_reversed {
+            points.reverse();
+        }
+        points
+    };
+    let mut points = numbered(pair.lower, !pair.ends[0]);
+    let rest = numbered(pair.upper, pair.ends[1]);
+    if let (Some(last), Some((first, _, _))) = (points.last_mut(), rest.first()) {
+        last.0 = [0, 1].map(|axis| 0.5 * (last.0[axis] + first[axis]));
+    }
+    points.extend(&rest[1..]);
+    let (a, b) = (strokes.get(pair.lower), strokes.get(pair.upper));
+    let (weight, other) = (length(a), length(b));
+    let share = other / (weight + other).max(f32::MIN_POSITIVE);
+    let look: [f32; LOOK] = std::array::from_fn(|k| a.look[k] + share * (b.look[k] - a.look[k]));
+    let places: Vec<[f32; 2]> = points.iter().map(|point| point.0).collect();
+    let off: Vec<bool> = points.iter().map(|point| point.1).collect();
+    joined.push(StrokeRef {
+        points: &places,
+        off: &off,
+        closed: false,
+        look: &look,
+    });
+    sources.extend(
+        points
+            .iter()
+            .flat_map(|point| [point.2, point.2.map(|at| at + 1)]),
+    );
+    sources.extend(strokes.range(pair.upper).rev().take(LOOK).rev().map(Some));
+}
+
+/// Length of the lines through the points of a stroke, px.
+fn length(stroke: StrokeRef<'_>) -> f32 {
+    let steps = stroke.points.windows(2);
+    steps.map(|step| distance(step[0], step[1])).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::{Preset, Recipe};
+
+    fn strokes(capsules: &[[f32; 9]]) -> Strokes {
+        capsules.iter().collect()
+    }
+
+    fn found(capsules: &[[f32; 9]]) -> Vec<(usize, usize)> {
+        let joins = Recipe::of(Preset::Balanced).points.joins;
+        let pairs = pairs(&strokes(capsules), usize::MAX, &joins);
+        pairs.iter().map(|pair| (pair.lower, pair.upper)).collect()
+    }
+
+    const A: [f32; 9] = [1.0, 1.0, 9.0, 1.0, 2.0, 0.5, 0.5, 0.5, 1.0];
+
+    fn from(x: f32, level: f32) -> [f32; 9] {
+        [x, 1.5, 20.0, 9.0, 2.0, level, level, level, 1.0]
+    }
+
+    #[test]
+    fn strokes_of_one_look_that_meet_are_a_pair() {
+        assert_eq!(found(&[A, from(9.5, 0.52)]), [(0, 1)]);
+        assert_eq!(found(&[A, from(9.5, 0.9)]), []);
+        assert_eq!(found(&[A, from(14.0, 0.5)]), []);
+    }
+
+    #[test]
+    fn a_stroke_is_in_one_pair() {
+        let far = |x: f32, level: f32| [x, 1.5, 20.0 + 9.0 * x, 9.0, 2.0, level, level, level, 1.0];
+        let apart = [A, far(11.0, 0.56), far(8.5, 0.5)];
+        assert_eq!(found(&apart), [(0, 2)]);
+    }
+
+    #[test]
+    fn a_joined_stroke_goes_from_end_to_end() {
+        let (lower, upper) = (A, [20.0, 9.0, 9.0, 2.0, 2.0, 0.6, 0.6, 0.6, 1.0]);
+        let strokes = strokes(&[lower, upper]);
+        let pair = Pair {
+            lower: 0,
+            upper: 1,
+            ends: [true, true],
+            unlike: 0.0,
+        };
+        let (mut joined, mut sources) = (Strokes::new(), Vec::new());
+        push_joined(&mut joined, &mut sources, &strokes, &pair);
+        assert_eq!(joined.get(0).points, [[1.0, 1.0], [9.0, 1.5], [20.0, 9.0]]);
+        let expected = [0, 1, 2, 3, 9, 10, 13, 14, 15, 16, 17].map(Some);
+        assert_eq!(sources, expected);
+    }
+}

@@ -1,0 +1,88 @@
+//! A drawing, as pages draw it.
+
+use serde::Serialize;
+
+use crate::scene::{Path, PathPoint, Rgb, Scene, Stroke};
+
+/// A scene in numbers and colours that a page can hand to a canvas.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SceneRecord {
+    /// Width in px.
+    pub width: u32,
+    /// Height in px.
+    pub height: u32,
+    /// `#rrggbb`; `null` if the drawing is transparent.
+    pub background: Option<String>,
+    /// Strokes back to front, stage by stage.
+    pub stages: Vec<Vec<StrokeRecord>>,
+}
+
+/// In JSON a list of five: the points x, y, x, y, … and the radius, px; the colour `#rrggbb`; the opacity, 0..1; the kinds
+/// of the points, `o` on the path and `c` for a control point, and then `z` if the path is closed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StrokeRecord(pub Vec<f32>, pub f32, pub String, pub f32, pub String);
+
+impl From<&Scene> for SceneRecord {
+    fn from(scene: &Scene) -> Self {
+        let stages = scene.stages.iter();
+        Self {
+            width: scene.width,
+            height: scene.height,
+            background: scene.background.map(css),
+            stages: stages
+                .map(|stage| stage.strokes.iter().map(StrokeRecord::from).collect())
+                .collect(),
+        }
+    }
+}
+
+impl From<&Stroke> for StrokeRecord {
+    fn from(stroke: &Stroke) -> Self {
+        let points = stroke.path.points().iter();
+        Self(
+            points.flat_map(|p| [p.at.x, p.at.y]).collect(),
+            stroke.radius,
+            css(stroke.color),
+            stroke.opacity,
+            kinds(&stroke.path),
+        )
+    }
+}
+
+fn kinds(path: &Path) -> String {
+    let kind = |p: &PathPoint| if p.is_on { 'o' } else { 'c' };
+    let end = path.is_closed().then_some('z');
+    path.points().iter().map(kind).chain(end).collect()
+}
+
+/// `#rrggbb`.
+fn css(color: Rgb) -> String {
+    let [r, g, b] = color.map(|c| (c * 255.0 + 0.5) as u8);
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Stage;
+
+    #[test]
+    fn a_page_reads_points_radius_colour_opacity_and_kinds() {
+        let stroke = Stroke {
+            path: Path::line([1.5, 2.0].into(), [3.0, 4.0].into()),
+            radius: 0.75,
+            color: [1.0, 0.5, 0.0],
+            opacity: 0.25,
+        };
+        let stage = Stage {
+            strokes: vec![stroke],
+        };
+        let scene = Scene {
+            stages: vec![stage],
+            ..Scene::empty(8, 6, Some([1.0; 3]))
+        };
+        let json = serde_json::to_string(&SceneRecord::from(&scene)).unwrap();
+        let expected = r##"{"width":8,"height":6,"background":"#ffffff","stages":[[[[1.5,2.0,3.0,4.0],0.75,"#ff8000",0.25,"oo"]]]}"##;
+        assert_eq!(json, expected);
+    }
+}

@@ -1,0 +1,366 @@
+// A drawing while it grows and after: target, drawing and residual, layers, strokes, curves. What is looked at is in the
+// address after #, so that it can be kept.
+//
+// Where drawings come from is not the business of this file: page.js asks a server for them, and the page of web/ fits them
+// itself. Both call `show` with a state:
+//
+//     picture            a number; another one means another picture
+//     title              what it is called
+//     target             what canvases can draw, or null
+//     finished           whether it is fitted; svg_bytes is then the size of the file
+//     done, stage, stages, polishing, last     how far the fit is, as src/view/page.rs says; null when nothing was fitted
+//     curve              points { time_s, strokes, psnr_db }, of which `last` is the last
+//     grows, more        whether strokes can be added, and how many will be
+//     scene              the drawing as src/report/scene.rs writes it; null where it is the one that was shown last
+//
+// and `listen` with what is done when somebody wants something: { stop(), add(strokes) }.
+
+import { drawChart } from "./chart.js";
+import { Comparison, bounds, drawPoints, drawRing, drawStrokes, strokeAt } from "./picture.js";
+
+// How often the finished drawing is measured on the way from no stroke to all.
+const MEASURED = 60;
+
+const element = (id) => document.getElementById(id);
+const [target, drawing, residual] = ["target", "drawing", "residual"].map(element);
+
+let state = { curve: [] };
+let scene = null;
+// All strokes as { stroke, number, stage }, numbers and stages from 1.
+let strokes = [];
+let comparison = null;
+let measured = [];
+// What part of the picture is seen: px of the picture per CSS px is 1 / zoom.
+let view = { zoom: 0, x: 0, y: 0 };
+let hidden = new Set();
+// How many strokes from the back are shown; all when it is Infinity, also of a growing drawing.
+let shown = Infinity;
+let selected = null;
+// The share of the drawing, from the left, that shows the target instead.
+let compared = 0;
+
+function readAddress() {
+  const wanted = new URLSearchParams(location.hash.slice(1));
+  shown = wanted.has("shown") ? Number(wanted.get("shown")) : Infinity;
+  selected = Number(wanted.get("stroke")) || null;
+  hidden = new Set((wanted.get("hidden") ?? "").split(",").filter(Boolean).map(Number));
+  const [x, y, zoom] = (wanted.get("view") ?? "").split(",").map(Number);
+  view = zoom > 0 ? { x, y, zoom } : { x: 0, y: 0, zoom: 0 };
+}
+
+function writeAddress() {
+  const say = new URLSearchParams();
+  if (shown < strokes.length) say.set("shown", shown);
+  if (selected) say.set("stroke", selected);
+  if (hidden.size) say.set("hidden", [...hidden].join());
+  if (view.zoom) say.set("view", [view.x, view.y, view.zoom].map((v) => Number(v.toFixed(2))).join());
+  history.replaceState(null, "", say.size ? `#${say}` : location.pathname);
+}
+
+export function show(next) {
+  const another = next.picture !== state.picture;
+  const finishedNow = next.finished && (another || !state.finished);
+  state = next;
+  if (another) [scene, comparison, strokes, measured] = [null, null, [], []];
+  if (state.scene) takeScene(state.scene);
+  showState();
+  if (state.scene || finishedNow) redraw();
+  if (finishedNow && comparison) measure();
+  document.body.dataset.ready = state.finished;
+}
+
+function takeScene(next) {
+  scene = next;
+  let number = 0;
+  strokes = scene.stages.flatMap((list, k) => list.map((stroke) => ({ stroke, number: ++number, stage: k + 1 })));
+  if (state.target && !comparison) comparison = new Comparison(state.target, scene.width, scene.height);
+  showControls();
+}
+
+// Numbers and curves.
+
+function showState() {
+  element("title").textContent = document.title = `strokefit: ${state.title}`;
+  element("phase").textContent = phase();
+  element("progress").value = state.finished ? 1 : (state.done ?? 0);
+  element("progress").hidden = state.done === null;
+  element("stop").hidden = state.finished || state.done === null;
+  element("more").hidden = !state.grows;
+  element("download").hidden = !scene;
+  for (const id of ["target-panel", "residual-panel", "compare", "compare-label"]) element(id).hidden = !state.target;
+  element("stroke-chart").hidden = !state.target || !state.finished;
+  element("time-chart").hidden = state.curve.length === 0;
+  drawChart(element("over-time"), state.curve.map(({ time_s, psnr_db }) => [time_s, psnr_db ?? NaN]));
+}
+
+function phase() {
+  const queued = state.more && !state.finished ? `, then ${state.more} more` : "";
+  return underway() + queued;
+}
+
+function underway() {
+  if (state.finished) return `${strokes.length} strokes, ${state.svg_bytes} bytes`;
+  if (!state.last) return "starting";
+  const known = state.stages ? ` of ${state.stages}` : "";
+  const place = state.polishing ? "polish" : `stage ${state.stage}${known}`;
+  const { strokes: count, psnr_db, time_s } = state.last;
+  // Without any error there is no number of dB.
+  const fidelity = psnr_db === null ? "" : `, ${psnr_db.toFixed(2)} dB`;
+  return `${place}, ${count} strokes${fidelity}, ${time_s.toFixed(1)} s`;
+}
+
+// dB of the finished drawing as strokes are added, by the browser's renderer.
+function measure() {
+  comparison.clear(scene.background);
+  measured = [[0, comparison.psnr()]];
+  const step = Math.max(1, Math.ceil(strokes.length / MEASURED));
+  for (let k = 0; k < strokes.length; k += step) {
+    const part = strokes.slice(k, k + step);
+    comparison.add(part.map(({ stroke }) => stroke));
+    measured.push([k + part.length, comparison.psnr()]);
+  }
+  redraw();
+}
+
+// Controls.
+
+function showControls() {
+  const total = strokes.length;
+  element("shown").max = element("stroke").max = total;
+  element("stage").max = scene.stages.length;
+  const boxes = element("layers");
+  while (boxes.children.length > scene.stages.length) boxes.lastChild.remove();
+  scene.stages.forEach((list, k) => showLayer(boxes.children[k] ?? boxes.appendChild(layerBox(k + 1)), k + 1, list));
+}
+
+function layerBox(stage) {
+  const label = document.createElement("label");
+  const box = document.createElement("input");
+  box.type = "checkbox";
+  box.addEventListener("change", () => {
+    if (box.checked) hidden.delete(stage);
+    else hidden.add(stage);
+    redraw();
+  });
+  label.append(box, document.createElement("span"));
+  return label;
+}
+
+function showLayer(label, stage, list) {
+  const [box, text] = label.children;
+  box.checked = !hidden.has(stage);
+  text.textContent = ` ${stage}: ${list.length} stroke${list.length === 1 ? "" : "s"}`;
+}
+
+function showSelected() {
+  const found = strokes[selected - 1];
+  element("zoom").disabled = !found;
+  if (document.activeElement !== element("stroke")) element("stroke").value = found ? selected : "";
+  element("numbers").replaceChildren(...(found ? describe(found) : []));
+}
+
+// How many points of a stroke are told.
+const TOLD_POINTS = 24;
+
+function describe({ stroke: [points, radius, color, opacity, kinds], number, stage }) {
+  const round = (value) => Number(value.toFixed(2));
+  const count = points.length / 2;
+  // Control points are in parentheses.
+  const pairs = Array.from({ length: Math.min(count, TOLD_POINTS) }, (_, k) => {
+    const pair = `${round(points[2 * k])}, ${round(points[2 * k + 1])}`;
+    return kinds[k] === "o" ? pair : `(${pair})`;
+  });
+  if (count > TOLD_POINTS) pairs.push(`${count - TOLD_POINTS} more`);
+  if (kinds.endsWith("z")) pairs.push("start");
+  const rows = [["number", `${number} of ${strokes.length}, stage ${stage}`], ["points", pairs.join("  →  ")]];
+  rows.push(["width", `${round(2 * radius)} px`], ["colour", color], ["opacity", opacity.toFixed(3)]);
+  return rows.flatMap(([name, value]) => {
+    const term = document.createElement("dt"), text = document.createElement("dd");
+    term.textContent = name;
+    if (name === "colour") {
+      const swatch = text.appendChild(document.createElement("span"));
+      swatch.className = "swatch";
+      swatch.style.background = color;
+    }
+    text.append(value);
+    return [term, text];
+  });
+}
+
+// Pictures.
+
+function redraw() {
+  if (!scene) return;
+  const visible = strokes.filter(({ number, stage }) => number <= shown && !hidden.has(stage));
+  const list = visible.map(({ stroke }) => stroke);
+  const found = strokes[selected - 1];
+  paint(drawing, (context, px) => {
+    if (scene.background) fillPage(context, scene.background);
+    drawStrokes(context, list);
+    if (!found) return;
+    drawRing(context, found.stroke, px);
+    drawPoints(context, found.stroke, px);
+    if (state.target) drawCompared(context, px);
+  });
+  if (comparison) {
+    paint(target, (context) => context.drawImage(state.target, 0, 0, scene.width, scene.height));
+    comparison.clear(scene.background);
+    comparison.add(list);
+    element("shown-db").textContent = `${comparison.psnr().toFixed(2)} dB`;
+    comparison.subtract();
+    paint(residual, (context) => context.drawImage(comparison.residual, 0, 0, scene.width, scene.height));
+  }
+  showSliders(visible.length);
+  showSelected();
+  writeAddress();
+}
+
+function showSliders(visible) {
+  const total = strokes.length, count = Math.min(shown, total);
+  const begun = strokes[count - 1]?.stage ?? 0;
+  element("shown").value = count;
+  element("shown-count").value = `${count} of ${total}`;
+  element("stage").value = begun;
+  element("stage-count").value = `${begun} of ${scene.stages.length}`;
+  element("shown-label").textContent = `${visible} strokes`;
+  [...element("layers").children].forEach((label, k) => (label.firstChild.checked = !hidden.has(k + 1)));
+  const here = measured.find(([strokes]) => strokes >= count);
+  if (state.finished) drawChart(element("over-strokes"), measured, here ? [here] : []);
+}
+
+// Lays the target over the left of what is seen, up to a line.
+function drawCompared(context, px) {
+  if (compared === 0) return;
+  const end = view.x + compared * drawing.clientWidth * px;
+  context.save();
+  context.beginPath();
+  context.rect(view.x, view.y, end - view.x, drawing.clientHeight * px);
+  context.clip();
+  context.clearRect(0, 0, scene.width, scene.height);
+  context.drawImage(state.target, 0, 0, scene.width, scene.height);
+  context.restore();
+  for (const [color, width] of [["#fff", 3], ["#000", 1]]) {
+    context.fillStyle = color;
+    context.fillRect(end - (width / 2) * px, view.y, width * px, drawing.clientHeight * px);
+  }
+}
+
+function fillPage(context, color) {
+  context.fillStyle = color;
+  context.fillRect(0, 0, scene.width, scene.height);
+}
+
+// Lets `draw` draw in px of the picture; it is told how many of them are one CSS px.
+function paint(canvas, draw) {
+  const ratio = devicePixelRatio || 1;
+  const width = canvas.clientWidth;
+  canvas.width = Math.round(width * ratio);
+  canvas.height = Math.round((width * ratio * scene.height) / scene.width);
+  const context = canvas.getContext("2d");
+  const zoom = view.zoom || width / scene.width;
+  context.setTransform(zoom * ratio, 0, 0, zoom * ratio, -view.x * zoom * ratio, -view.y * zoom * ratio);
+  context.imageSmoothingEnabled = zoom < 3;
+  draw(context, 1 / zoom);
+}
+
+// Mouse and buttons.
+
+function currentZoom() {
+  return view.zoom || drawing.clientWidth / scene.width;
+}
+
+function place(event) {
+  const zoom = currentZoom();
+  return [view.x + event.offsetX / zoom, view.y + event.offsetY / zoom];
+}
+
+function zoomAt(event) {
+  event.preventDefault();
+  if (!scene) return;
+  const [x, y] = place(event);
+  const least = drawing.clientWidth / scene.width;
+  const zoom = Math.max(least, Math.min(100, currentZoom() * 1.0015 ** -event.deltaY));
+  view = zoom > least ? { zoom, x: x - event.offsetX / zoom, y: y - event.offsetY / zoom } : { zoom: 0, x: 0, y: 0 };
+  redraw();
+}
+
+function zoomTo({ stroke }) {
+  const [left, top, right, bottom] = bounds(stroke);
+  const [width, height] = [drawing.clientWidth, drawing.clientHeight];
+  const zoom = Math.min(40, width / (right - left) / 2, height / (bottom - top) / 2);
+  view = { zoom, x: (left + right) / 2 - width / zoom / 2, y: (top + bottom) / 2 - height / zoom / 2 };
+  redraw();
+}
+
+let drag = null;
+
+function startDrag(event) {
+  if (!scene) return;
+  drag = { from: place(event), moved: false };
+  event.target.setPointerCapture(event.pointerId);
+}
+
+function moveDrag(event) {
+  if (!drag) return;
+  const [x, y] = place(event);
+  const [dx, dy] = [drag.from[0] - x, drag.from[1] - y];
+  drag.moved ||= Math.hypot(dx, dy) * currentZoom() > 3;
+  if (!drag.moved) return;
+  view = { zoom: currentZoom(), x: view.x + dx, y: view.y + dy };
+  redraw();
+}
+
+function endDrag(event) {
+  if (drag && !drag.moved) {
+    const visible = strokes.filter(({ number, stage }) => number <= shown && !hidden.has(stage));
+    selected = strokeAt(visible, ...place(event))?.number ?? null;
+    redraw();
+  }
+  drag = null;
+}
+
+for (const canvas of [target, drawing, residual]) {
+  canvas.addEventListener("wheel", zoomAt, { passive: false });
+  canvas.addEventListener("pointerdown", startDrag);
+  canvas.addEventListener("pointermove", moveDrag);
+  canvas.addEventListener("pointerup", endDrag);
+}
+
+function on(id, event, action) {
+  element(id).addEventListener(event, () => {
+    action(element(id));
+    redraw();
+  });
+}
+
+on("shown", "input", ({ value }) => (shown = Number(value) < strokes.length ? Number(value) : Infinity));
+on("stage", "input", ({ value }) => {
+  const count = scene.stages.slice(0, Number(value)).flat().length;
+  shown = count < strokes.length ? count : Infinity;
+});
+on("compare", "input", ({ value }) => (compared = Number(value) / 100));
+on("stroke", "input", ({ value }) => (selected = Number(value) || null));
+on("all", "click", () => hidden.clear());
+on("none", "click", () => scene?.stages.forEach((_, k) => hidden.add(k + 1)));
+on("reset", "click", () => (view = { zoom: 0, x: 0, y: 0 }));
+element("zoom").addEventListener("click", () => zoomTo(strokes[selected - 1]));
+
+export function listen({ stop, add }) {
+  element("stop").addEventListener("click", stop);
+  element("more").addEventListener("submit", (event) => {
+    event.preventDefault();
+    add(Number(element("strokes").value));
+  });
+}
+
+addEventListener("resize", () => {
+  if (!scene) return;
+  showState();
+  redraw();
+});
+addEventListener("hashchange", () => {
+  readAddress();
+  redraw();
+});
+
+readAddress();

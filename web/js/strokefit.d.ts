@@ -1,0 +1,130 @@
+// strokefit: turns a picture into an editable SVG of strokes. A fit runs on the thread that calls it, and holds it until
+// it is over: in a page, call it from a worker.
+
+/** What to draw. The names are those of the command line's options. */
+export interface Options {
+  /** At most so many strokes. */
+  strokes?: number;
+  /** Stop when the file reaches so many dB of PSNR: 25 is rough, 30 fair, 35 good. */
+  psnr?: number;
+  /** At most so many bytes of SVG. */
+  bytes?: number;
+  /** At most so many seconds. It makes the drawing depend on the machine. */
+  time?: number;
+  /** Price of a byte, 0 to 60: a stroke stays if each of its bytes removes at least as much squared error as one pixel has at so
+   * many dB. 30 if there is no limit on strokes, dB or bytes. */
+  quality?: number;
+  /** How much time to spend for a better drawing. `balanced` if it is left out. */
+  preset?: "draft" | "balanced" | "best";
+  /** A good drawing after every layer, at some dB less in the end. */
+  progressive?: boolean;
+  /** Opaque strokes only. */
+  opaque?: boolean;
+  /** Coverage function of soft edges: `smoothstep`, `sigmoid`, `tanh` or `atan[:K]`; `A>B` changes from A to B during the fit. */
+  coverage?: string;
+  /** Most points of a stroke, 2 or more; as many as pay if it is left out. */
+  points?: number;
+  /** Number of stages, each a layer of the SVG. */
+  stages?: number;
+  /** Whether all strokes are fitted jointly after the stages; true if it is left out. */
+  polish?: boolean;
+  /** `auto`, `none` or `#rrggbb`. */
+  background?: string;
+  /** Key of all random draws, 0 or more. */
+  seed?: number;
+  /** At most so many colours, or these. */
+  colors?: number | string[];
+  /** What an element of the SVG holds. */
+  form?: "elements" | "plain" | "smallest" | "outlines";
+  /** What a layer of the SVG holds. */
+  group?: "stage" | "color";
+  /** Decimals of coordinates and widths, 0 to 6. */
+  precision?: number;
+  /** Width of the page, such as `120mm`. */
+  width?: string;
+  /** The text of an SVG to go on from: limits count all of it. Strokes of a drawing by strokefit are fitted further. */
+  base?: string;
+  /** Whether the strokes of the base stay as they are. */
+  freezeBase?: boolean;
+}
+
+/**
+ * Points x, y, x, y, … and radius, px; colour `#rrggbb`; opacity, 0 to 1; kinds of the points, `o` on the path and `c` for
+ * a control point, and then `z` if the path is closed.
+ */
+export type Stroke = [points: number[], radius: number, color: string, opacity: number, kinds: string];
+
+/** A drawing as canvases draw it. */
+export interface Scene {
+  /** px of the picture. */
+  width: number;
+  height: number;
+  /** `#rrggbb`; null if the drawing is transparent. */
+  background: string | null;
+  /** Strokes back to front, stage by stage. */
+  stages: Stroke[][];
+}
+
+/** The state of a fit after an iteration. */
+export interface Progress {
+  /** Fraction of the planned work that is done, 0 to 1, never decreasing. */
+  done: number;
+  /** The stage under way, from 1; one past the last during polish. */
+  stage: number;
+  /** How many stages are planned; 0 if that depends on how much each of them gains. */
+  stages: number;
+  /** Whether strokes are being polished. */
+  polishing: boolean;
+  strokes: number;
+  /** Fidelity so far, dB. */
+  psnrDb: number;
+  /** The drawing so far; only to be called before `onProgress` returns. It takes time: do not call it at every iteration. */
+  scene(): Scene;
+}
+
+/** What the command line writes with `--report`; docs/command-line.md describes all fields. */
+export interface Report {
+  schema: number;
+  strokes: number;
+  svg_bytes: number;
+  svg_gzip_bytes: number;
+  wall_s: number;
+  stop: "strokes" | "psnr" | "bytes" | "time" | "converged" | "interrupted";
+  /** The SVG as rendered by resvg against the picture; `psnr_db` is null where they are equal. */
+  fidelity: { psnr_db: number | null; ssim: number; mse: number; l1: number };
+  [field: string]: unknown;
+}
+
+/** A finished drawing. */
+export interface Drawing {
+  /** Text of the file. */
+  svg: string;
+  report: Report;
+  /** On a base that is no drawing by strokefit: only the strokes on top. */
+  scene: Scene;
+}
+
+/** Is told of progress after every iteration. Returning `false` ends the fit, which is no error: the drawing is finished as far
+ * as it has come. What it throws ends the fit, too, and is thrown on. */
+export type OnProgress = (progress: Progress) => boolean | void;
+
+/**
+ * Draws a picture of interleaved samples, row by row: 1 (grey), 2 (grey, alpha), 3 (RGB) or 4 (RGBA, as `ImageData` has it) for
+ * each pixel, 0 to 255, sRGB-encoded, with straight alpha. Equal pictures and options give the bytes that the program gives.
+ */
+export function fit(
+  pixels: Uint8Array | Uint8ClampedArray,
+  width: number,
+  height: number,
+  options?: Options,
+  onProgress?: OnProgress,
+): Promise<Drawing>;
+
+/** Draws the picture of a PNG file; colour profiles are ignored. */
+export function fitPng(png: Uint8Array | ArrayBuffer, options?: Options, onProgress?: OnProgress): Promise<Drawing>;
+
+/** An SVG that draws itself, from the text of a drawing by strokefit. */
+export function animate(svg: string): Promise<string>;
+
+/** Loads the WebAssembly, which else the first call does: from another place, or a module that is compiled already. */
+export function init(source?: URL | string | WebAssembly.Module): Promise<void>;

@@ -1,0 +1,143 @@
+// The package in Node: the same bytes as the program, progress, cancellation, errors.
+
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { readdirSync, writeFileSync } from "node:fs";
+import { cpus } from "node:os";
+import { join } from "node:path";
+import { describe, it } from "node:test";
+
+import { animate, fit, fitPng } from "../pkg/node.js";
+import { fitElsewhere } from "./support/fit.mjs";
+import { inFolder, native, root, sample } from "./support/program.mjs";
+
+const pictures = readdirSync(join(root, "samples")).filter((name) => name.endsWith(".png"));
+
+describe("draws what the program draws", { concurrency: cpus().length }, () => {
+  for (const name of pictures) {
+    it(`${name}, 300 strokes`, async () => {
+      const { svg } = await fitElsewhere(sample(name), { strokes: 300 });
+      assert.ok(svg === native(join(root, "samples", name), ["--strokes", "300"]));
+    });
+  }
+
+  // The last has alpha.
+  for (const [name, options, flags] of [
+    ["coffee-300.png", { opaque: true, colors: 8, form: "smallest", precision: 1 }, "--opaque --colors 8 --form smallest --precision 1"],
+    ["noto-gem.png", { background: "#ffeedd", group: "color", seed: 7 }, "--background #ffeedd --group color --seed 7"],
+    ["noto-gem.png", { quality: 25, progressive: true, width: "120mm" }, "--quality 25 --progressive --width 120mm"],
+    ["noto-gem.png", { bytes: 9000, coverage: "sigmoid", polish: false }, "--bytes 9000 --coverage sigmoid --no-polish"],
+  ]) {
+    it(`${name}, ${flags}`, async () => {
+      const draft = { preset: "draft", ...options };
+      const { svg } = await fitElsewhere(sample(name), draft);
+      assert.ok(svg === native(join(root, "samples", name), ["--preset", "draft", ...flags.split(" ")]));
+    });
+  }
+});
+
+// A dark bar on white, opaque.
+const [width, height] = [48, 24];
+const isBar = (i) => i % width >= 8 && i % width < 40 && Math.floor(i / width) >= 10 && Math.floor(i / width) < 14;
+const isAlpha = (k, channels) => channels % 2 === 0 && k % channels === channels - 1;
+const bar = (channels) =>
+  Uint8Array.from({ length: width * height * channels }, (_, k) =>
+    isBar(Math.floor(k / channels)) && !isAlpha(k, channels) ? 51 : 255,
+  );
+
+describe("fit", () => {
+  it("takes one to four channels, and typed arrays of bytes", async () => {
+    const grey = await fit(bar(1), width, height, { strokes: 4 });
+    assert.match(grey.svg, /^<svg/);
+    for (const pixels of [bar(2), bar(3), bar(4), new Uint8ClampedArray(bar(4))]) {
+      assert.equal((await fit(pixels, width, height, { strokes: 4 })).svg, grey.svg);
+    }
+  });
+
+  it("reports what it drew", async () => {
+    const { report, scene, svg } = await fit(bar(3), width, height, { strokes: 4 });
+    assert.equal(report.svg_bytes, svg.length);
+    assert.equal(report.strokes, scene.stages.flat().length);
+    assert.ok(report.fidelity.psnr_db > 25, JSON.stringify(report.fidelity));
+    assert.deepEqual([scene.width, scene.height, scene.background], [width, height, "#ffffff"]);
+  });
+
+  it("tells of progress, with the drawing so far", async () => {
+    const seen = [];
+    const { scene } = await fit(bar(3), width, height, { strokes: 4 }, (progress) => {
+      seen.push({ ...progress, drawn: progress.scene().stages.flat().length });
+    });
+    assert.ok(seen.length > 10);
+    assert.ok(seen.every(({ done }, k) => k === 0 || done >= seen[k - 1].done));
+    assert.ok(seen.every(({ strokes, drawn }) => strokes === drawn));
+    const last = seen.at(-1);
+    assert.ok(last.done <= 1 && last.psnrDb > seen[0].psnrDb);
+    assert.ok(scene.stages.flat().length <= 4);
+  });
+
+  it("ends early when it is told to", async () => {
+    let calls = 0;
+    const { report, svg } = await fit(bar(3), width, height, { strokes: 4 }, () => ++calls < 3);
+    assert.equal(report.stop, "interrupted");
+    assert.equal(calls, 3);
+    assert.match(svg, /<\/svg>\s*$/);
+  });
+
+  it("passes on what the watcher throws, and goes on working", async () => {
+    const boom = new Error("boom");
+    const thrown = fit(bar(3), width, height, {}, () => {
+      throw boom;
+    });
+    await assert.rejects(thrown, (error) => error === boom);
+    assert.match((await fit(bar(3), width, height)).svg, /^<svg/);
+  });
+
+  it("goes on from a drawing", async () => {
+    const first = await fit(bar(3), width, height, { strokes: 2 });
+    const second = await fit(bar(3), width, height, { strokes: 5, base: first.svg });
+    assert.ok(second.report.strokes > first.report.strokes);
+    assert.ok(second.report.fidelity.psnr_db > first.report.fidelity.psnr_db);
+    assert.equal(second.report.base.strokes, first.report.strokes);
+  });
+
+  it("says what is wrong, and what would be right", async () => {
+    const png = sample("noto-gem.png");
+    for (const [call, words] of [
+      [() => fit(bar(3), width, height, { strkes: 5 }), /no option is called strkes: give strokes/],
+      [() => fit(bar(3), width, height, { strokes: 1.5 }), /strokes is 1\.5: give a whole number from 1/],
+      [() => fit(bar(3), width, height, { preset: "drft" }), /preset: 'drft'.*draft, balanced or best/],
+      [() => fit(bar(3), width, height, { base: "nonsense" }), /SVG/],
+      [() => fit(bar(3), width, height + 1), /3456 samples are not 1 to 4 for each of 48×25 px/],
+      [() => fit(bar(3), 0, height), /0×24/],
+      [() => fit([1, 2, 3], 1, 1), /give a Uint8Array/],
+      [() => fitPng(png.subarray(0, 900)), /the picture/],
+      [() => animate("<svg/>"), /./],
+    ]) {
+      await assert.rejects(call, words);
+    }
+  });
+});
+
+describe("animate", () => {
+  it("makes an SVG that draws itself", async () => {
+    const { svg } = await fit(bar(3), width, height, { strokes: 4 });
+    const animated = await animate(svg);
+    assert.match(animated, /<animate attributeName="visibility"/);
+    assert.equal(animated.match(/<path/g).length, svg.match(/<path/g).length);
+  });
+});
+
+it("a trap ends in an error, and the next fit works", () => {
+  const script = `
+    import { fit } from ${JSON.stringify(new URL("../pkg/node.js", import.meta.url).href)};
+    const large = fit(new Uint8Array(3000 * 3000), 3000, 3000);
+    console.log(await large.then(() => "drawn", (error) => error.message));
+    console.log((await fit(new Uint8Array(64 * 64).fill(200), 64, 64)).svg.slice(0, 4));`;
+  const said = inFolder((folder) => {
+    const file = join(folder, "trap.mjs");
+    writeFileSync(file, script);
+    // Of 64 KiB: memory for the small picture alone.
+    return execFileSync(process.execPath, ["--wasm-max-mem-pages=800", file], { encoding: "utf8" });
+  });
+  assert.match(said, /^the fit broke off \(.*\): a smaller picture or fewer strokes may need less memory\n<svg\n$/);
+});
