@@ -23,7 +23,7 @@ use strokefit::image::{Image, Limits};
 use strokefit::loss::Loss;
 use strokefit::metrics;
 use strokefit::optim::{Adam, AdamParams, Optimizer};
-use strokefit::render::{Backdrop, Canvas, Gradients, PARAMS, Params, Renderer, Softness, unpack};
+use strokefit::render::{Backdrop, Canvas, Gradients, PARAMS, Renderer, Softness, Strokes};
 use strokefit::scene::{Scene, Stage};
 use strokefit::seed::{Pyramid, Residual, Wanted, propose};
 use strokefit::svg::{self, WriteOptions};
@@ -141,7 +141,7 @@ fn render(criterion: &mut Criterion, image: &Image) {
 fn passes(
     group: &mut BenchmarkGroup<'_, WallTime>,
     name: &str,
-    strokes: &[Params],
+    strokes: &Strokes,
     target: &Canvas,
 ) {
     let mut renderer = Renderer::new(target.grid(), Simd::Auto.level().unwrap());
@@ -183,8 +183,8 @@ fn optim(criterion: &mut Criterion, image: &Image) {
     let mut group = criterion.benchmark_group("optim");
     group.throughput(Throughput::Elements(STROKES as u64));
     group.bench_function(BenchmarkId::new("adam_step", STROKES), |b| {
-        let gradients = black_box(gradients.as_flattened());
-        b.iter(|| adam.step_scaled(strokes.as_flattened_mut(), gradients, 1e-6, &scales));
+        let gradients = black_box(gradients.numbers());
+        b.iter(|| adam.step_scaled(strokes.numbers_mut(), gradients, 1e-6, &scales));
     });
     group.finish();
 }
@@ -254,7 +254,7 @@ fn scene(image: &Image) -> Scene {
     let grid = Canvas::from_image(image).grid();
     let strokes = random::strokes(grid, STROKES, &MEDIUM);
     let stage = Stage {
-        strokes: strokes.iter().map(unpack).collect(),
+        strokes: strokes.iter().map(|stroke| stroke.to_stroke()).collect(),
     };
     Scene {
         stages: vec![stage],

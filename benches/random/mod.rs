@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use strokefit::render::{Grid, Params};
+use strokefit::render::{Grid, Params, Strokes};
 use strokefit::rng;
 
 /// What random strokes are like.
@@ -17,7 +17,7 @@ pub(crate) struct Look {
 }
 
 /// `count` strokes of random colours, the first ends uniform over the picture of `grid`.
-pub(crate) fn strokes(grid: Grid, count: usize, look: &Look) -> Vec<Params> {
+pub(crate) fn strokes(grid: Grid, count: usize, look: &Look) -> Strokes {
     (0..count as u64).map(|i| stroke(grid, i, look)).collect()
 }
 

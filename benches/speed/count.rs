@@ -1,8 +1,9 @@
 //! The work in a drawing: pairs, the blocks that the renderer visits, and what it does in each.
 //!
-//! Written apart from the renderer, in scalars, from its description.
+//! A stroke is one, however many segments it has: where they overlap, its pixels and blocks count once. Paths are without
+//! curves here. Written apart from the renderer, in scalars, from its description.
 
-use strokefit::render::{AX, AY, BX, BY, Grid, OPACITY, Params, RADIUS, TILE};
+use strokefit::render::{Grid, StrokeRef, Strokes, TILE};
 
 use strokefit::bench::measure::EDGE;
 
@@ -93,7 +94,7 @@ impl Work {
 
 impl Count {
     /// Counts the work in `strokes` over the picture of `grid`.
-    pub(crate) fn of(grid: Grid, strokes: &[Params]) -> Self {
+    pub(crate) fn of(grid: Grid, strokes: &Strokes) -> Self {
         let mut count = Self::default();
         // Blocks of tiles: the padding of the last ones is visited too.
         let columns = grid.columns * (TILE / BLOCK);
@@ -101,24 +102,28 @@ impl Count {
         let mut veils: Vec<Veil> = (0..columns * rows)
             .map(|i| Veil::new(grid, i % columns * BLOCK, i / columns * BLOCK))
             .collect();
-        for p in strokes.iter().rev() {
-            let reach = p[RADIUS] + EDGE.width / 2.0 + BLOCK_RADIUS;
-            let range = |a: f32, b: f32, blocks: usize| {
-                let first = (a.min(b) - reach).max(0.0) as usize / BLOCK;
-                let last = (a.max(b) + reach).max(0.0) as usize / BLOCK + 1;
+        for i in (0..strokes.len()).rev() {
+            let stroke = strokes.get(i);
+            let reach = stroke.radius() + EDGE.width / 2.0 + BLOCK_RADIUS;
+            let range = |axis: usize, blocks: usize| {
+                let along = stroke.points.iter().map(|p| p[axis]);
+                let low = along.clone().fold(f32::INFINITY, f32::min);
+                let high = along.fold(f32::NEG_INFINITY, f32::max);
+                let first = (low - reach).max(0.0) as usize / BLOCK;
+                let last = (high + reach).max(0.0) as usize / BLOCK + 1;
                 first..last.min(blocks)
             };
-            for row in range(p[AY], p[BY], rows) {
-                for column in range(p[AX], p[BX], columns) {
-                    count.block(p, &mut veils[row * columns + column]);
+            for row in range(1, rows) {
+                for column in range(0, columns) {
+                    count.block(stroke, &mut veils[row * columns + column]);
                 }
             }
         }
         count
     }
 
-    fn block(&mut self, p: &Params, veil: &mut Veil) {
-        let from_center = distance(p, veil.x as f32 + 2.0, veil.y as f32 + 2.0);
+    fn block(&mut self, stroke: StrokeRef<'_>, veil: &mut Veil) {
+        let from_center = distance(stroke, veil.x as f32 + 2.0, veil.y as f32 + 2.0);
         if from_center <= -(EDGE.width / 2.0 + BLOCK_RADIUS) {
             return;
         }
@@ -129,9 +134,9 @@ impl Count {
         for (lane, pixel) in veil.pixels.iter_mut().enumerate() {
             let x = (veil.x + lane % BLOCK) as f32 + 0.5;
             let y = (veil.y + lane / BLOCK) as f32 + 0.5;
-            let coverage = smoothstep(distance(p, x, y));
+            let coverage = smoothstep(distance(stroke, x, y));
             self.pairs += u64::from(pixel.inside && coverage > 0.0);
-            pixel.cover(p[OPACITY] * coverage);
+            pixel.cover(stroke.opacity() * coverage);
         }
         veil.live &= veil.pixels.iter().any(|pixel| pixel.less_one >= OPAQUE);
     }
@@ -198,11 +203,16 @@ impl Pixel {
 }
 
 /// Signed distance of (x, y) from the outline, px, positive inside.
-fn distance(p: &Params, x: f32, y: f32) -> f32 {
-    let (ux, uy) = (p[BX] - p[AX], p[BY] - p[AY]);
-    let (px, py) = (x - p[AX], y - p[AY]);
-    let h = ((px * ux + py * uy) / (ux * ux + uy * uy + 1e-6)).clamp(0.0, 1.0);
-    p[RADIUS] - (px - h * ux).hypot(py - h * uy)
+fn distance(stroke: StrokeRef<'_>, x: f32, y: f32) -> f32 {
+    let from_segment = |ends: &[[f32; 2]]| {
+        let ([ax, ay], [bx, by]) = (ends[0], ends[1]);
+        let (ux, uy) = (bx - ax, by - ay);
+        let (px, py) = (x - ax, y - ay);
+        let h = ((px * ux + py * uy) / (ux * ux + uy * uy + 1e-6)).clamp(0.0, 1.0);
+        (px - h * ux).hypot(py - h * uy)
+    };
+    let distances = stroke.points.windows(2).map(from_segment);
+    stroke.radius() - distances.fold(f32::INFINITY, f32::min)
 }
 
 fn smoothstep(d: f32) -> f32 {

@@ -9,7 +9,8 @@
 //! of it is arithmetic, as counted from the code; and the machine's own limits, measured.
 //!
 //! A *pair* is a stroke and a pixel of the picture where its coverage is above 0. They are counted
-//! apart from the renderer, hidden ones included: what the renderer need not look at is its gain. A
+//! apart from the renderer, hidden ones included: what the renderer need not look at is its gain. A pixel that
+//! several segments of one path cover is one pair, since the stroke is painted there once. A
 //! *lane* is what it does look at: blocks visited × 16. Times are the shortest of several.
 //!
 //! With `--test` everything is done once, on few strokes: it shows that it runs.
@@ -18,13 +19,14 @@
 
 mod count;
 mod limits;
+mod paths;
 
 use strokefit::Result;
 use strokefit::bench::measure::{DEPTH, EDGE, StrokeSize, fastest, thread_counts};
 use strokefit::fit::{Budget, Config, Fitter, Objective, Simd};
 use strokefit::image::Image;
 use strokefit::loss::Loss;
-use strokefit::render::{Backdrop, Canvas, Gradients, Params, Renderer, pack};
+use strokefit::render::{Backdrop, Canvas, Gradients, Renderer, Strokes};
 
 use count::{Count, Work};
 use limits::Limits;
@@ -55,6 +57,7 @@ fn main() -> Result<()> {
     let mut drawings = random(&target);
     drawings.push(settled(&image, &options)?);
     let speeds = speeds(&drawings, &target, options.rounds);
+    paths::print(&target, options.rounds);
     let limits = limits::measure(&thread_counts(), options.rounds);
     arithmetic(&drawings, &speeds, &limits);
     let settled = drawings.last().expect("one was pushed");
@@ -88,13 +91,13 @@ impl Options {
 /// Strokes to measure, and the work that they are.
 struct Workload {
     name: String,
-    strokes: Vec<Params>,
+    strokes: Strokes,
     backdrop: [f32; 3],
     count: Count,
 }
 
 impl Workload {
-    fn new(name: String, strokes: Vec<Params>, backdrop: [f32; 3], target: &Canvas) -> Self {
+    fn new(name: String, strokes: Strokes, backdrop: [f32; 3], target: &Canvas) -> Self {
         let count = Count::of(target.grid(), &strokes);
         Self {
             name,
@@ -135,7 +138,7 @@ fn settled(image: &Image, options: &Options) -> Result<Workload> {
         ..Config::default()
     };
     let scene = Fitter::new(config).fit(image)?.scene;
-    let strokes = scene.strokes().map(pack).collect();
+    let strokes = scene.strokes().collect();
     let backdrop = scene.background.unwrap_or([1.0; 3]);
     let target = Canvas::from_image(image);
     Ok(Workload::new("settled".into(), strokes, backdrop, &target))

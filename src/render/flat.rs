@@ -242,3 +242,92 @@ impl Iterator for Pieces<'_> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Point;
+    use crate::rng;
+
+    /// Strokes of one to six points of all kinds, open and closed.
+    fn strokes() -> Strokes {
+        let mut strokes = Strokes::new();
+        for count in 1..7_u32 {
+            for (kinds, closed) in (0..1 << count).flat_map(|k| [(k, false), (k, true)]) {
+                let is_end = |k: u32| (!closed || count == 1) && (k == 0 || k == count - 1);
+                let off: Vec<bool> = (0..count)
+                    .map(|k| kinds >> k & 1 == 1 && !is_end(k))
+                    .collect();
+                let place = |k: u32| {
+                    [0, 1].map(|axis| 90.0 * rng::draw(axis, u64::from(kinds), u64::from(k), 0))
+                };
+                let points: Vec<[f32; 2]> = (0..count).map(place).collect();
+                strokes.push(StrokeRef {
+                    points: &points,
+                    off: &off,
+                    closed,
+                    look: &[1.0; LOOK],
+                });
+            }
+        }
+        strokes
+    }
+
+    fn for_reference(stroke: StrokeRef<'_>) -> sdf::Path<f32> {
+        sdf::Path {
+            points: stroke.points.iter().map(|&p| Point::from(p)).collect(),
+            off: stroke.off.to_vec(),
+            closed: stroke.closed,
+            radius: 1.0,
+        }
+    }
+
+    /// The shares of the points in a vertex.
+    fn shares(count: usize, of: impl Iterator<Item = (usize, f32)>) -> Vec<f32> {
+        let mut shares = vec![0.0; count];
+        of.for_each(|(i, weight)| shares[i] += weight);
+        shares
+    }
+
+    #[test]
+    fn vertices_and_weights_are_those_of_the_distance_field() {
+        for stroke in strokes().iter() {
+            let count = stroke.points.len();
+            let mut weights = Vec::new();
+            walk(stroke, 1, |vertex| {
+                weights.push(shares(count, vertex.of.into_iter().zip(vertex.weights)));
+            });
+            if count == 1 {
+                // The renderer's dot is a segment of no length.
+                weights.pop();
+            }
+            let means = for_reference(stroke).flattened().means;
+            assert_eq!(weights.len(), means.len(), "{stroke:?}");
+            for (got, mean) in weights.iter().zip(means) {
+                let expected = shares(count, mean.0.into_iter());
+                let apart = got.iter().zip(&expected).map(|(g, e)| (g - e).abs());
+                assert!(
+                    apart.fold(0.0, f32::max) < 1e-6,
+                    "{stroke:?}: {got:?} {expected:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_flat_scene_has_the_vertices_of_its_paths() {
+        let (strokes, mut flat) = (strokes(), Flat::default());
+        for least in [1, 3] {
+            flat.fill(&strokes, least);
+            for (i, stroke) in strokes.iter().enumerate() {
+                let mut expected = Vec::new();
+                walk(stroke, least, |vertex| {
+                    expected.push(vertex.place(stroke.points))
+                });
+                let range = flat.firsts[i] as usize..flat.firsts[i + 1] as usize;
+                assert_eq!(flat.vertices[range], expected, "{stroke:?}");
+                assert!(expected.len() > least || stroke.points.len() == 1);
+            }
+        }
+    }
+}

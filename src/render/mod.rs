@@ -57,6 +57,7 @@
 
 mod edge;
 mod flat;
+mod gradients;
 mod grid;
 mod kernel;
 pub mod probe;
@@ -68,6 +69,7 @@ use std::sync::{Mutex, PoisonError};
 use fearless_simd::Level;
 use rayon::prelude::*;
 
+pub use gradients::{Gradients, Survey};
 pub use grid::{BlockRgb, Canvas, Grid, Lanes, TILE, TileRgb};
 pub use strokes::{
     AX, AY, BX, BY, LOOK, OPACITY, PARAMS, Params, RADIUS, RED, StrokeMut, StrokeRef, Strokes,
@@ -77,6 +79,7 @@ use crate::coverage::Coverage;
 use edge::{Edge, Reach};
 use flat::{Flat, walk};
 pub(crate) use flat::{Knot, Piece, Pieces};
+use gradients::add;
 use grid::{FULL, TileWeights, edge_weights, flat_tile};
 use kernel::{
     EndSums, Extras, LookSums, Nothing, Scratch, Stiffnesses, TileJob, TileSums, WORTH, Worths,
@@ -111,76 +114,6 @@ pub struct Softness {
     pub coverage: Coverage,
     /// Width of the soft edge, px, above 0.
     pub width: f32,
-}
-
-/// Derivatives of a loss by everything that was drawn.
-#[derive(Debug, Clone, Default)]
-pub struct Gradients {
-    /// The loss itself.
-    pub loss: f64,
-    /// `∂L/∂` each of [`Strokes::numbers`], in their order.
-    pub strokes: Vec<f32>,
-    /// `∂L/∂backdrop`, summed over the pixels.
-    pub backdrop: [f32; 3],
-    /// By how much the squared error (summed over pixels and channels) grows when the stroke is
-    /// left out, exactly; filled by [`Renderer::backward_with_worth`] alone.
-    pub worth: Vec<f32>,
-    /// Blocks of 16 px that were visited: the work done.
-    pub blocks: u64,
-}
-
-/// How the loss depends on the vertices of polylines that are as fine as their points could become.
-#[derive(Debug, Clone, Default)]
-pub struct Survey {
-    /// The first vertex of each stroke, and behind the last stroke the number of all vertices.
-    pub firsts: Vec<u32>,
-    /// The vertices, px.
-    pub vertices: Vec<[f32; 2]>,
-    /// `∂L/∂vertex`.
-    pub slopes: Vec<[f32; 2]>,
-    /// An upper bound of the second derivative of the squared error (summed over pixels and channels) by a shift of the vertex across the stroke, after
-    /// Gauss and Newton.
-    pub stiffness: Vec<f32>,
-}
-
-impl Gradients {
-    /// Adds the derivatives of another loss by the same strokes.
-    pub(crate) fn add(&mut self, other: &Self) {
-        self.loss += other.loss;
-        self.blocks += other.blocks;
-        add(&mut self.backdrop, &other.backdrop);
-        add(&mut self.worth, &other.worth);
-        add(&mut self.strokes, &other.strokes);
-    }
-
-    /// Multiplies the loss, its derivatives and the worth by `factor`.
-    pub(crate) fn scale(&mut self, factor: f32) {
-        self.loss *= f64::from(factor);
-        let values = self.strokes.iter_mut();
-        for value in values.chain(&mut self.backdrop).chain(&mut self.worth) {
-            *value *= factor;
-        }
-    }
-}
-
-impl Survey {
-    /// Adds the derivatives of another loss by the same strokes.
-    pub(crate) fn add(&mut self, other: &Self) {
-        add(self.slopes.as_flattened_mut(), other.slopes.as_flattened());
-        add(&mut self.stiffness, &other.stiffness);
-    }
-
-    /// Multiplies all derivatives by `factor`.
-    pub(crate) fn scale(&mut self, factor: f32) {
-        let slopes = self.slopes.as_flattened_mut().iter_mut();
-        slopes.chain(&mut self.stiffness).for_each(|v| *v *= factor);
-    }
-}
-
-fn add(sums: &mut [f32], parts: &[f32]) {
-    for (sum, part) in sums.iter_mut().zip(parts) {
-        *sum += part;
-    }
 }
 
 /// One tile's list of strokes and its results.

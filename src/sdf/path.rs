@@ -232,3 +232,170 @@ pub(crate) fn steps<T: Real>(bend: Vector2<T>) -> usize {
     let ratio = bend.dot(&bend).sqrt().to_f64() / (4.0 * FLATNESS);
     ((ratio.sqrt() - 1e-3).ceil() as usize).clamp(1, MAX_STEPS)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng;
+    use crate::sdf::Combination;
+
+    const EPS: f64 = 1e-3;
+
+    fn coordinate(i: u64, k: u64) -> f64 {
+        f64::from(rng::draw(2, 0, i, k)) * 16.0 - 4.0
+    }
+
+    fn point(i: u64, k: u64) -> Point2<f64> {
+        Point2::new(coordinate(i, k), coordinate(i, k + 1))
+    }
+
+    /// Five points of the kinds that the bits of `kinds` say, 1 for off; open paths have their ends on.
+    fn path(i: u64, kinds: u64, closed: bool) -> Path<f64> {
+        let is_off = |k: u64| (closed || (k > 0 && k < 4)) && kinds >> k & 1 == 1;
+        Path {
+            points: (0..5).map(|k| point(i, 2 * k)).collect(),
+            off: (0..5).map(is_off).collect(),
+            closed,
+            radius: 1.5,
+        }
+    }
+
+    fn paths() -> impl Iterator<Item = Path<f64>> {
+        let kinds = (0..32).flat_map(|kinds| [false, true].map(|closed| (kinds, closed)));
+        kinds.map(|(kinds, closed)| path(kinds, kinds, closed))
+    }
+
+    #[test]
+    fn a_polyline_is_the_union_of_its_capsules() {
+        let bent = Polyline {
+            points: (0..4).map(|k| point(7, 2 * k)).collect(),
+            closed: true,
+            radius: 1.5,
+        };
+        let capsule = |a: usize, b: usize| Capsule {
+            a: bent.points[a],
+            b: bent.points[b],
+            radius: 1.5,
+        };
+        for i in 0..100 {
+            let p = point(i, 20);
+            let distances =
+                [(0, 1), (1, 2), (2, 3), (3, 0)].map(|(a, b)| capsule(a, b).distance(p, 0.0));
+            let union = |x, y| Combination::Union.distance(x, y);
+            let expected = distances.into_iter().reduce(union).unwrap();
+            assert_eq!(bent.distance(p, 0.0), expected);
+            assert_eq!(bent.jet(p, EPS).d, bent.distance(p, EPS));
+        }
+    }
+
+    #[test]
+    fn one_point_is_a_disc() {
+        for closed in [false, true] {
+            let dot = Polyline {
+                points: vec![point(1, 0)],
+                closed,
+                radius: 2.0,
+            };
+            let circle = crate::sdf::Circle {
+                center: point(1, 0),
+                radius: 2.0,
+            };
+            let jet = dot.jet(point(2, 0), EPS);
+            let expected = circle.jet(point(2, 0), EPS);
+            assert_eq!(jet.d, expected.d);
+            assert_eq!(jet.ends, [0, 0]);
+            assert!((jet.by_ends[0] + jet.by_ends[1] - expected.by_center).norm() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn the_first_of_equally_near_segments_has_the_derivative() {
+        let there_and_back = Polyline {
+            points: [[0.0, 0.0], [10.0, 0.0], [0.0, 0.0], [0.0, 0.0]]
+                .map(Point2::from)
+                .to_vec(),
+            closed: false,
+            radius: 1.0,
+        };
+        assert_eq!(there_and_back.jet(Point2::new(4.0, 3.0), 0.0).ends, [0, 1]);
+    }
+
+    /// Every off-point is the control point of one quadratic curve, from knot to knot.
+    #[test]
+    fn curves_are_within_the_tolerance() {
+        let spline = Path {
+            points: [[0.0, 0.0], [40.0, 3.0], [25.0, 30.0], [0.0, 22.0]]
+                .map(Point2::from)
+                .to_vec(),
+            off: vec![false, true, true, false],
+            closed: false,
+            radius: 1.0,
+        };
+        let middle = Point2::new(32.5, 16.5);
+        let curves = [
+            [spline.points[0], spline.points[1], middle],
+            [middle, spline.points[2], spline.points[3]],
+        ];
+        let mut farthest = 0.0_f64;
+        for [a, b, c] in curves {
+            for k in 0..=100 {
+                let t = f64::from(k) / 100.0;
+                let [ab, bc] = [a + (b - a) * t, b + (c - b) * t];
+                farthest = farthest.max(1.0 - spline.distance(ab + (bc - ab) * t, 0.0));
+            }
+        }
+        assert!(
+            farthest < FLATNESS && farthest > FLATNESS / 4.0,
+            "{farthest}"
+        );
+        assert!(spline.flattened().means.len() < 24);
+    }
+
+    #[test]
+    fn a_vertex_is_a_mean_of_points() {
+        for path in paths() {
+            let Flattened { polyline, means } = path.flattened();
+            assert_eq!(polyline.points.len(), means.len());
+            for mean in &means {
+                let sum: f64 = mean.0.iter().map(|(_, weight)| weight).sum();
+                assert!((sum - 1.0).abs() < 1e-12 && mean.0.iter().all(|(_, w)| *w >= 0.0));
+            }
+            let (first, last) = (&polyline.points[0], &polyline.points[means.len() - 1]);
+            let (start, end) = if path.closed {
+                (first, first)
+            } else {
+                (&path.points[0], &path.points[4])
+            };
+            assert!((first - start).norm() + (last - end).norm() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn derivatives_are_central_differences() {
+        let step = 1e-6;
+        let mut failures = Vec::new();
+        for (i, path) in paths().enumerate() {
+            for j in 0..20 {
+                let p = point(j, 30);
+                let jet = path.jet(p, EPS);
+                assert_eq!(jet.d, path.distance(p, EPS));
+                for k in 0..path.points.len() {
+                    for axis in 0..2 {
+                        let at = |by: f64| {
+                            let mut moved = path.clone();
+                            moved.points[k][axis] += by;
+                            moved.distance(p, EPS)
+                        };
+                        let numeric = (at(step) - at(-step)) / (2.0 * step);
+                        let analytic = jet.by_points[k][axis];
+                        if (analytic - numeric).abs() > 1e-7 {
+                            failures
+                                .push(format!("path {i}, point {k}: {analytic} against {numeric}"));
+                        }
+                    }
+                }
+            }
+        }
+        assert!(failures.is_empty(), "{}", failures.join("\n"));
+    }
+}

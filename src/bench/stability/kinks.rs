@@ -1,12 +1,12 @@
-//! Gradients at kinks: a pixel on the centre line, at the clamp of `h`, or at the end of the soft edge. There
-//! the gradient has to lie between the slopes of the two sides, and `f32` has to agree with `f64`.
+//! Gradients at kinks: a pixel on the centre line, at the clamp of `h`, at the end of the soft edge, or equally near to two
+//! segments of a path. There the gradient has to lie between the slopes of the two sides, and `f32` has to agree with `f64`.
 
 use super::oracle::{Gap, Specimen, oracle, pixels, random, slopes};
 use super::{Check, Observation, WITHIN};
 use crate::coverage::Coverage;
 use crate::error::Result;
 use crate::render::reference::{Scene, squared_error};
-use crate::render::{Params, Strokes};
+use crate::render::{Params, StrokeRef, Strokes};
 
 /// Step of the one-sided differences, px or channel values.
 const STEP: f64 = 1e-6;
@@ -32,7 +32,8 @@ const DISC: &str = "a capsule of zero length is a disc by definition: the gradie
 pub(super) fn checks() -> Vec<Check<'static>> {
     let check = |name: &'static str, what: &'static str, stroke: Params| {
         Check::new("kinks", name, what, move || {
-            Ok(Found::on(&around(stroke), &SMOOTH)?.finding())
+            let page = around(Strokes::from_iter([&stroke]).get(0));
+            Ok(Found::on(&page, &SMOOTH)?.finding())
         })
     };
     let raw = Check::new(
@@ -40,7 +41,8 @@ pub(super) fn checks() -> Vec<Check<'static>> {
         "end-of-raw",
         "pixels exactly where `raw` begins to rise",
         || {
-            let found = Found::on(&around(horizontal(2.5)), &[Coverage::Raw])?;
+            let stroke = Strokes::from_iter([&horizontal(2.5)]);
+            let found = Found::on(&around(stroke.get(0)), &[Coverage::Raw])?;
             let rest = found.gap.canvas_holds() && found.gap.worth_holds() && found.is_between();
             Ok(found.finding().excepting(if rest { JUMP } else { "" }))
         },
@@ -50,7 +52,7 @@ pub(super) fn checks() -> Vec<Check<'static>> {
         "on-the-end",
         "a pixel centre on both ends of a dot",
         || {
-            let found = Found::on(&around(dot()), &SMOOTH)?;
+            let found = Found::on(&around(Strokes::from_iter([&dot()]).get(0)), &SMOOTH)?;
             let rest = found.gap.holds() && found.outside <= ANOTHER_END;
             Ok(found.finding().excepting(if rest { DISC } else { "" }))
         },
@@ -79,14 +81,118 @@ pub(super) fn checks() -> Vec<Check<'static>> {
         raw,
         on_the_end,
     ]
+    .into_iter()
+    .chain(along_paths())
+    .collect()
+}
+
+/// Where a path has kinks: its points, whether each is off it, and whether it is closed.
+struct Bend {
+    name: &'static str,
+    what: &'static str,
+    points: &'static [[f32; 2]],
+    off: &'static [bool],
+    closed: bool,
+    exception: &'static str,
+}
+
+const MEDIAL: &str = "these pixels are equally near to two segments: all of the derivative goes to one of them, and \
+                      f32 may take the other one";
+
+const BENDS: [Bend; 7] = [
+    Bend {
+        name: "joint",
+        what: "a point in the middle of a line, on a pixel centre",
+        points: &[[6.5, 9.5], [12.5, 9.5], [17.5, 9.5]],
+        off: &[false; 3],
+        closed: false,
+        exception: "",
+    },
+    Bend {
+        name: "corner",
+        what: "a right angle on a pixel centre, its arms along pixel centres",
+        points: &[[6.5, 4.5], [6.5, 12.5], [17.5, 12.5]],
+        off: &[false; 3],
+        closed: false,
+        exception: MEDIAL,
+    },
+    Bend {
+        name: "cusp",
+        what: "a turn by 180° on a pixel centre",
+        points: &[[6.5, 9.5], [17.5, 9.5], [6.5, 9.5]],
+        off: &[false; 3],
+        closed: false,
+        exception: "",
+    },
+    Bend {
+        name: "coinciding-points",
+        what: "three points in one place between two arms",
+        points: &[
+            [6.2, 4.1],
+            [9.3, 11.7],
+            [9.3, 11.7],
+            [9.3, 11.7],
+            [18.1, 13.2],
+        ],
+        off: &[false; 5],
+        closed: false,
+        exception: "",
+    },
+    Bend {
+        name: "crossing",
+        what: "a path that crosses itself at right angles on a pixel centre",
+        points: &[
+            [5.5, 9.5],
+            [17.5, 9.5],
+            [17.5, 3.5],
+            [11.5, 3.5],
+            [11.5, 16.5],
+        ],
+        off: &[false; 5],
+        closed: false,
+        exception: MEDIAL,
+    },
+    Bend {
+        name: "cusp-of-a-curve",
+        what: "a curve that comes back to where it began",
+        points: &[[6.5, 9.5], [18.5, 9.5], [6.5, 9.5]],
+        off: &[false, true, false],
+        closed: false,
+        exception: "",
+    },
+    Bend {
+        name: "loop",
+        what: "a closed spline about a pixel centre, symmetric on both axes",
+        points: &[[6.5, 4.5], [16.5, 4.5], [16.5, 14.5], [6.5, 14.5]],
+        off: &[true; 4],
+        closed: true,
+        exception: MEDIAL,
+    },
+];
+
+fn along_paths() -> impl Iterator<Item = Check<'static>> {
+    BENDS.iter().map(|bend| {
+        Check::new("kinks", bend.name, bend.what, || {
+            let page = around(StrokeRef {
+                points: bend.points,
+                off: bend.off,
+                closed: bend.closed,
+                look: &[2.2, 0.9, 0.2, 0.1, 0.7],
+            });
+            let found = Found::on(&page, &SMOOTH)?;
+            let rest = found.gap.canvas_holds() && found.gap.worth_holds() && found.is_between();
+            let note = if rest { bend.exception } else { "" };
+            Ok(found.finding().excepting(note))
+        })
+    })
 }
 
 /// The stroke between two ordinary ones, so that there are gradients to compare with.
-fn around(stroke: Params) -> Specimen {
+fn around(stroke: StrokeRef<'_>) -> Specimen {
     let others = random(8, 24, 20, 2);
     let mut strokes = Strokes::new();
     strokes.push(others.get(0));
-    strokes.push_capsule(&stroke);
+    strokes.push(stroke);
     strokes.push(others.get(1));
     Specimen::new(24, 20, strokes)
 }

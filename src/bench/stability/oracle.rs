@@ -8,7 +8,9 @@ use crate::image::Image;
 use crate::loss::Loss;
 use crate::math;
 use crate::render::reference::{self, Reference, Rgb};
-use crate::render::{Backdrop, Canvas, Gradients, Grid, LOOK, Renderer, Softness, Strokes};
+use crate::render::{
+    Backdrop, Canvas, Gradients, Grid, LOOK, Renderer, Softness, StrokeRef, Strokes,
+};
 use crate::rng;
 
 /// ε of the fast renderer's distances, px².
@@ -26,7 +28,7 @@ const SOFTNESS: f32 = 1.5;
 pub(super) const BACKGROUND: [f32; 3] = [0.3, 0.6, 0.8];
 
 /// Kinds of numbers of a stroke: points, radius, colour, opacity. Those of one kind have one unit.
-const KINDS: usize = 4;
+pub(super) const KINDS: usize = 4;
 
 /// The kinds of the last numbers of a stroke.
 const LOOK_KINDS: [usize; LOOK] = [1, 2, 2, 2, 3];
@@ -119,17 +121,22 @@ impl Specimen {
         let (pixels, expected) = (naive.render(&scene), pixels(target));
         let slow = naive.gradients(&scene, &slopes(&pixels, &expected));
         let slow: Vec<f64> = slow.strokes.iter().flat_map(|s| s.to_params()).collect();
+        let fast: Vec<f64> = gradients.strokes.iter().map(|&v| v.into()).collect();
+        let [fast, slow] = [fast, slow].map(|numbers| merged(&self.strokes, numbers));
         let kinds = kinds(&self.strokes);
         let worth = naive.leave_one_out(&scene, &expected);
         Ok(Gap {
             canvas: largest_difference(&canvas, &pixels),
             gradients: (0..KINDS)
                 .map(|kind| {
-                    let got = of_kind(&gradients.strokes, &kinds, kind);
+                    let got = of_kind(&fast, &kinds, kind);
                     relative(got, of_kind(&slow, &kinds, kind))
                 })
                 .fold(0.0, f64::max),
-            worth: relative(gradients.worth.iter().copied(), worth.into_iter()),
+            worth: relative(
+                gradients.worth.iter().copied().map(f64::from),
+                worth.into_iter(),
+            ),
         })
     }
 
@@ -213,12 +220,9 @@ fn largest_difference(image: &Image, expected: &[Rgb]) -> f64 {
 }
 
 /// The largest difference in units of the largest expected value.
-fn relative(got: impl Iterator<Item = f32>, expected: impl Iterator<Item = f64> + Clone) -> f64 {
+fn relative(got: impl Iterator<Item = f64>, expected: impl Iterator<Item = f64> + Clone) -> f64 {
     let scale = expected.clone().fold(FAINT, |most, v| most.max(v.abs()));
-    largest(
-        got.zip(expected)
-            .map(|(got, v)| (f64::from(got) - v).abs() / scale),
-    )
+    largest(got.zip(expected).map(|(got, v)| (got - v).abs() / scale))
 }
 
 /// The largest of `values`; infinite where one is not a number.
@@ -232,19 +236,61 @@ fn largest(values: impl Iterator<Item = f64>) -> f64 {
     })
 }
 
+/// Derivatives by number, those by points of a stroke that coincide replaced by their sum: such points are equally near,
+/// so it hangs on rounding which of them a pixel counts for.
+fn merged(strokes: &Strokes, derivatives: Vec<f64>) -> Vec<f64> {
+    let mut merged = derivatives.clone();
+    for (i, stroke) in strokes.iter().enumerate() {
+        let first = strokes.range(i).start;
+        for (k, point) in stroke.points.iter().enumerate() {
+            let same = (0..stroke.points.len()).filter(|&j| stroke.points[j] == *point);
+            for axis in 0..2 {
+                let by_same = same.clone().map(|j| derivatives[first + 2 * j + axis]);
+                merged[first + 2 * k + axis] = by_same.sum();
+            }
+        }
+    }
+    merged
+}
+
 /// The kind of each number.
-fn kinds(strokes: &Strokes) -> Vec<usize> {
+pub(super) fn kinds(strokes: &Strokes) -> Vec<usize> {
     let of = |points: usize| std::iter::repeat_n(0, 2 * points).chain(LOOK_KINDS);
     strokes.iter().flat_map(|s| of(s.points.len())).collect()
 }
 
-fn of_kind<T: Copy>(
-    numbers: &[T],
-    kinds: &[usize],
-    kind: usize,
-) -> impl Iterator<Item = T> + Clone {
+fn of_kind(numbers: &[f64], kinds: &[usize], kind: usize) -> impl Iterator<Item = f64> + Clone {
     let pairs = numbers.iter().zip(kinds);
     pairs.filter(move |(_, k)| **k == kind).map(|(v, _)| *v)
+}
+
+/// Random paths of two to six points, every other one closed, with corners and curves; looks and places as of
+/// [`random`] strokes.
+pub(super) fn random_paths(seed: u64, width: usize, height: usize, count: usize) -> Strokes {
+    let mut strokes = Strokes::new();
+    for (i, capsule) in random(seed, width, height, count).iter().enumerate() {
+        let u = |k| rng::draw(seed, 10, i as u64, k);
+        let [x, y] = capsule.points[0];
+        let spread = 0.6 * width as f32;
+        let closed = i % 2 == 1;
+        let last = 1 + (u(0) * 5.0) as u64;
+        let at = |k: u64| {
+            [
+                x + spread * (u(3 * k + 1) - 0.5),
+                y + spread * (u(3 * k + 2) - 0.5),
+            ]
+        };
+        let is_off = |k: u64| (closed || k % last > 0) && u(3 * k + 3) < 0.5;
+        let points: Vec<[f32; 2]> = (0..=last).map(at).collect();
+        let off: Vec<bool> = (0..=last).map(is_off).collect();
+        strokes.push(StrokeRef {
+            points: &points,
+            off: &off,
+            closed,
+            ..capsule
+        });
+    }
+    strokes
 }
 
 /// Random strokes of mixed size and opacity, some off the page.

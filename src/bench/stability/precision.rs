@@ -1,7 +1,9 @@
 //! `f32` against `f64` over many iterations: the same descent runs in both, and the two renderers are compared
 //! at the strokes that the `f32` descent ends with.
 
-use super::oracle::{BACKGROUND, Specimen, oracle, pixels, random, slopes};
+use super::oracle::{
+    BACKGROUND, KINDS, Specimen, kinds, oracle, pixels, random, random_paths, slopes,
+};
 use super::{Check, Observation};
 use crate::coverage::Coverage;
 use crate::error::Result;
@@ -11,36 +13,43 @@ use crate::loss::Loss;
 use crate::math;
 use crate::optim::{Adam, AdamParams, Optimizer, Schedule};
 use crate::render::reference::Scene;
-use crate::render::{Backdrop, Canvas, Gradients, Grid, LOOK, PARAMS, Renderer, Softness};
+use crate::render::{Backdrop, Canvas, Gradients, Grid, LOOK, Renderer, Softness, Strokes};
 
 const SIDE: usize = 16;
 const STROKES: usize = 6;
 
-/// Learning rates of ends, radius, colours and opacity at the start.
-const RATES: [f64; PARAMS] = [0.1, 0.1, 0.1, 0.1, 0.05, 0.01, 0.01, 0.01, 0.01];
+/// Learning rates of points, radius, colour and opacity at the start.
+const RATES: [f64; KINDS] = [0.1, 0.05, 0.01, 0.01];
 
 /// A last loss in `f32` may be larger than in `f64` by this factor: both find a minimum, and with kinks
 /// in the way not always the same.
 const LOSS_FACTOR: f64 = 1.25;
 
 pub(super) fn checks() -> Vec<Check<'static>> {
-    [0, 1_000, 10_000]
-        .map(|iterations| {
-            let name = format!("after-{iterations}");
-            let what = format!(
-                "forward, gradients and worth of {STROKES} strokes after {iterations} iterations in f32; \
-                 the same descent in f64"
-            );
-            Check::new("precision", name, what, move || after(iterations))
-        })
-        .into()
+    let check = |name: String, strokes: &str, iterations: usize, random: Random| {
+        let what = format!(
+            "forward, gradients and worth of {STROKES} {strokes} after {iterations} iterations in f32; \
+             the same descent in f64"
+        );
+        Check::new("precision", name, what, move || after(iterations, random))
+    };
+    let capsules = [0, 1_000, 10_000].map(|n| check(format!("after-{n}"), "capsules", n, random));
+    let paths = [0, 1_000].map(|n| check(format!("paths-after-{n}"), "paths", n, random_paths));
+    capsules.into_iter().chain(paths).collect()
 }
 
-fn after(iterations: usize) -> Result<Observation> {
+/// Makes strokes: seed, width, height, number.
+type Random = fn(u64, usize, usize, usize) -> Strokes;
+
+fn after(iterations: usize, random: Random) -> Result<Observation> {
     let start = Specimen::new(SIDE, SIDE, random(6, SIDE, SIDE, STROKES));
+    let rates: Vec<f64> = kinds(&start.strokes)
+        .into_iter()
+        .map(|kind| RATES[kind])
+        .collect();
     let target = target()?;
-    let (single, loss32) = descend32(start.clone(), &target, iterations)?;
-    let (double, loss64) = descend64(start.naive(), &target, iterations);
+    let (single, loss32) = descend32(start.clone(), &target, &rates, iterations)?;
+    let (double, loss64) = descend64(start.naive(), &target, &rates, iterations);
     let finite = double
         .strokes
         .iter()
@@ -68,7 +77,12 @@ fn target() -> Result<Image> {
 const SCHEDULE: Schedule = Schedule::Cosine { end: 0.01 };
 
 /// Descends in `f32`; the page it comes to and the loss there.
-fn descend32(mut page: Specimen, target: &Image, iterations: usize) -> Result<(Specimen, f64)> {
+fn descend32(
+    mut page: Specimen,
+    target: &Image,
+    rates: &[f64],
+    iterations: usize,
+) -> Result<(Specimen, f64)> {
     let softness = Softness {
         coverage: Coverage::Smoothstep,
         width: 1.5,
@@ -78,8 +92,8 @@ fn descend32(mut page: Specimen, target: &Image, iterations: usize) -> Result<(S
     let level = Execution::default().simd.require()?;
     let mut renderer = Renderer::new(Grid::new(page.width, page.height), level);
     let mut gradients = Gradients::default();
-    let mut adam = Adam::new(STROKES * PARAMS, AdamParams::default());
-    let scales = RATES.map(|rate| rate as f32).repeat(STROKES);
+    let mut adam = Adam::new(rates.len(), AdamParams::default());
+    let scales: Vec<f32> = rates.iter().map(|&rate| rate as f32).collect();
     let backdrop = Backdrop::Color(BACKGROUND);
     for step in 0..iterations {
         renderer.backward(
@@ -108,10 +122,9 @@ fn descend32(mut page: Specimen, target: &Image, iterations: usize) -> Result<(S
 }
 
 /// The same in `f64`, with the reference renderer.
-fn descend64(mut scene: Scene, target: &Image, iterations: usize) -> (Scene, f64) {
+fn descend64(mut scene: Scene, target: &Image, rates: &[f64], iterations: usize) -> (Scene, f64) {
     let (reference, target) = (oracle(Coverage::Smoothstep), pixels(target));
-    let mut adam = Adam::new(STROKES * PARAMS, AdamParams::default());
-    let scales = RATES.repeat(STROKES);
+    let mut adam = Adam::new(rates.len(), AdamParams::default());
     for step in 0..iterations {
         let canvas = reference.render(&scene);
         let gradients = reference.gradients(&scene, &slopes(&canvas, &target));
@@ -121,12 +134,7 @@ fn descend64(mut scene: Scene, target: &Image, iterations: usize) -> (Scene, f64
             .flat_map(|s| s.to_params())
             .collect();
         let mut params: Vec<f64> = scene.strokes.iter().flat_map(|s| s.to_params()).collect();
-        adam.step_scaled(
-            &mut params,
-            &flat,
-            SCHEDULE.factor(step, iterations),
-            &scales,
-        );
+        adam.step_scaled(&mut params, &flat, SCHEDULE.factor(step, iterations), rates);
         let mut rest = params.as_slice();
         for stroke in &mut scene.strokes {
             *stroke = stroke.with_params(rest);

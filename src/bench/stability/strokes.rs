@@ -1,11 +1,12 @@
 //! Degenerate and absurd strokes. Canvas, gradients and worths in `f32` are compared with the reference, and
 //! the file of the scene has to be readable.
 
-use super::oracle::{BACKGROUND, Specimen, random};
+use super::oracle::{BACKGROUND, Specimen, random, random_paths};
 use super::{Check, Observation};
 use crate::coverage::Coverage;
 use crate::error::Result;
-use crate::render::{Params, Strokes};
+use crate::render::{Params, StrokeRef, Strokes};
+use crate::rng;
 use crate::scene::{Quantized, Scene, Stage};
 use crate::svg::{self, WriteOptions};
 use crate::verify;
@@ -117,6 +118,22 @@ fn scenes() -> Vec<HardScene> {
                 &[],
             )
         },
+        HardScene {
+            page: Specimen::new(40, 36, random_paths(1, 40, 36, 20)),
+            ..hard(
+                "random-paths",
+                "20 paths with corners and curves, every other one closed",
+                &[],
+            )
+        },
+        HardScene {
+            page: Specimen::new(40, 36, walk(1000)),
+            ..hard(
+                "1000-points",
+                "one translucent path of 1,000 points that crosses itself all over",
+                &[],
+            )
+        },
         hard(
             "length-10^6",
             "a capsule of 10⁶ px through the canvas",
@@ -128,6 +145,26 @@ fn scenes() -> Vec<HardScene> {
             &[red([7.0, 5.0], [1e6, 1e6], 2.0, 0.5)],
         ),
     ]
+}
+
+/// One path of `points` points in small steps.
+fn walk(points: usize) -> Strokes {
+    let mut at = [20.0, 18.0];
+    let step = |i: u64| {
+        for (k, v) in at.iter_mut().enumerate() {
+            *v = (*v + 6.0 * (rng::draw(4, k as u64, i, 0) - 0.5)).clamp(-3.0, 43.0);
+        }
+        at
+    };
+    let places: Vec<[f32; 2]> = (0..points as u64).map(step).collect();
+    let mut strokes = Strokes::new();
+    strokes.push(StrokeRef {
+        points: &places,
+        off: &vec![false; points],
+        closed: false,
+        look: &[1.2, 0.9, 0.2, 0.1, 0.6],
+    });
+    strokes
 }
 
 /// The same stroke `count` times.

@@ -1,0 +1,109 @@
+//! Long paths against capsules of the size of their segments: as many pairs, in fewer strokes.
+
+use std::f32::consts::TAU;
+
+use strokefit::bench::measure::{DEPTH, StrokeSize};
+use strokefit::fit::Simd;
+use strokefit::render::{Canvas, Grid, StrokeRef, Strokes};
+use strokefit::rng;
+
+use super::{BACKDROP, Bench, OPACITIES, SIZES, Speed, Workload};
+
+/// Segments of a path.
+const SEGMENTS: [usize; 3] = [2, 7, 50];
+
+/// Largest turn from one segment to the next, radians.
+const TURN: f32 = 1.0;
+
+/// Prints the pairs per second of paths over those of capsules, on one thread. Both take turns, so that other load on the
+/// machine slows them alike.
+pub(crate) fn print(target: &Canvas, rounds: usize) {
+    println!(
+        "\npaths: million pairs per second on one thread, and over those of capsules of the size of a segment"
+    );
+    println!(
+        "{:<12} {:>8} {:>8} {:>9} {:>15} {:>15} {:>15}",
+        "strokes", "segments", "number", "lanes/pr", "forward", "backward", "worth"
+    );
+    for (name, radius_px, length_px) in SIZES {
+        for opacity in OPACITIES {
+            let size = StrokeSize {
+                radius_px,
+                length_px,
+                opacity,
+            };
+            row(&format!("{name} {opacity:.1}"), size, target, rounds);
+        }
+    }
+}
+
+fn row(name: &str, size: StrokeSize, target: &Canvas, rounds: usize) {
+    let grid = target.grid();
+    let count = (DEPTH * (grid.width * grid.height) as f32 / size.area_px()) as usize;
+    let workload = |strokes| Workload::new(name.to_owned(), strokes, BACKDROP, target);
+    let mut workloads = vec![workload(size.strokes(grid, count))];
+    workloads.extend(SEGMENTS.map(|n| workload(walks(size, grid, count.div_ceil(n), n))));
+    let level = Simd::Auto.level().expect("every machine has a SIMD level");
+    let mut benches: Vec<Bench<'_>> = workloads
+        .iter()
+        .map(|workload| Bench::new(workload, target, level, 1))
+        .collect();
+    let mut speeds: Vec<Speed> = benches.iter().map(Bench::unmeasured).collect();
+    for _ in 0..rounds {
+        for (bench, best) in benches.iter_mut().zip(&mut speeds) {
+            bench.measure(best);
+        }
+    }
+    benches.iter().for_each(Bench::check);
+    let rates = |i: usize| -> [f64; 3] {
+        let Speed {
+            forward,
+            backward,
+            worth,
+            ..
+        } = speeds[i];
+        [forward, backward, worth].map(|s| workloads[i].count.pairs as f64 / s / 1e6)
+    };
+    for (i, workload) in workloads.iter().enumerate() {
+        let segments = if i == 0 { 1 } else { SEGMENTS[i - 1] };
+        print!(
+            "{:<12} {:>8} {:>8} {:>9.2}",
+            workload.name,
+            segments,
+            workload.strokes.len(),
+            workload.count.lanes() as f64 / workload.count.pairs as f64
+        );
+        for (rate, of_capsules) in rates(i).iter().zip(rates(0)) {
+            print!(" {rate:>8.0} {:>5.2}×", rate / of_capsules);
+        }
+        println!();
+    }
+}
+
+/// `count` random walks of `segments` steps of the length of `size`, the same in every run.
+fn walks(size: StrokeSize, grid: Grid, count: usize, segments: usize) -> Strokes {
+    let mut strokes = Strokes::new();
+    let (mut points, off) = (Vec::new(), vec![false; segments + 1]);
+    for i in 0..count as u64 {
+        let draw = |k| rng::draw(0, 7, i, k);
+        let mut at = [draw(0) * grid.width as f32, draw(1) * grid.height as f32];
+        let mut angle = draw(2) * TAU;
+        points.clear();
+        points.push(at);
+        for k in 0..segments as u64 {
+            angle += TURN * (2.0 * draw(6 + k) - 1.0);
+            at = [
+                at[0] + size.length_px * angle.cos(),
+                at[1] + size.length_px * angle.sin(),
+            ];
+            points.push(at);
+        }
+        strokes.push(StrokeRef {
+            points: &points,
+            off: &off,
+            closed: false,
+            look: &[size.radius_px, draw(3), draw(4), draw(5), size.opacity],
+        });
+    }
+    strokes
+}

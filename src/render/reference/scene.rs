@@ -1,0 +1,137 @@
+//! What the reference draws: strokes and scenes in `f64`.
+
+use crate::scene;
+use crate::sdf::{Flattened, Path};
+
+use super::super::strokes::{LOOK, PARAMS, StrokeRef, Strokes};
+
+/// A colour: three values, 0..1 in any sensible scene.
+pub type Rgb = [f64; 3];
+
+/// A path swept by a disc, in one colour.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Stroke {
+    /// The points of the centre line, px: x, y.
+    pub points: Vec<[f64; 2]>,
+    /// Whether each point is off the path, the control point of a curve.
+    pub off: Vec<bool>,
+    /// Whether the last point is joined to the first.
+    pub closed: bool,
+    /// Half the stroke width, px.
+    pub radius: f64,
+    /// sRGB-encoded.
+    pub color: Rgb,
+    /// 0..1.
+    pub opacity: f64,
+}
+
+impl Stroke {
+    /// The capsule of `[a.x, a.y, b.x, b.y, radius, red, green, blue, opacity]`.
+    pub fn capsule([ax, ay, bx, by, radius, red, green, blue, opacity]: [f64; PARAMS]) -> Self {
+        Self {
+            points: vec![[ax, ay], [bx, by]],
+            off: vec![false; 2],
+            closed: false,
+            radius,
+            color: [red, green, blue],
+            opacity,
+        }
+    }
+
+    /// The numbers of the stroke, in the order of [`Strokes`]: x and y of its points, then radius, red, green, blue, opacity.
+    pub fn to_params(&self) -> Vec<f64> {
+        let [red, green, blue] = self.color;
+        let look = [self.radius, red, green, blue, self.opacity];
+        [self.points.as_flattened(), &look].concat()
+    }
+
+    /// A stroke of the same kinds of points with these numbers, as many as [`to_params`](Self::to_params) gives.
+    #[must_use]
+    pub fn with_params(&self, params: &[f64]) -> Self {
+        let (points, look) = params.split_at(2 * self.points.len());
+        let &[radius, red, green, blue, opacity] = look.first_chunk().unwrap_or(&[f64::NAN; LOOK]);
+        Self {
+            points: points.as_chunks().0.to_vec(),
+            radius,
+            color: [red, green, blue],
+            opacity,
+            ..self.clone()
+        }
+    }
+
+    /// The path as a polyline.
+    pub(super) fn flattened(&self) -> Flattened<f64> {
+        let path = Path {
+            points: self.points.iter().map(|&p| p.into()).collect(),
+            off: self.off.clone(),
+            closed: self.closed,
+            radius: self.radius,
+        };
+        path.flattened()
+    }
+
+    /// A stroke of the same kinds of points, all of whose numbers are 0.
+    pub(super) fn zero(&self) -> Self {
+        self.with_params(&vec![0.0; 2 * self.points.len() + LOOK])
+    }
+}
+
+/// What is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// Columns of pixels.
+    pub width: usize,
+    /// Rows of pixels.
+    pub height: usize,
+    /// The colour behind all strokes.
+    pub background: Rgb,
+    /// Back to front.
+    pub strokes: Vec<Stroke>,
+}
+
+/// A missing background becomes white.
+impl From<&scene::Scene> for Scene {
+    fn from(scene: &scene::Scene) -> Self {
+        let strokes: Strokes = scene.strokes().collect();
+        Self {
+            width: scene.width as usize,
+            height: scene.height as usize,
+            background: scene.background.unwrap_or([1.0; 3]).map(f64::from),
+            strokes: strokes.iter().map(Stroke::from).collect(),
+        }
+    }
+}
+
+impl From<StrokeRef<'_>> for Stroke {
+    fn from(stroke: StrokeRef<'_>) -> Self {
+        Self {
+            points: stroke.points.iter().map(|p| p.map(f64::from)).collect(),
+            off: stroke.off.to_vec(),
+            closed: stroke.closed,
+            radius: f64::from(stroke.radius()),
+            color: stroke.color().map(f64::from),
+            opacity: f64::from(stroke.opacity()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn params_are_a_strokes_numbers() {
+        let params = std::array::from_fn(|k| k as f64);
+        assert_eq!(Stroke::capsule(params).to_params(), params);
+        let spline = Stroke {
+            points: vec![[0.0; 2]; 5],
+            off: vec![true, false, true, true, false],
+            closed: true,
+            ..Stroke::default()
+        };
+        let params: Vec<f64> = (0..15).map(f64::from).collect();
+        let moved = spline.with_params(&params);
+        assert_eq!(moved.to_params(), params);
+        assert_eq!((&moved.off, moved.closed), (&spline.off, true));
+    }
+}
