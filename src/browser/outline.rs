@@ -103,23 +103,22 @@ impl Outline {
         self.line(p + to, p);
     }
 
-    /// The left side of a part of a curve, as parabolas. One that is [`MAX_BULGE`] away in its middle is halved.
+    /// The left side of a part of a curve, as parabolas. One that turns by more than a quarter, or is not
+    /// [`near`](is_near) the side in its middle, is halved.
     fn beside(&mut self, curve: Curve, radius: f32, [start, end]: [f32; 2], halvings: u32) {
         let half = 0.5 * (start + end);
-        let [(from, d_from), (middle, _), (to, d_to)] =
+        let [(from, d_from), middle, (to, d_to)] =
             [start, half, end].map(|t| curve.beside(t, radius));
         let (gap, turn) = (to - from, d_from.perp(&d_to));
         // How far it is along both tangents to where they cross.
         let (ahead, behind) = (gap.perp(&d_to) / turn, d_from.perp(&gap) / turn);
-        let knee = if ahead * behind > 0.0 {
-            from + d_from * ahead
-        } else {
-            from + gap * 0.5
-        };
-        let is_close = (on_parabola(from, knee, to, 0.5) - middle).norm() <= MAX_BULGE;
-        let is_plain = ahead * behind > 0.0 || d_from.dot(&d_to) > 0.0;
-        if halvings == 0 || is_close && is_plain {
-            monotone([from, knee, to]).for_each(|part| self.chords(part));
+        let crosses = ahead * behind > 0.0;
+        let knee = from + if crosses { d_from * ahead } else { gap * 0.5 };
+        let is_plain = crosses || d_from.dot(&d_to) > 0.0;
+        let is_wide = (knee - from).dot(&(knee - to)) <= 0.0;
+        let parabola = [from, knee, to];
+        if halvings == 0 || is_plain && is_wide && is_near(parabola, middle) {
+            monotone(parabola).for_each(|part| self.chords(part));
             return;
         }
         self.beside(curve, radius, [start, half], halvings - 1);
@@ -268,6 +267,31 @@ const QUARTER_BULGE: f32 = 0.0607;
 
 /// How far outside a parabola may be, px.
 const MAX_BULGE: f32 = 0.25;
+
+/// Whether a parabola is at most [`MAX_BULGE`] away from a point that it should go through in this direction. If it
+/// comes by before or after its middle, it has to be nearer.
+fn is_near([from, knee, to]: [Point; 3], (point, direction): (Point, Vector)) -> bool {
+    let away = |t: f32| on_parabola(from, knee, to, t) - point;
+    if away(0.5).norm() <= MAX_BULGE {
+        return true;
+    }
+    // It comes by where at² + bt + c = 0.
+    let along = |v: Vector| v.dot(&direction);
+    let (a, b, c) = (
+        along((from - knee) + (to - knee)),
+        2.0 * along(knee - from),
+        along(from - point),
+    );
+    let root = (b * b - 4.0 * a * c).sqrt();
+    let q = -0.5 * (b + root.copysign(b));
+    let mut passes = [q / a, c / q]
+        .into_iter()
+        .filter(|t| (0.0..=1.0).contains(t));
+    let (Some(t), None) = (passes.next(), passes.next()) else {
+        return false;
+    };
+    away(t).norm() <= MAX_BULGE * (1.0 - 2.0 * (t - 0.5).abs())
+}
 
 /// The parabola, in two where it turns back in y.
 fn monotone([from, knee, to]: [Point; 3]) -> impl Iterator<Item = [Point; 3]> {
