@@ -8,7 +8,7 @@ use super::simd::Simd;
 use crate::coverage::CoverageSchedule;
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::{MAX_POINTS, MAX_PRECISION, Rgb, Scene, quantum};
-use crate::svg::WriteOptions;
+use crate::svg::{Form, WriteOptions};
 use crate::threads::Workers;
 
 /// What to fit. Equal configurations of equal pictures give equal bytes.
@@ -144,9 +144,11 @@ impl Config {
         self.recipe.unwrap_or(Recipe::of(self.preset))
     }
 
-    /// Whether strokes may have more than two points.
+    /// Whether strokes may have more than two points. In a file of outlines a point takes as many bytes as a stroke, so
+    /// that none pays.
     pub(super) fn allows_points(&self) -> bool {
-        self.points.is_none_or(|most| most > 2)
+        let pays = self.file.form != Form::Outlines;
+        self.points.map_or(pays, |most| most > 2)
     }
 
     /// The quality that sets the price of a stroke, unless strokes are free.
