@@ -253,7 +253,7 @@ mod tests {
     fn strokes() -> Strokes {
         let mut strokes = Strokes::new();
         for count in 1..7_u32 {
-            for (kinds, closed) in (0..1 << count).flat_map(|k| [(k, false), (k, true)]) {
+            for (kinds, closed) in (0..1_u32 << count).flat_map(|k| [(k, false), (k, true)]) {
                 let is_end = |k: u32| (!closed || count == 1) && (k == 0 || k == count - 1);
                 let off: Vec<bool> = (0..count)
                     .map(|k| kinds >> k & 1 == 1 && !is_end(k))
