@@ -4,7 +4,7 @@ use strokefit::math::Point;
 use strokefit::scene::{Path, PathPoint};
 
 /// The paths with their names; they lie in and around a picture of `width`×`height` px.
-pub fn paths(width: f32, height: f32) -> Vec<(&'static str, Path)> {
+pub(crate) fn paths(width: f32, height: f32) -> Vec<(&'static str, Path)> {
     let path = |points: &[(f32, f32, char)], closed: bool| {
         let point = |&(x, y, kind): &(f32, f32, char)| PathPoint {
             at: Point::new(x * width, y * height),
