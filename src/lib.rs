@@ -106,6 +106,8 @@
 //! | frozen, free | strokes that are kept as they are; strokes that are fitted |
 //! | polish | joint fit of all free strokes |
 //! | relocation | moving the strokes of least worth to where candidates gain more, during the polish |
+//! | survey | how the squared error depends on the vertices of all strokes, so that the gain of a new point is known |
+//! | join | making one stroke of two that look alike and meet end to end |
 //! | settle | last steps against renders of the written file, by resvg and by the model of a browser |
 //! | offset | difference between a renderer's picture of the file and our own canvas, per channel |
 //! | phase | one step in the order of a fit: a stage, the polish, the settling, … |
