@@ -75,6 +75,7 @@ def test_strokes_are_those_of_the_file(drawing: strokefit.Drawing, bent: strokef
     for some in (drawing, bent):
         elements = re.findall("<path[^>]*>", some.svg)
         assert len(some.strokes) == some.report["strokes"] == len(elements)
+        assert len(some.strokes.points) == some.report["points"]
         for stroke, element in zip(some.strokes, elements):
             attributes = dict(re.findall(r'(\S+)="([^"]*)"', element))
             expected, closed = pieces_of_data(attributes["d"])

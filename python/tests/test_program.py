@@ -35,7 +35,7 @@ def test_bytes_are_those_of_the_command_line(sample: Path, program: list[str], t
     assert drawing.svg.encode() == out.read_bytes()
     told = json.loads(report.read_text())
     assert set(told) == set(drawing.report)
-    for field in ("input", "strokes", "stop", "seed", "fidelity", "soft", "agreement", "svg_gzip_bytes", "alpha"):
+    for field in ("input", "strokes", "points", "stop", "seed", "fidelity", "soft", "agreement", "svg_gzip_bytes", "alpha"):
         assert told[field] == drawing.report[field]
 
 

@@ -91,6 +91,8 @@ class Report(TypedDict):
     schema: int
     input: Input
     strokes: int
+    #: Of all strokes together.
+    points: int
     #: Strokes that were dropped.
     dropped: int
     dropped_for: Dropped
