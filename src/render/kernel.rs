@@ -253,7 +253,7 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
         }
         for block in members(visit.edge) {
             let distance2 = if is_capsule {
-                capsule.from_pixels(simd, block).distance2()
+                capsule.at_pixels(simd, block).distance2()
             } else {
                 union.distance2(simd, block)
             };
@@ -387,7 +387,7 @@ fn back_to_front<S: Simd, X: Extras>(
             let seen = t * slope;
             let stiffness = 2.0 * (seen * seen) * contrast2;
             if is_capsule {
-                let nearest = capsule.from_pixels(simd, block);
+                let nearest = capsule.at_pixels(simd, block);
                 shifts.pull(pull, nearest.q, nearest.h);
                 if X::STIFFNESS {
                     shifts.stiffen(stiffness, nearest.h);

@@ -280,7 +280,7 @@ pub(super) fn random_paths(seed: u64, width: usize, height: usize, count: usize)
                 y + spread * (u(3 * k + 2) - 0.5),
             ]
         };
-        let is_off = |k: u64| (closed || k % last > 0) && u(3 * k + 3) < 0.5;
+        let is_off = |k: u64| (closed || !k.is_multiple_of(last)) && u(3 * k + 3) < 0.5;
         let points: Vec<[f32; 2]> = (0..=last).map(at).collect();
         let off: Vec<bool> = (0..=last).map(is_off).collect();
         strokes.push(StrokeRef {

@@ -94,7 +94,7 @@ impl<S: Simd> Capsule<S> {
 
     /// The nearest points to the pixels of a block.
     #[inline(always)]
-    pub(super) fn from_pixels(&self, simd: S, block: usize) -> Nearest<S> {
+    pub(super) fn at_pixels(&self, simd: S, block: usize) -> Nearest<S> {
         let x = (block % TILE_BLOCKS * BLOCK) as f32 - self.a[0];
         let y = (block / TILE_BLOCKS * BLOCK) as f32 - self.a[1];
         self.nearest([load(simd, &PIXELS[0]) + x, load(simd, &PIXELS[1]) + y])
@@ -102,7 +102,7 @@ impl<S: Simd> Capsule<S> {
 
     /// The nearest points to the centres of 16 blocks, a quarter of the tile.
     #[inline(always)]
-    pub(super) fn from_centers(&self, simd: S, row: usize) -> Nearest<S> {
+    pub(super) fn at_centers(&self, simd: S, row: usize) -> Nearest<S> {
         let y = (row * LANES / TILE_BLOCKS * BLOCK) as f32 - self.a[1];
         self.nearest([
             load(simd, &CENTERS[0]) - self.a[0],
@@ -113,7 +113,7 @@ impl<S: Simd> Capsule<S> {
     /// The signed distance at the pixels of a block.
     #[inline(always)]
     pub(in crate::render) fn distance(&self, simd: S, block: usize) -> f32x16<S> {
-        self.radius - length(self.from_pixels(simd, block).distance2())
+        self.radius - length(self.at_pixels(simd, block).distance2())
     }
 
     /// The blocks that the stroke widened by its soft edge can touch, and those wholly in its hard
@@ -128,7 +128,7 @@ impl<S: Simd> Capsule<S> {
         let [outer, inner] = limits(radius, reach);
         let (mut touched, mut core) = (0, 0);
         for row in 0..ROWS {
-            let distance2 = self.from_centers(simd, row).distance2();
+            let distance2 = self.at_centers(simd, row).distance2();
             touched |= distance2.simd_lt(outer * outer).to_bitmask() << (row * LANES);
             core |= distance2.simd_lt(inner * inner).to_bitmask() << (row * LANES);
         }

@@ -128,7 +128,7 @@ impl Union {
                 after: 0,
             };
             for (row, least) in least.iter_mut().enumerate() {
-                let nearest = capsule.from_centers(simd, row);
+                let nearest = capsule.at_centers(simd, row);
                 let distance2 = nearest.distance2();
                 store(distance2, &mut sight.centers[row]);
                 *least = distance2.simd_lt(*least).select(distance2, *least);
@@ -162,12 +162,12 @@ impl Union {
             let capsule = segments.capsule(simd, k, 0.0);
             let index = f32x16::splat(simd, k as f32);
             for block in members(near & !seen) {
-                let distance2 = capsule.from_pixels(simd, block).distance2();
+                let distance2 = capsule.at_pixels(simd, block).distance2();
                 store(distance2, &mut self.distances2[block]);
                 store(index, &mut self.nearest[block]);
             }
             for block in members(near & seen) {
-                let distance2 = capsule.from_pixels(simd, block).distance2();
+                let distance2 = capsule.at_pixels(simd, block).distance2();
                 let least = load(simd, &self.distances2[block]);
                 let nearest = load(simd, &self.nearest[block]);
                 let is_nearer = distance2.simd_lt(least);
@@ -219,7 +219,7 @@ impl Kept<'_> {
         for block in members(near & self.edge) {
             let at = (self.edge & ((1 << block) - 1)).count_ones() as usize;
             let is_nearest = load(simd, &self.nearest[at]).simd_eq(k as f32);
-            let nearest = capsule.from_pixels(simd, block);
+            let nearest = capsule.at_pixels(simd, block);
             let pull = is_nearest.select(load(simd, &self.blocks[at].slope), zero);
             shifts.pull(pull, nearest.q, nearest.h);
             if X::STIFFNESS {
