@@ -38,7 +38,7 @@ pub(crate) use usage::parse;
 
 /// Turns a raster picture into an editable SVG made of strokes.
 ///
-/// A stroke is a line segment with round caps. strokefit puts strokes where the drawing differs most from
+/// A stroke is a path with round caps and joins. strokefit puts strokes where the drawing differs most from
 /// the picture, improves them by gradient descent, and repeats. Then it writes the SVG, renders it
 /// with resvg, and reports how faithful it is.
 #[derive(Debug, Parser)]
