@@ -18,9 +18,7 @@ pub(super) fn trace(path: &Path, radius: f32, outline: &mut Outline) {
         let along = [directions(before)[1], directions(after)[0]].map(|d| d * radius);
         outline.add_join(after.start(), along[0], along[1]);
     };
-    pieces
-        .array_windows()
-        .for_each(|[before, after]| join(before, after));
+    pieces.windows(2).for_each(|pair| join(&pair[0], &pair[1]));
     let (Some(first), Some(last)) = (pieces.first(), pieces.last()) else {
         let right = Vector::new(radius, 0.0);
         path.points()
@@ -53,8 +51,9 @@ fn straightened(piece: Piece) -> Vec<Piece> {
             None => return vec![piece],
         },
     };
-    let lines = corners.array_windows().filter(|[a, b]| a != b);
-    lines.map(|ends| Piece::Line(*ends)).collect()
+    let ends = corners.iter().zip(corners.iter().skip(1));
+    let lines = ends.filter(|(a, b)| a != b);
+    lines.map(|(a, b)| Piece::Line([*a, *b])).collect()
 }
 
 /// The directions at start and end.
