@@ -22,6 +22,7 @@
 //! - `T` draws a curve whose control point mirrors the last one. So a run of off-points takes one pair of numbers for
 //!   each, and one more at its end: the on-points that they imply are in the file, and off-points are rounded so
 //!   that these are exact.
+//! - A curve that turns back within 0.02 px is written as two lines, because Cairo leaves a half of it out.
 //! - The layer has `stroke-linejoin="round"` if a stroke in it has a join.
 //! - In the smallest form, neighbours of equal colour, width and opacity are one path, `M1 2L3 4M7 8l1 2`,
 //!   if they are opaque or do not touch. A `<g>` holds the attributes that neighbours share, and the layer
