@@ -145,7 +145,8 @@ impl WrittenPath {
         if self.closed && self.points.first().is_some_and(|p| p.is_on) {
             reversed.points.rotate_right(1);
         }
-        reversed
+        // Which of equal paths is the canonical one may depend on the direction.
+        Self::new(reversed.points, reversed.closed)
     }
 
     /// The path in px.

@@ -63,9 +63,11 @@ pub fn arrange(scene: &Scene, options: &WriteOptions) -> Scene {
 /// Starts a stroke at the end that makes its path shorter.
 fn orient(stroke: &mut Written, unit: Unit) {
     let length = |path: &WrittenPath| path::data([path], unit).len();
-    let reversed = stroke.path.reversed();
-    if length(&reversed) < length(&stroke.path) {
+    let mut reversed = stroke.path.reversed();
+    // A reversed path may have fewer points than its other direction had, so that this is asked until it settles.
+    while length(&reversed) < length(&stroke.path) {
         stroke.path = reversed;
+        reversed = stroke.path.reversed();
     }
 }
 
