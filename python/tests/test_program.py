@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -126,9 +127,14 @@ def test_ctrl_c_ends_the_program_as_it_ends_others(noise: np.ndarray, tmp_path: 
     picture, out = tmp_path / "noise.png", tmp_path / "noise.svg"
     Image.fromarray(noise).save(picture)
     command = [*PYTHON, "fit", str(picture), "-o", str(out), "--quality", "60", "--preset", "best"]
-    with subprocess.Popen(command, stderr=subprocess.PIPE) as program:
+    # What runs the tests in the background may ignore the signal, and a program would inherit that.
+    heeds = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
+    with subprocess.Popen(command, stderr=subprocess.PIPE, preexec_fn=heeds) as program:
         time.sleep(1.5)
         os.kill(program.pid, signal.SIGINT)
-        _, words = program.communicate(timeout=30)
+        try:
+            _, words = program.communicate(timeout=30)
+        finally:
+            program.kill()
     assert program.returncode == -signal.SIGINT and b"as far as it had come" in words
     assert out.read_text().startswith("<svg")
