@@ -32,11 +32,38 @@ impl WrittenPath {
         let mut path = Self { points, closed };
         loop {
             let before = path.points.len();
+            path.straighten();
             path.shorten();
             if path.points.len() == before {
                 return path;
             }
         }
+    }
+
+    /// Makes lines of curves whose control point lies at one of their ends.
+    fn straighten(&mut self) {
+        let is_line = |piece: &Piece<[i64; 2]>| match *piece {
+            Piece::Line(_) => true,
+            Piece::Curve([a, knee, b]) => knee == a || knee == b,
+        };
+        let is_straight =
+            |piece: &Piece<[i64; 2]>| matches!(piece, Piece::Curve(_)) && is_line(piece);
+        let Some(start) = self.pieces().next().map(|piece| piece.start()) else {
+            return;
+        };
+        if !self.pieces().any(|piece| is_straight(&piece)) {
+            return;
+        }
+        let mut points = vec![PathPoint::on(start)];
+        for piece in self.pieces() {
+            if let Piece::Curve([_, knee, _]) = piece
+                && !is_line(&piece)
+            {
+                points.push(PathPoint::off(knee));
+            }
+            points.push(PathPoint::on(piece.end()));
+        }
+        self.points = points;
     }
 
     /// The path with its points on the `grid`. An off-point may be one step of the grid away from where it was, so that
