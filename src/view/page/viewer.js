@@ -197,9 +197,10 @@ function redraw() {
   paint(drawing, (context, px) => {
     if (scene.background) fillPage(context, scene.background);
     drawStrokes(context, list);
-    if (!found) return;
-    drawRing(context, found.stroke, px);
-    drawPoints(context, found.stroke, px);
+    if (found) {
+      drawRing(context, found.stroke, px);
+      drawPoints(context, found.stroke, px);
+    }
     if (state.target) drawCompared(context, px);
   });
   if (comparison) {
