@@ -31,10 +31,10 @@ impl WrittenPath {
     pub(crate) fn new(points: Vec<WrittenPoint>, closed: bool) -> Self {
         let mut path = Self { points, closed };
         loop {
-            let before = path.points.len();
+            let before = path.points.clone();
             path.straighten();
             path.shorten();
-            if path.points.len() == before {
+            if path.points == before {
                 return path;
             }
         }
@@ -386,6 +386,19 @@ mod tests {
             (4.0, 6.0, ON),
         ];
         assert_eq!(rounded(&spline, false).0.len(), 4);
+    }
+
+    #[test]
+    fn a_path_that_became_straight_in_part_has_no_implied_points() {
+        let ring = [
+            (4.0, 6.0, ON),
+            (2.0, 8.0, OFF),
+            (0.0, 6.0, ON),
+            (0.0, 6.0, OFF),
+            (6.0, 4.0, OFF),
+        ];
+        let expected = [(0, 60, ON), (30, 50, ON), (60, 40, OFF), (20, 80, OFF)];
+        assert_eq!(rounded(&ring, true).0, expected);
     }
 
     #[test]
