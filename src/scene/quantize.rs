@@ -98,7 +98,9 @@ impl Scene {
         let written = |stroke: &Stroke| {
             let written = Written::new(stroke, self, precision);
             let written = written.map_err(|reason| dropped.count(reason)).ok()?;
-            dropped.points += stroke.path.points().len() - written.path.points().len();
+            // A curve that turns back sharply gets points, as it is written as two lines.
+            let (before, after) = (stroke.path.points().len(), written.path.points().len());
+            dropped.points += before.saturating_sub(after);
             Some(written)
         };
         stage.strokes.iter().filter_map(written).collect()
