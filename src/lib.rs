@@ -174,6 +174,7 @@ pub mod sdf;
 pub mod seed;
 pub mod svg;
 mod threads;
+pub mod trace;
 pub mod verify;
 #[cfg(feature = "cli")]
 pub mod view;

@@ -6,7 +6,7 @@ pub use elementary::{
     Elementary, atan, cbrt, cos, exp, exp2, hypot, ln, log2, log10, powf, powi, sin, sin_cos, tan,
     tanh,
 };
-pub use nalgebra::{Point2, Vector2};
+pub use nalgebra::{DMatrix, DVector, Point2, Vector2};
 
 /// A point of the picture plane in px; x to the right, y down, pixel centres at +0.5.
 pub type Point = Point2<f32>;

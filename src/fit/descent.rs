@@ -10,7 +10,7 @@ use super::deadline::Timer;
 use super::drawing::Drawing;
 use super::recipe::{Rates, Recipe};
 use crate::optim::{Adam, Optimizer, Schedule};
-use crate::render::{Canvas, Gradients, LOOK, Strokes};
+use crate::render::{Canvas, Gradients, LOOK};
 
 /// The length, the step sizes and the edge of a descent.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
@@ -72,7 +72,7 @@ impl Descent {
             used_before,
             adam: Adam::new(drawing.free().numbers().len(), recipe.optimizer.strokes),
             background: Adam::new(3, recipe.optimizer.background),
-            scales: scales(&course.rates, drawing.free(), recipe),
+            scales: scales(&course.rates, drawing, recipe),
             gradients: Gradients::default(),
         }
     }
@@ -128,14 +128,14 @@ impl Descent {
     /// Resets the optimiser after a change of resolution, which changes the size of all gradients.
     pub(super) fn forget(&mut self, drawing: &Drawing, recipe: &Recipe) {
         self.adam = Adam::new(drawing.free().numbers().len(), recipe.optimizer.strokes);
-        self.scales = scales(&self.course.rates, drawing.free(), recipe);
+        self.scales = scales(&self.course.rates, drawing, recipe);
     }
 
     /// Rearranges the state of the optimiser like the numbers of the free strokes: number `i` was number `sources[i]`, or
     /// is new.
     pub(super) fn follow(&mut self, sources: &[Option<usize>], drawing: &Drawing, recipe: &Recipe) {
         self.adam.rearrange(1, sources);
-        self.scales = scales(&self.course.rates, drawing.free(), recipe);
+        self.scales = scales(&self.course.rates, drawing, recipe);
     }
 }
 
@@ -152,8 +152,9 @@ impl Course {
     }
 }
 
-/// The step size of each number of `strokes`. The geometry of large strokes moves farther.
-fn scales(rates: &Rates, strokes: &Strokes, recipe: &Recipe) -> Vec<f32> {
+/// The step size of each number of the free strokes. The geometry of large strokes moves farther, and that of traced
+/// strokes, which are about where they belong, less far.
+fn scales(rates: &Rates, drawing: &Drawing, recipe: &Recipe) -> Vec<f32> {
     let Rates {
         position,
         radius,
@@ -163,10 +164,13 @@ fn scales(rates: &Rates, strokes: &Strokes, recipe: &Recipe) -> Vec<f32> {
     } = *rates;
     let usual = recipe.optimizer.usual_radius;
     let [least, most] = recipe.optimizer.radius_factors;
+    let (strokes, traced) = (drawing.free(), drawing.traced());
     let mut scales = Vec::with_capacity(strokes.numbers().len());
-    for stroke in strokes.iter() {
+    for (i, stroke) in strokes.iter().enumerate() {
         let factor = (stroke.radius() / usual).sqrt().clamp(least, most);
-        scales.resize(scales.len() + 2 * stroke.points.len(), position * factor);
+        let pace = if i < traced { recipe.tracing.pace } else { 1.0 };
+        let ends = position * factor * pace;
+        scales.resize(scales.len() + 2 * stroke.points.len(), ends);
         let look: [f32; LOOK] = [radius * factor, color, color, color, opacity];
         scales.extend(look);
     }

@@ -8,7 +8,7 @@ use fearless_simd::Level;
 use super::bounds::Bounds;
 use super::surface::Surface;
 use crate::render::{Canvas, CanvasLoss, Gradients, Params, Renderer, Softness, Strokes, Survey};
-use crate::scene::Rgb;
+use crate::scene::{Rgb, Stroke};
 pub(super) use memento::Memento;
 use scene::enlarge;
 
@@ -40,6 +40,8 @@ pub(super) struct Counters {
     pub(super) searches: u64,
     /// Strokes that were removed because they became non-finite.
     pub(super) lost: usize,
+    /// The first stage that was not traced, unless none was.
+    pub(super) traced_until: usize,
 }
 
 impl Drawing {
@@ -175,6 +177,13 @@ impl Drawing {
         std::mem::swap(&mut self.frozen, &mut self.free);
     }
 
+    /// Adds `strokes` on top, in px of the picture, as part of stage `stage`.
+    pub(super) fn extend_by(&mut self, strokes: &[Stroke], stage: usize) {
+        let halvings = self.surface().halvings();
+        self.free.append(&mut scene::reduced(strokes, halvings));
+        self.stage_of.resize(self.len(), stage);
+    }
+
     /// Adds `capsules` on top, as part of stage `stage`.
     pub(super) fn extend(&mut self, capsules: impl IntoIterator<Item = Params>, stage: usize) {
         for capsule in capsules {
@@ -208,6 +217,12 @@ impl Drawing {
     pub(super) fn stage_sizes(&self) -> Vec<usize> {
         let stages = self.stage_of.chunk_by(|a, b| a == b);
         stages.map(<[usize]>::len).collect()
+    }
+
+    /// How many of the free strokes, from the bottom, are in stages that were traced.
+    pub(super) fn traced(&self) -> usize {
+        let free = self.stage_of.get(self.frozen.len()..).unwrap_or_default();
+        free.partition_point(|&stage| stage < self.counters.traced_until)
     }
 
     /// The index of the topmost stage, from 0.

@@ -15,6 +15,8 @@ use crate::metrics::psnr_db;
 pub(super) struct History {
     /// One record per stage, those of the base included.
     pub(super) records: Vec<StageRecord>,
+    /// Layers and strokes that were traced.
+    pub(super) traced: [usize; 2],
     /// The current stage, or the last one.
     pub(super) stage: Option<OpenStage>,
     /// What ended the stages, and in the end the fit.
@@ -52,6 +54,7 @@ impl History {
     pub(super) fn new(records: Vec<StageRecord>, db_per_doubling: f64) -> Self {
         Self {
             records,
+            traced: [0; 2],
             stage: None,
             stop: Stop::Strokes,
             corrections: Corrections {

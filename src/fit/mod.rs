@@ -64,7 +64,7 @@ use crate::clock::Instant;
 use crate::error::Result;
 use crate::image::Image;
 use order::{Outcome, Phase};
-use phase::{count, grow, polish, settle};
+use phase::{count, grow, polish, settle, trace};
 use session::Session;
 
 impl Fitter<'_> {
@@ -105,6 +105,7 @@ impl Fitter<'_> {
 fn run(session: &mut Session<'_>) -> Result<Outcome> {
     Ok(match session.phase {
         Phase::Base => count::try_base(session)?,
+        Phase::Trace => trace::trace_lines(session)?,
         Phase::Grow => grow::next_stage(session)?,
         Phase::Stage(purpose) => grow::stage(session, purpose)?,
         Phase::StagePolish(_) => grow::stage_polish(session)?,

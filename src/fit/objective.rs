@@ -3,15 +3,53 @@
 use rayon::prelude::*;
 
 use crate::loss::Loss;
-use crate::render::{Canvas, CanvasLoss, Lanes, TileRgb};
+use crate::render::{Canvas, CanvasLoss, Lanes, TILE, TileRgb};
 
 /// The mean of `loss` over width·height·3 values against `target`.
 #[derive(Debug, Clone, Copy)]
 pub struct Objective<'a> {
     loss: Loss,
     target: &'a Canvas,
+    moments: Option<&'a Moments>,
     /// 1/(width·height·3).
     scale: f32,
+}
+
+/// Sums over the pixels of each tile of a target. The squared error of a tile in one colour follows from them, so that
+/// an empty part of a page costs nothing.
+#[derive(Debug)]
+pub(super) struct Moments(Vec<TileMoments>);
+
+#[derive(Debug, Clone, Copy, Default)]
+struct TileMoments {
+    pixels: f64,
+    /// Sums of the channels.
+    sums: [f64; 3],
+    /// The sum of the squares of all channels.
+    squares: f64,
+}
+
+impl Moments {
+    /// The sums of `target`.
+    pub(super) fn of(target: &Canvas) -> Self {
+        let grid = target.grid();
+        let moments = |(tile, pixels): (usize, &TileRgb)| {
+            let (x, y) = grid.origin(tile);
+            let (columns, rows) = (TILE.min(grid.width - x), TILE.min(grid.height - y));
+            let mut moments = TileMoments {
+                pixels: (columns * rows) as f64,
+                ..TileMoments::default()
+            };
+            for (channel, lanes) in pixels.iter().flat_map(|block| block.iter().enumerate()) {
+                for value in lanes.0.map(f64::from) {
+                    moments.sums[channel] += value;
+                    moments.squares += value * value;
+                }
+            }
+            moments
+        };
+        Self(target.tiles().par_iter().enumerate().map(moments).collect())
+    }
 }
 
 impl<'a> Objective<'a> {
@@ -21,7 +59,16 @@ impl<'a> Objective<'a> {
         Self {
             loss,
             target,
+            moments: None,
             scale: 1.0 / (grid.width * grid.height * 3) as f32,
+        }
+    }
+
+    /// The squared error against `target`, whose `moments` are known.
+    pub(super) fn squared(target: &'a Canvas, moments: &'a Moments) -> Self {
+        Self {
+            moments: Some(moments),
+            ..Self::new(Loss::L2, target)
         }
     }
 }
@@ -70,5 +117,21 @@ impl CanvasLoss for Objective<'_> {
             }
         }
         sums.0.iter().map(|&s| f64::from(s)).sum::<f64>() * f64::from(self.scale)
+    }
+
+    fn flat(&self, tile: usize, color: [f32; 3]) -> Option<(f64, [f32; 3])> {
+        let &TileMoments {
+            pixels,
+            sums,
+            squares,
+        } = self.moments?.0.get(tile)?;
+        let (color, scale) = (color.map(f64::from), f64::from(self.scale));
+        let products = color.iter().zip(sums);
+        let error: f64 = products
+            .map(|(c, sum)| pixels * c * c - 2.0 * c * sum)
+            .sum();
+        let slope = |channel: usize| 2.0 * (pixels * color[channel] - sums[channel]) * scale;
+        let loss = (error + squares).max(0.0) * scale;
+        Some((loss, [0, 1, 2].map(|channel| slope(channel) as f32)))
     }
 }

@@ -1,7 +1,9 @@
 //! The order of a fit: its phases, and which follows which.
 //!
 //! ```text
-//! base ─→ grow ⇄ stage        add strokes, stage by stage
+//! base ─→ trace ⇄ stage       draw the lines that are seen
+//!           ↓
+//!         grow ⇄ stage        add strokes, stage by stage
 //!           ↓
 //!         polish              fit all strokes jointly
 //!           ↓
@@ -22,6 +24,8 @@ use super::config::Config;
 pub(super) enum Phase {
     /// Keep the base as it is if it already meets a budget.
     Base,
+    /// Trace the lines of what is not drawn yet, if there are such.
+    Trace,
     /// Seed the next stage, if one is planned and the last one paid.
     Grow,
     /// Fit the strokes of a stage alone, and keep what pays.
@@ -45,6 +49,8 @@ pub(super) enum Phase {
 /// What a stage is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Purpose {
+    /// To draw the lines that were traced.
+    Trace,
     /// To draw a planned stage.
     Plan,
     /// To fill up the budget of strokes, which rejected strokes have left short.
@@ -73,7 +79,10 @@ pub(super) fn next(phase: Phase, outcome: Outcome, config: &Config) -> Phase {
     use Outcome::{Met, Rejected, Removed, Seeded};
     match (phase, outcome) {
         (Phase::Base, Met) => Phase::Done,
-        (Phase::Base, _) => Phase::Grow,
+        (Phase::Base, _) => Phase::Trace,
+
+        (Phase::Trace, Seeded(purpose)) => Phase::Stage(purpose),
+        (Phase::Trace, _) => Phase::Grow,
 
         (Phase::Grow, Seeded(purpose)) => Phase::Stage(purpose),
         // Each layer of a progressive drawing has been polished already.
@@ -82,6 +91,8 @@ pub(super) fn next(phase: Phase, outcome: Outcome, config: &Config) -> Phase {
 
         (Phase::Stage(purpose), _) if config.progressive => Phase::StagePolish(purpose),
         (Phase::Stage(purpose) | Phase::StagePolish(purpose), outcome) => match purpose {
+            Purpose::Trace if outcome == Rejected => Phase::Grow,
+            Purpose::Trace => Phase::Trace,
             Purpose::Plan => Phase::Grow,
             Purpose::TopUp => Phase::Settle,
             // No further stroke helps.
@@ -108,7 +119,7 @@ impl Phase {
         // A base that uses colours outside the palette cannot stay as it is.
         match base {
             Some(base) if config.colors.allow(&base.scene) => Self::Base,
-            _ => Self::Grow,
+            _ => Self::Trace,
         }
     }
 

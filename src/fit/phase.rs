@@ -2,6 +2,7 @@
 //!
 //! | file | what happens there |
 //! | --- | --- |
+//! | `trace` | strokes are laid along the lines that are seen |
 //! | `grow` | stages are seeded, fitted on frozen strokes, and keep what pays |
 //! | `polish` | all strokes are fitted jointly, with relocation |
 //! | `palette`, `pens` | the drawing is restricted to few colours and few pens |
@@ -16,3 +17,4 @@ pub(super) mod polish;
 mod preferences;
 mod rounds;
 pub(super) mod settle;
+pub(super) mod trace;

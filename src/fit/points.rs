@@ -35,9 +35,12 @@ pub(super) fn rearrange(session: &mut Session<'_>) -> Vec<Option<usize>> {
     }
 }
 
-/// What a stroke is worth that could be spared. A freed stroke would be used where it is worth more, and a point has to
-/// be worth as much for its bytes.
+/// What a stroke is worth that could be spared, where a budget binds. A freed stroke would be used where it is worth
+/// more, and a point has to be worth as much for its bytes. Under a price no stroke takes the place of another.
 fn spare(session: &mut Session<'_>) -> f32 {
+    if session.config.effective_quality().is_some() {
+        return 0.0;
+    }
     let share = session.recipe.points.spared;
     let mut worth = session.drawing.judge().worth;
     if worth.is_empty() {
@@ -53,7 +56,11 @@ fn edit(session: &mut Session<'_>, spare: f32) -> Vec<Option<usize>> {
     let points = session.recipe.points;
     let stroke_bytes = typical_bytes(session.config, &session.target) as f32;
     let share = session.price.point_bytes() as f32 / stroke_bytes;
-    let price = session.price.of_point().max(spare * share / points.gain);
+    let price = session
+        .price_now()
+        .of_point()
+        .max(spare * share / points.gain);
+    let price = price.max(session.least_price().of_point());
     let room = room(session);
     let most = session.config.points.unwrap_or(usize::MAX);
     let drawing = &mut session.drawing;

@@ -2,12 +2,15 @@
 
 use crate::math;
 use crate::render::{Params, StrokeRef, Strokes};
+use crate::scene::Stroke;
 use crate::svg::{WriteOptions, stroke_bytes};
 
 /// The price of strokes, as squared error summed over pixels and channels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Price {
     per_byte: f32,
+    /// The mean squared error of the quality.
+    wanted: f32,
     file: WriteOptions,
 }
 
@@ -15,8 +18,22 @@ impl Price {
     /// At quality `q` each byte has to remove as much squared error as one pixel has at `q` dB: 3·10^(−q/10). Without a
     /// quality strokes are free.
     pub(super) fn new(quality: Option<f64>, file: WriteOptions) -> Self {
-        let per_byte = quality.map_or(0.0, |q| 3.0 * math::powf(10.0, -q / 10.0)) as f32;
-        Self { per_byte, file }
+        let wanted = quality.map_or(0.0, |q| math::powf(10.0, -q / 10.0)) as f32;
+        Self {
+            per_byte: 3.0 * wanted,
+            wanted,
+            file,
+        }
+    }
+
+    /// The price in a drawing of mean squared error `mse`. Beyond the quality a gain counts by its share of the error
+    /// that is left, as dB do: a drawing that is better than wanted needs no strokes for what nobody sees.
+    pub(super) fn at(self, mse: f64) -> Self {
+        let beyond = self.wanted / (mse as f32).max(f32::MIN_POSITIVE);
+        Self {
+            per_byte: self.per_byte * beyond.clamp(1.0, MOST_BEYOND),
+            ..self
+        }
     }
 
     /// The price of `stroke`.
@@ -25,6 +42,11 @@ impl Price {
             return 0.0;
         }
         self.per_byte * stroke_bytes(&stroke.to_stroke(), &self.file) as f32
+    }
+
+    /// The price of a stroke of a scene.
+    pub(super) fn of_stroke(&self, stroke: &Stroke) -> f32 {
+        self.per_byte * stroke_bytes(stroke, &self.file) as f32
     }
 
     /// Bytes of a stroke.
@@ -57,6 +79,9 @@ impl Price {
         self.of(Strokes::from_iter([capsule]).get(0))
     }
 }
+
+/// Most that prices rise beyond the quality, 30 dB.
+const MOST_BEYOND: f32 = 1e3;
 
 #[cfg(test)]
 mod tests {

@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, ErrorKind, Result};
 use crate::optim::AdamParams;
 use crate::seed::Probing;
+use crate::trace::Tracing;
 
 /// How much work to spend on a drawing.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -31,6 +32,8 @@ pub enum Preset {
 pub struct Recipe {
     /// How candidates are searched for.
     pub probing: Probing,
+    /// How lines are traced.
+    pub tracing: Tracing,
     /// How strokes are added.
     pub stages: Stages,
     /// The soft edge.
@@ -220,6 +223,8 @@ pub struct Points {
     pub smoothness: f32,
     /// The strokes could spare one that is worth as much as the stroke that this share of them is worth less than.
     pub spared: f32,
+    /// The quality that sets the price of points where a fidelity is asked for, dB beyond that fidelity.
+    pub beyond_db: f64,
     /// Which strokes may be joined end to end.
     pub joins: Joins,
 }
@@ -314,6 +319,8 @@ pub struct Settling {
 /// How the number of strokes is corrected to meet a fidelity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Correction {
+    /// What the polish is expected to regain when strokes are removed, dB.
+    pub regained_db: f64,
     /// Most corrections.
     pub count: usize,
     /// Fidelity gained by doubling the strokes, dB, until it is measured on two drawings. Kodak ×5 gain 2.2 per
@@ -415,6 +422,7 @@ impl Recipe {
             ("probing.radii", smallest(self.probing.radii)),
             ("probing.lengths", smallest(self.probing.lengths)),
             ("probing.cells", self.probing.cells),
+            ("tracing.pace", self.tracing.pace),
             ("domain.min_radius", self.domain.min_radius),
             ("optimizer.usual_radius", self.optimizer.usual_radius),
             ("pens.ladder − 1", self.pens.ladder - 1.0),
@@ -435,6 +443,8 @@ impl Recipe {
         }
         let shares = [
             ("probing.probed", self.probing.probed),
+            ("tracing.flat", self.tracing.flat),
+            ("tracing.explained", self.tracing.explained),
             ("edge.annealed", self.edge.annealed),
             ("domain.min_opacity", self.domain.min_opacity),
             ("polish.coarse_share", self.polish.coarse_share),
@@ -490,6 +500,7 @@ impl Recipe {
         demand("stages.growth", growth, grows, "1 to 100")?;
         let counts = [
             ("stages.count", self.stages.count),
+            ("tracing.least_area", self.tracing.least_area),
             ("stages.first", self.stages.first),
             ("stages.pixels_per_stroke", self.stages.pixels_per_stroke),
             ("relocation.every", self.relocation.every),

@@ -27,10 +27,10 @@ pub(super) fn relocate(
     adapt: impl Fn(Candidate) -> Candidate,
 ) -> Vec<Option<usize>> {
     let wanted = wanted(session);
+    let price = session.price_now();
     let Session {
         drawing,
         recipe,
-        price,
         config,
         timer,
         ..

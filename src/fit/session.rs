@@ -121,6 +121,19 @@ impl<'a> Session<'a> {
         })
     }
 
+    /// Plans the stages for the strokes that are missing.
+    pub(super) fn plan_rest(&mut self) {
+        let [layers, strokes] = self.history.traced;
+        let before = Before::of(self.base);
+        let before = Before {
+            layers: before.layers + layers,
+            strokes: before.strokes + strokes,
+        };
+        let limit = budget::strokes(self.config, &self.recipe, self.base, &self.target);
+        let pixels = self.drawing.pixels();
+        self.plan = Plan::new(self.config, &self.recipe, limit, before, pixels);
+    }
+
     /// The descent in which the fit was cut off, or else a new one that follows `course`.
     pub(super) fn descent(&mut self, course: Course) -> Descent {
         let (drawing, recipe, used) = (&self.drawing, &self.recipe, self.timer.used());
@@ -152,6 +165,18 @@ impl<'a> Session<'a> {
     pub(super) fn render_file(&mut self) -> Result<RenderedFile> {
         let (writer, drawing) = (self.writer, &self.drawing);
         self.timer.writing(drawing.len(), || writer.render(drawing))
+    }
+
+    /// The price of strokes and points in the current drawing.
+    pub(super) fn price_now(&mut self) -> Price {
+        self.price.at(self.drawing.mse())
+    }
+
+    /// The price of points where only a fidelity is asked for, to be met by few strokes of not too many points.
+    pub(super) fn least_price(&self) -> Price {
+        let wanted_db = self.config.budget.psnr_db;
+        let quality = wanted_db.map(|db| db + self.recipe.points.beyond_db);
+        Price::new(quality, self.config.file)
     }
 
     /// About how many bytes the drawing has as a file.
@@ -193,6 +218,7 @@ impl<'a> Session<'a> {
                 self.drawing.restore(drawing);
                 (self.phase, self.history, self.resumed) = (phase, history, descent);
                 self.progress.position = position;
+                self.plan_rest();
                 self.timer.resume(elapsed);
             }
             // A checkpoint that cannot be written is refused before any work is done.

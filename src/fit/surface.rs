@@ -8,7 +8,7 @@
 use super::background;
 use super::base::Base;
 use super::config::Background;
-use super::objective::Objective;
+use super::objective::{Moments, Objective};
 use super::recipe::Recipe;
 use crate::error::Result;
 use crate::image::Image;
@@ -145,6 +145,7 @@ pub(super) struct Surface {
     min_scale: f32,
     /// The picture, halved.
     target: Canvas,
+    moments: Moments,
     /// The frozen strokes, rendered over the bottom.
     frozen: Canvas,
     /// The last render of all strokes, with the final edge.
@@ -164,6 +165,7 @@ impl Surface {
             min_scale,
             canvas: frozen.clone(),
             frozen,
+            moments: Moments::of(&target),
             target,
             pyramid,
         }
@@ -209,6 +211,7 @@ impl Surface {
     pub(super) fn halve(&mut self, halvings: usize) {
         self.halvings = halvings;
         self.target = Canvas::from_image(self.pyramid.level(halvings));
+        self.moments = Moments::of(&self.target);
         self.frozen = self.bottom.canvas(self.target.grid(), halvings);
         self.canvas.clone_from(&self.frozen);
     }
@@ -262,7 +265,24 @@ impl Surface {
 
     /// The loss against the picture, or against `target`.
     pub(super) fn objective<'a>(&'a self, target: Option<&'a Canvas>) -> Objective<'a> {
-        Objective::new(Loss::L2, target.unwrap_or(&self.target))
+        match target {
+            Some(target) => Objective::new(Loss::L2, target),
+            None => Objective::squared(&self.target, &self.moments),
+        }
+    }
+
+    /// What lies behind all strokes, at full resolution.
+    pub(super) fn bare(&self) -> Canvas {
+        let full = Canvas::from_image(self.picture()).grid();
+        self.bottom.canvas(full, 0)
+    }
+
+    /// The picture and a canvas at any resolution.
+    pub(super) fn residual_of<'a>(&'a self, canvas: &'a Canvas) -> Residual<'a> {
+        Residual {
+            target: &self.pyramid,
+            canvas,
+        }
     }
 
     /// Picture and canvas, to search for candidates in.

@@ -137,12 +137,15 @@ pub struct Canvas {
 }
 
 impl Canvas {
-    /// A canvas in one colour.
+    /// A canvas in one colour; the padding is 0.
     pub fn flat(grid: Grid, color: [f32; 3]) -> Self {
-        Self {
-            grid,
-            tiles: vec![flat_tile(color); grid.len()],
+        let mut tiles = vec![flat_tile(color); grid.len()];
+        for (tile, pixels) in tiles.iter_mut().enumerate() {
+            if let Some(weights) = edge_weights(&grid, tile) {
+                clear_padding(pixels, &weights);
+            }
         }
+        Self { grid, tiles }
     }
 
     /// The colours of `image`, its alpha ignored; the padding is 0.
@@ -207,6 +210,17 @@ pub(super) type TileWeights = [Lanes; BLOCKS];
 
 /// The weights of a tile wholly on the picture.
 pub(super) static FULL: TileWeights = [Lanes::splat(1.0); BLOCKS];
+
+/// Makes the pixels of a tile 0 that are not in the picture.
+pub(super) fn clear_padding(tile: &mut TileRgb, weights: &TileWeights) {
+    for (block, weights) in tile.iter_mut().zip(weights) {
+        for channel in block {
+            for (value, weight) in channel.0.iter_mut().zip(weights.0) {
+                *value *= weight;
+            }
+        }
+    }
+}
 
 /// The weights of tile `tile`, or `None` where it is wholly on the picture.
 pub(super) fn edge_weights(grid: &Grid, tile: usize) -> Option<Box<TileWeights>> {

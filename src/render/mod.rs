@@ -85,7 +85,7 @@ use edge::{Edge, Reach};
 use flat::{Flat, walk};
 pub(crate) use flat::{Knot, Piece, Pieces};
 use gradients::add;
-use grid::{FULL, TileWeights, edge_weights, flat_tile};
+use grid::{FULL, TileWeights, clear_padding, edge_weights, flat_tile};
 use kernel::{
     EndSums, Extras, LookSums, Nothing, Scratch, Stiffnesses, TileJob, TileSums, WORTH, Worths,
 };
@@ -101,6 +101,12 @@ pub trait CanvasLoss: Sync {
         error: &mut TileRgb,
         gradient: &mut TileRgb,
     ) -> f64;
+
+    /// The share of tile `tile` in the loss, and its derivative by `color`, if all pixels of the tile have that colour;
+    /// `None` if that is not known without looking at the pixels.
+    fn flat(&self, _tile: usize, _color: [f32; 3]) -> Option<(f64, [f32; 3])> {
+        None
+    }
 }
 
 /// What lies behind all strokes.
@@ -210,6 +216,9 @@ impl Renderer {
             let job = frame.job(flat, tile, work);
             if job.listed.is_empty() {
                 out.clone_from(job.backdrop);
+                if let Some(weights) = &work.weights {
+                    clear_padding(out, weights);
+                }
                 return;
             }
             with_scratch(scratch, |scratch| {
@@ -295,6 +304,16 @@ impl Renderer {
             .enumerate()
             .with_max_len(1)
             .for_each(|(tile, work)| {
+                if let (Backdrop::Color(color), true) = (frame.backdrop, work.listed.is_empty())
+                    && let Some((share, backdrop)) = loss.flat(tile, color)
+                {
+                    work.total = TileSums {
+                        loss: share,
+                        backdrop,
+                        ..TileSums::default()
+                    };
+                    return;
+                }
                 let mut looks = std::mem::take(&mut work.looks);
                 let mut ends = std::mem::take(&mut work.ends);
                 looks.clear();

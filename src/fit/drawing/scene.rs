@@ -71,7 +71,7 @@ pub(super) fn enlarge(strokes: &mut Strokes, doublings: usize) {
 }
 
 /// The strokes at a resolution `2^halvings` times as coarse.
-fn reduced(strokes: &[Stroke], halvings: usize) -> Strokes {
+pub(super) fn reduced(strokes: &[Stroke], halvings: usize) -> Strokes {
     let mut strokes: Strokes = strokes.iter().collect();
     scale(&mut strokes, 1.0 / (1_u32 << halvings) as f32);
     strokes

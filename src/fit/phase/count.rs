@@ -65,6 +65,7 @@ fn resize(session: &mut Session<'_>, doublings: f64) -> Outcome {
         Outcome::Seeded(Purpose::Correct)
     } else {
         let removed = strokes.saturating_sub(wanted);
+        let removed = removed.min(dispensable(session));
         if removed == 0 {
             return Outcome::Over;
         }
@@ -73,6 +74,24 @@ fn resize(session: &mut Session<'_>, doublings: f64) -> Outcome {
     };
     session.history.corrections.count += 1;
     outcome
+}
+
+/// How many of the strokes of least worth could go before the drawing is clearly below the fidelity asked for.
+fn dispensable(session: &mut Session<'_>) -> usize {
+    let least_db =
+        session.config.budget.psnr_db.unwrap_or(0.0) - session.recipe.correction.regained_db;
+    let drawing = &mut session.drawing;
+    let values = 3.0 * drawing.pixels() as f64;
+    let gradients = drawing.judge();
+    let mut worth = gradients.worth;
+    worth.sort_by(f32::total_cmp);
+    let most = math::powf(10.0, -least_db / 10.0) * values;
+    let mut error = gradients.loss * values;
+    let is_spared = |worth: &&f32| {
+        error += f64::from(worth.max(0.0));
+        error <= most
+    };
+    worth.iter().take_while(is_spared).count()
 }
 
 /// Fidelity gained by doubling the strokes, dB, measured on two drawings with these numbers of strokes and fidelities.

@@ -36,12 +36,14 @@ pub(in crate::fit) fn next_stage(session: &mut Session<'_>) -> Result<Outcome> {
 }
 
 /// Why further stages are superfluous, if they are.
-fn enough(session: &Session<'_>) -> Option<Stop> {
+pub(super) fn enough(session: &Session<'_>) -> Option<Stop> {
     let stages = session.recipe.stages;
-    let OpenStage {
-        planned, accepted, ..
-    } = session.history.stage?;
-    let pays = accepted? as f64 >= stages.paying_share * planned.count as f64;
+    let pays = session.history.stage.is_none_or(|stage| {
+        let least = stages.paying_share * stage.planned.count as f64;
+        stage
+            .accepted
+            .is_none_or(|accepted| accepted as f64 >= least)
+    });
     let staged_db = session.history.records.last()?.psnr_db;
     // A base has been polished before, and gains less from another polish than new stages do.
     let gains = session.config.polish && session.base.is_none();
@@ -135,7 +137,12 @@ pub(in crate::fit) fn stage(session: &mut Session<'_>, purpose: Purpose) -> Resu
     };
     let mut descent = session.descent(course);
     descend(session, &mut descent, None)?;
-    let accepted = accept(&mut session.drawing, session.price);
+    let price = session.price_now();
+    let accepted = accept(&mut session.drawing, price);
+    if purpose == Purpose::Trace && accepted > 0 {
+        let [layers, strokes] = &mut session.history.traced;
+        (*layers, *strokes) = (*layers + 1, *strokes + accepted);
+    }
     if let Some(stage) = &mut session.history.stage {
         stage.accepted = Some(accepted);
     }

@@ -26,7 +26,7 @@ pub(in crate::fit) fn polish(session: &mut Session<'_>, purpose: Purpose) -> Res
     let all = session.recipe.polish.iterations;
     let iterations = match purpose {
         Purpose::Correct => (all as f64 * session.recipe.correction.polish_share) as usize,
-        Purpose::Plan | Purpose::TopUp => all,
+        Purpose::Trace | Purpose::Plan | Purpose::TopUp => all,
     };
     run(session, limit, iterations)?;
     Ok(Outcome::Over)

@@ -14,7 +14,7 @@ use crate::render::{LOOK, StrokeRef, Strokes};
 /// Joins free strokes where that pays. Returns the former index of each number of the free strokes, `None` for a new
 /// one; nothing if no two strokes are joined. A stroke could be spared that is worth `spare`.
 pub(super) fn join(session: &mut Session<'_>, spare: f32) -> Option<Vec<Option<usize>>> {
-    let (joins, price) = (session.recipe.points.joins, session.price);
+    let (joins, price) = (session.recipe.points.joins, session.price_now());
     let most = session.config.points.unwrap_or(usize::MAX);
     let drawing = &mut session.drawing;
     let mut pairs = pairs(drawing.free(), most, &joins);

@@ -6,6 +6,7 @@ use super::{
 };
 use crate::optim::AdamParams;
 use crate::seed::Probing;
+use crate::trace::Tracing;
 
 impl Recipe {
     /// The recipe of a preset.
@@ -77,6 +78,12 @@ const BALANCED: Recipe = Recipe {
         lengths: [2.0, 4.5],
         cells: 2.5,
         probed: 0.6,
+    },
+    tracing: Tracing {
+        flat: 0.87,
+        explained: 0.4,
+        least_area: 6,
+        pace: 0.25,
     },
     stages: Stages {
         count: 8,
@@ -151,6 +158,7 @@ const BALANCED: Recipe = Recipe {
         gain: 60.0,
         smoothness: 0.7,
         spared: 0.3,
+        beyond_db: 6.0,
         joins: Joins {
             reach: 8.0,
             gap: 0.6,
@@ -191,6 +199,7 @@ const BALANCED: Recipe = Recipe {
         share_per_db: 0.15,
     },
     correction: Correction {
+        regained_db: 1.5,
         count: 6,
         db_per_doubling: 2.8,
         least_part: 0.125,

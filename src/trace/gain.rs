@@ -1,0 +1,76 @@
+//! What a traced stroke explains of the residual, in closed form.
+
+use super::areas::{Areas, Label, Pixel, Pixels, distance2};
+use crate::scene::Path;
+
+/// The squared residual under a stroke, and how much of it the stroke removes; summed over the channels of one matte.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Gain {
+    pub(super) under: f32,
+    pub(super) removed: f32,
+}
+
+impl Gain {
+    /// The gain of a stroke of `color` along `path`. Pixels of other colours may be covered by other strokes, and do not
+    /// count.
+    pub(super) fn of(
+        path: &Path,
+        radius: f32,
+        own: u8,
+        color: &Pixel,
+        areas: &Areas,
+        pixels: &Pixels,
+    ) -> Self {
+        let mut gain = Self::default();
+        for (i, coverage) in coverage(path, radius, pixels) {
+            let (target, canvas) = (&pixels.target[i], &pixels.canvas[i]);
+            if !matches!(areas.labels[i], Label::Color(k) if k != own) {
+                let before = distance2(target, canvas);
+                let drawn = std::array::from_fn(|k| canvas[k] + coverage * (color[k] - canvas[k]));
+                gain.under += before;
+                gain.removed += before - distance2(target, &drawn);
+            }
+        }
+        gain
+    }
+}
+
+/// The pixels that a stroke touches, and those 1 px around it, with their coverage.
+fn coverage(path: &Path, radius: f32, pixels: &Pixels) -> Vec<(usize, f32)> {
+    let mut line: Vec<[f32; 2]> = path.flattened(0.1).iter().map(|p| [p.x, p.y]).collect();
+    if let [dot] = line[..] {
+        line.push(dot);
+    }
+    let reach = radius + 1.5;
+    let mut depths: std::collections::BTreeMap<usize, f32> = std::collections::BTreeMap::new();
+    for ends in line.windows(2) {
+        let span = |axis: usize, size: usize| {
+            let (a, b) = (ends[0][axis], ends[1][axis]);
+            let first = (a.min(b) - reach).floor().max(0.0) as usize;
+            let last = (a.max(b) + reach).ceil().max(0.0) as usize;
+            first..last.min(size)
+        };
+        for y in span(1, pixels.height) {
+            for x in span(0, pixels.width) {
+                let depth = radius - distance([x as f32 + 0.5, y as f32 + 0.5], [ends[0], ends[1]]);
+                if depth > -1.5 {
+                    let deepest = depths.entry(y * pixels.width + x).or_insert(depth);
+                    *deepest = deepest.max(depth);
+                }
+            }
+        }
+    }
+    let covered = depths.into_iter();
+    covered
+        .map(|(i, depth)| (i, (depth + 0.5).clamp(0.0, 1.0)))
+        .collect()
+}
+
+fn distance(p: [f32; 2], [a, b]: [[f32; 2]; 2]) -> f32 {
+    let axis = [b[0] - a[0], b[1] - a[1]];
+    let length2 = (axis[0] * axis[0] + axis[1] * axis[1]).max(f32::MIN_POSITIVE);
+    let h = ((p[0] - a[0]) * axis[0] + (p[1] - a[1]) * axis[1]) / length2;
+    let h = h.clamp(0.0, 1.0);
+    let q = [a[0] + h * axis[0] - p[0], a[1] + h * axis[1] - p[1]];
+    (q[0] * q[0] + q[1] * q[1]).sqrt()
+}
