@@ -193,6 +193,15 @@ impl Image {
         encode::png(self)
     }
 
+    /// The picture as a JPEG file of this quality, 1 to 100, its alpha ignored.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Picture`] when a side exceeds the maximum of JPEG.
+    #[cfg(feature = "cli")]
+    pub fn encode_jpeg(&self, quality: u8) -> Result<Vec<u8>> {
+        encode::jpeg(self, quality)
+    }
+
     /// Width in px, at least 1.
     pub fn width(&self) -> usize {
         self.width

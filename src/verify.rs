@@ -27,6 +27,8 @@
 //! # Ok::<(), strokefit::Error>(())
 //! ```
 
+#[cfg(feature = "cli")]
+mod centre;
 mod limits;
 mod painting;
 mod placement;
@@ -40,6 +42,8 @@ use std::panic::{self, AssertUnwindSafe};
 use resvg::usvg::Tree;
 use serde::{Deserialize, Serialize};
 
+#[cfg(feature = "cli")]
+pub use centre::{CentreLines, centre_lines};
 pub use painting::Painting;
 use raster::draw;
 use tree::parse;

@@ -4,12 +4,14 @@
 mod support {
     pub(crate) mod picture;
     pub(crate) mod place;
+    pub(crate) mod repository;
 }
 
 use std::fs;
 use std::process::Output;
 
 use support::place::{Place, STROKEFIT};
+use support::repository::committed;
 
 fn bench(place: &Place, args: &[&str]) -> Output {
     // Peers that happen to be installed would only take time.
@@ -231,6 +233,27 @@ fn stability_holds_and_writes_its_table() {
         "agreement.csv",
         "agreement.png",
     ] {
+        assert!(place.path("out").join(name).exists(), "{name}");
+    }
+}
+
+#[test]
+fn drawings_are_found_again_stroke_by_stroke() {
+    let place = Place::new();
+    let icon = |name: &str| committed(&format!("samples/icons/{name}.svg"));
+    let (clock, zap) = (icon("clock"), icon("zap"));
+    let output = bench(&place, &["inverse", &clock, &zap, "-o", "out", "--short"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let lines = lines(&output);
+    let found = |start: &str| lines.iter().find(|line| line.starts_with(start)).unwrap();
+    assert!(found("clock").contains(" 2 elements of 2,"), "{lines:?}");
+    assert!(found("zap").contains(" 1 elements of 1,"), "{lines:?}");
+    assert!(
+        found("crossings").contains(" 3 elements of 3,"),
+        "{lines:?}"
+    );
+    assert!(found("colours").contains(" 3 elements of 3,"), "{lines:?}");
+    for name in ["inverse.csv", "inverse.json", "inverse.md", "clock-96.svg"] {
         assert!(place.path("out").join(name).exists(), "{name}");
     }
 }

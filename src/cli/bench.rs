@@ -7,10 +7,12 @@ use anyhow::Result;
 use clap::Subcommand;
 use clap::builder::TypedValueParser;
 use strokefit::bench::child::{Runner, perform};
+use strokefit::bench::inverse::{self, Drawing, Pictures};
 use strokefit::bench::pareto::{self, Effort, Sweep, Work, installed, known, missing};
 use strokefit::bench::scaling;
 use strokefit::bench::stability::{self, Extent};
 use strokefit::coverage::CoverageSchedule;
+use strokefit::fit::Config;
 use strokefit::lab::{Notice, ResultFolder};
 use strokefit::report::json;
 
@@ -25,6 +27,7 @@ use super::{Status, Verbosity, domain, input, output, words};
   strokefit bench pareto photo.png -o out --short
   strokefit bench pareto photo.png -o out --svgs others
   strokefit bench stability -o out --short
+  strokefit bench inverse icons/*.svg -o out
   strokefit bench scaling photo.png -o out")]
 pub(super) struct Args {
     #[command(subcommand)]
@@ -35,6 +38,7 @@ pub(super) struct Args {
 enum Benchmark {
     Pareto(Pareto),
     Stability(Stability),
+    Inverse(Inverse),
     Scaling(Scaling),
     /// Measure one case on behalf of another process of this program
     #[command(hide = true)]
@@ -101,6 +105,15 @@ struct Stability {
     extents: Extents,
 }
 
+/// Find drawings of known strokes again in pictures of them
+#[derive(Debug, clap::Args)]
+struct Inverse {
+    /// SVGs drawn by strokes, in addition to those that are built in
+    drawings: Vec<PathBuf>,
+    #[command(flatten)]
+    extents: Extents,
+}
+
 /// Measure how time and memory grow with strokes, pixels and threads
 #[derive(Debug, clap::Args)]
 struct Scaling {
@@ -122,6 +135,7 @@ impl Benchmark {
         match self {
             Self::Pareto(pareto) => pareto.run(folder, files, host, verbosity),
             Self::Stability(stability) => stability.run(files),
+            Self::Inverse(inverse) => inverse.run(files),
             Self::Scaling(scaling) => scaling.run(files, host),
             Self::Case { .. } => Ok(0),
         }
@@ -196,6 +210,41 @@ impl Stability {
     }
 }
 
+impl Inverse {
+    fn run(&self, files: &mut ResultFolder<'_>) -> Result<usize> {
+        let pictures = if self.extents.short {
+            Pictures::short()
+        } else {
+            Pictures::full()
+        };
+        let mut drawings = inverse::own();
+        for path in &self.drawings {
+            let svg = input::svg(path)?;
+            let name = input::name(path);
+            drawings.push(Drawing { name, svg });
+        }
+        let mut found = Vec::new();
+        let report = inverse::run(
+            &drawings,
+            &pictures,
+            &Config::default(),
+            &mut |entry, svg| {
+                say(&entry.line());
+                let jpeg = entry.jpeg.map(|quality| format!("-jpeg{quality}"));
+                let kind = format!("{}{}", entry.side_px, jpeg.unwrap_or_default());
+                found.push((format!("{}-{kind}.svg", entry.drawing), svg.to_owned()));
+            },
+        )?;
+        files.text("inverse.csv", &report.table().csv())?;
+        files.text("inverse.md", &report.markdown())?;
+        files.text("inverse.json", &json(&report)?)?;
+        for (name, svg) in found {
+            files.text(&name, &svg)?;
+        }
+        Ok(0)
+    }
+}
+
 impl Scaling {
     fn run(&self, files: &mut ResultFolder<'_>, host: &[OsString]) -> Result<usize> {
         let runner = Runner::new(CHILD)?.within(host);
@@ -220,6 +269,7 @@ pub(super) fn run(args: &Args, host: &[OsString], verbosity: Verbosity) -> Resul
     let folder = match &args.benchmark {
         Benchmark::Pareto(Pareto { extents, .. })
         | Benchmark::Stability(Stability { extents, .. })
+        | Benchmark::Inverse(Inverse { extents, .. })
         | Benchmark::Scaling(Scaling { extents, .. }) => extents.output.as_path(),
         Benchmark::Case { task } => {
             say(&perform(task, &known())?);

@@ -32,6 +32,20 @@ pub(super) fn png(image: &Image) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
+/// 8-bit RGB.
+#[cfg(feature = "cli")]
+pub(super) fn jpeg(image: &Image, quality: u8) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let (width, height) = size(image)?;
+    ::image::codecs::jpeg::JpegEncoder::new_with_quality(&mut bytes, quality)
+        .write_image(&image.to_rgb8(), width, height, ExtendedColorType::Rgb8)
+        .map_err(|e| {
+            let message = format!("cannot encode the picture as JPEG: {e}");
+            Error::new(ErrorKind::Picture, message).caused_by(e)
+        })?;
+    Ok(bytes)
+}
+
 fn size(image: &Image) -> Result<(u32, u32)> {
     let side = |n: usize| u32::try_from(n).ok().filter(|&n| n <= i32::MAX as u32);
     side(image.width())

@@ -8,6 +8,8 @@
 mod check;
 mod event;
 mod fit;
+#[cfg(feature = "cli")]
+pub mod inverse;
 mod judged;
 #[cfg(feature = "cli")]
 pub mod pareto;

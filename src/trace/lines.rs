@@ -34,9 +34,11 @@ impl Line {
             let thin = spots
                 .take_while(|spot| spot.radius < HOOK[0] * usual)
                 .count();
-            (thin as f32 <= HOOK[1] * usual)
-                .then_some(thin)
-                .unwrap_or_default()
+            if thin as f32 <= HOOK[1] * usual {
+                thin
+            } else {
+                0
+            }
         };
         if self.closed || usual < 1.5 {
             return;
