@@ -51,6 +51,7 @@
 //! metrics  loss  optim            measures, losses, optimisers
 //! render                          strokes → canvas, ∂L/∂canvas → ∂L/∂strokes, worth
 //! seed                            residual → candidates, ranked by gain in closed form
+//! trace                           residual → strokes along the lines that are seen
 //! svg  verify                     drawing → SVG text → resvg's render of it
 //! engines  browser                other programs' renders of it
 //! fit                             stages, polish, settling, budgets
@@ -99,9 +100,13 @@
 //! | word | meaning |
 //! | --- | --- |
 //! | candidate | a stroke that seeding proposes, with its best colour and opacity |
+//! | area | the pixels of one colour, antialiased ones with the nearer of the colours beside them; see [`trace`] |
+//! | skeleton | the pixels in the middle of an area, as a graph of nodes and edges |
+//! | line | a run of the skeleton that goes straight through crossings; tracing lays a stroke along it |
+//! | bridge | the part of a line that another one covers |
 //! | gain | squared error that a candidate would remove, in closed form |
 //! | worth | squared error that leaving a stroke out would add, exactly |
-//! | price | squared error that a stroke has to remove to stay; it grows with the bytes of the stroke |
+//! | price | squared error that a stroke has to remove to stay; it grows with the bytes of the stroke, and rises in a drawing better than its quality |
 //! | quality | sets the price: each byte has to remove as much squared error as one pixel has at this many dB |
 //! | frozen, free | strokes that are kept as they are; strokes that are fitted |
 //! | polish | joint fit of all free strokes |

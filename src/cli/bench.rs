@@ -220,7 +220,8 @@ impl Inverse {
         let mut drawings = inverse::own();
         for path in &self.drawings {
             let svg = input::svg(path)?;
-            let name = input::name(path);
+            let name = path.file_stem().unwrap_or_default().to_string_lossy();
+            let name = name.into_owned();
             drawings.push(Drawing { name, svg });
         }
         let mut found = Vec::new();

@@ -91,7 +91,6 @@ pub(super) fn next(phase: Phase, outcome: Outcome, config: &Config) -> Phase {
 
         (Phase::Stage(purpose), _) if config.progressive => Phase::StagePolish(purpose),
         (Phase::Stage(purpose) | Phase::StagePolish(purpose), outcome) => match purpose {
-            Purpose::Trace if outcome == Rejected => Phase::Grow,
             Purpose::Trace => Phase::Trace,
             Purpose::Plan => Phase::Grow,
             Purpose::TopUp => Phase::Settle,

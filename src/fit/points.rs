@@ -56,11 +56,11 @@ fn edit(session: &mut Session<'_>, spare: f32) -> Vec<Option<usize>> {
     let points = session.recipe.points;
     let stroke_bytes = typical_bytes(session.config, &session.target) as f32;
     let share = session.price.point_bytes() as f32 / stroke_bytes;
-    let price = session
-        .price_now()
-        .of_point()
-        .max(spare * share / points.gain);
-    let price = price.max(session.least_price().of_point());
+    let (now, least) = (
+        session.price_now().of_point(),
+        session.least_price().of_point(),
+    );
+    let prices = [0, 1].map(|k| now[k].max(least[k]).max(spare * share / points.gain));
     let room = room(session);
     let most = session.config.points.unwrap_or(usize::MAX);
     let drawing = &mut session.drawing;
@@ -68,7 +68,7 @@ fn edit(session: &mut Session<'_>, spare: f32) -> Vec<Option<usize>> {
     let strokes = drawing.free();
     let options = |i: usize| Options::new(&survey, strokes.get(i), i, most, &points);
     let options: Vec<Options> = (0..strokes.len()).into_par_iter().map(options).collect();
-    let chosen = choose(options, room, price, &points);
+    let chosen = choose(options, room, prices, &points);
     drawing.edit(&chosen)
 }
 
@@ -123,7 +123,7 @@ impl Options {
 
 /// Most points of a stroke in its file. A curve that turns back is written as a corner, and then the implied points at its
 /// ends are points.
-fn written_points(stroke: StrokeRef<'_>) -> usize {
+pub(super) fn written_points(stroke: StrokeRef<'_>) -> usize {
     let next = stroke.off.iter().cycle().skip(1);
     let pairs = stroke.off.iter().zip(next);
     let last = usize::from(!stroke.closed);
@@ -133,23 +133,24 @@ fn written_points(stroke: StrokeRef<'_>) -> usize {
     stroke.points.len() + implied.count()
 }
 
-/// At most one edit of each stroke. A point costs `price`, and at most `room` points may be added.
+/// At most one edit of each stroke. A point has to gain as much `to_add` it and `to_keep` it, and at most `room` points
+/// may be added.
 fn choose(
     mut options: Vec<Options>,
     room: usize,
-    price: f32,
+    [to_add, to_keep]: [f32; 2],
     points: &Points,
 ) -> Vec<Option<Edit>> {
     let count = options.len();
     let mut chosen: Vec<Option<Edit>> = (0..count).map(|_| None).collect();
     // Points that are not worth their price go, and corners change where that alone gains something.
     for (chosen, options) in chosen.iter_mut().zip(&mut options) {
-        let leaving = options.removal.take_if(|edit| -edit.gain < price);
-        *chosen = leaving.or_else(|| options.toggle.take_if(|edit| edit.gain > price * 0.1));
+        let leaving = options.removal.take_if(|edit| -edit.gain < to_keep);
+        *chosen = leaving.or_else(|| options.toggle.take_if(|edit| edit.gain > to_keep * 0.1));
     }
     let wanted = (points.share * count as f32).ceil() as usize;
     let mut coming = sorted(&mut options, |o| {
-        o.insertion.take_if(|edit| edit.gain > price)
+        o.insertion.take_if(|edit| edit.gain > to_add)
     });
     coming.retain(|edit| chosen[edit.stroke].is_none());
     let mut coming = coming.into_iter();
@@ -256,7 +257,7 @@ mod tests {
             swapped: 1.0,
             ..points
         };
-        let chosen = choose(options.collect(), room, price, &points);
+        let chosen = choose(options.collect(), room, [price; 2], &points);
         let gain = |edit: Option<Edit>| edit.map(|edit| edit.gain);
         chosen.into_iter().map(gain).collect()
     }

@@ -5,12 +5,18 @@ use crate::render::{Params, StrokeRef, Strokes};
 use crate::scene::Stroke;
 use crate::svg::{WriteOptions, stroke_bytes};
 
-/// The price of strokes, as squared error summed over pixels and channels.
+/// The price of strokes and points, as squared error summed over pixels and channels.
+///
+/// Squared error below that of the quality counts less and less: of E, the squared error at the quality, and e < E, the
+/// drawing's own, a small gain counts e/E of itself, so that e in all counts E/2 + e²/2E. A drawing that is better than
+/// wanted needs no strokes for what nobody sees. Above E every gain counts in full.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Price {
     per_byte: f32,
     /// The mean squared error of the quality.
-    wanted: f32,
+    wanted_mse: f64,
+    /// The drawing's squared error and that at the quality.
+    errors: Option<[f64; 2]>,
     file: WriteOptions,
 }
 
@@ -18,35 +24,71 @@ impl Price {
     /// At quality `q` each byte has to remove as much squared error as one pixel has at `q` dB: 3·10^(−q/10). Without a
     /// quality strokes are free.
     pub(super) fn new(quality: Option<f64>, file: WriteOptions) -> Self {
-        let wanted = quality.map_or(0.0, |q| math::powf(10.0, -q / 10.0)) as f32;
+        let wanted_mse = quality.map_or(0.0, |q| math::powf(10.0, -q / 10.0));
         Self {
-            per_byte: 3.0 * wanted,
-            wanted,
+            per_byte: 3.0 * wanted_mse as f32,
+            wanted_mse,
+            errors: None,
             file,
         }
     }
 
-    /// The price in a drawing of mean squared error `mse`. Beyond the quality a gain counts by its share of the error
-    /// that is left, as dB do: a drawing that is better than wanted needs no strokes for what nobody sees.
-    pub(super) fn at(self, mse: f64) -> Self {
-        let beyond = self.wanted / (mse as f32).max(f32::MIN_POSITIVE);
+    /// The price in a drawing of `pixels` pixels and mean squared error `mse`.
+    pub(super) fn at(self, mse: f64, pixels: usize) -> Self {
+        let values = 3.0 * pixels as f64;
         Self {
-            per_byte: self.per_byte * beyond.clamp(1.0, MOST_BEYOND),
+            errors: Some([mse * values, self.wanted_mse * values]),
             ..self
         }
     }
 
-    /// The price of `stroke`.
-    pub(super) fn of(&self, stroke: StrokeRef<'_>) -> f32 {
+    /// The least squared error that something of this price has to remove to come.
+    fn entry(&self, price: f32) -> f32 {
+        let Some([error, wanted]) = self.errors.filter(|_| price > 0.0) else {
+            return price;
+        };
+        let left = counted(error, wanted) - f64::from(price);
+        uncounted(left, wanted).map_or(f32::INFINITY, |left| (error - left) as f32)
+    }
+
+    /// The least squared error that something of this price has to spare to stay.
+    fn stake(&self, price: f32) -> f32 {
+        let Some([error, wanted]) = self.errors.filter(|_| price > 0.0) else {
+            return price;
+        };
+        let without = counted(error, wanted) + f64::from(price);
+        uncounted(without, wanted).map_or(0.0, |without| (without - error) as f32)
+    }
+
+    fn of_bytes(&self, bytes: usize) -> f32 {
+        self.per_byte * bytes as f32
+    }
+
+    /// The least worth of `stroke` to stay.
+    pub(super) fn least_worth(&self, stroke: StrokeRef<'_>) -> f32 {
         if self.per_byte == 0.0 {
             return 0.0;
         }
-        self.per_byte * stroke_bytes(&stroke.to_stroke(), &self.file) as f32
+        self.stake(self.of_bytes(self.bytes_of(stroke)))
     }
 
-    /// The price of a stroke of a scene.
-    pub(super) fn of_stroke(&self, stroke: &Stroke) -> f32 {
-        self.per_byte * stroke_bytes(stroke, &self.file) as f32
+    /// The least gain of `stroke` to be added.
+    pub(super) fn least_gain(&self, stroke: &Stroke) -> f32 {
+        if self.per_byte == 0.0 {
+            return 0.0;
+        }
+        self.entry(self.of_bytes(stroke_bytes(stroke, &self.file)))
+    }
+
+    /// The least gain of a capsule to be added.
+    pub(super) fn least_gain_of_capsule(&self, capsule: &Params) -> f32 {
+        self.least_gain(&Strokes::from_iter([capsule]).get(0).to_stroke())
+    }
+
+    /// The least gains of a point to be added and to stay.
+    pub(super) fn of_point(&self) -> [f32; 2] {
+        let price = self.of_bytes(self.point_bytes());
+        [self.entry(price), self.stake(price)]
     }
 
     /// Bytes of a stroke.
@@ -68,20 +110,25 @@ impl Price {
         let points = [[123.46, 78.91], [127.82, 74.57], [134.24, 76.35]];
         bytes(&points).saturating_sub(bytes(&points[..2])).max(1)
     }
+}
 
-    /// The price of a point.
-    pub(super) fn of_point(&self) -> f32 {
-        self.per_byte * self.point_bytes() as f32
-    }
-
-    /// The price of a capsule.
-    pub(super) fn of_capsule(&self, capsule: &Params) -> f32 {
-        self.of(Strokes::from_iter([capsule]).get(0))
+/// What a squared error counts, of which `wanted` is that at the quality.
+fn counted(error: f64, wanted: f64) -> f64 {
+    if error < wanted {
+        0.5 * (wanted + error * error / wanted)
+    } else {
+        error
     }
 }
 
-/// Most that prices rise beyond the quality, 30 dB.
-const MOST_BEYOND: f32 = 1e3;
+/// The squared error that counts `count`; `None` if none counts so little.
+fn uncounted(count: f64, wanted: f64) -> Option<f64> {
+    match 2.0 * count - wanted {
+        _ if count >= wanted => Some(count),
+        twice if twice >= 0.0 => Some((twice * wanted).sqrt()),
+        _ => None,
+    }
+}
 
 #[cfg(test)]
 mod tests {
@@ -93,14 +140,46 @@ mod tests {
         Price::new(quality, WriteOptions::default())
     }
 
+    fn capsule(price: &Price) -> f32 {
+        price.least_gain_of_capsule(&STROKE)
+    }
+
     #[test]
     fn ten_db_are_a_tenth_of_the_price() {
         let (dear, cheap) = (price(Some(20.0)), price(Some(30.0)));
-        assert!((dear.of_capsule(&STROKE) / cheap.of_capsule(&STROKE) - 10.0).abs() < 1e-3);
+        assert!((capsule(&dear) / capsule(&cheap) - 10.0).abs() < 1e-3);
     }
 
     #[test]
     fn without_a_quality_strokes_are_free() {
-        assert_eq!(price(None).of_capsule(&STROKE), 0.0);
+        assert_eq!(capsule(&price(None)), 0.0);
+        assert_eq!(capsule(&price(None).at(0.01, 100)), 0.0);
+    }
+
+    #[test]
+    fn prices_rise_beyond_the_quality() {
+        let price = price(Some(30.0));
+        let at = |db: f64| price.at(math::powf(10.0, -db / 10.0), 10_000);
+        assert!((capsule(&at(20.0)) / capsule(&price) - 1.0).abs() < 1e-3);
+        assert!(capsule(&at(36.0)) > 2.0 * capsule(&price));
+        // What has less error in all than the stroke would have to remove gets no stroke.
+        assert_eq!(capsule(&at(60.0)), f32::INFINITY);
+    }
+
+    #[test]
+    fn what_a_drawing_stands_on_stays_however_good_it_is() {
+        let strokes = Strokes::from_iter([&STROKE]);
+        let price = price(Some(30.0)).at(1e-9, 10_000);
+        let least = price.least_worth(strokes.get(0));
+        assert!(least > 0.0 && least < 10.0, "{least}");
+    }
+
+    #[test]
+    fn counting_is_undone() {
+        for error in [0.0, 0.3, 1.9, 2.0, 7.0] {
+            let again = uncounted(counted(error, 2.0), 2.0).unwrap();
+            assert!((again - error).abs() < 1e-9, "{again} of {error}");
+        }
+        assert_eq!(uncounted(0.9, 2.0), None);
     }
 }

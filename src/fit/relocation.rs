@@ -40,13 +40,17 @@ pub(super) fn relocate(
         let room = limit.saturating_sub(drawing.len());
         let scale = drawing.spacing(drawing.len()) * recipe.stages.scale * relocation.scale;
         let worth = drawing.judge().worth;
-        let prices: Vec<f32> = drawing.free().iter().map(|p| price.of(p)).collect();
+        let prices: Vec<f32> = drawing
+            .free()
+            .iter()
+            .map(|p| price.least_worth(p))
+            .collect();
         let count = wanted.max(room.min(wanted * relocation.fill));
         let candidates = search(drawing, count, scale, recipe.probing, config.seed);
         let mut paying: Vec<Candidate> = candidates
             .into_iter()
             .map(adapt)
-            .filter(|c| c.gain > price.of_capsule(&c.stroke))
+            .filter(|c| c.gain > price.least_gain_of_capsule(&c.stroke))
             .collect();
         paying.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         let gains: Vec<f32> = paying.iter().map(|c| c.gain * relocation.gain).collect();

@@ -169,7 +169,7 @@ impl<'a> Session<'a> {
 
     /// The price of strokes and points in the current drawing.
     pub(super) fn price_now(&mut self) -> Price {
-        self.price.at(self.drawing.mse())
+        self.price.at(self.drawing.mse(), self.drawing.pixels())
     }
 
     /// The price of points where only a fidelity is asked for, to be met by few strokes of not too many points.

@@ -182,7 +182,7 @@ fn accept(drawing: &mut Drawing, price: Price) -> usize {
     let worth = drawing.judge().worth;
     let strokes = drawing.free().iter().zip(worth);
     let keep: Vec<bool> = strokes
-        .map(|(stroke, worth)| worth > price.of(stroke))
+        .map(|(stroke, worth)| worth > price.least_worth(stroke))
         .collect();
     drawing.retain_free(&keep);
     drawing.free().len()

@@ -5,10 +5,11 @@ use crate::error::Result;
 use crate::fit::history::OpenStage;
 use crate::fit::order::{Outcome, Purpose};
 use crate::fit::plan::PlannedStage;
+use crate::fit::points::written_points;
 use crate::fit::result::Stop;
 use crate::fit::session::Session;
 use crate::fit::surface::Surface;
-use crate::render::Canvas;
+use crate::render::{Canvas, Strokes};
 use crate::scene::Stroke;
 use crate::trace::{Traced, trace};
 
@@ -19,7 +20,12 @@ const ROUNDS: usize = 3;
 
 /// Adds strokes along the lines of the residual, on top of all others.
 pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> {
+    let is_rejected = session
+        .history
+        .stage
+        .is_some_and(|stage| stage.accepted == Some(0));
     let is_over = session.progress.stopped().is_some()
+        || is_rejected
         || !session.config.allows_points()
         || session.history.traced[0] == ROUNDS
         || grow::enough(session) == Some(Stop::Psnr);
@@ -64,7 +70,12 @@ fn lines(session: &mut Session<'_>) -> Vec<Traced> {
     let surfaces = drawing.surfaces.iter().zip(&canvases);
     let residuals: Vec<_> = surfaces.map(|(s, canvas)| s.residual_of(canvas)).collect();
     let mut traced = trace(&residuals, session.recipe.tracing);
-    traced.retain(|t| t.gain > session.price.of_stroke(&t.stroke));
+    let most = session.config.points.unwrap_or(usize::MAX);
+    let price = session.price;
+    traced.retain(|t| {
+        let strokes = Strokes::from_iter([&t.stroke]);
+        written_points(strokes.get(0)) <= most && t.gain > price.least_gain(&t.stroke)
+    });
     traced
 }
 

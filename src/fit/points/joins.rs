@@ -24,7 +24,7 @@ pub(super) fn join(session: &mut Session<'_>, spare: f32) -> Option<Vec<Option<u
     let least = joins.share * drawing.free().len() as f32;
     pairs.truncate(least.ceil() as usize);
     let before = drawing.squared_error();
-    let saved = |pair: &Pair| price.of(drawing.free().get(pair.lower)).max(spare);
+    let saved = |pair: &Pair| price.least_worth(drawing.free().get(pair.lower)).max(spare);
     let saved: Vec<f32> = pairs.iter().map(saved).collect();
     let memento = drawing.memento();
     while !pairs.is_empty() {
