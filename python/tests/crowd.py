@@ -38,7 +38,7 @@ def batch(*args: object, **environment: str) -> subprocess.Popen[str]:
     return subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env={**os.environ, **environment})
 
 
-def ended(process: subprocess.Popen[str], timeout_s: float = 120) -> tuple[int, str]:
+def ended(process: subprocess.Popen[str], timeout_s: float = 240) -> tuple[int, str]:
     """Its exit status and what it said."""
     try:
         _, words = process.communicate(timeout=timeout_s)

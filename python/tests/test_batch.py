@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import signal
+import subprocess
 import sys
 from pathlib import Path
 
@@ -245,7 +246,7 @@ def test_a_share_is_the_same_every_time(crowd: Path, tmp_path: Path) -> None:
     assert (again.drawn, again.before) == (0, half.drawn + half.failed)
 
 
-def test_the_module_is_the_function() -> None:
-    import strokefit.batch
-
-    assert callable(strokefit.batch) and strokefit.batch is strokefit._batch.batch
+def test_the_module_is_the_function(crowd: Path, tmp_path: Path) -> None:
+    code = "import sys, strokefit.batch; print(strokefit.batch(*sys.argv[1:], limit=2, strokes=2).drawn)"
+    command = [sys.executable, "-c", code, crowd, tmp_path / "out"]
+    assert subprocess.check_output(command, text=True) == "2\n"

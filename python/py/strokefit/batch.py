@@ -1,12 +1,20 @@
 """`python -m strokefit.batch` draws many pictures; in Python, `strokefit.batch` is the function that does."""
 
 import sys
+from types import ModuleType
+from typing import Any
 
-from ._batch import batch
+from ._batch import Summary, batch
 from ._batch.cli import main
+
+
+class _Callable(ModuleType):
+    """`import strokefit.batch` puts this module in the place of the function, so it is one."""
+
+    def __call__(self, *args: Any, **options: Any) -> Summary:
+        return batch(*args, **options)
+
 
 if __name__ == "__main__":
     sys.exit(main())
-
-# `import strokefit.batch` would put this module in the place of the function.
-sys.modules[__name__] = batch  # type: ignore[assignment]
+sys.modules[__name__].__class__ = _Callable

@@ -141,7 +141,7 @@ def _session(address: Optional[str]) -> Iterator[Any]:
         yield ray
         return
     quiet = {} if address else {"include_dashboard": False}
-    ray.init(address=address, logging_level=logging.WARNING, **quiet)
+    ray.init(address=address, logging_level=logging.WARNING, log_to_driver=False, **quiet)
     try:
         yield ray
     finally:

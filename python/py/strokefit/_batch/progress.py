@@ -22,8 +22,8 @@ class Percentiles:
     >>> numbers = Percentiles()
     >>> for number in range(1, 1001):
     ...     numbers.add(number)
-    >>> [round(number) for number in numbers.of((5, 50, 100))]
-    [50, 500, 1000]
+    >>> [round(number, -1) for number in numbers.of((5, 50, 100))]
+    [50.0, 500.0, 1000.0]
     """
 
     #: Ratio of neighbouring bins.
