@@ -27,8 +27,8 @@ ENGINES = ["local", "ray"] if importlib.util.find_spec("ray") else ["local"]
 SAMPLES = ["coffee-300.png", "chelsea-cat.png", "starry-night.jpg", "rocket-320.png"]
 
 #: A fit of a crop of 64×64 px takes some 0.3 s of CPU.
-FLAGS = ["--strokes", "150"]
-OPTIONS = {"strokes": 150}
+FLAGS = ["--strokes", "70"]
+OPTIONS = {"strokes": 70}
 
 
 def crops(folder: Path, count: int, size: int = 64) -> Path:
@@ -68,28 +68,32 @@ def fresh() -> Path:
 
 
 def overhead() -> None:
-    """CPU time against a loop, in turns; both start one Python."""
-    source = crops(fresh() / "in", 120)
-    code = f"import sys, strokefit\nfor path in sys.argv[1:]: strokefit.fit(path, threads=1, **{OPTIONS})"
-    loop = [sys.executable, "-c", code, *map(str, sorted(source.iterdir()))]
+    """CPU time against a loop, in turns, for a few pictures and for more: the first tells what starting takes."""
+    few, more = 4, 60
+    source = crops(fresh() / "in", more)
     for engine in ENGINES:
         for _ in range(3):
-            before = cpu_s()
-            subprocess.run(loop, check=True)
-            alone_s = cpu_s() - before
-            _, batch_s, _ = run(source, "-o", fresh(), "--engine", engine, "--workers", 1, *FLAGS)
-            print(f"{engine}: loop {alone_s:.1f} CPU s, {alone_s / 120:.2f} a picture; batch {batch_s:.1f}, {batch_s / alone_s:.3f} ×", flush=True)
+            loop_s, batch_s = zip(*(pair(engine, source, count) for count in (few, more)))
+            own_s, ratio = loop_s[1] / more, (batch_s[1] - batch_s[0]) / (loop_s[1] - loop_s[0])
+            print(f"{engine}: {own_s:.2f} CPU s a picture; a batch takes {batch_s[0] - loop_s[0]:.1f} to start, then {ratio:.3f} ×", flush=True)
+
+
+def pair(engine: str, source: Path, count: int) -> tuple[float, float]:
+    """CPU time of a loop and of a batch, s."""
+    code = f"import sys, strokefit\nfor path in sys.argv[1:]: strokefit.fit(path, threads=1, **{OPTIONS})"
+    before = cpu_s()
+    subprocess.run([sys.executable, "-c", code, *sorted(source.iterdir())[:count]], check=True)
+    loop_s = cpu_s() - before
+    return loop_s, run(source, "-o", fresh(), "--limit", count, "--engine", engine, "--workers", 1, *FLAGS)[1]
 
 
 def workers() -> None:
     """Wall time with one worker against two, in turns."""
-    source = crops(fresh() / "in", 120)
+    source = crops(fresh() / "in", 60)
     for engine in ENGINES:
-        pairs = []
         for _ in range(3):
             one_s, two_s = (run(source, "-o", fresh(), "--engine", engine, "--workers", n, *FLAGS)[0] for n in (1, 2))
-            pairs.append(f"{one_s:.1f} / {two_s:.1f} s = {one_s / two_s:.2f}")
-        print(f"{engine}, one worker / two: {', '.join(pairs)}", flush=True)
+            print(f"{engine}: one worker {one_s:.1f} s, two {two_s:.1f} s, {one_s / two_s:.2f} ×", flush=True)
 
 
 def again() -> None:

@@ -26,8 +26,7 @@ _EVERY_S = {True: 0.5, False: 60.0}
 
 def main(args: Optional[list[str]] = None) -> int:
     """Runs the command line and returns the exit status."""
-    parser = _parser()
-    given = vars(parser.parse_args(args))
+    given = vars(_parser().parse_args(args))
     quiet, dry_run = given.pop("quiet"), given.pop("dry_run")
     src, dst = given.pop("src"), given.pop("output")
     try:
@@ -42,7 +41,8 @@ def main(args: Optional[list[str]] = None) -> int:
             print(summary, file=sys.stderr)
         return 0
     except (TypeError, ValueError) as error:
-        parser.error(str(error))
+        print(f"error: {error}", file=sys.stderr)
+        return 2
     except (OSError, ImportError, RuntimeError) as error:
         print(f"error: {error}\nThe same command goes on where this one ended.", file=sys.stderr)
         return 1
@@ -97,7 +97,7 @@ def _parser() -> argparse.ArgumentParser:
 
 def _run_options(group: Any) -> None:
     group.add_argument("--engine", choices=("local", "ray"), help="processes of this machine (default), or a cluster")
-    group.add_argument("--address", metavar="A", help="address of the Ray cluster, such as auto or ray://head:10001")
+    group.add_argument("--address", metavar="A", help="address of the Ray cluster, such as auto or HEAD:6379")
     group.add_argument("--workers", type=int, metavar="N", help="pictures that are drawn at a time [one per core]")
     group.add_argument("--files", action="store_true", help="one SVG per picture, in folders as in SRC, instead of Parquet")
     group.add_argument("--column", metavar="NAME", help="column of Parquet files with the pictures")

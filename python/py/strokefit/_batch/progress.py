@@ -37,16 +37,17 @@ class Percentiles:
 
     def of(self, percents: tuple[int, ...] = PERCENTS) -> list[float]:
         """Empty if there are no numbers."""
-        total, found, below = sum(self._bins.values()), [], 0
-        bins = sorted(self._bins.items())
-        for percent in percents if bins else ():
-            below, rank = 0, math.ceil(total * percent / 100)
-            for number, count in bins:
-                below += count
-                if below >= rank:
-                    found.append(math.exp(number * self._STEP))
-                    break
-        return found
+        total = sum(self._bins.values())
+        return [self._reached(math.ceil(total * percent / 100)) for percent in percents] if total else []
+
+    def _reached(self, rank: int) -> float:
+        """The number that so many are not above."""
+        below = 0
+        for number, count in sorted(self._bins.items()):
+            below += count
+            if below >= rank:
+                break
+        return math.exp(number * self._STEP)
 
 
 class Progress(NamedTuple):

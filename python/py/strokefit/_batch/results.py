@@ -185,7 +185,7 @@ def _locked(path: Path, folder: str) -> Iterator[None]:
             file.seek(0)
             who = file.read().decode(errors="replace") or "another process"
             busy = f"{folder} is being written to by {who}: wait for that, or give another folder"
-            raise BlockingIOError(errno.EAGAIN, busy) from None
+            raise BlockingIOError(busy) from None
         file.truncate(0)
         file.write(f"process {os.getpid()} on {socket.gethostname()}".encode())
         file.flush()
