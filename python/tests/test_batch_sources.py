@@ -129,7 +129,7 @@ def test_drawings_of_one_name_are_not_laid_on_each_other(seven: list[str], tmp_p
     summary = strokefit.batch(tmp_path / "in", out, files=True, workers=1, **OPTIONS)
     assert (summary.drawn, summary.failed) == (7, 1)
     journal = (out / "_strokefit/part-000000.jsonl").read_text()
-    assert "another picture's drawing is 0/2.svg" in journal
+    assert "0/2.svg is another picture's drawing" in journal
     assert strokefit.batch(tmp_path / "in", out, files=True, **OPTIONS).before == 8
 
 

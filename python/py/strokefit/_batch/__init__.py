@@ -88,7 +88,7 @@ def batch(
     draw = _engine(engine, options, workers, address)
     with results.opened(os.fspath(dst), _fingerprint(files, options), retry) as rows:
         count, tally = _Count(chosen, rows.done), Tally()
-        missing = _Missing(chosen, rows.done)
+        missing = _Missing(chosen, rows, files)
         for row in draw(filled(missing)):
             tally.add(rows.add(row))
             if progress is not None:
@@ -145,8 +145,8 @@ class _Choice:
 class _Missing:
     """Inputs that have no row, each once."""
 
-    def __init__(self, chosen: _Choice, done: Seen) -> None:
-        self._chosen, self._done = chosen, done
+    def __init__(self, chosen: _Choice, rows: results.Results, files: bool) -> None:
+        self._chosen, self._rows, self._files = chosen, rows, files
         #: Inputs that have one.
         self.before = 0
         #: Inputs that were found again.
@@ -157,8 +157,11 @@ class _Missing:
         for one in self._chosen:
             if not found.add(one.path):
                 self.repeated += 1
-            elif one.path in self._done:
+            elif one.path in self._rows.done:
                 self.before += 1
+            elif self._files and not self._rows.stems.add(one.stem):
+                # Not by who is first to be drawn, which another run would not repeat.
+                yield one._replace(refusal=f"{one.stem}.svg is another picture's drawing: rename one of the two, or write Parquet")
             else:
                 yield one
 

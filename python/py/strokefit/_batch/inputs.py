@@ -10,7 +10,6 @@ import os
 import re
 from collections.abc import Iterable, Iterator
 from itertools import groupby
-from pathlib import PurePosixPath
 from typing import NamedTuple, Optional
 
 from . import files, parquet
@@ -32,6 +31,8 @@ class Input(NamedTuple):
     cell: Optional[parquet.Cell] = None
     #: The picture file, once it is read.
     content: Optional[bytes] = None
+    #: Why it is not to be drawn.
+    refusal: Optional[str] = None
 
     def holding(self, content: Optional[bytes]) -> Input:
         return self._replace(content=content)
@@ -85,6 +86,8 @@ def _contents(location: str, cells: list[parquet.Cell]) -> Iterator[Optional[byt
 
 def read(one: Input) -> bytes:
     """The picture file."""
+    if one.refusal is not None:
+        raise ValueError(one.refusal)
     if one.content is not None:
         return one.content
     if one.cell is None:
@@ -107,7 +110,7 @@ def _places(source: str) -> Iterator[tuple[str, str]]:
         yield from _matches(source)
     elif kind is files.Kind.FOLDER:
         for below in files.walk(source):
-            if PurePosixPath(below).suffix.lower() in SUFFIXES:
+            if files.suffix(below) in SUFFIXES:
                 yield files.join(source, below), stem(below)
     elif files.suffix(source) in SUFFIXES | {".parquet"}:
         yield source, stem(files.name(source))
@@ -160,5 +163,6 @@ def stem(path: str) -> str:
         path = re.split(r"[?#]", path.split("://", 1)[1])[0]
     path = path if os.sep == "/" else path.replace(os.sep, "/")
     parts = [part for part in re.sub(r"^[A-Za-z]:(?=/)", "", path).split("/") if part not in ("", ".", "..")]
-    whole = PurePosixPath(*parts) if parts else PurePosixPath("picture")
-    return str(whole.with_suffix("") if whole.suffix.lower() in SUFFIXES | {".parquet"} else whole)
+    # By hand: pathlib keeps the parts of all paths that it has seen in one table.
+    root, suffix = os.path.splitext("/".join(parts) or "picture")
+    return root if suffix.lower() in SUFFIXES | {".parquet"} else root + suffix

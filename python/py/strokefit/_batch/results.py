@@ -42,8 +42,8 @@ class Results:
         self._folder, self._own, self._files = folder, folder / _OWN, files
         #: Paths of all rows that were there at first.
         self.done = Seen()
-        #: Stems of all drawings, with `files`.
-        self._stems = Seen()
+        #: Stems of all drawings that were there at first, with `files`.
+        self.stems = Seen()
         #: That of the shard under way, once it has a row.
         self._journal: Optional[Journal] = None
         #: The number of that shard.
@@ -55,9 +55,7 @@ class Results:
     def add(self, row: Row) -> Row:
         """Writes a row. Where its name is no name for a drawing, it is written, and returned, as an error."""
         if self._files and row.svg is not None:
-            row = self._draw(row)
-        if self._files and row.svg is not None:
-            self._stems.add(row.stem)
+            row = self._draw(row, row.svg)
         if self._journal is None:
             self._journal = Journal(self._own / f"part-{self._number:06}.jsonl")
         self._journal.append(_record(row, self._files))
@@ -81,14 +79,11 @@ class Results:
         if self._journal is not None:
             self._journal.close()
 
-    def _draw(self, row: Row) -> Row:
-        if row.stem in self._stems:
-            error = f"another picture's drawing is {row.stem}.svg: name one of the two otherwise, or write Parquet"
-            return row._replace(svg=None, report=None, error=error)
+    def _draw(self, row: Row, svg: str) -> Row:
         target = self._folder / f"{row.stem}.svg"
         try:
             target.parent.mkdir(parents=True, exist_ok=True)
-            _write(self._own / "drawing.tmp", target, (row.svg or "").encode())
+            _write(self._own / "drawing.tmp", target, svg.encode())
         except (OSError, ValueError) as error:
             if isinstance(error, OSError) and error.errno not in _BAD_NAME:
                 raise
@@ -104,7 +99,7 @@ class Results:
         for record in _records(part):
             self.done.add(record["path"])
             if self._files and record["error"] is None:
-                self._stems.add(record["stem"])
+                self.stems.add(record["stem"])
         journal = Journal(part)
         if journal.rows < SHARD_ROWS and journal.bytes < SHARD_BYTES:
             self._journal, self._number = journal, self._number - 1
