@@ -107,29 +107,33 @@ def opened(location: str) -> Any:
 
 
 def _walk(folder: str, below: str, depth: Optional[int], hidden: bool) -> Iterator[str]:
-    for entry, is_folder in sorted(_entries(folder)):
+    entries = sorted(_entries(folder), reverse=True)
+    while entries:
+        entry = entries.pop()  # a folder of a million files is not held to its end
         if entry.startswith(".") and not hidden:
             continue
-        if not is_folder:
+        if not entry.endswith("/"):
             yield below + entry
         elif depth is None or depth > 0:
             deeper = None if depth is None else depth - 1
-            yield from _walk(join(folder, entry), f"{below}{entry}/", deeper, hidden)
+            yield from _walk(join(folder, entry[:-1]), below + entry, deeper, hidden)
 
 
-def _entries(folder: str) -> Iterator[tuple[str, bool]]:
-    """Names in a folder, and which of them are folders."""
+def _entries(folder: str) -> Iterator[str]:
+    """Names in a folder; those of folders end in `/`."""
     if not is_url(folder):
         with os.scandir(folder) as entries:
             for entry in entries:
-                if entry.is_dir(follow_symlinks=False) or not entry.is_dir():
-                    yield entry.name, entry.is_dir()
+                if entry.is_dir(follow_symlinks=False):
+                    yield entry.name + "/"
+                elif not entry.is_dir():
+                    yield entry.name
         return
     from pyarrow.fs import FileSelector, FileType
 
     system, own = _filesystem(folder)
     for info in system.get_file_info(FileSelector(own)):
-        yield info.base_name, info.type == FileType.Directory
+        yield info.base_name + ("/" if info.type == FileType.Directory else "")
 
 
 def _filesystem(url: str) -> tuple[FileSystem, str]:
