@@ -54,7 +54,7 @@ def batch(
             these files a line, or several of them; paths or URLs.
         dst: The folder of the results. Only one batch writes to it at a time.
         engine: `local`, processes of this machine, or `ray`, tasks of a cluster.
-        address: That of a cluster, as `ray.init` takes it; otherwise Ray is started on this machine.
+        address: That of a cluster, as `ray.init` takes it, or the variable RAY_ADDRESS; otherwise Ray is started here.
         workers: How many pictures are drawn at a time; one per core by default.
         files: Whether to write one SVG for each picture, in folders as in `src`. Otherwise Parquet files are written, with
             the columns path, svg, report (JSON) and error.

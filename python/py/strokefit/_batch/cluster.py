@@ -8,6 +8,7 @@ number of them leaves cores idle where a cluster grows, and waits for ever where
 from __future__ import annotations
 
 import logging
+import os
 import time
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
@@ -140,7 +141,9 @@ def _session(address: Optional[str]) -> Iterator[Any]:
     if ray.is_initialized():
         yield ray
         return
-    quiet = {} if address else {"include_dashboard": False}
+    # Without an address, Ray would look for the cluster that was last started here, and wait for one that has ended.
+    address = address or os.environ.get("RAY_ADDRESS") or "local"
+    quiet = {"include_dashboard": False} if address == "local" else {}
     ray.init(address=address, logging_level=logging.WARNING, log_to_driver=False, **quiet)
     try:
         yield ray
