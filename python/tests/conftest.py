@@ -32,3 +32,22 @@ def waves() -> np.ndarray:
 def noise() -> np.ndarray:
     """A picture whose fit takes many seconds."""
     return np.random.default_rng(0).integers(0, 256, (400, 400, 3), np.uint8)
+
+
+@pytest.fixture
+def bomb(tmp_path: Path) -> dict[str, str]:
+    """An environment in which a process ends when it reads a picture named bomb.png."""
+    folder = tmp_path / "bomb"
+    folder.mkdir()
+    (folder / "sitecustomize.py").write_text("""
+import os
+from strokefit._batch import draw
+
+def read(one, read=draw.read):
+    if one.location.endswith("bomb.png"):
+        os.abort()
+    return read(one)
+
+draw.read = read
+""")
+    return {"PYTHONPATH": str(folder)}

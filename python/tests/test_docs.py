@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from conftest import ROOT
 
-PAGES = ["docs/python.md", "README.md", "python/README.md"]
+PAGES = ["docs/batch.md", "docs/python.md", "README.md", "python/README.md"]
 
 
 def examples() -> list[object]:

@@ -10,11 +10,13 @@
 >>> drawing.report["input"]["width"], drawing.report["input"]["height"]
 (48, 24)
 
-`fit` draws a picture, `refine` goes on from an SVG, `render` and `judge` show and measure any SVG. Lengths are in
+`fit` draws a picture, `refine` goes on from an SVG, `render` and `judge` show and measure any SVG, and `batch` draws many
+pictures. Lengths are in
 px of the picture, with pixel centres at +0.5. The command line is `python -m strokefit`.
 """
 
 from ._api import fit, judge, refine, render
+from ._batch import Estimate, Progress, Summary, batch, estimate_batch
 from ._drawing import Drawing
 from ._native import CancelToken
 from ._picture import Picture
@@ -25,11 +27,16 @@ __all__ = [
     "Agreement",
     "CancelToken",
     "Drawing",
+    "Estimate",
     "Fidelity",
     "Picture",
+    "Progress",
     "Report",
     "Stroke",
     "Strokes",
+    "Summary",
+    "batch",
+    "estimate_batch",
     "fit",
     "judge",
     "refine",
