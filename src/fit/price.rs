@@ -19,6 +19,11 @@ impl Price {
         Self { per_byte, file }
     }
 
+    /// The price of a byte.
+    pub(super) fn per_byte(&self) -> f32 {
+        self.per_byte
+    }
+
     /// The price of `stroke`.
     pub(super) fn of(&self, stroke: StrokeRef<'_>) -> f32 {
         if self.per_byte == 0.0 {
