@@ -142,8 +142,7 @@ impl Film<'_> {
         let mut strokes = scene.strokes();
         let mut painting = None;
         self.parts(scene).into_iter().map(move |part| {
-            let background = scene.background.filter(|_| part.start == 0);
-            let text = part_svg(scene, background, strokes.by_ref().take(part.len()));
+            let text = part_svg(scene, part.start == 0, strokes.by_ref().take(part.len()));
             let painting = match &mut painting {
                 Some(painting) => painting,
                 none => none.insert(Painting::new(&text, Size::Scale(self.scale), WHITE)?),
@@ -198,10 +197,10 @@ fn stage_ends(scene: &Scene) -> Vec<usize> {
 }
 
 #[cfg(feature = "animation")]
-/// Some strokes of `scene` as SVG, not rounded any further.
+/// Some strokes of `scene` as SVG, not rounded any further; on its background and its shade if they are its first.
 fn part_svg<'a>(
     scene: &Scene,
-    background: Option<Rgb>,
+    is_first: bool,
     strokes: impl Iterator<Item = &'a Stroke>,
 ) -> String {
     let stage = Stage {
@@ -209,7 +208,9 @@ fn part_svg<'a>(
     };
     let part = Scene {
         stages: vec![stage],
-        ..Scene::empty(scene.width, scene.height, background)
+        background: scene.background.filter(|_| is_first),
+        shade: scene.shade.clone().filter(|_| is_first),
+        ..*scene
     };
     let exactly = WriteOptions {
         precision: MAX_PRECISION,

@@ -80,6 +80,7 @@
 //! | stage | strokes that are added together: seeded where the residual is largest, fitted with all earlier strokes frozen, kept if they pay |
 //! | layer | a group of the SVG, holding the strokes of one stage or of one colour |
 //! | background | the colour behind all strokes; part of the drawing and of the file; absent if the drawing is transparent |
+//! | shade | a gradient over the whole page, on the background and behind all strokes; part of the drawing and of the file; see [`scene::Shade`] |
 //! | backdrop | what strokes are composited over: a colour or a picture, such as the canvas of frozen strokes |
 //! | matte | the colour that a transparent picture is flattened onto, to be looked at or measured |
 //! | base | the SVG that a fit goes on from |
@@ -141,7 +142,7 @@
 //! | form | how strokes become elements: one each, the smallest file, outlines |
 //! | look | colour, width and opacity of a stroke as they are written; strokes of one look may share an element |
 //! | dialect | the part of SVG that strokefit writes, and reads as strokes |
-//! | fidelity | the file as resvg renders it, against the target: PSNR (dB), SSIM, MSE, L1 |
+//! | fidelity | the file as resvg renders it, against the target: PSNR (dB), SSIM, MSE, L1, SSIMULACRA2 |
 //! | agreement | two renders against each other: PSNR (dB) and the largest difference (0..255) |
 //! | soft | our own render of the drawing, at the final softness |
 //! | shortfall | by how much a renderer's fidelity is below resvg's (dB) |

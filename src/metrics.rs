@@ -1,9 +1,10 @@
-//! Measures the difference between two pictures: MSE, PSNR, SSIM, L1.
+//! Measures the difference between two pictures: MSE, PSNR, SSIM, L1, and SSIMULACRA2, which tells what people see.
 //!
 //! All measures are over 8-bit RGB, as a viewer shows it: both pictures are first flattened onto a white matte and
 //! rounded. Errors are in channel values 0..1, averaged over pixels and channels.
 
 mod similarity;
+mod ssimulacra2;
 
 use serde::{Deserialize, Serialize};
 
@@ -28,6 +29,8 @@ pub struct Quality {
     pub mse: f64,
     /// Mean absolute error, 0..1.
     pub l1: f64,
+    /// What people see, 100 for equal pictures; see [`fn@ssimulacra2`].
+    pub ssimulacra2: f64,
 }
 
 impl Quality {
@@ -45,6 +48,7 @@ impl Quality {
             ssim,
             mse,
             l1: sums.l1(),
+            ssimulacra2: ssimulacra2::score(&a, &b, reference.width()),
         })
     }
 }
@@ -158,6 +162,25 @@ pub fn ssim(a: &Image, b: &Image) -> Result<f64> {
     Ok(similarity::mean(&left, &right, a.width()))
 }
 
+/// SSIMULACRA2 2.1 of 8-bit RGB on white: how different two pictures look to people. 100 for equal pictures, 90 lossless to
+/// the eye, 70 high, 50 medium, 30 low quality; below 0 for pictures that have little in common.
+///
+/// # Errors
+/// [`ErrorKind::Picture`] when the sizes differ.
+pub fn ssimulacra2(reference: &Image, picture: &Image) -> Result<f64> {
+    let (a, b) = levels_of_both(reference, picture)?;
+    Ok(ssimulacra2::score(&a, &b, reference.width()))
+}
+
+/// Where [`fn@ssimulacra2`] is lost, row by row: what the score would be if all of the picture were as bad as it is there.
+///
+/// # Errors
+/// [`ErrorKind::Picture`] when the sizes differ.
+pub fn ssimulacra2_map(reference: &Image, picture: &Image) -> Result<Vec<f32>> {
+    let (a, b) = levels_of_both(reference, picture)?;
+    Ok(ssimulacra2::map(&a, &b, reference.width()))
+}
+
 /// Interleaved RGB of both pictures as a viewer shows them on white.
 fn levels_of_both(a: &Image, b: &Image) -> Result<(Vec<u8>, Vec<u8>)> {
     let size = |image: &Image| (image.width(), image.height());
@@ -262,7 +285,8 @@ mod tests {
                 psnr_db: f64::INFINITY,
                 ssim: 1.0,
                 mse: 0.0,
-                l1: 0.0
+                l1: 0.0,
+                ssimulacra2: 100.0
             }
         );
         let agreement = Agreement::between(&a, &a).unwrap();
@@ -282,9 +306,13 @@ mod tests {
             ssim: 1.0,
             mse: 0.0,
             l1: 0.0,
+            ssimulacra2: 100.0,
         };
         let json = serde_json::to_string(&quality).unwrap();
-        assert_eq!(json, r#"{"psnr_db":null,"ssim":1.0,"mse":0.0,"l1":0.0}"#);
+        assert_eq!(
+            json,
+            r#"{"psnr_db":null,"ssim":1.0,"mse":0.0,"l1":0.0,"ssimulacra2":100.0}"#
+        );
         assert_eq!(serde_json::from_str::<Quality>(&json).unwrap(), quality);
     }
 

@@ -7,6 +7,7 @@ mod grid;
 mod overlap;
 mod path;
 mod quantize;
+mod shade;
 mod written_path;
 
 pub use grid::MAX_PRECISION;
@@ -14,6 +15,8 @@ pub(crate) use grid::UNITS_PER_PX;
 pub use path::{MAX_POINTS, Path, PathPoint, Piece};
 pub use quantize::{Dropped, MIN_WIDTH, Quantized};
 pub(crate) use quantize::{Written, color, quantum};
+pub use shade::{Axis, MAX_STOPS, Shade, ShadeStop};
+pub(crate) use shade::{WrittenAxis, WrittenStop};
 pub(crate) use written_path::{WrittenPath, WrittenPoint};
 
 /// An sRGB-encoded colour, 0..1 per channel.
@@ -61,6 +64,8 @@ pub struct Scene {
     pub height: u32,
     /// The colour behind all strokes; `None` if the drawing is transparent.
     pub background: Option<Rgb>,
+    /// A gradient on the background, behind all strokes, if there is one.
+    pub shade: Option<Shade>,
     /// Back to front.
     pub stages: Vec<Stage>,
 }
@@ -72,6 +77,7 @@ impl Scene {
             width,
             height,
             background,
+            shade: None,
             stages: Vec::new(),
         }
     }

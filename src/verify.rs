@@ -136,6 +136,12 @@ pub struct OnMattes {
     /// PSNR on magenta, dB.
     #[serde(deserialize_with = "null_is_infinite")]
     pub magenta_db: f64,
+    /// SSIMULACRA2 on black.
+    pub black_ssimulacra2: f64,
+    /// SSIMULACRA2 on white.
+    pub white_ssimulacra2: f64,
+    /// SSIMULACRA2 on magenta.
+    pub magenta_ssimulacra2: f64,
 }
 
 /// Renders SVG text on black, white and magenta, and compares it with `target` on the same matte.
@@ -143,13 +149,21 @@ pub struct OnMattes {
 /// # Errors
 /// As [`fidelity`].
 pub fn on_mattes(svg: &str, target: &Image) -> Result<OnMattes> {
-    let on = |matte: Rgb| -> Result<f64> {
-        metrics::psnr(&target.flattened(matte), &render_like(svg, target, matte)?)
+    let on = |matte: Rgb| -> Result<(f64, f64)> {
+        let (target, drawn) = (target.flattened(matte), render_like(svg, target, matte)?);
+        let psnr_db = metrics::psnr(&target, &drawn)?;
+        Ok((psnr_db, metrics::ssimulacra2(&target, &drawn)?))
     };
+    let (black_db, black_ssimulacra2) = on([0.0; 3])?;
+    let (white_db, white_ssimulacra2) = on([1.0; 3])?;
+    let (magenta_db, magenta_ssimulacra2) = on([1.0, 0.0, 1.0])?;
     Ok(OnMattes {
-        black_db: on([0.0; 3])?,
-        white_db: on([1.0; 3])?,
-        magenta_db: on([1.0, 0.0, 1.0])?,
+        black_db,
+        white_db,
+        magenta_db,
+        black_ssimulacra2,
+        white_ssimulacra2,
+        magenta_ssimulacra2,
     })
 }
 

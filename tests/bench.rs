@@ -68,6 +68,7 @@ fn pareto_writes_its_report() {
         "a-time.svg",
         "a-bytes.svg",
         "a-strokes.svg",
+        "a-seen.svg",
         "a-stages.svg",
     ] {
         assert!(place.path("out").join(name).exists(), "{name}");

@@ -25,7 +25,7 @@ use strokefit::engines::{DrawRequest, Engine};
 use strokefit::fit::{Budget, Config, Fitter};
 use strokefit::image::Image;
 use strokefit::metrics;
-use strokefit::scene::{self, PathPoint, Scene, Stage, Stroke};
+use strokefit::scene::{self, Axis, PathPoint, Scene, Shade, ShadeStop, Stage, Stroke};
 use strokefit::svg::{self, Form, WriteOptions};
 use strokefit::verify::{self, Size};
 use support::engine::installed;
@@ -368,6 +368,44 @@ fn drawn_by_both(
     let drawn = engine.draw(program, request, PATIENCE).unwrap().image;
     let resvg = verify::render(svg, Size::Exact { width, height }, Some([1.0; 3])).unwrap();
     [drawn, resvg]
+}
+
+/// Gradients of both kinds, of colour and of opacity, are drawn alike.
+#[test]
+fn shades_are_drawn_alike() {
+    let stop = |offset, color, opacity| ShadeStop {
+        offset,
+        color,
+        opacity,
+    };
+    let stops = [
+        stop(0.0, [0.9, 0.2, 0.2], 0.1),
+        stop(0.4, [0.2, 0.8, 0.9], 0.9),
+        stop(1.0, [1.0, 0.9, 0.1], 1.0),
+    ];
+    let linear = Axis::Linear {
+        from: [4.0, 6.0].into(),
+        to: [58.0, 40.0].into(),
+    };
+    let radial = Axis::Radial {
+        center: [30.5, 20.5].into(),
+        radius: 25.25,
+    };
+    for name in ["inkscape", "rsvg", "chromium", "cairosvg"] {
+        let Some((engine, program)) = installed(name) else {
+            continue;
+        };
+        for axis in [linear, radial] {
+            let scene = Scene {
+                shade: Some(Shade::new(axis, &stops).unwrap()),
+                ..Scene::empty(64, 48, None)
+            };
+            let text = svg::write(&scene, &WriteOptions::default());
+            let [drawn, resvg] = drawn_by_both(engine, &program, &text, [64, 48]);
+            let db = metrics::psnr(&resvg, &drawn).unwrap();
+            assert!(db >= 48.0, "{name}, {axis:?}: {db:.2} dB from resvg");
+        }
+    }
 }
 
 fn draws_every_kind_of_stroke(name: &str) {

@@ -1,5 +1,6 @@
 //! `strokefit check`: how faithful an SVG is to a picture, in each installed program that draws SVG.
 
+mod map;
 mod table;
 mod trial;
 
@@ -10,7 +11,7 @@ use anyhow::Result;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use strokefit::engines::{ENGINES, Engine};
 use strokefit::report::{self, CheckReport, Input, SCHEMA};
-use strokefit::svg;
+use strokefit::{svg, verify};
 
 use super::output::Output;
 use super::{Status, Verbosity, complain, domain, input, misuse};
@@ -24,8 +25,9 @@ const RESVG: &str = "resvg";
 /// resvg is built in. Inkscape, rsvg-convert, Chromium and CairoSVG are used if they are installed.
 /// Each renders the file, whoever made it, at the picture's size on white. The render is compared over
 /// 8-bit RGB with the picture and with resvg's render: PSNR in dB (more is better), SSIM (1 is
-/// equal), and the largest difference from resvg (0 to 255) with its place. The text of the file is
-/// searched for constructs that programs draw differently.
+/// equal), SSIMULACRA2 (what people see: 90 is lossless to the eye, 70 high, 50 medium, 30 low quality), and the
+/// largest difference from resvg (0 to 255) with its place. A picture with alpha is also compared on black and on
+/// magenta. The text of the file is searched for constructs that programs draw differently.
 ///
 /// Without a picture, the programs are compared with resvg only.
 ///
@@ -36,6 +38,7 @@ const RESVG: &str = "resvg";
 #[command(after_help = "Examples:
   strokefit check photo.svg photo.jpg
   strokefit check photo.svg photo.jpg --renderer resvg,chromium --pictures compared/
+  strokefit check photo.svg photo.jpg --map lost.png
   strokefit check foreign.svg
   strokefit check photo.svg photo.jpg --report - | jq .renderers[0].fidelity.psnr_db")]
 pub(super) struct Args {
@@ -50,6 +53,9 @@ pub(super) struct Args {
     /// difference from the picture (× 4) and from resvg's render (× 16)
     #[arg(long, value_name = "DIR")]
     pictures: Option<PathBuf>,
+    /// Write a picture of where resvg's render loses SSIMULACRA2: dark where all is well, yellow where it would be 0
+    #[arg(long, value_name = "OUT.png", requires = "input")]
+    map: Option<PathBuf>,
     /// Time limit for each program
     #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = domain::seconds, allow_negative_numbers = true)]
     timeout: Duration,
@@ -89,12 +95,13 @@ pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
         ));
     }
     let report = args.report.as_deref().map(Output::open).transpose()?;
+    let map = args.map.as_deref().map(Output::open).transpose()?;
     let pictures = args
         .pictures
         .as_deref()
         .map(PictureFolder::open)
         .transpose()?;
-    let record = judge(args, pictures)?;
+    let record = judge(args, pictures, map.as_ref())?;
     if let Some(output) = &report {
         output.write(report::json(&record)?.as_bytes())?;
     }
@@ -104,7 +111,11 @@ pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
     Ok(verdict(&record, args.renderer.is_some(), verbosity))
 }
 
-fn judge(args: &Args, pictures: Option<PictureFolder>) -> Result<CheckReport> {
+fn judge(
+    args: &Args,
+    pictures: Option<PictureFolder>,
+    map: Option<&Output>,
+) -> Result<CheckReport> {
     let svg = input::svg(&args.file)?;
     let target = args.input.as_deref().map(input::picture).transpose()?;
     let named = |error: anyhow::Error| match error.downcast::<strokefit::Error>() {
@@ -115,12 +126,18 @@ fn judge(args: &Args, pictures: Option<PictureFolder>) -> Result<CheckReport> {
     for engine in args.engines() {
         trial.ask(engine)?;
     }
+    if let (Some(target), Some(output)) = (&target, map) {
+        output.write(&map::png(target, &trial.resvg)?)?;
+    }
+    let transparent = target.as_ref().filter(|target| target.alpha().is_some());
+    let alpha = transparent.map(|target| verify::on_mattes(&svg, target));
     let named_input = args.input.as_ref().zip(target.as_ref());
     Ok(CheckReport {
         schema: SCHEMA,
         input: named_input.map(|(path, image)| Input::new(path.display().to_string(), image)),
         svg: args.file.display().to_string(),
         svg_bytes: svg.len(),
+        alpha: alpha.transpose()?,
         renderers: trial.drawn,
         not_drawn: trial.not_drawn,
         lint: svg::lint(&svg),

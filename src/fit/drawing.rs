@@ -8,7 +8,7 @@ use fearless_simd::Level;
 use super::bounds::Bounds;
 use super::surface::Surface;
 use crate::render::{Canvas, CanvasLoss, Gradients, Params, Renderer, Softness, Strokes, Survey};
-use crate::scene::{Rgb, Stroke};
+use crate::scene::{Rgb, Shade, Stroke};
 pub(super) use memento::Memento;
 use scene::enlarge;
 
@@ -22,6 +22,8 @@ pub(super) struct Drawing {
     pub(super) level: Level,
     /// Whether the background keeps its colour.
     pub(super) background_fixed: bool,
+    /// The gradient on the background.
+    pub(super) shade: Option<Shade>,
     /// The strokes that are kept as they are, back to front, and on top of them those that are fitted.
     frozen: Strokes,
     free: Strokes,
@@ -48,7 +50,7 @@ impl Drawing {
     /// An empty drawing on one or more `surfaces`.
     pub(super) fn new(
         surfaces: Vec<Surface>,
-        background_fixed: bool,
+        (background_fixed, shade): (bool, Option<Shade>),
         bounds: Bounds,
         edge: Softness,
         level: Level,
@@ -58,6 +60,7 @@ impl Drawing {
             surfaces,
             level,
             background_fixed,
+            shade,
             frozen: Strokes::new(),
             free: Strokes::new(),
             stage_of: Vec::new(),

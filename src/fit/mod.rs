@@ -41,6 +41,7 @@ mod renderers;
 mod result;
 mod search;
 mod session;
+mod shading;
 mod simd;
 mod surface;
 mod words;
@@ -55,7 +56,8 @@ pub use objective::Objective;
 pub use progress::{CancelToken, Observer, Progress};
 pub use recipe::{
     AdamSettings, BackgroundChoice, Correction, Domain, EdgeShape, Joins, Pens, Points, Polish,
-    Preset, Rates, Recipe, Recoloring, Relocation, Rounds, Settling, Stages, TimeShares,
+    Preset, Rates, Recipe, Recoloring, Relocation, Rounds, Settling, ShadeChoice, Stages,
+    TimeShares,
 };
 pub use result::{Fit, StageRecord, Stop};
 pub use simd::Simd;

@@ -33,6 +33,11 @@ impl Price {
         }
     }
 
+    /// The price of a byte.
+    pub(super) fn per_byte(&self) -> f32 {
+        self.per_byte
+    }
+
     /// The price in a drawing of `pixels` pixels and mean squared error `mse`.
     pub(super) fn at(self, mse: f64, pixels: usize) -> Self {
         let values = 3.0 * pixels as f64;

@@ -345,6 +345,25 @@ pub struct BackgroundChoice {
     pub translucent_share: f64,
     /// Pixels with alpha between these are translucent.
     pub translucent: [f32; 2],
+    /// When a gradient becomes the page.
+    pub shade: ShadeChoice,
+}
+
+/// When a gradient becomes the page, and how it is fitted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShadeChoice {
+    /// Blocks along the longer side of the picture, whose means are fitted.
+    pub blocks: usize,
+    /// A block is met by a gradient if no channel is farther from it than this.
+    pub near: f32,
+    /// The least share of the blocks that a gradient has to meet.
+    pub least_share: f32,
+    /// How much more of them than the best single colour.
+    pub least_gain: f32,
+    /// Below this share nothing is refined any further.
+    pub hopeless_share: f32,
+    /// Most stops.
+    pub stops: usize,
 }
 
 /// How a time limit is divided among descent, writing and judging. The unit of most durations is a *write*: the time to

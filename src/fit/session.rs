@@ -9,7 +9,7 @@ use super::base::Base;
 use super::bounds::Bounds;
 use super::budget;
 use super::checkpoint::{self, Checkpoint};
-use super::config::Config;
+use super::config::{Background, Colors, Config};
 use super::deadline::{Deadline, Timer, Unlimited};
 use super::descent::{Course, Descent};
 use super::drawing::{Drawing, Memento};
@@ -22,11 +22,13 @@ use super::price::Price;
 use super::progress::{CancelToken, Observer, Position, Tracker};
 use super::recipe::Recipe;
 use super::result::Stop;
+use super::shading;
 use super::surface::Prepared;
 use crate::clock::Instant;
 use crate::error::Result;
 use crate::image::Image;
 use crate::metrics::psnr_db;
+use crate::scene::Shade;
 
 /// A fit under way: first the fields that are fixed, then those that change.
 pub(super) struct Session<'a> {
@@ -89,14 +91,21 @@ impl<'a> Session<'a> {
             target,
             surfaces,
             background_fixed,
-        } = Prepared::new(picture, config.background, base, &recipe, coarsest)?;
+            shade,
+        } = Prepared::new(
+            picture,
+            page(picture, config, base, &recipe),
+            base,
+            &recipe,
+            coarsest,
+        )?;
         let annealing = Annealing {
             coverage: config.coverage,
             edge: recipe.edge,
         };
         let bounds = Bounds::new(surfaces[0].grid(), recipe.domain, config.opaque);
         let edge = annealing.last();
-        let mut drawing = Drawing::new(surfaces, background_fixed, bounds, edge, level);
+        let mut drawing = Drawing::new(surfaces, (background_fixed, shade), bounds, edge, level);
         let records = base.map_or_else(Vec::new, |base| history::load(&mut drawing, base));
         let deadline = deadline(config, &recipe, &drawing);
         let planned = (plan.strokes() * recipe.iterations(config.polish)) as f64;
@@ -276,6 +285,28 @@ impl<'a> Session<'a> {
 const FILE_BYTES: usize = 240;
 /// Bytes of a layer without strokes.
 const LAYER_BYTES: usize = 170;
+
+/// The background and the shade of a new drawing. A shade, with `auto`, replaces the background. It has any colours and
+/// opacities, so that a drawing of few colours has none, and neither has one of opaque strokes that is transparent.
+fn page(
+    picture: &Image,
+    config: &Config,
+    base: Option<&Base>,
+    recipe: &Recipe,
+) -> (Background, Option<Shade>) {
+    let may_be = base.is_none()
+        && config.background == Background::Auto
+        && config.colors == Colors::Free
+        && !(config.opaque && picture.alpha().is_some());
+    let price = Price::new(config.effective_quality(), config.file);
+    let choose = || shading::choose(picture, &recipe.background.shade, price.per_byte());
+    let shade = may_be.then(choose).flatten();
+    let background = match shade {
+        Some(_) => Background::None,
+        None => config.background,
+    };
+    (background, shade)
+}
 
 /// The deadline that the time budget sets.
 fn deadline(config: &Config, recipe: &Recipe, drawing: &Drawing) -> Box<dyn Deadline> {

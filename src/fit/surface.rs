@@ -14,7 +14,7 @@ use crate::error::Result;
 use crate::image::Image;
 use crate::loss::Loss;
 use crate::render::{Backdrop, Canvas, Grid, Renderer, Softness, Strokes};
-use crate::scene::{Rgb, Scene};
+use crate::scene::{Rgb, Scene, Shade};
 use crate::seed::{Pyramid, Residual};
 use crate::verify;
 
@@ -29,14 +29,16 @@ pub(super) struct Prepared {
     pub(super) surfaces: Vec<Surface>,
     /// Whether the background keeps its colour.
     pub(super) background_fixed: bool,
+    /// The gradient on the background.
+    pub(super) shade: Option<Shade>,
 }
 
 impl Prepared {
-    /// The surfaces for a drawing of `picture` on `base`, or on a `background`, whose first strokes have a scale of
-    /// `scale` px.
+    /// The surfaces for a drawing of `picture` on `base`, or on a `background` and a `shade`, whose first strokes have a
+    /// scale of `scale` px.
     pub(super) fn new(
         picture: &Image,
-        background: Background,
+        (background, shade): (Background, Option<Shade>),
         base: Option<&Base>,
         recipe: &Recipe,
         scale: f32,
@@ -49,16 +51,22 @@ impl Prepared {
             document, scene, ..
         }) = base
         else {
-            return Ok(Self::on_color(picture, background, recipe, sizes));
+            return Self::on_page(picture, background, shade, recipe, sizes);
         };
         if let Some(document) = document {
             return Self::on_document(picture, document.text(), sizes);
         }
         let background = scene.background.map_or(Background::None, Background::Color);
-        Ok(Self::on_color(picture, background, recipe, sizes))
+        Self::on_page(picture, background, scene.shade.clone(), recipe, sizes)
     }
 
-    fn on_color(picture: &Image, background: Background, recipe: &Recipe, sizes: Sizes) -> Self {
+    fn on_page(
+        picture: &Image,
+        background: Background,
+        shade: Option<Shade>,
+        recipe: &Recipe,
+        sizes: Sizes,
+    ) -> Result<Self> {
         let mattes = mattes(picture, background);
         let target = match *mattes {
             [_] => picture.flattened(background::matte(background)),
@@ -67,13 +75,19 @@ impl Prepared {
         let (color, is_fixed) = background::choose(background, &target, &recipe.background);
         let surface = |&matte: &Rgb| {
             let color = if mattes.len() == 1 { color } else { matte };
-            Surface::new(target.flattened(matte), matte, Bottom::Color(color), sizes)
+            let target = target.flattened(matte);
+            let bottom = match &shade {
+                Some(shade) => Bottom::shaded(&target, shade, color, background)?,
+                None => Bottom::Color(color),
+            };
+            Ok(Surface::new(target, matte, bottom, sizes))
         };
-        Self {
-            surfaces: mattes.iter().map(surface).collect(),
-            background_fixed: is_fixed || mattes.len() > 1,
+        Ok(Self {
+            surfaces: mattes.iter().map(surface).collect::<Result<_>>()?,
+            background_fixed: is_fixed || mattes.len() > 1 || shade.is_some(),
+            shade,
             target,
-        }
+        })
     }
 
     fn on_document(picture: &Image, svg: &str, sizes: Sizes) -> Result<Self> {
@@ -87,6 +101,7 @@ impl Prepared {
             target: picture.clone(),
             surfaces: mattes.iter().map(surface).collect::<Result<_>>()?,
             background_fixed: true,
+            shade: None,
         })
     }
 }
@@ -113,17 +128,36 @@ enum Bottom {
     Color(Rgb),
     /// The render of a base's document.
     Document(Pyramid),
+    /// The render of a shade on the background of this colour or, if there is none, on the matte.
+    Shade(Option<Rgb>, Pyramid),
 }
 
 impl Bottom {
-    fn canvas(&self, grid: Grid, halvings: usize) -> Canvas {
+    /// A page of the size of `target`, with a shade on `color`, which is that of `background` if it has one.
+    fn shaded(target: &Image, shade: &Shade, color: Rgb, background: Background) -> Result<Self> {
+        let (width, height) = (target.width(), target.height());
+        let page = Image::new(width, height, shade.planes(width, height, color))?;
+        let has_color = matches!(background, Background::Color(_));
+        Ok(Self::Shade(has_color.then_some(color), Pyramid::new(page)))
+    }
+
+    fn pyramid(&self) -> Option<&Pyramid> {
         match self {
-            Self::Color(color) => Canvas::flat(grid, *color),
-            Self::Document(pyramid) => Canvas::from_image(pyramid.level(halvings)),
+            Self::Color(_) => None,
+            Self::Document(pyramid) | Self::Shade(_, pyramid) => Some(pyramid),
         }
     }
 
-    /// The backdrop of the free strokes: the canvas `below` if it holds `frozen` strokes or a document.
+    fn canvas(&self, grid: Grid, halvings: usize) -> Canvas {
+        match self {
+            Self::Color(color) => Canvas::flat(grid, *color),
+            Self::Document(pyramid) | Self::Shade(_, pyramid) => {
+                Canvas::from_image(pyramid.level(halvings))
+            }
+        }
+    }
+
+    /// The backdrop of the free strokes: the canvas `below` if it holds `frozen` strokes, a document or a shade.
     fn backdrop<'a>(&self, below: &'a Canvas, frozen: usize) -> Backdrop<'a> {
         match self {
             Self::Color(color) if frozen == 0 => Backdrop::Color(*color),
@@ -190,6 +224,7 @@ impl Surface {
     pub(super) fn color(&self) -> Option<Rgb> {
         match self.bottom {
             Bottom::Color(color) => Some(color),
+            Bottom::Shade(color, _) => color,
             Bottom::Document(_) => None,
         }
     }
@@ -198,7 +233,7 @@ impl Surface {
     pub(super) fn color_mut(&mut self) -> Option<&mut Rgb> {
         match &mut self.bottom {
             Bottom::Color(color) => Some(color),
-            Bottom::Document(_) => None,
+            Bottom::Document(_) | Bottom::Shade(..) => None,
         }
     }
 
@@ -223,7 +258,7 @@ impl Surface {
 
     /// Makes the bottom the backdrop of the free strokes.
     pub(super) fn thaw(&mut self) {
-        if let Bottom::Document(pyramid) = &self.bottom {
+        if let Some(pyramid) = self.bottom.pyramid() {
             self.frozen = Canvas::from_image(pyramid.level(self.halvings));
         }
     }
@@ -235,7 +270,10 @@ impl Surface {
 
     /// The backdrop of the strokes of `scene`, in a drawing without frozen strokes.
     pub(super) fn backdrop_of(&self, scene: &Scene) -> Backdrop<'_> {
-        scene.background.map_or(self.backdrop(0), Backdrop::Color)
+        match (scene.background, &scene.shade) {
+            (Some(color), None) => Backdrop::Color(color),
+            _ => self.backdrop(0),
+        }
     }
 
     /// The same backdrop, as a canvas.

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::Input;
 use crate::metrics::Quality;
 use crate::svg::Finding;
+use crate::verify::OnMattes;
 
 /// What `strokefit check` found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -17,6 +18,8 @@ pub struct CheckReport {
     pub svg: String,
     /// Length of the SVG text in bytes.
     pub svg_bytes: usize,
+    /// A picture with alpha on black, white and magenta, as resvg renders the file; `null` for others.
+    pub alpha: Option<OnMattes>,
     /// One per renderer that drew the file: resvg, then the others in the order asked for.
     pub renderers: Vec<RendererEntry>,
     /// One per renderer that did not.

@@ -205,6 +205,7 @@ mod tests {
             ssim: 1.0,
             mse: 0.0,
             l1: 0.0,
+            ssimulacra2: 100.0,
         };
         let record = StageRecord {
             index: 1,
@@ -249,6 +250,9 @@ mod tests {
                 black_db: 28.5,
                 white_db: f64::INFINITY,
                 magenta_db: 29.0,
+                black_ssimulacra2: 61.5,
+                white_ssimulacra2: 100.0,
+                magenta_ssimulacra2: 60.0,
             }),
             base: Some(BaseEntry {
                 path: "b.svg".into(),
@@ -277,10 +281,13 @@ mod tests {
             "predicted_rss_bytes": 12_582_912,
             "stop": "strokes",
             "seed": 7,
-            "fidelity": {"psnr_db": null, "ssim": 1.0, "mse": 0.0, "l1": 0.0},
-            "soft": {"psnr_db": null, "ssim": 1.0, "mse": 0.0, "l1": 0.0},
+            "fidelity": {"psnr_db": null, "ssim": 1.0, "mse": 0.0, "l1": 0.0, "ssimulacra2": 100.0},
+            "soft": {"psnr_db": null, "ssim": 1.0, "mse": 0.0, "l1": 0.0, "ssimulacra2": 100.0},
             "agreement": {"psnr_db": 41.0, "max_abs": 12},
-            "alpha": {"black_db": 28.5, "white_db": null, "magenta_db": 29.0},
+            "alpha": {
+                "black_db": 28.5, "white_db": null, "magenta_db": 29.0,
+                "black_ssimulacra2": 61.5, "white_ssimulacra2": 100.0, "magenta_ssimulacra2": 60.0,
+            },
             "base": {"path": "b.svg", "strokes": 4, "elements": 0},
         });
         assert_eq!(serde_json::to_value(report()).unwrap(), expected);

@@ -36,7 +36,7 @@ pub use check::{AgainstResvg, CheckReport, NotDrawn, RendererEntry};
 pub use event::{Event, PhaseEntry};
 pub use fit::{BaseEntry, FitReport, Run, StageEntry, stop_word};
 pub use judged::Judged;
-pub use scene::{SceneRecord, StrokeRecord};
+pub use scene::{SceneRecord, ShadeRecord, StrokeRecord};
 pub use size::{gzip_bytes, per_stroke};
 #[cfg(feature = "cli")]
 pub use table::Table;

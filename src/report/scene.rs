@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::scene::{Path, PathPoint, Rgb, Scene, Stroke};
+use crate::scene::{Axis, Path, PathPoint, Rgb, Scene, Shade, ShadeStop, Stroke};
 
 /// A scene in numbers and colours that a page can hand to a canvas.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -13,6 +13,9 @@ pub struct SceneRecord {
     pub height: u32,
     /// `#rrggbb`; `null` if the drawing is transparent.
     pub background: Option<String>,
+    /// The gradient on it; left out if there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shade: Option<ShadeRecord>,
     /// Strokes back to front, stage by stage.
     pub stages: Vec<Vec<StrokeRecord>>,
 }
@@ -29,9 +32,35 @@ impl From<&Scene> for SceneRecord {
             width: scene.width,
             height: scene.height,
             background: scene.background.map(css),
+            shade: scene.shade.as_ref().map(ShadeRecord::from),
             stages: stages
                 .map(|stage| stage.strokes.iter().map(StrokeRecord::from).collect())
                 .collect(),
+        }
+    }
+}
+
+/// A gradient as a canvas takes it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ShadeRecord {
+    /// x1, y1, x2, y2 of a linear gradient, or the centre and the radius of a radial one, px.
+    pub axis: Vec<f32>,
+    /// Offsets and colours `rgb(r g b / a)`.
+    pub stops: Vec<(f32, String)>,
+}
+
+impl From<&Shade> for ShadeRecord {
+    fn from(shade: &Shade) -> Self {
+        let color = |stop: ShadeStop| {
+            let [r, g, b] = stop.color.map(|c| (c * 255.0).round());
+            (stop.offset, format!("rgb({r} {g} {b} / {})", stop.opacity))
+        };
+        Self {
+            axis: match shade.axis() {
+                Axis::Linear { from, to } => vec![from.x, from.y, to.x, to.y],
+                Axis::Radial { center, radius } => vec![center.x, center.y, radius],
+            },
+            stops: shade.stops().map(color).collect(),
         }
     }
 }
@@ -83,6 +112,23 @@ mod tests {
         };
         let json = serde_json::to_string(&SceneRecord::from(&scene)).unwrap();
         let expected = r##"{"width":8,"height":6,"background":"#ffffff","stages":[[[[1.5,2.0,3.0,4.0],0.75,"#ff8000",0.25,"oo"]]]}"##;
+        assert_eq!(json, expected);
+    }
+
+    #[test]
+    fn a_page_reads_the_axis_and_the_stops_of_a_shade() {
+        let axis = Axis::Radial {
+            center: [4.0, 3.0].into(),
+            radius: 2.5,
+        };
+        let stop = |offset, opacity| ShadeStop {
+            offset,
+            color: [1.0, 0.4, 0.0],
+            opacity,
+        };
+        let shade = Shade::new(axis, &[stop(0.0, 1.0), stop(1.0, 0.2)]).unwrap();
+        let json = serde_json::to_string(&ShadeRecord::from(&shade)).unwrap();
+        let expected = r#"{"axis":[4.0,3.0,2.5],"stops":[[0.0,"rgb(255 102 0 / 1)"],[1.0,"rgb(255 102 0 / 0.2)"]]}"#;
         assert_eq!(json, expected);
     }
 }

@@ -76,6 +76,7 @@ impl Scene {
         let mut quantized = Quantized {
             scene: Self {
                 background: self.background.map(quantized_color),
+                shade: self.shade.clone(),
                 stages: Vec::new(),
                 ..*self
             },

@@ -66,9 +66,9 @@ pub fn write_animated(
     groups.out
 }
 
-/// Whether a line of the writer is a stroke. All other lines are groups, their titles, and the background.
+/// Whether a line of the writer is a stroke. All other lines are groups, their titles, the background and the shade.
 fn is_stroke(line: &str) -> bool {
-    !["<g", "</", "<title", "<svg", "<rect"]
+    !["<g", "</", "<title", "<svg", "<rect", "<linear", "<radial"]
         .iter()
         .any(|other| line.starts_with(other))
 }

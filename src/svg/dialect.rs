@@ -8,6 +8,19 @@ pub(crate) const SVG_NAMESPACE: &str = "http://www.w3.org/2000/svg";
 /// The namespace that makes a group a layer in Inkscape.
 pub(super) const INKSCAPE_NAMESPACE: &str = "http://www.inkscape.org/namespaces/inkscape";
 
+/// The id of the shade's gradient.
+pub(super) const SHADE_ID: &str = "shade";
+
+/// The elements of the two kinds of gradients, and the attributes of their axes.
+pub(super) const LINEAR: &str = "linearGradient";
+pub(super) const LINEAR_AXIS: [&str; 4] = ["x1", "y1", "x2", "y2"];
+pub(super) const RADIAL: &str = "radialGradient";
+pub(super) const RADIAL_AXIS: [&str; 3] = ["cx", "cy", "r"];
+
+/// Units of the axes and of the offsets of gradients: 0.01 px and 0.001.
+pub(super) const HUNDREDTH: i64 = UNITS_PER_PX / 100;
+pub(super) const THOUSANDTH: i64 = UNITS_PER_PX / 1000;
+
 /// Largest number that may be read, in units: the distance of the two farthest points of a scene. All
 /// decimals up to here are exact in `f64`.
 pub(super) const MAX_UNITS: i64 = 2_000_000_000 * UNITS_PER_PX;

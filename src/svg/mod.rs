@@ -5,6 +5,9 @@
 //! ```text
 //! <svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="…" width="W" height="H" viewBox="0 0 W H">
 //! <rect width="W" height="H" fill="#rrggbb"/>                        the background, if any
+//! <radialGradient id="shade" gradientUnits="userSpaceOnUse" cx="9" cy="9" r="8.5"><stop offset="0" stop-color="#rrggbb"/>
+//! <stop offset="1" stop-color="#rrggbb" stop-opacity="0"/></radialGradient>              the shade, if any, on one line
+//! <rect width="W" height="H" fill="url(#shade)"/>
 //! <g id="stage-1" inkscape:groupmode="layer" inkscape:label="Stage 1" fill="none" stroke-linecap="round">
 //! <title>Stage 1: 2 strokes</title>
 //! <path d="M1.5 2L30.25 4" stroke="#rrggbb" stroke-width="2.5"/>      a capsule
@@ -16,6 +19,8 @@
 //!
 //! - One unit is one px of the picture, except in the smallest form. `width` and `height` equal the `viewBox`,
 //!   unless the page has a [`Length`] as its width.
+//! - The shade is a `linearGradient` from `x1 y1` to `x2 y2` or a `radialGradient`, in px to the hundredth, with offsets to the
+//!   thousandth. It is never in the unit of a layer, and has as many decimals with any precision.
 //! - Each `M` begins a stroke, `L` draws lines, `Q` and `T` quadratic curves, and `z` closes a path. The numbers of a
 //!   step are absolute or, after a small letter, relative, whichever is shorter. A step does without a letter if that of
 //!   the last one serves and nothing is longer, but never after `M`.

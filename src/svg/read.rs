@@ -1,6 +1,8 @@
 //! Reads SVG text of strokefit's own dialect as a scene. The reader is strict: whatever is not part of the
 //! dialect is an error, so a file never silently gives a scene that looks different from the file.
 
+mod shade;
+
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::name::{Namespace, ResolveResult};
 use quick_xml::reader::NsReader;
@@ -88,10 +90,18 @@ impl<'a> Parser<'a> {
                 Tag::Open(e)
                     if e.name == "rect"
                         && scene.background.is_none()
+                        && scene.shade.is_none()
                         && scene.stages.is_empty() =>
                 {
                     scene.background = Some(background(&e, width, height)?);
                     self.close(&e)?;
+                }
+                Tag::Open(e)
+                    if shade::begins_with(&e)
+                        && scene.shade.is_none()
+                        && scene.stages.is_empty() =>
+                {
+                    scene.shade = Some(self.shade(&e, width, height)?);
                 }
                 Tag::Open(e) if e.name == "g" => {
                     let number = scene.stages.len() + 1;
@@ -284,10 +294,15 @@ fn page_size(root: &Element) -> Parsed<(u32, u32)> {
     Ok((width, height))
 }
 
-fn background(rect: &Element, width: u32, height: u32) -> Parsed<Rgb> {
+/// Checks that a rectangle is the page, and has nothing else but a fill.
+fn sides(rect: &Element, width: u32, height: u32) -> Parsed<()> {
     rect.only(&["width", "height", "fill"])?;
     rect.expect("width", &width.to_string())?;
-    rect.expect("height", &height.to_string())?;
+    rect.expect("height", &height.to_string())
+}
+
+fn background(rect: &Element, width: u32, height: u32) -> Parsed<Rgb> {
+    sides(rect, width, height)?;
     rect.parsed("fill", dialect::channels).map(color)
 }
 

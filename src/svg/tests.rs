@@ -4,7 +4,9 @@ use super::*;
 use crate::error::ErrorKind;
 use crate::math::Point;
 use crate::metrics::Agreement;
-use crate::scene::{Dropped, MAX_POINTS, Path, PathPoint, Scene, Stage, Stroke};
+use crate::scene::{
+    Axis, Dropped, MAX_POINTS, MAX_STOPS, Path, PathPoint, Scene, Shade, ShadeStop, Stage, Stroke,
+};
 use crate::verify;
 
 fn point() -> impl Strategy<Value = Point> {
@@ -62,6 +64,27 @@ fn stroke() -> impl Strategy<Value = Stroke> {
     )
 }
 
+fn shade() -> impl Strategy<Value = Shade> {
+    let linear = (point(), point()).prop_map(|(from, to)| Axis::Linear { from, to });
+    let radial =
+        (point(), 1.0..300.0_f32).prop_map(|(center, radius)| Axis::Radial { center, radius });
+    let unit = || prop_oneof![0.0..=1.0_f32, Just(0.0), Just(1.0)];
+    let stop = (unit(), [unit(), unit(), unit()], unit());
+    let stop = stop.prop_map(|(offset, color, opacity)| ShadeStop {
+        offset,
+        color,
+        opacity,
+    });
+    let stops = prop::collection::vec(stop, 2..=MAX_STOPS).prop_map(|mut stops| {
+        stops.sort_by(|a, b| a.offset.total_cmp(&b.offset));
+        stops
+    });
+    let whole = (prop_oneof![linear, radial], stops);
+    whole.prop_filter_map("a short axis", |(axis, stops)| {
+        Shade::new(axis, &stops).ok()
+    })
+}
+
 fn scene() -> impl Strategy<Value = Scene> {
     let stage = prop::collection::vec(stroke(), 0..8).prop_map(|strokes| Stage { strokes });
     let background = prop::option::of([0.0..=1.0_f32, 0.0..=1.0_f32, 0.0..=1.0_f32]);
@@ -69,12 +92,14 @@ fn scene() -> impl Strategy<Value = Scene> {
         1..100_u32,
         1..100_u32,
         background,
+        prop::option::of(shade()),
         prop::collection::vec(stage, 0..4),
     )
-        .prop_map(|(width, height, background, stages)| Scene {
+        .prop_map(|(width, height, background, shade, stages)| Scene {
             width,
             height,
             background,
+            shade,
             stages,
         })
 }
@@ -466,4 +491,66 @@ fn comments_white_space_and_prefixed_attributes_do_not_matter() {
         )
         .replace("/>\n</g>", "></path>\n  </g>");
     assert_eq!(read(&text).unwrap(), sample().quantized(2).scene);
+}
+
+/// A page with a glow.
+fn glowing() -> Scene {
+    let axis = Axis::Radial {
+        center: [4.5, 3.25].into(),
+        radius: 2.5,
+    };
+    let stop = |offset, opacity| ShadeStop {
+        offset,
+        color: [1.0, 0.4, 0.0],
+        opacity,
+    };
+    let shade = Shade::new(axis, &[stop(0.0, 1.0), stop(0.5, 0.2), stop(1.0, 0.0)]).unwrap();
+    Scene {
+        shade: Some(shade),
+        ..Scene::empty(9, 6, None)
+    }
+}
+
+#[test]
+fn a_shade_is_a_gradient_and_a_rectangle() {
+    let text = write(&glowing(), &WriteOptions::default());
+    let expected = concat!(
+        r#"<radialGradient id="shade" gradientUnits="userSpaceOnUse" cx="4.5" cy="3.25" r="2.5">"#,
+        r##"<stop offset="0" stop-color="#ff6600"/><stop offset="0.5" stop-color="#ff6600" stop-opacity="0.2"/>"##,
+        r##"<stop offset="1" stop-color="#ff6600" stop-opacity="0"/></radialGradient>"##,
+        "\n",
+        r#"<rect width="9" height="6" fill="url(#shade)"/>"#,
+    );
+    assert!(text.contains(expected), "{text}");
+    assert_eq!(read(&text).unwrap(), glowing());
+}
+
+#[test]
+fn a_shade_is_drawn_as_we_draw_it() {
+    let text = write(&glowing(), &WriteOptions::default());
+    let drawn = verify::render(&text, verify::Size::Scale(1.0), Some([0.0; 3])).unwrap();
+    let planes = glowing().shade.unwrap().planes(9, 6, [0.0; 3]);
+    let pairs = drawn.planes().iter().flatten().zip(planes.iter().flatten());
+    let largest = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    assert!(largest < 2.0 / 255.0, "{largest}");
+}
+
+#[test]
+fn other_gradients_are_refused() {
+    let text = write(&glowing(), &WriteOptions::default());
+    for (from, to) in [
+        ("id=\"shade\"", "id=\"other\""),
+        ("userSpaceOnUse", "objectBoundingBox"),
+        ("r=\"2.5\"", "r=\"2.505\""),
+        ("r=\"2.5\"", "r=\"0.5\""),
+        ("r=\"2.5\"", "r=\"2.5\" fx=\"1\""),
+        ("offset=\"0.5\"", "offset=\"1.5\""),
+        ("offset=\"1\"", "offset=\"0.25\""),
+        ("url(#shade)", "#ffffff"),
+        ("<rect", "<g"),
+    ] {
+        let changed = text.replace(from, to);
+        assert_ne!(changed, text, "{from}");
+        assert!(read(&changed).is_err(), "{changed}");
+    }
 }

@@ -1,5 +1,7 @@
 //! Writes a scene as SVG text.
 
+mod shade;
+
 use super::arrange::{self, Layer};
 use super::dialect::{self, Unit};
 use super::element;
@@ -47,6 +49,9 @@ fn head(scene: &Scene, options: &WriteOptions) -> String {
     if let Some(color) = scene.background {
         let fill = dialect::hex(color.map(quantum));
         out += &format!("<rect width=\"{width}\" height=\"{height}\" fill=\"{fill}\"/>\n");
+    }
+    if let Some(shade) = &scene.shade {
+        out += &shade::elements(shade, width, height);
     }
     out
 }

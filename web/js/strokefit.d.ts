@@ -90,8 +90,8 @@ export interface Report {
   svg_gzip_bytes: number;
   wall_s: number;
   stop: "strokes" | "psnr" | "bytes" | "time" | "converged" | "interrupted";
-  /** The SVG as rendered by resvg against the picture; `psnr_db` is null where they are equal. */
-  fidelity: { psnr_db: number | null; ssim: number; mse: number; l1: number };
+  /** The SVG as rendered by resvg against the picture; `psnr_db` is null where they are equal, `ssimulacra2` then 100. */
+  fidelity: { psnr_db: number | null; ssim: number; mse: number; l1: number; ssimulacra2: number };
   [field: string]: unknown;
 }
 

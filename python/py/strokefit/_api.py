@@ -237,7 +237,7 @@ def judge(svg: Svg, picture: Picture) -> Fidelity:
     >>> import numpy as np, strokefit
     >>> white = np.ones((8, 8))
     >>> strokefit.judge('<svg xmlns="http://www.w3.org/2000/svg" width="8" height="8"/>', white)
-    {'psnr_db': None, 'ssim': 1.0, 'mse': 0.0, 'l1': 0.0}
+    {'psnr_db': None, 'ssim': 1.0, 'mse': 0.0, 'l1': 0.0, 'ssimulacra2': 100.0}
     """
     return cast("Fidelity", json.loads(_native.judge(_svg(svg)[0], native(picture))))
 

@@ -55,6 +55,8 @@ class Fidelity(TypedDict):
     mse: float
     #: Mean absolute error, 0..1.
     l1: float
+    #: SSIMULACRA2: 90 lossless to the eye, 70 high, 50 medium, 30 low quality.
+    ssimulacra2: float
 
 
 class Agreement(TypedDict):
@@ -67,11 +69,14 @@ class Agreement(TypedDict):
 
 
 class OnMattes(TypedDict):
-    """PSNR of a transparent drawing on three colours; `None` for equal pictures."""
+    """PSNR of a transparent drawing on three colours, `None` for equal pictures; and SSIMULACRA2."""
 
     black_db: Optional[float]
     white_db: Optional[float]
     magenta_db: Optional[float]
+    black_ssimulacra2: float
+    white_ssimulacra2: float
+    magenta_ssimulacra2: float
 
 
 class BaseEntry(TypedDict):

@@ -38,7 +38,7 @@ impl PictureFolder {
 pub(super) struct Trial<'a> {
     svg: &'a str,
     target: Option<&'a Image>,
-    resvg: Image,
+    pub(super) resvg: Image,
     timeout: Duration,
     pictures: Option<PictureFolder>,
     /// resvg first.

@@ -2,7 +2,8 @@
 
 use super::{
     AdamSettings, BackgroundChoice, Correction, Domain, EdgeShape, Joins, Pens, Points, Polish,
-    Preset, Rates, Recipe, Recoloring, Relocation, Rounds, Settling, Stages, TimeShares,
+    Preset, Rates, Recipe, Recoloring, Relocation, Rounds, Settling, ShadeChoice, Stages,
+    TimeShares,
 };
 use crate::optim::AdamParams;
 use crate::seed::Probing;
@@ -210,6 +211,14 @@ const BALANCED: Recipe = Recipe {
         prevailing_share: 0.25,
         translucent_share: 0.005,
         translucent: [0.03, 0.97],
+        shade: ShadeChoice {
+            blocks: 64,
+            near: 3.0 / 255.0,
+            least_share: 0.5,
+            least_gain: 0.25,
+            hopeless_share: 0.2,
+            stops: 8,
+        },
     },
     time: TimeShares {
         stroke_px: 160.0,

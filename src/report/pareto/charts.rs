@@ -6,25 +6,31 @@ use crate::report::plot::Chart;
 
 type Number = fn(&ParetoEntry) -> Option<f64>;
 
-/// Name and SVG of each plot of `picture`: `time`, `bytes`, `strokes` and `stages`.
+/// A name and what it is of a drawing.
+type Axis = (&'static str, Number);
+
+/// Name and SVG of each plot of `picture`: `time`, `bytes` and `strokes` against PSNR, `seen`, bytes against SSIMULACRA2, and
+/// `stages`.
 ///
 /// # Errors
 /// [`ErrorKind::Picture`](crate::ErrorKind::Picture) when one cannot be drawn.
 pub fn charts(entries: &[ParetoEntry], picture: &str) -> Result<Vec<(&'static str, String)>> {
     let here: Vec<&ParetoEntry> = entries.iter().filter(|e| e.picture == picture).collect();
-    let by = |name: &'static str, axis: &str, cost: Number| {
-        let chart = scatter(
-            &format!("{picture}: {name} against error"),
-            axis,
-            &here,
-            cost,
-        );
-        Ok((name, chart.svg()?))
+    let by = |name: &'static str, cost: Axis, gain: Axis| {
+        let title = format!("{picture}: {} against {}", cost.0, gain.0);
+        Ok((name, scatter(&title, &here, [cost, gain]).svg()?))
     };
+    let bytes: Axis = ("bytes after gzip", |e| Some(e.gzip_bytes as f64));
+    let strokes: Axis = ("strokes", |e| e.strokes.map(|n| n as f64));
+    let psnr: Axis = ("PSNR of the file, dB", |e| {
+        e.psnr_db().filter(|db| db.is_finite())
+    });
+    let seen: Axis = ("SSIMULACRA2 of the file", ParetoEntry::ssimulacra2);
     Ok(vec![
-        by("time", "CPU time, s", |e| e.cpu_s)?,
-        by("bytes", "bytes after gzip", |e| Some(e.gzip_bytes as f64))?,
-        by("strokes", "strokes", |e| e.strokes.map(|n| n as f64))?,
+        by("time", ("CPU time, s", |e| e.cpu_s), psnr)?,
+        by("bytes", bytes, psnr)?,
+        by("strokes", strokes, psnr)?,
+        by("seen", bytes, seen)?,
         ("stages", stages(picture, &here).svg()?),
     ])
 }
@@ -38,11 +44,11 @@ fn line(entry: &ParetoEntry) -> String {
     }
 }
 
-fn scatter(title: &str, axis: &str, here: &[&ParetoEntry], cost: Number) -> Chart {
-    let point = |e: &&ParetoEntry| Some([cost(e)?, e.psnr_db().filter(|db| db.is_finite())?]);
+fn scatter(title: &str, here: &[&ParetoEntry], [(x, cost), (y, gain)]: [Axis; 2]) -> Chart {
+    let point = |e: &&ParetoEntry| Some([cost(e)?, gain(e)?]);
     let mut chart = Chart {
         title: title.into(),
-        axes: [axis.into(), "PSNR of the file, dB".into()],
+        axes: [x.into(), y.into()],
         logarithmic_x: true,
         legend_beside: true,
         ..Chart::default()
@@ -53,7 +59,7 @@ fn scatter(title: &str, axis: &str, here: &[&ParetoEntry], cost: Number) -> Char
         if marks.is_empty() {
             continue;
         }
-        let best = front(members, cost, ParetoEntry::psnr_db);
+        let best = front(members, cost, gain);
         chart
             .series
             .push((name, best.iter().filter_map(point).collect()));
@@ -119,7 +125,7 @@ mod tests {
         ];
         let charts = charts(&entries, "cat").unwrap();
         let names: Vec<_> = charts.iter().map(|(name, _)| *name).collect();
-        assert_eq!(names, ["time", "bytes", "strokes", "stages"]);
+        assert_eq!(names, ["time", "bytes", "strokes", "seen", "stages"]);
         assert!(
             charts[0].1.contains("article's recipe")
                 || charts[0].1.contains("article&apos;s recipe")

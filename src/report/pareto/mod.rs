@@ -116,6 +116,11 @@ impl ParetoEntry {
         self.fidelity.map(|quality| quality.psnr_db)
     }
 
+    /// What people see of it, where there is a drawing.
+    pub fn ssimulacra2(&self) -> Option<f64> {
+        self.fidelity.map(|quality| quality.ssimulacra2)
+    }
+
     /// The line of standard output, ending in the verdict.
     pub fn line(&self) -> String {
         let Self {
@@ -132,9 +137,10 @@ impl ParetoEntry {
             return format!("{picture}, {family} {label}: {verdict}");
         };
         format!(
-            "{picture}, {family} {label}: {:.2} dB, SSIM {:.4}, {} s of CPU, {} bytes, {} after gzip: {verdict}",
+            "{picture}, {family} {label}: {:.2} dB, SSIM {:.4}, SSIMULACRA2 {:.1}, {} s of CPU, {} bytes, {} after gzip: {verdict}",
             quality.psnr_db,
             quality.ssim,
+            quality.ssimulacra2,
             optional(self.cpu_s, 2),
             self.svg_bytes,
             self.gzip_bytes
@@ -217,6 +223,7 @@ pub(super) fn drawing(
             ssim: 0.9,
             mse: crate::math::powf(10.0, -psnr_db / 10.0),
             l1: 0.01,
+            ssimulacra2: 40.0 + psnr_db,
         }),
         ..ParetoEntry::default()
     }

@@ -88,13 +88,14 @@ impl ParetoReport {
     }
 }
 
-const HEAD: [&str; 15] = [
+const HEAD: [&str; 16] = [
     "picture",
     "family",
     "settings",
     "strokes",
     "psnr_db",
     "ssim",
+    "ssimulacra2",
     "l1",
     "cpu_s",
     "wall_s",
@@ -106,7 +107,7 @@ const HEAD: [&str; 15] = [
     "failure",
 ];
 
-fn cells(entry: &ParetoEntry) -> [String; 15] {
+fn cells(entry: &ParetoEntry) -> [String; 16] {
     let quality = |f: fn(Quality) -> f64| entry.fidelity.map(f);
     let mib = entry
         .peak_rss_bytes
@@ -119,6 +120,7 @@ fn cells(entry: &ParetoEntry) -> [String; 15] {
         whole(entry.strokes.map(|n| n as f64)),
         optional(quality(|q| q.psnr_db), 2),
         optional(quality(|q| q.ssim), 4),
+        optional(quality(|q| q.ssimulacra2), 1),
         optional(quality(|q| q.l1), 5),
         optional(entry.cpu_s, 2),
         optional(entry.wall_s, 2),

@@ -5,6 +5,22 @@
 // Longest side, px, at which drawing and target are compared: more takes time that a fit could use.
 const MAX_COMPARED = 1024;
 
+// The background and the shade, if there are any.
+export function drawPage(context, { width, height, background, shade }) {
+  const fills = [background, shade && gradient(context, shade)].filter(Boolean);
+  for (const fill of fills) {
+    context.fillStyle = fill;
+    context.fillRect(0, 0, width, height);
+  }
+}
+
+function gradient(context, { axis, stops }) {
+  const [x, y, radius] = axis;
+  const fill = axis.length === 4 ? context.createLinearGradient(...axis) : context.createRadialGradient(x, y, 0, x, y, radius);
+  for (const [offset, color] of stops) fill.addColorStop(offset, color);
+  return fill;
+}
+
 export function drawStrokes(context, strokes) {
   context.lineCap = context.lineJoin = "round";
   for (const stroke of strokes) {
@@ -156,10 +172,11 @@ export class Comparison {
     return this.context.getImageData(0, 0, this.canvas.width, this.canvas.height);
   }
 
-  // Starts with the bare background; transparent pages are compared on white.
-  clear(background) {
-    this.context.fillStyle = background ?? "#fff";
+  // Starts with the bare page; transparent pages are compared on white.
+  clear(scene) {
+    this.context.fillStyle = "#fff";
     this.context.fillRect(...this.page);
+    drawPage(this.context, scene);
   }
 
   add(strokes) {

@@ -16,7 +16,7 @@
 // and `listen` with what is done when somebody wants something: { stop(), add(strokes) }.
 
 import { drawChart } from "./chart.js";
-import { Comparison, bounds, drawPoints, drawRing, drawStrokes, strokeAt } from "./picture.js";
+import { Comparison, bounds, drawPage, drawPoints, drawRing, drawStrokes, strokeAt } from "./picture.js";
 
 // How often the finished drawing is measured on the way from no stroke to all.
 const MEASURED = 60;
@@ -111,7 +111,7 @@ function underway() {
 
 // dB of the finished drawing as strokes are added, by the browser's renderer.
 function measure() {
-  comparison.clear(scene.background);
+  comparison.clear(scene);
   measured = [[0, comparison.psnr()]];
   const step = Math.max(1, Math.ceil(strokes.length / MEASURED));
   for (let k = 0; k < strokes.length; k += step) {
@@ -195,7 +195,7 @@ function redraw() {
   const list = visible.map(({ stroke }) => stroke);
   const found = strokes[selected - 1];
   paint(drawing, (context, px) => {
-    if (scene.background) fillPage(context, scene.background);
+    drawPage(context, scene);
     drawStrokes(context, list);
     if (found) {
       drawRing(context, found.stroke, px);
@@ -205,7 +205,7 @@ function redraw() {
   });
   if (comparison) {
     paint(target, (context) => context.drawImage(state.target, 0, 0, scene.width, scene.height));
-    comparison.clear(scene.background);
+    comparison.clear(scene);
     comparison.add(list);
     element("shown-db").textContent = `${comparison.psnr().toFixed(2)} dB`;
     comparison.subtract();
@@ -244,11 +244,6 @@ function drawCompared(context, px) {
     context.fillStyle = color;
     context.fillRect(end - (width / 2) * px, view.y, width * px, drawing.clientHeight * px);
   }
-}
-
-function fillPage(context, color) {
-  context.fillStyle = color;
-  context.fillRect(0, 0, scene.width, scene.height);
 }
 
 // Lets `draw` draw in px of the picture; it is told how many of them are one CSS px.

@@ -1,0 +1,451 @@
+//! SSIMULACRA2 2.1 (Sneyers 2022–2023): how different two pictures look to people.
+//!
+//! Both pictures are compared in the XYB colour space of JPEG XL at six scales, each half as large as the one before,
+//! halved in linear light. At each pixel there are three kinds of error: a change of *structure* (SSIM without
+//! its luminance denominator), an *artefact* (an edge where the reference is smooth) and *lost* detail (the reverse). Of each
+//! map the mean and the fourth norm, `(Σ e⁴ / n)^¼`, count with weights that were fitted to 17,611 ratings by people. The
+//! weighted sum goes through a polynomial to a score: 90 lossless to the eye, 70 high, 50 medium, 30 low quality.
+//!
+//! Degenerate cases: equal pictures have 100, very bad ones less than 0. A picture with a side of less than 8 px is enlarged
+//! by whole factors. The reference implementation shifts weights where a picture is too small for six scales
+//! (a side of less than 113 px); so does this one, so that scores are the same.
+
+mod weights;
+
+use rayon::prelude::*;
+
+use super::CHANNELS;
+use crate::math;
+use weights::WEIGHTS;
+
+const SCALES: usize = 6;
+/// The least side that has one more scale, px.
+const MIN_SIDE: usize = 8;
+/// Half of the window: the recursive Gaussian of σ = 1.5 px (Charalampidis 2016) has these taps. Beyond the border all is 0.
+const TAPS: [f32; 5] = [
+    0.264_621_1,
+    0.212_928_6,
+    0.109_335_37,
+    0.036_011_115,
+    0.009_414_368,
+];
+/// Keeps the structure term stable where there is no variance.
+const C2: f32 = 0.0009;
+/// Added to all cone responses, so that the cube root has a slope at black.
+const OPSIN_BIAS: f32 = 0.003_793_073_4;
+/// Linear RGB to cone responses (long, medium, short).
+const OPSIN: [[f32; 3]; 3] = [
+    [0.30, 0.622, 0.078],
+    [0.23, 0.692, 0.078],
+    [0.243_422_69, 0.204_767_45, 0.551_809_86],
+];
+
+/// Kinds of error at a pixel.
+const KINDS: usize = 3;
+/// Mean and fourth norm of a map.
+const NORMS: usize = 2;
+/// By kind of error and norm.
+type Norms = [[f64; NORMS]; KINDS];
+
+/// The score of `picture` against `reference`, interleaved levels in rows of `width` pixels.
+pub(super) fn score(reference: &[u8], picture: &[u8], width: usize) -> f64 {
+    let norms: Vec<_> = Scales::new(reference, picture, width)
+        .map(|scale| scale.norms())
+        .collect();
+    let weighted = weighted(norms.len()).map(|(weight, [c, s, n, k])| weight * norms[s][c][k][n]);
+    of_sum(weighted.sum())
+}
+
+/// What the score would be if all of the picture were as bad as it is at each pixel, row by row.
+///
+/// The weighted sum that makes the score is a sum over pixels: a mean is, and a fourth norm is shared out by `e⁴`.
+pub(super) fn map(reference: &[u8], picture: &[u8], width: usize) -> Vec<f32> {
+    let sums = sums(reference, picture, width);
+    sums.iter().map(|&sum| of_sum(sum) as f32).collect()
+}
+
+/// The weighted errors at each pixel, whose mean makes the score.
+fn sums(reference: &[u8], picture: &[u8], width: usize) -> Vec<f64> {
+    let pixels = reference.len() / CHANNELS;
+    let count = Scales::new(reference, picture, width).count();
+    let factor = enlargement(width, pixels / width);
+    let mut sums = vec![0.0; pixels];
+    for (s, scale) in Scales::new(reference, picture, width).enumerate() {
+        let share = scale.shares(s, count);
+        // Each pixel of a scale stands for a square of the picture.
+        for (i, sum) in sums.iter_mut().enumerate() {
+            let [x, y] = [i % width, i / width].map(|at| (at * factor) >> s);
+            *sum += share[y * scale.width + x];
+        }
+    }
+    sums
+}
+
+/// The score of a weighted sum of errors: a fitted polynomial, then a fitted power.
+fn of_sum(sum: f64) -> f64 {
+    let x = sum * 0.956_238_261_683_484_4;
+    let y = ((6.248_496_625_763_138e-5 * x - 0.020_884_521_182_843_837) * x
+        + 2.326_765_642_916_932)
+        * x;
+    if y > 0.0 {
+        100.0 - 10.0 * math::powf(y, 0.627_633_646_783_138_7)
+    } else {
+        100.0
+    }
+}
+
+/// The weights that are not 0 of a picture with `scales` scales: each with its channel, scale, norm and kind of error.
+fn weighted(scales: usize) -> impl Iterator<Item = (f64, [usize; 4])> {
+    let places = (0..CHANNELS).flat_map(move |c| {
+        (0..scales)
+            .flat_map(move |s| (0..NORMS).flat_map(move |n| (0..KINDS).map(move |k| [c, s, n, k])))
+    });
+    let weights = WEIGHTS.as_flattened().as_flattened().as_flattened();
+    let all = weights.iter().copied().zip(places);
+    all.filter(|(weight, _)| *weight > 0.0)
+}
+
+/// By which factor a picture is enlarged, so that it has a scale.
+fn enlargement(width: usize, height: usize) -> usize {
+    MIN_SIDE.div_ceil(width.min(height).min(MIN_SIDE))
+}
+
+/// Both pictures in linear light.
+struct Scales {
+    width: usize,
+    height: usize,
+    linear: [Vec<[f32; 3]>; 2],
+    done: usize,
+}
+
+impl Scales {
+    fn new(reference: &[u8], picture: &[u8], width: usize) -> Self {
+        let height = reference.len() / (CHANNELS * width);
+        let factor = enlargement(width, height);
+        let linear: Vec<f32> = (0..=u8::MAX).map(linear_light).collect();
+        let enlarged = |levels: &[u8]| -> Vec<[f32; 3]> {
+            let (pixels, _) = levels.as_chunks::<3>();
+            let size = [width * factor, height * factor];
+            let places = (0..size[0] * size[1]).map(|i| [i % size[0], i / size[0]]);
+            places
+                .map(|[x, y]| pixels[y / factor * width + x / factor])
+                .map(|pixel| pixel.map(|level| linear[usize::from(level)]))
+                .collect()
+        };
+        Self {
+            width: width * factor,
+            height: height * factor,
+            linear: [enlarged(reference), enlarged(picture)],
+            done: 0,
+        }
+    }
+
+    /// Halves both pictures. The last row and column of an odd side count twice.
+    fn halve(&mut self) {
+        let (width, height) = (self.width, self.height);
+        let [columns, rows] = [width.div_ceil(2), height.div_ceil(2)];
+        for plane in &mut self.linear {
+            let halved = (0..columns * rows).map(|i| {
+                let [x, y] = [2 * (i % columns), 2 * (i / columns)];
+                let [right, below] = [(x + 1).min(width - 1), (y + 1).min(height - 1)];
+                let four = [(x, y), (right, y), (x, below), (right, below)];
+                let four = four.map(|(x, y)| plane[y * width + x]);
+                [0, 1, 2].map(|c| four.iter().map(|pixel| pixel[c]).sum::<f32>() / 4.0)
+            });
+            *plane = halved.collect();
+        }
+        (self.width, self.height) = (columns, rows);
+    }
+}
+
+impl Iterator for Scales {
+    type Item = Scale;
+
+    fn next(&mut self) -> Option<Scale> {
+        if self.done == SCALES || self.width.min(self.height) < MIN_SIDE {
+            return None;
+        }
+        if self.done > 0 {
+            self.halve();
+        }
+        self.done += 1;
+        let pair = [0, 1].map(|i| xyb(&self.linear[i]));
+        Some(Scale {
+            width: self.width,
+            height: self.height,
+            pair,
+        })
+    }
+}
+
+/// sRGB's transfer function.
+fn linear_light(level: u8) -> f32 {
+    let x = f32::from(level) / 255.0;
+    if x <= 0.04045 {
+        x / 12.92
+    } else {
+        math::powf((x + 0.055) / 1.055, 2.4)
+    }
+}
+
+/// Planes X, Y and B − Y, shifted and scaled to about 0..1.
+fn xyb(linear: &[[f32; 3]]) -> [Vec<f32>; 3] {
+    let black = math::cbrt(OPSIN_BIAS);
+    let convert = |rgb: &[f32; 3]| {
+        let [long, medium, short] = OPSIN.map(|row| {
+            let response: f32 = row.iter().zip(rgb).map(|(weight, v)| weight * v).sum();
+            math::cbrt(response + OPSIN_BIAS) - black
+        });
+        let (x, y) = (0.5 * (long - medium), 0.5 * (long + medium));
+        [14.0 * x + 0.42, y + 0.01, short - y + 0.55]
+    };
+    let pixels: Vec<[f32; 3]> = linear.par_iter().map(convert).collect();
+    [0, 1, 2].map(|c| pixels.iter().map(|pixel| pixel[c]).collect())
+}
+
+/// Both pictures at one scale, reference first.
+struct Scale {
+    width: usize,
+    height: usize,
+    pair: [[Vec<f32>; 3]; 2],
+}
+
+impl Scale {
+    /// The norms of all maps, by channel.
+    fn norms(&self) -> [Norms; 3] {
+        [0, 1, 2].map(|channel| {
+            let sums: Vec<Norms> = self.rows(channel, |errors| {
+                [0, 1, 2].map(|k| {
+                    let errors = || errors.iter().map(|e| f64::from(e[k]));
+                    [errors().sum(), errors().map(|e| math::powi(e, 4)).sum()]
+                })
+            });
+            let pixels = (self.width * self.height) as f64;
+            [0, 1, 2].map(|k| {
+                let mean = |n: usize| sums.iter().map(|row| row[k][n]).sum::<f64>() / pixels;
+                [mean(0), mean(1).sqrt().sqrt()]
+            })
+        })
+    }
+
+    /// The weighted errors at each pixel, as scale `index` of `count`; their mean is the share of this scale in the sum.
+    fn shares(&self, index: usize, count: usize) -> Vec<f64> {
+        let norms = self.norms();
+        let mut shares = vec![0.0; self.width * self.height];
+        for (channel, norms) in norms.iter().enumerate() {
+            let here = weighted(count).filter(|(_, [c, s, ..])| [*c, *s] == [channel, index]);
+            // What an error and its fourth power count for.
+            let mut factors: Norms = [[0.0; NORMS]; KINDS];
+            for (weight, [_, _, n, k]) in here {
+                let norm = norms[k][1];
+                factors[k][n] = match n {
+                    0 => weight,
+                    _ if norm > 0.0 => weight / math::powi(norm, 3),
+                    _ => 0.0,
+                };
+            }
+            let rows = self.rows(channel, |errors| {
+                let of = |pixel: &[f32; KINDS]| -> f64 {
+                    let terms = pixel.iter().zip(&factors);
+                    terms
+                        .map(|(&e, factor)| (f64::from(e), factor))
+                        .map(|(e, [mean, fourth])| mean * e + fourth * math::powi(e, 4))
+                        .sum()
+                };
+                errors.iter().map(of).collect::<Vec<f64>>()
+            });
+            for (share, own) in shares.iter_mut().zip(rows.iter().flatten()) {
+                *share += own;
+            }
+        }
+        shares
+    }
+
+    /// What `f` makes of the errors of each row of a channel.
+    fn rows<R: Send>(&self, channel: usize, f: impl Fn(&[[f32; KINDS]]) -> R + Sync) -> Vec<R> {
+        let rows = (0..self.height).into_par_iter();
+        rows.map_init(
+            || Window::new(self.width),
+            |window, y| {
+                let [reference, picture] = [0, 1].map(|i| &*self.pair[i][channel]);
+                f(window.errors(reference, picture, y))
+            },
+        )
+        .collect()
+    }
+}
+
+/// Blurred values, squares and products of a row.
+struct Window {
+    width: usize,
+    /// Blurred down the columns: both pictures, their squares, and their product.
+    down: [Vec<f32>; 5],
+    /// And along the row.
+    both: [Vec<f32>; 5],
+    errors: Vec<[f32; KINDS]>,
+}
+
+impl Window {
+    fn new(width: usize) -> Self {
+        Self {
+            width,
+            down: std::array::from_fn(|_| vec![0.0; width]),
+            both: std::array::from_fn(|_| vec![0.0; width]),
+            errors: vec![[0.0; KINDS]; width],
+        }
+    }
+
+    /// The errors of row `y` of these planes.
+    fn errors(&mut self, reference: &[f32], picture: &[f32], y: usize) -> &[[f32; KINDS]] {
+        let row =
+            |plane: &'_ [f32], y: usize| y * self.width..((y + 1) * self.width).min(plane.len());
+        self.down.iter_mut().for_each(|sums| sums.fill(0.0));
+        let height = reference.len() / self.width;
+        for near in y.saturating_sub(TAPS.len() - 1)..(y + TAPS.len()).min(height) {
+            let (a, b) = (
+                &reference[row(reference, near)],
+                &picture[row(picture, near)],
+            );
+            add_row(&mut self.down, a, b, TAPS[near.abs_diff(y)]);
+        }
+        for (down, both) in self.down.iter().zip(&mut self.both) {
+            blur(down, both);
+        }
+        let (a, b) = (&reference[row(reference, y)], &picture[row(picture, y)]);
+        for (x, errors) in self.errors.iter_mut().enumerate() {
+            *errors = errors_at([a[x], b[x]], [0, 1, 2, 3, 4].map(|i| self.both[i][x]));
+        }
+        &self.errors
+    }
+}
+
+fn add_row(sums: &mut [Vec<f32>; 5], a: &[f32], b: &[f32], tap: f32) {
+    let [sum_a, sum_b, sum_aa, sum_bb, sum_ab] = sums;
+    let sums = sum_a
+        .iter_mut()
+        .zip(sum_b)
+        .zip(sum_aa)
+        .zip(sum_bb)
+        .zip(sum_ab);
+    for ((a, b), ((((sum_a, sum_b), sum_aa), sum_bb), sum_ab)) in a.iter().zip(b).zip(sums) {
+        *sum_a += tap * a;
+        *sum_b += tap * b;
+        *sum_aa += tap * (a * a);
+        *sum_bb += tap * (b * b);
+        *sum_ab += tap * (a * b);
+    }
+}
+
+fn blur(from: &[f32], to: &mut [f32]) {
+    for (t, f) in to.iter_mut().zip(from) {
+        *t = TAPS[0] * f;
+    }
+    for (shift, &tap) in TAPS.iter().enumerate().skip(1) {
+        if shift >= from.len() {
+            break;
+        }
+        let rest = from.len() - shift;
+        to[..rest]
+            .iter_mut()
+            .zip(&from[shift..])
+            .for_each(|(t, f)| *t += tap * f);
+        to[shift..]
+            .iter_mut()
+            .zip(&from[..rest])
+            .for_each(|(t, f)| *t += tap * f);
+    }
+}
+
+/// Structure, artefact and lost detail at a pixel: its values in both pictures, and the blurred values, squares and product.
+fn errors_at([a, b]: [f32; 2], [mean_a, mean_b, aa, bb, ab]: [f32; 5]) -> [f32; KINDS] {
+    let luminance = 1.0 - (mean_a - mean_b) * (mean_a - mean_b);
+    let covariance = 2.0 * (ab - mean_a * mean_b) + C2;
+    let variances = (aa - mean_a * mean_a) + (bb - mean_b * mean_b) + C2;
+    let structure = (1.0 - luminance * covariance / variances).max(0.0);
+    let change = (1.0 + (b - mean_b).abs()) / (1.0 + (a - mean_a).abs()) - 1.0;
+    [structure, change.max(0.0), (-change).max(0.0)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::noise;
+    use super::super::{ssimulacra2, ssimulacra2_map};
+    use super::*;
+    use crate::image::Image;
+
+    /// Values of a wave and a ramp, with `error` added by a coarser wave.
+    fn wave(width: usize, height: usize, error: f32) -> Image {
+        let plane = |phase: f32| -> Vec<f32> {
+            let at = |i: usize| [(i % width) as f32, (i / width) as f32];
+            let value = |[x, y]: [f32; 2]| {
+                let fine = math::sin(0.3 * x + phase) * math::cos(0.23 * y);
+                let coarse = math::sin(0.11 * (x + y) + phase);
+                let ramp = (x + y) / (width + height) as f32;
+                ((0.35 * ramp + 0.15 * fine + 0.3 + error * coarse) * 255.0).round() / 255.0
+            };
+            (0..width * height).map(|i| value(at(i))).collect()
+        };
+        Image::new(width, height, [plane(0.0), plane(1.0), plane(2.0)]).unwrap()
+    }
+
+    /// Width, height, error and score, by the crate ssimulacra2 0.5.1.
+    const REFERENCE: [(usize, usize, f32, f64); 5] = [
+        (300, 200, 0.02, 42.8914),
+        (300, 200, 0.1, -64.2384),
+        (127, 131, 0.05, -8.6578),
+        (40, 30, 0.03, 75.5958),
+        (9, 64, 0.05, 93.5843),
+    ];
+
+    #[test]
+    fn scores_are_those_of_another_implementation() {
+        for (width, height, error, expected) in REFERENCE {
+            let (a, b) = (wave(width, height, 0.0), wave(width, height, error));
+            let score = ssimulacra2(&a, &b).unwrap();
+            assert!(
+                (score - expected).abs() < 0.05,
+                "{width}×{height}, {error}: {score}, not {expected}"
+            );
+        }
+    }
+
+    #[test]
+    fn equal_pictures_have_100_at_every_size() {
+        for (width, height) in [(1, 1), (3, 40), (8, 8), (113, 20), (300, 130)] {
+            let a = noise(width, height, 1);
+            assert_eq!(ssimulacra2(&a, &a).unwrap(), 100.0, "{width}×{height}");
+        }
+    }
+
+    #[test]
+    fn a_map_is_worst_where_pictures_differ() {
+        let (a, mut planes) = (wave(200, 120, 0.0), wave(200, 120, 0.0).into_planes());
+        let spot = |i: usize| (140..160).contains(&(i % 200)) && (40..60).contains(&(i / 200));
+        for plane in &mut planes {
+            let changed = plane.iter_mut().enumerate().filter(|(i, _)| spot(*i));
+            changed.for_each(|(_, v)| *v = 1.0 - *v);
+        }
+        let b = Image::new(200, 120, planes).unwrap();
+        let map = ssimulacra2_map(&a, &b).unwrap();
+        let mean = |inside: bool| {
+            let chosen = (0..map.len()).filter(|&i| spot(i) == inside);
+            let values: Vec<f32> = chosen.map(|i| map[i]).collect();
+            values.iter().sum::<f32>() / values.len() as f32
+        };
+        assert!(
+            mean(true) < 0.0 && mean(false) > 60.0,
+            "{} {}",
+            mean(true),
+            mean(false)
+        );
+    }
+
+    #[test]
+    fn the_score_is_that_of_the_mean_of_all_pixels() {
+        let (a, b) = (wave(256, 128, 0.0).to_rgb8(), wave(256, 128, 0.1).to_rgb8());
+        let sums = sums(&a, &b, 256);
+        let mean = sums.iter().sum::<f64>() / sums.len() as f64;
+        let (shared_out, whole) = (of_sum(mean), score(&a, &b, 256));
+        assert!((shared_out - whole).abs() < 1e-6, "{shared_out} {whole}");
+    }
+}

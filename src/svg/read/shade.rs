@@ -1,0 +1,92 @@
+//! Reads a shade: a gradient, and the page in it.
+
+use super::super::dialect::{self, SHADE_ID, Unit};
+use super::{Element, Parsed, Parser, Tag, sides, unexpected};
+use crate::scene::{MAX_STOPS, Shade, WrittenAxis, WrittenStop};
+
+/// Whether the element begins a shade.
+pub(super) fn begins_with(element: &Element) -> bool {
+    [dialect::LINEAR, dialect::RADIAL].contains(&element.name.as_str())
+}
+
+impl Parser<'_> {
+    /// The shade that begins with the open element `gradient`, up to the end of the rectangle that it fills.
+    pub(super) fn shade(&mut self, gradient: &Element, width: u32, height: u32) -> Parsed<Shade> {
+        let axis = axis(gradient)?;
+        let mut stops = Vec::new();
+        loop {
+            match self.next()? {
+                Tag::Open(e) if e.name == "stop" && stops.len() < MAX_STOPS => {
+                    stops.push(stop(&e)?);
+                    self.close(&e)?;
+                }
+                Tag::Open(e) => return Err(unexpected(&e)),
+                Tag::Close => break,
+                Tag::End => {
+                    return Err("the file ends within a gradient: get a complete copy".into());
+                }
+            }
+        }
+        let Tag::Open(rect) = self.next()? else {
+            return Err("no <rect> follows the gradient: give a file that strokefit wrote".into());
+        };
+        if rect.name != "rect" {
+            return Err(unexpected(&rect));
+        }
+        sides(&rect, width, height)?;
+        rect.expect("fill", &format!("url(#{SHADE_ID})"))?;
+        self.close(&rect)?;
+        Shade::written(axis, stops).ok_or_else(|| {
+            "the gradient is shorter than a px, or has less than two stops or stops out of order".into()
+        })
+    }
+}
+
+fn axis(gradient: &Element) -> Parsed<WrittenAxis> {
+    gradient.expect("id", SHADE_ID)?;
+    gradient.expect("gradientUnits", "userSpaceOnUse")?;
+    let numbers = |names: &[&str]| -> Parsed<Vec<i64>> {
+        gradient.only(&[&["id", "gradientUnits"], names].concat())?;
+        let parse = |text: &str| {
+            Unit::PX
+                .parse(text)
+                .filter(|units| units % dialect::HUNDREDTH == 0)
+        };
+        names
+            .iter()
+            .map(|name| gradient.parsed(name, parse))
+            .collect()
+    };
+    Ok(if gradient.name == dialect::LINEAR {
+        let [ax, ay, bx, by] = numbers(&dialect::LINEAR_AXIS)?[..] else {
+            return Err(unexpected(gradient));
+        };
+        WrittenAxis::Linear([ax, ay, bx, by])
+    } else {
+        let [x, y, radius] = numbers(&dialect::RADIAL_AXIS)?[..] else {
+            return Err(unexpected(gradient));
+        };
+        WrittenAxis::Radial([x, y, radius])
+    })
+}
+
+fn stop(element: &Element) -> Parsed<WrittenStop> {
+    element.only(&["offset", "stop-color", "stop-opacity"])?;
+    let thousandths = |text: &str| {
+        let units = Unit::PX.parse(text)?;
+        let whole = units % dialect::THOUSANDTH == 0;
+        let thousandths = u16::try_from(units / dialect::THOUSANDTH).ok()?;
+        (whole && thousandths <= 1000).then_some(thousandths)
+    };
+    let opacity = |text: &str| match text {
+        "0" => Some(0),
+        text => dialect::opacity_quantum(text),
+    };
+    Ok(WrittenStop {
+        offset: element.parsed("offset", thousandths)?,
+        color: element.parsed("stop-color", dialect::channels)?,
+        opacity: element
+            .either("stop-opacity", Some(u8::MAX), opacity)?
+            .unwrap_or(u8::MAX),
+    })
+}
