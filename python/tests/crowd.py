@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -35,7 +37,12 @@ def pictures(folder: Path, count: int, size: int = 24) -> list[str]:
 def batch(*args: object, **environment: str) -> subprocess.Popen[str]:
     """`python -m strokefit.batch`, started."""
     command = [sys.executable, "-m", "strokefit.batch", *map(str, args)]
-    return subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env={**os.environ, **environment})
+    environment = {**os.environ, **environment}
+    return subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=environment, preexec_fn=HEEDING)
+
+
+# What runs the tests in the background may ignore Ctrl-C, and a program would inherit that.
+HEEDING = None if sys.platform == "win32" else partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
 
 
 def ended(process: subprocess.Popen[str], timeout_s: float = 240) -> tuple[int, str]:

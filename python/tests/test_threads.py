@@ -98,6 +98,8 @@ def test_another_thread_cancels_and_the_drawing_is_returned(noise: np.ndarray) -
 INTERRUPTED = """
 import os, signal, threading, time
 import numpy as np, strokefit
+# What runs the tests in the background may ignore the signal, and this process would inherit that.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 picture = np.random.default_rng(0).integers(0, 256, (600, 600, 3), np.uint8)
 sent = []
 def send():
