@@ -16,6 +16,7 @@ import errno
 import json
 import os
 import socket
+import time
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -177,14 +178,21 @@ def _locked(path: Path, folder: str) -> Iterator[None]:
         try:
             _lock(file.fileno())
         except (BlockingIOError, PermissionError):
-            file.seek(0)
-            who = file.read().decode(errors="replace") or "another process"
-            busy = f"{folder} is being written to by {who}: wait for that, or give another folder"
+            busy = f"{folder} is being written to by {_owner(path)}: wait for that, or give another folder"
             raise BlockingIOError(busy) from None
         file.truncate(0)
         file.write(f"process {os.getpid()} on {socket.gethostname()}".encode())
         file.flush()
         yield
+
+
+def _owner(lock: Path) -> str:
+    """Who wrote its name into `lock`: a batch does so at once, but only after it has locked the file."""
+    for _ in range(20):
+        if name := lock.read_bytes().decode(errors="replace"):
+            return name
+        time.sleep(0.05)
+    return "another process"
 
 
 def _lock(file: int) -> None:
