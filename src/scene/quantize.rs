@@ -32,7 +32,7 @@ pub struct Quantized {
 pub struct Dropped {
     /// Strokes with NaN or infinite parameters.
     pub non_finite: usize,
-    /// Strokes without width, or with an opacity that rounds to 0.
+    /// Strokes without width, with an opacity that rounds to 0, or that a fit found to change no pixel.
     pub invisible: usize,
     /// Strokes with a bounding box off the page, or with a coordinate beyond the limit of the file.
     pub off_page: usize,
@@ -98,7 +98,9 @@ impl Scene {
         let written = |stroke: &Stroke| {
             let written = Written::new(stroke, self, precision);
             let written = written.map_err(|reason| dropped.count(reason)).ok()?;
-            dropped.points += stroke.path.points().len() - written.path.points().len();
+            // Where an implied point has to be written, there may be more than before.
+            let (before, after) = (stroke.path.points().len(), written.path.points().len());
+            dropped.points += before.saturating_sub(after);
             Some(written)
         };
         stage.strokes.iter().filter_map(written).collect()
