@@ -4,7 +4,7 @@
 //! | --- | --- |
 //! | `grow` | stages are seeded, fitted on frozen strokes, and keep what pays |
 //! | `polish` | all strokes are fitted jointly, with relocation |
-//! | `palette`, `pens` | the drawing is restricted to few colours and few pens |
+//! | `palette`, `stack`, `pens` | the drawing is restricted to few colours, one layer each if asked for, and few pens |
 //! | `settle` | the last steps are taken against renders of the written file |
 //! | `count` | strokes are added and removed until budgets are met |
 
@@ -16,3 +16,4 @@ pub(super) mod polish;
 mod preferences;
 mod rounds;
 pub(super) mod settle;
+mod stack;

@@ -68,7 +68,10 @@ fn edit(session: &mut Session<'_>, spare: f32) -> Vec<Option<usize>> {
 /// How many more points the drawing may have.
 fn room(session: &Session<'_>) -> usize {
     let (config, strokes) = (session.config, session.drawing.free());
-    let by_strokes = match (config.budget.bytes, config.effective_quality()) {
+    let by_strokes = match (
+        config.budget.bytes,
+        config.quality_for(session.drawing.pixels()),
+    ) {
         // Bytes or a price limit them.
         (Some(_), _) | (_, Some(_)) => usize::MAX,
         (None, None) => {
