@@ -23,19 +23,19 @@ mod tests {
 
     #[test]
     fn what_differs_is_bright() {
-        let target = Image::filled(40, 20, [0.5; 3]).unwrap();
-        let plane: Vec<f32> = (0..800)
-            .map(|i| if i % 40 < 20 { 0.5 } else { 0.9 })
-            .collect();
-        let drawn = Image::new(40, 20, [plane.clone(), plane.clone(), plane]).unwrap();
-        let bytes = png(&target, &drawn).unwrap();
+        // Stripes are lost on the right half.
+        let stripes = |is_drawn: bool| {
+            let value = |i: usize| match i % 128 {
+                64.. if !is_drawn && i % 4 < 2 => 0.8,
+                _ => 0.5,
+            };
+            let plane: Vec<f32> = (0..128 * 64).map(value).collect();
+            Image::new(128, 64, [plane.clone(), plane.clone(), plane]).unwrap()
+        };
+        let bytes = png(&stripes(false), &stripes(true)).unwrap();
         let map = Image::decode(&bytes, "map", strokefit::image::Limits::default()).unwrap();
-        let green = |x: usize| map.planes()[1][10 * 40 + x];
-        assert!(
-            green(3) < 0.4 && green(36) > 0.6,
-            "{} {}",
-            green(3),
-            green(36)
-        );
+        let green = |x: usize| map.planes()[1][32 * 128 + x];
+        let (left, right) = (green(8), green(120));
+        assert!(right > left + 0.3, "{left} {right}");
     }
 }

@@ -139,7 +139,7 @@ pub(in crate::fit) fn stage(session: &mut Session<'_>, purpose: Purpose) -> Resu
     descend(session, &mut descent, None)?;
     let price = session.price_now();
     let accepted = accept(&mut session.drawing, price);
-    if purpose == Purpose::Trace && accepted > 0 {
+    if purpose == Purpose::Trace {
         let [layers, strokes] = &mut session.history.traced;
         (*layers, *strokes) = (*layers + 1, *strokes + accepted);
     }
