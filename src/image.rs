@@ -1,14 +1,19 @@
-//! Pictures: planar `f32`, sRGB-encoded. This module alone uses the crates `image`, `gif` and `crc32fast`.
+//! Pictures: planar `f32`, sRGB-encoded. This module alone uses the crates `image`, `moxcms`, `gif` and
+//! `crc32fast`.
 //!
-//! It reads PNG, JPEG, WebP, GIF and animated WebP (first frame), BMP and TIFF (first page), with 8 or
-//! 16 bits or floats, grey or colour, and applies the orientation given by EXIF. It takes colours as
-//! sRGB and ignores colour profiles. It keeps alpha; [`Image::flattened`] composites onto a matte.
+//! It reads PNG, JPEG, WebP, GIF, BMP, TIFF, ICO, QOI, TGA, DDS, Radiance HDR, farbfeld and PNM (the first
+//! frame or page), with 8 or 16 bits or floats, grey or colour, and applies the orientation given by EXIF. It converts
+//! colours to sRGB from the profile that a file may have. It keeps alpha; [`Image::flattened`] composites onto a matte.
 
 #[cfg(feature = "animation")]
 mod animate;
 mod decode;
 mod encode;
+mod foreign;
 mod header;
+#[cfg(feature = "formats")]
+mod profile;
+mod remark;
 mod rows;
 
 use std::fmt;
@@ -18,6 +23,7 @@ use std::path::Path;
 pub use animate::{Animation, AnimationFormat};
 pub use decode::Limits;
 pub(crate) use header::{Embeddable, stated_size};
+pub use remark::Remark;
 pub use rows::{Rows, Sample};
 
 use crate::error::{Error, ErrorKind, Result};
@@ -164,7 +170,7 @@ impl Image {
     /// [`ErrorKind::Io`] when the file cannot be read, else as [`Image::decode`]; every message
     /// names the file.
     pub fn open(path: impl AsRef<Path>) -> Result<Self> {
-        decode::open(path.as_ref(), Limits::default())
+        Self::open_within(path, Limits::default())
     }
 
     /// Reads the picture file at `path`, within other limits.
@@ -172,6 +178,14 @@ impl Image {
     /// # Errors
     /// As [`Image::open`].
     pub fn open_within(path: impl AsRef<Path>, limits: Limits) -> Result<Self> {
+        Ok(Self::read_within(path, limits)?.0)
+    }
+
+    /// Reads the picture file at `path`, within other limits, and says what was changed or left out.
+    ///
+    /// # Errors
+    /// As [`Image::open`].
+    pub fn read_within(path: impl AsRef<Path>, limits: Limits) -> Result<(Self, Vec<Remark>)> {
         decode::open(path.as_ref(), limits)
     }
 
@@ -182,6 +196,18 @@ impl Image {
     /// [`ErrorKind::Picture`] when there are no bytes, or they are not a picture, cut short, damaged, of 0×0
     /// px, or beyond `limits`. The limits are checked on the header, before memory is spent.
     pub fn decode(bytes: &[u8], name: &str, limits: Limits) -> Result<Self> {
+        Ok(Self::decode_remarking(bytes, name, limits)?.0)
+    }
+
+    /// The same, and says what was changed or left out.
+    ///
+    /// # Errors
+    /// As [`Image::decode`].
+    pub fn decode_remarking(
+        bytes: &[u8],
+        name: &str,
+        limits: Limits,
+    ) -> Result<(Self, Vec<Remark>)> {
         decode::decode(bytes, limits).map_err(|error| error.within(name))
     }
 

@@ -36,7 +36,7 @@
 //!
 //! | feature | what it adds | on by default |
 //! | --- | --- | --- |
-//! | `formats` | JPEG, WebP, GIF, BMP and TIFF pictures, and pictures embedded in the SVG of a base | yes |
+//! | `formats` | pictures other than PNG, colour profiles, and pictures embedded in the SVG of a base | yes |
 //! | `animation` | frames and GIF, WebP or PNG files in the module `animation`, and charts in `report::plot`; needs `formats` | yes |
 //! | `cli` | the program and what it alone uses: `engines`, `view`, `lab`, `bench` and their reports; needs the others | yes |
 //!
@@ -129,8 +129,12 @@
 //! | preset | a named recipe: draft, balanced, best |
 //! | budget | limits on strokes, fidelity (dB), bytes and time (s); the first one reached stops |
 //! | palette | the 8-bit colours that a drawing may have |
+//! | stack | the order of colours, one layer each, that a drawing by colour has |
 //! | pen | a colour and a width that many opaque strokes share |
 //! | seed | key of all random draws; *seeding* is the search for candidates |
+//! | grace | how long a fit that is asked to stop may take to finish its drawing |
+//! | paper | a background that stays although a given palette has nothing like it |
+//! | remark | what reading a picture has changed or left out |
 //! | checkpoint | a file with the whole state of a fit, from which it goes on to the same bytes |
 //! | observer | is told of progress after every iteration, and may stop the fit |
 //!

@@ -59,7 +59,7 @@ fn outputs_that_cannot_be_written_are_refused_before_the_work() {
     place.picture("in.png", 30, 20);
     place.file("file", "");
     fs::create_dir(place.path("folder")).unwrap();
-    for name in ["none/out.svg", "folder", "file/out.svg"] {
+    for name in ["folder", "file/out.svg", "file/none/out.svg"] {
         assert_refused(
             &place,
             &["fit", "in.png", "-o", name],
@@ -69,6 +69,42 @@ fn outputs_that_cannot_be_written_are_refused_before_the_work() {
         let args = ["fit", "in.png", "-o", "out.svg", "--report", name];
         assert_refused(&place, &args, 1, &[name, "cannot be written"]);
     }
+}
+
+#[test]
+fn folders_of_outputs_are_made() {
+    let place = Place::new();
+    place.picture("in.png", 30, 20);
+    place.done(&[
+        "fit",
+        "in.png",
+        "-o",
+        "a/{stem}.svg",
+        "-o",
+        "b/c/in.gif",
+        "-o",
+        "d/{n}.png",
+        "--report",
+        "e/r.json",
+        "--events",
+        "f/e.jsonl",
+        "--strokes",
+        "5",
+    ]);
+    for name in ["a/in.svg", "b/c/in.gif", "d/1.png", "e/r.json", "f/e.jsonl"] {
+        let length = fs::metadata(place.path(name)).unwrap().len();
+        assert!(length > 0, "{name}");
+    }
+    place.done(&["render", "a/in.svg", "-o", "g/h.png"]);
+    assert!(place.path("g/h.png").is_file());
+    // A command that is refused makes none.
+    assert_refused(
+        &place,
+        &["fit", "no.png", "-o", "none/out.svg"],
+        1,
+        &["no.png"],
+    );
+    assert!(!place.path("none").exists());
 }
 
 #[test]
@@ -263,6 +299,20 @@ fn check_prints_a_table_or_json() {
 }
 
 #[test]
+fn a_quiet_check_says_by_its_status_alone() {
+    let place = Place::new();
+    place.file("red.svg", RED_SVG);
+    place.done(&["render", "red.svg", "-o", "red.png"]);
+    let check = ["check", "-q", "red.svg", "red.png", "--renderer", "resvg"];
+    let quiet = place.done(&check);
+    assert!(quiet.stdout.is_empty() && quiet.stderr.is_empty());
+    let record = place
+        .done(&[&check[..], &["--report", "-"]].concat())
+        .stdout;
+    assert!(record.starts_with(b"{"));
+}
+
+#[test]
 fn fit_writes_a_file_that_check_and_render_understand() {
     let place = Place::new();
     let input = committed("samples/noto-gem.png");
@@ -387,6 +437,150 @@ fn a_target_out_of_reach_is_exit_3_and_the_file_is_kept() {
         stderr(&output)
     );
     assert_eq!(place.names(), ["out.svg"]);
+}
+
+/// dB of a fit that asks for 60, and what it says.
+fn asked_for_60(place: &Place, input: &str, options: &[&str]) -> (f64, String) {
+    let fit = [
+        "fit", input, "-o", "out.svg", "--psnr", "60", "--report", "r.json",
+    ];
+    let output = place.run(&[&fit[..], options].concat());
+    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+    let reached = place.report("r.json")["fidelity"]["psnr_db"]
+        .as_f64()
+        .unwrap();
+    (reached, stderr(&output))
+}
+
+/// Each remedy of a target that was missed is tried.
+#[test]
+fn what_is_said_to_help_helps() {
+    let place = Place::new();
+    let noise = |x: u32, y: u32| (((x * 7919 + y * 104_729) * 2_654_435) >> 8) as u8;
+    let picture = image::GrayImage::from_fn(24, 16, |x, y| image::Luma([noise(x, y)]));
+    picture.save(place.path("in.png")).unwrap();
+    let twice = image::imageops::resize(&picture, 48, 32, image::imageops::FilterType::Triangle);
+    twice.save(place.path("twice.png")).unwrap();
+
+    let (few, line) = asked_for_60(&place, "in.png", &["--strokes", "5"]);
+    assert!(line.contains("allow more strokes"), "{line}");
+    let (more, _) = asked_for_60(&place, "in.png", &["--strokes", "20"]);
+    assert!(more > few, "{few} {more}");
+
+    let (short, line) = asked_for_60(&place, "in.png", &["--bytes", "700"]);
+    assert!(line.contains("allow more bytes"), "{line}");
+    let (long, _) = asked_for_60(&place, "in.png", &["--bytes", "2800"]);
+    assert!(long > short, "{short} {long}");
+
+    let (opaque, line) = asked_for_60(&place, "in.png", &["--opaque", "--preset", "draft"]);
+    assert!(
+        line.contains("leave out --opaque, --preset draft"),
+        "{line}"
+    );
+    let (free, line) = asked_for_60(&place, "in.png", &[]);
+    assert!(free > opaque, "{opaque} {free}");
+
+    assert!(
+        line.contains("draw the picture at twice its size"),
+        "{line}"
+    );
+    let (large, _) = asked_for_60(&place, "twice.png", &[]);
+    assert!(large > free, "{free} {large}");
+}
+
+#[test]
+fn what_is_said_to_help_a_picture_of_nine_pixels_helps() {
+    let place = Place::new();
+    let mut picture = image::RgbImage::from_pixel(3, 3, image::Rgb([255; 3]));
+    for (at, color) in [(0, [255, 0, 0]), (1, [128; 3]), (2, [0, 0, 255])] {
+        picture.put_pixel(at, at, image::Rgb(color));
+    }
+    picture.save(place.path("in.png")).unwrap();
+    let output = place.run(&["fit", "in.png", "-o", "out.svg"]);
+    assert_eq!(output.status.code(), Some(4));
+    assert!(
+        stderr(&output).contains("16 times its size"),
+        "{}",
+        stderr(&output)
+    );
+    let large = image::imageops::resize(&picture, 48, 48, image::imageops::FilterType::Nearest);
+    large.save(place.path("in.png")).unwrap();
+    place.done(&["fit", "in.png", "-o", "out.svg"]);
+    place.done(&["render", "out.svg", "-o", "out.png"]);
+    let drawn = image::open(place.path("out.png")).unwrap().to_rgb8();
+    for (x, y, pixel) in picture.enumerate_pixels() {
+        let middle = drawn.get_pixel(16 * x + 8, 16 * y + 8);
+        let worst = pixel
+            .0
+            .iter()
+            .zip(middle.0)
+            .map(|(a, b)| a.abs_diff(b))
+            .max()
+            .unwrap();
+        assert!(worst < 32, "{pixel:?} {middle:?}");
+    }
+}
+
+#[test]
+fn pictures_of_more_formats_are_read_and_others_named() {
+    let place = Place::new();
+    let picture = image::RgbImage::from_fn(20, 16, |x, _| image::Rgb([x as u8 * 12, 90, 200]));
+    picture.save(place.path("a.ppm")).unwrap();
+    picture.save(place.path("b.qoi")).unwrap();
+    let picture = image::DynamicImage::from(picture).to_rgba8();
+    picture.save(place.path("c.ico")).unwrap();
+    for name in ["a.ppm", "b.qoi", "c.ico"] {
+        place.done(&[
+            "fit",
+            name,
+            "-o",
+            "out.svg",
+            "--strokes",
+            "5",
+            "--preset",
+            "draft",
+        ]);
+    }
+    place.file("d.avif", b"\0\0\0\x20ftypavif\0\0\0\0avifmif1");
+    place.file("e.svg", RED_SVG);
+    for (name, words) in [("d.avif", "avifdec"), ("e.svg", "strokefit render")] {
+        assert_refused(&place, &["fit", name, "-o", "out.svg"], 1, &[name, words]);
+    }
+    let frame = || {
+        image::Frame::new(image::RgbaImage::from_pixel(
+            9,
+            9,
+            image::Rgba([9, 90, 200, 255]),
+        ))
+    };
+    let mut gif = Vec::new();
+    let mut encoder = image::codecs::gif::GifEncoder::new(&mut gif);
+    encoder.encode_frames([frame(), frame()]).unwrap();
+    drop(encoder);
+    place.file("f.gif", gif);
+    let output = place.done(&["-v", "fit", "f.gif", "-o", "out.svg", "--report", "r.json"]);
+    assert_eq!(stderr(&output).matches("first frame").count(), 1);
+    let remark = &place.report("r.json")["input"]["remarks"][0];
+    assert!(remark.as_str().unwrap().contains("first frame"), "{remark}");
+}
+
+#[test]
+fn a_large_picture_is_drawn_as_a_screen_shows_it() {
+    let place = Place::new();
+    let picture = image::GrayImage::from_fn(1536, 1024, |x, y| {
+        image::Luma([((x / 96 + y / 96) % 2 * 200) as u8])
+    });
+    picture.save(place.path("in.png")).unwrap();
+    let fit = |options: &[&str]| {
+        let fit = ["fit", "in.png", "-o", "out.svg", "--preset", "draft"];
+        stderr(&place.done(&[&fit[..], options].concat()))
+    };
+    let said = fit(&[]);
+    assert!(
+        said.contains("1.6 megapixels") && said.contains("--quality 24;"),
+        "{said}"
+    );
+    assert!(!fit(&["--quality", "24"]).contains("megapixels"));
 }
 
 #[test]

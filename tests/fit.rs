@@ -139,6 +139,39 @@ fn a_picture_of_one_colour_needs_no_stroke() {
     assert_eq!(verdict(&fit, &config).fidelity.mse, 0.0);
 }
 
+/// A capsule drawn at four times the size, and reduced.
+#[test]
+fn one_capsule_on_a_flat_page_is_one_stroke_or_two() {
+    let (width, height) = (100, 75);
+    let inside = |x: f32, y: f32| {
+        let [ax, ay, bx, by] = [22.5, 20.0, 75.0, 52.5];
+        let along =
+            ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / ((bx - ax).powi(2) + (by - ay).powi(2));
+        let h = along.clamp(0.0, 1.0);
+        (x - ax - h * (bx - ax)).hypot(y - ay - h * (by - ay)) < 6.0
+    };
+    let covered = |i: usize| {
+        let samples = (0..16).filter(|k| {
+            let at = |i: usize, k: usize| i as f32 + (k as f32 + 0.5) / 4.0;
+            inside(at(i % width, k % 4), at(i / width, k / 4))
+        });
+        samples.count() as f32 / 16.0
+    };
+    let plane = |page: f32, ink: f32| {
+        (0..width * height)
+            .map(|i| page + covered(i) * (ink - page))
+            .collect()
+    };
+    let picture = Image::new(
+        width,
+        height,
+        [plane(0.94, 0.16), plane(0.94, 0.24), plane(0.92, 0.63)],
+    )
+    .unwrap();
+    let fit = drawn(&picture, &Config::default());
+    assert!((1..=2).contains(&fit.scene.len()), "{}", fit.scene.len());
+}
+
 #[test]
 fn quality_decides_how_many_strokes_a_scene_gets() {
     let count = |picture: &Image, quality: f64| {
@@ -241,6 +274,39 @@ fn an_observer_sees_progress_and_may_stop() {
     assert!(
         seen.windows(2).all(|w| w[0] <= w[1]) && seen.iter().all(|done| (0.0..=1.0).contains(done))
     );
+}
+
+/// Stopped in the first iterations of a large stage, whose strokes are as they were seeded.
+#[test]
+fn a_fit_that_may_finish_after_it_was_stopped_is_better_for_it() {
+    let picture = sample("coffee-300");
+    let stopped = |grace: Duration| {
+        let mut last = 0;
+        let mut watch = |progress: &Progress<'_>| {
+            last += usize::from(progress.strokes > 500);
+            if last > 2 {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        };
+        let config = Config {
+            budget: Budget {
+                strokes: Some(1000),
+                ..Budget::default()
+            },
+            ..Config::default()
+        };
+        let fit = Fitter::new(config.clone())
+            .observer(&mut watch)
+            .grace(grace)
+            .fit(&picture)
+            .unwrap();
+        assert_eq!(fit.stop, Stop::Interrupted);
+        verdict(&fit, &config).fidelity.psnr_db
+    };
+    let (at_once, finished) = (stopped(Duration::ZERO), stopped(Duration::from_secs(2)));
+    assert!(finished > at_once + 1.0, "{at_once} {finished}");
 }
 
 #[test]

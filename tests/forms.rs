@@ -15,8 +15,10 @@ use std::collections::BTreeSet;
 use std::fs;
 
 use strokefit::image::Image;
+use strokefit::scene::Stage;
 use strokefit::svg;
 use strokefit::verify::{self, Size};
+use support::output::stderr;
 use support::place::Place;
 use support::refusal;
 use support::repository::committed;
@@ -242,20 +244,87 @@ fn a_palette_is_fitted_and_not_only_applied() {
 }
 
 #[test]
-fn layers_by_colour_show_the_same_picture() {
+fn every_colour_has_one_layer_and_the_report_says_what_that_costs() {
     let by_stage = drawn("coffee-300", &["--colors", "6"]);
     let by_color = drawn("coffee-300", &["--colors", "6", "--group", "color"]);
     assert!(by_color.text.contains(r#"<g id="color-1""#));
-    assert!(agreement(&by_stage.text, &by_color.text) > 50.0);
     let scene = svg::read(&by_color.text).unwrap();
-    for stage in &scene.stages {
-        assert!(
-            stage
-                .strokes
-                .iter()
-                .all(|s| s.color == stage.strokes[0].color)
-        );
+    let one_color = |stage: &Stage| {
+        stage
+            .strokes
+            .iter()
+            .all(|s| s.color == stage.strokes[0].color)
+    };
+    assert!(scene.stages.iter().all(one_color));
+    // The background is one of the six.
+    assert!(scene.stages.len() <= 6, "{}", scene.stages.len());
+    let (cost, lost) = (
+        by_color.number("stacking_db"),
+        by_stage.psnr_db() - by_color.psnr_db(),
+    );
+    assert!(lost < 4.0 && (cost - lost).abs() < 1.0, "{cost} {lost}");
+    assert!(by_stage.report["stacking_db"].is_null());
+}
+
+/// Blue ink on paper that is not quite white.
+fn ink(place: &Place) -> Image {
+    let picture = image::RgbImage::from_fn(120, 90, |x, y| {
+        let (x, y) = (x as f32 - 60.0, y as f32 - 45.0);
+        let away = ((x * x + y * y).sqrt() - 30.0).abs();
+        image::Rgb(if away < 3.0 {
+            [10, 20, 200]
+        } else {
+            [250, 247, 240]
+        })
+    });
+    picture.save(place.path("ink.png")).unwrap();
+    Image::open(place.path("ink.png")).unwrap()
+}
+
+#[test]
+fn paper_stays_paper_if_the_palette_has_nothing_like_it() {
+    let place = Place::new();
+    let picture = ink(&place);
+    let fit = ["fit", "ink.png", "-o", "a.svg", "--strokes", "20"];
+    let output = place.done(&[&fit[..], &["--palette", "#0000ff"]].concat());
+    assert!(!stderr(&output).contains("warning"));
+    let text = fs::read_to_string(place.path("a.svg")).unwrap();
+    let scene = svg::read(&text).unwrap();
+    assert!(
+        scene
+            .strokes()
+            .all(|stroke| stroke.color == [0.0, 0.0, 1.0])
+    );
+    assert!(scene.background.unwrap().iter().all(|&c| c > 0.9));
+    assert!(verify::fidelity(&text, &picture).unwrap().psnr_db > 20.0);
+    // A palette with something like it is all there is.
+    place.done(&[&fit[..], &["--palette", "#0000ff,#ffffff"]].concat());
+    let scene = svg::read(&fs::read_to_string(place.path("a.svg")).unwrap()).unwrap();
+    assert_eq!(scene.background, Some([1.0; 3]));
+}
+
+#[test]
+fn strokes_that_nobody_can_see_are_left_out_and_counted() {
+    for options in [
+        &["--colors", "1"][..],
+        &["--colors", "1", "--background", "#ffffff"],
+    ] {
+        let drawn = drawn("coffee-300", options);
+        assert_eq!(drawn.number("strokes"), 0.0, "{options:?}");
+        let unseen = drawn.report["dropped_for"]["invisible"].as_u64().unwrap();
+        assert!(unseen > 0 && drawn.report["dropped"].as_u64() >= Some(unseen));
     }
+}
+
+#[test]
+fn a_drawing_worse_than_a_page_of_one_colour_is_spoken_of() {
+    let place = Place::new();
+    ink(&place);
+    let fit = ["fit", "ink.png", "-o", "a.svg", "--colors", "1"];
+    let poor = place.done(&[&fit[..], &["--background", "#000000"]].concat());
+    let line = stderr(&poor);
+    assert!(line.contains("warning: a page of one colour"), "{line}");
+    assert!(!stderr(&place.done(&fit)).contains("warning"));
 }
 
 #[test]

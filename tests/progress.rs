@@ -8,6 +8,9 @@ mod support {
     pub(crate) mod repository;
 }
 
+use std::io::{BufRead, BufReader};
+use std::process::Stdio;
+
 use support::place::{Place, STROKEFIT};
 use support::repository::committed;
 
@@ -70,4 +73,54 @@ fn nothing_is_coloured_against_the_wish() {
         help.contains("Usage:") && !help.contains('\u{1b}'),
         "{help}"
     );
+}
+
+/// Each part is told of when it ends, long before the fit does.
+#[test]
+fn a_pipe_hears_of_parts_while_it_happens() {
+    let place = Place::new();
+    let input = committed("samples/coffee-300.png");
+    let endless = [
+        "-v",
+        "fit",
+        &input,
+        "-o",
+        "a.svg",
+        "--strokes",
+        "30000",
+        "--preset",
+        "best",
+    ];
+    let mut child = place
+        .command(STROKEFIT)
+        .args(endless)
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
+    let line = lines
+        .find(|line| line.as_ref().unwrap().starts_with("stage 1"))
+        .unwrap()
+        .unwrap();
+    assert!(child.try_wait().unwrap().is_none());
+    child.kill().unwrap();
+    child.wait().unwrap();
+    for word in ["strokes", "iterations", " s, ", " dB"] {
+        assert!(line.contains(word), "{line}");
+    }
+}
+
+#[test]
+fn polish_and_settling_are_mentioned() {
+    let place = Place::new();
+    let input = committed("samples/coffee-300.png");
+    let args = ["-v", "fit", &input, "-o", "a.svg", "--strokes", "60"];
+    let output = place.command(STROKEFIT).args(args).output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    for part in ["stage 1", "polish: ", "settling: "] {
+        assert!(
+            said.lines().any(|line| line.starts_with(part)),
+            "no {part:?} in {said}"
+        );
+    }
 }

@@ -68,6 +68,58 @@ fn put_into<'a>(base: &str, refined: &'a str) -> &'a str {
 }
 
 #[test]
+fn strokes_with_a_plus_count_beyond_those_of_the_base() {
+    let place = Place::new();
+    let picture = committed("samples/coffee-300.png");
+    let strokes = |name: &str| layers(&place, name).iter().sum::<usize>();
+    draft(&place, &["fit", &picture, "--strokes", "+60"], "base.svg");
+    assert_eq!(strokes("base.svg"), 60);
+    draft(
+        &place,
+        &["refine", "base.svg", &picture, "--strokes", "+40"],
+        "more.svg",
+    );
+    assert_eq!(strokes("more.svg"), 100);
+    // As many in all as there are is no change, which is said with what would be one.
+    let full = place.done(&[
+        "refine",
+        "base.svg",
+        &picture,
+        "--strokes",
+        "60",
+        "-o",
+        "full.svg",
+    ]);
+    assert_eq!(strokes("full.svg"), 60);
+    let line = stderr(&full);
+    assert!(
+        line.contains("hint:") && line.contains("--strokes +60"),
+        "{line}"
+    );
+    let layers = put_into(TRACED, &refined_more(&place))
+        .matches("<path")
+        .count();
+    assert_eq!(layers, 30);
+}
+
+/// A file of another program with 20 strokes, and then 10 more.
+fn refined_more(place: &Place) -> String {
+    place.file("traced.svg", TRACED);
+    let picture = committed("samples/chelsea-cat.png");
+    draft(
+        place,
+        &["refine", "traced.svg", &picture, "--strokes", "+20"],
+        "a.svg",
+    );
+    draft(
+        place,
+        &["refine", "a.svg", &picture, "--strokes", "+10"],
+        "b.svg",
+    );
+    read(place, "b.svg")
+}
+
+#[test]
 fn a_drawing_in_two_goes_is_as_good_as_one_in_one_go() {
     let place = Place::new();
     let picture = committed("samples/coffee-300.png");

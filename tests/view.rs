@@ -370,6 +370,16 @@ fn chromium_shows_strokes_stages_and_fidelity() {
         text(&dom, "shown-label"),
         format!("{} strokes", 30 - hidden)
     );
+
+    // Single strokes are left out, and the picture that is asked for is the large one.
+    let dom = page(&program, "veiled=3,5&gone=7&large=residual&stroke=3").unwrap();
+    assert_eq!(text(&dom, "shown-label"), "77 strokes");
+    assert!(dom.contains(r#"id="residual-panel" class="large""#));
+    assert_eq!(text(&dom, "restore"), "bring back 3");
+    let dom = page(&program, "stroke=12&alone=12").unwrap();
+    assert_eq!(text(&dom, "shown-label"), "1 stroke");
+    assert!(dom.contains(r#"id="drawing-panel" class="large""#));
+    assert!(text(&dom, "shown-db").ends_with(" dB as drawn here"));
     assert_eq!(program.finish(), Some(0));
 }
 

@@ -102,7 +102,7 @@ fn one(
     };
     let mut drawn = attempt(draw)?;
     loop {
-        let status = job.judge(&drawn);
+        let status = job.judge(&drawn, verbosity);
         if matches!(status, Status::Interrupted(_)) {
             return Ok(status);
         }
@@ -135,7 +135,7 @@ fn several(
         let status = match attempt(job, outputs, events, heading, verbosity, draw) {
             Ok(drawn) => {
                 verbosity.say(table.row(job, &drawn));
-                job.judge(&drawn)
+                job.judge(&drawn, verbosity)
             }
             Err(error) => {
                 failed += 1;

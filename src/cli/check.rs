@@ -29,7 +29,7 @@ const RESVG: &str = "resvg";
 /// largest difference from resvg (0 to 255) with its place. A picture with alpha is also compared on black and on
 /// magenta. The text of the file is searched for constructs that programs draw differently.
 ///
-/// Without a picture, the programs are compared with resvg only.
+/// Without a picture, the programs are compared with resvg only. With --quiet only the exit status and errors tell.
 ///
 /// Exit status 4: a render differs from resvg's (less than 36 dB) and, if there is a picture, is
 /// more than 0.6 dB less faithful to it than resvg's. Exit status 1: an installed program could not draw
@@ -105,7 +105,7 @@ pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
     if let Some(output) = &report {
         output.write(report::json(&record)?.as_bytes())?;
     }
-    if report != Some(Output::Stdout) {
+    if report != Some(Output::Stdout) && !verbosity.quiet {
         Output::Stdout.write(table::table(&record).as_bytes())?;
     }
     Ok(verdict(&record, args.renderer.is_some(), verbosity))

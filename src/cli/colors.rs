@@ -15,7 +15,8 @@ pub(super) struct Args {
     /// At most N colours, including the background
     #[arg(long, value_name = "N", value_parser = domain::colors, allow_negative_numbers = true)]
     colors: Option<usize>,
-    /// Only these colours: a list #rrggbb,#rrggbb,..., a file with one colour per line, or a GIMP palette
+    /// Only these colours: a list #rrggbb,#rrggbb,..., a file with one colour per line, or a GIMP palette. Paper
+    /// stays as it is if none of them is like it
     #[arg(long, value_name = "LIST|FILE", conflicts_with = "colors", value_parser = palette)]
     palette: Option<Colors>,
 }

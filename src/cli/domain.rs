@@ -11,8 +11,30 @@ const MAX_THREADS: usize = 1024;
 
 type Parsed<T> = Result<T, String>;
 
-pub(super) fn strokes(text: &str) -> Parsed<usize> {
-    whole(text, 1..=MAX_STROKES)
+/// A limit on strokes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum StrokeLimit {
+    /// In the whole drawing.
+    Total(usize),
+    /// Beyond those that a base brings.
+    More(usize),
+}
+
+impl StrokeLimit {
+    /// Most strokes of a drawing whose base brings `before`.
+    pub(super) fn total(self, before: usize) -> usize {
+        match self {
+            Self::Total(most) => most,
+            Self::More(more) => before.saturating_add(more).min(MAX_STROKES),
+        }
+    }
+}
+
+pub(super) fn strokes(text: &str) -> Parsed<StrokeLimit> {
+    Ok(match text.strip_prefix('+') {
+        Some(more) => StrokeLimit::More(whole(more, 1..=MAX_STROKES)?),
+        None => StrokeLimit::Total(whole(text, 1..=MAX_STROKES)?),
+    })
 }
 
 pub(super) fn colors(text: &str) -> Parsed<usize> {
@@ -68,8 +90,9 @@ pub(super) fn scale(text: &str) -> Parsed<f64> {
 }
 
 fn whole(text: &str, range: std::ops::RangeInclusive<usize>) -> Parsed<usize> {
-    text.parse()
-        .ok()
+    let digits = Some(text).filter(|text| !text.starts_with('+'));
+    digits
+        .and_then(|digits| digits.parse().ok())
         .filter(|n| range.contains(n))
         .ok_or_else(|| match *range.end() {
             usize::MAX => format!("give a whole number of {} or more", range.start()),
@@ -95,12 +118,17 @@ mod tests {
                 "{text}"
             );
         }
+        for text in ["+", "+0", "++3", "+-3"] {
+            assert!(strokes(text).is_err(), "{text}");
+        }
         assert!(precision("7").is_err() && precision("-1").is_err());
     }
 
     #[test]
     fn sense_is_understood() {
-        assert_eq!(strokes("900000"), Ok(900_000));
+        assert_eq!(strokes("900000"), Ok(StrokeLimit::Total(900_000)));
+        assert_eq!(strokes("+300"), Ok(StrokeLimit::More(300)));
+        assert_eq!(StrokeLimit::More(300).total(200), 500);
         assert_eq!(precision("0"), Ok(0));
         assert_eq!(psnr("32.5"), Ok(32.5));
         assert_eq!(seconds("0.5"), Ok(Duration::from_millis(500)));

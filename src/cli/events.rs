@@ -1,6 +1,5 @@
 //! `--events`: reports events as they happen, one JSON object per line.
 
-use std::fs::File;
 use std::io::{self, Write};
 use std::path::Path;
 use std::time::Instant;
@@ -23,14 +22,9 @@ impl Events {
     /// The stream that goes to `path`.
     pub(super) fn open(path: Option<&Path>) -> Result<Self> {
         let name = path.map(output::name).unwrap_or_default();
-        let to: Option<Box<dyn Write + Send>> = match path.map(Output::open).transpose()? {
-            None => None,
-            Some(Output::Stdout) => Some(Box::new(io::stdout())),
-            Some(Output::File(path) | Output::Device(path)) => {
-                let file = File::create(path).map_err(|e| unwritable(&name, &e))?;
-                Some(Box::new(file))
-            }
-        };
+        let output = path.map(Output::open).transpose()?;
+        let to = output.map(|output| output.stream());
+        let to = to.transpose().map_err(|e| unwritable(&name, &e))?;
         Ok(Self {
             name,
             to,

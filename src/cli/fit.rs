@@ -24,7 +24,7 @@ use super::{Status, Verbosity};
   strokefit fit photo.jpg -o photo.svg -o photo.gif --frames stage --legend
   curl -s https://example.org/a.png | strokefit fit - -o - --psnr 30 > a.svg")]
 pub(super) struct Args {
-    /// Pictures: PNG, JPEG, WebP, GIF (first frame), BMP or TIFF. - means standard input
+    /// Pictures: PNG, JPEG, WebP, GIF (first frame), BMP, TIFF and some more. - means standard input
     #[arg(required = true, value_name = "INPUT")]
     inputs: Vec<PathBuf>,
     /// SVG to write. - means standard output, {stem} the picture's name without folder and extension. Repeat
@@ -43,6 +43,6 @@ pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
     let options = &args.options;
     let jobs = batch::jobs(&args.inputs, &args.output, args.report.as_deref(), options)?;
     batch::run(&jobs, verbosity, &|picture, start, observer| {
-        options.fit(observer, |fitter| fitter.since(start).fit(picture))
+        options.fit(0, observer, |fitter| fitter.since(start).fit(picture))
     })
 }

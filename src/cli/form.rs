@@ -44,7 +44,7 @@ fn group() -> impl TypedValueParser<Value = Group> {
         (Group::Stage, "The strokes of one stage"),
         (
             Group::Color,
-            "Strokes of one colour, as far as the picture stays the same",
+            "Strokes of one colour. With --colors or --palette each colour has one layer",
         ),
     ])
 }

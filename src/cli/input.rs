@@ -5,7 +5,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use anyhow::{Result, anyhow};
-use strokefit::image::{Image, Limits};
+use strokefit::image::{Image, Limits, Remark};
 
 use super::hint;
 
@@ -27,16 +27,16 @@ pub(super) fn name(path: &Path) -> String {
 
 /// Reads a picture, within the usual limits.
 pub(super) fn picture(path: &Path) -> Result<Image> {
-    picture_within(path, Limits::default())
+    Ok(picture_within(path, Limits::default())?.0)
 }
 
-/// Reads a picture, within the limits.
-pub(super) fn picture_within(path: &Path, limits: Limits) -> Result<Image> {
+/// Reads a picture, within the limits, and says what was changed or left out.
+pub(super) fn picture_within(path: &Path, limits: Limits) -> Result<(Image, Vec<Remark>)> {
     if !is_stdin(path) {
-        return Image::open_within(path, limits).map_err(|e| hint::or_neighbour(e.into(), path));
+        return Image::read_within(path, limits).map_err(|e| hint::or_neighbour(e.into(), path));
     }
     let bytes = read(path, limits.max_bytes)?;
-    Ok(Image::decode(&bytes, &name(path), limits)?)
+    Ok(Image::decode_remarking(&bytes, &name(path), limits)?)
 }
 
 /// Reads an SVG file.

@@ -8,6 +8,7 @@ use std::io;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
+use std::time::Duration;
 
 use signal_hook::{consts, flag};
 use strokefit::fit::{Observer, Progress};
@@ -17,6 +18,9 @@ use strokefit::fit::{Observer, Progress};
 const SIGNALS: [i32; 3] = [consts::SIGHUP, consts::SIGINT, consts::SIGTERM];
 #[cfg(not(unix))]
 const SIGNALS: [i32; 2] = [consts::SIGINT, consts::SIGTERM];
+
+/// How long a fit that is asked to end may take to finish its drawing.
+pub(super) const GRACE: Duration = Duration::from_secs(1);
 
 /// Signals reach the whole process, so what records them is static.
 static WATCH: OnceLock<Interrupt> = OnceLock::new();

@@ -4,14 +4,18 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::Result;
-use strokefit::fit::{self, Fit, Observer, Progress, Stop};
+use strokefit::fit::{
+    self, DEFAULT_QUALITY, DEFAULT_STROKES, Fit, Observer, Progress, SCREEN_PIXELS, Stop,
+};
 use strokefit::image::Image;
+use strokefit::metrics::psnr_db;
 use strokefit::report::{self, Event, FitReport, Input, Judged, Run, Usage};
 use strokefit::scene::Dropped;
 use strokefit::verify::MIN_AGREEMENT_DB;
 
 use super::events::{Events, Phases};
 use super::interrupt::Interrupt;
+use super::narration::Narration;
 use super::options::Options;
 use super::output::{self, Output};
 use super::pictures::{Pictures, Subject};
@@ -45,13 +49,15 @@ impl Job<'_> {
         draw: &Draw<'_>,
     ) -> Result<Drawn> {
         let start = Instant::now();
-        let picture = input::picture_within(self.input, self.options.limits())?;
-        let input = Input::new(self.input.display().to_string(), &picture);
-        events.tell(&Event::Start(input));
+        let (picture, remarks) = input::picture_within(self.input, self.options.limits())?;
+        let input = Input::new(self.input.display().to_string(), &picture).remarking(&remarks);
+        for remark in &input.remarks {
+            verbosity.detail(format_args!("{}: {remark}", input::name(self.input)));
+        }
+        events.tell(&Event::Start(input.clone()));
         self.foretell(&picture, verbosity);
         let bar = Bar::new(verbosity.quiet, heading);
-        let fit = self.watched(&picture, start, events, bar, draw)?;
-        tell_stages(&fit, verbosity);
+        let fit = self.watched(&picture, start, events, bar, verbosity, draw)?;
         tell_dropped(fit.dropped, verbosity);
         let judged = Judged::new(fit)?;
         outputs.svg.1.write(judged.svg.as_bytes())?;
@@ -59,7 +65,10 @@ impl Job<'_> {
             judged,
             wall: start.elapsed(),
         };
-        let record = self.record(&drawn);
+        let record = FitReport {
+            input,
+            ..self.record(&drawn)
+        };
         if let Some((_, output)) = &outputs.report {
             output.write(report::json(&record)?.as_bytes())?;
         }
@@ -75,8 +84,19 @@ impl Job<'_> {
         Ok(drawn)
     }
 
-    /// Says how much memory is about to be used.
+    /// Says what was chosen for a large picture, and how much memory is about to be used.
     fn foretell(&self, picture: &Image, verbosity: Verbosity) {
+        let (config, pixels) = (self.options.config(), picture.width() * picture.height());
+        if let Some(quality) = config
+            .quality_for(pixels)
+            .filter(|_| config.is_open() && pixels > SCREEN_PIXELS)
+        {
+            verbosity.say(format_args!(
+                "{}: {:.1} megapixels are drawn as a screen shows them, with --quality {quality:.0}; --quality {DEFAULT_QUALITY} draws every detail",
+                input::name(self.input),
+                pixels as f64 / 1e6,
+            ));
+        }
         let bytes = fit::predicted_rss_bytes(picture, &self.options.config());
         verbosity.detail(format_args!("needs about {} MiB of memory", bytes >> 20));
     }
@@ -88,18 +108,26 @@ impl Job<'_> {
         start: Instant,
         events: &mut Events,
         mut bar: Bar,
+        verbosity: Verbosity,
         draw: &Draw<'_>,
     ) -> Result<Fit> {
         let mut interrupt = Interrupt::watch()?;
         let mut phases = Phases::new(events, self.input.display().to_string());
+        let mut narration = Narration::default();
         let mut observer = |progress: &Progress<'_>| {
             bar.show(progress);
+            if let Some(line) = narration.watch(progress).filter(|_| verbosity.verbose) {
+                bar.aside(|| complain(line));
+            }
             phases.watch(progress);
             interrupt.observe(progress)
         };
         let fit = draw(picture, start, &mut observer);
         phases.end();
         bar.clear();
+        if let Some(line) = narration.end() {
+            verbosity.detail(line);
+        }
         fit
     }
 
@@ -139,8 +167,49 @@ impl Job<'_> {
         )
     }
 
+    /// Says that the drawing has as many strokes as one may have if nothing is said of their number.
+    fn tell_capped(&self, drawn: &Drawn, verbosity: Verbosity) {
+        let strokes = drawn.judged.fit.scene.len();
+        if self.options.config().is_open()
+            && drawn.judged.fit.stop == Stop::Strokes
+            && 10 * strokes >= 9 * DEFAULT_STROKES
+            && self.base.is_none()
+        {
+            verbosity.say(format_args!(
+                "{}: more strokes would pay, but {strokes} are the most unless --strokes or --quality asks for more",
+                output::name(&self.output)
+            ));
+        }
+    }
+
+    /// Says that a page of one colour would be more like the picture than the drawing is.
+    fn tell_poor(&self, drawn: &Drawn) {
+        let reached = drawn.judged.verdict.fidelity.psnr_db;
+        let flat = one_color_db(&drawn.judged.fit.target);
+        if reached + POOR_DB < flat {
+            complain(format_args!(
+                "{}: warning: a page of one colour would be more like the picture ({flat:.1} dB) than this drawing ({reached:.1} dB): \
+                 give other colours or more of them, or another --background",
+                output::name(&self.output)
+            ));
+        }
+    }
+
+    /// What brings a drawing nearer to the fidelity asked for, that ended for this reason.
+    fn remedy(&self, stop: Stop) -> String {
+        let looks = self.options.limiting_looks();
+        match stop {
+            Stop::Strokes => "allow more strokes".into(),
+            Stop::Bytes => "allow more bytes".into(),
+            Stop::Time => "allow more time".into(),
+            Stop::Interrupted => "let it end".into(),
+            _ if !looks.is_empty() => format!("leave out {}", looks.join(", ")),
+            _ => "strokes are too coarse for it: draw the picture at twice its size".into(),
+        }
+    }
+
     /// The status of a drawing that was written. What is short of the promise is said even when quiet.
-    pub(super) fn judge(&self, drawn: &Drawn) -> Status {
+    pub(super) fn judge(&self, drawn: &Drawn, verbosity: Verbosity) -> Status {
         let name = output::name(&self.output);
         if let Some(signal) = Interrupt::caught() {
             if drawn.judged.fit.stop == Stop::Interrupted {
@@ -150,19 +219,28 @@ impl Job<'_> {
             }
             return Status::Interrupted(signal);
         }
-        if !drawn.judged.verdict.agrees() {
+        self.tell_capped(drawn, verbosity);
+        self.tell_poor(drawn);
+        if !drawn.judged.holds() {
+            let remedy = if drawn.judged.fit.target.width() * drawn.judged.fit.target.height()
+                < FEW_PIXELS
+            {
+                "strokes are as wide as its pixels: draw the picture at 16 times its size, enlarged without smoothing"
+            } else {
+                "try --opaque or a higher --precision"
+            };
             complain(format_args!(
                 "{name}: fidelity check failed: resvg's render agrees with the fit to {:.2} dB, less than {MIN_AGREEMENT_DB} dB: \
-                 the file was kept; try --opaque or a higher --precision",
+                 the file was kept; {remedy}",
                 drawn.judged.verdict.agreement.psnr_db
             ));
             return Status::Disagrees;
         }
         let reached = drawn.judged.verdict.fidelity.psnr_db;
         if let Some(wanted) = self.options.budget.psnr.filter(|wanted| reached < *wanted) {
-            let stop = report::stop_word(drawn.judged.fit.stop);
+            let remedy = self.remedy(drawn.judged.fit.stop);
             complain(format_args!(
-                "{name}: target not reached: {reached:.2} dB of {wanted} (stopped by: {stop}): allow more strokes, bytes or time"
+                "{name}: target not reached: {reached:.2} dB of {wanted}: {remedy}"
             ));
             return Status::TargetMissed;
         }
@@ -207,24 +285,33 @@ impl<'a> Outputs<'a> {
     }
 }
 
+/// A picture of fewer pixels is small.
+const FEW_PIXELS: usize = 32 * 32;
+
+/// A drawing this much worse than a page of one colour is spoken of, dB.
+const POOR_DB: f64 = 1.0;
+
+/// Fidelity of the best page of one colour, dB; transparent pictures are on white.
+fn one_color_db(picture: &Image) -> f64 {
+    let variance = |plane: &Vec<f32>| {
+        let mean = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / plane.len() as f64;
+        let center = mean(&mut plane.iter().map(|&v| f64::from(v)));
+        mean(&mut plane.iter().map(|&v| away2(v, center)))
+    };
+    let flat = picture.flattened([1.0; 3]);
+    psnr_db(flat.planes().iter().map(variance).sum::<f64>() / 3.0)
+}
+
+fn away2(value: f32, center: f64) -> f64 {
+    let away = f64::from(value) - center;
+    away * away
+}
+
 /// A drawing that was written.
 pub(super) struct Drawn {
     pub(super) judged: Judged,
     /// From the start of the job until the SVG is written.
     pub(super) wall: Duration,
-}
-
-fn tell_stages(fit: &Fit, verbosity: Verbosity) {
-    for stage in &fit.stages {
-        verbosity.detail(format_args!(
-            "stage {}: {} strokes, {} iterations, {:.2} s, {:.2} dB",
-            stage.index,
-            stage.strokes,
-            stage.iterations,
-            stage.wall.as_secs_f64(),
-            stage.psnr_db
-        ));
-    }
 }
 
 fn tell_dropped(dropped: Dropped, verbosity: Verbosity) {

@@ -16,6 +16,7 @@ mod interrupt;
 mod job;
 mod lab;
 mod manual;
+mod narration;
 mod options;
 mod output;
 mod pictures;
@@ -105,7 +106,7 @@ struct Verbosity {
     /// Print errors only
     #[arg(short, long, global = true, conflicts_with = "verbose")]
     quiet: bool,
-    /// Print a line for each stage
+    /// Print a line for each part of a fit as it ends, and every few seconds for one that takes long
     #[arg(short, long, global = true)]
     verbose: bool,
 }

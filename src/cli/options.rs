@@ -7,10 +7,13 @@ use anyhow::Result;
 use clap::builder::TypedValueParser;
 use strokefit::coverage::CoverageSchedule;
 use strokefit::fit::{
-    self, Background, Checkpoint, Config, Execution, Fit, Fitter, Observer, Preset, Simd,
+    self, Background, Checkpoint, Colors, Config, Execution, Fit, Fitter, Observer, Preset, Simd,
 };
 use strokefit::image::Limits;
+use strokefit::svg::WriteOptions;
 
+use super::domain::StrokeLimit;
+use super::interrupt::GRACE;
 use super::pictures::FilmOptions;
 use super::{colors, complain, domain, form, words};
 
@@ -42,9 +45,9 @@ pub(super) struct Options {
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Budget (the first one reached stops)")]
 pub(super) struct Budget {
-    /// At most N strokes
+    /// At most N strokes. With refine, +N counts those beyond the strokes that BASE brings
     #[arg(long, value_name = "N", value_parser = domain::strokes, allow_negative_numbers = true)]
-    pub(super) strokes: Option<usize>,
+    pub(super) strokes: Option<StrokeLimit>,
     /// Stop when the file reaches DB decibels of PSNR: 25 is rough, 30 fair, 35 good
     #[arg(long, value_name = "DB", value_parser = domain::psnr, allow_negative_numbers = true)]
     pub(super) psnr: Option<f64>,
@@ -60,7 +63,8 @@ pub(super) struct Budget {
 #[command(next_help_heading = "Look")]
 pub(super) struct Look {
     /// Price of a byte, 0 to 60: a stroke stays if each of its bytes removes at least as much squared error
-    /// as one pixel has at Q dB [default: 30, unless --strokes, --psnr or --bytes is given]
+    /// as one pixel has at Q dB [default: 30, less for pictures over 768×512, unless --strokes, --psnr or
+    /// --bytes is given]
     #[arg(long, value_name = "Q", allow_negative_numbers = true)]
     quality: Option<f64>,
     /// How much time to spend for a better drawing
@@ -127,10 +131,16 @@ fn preset() -> impl TypedValueParser<Value = Preset> {
 }
 
 impl Options {
+    /// The configuration of a drawing that begins from nothing.
     pub(super) fn config(&self) -> Config {
+        self.config_beyond(0)
+    }
+
+    /// The configuration of a drawing whose base brings `before` strokes.
+    pub(super) fn config_beyond(&self, before: usize) -> Config {
         let look = &self.look;
         Config {
-            budget: self.budget.limits(),
+            budget: self.budget.limits(before),
             preset: look.preset,
             quality: look.quality,
             progressive: look.progressive,
@@ -145,6 +155,26 @@ impl Options {
             seed: look.seed,
             ..Config::default()
         }
+    }
+
+    /// The options that keep a drawing from being more faithful.
+    pub(super) fn limiting_looks(&self) -> Vec<&'static str> {
+        let (look, config) = (&self.look, self.config());
+        let options = [
+            ("--colors or --palette", config.colors != Colors::Free),
+            ("--opaque", look.opaque),
+            ("--quality", look.quality.is_some()),
+            ("--progressive", look.progressive),
+            ("--no-polish", look.no_polish),
+            ("--points 2", look.points == Some(2)),
+            ("--preset draft", look.preset == Preset::Draft),
+            (
+                "--precision",
+                config.file.precision < WriteOptions::default().precision,
+            ),
+        ];
+        let given = options.into_iter().filter(|(_, given)| *given);
+        given.map(|(name, _)| name).collect()
     }
 
     pub(super) fn limits(&self) -> Limits {
@@ -168,14 +198,17 @@ impl Options {
         })
     }
 
-    /// Configures a fitter, with a checkpoint if one was asked for, and draws with it.
+    /// Configures a fitter for a drawing whose base brings `before` strokes, with a checkpoint if one was asked for, and
+    /// draws with it.
     pub(super) fn fit(
         &self,
+        before: usize,
         observer: &mut (dyn Observer + Send),
         draw: impl FnOnce(Fitter<'_>) -> strokefit::Result<Fit>,
     ) -> Result<Fit> {
-        let fitter = Fitter::new(self.config())
+        let fitter = Fitter::new(self.config_beyond(before))
             .execution(self.execution())
+            .grace(GRACE)
             .observer(observer);
         let Some(mut checkpoint) = self.checkpoint() else {
             return Ok(draw(fitter)?);
@@ -196,9 +229,9 @@ impl Options {
 }
 
 impl Budget {
-    fn limits(&self) -> fit::Budget {
+    fn limits(&self, before: usize) -> fit::Budget {
         fit::Budget {
-            strokes: self.strokes,
+            strokes: self.strokes.map(|limit| limit.total(before)),
             psnr_db: self.psnr,
             bytes: self.bytes,
             time: self.time,

@@ -1,8 +1,9 @@
-//! Writes output files; `-` is standard output. A file appears complete under its name or not at all.
+//! Writes output files; `-` is standard output. A file appears complete under its name or not at all, and its folder is
+//! made where it is missing.
 
-use std::fs::{self, OpenOptions};
+use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use anyhow::{Result, anyhow};
 
@@ -58,9 +59,21 @@ impl Output {
         match self {
             Self::Stdout => Ok(()),
             // An unnamed file, where the system has those: nobody ever sees it.
-            Self::File(path) => tempfile::tempfile_in(target_folder(path)?).map(drop),
+            Self::File(path) => tempfile::tempfile_in(nearest_folder(path)?).map(drop),
             Self::Device(path) => OpenOptions::new().write(true).open(path).map(drop),
         }
+    }
+
+    /// A file that is written bit by bit, from its start.
+    pub(super) fn stream(&self) -> io::Result<Box<dyn Write + Send>> {
+        Ok(match self {
+            Self::Stdout => Box::new(io::stdout()),
+            Self::File(path) => {
+                make_folder(path)?;
+                Box::new(File::create(path)?)
+            }
+            Self::Device(path) => Box::new(File::create(path)?),
+        })
     }
 
     /// Writes everything.
@@ -96,16 +109,46 @@ impl Output {
     }
 }
 
-/// One name for each file, so that two outputs can be compared; a link stays a link to the new file.
+/// One name for each file, so that two outputs can be compared. A link is followed, even where it leads to no file yet;
+/// folders that are missing count as made.
 fn canonical(path: &Path) -> PathBuf {
-    let beside = || {
-        let folder = fs::canonicalize(folder(path)).ok()?;
-        Some(folder.join(path.file_name()?))
+    if let Ok(path) = fs::canonicalize(path) {
+        return path;
+    }
+    // What is there but has no path, such as a pipe, is written under the name that was given.
+    let path = if path.exists() {
+        path.to_owned()
+    } else {
+        followed(path)
     };
-    fs::canonicalize(path)
-        .ok()
-        .or_else(beside)
-        .unwrap_or_else(|| path.to_owned())
+    located(&path).unwrap_or(path)
+}
+
+/// Most links that are followed one after the other, as on Linux.
+const MAX_LINKS: usize = 40;
+
+/// Where the last link leads that begins at `path`.
+fn followed(path: &Path) -> PathBuf {
+    let mut path = path.to_owned();
+    for _ in 0..MAX_LINKS {
+        match fs::read_link(&path) {
+            Ok(target) => path = folder(&path).join(target),
+            Err(_) => break,
+        }
+    }
+    path
+}
+
+/// `path` below the nearest folder that is there, which is given its one name.
+fn located(path: &Path) -> Option<PathBuf> {
+    let parent = folder(path);
+    let place = fs::canonicalize(parent).ok().or_else(|| located(parent))?;
+    match path.components().next_back()? {
+        // Folders that are to be made are no links, so that the one above is the one before.
+        Component::ParentDir => place.parent().map(Path::to_owned),
+        Component::CurDir => Some(place),
+        last => Some(place.join(last)),
+    }
 }
 
 fn folder(path: &Path) -> &Path {
@@ -120,7 +163,22 @@ fn target_folder(path: &Path) -> io::Result<&Path> {
     Ok(folder(path))
 }
 
+/// The nearest folder above the file `path` that is there.
+fn nearest_folder(path: &Path) -> io::Result<&Path> {
+    let mut folder = target_folder(path)?;
+    while fs::symlink_metadata(folder).is_err_and(|e| e.kind() == io::ErrorKind::NotFound) {
+        folder = folder.parent().ok_or(io::ErrorKind::NotFound)?;
+    }
+    Ok(folder)
+}
+
+/// Makes the folder of the file `path`, if it is missing.
+fn make_folder(path: &Path) -> io::Result<()> {
+    fs::create_dir_all(target_folder(path)?)
+}
+
 fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    make_folder(path)?;
     let mut file = temporary(path)?;
     file.write_all(bytes)?;
     if let Ok(existing) = fs::metadata(path) {
@@ -148,9 +206,6 @@ fn temporary(path: &Path) -> io::Result<tempfile::NamedTempFile> {
 fn unwritable(path: &Path, error: &io::Error) -> anyhow::Error {
     let path = path.display();
     match error.kind() {
-        io::ErrorKind::NotFound => {
-            anyhow!("{path}: cannot be written, its folder does not exist: create the folder first")
-        }
         io::ErrorKind::IsADirectory => {
             anyhow!("{path}: cannot be written, it is a folder: name a file in it")
         }
@@ -193,7 +248,7 @@ mod tests {
         let file = folder.path().join("file");
         fs::write(&file, "").unwrap();
         for (path, why) in [
-            (folder.path().join("none/a.svg"), "does not exist"),
+            (file.join("none/a.svg"), "is a file"),
             (folder.path().to_owned(), "is a folder"),
             (folder.path().join("new/"), "is a folder"),
             (file.join("a.svg"), "is a file"),
@@ -207,14 +262,54 @@ mod tests {
     }
 
     #[test]
-    #[cfg(unix)]
-    fn a_link_stays_a_link() {
+    fn folders_are_made_when_something_is_written_into_them() {
         let folder = tempfile::tempdir().unwrap();
-        let (file, link) = (folder.path().join("file"), folder.path().join("link"));
-        fs::write(&file, "old").unwrap();
-        std::os::unix::fs::symlink(&file, &link).unwrap();
-        Output::open(&link).unwrap().write(b"new").unwrap();
-        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
-        assert_eq!(fs::read_to_string(&file).unwrap(), "new");
+        let path = folder.path().join("a/b/c.svg");
+        let output = Output::open(&path).unwrap();
+        assert!(!folder.path().join("a").exists());
+        output.write(b"new").unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "new");
+        let streamed = folder.path().join("d/e.jsonl");
+        let output = Output::open(&streamed).unwrap();
+        output.stream().unwrap().write_all(b"line").unwrap();
+        assert_eq!(fs::read_to_string(&streamed).unwrap(), "line");
+    }
+
+    #[test]
+    fn a_file_has_one_name_before_its_folder_is_there() {
+        let folder = tempfile::tempdir().unwrap();
+        let open = |name: &str| Output::open(&folder.path().join(name)).unwrap();
+        assert_eq!(open("new/a.svg"), open("new/./b/../a.svg"));
+        assert_eq!(open("new/../a.svg"), open("a.svg"));
+        assert_ne!(open("new/a.svg"), open("a.svg"));
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_link_is_written_through_even_if_it_leads_to_no_file_yet() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::write(at("old"), "old").unwrap();
+        for (link, target) in [
+            ("to-old", "old"),
+            ("to-new", "new"),
+            ("far", "to-far"),
+            ("to-far", "deep/far-end"),
+        ] {
+            std::os::unix::fs::symlink(target, at(link)).unwrap();
+        }
+        for (link, file) in [
+            ("to-old", "old"),
+            ("to-new", "new"),
+            ("far", "deep/far-end"),
+        ] {
+            assert_eq!(
+                Output::open(&at(link)).unwrap(),
+                Output::open(&at(file)).unwrap()
+            );
+            Output::open(&at(link)).unwrap().write(b"written").unwrap();
+            assert!(fs::symlink_metadata(at(link)).unwrap().is_symlink());
+            assert_eq!(fs::read_to_string(at(file)).unwrap(), "written");
+        }
     }
 }

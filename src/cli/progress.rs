@@ -41,6 +41,11 @@ impl Bar {
         self.bar.finish_and_clear();
     }
 
+    /// Takes the bar off the screen while `tell` says something.
+    pub(super) fn aside(&self, tell: impl FnOnce()) {
+        self.bar.suspend(tell);
+    }
+
     /// Where the fit stands, and how fast it goes.
     fn caption(&self, progress: &Progress<'_>) -> String {
         let Progress {
@@ -90,9 +95,10 @@ fn position(done: f64) -> u64 {
 }
 
 /// The part of the fit that is under way; how many stages there will be is not always planned.
-fn place(progress: &Progress<'_>) -> String {
+pub(super) fn place(progress: &Progress<'_>) -> String {
     let Progress { stage, stages, .. } = *progress;
     match stages {
+        _ if progress.settling => "settling".into(),
         _ if progress.polishing => "polish".into(),
         0 => format!("stage {stage}"),
         _ => format!("stage {stage} of {stages}"),

@@ -17,21 +17,22 @@ use super::{Status, Verbosity, batch, input, misuse, pictures};
 /// of its root element, and a later refine fits them further. With --freeze-base all strokes of BASE stay
 /// as they are, and so do those drawn from a picture of another size.
 ///
-/// Budgets count the whole file: --strokes counts old and new strokes, --psnr and --bytes apply to the
+/// Budgets count the whole file: --strokes N counts old and new strokes, --strokes +N new ones alone, --psnr and --bytes apply to the
 /// written file, and --stages counts the stages that BASE already has. If BASE already meets a budget, it is
 /// written unchanged. The background is that of BASE.
 #[derive(Debug, clap::Args)]
 #[command(
     mut_arg("background", |background| background.hide(true)),
     after_help = "Examples:
-  strokefit refine photo.svg photo.jpg -o better.svg --strokes 2000
+  strokefit refine photo.svg photo.jpg -o better.svg --strokes 2000     2,000 in all
+  strokefit refine photo.svg photo.jpg -o better.svg --strokes +500     500 more
   strokefit refine traced.svg photo.png -o finished.svg --strokes 200
   strokefit refine photo.svg photo.jpg -o more.svg --freeze-base --psnr 34"
 )]
 pub(super) struct Args {
     /// SVG to go on from. - means standard input
     base: PathBuf,
-    /// Picture: PNG, JPEG, WebP, GIF (first frame), BMP or TIFF. - means standard input
+    /// Picture: PNG, JPEG, WebP, GIF (first frame), BMP, TIFF and some more. - means standard input
     input: PathBuf,
     /// SVG to write. - means standard output. Repeat -o for more files: .png for a render, .gif, .webp or
     /// .apng for an animation, .animated.svg for an SVG that draws itself; for single frames see Animation
@@ -71,14 +72,27 @@ pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
     batch::run(&[job], verbosity, &|picture, start, observer| {
         let base = read(args, text.clone(), picture)?;
         tell(&base, verbosity);
-        args.options
-            .fit(observer, |fitter| fitter.on(base).since(start).fit(picture))
+        let before = base.scene.len();
+        tell_full(&args.options, before, verbosity);
+        args.options.fit(before, observer, |fitter| {
+            fitter.on(base).since(start).fit(picture)
+        })
     })
 }
 
 fn read(args: &Args, text: String, picture: &Image) -> Result<Base> {
     let name = input::name(&args.base);
     Ok(Base::read(text, picture, args.freeze_base).map_err(|error| error.within(name))?)
+}
+
+/// Tells the user that the base, with `before` strokes, leaves no room for more.
+fn tell_full(options: &Options, before: usize, verbosity: Verbosity) {
+    let limit = options.budget.strokes.map(|limit| limit.total(before));
+    if let Some(most) = limit.filter(|&most| most <= before) {
+        verbosity.say(format_args!(
+            "hint: the SVG has {before} strokes already, and --strokes {most} allows no more: --strokes +{most} adds {most}"
+        ));
+    }
 }
 
 /// Tells the user how the base is used.

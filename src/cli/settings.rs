@@ -254,6 +254,10 @@ fn value(arg: &Arg, matches: &ArgMatches) -> Option<Value> {
         return Some(Value::Boolean(matches.get_flag(id)));
     }
     let raw = matches.get_raw(id)?.next()?.to_string_lossy().into_owned();
+    // The sign of +300 has a meaning, which a number of TOML loses.
+    if raw.starts_with('+') {
+        return Some(Value::String(raw));
+    }
     let integer = raw.parse().ok().map(Value::Integer);
     let whole = raw.bytes().all(|b| b.is_ascii_digit());
     let float = raw.parse().ok().filter(|v: &f64| v.is_finite() && !whole);
@@ -338,6 +342,8 @@ mod tests {
             "--print-config",
             "--psnr",
             "32.5",
+            "--strokes",
+            "+300",
             "--opaque",
             "--seed",
             "18446744073709551615",
@@ -347,6 +353,7 @@ mod tests {
         let flags = read(&text).unwrap();
         for flag in [
             "--psnr=32.5",
+            "--strokes=+300",
             "--opaque",
             "--seed=18446744073709551615",
             "--polish",
@@ -354,6 +361,6 @@ mod tests {
         ] {
             assert!(flags.iter().any(|f| f == flag), "{flag}: {text}");
         }
-        assert!(text.contains("# strokes = N"), "{text}");
+        assert!(text.contains("# bytes = N"), "{text}");
     }
 }

@@ -10,6 +10,7 @@ use strokefit::svg;
 use strokefit::verify;
 use strokefit::view::Viewer;
 
+use super::interrupt::GRACE;
 use super::job::Draw;
 use super::options::Options;
 use super::{Status, complain, input, misuse};
@@ -123,6 +124,7 @@ pub(super) fn more(
     move |picture, start, observer| {
         let fitter = Fitter::new(config.clone())
             .execution(execution)
+            .grace(GRACE)
             .since(start);
         Ok(fitter.on(base.clone()).observer(observer).fit(picture)?)
     }

@@ -7,6 +7,7 @@ use super::recipe::{Preset, Recipe};
 use super::simd::Simd;
 use crate::coverage::CoverageSchedule;
 use crate::error::{Error, ErrorKind, Result};
+use crate::math;
 use crate::scene::{MAX_POINTS, MAX_PRECISION, Rgb, Scene, quantum};
 use crate::svg::{Form, WriteOptions};
 use crate::threads::Workers;
@@ -18,7 +19,7 @@ pub struct Config {
     pub budget: Budget,
     /// Sets the price of a stroke: each of its bytes has to remove as much squared error as one pixel has at this many
     /// dB. If it is `None`, a budget of strokes, fidelity or bytes makes strokes free, so that every stroke that
-    /// removes error stays; without such a budget [`DEFAULT_QUALITY`] applies.
+    /// removes error stays; without such a budget [`quality_for`](Self::quality_for) the picture's size applies.
     pub quality: Option<f64>,
     /// How much work to spend.
     pub preset: Preset,
@@ -129,8 +130,14 @@ pub struct Execution {
     pub simd: Simd,
 }
 
-/// The quality of a drawing without a budget, dB.
+/// The quality of a drawing without a budget, dB, unless the picture is large.
 pub const DEFAULT_QUALITY: f64 = 30.0;
+
+/// Pixels of a picture that a screen shows well at once, 768×512: the default quality is for so many.
+pub const SCREEN_PIXELS: usize = 768 * 512;
+
+/// Most strokes of a drawing for which neither a quality nor a budget is set: nobody edits more.
+pub const DEFAULT_STROKES: usize = 5000;
 
 /// Most strokes of a drawing: resvg reads at most a million elements.
 pub const MAX_STROKES: usize = 900_000;
@@ -151,8 +158,19 @@ impl Config {
         self.points.map_or(pays, |most| most > 2)
     }
 
-    /// The quality that sets the price of a stroke, unless strokes are free.
-    pub(super) fn effective_quality(&self) -> Option<f64> {
+    /// The quality that sets the price of a stroke in a drawing of `pixels` pixels, unless strokes are free.
+    ///
+    /// The default one is for a picture as it is seen on a screen: of a picture with more than [`SCREEN_PIXELS`], those
+    /// that a screen would show as one count as one, so that a picture of twice the size gets about as many strokes.
+    pub fn quality_for(&self, pixels: usize) -> Option<f64> {
+        let shrinks_by = (pixels as f64 / SCREEN_PIXELS as f64).max(1.0);
+        let seen = DEFAULT_QUALITY - 10.0 * math::ln(shrinks_by) / std::f64::consts::LN_10;
+        self.quality.or(self.is_open().then_some(seen.max(0.0)))
+    }
+
+    /// Whether neither a quality nor a budget says how many strokes a drawing may have. It then has at most
+    /// [`DEFAULT_STROKES`].
+    pub fn is_open(&self) -> bool {
         let Budget {
             strokes,
             psnr_db,
@@ -160,7 +178,16 @@ impl Config {
             ..
         } = self.budget;
         let bounded = strokes.is_some() || psnr_db.is_some() || bytes.is_some();
-        self.quality.or((!bounded).then_some(DEFAULT_QUALITY))
+        self.quality.is_none() && !bounded
+    }
+
+    /// Most strokes that a drawing may have, whatever its budget.
+    pub(super) fn most_strokes(&self) -> usize {
+        if self.is_open() {
+            DEFAULT_STROKES
+        } else {
+            MAX_STROKES
+        }
     }
 
     /// Refuses options that are outside their domains.

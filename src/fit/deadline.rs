@@ -4,7 +4,8 @@ use std::time::Duration;
 
 use crate::clock::Instant;
 
-/// Answers what a fit still has time for. Times are in seconds since the fit began. The methods provided here are
+/// Answers what a fit still has time for. Times are in seconds since it was
+/// set, usually when the fit began. The methods provided here are
 /// those of a fit without a limit; `Forecast` implements a limit.
 pub(super) trait Deadline: Send {
     /// Records that writing and rendering `strokes` strokes took `span` and ended at `now`.
@@ -58,6 +59,8 @@ pub(super) struct Timer {
     /// Time that the fit took before it was resumed.
     before: Duration,
     deadline: Box<dyn Deadline>,
+    /// When the deadline was set: its times begin there.
+    set: Duration,
     /// The share of the time for descent by which the current phase has to end.
     until: f32,
     /// Strokes of the drawing, when they were last counted.
@@ -74,6 +77,7 @@ impl Timer {
             started,
             before: Duration::ZERO,
             deadline,
+            set: Duration::ZERO,
             until: 1.0,
             strokes: 0,
             stepped: None,
@@ -91,8 +95,15 @@ impl Timer {
         self.before = before;
     }
 
+    /// Replaces the deadline by one whose time begins now.
+    pub(super) fn restart(&mut self, deadline: Box<dyn Deadline>) {
+        (self.deadline, self.set) = (deadline, self.elapsed());
+        self.stepped = None;
+    }
+
+    /// Time since the deadline was set, s.
     fn now(&self) -> f64 {
-        self.elapsed().as_secs_f64()
+        self.elapsed().saturating_sub(self.set).as_secs_f64()
     }
 
     /// Whether the limit made anything shorter than planned.

@@ -32,6 +32,9 @@ pub(super) fn descend(
             }
         };
         session.keep(Some(descent));
+        if session.heed() && aim.is_none() {
+            descent.hurry();
+        }
         if !goes_on {
             break;
         }

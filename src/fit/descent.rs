@@ -49,6 +49,9 @@ pub(super) struct Descent {
     step: usize,
     /// Share of a limited time for descent that was used before it began.
     used_before: f32,
+    /// Share of the course that was over when the fit was asked to stop; the time that is left is for the rest.
+    #[serde(skip)]
+    hurried_from: Option<f32>,
     adam: Adam<f32>,
     background: Adam<f32>,
     /// Step size of each parameter of each stroke.
@@ -70,6 +73,7 @@ impl Descent {
             course,
             step: 0,
             used_before,
+            hurried_from: None,
             adam: Adam::new(drawing.free().numbers().len(), recipe.optimizer.strokes),
             background: Adam::new(3, recipe.optimizer.background),
             scales: scales(&course.rates, drawing, recipe),
@@ -89,12 +93,21 @@ impl Descent {
         let by_count = self.step as f32 / iterations as f32;
         let left = (until - self.used_before).max(f32::MIN_POSITIVE);
         let by_time = (timer.used() - self.used_before) / left;
+        let from = self.hurried_from.unwrap_or(0.0);
+        let by_time = from + (1.0 - from) * by_time;
         if by_time >= 1.0 {
             timer.hurry();
             return None;
         }
         self.step += 1;
         Some((self.step - 1, by_count.max(by_time)))
+    }
+
+    /// Makes the rest of the course follow the time that is left, which begins now.
+    pub(super) fn hurry(&mut self) {
+        self.hurried_from = Some(self.step as f32 / self.course.iterations.max(1) as f32);
+        self.used_before = 0.0;
+        self.course.until = self.course.until.min(1.0);
     }
 
     /// Moves the free strokes, and in a joint course the background, one step down the gradient.
@@ -111,7 +124,14 @@ impl Descent {
             None => annealing.last(),
         };
         drawing.differentiate::<false>(edge, aim.map(|aim| aim.targets), &mut self.gradients);
-        let rate = course.rate(step, done);
+        // A time limit may have shortened the course.
+        let by_time = course.joint.is_some() || self.hurried_from.is_some();
+        let at = if by_time {
+            (done * course.iterations as f32) as usize
+        } else {
+            step
+        };
+        let rate = course.rate(at);
         let bounds = drawing.bounds;
         let strokes = drawing.free_mut();
         let slopes = &self.gradients.strokes;
@@ -140,13 +160,8 @@ impl Descent {
 }
 
 impl Course {
-    /// The factor of the step sizes of iteration `step`, when a share `done` of the course is over.
-    fn rate(&self, step: usize, done: f32) -> f32 {
-        let at = match self.joint {
-            // A time limit may have shortened the course.
-            Some(_) => (done * self.iterations as f32) as usize,
-            None => step,
-        };
+    /// The factor of the step sizes of iteration `at`.
+    fn rate(&self, at: usize) -> f32 {
         let end = self.rates.last;
         Schedule::Cosine { end }.factor(self.before + at, self.of) as f32 * self.pace
     }

@@ -44,6 +44,8 @@ pub(super) struct Counters {
     pub(super) lost: usize,
     /// The first stage that was not traced, unless none was.
     pub(super) traced_until: usize,
+    /// Strokes that were removed because nobody could see them.
+    pub(super) hidden: usize,
 }
 
 impl Drawing {
@@ -139,6 +141,11 @@ impl Drawing {
         }
     }
 
+    /// The edge of the finished drawing.
+    pub(super) fn edge(&self) -> Softness {
+        self.edge
+    }
+
     /// Pixels of the picture per pixel of the current resolution.
     pub(super) fn pixel_area(&self) -> f32 {
         (1 << (2 * self.surface().halvings())) as f32
@@ -204,6 +211,11 @@ impl Drawing {
         let mut i = 0..;
         self.stage_of.retain(|_| i.next().is_some_and(kept));
         self.free.retain(keep);
+    }
+
+    /// Puts the free strokes into the order that `sources` lists them in. Places keep their stages.
+    pub(super) fn reorder(&mut self, sources: &[usize]) {
+        self.free = sources.iter().map(|&i| self.free.get(i)).collect();
     }
 
     /// Removes the `count` free strokes of least worth.

@@ -23,10 +23,12 @@ pub(super) fn finish(mut session: Session<'_>) -> Result<Fit> {
         base: session.base.cloned(),
         file: session.config.file,
         stop: session.cut_by().unwrap_or(session.history.stop),
+        stacking_db: session.history.stacking_db,
         target: session.target,
         stages,
         dropped: Dropped {
             non_finite: rounded.dropped.non_finite + session.drawing.counters.lost,
+            invisible: rounded.dropped.invisible + session.drawing.counters.hidden,
             ..rounded.dropped
         },
     })

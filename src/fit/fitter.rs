@@ -1,5 +1,7 @@
 //! The builder of a fit.
 
+use std::time::Duration;
+
 use super::background;
 use super::base::Base;
 use super::checkpoint::Checkpoint;
@@ -35,6 +37,7 @@ pub struct Fitter<'a> {
     pub(super) token: CancelToken,
     pub(super) checkpoint: Option<&'a mut Checkpoint>,
     pub(super) since: Option<Instant>,
+    pub(super) grace: Duration,
 }
 
 impl<'a> Fitter<'a> {
@@ -48,6 +51,7 @@ impl<'a> Fitter<'a> {
             token: CancelToken::default(),
             checkpoint: None,
             since: None,
+            grace: Duration::ZERO,
         }
     }
 
@@ -97,6 +101,16 @@ impl<'a> Fitter<'a> {
     pub fn since(self, start: Instant) -> Self {
         Self {
             since: Some(start),
+            ..self
+        }
+    }
+
+    /// Sets how long a fit that is asked to stop may take to finish its drawing, as if the time were up then. By default it
+    /// stops at once, and its latest strokes are as they were seeded. The observer is still told of progress.
+    #[must_use]
+    pub fn grace(self, span: Duration) -> Self {
+        Self {
+            grace: span,
             ..self
         }
     }

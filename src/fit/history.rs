@@ -22,6 +22,8 @@ pub(super) struct History {
     /// What ended the stages, and in the end the fit.
     pub(super) stop: Stop,
     pub(super) corrections: Corrections,
+    /// How much worse the drawing is because its colours are stacked, dB.
+    pub(super) stacking_db: Option<f64>,
     /// The drawing that the best file was written from.
     pub(super) best: Option<Memento>,
 }
@@ -63,6 +65,7 @@ impl History {
                 last_db: 0.0,
                 db_per_doubling,
             },
+            stacking_db: None,
             best: None,
         }
     }

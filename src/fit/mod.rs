@@ -26,6 +26,7 @@ mod file;
 mod finish;
 mod fitter;
 mod forecast;
+mod hidden;
 mod history;
 mod memory;
 mod objective;
@@ -49,7 +50,10 @@ mod words;
 pub use anneal::final_softness;
 pub use base::Base;
 pub use checkpoint::Checkpoint;
-pub use config::{Background, Budget, Colors, Config, DEFAULT_QUALITY, Execution, MAX_STROKES};
+pub use config::{
+    Background, Budget, Colors, Config, DEFAULT_QUALITY, DEFAULT_STROKES, Execution, MAX_STROKES,
+    SCREEN_PIXELS,
+};
 pub use fitter::Fitter;
 pub use memory::predicted_rss_bytes;
 pub use objective::Objective;
@@ -67,7 +71,7 @@ use crate::error::Result;
 use crate::image::Image;
 use order::{Outcome, Phase};
 use phase::{count, grow, polish, settle, trace};
-use session::Session;
+use session::{Session, Watch};
 
 impl Fitter<'_> {
     /// Draws `picture`.
@@ -87,9 +91,14 @@ impl Fitter<'_> {
         let level = self.execution.simd.require()?;
         let mut nobody = ();
         let observer = self.observer.unwrap_or(&mut nobody);
-        let (token, checkpoint) = (self.token, self.checkpoint);
+        let (token, checkpoint, grace) = (self.token, self.checkpoint, self.grace);
         self.execution.pool()?.install(|| {
-            let mut session = Session::new(picture, config, base, level, observer, token, since)?;
+            let watch = Watch {
+                observer,
+                token,
+                grace,
+            };
+            let mut session = Session::new(picture, config, base, level, watch, since)?;
             if let Some(checkpoint) = checkpoint {
                 session.resume(checkpoint)?;
             }

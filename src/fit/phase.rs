@@ -5,7 +5,7 @@
 //! | `trace` | strokes are laid along the lines that are seen |
 //! | `grow` | stages are seeded, fitted on frozen strokes, and keep what pays |
 //! | `polish` | all strokes are fitted jointly, with relocation |
-//! | `palette`, `pens` | the drawing is restricted to few colours and few pens |
+//! | `palette`, `stack`, `pens` | the drawing is restricted to few colours, one layer each if asked for, and few pens |
 //! | `settle` | the last steps are taken against renders of the written file |
 //! | `count` | strokes are added and removed until budgets are met |
 
@@ -17,4 +17,5 @@ pub(super) mod polish;
 mod preferences;
 mod rounds;
 pub(super) mod settle;
+mod stack;
 pub(super) mod trace;

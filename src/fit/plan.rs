@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::base::Base;
-use super::config::{Config, MAX_STROKES};
+use super::config::Config;
 use super::recipe::{Recipe, Stages};
 use crate::math;
 
@@ -46,6 +46,8 @@ pub(super) struct Plan {
     /// Whether stages are added as long as they pay.
     open: bool,
     pixels: usize,
+    /// Most strokes of an open plan.
+    most: usize,
     recipe: Stages,
 }
 
@@ -72,6 +74,7 @@ impl Plan {
             open: counts.is_none(),
             counts: counts.unwrap_or_default(),
             pixels,
+            most: config.most_strokes(),
             recipe,
         }
     }
@@ -84,7 +87,8 @@ impl Plan {
     /// Strokes of all planned stages; a guess if the plan is open.
     pub(super) fn strokes(&self) -> usize {
         if self.open {
-            (self.pixels / self.recipe.pixels_per_stroke).max(1)
+            let guess = self.pixels / self.recipe.pixels_per_stroke;
+            guess.clamp(1, self.most)
         } else {
             self.counts.iter().sum()
         }
@@ -98,7 +102,7 @@ impl Plan {
             None if self.open => {
                 let Stages { first, growth, .. } = self.recipe;
                 let count = first as f64 * math::powi(growth, (self.covered + step) as i32);
-                (count as usize).min((self.pixels).min(MAX_STROKES).saturating_sub(before))
+                (count as usize).min(self.pixels.min(self.most).saturating_sub(before))
             }
             None => return None,
         };

@@ -38,7 +38,8 @@ pub(super) fn rearrange(session: &mut Session<'_>) -> Vec<Option<usize>> {
 /// What a stroke is worth that could be spared, where a budget binds. A freed stroke would be used where it is worth
 /// more, and a point has to be worth as much for its bytes. Under a price no stroke takes the place of another.
 fn spare(session: &mut Session<'_>) -> f32 {
-    if session.config.effective_quality().is_some() {
+    let pixels = session.drawing.pixels();
+    if session.config.quality_for(pixels).is_some() {
         return 0.0;
     }
     let share = session.recipe.points.spared;
@@ -75,7 +76,10 @@ fn edit(session: &mut Session<'_>, spare: f32) -> Vec<Option<usize>> {
 /// How many more points the drawing may have.
 fn room(session: &Session<'_>) -> usize {
     let (config, strokes) = (session.config, session.drawing.free());
-    let by_strokes = match (config.budget.bytes, config.effective_quality()) {
+    let by_strokes = match (
+        config.budget.bytes,
+        config.quality_for(session.drawing.pixels()),
+    ) {
         // Bytes or a price limit them.
         (Some(_), _) | (_, Some(_)) => usize::MAX,
         (None, None) => {

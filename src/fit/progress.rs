@@ -23,6 +23,8 @@ pub struct Progress<'a> {
     pub stages: usize,
     /// Whether the strokes are being polished: those of all stages or, in a progressive drawing, those of this one.
     pub polishing: bool,
+    /// Whether the drawing takes its last steps, against renders of its file.
+    pub settling: bool,
     /// Strokes in the drawing.
     pub strokes: usize,
     /// Fidelity of the soft render to the target, dB.
@@ -108,6 +110,12 @@ pub(super) struct Tracker<'a> {
     planned: f64,
     stages: usize,
     pub(super) position: Position,
+    /// Whether the drawing is being settled.
+    settling: bool,
+    /// Whether a fit that was asked to stop may take time to finish its drawing.
+    has_grace: bool,
+    /// Whether an observer or a token has asked the fit to stop.
+    asked: bool,
     /// Set once, by whatever stopped the fit first.
     stopped: Option<Stop>,
 }
@@ -118,6 +126,7 @@ impl<'a> Tracker<'a> {
         token: CancelToken,
         planned: f64,
         stages: usize,
+        has_grace: bool,
     ) -> Self {
         Self {
             observer,
@@ -125,6 +134,9 @@ impl<'a> Tracker<'a> {
             planned,
             stages,
             position: Position::default(),
+            settling: false,
+            has_grace,
+            asked: false,
             stopped: None,
         }
     }
@@ -134,8 +146,13 @@ impl<'a> Tracker<'a> {
         self.stopped
     }
 
-    /// Whether an observer or a token stopped the fit.
+    /// Whether an observer or a token has asked the fit to stop.
     pub(super) fn is_interrupted(&self) -> bool {
+        self.asked
+    }
+
+    /// Whether they stopped it at once.
+    pub(super) fn is_halted(&self) -> bool {
         self.stopped == Some(Stop::Interrupted)
     }
 
@@ -148,11 +165,18 @@ impl<'a> Tracker<'a> {
     pub(super) fn enter(&mut self, stage: usize) {
         self.position.stage = stage + 1;
         self.position.polishing = false;
+        self.settling = false;
     }
 
     /// Begins a polish.
     pub(super) fn polish(&mut self) {
         self.position.polishing = true;
+        self.settling = false;
+    }
+
+    /// Begins to settle.
+    pub(super) fn settle(&mut self) {
+        self.settling = true;
     }
 
     /// Counts an iteration of `strokes` strokes, when a share `time_used` of a limited time is used.
@@ -165,7 +189,7 @@ impl<'a> Tracker<'a> {
 
     /// Reports `drawing`, whose mean squared error is `mse`, to the observer. Returns whether to go on.
     pub(super) fn tell(&mut self, drawing: &Drawing, mse: f64) -> bool {
-        if self.is_interrupted() {
+        if self.is_halted() {
             return false;
         }
         let progress = Progress {
@@ -173,13 +197,15 @@ impl<'a> Tracker<'a> {
             stage: self.position.stage,
             stages: self.stages,
             polishing: self.position.polishing,
+            settling: self.settling,
             strokes: drawing.len(),
             psnr_db: psnr_db(mse),
             drawing,
         };
-        if self.observer.observe(&progress).is_break() || self.token.is_cancelled() {
+        self.asked |= self.observer.observe(&progress).is_break() || self.token.is_cancelled();
+        if self.asked && !self.has_grace {
             self.stopped = Some(Stop::Interrupted);
         }
-        !self.is_interrupted()
+        !self.is_halted()
     }
 }

@@ -268,6 +268,11 @@ pub struct Recoloring {
     pub means: usize,
     /// A stroke keeps its colour if it shows in fewer pixels than this. Half, twice: 0.00 dB.
     pub min_shown: f32,
+    /// Share of the pixels that show the background where it is paper: a background that a given palette does not
+    /// replace.
+    pub paper_share: f32,
+    /// Least difference, per channel, of paper from all colours of the palette.
+    pub paper_distance: f32,
 }
 
 /// How opaque strokes come to share pens (a colour and a width), for the smallest form of a file.

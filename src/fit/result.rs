@@ -27,6 +27,8 @@ pub struct Fit {
     pub stages: Vec<StageRecord>,
     /// Why the fit ended.
     pub stop: Stop,
+    /// How much worse the drawing is, dB, because its colours were stacked to have one layer each; `None` if they were not.
+    pub stacking_db: Option<f64>,
     /// Strokes that were dropped because they became non-finite or could not be seen.
     pub dropped: Dropped,
 }

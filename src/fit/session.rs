@@ -56,7 +56,16 @@ pub(super) struct Session<'a> {
     pub(super) phase: Phase,
     /// The descent in which a resumed fit was cut off, until its phase takes it up again.
     pub(super) resumed: Option<Descent>,
+    /// How long the fit may go on once it is asked to stop; `None` since it was.
+    grace: Option<Duration>,
     keeper: Option<Keeper<'a>>,
+}
+
+/// Who is told of a fit and may stop it, and how long the fit may then go on.
+pub(super) struct Watch<'a> {
+    pub(super) observer: &'a mut (dyn Observer + Send),
+    pub(super) token: CancelToken,
+    pub(super) grace: Duration,
 }
 
 /// The checkpoint that the state is written to.
@@ -77,8 +86,7 @@ impl<'a> Session<'a> {
         config: &'a Config,
         base: Option<&'a Base>,
         level: Level,
-        observer: &'a mut (dyn Observer + Send),
-        token: CancelToken,
+        watch: Watch<'a>,
         started: Instant,
     ) -> Result<Self> {
         let recipe = config.recipe();
@@ -107,7 +115,10 @@ impl<'a> Session<'a> {
         let edge = annealing.last();
         let mut drawing = Drawing::new(surfaces, (background_fixed, shade), bounds, edge, level);
         let records = base.map_or_else(Vec::new, |base| history::load(&mut drawing, base));
-        let deadline = deadline(config, &recipe, &drawing);
+        let deadline: Box<dyn Deadline> = match config.budget.time {
+            Some(limit) => Box::new(forecast(limit, config, &recipe, &drawing)),
+            None => Box::new(Unlimited),
+        };
         let planned = (plan.strokes() * recipe.iterations(config.polish)) as f64;
         Ok(Self {
             config,
@@ -115,17 +126,24 @@ impl<'a> Session<'a> {
             base,
             target,
             annealing,
-            limit: budget::max_strokes(limit, base),
-            price: Price::new(config.effective_quality(), config.file),
+            limit: budget::max_strokes(config, limit, base),
+            price: Price::new(config.quality_for(pixels), config.file),
             writer: Writer::of(config, base),
             drawing,
             history: History::new(records, recipe.correction.db_per_doubling),
             best: None,
-            progress: Tracker::new(observer, token, planned, plan.len()),
+            progress: Tracker::new(
+                watch.observer,
+                watch.token,
+                planned,
+                plan.len(),
+                !watch.grace.is_zero(),
+            ),
             plan,
             timer: Timer::new(started, deadline),
             phase: Phase::first(config, base),
             resumed: None,
+            grace: Some(watch.grace).filter(|grace| !grace.is_zero()),
             keeper: None,
         })
     }
@@ -160,6 +178,31 @@ impl<'a> Session<'a> {
             self.progress.stop(Stop::Time);
         }
         self.progress.tell(&self.drawing, mse) && self.progress.stopped().is_none()
+    }
+
+    /// Whether the fit was asked to stop, and is finishing its drawing.
+    pub(super) fn is_leaving(&self) -> bool {
+        self.progress.is_interrupted()
+    }
+
+    /// Sets a deadline when the fit has been asked to stop. Returns whether that happened just now.
+    pub(super) fn heed(&mut self) -> bool {
+        if !self.is_leaving() {
+            return false;
+        }
+        let Some(grace) = self.grace.take() else {
+            return false;
+        };
+        let elapsed = self.timer.elapsed();
+        let left = self
+            .config
+            .budget
+            .time
+            .map(|limit| limit.saturating_sub(elapsed));
+        let limit = left.map_or(grace, |left| left.min(grace));
+        let deadline = forecast(limit, self.config, &self.recipe, &self.drawing);
+        self.timer.restart(Box::new(deadline));
+        true
     }
 
     /// Measures from time to time, if the time is limited, how long it takes to write and render the drawing.
@@ -210,6 +253,9 @@ impl<'a> Session<'a> {
 
     /// What cut the fit short, if anything did.
     pub(super) fn cut_by(&self) -> Option<Stop> {
+        if self.is_leaving() {
+            return Some(Stop::Interrupted);
+        }
         let hurried = self.timer.is_hurried().then_some(Stop::Time);
         self.progress.stopped().or(hurried)
     }
@@ -298,7 +344,8 @@ fn page(
         && config.background == Background::Auto
         && config.colors == Colors::Free
         && !(config.opaque && picture.alpha().is_some());
-    let price = Price::new(config.effective_quality(), config.file);
+    let pixels = picture.width() * picture.height();
+    let price = Price::new(config.quality_for(pixels), config.file);
     let choose = || shading::choose(picture, &recipe.background.shade, price.per_byte());
     let shade = may_be.then(choose).flatten();
     let background = match shade {
@@ -308,21 +355,11 @@ fn page(
     (background, shade)
 }
 
-/// The deadline that the time budget sets.
-fn deadline(config: &Config, recipe: &Recipe, drawing: &Drawing) -> Box<dyn Deadline> {
-    let Some(limit) = config.budget.time else {
-        return Box::new(Unlimited);
-    };
+/// The forecast of a fit that has a time `limit`.
+fn forecast(limit: Duration, config: &Config, recipe: &Recipe, drawing: &Drawing) -> Forecast {
     let is_transparent = drawing.surfaces.len() > 1;
     let needs_file = budget::needs_file(&config.budget, recipe);
-    let pixels = drawing.pixels();
-    Box::new(Forecast::new(
-        limit,
-        pixels,
-        is_transparent,
-        needs_file,
-        recipe,
-    ))
+    Forecast::new(limit, drawing.pixels(), is_transparent, needs_file, recipe)
 }
 
 /// The scale of the first stage, px, which sets the resolution that the drawing begins at; 0 for full resolution.

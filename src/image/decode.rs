@@ -8,8 +8,9 @@ use std::path::Path;
 use ::image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
 
 use super::rows::{self, Rows, Sample};
-use super::{Image, header};
+use super::{Image, Remark, foreign, header};
 use crate::error::{Error, ErrorKind, Result};
+use crate::math;
 
 /// Limits on the size of a picture file. They are checked on the header, before memory is spent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,13 +34,13 @@ impl Default for Limits {
 
 /// The files that this build reads.
 const READABLE: &str = if cfg!(feature = "formats") {
-    "a PNG, JPEG, WebP, GIF, BMP or TIFF file"
+    "a PNG, JPEG, WebP, GIF, BMP, TIFF, ICO, QOI, TGA, DDS, HDR or PNM file"
 } else {
     "a PNG file, or use a build with the feature `formats`"
 };
 
 /// Reads and decodes the file at `path`.
-pub(super) fn open(path: &Path, limits: Limits) -> Result<Image> {
+pub(super) fn open(path: &Path, limits: Limits) -> Result<(Image, Vec<Remark>)> {
     read(path, limits)
         .and_then(|bytes| decode(&bytes, limits))
         .map_err(|error| error.within(path.display()))
@@ -65,8 +66,8 @@ fn unreadable(error: io::Error) -> Error {
     Error::new(ErrorKind::Io, remedy).caused_by(error)
 }
 
-/// Decodes the bytes of a picture file.
-pub(super) fn decode(bytes: &[u8], limits: Limits) -> Result<Image> {
+/// Decodes the bytes of a picture file, and says what of it is changed or left out.
+pub(super) fn decode(bytes: &[u8], limits: Limits) -> Result<(Image, Vec<Remark>)> {
     let format = format(bytes, limits)?;
     if let Some((width, height)) = header::size(bytes, format) {
         check_size(width, height, limits)?;
@@ -79,14 +80,32 @@ pub(super) fn decode(bytes: &[u8], limits: Limits) -> Result<Image> {
         inner: Cursor::new(bytes),
         ran_out: &ran_out,
     };
-    let picture = samples(watched, format, limits).map_err(|error| {
+    let (picture, profile) = samples(watched, format, limits).map_err(|error| {
         // The JPEG decoder always reads to the end.
         if ran_out.get() && format != ImageFormat::Jpeg {
             return truncated(format).caused_by(error);
         }
         refused(error, format)
     })??;
-    planar(&picture)
+    let (image, clipped) = planar(&picture, format)?;
+    let (image, converted) = match profile {
+        Some(profile) => in_srgb(image, &profile),
+        None => (image, None),
+    };
+    let clipped = (clipped > 0).then_some(Remark::Clipped(clipped));
+    let frames = header::has_more(bytes, format).then_some(Remark::FirstOfSeveral);
+    let remarks = [converted, clipped, frames].into_iter().flatten();
+    Ok((image, remarks.collect()))
+}
+
+#[cfg(feature = "formats")]
+use super::profile::to_srgb as in_srgb;
+
+/// The library alone leaves colours as they are.
+#[cfg(not(feature = "formats"))]
+fn in_srgb(image: Image, _: &[u8]) -> (Image, Option<Remark>) {
+    let why = "of no use to this build, which lacks the feature `formats`,";
+    (image, Some(Remark::ProfileIgnored(why)))
 }
 
 /// The format, by the first bytes.
@@ -100,10 +119,16 @@ fn format(bytes: &[u8], limits: Limits) -> Result<ImageFormat> {
             limits.max_bytes >> 20
         )));
     }
-    ::image::guess_format(bytes)
-        .ok()
+    let tga = header::is_tga(bytes).then_some(ImageFormat::Tga);
+    let found = ::image::guess_format(bytes).ok().or(tga);
+    found
         .filter(|format| format.reading_enabled())
-        .ok_or_else(|| bad(format!("not a picture in a known format: give {READABLE}")))
+        .ok_or_else(|| {
+            bad(match foreign::advice(bytes) {
+                Some(advice) => advice,
+                None => format!("not a picture in a known format: give {READABLE}"),
+            })
+        })
 }
 
 fn check_size(width: u32, height: u32, limits: Limits) -> Result<()> {
@@ -121,12 +146,12 @@ fn check_size(width: u32, height: u32, limits: Limits) -> Result<()> {
     Ok(())
 }
 
-/// The decoded samples in the orientation given by EXIF.
+/// The decoded samples in the orientation given by EXIF, and the colour profile.
 fn samples(
     bytes: Supply<'_>,
     format: ImageFormat,
     limits: Limits,
-) -> Result<Result<DynamicImage>, ImageError> {
+) -> Result<Result<Decoded>, ImageError> {
     let mut allowed = ::image::Limits::no_limits();
     allowed.max_alloc = Some(limits.max_bytes);
     let mut reader = ImageReader::with_format(bytes, format);
@@ -142,10 +167,14 @@ fn samples(
     let orientation = decoder
         .orientation()
         .unwrap_or(::image::metadata::Orientation::NoTransforms);
+    let profile = decoder.icc_profile().ok().flatten();
     let mut picture = DynamicImage::from_decoder(decoder)?;
     picture.apply_orientation(orientation);
-    Ok(Ok(picture))
+    Ok(Ok((picture, profile)))
 }
+
+/// Samples, and the colour profile of their file.
+type Decoded = (DynamicImage, Option<Vec<u8>>);
 
 fn bad(message: impl Into<String>) -> Error {
     Error::new(ErrorKind::Picture, message)
@@ -226,7 +255,8 @@ impl Seek for Supply<'_> {
     }
 }
 
-fn planar(picture: &DynamicImage) -> Result<Image> {
+/// The picture, and how many of its samples were beyond the range of 0 to 1.
+fn planar(picture: &DynamicImage, format: ImageFormat) -> Result<(Image, usize)> {
     match picture {
         DynamicImage::ImageLuma8(p) => levels(picture, p.as_raw()),
         DynamicImage::ImageLumaA8(p) => levels(picture, p.as_raw()),
@@ -236,23 +266,39 @@ fn planar(picture: &DynamicImage) -> Result<Image> {
         DynamicImage::ImageLumaA16(p) => levels(picture, p.as_raw()),
         DynamicImage::ImageRgb16(p) => levels(picture, p.as_raw()),
         DynamicImage::ImageRgba16(p) => levels(picture, p.as_raw()),
-        DynamicImage::ImageRgb32F(p) => floats(picture, p.as_raw()),
-        DynamicImage::ImageRgba32F(p) => floats(picture, p.as_raw()),
+        DynamicImage::ImageRgb32F(p) => floats(picture, p.as_raw(), format),
+        DynamicImage::ImageRgba32F(p) => floats(picture, p.as_raw(), format),
         other => {
             let other = DynamicImage::from(other.to_rgba32f());
-            planar(&other)
+            planar(&other, format)
         }
     }
 }
 
-fn levels<T: Sample>(picture: &DynamicImage, samples: &[T]) -> Result<Image> {
-    rows::image(packed(picture, samples))
+fn levels<T: Sample>(picture: &DynamicImage, samples: &[T]) -> Result<(Image, usize)> {
+    Ok((rows::image(packed(picture, samples))?, 0))
 }
 
 /// Whatever a file says: what is no number is 0, what is beyond the range at its end.
-fn floats(picture: &DynamicImage, samples: &[f32]) -> Result<Image> {
-    let level = |v: f32| if v.is_nan() { 0.0 } else { v.clamp(0.0, 1.0) };
-    rows::planar(packed(picture, samples), level)
+fn floats(picture: &DynamicImage, samples: &[f32], format: ImageFormat) -> Result<(Image, usize)> {
+    let is_linear = format == ImageFormat::Hdr;
+    let level = |v: f32| match v.clamp(0.0, 1.0) {
+        v if v.is_nan() => 0.0,
+        v if is_linear => encoded(v),
+        v => v,
+    };
+    let clipped = samples.iter().filter(|v| !(0.0..=1.0).contains(*v));
+    let image = rows::planar(packed(picture, samples), level)?;
+    Ok((image, clipped.count()))
+}
+
+/// Light of 0..1 as sRGB encodes it.
+fn encoded(light: f32) -> f32 {
+    if light <= 0.003_130_8 {
+        12.92 * light
+    } else {
+        1.055 * math::powf(light, 1.0 / 2.4) - 0.055
+    }
 }
 
 fn packed<'a, T>(picture: &DynamicImage, samples: &'a [T]) -> Rows<'a, T> {

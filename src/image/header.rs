@@ -35,6 +35,74 @@ pub(crate) fn stated_size(bytes: &[u8]) -> Option<(Embeddable, u32, u32)> {
     Some((format, width, height))
 }
 
+/// Whether the file ends as those of TGA do: nothing at their beginning tells them.
+pub(super) fn is_tga(bytes: &[u8]) -> bool {
+    bytes.ends_with(b"TRUEVISION-XFILE.\0")
+}
+
+/// Whether frames or pages follow the first.
+pub(super) fn has_more(bytes: &[u8], format: ImageFormat) -> bool {
+    match format {
+        ImageFormat::Gif => gif_frames(bytes).take(2).count() > 1,
+        ImageFormat::WebP => webp_is_animated(bytes),
+        ImageFormat::Tiff => tiff_has_pages(bytes).unwrap_or(false),
+        _ => false,
+    }
+}
+
+/// The offsets of a GIF's image descriptors.
+fn gif_frames(bytes: &[u8]) -> impl Iterator<Item = usize> + '_ {
+    let table = |flags: u8| match flags & 0x80 {
+        0 => 0,
+        _ => 3 << ((flags & 7) + 1),
+    };
+    // Head and screen descriptor, then a table of colours.
+    let mut at = 13 + bytes.get(10).map_or(0, |&flags| table(flags));
+    std::iter::from_fn(move || {
+        loop {
+            let start = at;
+            // An extension has a label before its blocks; an image a descriptor, a table and a code size.
+            let is_image = match bytes.get(at)? {
+                0x21 => {
+                    at += 2;
+                    false
+                }
+                0x2c => {
+                    at += 11 + table(*bytes.get(at + 9)?);
+                    true
+                }
+                _ => return None,
+            };
+            while let Some(&length) = bytes.get(at).filter(|&&length| length > 0) {
+                at += 1 + usize::from(length);
+            }
+            at += 1;
+            if is_image {
+                return Some(start);
+            }
+        }
+    })
+}
+
+/// Whether the extended header of a WebP says that it is an animation.
+fn webp_is_animated(bytes: &[u8]) -> bool {
+    let is_extended = bytes.get(12..16) == Some(b"VP8X");
+    is_extended && bytes.get(20).is_some_and(|flags| flags & 2 != 0)
+}
+
+/// Whether a second directory follows that of the first page.
+fn tiff_has_pages(bytes: &[u8]) -> Option<bool> {
+    type Read = fn(&[u8], usize) -> Option<u32>;
+    let (word, long): (Read, Read) = match bytes.first()? {
+        b'I' => (le16, le32),
+        _ => (be16, be32),
+    };
+    let first = long(bytes, 4)? as usize;
+    let entries = word(bytes, first)? as usize;
+    let next = long(bytes, first.checked_add(2 + 12 * entries)?)?;
+    Some(next != 0)
+}
+
 /// Width and height as written in the header, where their place is fixed or easily found.
 pub(super) fn size(bytes: &[u8], format: ImageFormat) -> Option<(u32, u32)> {
     match format {

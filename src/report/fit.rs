@@ -44,6 +44,9 @@ pub struct FitReport {
     /// Why no more was done: `strokes`, `psnr`, `bytes`, `time`, `converged` or
     /// `interrupted`.
     pub stop: String,
+    /// How much worse the drawing is, dB, because colours have a layer each; left out if they have not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stacking_db: Option<f64>,
     /// Key of every random draw.
     pub seed: u64,
     /// The SVG as rendered by resvg against the picture.
@@ -175,6 +178,7 @@ impl FitReport {
             peak_rss_bytes: run.usage.peak_rss_bytes,
             predicted_rss_bytes: predicted_rss_bytes(&fit.target, run.config),
             stop: stop_word(fit.stop).into(),
+            stacking_db: fit.stacking_db,
             seed: run.config.seed,
             fidelity: verdict.fidelity,
             soft: *soft,
@@ -221,6 +225,7 @@ mod tests {
                 path: "a.png".into(),
                 width: 4,
                 height: 3,
+                remarks: Vec::new(),
             },
             strokes: 9,
             points: 20,
@@ -239,6 +244,7 @@ mod tests {
             peak_rss_bytes: None,
             predicted_rss_bytes: 12_582_912,
             stop: stop_word(Stop::Strokes).into(),
+            stacking_db: None,
             seed: 7,
             fidelity: quality,
             soft: quality,

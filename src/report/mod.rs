@@ -30,7 +30,7 @@ mod usage;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::image::Image;
+use crate::image::{Image, Remark};
 
 pub use check::{AgainstResvg, CheckReport, NotDrawn, RendererEntry};
 pub use event::{Event, PhaseEntry};
@@ -54,6 +54,9 @@ pub struct Input {
     pub width: usize,
     /// Height in px.
     pub height: usize,
+    /// What reading it has changed or left out, in words.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub remarks: Vec<String>,
 }
 
 impl Input {
@@ -63,7 +66,15 @@ impl Input {
             path: path.into(),
             width: image.width(),
             height: image.height(),
+            remarks: Vec::new(),
         }
+    }
+
+    /// The same with what reading the picture has changed or left out.
+    #[must_use]
+    pub fn remarking(self, remarks: &[Remark]) -> Self {
+        let remarks = remarks.iter().map(ToString::to_string).collect();
+        Self { remarks, ..self }
     }
 }
 

@@ -32,7 +32,7 @@ pub struct Quantized {
 pub struct Dropped {
     /// Strokes with NaN or infinite parameters.
     pub non_finite: usize,
-    /// Strokes without width, or with an opacity that rounds to 0.
+    /// Strokes without width, with an opacity that rounds to 0, or that a fit found to change no pixel.
     pub invisible: usize,
     /// Strokes with a bounding box off the page, or with a coordinate beyond the limit of the file.
     pub off_page: usize,

@@ -16,6 +16,8 @@ use crate::scene::{Scene, Stage, Written, WrittenPath};
 pub(super) struct Layer {
     pub(super) strokes: Vec<Written>,
     pub(super) color: Option<[u8; 3]>,
+    /// How many layers below have the same colour.
+    pub(super) repeats: usize,
 }
 
 /// The layers of the file, none of them empty.
@@ -33,6 +35,7 @@ pub(super) fn layers(scene: &Scene, options: &WriteOptions) -> Vec<Layer> {
             .map(|strokes| Layer {
                 strokes,
                 color: None,
+                repeats: 0,
             })
             .collect(),
         Group::Color => by_color(stages.flatten().collect()),
@@ -81,13 +84,31 @@ const WINDOW: usize = 4096;
 
 /// Layers of one colour.
 fn by_color(strokes: Vec<Written>) -> Vec<Layer> {
+    let in_order = strokes.clone();
     let arranged = arranged(strokes, |s| s.color, |_| ());
-    let runs = arranged.chunk_by(|a, b| a.color == b.color);
-    runs.map(|run| Layer {
-        strokes: run.to_vec(),
-        color: run.first().map(|s| s.color),
-    })
-    .collect()
+    // Strokes that a fit has stacked by colour stay as they are, however many there are.
+    let best = [in_order, arranged]
+        .into_iter()
+        .min_by_key(|strokes| runs(strokes).count());
+    let best = best.unwrap_or_default();
+    let mut seen: BTreeMap<[u8; 3], usize> = BTreeMap::new();
+    let mut layers = Vec::new();
+    for run in runs(&best) {
+        let color = run.first().map(|stroke| stroke.color);
+        let count = seen.entry(color.unwrap_or_default()).or_default();
+        layers.push(Layer {
+            strokes: run.to_vec(),
+            color,
+            repeats: *count,
+        });
+        *count += 1;
+    }
+    layers
+}
+
+/// Neighbours of one colour.
+fn runs(strokes: &[Written]) -> impl Iterator<Item = &[Written]> {
+    strokes.chunk_by(|a, b| a.color == b.color)
 }
 
 /// Reorders strokes so that those of one `run` are together as far as possible, and runs of one `kin` follow each

@@ -72,6 +72,10 @@ fn text(number: usize, layer: &Layer, form: Form, unit: Unit) -> String {
     let count = layer.strokes.len();
     let plural = if count == 1 { "" } else { "s" };
     let (id, label) = match layer.color {
+        Some(color) if layer.repeats > 0 => (
+            format!("color-{number}"),
+            format!("{} ({})", dialect::hex(color), layer.repeats + 1),
+        ),
         Some(color) => (format!("color-{number}"), dialect::hex(color)),
         None => (format!("stage-{number}"), format!("Stage {number}")),
     };

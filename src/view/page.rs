@@ -15,6 +15,7 @@ pub(super) fn file(name: &str) -> Option<Response> {
         "page.js" => ("text/javascript", include_str!("page/page.js")),
         "viewer.js" => ("text/javascript", include_str!("page/viewer.js")),
         "chart.js" => ("text/javascript", include_str!("page/chart.js")),
+        "choice.js" => ("text/javascript", include_str!("page/choice.js")),
         "picture.js" => ("text/javascript", include_str!("page/picture.js")),
         _ => return None,
     };
@@ -50,6 +51,7 @@ pub(super) fn state(shared: &Shared, seen: Option<u64>) -> Option<Vec<u8>> {
         stage: numbers.map(|numbers| numbers.stage),
         stages: numbers.map(|numbers| numbers.stages),
         polishing: numbers.is_some_and(|numbers| numbers.polishing),
+        settling: numbers.is_some_and(|numbers| numbers.settling),
         last: numbers.map(|numbers| numbers.last),
         curve: curve.points(),
         version: shown.as_ref().map_or(0, |shown| shown.version),
@@ -77,6 +79,7 @@ struct StateRecord<'a> {
     stage: Option<usize>,
     stages: Option<usize>,
     polishing: bool,
+    settling: bool,
     last: Option<Point>,
     curve: &'a [Point],
     version: u64,

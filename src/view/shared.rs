@@ -31,6 +31,7 @@ pub(super) struct Numbers {
     pub(super) stage: usize,
     pub(super) stages: usize,
     pub(super) polishing: bool,
+    pub(super) settling: bool,
     pub(super) last: Point,
 }
 
@@ -147,6 +148,7 @@ impl Shared {
             stage: progress.stage,
             stages: progress.stages,
             polishing: progress.polishing,
+            settling: progress.settling,
             last,
         });
         if inside.wants_look(now) {

@@ -15,7 +15,7 @@ use crate::fit::session::Session;
 
 /// Seeds the next stage, unless the plan or a budget has ended.
 pub(in crate::fit) fn next_stage(session: &mut Session<'_>) -> Result<Outcome> {
-    if session.progress.stopped().is_some() {
+    if session.progress.stopped().is_some() || session.is_leaving() {
         return Ok(Outcome::Over);
     }
     if let Some(enough) = enough(session) {

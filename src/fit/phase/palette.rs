@@ -13,6 +13,8 @@ use super::preferences::{PreferredColor, preferences, set_colors};
 use super::rounds;
 use crate::error::Result;
 use crate::fit::config::Colors;
+use crate::fit::drawing::Drawing;
+use crate::fit::recipe::Recoloring;
 use crate::fit::relocation;
 use crate::fit::session::Session;
 use crate::math;
@@ -20,17 +22,18 @@ use crate::render::{AX, AY, BX, BY, OPACITY, RADIUS, RED};
 use crate::scene::{Rgb, color, quantum};
 use crate::seed::Candidate;
 
-/// Restricts the drawing to the configured palette and fits the rest to that. Returns false if any colours are allowed.
+/// Restricts the drawing to the configured palette and fits the rest to that. Returns the palette, or nothing if any colours are
+/// allowed.
 /// All strokes must be free.
-pub(in crate::fit) fn run(session: &mut Session<'_>) -> Result<bool> {
+pub(super) fn run(session: &mut Session<'_>) -> Result<Option<Palette>> {
     let Some(mut palette) = palette(session) else {
-        return Ok(false);
+        return Ok(None);
     };
     let until = Shares::of(session).palette;
     session.timer.give_until(until);
     fit_to(session, &mut palette)?;
     session.timer.give_until(1.0);
-    Ok(true)
+    Ok(Some(palette))
 }
 
 /// The palette for the drawing, unless any colours are allowed.
@@ -47,14 +50,36 @@ fn palette(session: &mut Session<'_>) -> Option<Palette> {
     }
     let is_given = has_background && drawing.background_fixed;
     let background = drawing.background().filter(|_| is_given);
-    Palette::new(&config.colors, &preferences, background)
+    let palette = Palette::new(&config.colors, &preferences, background);
+    if has_background && is_paper(drawing, &config.colors, preferences.last(), coloring) {
+        drawing.background_fixed = true;
+    }
+    palette
+}
+
+/// Whether the background is paper, which stays as it is although the given palette has no such colour: much of it
+/// shows, as `wish` says, and all colours of the palette are far from its own.
+fn is_paper(
+    drawing: &Drawing,
+    colors: &Colors,
+    wish: Option<&PreferredColor>,
+    coloring: Recoloring,
+) -> bool {
+    let (Colors::Palette(given), Some(wish)) = (colors, wish) else {
+        return false;
+    };
+    let area = drawing.pixel_area();
+    let shown = area * wish.weight / drawing.pixels() as f32;
+    let far2 = 3.0 * coloring.paper_distance * coloring.paper_distance;
+    let is_far = |&c: &[u8; 3]| dist2(color(c), wish.color) > far2;
+    shown >= coloring.paper_share && given.iter().all(is_far)
 }
 
 /// Runs the rounds of choosing colours and fitting the rest, and keeps the best drawing.
 fn fit_to(session: &mut Session<'_>, palette: &mut Palette) -> Result<()> {
     let coloring = session.recipe.coloring;
     let rates = session.recipe.polish.rates.without_color();
-    recolor(session, palette);
+    palette.recolor(session);
     let mut best = (session.drawing.mse(), session.drawing.memento());
     for round in 0..coloring.rounds.count {
         if session.progress.stopped().is_some() {
@@ -65,7 +90,7 @@ fn fit_to(session: &mut Session<'_>, palette: &mut Palette) -> Result<()> {
             relocation::relocate(session, limit, |candidate| palette.adapt(candidate));
         }
         rounds::run(session, coloring.rounds, round, rates)?;
-        recolor(session, palette);
+        palette.recolor(session);
         let mse = session.drawing.mse();
         if mse < best.0 {
             best = (mse, session.drawing.memento());
@@ -75,22 +100,9 @@ fn fit_to(session: &mut Session<'_>, palette: &mut Palette) -> Result<()> {
     Ok(())
 }
 
-/// Gives every stroke, and the background, the colour of the palette nearest to the one that suits it best.
-fn recolor(session: &mut Session<'_>, palette: &mut Palette) {
-    let coloring = session.recipe.coloring;
-    let drawing = &mut session.drawing;
-    let preferences = preferences(drawing, coloring.damping, coloring.min_shown);
-    palette.follow(&preferences, coloring.means);
-    let colors: Vec<Rgb> = preferences
-        .iter()
-        .map(|w| palette.nearest(w.color))
-        .collect();
-    set_colors(drawing, &colors);
-}
-
 /// The colours of a drawing.
 #[derive(Debug, Clone, PartialEq)]
-struct Palette {
+pub(super) struct Palette {
     colors: Vec<Rgb>,
     /// How many of them, from the first on, are fixed. The others follow the strokes.
     fixed: usize,
@@ -119,6 +131,16 @@ impl Palette {
                 Some(palette)
             }
         }
+    }
+
+    /// Gives every stroke, and the background, the nearest colour to the one that suits it best.
+    pub(super) fn recolor(&mut self, session: &mut Session<'_>) {
+        let coloring = session.recipe.coloring;
+        let drawing = &mut session.drawing;
+        let preferences = preferences(drawing, coloring.damping, coloring.min_shown);
+        self.follow(&preferences, coloring.means);
+        let colors: Vec<Rgb> = preferences.iter().map(|w| self.nearest(w.color)).collect();
+        set_colors(drawing, &colors);
     }
 
     /// The nearest colour.

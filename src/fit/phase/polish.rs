@@ -6,7 +6,7 @@ use crate::fit::descend::descend;
 use crate::fit::descent::Course;
 use crate::fit::order::{Outcome, Purpose};
 use crate::fit::session::Session;
-use crate::svg::Form;
+use crate::svg::{Form, Group};
 
 /// Fits all strokes of the drawing jointly.
 pub(in crate::fit) fn polish(session: &mut Session<'_>, purpose: Purpose) -> Result<Outcome> {
@@ -50,11 +50,12 @@ pub(super) fn run(session: &mut Session<'_>, limit: usize, iterations: usize) ->
     descend(session, &mut descent, None)
 }
 
-/// The shares of a limited time for descent by which polish and palette have to end. The rest is for pens. Each part is
+/// The shares of a limited time for descent by which polish, palette and the stack of its colours have to end. The rest is for pens. Each part is
 /// in proportion to its iterations.
 pub(super) struct Shares {
     pub(super) polish: f32,
     pub(super) palette: f32,
+    pub(super) stack: f32,
 }
 
 impl Shares {
@@ -65,14 +66,19 @@ impl Shares {
             Colors::Free => 0.0,
             _ => recipe.coloring.rounds.iterations,
         };
+        let stack = match config.file.group {
+            Group::Color => palette,
+            Group::Stage => 0.0,
+        };
         let pens = match config.file.form {
             Form::Smallest => recipe.pens.rounds.iterations,
             _ => 0.0,
         };
-        let all = polish + palette + pens;
+        let all = polish + palette + stack + pens;
         Self {
             polish: (polish / all) as f32,
             palette: ((polish + palette) / all) as f32,
+            stack: ((polish + palette + stack) / all) as f32,
         }
     }
 }

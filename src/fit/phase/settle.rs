@@ -9,9 +9,10 @@
 //!
 //! [`renderers`]: crate::fit::renderers
 
-use super::{palette, pens};
+use super::{palette, pens, stack};
 use crate::error::Result;
 use crate::fit::budget;
+use crate::fit::config::Colors;
 use crate::fit::descend::descend;
 use crate::fit::descent::{Aim, Course};
 use crate::fit::drawing::Memento;
@@ -22,6 +23,7 @@ use crate::fit::renderers::Renderings;
 use crate::fit::result::Stop;
 use crate::fit::session::Session;
 use crate::metrics::psnr_db;
+use crate::svg::Group;
 
 /// Restricts the drawing to its palette and pens, and settles it if the fit depends on its file.
 pub(in crate::fit) fn settle(session: &mut Session<'_>) -> Result<Outcome> {
@@ -45,11 +47,18 @@ pub(in crate::fit) fn settle(session: &mut Session<'_>) -> Result<Outcome> {
 /// Restricts the drawing to its palette and pens, and returns rates that keep those.
 fn restrict(session: &mut Session<'_>) -> Result<Rates> {
     let mut rates = session.recipe.polish.rates;
-    if palette::run(session)? {
+    if let Some(mut palette) = palette::run(session)? {
+        if session.config.file.group == Group::Color {
+            stack::run(session, &mut palette)?;
+        }
         rates = rates.without_color();
     }
     if pens::run(session)? {
         rates = rates.without_pen();
+    }
+    // In free colours, each stroke is worth its price.
+    if session.config.colors != Colors::Free {
+        session.drawing.remove_hidden();
     }
     Ok(rates)
 }
@@ -58,6 +67,7 @@ fn restrict(session: &mut Session<'_>) -> Result<Rates> {
 /// from.
 fn run(session: &mut Session<'_>, rates: Rates) -> Result<RenderedFile> {
     let settling = session.recipe.settling;
+    session.progress.settle();
     let mut file = session.render_file()?;
     if !allows_round(session, 0) {
         return Ok(file);
@@ -75,7 +85,7 @@ fn run(session: &mut Session<'_>, rates: Rates) -> Result<RenderedFile> {
         };
         let mut descent = session.descent(course(session, rates, pace));
         descend(session, &mut descent, Some(aim))?;
-        if session.progress.is_interrupted() {
+        if session.progress.is_halted() {
             break;
         }
         file = session.render_file()?;
@@ -111,7 +121,8 @@ impl Best {
 /// planned number as long as there is time.
 fn allows_round(session: &Session<'_>, done: usize) -> bool {
     let planned = session.recipe.settling.rounds;
-    let is_wanted = done < planned || (planned > 0 && session.cut_by() == Some(Stop::Time));
+    let is_cut = session.is_leaving() || session.cut_by() == Some(Stop::Time);
+    let is_wanted = done < planned || (planned > 0 && is_cut);
     is_wanted && session.timer.allows_round()
 }
 

@@ -177,6 +177,8 @@ const BALANCED: Recipe = Recipe {
         damping: 0.7,
         means: 10,
         min_shown: 1e-3,
+        paper_share: 0.25,
+        paper_distance: 0.2,
     },
     pens: Pens {
         rounds: Rounds {

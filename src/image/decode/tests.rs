@@ -52,7 +52,7 @@ fn png_with_orientation(orientation: u8) -> Vec<u8> {
 
 #[test]
 fn every_format_gives_the_same_picture() {
-    use ImageFormat::{Bmp, Gif, Jpeg, Png, Tiff, WebP};
+    use ImageFormat::{Bmp, Gif, Jpeg, Png, Pnm, Qoi, Tiff, WebP};
     let expected = decoded(&encode(ramp(), Png)).unwrap();
     assert_eq!(
         (expected.width(), expected.height(), expected.alpha()),
@@ -64,6 +64,8 @@ fn every_format_gives_the_same_picture() {
         (Bmp, 0.0),
         (Tiff, 0.0),
         (WebP, 0.0),
+        (Qoi, 0.0),
+        (Pnm, 0.0),
         (Jpeg, 0.05),
         (Gif, 0.05),
     ]
@@ -243,4 +245,142 @@ fn files_that_cannot_be_read_are_named() {
     );
     let error = Image::open(folder.path()).unwrap_err();
     assert!(error.to_string().contains("is a directory"), "{error}");
+}
+
+#[test]
+#[cfg(feature = "formats")]
+fn an_icon_is_read() {
+    let icon = encode(DynamicImage::from(ramp()).to_rgba8(), ImageFormat::Ico);
+    let expected = decoded(&encode(ramp(), ImageFormat::Png)).unwrap();
+    assert_eq!(decoded(&icon).unwrap(), expected);
+}
+
+#[test]
+#[cfg(feature = "formats")]
+fn a_tga_is_told_by_its_end() {
+    let mut bytes = encode(ramp(), ImageFormat::Tga);
+    if !bytes.ends_with(b"TRUEVISION-XFILE.\0") {
+        bytes.extend([0; 8]);
+        bytes.extend(b"TRUEVISION-XFILE.\0");
+    }
+    let expected = decoded(&encode(ramp(), ImageFormat::Png)).unwrap();
+    assert_eq!(decoded(&bytes).unwrap(), expected);
+}
+
+#[test]
+#[cfg(feature = "formats")]
+fn light_is_encoded_and_what_is_beyond_the_range_is_counted() {
+    let light: ImageBuffer<Rgb<f32>, _> =
+        ImageBuffer::from_raw(2, 1, vec![0.0, 0.25, 1.0, 4.0, 0.001, 9.0]).unwrap();
+    let (image, remarks) = read(&encode(light, ImageFormat::Hdr));
+    let [red, green, blue] = image.planes();
+    assert!(
+        (green[0] - 0.537).abs() < 0.003 && (green[1] - 0.0129).abs() < 0.003,
+        "{green:?}"
+    );
+    assert_eq!((red[0], red[1], blue[1]), (0.0, 1.0, 1.0));
+    assert_eq!(remarks, [Remark::Clipped(2)]);
+}
+
+#[cfg(feature = "formats")]
+fn read(bytes: &[u8]) -> (Image, Vec<Remark>) {
+    Image::decode_remarking(bytes, "in.file", Limits::default()).unwrap()
+}
+
+#[test]
+#[cfg(feature = "formats")]
+fn frames_after_the_first_are_spoken_of() {
+    use ::image::codecs::gif::GifEncoder;
+    let gif = |frames: usize| {
+        let mut bytes = Vec::new();
+        let mut encoder = GifEncoder::new(&mut bytes);
+        for _ in 0..frames {
+            let frame = DynamicImage::from(ramp()).to_rgba8();
+            encoder.encode_frame(::image::Frame::new(frame)).unwrap();
+        }
+        drop(encoder);
+        bytes
+    };
+    assert_eq!(read(&gif(1)).1, []);
+    assert_eq!(read(&gif(3)).1, [Remark::FirstOfSeveral]);
+    assert_eq!(read(&encode(ramp(), ImageFormat::Tiff)).1, []);
+}
+
+#[cfg(feature = "formats")]
+fn with_profile(
+    profile: &moxcms::ColorProfile,
+    pixels: &[u8],
+    color: ExtendedColorType,
+) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = PngEncoder::new(&mut bytes);
+    encoder.set_icc_profile(profile.encode().unwrap()).unwrap();
+    let channels = u32::from(color.channel_count());
+    encoder
+        .write_image(pixels, pixels.len() as u32 / channels, 1, color)
+        .unwrap();
+    bytes
+}
+
+#[test]
+#[cfg(feature = "formats")]
+fn colours_of_other_profiles_become_those_of_srgb() {
+    use moxcms::ColorProfile;
+    // A grey stays what it is, and the same red is more of one in Display P3: 0.8 is 0.867 in sRGB.
+    let pixels = [128, 128, 128, 204, 77, 51, 0, 255, 0];
+    let (image, remarks) = read(&with_profile(
+        &ColorProfile::new_display_p3(),
+        &pixels,
+        ExtendedColorType::Rgb8,
+    ));
+    let pixel = |i: usize| [0, 1, 2].map(|c| image.planes()[c][i]);
+    let is_near = |a: [f32; 3], b: [f32; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 0.01);
+    assert!(is_near(pixel(0), [128.0 / 255.0; 3]), "{:?}", pixel(0));
+    assert!(is_near(pixel(1), [0.867, 0.253, 0.146]), "{:?}", pixel(1));
+    assert!(is_near(pixel(2), [0.0, 1.0, 0.0]), "{:?}", pixel(2));
+    assert_eq!(remarks, [Remark::Converted]);
+
+    let grey = with_profile(
+        &ColorProfile::new_gray_with_gamma(1.0),
+        &[0, 55, 255],
+        ExtendedColorType::L8,
+    );
+    let (image, remarks) = read(&grey);
+    assert!(
+        (image.planes()[1][1] - 0.5015).abs() < 0.01,
+        "{:?}",
+        image.planes()[1]
+    );
+    assert_eq!(remarks, [Remark::Converted]);
+}
+
+#[test]
+#[cfg(feature = "formats")]
+fn the_profile_of_srgb_changes_nothing_and_a_damaged_one_is_ignored() {
+    use moxcms::ColorProfile;
+    let pixels: Vec<u8> = (0..=255).flat_map(|v| [v, 255 - v, v / 2]).collect();
+    let plain = Image::from_rows(Rows::packed(256, 1, 3, &pixels)).unwrap();
+    let srgb = with_profile(&ColorProfile::new_srgb(), &pixels, ExtendedColorType::Rgb8);
+    assert_eq!(read(&srgb), (plain.clone(), vec![]));
+
+    let mut bytes = Vec::new();
+    let mut encoder = PngEncoder::new(&mut bytes);
+    encoder
+        .set_icc_profile(b"no profile at all".to_vec())
+        .unwrap();
+    encoder
+        .write_image(&pixels, 256, 1, ExtendedColorType::Rgb8)
+        .unwrap();
+    assert_eq!(
+        read(&bytes),
+        (plain, vec![Remark::ProfileIgnored("damaged")])
+    );
+}
+
+#[test]
+fn formats_that_are_not_read_are_named_with_a_way_to_convert_them() {
+    let avif = message(b"\0\0\0\x20ftypavif\0\0\0\0avifmif1");
+    assert!(avif.contains("AVIF") && avif.contains("avifdec"), "{avif}");
+    let svg = message(b"<svg xmlns=\"http://www.w3.org/2000/svg\"/>");
+    assert!(svg.contains("strokefit render"), "{svg}");
 }

@@ -87,6 +87,12 @@ pub(super) fn length_px(text: &str) -> Option<f64> {
     Some(number * px)
 }
 
+/// The unit of a length, empty if it has none; `None` for text that is not a length.
+pub(super) fn unit(text: &str) -> Option<&str> {
+    length_px(text)?;
+    Some(leading(text.trim())?.1.trim())
+}
+
 /// The factor by which a `transform` widens strokes: the root of the factor for areas. Only matrices and
 /// scales count; the factors of several transforms multiply.
 pub(super) fn transform_scale(transform: &str) -> f64 {

@@ -1,4 +1,5 @@
 use super::*;
+use crate::math::Point;
 use crate::scene::{Path, Scene, Stage, Stroke};
 use crate::svg::{Form, WriteOptions, write};
 
@@ -144,13 +145,40 @@ fn the_page_should_have_the_size_of_its_view() {
         ("viewBox=\"0 0 9 9\"", "viewBox=\"1 0 9 9\"", "page-scale"),
         (
             "width=\"9\" height=\"9\"",
-            "width=\"5mm\" height=\"5mm\"",
+            "width=\"5\" height=\"5\"",
             "page-scale",
         ),
     ] {
         assert_eq!(names(&good.replace(from, to)), [rule], "{to}");
     }
     assert!(names(&good.replace("width=\"9\"", "width=\"9px\"")).is_empty());
+}
+
+#[test]
+fn a_page_of_a_stated_width_is_as_it_was_asked_for() {
+    let scene = Scene {
+        stages: vec![Stage {
+            strokes: vec![Stroke {
+                path: Path::line(Point::new(9.0, 9.0), Point::new(60.0, 30.0)),
+                radius: 0.6,
+                color: [0.5; 3],
+                opacity: 1.0,
+            }],
+        }],
+        ..Scene::empty(400, 300, Some([1.0; 3]))
+    };
+    for (width, found) in [
+        ("40mm", &[][..]),
+        ("7in", &[]),
+        ("800px", &[]),
+        ("200px", &["thin-stroke"]),
+    ] {
+        let options = WriteOptions {
+            width: Some(width.parse().unwrap()),
+            ..WriteOptions::default()
+        };
+        assert_eq!(names(&write(&scene, &options)), found, "{width}");
+    }
 }
 
 #[test]

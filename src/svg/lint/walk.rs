@@ -220,14 +220,19 @@ impl<'a, 'b> Walk<'a, 'b> {
             self.findings.add(&rules::PAGE_SIZE, self.line, found);
             return StrokeStyle::page(1.0);
         };
-        if let Some(rule) = size_rule(width.zip(height), (w, h), (x, y)) {
+        let unit = |key| root.get(key).and_then(number::unit).unwrap_or_default();
+        let units = [unit("width"), unit("height")];
+        let is_stated = units.iter().all(|unit| !unit.is_empty());
+        if let Some(rule) = size_rule(width.zip(height), (w, h), (x, y), is_stated) {
             let size = |key| short(root.get(key).unwrap_or("none"));
             let (width, height, view) = (size("width"), size("height"), size("viewBox"));
             let found = format!("<svg> of width {width}, height {height}, viewBox {view}");
             self.findings.add(rule, self.line, found);
         }
-        let scale = width.filter(|_| w > 0.0).map_or(1.0, |width| width / w);
-        StrokeStyle::page(scale).within(root)
+        // How many px a page in mm has, its printer or its user decides.
+        let in_px = is_px(units[0]);
+        let scale = width.filter(|_| w > 0.0 && in_px);
+        StrokeStyle::page(scale.map_or(1.0, |width| width / w)).within(root)
     }
 
     fn look(&mut self, element: &Element, style: StrokeStyle, is_root: bool) {
@@ -268,11 +273,18 @@ impl<'a, 'b> Walk<'a, 'b> {
     }
 }
 
-/// Compares the page's size in px, if it has one, with its `viewBox`.
+/// Whether lengths in `unit` are px of the page.
+fn is_px(unit: &str) -> bool {
+    matches!(unit, "" | "px")
+}
+
+/// Compares the page's size in px, if it has one, with its `viewBox`. A size that `is_stated` with a unit, as
+/// `--width` does, is meant to differ from it.
 fn size_rule(
     size: Option<(f64, f64)>,
     view: (f64, f64),
     origin: (f64, f64),
+    is_stated: bool,
 ) -> Option<&'static Rule> {
     let Some((width, height)) = size else {
         return Some(&rules::PAGE_SIZE);
@@ -282,7 +294,8 @@ fn size_rule(
     if misses {
         return Some(&rules::PAGE_SIZE);
     }
-    ((width, height) != view || origin != (0.0, 0.0)).then_some(&rules::PAGE_SCALE)
+    let is_scaled = (width, height) != view && !is_stated;
+    (is_scaled || origin != (0.0, 0.0)).then_some(&rules::PAGE_SCALE)
 }
 
 /// The rule that an attribute's value breaks.

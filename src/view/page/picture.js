@@ -50,7 +50,7 @@ function trace(context, stroke) {
 
 // A path as its start and its pieces, each an end, or a control point and an end. Halfway between two control points
 // lies an end that the file of the drawing implies.
-function walk([points, , , , kinds]) {
+export function walk([points, , , , kinds]) {
   const closed = kinds.endsWith("z"), middle = (a, b) => [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
   const places = points.flatMap((x, k) => (k % 2 ? [] : [[x, points[k + 1]]]));
   const isOn = places.map((_, k) => kinds[k] === "o");

@@ -8,7 +8,7 @@
 //     title              what it is called
 //     target             what canvases can draw, or null
 //     finished           whether it is fitted; svg_bytes is then the size of the file
-//     done, stage, stages, polishing, last     how far the fit is, as src/view/page.rs says; null when nothing was fitted
+//     done, stage, stages, polishing, settling, last     how far the fit is, as src/view/page.rs says; null when nothing was fitted
 //     curve              points { time_s, strokes, psnr_db }, of which `last` is the last
 //     grows, more        whether strokes can be added, and how many will be
 //     scene              the drawing as src/report/scene.rs writes it; null where it is the one that was shown last
@@ -16,6 +16,7 @@
 // and `listen` with what is done when somebody wants something: { stop(), add(strokes) }.
 
 import { drawChart } from "./chart.js";
+import { drawn, mostLike, withoutStrokes } from "./choice.js";
 import { Comparison, bounds, drawPage, drawPoints, drawRing, drawStrokes, strokeAt } from "./picture.js";
 
 // How often the finished drawing is measured on the way from no stroke to all.
@@ -23,6 +24,8 @@ const MEASURED = 60;
 
 const element = (id) => document.getElementById(id);
 const [target, drawing, residual] = ["target", "drawing", "residual"].map(element);
+// As the keys and Space go through them.
+const PICTURES = ["drawing", "target", "residual"];
 
 let state = { curve: [] };
 let scene = null;
@@ -36,6 +39,10 @@ let hidden = new Set();
 // How many strokes from the back are shown; all when it is Infinity, also of a growing drawing.
 let shown = Infinity;
 let selected = null;
+// The picture that is large.
+let large = "drawing";
+// Strokes by their numbers: those not shown, the only one shown, and those that are gone.
+let [veiled, alone, gone] = [new Set(), null, new Set()];
 // The share of the drawing, from the left, that shows the target instead.
 let compared = 0;
 
@@ -43,7 +50,10 @@ function readAddress() {
   const wanted = new URLSearchParams(location.hash.slice(1));
   shown = wanted.has("shown") ? Number(wanted.get("shown")) : Infinity;
   selected = Number(wanted.get("stroke")) || null;
-  hidden = new Set((wanted.get("hidden") ?? "").split(",").filter(Boolean).map(Number));
+  const numbers = (key) => new Set((wanted.get(key) ?? "").split(",").filter(Boolean).map(Number));
+  [hidden, veiled, gone] = ["hidden", "veiled", "gone"].map(numbers);
+  alone = Number(wanted.get("alone")) || null;
+  large = PICTURES.includes(wanted.get("large")) ? wanted.get("large") : "drawing";
   const [x, y, zoom] = (wanted.get("view") ?? "").split(",").map(Number);
   view = zoom > 0 ? { x, y, zoom } : { x: 0, y: 0, zoom: 0 };
 }
@@ -52,16 +62,22 @@ function writeAddress() {
   const say = new URLSearchParams();
   if (shown < strokes.length) say.set("shown", shown);
   if (selected) say.set("stroke", selected);
-  if (hidden.size) say.set("hidden", [...hidden].join());
+  for (const [key, numbers] of Object.entries({ hidden, veiled, gone })) {
+    if (numbers.size) say.set(key, [...numbers].join());
+  }
+  if (alone) say.set("alone", alone);
+  if (large !== "drawing") say.set("large", large);
   if (view.zoom) say.set("view", [view.x, view.y, view.zoom].map((v) => Number(v.toFixed(2))).join());
   history.replaceState(null, "", say.size ? `#${say}` : location.pathname);
 }
 
 export function show(next) {
   const another = next.picture !== state.picture;
+  const replaced = another && state.picture !== undefined;
   const finishedNow = next.finished && (another || !state.finished);
   state = next;
   if (another) [scene, comparison, strokes, measured] = [null, null, [], []];
+  if (replaced) [selected, alone, veiled, gone] = [null, null, new Set(), new Set()];
   if (state.scene) takeScene(state.scene);
   showState();
   if (state.scene || finishedNow) redraw();
@@ -70,11 +86,22 @@ export function show(next) {
 }
 
 function takeScene(next) {
+  const before = strokes;
   scene = next;
   let number = 0;
   strokes = scene.stages.flatMap((list, k) => list.map((stroke) => ({ stroke, number: ++number, stage: k + 1 })));
+  if (before.length) follow(before);
+  element("panels").style.setProperty("--aspect", scene.width / scene.height);
   if (state.target && !comparison) comparison = new Comparison(state.target, scene.width, scene.height);
   showControls();
+}
+
+// In another drawing strokes have other numbers: what was said of one holds for the one that is most like it.
+function follow(before) {
+  const now = (number) => mostLike(strokes, before[number - 1])?.number ?? null;
+  const all = (numbers) => new Set([...numbers].map(now).filter(Boolean));
+  [selected, alone] = [selected && now(selected), alone && now(alone)];
+  [veiled, gone] = [all(veiled), all(gone)];
 }
 
 // Numbers and curves.
@@ -88,6 +115,12 @@ function showState() {
   element("more").hidden = !state.grows;
   element("download").hidden = !scene;
   for (const id of ["target-panel", "residual-panel", "compare", "compare-label"]) element(id).hidden = !state.target;
+  element("panels").classList.toggle("single", !state.target);
+  const shownLarge = state.target ? large : "drawing";
+  for (const name of PICTURES) {
+    element(`${name}-panel`).classList.toggle("large", name === shownLarge);
+    element(`${name}-panel`).querySelector("button").setAttribute("aria-pressed", name === shownLarge);
+  }
   element("stroke-chart").hidden = !state.target || !state.finished;
   element("time-chart").hidden = state.curve.length === 0;
   drawChart(element("over-time"), state.curve.map(({ time_s, psnr_db }) => [time_s, psnr_db ?? NaN]));
@@ -102,10 +135,10 @@ function underway() {
   if (state.finished) return `${strokes.length} strokes, ${state.svg_bytes} bytes`;
   if (!state.last) return "starting";
   const known = state.stages ? ` of ${state.stages}` : "";
-  const place = state.polishing ? "polish" : `stage ${state.stage}${known}`;
+  const place = state.settling ? "settling" : state.polishing ? "polish" : `stage ${state.stage}${known}`;
   const { strokes: count, psnr_db, time_s } = state.last;
   // Without any error there is no number of dB.
-  const fidelity = psnr_db === null ? "" : `, ${psnr_db.toFixed(2)} dB`;
+  const fidelity = psnr_db === null ? "" : `, ${psnr_db.toFixed(2)} dB in the fit`;
   return `${place}, ${count} strokes${fidelity}, ${time_s.toFixed(1)} s`;
 }
 
@@ -154,7 +187,13 @@ function showLayer(label, stage, list) {
 
 function showSelected() {
   const found = strokes[selected - 1];
-  element("zoom").disabled = !found;
+  for (const id of ["zoom", "hide", "alone", "delete"]) element(id).disabled = !found;
+  const says = (id, pressed) => element(id).setAttribute("aria-pressed", pressed);
+  says("hide", Boolean(found) && veiled.has(selected));
+  says("alone", alone !== null && alone === selected);
+  const away = veiled.size + gone.size + (alone ? 1 : 0);
+  element("restore").hidden = away === 0;
+  element("restore").textContent = alone ? "show all" : `bring back ${away}`;
   if (document.activeElement !== element("stroke")) element("stroke").value = found ? selected : "";
   element("numbers").replaceChildren(...(found ? describe(found) : []));
 }
@@ -191,7 +230,7 @@ function describe({ stroke: [points, radius, color, opacity, kinds], number, sta
 
 function redraw() {
   if (!scene) return;
-  const visible = strokes.filter(({ number, stage }) => number <= shown && !hidden.has(stage));
+  const visible = strokes.filter(isShown);
   const list = visible.map(({ stroke }) => stroke);
   const found = strokes[selected - 1];
   paint(drawing, (context, px) => {
@@ -207,13 +246,18 @@ function redraw() {
     paint(target, (context) => context.drawImage(state.target, 0, 0, scene.width, scene.height));
     comparison.clear(scene);
     comparison.add(list);
-    element("shown-db").textContent = `${comparison.psnr().toFixed(2)} dB`;
+    element("shown-db").textContent = `${comparison.psnr().toFixed(2)} dB as drawn here`;
     comparison.subtract();
     paint(residual, (context) => context.drawImage(comparison.residual, 0, 0, scene.width, scene.height));
   }
   showSliders(visible.length);
   showSelected();
   writeAddress();
+}
+
+function isShown({ number, stage }) {
+  if (alone) return number === alone;
+  return number <= shown && !hidden.has(stage) && !veiled.has(number) && !gone.has(number);
 }
 
 function showSliders(visible) {
@@ -223,7 +267,7 @@ function showSliders(visible) {
   element("shown-count").value = `${count} of ${total}`;
   element("stage").value = begun;
   element("stage-count").value = `${begun} of ${scene.stages.length}`;
-  element("shown-label").textContent = `${visible} strokes`;
+  element("shown-label").textContent = `${visible} stroke${visible === 1 ? "" : "s"}`;
   [...element("layers").children].forEach((label, k) => (label.firstChild.checked = !hidden.has(k + 1)));
   const here = measured.find(([strokes]) => strokes >= count);
   if (state.finished) drawChart(element("over-strokes"), measured, here ? [here] : []);
@@ -253,7 +297,7 @@ function paint(canvas, draw) {
   canvas.width = Math.round(width * ratio);
   canvas.height = Math.round((width * ratio * scene.height) / scene.width);
   const context = canvas.getContext("2d");
-  const zoom = view.zoom || width / scene.width;
+  const zoom = zoomOf(canvas);
   context.setTransform(zoom * ratio, 0, 0, zoom * ratio, -view.x * zoom * ratio, -view.y * zoom * ratio);
   context.imageSmoothingEnabled = zoom < 3;
   draw(context, 1 / zoom);
@@ -261,12 +305,16 @@ function paint(canvas, draw) {
 
 // Mouse and buttons.
 
-function currentZoom() {
-  return view.zoom || drawing.clientWidth / scene.width;
+// CSS px of a canvas per px of the picture. The address has the zoom of the large one; all show the same part.
+function zoomOf(canvas) {
+  const whole = canvas.clientWidth / scene.width;
+  return view.zoom ? (view.zoom * canvas.clientWidth) / element(largest()).clientWidth : whole;
 }
 
+const largest = () => (state.target ? large : "drawing");
+
 function place(event) {
-  const zoom = currentZoom();
+  const zoom = zoomOf(event.target);
   return [view.x + event.offsetX / zoom, view.y + event.offsetY / zoom];
 }
 
@@ -274,15 +322,18 @@ function zoomAt(event) {
   event.preventDefault();
   if (!scene) return;
   const [x, y] = place(event);
-  const least = drawing.clientWidth / scene.width;
-  const zoom = Math.max(least, Math.min(100, currentZoom() * 1.0015 ** -event.deltaY));
-  view = zoom > least ? { zoom, x: x - event.offsetX / zoom, y: y - event.offsetY / zoom } : { zoom: 0, x: 0, y: 0 };
+  const canvas = event.target, whole = element(largest());
+  const least = whole.clientWidth / scene.width;
+  const zoom = Math.max(least, Math.min(100, zoomOf(whole) * 1.0015 ** -event.deltaY));
+  const own = (zoom * canvas.clientWidth) / whole.clientWidth;
+  view = zoom > least ? { zoom, x: x - event.offsetX / own, y: y - event.offsetY / own } : { zoom: 0, x: 0, y: 0 };
   redraw();
 }
 
 function zoomTo({ stroke }) {
   const [left, top, right, bottom] = bounds(stroke);
-  const [width, height] = [drawing.clientWidth, drawing.clientHeight];
+  const whole = element(largest());
+  const [width, height] = [whole.clientWidth, whole.clientHeight];
   const zoom = Math.min(40, width / (right - left) / 2, height / (bottom - top) / 2);
   view = { zoom, x: (left + right) / 2 - width / zoom / 2, y: (top + bottom) / 2 - height / zoom / 2 };
   redraw();
@@ -300,16 +351,15 @@ function moveDrag(event) {
   if (!drag) return;
   const [x, y] = place(event);
   const [dx, dy] = [drag.from[0] - x, drag.from[1] - y];
-  drag.moved ||= Math.hypot(dx, dy) * currentZoom() > 3;
+  drag.moved ||= Math.hypot(dx, dy) * zoomOf(event.target) > 3;
   if (!drag.moved) return;
-  view = { zoom: currentZoom(), x: view.x + dx, y: view.y + dy };
+  view = { zoom: zoomOf(element(largest())), x: view.x + dx, y: view.y + dy };
   redraw();
 }
 
 function endDrag(event) {
   if (drag && !drag.moved) {
-    const visible = strokes.filter(({ number, stage }) => number <= shown && !hidden.has(stage));
-    selected = strokeAt(visible, ...place(event))?.number ?? null;
+    selected = strokeAt(strokes.filter(isShown), ...place(event))?.number ?? null;
     redraw();
   }
   drag = null;
@@ -339,7 +389,58 @@ on("stroke", "input", ({ value }) => (selected = Number(value) || null));
 on("all", "click", () => hidden.clear());
 on("none", "click", () => scene?.stages.forEach((_, k) => hidden.add(k + 1)));
 on("reset", "click", () => (view = { zoom: 0, x: 0, y: 0 }));
+on("hide", "click", () => veiled.delete(selected) || veiled.add(selected));
+on("alone", "click", () => (alone = alone === selected ? null : selected));
+on("delete", "click", () => {
+  gone.add(selected);
+  [selected, alone] = [null, null];
+});
+on("restore", "click", () => {
+  if (alone) alone = null;
+  else [veiled, gone] = [new Set(), new Set()];
+});
 element("zoom").addEventListener("click", () => zoomTo(strokes[selected - 1]));
+
+// Which picture is large.
+
+function enlarge(name) {
+  // What is seen stays as large, in px of the picture.
+  const before = element(largest()).clientWidth;
+  large = name;
+  showState();
+  if (view.zoom) view.zoom *= element(largest()).clientWidth / before;
+  redraw();
+}
+
+for (const button of document.querySelectorAll("[data-large]")) {
+  button.addEventListener("click", () => enlarge(button.dataset.large));
+}
+
+addEventListener("keydown", (event) => {
+  if (event.ctrlKey || event.metaKey || event.altKey || !scene || !state.target) return;
+  if (event.target.matches("input, select, button, a, textarea")) return;
+  const next = PICTURES[(PICTURES.indexOf(large) + 1) % PICTURES.length];
+  const name = event.key === " " ? next : PICTURES.find((name) => name[0] === event.key.toLowerCase());
+  if (!name) return;
+  event.preventDefault();
+  enlarge(name);
+});
+
+// The file without what is not shown.
+
+element("download").addEventListener("click", async (event) => {
+  const kept = strokes.map(isShown);
+  if (kept.every(Boolean)) return;
+  event.preventDefault();
+  const link = element("download");
+  const text = await (await fetch(link.href)).text();
+  const part = withoutStrokes(text, kept) ?? drawn({ ...scene, strokes: strokes.filter(isShown) });
+  const saved = document.createElement("a");
+  saved.href = URL.createObjectURL(new Blob([part], { type: "image/svg+xml" }));
+  saved.download = link.download || "drawing.svg";
+  saved.click();
+  setTimeout(() => URL.revokeObjectURL(saved.href), 10_000);
+});
 
 export function listen({ stop, add }) {
   element("stop").addEventListener("click", stop);

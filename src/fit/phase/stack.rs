@@ -1,0 +1,163 @@
+//! Colours one above the other: all strokes of a colour are neighbours in the order of the drawing, so that its file has
+//! one layer for each colour.
+//!
+//! The colours are stacked in an order that changes little: of two colours, the one that lies below where their strokes
+//! meet, by the pixels that show, also lies below in the stack. What is still different is fitted again.
+
+use std::collections::BTreeMap;
+
+use super::palette::Palette;
+use super::polish::Shares;
+use super::preferences::{PreferredColor, preferences};
+use super::rounds;
+use crate::error::Result;
+use crate::fit::session::Session;
+use crate::metrics::psnr_db;
+use crate::scene::{Written, quantum};
+
+/// Number of neighbouring strokes that are compared with each other, which takes time with its square.
+const WINDOW: usize = 4096;
+
+/// An 8-bit colour.
+type Color = [u8; 3];
+
+/// Stacks the colours, fits the drawing to that, and takes down by how many dB it is worse than before. All strokes must
+/// be free.
+pub(super) fn run(session: &mut Session<'_>, palette: &mut Palette) -> Result<()> {
+    let until = Shares::of(session).stack;
+    session.timer.give_until(until);
+    fit_to(session, palette)?;
+    session.timer.give_until(1.0);
+    Ok(())
+}
+
+fn fit_to(session: &mut Session<'_>, palette: &mut Palette) -> Result<()> {
+    let coloring = session.recipe.coloring;
+    let rates = session.recipe.polish.rates.without_color();
+    let free_db = psnr_db(session.drawing.mse());
+    let order = order(session);
+    arrange(session, &order);
+    let mut best = (session.drawing.mse(), session.drawing.memento());
+    for round in 0..coloring.rounds.count {
+        if session.progress.stopped().is_some() {
+            break;
+        }
+        rounds::run(session, coloring.rounds, round, rates)?;
+        palette.recolor(session);
+        arrange(session, &order);
+        let mse = session.drawing.mse();
+        if mse < best.0 {
+            best = (mse, session.drawing.memento());
+        }
+    }
+    session.drawing.revert(best.1);
+    session.history.stacking_db = Some(free_db - psnr_db(best.0));
+    Ok(())
+}
+
+/// Sorts the strokes by the colours' place in `order`; those of one colour keep theirs.
+fn arrange(session: &mut Session<'_>, order: &[Color]) {
+    let place = |color: Color| {
+        order
+            .iter()
+            .position(|&c| c == color)
+            .unwrap_or(order.len())
+    };
+    let strokes = session.drawing.free().iter().enumerate();
+    // Colours that came later are on top, one after the other.
+    let mut keys: Vec<(usize, Color, usize)> = strokes
+        .map(|(i, stroke)| {
+            let color = stroke.color().map(quantum);
+            (place(color), color, i)
+        })
+        .collect();
+    keys.sort_unstable();
+    let sources: Vec<usize> = keys.into_iter().map(|(_, _, i)| i).collect();
+    session.drawing.reorder(&sources);
+}
+
+/// The colours from the bottom to the top.
+fn order(session: &mut Session<'_>) -> Vec<Color> {
+    let coloring = session.recipe.coloring;
+    let shown = preferences(&mut session.drawing, 0.0, coloring.min_shown);
+    let precision = session.config.file.precision;
+    let strokes: Vec<(Written, f32)> = session
+        .drawing
+        .free()
+        .iter()
+        .zip(&shown)
+        .filter_map(|(stroke, PreferredColor { weight, .. })| {
+            let written = Written::anywhere(&stroke.to_stroke(), precision).ok()?;
+            Some((written, *weight))
+        })
+        .collect();
+    stacked(&strokes)
+}
+
+/// The colours of strokes, each with the pixels in which it shows, in an order that agrees with that of the strokes as far
+/// as possible: again and again, the colour comes next whose strokes lie below the remaining colours rather than above.
+fn stacked(strokes: &[(Written, f32)]) -> Vec<Color> {
+    let mut below: BTreeMap<(Color, Color), f32> = BTreeMap::new();
+    for window in strokes.chunks(WINDOW) {
+        for (i, (lower, weight)) in window.iter().enumerate() {
+            for (upper, other) in &window[i + 1..] {
+                if upper.color != lower.color && upper.meets(lower) {
+                    *below.entry((lower.color, upper.color)).or_default() += weight.min(*other);
+                }
+            }
+        }
+    }
+    let mut left: Vec<Color> = strokes.iter().map(|(stroke, _)| stroke.color).collect();
+    left.sort_unstable();
+    left.dedup();
+    let mut order = Vec::with_capacity(left.len());
+    while !left.is_empty() {
+        let pull = |color: Color| {
+            let pairs = left.iter().map(|&other| {
+                let weight = |pair| below.get(&pair).copied().unwrap_or(0.0);
+                weight((color, other)) - weight((other, color))
+            });
+            pairs.sum::<f32>()
+        };
+        let pulls: Vec<f32> = left.iter().map(|&color| pull(color)).collect();
+        let lowest = (0..left.len()).max_by(|&i, &j| pulls[i].total_cmp(&pulls[j]).then(j.cmp(&i)));
+        order.push(left.remove(lowest.unwrap_or(0)));
+    }
+    order
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Point;
+    use crate::scene::{Path, Stroke};
+
+    /// Vertical strokes at `x`, of grey `level`.
+    fn stroke(x: f32, level: f32) -> (Written, f32) {
+        let stroke = Stroke {
+            path: Path::line(Point::new(x, 10.0), Point::new(x, 50.0)),
+            radius: 4.0,
+            color: [level; 3],
+            opacity: 1.0,
+        };
+        (Written::anywhere(&stroke, 2).unwrap(), 100.0)
+    }
+
+    #[test]
+    fn what_lies_below_where_strokes_meet_is_below_in_the_stack() {
+        // White over black at one place, black over white at two; grey is nowhere near.
+        let strokes = [
+            stroke(10.0, 0.0),
+            stroke(12.0, 1.0),
+            stroke(50.0, 1.0),
+            stroke(52.0, 0.0),
+            stroke(90.0, 1.0),
+            stroke(92.0, 0.0),
+            stroke(200.0, 0.5),
+        ];
+        let order = stacked(&strokes);
+        let place = |level: u8| order.iter().position(|c| c[0] == level).unwrap();
+        assert!(place(255) < place(0), "{order:?}");
+        assert_eq!(order.len(), 3);
+    }
+}

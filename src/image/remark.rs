@@ -1,0 +1,38 @@
+//! What reading a picture has changed or left out.
+
+use std::fmt;
+
+/// Something that a picture file holds and the [`Image`](super::Image) read from it does not.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Remark {
+    /// The colours were converted to sRGB from those of the file's profile.
+    Converted,
+    /// The file's colour profile was not used, for this reason; its colours were taken for sRGB.
+    ProfileIgnored(&'static str),
+    /// So many samples were below 0, above 1 or no numbers, and became 0 or 1.
+    Clipped(usize),
+    /// Frames or pages follow the first one.
+    FirstOfSeveral,
+}
+
+impl fmt::Display for Remark {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Converted => {
+                f.write_str("colours were converted to sRGB from the profile of the file")
+            }
+            Self::ProfileIgnored(why) => write!(
+                f,
+                "the colour profile of the file is {why} and was ignored: colours may be off"
+            ),
+            Self::Clipped(samples) => {
+                write!(
+                    f,
+                    "{samples} samples beyond the range of 0 to 1 were clipped"
+                )
+            }
+            Self::FirstOfSeveral => f.write_str("the first frame was read, and others were not"),
+        }
+    }
+}
