@@ -30,11 +30,15 @@ impl StrokeLimit {
     }
 }
 
-pub(super) fn strokes(text: &str) -> Parsed<StrokeLimit> {
-    Ok(match text.strip_prefix('+') {
-        Some(more) => StrokeLimit::More(whole(more, 1..=MAX_STROKES)?),
-        None => StrokeLimit::Total(whole(text, 1..=MAX_STROKES)?),
-    })
+pub(super) fn stroke_limit(text: &str) -> Parsed<StrokeLimit> {
+    match text.strip_prefix('+') {
+        Some(more) => strokes(more).map(StrokeLimit::More),
+        None => strokes(text).map(StrokeLimit::Total),
+    }
+}
+
+pub(super) fn strokes(text: &str) -> Parsed<usize> {
+    whole(text, 1..=MAX_STROKES)
 }
 
 pub(super) fn colors(text: &str) -> Parsed<usize> {
@@ -119,15 +123,16 @@ mod tests {
             );
         }
         for text in ["+", "+0", "++3", "+-3"] {
-            assert!(strokes(text).is_err(), "{text}");
+            assert!(stroke_limit(text).is_err(), "{text}");
         }
         assert!(precision("7").is_err() && precision("-1").is_err());
     }
 
     #[test]
     fn sense_is_understood() {
-        assert_eq!(strokes("900000"), Ok(StrokeLimit::Total(900_000)));
-        assert_eq!(strokes("+300"), Ok(StrokeLimit::More(300)));
+        assert_eq!(strokes("900000"), Ok(900_000));
+        assert_eq!(stroke_limit("200"), Ok(StrokeLimit::Total(200)));
+        assert_eq!(stroke_limit("+300"), Ok(StrokeLimit::More(300)));
         assert_eq!(StrokeLimit::More(300).total(200), 500);
         assert_eq!(precision("0"), Ok(0));
         assert_eq!(psnr("32.5"), Ok(32.5));

@@ -46,7 +46,7 @@ pub(super) struct Options {
 #[command(next_help_heading = "Budget (the first one reached stops)")]
 pub(super) struct Budget {
     /// At most N strokes. With refine, +N counts those beyond the strokes that BASE brings
-    #[arg(long, value_name = "N", value_parser = domain::strokes, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = domain::stroke_limit, allow_negative_numbers = true)]
     pub(super) strokes: Option<StrokeLimit>,
     /// Stop when the file reaches DB decibels of PSNR: 25 is rough, 30 fair, 35 good
     #[arg(long, value_name = "DB", value_parser = domain::psnr, allow_negative_numbers = true)]

@@ -38,13 +38,14 @@ pub(super) fn to_srgb(image: Image, icc: &[u8]) -> (Image, Option<Remark>) {
 struct Conversion {
     /// Samples of a pixel, 1 or 3.
     channels: usize,
-    transform: std::sync::Arc<moxcms::TransformF32Executor>,
+    /// In `f64`: with `f32`, the last digits depend on the processor.
+    transform: std::sync::Arc<moxcms::TransformF64Executor>,
 }
 
 impl Conversion {
     fn new(profile: &ColorProfile, layout: Layout) -> Option<Self> {
         let (srgb, options) = (ColorProfile::new_srgb(), TransformOptions::default());
-        let transform = profile.create_transform_f32(layout, &srgb, Layout::Rgb, options);
+        let transform = profile.create_transform_f64(layout, &srgb, Layout::Rgb, options);
         let channels = if layout == Layout::Gray { 1 } else { 3 };
         transform.ok().map(|transform| Self {
             channels,
@@ -79,13 +80,13 @@ impl Conversion {
         for start in (0..planes[0].len()).step_by(width) {
             for (x, pixel) in row.chunks_exact_mut(self.channels).enumerate() {
                 for (sample, plane) in pixel.iter_mut().zip(planes) {
-                    *sample = plane[start + x];
+                    *sample = f64::from(plane[start + x]);
                 }
             }
             self.transform.transform(&row, &mut out).ok()?;
             for (c, plane) in converted.iter_mut().enumerate() {
-                let samples = out.iter().skip(c).step_by(3);
-                plane.extend(samples.map(|&v| if v.is_nan() { 0.0 } else { v.clamp(0.0, 1.0) }));
+                let samples = out.iter().skip(c).step_by(3).map(|&v| v as f32);
+                plane.extend(samples.map(|v| if v.is_nan() { 0.0 } else { v.clamp(0.0, 1.0) }));
             }
         }
         Some(converted)

@@ -142,6 +142,7 @@ fn empty_and_foreign_files_are_told_apart() {
     assert!(message(b"").contains("empty"));
     assert!(message(b"#!/bin/sh\nexit 0\n").contains("not a picture"));
     // A format that is known but not built in.
+    #[cfg(not(feature = "formats"))]
     assert!(message(b"qoif\0\0\0\x01\0\0\0\x01\x03\0").contains("not a picture"));
 }
 
@@ -271,11 +272,12 @@ fn a_tga_is_told_by_its_end() {
 #[cfg(feature = "formats")]
 fn light_is_encoded_and_what_is_beyond_the_range_is_counted() {
     let light: ImageBuffer<Rgb<f32>, _> =
-        ImageBuffer::from_raw(2, 1, vec![0.0, 0.25, 1.0, 4.0, 0.001, 9.0]).unwrap();
+        ImageBuffer::from_raw(2, 1, vec![0.0, 0.25, 1.0, 4.0, 0.5, 9.0]).unwrap();
     let (image, remarks) = read(&encode(light, ImageFormat::Hdr));
     let [red, green, blue] = image.planes();
+    let is_near = |level: f32, expected: f32| (level - expected).abs() < 0.003;
     assert!(
-        (green[0] - 0.537).abs() < 0.003 && (green[1] - 0.0129).abs() < 0.003,
+        is_near(green[0], 0.537) && is_near(green[1], 0.735),
         "{green:?}"
     );
     assert_eq!((red[0], red[1], blue[1]), (0.0, 1.0, 1.0));
