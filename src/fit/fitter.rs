@@ -4,6 +4,7 @@ use super::background;
 use super::base::Base;
 use super::checkpoint::Checkpoint;
 use super::config::{Config, Execution};
+use super::focus::Focus;
 use super::progress::{CancelToken, Observer};
 use crate::clock::Instant;
 use crate::error::{Error, ErrorKind, Result};
@@ -31,6 +32,7 @@ pub struct Fitter<'a> {
     pub(super) config: Config,
     pub(super) execution: Execution,
     pub(super) base: Option<Base>,
+    pub(super) focus: Option<Focus>,
     pub(super) observer: Option<&'a mut (dyn Observer + Send)>,
     pub(super) token: CancelToken,
     pub(super) checkpoint: Option<&'a mut Checkpoint>,
@@ -44,6 +46,7 @@ impl<'a> Fitter<'a> {
             config,
             execution: Execution::default(),
             base: None,
+            focus: None,
             observer: None,
             token: CancelToken::default(),
             checkpoint: None,
@@ -63,6 +66,15 @@ impl<'a> Fitter<'a> {
     pub fn on(self, base: Base) -> Self {
         Self {
             base: Some(base),
+            ..self
+        }
+    }
+
+    /// Sets how much an error counts at each pixel. Strokes go where it counts; budgets of dB still count all pixels alike.
+    #[must_use]
+    pub fn focus(self, focus: Focus) -> Self {
+        Self {
+            focus: Some(focus),
             ..self
         }
     }
@@ -108,6 +120,9 @@ impl<'a> Fitter<'a> {
         let choice = config.recipe().background;
         config.background =
             background::for_strokes(config.background, config.opaque, picture, &choice);
+        if let Some(focus) = &self.focus {
+            focus.check_size(picture)?;
+        }
         if let Some(base) = &self.base {
             check_size(&base.scene, picture)?;
             // The palette does not apply to a document, whose background is its own.

@@ -25,6 +25,7 @@ mod drawing;
 mod file;
 mod finish;
 mod fitter;
+mod focus;
 mod forecast;
 mod history;
 mod memory;
@@ -51,6 +52,7 @@ pub use base::Base;
 pub use checkpoint::Checkpoint;
 pub use config::{Background, Budget, Colors, Config, DEFAULT_QUALITY, Execution, MAX_STROKES};
 pub use fitter::Fitter;
+pub use focus::Focus;
 pub use memory::predicted_rss_bytes;
 pub use objective::Objective;
 pub use progress::{CancelToken, Observer, Progress};
@@ -83,13 +85,20 @@ impl Fitter<'_> {
     pub fn fit(mut self, picture: &Image) -> Result<Fit> {
         let since = self.since.unwrap_or_else(Instant::now);
         self.prepare(picture)?;
-        let (config, base) = (&self.config, self.base.as_ref());
+        let (config, base, focus) = (&self.config, self.base.as_ref(), self.focus);
         let level = self.execution.simd.require()?;
         let mut nobody = ();
         let observer = self.observer.unwrap_or(&mut nobody);
         let (token, checkpoint) = (self.token, self.checkpoint);
         self.execution.pool()?.install(|| {
-            let mut session = Session::new(picture, config, base, level, observer, token, since)?;
+            let mut session = Session::new(
+                picture,
+                (config, base, focus),
+                level,
+                observer,
+                token,
+                since,
+            )?;
             if let Some(checkpoint) = checkpoint {
                 session.resume(checkpoint)?;
             }

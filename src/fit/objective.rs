@@ -3,13 +3,15 @@
 use rayon::prelude::*;
 
 use crate::loss::Loss;
-use crate::render::{Canvas, CanvasLoss, Lanes, TileRgb};
+use crate::render::{Canvas, CanvasLoss, Lanes, TileRgb, darken};
 
 /// The mean of `loss` over width·height·3 values against `target`.
 #[derive(Debug, Clone, Copy)]
 pub struct Objective<'a> {
     loss: Loss,
     target: &'a Canvas,
+    /// What a veil in front of the canvas lets through; the target is behind it already.
+    veil: Option<&'a Canvas>,
     /// 1/(width·height·3).
     scale: f32,
 }
@@ -21,16 +23,34 @@ impl<'a> Objective<'a> {
         Self {
             loss,
             target,
+            veil: None,
             scale: 1.0 / (grid.width * grid.height * 3) as f32,
         }
     }
 }
 
-impl Objective<'_> {
-    /// The loss of `canvas`.
+impl<'a> Objective<'a> {
+    /// The same with canvas and target seen through `veil`; see [`Renderer::veil`](crate::render::Renderer::veil). The
+    /// target is behind it already.
+    pub(super) fn veiled(self, veil: Option<&'a Canvas>) -> Self {
+        Self { veil, ..self }
+    }
+
+    /// The loss of `canvas`, which is not behind the veil.
     pub(super) fn of(&self, canvas: &Canvas) -> f64 {
-        let pairs = canvas.tiles().par_iter().zip(self.target.tiles());
-        let sums: Vec<f64> = pairs.map(|(c, t)| self.sum(c, t)).collect();
+        let tiles = canvas.tiles().par_iter().enumerate();
+        let sum = |(tile, canvas): (usize, &TileRgb)| {
+            let target = &self.target.tiles()[tile];
+            match self.veil {
+                Some(veil) => {
+                    let mut seen = *canvas;
+                    darken(&mut seen, &veil.tiles()[tile]);
+                    self.sum(&seen, target)
+                }
+                None => self.sum(canvas, target),
+            }
+        };
+        let sums: Vec<f64> = tiles.map(sum).collect();
         sums.iter().sum::<f64>() * f64::from(self.scale)
     }
 

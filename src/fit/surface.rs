@@ -8,6 +8,7 @@
 use super::background;
 use super::base::Base;
 use super::config::Background;
+use super::focus::Focus;
 use super::objective::Objective;
 use super::recipe::Recipe;
 use crate::error::Result;
@@ -177,7 +178,11 @@ pub(super) struct Surface {
     halvings: usize,
     /// The least scale of strokes in a reduced picture, px of that picture.
     min_scale: f32,
-    /// The picture, halved.
+    /// Where errors count, if not everywhere alike.
+    focus: Option<Focus>,
+    /// What canvas and target are seen through, at the current resolution.
+    veil: Option<Canvas>,
+    /// The picture, halved, and behind the veil.
     target: Canvas,
     /// The frozen strokes, rendered over the bottom.
     frozen: Canvas,
@@ -198,8 +203,32 @@ impl Surface {
             min_scale,
             canvas: frozen.clone(),
             frozen,
+            focus: None,
+            veil: None,
             target,
             pyramid,
+        }
+    }
+
+    /// The surface with errors that count as `focus` says.
+    pub(super) fn focused(mut self, focus: Option<Focus>) -> Self {
+        if focus.is_some() {
+            self.focus = focus;
+            self.halve(self.halvings);
+        }
+        self
+    }
+
+    /// What canvas and target are seen through, at the current resolution.
+    pub(super) fn veil(&self) -> Option<&Canvas> {
+        self.veil.as_ref()
+    }
+
+    /// `canvas` behind the veil.
+    pub(super) fn veiled(&self, canvas: Canvas) -> Canvas {
+        match &self.veil {
+            Some(veil) => canvas.darkened(veil),
+            None => canvas,
         }
     }
 
@@ -243,7 +272,8 @@ impl Surface {
     /// Switches to the picture halved `halvings` times, with nothing frozen.
     pub(super) fn halve(&mut self, halvings: usize) {
         self.halvings = halvings;
-        self.target = Canvas::from_image(self.pyramid.level(halvings));
+        self.veil = self.focus.as_ref().map(|focus| focus.veil(halvings));
+        self.target = self.veiled(Canvas::from_image(self.pyramid.level(halvings)));
         self.frozen = self.bottom.canvas(self.target.grid(), halvings);
         self.canvas.clone_from(&self.frozen);
     }
@@ -298,9 +328,9 @@ impl Surface {
         self.objective(None).of(canvas)
     }
 
-    /// The loss against the picture, or against `target`.
+    /// The loss against the picture, or against `target`, which is behind the veil.
     pub(super) fn objective<'a>(&'a self, target: Option<&'a Canvas>) -> Objective<'a> {
-        Objective::new(Loss::L2, target.unwrap_or(&self.target))
+        Objective::new(Loss::L2, target.unwrap_or(&self.target)).veiled(self.veil())
     }
 
     /// Picture and canvas, to search for candidates in.
@@ -308,6 +338,7 @@ impl Surface {
         Residual {
             target: &self.pyramid,
             canvas: &self.canvas,
+            weights: self.focus.as_ref().map(Focus::weights),
         }
     }
 }
