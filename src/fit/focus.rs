@@ -183,7 +183,7 @@ mod tests {
         renderer.backward_with_worth(&strokes, softness, white, &objective, &mut gradients);
         let mut canvas = Canvas::flat(target.grid(), [1.0; 3]);
         renderer.forward(&strokes, softness, white, &mut canvas);
-        assert!((objective.of(&canvas) - gradients.loss).abs() < 1e-6 * gradients.loss);
+        assert!((objective.of(&canvas) - gradients.loss).abs() < 1e-4 * gradients.loss);
         (gradients.loss, gradients.worth[0], gradients.strokes[3])
     }
 
