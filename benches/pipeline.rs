@@ -120,6 +120,7 @@ fn seed(criterion: &mut Criterion, image: &Image) {
             let residual = Residual {
                 target: &pyramid,
                 canvas: &canvas,
+                weights: None,
             };
             b.iter(|| propose(level, black_box(&[residual]), wanted));
         });

@@ -139,6 +139,27 @@ pub fn psnr(a: &Image, b: &Image) -> Result<f64> {
     mse(a, b).map(psnr_db)
 }
 
+/// The same over the pixels for which `counts` is true, told by their index, row by row; infinite where there are none.
+///
+/// # Errors
+/// [`ErrorKind::Picture`] when the sizes differ.
+pub fn psnr_where(a: &Image, b: &Image, counts: impl Fn(usize) -> bool) -> Result<f64> {
+    let (a, b) = levels_of_both(a, b)?;
+    let chosen = |levels: &[u8]| -> Vec<u8> {
+        let pixels = levels.chunks_exact(CHANNELS).enumerate();
+        let chosen = pixels.filter(|(i, _)| counts(*i));
+        chosen
+            .flat_map(|(_, pixel)| pixel.iter().copied())
+            .collect()
+    };
+    let (a, b) = (chosen(&a), chosen(&b));
+    Ok(if a.is_empty() {
+        f64::INFINITY
+    } else {
+        psnr_db(Sums::new(&a, &b).mse())
+    })
+}
+
 /// Peak signal-to-noise ratio in dB of a mean squared error of values 0..1.
 pub fn psnr_db(mse: f64) -> f64 {
     if mse > 0.0 {

@@ -74,6 +74,8 @@ pub struct Residual<'a> {
     pub target: &'a Pyramid,
     /// The drawing, of the size of the level [`Wanted::level`].
     pub canvas: &'a Canvas,
+    /// How much an error counts at each pixel, 0 to 1, in each channel alike; `None` for 1 everywhere.
+    pub weights: Option<&'a Pyramid>,
 }
 
 /// The target and its reductions by 2, 4, 8 …
@@ -148,9 +150,10 @@ pub fn propose(level: Level, residuals: &[Residual<'_>], wanted: Wanted) -> Vec<
             let (shape, probe) = probes.best(patches, wanted.min_opacity)?;
             let center = [x, y].map(|v| (v as f32 + 0.5) * reduction);
             let stroke = probe.stroke(shape, center, reduction);
-            (probe.gain > 0.0).then_some(Candidate {
+            let weight = residuals[0].weight(x, y);
+            (probe.gain > 0.0 && weight > 0.0).then_some(Candidate {
                 stroke,
-                gain: probe.gain * gain_scale,
+                gain: probe.gain * gain_scale * weight,
             })
         })
         .flatten()
@@ -164,6 +167,7 @@ pub fn propose(level: Level, residuals: &[Residual<'_>], wanted: Wanted) -> Vec<
 struct Reduced<'a> {
     target: &'a Image,
     canvas: Image,
+    weights: Option<&'a Image>,
 }
 
 impl<'a> Reduced<'a> {
@@ -171,7 +175,16 @@ impl<'a> Reduced<'a> {
         Self {
             target: residual.target.level(level + halvings),
             canvas: (0..halvings).fold(residual.canvas.to_image(), |image, _| image.halved()),
+            weights: residual
+                .weights
+                .map(|weights| weights.level(level + halvings)),
         }
+    }
+
+    /// How much an error counts at a pixel.
+    fn weight(&self, x: usize, y: usize) -> f32 {
+        let at = |weights: &Image| weights.planes()[0][y * weights.width() + x];
+        self.weights.map_or(1.0, at)
     }
 }
 
@@ -190,6 +203,10 @@ fn smoothed_energy(residuals: &[Reduced<'_>], radius: usize) -> Vec<f32> {
         for ((energy, t), c) in energy.iter_mut().zip(t).zip(c) {
             *energy += (t - c) * (t - c);
         }
+    }
+    if let Some(weights) = residuals[0].weights {
+        let weights = energy.iter_mut().zip(&weights.planes()[0]);
+        weights.for_each(|(energy, weight)| *energy *= weight);
     }
     let mut rows = vec![0.0; width * height];
     for (out, row) in rows.chunks_exact_mut(width).zip(energy.chunks_exact(width)) {
@@ -414,6 +431,7 @@ mod tests {
         let residual = Residual {
             target: &target,
             canvas: &canvas,
+            weights: None,
         };
         let found = propose(Level::new(), &[residual], wanted);
         let Candidate { stroke, gain } = found[0];

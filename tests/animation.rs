@@ -140,7 +140,7 @@ fn outputs_that_make_no_sense_are_refused() {
     refused(&place, "fit a.png -o b.svg -o c.svg", 2, "c.svg");
     refused(&place, "fit a.png -o b.svg -o b.gif -o b.gif", 2, "b.gif");
     refused(&place, "fit a.png -o b.svg -o a.png", 2, "a.png");
-    refused(&place, "fit a.png -o b.svg -o none/b.gif", 1, "none");
+    refused(&place, "fit a.png -o b.svg -o a.png/b.gif", 1, "is a file");
     refused(&place, "fit a.png -o b.svg --legend", 2, "--legend");
     refused(&place, "fit a.png -o b.svg -o b.gif --frames 0", 2, "stage");
     assert!(!place.path("b.svg").exists());

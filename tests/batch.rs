@@ -190,8 +190,8 @@ fn outputs_that_would_collide_are_refused_before_the_work() {
     ] {
         assert_refused(&place, args, 2, &words);
     }
-    let args = ["fit", "a.png", "b.png", "-o", "none/{stem}.svg"];
-    assert_refused(&place, &args, 1, &["none/a.svg", "folder"]);
+    let args = ["fit", "a.png", "b.png", "-o", "a.png/{stem}.svg"];
+    assert_refused(&place, &args, 1, &["a.png/a.svg", "is a file"]);
 }
 
 #[test]

@@ -88,7 +88,7 @@ fn missing_programs_are_named_with_how_to_get_them_and_are_no_failure() {
 #[test]
 fn a_missing_program_that_was_asked_for_is_a_failure() {
     let place = without_programs();
-    let output = place.check(&["a.png", "--renderer", "resvg,inkscape", "-q"]);
+    let output = place.check(&["a.png", "--renderer", "resvg,inkscape"]);
     assert_eq!(output.status.code(), Some(1));
     assert!(
         stderr(&output).starts_with("inkscape: not installed"),

@@ -116,7 +116,7 @@ fn fits() -> &'static [Fitted] {
         let samples = [
             ("noto-telescope", 500),
             ("noto-hibiscus", 500),
-            ("rocket-320", 2000),
+            ("rocket-320", 2300),
         ];
         samples.map(|(name, strokes)| fitted(name, strokes)).into()
     })

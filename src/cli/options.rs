@@ -1,13 +1,14 @@
 //! Options for what to draw and how to run, shared by the commands that draw.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use anyhow::Result;
 use clap::builder::TypedValueParser;
 use strokefit::coverage::CoverageSchedule;
 use strokefit::fit::{
-    self, Background, Checkpoint, Colors, Config, Execution, Fit, Fitter, Observer, Preset, Simd,
+    self, Background, Checkpoint, Colors, Config, Execution, Fit, Fitter, Focus, Observer, Preset,
+    Simd,
 };
 use strokefit::image::Limits;
 use strokefit::svg::WriteOptions;
@@ -15,7 +16,7 @@ use strokefit::svg::WriteOptions;
 use super::domain::StrokeLimit;
 use super::interrupt::GRACE;
 use super::pictures::FilmOptions;
-use super::{colors, complain, domain, form, words};
+use super::{colors, complain, domain, form, input, words};
 
 /// The options of a command that draws.
 #[derive(Debug, clap::Args)]
@@ -95,6 +96,10 @@ pub(super) struct Look {
     /// with translucent areas onto white. #rrggbb flattens onto that colour
     #[arg(long, value_name = "COLOR", default_value_t)]
     background: Background,
+    /// Grey picture of the input's size that says how much an error counts where: white 1, black 0. Strokes go where
+    /// people look, a face before a wall
+    #[arg(long, value_name = "MASK.png")]
+    focus: Option<PathBuf>,
     /// Seed of all random choices. Another seed gives a slightly different drawing
     #[arg(long, value_name = "S", default_value_t = 0)]
     pub(super) seed: u64,
@@ -210,6 +215,10 @@ impl Options {
             .execution(self.execution())
             .grace(GRACE)
             .observer(observer);
+        let fitter = match &self.look.focus {
+            Some(mask) => fitter.focus(self.focus(mask)?),
+            None => fitter,
+        };
         let Some(mut checkpoint) = self.checkpoint() else {
             return Ok(draw(fitter)?);
         };
@@ -218,6 +227,13 @@ impl Options {
             complain(format_args!("warning: {trouble}"));
         }
         Ok(fit?)
+    }
+
+    /// Reads the mask.
+    fn focus(&self, path: &Path) -> Result<Focus> {
+        let (mask, _) = input::picture_within(path, self.limits())?;
+        let focus = Focus::new(&mask).map_err(|error| error.within(input::name(path)))?;
+        Ok(focus)
     }
 
     pub(super) fn execution(&self) -> Execution {

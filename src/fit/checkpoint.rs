@@ -15,6 +15,7 @@ use serde::de::DeserializeOwned;
 
 use super::base::Base;
 use super::config::Config;
+use super::focus::Focus;
 use super::recipe::Recipe;
 use crate::clock::Instant;
 use crate::error::{Error, ErrorKind, Result};
@@ -182,6 +183,7 @@ pub(super) fn fingerprint(
     config: &Config,
     recipe: &Recipe,
     base: Option<&Base>,
+    focus: Option<&Focus>,
 ) -> u64 {
     let size = [target.width() as u64, target.height() as u64];
     // The recipe of a preset may differ between two builds of one version.
@@ -189,6 +191,7 @@ pub(super) fn fingerprint(
     let words = format!("{version} {config:?} {recipe:?} {base:?}");
     let planes = target.planes().iter().flatten();
     let values = planes.chain(target.alpha().unwrap_or_default());
+    let values = values.chain(focus.map_or(&[][..], Focus::values));
     hash(
         size.into_iter()
             .flat_map(u64::to_le_bytes)
@@ -275,7 +278,7 @@ mod tests {
                 ..Config::default()
             };
             let picture = Image::filled(3, 2, color).unwrap();
-            fingerprint(&picture, &config, &config.recipe(), None)
+            fingerprint(&picture, &config, &config.recipe(), None, None)
         };
         assert_eq!(of(red, 1), of(red, 1));
         assert_ne!(of(red, 1), of(red, 2));
@@ -288,7 +291,7 @@ mod tests {
         let recipe = config.recipe();
         let mut retuned = recipe;
         retuned.pens.ladder = 1.21;
-        let of = |recipe| fingerprint(&picture, &config, recipe, None);
+        let of = |recipe| fingerprint(&picture, &config, recipe, None, None);
         assert_ne!(of(&recipe), of(&retuned));
     }
 }

@@ -58,7 +58,7 @@ impl Drawing {
         level: Level,
     ) -> Self {
         Self {
-            renderer: Renderer::new(surfaces[0].grid(), level),
+            renderer: renderer(&surfaces[0], level),
             surfaces,
             level,
             background_fixed,
@@ -111,7 +111,7 @@ impl Drawing {
     fn halve(&mut self, halvings: usize) {
         self.surfaces.iter_mut().for_each(|s| s.halve(halvings));
         let grid = self.surface().grid();
-        self.renderer = Renderer::new(grid, self.level);
+        self.renderer = renderer(self.surface(), self.level);
         self.bounds = self.bounds.on(grid);
         self.free_all();
     }
@@ -327,4 +327,13 @@ impl Drawing {
         let losses = pairs.map(|(surface, canvas)| surface.mse_of(canvas));
         losses.sum::<f64>() / self.surfaces.len() as f64
     }
+}
+
+/// A renderer for `surface`, which looks through its veil.
+fn renderer(surface: &Surface, level: Level) -> Renderer {
+    let mut renderer = Renderer::new(surface.grid(), level);
+    if let Some(veil) = surface.veil() {
+        renderer.veil(veil);
+    }
+    renderer
 }

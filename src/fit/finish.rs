@@ -21,6 +21,7 @@ pub(super) fn finish(mut session: Session<'_>) -> Result<Fit> {
         soft,
         scene: rounded.scene,
         base: session.base.cloned(),
+        focus: session.focus.take(),
         file: session.config.file,
         stop: session.cut_by().unwrap_or(session.history.stop),
         stacking_db: session.history.stacking_db,

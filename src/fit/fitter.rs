@@ -6,6 +6,7 @@ use super::background;
 use super::base::Base;
 use super::checkpoint::Checkpoint;
 use super::config::{Config, Execution};
+use super::focus::Focus;
 use super::progress::{CancelToken, Observer};
 use crate::clock::Instant;
 use crate::error::{Error, ErrorKind, Result};
@@ -33,6 +34,7 @@ pub struct Fitter<'a> {
     pub(super) config: Config,
     pub(super) execution: Execution,
     pub(super) base: Option<Base>,
+    pub(super) focus: Option<Focus>,
     pub(super) observer: Option<&'a mut (dyn Observer + Send)>,
     pub(super) token: CancelToken,
     pub(super) checkpoint: Option<&'a mut Checkpoint>,
@@ -47,6 +49,7 @@ impl<'a> Fitter<'a> {
             config,
             execution: Execution::default(),
             base: None,
+            focus: None,
             observer: None,
             token: CancelToken::default(),
             checkpoint: None,
@@ -67,6 +70,15 @@ impl<'a> Fitter<'a> {
     pub fn on(self, base: Base) -> Self {
         Self {
             base: Some(base),
+            ..self
+        }
+    }
+
+    /// Sets how much an error counts at each pixel. Strokes go where it counts; budgets of dB still count all pixels alike.
+    #[must_use]
+    pub fn focus(self, focus: Focus) -> Self {
+        Self {
+            focus: Some(focus),
             ..self
         }
     }
@@ -122,6 +134,9 @@ impl<'a> Fitter<'a> {
         let choice = config.recipe().background;
         config.background =
             background::for_strokes(config.background, config.opaque, picture, &choice);
+        if let Some(focus) = &self.focus {
+            focus.check_size(picture)?;
+        }
         if let Some(base) = &self.base {
             check_size(&base.scene, picture)?;
             // The palette does not apply to a document, whose background is its own.

@@ -25,6 +25,7 @@ mod drawing;
 mod file;
 mod finish;
 mod fitter;
+mod focus;
 mod forecast;
 mod hidden;
 mod history;
@@ -55,6 +56,7 @@ pub use config::{
     SCREEN_PIXELS,
 };
 pub use fitter::Fitter;
+pub use focus::Focus;
 pub use memory::predicted_rss_bytes;
 pub use objective::Objective;
 pub use progress::{CancelToken, Observer, Progress};
@@ -87,7 +89,7 @@ impl Fitter<'_> {
     pub fn fit(mut self, picture: &Image) -> Result<Fit> {
         let since = self.since.unwrap_or_else(Instant::now);
         self.prepare(picture)?;
-        let (config, base) = (&self.config, self.base.as_ref());
+        let (config, base, focus) = (&self.config, self.base.as_ref(), self.focus);
         let level = self.execution.simd.require()?;
         let mut nobody = ();
         let observer = self.observer.unwrap_or(&mut nobody);
@@ -98,7 +100,8 @@ impl Fitter<'_> {
                 token,
                 grace,
             };
-            let mut session = Session::new(picture, config, base, level, watch, since)?;
+            let wishes = (config, base, focus);
+            let mut session = Session::new(picture, wishes, level, watch, since)?;
             if let Some(checkpoint) = checkpoint {
                 session.resume(checkpoint)?;
             }

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::loss::Loss;
-use crate::render::{Canvas, CanvasLoss, Lanes, TILE, TileRgb};
+use crate::render::{Canvas, CanvasLoss, Lanes, TILE, TileRgb, darken};
 
 /// The mean of `loss` over width·height·3 values against `target`.
 #[derive(Debug, Clone, Copy)]
@@ -11,6 +11,8 @@ pub struct Objective<'a> {
     loss: Loss,
     target: &'a Canvas,
     moments: Option<&'a Moments>,
+    /// What a veil in front of the canvas lets through; the target is behind it already.
+    veil: Option<&'a Canvas>,
     /// 1/(width·height·3).
     scale: f32,
 }
@@ -60,24 +62,40 @@ impl<'a> Objective<'a> {
             loss,
             target,
             moments: None,
+            veil: None,
             scale: 1.0 / (grid.width * grid.height * 3) as f32,
         }
     }
 
-    /// The squared error against `target`, whose `moments` are known.
-    pub(super) fn squared(target: &'a Canvas, moments: &'a Moments) -> Self {
+    /// The squared error against `target`, whose `moments` may be known.
+    pub(super) fn squared(target: &'a Canvas, moments: Option<&'a Moments>) -> Self {
         Self {
-            moments: Some(moments),
+            moments,
             ..Self::new(Loss::L2, target)
         }
     }
-}
 
-impl Objective<'_> {
-    /// The loss of `canvas`.
+    /// The same with canvas and target seen through `veil`; see [`Renderer::veil`](crate::render::Renderer::veil). The
+    /// target is behind it already.
+    pub(super) fn veiled(self, veil: Option<&'a Canvas>) -> Self {
+        Self { veil, ..self }
+    }
+
+    /// The loss of `canvas`, which is not behind the veil.
     pub(super) fn of(&self, canvas: &Canvas) -> f64 {
-        let pairs = canvas.tiles().par_iter().zip(self.target.tiles());
-        let sums: Vec<f64> = pairs.map(|(c, t)| self.sum(c, t)).collect();
+        let tiles = canvas.tiles().par_iter().enumerate();
+        let sum = |(tile, canvas): (usize, &TileRgb)| {
+            let target = &self.target.tiles()[tile];
+            match self.veil {
+                Some(veil) => {
+                    let mut seen = *canvas;
+                    darken(&mut seen, &veil.tiles()[tile]);
+                    self.sum(&seen, target)
+                }
+                None => self.sum(canvas, target),
+            }
+        };
+        let sums: Vec<f64> = tiles.map(sum).collect();
         sums.iter().sum::<f64>() * f64::from(self.scale)
     }
 

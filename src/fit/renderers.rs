@@ -105,9 +105,10 @@ impl Renderings {
         let surfaces = drawing.surfaces.iter().enumerate();
         let corrected = surfaces.map(|(i, surface)| {
             let pictures = [&file.drawn[i], &self.shown[i]];
-            corrected(surface.picture(), &self.soft[i], pictures, shares)
+            let target = corrected(surface.picture(), &self.soft[i], pictures, shares);
+            surface.veiled(Canvas::from_image(&target))
         });
-        corrected.map(|image| Canvas::from_image(&image)).collect()
+        corrected.collect()
     }
 }
 

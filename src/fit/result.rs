@@ -5,6 +5,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::base::Base;
+use super::focus::Focus;
 use crate::image::Image;
 use crate::scene::{Dropped, Scene};
 use crate::svg::WriteOptions;
@@ -16,6 +17,8 @@ pub struct Fit {
     pub scene: Scene,
     /// The base, if there was one.
     pub base: Option<Base>,
+    /// Where errors counted, if not everywhere alike.
+    pub focus: Option<Focus>,
     /// How the drawing is written. It was fitted and settled for these options.
     pub file: WriteOptions,
     /// The target: the picture with its alpha, or flattened onto the background.

@@ -14,6 +14,7 @@ use super::deadline::{Deadline, Timer, Unlimited};
 use super::descent::{Course, Descent};
 use super::drawing::{Drawing, Memento};
 use super::file::{RenderedFile, Writer};
+use super::focus::Focus;
 use super::forecast::Forecast;
 use super::history::{self, History};
 use super::order::Phase;
@@ -35,6 +36,7 @@ pub(super) struct Session<'a> {
     pub(super) config: &'a Config,
     pub(super) recipe: Recipe,
     pub(super) base: Option<&'a Base>,
+    pub(super) focus: Option<Focus>,
     /// The picture to reproduce.
     pub(super) target: Image,
     pub(super) annealing: Annealing,
@@ -83,8 +85,7 @@ type State = (Phase, History, Memento, Position, Duration, Option<Descent>);
 impl<'a> Session<'a> {
     pub(super) fn new(
         picture: &Image,
-        config: &'a Config,
-        base: Option<&'a Base>,
+        (config, base, focus): (&'a Config, Option<&'a Base>, Option<Focus>),
         level: Level,
         watch: Watch<'a>,
         started: Instant,
@@ -107,6 +108,8 @@ impl<'a> Session<'a> {
             &recipe,
             coarsest,
         )?;
+        let surfaces = surfaces.into_iter();
+        let surfaces: Vec<_> = surfaces.map(|s| s.focused(focus.clone())).collect();
         let annealing = Annealing {
             coverage: config.coverage,
             edge: recipe.edge,
@@ -124,6 +127,7 @@ impl<'a> Session<'a> {
             config,
             recipe,
             base,
+            focus,
             target,
             annealing,
             limit: budget::max_strokes(config, limit, base),
@@ -262,8 +266,13 @@ impl<'a> Session<'a> {
 
     /// Goes on from the state in `checkpoint`, if it holds one, and keeps the state there from now on.
     pub(super) fn resume(&mut self, checkpoint: &'a mut Checkpoint) -> Result<()> {
-        let fingerprint =
-            checkpoint::fingerprint(&self.target, self.config, &self.recipe, self.base);
+        let fingerprint = checkpoint::fingerprint(
+            &self.target,
+            self.config,
+            &self.recipe,
+            self.base,
+            self.focus.as_ref(),
+        );
         match checkpoint.load::<State>(fingerprint)? {
             Some((phase, history, drawing, position, elapsed, descent)) => {
                 if let Some(best) = history.best.clone() {

@@ -8,11 +8,11 @@
 use super::background;
 use super::base::Base;
 use super::config::Background;
+use super::focus::Focus;
 use super::objective::{Moments, Objective};
 use super::recipe::Recipe;
 use crate::error::Result;
 use crate::image::Image;
-use crate::loss::Loss;
 use crate::render::{Backdrop, Canvas, Grid, Renderer, Softness, Strokes};
 use crate::scene::{Rgb, Scene, Shade};
 use crate::seed::{Pyramid, Residual};
@@ -177,9 +177,14 @@ pub(super) struct Surface {
     halvings: usize,
     /// The least scale of strokes in a reduced picture, px of that picture.
     min_scale: f32,
-    /// The picture, halved.
+    /// Where errors count, if not everywhere alike.
+    focus: Option<Focus>,
+    /// What canvas and target are seen through, at the current resolution.
+    veil: Option<Canvas>,
+    /// The picture, halved, and behind the veil.
     target: Canvas,
-    moments: Moments,
+    /// The target's sums, of use where there is no veil.
+    moments: Option<Moments>,
     /// The frozen strokes, rendered over the bottom.
     frozen: Canvas,
     /// The last render of all strokes, with the final edge.
@@ -199,9 +204,33 @@ impl Surface {
             min_scale,
             canvas: frozen.clone(),
             frozen,
-            moments: Moments::of(&target),
+            moments: Some(Moments::of(&target)),
+            focus: None,
+            veil: None,
             target,
             pyramid,
+        }
+    }
+
+    /// The surface with errors that count as `focus` says.
+    pub(super) fn focused(mut self, focus: Option<Focus>) -> Self {
+        if focus.is_some() {
+            self.focus = focus;
+            self.halve(self.halvings);
+        }
+        self
+    }
+
+    /// What canvas and target are seen through, at the current resolution.
+    pub(super) fn veil(&self) -> Option<&Canvas> {
+        self.veil.as_ref()
+    }
+
+    /// `canvas` behind the veil.
+    pub(super) fn veiled(&self, canvas: Canvas) -> Canvas {
+        match &self.veil {
+            Some(veil) => canvas.darkened(veil),
+            None => canvas,
         }
     }
 
@@ -245,8 +274,9 @@ impl Surface {
     /// Switches to the picture halved `halvings` times, with nothing frozen.
     pub(super) fn halve(&mut self, halvings: usize) {
         self.halvings = halvings;
-        self.target = Canvas::from_image(self.pyramid.level(halvings));
-        self.moments = Moments::of(&self.target);
+        self.veil = self.focus.as_ref().map(|focus| focus.veil(halvings));
+        self.target = self.veiled(Canvas::from_image(self.pyramid.level(halvings)));
+        self.moments = self.veil.is_none().then(|| Moments::of(&self.target));
         self.frozen = self.bottom.canvas(self.target.grid(), halvings);
         self.canvas.clone_from(&self.frozen);
     }
@@ -301,12 +331,13 @@ impl Surface {
         self.objective(None).of(canvas)
     }
 
-    /// The loss against the picture, or against `target`.
+    /// The loss against the picture, or against `target`, which is behind the veil.
     pub(super) fn objective<'a>(&'a self, target: Option<&'a Canvas>) -> Objective<'a> {
-        match target {
-            Some(target) => Objective::new(Loss::L2, target),
-            None => Objective::squared(&self.target, &self.moments),
-        }
+        let objective = match target {
+            Some(target) => Objective::squared(target, None),
+            None => Objective::squared(&self.target, self.moments.as_ref()),
+        };
+        objective.veiled(self.veil())
     }
 
     /// What lies behind all strokes, at full resolution.
@@ -320,15 +351,13 @@ impl Surface {
         Residual {
             target: &self.pyramid,
             canvas,
+            weights: self.focus.as_ref().map(Focus::weights),
         }
     }
 
     /// Picture and canvas, to search for candidates in.
     pub(super) fn residual(&self) -> Residual<'_> {
-        Residual {
-            target: &self.pyramid,
-            canvas: &self.canvas,
-        }
+        self.residual_of(&self.canvas)
     }
 }
 

@@ -164,6 +164,14 @@ impl Canvas {
         canvas
     }
 
+    /// The canvas times `through`, channel by channel.
+    pub fn darkened(mut self, through: &Self) -> Self {
+        for (tile, through) in self.tiles.iter_mut().zip(&through.tiles) {
+            darken(tile, through);
+        }
+        self
+    }
+
     /// The picture, row by row.
     pub fn to_image(&self) -> Image {
         let Grid { width, height, .. } = self.grid;
@@ -202,6 +210,16 @@ impl Canvas {
     /// The tiles, row by row, to write.
     pub(super) fn tiles_mut(&mut self) -> &mut [TileRgb] {
         &mut self.tiles
+    }
+}
+
+/// Multiplies a tile by another.
+pub(crate) fn darken(tile: &mut TileRgb, through: &TileRgb) {
+    let lanes = tile.as_flattened_mut().iter_mut();
+    for (lanes, through) in lanes.zip(through.as_flattened()) {
+        for (value, through) in lanes.0.iter_mut().zip(through.0) {
+            *value *= through;
+        }
     }
 }
 

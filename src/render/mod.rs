@@ -75,6 +75,7 @@ use fearless_simd::Level;
 use rayon::prelude::*;
 
 pub use gradients::{Gradients, Survey};
+pub(crate) use grid::darken;
 pub use grid::{BlockRgb, Canvas, Grid, Lanes, TILE, TileRgb};
 pub use strokes::{
     AX, AY, BX, BY, LOOK, OPACITY, PARAMS, Params, RADIUS, RED, StrokeMut, StrokeRef, Strokes,
@@ -140,6 +141,8 @@ struct TileWork {
     ends: Vec<EndSums>,
     total: TileSums,
     weights: Option<Box<TileWeights>>,
+    /// What a veil in front of all strokes lets through.
+    veil: Option<Box<TileWeights>>,
 }
 
 /// A stroke that may touch a tile.
@@ -190,6 +193,25 @@ impl Renderer {
         self.grid
     }
 
+    /// Lays a veil in front of all strokes, for the backward passes alone, that lets through the shares in the first
+    /// channel of `through`. They then render a canvas that is darker by that, and tell the loss of it.
+    ///
+    /// With the roots of weights, and a target that is darkened alike, everything that they tell of a squared error,
+    /// the worth included, is exactly that of the weighted squared error: `(√w·c − √w·t)² = w·(c − t)²`.
+    pub fn veil(&mut self, through: &Canvas) {
+        for (work, tile) in self.tiles.iter_mut().zip(through.tiles()) {
+            let of = |block: usize| {
+                let mut lanes = tile[block][0];
+                let weights = work.weights.as_deref().unwrap_or(&FULL);
+                for (lane, weight) in lanes.0.iter_mut().zip(weights[block].0) {
+                    *lane *= weight;
+                }
+                lanes
+            };
+            work.veil = Some(Box::new(std::array::from_fn(of)));
+        }
+    }
+
     /// Renders `strokes`, back to front, on `backdrop` into `out`.
     pub fn forward(
         &mut self,
@@ -213,7 +235,7 @@ impl Renderer {
             .enumerate()
             .with_max_len(1);
         tiles.for_each(|(tile, (work, out))| {
-            let job = frame.job(flat, tile, work);
+            let job = frame.job(flat, tile, work, work.weights.as_deref());
             if job.listed.is_empty() {
                 out.clone_from(job.backdrop);
                 if let Some(weights) = &work.weights {
@@ -320,7 +342,8 @@ impl Renderer {
                 looks.resize(work.listed.len(), LookSums::default());
                 ends.clear();
                 ends.resize(work.segments.len(), EndSums::default());
-                let job = frame.job(flat, tile, work);
+                let weights = work.veil.as_deref().or(work.weights.as_deref());
+                let job = frame.job(flat, tile, work, weights);
                 let total = with_scratch(scratch, |scratch| {
                     kernel::draw(level, &job, scratch);
                     kernel::differentiate::<L, X>(level, &job, loss, scratch, &mut looks, &mut ends)
@@ -474,8 +497,14 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// The share of tile `tile`.
-    fn job<'b>(&'b self, flat: &'b Flat, tile: usize, work: &'b TileWork) -> TileJob<'b> {
+    /// The share of tile `tile`, behind these weights.
+    fn job<'b>(
+        &'b self,
+        flat: &'b Flat,
+        tile: usize,
+        work: &'b TileWork,
+        weights: Option<&'b TileWeights>,
+    ) -> TileJob<'b> {
         let (x, y) = self.grid.origin(tile);
         TileJob {
             tile,
@@ -487,7 +516,7 @@ impl<'a> Frame<'a> {
                 Backdrop::Color(_) => &self.flat,
                 Backdrop::Canvas(canvas) => &canvas.tiles()[tile],
             },
-            weights: work.weights.as_deref().unwrap_or(&FULL),
+            weights: weights.unwrap_or(&FULL),
             edge: self.edge,
             reach: self.reach,
         }

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Input, Judged, SCHEMA, Usage, gzip_bytes, per_stroke};
+use super::{Input, Judged, OnFocus, SCHEMA, Usage, gzip_bytes, per_stroke};
 use crate::fit::{Base, Config, StageRecord, Stop, predicted_rss_bytes};
 use crate::metrics::{Agreement, Quality};
 use crate::scene::Dropped;
@@ -57,6 +57,9 @@ pub struct FitReport {
     pub agreement: Agreement,
     /// A transparent drawing on black, on white and on magenta; `null` for others.
     pub alpha: Option<OnMattes>,
+    /// Fidelity where a mask let errors count, and elsewhere; `null` without a mask.
+    #[serde(default)]
+    pub focus: Option<OnFocus>,
     /// The SVG that the drawing goes on from; `null` where there is none.
     pub base: Option<BaseEntry>,
 }
@@ -160,6 +163,7 @@ impl FitReport {
             soft,
             verdict,
             alpha,
+            focus,
         } = judged;
         let strokes = fit.scene.len();
         Self {
@@ -184,6 +188,7 @@ impl FitReport {
             soft: *soft,
             agreement: verdict.agreement,
             alpha: *alpha,
+            focus: *focus,
             base: fit.base.as_ref().zip(run.base).map(BaseEntry::of),
         }
     }
@@ -260,6 +265,10 @@ mod tests {
                 white_ssimulacra2: 100.0,
                 magenta_ssimulacra2: 60.0,
             }),
+            focus: Some(OnFocus {
+                inside_db: 33.0,
+                outside_db: 21.5,
+            }),
             base: Some(BaseEntry {
                 path: "b.svg".into(),
                 strokes: 4,
@@ -294,6 +303,7 @@ mod tests {
                 "black_db": 28.5, "white_db": null, "magenta_db": 29.0,
                 "black_ssimulacra2": 61.5, "white_ssimulacra2": 100.0, "magenta_ssimulacra2": 60.0,
             },
+            "focus": {"inside_db": 33.0, "outside_db": 21.5},
             "base": {"path": "b.svg", "strokes": 4, "elements": 0},
         });
         assert_eq!(serde_json::to_value(report()).unwrap(), expected);

@@ -1,8 +1,10 @@
 //! A finished drawing, its file, and the verdict on it.
 
+use serde::{Deserialize, Serialize};
+
 use crate::error::Result;
-use crate::fit::{Base, Fit};
-use crate::metrics::Quality;
+use crate::fit::{Base, Fit, Focus};
+use crate::metrics::{Quality, null_is_infinite};
 use crate::scene::Scene;
 use crate::verify::{self, OnMattes, Verdict};
 
@@ -19,6 +21,19 @@ pub struct Judged {
     pub verdict: Verdict,
     /// Fidelity on mattes of black, white and magenta, if the picture has alpha.
     pub alpha: Option<OnMattes>,
+    /// Fidelity where errors counted and elsewhere, if there was a mask.
+    pub focus: Option<OnFocus>,
+}
+
+/// How faithful a drawing is where errors counted, and where they counted less.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct OnFocus {
+    /// PSNR of the pixels for which the mask is 0.5 or more, dB.
+    #[serde(deserialize_with = "null_is_infinite")]
+    pub inside_db: f64,
+    /// PSNR of the others, dB.
+    #[serde(deserialize_with = "null_is_infinite")]
+    pub outside_db: f64,
 }
 
 impl Judged {
@@ -32,10 +47,12 @@ impl Judged {
         let verdict = verify::verify(&svg, &fit.target, &fit.soft)?;
         let has_alpha = fit.target.alpha().is_some();
         let alpha = has_alpha.then(|| verify::on_mattes(&svg, &fit.target));
+        let focus = fit.focus.as_ref().map(|focus| on_focus(focus, &svg, &fit));
         Ok(Self {
             soft,
             verdict,
             alpha: alpha.transpose()?,
+            focus: focus.transpose()?,
             svg,
             fit,
         })
@@ -53,4 +70,13 @@ impl Judged {
     pub fn holds(&self) -> bool {
         self.verdict.agrees() || self.verdict.fidelity.psnr_db >= self.soft.psnr_db
     }
+}
+
+fn on_focus(focus: &Focus, svg: &str, fit: &Fit) -> Result<OnFocus> {
+    let drawn = verify::render_like(svg, &fit.target, [1.0; 3])?;
+    let [inside_db, outside_db] = focus.psnrs_db(&fit.target, &drawn)?;
+    Ok(OnFocus {
+        inside_db,
+        outside_db,
+    })
 }

@@ -35,7 +35,7 @@ use crate::image::{Image, Remark};
 pub use check::{AgainstResvg, CheckReport, NotDrawn, RendererEntry};
 pub use event::{Event, PhaseEntry};
 pub use fit::{BaseEntry, FitReport, Run, StageEntry, stop_word};
-pub use judged::Judged;
+pub use judged::{Judged, OnFocus};
 pub use scene::{SceneRecord, ShadeRecord, StrokeRecord};
 pub use size::{gzip_bytes, per_stroke};
 #[cfg(feature = "cli")]

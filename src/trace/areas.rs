@@ -15,6 +15,8 @@ pub(super) struct Pixels {
     pub(super) height: usize,
     pub(super) target: Vec<Pixel>,
     pub(super) canvas: Vec<Pixel>,
+    /// How much an error counts, if not everywhere alike.
+    pub(super) weights: Option<Vec<f32>>,
 }
 
 /// What a pixel belongs to: the canvas, an area of one of the colours, or nothing that is known.

@@ -229,6 +229,7 @@ mod tests {
             height: 40,
             target: Vec::new(),
             canvas: Vec::new(),
+            weights: None,
         };
         bridged(lines, &areas, &pixels)
     }

@@ -27,8 +27,9 @@ impl Gain {
             if !matches!(areas.labels[i], Label::Color(k) if k != own) {
                 let before = distance2(target, canvas);
                 let drawn = std::array::from_fn(|k| canvas[k] + coverage * (color[k] - canvas[k]));
-                gain.under += before;
-                gain.removed += before - distance2(target, &drawn);
+                let weight = pixels.weights.as_ref().map_or(1.0, |weights| weights[i]);
+                gain.under += weight * before;
+                gain.removed += weight * (before - distance2(target, &drawn));
             }
         }
         gain

@@ -184,11 +184,13 @@ impl Pixels {
             .iter()
             .flat_map(|c| c.planes().iter().map(|p| &p[..]));
         let canvas = gather(canvas.collect());
+        let weights = residuals[0].weights;
         Some(Self {
             width,
             height,
             target,
             canvas,
+            weights: weights.map(|weights| weights.level(0).planes()[0].clone()),
         })
     }
 }
@@ -218,6 +220,7 @@ mod tests {
         let residual = Residual {
             target: &target,
             canvas: &canvas,
+            weights: None,
         };
         trace(&[residual], Recipe::of(Preset::Balanced).tracing)
     }

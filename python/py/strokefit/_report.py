@@ -79,6 +79,13 @@ class OnMattes(TypedDict):
     magenta_ssimulacra2: float
 
 
+class OnFocus(TypedDict):
+    """PSNR where a mask lets errors count, and elsewhere; `None` for equal pixels."""
+
+    inside_db: Optional[float]
+    outside_db: Optional[float]
+
+
 class BaseEntry(TypedDict):
     """The SVG that a drawing goes on from."""
 
@@ -122,4 +129,6 @@ class Report(TypedDict):
     #: The SVG as resvg renders it, against our own soft render.
     agreement: Agreement
     alpha: Optional[OnMattes]
+    #: Always `None`: there is no mask in Python yet.
+    focus: Optional[OnFocus]
     base: Optional[BaseEntry]

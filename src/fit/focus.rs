@@ -1,0 +1,228 @@
+//! Where an error counts: a weight for each pixel.
+//!
+//! The fit minimises `Σ w·(c − t)²`. It looks at canvas and target through a veil that lets through `√w`, so that all
+//! derivatives, worths and gains are those of the weighted error, exactly; see [`Renderer::veil`](crate::render::Renderer::veil).
+
+use std::sync::Arc;
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::image::Image;
+use crate::metrics;
+use crate::render::Canvas;
+use crate::scene::Rgb;
+use crate::seed::Pyramid;
+
+const BLACK: Rgb = [0.0; 3];
+
+/// How much an error counts at each pixel, 0 to 1.
+#[derive(Debug, Clone)]
+pub struct Focus {
+    /// The weights, and their reductions.
+    weights: Arc<Pyramid>,
+}
+
+impl Focus {
+    /// The weights in `mask`: the mean of its channels, on black where it is transparent.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Picture`] when it is black everywhere.
+    pub fn new(mask: &Image) -> Result<Self> {
+        let mask = mask.flattened(BLACK);
+        let [red, green, blue] = mask.planes();
+        let channels = red.iter().zip(green).zip(blue);
+        let weights: Vec<f32> = channels
+            .map(|((r, g), b)| ((r + g + b) / 3.0).clamp(0.0, 1.0))
+            .collect();
+        if weights.iter().all(|&weight| weight == 0.0) {
+            let message = "the mask is black everywhere, so that no error would count: make the pixels that \
+                           matter white";
+            return Err(Error::new(ErrorKind::Picture, message));
+        }
+        let planes = [weights.clone(), weights.clone(), weights];
+        let weights = Image::new(mask.width(), mask.height(), planes)?;
+        Ok(Self {
+            weights: Arc::new(Pyramid::new(weights)),
+        })
+    }
+
+    /// Checks that the mask has the size of `picture`.
+    pub(super) fn check_size(&self, picture: &Image) -> Result<()> {
+        let mask = self.weights.level(0);
+        let size = |image: &Image| (image.width(), image.height());
+        if size(mask) == size(picture) {
+            return Ok(());
+        }
+        let ((mask_width, mask_height), (width, height)) = (size(mask), size(picture));
+        let message = format!(
+            "the mask of {mask_width}×{mask_height} px is none for a picture of {width}×{height} px: give one of its size"
+        );
+        Err(Error::new(ErrorKind::Picture, message))
+    }
+
+    /// The weights and their reductions.
+    pub(super) fn weights(&self) -> &Pyramid {
+        &self.weights
+    }
+
+    /// The roots of the weights of the picture halved `halvings` times.
+    pub(super) fn veil(&self, halvings: usize) -> Canvas {
+        let weights = self.weights.level(halvings);
+        let roots = |plane: &Vec<f32>| plane.iter().map(|weight| weight.sqrt()).collect();
+        let planes = [0, 1, 2].map(|c| roots(&weights.planes()[c]));
+        Canvas::from_image(&Image::from_planes(
+            weights.width(),
+            weights.height(),
+            planes,
+        ))
+    }
+
+    /// The fidelity of `picture` to `target`, dB, over the pixels with a weight of a half or more, and over the others;
+    /// infinite where there are none.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Picture`] when the sizes differ.
+    pub fn psnrs_db(&self, target: &Image, picture: &Image) -> Result<[f64; 2]> {
+        let [weights, ..] = self.weights.level(0).planes();
+        let inside = |i: usize| weights.get(i).is_some_and(|&weight| weight >= 0.5);
+        Ok([
+            metrics::psnr_where(target, picture, inside)?,
+            metrics::psnr_where(target, picture, |i| !inside(i))?,
+        ])
+    }
+
+    /// All numbers that tell the mask from another.
+    pub(super) fn values(&self) -> &[f32] {
+        &self.weights.level(0).planes()[0]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::coverage::Coverage;
+    use crate::fit::{Budget, Config, Fitter, Objective, Preset};
+    use crate::loss::Loss;
+    use crate::render::{Backdrop, Gradients, Renderer, Softness, Strokes};
+    use crate::scene::{Path, Stroke};
+
+    fn mask(values: [f32; 4]) -> Image {
+        let plane = values.to_vec();
+        Image::new(2, 2, [plane.clone(), plane.clone(), plane]).unwrap()
+    }
+
+    #[test]
+    fn a_black_mask_is_refused() {
+        assert!(Focus::new(&mask([0.0; 4])).is_err());
+        let clear = mask([1.0; 4]).with_alpha(vec![0.0; 4]).unwrap();
+        assert!(Focus::new(&clear).is_err());
+        assert!(Focus::new(&mask([0.0, 0.0, 0.1, 0.0])).is_ok());
+    }
+
+    #[test]
+    fn a_mask_of_another_size_is_refused() {
+        let focus = Focus::new(&mask([1.0; 4])).unwrap();
+        let error = focus.check_size(&Image::filled(3, 2, [0.0; 3]).unwrap());
+        assert!(error.unwrap_err().to_string().contains("3×2"));
+    }
+
+    #[test]
+    fn inside_and_outside_are_told_apart() {
+        let focus = Focus::new(&mask([1.0, 0.5, 0.4, 0.0])).unwrap();
+        let (target, drawn) = (mask([0.0; 4]), mask([0.0, 0.0, 0.2, 0.2]));
+        let [inside, outside] = focus.psnrs_db(&target, &drawn).unwrap();
+        assert_eq!(inside, f64::INFINITY);
+        assert!((outside - 20.0 * 5_f64.log10()).abs() < 1e-9, "{outside}");
+    }
+
+    /// A pattern of two colours, 64×48 px.
+    fn checks() -> Image {
+        let value = |i: usize| {
+            if (i % 64 / 8 + i / 64 / 8) % 2 == 0 {
+                0.2
+            } else {
+                0.8
+            }
+        };
+        let plane: Vec<f32> = (0..64 * 48).map(value).collect();
+        Image::new(64, 48, [plane.clone(), plane.clone(), plane]).unwrap()
+    }
+
+    /// A mask that is `left` in the left half and `right` in the right half.
+    fn halves(left: f32, right: f32) -> Focus {
+        let value = |i: usize| if i % 64 < 32 { left } else { right };
+        let plane: Vec<f32> = (0..64 * 48).map(value).collect();
+        Focus::new(&Image::new(64, 48, [plane.clone(), plane.clone(), plane]).unwrap()).unwrap()
+    }
+
+    /// Loss, worth and ∂L/∂color of a dot on white, seen through the veil of `focus`.
+    fn judged(focus: Option<&Focus>, x: f32) -> (f64, f32, f32) {
+        let target = Canvas::from_image(&checks());
+        let dot = Stroke {
+            path: Path::dot([x, 24.0].into()),
+            radius: 6.0,
+            color: [0.5; 3],
+            opacity: 0.8,
+        };
+        let strokes = Strokes::from_iter([&dot]);
+        let softness = Softness {
+            coverage: Coverage::Smoothstep,
+            width: 1.0,
+        };
+        let mut renderer = Renderer::new(target.grid(), fearless_simd::Level::new());
+        let veil = focus.map(|focus| focus.veil(0));
+        let target = match &veil {
+            Some(veil) => {
+                renderer.veil(veil);
+                target.darkened(veil)
+            }
+            None => target,
+        };
+        let objective = Objective::new(Loss::L2, &target).veiled(veil.as_ref());
+        let mut gradients = Gradients::default();
+        let white = Backdrop::Color([1.0; 3]);
+        renderer.backward_with_worth(&strokes, softness, white, &objective, &mut gradients);
+        let mut canvas = Canvas::flat(target.grid(), [1.0; 3]);
+        renderer.forward(&strokes, softness, white, &mut canvas);
+        assert!((objective.of(&canvas) - gradients.loss).abs() < 1e-4 * gradients.loss);
+        (gradients.loss, gradients.worth[0], gradients.strokes[3])
+    }
+
+    #[test]
+    fn an_error_of_half_the_weight_counts_half() {
+        let (half, whole) = (judged(Some(&halves(0.5, 0.5)), 20.0), judged(None, 20.0));
+        assert!((half.0 - 0.5 * whole.0).abs() < 1e-5 * whole.0);
+        assert!((half.1 - 0.5 * whole.1).abs() < 1e-4 * whole.1.abs());
+        assert!((half.2 - 0.5 * whole.2).abs() < 1e-4 * whole.2.abs());
+    }
+
+    #[test]
+    fn what_does_not_count_has_no_worth() {
+        let left = halves(1.0, 0.0);
+        let (here, there) = (judged(Some(&left), 16.0), judged(Some(&left), 48.0));
+        let anywhere = judged(None, 16.0);
+        assert!((here.1 - anywhere.1).abs() < 1e-4 * anywhere.1.abs());
+        assert_eq!((there.1, there.2), (0.0, 0.0));
+    }
+
+    #[test]
+    fn strokes_go_where_errors_count() {
+        let config = Config {
+            budget: Budget {
+                strokes: Some(10),
+                ..Budget::default()
+            },
+            preset: Preset::Draft,
+            ..Config::default()
+        };
+        let picture = checks();
+        let psnrs_db = |focus: Focus| {
+            let fitter = Fitter::new(config.clone()).focus(focus);
+            let fit = fitter.fit(&picture).unwrap();
+            halves(1.0, 0.0).psnrs_db(&picture, &fit.soft).unwrap()
+        };
+        let [left, right] = psnrs_db(halves(1.0, 0.0));
+        assert!(left > right + 3.0, "{left} {right}");
+        let [left, right] = psnrs_db(halves(0.0, 1.0));
+        assert!(right > left + 3.0, "{left} {right}");
+    }
+}
