@@ -27,6 +27,9 @@ const TRIALS: i32 = 5;
 /// The least opacity of a stroke that may become opaque. Less is meant to let through what is behind.
 const NEARLY_OPAQUE: f32 = 0.8;
 
+/// How much of a stroke, at a guess, lies on other strokes rather than on the page.
+const OFF_PAGE: f32 = 0.1;
+
 /// A stroke of a smaller radius, px, covers few pixels in full, so that width and opacity look alike.
 const THIN: f32 = 1.0;
 
@@ -98,13 +101,19 @@ impl Group {
     }
 }
 
-/// Makes nearly opaque strokes opaque. A thin one gets thinner by as much, so that it has as much ink.
+/// Makes nearly opaque strokes opaque. A thin one gets thinner by as much, so that it has as much ink; a wider one gets
+/// the colour that it has on the page.
 fn make_opaque(drawing: &mut Drawing, recipe: &Recipe, allowance: f32) -> Ties {
     let shown = preferences(drawing, 0.0, recipe.coloring.min_shown);
     let strokes = drawing.free().iter().zip(&shown).enumerate();
     let mut costs: Vec<(f32, usize)> = strokes
         .filter(|(_, (stroke, _))| stroke.opacity() >= NEARLY_OPAQUE)
-        .map(|(i, (stroke, shown))| (shown.weight * math::powi(1.0 - stroke.opacity(), 2), i))
+        .map(|(i, (stroke, shown))| {
+            (
+                OFF_PAGE * shown.weight * math::powi(1.0 - stroke.opacity(), 2),
+                i,
+            )
+        })
         .collect();
     costs.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut left = allowance;
@@ -114,12 +123,15 @@ fn make_opaque(drawing: &mut Drawing, recipe: &Recipe, allowance: f32) -> Ties {
     });
     let mut becomes = vec![false; drawing.free().len()];
     affordable.for_each(|(_, i)| becomes[i] = true);
-    let bounds = drawing.bounds;
+    let (bounds, page) = (drawing.bounds, drawing.background());
     drawing.free_mut().change(|i, stroke| {
         if becomes[i] {
-            let [radius, .., opacity] = stroke.look;
+            let [radius, color @ .., opacity] = stroke.look;
             if *radius < THIN {
                 *radius *= *opacity;
+            } else if let Some(page) = page {
+                let mixed = color.iter_mut().zip(page);
+                mixed.for_each(|(c, page)| *c = page + *opacity * (*c - page));
             }
             *opacity = 1.0;
             bounds.apply(stroke);
