@@ -20,6 +20,9 @@ use crate::render::{StrokeRef, Strokes, Survey};
 use edits::Edit;
 use terrain::Terrain;
 
+/// Most points that a stroke loses at the end of the polish.
+const PRUNINGS: usize = 30;
+
 /// Least segments of a line or a curve in a survey.
 const LEAST: usize = 4;
 
@@ -33,6 +36,41 @@ pub(super) fn rearrange(session: &mut Session<'_>) -> Vec<Option<usize>> {
         None => edited,
         Some(joined) => edited.iter().map(|source| joined[(*source)?]).collect(),
     }
+}
+
+/// Takes away points that are not worth their price now that the strokes are where they belong, as long as that adds as
+/// little error as was foreseen. Each stroke loses at most one point at a time.
+pub(super) fn prune(session: &mut Session<'_>) {
+    for _ in 0..PRUNINGS {
+        let to_keep = least_gains(session)[1];
+        let drawing = &mut session.drawing;
+        let survey = drawing.survey(LEAST);
+        let strokes = drawing.free().iter().enumerate();
+        let removals: Vec<Option<Edit>> = strokes
+            .map(|(i, stroke)| edits::best_removal(&Terrain::new(&survey, stroke, i)))
+            .map(|edit| edit.filter(|edit| -edit.gain < to_keep))
+            .collect();
+        let count = removals.iter().flatten().count();
+        if count == 0 {
+            return;
+        }
+        let (before, error) = (drawing.memento(), drawing.mse());
+        drawing.edit(&removals);
+        let added = (drawing.mse() - error) * (3 * drawing.pixels()) as f64;
+        if added > f64::from(to_keep) * count as f64 {
+            drawing.revert(before);
+            return;
+        }
+    }
+}
+
+/// What a point has to gain to be added and to stay.
+fn least_gains(session: &mut Session<'_>) -> [f32; 2] {
+    let (now, least) = (
+        session.price_now().of_point(),
+        session.least_price().of_point(),
+    );
+    [0, 1].map(|k| now[k].max(least[k]))
 }
 
 /// What a stroke is worth that could be spared, where a budget binds. A freed stroke would be used where it is worth
@@ -57,11 +95,7 @@ fn edit(session: &mut Session<'_>, spare: f32) -> Vec<Option<usize>> {
     let points = session.recipe.points;
     let stroke_bytes = typical_bytes(session.config, &session.target) as f32;
     let share = session.price.point_bytes() as f32 / stroke_bytes;
-    let (now, least) = (
-        session.price_now().of_point(),
-        session.least_price().of_point(),
-    );
-    let prices = [0, 1].map(|k| now[k].max(least[k]).max(spare * share / points.gain));
+    let prices = least_gains(session).map(|least| least.max(spare * share / points.gain));
     let room = room(session);
     let most = session.config.points.unwrap_or(usize::MAX);
     let drawing = &mut session.drawing;

@@ -5,6 +5,7 @@ use crate::fit::config::Colors;
 use crate::fit::descend::descend;
 use crate::fit::descent::Course;
 use crate::fit::order::{Outcome, Purpose};
+use crate::fit::points;
 use crate::fit::session::Session;
 use crate::svg::{Form, Group};
 
@@ -47,7 +48,11 @@ pub(super) fn run(session: &mut Session<'_>, limit: usize, iterations: usize) ->
         joint: Some(limit),
     };
     let mut descent = session.descent(course);
-    descend(session, &mut descent, None)
+    descend(session, &mut descent, None)?;
+    if session.config.allows_points() && session.drawing.counters.traced_until > 0 {
+        points::prune(session);
+    }
+    Ok(())
 }
 
 /// The shares of a limited time for descent by which polish, palette and the stack of its colours have to end. The rest is for pens. Each part is
