@@ -144,6 +144,7 @@
 //! | --- | --- |
 //! | page | the area of an SVG file, in px or in units such as mm |
 //! | form | how strokes become elements: one each, the smallest file, outlines |
+//! | travel | how far a pen moves between strokes without drawing (px); see [`svg::travel`](fn@svg::travel) |
 //! | look | colour, width and opacity of a stroke as they are written; strokes of one look may share an element |
 //! | dialect | the part of SVG that strokefit writes, and reads as strokes |
 //! | fidelity | the file as resvg renders it, against the target: PSNR (dB), SSIM, MSE, L1, SSIMULACRA2 |

@@ -95,6 +95,7 @@ impl<'a, 'py> Options<'a, 'py> {
             precision: precision.map_or(standard.precision, |digits| digits as u8),
             form: self.word("form")?.unwrap_or_default(),
             group: self.word("group")?.unwrap_or_default(),
+            order: self.word("order")?.unwrap_or_default(),
             width: self.word("width")?,
         })
     }

@@ -16,6 +16,8 @@ pub struct WriteOptions {
     pub form: Form,
     /// What a layer holds.
     pub group: Group,
+    /// In which order the strokes of a layer come.
+    pub order: Order,
     /// Width of the page; its height follows. `None`: one px per pixel of the picture.
     pub width: Option<Length>,
 }
@@ -37,6 +39,7 @@ impl Default for WriteOptions {
             precision: 2,
             form: Form::default(),
             group: Group::default(),
+            order: Order::default(),
             width: None,
         }
     }
@@ -65,6 +68,18 @@ pub enum Group {
     /// Strokes of one colour that can be drawn one after the other. A colour has several layers if its strokes lie
     /// below another colour in one place and above it in another.
     Color,
+}
+
+/// In which order the strokes of a layer come.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Order {
+    /// The order that the strokes were fitted in; the smallest form changes it.
+    #[default]
+    Fitted,
+    /// With little travel of a pen between strokes. Strokes change places where the picture stays the same, are drawn from
+    /// either end, and closed paths begin at any of their points. In the smallest form this applies to the strokes of
+    /// each look.
+    Travel,
 }
 
 impl Form {
@@ -126,6 +141,35 @@ impl FromStr for Group {
             .find(|group| group.to_string() == text)
             .ok_or_else(|| {
                 let message = format!("'{text}' is not a grouping: give stage or color");
+                Error::new(ErrorKind::Config, message)
+            })
+    }
+}
+
+impl Order {
+    /// Every order.
+    pub const ALL: [Self; 2] = [Self::Fitted, Self::Travel];
+}
+
+impl fmt::Display for Order {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Fitted => "fitted",
+            Self::Travel => "travel",
+        })
+    }
+}
+
+impl FromStr for Order {
+    type Err = Error;
+
+    /// `fitted` or `travel`.
+    fn from_str(text: &str) -> Result<Self, Error> {
+        let mut orders = Self::ALL.into_iter();
+        orders
+            .find(|order| order.to_string() == text)
+            .ok_or_else(|| {
+                let message = format!("'{text}' is not an order: give fitted or travel");
                 Error::new(ErrorKind::Config, message)
             })
     }
@@ -220,6 +264,9 @@ mod tests {
         for group in Group::ALL {
             assert_eq!(group.to_string().parse::<Group>().unwrap(), group);
         }
+        for order in Order::ALL {
+            assert_eq!(order.to_string().parse::<Order>().unwrap(), order);
+        }
         let error = "small".parse::<Form>().unwrap_err().to_string();
         assert!(
             error.contains("'small'") && error.contains("smallest"),
@@ -230,6 +277,11 @@ mod tests {
         let error = "".parse::<Group>().unwrap_err().to_string();
         assert!(
             error.contains("''") && error.contains("stage or color"),
+            "{error}"
+        );
+        let error = "short".parse::<Order>().unwrap_err().to_string();
+        assert!(
+            error.contains("'short'") && error.contains("fitted or travel"),
             "{error}"
         );
     }

@@ -38,6 +38,8 @@ export interface Options {
   form?: "elements" | "plain" | "smallest" | "outlines";
   /** What a layer of the SVG holds. */
   group?: "stage" | "color";
+  /** In which order the strokes of a layer come: as they were fitted, or with little travel of a pen between them. */
+  order?: "fitted" | "travel";
   /** Decimals of coordinates and widths, 0 to 6. */
   precision?: number;
   /** Width of the page, such as `120mm`. */

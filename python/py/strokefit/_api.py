@@ -41,6 +41,7 @@ def fit(
     palette: Optional[Palette] = None,
     form: str = "plain",
     group: str = "stage",
+    order: str = "fitted",
     width: Optional[str] = None,
     stages: Optional[int] = None,
     polish: bool = True,
@@ -78,6 +79,7 @@ def fit(
         form: What one element holds: a stroke (`plain`), all strokes of one look that can be drawn together
             (`smallest`), or the filled outline of a stroke (`outlines`).
         group: What one layer holds: `stage` or `color`.
+        order: In which order the strokes of a layer come: `fitted`, or `travel` with short ways between them.
         width: Width of the page, such as `120mm`; one px per pixel of the picture by default.
         stages: The number of stages, each a layer.
         polish: Whether all strokes are fitted jointly after the stages.
@@ -125,6 +127,7 @@ def fit(
         palette=_palette(palette),
         form=form,
         group=group,
+        order=order,
         width=width,
         stages=stages,
         polish=polish,
@@ -152,6 +155,7 @@ def refine(
     palette: Optional[Palette] = None,
     form: str = "plain",
     group: str = "stage",
+    order: str = "fitted",
     width: Optional[str] = None,
     stages: Optional[int] = None,
     polish: bool = True,
@@ -200,6 +204,7 @@ def refine(
         palette=_palette(palette),
         form=form,
         group=group,
+        order=order,
         width=width,
         stages=stages,
         polish=polish,
