@@ -35,7 +35,7 @@
 //!   the last decimal, and the layer has `transform="scale(0.1)"`. Before, [`arrange()`] reorders strokes
 //!   that do not touch so that all this saves the most.
 //! - With an order of little travel, strokes of a layer change places where the picture stays the same, and may be
-//!   reversed; [`fn@travel`] says how far a pen moves.
+//!   reversed; [`fn@travel`] says how far a pen moves. Labels of layers by colour then begin with their number, `1 #rrggbb`.
 //! - Layers by colour have ids `color-1`, `color-2`, ….
 //! - A dot is a segment of length 0.01, because many programs drop a segment of length 0 although the
 //!   specification draws it. `h` marks a dot and nothing else. The 0.01 is independent of the
