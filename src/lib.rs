@@ -130,7 +130,7 @@
 //! | budget | limits on strokes, fidelity (dB), bytes and time (s); the first one reached stops |
 //! | palette | the 8-bit colours that a drawing may have |
 //! | stack | the order of colours, one layer each, that a drawing by colour has |
-//! | pen | a colour and a width that many opaque strokes share |
+//! | pen | a colour and a width that many opaque strokes share; where pens are given, a width that strokes may have |
 //! | seed | key of all random draws; *seeding* is the search for candidates |
 //! | grace | how long a fit that is asked to stop may take to finish its drawing |
 //! | paper | a background that stays although a given palette has nothing like it |

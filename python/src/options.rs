@@ -37,6 +37,7 @@ impl<'a, 'py> Options<'a, 'py> {
             stages: self.whole("stages", 1..=MAX_STROKES)?,
             polish: self.get("polish")?.unwrap_or(standard.polish),
             colors: self.colors()?,
+            pens: self.word("pens")?,
             file: self.file()?,
             background: self.word("background")?.unwrap_or_default(),
             seed: self.seed()?,

@@ -46,6 +46,7 @@ mod session;
 mod shading;
 mod simd;
 mod surface;
+mod widths;
 mod words;
 
 pub use anneal::final_softness;
@@ -67,6 +68,7 @@ pub use recipe::{
 };
 pub use result::{Fit, StageRecord, Stop};
 pub use simd::Simd;
+pub use widths::Widths;
 
 use crate::clock::Instant;
 use crate::error::Result;

@@ -208,14 +208,14 @@ impl Length {
     }
 
     /// The length that an attribute says.
-    pub(super) fn parse(text: &str) -> Option<Self> {
+    pub(crate) fn parse(text: &str) -> Option<Self> {
         let &(unit, _) = UNITS.iter().find(|(unit, _)| text.ends_with(unit))?;
         let value = Unit::PX.parse(text.strip_suffix(unit)?)?;
         (value > 0 && value % STEP == 0).then_some(Self { value, unit })
     }
 
     /// In px of 1/96 inch.
-    fn px(self) -> f64 {
+    pub(crate) fn px(self) -> f64 {
         let per_unit = UNITS.iter().find(|(unit, _)| *unit == self.unit);
         self.value as f64 / UNITS_PER_PX as f64 * per_unit.map_or(1.0, |&(_, px)| px)
     }

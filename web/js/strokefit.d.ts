@@ -34,6 +34,8 @@ export interface Options {
   seed?: number;
   /** At most so many colours, or these. */
   colors?: number | string[];
+  /** Only these widths of strokes: lengths such as `0.3mm,0.8mm` on a page of a `width`, or numbers in px. */
+  pens?: string;
   /** What an element of the SVG holds. */
   form?: "elements" | "plain" | "smallest" | "outlines";
   /** What a layer of the SVG holds. */

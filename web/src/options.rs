@@ -56,6 +56,7 @@ impl Options {
             "background" => config.background = entry.word()?,
             "seed" => config.seed = entry.natural()?,
             "colors" => config.colors = entry.word()?,
+            "pens" => config.pens = Some(entry.word()?),
             "form" => config.file.form = entry.word()?,
             "group" => config.file.group = entry.word()?,
             "order" => config.file.order = entry.word()?,
@@ -127,7 +128,7 @@ impl Entry<'_> {
     fn unknown(&self) -> Error {
         refusal(format!(
             "no option is called {}: give strokes, psnr, bytes, time, quality, preset, progressive, opaque, coverage, \
-             points, stages, polish, background, seed, colors, form, group, order, precision, width, base or freezeBase",
+             points, stages, polish, background, seed, colors, pens, form, group, order, precision, width, base or freezeBase",
             self.key
         ))
     }
@@ -159,7 +160,7 @@ mod tests {
         let json = r##"{
             "strokes": 500, "psnr": 32, "bytes": 9000, "time": 1.5, "quality": 25, "preset": "draft", "progressive": true,
             "opaque": true, "coverage": "sigmoid", "points": 6, "stages": 3, "polish": false, "background": "#ff0000", "seed": 7,
-            "colors": "8", "form": "smallest", "group": "color", "order": "travel", "precision": 1, "width": "120mm", "base": "<svg/>",
+            "colors": "8", "pens": "2,3", "form": "smallest", "group": "color", "order": "travel", "precision": 1, "width": "120mm", "base": "<svg/>",
             "freezeBase": true
         }"##;
         let options = Options::read(json).unwrap();
@@ -185,6 +186,7 @@ mod tests {
             stages: Some(3),
             polish: false,
             colors: Colors::AtMost(8),
+            pens: Some("2,3".parse().unwrap()),
             file: *file,
             background: Background::Color([1.0, 0.0, 0.0]),
             seed: 7,

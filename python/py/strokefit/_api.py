@@ -39,6 +39,7 @@ def fit(
     background: str = "auto",
     colors: Optional[int] = None,
     palette: Optional[Palette] = None,
+    pens: Optional[str] = None,
     form: str = "plain",
     group: str = "stage",
     order: str = "fitted",
@@ -76,6 +77,7 @@ def fit(
         colors: At most so many colours, the background included.
         palette: Only these colours: `["#102030", …]`, `"#102030,…"`, or a file with one colour a line or a GIMP
             palette.
+        pens: Only these widths of strokes: lengths such as `0.3mm,0.8mm` on a page of a `width`, or numbers in px.
         form: What one element holds: a stroke (`plain`), all strokes of one look that can be drawn together
             (`smallest`), or the filled outline of a stroke (`outlines`).
         group: What one layer holds: `stage` or `color`.
@@ -125,6 +127,7 @@ def fit(
         background=background,
         colors=colors,
         palette=_palette(palette),
+        pens=pens,
         form=form,
         group=group,
         order=order,
@@ -153,6 +156,7 @@ def refine(
     precision: int = 2,
     colors: Optional[int] = None,
     palette: Optional[Palette] = None,
+    pens: Optional[str] = None,
     form: str = "plain",
     group: str = "stage",
     order: str = "fitted",
@@ -202,6 +206,7 @@ def refine(
         precision=precision,
         colors=colors,
         palette=_palette(palette),
+        pens=pens,
         form=form,
         group=group,
         order=order,
