@@ -130,7 +130,7 @@
 //! | budget | limits on strokes, fidelity (dB), bytes and time (s); the first one reached stops |
 //! | palette | the 8-bit colours that a drawing may have |
 //! | stack | the order of colours, one layer each, that a drawing by colour has |
-//! | pen | a colour and a width that many opaque strokes share |
+//! | pen | a colour and a width that many opaque strokes share; where pens are given, a width that strokes may have |
 //! | sharing | giving strokes of a drawing of lines the same widths and colours where that costs little |
 //! | tie | holds numbers of strokes equal while they are fitted |
 //! | seed | key of all random draws; *seeding* is the search for candidates |
@@ -146,6 +146,7 @@
 //! | --- | --- |
 //! | page | the area of an SVG file, in px or in units such as mm |
 //! | form | how strokes become elements: one each, the smallest file, outlines |
+//! | travel | how far a pen moves between strokes without drawing (px); see [`svg::travel`](fn@svg::travel) |
 //! | look | colour, width and opacity of a stroke as they are written; strokes of one look may share an element |
 //! | dialect | the part of SVG that strokefit writes, and reads as strokes |
 //! | fidelity | the file as resvg renders it, against the target: PSNR (dB), SSIM, MSE, L1, SSIMULACRA2 |

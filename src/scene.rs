@@ -12,6 +12,7 @@ mod written_path;
 
 pub use grid::MAX_PRECISION;
 pub(crate) use grid::UNITS_PER_PX;
+pub(crate) use overlap::Swept;
 pub use path::{MAX_POINTS, Path, PathPoint, Piece};
 pub use quantize::{Dropped, MIN_WIDTH, Quantized};
 pub(crate) use quantize::{Written, color, quantum};

@@ -37,6 +37,7 @@ impl<'a, 'py> Options<'a, 'py> {
             stages: self.whole("stages", 1..=MAX_STROKES)?,
             polish: self.get("polish")?.unwrap_or(standard.polish),
             colors: self.colors()?,
+            pens: self.word("pens")?,
             file: self.file()?,
             background: self.word("background")?.unwrap_or_default(),
             seed: self.seed()?,
@@ -95,6 +96,7 @@ impl<'a, 'py> Options<'a, 'py> {
             precision: precision.map_or(standard.precision, |digits| digits as u8),
             form: self.word("form")?.unwrap_or_default(),
             group: self.word("group")?.unwrap_or_default(),
+            order: self.word("order")?.unwrap_or_default(),
             width: self.word("width")?,
         })
     }

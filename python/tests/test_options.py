@@ -36,6 +36,9 @@ def test_looks_are_kept(waves: np.ndarray) -> None:
     assert 'width="120mm"' in strokefit.fit(waves, width="120mm", **few).svg
     assert 'id="color-1"' in strokefit.fit(waves, group="color", **few).svg
     assert "stroke-width" not in strokefit.fit(waves, form="outlines", **few).svg
+    assert set(re.findall('stroke-width="(.*?)"', strokefit.fit(waves, pens="2,3.5", **few).svg)) <= {"2", "3.5"}
+    travel = strokefit.fit(waves, order="travel", **few).report["travel"]
+    assert travel["after_px"] < travel["before_px"]
     assert not re.search(r"\.\d\d", strokefit.fit(waves, precision=1, opaque=True, **few).svg)
     assert len(strokefit.fit(waves, stages=1, **few).report["stages"]) == 1
     assert strokefit.fit(waves, polish=False, **few) != strokefit.fit(waves, **few)
@@ -83,6 +86,9 @@ def test_numpy_numbers_are_numbers(waves: np.ndarray) -> None:
         ("palette", ["red"], "'red' is not a colour"),
         ("form", "tiny", "'tiny' is not a form: give plain, smallest or outlines"),
         ("group", "hue", "'hue' is not a grouping"),
+        ("order", "random", "'random' is not an order: give fitted or travel"),
+        ("pens", "0", "'0' is not a width of a pen"),
+        ("pens", "0.3mm", "the pen 0.3mm needs a page of known width"),
         ("width", "12", "'12' is not a length"),
         ("seed", -1, "seed=-1: give a whole number from 0 to 18446744073709551615"),
         ("threads", 0, "threads=0: give a whole number from 1 to 1024"),

@@ -1,7 +1,7 @@
 //! Options for the form of the file, shared by the commands that write one.
 
 use clap::builder::TypedValueParser;
-use strokefit::svg::{Form, Group, Length, WriteOptions};
+use strokefit::svg::{Form, Group, Length, Order, WriteOptions};
 
 use super::{domain, words};
 
@@ -18,6 +18,9 @@ pub(super) struct Args {
     /// What one layer of the SVG holds
     #[arg(long, default_value_t, value_parser = group())]
     group: Group,
+    /// In which order the strokes of a layer come
+    #[arg(long, default_value_t, value_parser = order())]
+    order: Order,
     /// Write filled outlines instead of strokes, for programs that ignore strokes
     #[arg(long, conflicts_with = "form")]
     outline: bool,
@@ -49,6 +52,17 @@ fn group() -> impl TypedValueParser<Value = Group> {
     ])
 }
 
+/// The orders, with their help.
+fn order() -> impl TypedValueParser<Value = Order> {
+    words::one_of([
+        (Order::Fitted, "The order that they were fitted in"),
+        (
+            Order::Travel,
+            "With short ways between them, for a plotter; the picture stays the same",
+        ),
+    ])
+}
+
 impl Args {
     pub(super) fn options(&self) -> WriteOptions {
         WriteOptions {
@@ -59,6 +73,7 @@ impl Args {
                 self.form
             },
             group: self.group,
+            order: self.order,
             width: self.width,
         }
     }

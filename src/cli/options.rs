@@ -8,7 +8,7 @@ use clap::builder::TypedValueParser;
 use strokefit::coverage::CoverageSchedule;
 use strokefit::fit::{
     self, Background, Checkpoint, Colors, Config, Execution, Fit, Fitter, Focus, Observer, Preset,
-    Simd,
+    Simd, Widths,
 };
 use strokefit::image::Limits;
 use strokefit::svg::WriteOptions;
@@ -78,6 +78,9 @@ pub(super) struct Look {
     /// Use opaque strokes only. They are easier to edit and cost some dB
     #[arg(long)]
     opaque: bool,
+    /// Only these widths of strokes: lengths such as 0.3mm,0.8mm on a page of a --width, or numbers in px of the picture
+    #[arg(long, value_name = "WIDTHS", allow_hyphen_values = true)]
+    pens: Option<Widths>,
     /// Coverage function of soft edges: smoothstep, sigmoid, tanh or atan[:K]; A>B changes from A to B during
     /// the fit. Here tanh draws the same as sigmoid, and atan:K the same as atan for any K, because a fit
     /// gives all edges the same slope
@@ -155,6 +158,7 @@ impl Options {
             stages: look.stages,
             polish: !look.no_polish,
             colors: self.colors.colors(),
+            pens: look.pens.clone(),
             file: self.form.options(),
             background: look.background,
             seed: look.seed,
@@ -167,6 +171,7 @@ impl Options {
         let (look, config) = (&self.look, self.config());
         let options = [
             ("--colors or --palette", config.colors != Colors::Free),
+            ("--pens", look.pens.is_some()),
             ("--opaque", look.opaque),
             ("--quality", look.quality.is_some()),
             ("--progressive", look.progressive),

@@ -63,6 +63,18 @@ impl Base {
         svg::write(scene, &WriteOptions { width, ..*options })
     }
 
+    /// The width of the page of a drawing on `base`, if it has a unit.
+    pub(super) fn page_width(base: Option<&Self>, options: &WriteOptions) -> Option<Length> {
+        match base {
+            Some(Self {
+                document: Some(document),
+                ..
+            }) => svg::page_width(document.text()),
+            Some(Self { width, .. }) => options.width.or(*width),
+            None => options.width,
+        }
+    }
+
     /// The number of elements that stay as they are.
     pub fn elements(&self) -> usize {
         self.document.as_ref().map_or(0, Document::elements)

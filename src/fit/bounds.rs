@@ -9,11 +9,21 @@ pub(super) struct Bounds {
     domain: Domain,
     /// Sides of the picture, px.
     sides: [f32; 2],
+    /// The radii of the thinnest and the widest pen, px of the picture, if pens are given.
+    pens: Option<[f32; 2]>,
+    /// How often the picture is halved.
+    halvings: usize,
 }
 
 impl Bounds {
-    /// The bounds for a picture of `grid`'s size; `opaque` fixes the opacity at 1.
-    pub(super) fn new(grid: Grid, domain: Domain, opaque: bool) -> Self {
+    /// The bounds for a picture of `grid`'s size, which is `halvings` times halved; `opaque` fixes the opacity at 1. If there
+    /// are `radii` of pens, px of the picture, they bound all radii.
+    pub(super) fn new(
+        (grid, halvings): (Grid, usize),
+        domain: Domain,
+        opaque: bool,
+        radii: &[f32],
+    ) -> Self {
         let min_opacity = if opaque { 1.0 } else { domain.min_opacity };
         Self {
             domain: Domain {
@@ -21,12 +31,15 @@ impl Bounds {
                 ..domain
             },
             sides: [grid.width as f32, grid.height as f32],
+            pens: radii.first().zip(radii.last()).map(|(a, b)| [*a, *b]),
+            halvings,
         }
     }
 
     /// The same bounds at another resolution.
-    pub(super) fn on(self, grid: Grid) -> Self {
+    pub(super) fn on(self, (grid, halvings): (Grid, usize)) -> Self {
         Self {
+            halvings,
             sides: [grid.width as f32, grid.height as f32],
             ..self
         }
@@ -34,6 +47,23 @@ impl Bounds {
 
     pub(super) fn min_opacity(&self) -> f32 {
         self.domain.min_opacity
+    }
+
+    /// The radius nearest to `scale`, px of the picture, that pens can draw; `scale` if none are given.
+    pub(super) fn drawable(&self, scale: f32) -> f32 {
+        self.pens
+            .map_or(scale, |[thinnest, widest]| scale.clamp(thinnest, widest))
+    }
+
+    /// The least and the largest radius at the current resolution.
+    fn radii(&self) -> [f32; 2] {
+        let [width, height] = self.sides;
+        // A recipe may ask for strokes that are wider than a small picture.
+        let least = self.domain.min_radius;
+        let any = [least, width.max(height).max(least)];
+        self.pens.map_or(any, |pens| {
+            pens.map(|r| r / (1_u32 << self.halvings) as f32)
+        })
     }
 
     /// Clamps a stroke to its domain. NaN stays; such a stroke is dropped later.
@@ -44,10 +74,9 @@ impl Bounds {
             end[0] = end[0].clamp(-margin, width + margin);
             end[1] = end[1].clamp(-margin, height + margin);
         }
-        // A recipe may ask for strokes that are wider than a small picture.
-        let min_radius = self.domain.min_radius;
+        let [least, most] = self.radii();
         let [radius, color @ .., opacity] = stroke.look;
-        *radius = radius.clamp(min_radius, width.max(height).max(min_radius));
+        *radius = radius.clamp(least, most);
         for color in color {
             *color = color.clamp(0.0, 1.0);
         }

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use super::recipe::{Preset, Recipe};
 use super::simd::Simd;
+use super::widths::Widths;
 use crate::coverage::CoverageSchedule;
 use crate::error::{Error, ErrorKind, Result};
 use crate::math;
@@ -37,6 +38,8 @@ pub struct Config {
     pub polish: bool,
     /// The colours that the drawing may have.
     pub colors: Colors,
+    /// The widths that strokes may have; any if `None`.
+    pub pens: Option<Widths>,
     /// How the drawing is written. The fit takes its bytes and its render into account.
     pub file: WriteOptions,
     /// The colour behind all strokes.
@@ -60,6 +63,7 @@ impl Default for Config {
             stages: None,
             polish: true,
             colors: Colors::default(),
+            pens: None,
             file: WriteOptions::default(),
             background: Background::Auto,
             seed: 0,

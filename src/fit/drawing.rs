@@ -112,7 +112,7 @@ impl Drawing {
         self.surfaces.iter_mut().for_each(|s| s.halve(halvings));
         let grid = self.surface().grid();
         self.renderer = renderer(self.surface(), self.level);
-        self.bounds = self.bounds.on(grid);
+        self.bounds = self.bounds.on((grid, halvings));
         self.free_all();
     }
 

@@ -5,10 +5,9 @@ use super::plan::{Before, Plan};
 use crate::image::Image;
 
 /// Bytes for the program and its libraries.
-const BASE: u64 = 12 << 20;
-/// Bytes per pixel for the picture, its reductions, canvases and renders, and for judging them. Measured, without the
-/// base: 143 at 6 Mpx, 145 at 1.6 Mpx, 148 at 0.4 Mpx.
-const PER_PIXEL: u64 = 143;
+const BASE: u64 = 16 << 20;
+/// Bytes per pixel for the picture, its reductions, canvases and renders, and for judging them.
+const PER_PIXEL: u64 = 184;
 /// Bytes per stroke for parameters, the optimiser's state, the SVG text and its tree. Measured: 1,200 to 2,600; less
 /// in large pictures, where the peaks of pixels and of strokes come at different times.
 const PER_STROKE: u64 = 2000;

@@ -47,6 +47,7 @@ mod shading;
 mod simd;
 mod surface;
 mod ties;
+mod widths;
 mod words;
 
 pub use anneal::final_softness;
@@ -68,6 +69,7 @@ pub use recipe::{
 };
 pub use result::{Fit, StageRecord, Stop};
 pub use simd::Simd;
+pub use widths::Widths;
 
 use crate::clock::Instant;
 use crate::error::Result;

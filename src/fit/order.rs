@@ -115,9 +115,9 @@ pub(super) fn next(phase: Phase, outcome: Outcome, config: &Config) -> Phase {
 impl Phase {
     /// The first phase of a fit.
     pub(super) fn first(config: &Config, base: Option<&Base>) -> Self {
-        // A base that uses colours outside the palette cannot stay as it is.
+        // A base that uses colours outside the palette, or other pens, cannot stay as it is.
         match base {
-            Some(base) if config.colors.allow(&base.scene) => Self::Base,
+            Some(base) if config.pens.is_none() && config.colors.allow(&base.scene) => Self::Base,
             _ => Self::Trace,
         }
     }

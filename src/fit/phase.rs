@@ -5,7 +5,8 @@
 //! | `trace` | strokes are laid along the lines that are seen |
 //! | `grow` | stages are seeded, fitted on frozen strokes, and keep what pays |
 //! | `polish` | all strokes are fitted jointly, with relocation |
-//! | `palette`, `stack`, `pens` | the drawing is restricted to few colours, one layer each if asked for, and few pens |
+//! | `palette`, `stack` | the drawing is restricted to few colours, one layer each if asked for |
+//! | `widths`, `pens` | strokes get the widths of given pens, and share few pens in the smallest form |
 //! | `sharing` | strokes of a drawing of lines come to share widths and colours |
 //! | `settle` | the last steps are taken against renders of the written file |
 //! | `count` | strokes are added and removed until budgets are met |
@@ -21,3 +22,4 @@ pub(super) mod settle;
 mod sharing;
 mod stack;
 pub(super) mod trace;
+mod widths;

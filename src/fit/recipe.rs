@@ -425,12 +425,17 @@ impl Rates {
         Self { color: 0.0, ..self }
     }
 
-    /// The same rates, but colours and radii stay as they are.
-    pub(super) fn without_pen(self) -> Self {
+    /// The same rates, but radii stay as they are.
+    pub(super) fn without_radius(self) -> Self {
         Self {
             radius: 0.0,
-            ..self.without_color()
+            ..self
         }
+    }
+
+    /// The same rates, but colours and radii stay as they are.
+    pub(super) fn without_pen(self) -> Self {
+        self.without_color().without_radius()
     }
 }
 

@@ -17,7 +17,7 @@ pub(super) fn search(
     let area = drawing.pixel_area();
     let wanted = Wanted {
         count,
-        scale: scale / area.sqrt(),
+        scale: drawing.bounds.drawable(scale) / area.sqrt(),
         probing,
         min_opacity: drawing.bounds.min_opacity(),
         level: drawing.surface().halvings(),

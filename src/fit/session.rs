@@ -37,6 +37,8 @@ pub(super) struct Session<'a> {
     pub(super) recipe: Recipe,
     pub(super) base: Option<&'a Base>,
     pub(super) focus: Option<Focus>,
+    /// The radii of the pens, px, the thinnest first; none if strokes may have any.
+    pub(super) radii: Vec<f32>,
     /// The picture to reproduce.
     pub(super) target: Image,
     pub(super) annealing: Annealing,
@@ -95,7 +97,11 @@ impl<'a> Session<'a> {
         let before = Before::of(base);
         let pixels = picture.width() * picture.height();
         let plan = Plan::new(config, &recipe, limit, before, pixels);
-        let coarsest = coarsest(&plan, before, config, base);
+        let page_width = Base::page_width(base, &config.file);
+        let pens = config.pens.as_ref();
+        let radii = pens.map_or(Ok(Vec::new()), |pens| pens.radii(page_width, picture))?;
+        let widest = radii.last().copied().unwrap_or(f32::INFINITY);
+        let coarsest = coarsest(&plan, before, config, base).min(widest);
         let Prepared {
             target,
             surfaces,
@@ -114,7 +120,8 @@ impl<'a> Session<'a> {
             coverage: config.coverage,
             edge: recipe.edge,
         };
-        let bounds = Bounds::new(surfaces[0].grid(), recipe.domain, config.opaque);
+        let resolution = (surfaces[0].grid(), surfaces[0].halvings());
+        let bounds = Bounds::new(resolution, recipe.domain, config.opaque, &radii);
         let edge = annealing.last();
         let mut drawing = Drawing::new(surfaces, (background_fixed, shade), bounds, edge, level);
         let records = base.map_or_else(Vec::new, |base| history::load(&mut drawing, base));
@@ -128,6 +135,7 @@ impl<'a> Session<'a> {
             recipe,
             base,
             focus,
+            radii,
             target,
             annealing,
             limit: budget::max_strokes(config, limit, base),
@@ -342,7 +350,8 @@ const FILE_BYTES: usize = 240;
 const LAYER_BYTES: usize = 170;
 
 /// The background and the shade of a new drawing. A shade, with `auto`, replaces the background. It has any colours and
-/// opacities, so that a drawing of few colours has none, and neither has one of opaque strokes that is transparent.
+/// opacities, so that a drawing of few colours or of given pens has none, and neither has one of opaque strokes that is
+/// transparent.
 fn page(
     picture: &Image,
     config: &Config,
@@ -352,6 +361,7 @@ fn page(
     let may_be = base.is_none()
         && config.background == Background::Auto
         && config.colors == Colors::Free
+        && config.pens.is_none()
         && !(config.opaque && picture.alpha().is_some());
     let pixels = picture.width() * picture.height();
     let price = Price::new(config.quality_for(pixels), config.file);

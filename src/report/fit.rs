@@ -8,6 +8,7 @@ use super::{Input, Judged, OnFocus, SCHEMA, Usage, gzip_bytes, per_stroke};
 use crate::fit::{Base, Config, StageRecord, Stop, predicted_rss_bytes};
 use crate::metrics::{Agreement, Quality};
 use crate::scene::Dropped;
+use crate::svg::{self, Travel};
 use crate::verify::OnMattes;
 
 /// What `strokefit fit` did.
@@ -47,6 +48,9 @@ pub struct FitReport {
     /// How much worse the drawing is, dB, because colours have a layer each; left out if they have not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stacking_db: Option<f64>,
+    /// How far a pen moves to draw the file; left out unless its order is one of little travel.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub travel: Option<Travel>,
     /// Key of every random draw.
     pub seed: u64,
     /// The SVG as rendered by resvg against the picture.
@@ -183,6 +187,7 @@ impl FitReport {
             predicted_rss_bytes: predicted_rss_bytes(&fit.target, run.config),
             stop: stop_word(fit.stop).into(),
             stacking_db: fit.stacking_db,
+            travel: svg::travel(&fit.scene, &fit.file),
             seed: run.config.seed,
             fidelity: verdict.fidelity,
             soft: *soft,
@@ -250,6 +255,7 @@ mod tests {
             predicted_rss_bytes: 12_582_912,
             stop: stop_word(Stop::Strokes).into(),
             stacking_db: None,
+            travel: None,
             seed: 7,
             fidelity: quality,
             soft: quality,

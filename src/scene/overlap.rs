@@ -4,35 +4,78 @@ use super::grid::UNITS_PER_PX;
 use super::quantize::Written;
 use crate::math;
 
+/// Where a stroke may leave ink: what is needed to compare it with many others.
+#[derive(Debug, Clone)]
+pub(crate) struct Swept {
+    /// In units.
+    width: i64,
+    /// From where to where the points lie along each axis, in units.
+    bounds: [[i64; 2]; 2],
+    /// The centre line, by segments at most [`TOLERANCE`] away from it; that of a dot has no length.
+    segments: Vec<Segment>,
+}
+
+impl Swept {
+    pub(crate) fn new(stroke: &Written) -> Self {
+        Self {
+            width: stroke.width,
+            bounds: bounds(stroke),
+            segments: segments(stroke),
+        }
+    }
+
+    /// Whether the order of the two strokes can change the picture.
+    pub(crate) fn meets(&self, other: &Self) -> bool {
+        let reach = reach(self.width, other.width);
+        are_near(&self.bounds, &other.bounds, reach)
+            && is_nearer(&self.segments, &other.segments, reach as f64)
+    }
+
+    /// From where to where, along the x axis, the stroke can meet others, in units.
+    pub(crate) fn span(&self) -> [i64; 2] {
+        let [near, far] = self.bounds[0];
+        let margin = (self.width + APART + 1) / 2;
+        [near - margin, far + margin]
+    }
+}
+
 impl Written {
     /// Whether the order of the two strokes can change the picture.
     pub(crate) fn meets(&self, other: &Self) -> bool {
-        let reach = (self.width + other.width) / 2 + APART;
-        let (a, b) = (self.bounds(), other.bounds());
-        let are_near = |axis: usize| {
-            let ([a_near, a_far], [b_near, b_far]) = (a[axis], b[axis]);
-            a_near - b_far < reach && b_near - a_far < reach
-        };
-        are_near(0) && are_near(1) && is_nearer(&self.segments(), &other.segments(), reach as f64)
+        let reach = reach(self.width, other.width);
+        are_near(&bounds(self), &bounds(other), reach)
+            && is_nearer(&segments(self), &segments(other), reach as f64)
     }
+}
 
-    /// From where to where the points lie along each axis, in units.
-    fn bounds(&self) -> [[i64; 2]; 2] {
-        [0, 1].map(|axis| {
-            let along = || self.path.points().iter().map(|p| p.at[axis]);
-            [along().min().unwrap_or(0), along().max().unwrap_or(0)]
-        })
-    }
+/// How near centre lines of these widths have to come for the strokes to share a pixel, in units.
+fn reach(a: i64, b: i64) -> i64 {
+    (a + b) / 2 + APART
+}
 
-    /// The centre line as segments that are at most [`TOLERANCE`] away from it; that of a dot has no length.
-    fn segments(&self) -> Vec<Segment> {
-        let mut segments = self.path.segments(TOLERANCE);
-        if let ([dot], []) = (self.path.points(), segments.as_slice()) {
-            segments.push([dot.at; 2]);
-        }
-        let float = |p: [i64; 2]| p.map(|units| units as f64);
-        segments.into_iter().map(|ends| ends.map(float)).collect()
+/// Whether these boxes come nearer to each other than `reach`.
+fn are_near(a: &[[i64; 2]; 2], b: &[[i64; 2]; 2], reach: i64) -> bool {
+    a.iter()
+        .zip(b)
+        .all(|([a_near, a_far], [b_near, b_far])| a_near - b_far < reach && b_near - a_far < reach)
+}
+
+/// From where to where the points of a stroke lie along each axis, in units.
+fn bounds(stroke: &Written) -> [[i64; 2]; 2] {
+    [0, 1].map(|axis| {
+        let along = || stroke.path.points().iter().map(|p| p.at[axis]);
+        [along().min().unwrap_or(0), along().max().unwrap_or(0)]
+    })
+}
+
+/// The centre line of a stroke as segments that are at most [`TOLERANCE`] away from it; that of a dot has no length.
+fn segments(stroke: &Written) -> Vec<Segment> {
+    let mut segments = stroke.path.segments(TOLERANCE);
+    if let ([dot], []) = (stroke.path.points(), segments.as_slice()) {
+        segments.push([dot.at; 2]);
     }
+    let float = |p: [i64; 2]| p.map(|units| units as f64);
+    segments.into_iter().map(|ends| ends.map(float)).collect()
 }
 
 /// Strokes farther apart than the diagonal of a pixel have no pixel in common. What chords are away from their curve is

@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use super::{Form, Group, WriteOptions, write};
+use super::{Form, WriteOptions, write};
 use crate::scene::{Scene, Stroke};
 
 /// Durations in an animated drawing.
@@ -31,8 +31,7 @@ pub fn write_animated(
     let options = WriteOptions {
         precision,
         form: Form::Plain,
-        group: Group::Stage,
-        width: None,
+        ..WriteOptions::default()
     };
     let clock = Clock {
         whole_ms: timing.part_ms * parts.len() as u32 + timing.last_ms,

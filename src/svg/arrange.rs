@@ -7,8 +7,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::dialect::Unit;
-use super::options::{Form, Group, WriteOptions};
-use super::path;
+use super::options::{Form, Group, Order, WriteOptions};
+use super::{path, tour};
 use crate::scene::{Scene, Stage, Written, WrittenPath};
 
 /// Strokes of a layer, and their common colour if layers are by colour.
@@ -47,7 +47,27 @@ pub(super) fn layers(scene: &Scene, options: &WriteOptions) -> Vec<Layer> {
             layer.strokes = arranged(std::mem::take(&mut layer.strokes), look, |s| s.width);
         }
     }
+    if options.order == Order::Travel {
+        for layer in &mut layers {
+            layer.strokes = with_little_travel(std::mem::take(&mut layer.strokes), options.form);
+        }
+    }
     layers
+}
+
+/// The strokes of a layer in an order of little travel. In the smallest form, those of one look stay together.
+fn with_little_travel(strokes: Vec<Written>, form: Form) -> Vec<Written> {
+    let mut shortened = Vec::with_capacity(strokes.len());
+    let is_together = |a: &Written, b: &Written| form != Form::Smallest || look(a) == look(b);
+    for run in strokes.chunk_by(is_together) {
+        let from = tour::end(&shortened);
+        shortened.extend(tour::shortened(run, from));
+    }
+    if tour::between(&shortened) < tour::between(&strokes) {
+        shortened
+    } else {
+        strokes
+    }
 }
 
 /// The scene in the order and the layers of its file: what [`read`](super::read) returns for the text that

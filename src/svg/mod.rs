@@ -34,6 +34,8 @@
 //!   holds the most common `stroke-width`. Colours may be `#rgb`. Where that is shorter, numbers count units of
 //!   the last decimal, and the layer has `transform="scale(0.1)"`. Before, [`arrange()`] reorders strokes
 //!   that do not touch so that all this saves the most.
+//! - With an order of little travel, strokes of a layer change places where the picture stays the same, and may be
+//!   reversed; [`fn@travel`] says how far a pen moves. Labels of layers by colour then begin with their number, `1 #rrggbb`.
 //! - Layers by colour have ids `color-1`, `color-2`, ….
 //! - A dot is a segment of length 0.01, because many programs drop a segment of length 0 although the
 //!   specification draws it. `h` marks a dot and nothing else. The 0.01 is independent of the
@@ -77,6 +79,8 @@ mod options;
 mod outline;
 mod path;
 mod read;
+mod tour;
+mod travel;
 mod write;
 
 pub use animated::{Timing, write_animated};
@@ -84,8 +88,9 @@ pub use arrange::arrange;
 pub(crate) use dialect::SVG_NAMESPACE;
 pub use document::{Document, Placement, page_width};
 pub use lint::{Finding, Severity, lint};
-pub use options::{Form, Group, Length, WriteOptions};
+pub use options::{Form, Group, Length, Order, WriteOptions};
 pub use read::read;
+pub use travel::{LayerTravel, Travel, travel};
 pub use write::{layers, stroke_bytes, write};
 
 #[cfg(test)]

@@ -16,6 +16,8 @@ pub struct WriteOptions {
     pub form: Form,
     /// What a layer holds.
     pub group: Group,
+    /// In which order the strokes of a layer come.
+    pub order: Order,
     /// Width of the page; its height follows. `None`: one px per pixel of the picture.
     pub width: Option<Length>,
 }
@@ -37,6 +39,7 @@ impl Default for WriteOptions {
             precision: 2,
             form: Form::default(),
             group: Group::default(),
+            order: Order::default(),
             width: None,
         }
     }
@@ -65,6 +68,18 @@ pub enum Group {
     /// Strokes of one colour that can be drawn one after the other. A colour has several layers if its strokes lie
     /// below another colour in one place and above it in another.
     Color,
+}
+
+/// In which order the strokes of a layer come.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Order {
+    /// The order that the strokes were fitted in; the smallest form changes it.
+    #[default]
+    Fitted,
+    /// With little travel of a pen between strokes. Strokes change places where the picture stays the same, are drawn from
+    /// either end, and closed paths begin at any of their points. In the smallest form this applies to the strokes of
+    /// each look.
+    Travel,
 }
 
 impl Form {
@@ -131,6 +146,35 @@ impl FromStr for Group {
     }
 }
 
+impl Order {
+    /// Every order.
+    pub const ALL: [Self; 2] = [Self::Fitted, Self::Travel];
+}
+
+impl fmt::Display for Order {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Fitted => "fitted",
+            Self::Travel => "travel",
+        })
+    }
+}
+
+impl FromStr for Order {
+    type Err = Error;
+
+    /// `fitted` or `travel`.
+    fn from_str(text: &str) -> Result<Self, Error> {
+        let mut orders = Self::ALL.into_iter();
+        orders
+            .find(|order| order.to_string() == text)
+            .ok_or_else(|| {
+                let message = format!("'{text}' is not an order: give fitted or travel");
+                Error::new(ErrorKind::Config, message)
+            })
+    }
+}
+
 /// A length with its unit, exact to 4 decimals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Length {
@@ -164,14 +208,14 @@ impl Length {
     }
 
     /// The length that an attribute says.
-    pub(super) fn parse(text: &str) -> Option<Self> {
+    pub(crate) fn parse(text: &str) -> Option<Self> {
         let &(unit, _) = UNITS.iter().find(|(unit, _)| text.ends_with(unit))?;
         let value = Unit::PX.parse(text.strip_suffix(unit)?)?;
         (value > 0 && value % STEP == 0).then_some(Self { value, unit })
     }
 
     /// In px of 1/96 inch.
-    fn px(self) -> f64 {
+    pub(crate) fn px(self) -> f64 {
         let per_unit = UNITS.iter().find(|(unit, _)| *unit == self.unit);
         self.value as f64 / UNITS_PER_PX as f64 * per_unit.map_or(1.0, |&(_, px)| px)
     }
@@ -220,6 +264,9 @@ mod tests {
         for group in Group::ALL {
             assert_eq!(group.to_string().parse::<Group>().unwrap(), group);
         }
+        for order in Order::ALL {
+            assert_eq!(order.to_string().parse::<Order>().unwrap(), order);
+        }
         let error = "small".parse::<Form>().unwrap_err().to_string();
         assert!(
             error.contains("'small'") && error.contains("smallest"),
@@ -230,6 +277,11 @@ mod tests {
         let error = "".parse::<Group>().unwrap_err().to_string();
         assert!(
             error.contains("''") && error.contains("stage or color"),
+            "{error}"
+        );
+        let error = "short".parse::<Order>().unwrap_err().to_string();
+        assert!(
+            error.contains("'short'") && error.contains("fitted or travel"),
             "{error}"
         );
     }

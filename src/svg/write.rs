@@ -5,7 +5,7 @@ mod shade;
 use super::arrange::{self, Layer};
 use super::dialect::{self, Unit};
 use super::element;
-use super::options::{Form, WriteOptions};
+use super::options::{Form, Order, WriteOptions};
 use crate::scene::{Scene, Stroke, Written, quantum};
 
 /// The scene as SVG text: rounded by [`Scene::quantized`], without the strokes that this drops, and in the order
@@ -58,7 +58,7 @@ fn head(scene: &Scene, options: &WriteOptions) -> String {
 
 /// The layer with numbers in px, or in the unit that makes them shortest, if this saves more than the attribute costs.
 fn shortest(number: usize, layer: &Layer, options: &WriteOptions) -> String {
-    let text = |unit| text(number, layer, options.form, unit);
+    let text = |unit| text(number, layer, options, unit);
     let in_px = text(Unit::PX);
     if options.unit() == Unit::PX {
         return in_px;
@@ -68,15 +68,28 @@ fn shortest(number: usize, layer: &Layer, options: &WriteOptions) -> String {
         .unwrap_or(in_px)
 }
 
-fn text(number: usize, layer: &Layer, form: Form, unit: Unit) -> String {
+fn text(number: usize, layer: &Layer, options: &WriteOptions, unit: Unit) -> String {
+    let form = options.form;
     let count = layer.strokes.len();
     let plural = if count == 1 { "" } else { "s" };
+    // Programs for plotters take the first digits of a label for the layer's number, be they those of a colour.
+    let count_first = match options.order {
+        Order::Travel => format!("{number} "),
+        Order::Fitted => String::new(),
+    };
     let (id, label) = match layer.color {
         Some(color) if layer.repeats > 0 => (
             format!("color-{number}"),
-            format!("{} ({})", dialect::hex(color), layer.repeats + 1),
+            format!(
+                "{count_first}{} ({})",
+                dialect::hex(color),
+                layer.repeats + 1
+            ),
         ),
-        Some(color) => (format!("color-{number}"), dialect::hex(color)),
+        Some(color) => (
+            format!("color-{number}"),
+            format!("{count_first}{}", dialect::hex(color)),
+        ),
         None => (format!("stage-{number}"), format!("Stage {number}")),
     };
     let transform = match unit {

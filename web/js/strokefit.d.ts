@@ -34,10 +34,14 @@ export interface Options {
   seed?: number;
   /** At most so many colours, or these. */
   colors?: number | string[];
+  /** Only these widths of strokes: lengths such as `0.3mm,0.8mm` on a page of a `width`, or numbers in px. */
+  pens?: string;
   /** What an element of the SVG holds. */
   form?: "elements" | "plain" | "smallest" | "outlines";
   /** What a layer of the SVG holds. */
   group?: "stage" | "color";
+  /** In which order the strokes of a layer come: as they were fitted, or with little travel of a pen between them. */
+  order?: "fitted" | "travel";
   /** Decimals of coordinates and widths, 0 to 6. */
   precision?: number;
   /** Width of the page, such as `120mm`. */

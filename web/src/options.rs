@@ -56,8 +56,10 @@ impl Options {
             "background" => config.background = entry.word()?,
             "seed" => config.seed = entry.natural()?,
             "colors" => config.colors = entry.word()?,
+            "pens" => config.pens = Some(entry.word()?),
             "form" => config.file.form = entry.word()?,
             "group" => config.file.group = entry.word()?,
+            "order" => config.file.order = entry.word()?,
             "precision" => config.file.precision = entry.decimals()?,
             "width" => config.file.width = Some(entry.word()?),
             "base" => self.base = Some(entry.text()?.to_owned()),
@@ -126,7 +128,7 @@ impl Entry<'_> {
     fn unknown(&self) -> Error {
         refusal(format!(
             "no option is called {}: give strokes, psnr, bytes, time, quality, preset, progressive, opaque, coverage, \
-             points, stages, polish, background, seed, colors, form, group, precision, width, base or freezeBase",
+             points, stages, polish, background, seed, colors, pens, form, group, order, precision, width, base or freezeBase",
             self.key
         ))
     }
@@ -140,7 +142,7 @@ fn refusal(message: String) -> Error {
 mod tests {
     use super::*;
     use strokefit::fit::{Background, Colors, Preset};
-    use strokefit::svg::{Form, Group};
+    use strokefit::svg::{Form, Group, Order};
 
     fn refused(json: &str) -> String {
         Options::read(json).unwrap_err().to_string()
@@ -158,7 +160,7 @@ mod tests {
         let json = r##"{
             "strokes": 500, "psnr": 32, "bytes": 9000, "time": 1.5, "quality": 25, "preset": "draft", "progressive": true,
             "opaque": true, "coverage": "sigmoid", "points": 6, "stages": 3, "polish": false, "background": "#ff0000", "seed": 7,
-            "colors": "8", "form": "smallest", "group": "color", "precision": 1, "width": "120mm", "base": "<svg/>",
+            "colors": "8", "pens": "2,3", "form": "smallest", "group": "color", "order": "travel", "precision": 1, "width": "120mm", "base": "<svg/>",
             "freezeBase": true
         }"##;
         let options = Options::read(json).unwrap();
@@ -169,8 +171,8 @@ mod tests {
         );
         assert_eq!(budget.time, Some(Duration::from_millis(1500)));
         assert_eq!(
-            (file.form, file.group, file.precision),
-            (Form::Smallest, Group::Color, 1)
+            (file.form, file.group, file.order, file.precision),
+            (Form::Smallest, Group::Color, Order::Travel, 1)
         );
         assert_eq!(file.width, Some("120mm".parse().unwrap()));
         let expected = Config {
@@ -184,6 +186,7 @@ mod tests {
             stages: Some(3),
             polish: false,
             colors: Colors::AtMost(8),
+            pens: Some("2,3".parse().unwrap()),
             file: *file,
             background: Background::Color([1.0, 0.0, 0.0]),
             seed: 7,

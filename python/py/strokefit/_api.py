@@ -39,8 +39,10 @@ def fit(
     background: str = "auto",
     colors: Optional[int] = None,
     palette: Optional[Palette] = None,
+    pens: Optional[str] = None,
     form: str = "plain",
     group: str = "stage",
+    order: str = "fitted",
     width: Optional[str] = None,
     stages: Optional[int] = None,
     polish: bool = True,
@@ -75,9 +77,11 @@ def fit(
         colors: At most so many colours, the background included.
         palette: Only these colours: `["#102030", …]`, `"#102030,…"`, or a file with one colour a line or a GIMP
             palette.
+        pens: Only these widths of strokes: lengths such as `0.3mm,0.8mm` on a page of a `width`, or numbers in px.
         form: What one element holds: a stroke (`plain`), all strokes of one look that can be drawn together
             (`smallest`), or the filled outline of a stroke (`outlines`).
         group: What one layer holds: `stage` or `color`.
+        order: In which order the strokes of a layer come: `fitted`, or `travel` with short ways between them.
         width: Width of the page, such as `120mm`; one px per pixel of the picture by default.
         stages: The number of stages, each a layer.
         polish: Whether all strokes are fitted jointly after the stages.
@@ -123,8 +127,10 @@ def fit(
         background=background,
         colors=colors,
         palette=_palette(palette),
+        pens=pens,
         form=form,
         group=group,
+        order=order,
         width=width,
         stages=stages,
         polish=polish,
@@ -150,8 +156,10 @@ def refine(
     precision: int = 2,
     colors: Optional[int] = None,
     palette: Optional[Palette] = None,
+    pens: Optional[str] = None,
     form: str = "plain",
     group: str = "stage",
+    order: str = "fitted",
     width: Optional[str] = None,
     stages: Optional[int] = None,
     polish: bool = True,
@@ -198,8 +206,10 @@ def refine(
         precision=precision,
         colors=colors,
         palette=_palette(palette),
+        pens=pens,
         form=form,
         group=group,
+        order=order,
         width=width,
         stages=stages,
         polish=polish,

@@ -96,7 +96,32 @@ class BaseEntry(TypedDict):
     elements: int
 
 
-class Report(TypedDict):
+class LayerTravel(TypedDict):
+    """How far a pen moves to draw a layer, in px of the picture."""
+
+    strokes: int
+    #: Length of all centre lines.
+    drawn_px: float
+    #: Between strokes, in the order that they were fitted in.
+    before_px: float
+    #: Between strokes, in the order of the file.
+    after_px: float
+
+
+class Travel(TypedDict):
+    """How far a pen moves between the strokes of each layer, in px of the picture."""
+
+    before_px: float
+    after_px: float
+    layers: list[LayerTravel]
+
+
+class _Plotted(TypedDict, total=False):
+    #: With `order="travel"` alone.
+    travel: Travel
+
+
+class Report(_Plotted):
     """What a fit did."""
 
     #: Version of this layout.

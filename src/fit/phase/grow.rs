@@ -108,7 +108,7 @@ fn seed(session: &mut Session<'_>, planned: PlannedStage) {
         scale,
     } = planned;
     timer.searching(count, || {
-        drawing.sharpen(scale);
+        drawing.sharpen(drawing.bounds.drawable(scale));
         drawing.freeze();
         let candidates = search(drawing, count, scale, recipe.probing, config.seed);
         // The best candidate is drawn last, so that none of lesser gain hides it.

@@ -10,6 +10,7 @@ use std::ops::Range;
 
 use super::preferences::{preferences, set_colors};
 use super::rounds;
+use super::widths::nearest;
 use crate::error::Result;
 use crate::fit::config::Colors;
 use crate::fit::drawing::Drawing;
@@ -29,13 +30,15 @@ pub(in crate::fit) fn run(session: &mut Session<'_>) -> Result<bool> {
     let keeps_colors = session.config.colors != Colors::Free;
     let recipe = session.recipe;
     let (count, rates) = (recipe.pens.rounds.count, recipe.polish.rates.without_pen());
-    let mut pens = hand_out(&mut session.drawing, keeps_colors, &recipe);
+    let radii = session.radii.clone();
+    let ladder = Ladder::of(&recipe, &radii);
+    let mut pens = hand_out(&mut session.drawing, keeps_colors, (&recipe, ladder));
     for round in 0..count {
         rounds::run(session, recipe.pens.rounds, round, rates)?;
         if round + 1 == count {
             // Strokes may have moved between those of a pen, so that pens are chosen once more: most drawings get up
             // to 6 % shorter, with the same fidelity.
-            pens = hand_out(&mut session.drawing, keeps_colors, &recipe);
+            pens = hand_out(&mut session.drawing, keeps_colors, (&recipe, ladder));
         }
         if !keeps_colors {
             tint(&mut session.drawing, &pens, &recipe);
@@ -45,7 +48,11 @@ pub(in crate::fit) fn run(session: &mut Session<'_>) -> Result<bool> {
 }
 
 /// Chooses the pens of all strokes, and returns the strokes of each pen.
-fn hand_out(drawing: &mut Drawing, keep_colors: bool, recipe: &Recipe) -> Vec<Vec<usize>> {
+fn hand_out(
+    drawing: &mut Drawing,
+    keep_colors: bool,
+    (recipe, ladder): (&Recipe, Ladder<'_>),
+) -> Vec<Vec<usize>> {
     let preferences = preferences(drawing, 0.0, recipe.coloring.min_shown);
     let weights: Vec<f32> = preferences.iter().map(|w| w.weight).collect();
     let windows = windows(&drawing.stage_sizes(), recipe.pens.window);
@@ -53,7 +60,12 @@ fn hand_out(drawing: &mut Drawing, keep_colors: bool, recipe: &Recipe) -> Vec<Ve
     let mut pens = Vec::new();
     for window in windows {
         let members: Strokes = window.clone().map(|i| strokes.get(i)).collect();
-        let mut shared = share(&members, &weights[window.clone()], keep_colors, recipe);
+        let mut shared = share(
+            &members,
+            &weights[window.clone()],
+            keep_colors,
+            (recipe, ladder),
+        );
         let of_drawing = |pen: &mut Pen| pen.members.iter_mut().for_each(|i| *i += window.start);
         shared.iter_mut().for_each(of_drawing);
         pens.extend(shared);
@@ -131,7 +143,7 @@ struct Pen {
 }
 
 impl Pen {
-    fn new(i: usize, stroke: StrokeRef<'_>, weight: f32, ladder: Ladder) -> Self {
+    fn new(i: usize, stroke: StrokeRef<'_>, weight: f32, ladder: Ladder<'_>) -> Self {
         Self {
             members: vec![i],
             color: stroke.color(),
@@ -151,7 +163,7 @@ impl Pen {
         both(self.area, other.area) * away + contrast * both(self.edge, other.edge) * wider
     }
 
-    fn join(&mut self, other: Self, ladder: Ladder) {
+    fn join(&mut self, other: Self, ladder: Ladder<'_>) {
         let mean = |a: f32, b: f32, [wa, wb]: [f32; 2]| {
             (a * wa + b * wb) / (wa + wb).max(f32::MIN_POSITIVE)
         };
@@ -166,18 +178,27 @@ impl Pen {
     }
 }
 
-/// The radii that pens may have, a geometric series.
+/// The radii that pens may have.
 #[derive(Debug, Clone, Copy)]
-struct Ladder {
-    /// The least radius, px.
-    least: f32,
-    /// The ratio of neighbouring radii.
-    step: f32,
+enum Ladder<'a> {
+    /// A geometric series.
+    Series {
+        /// The least radius, px.
+        least: f32,
+        /// The ratio of neighbouring radii.
+        step: f32,
+    },
+    /// These, px.
+    Given(&'a [f32]),
 }
 
-impl Ladder {
-    fn of(recipe: &Recipe) -> Self {
-        Self {
+impl<'a> Ladder<'a> {
+    /// The radii of the given pens or, if there are none, those of the recipe.
+    fn of(recipe: &Recipe, given: &'a [f32]) -> Self {
+        if !given.is_empty() {
+            return Self::Given(given);
+        }
+        Self::Series {
             least: recipe.domain.min_radius,
             step: recipe.pens.ladder,
         }
@@ -185,14 +206,24 @@ impl Ladder {
 
     /// The nearest radius that a pen may have.
     fn rung(self, radius: f32) -> f32 {
-        let steps = math::ln((radius / self.least).max(1.0)) / math::ln(self.step);
-        self.least * math::powf(self.step, steps.round())
+        match self {
+            Self::Series { least, step } => {
+                let steps = math::ln((radius / least).max(1.0)) / math::ln(step);
+                least * math::powf(step, steps.round())
+            }
+            Self::Given(radii) => nearest(radii, radius),
+        }
     }
 }
 
 /// Chooses the pens of the strokes of a window.
-fn share(strokes: &Strokes, weights: &[f32], keep_colors: bool, recipe: &Recipe) -> Vec<Pen> {
-    let (settings, ladder) = (recipe.pens, Ladder::of(recipe));
+fn share(
+    strokes: &Strokes,
+    weights: &[f32],
+    keep_colors: bool,
+    (recipe, ladder): (&Recipe, Ladder<'_>),
+) -> Vec<Pen> {
+    let settings = recipe.pens;
     let mut order = Order::new(strokes);
     let pens = strokes.iter().zip(weights).enumerate();
     let pen =
@@ -344,7 +375,8 @@ mod tests {
         let mut strokes: Strokes = strokes.iter().collect();
         let worth = vec![100.0; strokes.len()];
         let recipe = Recipe::of(Preset::Balanced);
-        let pens = share(&strokes, &worth, keep_colors, &recipe);
+        let ladder = Ladder::of(&recipe, &[]);
+        let pens = share(&strokes, &worth, keep_colors, (&recipe, ladder));
         draw_with(&pens, &mut strokes);
         strokes.iter().map(|s| quantum(s.color()[0])).collect()
     }
@@ -377,7 +409,7 @@ mod tests {
 
     #[test]
     fn widths_are_on_a_ladder() {
-        let ladder = Ladder {
+        let ladder = Ladder::Series {
             least: 0.51,
             step: 1.2,
         };

@@ -9,7 +9,7 @@
 //!
 //! [`renderers`]: crate::fit::renderers
 
-use super::{palette, pens, sharing, stack};
+use super::{palette, pens, sharing, stack, widths};
 use crate::error::Result;
 use crate::fit::budget;
 use crate::fit::config::Colors;
@@ -59,6 +59,9 @@ fn restrict(session: &mut Session<'_>) -> Result<Restricted> {
             stack::run(session, &mut palette)?;
         }
         rates = rates.without_color();
+    }
+    if widths::run(session, rates)? {
+        rates = rates.without_radius();
     }
     if pens::run(session)? {
         rates = rates.without_pen();

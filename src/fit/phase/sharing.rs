@@ -36,8 +36,8 @@ const THIN: f32 = 1.0;
 /// Changes strokes for a squared error of at most this, as far as that can be told in advance, and ties what it has changed.
 type Step = fn(&mut Drawing, &Recipe, f32) -> Ties;
 
-/// Makes strokes of a drawing that was traced opaque, and share widths and, in free colours, colours. All strokes must be
-/// free.
+/// Makes strokes of a drawing that was traced opaque, and share widths and colours, as far as these are not given. All
+/// strokes must be free.
 pub(super) fn run(session: &mut Session<'_>) -> Ties {
     let (drawing, recipe) = (&mut session.drawing, &session.recipe);
     let mut ties = Ties::default();
@@ -45,13 +45,17 @@ pub(super) fn run(session: &mut Session<'_>) -> Ties {
     if !is_of_lines || session.config.file.form == Form::Smallest {
         return ties;
     }
-    let steps: [Step; 3] = [make_opaque, share_widths, share_colors];
-    let count = match session.config.colors {
-        Colors::Free => 3,
-        _ => 2,
-    };
-    for step in &steps[..count] {
-        ties.extend(carefully(drawing, recipe, *step));
+    let (any_color, any_width) = (
+        session.config.colors == Colors::Free,
+        session.radii.is_empty(),
+    );
+    let steps: [(Step, bool); 3] = [
+        (make_opaque, any_color && any_width),
+        (share_widths, any_width),
+        (share_colors, any_color),
+    ];
+    for (step, _) in steps.into_iter().filter(|(_, is_allowed)| *is_allowed) {
+        ties.extend(carefully(drawing, recipe, step));
     }
     ties
 }
