@@ -131,6 +131,8 @@
 //! | palette | the 8-bit colours that a drawing may have |
 //! | stack | the order of colours, one layer each, that a drawing by colour has |
 //! | pen | a colour and a width that many opaque strokes share |
+//! | sharing | giving strokes of a drawing of lines the same widths and colours where that costs little |
+//! | tie | holds numbers of strokes equal while they are fitted |
 //! | seed | key of all random draws; *seeding* is the search for candidates |
 //! | grace | how long a fit that is asked to stop may take to finish its drawing |
 //! | paper | a background that stays although a given palette has nothing like it |

@@ -457,9 +457,9 @@ fn asked_for_60(place: &Place, input: &str, options: &[&str]) -> (f64, String) {
 fn what_is_said_to_help_helps() {
     let place = Place::new();
     let noise = |x: u32, y: u32| (((x * 7919 + y * 104_729) * 2_654_435) >> 8) as u8;
-    let picture = image::GrayImage::from_fn(24, 16, |x, y| image::Luma([noise(x, y)]));
+    let picture = image::GrayImage::from_fn(40, 30, |x, y| image::Luma([noise(x, y)]));
     picture.save(place.path("in.png")).unwrap();
-    let twice = image::imageops::resize(&picture, 48, 32, image::imageops::FilterType::Triangle);
+    let twice = image::imageops::resize(&picture, 80, 60, image::imageops::FilterType::Triangle);
     twice.save(place.path("twice.png")).unwrap();
 
     let (few, line) = asked_for_60(&place, "in.png", &["--strokes", "5"]);
@@ -489,12 +489,11 @@ fn what_is_said_to_help_helps() {
 }
 
 #[test]
-fn what_is_said_to_help_a_picture_of_nine_pixels_helps() {
+fn what_is_said_to_help_a_picture_of_few_pixels_helps() {
     let place = Place::new();
-    let mut picture = image::RgbImage::from_pixel(3, 3, image::Rgb([255; 3]));
-    for (at, color) in [(0, [255, 0, 0]), (1, [128; 3]), (2, [0, 0, 255])] {
-        picture.put_pixel(at, at, image::Rgb(color));
-    }
+    let mut picture =
+        image::RgbImage::from_fn(4, 4, |x, y| image::Rgb([255 * ((x + y) % 2) as u8; 3]));
+    picture.put_pixel(3, 3, image::Rgb([128; 3]));
     picture.save(place.path("in.png")).unwrap();
     let output = place.run(&["fit", "in.png", "-o", "out.svg"]);
     assert_eq!(output.status.code(), Some(4));
@@ -503,7 +502,7 @@ fn what_is_said_to_help_a_picture_of_nine_pixels_helps() {
         "{}",
         stderr(&output)
     );
-    let large = image::imageops::resize(&picture, 48, 48, image::imageops::FilterType::Nearest);
+    let large = image::imageops::resize(&picture, 64, 64, image::imageops::FilterType::Nearest);
     large.save(place.path("in.png")).unwrap();
     place.done(&["fit", "in.png", "-o", "out.svg"]);
     place.done(&["render", "out.svg", "-o", "out.png"]);

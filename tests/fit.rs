@@ -172,6 +172,37 @@ fn one_capsule_on_a_flat_page_is_one_stroke_or_two() {
     assert!((1..=2).contains(&fit.scene.len()), "{}", fit.scene.len());
 }
 
+/// Six lines drawn with two pens come back with two, so that each is selected at once in an editor.
+#[test]
+fn strokes_share_the_pens_of_the_picture() {
+    let line = |i: usize, pen: &str| {
+        let y = 10 + 14 * i;
+        format!(r#"<path d="M14 {y}L{} {}" {pen}/>"#, 130 - 5 * i, y + 6)
+    };
+    let thin = r##"stroke="#c02010" stroke-width="2.6""##;
+    let thick = r##"stroke="#1030a0" stroke-width="5.3""##;
+    let lines: String = (0..6).map(|i| line(i, [thin, thick][i % 2])).collect();
+    let picture = verify::render(
+        &format!(
+            r#"<svg xmlns="http://www.w3.org/2000/svg" width="144" height="100" stroke-linecap="round">{lines}</svg>"#
+        ),
+        verify::Size::Scale(1.0),
+        Some([1.0; 3]),
+    )
+    .unwrap();
+    let config = Config::default();
+    let fit = drawn(&picture, &config);
+    assert_eq!(fit.scene.len(), 6);
+    let written = svg::read(&text(&fit, &config)).unwrap();
+    let looks = written.strokes().map(|s| (s.color, s.radius, s.opacity));
+    let mut looks: Vec<String> = looks.map(|look| format!("{look:?}")).collect();
+    looks.sort();
+    looks.dedup();
+    assert_eq!(looks.len(), 2, "{looks:?}");
+    assert!(written.strokes().all(|s| s.opacity == 1.0));
+    assert!(verdict(&fit, &config).fidelity.psnr_db > 38.0);
+}
+
 #[test]
 fn quality_decides_how_many_strokes_a_scene_gets() {
     let count = |picture: &Image, quality: f64| {

@@ -9,6 +9,7 @@ use super::anneal::Annealing;
 use super::deadline::Timer;
 use super::drawing::Drawing;
 use super::recipe::{Rates, Recipe};
+use super::ties::Ties;
 use crate::optim::{Adam, Optimizer, Schedule};
 use crate::render::{Canvas, Gradients, LOOK};
 
@@ -56,6 +57,9 @@ pub(super) struct Descent {
     background: Adam<f32>,
     /// Step size of each parameter of each stroke.
     scales: Vec<f32>,
+    /// Numbers that stay equal.
+    #[serde(skip)]
+    pub(super) ties: Ties,
     /// Gradients of the last step.
     #[serde(skip)]
     pub(super) gradients: Gradients,
@@ -77,6 +81,7 @@ impl Descent {
             adam: Adam::new(drawing.free().numbers().len(), recipe.optimizer.strokes),
             background: Adam::new(3, recipe.optimizer.background),
             scales: scales(&course.rates, drawing, recipe),
+            ties: Ties::default(),
             gradients: Gradients::default(),
         }
     }
@@ -134,7 +139,8 @@ impl Descent {
         let rate = course.rate(at);
         let bounds = drawing.bounds;
         let strokes = drawing.free_mut();
-        let slopes = &self.gradients.strokes;
+        let slopes = &mut self.gradients.strokes;
+        self.ties.gather(slopes);
         self.adam
             .step_scaled(strokes.numbers_mut(), slopes, rate, &self.scales);
         strokes.change(|_, stroke| bounds.apply(stroke));

@@ -3,7 +3,6 @@
 
 use super::drawing::Drawing;
 use crate::image::Image;
-use crate::math;
 use crate::render::{Gradients, StrokeRef};
 
 /// Change of a channel that cannot be seen: less than half an 8-bit level.
@@ -81,10 +80,6 @@ impl Drawing {
 
 /// About how many pixels a stroke covers.
 fn pixels(stroke: StrokeRef<'_>) -> f32 {
-    let steps = stroke.points.windows(2);
-    let length: f32 = steps
-        .map(|p| math::hypot(p[1][0] - p[0][0], p[1][1] - p[0][1]))
-        .sum();
     let radius = stroke.radius();
-    radius * (2.0 * length + std::f32::consts::PI * radius)
+    radius * (2.0 * stroke.length() + std::f32::consts::PI * radius)
 }

@@ -46,6 +46,7 @@ mod session;
 mod shading;
 mod simd;
 mod surface;
+mod ties;
 mod words;
 
 pub use anneal::final_softness;

@@ -6,6 +6,7 @@
 //! | `grow` | stages are seeded, fitted on frozen strokes, and keep what pays |
 //! | `polish` | all strokes are fitted jointly, with relocation |
 //! | `palette`, `stack`, `pens` | the drawing is restricted to few colours, one layer each if asked for, and few pens |
+//! | `sharing` | strokes of a drawing of lines come to share widths and colours |
 //! | `settle` | the last steps are taken against renders of the written file |
 //! | `count` | strokes are added and removed until budgets are met |
 
@@ -17,5 +18,6 @@ pub(super) mod polish;
 mod preferences;
 mod rounds;
 pub(super) mod settle;
+mod sharing;
 mod stack;
 pub(super) mod trace;

@@ -52,6 +52,8 @@ pub struct Recipe {
     pub coloring: Recoloring,
     /// How opaque strokes come to share pens.
     pub pens: Pens,
+    /// Widths and colours that strokes share.
+    pub sharing: Sharing,
     /// The last steps, against renders of the written file.
     pub settling: Settling,
     /// How the number of strokes is corrected to meet a fidelity.
@@ -292,6 +294,14 @@ pub struct Pens {
     pub contrast: f32,
     /// Most strokes that may share pens with each other. The time grows with the square, as all pairs are compared.
     pub window: usize,
+}
+
+/// How strokes of a drawing of lines come to share widths and colours.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sharing {
+    /// How much the squared error may grow by each of three steps (opaque strokes, few widths, few colours), in units of
+    /// that of the drawing, before the drawing is settled.
+    pub error: f64,
 }
 
 /// The last steps, against renders of the written file.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::math::Point;
+use crate::math::{self, Point};
 use crate::scene::{Path, PathPoint, Rgb, Stroke};
 
 /// Numbers of a capsule, in the order of the constants below.
@@ -86,6 +86,14 @@ impl StrokeRef<'_> {
     /// 0..1.
     pub fn opacity(&self) -> f32 {
         self.look[4]
+    }
+
+    /// Length of the lines through the points in their order, px.
+    pub fn length(&self) -> f32 {
+        let steps = self.points.windows(2);
+        steps
+            .map(|step| math::hypot(step[1][0] - step[0][0], step[1][1] - step[0][1]))
+            .sum()
     }
 
     /// Whether the path has no curve.

@@ -137,7 +137,7 @@ impl Pen {
             color: stroke.color(),
             area: weight,
             radius: ladder.rung(stroke.radius()),
-            edge: 2.0 * length(stroke) + TAU * stroke.radius(),
+            edge: 2.0 * stroke.length() + TAU * stroke.radius(),
         }
     }
 
@@ -188,14 +188,6 @@ impl Ladder {
         let steps = math::ln((radius / self.least).max(1.0)) / math::ln(self.step);
         self.least * math::powf(self.step, steps.round())
     }
-}
-
-/// Length of the lines through the points of a stroke, px.
-fn length(stroke: StrokeRef<'_>) -> f32 {
-    let steps = stroke.points.windows(2);
-    steps
-        .map(|step| math::hypot(step[1][0] - step[0][0], step[1][1] - step[0][1]))
-        .sum()
 }
 
 /// Chooses the pens of the strokes of a window.

@@ -9,7 +9,7 @@
 //!
 //! [`renderers`]: crate::fit::renderers
 
-use super::{palette, pens, stack};
+use super::{palette, pens, sharing, stack};
 use crate::error::Result;
 use crate::fit::budget;
 use crate::fit::config::Colors;
@@ -22,6 +22,7 @@ use crate::fit::recipe::Rates;
 use crate::fit::renderers::Renderings;
 use crate::fit::result::Stop;
 use crate::fit::session::Session;
+use crate::fit::ties::Ties;
 use crate::metrics::psnr_db;
 use crate::svg::Group;
 
@@ -29,10 +30,10 @@ use crate::svg::Group;
 pub(in crate::fit) fn settle(session: &mut Session<'_>) -> Result<Outcome> {
     session.drawing.thaw();
     session.drawing.sharpen(0.0);
-    let rates = restrict(session)?;
+    let restricted = restrict(session)?;
     let budget = &session.config.budget;
     if budget::needs_file(budget, &session.recipe) {
-        let file = run(session, rates)?;
+        let file = run(session, restricted)?;
         session.history.corrections.last_db = psnr_db(file.mse);
         let best = session.best.as_ref();
         if best.is_none_or(|best| budget::is_better(budget, &file, best)) {
@@ -44,8 +45,14 @@ pub(in crate::fit) fn settle(session: &mut Session<'_>) -> Result<Outcome> {
     Ok(Outcome::Over)
 }
 
-/// Restricts the drawing to its palette and pens, and returns rates that keep those.
-fn restrict(session: &mut Session<'_>) -> Result<Rates> {
+/// What settling leaves as it is.
+struct Restricted {
+    rates: Rates,
+    ties: Ties,
+}
+
+/// Restricts the drawing to its palette and pens, and returns what keeps those.
+fn restrict(session: &mut Session<'_>) -> Result<Restricted> {
     let mut rates = session.recipe.polish.rates;
     if let Some(mut palette) = palette::run(session)? {
         if session.config.file.group == Group::Color {
@@ -60,12 +67,14 @@ fn restrict(session: &mut Session<'_>) -> Result<Rates> {
     if session.config.colors != Colors::Free {
         session.drawing.remove_hidden();
     }
-    Ok(rates)
+    let ties = sharing::run(session);
+    Ok(Restricted { rates, ties })
 }
 
 /// Descends against renders of the file and returns the best file. The drawing becomes the one that it was written
 /// from.
-fn run(session: &mut Session<'_>, rates: Rates) -> Result<RenderedFile> {
+fn run(session: &mut Session<'_>, restricted: Restricted) -> Result<RenderedFile> {
+    let Restricted { rates, ties } = restricted;
     let settling = session.recipe.settling;
     session.progress.settle();
     let mut file = session.render_file()?;
@@ -84,6 +93,7 @@ fn run(session: &mut Session<'_>, rates: Rates) -> Result<RenderedFile> {
             mse: file.mse,
         };
         let mut descent = session.descent(course(session, rates, pace));
+        descent.ties.clone_from(&ties);
         descend(session, &mut descent, Some(aim))?;
         if session.progress.is_halted() {
             break;

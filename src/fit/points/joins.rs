@@ -182,7 +182,7 @@ fn push_joined(
     }
     points.extend(&rest[1..]);
     let (a, b) = (strokes.get(pair.lower), strokes.get(pair.upper));
-    let (weight, other) = (length(a), length(b));
+    let (weight, other) = (a.length(), b.length());
     let share = other / (weight + other).max(f32::MIN_POSITIVE);
     let look: [f32; LOOK] = std::array::from_fn(|k| a.look[k] + share * (b.look[k] - a.look[k]));
     let places: Vec<[f32; 2]> = points.iter().map(|point| point.0).collect();
@@ -199,12 +199,6 @@ fn push_joined(
             .flat_map(|point| [point.2, point.2.map(|at| at + 1)]),
     );
     sources.extend(strokes.range(pair.upper).rev().take(LOOK).rev().map(Some));
-}
-
-/// Length of the lines through the points of a stroke, px.
-fn length(stroke: StrokeRef<'_>) -> f32 {
-    let steps = stroke.points.windows(2);
-    steps.map(|step| distance(step[0], step[1])).sum()
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::{
     AdamSettings, BackgroundChoice, Correction, Domain, EdgeShape, Joins, Pens, Points, Polish,
-    Preset, Rates, Recipe, Recoloring, Relocation, Rounds, Settling, ShadeChoice, Stages,
+    Preset, Rates, Recipe, Recoloring, Relocation, Rounds, Settling, ShadeChoice, Sharing, Stages,
     TimeShares,
 };
 use crate::optim::AdamParams;
@@ -191,6 +191,7 @@ const BALANCED: Recipe = Recipe {
         contrast: 0.02,
         window: 1024,
     },
+    sharing: Sharing { error: 0.1 },
     settling: Settling {
         rounds: 5,
         iterations: 20,
