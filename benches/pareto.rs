@@ -12,7 +12,8 @@
 use std::path::{Path, PathBuf};
 
 use strokefit::bench::child::{Runner, perform};
-use strokefit::bench::pareto::{self, Peer, Sweep, Traced, Work};
+use strokefit::bench::pareto::{self, Sweep, Work};
+use strokefit::bench::peers::{self, Peer, Traced};
 use strokefit::image::Image;
 use strokefit::lab::ResultFolder;
 use strokefit::report::Usage;
@@ -26,7 +27,7 @@ fn main() -> Result<()> {
     let args: Vec<String> = std::env::args().skip(1).collect();
     if let Some(at) = args.iter().position(|arg| arg == CASE) {
         let measurement = args.get(at + 1).map_or("", String::as_str);
-        println!("{}", perform(measurement, &peers())?);
+        println!("{}", perform(measurement, &all_peers())?);
         return Ok(());
     }
     // Cargo passes --bench to benchmarks, unless it runs them as tests.
@@ -38,9 +39,9 @@ fn main() -> Result<()> {
     }
 }
 
-fn peers() -> Vec<Box<dyn Peer>> {
+fn all_peers() -> Vec<Box<dyn Peer>> {
     std::iter::once(Box::new(VTracer) as Box<dyn Peer>)
-        .chain(pareto::installed())
+        .chain(peers::installed())
         .collect()
 }
 
@@ -88,7 +89,7 @@ fn run(folder: &Path, pictures: &[PathBuf], work: &Work) -> Result<()> {
     let mut say = |line: &str| println!("{line}");
     let mut tell = |_: strokefit::lab::Notice<'_>| {};
     let mut output = ResultFolder::new(folder, &mut tell)?;
-    let report = pareto::run(folder, pictures, work, &peers(), &measure, &mut say)?;
+    let report = pareto::run(folder, pictures, work, &all_peers(), &measure, &mut say)?;
     pareto::publish(&mut output, folder, pictures, &report)?;
     match report.failures() {
         0 => Ok(()),

@@ -28,7 +28,7 @@
 //! ```
 
 #[cfg(feature = "cli")]
-mod centre;
+mod elements;
 mod limits;
 mod painting;
 mod placement;
@@ -43,7 +43,7 @@ use resvg::usvg::Tree;
 use serde::{Deserialize, Serialize};
 
 #[cfg(feature = "cli")]
-pub use centre::{CentreLines, centre_lines};
+pub use elements::{Element, elements};
 pub use painting::Painting;
 use raster::draw;
 use tree::parse;

@@ -181,23 +181,26 @@ fn a_case_that_fails_is_told_and_the_rest_goes_on() {
     assert!(place.path("out/pareto.html").exists());
 }
 
+/// A program in the folder `programs`.
+#[cfg(unix)]
+fn program(place: &Place, name: &str, script: &str) {
+    use std::os::unix::fs::PermissionsExt;
+    let path = place.path("programs").join(name);
+    fs::write(&path, format!("#!/bin/sh\n{script}\n")).unwrap();
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
+}
+
 /// A program that draws a grey page to the file after the word `-o`, and one that says why it does not.
 #[cfg(unix)]
 #[test]
 fn a_peer_that_fails_is_a_case_that_fails() {
-    use std::os::unix::fs::PermissionsExt;
     let place = Place::new();
     place.picture("a.png", 40, 30);
     fs::create_dir(place.path("programs")).unwrap();
-    let program = |name: &str, script: &str| {
-        let path = place.path("programs").join(name);
-        fs::write(&path, format!("#!/bin/sh\n{script}\n")).unwrap();
-        fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
-    };
     let page = r##"<svg xmlns="http://www.w3.org/2000/svg" width="40" height="30"><rect width="40" height="30" fill="#808080"/></svg>"##;
     let draw = format!("while [ \"$1\" != -o ]; do shift; done; echo '{page}' > \"$2\"");
-    program("primitive", &draw);
-    program("vtracer", "echo 'no bits left' >&2; exit 3");
+    program(&place, "primitive", &draw);
+    program(&place, "vtracer", "echo 'no bits left' >&2; exit 3");
     let output = bench_beside(place.path("programs").to_str().unwrap(), &place, &FEW);
     assert_eq!(output.status.code(), Some(1), "{output:?}");
     let of = |name: &str| -> Vec<String> {
@@ -257,9 +260,69 @@ fn drawings_are_found_again_stroke_by_stroke() {
         found("translucent").contains(" 2 elements of 2,"),
         "{lines:?}"
     );
-    for name in ["inverse.csv", "inverse.json", "inverse.md", "clock-96.svg"] {
+    for name in [
+        "inverse.csv",
+        "inverse.json",
+        "inverse.md",
+        "inverse.png",
+        "inverse-elements.svg",
+        "inverse-db.svg",
+        "inverse-bytes.svg",
+        "clock-96.svg",
+    ] {
         assert!(place.path("out").join(name).exists(), "{name}");
     }
+    // Who is not installed is said once, each in a line.
+    let said = String::from_utf8(output.stderr).unwrap();
+    for peer in ["pyautotrace", "potrace", "vtracer", "inkscape"] {
+        let start = format!("{peer}: not measured");
+        assert_eq!(said.matches(&start).count(), 1, "{said}");
+    }
+}
+
+/// One that draws a centre line without a width, one that fills areas, and one that fails.
+#[cfg(unix)]
+#[test]
+fn peers_trace_the_pictures_of_known_drawings() {
+    let place = Place::new();
+    fs::create_dir(place.path("programs")).unwrap();
+    let svg = |path: &str| {
+        format!(r##"<svg xmlns="http://www.w3.org/2000/svg" width="96" height="96">{path}</svg>"##)
+    };
+    let stroke = svg(r##"<path style="stroke:#000000; fill:none;" d="M20 20L76 76"/>"##);
+    let area = svg(r##"<path fill="#000000" d="M20 20L76 20L76 76z"/>"##);
+    let version = "[ \"$1\" != --version ] || { echo pyautotrace 1; exit; }";
+    let draw = format!("{version}; echo '{stroke}' > \"$2\"");
+    program(&place, "pyautotrace", &draw);
+    let draw = format!("while [ \"$1\" != --output ]; do shift; done; echo '{area}' > \"$2\"");
+    program(&place, "potrace", &draw);
+    program(&place, "vtracer", "echo 'no bits left' >&2; exit 3");
+    let zap = committed("samples/icons/zap.svg");
+    let programs = place.path("programs");
+    let args = ["inverse", &zap, "-o", "out", "--short"];
+    let output = bench_beside(programs.to_str().unwrap(), &place, &args);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let lines = lines(&output);
+    let line = |peer: &str| {
+        let start = format!("zap at 96 px, {peer}: ");
+        lines.iter().find(|line| line.starts_with(&start)).unwrap()
+    };
+    assert!(line("pyautotrace").contains("1 elements of 1, 2 points of "));
+    assert!(line("pyautotrace").contains(" dB, centre lines "));
+    assert!(line("potrace").ends_with(" dB, no centre lines: pass"));
+    let failed = line("vtracer");
+    assert!(failed.contains("no bits left (exit status: 3)") && failed.ends_with(": FAIL"));
+    // It tells no widths, so it is told that of the drawing: 2 of 24.
+    let told = fs::read_to_string(place.path("out/zap-96-pyautotrace.svg")).unwrap();
+    assert!(told.contains(r#"stroke-width="8.00""#), "{told}");
+    assert!(!place.path("out/zap-96-vtracer.svg").exists());
+    let table = fs::read_to_string(place.path("out/inverse.csv")).unwrap();
+    assert!(table.starts_with("drawing,side_px,jpeg,by,drawn_elements,found_elements,"));
+    let row = table
+        .lines()
+        .find(|row| row.starts_with("zap,96,,potrace,1,1,1,1,"));
+    let cells: Vec<&str> = row.unwrap().split(',').collect();
+    assert_eq!(cells[13..15], ["", ""], "areas have no centre lines");
 }
 
 #[test]

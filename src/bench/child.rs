@@ -8,7 +8,8 @@ use std::process::Command;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use super::pareto::{Case, Peer};
+use super::pareto::Case;
+use super::peers::Peer;
 use super::scaling::Point;
 use crate::error::{Error, ErrorKind, Result};
 use crate::report::pareto::ParetoEntry;

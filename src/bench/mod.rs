@@ -8,11 +8,13 @@
 //! | [`scaling`] | how do time and memory grow with strokes, pixels and threads? |
 //!
 //! Each returns plain records of [`report`](crate::report), which turns them into tables, plots and pages.
-//! `strokefit bench` runs them. [`child`] runs one case in a process of its own.
+//! `strokefit bench` runs them. [`child`] runs one case in a process of its own, and [`peers`] knows who else makes
+//! drawings.
 
 pub mod child;
 pub mod inverse;
 pub mod measure;
 pub mod pareto;
+pub mod peers;
 pub mod scaling;
 pub mod stability;

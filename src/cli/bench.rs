@@ -7,14 +7,15 @@ use anyhow::Result;
 use clap::Subcommand;
 use clap::builder::TypedValueParser;
 use strokefit::bench::child::{Runner, perform};
-use strokefit::bench::inverse::{self, Drawing, Pictures};
-use strokefit::bench::pareto::{self, Effort, Sweep, Work, installed, known, missing};
+use strokefit::bench::inverse::{self, Drawing, Gallery, Pictures};
+use strokefit::bench::pareto::{self, Effort, Sweep, Work};
+use strokefit::bench::peers::{installed, installed_for_lines, known, missing, missing_for_lines};
 use strokefit::bench::scaling;
 use strokefit::bench::stability::{self, Extent};
 use strokefit::coverage::CoverageSchedule;
 use strokefit::fit::Config;
 use strokefit::lab::{Notice, ResultFolder};
-use strokefit::report::json;
+use strokefit::report::{inverse::charts, json};
 
 use super::{Status, Verbosity, domain, input, output, words};
 
@@ -105,7 +106,8 @@ struct Stability {
     extents: Extents,
 }
 
-/// Find drawings of known strokes again in pictures of them
+/// Find drawings of known strokes again in pictures of them, beside other programs that are installed
+/// (pyautotrace, potrace, vtracer, Inkscape)
 #[derive(Debug, clap::Args)]
 struct Inverse {
     /// SVGs drawn by strokes, in addition to those that are built in
@@ -135,7 +137,7 @@ impl Benchmark {
         match self {
             Self::Pareto(pareto) => pareto.run(folder, files, host, verbosity),
             Self::Stability(stability) => stability.run(files),
-            Self::Inverse(inverse) => inverse.run(files),
+            Self::Inverse(inverse) => inverse.run(files, verbosity),
             Self::Scaling(scaling) => scaling.run(files, host),
             Self::Case { .. } => Ok(0),
         }
@@ -181,10 +183,8 @@ impl Pareto {
         let (work, peers) = (self.work(), installed());
         let report = pareto::run(folder, pictures, &work, &peers, &measure, &mut say)?;
         pareto::publish(files, folder, pictures, &report)?;
-        for name in missing().into_iter().filter(|_| self.svgs.is_empty()) {
-            verbosity.say(format_args!(
-                "{name}: not measured: it is not installed, is too old, or lacks a display"
-            ));
+        if self.svgs.is_empty() {
+            say_missing(&missing(), verbosity);
         }
         Ok(report.failures())
     }
@@ -211,12 +211,7 @@ impl Stability {
 }
 
 impl Inverse {
-    fn run(&self, files: &mut ResultFolder<'_>) -> Result<usize> {
-        let pictures = if self.extents.short {
-            Pictures::short()
-        } else {
-            Pictures::full()
-        };
+    fn drawings(&self) -> Result<Vec<Drawing>> {
         let mut drawings = inverse::own();
         for path in &self.drawings {
             let svg = input::svg(path)?;
@@ -224,25 +219,43 @@ impl Inverse {
             let name = name.into_owned();
             drawings.push(Drawing { name, svg });
         }
-        let mut found = Vec::new();
-        let report = inverse::run(
-            &drawings,
-            &pictures,
-            &Config::default(),
-            &mut |entry, svg| {
-                say(&entry.line());
-                let jpeg = entry.jpeg.map(|quality| format!("-jpeg{quality}"));
-                let kind = format!("{}{}", entry.side_px, jpeg.unwrap_or_default());
-                found.push((format!("{}-{kind}.svg", entry.drawing), svg.to_owned()));
-            },
-        )?;
+        Ok(drawings)
+    }
+
+    fn run(&self, files: &mut ResultFolder<'_>, verbosity: Verbosity) -> Result<usize> {
+        let pictures = if self.extents.short {
+            Pictures::short()
+        } else {
+            Pictures::full()
+        };
+        let (drawings, peers) = (self.drawings()?, installed_for_lines());
+        let mut gallery = Gallery::of(&pictures.sides);
+        let config = Config::default();
+        let report = inverse::run(&drawings, &pictures, &peers, &config, &mut |outcome| {
+            say(&outcome.entry.line());
+            gallery.show(outcome)?;
+            match outcome.svg {
+                "" => Ok(()),
+                svg => files.text(&outcome.entry.svg_name(), svg),
+            }
+        })?;
         files.text("inverse.csv", &report.table().csv())?;
         files.text("inverse.md", &report.markdown())?;
         files.text("inverse.json", &json(&report)?)?;
-        for (name, svg) in found {
-            files.text(&name, &svg)?;
+        for (plot, svg) in charts(&report)? {
+            files.text(&format!("inverse-{plot}.svg"), &svg)?;
         }
-        Ok(0)
+        files.picture("inverse.png", &gallery.sheet()?)?;
+        say_missing(&missing_for_lines(), verbosity);
+        Ok(report.failures())
+    }
+}
+
+fn say_missing(names: &[&str], verbosity: Verbosity) {
+    for name in names {
+        verbosity.say(format_args!(
+            "{name}: not measured: it is not installed, is too old, or lacks a display"
+        ));
     }
 }
 

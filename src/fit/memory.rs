@@ -7,12 +7,12 @@ use crate::image::Image;
 /// Bytes for the program and its libraries.
 const BASE: u64 = 16 << 20;
 /// Bytes per pixel for the picture, its reductions, canvases and renders, and for judging them.
-const PER_PIXEL: u64 = 184;
-/// Bytes per stroke for parameters, the optimiser's state, the SVG text and its tree. Measured: 1,200 to 2,600; less
-/// in large pictures, where the peaks of pixels and of strokes come at different times.
-const PER_STROKE: u64 = 2000;
+const PER_PIXEL: u64 = 195;
+/// Bytes per stroke for its points, the optimiser's state, the tiles that it touches, the SVG text and its tree. Measured:
+/// 7,000 to 13,000, more where strokes cover each other many times.
+const PER_STROKE: u64 = 8000;
 
-/// The predicted peak memory, bytes, of a process that draws `picture` and judges the drawing. It is within a third of
+/// The predicted peak memory, bytes, of a process that draws `picture` and judges the drawing. It is within a fifth of
 /// the true peak for pictures of more than 100×100 px. Without a budget of strokes it assumes an ordinary drawing.
 pub fn predicted_rss_bytes(picture: &Image, config: &Config) -> u64 {
     let pixels = picture.width() * picture.height();

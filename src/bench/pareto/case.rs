@@ -7,7 +7,7 @@ use std::{fmt, fs};
 
 use serde::{Deserialize, Serialize};
 
-use super::programs::Peer;
+use crate::bench::peers::Peer;
 use crate::coverage::{Coverage, CoverageSchedule};
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::{Budget, Config, Execution, Fitter, Preset};

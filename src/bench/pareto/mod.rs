@@ -7,16 +7,15 @@
 mod case;
 mod gallery;
 mod journal;
-mod programs;
 mod sweep;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 pub use case::{Case, Effort, Limit, Maker};
-pub use programs::{Peer, Traced, installed, known, missing};
 pub use sweep::{Sweep, Work};
 
+use crate::bench::peers::Peer;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
 use crate::lab::ResultFolder;

@@ -4,8 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::case::{Case, Effort, Limit, Maker, stem};
-use super::programs::Peer;
 use super::unread;
+use crate::bench::peers::Peer;
 use crate::coverage::CoverageSchedule;
 use crate::error::{Error, ErrorKind, Result};
 use crate::report::pareto::{OWN, ParetoEntry};

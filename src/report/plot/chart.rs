@@ -126,14 +126,17 @@ impl Chart {
             .x_desc(&self.axes[0])
             .y_desc(&self.axes[1])
             .x_label_formatter(&|v| self.label_x(*v))
-            .y_label_formatter(&|v| self.label_y(*v))
+            .y_label_formatter(&|v| self.label_y(*v, is_plain(y)))
             .label_style((FONT, 13))
             .draw()?;
-        for ((name, _), (points, color)) in self
-            .series
-            .iter()
+        let mut lines: Vec<_> = (self.series.iter().map(|(name, _)| name))
             .zip(series.iter().zip(SERIES.iter().cycle()))
-        {
+            .collect();
+        if beside.is_some() {
+            // The first above all others; a legend within the chart is in the order of drawing.
+            lines.reverse();
+        }
+        for (name, (points, color)) in lines {
             let points = points.iter().map(|&[x, y]| (x, y));
             chart
                 .draw_series(LineSeries::new(points, color.stroke_width(2)))?
@@ -142,7 +145,9 @@ impl Chart {
                     PathElement::new([(x, y), (x + 18, y)], color.stroke_width(3))
                 });
         }
-        for (points, color) in marks.iter().zip(SERIES.iter().cycle()) {
+        let mut discs: Vec<_> = marks.iter().zip(SERIES.iter().cycle()).collect();
+        discs.reverse();
+        for (points, color) in discs {
             let discs = points
                 .iter()
                 .map(|&[x, y]| Circle::new((x, y), 3, color.filled()));
@@ -215,8 +220,10 @@ impl Chart {
         }
     }
 
-    fn label_y(&self, v: f64) -> String {
-        if self.logarithmic {
+    fn label_y(&self, v: f64, plain: bool) -> String {
+        if self.logarithmic && plain {
+            significant(math::powf(10.0, v))
+        } else if self.logarithmic {
             format!("{:.1e}", math::powf(10.0, v))
         } else {
             let text = format!("{v:.3}");
@@ -238,6 +245,11 @@ fn significant(v: f64) -> String {
             },
     );
     format!("{:.digits$}", (v * unit).round() / unit)
+}
+
+/// Whether the numbers of a logarithmic axis need no exponents.
+fn is_plain((low, high): (f64, f64)) -> bool {
+    low > -1.5 && high < 6.0
 }
 
 /// Room around marks, as a share of the axis.
@@ -295,6 +307,20 @@ mod tests {
         let text = chart.svg().unwrap();
         assert_eq!(text.matches("<circle").count(), 2, "0 has no logarithm");
         assert!(text.contains("front"));
+    }
+
+    #[test]
+    fn logarithmic_axes_have_exponents_only_where_numbers_need_them() {
+        let svg = |high| {
+            let chart = Chart {
+                logarithmic: true,
+                series: vec![("a".into(), vec![[0.0, 1.0], [1.0, high]])],
+                ..Chart::default()
+            };
+            chart.svg().unwrap()
+        };
+        let has_exponents = |svg: String| svg.contains("1.0e");
+        assert!(!has_exponents(svg(100.0)) && has_exponents(svg(1e9)));
     }
 
     #[test]

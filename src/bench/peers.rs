@@ -60,64 +60,92 @@ struct Program {
     needs_display: bool,
 }
 
-/// The programs that are known.
-const PROGRAMS: [Program; 4] = [
-    Program {
-        name: "vtracer",
-        input: "in.png",
-        settings: &[
-            "-f 16 -p 4 -g 96",
-            "-f 16 -p 4 -g 64",
-            "-f 10 -p 8 -g 48",
-            "-f 8 -p 6 -g 32",
-            "-f 4 -p 6 -g 16",
-            "-f 3 -p 7 -g 12",
-            "-f 4 -p 8 -g 8",
-            "-f 1 -p 8 -g 4",
-        ],
-        args: &[
-            "--input",
-            "{in}",
-            "--output",
-            "{out}",
-            "--path_precision",
-            "1",
-            "{settings}",
-        ],
-        can: None,
-        needs_display: false,
-    },
-    Program {
-        name: "primitive",
-        input: "in.png",
-        // A seventh of a second of CPU each, and the program has no seed: no two drawings are equal.
-        settings: &["-n 20 -m 0", "-n 50 -m 0", "-n 100 -m 0", "-n 300 -m 0"],
-        args: &["-i", "{in}", "-o", "{out}", "{settings}"],
-        can: None,
-        needs_display: false,
-    },
-    Program {
-        name: "potrace",
-        input: "in.ppm",
-        settings: &["--turdsize 10", "--turdsize 2"],
-        args: &["--svg", "{settings}", "--output", "{out}", "{in}"],
-        can: None,
-        needs_display: false,
-    },
-    Program {
-        name: "inkscape",
-        input: "in.png",
-        settings: &["4", "8", "16", "32"],
-        args: &[
-            "{in}",
-            // Without the picture itself, which is below the drawing.
-            "--actions=select-all;object-trace:{settings},false,true,false,4,1.0,0.2;select-clear;\
-             select-by-element:image;delete;export-filename:{out};export-plain-svg;export-do",
-        ],
-        // From version 1.3 on.
-        can: Some(["--action-list", "object-trace"]),
-        needs_display: true,
-    },
+const VTRACER: Program = Program {
+    name: "vtracer",
+    input: "in.png",
+    settings: &[
+        "-f 16 -p 4 -g 96",
+        "-f 16 -p 4 -g 64",
+        "-f 10 -p 8 -g 48",
+        "-f 8 -p 6 -g 32",
+        "-f 4 -p 6 -g 16",
+        "-f 3 -p 7 -g 12",
+        "-f 4 -p 8 -g 8",
+        "-f 1 -p 8 -g 4",
+    ],
+    args: &[
+        "--input",
+        "{in}",
+        "--output",
+        "{out}",
+        "--path_precision",
+        "1",
+        "{settings}",
+    ],
+    can: None,
+    needs_display: false,
+};
+
+const PRIMITIVE: Program = Program {
+    name: "primitive",
+    input: "in.png",
+    // A seventh of a second of CPU each, and the program has no seed: no two drawings are equal.
+    settings: &["-n 20 -m 0", "-n 50 -m 0", "-n 100 -m 0", "-n 300 -m 0"],
+    args: &["-i", "{in}", "-o", "{out}", "{settings}"],
+    can: None,
+    needs_display: false,
+};
+
+const POTRACE: Program = Program {
+    name: "potrace",
+    input: "in.ppm",
+    settings: &["--turdsize 10", "--turdsize 2"],
+    args: &["--svg", "{settings}", "--output", "{out}", "{in}"],
+    can: None,
+    needs_display: false,
+};
+
+const INKSCAPE: Program = Program {
+    name: "inkscape",
+    input: "in.png",
+    settings: &["4", "8", "16", "32"],
+    args: &[
+        "{in}",
+        // Without the picture itself, which is below the drawing.
+        "--actions=select-all;object-trace:{settings},false,true,false,4,1.0,0.2;select-clear;\
+         select-by-element:image;delete;export-filename:{out};export-plain-svg;export-do",
+    ],
+    // From version 1.3 on.
+    can: Some(["--action-list", "object-trace"]),
+    needs_display: true,
+};
+
+/// Needs numpy and Pillow, without which it cannot even tell its version.
+const PYAUTOTRACE: Program = Program {
+    name: "pyautotrace",
+    input: "in.png",
+    settings: &[],
+    args: &[
+        "{in}",
+        "{out}",
+        "--centerline",
+        "--background-color",
+        "#ffffff",
+        "{settings}",
+    ],
+    can: Some(["--version", "pyautotrace"]),
+    needs_display: false,
+};
+
+/// The programs that draw any picture.
+const PROGRAMS: [Program; 4] = [VTRACER, PRIMITIVE, POTRACE, INKSCAPE];
+
+/// The programs that draw lines, each at the setting for few colours; `{colors}` is how many, with the page's.
+const FOR_LINES: [(Program, &str); 4] = [
+    (PYAUTOTRACE, "--color-count {colors}"),
+    (POTRACE, "--turdsize 2"),
+    (VTRACER, "-f 4 -p 6 -g 16"),
+    (INKSCAPE, "{colors}"),
 ];
 
 /// The programs that are known, installed or not.
@@ -132,8 +160,52 @@ pub fn installed() -> Vec<Box<dyn Peer>> {
 
 /// Names of the known programs that are not, are too old, or have no display to work on.
 pub fn missing() -> Vec<&'static str> {
-    let missing = PROGRAMS.into_iter().filter(|program| !program.is_here());
-    missing.map(|program| program.name).collect()
+    names_of_missing(PROGRAMS.into_iter())
+}
+
+/// A peer that draws lines, at one of its settings.
+pub struct LinePeer {
+    peer: Box<dyn Peer>,
+    settings: &'static str,
+}
+
+impl LinePeer {
+    /// What tables call it.
+    pub fn name(&self) -> &str {
+        self.peer.name()
+    }
+
+    /// The drawing of a picture of so many `colors`, with that of the page.
+    ///
+    /// # Errors
+    /// When the peer makes none.
+    pub fn trace(&self, picture: &Image, colors: usize) -> Result<Traced> {
+        let settings = self.settings.replace("{colors}", &colors.to_string());
+        self.peer.trace(picture, &settings)
+    }
+}
+
+/// The programs that draw lines and are installed.
+pub fn installed_for_lines() -> Vec<LinePeer> {
+    let here = FOR_LINES.into_iter();
+    here.filter(|(program, _)| program.is_here())
+        .map(|(program, settings)| LinePeer {
+            peer: Box::new(program),
+            settings,
+        })
+        .collect()
+}
+
+/// Names of the programs that draw lines and are not installed, are too old, or have no display to work on.
+pub fn missing_for_lines() -> Vec<&'static str> {
+    names_of_missing(FOR_LINES.into_iter().map(|(program, _)| program))
+}
+
+fn names_of_missing(programs: impl Iterator<Item = Program>) -> Vec<&'static str> {
+    programs
+        .filter(|program| !program.is_here())
+        .map(|program| program.name)
+        .collect()
 }
 
 fn boxed(programs: impl Iterator<Item = Program>) -> Vec<Box<dyn Peer>> {
@@ -278,9 +350,9 @@ mod tests {
     #[test]
     fn settings_become_words_or_part_of_one() {
         let (from, to) = (Path::new("a.png"), Path::new("b.svg"));
-        let words = PROGRAMS[1].arguments(from, to, "-n 5 -m 1");
+        let words = PRIMITIVE.arguments(from, to, "-n 5 -m 1");
         assert_eq!(words, ["-i", "a.png", "-o", "b.svg", "-n", "5", "-m", "1"]);
-        let words = PROGRAMS[3].arguments(from, to, "8");
+        let words = INKSCAPE.arguments(from, to, "8");
         assert!(
             words[1].contains("trace:8,") && words[1].contains("filename:b.svg;"),
             "{words:?}"
