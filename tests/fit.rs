@@ -172,7 +172,8 @@ fn one_capsule_on_a_flat_page_is_one_stroke_or_two() {
     assert!((1..=2).contains(&fit.scene.len()), "{}", fit.scene.len());
 }
 
-/// Six lines drawn with two pens come back with two, so that each is selected at once in an editor.
+/// Six lines drawn with two pens come back with two, so that each is selected at once in an editor, and with two points
+/// each.
 #[test]
 fn strokes_share_the_pens_of_the_picture() {
     let line = |i: usize, pen: &str| {
@@ -200,6 +201,7 @@ fn strokes_share_the_pens_of_the_picture() {
     looks.dedup();
     assert_eq!(looks.len(), 2, "{looks:?}");
     assert!(written.strokes().all(|s| s.opacity == 1.0));
+    assert!(written.strokes().all(|s| s.path.points().len() == 2));
     assert!(verdict(&fit, &config).fidelity.psnr_db > 38.0);
 }
 

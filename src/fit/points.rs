@@ -47,7 +47,7 @@ pub(super) fn prune(session: &mut Session<'_>) {
         let survey = drawing.survey(LEAST);
         let strokes = drawing.free().iter().enumerate();
         let removals: Vec<Option<Edit>> = strokes
-            .map(|(i, stroke)| edits::best_removal(&Terrain::new(&survey, stroke, i)))
+            .map(|(i, stroke)| edits::best_loss(&Terrain::new(&survey, stroke, i)))
             .map(|edit| edit.filter(|edit| -edit.gain < to_keep))
             .collect();
         let count = removals.iter().flatten().count();

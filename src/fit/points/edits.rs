@@ -86,6 +86,33 @@ pub(super) fn best_removal(terrain: &Terrain<'_>) -> Option<Edit> {
     best((0..count).filter_map(removal))
 }
 
+/// The point that is missed least, where an end may move.
+pub(super) fn best_loss(terrain: &Terrain<'_>) -> Option<Edit> {
+    best(
+        [best_removal(terrain), best_retraction(terrain)]
+            .into_iter()
+            .flatten(),
+    )
+}
+
+/// The control point beside an end that is missed least. A curve that turns back there ends where it turned.
+fn best_retraction(terrain: &Terrain<'_>) -> Option<Edit> {
+    let StrokeRef { off, closed, .. } = terrain.stroke;
+    let count = off.len();
+    if count < 3 || closed {
+        return None;
+    }
+    let retraction = |(k, end): (usize, usize)| {
+        let tip = terrain.tip(end).filter(|_| off[k])?;
+        let mut edit = Edit::of_none(terrain);
+        edit.points[end] = tip;
+        edit.remove(k);
+        valued(terrain, edit, k)
+    };
+    let ends = [(1, 0), (count - 2, count - 1)];
+    best(ends.into_iter().filter_map(retraction))
+}
+
 /// The corner that should be smooth, or the control point that should be a corner. The path stays near the point.
 pub(super) fn best_toggle(terrain: &Terrain<'_>) -> Option<Edit> {
     let StrokeRef {

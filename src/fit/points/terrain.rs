@@ -5,6 +5,7 @@
 //! overestimated, as long as the shift is short.
 
 use super::LEAST;
+use crate::math;
 use crate::render::{Piece, Pieces, StrokeRef, Survey, flattened};
 
 /// One stroke and the survey of its vertices.
@@ -72,6 +73,23 @@ impl<'a> Terrain<'a> {
         }
         let shift = (-slope / stiffness).clamp(-most, most);
         (shift, -(slope * shift + 0.5 * stiffness * shift * shift))
+    }
+
+    /// The vertex of the piece at an end of the stroke, point `end`, that is farthest out: from where the next piece ends.
+    pub(super) fn tip(&self, end: usize) -> Option<[f32; 2]> {
+        let last = self.pieces.len().checked_sub(1)?;
+        let (at, from) = if end == 0 {
+            let next = self.pieces[last.min(1)];
+            (self.pieces[0], next.first + next.steps)
+        } else {
+            (self.pieces[last], self.pieces[last.saturating_sub(1)].first)
+        };
+        let from = self.vertices[from];
+        let away2 = |v: &[f32; 2]| math::powi(v[0] - from[0], 2) + math::powi(v[1] - from[1], 2);
+        let vertices = self.vertices[at.first..=at.first + at.steps].iter();
+        vertices
+            .max_by(|a, b| away2(a).total_cmp(&away2(b)))
+            .copied()
     }
 
     /// What changing the stroke to `changed` gains, if the vertices of the pieces that depend on point `k` shift to the
