@@ -34,7 +34,7 @@ impl Job {
         observer: &mut (dyn Observer + Send),
     ) -> Result<(Judged, String), Failure> {
         let name = self.picture.name();
-        let picture = self.picture.read()?;
+        let (picture, remarks) = self.picture.read()?;
         let bytes = fit::predicted_rss_bytes(&picture, &self.config);
         expect_memory(bytes, picture.width(), picture.height())?;
         let mut fitter = Fitter::new(self.config.clone())
@@ -57,7 +57,8 @@ impl Job {
             // What the process has used says little of one fit among others.
             usage: Usage::default(),
         };
-        let report = report::json(&FitReport::of(&judged, &run))?;
-        Ok((judged, report))
+        let mut report = FitReport::of(&judged, &run);
+        report.input = report.input.remarking(&remarks);
+        Ok((judged, report::json(&report)?))
     }
 }

@@ -141,7 +141,7 @@ fn interleaved(image: &Image, alpha: bool) -> (Vec<u8>, [usize; 3]) {
 fn judge(py: Python<'_>, svg: String, picture: &Bound<'_, PyAny>) -> PyResult<String> {
     let picture = Picture::of(picture)?;
     aside(py, None, move |_| {
-        let target = picture.read()?;
+        let (target, _) = picture.read()?;
         let judged = Execution::default().install(|| verify::fidelity(&svg, &target));
         let quality: Quality = judged??;
         Ok(report::json(&quality)?)

@@ -6,7 +6,7 @@ use numpy::{Element, PyArray3, PyArrayMethods, PyReadonlyArray3};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
-use strokefit::image::{Image, Limits, Rows, Sample};
+use strokefit::image::{Image, Limits, Remark, Rows, Sample};
 use strokefit::{Error, ErrorKind};
 
 use crate::failure::{Failure, expect_memory};
@@ -48,13 +48,14 @@ impl Picture {
         }
     }
 
-    /// Reads it.
-    pub(crate) fn read(self) -> Result<Image, Failure> {
-        match self {
-            Self::Path(path) => Ok(Image::open(path)?),
-            Self::Bytes(bytes) => Ok(Image::decode(&bytes, "the picture", Limits::default())?),
-            Self::Image(image) => Ok(image),
-        }
+    /// Reads it, and says what was changed or left out.
+    pub(crate) fn read(self) -> Result<(Image, Vec<Remark>), Failure> {
+        let limits = Limits::default();
+        Ok(match self {
+            Self::Path(path) => Image::read_within(path, limits)?,
+            Self::Bytes(bytes) => Image::decode_remarking(&bytes, "the picture", limits)?,
+            Self::Image(image) => (image, Vec::new()),
+        })
     }
 }
 

@@ -8,7 +8,12 @@ from __future__ import annotations
 from typing import Optional, TypedDict
 
 
-class Input(TypedDict):
+class _Remarked(TypedDict, total=False):
+    #: What reading the picture has changed or left out, in words; left out if nothing.
+    remarks: list[str]
+
+
+class Input(_Remarked):
     """The picture."""
 
     #: As it was named; empty for bytes and arrays.
@@ -116,12 +121,14 @@ class Travel(TypedDict):
     layers: list[LayerTravel]
 
 
-class _Plotted(TypedDict, total=False):
+class _Restricted(TypedDict, total=False):
     #: With `order="travel"` alone.
     travel: Travel
+    #: How much worse the drawing is, dB, because colours have a layer each. With `group="color"` and few colours alone.
+    stacking_db: float
 
 
-class Report(_Plotted):
+class Report(_Restricted):
     """What a fit did."""
 
     #: Version of this layout.
