@@ -11,7 +11,9 @@ import { animate, fit, fitPng } from "../pkg/node.js";
 import { fitElsewhere } from "./support/fit.mjs";
 import { inFolder, native, root, sample } from "./support/program.mjs";
 
-const pictures = readdirSync(join(root, "samples")).filter((name) => name.endsWith(".png"));
+// The package takes colours for sRGB; the program converts those of a file with another profile.
+const hasProfile = (name) => sample(name).includes("iCCP");
+const pictures = readdirSync(join(root, "samples")).filter((name) => name.endsWith(".png") && !hasProfile(name));
 
 describe("draws what the program draws", { concurrency: cpus().length }, () => {
   for (const name of pictures) {
