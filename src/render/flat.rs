@@ -5,10 +5,15 @@
 //! points with fixed weights: flattening is linear, and the derivative by a point is the same weights times the
 //! derivatives by the vertices.
 
+use rayon::prelude::*;
+
 use crate::math::Vector;
 use crate::sdf;
 
 use super::strokes::{LOOK, StrokeRef, Strokes};
+
+/// Strokes that are flattened at a time.
+pub(super) const CHUNK: usize = 128;
 
 /// Strokes as polylines.
 #[derive(Debug, Default)]
@@ -20,6 +25,8 @@ pub(super) struct Flat {
     pub(super) firsts: Vec<u32>,
     /// Radius, red, green, blue and opacity of each stroke.
     pub(super) looks: Vec<[f32; LOOK]>,
+    /// The smallest and the largest x and y of the vertices of each stroke, px.
+    pub(super) boxes: Vec<[[f32; 2]; 2]>,
 }
 
 /// A vertex as a mean of points.
@@ -53,24 +60,63 @@ impl Vertex {
 impl Flat {
     /// Flattens `strokes`. Each line and each curve becomes `least` segments or more.
     pub(super) fn fill(&mut self, strokes: &Strokes, least: usize) {
+        let chunks = (0..strokes.len()).into_par_iter().step_by(CHUNK);
+        let parts: Vec<Self> = chunks
+            .map(|first| {
+                let mut part = Self::default();
+                for i in first..strokes.len().min(first + CHUNK) {
+                    part.push(strokes.get(i), least);
+                }
+                part
+            })
+            .collect();
+        self.clear();
+        for part in &parts {
+            let before = self.vertices.len() as u32;
+            self.firsts
+                .extend(part.firsts.iter().map(|first| before + first));
+            self.vertices.extend(&part.vertices);
+            self.looks.extend(&part.looks);
+            self.boxes.extend(&part.boxes);
+        }
+        self.firsts.push(self.vertices.len() as u32);
+    }
+
+    fn clear(&mut self) {
         self.vertices.clear();
         self.firsts.clear();
         self.looks.clear();
-        for stroke in strokes.iter() {
-            self.firsts.push(self.vertices.len() as u32);
-            self.looks.push(*stroke.look);
-            if least == 1 && stroke.is_straight() {
-                self.vertices.extend(stroke.points);
-                if stroke.closed || stroke.points.len() == 1 {
-                    self.vertices.push(stroke.points[0]);
-                }
-            } else {
-                walk(stroke, least, |vertex| {
-                    self.vertices.push(vertex.place(stroke.points))
-                });
+        self.boxes.clear();
+    }
+
+    fn push(&mut self, stroke: StrokeRef<'_>, least: usize) {
+        let first = self.vertices.len();
+        self.firsts.push(first as u32);
+        // A radius that is no number touches no tile: such a stroke draws nothing, and its derivatives are 0.
+        let is_finite = stroke.is_finite();
+        self.looks.push(if is_finite {
+            *stroke.look
+        } else {
+            [f32::NAN; LOOK]
+        });
+        if least == 1 && stroke.is_straight() {
+            self.vertices.extend(stroke.points);
+            if stroke.closed || stroke.points.len() == 1 {
+                self.vertices.push(stroke.points[0]);
+            }
+        } else {
+            walk(stroke, least, |vertex| {
+                self.vertices.push(vertex.place(stroke.points))
+            });
+        }
+        let (mut low, mut high) = ([f32::INFINITY; 2], [f32::NEG_INFINITY; 2]);
+        for vertex in &self.vertices[first..] {
+            for axis in 0..2 {
+                low[axis] = low[axis].min(vertex[axis]);
+                high[axis] = high[axis].max(vertex[axis]);
             }
         }
-        self.firsts.push(self.vertices.len() as u32);
+        self.boxes.push([low, high]);
     }
 }
 

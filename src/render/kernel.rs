@@ -44,7 +44,7 @@ use super::grid::{BLOCKS, BlockRgb, BlockSet, Lanes, TileRgb, TileWeights, flat_
 use super::strokes::LOOK;
 use super::{CanvasLoss, Listed};
 use capsule::length;
-use sums::{Shifts, Sums};
+use sums::{EdgeBlock, Shifts, Sums};
 use union::{Kept, Segments, Union};
 
 /// Transmittance below which nothing behind shows: a sixty-fourth of an 8-bit level. Four times as
@@ -53,17 +53,6 @@ const OPAQUE: f32 = 1.0 / 16384.0;
 
 /// Least opacity that is drawn, so that the derivative by an opacity of 0 is not 0/0.
 const FAINTEST: f32 = 1e-20;
-
-/// What pass 1 keeps of a block on the soft edge.
-#[derive(Debug, Clone, Copy)]
-struct EdgeBlock {
-    /// `m = o·σ(d)`.
-    alpha: Lanes,
-    /// `o·σ'(d)`.
-    slope: Lanes,
-    /// `1/|q|`.
-    inverse: Lanes,
-}
 
 /// One stroke's blocks, as pass 1 visited them.
 #[derive(Debug, Clone, Copy)]
@@ -247,31 +236,27 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
         visits.push(visit);
         let rgb = splat_rgb(simd, look);
         let opacity = f32x16::splat(simd, look[LOOK - 1].max(FAINTEST));
-        if !is_capsule {
+        if is_capsule {
+            for block in members(visit.edge) {
+                let distance2 = capsule.at_pixels(simd, block).distance2();
+                let (alpha, kept) = cover(edge, distance2, capsule.radius, opacity);
+                kept_edges.push(kept);
+                kept_transmittance.push(veils[block].through);
+                if see_through(simd, alpha, &rgb, &mut color[block], &mut veils[block]) {
+                    live &= !(1 << block);
+                }
+            }
+        } else {
             union.measure(simd, segments, &near[range], visit.edge);
-            kept_nearest.extend(members(visit.edge).map(|block| union.nearest(block)));
-        }
-        for block in members(visit.edge) {
-            let distance2 = if is_capsule {
-                capsule.at_pixels(simd, block).distance2()
-            } else {
-                union.distance2(simd, block)
-            };
-            let length = length(distance2);
-            let (value, derivative) = edge.eval(capsule.radius - length);
-            let alpha = opacity * value;
-            let mut kept = EdgeBlock {
-                alpha: Lanes::splat(0.0),
-                slope: Lanes::splat(0.0),
-                inverse: Lanes::splat(0.0),
-            };
-            store(alpha, &mut kept.alpha);
-            store(opacity * derivative, &mut kept.slope);
-            store(1.0 / length, &mut kept.inverse);
-            kept_edges.push(kept);
-            kept_transmittance.push(veils[block].through);
-            if see_through(simd, alpha, &rgb, &mut color[block], &mut veils[block]) {
-                live &= !(1 << block);
+            for block in members(visit.edge) {
+                let distance2 = union.distance2(simd, block);
+                let (alpha, kept) = cover(edge, distance2, capsule.radius, opacity);
+                kept_edges.push(kept);
+                kept_nearest.push(union.nearest(block));
+                kept_transmittance.push(veils[block].through);
+                if see_through(simd, alpha, &rgb, &mut color[block], &mut veils[block]) {
+                    live &= !(1 << block);
+                }
             }
         }
         // σ is 1 and σ' is 0 here: no distance to evaluate, and nothing but `T` to keep for pass 2.
@@ -292,6 +277,28 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
             store(load(simd, color) + t * load(simd, backdrop), color);
         }
     }
+}
+
+/// `m` in a block on the soft edge, from the squared distances of its pixels, and what is kept of it.
+#[inline(always)]
+fn cover<S: Simd, E: SoftEdge>(
+    edge: E,
+    distance2: f32x16<S>,
+    radius: f32x16<S>,
+    opacity: f32x16<S>,
+) -> (f32x16<S>, EdgeBlock) {
+    let length = length(distance2);
+    let (value, derivative) = edge.eval(radius - length);
+    let alpha = opacity * value;
+    let mut kept = EdgeBlock {
+        alpha: Lanes::splat(0.0),
+        slope: Lanes::splat(0.0),
+        inverse: Lanes::splat(0.0),
+    };
+    store(alpha, &mut kept.alpha);
+    store(opacity * derivative, &mut kept.slope);
+    store(1.0 / length, &mut kept.inverse);
+    (alpha, kept)
 }
 
 /// Adds one stroke, seen through those in front of it. Returns whether nothing behind it can matter any more.
@@ -364,35 +371,37 @@ fn back_to_front<S: Simd, X: Extras>(
         at -= (visit.edge.count_ones() + visit.core.count_ones()) as usize;
         at_edge -= visit.edge.count_ones() as usize;
         let mut seen_through = kept_transmittance[at..].iter();
-        for ((block, kept), t) in members(visit.edge)
+        let edges = members(visit.edge)
             .zip(&mut kept_edges[at_edge..])
-            .zip(&mut seen_through)
-        {
-            let alpha = load(simd, &kept.alpha);
-            let t = load(simd, t);
-            let (d_alpha, contrast2) = stroke.blend::<X>(
-                simd,
-                alpha,
-                t,
-                &rgb,
-                &mut behind[block],
-                &gradient[block],
-                &error[block],
-            );
-            let slope = load(simd, &kept.slope);
-            let d_distance = d_alpha * slope;
-            // `∂L/∂d · u` is `pull · q`: pass 1 kept 1/|q|, which costs a root; `q` is computed again.
-            let pull = d_distance * load(simd, &kept.inverse);
-            stroke.radius += d_distance;
-            let seen = t * slope;
-            let stiffness = 2.0 * (seen * seen) * contrast2;
-            if is_capsule {
+            .zip(&mut seen_through);
+        if is_capsule {
+            for ((block, kept), t) in edges {
+                let (pull, stiffness) = stroke.blend_edge::<X>(
+                    simd,
+                    kept,
+                    t,
+                    &rgb,
+                    &mut behind[block],
+                    &gradient[block],
+                    &error[block],
+                );
                 let nearest = capsule.at_pixels(simd, block);
                 shifts.pull(pull, nearest.q, nearest.h);
                 if X::STIFFNESS {
                     shifts.stiffen(stiffness, nearest.h);
                 }
-            } else {
+            }
+        } else {
+            for ((block, kept), t) in edges {
+                let (pull, stiffness) = stroke.blend_edge::<X>(
+                    simd,
+                    kept,
+                    t,
+                    &rgb,
+                    &mut behind[block],
+                    &gradient[block],
+                    &error[block],
+                );
                 // What the segments need, in the place of what is not needed any more.
                 store(pull, &mut kept.slope);
                 if X::STIFFNESS {

@@ -69,6 +69,7 @@ pub mod probe;
 pub mod reference;
 mod strokes;
 
+use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 use fearless_simd::Level;
@@ -83,7 +84,7 @@ pub use strokes::{
 
 use crate::coverage::Coverage;
 use edge::{Edge, Reach};
-use flat::{Flat, walk};
+use flat::{CHUNK, Flat, walk};
 pub(crate) use flat::{Knot, Piece, Pieces};
 use gradients::add;
 use grid::{FULL, TileWeights, clear_padding, edge_weights, flat_tile};
@@ -230,11 +231,12 @@ impl Renderer {
             ..
         } = *self;
         let tiles = tiles
-            .par_iter()
+            .par_iter_mut()
             .zip(out.tiles_mut())
             .enumerate()
             .with_max_len(1);
         tiles.for_each(|(tile, (work, out))| {
+            work.list_segments(flat, frame.origin(tile), frame.reach);
             let job = frame.job(flat, tile, work, work.weights.as_deref());
             if job.listed.is_empty() {
                 out.clone_from(job.backdrop);
@@ -326,6 +328,7 @@ impl Renderer {
             .enumerate()
             .with_max_len(1)
             .for_each(|(tile, work)| {
+                work.list_segments(flat, frame.origin(tile), frame.reach);
                 if let (Backdrop::Color(color), true) = (frame.backdrop, work.listed.is_empty())
                     && let Some((share, backdrop)) = loss.flat(tile, color)
                 {
@@ -353,39 +356,26 @@ impl Renderer {
             });
     }
 
-    /// Flattens the strokes and lists for each tile the segments whose extent touches it, back to front. Strokes with
-    /// numbers that are not finite are on no list, so they draw nothing and their derivatives are 0.
+    /// Flattens the strokes and lists for each tile those whose bounding box touches it, back to front.
     fn bin(&mut self, strokes: &Strokes, least: usize, reach: Reach) {
         self.flat.fill(strokes, least);
         self.least = least;
         for work in &mut self.tiles {
             work.listed.clear();
-            work.segments.clear();
         }
-        let Flat {
-            vertices,
-            firsts,
-            looks,
-        } = &self.flat;
-        for (id, (stroke, look)) in strokes.iter().zip(looks).enumerate() {
-            if !stroke.is_finite() {
-                continue;
-            }
+        for (id, (look, [low, high])) in self.flat.looks.iter().zip(&self.flat.boxes).enumerate() {
             let margin = look[0] + reach.outside;
-            for segment in firsts[id]..firsts[id + 1] - 1 {
-                let ([ax, ay], [bx, by]) =
-                    (vertices[segment as usize], vertices[segment as usize + 1]);
-                let [columns, rows] = self.grid.tiles_touched(
-                    ax.min(bx) - margin,
-                    ay.min(by) - margin,
-                    ax.max(bx) + margin,
-                    ay.max(by) + margin,
-                );
-                for row in rows {
-                    for column in columns.clone() {
-                        let tile = &mut self.tiles[row * self.grid.columns + column];
-                        tile.list(id as u32, segment);
-                    }
+            let [columns, rows] = self.grid.tiles_touched(
+                low[0] - margin,
+                low[1] - margin,
+                high[0] + margin,
+                high[1] + margin,
+            );
+            let stroke = id as u32;
+            for row in rows {
+                for column in columns.clone() {
+                    let tile = &mut self.tiles[row * self.grid.columns + column];
+                    tile.listed.push(Listed { stroke, first: 0 });
                 }
             }
         }
@@ -436,10 +426,29 @@ impl Renderer {
 
     /// The derivatives by points, from those by vertices.
     fn hand_back(&self, strokes: &Strokes, gradients: &mut Gradients) {
-        for (i, stroke) in strokes.iter().enumerate() {
+        let mut parts = Vec::with_capacity(strokes.len().div_ceil(CHUNK));
+        let mut rest = gradients.strokes.as_mut_slice();
+        for first in (0..strokes.len()).step_by(CHUNK) {
+            let ids = first..strokes.len().min(first + CHUNK);
+            let numbers = strokes.range(ids.end - 1).end - strokes.range(first).start;
+            let (part, others) = rest.split_at_mut(numbers);
+            parts.push((ids, part));
+            rest = others;
+        }
+        parts
+            .into_par_iter()
+            .for_each(|(ids, part)| self.hand_back_chunk(strokes, ids, part));
+    }
+
+    /// The derivatives by points of the strokes `ids`; `numbers` are all those of these strokes.
+    fn hand_back_chunk(&self, strokes: &Strokes, ids: Range<usize>, numbers: &mut [f32]) {
+        let start = strokes.range(ids.start).start;
+        for i in ids {
+            let stroke = strokes.get(i);
             let slopes =
                 &self.slopes[self.flat.firsts[i] as usize..self.flat.firsts[i + 1] as usize];
-            let points = &mut gradients.strokes[strokes.range(i)];
+            let range = strokes.range(i);
+            let points = &mut numbers[range.start - start..range.end - start];
             if slopes.len() == stroke.points.len() && stroke.is_straight() {
                 add(points, slopes.as_flattened());
                 continue;
@@ -459,15 +468,30 @@ impl Renderer {
 }
 
 impl TileWork {
-    /// Adds a segment of a stroke to the lists.
-    fn list(&mut self, stroke: u32, segment: u32) {
-        if self.listed.last().is_none_or(|last| last.stroke != stroke) {
-            self.listed.push(Listed {
-                stroke,
-                first: self.segments.len() as u32,
-            });
-        }
-        self.segments.push(segment);
+    /// Lists the segments whose bounding boxes touch the tile at `origin`, and drops strokes that have none.
+    fn list_segments(&mut self, flat: &Flat, origin: [f32; 2], reach: Reach) {
+        let Self {
+            listed, segments, ..
+        } = self;
+        segments.clear();
+        listed.retain_mut(|listed| {
+            let stroke = listed.stroke as usize;
+            listed.first = segments.len() as u32;
+            let margin = flat.looks[stroke][0] + reach.outside;
+            let first = flat.firsts[stroke] as usize;
+            let vertices = &flat.vertices[first..flat.firsts[stroke + 1] as usize];
+            for (k, ends) in vertices.windows(2).enumerate() {
+                let touches = (0..2).all(|axis| {
+                    let (a, b) = (ends[0][axis], ends[1][axis]);
+                    a.max(b) + margin > origin[axis]
+                        && a.min(b) - margin < origin[axis] + TILE as f32
+                });
+                if touches {
+                    segments.push((first + k) as u32);
+                }
+            }
+            segments.len() as u32 > listed.first
+        });
     }
 }
 
@@ -497,6 +521,12 @@ impl<'a> Frame<'a> {
         }
     }
 
+    /// The top left corner of tile `tile`, px.
+    fn origin(&self, tile: usize) -> [f32; 2] {
+        let (x, y) = self.grid.origin(tile);
+        [x as f32, y as f32]
+    }
+
     /// The share of tile `tile`, behind these weights.
     fn job<'b>(
         &'b self,
@@ -505,10 +535,9 @@ impl<'a> Frame<'a> {
         work: &'b TileWork,
         weights: Option<&'b TileWeights>,
     ) -> TileJob<'b> {
-        let (x, y) = self.grid.origin(tile);
         TileJob {
             tile,
-            origin: [x as f32, y as f32],
+            origin: self.origin(tile),
             flat,
             listed: &work.listed,
             segments: &work.segments,

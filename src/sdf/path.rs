@@ -230,7 +230,10 @@ fn bernstein<T: Real>([from, control, to]: [&Mean<T>; 3], t: T) -> Mean<T> {
 /// is taken off keeps curves in round numbers, whose ratio is a whole number, from hanging on rounding.
 pub(crate) fn steps<T: Real>(bend: Vector2<T>) -> usize {
     let ratio = bend.dot(&bend).sqrt().to_f64() / (4.0 * FLATNESS);
-    ((ratio.sqrt() - 1e-3).ceil() as usize).clamp(1, MAX_STEPS)
+    let steps = ratio.sqrt() - 1e-3;
+    // `ceil` is a call where the target has no instruction for it.
+    let whole = steps as usize;
+    (whole + usize::from(steps > whole as f64)).clamp(1, MAX_STEPS)
 }
 
 #[cfg(test)]

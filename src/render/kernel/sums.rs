@@ -2,7 +2,7 @@
 
 use fearless_simd::{f32x16, prelude::*};
 
-use super::super::grid::BlockRgb;
+use super::super::grid::{BlockRgb, Lanes};
 use super::super::strokes::LOOK;
 use super::lanes::{load, store, total};
 
@@ -12,6 +12,17 @@ pub(in crate::render) type LookSums = [f32; LOOK + 1];
 pub(in crate::render) const WORTH: usize = LOOK;
 /// `∂L` of the two ends of one segment over one tile, then the stiffness of each.
 pub(in crate::render) type EndSums = [f32; 6];
+
+/// What pass 1 keeps of a block on the soft edge.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct EdgeBlock {
+    /// `m = o·σ(d)`.
+    pub(super) alpha: Lanes,
+    /// `o·σ'(d)`.
+    pub(super) slope: Lanes,
+    /// `1/|q|`.
+    pub(super) inverse: Lanes,
+}
 
 /// What is asked for besides derivatives.
 pub(in crate::render) trait Extras {
@@ -47,7 +58,7 @@ impl Extras for Stiffnesses {
 pub(super) struct Sums<S: Simd> {
     color: [f32x16<S>; 3],
     opacity: f32x16<S>,
-    pub(super) radius: f32x16<S>,
+    radius: f32x16<S>,
     worth: f32x16<S>,
 }
 
@@ -102,6 +113,31 @@ impl<S: Simd> Sums<S> {
         let d_alpha = t * along;
         self.opacity += d_alpha * alpha;
         (d_alpha, contrast2)
+    }
+
+    /// Lays the stroke on a block of its soft edge; returns `pull`, which times `q` is `∂L/∂d · u`, and the stiffness if that
+    /// is asked for.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments)]
+    pub(super) fn blend_edge<X: Extras>(
+        &mut self,
+        simd: S,
+        kept: &EdgeBlock,
+        t: &Lanes,
+        rgb: &[f32x16<S>; 3],
+        behind: &mut BlockRgb,
+        gradient: &BlockRgb,
+        error: &BlockRgb,
+    ) -> (f32x16<S>, f32x16<S>) {
+        let (alpha, t) = (load(simd, &kept.alpha), load(simd, t));
+        let (d_alpha, contrast2) = self.blend::<X>(simd, alpha, t, rgb, behind, gradient, error);
+        let slope = load(simd, &kept.slope);
+        let d_distance = d_alpha * slope;
+        self.radius += d_distance;
+        // Pass 1 kept 1/|q|, which costs a root; `q` is computed again.
+        let pull = d_distance * load(simd, &kept.inverse);
+        let seen = t * slope;
+        (pull, 2.0 * (seen * seen) * contrast2)
     }
 
     #[inline(always)]

@@ -14,10 +14,9 @@ use fearless_simd::{f32x16, prelude::*};
 
 use super::super::edge::Reach;
 use super::super::grid::{BLOCKS, BlockSet, LANES, Lanes};
-use super::EdgeBlock;
 use super::capsule::{BLOCK_RADIUS, Capsule, ROWS, limits};
 use super::lanes::{load, members, store};
-use super::sums::{EndSums, Extras, Shifts};
+use super::sums::{EdgeBlock, EndSums, Extras, Shifts};
 
 /// The segments of one stroke that may touch a tile.
 #[derive(Clone, Copy)]
@@ -44,6 +43,9 @@ impl Segments<'_> {
         k > 0 && k < self.listed.len() && self.listed[k] == self.listed[k - 1] + 1
     }
 }
+
+/// Squared distances before any segment is looked at, px².
+const FAR: Lanes = Lanes::splat(f32::INFINITY);
 
 /// How a segment lies to the blocks of a tile.
 #[derive(Debug, Clone, Copy)]
@@ -153,20 +155,13 @@ impl Union {
         near: &[BlockSet],
         edge: BlockSet,
     ) {
-        let mut seen = 0;
+        for block in members(edge) {
+            self.distances2[block] = FAR;
+        }
         for (k, near) in near.iter().enumerate() {
-            let near = near & edge;
-            if near == 0 {
-                continue;
-            }
             let capsule = segments.capsule(simd, k, 0.0);
             let index = f32x16::splat(simd, k as f32);
-            for block in members(near & !seen) {
-                let distance2 = capsule.at_pixels(simd, block).distance2();
-                store(distance2, &mut self.distances2[block]);
-                store(index, &mut self.nearest[block]);
-            }
-            for block in members(near & seen) {
+            for block in members(near & edge) {
                 let distance2 = capsule.at_pixels(simd, block).distance2();
                 let least = load(simd, &self.distances2[block]);
                 let nearest = load(simd, &self.nearest[block]);
@@ -177,7 +172,6 @@ impl Union {
                 );
                 store(is_nearer.select(index, nearest), &mut self.nearest[block]);
             }
-            seen |= near;
         }
     }
 
@@ -214,9 +208,13 @@ impl Kept<'_> {
         k: usize,
         near: BlockSet,
     ) -> EndSums {
+        let blocks = near & self.edge;
+        if blocks == 0 {
+            return EndSums::default();
+        }
         let zero = f32x16::splat(simd, 0.0);
         let mut shifts = Shifts::new(simd);
-        for block in members(near & self.edge) {
+        for block in members(blocks) {
             let at = (self.edge & ((1 << block) - 1)).count_ones() as usize;
             let is_nearest = load(simd, &self.nearest[at]).simd_eq(k as f32);
             let nearest = capsule.at_pixels(simd, block);
