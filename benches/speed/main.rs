@@ -5,7 +5,7 @@
 //! ```
 //!
 //! All in one run, so that figures of different machines can be compared as ratios: pairs per second
-//! by size of stroke, opacity, threads and SIMD level, on random drawings and on a finished one; what
+//! by size of stroke, opacity, threads and SIMD level, on random drawings and on finished ones (of capsules, and of paths); what
 //! of it is arithmetic, as counted from the code; and the machine's own limits, measured.
 //!
 //! A *pair* is a stroke and a pixel of the picture where its coverage is above 0. They are counted
@@ -27,6 +27,7 @@ use strokefit::fit::{Budget, Config, Fitter, Objective, Simd};
 use strokefit::image::Image;
 use strokefit::loss::Loss;
 use strokefit::render::{Backdrop, Canvas, Gradients, Renderer, Strokes};
+use strokefit::scene::{Path, PathPoint, Stroke};
 
 use count::{Count, Work};
 use limits::Limits;
@@ -42,6 +43,9 @@ const SIZES: [(&str, f32, f32); 3] = [
 ];
 const OPACITIES: [f32; 2] = [1.0, 0.5];
 
+/// Farthest that a polyline is from its curve, px.
+const FLATNESS: f32 = 0.08;
+
 fn main() -> Result<()> {
     let options = Options::parse(std::env::args().skip(1));
     let image = Image::open(&options.picture)?.flattened([1.0; 3]);
@@ -55,7 +59,8 @@ fn main() -> Result<()> {
         options.rounds
     );
     let mut drawings = random(&target);
-    drawings.push(settled(&image, &options)?);
+    drawings.push(settled("settled 2", Some(2), &image, &options)?);
+    drawings.push(settled("settled", None, &image, &options)?);
     let speeds = speeds(&drawings, &target, options.rounds);
     paths::print(&target, options.rounds);
     let limits = limits::measure(&thread_counts(), options.rounds);
@@ -127,21 +132,40 @@ fn random(target: &Canvas) -> Vec<Workload> {
     drawings
 }
 
-/// A fit of the picture, as it is when finished.
-fn settled(image: &Image, options: &Options) -> Result<Workload> {
+/// A fit of the picture, as it is when finished, of strokes of at most `points` points. Curves are polylines, as the renderer
+/// draws them.
+fn settled(
+    name: &str,
+    points: Option<usize>,
+    image: &Image,
+    options: &Options,
+) -> Result<Workload> {
     let config = Config {
         budget: Budget {
             strokes: Some(options.strokes),
             ..Budget::default()
         },
+        points,
         polish: options.polish,
         ..Config::default()
     };
     let scene = Fitter::new(config).fit(image)?.scene;
-    let strokes = scene.strokes().collect();
+    let mut strokes = Strokes::new();
+    for stroke in scene.strokes() {
+        strokes.push_stroke(&polyline(stroke)?);
+    }
     let backdrop = scene.background.unwrap_or([1.0; 3]);
     let target = Canvas::from_image(image);
-    Ok(Workload::new("settled".into(), strokes, backdrop, &target))
+    Ok(Workload::new(name.into(), strokes, backdrop, &target))
+}
+
+fn polyline(stroke: &Stroke) -> Result<Stroke> {
+    let corners = stroke.path.flattened(FLATNESS);
+    let points = corners.into_iter().map(PathPoint::on).collect();
+    Ok(Stroke {
+        path: Path::new(points, false)?,
+        ..stroke.clone()
+    })
 }
 
 /// Shortest times of one drawing on some number of threads, s.

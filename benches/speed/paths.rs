@@ -80,22 +80,28 @@ fn row(name: &str, size: StrokeSize, target: &Canvas, rounds: usize) {
     }
 }
 
-/// `count` random walks of `segments` steps of the length of `size`, the same in every run.
+/// `count` random walks of `segments` steps of the length of `size`, the same in every run. They turn back at the borders of
+/// the picture, so that all of it is covered alike.
 fn walks(size: StrokeSize, grid: Grid, count: usize, segments: usize) -> Strokes {
     let mut strokes = Strokes::new();
     let (mut points, off) = (Vec::new(), vec![false; segments + 1]);
+    let sides = [grid.width as f32, grid.height as f32];
     for i in 0..count as u64 {
         let draw = |k| rng::draw(0, 7, i, k);
-        let mut at = [draw(0) * grid.width as f32, draw(1) * grid.height as f32];
+        let mut at = [draw(0) * sides[0], draw(1) * sides[1]];
         let mut angle = draw(2) * TAU;
         points.clear();
         points.push(at);
         for k in 0..segments as u64 {
             angle += TURN * (2.0 * draw(6 + k) - 1.0);
-            at = [
-                at[0] + size.length_px * angle.cos(),
-                at[1] + size.length_px * angle.sin(),
-            ];
+            let mut step = [angle.cos(), angle.sin()].map(|v| v * size.length_px);
+            for axis in 0..2 {
+                if !(0.0..sides[axis]).contains(&(at[axis] + step[axis])) {
+                    step[axis] = -step[axis];
+                }
+                at[axis] += step[axis];
+            }
+            angle = step[1].atan2(step[0]);
             points.push(at);
         }
         strokes.push(StrokeRef {
