@@ -82,6 +82,7 @@
 //! | background | the colour behind all strokes; part of the drawing and of the file; absent if the drawing is transparent |
 //! | shade | a gradient over the whole page, on the background and behind all strokes; part of the drawing and of the file; see [`scene::Shade`] |
 //! | backdrop | what strokes are composited over: a colour or a picture, such as the canvas of frozen strokes |
+//! | masking | that detail of the picture hides errors from the eye |
 //! | matte | the colour that a transparent picture is flattened onto, to be looked at or measured |
 //! | base | the SVG that a fit goes on from |
 //! | canvas | the picture that strokes render to; see [`render`] |

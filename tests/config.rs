@@ -112,7 +112,10 @@ fn files_that_say_nonsense_are_refused_with_the_line() {
         ("seed = 1\npsnr = -3", ["fit.toml:2", "-3", "decibels"]),
         ("preset = 'bst'", ["fit.toml:1", "bst", "best"]),
         ("opaque = 'yes'", ["fit.toml:1", "opaque", "true or false"]),
-        ("[look]\nopaque = true", ["fit.toml:1", "look", "no option"]),
+        (
+            "[paper]\nopaque = true",
+            ["fit.toml:1", "paper", "no option"],
+        ),
     ] {
         place.file("fit.toml", text);
         let args = ["fit", "in.png", "-o", "out.svg", "--config", "fit.toml"];

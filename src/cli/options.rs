@@ -78,6 +78,10 @@ pub(super) struct Look {
     /// Use opaque strokes only. They are easier to edit and cost some dB
     #[arg(long)]
     opaque: bool,
+    /// Which errors count: exact (all alike) or eye (those that people see, so that smooth places have fewer seams, for a
+    /// tenth of a dB or two less)
+    #[arg(long, value_name = "LOOK", default_value_t)]
+    look: fit::Look,
     /// Only these widths of strokes: lengths such as 0.3mm,0.8mm on a page of a --width, or numbers in px of the picture
     #[arg(long, value_name = "WIDTHS", allow_hyphen_values = true)]
     pens: Option<Widths>,
@@ -152,6 +156,7 @@ impl Options {
             preset: look.preset,
             quality: look.quality,
             progressive: look.progressive,
+            look: look.look,
             opaque: look.opaque,
             coverage: look.coverage,
             points: look.points,

@@ -26,6 +26,8 @@ pub struct Config {
     pub preset: Preset,
     /// Whether each layer is polished on its own, so that the drawing looks finished after each.
     pub progressive: bool,
+    /// Which errors count.
+    pub look: Look,
     /// Whether all strokes have opacity 1.
     pub opaque: bool,
     /// The coverage function, or two: one while the edge is soft, and one for the final edge.
@@ -57,6 +59,7 @@ impl Default for Config {
             quality: None,
             preset: Preset::default(),
             progressive: false,
+            look: Look::default(),
             opaque: false,
             coverage: CoverageSchedule::default(),
             points: None,
@@ -70,6 +73,16 @@ impl Default for Config {
             recipe: None,
         }
     }
+}
+
+/// Which errors count.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Look {
+    /// Errors that people see: fewer seams where the picture is smooth, for a tenth of a dB or two.
+    Eye,
+    /// All errors alike, which gives the most dB.
+    #[default]
+    Exact,
 }
 
 /// Bounds on the drawing; the first one reached stops.

@@ -38,11 +38,25 @@ impl Focus {
                            matter white";
             return Err(Error::new(ErrorKind::Picture, message));
         }
+        Ok(Self::of_weights([mask.width(), mask.height()], weights))
+    }
+
+    /// The weights of the pixels, row by row.
+    pub(super) fn of_weights([width, height]: [usize; 2], weights: Vec<f32>) -> Self {
         let planes = [weights.clone(), weights.clone(), weights];
-        let weights = Image::new(mask.width(), mask.height(), planes)?;
-        Ok(Self {
-            weights: Arc::new(Pyramid::new(weights)),
-        })
+        Self {
+            weights: Arc::new(Pyramid::new(Image::from_planes(width, height, planes))),
+        }
+    }
+
+    /// How much an error counts that counts as both say, of masks of one size.
+    pub(super) fn times(&self, other: &Self) -> Self {
+        let level = self.weights.level(0);
+        let weights = self.values().iter().zip(other.values());
+        Self::of_weights(
+            [level.width(), level.height()],
+            weights.map(|(a, b)| a * b).collect(),
+        )
     }
 
     /// Checks that the mask has the size of `picture`.

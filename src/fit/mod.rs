@@ -29,6 +29,7 @@ mod focus;
 mod forecast;
 mod hidden;
 mod history;
+mod masking;
 mod memory;
 mod objective;
 mod order;
@@ -54,8 +55,8 @@ pub use anneal::final_softness;
 pub use base::Base;
 pub use checkpoint::Checkpoint;
 pub use config::{
-    Background, Budget, Colors, Config, DEFAULT_QUALITY, DEFAULT_STROKES, Execution, MAX_STROKES,
-    SCREEN_PIXELS,
+    Background, Budget, Colors, Config, DEFAULT_QUALITY, DEFAULT_STROKES, Execution, Look,
+    MAX_STROKES, SCREEN_PIXELS,
 };
 pub use fitter::Fitter;
 pub use focus::Focus;
@@ -63,8 +64,8 @@ pub use memory::predicted_rss_bytes;
 pub use objective::Objective;
 pub use progress::{CancelToken, Observer, Progress};
 pub use recipe::{
-    AdamSettings, BackgroundChoice, Correction, Domain, EdgeShape, Joins, Pens, Points, Polish,
-    Preset, Rates, Recipe, Recoloring, Relocation, Rounds, Settling, ShadeChoice, Stages,
+    AdamSettings, BackgroundChoice, Correction, Domain, EdgeShape, Joins, Masking, Pens, Points,
+    Polish, Preset, Rates, Recipe, Recoloring, Relocation, Rounds, Settling, ShadeChoice, Stages,
     TimeShares,
 };
 pub use result::{Fit, StageRecord, Stop};

@@ -17,13 +17,17 @@ pub struct Objective<'a> {
     scale: f32,
 }
 
-/// Sums over the pixels of each tile of a target. The squared error of a tile in one colour follows from them, so that
-/// an empty part of a page costs nothing.
+/// Sums over the pixels of each tile of a target, each as often as its error counts. The squared error of a tile in one
+/// colour follows from them, so that an empty part of a page costs nothing.
 #[derive(Debug)]
 pub(super) struct Moments(Vec<TileMoments>);
 
+/// What lets everything through.
+const CLEAR: Lanes = Lanes::splat(1.0);
+
 #[derive(Debug, Clone, Copy, Default)]
 struct TileMoments {
+    /// The number of pixels.
     pixels: f64,
     /// Sums of the channels.
     sums: [f64; 3],
@@ -32,8 +36,8 @@ struct TileMoments {
 }
 
 impl Moments {
-    /// The sums of `target`.
-    pub(super) fn of(target: &Canvas) -> Self {
+    /// The sums of `target`, which is behind `veil` already.
+    pub(super) fn of(target: &Canvas, veil: Option<&Canvas>) -> Self {
         let grid = target.grid();
         let moments = |(tile, pixels): (usize, &TileRgb)| {
             let (x, y) = grid.origin(tile);
@@ -42,9 +46,16 @@ impl Moments {
                 pixels: (columns * rows) as f64,
                 ..TileMoments::default()
             };
-            for (channel, lanes) in pixels.iter().flat_map(|block| block.iter().enumerate()) {
-                for value in lanes.0.map(f64::from) {
-                    moments.sums[channel] += value;
+            let veil = veil.map(|veil| veil.tiles()[tile].as_flattened());
+            if let Some(veil) = veil {
+                let through = veil.iter().step_by(3).flat_map(|lanes| lanes.0);
+                moments.pixels = through.map(|v| f64::from(v) * f64::from(v)).sum();
+            }
+            for (i, lanes) in pixels.as_flattened().iter().enumerate() {
+                let through = veil.map_or(&CLEAR, |veil| &veil[i]);
+                for (value, through) in lanes.0.into_iter().zip(through.0) {
+                    let value = f64::from(value);
+                    moments.sums[i % 3] += f64::from(through) * value;
                     moments.squares += value * value;
                 }
             }
@@ -151,5 +162,62 @@ impl CanvasLoss for Objective<'_> {
         let slope = |channel: usize| 2.0 * (pixels * color[channel] - sums[channel]) * scale;
         let loss = (error + squares).max(0.0) * scale;
         Some((loss, [0, 1, 2].map(|channel| slope(channel) as f32)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::Image;
+    use crate::render::Grid;
+    use crate::rng;
+
+    /// A picture of 40×33 px, so that tiles are padded.
+    fn random(key: u64) -> Canvas {
+        let plane = |channel: u64| {
+            (0..40 * 33)
+                .map(|i| rng::draw(0, key, channel, i))
+                .collect()
+        };
+        Canvas::from_image(&Image::new(40, 33, [plane(0), plane(1), plane(2)]).unwrap())
+    }
+
+    #[test]
+    fn a_tile_in_one_colour_is_judged_by_its_sums_as_by_its_pixels() {
+        // A veil lets through the same of all channels.
+        let through: Vec<f32> = (0..40 * 33).map(|i| 1.5 * rng::draw(0, 9, 9, i)).collect();
+        let planes = [through.clone(), through.clone(), through];
+        let veil = Canvas::from_image(&Image::from_planes(40, 33, planes));
+        let color = [0.2, 0.5, 0.9];
+        for veil in [None, Some(&veil)] {
+            let target = match veil {
+                Some(veil) => random(1).darkened(veil),
+                None => random(1),
+            };
+            let moments = Moments::of(&target, veil);
+            let objective = Objective::squared(&target, Some(&moments));
+            let flat = Canvas::flat(Grid::new(40, 33), color);
+            let canvas = match veil {
+                Some(veil) => flat.darkened(veil),
+                None => flat,
+            };
+            for (tile, pixels) in canvas.tiles().iter().enumerate() {
+                let (mut error, mut gradient) = (*pixels, *pixels);
+                let expected = objective.tile(tile, pixels, &mut error, &mut gradient);
+                let (loss, slope) = objective.flat(tile, color).unwrap();
+                assert!(
+                    (loss - expected).abs() < 1e-5 * expected,
+                    "{loss} {expected}"
+                );
+                for channel in 0..3 {
+                    let lanes = gradient.iter().enumerate().flat_map(|(block, gradient)| {
+                        let through = veil.map_or(CLEAR, |veil| veil.tiles()[tile][block][channel]);
+                        gradient[channel].0.into_iter().zip(through.0)
+                    });
+                    let sum: f32 = lanes.map(|(g, through)| g * through).sum();
+                    assert!((slope[channel] - sum).abs() < 1e-4 * sum.abs().max(1e-3));
+                }
+            }
+        }
     }
 }

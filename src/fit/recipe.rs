@@ -54,6 +54,8 @@ pub struct Recipe {
     pub pens: Pens,
     /// Widths and colours that strokes share.
     pub sharing: Sharing,
+    /// What the eye sees of an error.
+    pub masking: Masking,
     /// The last steps, against renders of the written file.
     pub settling: Settling,
     /// How the number of strokes is corrected to meet a fidelity.
@@ -304,6 +306,15 @@ pub struct Sharing {
     pub error: f64,
 }
 
+/// How detail of the picture hides errors, with [`Look::Eye`](super::Look::Eye).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Masking {
+    /// Rows and columns of the window to each side of a pixel.
+    pub window: usize,
+    /// The standard deviation of the luma in the window that halves what an error counts, of 0..1.
+    pub contrast: f64,
+}
+
 /// The last steps, against renders of the written file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settling {
@@ -462,6 +473,7 @@ impl Recipe {
             ("probing.lengths", smallest(self.probing.lengths)),
             ("probing.cells", self.probing.cells),
             ("tracing.pace", self.tracing.pace),
+            ("masking.contrast", self.masking.contrast as f32),
             ("domain.min_radius", self.domain.min_radius),
             ("optimizer.usual_radius", self.optimizer.usual_radius),
             ("pens.ladder − 1", self.pens.ladder - 1.0),
@@ -540,6 +552,7 @@ impl Recipe {
         let counts = [
             ("stages.count", self.stages.count),
             ("tracing.least_area", self.tracing.least_area),
+            ("masking.window", self.masking.window),
             ("stages.first", self.stages.first),
             ("stages.pixels_per_stroke", self.stages.pixels_per_stroke),
             ("relocation.every", self.relocation.every),

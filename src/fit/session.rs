@@ -9,7 +9,7 @@ use super::base::Base;
 use super::bounds::Bounds;
 use super::budget;
 use super::checkpoint::{self, Checkpoint};
-use super::config::{Background, Colors, Config};
+use super::config::{Background, Colors, Config, Look};
 use super::deadline::{Deadline, Timer, Unlimited};
 use super::descent::{Course, Descent};
 use super::drawing::{Drawing, Memento};
@@ -17,6 +17,7 @@ use super::file::{RenderedFile, Writer};
 use super::focus::Focus;
 use super::forecast::Forecast;
 use super::history::{self, History};
+use super::masking;
 use super::order::Phase;
 use super::plan::{Before, Plan};
 use super::price::Price;
@@ -115,7 +116,14 @@ impl<'a> Session<'a> {
             coarsest,
         )?;
         let surfaces = surfaces.into_iter();
-        let surfaces: Vec<_> = surfaces.map(|s| s.focused(focus.clone())).collect();
+        let weights = match config.look {
+            Look::Exact => focus.clone(),
+            Look::Eye => {
+                let seen = masking::weights(&target, recipe.masking);
+                Some(focus.iter().fold(seen, |seen, focus| seen.times(focus)))
+            }
+        };
+        let surfaces: Vec<_> = surfaces.map(|s| s.focused(weights.clone())).collect();
         let annealing = Annealing {
             coverage: config.coverage,
             edge: recipe.edge,

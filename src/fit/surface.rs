@@ -183,8 +183,8 @@ pub(super) struct Surface {
     veil: Option<Canvas>,
     /// The picture, halved, and behind the veil.
     target: Canvas,
-    /// The target's sums, of use where there is no veil.
-    moments: Option<Moments>,
+    /// The target's sums.
+    moments: Moments,
     /// The frozen strokes, rendered over the bottom.
     frozen: Canvas,
     /// The last render of all strokes, with the final edge.
@@ -204,7 +204,7 @@ impl Surface {
             min_scale,
             canvas: frozen.clone(),
             frozen,
-            moments: Some(Moments::of(&target)),
+            moments: Moments::of(&target, None),
             focus: None,
             veil: None,
             target,
@@ -276,7 +276,7 @@ impl Surface {
         self.halvings = halvings;
         self.veil = self.focus.as_ref().map(|focus| focus.veil(halvings));
         self.target = self.veiled(Canvas::from_image(self.pyramid.level(halvings)));
-        self.moments = self.veil.is_none().then(|| Moments::of(&self.target));
+        self.moments = Moments::of(&self.target, self.veil.as_ref());
         self.frozen = self.bottom.canvas(self.target.grid(), halvings);
         self.canvas.clone_from(&self.frozen);
     }
@@ -335,7 +335,7 @@ impl Surface {
     pub(super) fn objective<'a>(&'a self, target: Option<&'a Canvas>) -> Objective<'a> {
         let objective = match target {
             Some(target) => Objective::squared(target, None),
-            None => Objective::squared(&self.target, self.moments.as_ref()),
+            None => Objective::squared(&self.target, Some(&self.moments)),
         };
         objective.veiled(self.veil())
     }

@@ -5,7 +5,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::{Background, Colors, Preset};
+use super::{Background, Colors, Look, Preset};
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::{color, quantum};
 
@@ -38,6 +38,31 @@ impl FromStr for Preset {
                     short(text)
                 ))
             })
+    }
+}
+
+impl fmt::Display for Look {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Eye => "eye",
+            Self::Exact => "exact",
+        })
+    }
+}
+
+impl FromStr for Look {
+    type Err = Error;
+
+    /// `eye` or `exact`.
+    fn from_str(text: &str) -> Result<Self> {
+        match text {
+            "eye" => Ok(Self::Eye),
+            "exact" => Ok(Self::Exact),
+            _ => Err(refusal(format!(
+                "'{}' is not a look: give eye or exact",
+                short(text)
+            ))),
+        }
     }
 }
 

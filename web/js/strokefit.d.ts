@@ -18,6 +18,8 @@ export interface Options {
   preset?: "draft" | "balanced" | "best";
   /** A good drawing after every layer, at some dB less in the end. */
   progressive?: boolean;
+  /** Which errors count: all alike, or those that people see, for a tenth of a dB or two less; `exact` if it is left out. */
+  look?: "eye" | "exact";
   /** Opaque strokes only. */
   opaque?: boolean;
   /** Coverage function of soft edges: `smoothstep`, `sigmoid`, `tanh` or `atan[:K]`; `A>B` changes from A to B during the fit. */

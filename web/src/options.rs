@@ -48,6 +48,7 @@ impl Options {
             "quality" => config.quality = Some(entry.number()?),
             "preset" => config.preset = entry.word()?,
             "progressive" => config.progressive = entry.switch()?,
+            "look" => config.look = entry.word()?,
             "opaque" => config.opaque = entry.switch()?,
             "coverage" => config.coverage = entry.word()?,
             "points" => config.points = Some(entry.whole(MAX_POINTS)?),
@@ -127,7 +128,7 @@ impl Entry<'_> {
 
     fn unknown(&self) -> Error {
         refusal(format!(
-            "no option is called {}: give strokes, psnr, bytes, time, quality, preset, progressive, opaque, coverage, \
+            "no option is called {}: give strokes, psnr, bytes, time, quality, preset, progressive, look, opaque, coverage, \
              points, stages, polish, background, seed, colors, pens, form, group, order, precision, width, base or freezeBase",
             self.key
         ))
@@ -159,7 +160,7 @@ mod tests {
     fn every_option_arrives() {
         let json = r##"{
             "strokes": 500, "psnr": 32, "bytes": 9000, "time": 1.5, "quality": 25, "preset": "draft", "progressive": true,
-            "opaque": true, "coverage": "sigmoid", "points": 6, "stages": 3, "polish": false, "background": "#ff0000", "seed": 7,
+            "look": "eye", "opaque": true, "coverage": "sigmoid", "points": 6, "stages": 3, "polish": false, "background": "#ff0000", "seed": 7,
             "colors": "8", "pens": "2,3", "form": "smallest", "group": "color", "order": "travel", "precision": 1, "width": "120mm", "base": "<svg/>",
             "freezeBase": true
         }"##;
@@ -180,6 +181,7 @@ mod tests {
             quality: Some(25.0),
             preset: Preset::Draft,
             progressive: true,
+            look: strokefit::fit::Look::Eye,
             opaque: true,
             coverage: "sigmoid".parse().unwrap(),
             points: Some(6),

@@ -1,9 +1,9 @@
 //! The numbers of the presets.
 
 use super::{
-    AdamSettings, BackgroundChoice, Correction, Domain, EdgeShape, Joins, Pens, Points, Polish,
-    Preset, Rates, Recipe, Recoloring, Relocation, Rounds, Settling, ShadeChoice, Sharing, Stages,
-    TimeShares,
+    AdamSettings, BackgroundChoice, Correction, Domain, EdgeShape, Joins, Masking, Pens, Points,
+    Polish, Preset, Rates, Recipe, Recoloring, Relocation, Rounds, Settling, ShadeChoice, Sharing,
+    Stages, TimeShares,
 };
 use crate::optim::AdamParams;
 use crate::seed::Probing;
@@ -192,6 +192,10 @@ const BALANCED: Recipe = Recipe {
         window: 1024,
     },
     sharing: Sharing { error: 0.1 },
+    masking: Masking {
+        window: 6,
+        contrast: 0.04,
+    },
     settling: Settling {
         rounds: 5,
         iterations: 20,
