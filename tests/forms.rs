@@ -140,7 +140,9 @@ fn a_budget_of_bytes_buys_more_in_the_smallest_form() {
     let bought = |form: &str| {
         let drawn = drawn_with(
             "coffee-300",
-            &["--bytes", "9000", "--opaque", "--form", form],
+            &[
+                "--bytes", "9000", "--opaque", "--form", form, "--look", "exact",
+            ],
         );
         assert!(drawn.text.len() <= 9000);
         (drawn.number("strokes"), drawn.psnr_db())

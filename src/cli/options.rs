@@ -78,8 +78,8 @@ pub(super) struct Look {
     /// Use opaque strokes only. They are easier to edit and cost some dB
     #[arg(long)]
     opaque: bool,
-    /// Which errors count: exact (all alike) or eye (those that people see, so that smooth places have fewer seams, for a
-    /// tenth of a dB or two less)
+    /// Which errors count: eye (those that people see, so that smooth places have fewer seams) or exact (all alike, for a
+    /// tenth of a dB more)
     #[arg(long, value_name = "LOOK", default_value_t)]
     look: fit::Look,
     /// Only these widths of strokes: lengths such as 0.3mm,0.8mm on a page of a --width, or numbers in px of the picture

@@ -78,10 +78,10 @@ impl Default for Config {
 /// Which errors count.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Look {
-    /// Errors that people see: fewer seams where the picture is smooth, for a tenth of a dB or two.
+    /// Errors that people see: fewer seams where the picture is smooth, for a tenth of a dB.
+    #[default]
     Eye,
     /// All errors alike, which gives the most dB.
-    #[default]
     Exact,
 }
 

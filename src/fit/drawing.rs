@@ -6,6 +6,7 @@ mod scene;
 use fearless_simd::Level;
 
 use super::bounds::Bounds;
+use super::focus::Focus;
 use super::surface::Surface;
 use crate::render::{Canvas, CanvasLoss, Gradients, Params, Renderer, Softness, Strokes, Survey};
 use crate::scene::{Rgb, Shade, Stroke};
@@ -180,6 +181,13 @@ impl Drawing {
     pub(super) fn thaw(&mut self) {
         self.surfaces.iter_mut().for_each(Surface::thaw);
         self.free_all();
+    }
+
+    /// Lets errors count as `focus` says, everywhere alike if `None`. Nothing may be frozen.
+    pub(super) fn focus_on(&mut self, focus: Option<&Focus>) {
+        self.surfaces.iter_mut().for_each(|s| s.focus_on(focus));
+        self.renderer = renderer(self.surface(), self.level);
+        self.render();
     }
 
     fn free_all(&mut self) {

@@ -38,6 +38,8 @@ pub(super) struct Session<'a> {
     pub(super) recipe: Recipe,
     pub(super) base: Option<&'a Base>,
     pub(super) focus: Option<Focus>,
+    /// How much an error counts at each pixel while strokes are fitted: as `focus` says, and as it is seen.
+    pub(super) weights: Option<Focus>,
     /// The radii of the pens, px, the thinnest first; none if strokes may have any.
     pub(super) radii: Vec<f32>,
     /// The picture to reproduce.
@@ -105,7 +107,7 @@ impl<'a> Session<'a> {
         let coarsest = coarsest(&plan, before, config, base).min(widest);
         let Prepared {
             target,
-            surfaces,
+            mut surfaces,
             background_fixed,
             shade,
         } = Prepared::new(
@@ -115,7 +117,6 @@ impl<'a> Session<'a> {
             &recipe,
             coarsest,
         )?;
-        let surfaces = surfaces.into_iter();
         let weights = match config.look {
             Look::Exact => focus.clone(),
             Look::Eye => {
@@ -123,7 +124,9 @@ impl<'a> Session<'a> {
                 Some(focus.iter().fold(seen, |seen, focus| seen.times(focus)))
             }
         };
-        let surfaces: Vec<_> = surfaces.map(|s| s.focused(weights.clone())).collect();
+        for surface in &mut surfaces {
+            surface.focus_on(weights.as_ref());
+        }
         let annealing = Annealing {
             coverage: config.coverage,
             edge: recipe.edge,
@@ -143,6 +146,7 @@ impl<'a> Session<'a> {
             recipe,
             base,
             focus,
+            weights,
             radii,
             target,
             annealing,

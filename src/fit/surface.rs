@@ -212,13 +212,12 @@ impl Surface {
         }
     }
 
-    /// The surface with errors that count as `focus` says.
-    pub(super) fn focused(mut self, focus: Option<Focus>) -> Self {
-        if focus.is_some() {
-            self.focus = focus;
+    /// Lets errors count as `focus` says, everywhere alike if `None`. Nothing may be frozen.
+    pub(super) fn focus_on(&mut self, focus: Option<&Focus>) {
+        if focus.is_some() || self.focus.is_some() {
+            self.focus = focus.cloned();
             self.halve(self.halvings);
         }
-        self
     }
 
     /// What canvas and target are seen through, at the current resolution.

@@ -18,7 +18,7 @@ export interface Options {
   preset?: "draft" | "balanced" | "best";
   /** A good drawing after every layer, at some dB less in the end. */
   progressive?: boolean;
-  /** Which errors count: all alike, or those that people see, for a tenth of a dB or two less; `exact` if it is left out. */
+  /** Which errors count: those that people see, or all alike, for a tenth of a dB more; `eye` if it is left out. */
   look?: "eye" | "exact";
   /** Opaque strokes only. */
   opaque?: boolean;

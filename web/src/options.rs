@@ -160,7 +160,7 @@ mod tests {
     fn every_option_arrives() {
         let json = r##"{
             "strokes": 500, "psnr": 32, "bytes": 9000, "time": 1.5, "quality": 25, "preset": "draft", "progressive": true,
-            "look": "eye", "opaque": true, "coverage": "sigmoid", "points": 6, "stages": 3, "polish": false, "background": "#ff0000", "seed": 7,
+            "look": "exact", "opaque": true, "coverage": "sigmoid", "points": 6, "stages": 3, "polish": false, "background": "#ff0000", "seed": 7,
             "colors": "8", "pens": "2,3", "form": "smallest", "group": "color", "order": "travel", "precision": 1, "width": "120mm", "base": "<svg/>",
             "freezeBase": true
         }"##;
@@ -181,7 +181,7 @@ mod tests {
             quality: Some(25.0),
             preset: Preset::Draft,
             progressive: true,
-            look: strokefit::fit::Look::Eye,
+            look: strokefit::fit::Look::Exact,
             opaque: true,
             coverage: "sigmoid".parse().unwrap(),
             points: Some(6),

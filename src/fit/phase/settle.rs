@@ -33,7 +33,7 @@ pub(in crate::fit) fn settle(session: &mut Session<'_>) -> Result<Outcome> {
     let restricted = restrict(session)?;
     let budget = &session.config.budget;
     if budget::needs_file(budget, &session.recipe) {
-        let file = run(session, restricted)?;
+        let file = run_exact(session, restricted)?;
         session.history.corrections.last_db = psnr_db(file.mse);
         let best = session.best.as_ref();
         if best.is_none_or(|best| budget::is_better(budget, &file, best)) {
@@ -72,6 +72,15 @@ fn restrict(session: &mut Session<'_>) -> Result<Restricted> {
     }
     let ties = sharing::run(session);
     Ok(Restricted { rates, ties })
+}
+
+/// [`run`] with errors that count as the user's mask says, but not less where detail hides them: renderers differ most at
+/// the outlines of strokes, which are detail.
+fn run_exact(session: &mut Session<'_>, restricted: Restricted) -> Result<RenderedFile> {
+    session.drawing.focus_on(session.focus.as_ref());
+    let file = run(session, restricted)?;
+    session.drawing.focus_on(session.weights.as_ref());
+    Ok(file)
 }
 
 /// Descends against renders of the file and returns the best file. The drawing becomes the one that it was written

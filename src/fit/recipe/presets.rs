@@ -83,7 +83,7 @@ const BALANCED: Recipe = Recipe {
     tracing: Tracing {
         flat: 0.87,
         explained: 0.4,
-        least_area: 6,
+        least_area: 2,
         pace: 0.25,
     },
     stages: Stages {
@@ -195,6 +195,7 @@ const BALANCED: Recipe = Recipe {
     masking: Masking {
         window: 6,
         contrast: 0.04,
+        ceiling: 0.2,
     },
     settling: Settling {
         rounds: 5,
