@@ -327,7 +327,8 @@ impl<'a> Bench<'a> {
         let excess = done / counted - 1.0;
         assert!(
             excess.abs() < 0.01,
-            "blocks: {done} done, {counted} counted"
+            "blocks of {}: {done} done, {counted} counted",
+            self.drawing.name
         );
     }
 }
