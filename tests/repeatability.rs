@@ -118,7 +118,7 @@ fn draft(budget: Budget) -> Config {
     Config {
         budget,
         preset: Preset::Draft,
-        look: Look::Exact,
+        look: Some(Look::Exact),
         ..Config::default()
     }
 }
@@ -170,7 +170,7 @@ fn option_sets() -> [(&'static str, Config); 4] {
         (
             "100 strokes for the eye, settled",
             Config {
-                look: Look::Eye,
+                look: Some(Look::Eye),
                 recipe: settled(),
                 ..draft(at_most(100))
             },
@@ -245,7 +245,7 @@ fn other_budgets() -> [Case; 3] {
     };
     let balanced = Config {
         budget: at_most(60),
-        look: Look::Exact,
+        look: Some(Look::Exact),
         ..Config::default()
     };
     [

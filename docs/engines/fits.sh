@@ -9,10 +9,11 @@ trap 'rm -rf "$folder"' EXIT
 # One column of resvg, one of the least of Cairo's three, one of Chromium.
 columns() { # PICTURE, OPTIONS OF THE FIT
     "$strokefit" fit "$1" -o "$folder/fit.svg" -q "${@:2}"
-    "$strokefit" check "$folder/fit.svg" "$1" -q | awk '
+    # A drawing that a program draws differently is a row like others.
+    { "$strokefit" check "$folder/fit.svg" "$1" 2>/dev/null || true; } | awk '
         $1 == "resvg" { resvg = $3 }
-        $1 ~ /^(inkscape|rsvg|cairosvg)$/ && (cairo == "" || $3 < cairo) { cairo = $3; cairo_agrees = $5 }
-        $1 == "chromium" { skia = $3; skia_agrees = $5 }
+        $1 ~ /^(inkscape|rsvg|cairosvg)$/ && (cairo == "" || $3 < cairo) { cairo = $3; cairo_agrees = $6 }
+        $1 == "chromium" { skia = $3; skia_agrees = $6 }
         function than(db, agrees) { return db == "" ? "–" : sprintf("%s%.2f (%.1f)", db < resvg ? "−" : "+", db < resvg ? resvg - db : db - resvg, agrees) }
         END { printf " %s | %s | %s |", resvg, than(cairo, cairo_agrees), than(skia, skia_agrees) }'
 }

@@ -32,7 +32,7 @@ impl<'a, 'py> Options<'a, 'py> {
             quality: self.get("quality")?,
             preset: self.word("preset")?.unwrap_or_default(),
             progressive: self.flag("progressive")?,
-            look: self.word("look")?.unwrap_or_default(),
+            look: self.word("look")?,
             opaque: self.flag("opaque")?,
             points: self.whole("points", 2..=MAX_POINTS)?,
             stages: self.whole("stages", 1..=MAX_STROKES)?,

@@ -79,9 +79,9 @@ pub(super) struct Look {
     #[arg(long)]
     opaque: bool,
     /// Which errors count: eye (those that people see, so that smooth places have fewer seams) or exact (all alike, for a
-    /// tenth of a dB more)
-    #[arg(long, value_name = "LOOK", default_value_t)]
-    look: fit::Look,
+    /// tenth of a dB more) [default: eye, but exact with --psnr]
+    #[arg(long, value_name = "LOOK")]
+    look: Option<fit::Look>,
     /// Only these widths of strokes: lengths such as 0.3mm,0.8mm on a page of a --width, or numbers in px of the picture
     #[arg(long, value_name = "WIDTHS", allow_hyphen_values = true)]
     pens: Option<Widths>,

@@ -26,8 +26,9 @@ pub struct Config {
     pub preset: Preset,
     /// Whether each layer is polished on its own, so that the drawing looks finished after each.
     pub progressive: bool,
-    /// Which errors count.
-    pub look: Look,
+    /// Which errors count; `None` for [`Look::Exact`] where a fidelity is asked for, which is about exact errors, and for
+    /// [`Look::Eye`] elsewhere.
+    pub look: Option<Look>,
     /// Whether all strokes have opacity 1.
     pub opaque: bool,
     /// The coverage function, or two: one while the edge is soft, and one for the final edge.
@@ -59,7 +60,7 @@ impl Default for Config {
             quality: None,
             preset: Preset::default(),
             progressive: false,
-            look: Look::default(),
+            look: None,
             opaque: false,
             coverage: CoverageSchedule::default(),
             points: None,
@@ -76,10 +77,9 @@ impl Default for Config {
 }
 
 /// Which errors count.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Look {
     /// Errors that people see: fewer seams where the picture is smooth, for a tenth of a dB.
-    #[default]
     Eye,
     /// All errors alike, which gives the most dB.
     Exact,
@@ -166,6 +166,15 @@ impl Config {
     /// The recipe to fit by.
     pub(super) fn recipe(&self) -> Recipe {
         self.recipe.unwrap_or(Recipe::of(self.preset))
+    }
+
+    /// Which errors count.
+    pub(super) fn look(&self) -> Look {
+        let usual = match self.budget.psnr_db {
+            Some(_) => Look::Exact,
+            None => Look::Eye,
+        };
+        self.look.unwrap_or(usual)
     }
 
     /// Whether strokes may have more than two points. In a file of outlines a point takes as many bytes as a stroke, so

@@ -157,7 +157,7 @@ mod tests {
                     ..Budget::default()
                 },
                 preset: Preset::Draft,
-                look,
+                look: Some(look),
                 ..Config::default()
             };
             let fit = Fitter::new(config).fit(&picture).unwrap();

@@ -117,7 +117,7 @@ impl<'a> Session<'a> {
             &recipe,
             coarsest,
         )?;
-        let weights = match config.look {
+        let weights = match config.look() {
             Look::Exact => focus.clone(),
             Look::Eye => {
                 let seen = masking::weights(&target, recipe.masking);

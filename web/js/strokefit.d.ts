@@ -18,7 +18,7 @@ export interface Options {
   preset?: "draft" | "balanced" | "best";
   /** A good drawing after every layer, at some dB less in the end. */
   progressive?: boolean;
-  /** Which errors count: those that people see, or all alike, for a tenth of a dB more; `eye` if it is left out. */
+  /** Which errors count: those that people see, or all alike, for a tenth of a dB more; if it is left out, `exact` with `psnr`, and `eye` without. */
   look?: "eye" | "exact";
   /** Opaque strokes only. */
   opaque?: boolean;

@@ -33,7 +33,7 @@ def fit(
     time: Optional[float] = None,
     quality: Optional[float] = None,
     preset: str = "balanced",
-    look: str = "eye",
+    look: Optional[str] = None,
     opaque: bool = False,
     points: Optional[int] = None,
     precision: int = 2,
@@ -71,7 +71,8 @@ def fit(
         quality: Price of a byte, 0 to 60: a stroke stays if each of its bytes removes at least as much squared error
             as one pixel has at so many dB. 30 unless there is a budget of strokes, psnr or bytes.
         preset: `draft`, `balanced` or `best`: how much time to spend.
-        look: Which errors count: those that people see (`eye`), or all alike (`exact`), for a tenth of a dB more.
+        look: Which errors count: those that people see (`eye`), or all alike (`exact`), for a tenth of a dB more; `None` is
+            `exact` with `psnr`, and `eye` without.
         opaque: Use opaque strokes only.
         points: Most points of a stroke, 2 to 65535; 2 draws line segments alone. As many as pay by default.
         precision: Decimals of coordinates and widths, 0 to 6.
@@ -154,7 +155,7 @@ def refine(
     time: Optional[float] = None,
     quality: Optional[float] = None,
     preset: str = "balanced",
-    look: str = "eye",
+    look: Optional[str] = None,
     opaque: bool = False,
     points: Optional[int] = None,
     precision: int = 2,
