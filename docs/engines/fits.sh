@@ -11,7 +11,7 @@ columns() { # PICTURE, OPTIONS OF THE FIT
     "$strokefit" fit "$1" -o "$folder/fit.svg" -q "${@:2}"
     # A drawing that a program draws differently is a row like others.
     { "$strokefit" check "$folder/fit.svg" "$1" 2>/dev/null || true; } | awk '
-        $1 == "resvg" { resvg = $3 }
+        $1 == "resvg" && $2 != "on" { resvg = $3 }
         $1 ~ /^(inkscape|rsvg|cairosvg)$/ && (cairo == "" || $3 < cairo) { cairo = $3; cairo_agrees = $6 }
         $1 == "chromium" { skia = $3; skia_agrees = $6 }
         function than(db, agrees) { return db == "" ? "–" : sprintf("%s%.2f (%.1f)", db < resvg ? "−" : "+", db < resvg ? resvg - db : db - resvg, agrees) }
