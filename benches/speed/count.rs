@@ -211,10 +211,7 @@ fn distance(stroke: StrokeRef<'_>, x: f32, y: f32) -> f32 {
         let h = ((px * ux + py * uy) / (ux * ux + uy * uy + 1e-6)).clamp(0.0, 1.0);
         (px - h * ux).hypot(py - h * uy)
     };
-    // A path of one point has no segment, and any other includes its first point.
-    let dot = [stroke.points[0]; 2];
-    let segments = stroke.points.windows(2).chain([&dot[..]]);
-    let distances = segments.map(from_segment);
+    let distances = stroke.points.windows(2).map(from_segment);
     stroke.radius() - distances.fold(f32::INFINITY, f32::min)
 }
 

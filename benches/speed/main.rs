@@ -26,8 +26,7 @@ use strokefit::bench::measure::{DEPTH, EDGE, StrokeSize, fastest, thread_counts}
 use strokefit::fit::{Budget, Config, Fitter, Objective, Simd};
 use strokefit::image::Image;
 use strokefit::loss::Loss;
-use strokefit::render::{Backdrop, Canvas, Gradients, Renderer, Strokes};
-use strokefit::scene::{Path, PathPoint, Stroke};
+use strokefit::render::{Backdrop, Canvas, Gradients, Renderer, StrokeRef, Strokes, flattened};
 
 use count::{Count, Work};
 use limits::Limits;
@@ -42,9 +41,6 @@ const SIZES: [(&str, f32, f32); 3] = [
     ("large", 12.0, 40.0),
 ];
 const OPACITIES: [f32; 2] = [1.0, 0.5];
-
-/// Farthest that a polyline is from its curve, px.
-const FLATNESS: f32 = 0.08;
 
 fn main() -> Result<()> {
     let options = Options::parse(std::env::args().skip(1));
@@ -150,22 +146,20 @@ fn settled(
         ..Config::default()
     };
     let scene = Fitter::new(config).fit(image)?.scene;
+    let paths: Strokes = scene.strokes().collect();
     let mut strokes = Strokes::new();
-    for stroke in scene.strokes() {
-        strokes.push_stroke(&polyline(stroke)?);
+    for path in paths.iter() {
+        let points = flattened(path);
+        strokes.push(StrokeRef {
+            points: &points,
+            off: &vec![false; points.len()],
+            closed: false,
+            look: path.look,
+        });
     }
     let backdrop = scene.background.unwrap_or([1.0; 3]);
     let target = Canvas::from_image(image);
     Ok(Workload::new(name.into(), strokes, backdrop, &target))
-}
-
-fn polyline(stroke: &Stroke) -> Result<Stroke> {
-    let corners = stroke.path.flattened(FLATNESS);
-    let points = corners.into_iter().map(PathPoint::on).collect();
-    Ok(Stroke {
-        path: Path::new(points, false)?,
-        ..stroke.clone()
-    })
 }
 
 /// Shortest times of one drawing on some number of threads, s.

@@ -552,8 +552,9 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// The vertices of one stroke's polyline.
-pub(crate) fn flattened(stroke: StrokeRef<'_>) -> Vec<[f32; 2]> {
+/// The vertices of the polyline that replaces a stroke, px. That of a dot has two vertices in one place, and that of a
+/// closed path ends where it starts.
+pub fn flattened(stroke: StrokeRef<'_>) -> Vec<[f32; 2]> {
     let mut vertices = Vec::new();
     walk(stroke, 1, |vertex| {
         vertices.push(vertex.place(stroke.points))
