@@ -1,7 +1,7 @@
 //! The work in a drawing: pairs, the blocks that the renderer visits, and what it does in each.
 //!
 //! A stroke is one, however many segments it has: where they overlap, its pixels and blocks count once. Paths are without
-//! curves here. Written apart from the renderer, in scalars, from its description.
+//! curves here, and dots are lines of no length. Written apart from the renderer, in scalars, from its description.
 
 use strokefit::render::{Grid, StrokeRef, Strokes, TILE};
 
