@@ -107,7 +107,7 @@ impl WrittenPath {
         Self::new([a, b].map(PathPoint::on).into(), false)
     }
 
-    /// The path with a corner on the `grid` where a curve turns back more sharply than all programs can draw it.
+    /// The path with a corner on the `grid` where a curve bends more sharply than all programs can draw it.
     fn with_corners_for_cusps(self, grid: &Grid) -> Self {
         if !self.pieces().any(|piece| cusp(piece).is_some()) {
             return self;
@@ -262,7 +262,11 @@ const PX: f64 = UNITS_PER_PX as f64;
 /// 4 px wide with bends of 0.01 px, librsvg's render is 35 dB from that of a polyline, with 0.04 px 44 dB.
 const SHARPEST: f64 = 0.02;
 
-/// Where a curve bends most, px, if it does so within it and more sharply than [`SHARPEST`].
+/// How far the chord may be from a curve that it replaces because of a bend at an end, px.
+const BESIDE: f64 = 0.1;
+
+/// Where a curve bends most, px, if it does so more sharply than [`SHARPEST`]. At an end, where less of the stroke's width
+/// is at stake, it counts if the chord is at most [`BESIDE`] from the curve.
 fn cusp(piece: Piece<[i64; 2]>) -> Option<[f64; 2]> {
     let Piece::Curve(points) = piece else {
         return None;
@@ -271,12 +275,21 @@ fn cusp(piece: Piece<[i64; 2]>) -> Option<[f64; 2]> {
     let there = [c[0] - a[0], c[1] - a[1]];
     let bend = [a[0] - 2.0 * c[0] + b[0], a[1] - 2.0 * c[1] + b[1]];
     let bend2 = bend[0] * bend[0] + bend[1] * bend[1];
-    let t = -(there[0] * bend[0] + there[1] * bend[1]) / bend2;
-    let area = there[0] * bend[1] - there[1] * bend[0];
+    let area = (there[0] * bend[1] - there[1] * bend[0]).abs();
     // A parabola a + 2t(c − a) + t²(a − 2c + b) bends most where its speed is across its acceleration.
-    let radius = 2.0 * area * area / (bend2 * bend2.sqrt());
+    let apex = -(there[0] * bend[0] + there[1] * bend[1]) / bend2;
+    let t = apex.clamp(0.0, 1.0);
+    let is_within = t > 0.0 && t < 1.0;
+    let half_speed = if is_within {
+        // Zero, as it should be, where the curve turns back into itself.
+        area / bend2.sqrt()
+    } else {
+        math::hypot(there[0] + t * bend[0], there[1] + t * bend[1])
+    };
+    let is_sharp = 2.0 * math::powi(half_speed, 3) <= SHARPEST * area;
+    let is_beside_chord = area <= 2.0 * BESIDE * math::hypot(b[0] - a[0], b[1] - a[1]);
     let at = |axis: usize| a[axis] + t * (2.0 * there[axis] + t * bend[axis]);
-    (t > 0.0 && t < 1.0 && radius < SHARPEST).then(|| [at(0), at(1)])
+    (is_sharp && (is_within || is_beside_chord)).then(|| [at(0), at(1)])
 }
 
 /// The grid's step, in its multiples, on which `f32` tells neighbouring points of the path apart. Otherwise what is
@@ -440,6 +453,20 @@ mod tests {
         ];
         let kinds: Vec<_> = rounded(&spline, false).0.iter().map(|p| p.2).collect();
         assert_eq!(kinds, [ON, OFF, OFF, ON, ON, ON, OFF, ON]);
+    }
+
+    #[test]
+    fn a_curve_that_bends_sharply_at_its_end_is_a_line_if_that_is_close() {
+        let late = [(0.0, 0.0, ON), (30.0, 10.0, OFF), (30.2, 9.9, ON)];
+        assert_eq!(rounded(&late, false).0, [(0, 0, ON), (302, 99, ON)]);
+        let early = [(30.2, 9.9, ON), (30.0, 10.0, OFF), (0.0, 0.0, ON)];
+        assert_eq!(rounded(&early, false).0, [(302, 99, ON), (0, 0, ON)]);
+        // Further from its end, the control point makes a blunter bend.
+        let blunt = [(0.0, 0.0, ON), (30.0, 10.0, OFF), (30.9, 9.6, ON)];
+        assert_eq!(rounded(&blunt, false).0[1], (300, 100, OFF));
+        // The chord is 0.15 px from this one.
+        let far = [(0.0, 0.0, ON), (90.0, 0.0, OFF), (90.1, 0.3, ON)];
+        assert_eq!(rounded(&far, false).0[1], (900, 0, OFF));
     }
 
     #[test]
