@@ -313,6 +313,51 @@ fn differentiated(case: &Case, simd: Simd, softness: Softness, loss: Loss) -> Gr
     gradients
 }
 
+/// The backdrops and targets of two losses: a colour and a picture.
+fn two_mattes(case: &Case) -> ([Canvas; 2], Canvas) {
+    let first = target(case);
+    let [red, green, blue] = first.planes().clone();
+    let second = Image::new(case.width, case.height, [blue, red, green]).unwrap();
+    let below = second
+        .planes()
+        .clone()
+        .map(|plane| plane.iter().map(|v| 1.0 - v).collect());
+    let below = Image::new(case.width, case.height, below).unwrap();
+    (
+        [first, second].map(|image| Canvas::from_image(&image)),
+        Canvas::from_image(&below),
+    )
+}
+
+fn differentiated_on_mattes(case: &Case, simd: Simd, softness: Softness) -> Gradients {
+    let (targets, below) = two_mattes(case);
+    let losses = targets
+        .each_ref()
+        .map(|target| Objective::new(Loss::L2, target));
+    let mut gradients = Gradients::default();
+    renderer(case, simd).backward_on_mattes(
+        &case.strokes,
+        softness,
+        [Backdrop::Color(BACKGROUND), Backdrop::Canvas(&below)],
+        losses.each_ref(),
+        &mut gradients,
+    );
+    gradients
+}
+
+/// The same in two passes.
+fn differentiated_one_by_one(case: &Case, simd: Simd, softness: Softness) -> [Gradients; 2] {
+    let (targets, below) = two_mattes(case);
+    let backdrops = [Backdrop::Color(BACKGROUND), Backdrop::Canvas(&below)];
+    [0, 1].map(|i| {
+        let loss = Objective::new(Loss::L2, &targets[i]);
+        let mut gradients = Gradients::default();
+        let mut renderer = renderer(case, simd);
+        renderer.backward(&case.strokes, softness, backdrops[i], &loss, &mut gradients);
+        gradients
+    })
+}
+
 fn report(failures: Vec<String>) {
     assert!(
         failures.is_empty(),
@@ -452,6 +497,45 @@ fn gradients_and_worths_are_the_oracles() {
     for case in cases() {
         for &(coverage, loss) in &edges {
             failures.extend(gradient_failures(&case, coverage, 1.5, loss));
+        }
+    }
+    report(failures);
+}
+
+#[test]
+fn gradients_on_two_mattes_are_the_sums_of_those_on_each() {
+    let mut failures = Vec::new();
+    for (case, coverage) in cases().iter().zip(Coverage::EACH.iter().cycle()) {
+        let softness = Softness {
+            coverage: *coverage,
+            width: 1.5,
+        };
+        let both = differentiated_on_mattes(case, Simd::Auto, softness);
+        let [first, second] = differentiated_one_by_one(case, Simd::Auto, softness);
+        let values = |g: &Gradients| -> Vec<f64> { g.strokes.iter().map(|&v| v.into()).collect() };
+        let [got, first, second] = [&both, &first, &second].map(|g| {
+            let loss = (String::from("loss"), KINDS.len(), g.loss);
+            let mut numbers = numbered(&case.strokes, &values(g));
+            let backdrop = g
+                .backdrop
+                .iter()
+                .map(|&v| (String::from("backdrop"), KINDS.len(), v.into()));
+            numbers.extend(backdrop.chain([loss]));
+            numbers
+        });
+        let mut largest = [FAINT; KINDS.len() + 1];
+        for (_, kind, value) in first.iter().chain(&second) {
+            largest[*kind] = value.abs().max(largest[*kind]);
+        }
+        for ((name, kind, got), ((.., first), (.., second))) in
+            got.iter().zip(first.iter().zip(&second))
+        {
+            if (got - first - second).abs() > 1e-5 * largest[*kind] || got.is_nan() {
+                failures.push(format!(
+                    "{}, {coverage}: {name}: {got} not {first} + {second}",
+                    case.name
+                ));
+            }
         }
     }
     report(failures);
@@ -690,6 +774,7 @@ fn every_level_gives_the_same_bits() {
                 width: 1.25,
             };
             let expected = differentiated(&case, Simd::Scalar, softness, Loss::L2);
+            let on_mattes = differentiated_on_mattes(&case, Simd::Scalar, softness);
             for simd in levels() {
                 let got = differentiated(&case, simd, softness, Loss::L2);
                 let bits = |g: &Gradients| -> Vec<u32> {
@@ -704,6 +789,12 @@ fn every_level_gives_the_same_bits() {
                     bits(&got),
                     bits(&expected),
                     "{simd}, {coverage}, {}",
+                    case.name
+                );
+                assert_eq!(
+                    bits(&differentiated_on_mattes(&case, simd, softness)),
+                    bits(&on_mattes),
+                    "{simd}, {coverage}, {} on two mattes",
                     case.name
                 );
                 assert_eq!(

@@ -262,6 +262,16 @@ impl Drawing {
         gradients: &mut Gradients,
     ) {
         let (free, frozen) = (&self.free, self.frozen.len());
+        if let ([black, white], false) = (self.surfaces.as_slice(), WITH_WORTH) {
+            let backdrops = [black, white].map(|surface| surface.backdrop(frozen));
+            let [of_black, of_white] = [0, 1]
+                .map(|i| self.surfaces[i].objective(targets.and_then(|targets| targets.get(i))));
+            let losses = [&of_black, &of_white];
+            let renderer = &mut self.renderer;
+            renderer.backward_on_mattes(free, edge, backdrops, losses, gradients);
+            gradients.scale(0.5);
+            return;
+        }
         let mut more = Gradients::default();
         for (i, surface) in self.surfaces.iter().enumerate() {
             let out = if i == 0 { &mut *gradients } else { &mut more };

@@ -27,6 +27,8 @@ pub(super) struct Flat {
     pub(super) looks: Vec<[f32; LOOK]>,
     /// The smallest and the largest x and y of the vertices of each stroke, px.
     pub(super) boxes: Vec<[[f32; 2]; 2]>,
+    /// Memory for the polylines of [`CHUNK`] strokes each.
+    parts: Vec<Self>,
 }
 
 /// A vertex as a mean of points.
@@ -60,16 +62,16 @@ impl Vertex {
 impl Flat {
     /// Flattens `strokes`. Each line and each curve becomes `least` segments or more.
     pub(super) fn fill(&mut self, strokes: &Strokes, least: usize) {
-        let chunks = (0..strokes.len()).into_par_iter().step_by(CHUNK);
-        let parts: Vec<Self> = chunks
-            .map(|first| {
-                let mut part = Self::default();
-                for i in first..strokes.len().min(first + CHUNK) {
-                    part.push(strokes.get(i), least);
-                }
-                part
-            })
-            .collect();
+        let count = strokes.len().div_ceil(CHUNK);
+        self.parts.resize_with(count, Self::default);
+        let parts = self.parts.par_iter_mut().enumerate();
+        parts.for_each(|(chunk, part)| {
+            part.clear();
+            for i in chunk * CHUNK..strokes.len().min((chunk + 1) * CHUNK) {
+                part.push(strokes.get(i), least);
+            }
+        });
+        let parts = std::mem::take(&mut self.parts);
         self.clear();
         for part in &parts {
             let before = self.vertices.len() as u32;
@@ -80,6 +82,7 @@ impl Flat {
             self.boxes.extend(&part.boxes);
         }
         self.firsts.push(self.vertices.len() as u32);
+        self.parts = parts;
     }
 
     fn clear(&mut self) {
@@ -130,11 +133,7 @@ pub(super) fn walk(stroke: StrokeRef<'_>, least: usize, mut visit: impl FnMut(Ve
     };
     visit(first.from.vertex());
     for piece in pieces {
-        let steps = piece.steps(stroke.points, least);
-        for step in 1..steps {
-            visit(piece.vertex(step as f32 / steps as f32));
-        }
-        visit(piece.to.vertex());
+        piece.vertices(stroke.points, least).for_each(&mut visit);
     }
 }
 
@@ -194,6 +193,18 @@ impl Piece {
         );
         let bend = [0, 1].map(|k| a[k] - 2.0 * c[k] + b[k]);
         sdf::steps(Vector::from(bend)).max(least)
+    }
+
+    /// The vertices of the piece behind its start.
+    fn vertices(self, points: &[[f32; 2]], least: usize) -> impl Iterator<Item = Vertex> {
+        let steps = self.steps(points, least);
+        let within = (1..steps).map(move |step| self.vertex(step as f32 / steps as f32));
+        within.chain([self.to.vertex()])
+    }
+
+    /// The places of the vertices behind the start.
+    pub(crate) fn places(self, points: &[[f32; 2]]) -> impl Iterator<Item = [f32; 2]> {
+        self.vertices(points, 1).map(|vertex| vertex.place(points))
     }
 
     /// Whether the piece changes with point `k`.

@@ -36,7 +36,7 @@ use fearless_simd::{Level, dispatch, f32x16, prelude::*};
 
 pub(super) use capsule::Capsule;
 pub(super) use lanes::{load, members, store, total};
-pub(super) use sums::{EndSums, Extras, LookSums, Nothing, Stiffnesses, WORTH, Worths};
+pub(super) use sums::{EndSums, Extras, LookSums, Mattes, Nothing, Stiffnesses, WORTH, Worths};
 
 use super::edge::{Edge, Reach, SoftEdge};
 use super::flat::Flat;
@@ -44,7 +44,7 @@ use super::grid::{BLOCKS, BlockRgb, BlockSet, Lanes, TileRgb, TileWeights, flat_
 use super::strokes::LOOK;
 use super::{CanvasLoss, Listed};
 use capsule::length;
-use sums::{EdgeBlock, Shifts, Sums};
+use sums::{EdgeBlock, Grounds, Matte, Shifts, Sums};
 use union::{Kept, Segments, Union};
 
 /// Transmittance below which nothing behind shows: a sixty-fourth of an 8-bit level. Four times as
@@ -53,6 +53,12 @@ const OPAQUE: f32 = 1.0 / 16384.0;
 
 /// Least opacity that is drawn, so that the derivative by an opacity of 0 is not 0/0.
 const FAINTEST: f32 = 1e-20;
+
+/// A matte that no stroke hides.
+const CLEAR: Matte = Matte {
+    through: Lanes::splat(1.0),
+    gradient: Lanes::splat(0.0),
+};
 
 /// One stroke's blocks, as pass 1 visited them.
 #[derive(Debug, Clone, Copy)]
@@ -91,6 +97,9 @@ pub(super) struct Scratch {
     veils: [Veil; BLOCKS],
     error: TileRgb,
     gradient: TileRgb,
+    /// `∂L/∂canvas` of the second of two losses.
+    second: TileRgb,
+    mattes: [Matte; BLOCKS],
     visits: Vec<Visit>,
     kept_transmittance: Vec<Lanes>,
     kept_edges: Vec<EdgeBlock>,
@@ -108,6 +117,8 @@ impl Scratch {
             veils: [Veil::clear(&Lanes::splat(1.0)); BLOCKS],
             error: flat_tile([0.0; 3]),
             gradient: flat_tile([0.0; 3]),
+            second: flat_tile([0.0; 3]),
+            mattes: [CLEAR; BLOCKS],
             visits: Vec::new(),
             kept_transmittance: Vec::new(),
             kept_edges: Vec::new(),
@@ -344,6 +355,7 @@ fn back_to_front<S: Simd, X: Extras>(
         kept_edges,
         kept_nearest,
         near,
+        mattes,
         ..
     } = scratch;
     // Behind the rearmost stroke is the backdrop.
@@ -354,6 +366,12 @@ fn back_to_front<S: Simd, X: Extras>(
             *sum += load(simd, &veil.through) * load(simd, g);
         }
     }
+    let mut grounds = Grounds {
+        behind,
+        gradient,
+        error,
+        mattes,
+    };
     // What pass 1 kept is read from its end: pass 2 visits the same strokes in reverse, and in each of them the
     // same blocks in the same order.
     let (mut at, mut at_edge) = (kept_transmittance.len(), kept_edges.len());
@@ -376,15 +394,8 @@ fn back_to_front<S: Simd, X: Extras>(
             .zip(&mut seen_through);
         if is_capsule {
             for ((block, kept), t) in edges {
-                let (pull, stiffness) = stroke.blend_edge::<X>(
-                    simd,
-                    kept,
-                    t,
-                    &rgb,
-                    &mut behind[block],
-                    &gradient[block],
-                    &error[block],
-                );
+                let (pull, stiffness) =
+                    stroke.blend_edge::<X>(simd, kept, t, &rgb, grounds.at(block));
                 let nearest = capsule.at_pixels(simd, block);
                 shifts.pull(pull, nearest.q, nearest.h);
                 if X::STIFFNESS {
@@ -393,15 +404,8 @@ fn back_to_front<S: Simd, X: Extras>(
             }
         } else {
             for ((block, kept), t) in edges {
-                let (pull, stiffness) = stroke.blend_edge::<X>(
-                    simd,
-                    kept,
-                    t,
-                    &rgb,
-                    &mut behind[block],
-                    &gradient[block],
-                    &error[block],
-                );
+                let (pull, stiffness) =
+                    stroke.blend_edge::<X>(simd, kept, t, &rgb, grounds.at(block));
                 // What the segments need, in the place of what is not needed any more.
                 store(pull, &mut kept.slope);
                 if X::STIFFNESS {
@@ -411,15 +415,7 @@ fn back_to_front<S: Simd, X: Extras>(
         }
         let opacity = f32x16::splat(simd, look[LOOK - 1].max(FAINTEST));
         for (block, t) in members(visit.core).zip(seen_through) {
-            stroke.blend::<X>(
-                simd,
-                opacity,
-                load(simd, t),
-                &rgb,
-                &mut behind[block],
-                &gradient[block],
-                &error[block],
-            );
+            stroke.blend::<X>(simd, opacity, load(simd, t), &rgb, grounds.at(block));
         }
         looks[slot] = stroke.finish(look[LOOK - 1].max(FAINTEST));
         if is_capsule {
@@ -464,4 +460,62 @@ pub(super) fn differentiate<L: CanvasLoss, X: Extras>(
         let backdrop = back_to_front::<_, X>(simd, job, scratch, looks, ends);
         TileSums { loss: value, backdrop, blocks: scratch.kept_transmittance.len() as u64 }
     })
+}
+
+/// The same for the sum of two losses: the second is of the canvas on the backdrop `other`.
+pub(super) fn differentiate_on_mattes<L: CanvasLoss>(
+    level: Level,
+    job: &TileJob<'_>,
+    other: &TileRgb,
+    losses: [&L; 2],
+    scratch: &mut Scratch,
+    looks: &mut [LookSums],
+    ends: &mut [EndSums],
+) -> TileSums {
+    dispatch!(level, simd => {
+        let Scratch { color, error, gradient, .. } = scratch;
+        let first = losses[0].tile(job.tile, color, error, gradient);
+        change_backdrop(simd, job.backdrop, other, scratch);
+        let Scratch { color, error, second, .. } = scratch;
+        let loss = first + losses[1].tile(job.tile, color, error, second);
+        add_second_loss(simd, job.backdrop, other, scratch);
+        let backdrop = back_to_front::<_, Mattes>(simd, job, scratch, looks, ends);
+        TileSums { loss, backdrop, blocks: scratch.kept_transmittance.len() as u64 }
+    })
+}
+
+/// Makes the canvas on the backdrop `from` that on `to`.
+#[inline(always)]
+fn change_backdrop<S: Simd>(simd: S, from: &TileRgb, to: &TileRgb, scratch: &mut Scratch) {
+    for (block, veil) in scratch.veils.iter().enumerate() {
+        let through = load(simd, &veil.through);
+        for (channel, color) in scratch.color[block].iter_mut().enumerate() {
+            let change = load(simd, &to[block][channel]) - load(simd, &from[block][channel]);
+            store(load(simd, color) + through * change, color);
+        }
+    }
+}
+
+/// Prepares pass 2 for both losses. In front of it, the colours of a stroke are the same on both backdrops, so that the
+/// derivatives by the canvases add up, and what is different behind it is in [`Matte`].
+#[inline(always)]
+fn add_second_loss<S: Simd>(simd: S, first: &TileRgb, other: &TileRgb, scratch: &mut Scratch) {
+    let Scratch {
+        gradient,
+        second,
+        mattes,
+        ..
+    } = scratch;
+    for (block, matte) in mattes.iter_mut().enumerate() {
+        let mut by_through = f32x16::splat(simd, 0.0);
+        for channel in 0..3 {
+            let change = load(simd, &other[block][channel]) - load(simd, &first[block][channel]);
+            let g = load(simd, &second[block][channel]);
+            by_through += g * change;
+            let sum = &mut gradient[block][channel];
+            store(load(simd, sum) + g, sum);
+        }
+        *matte = CLEAR;
+        store(by_through, &mut matte.gradient);
+    }
 }

@@ -69,6 +69,7 @@ pub mod probe;
 pub mod reference;
 mod strokes;
 
+use std::marker::PhantomData;
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
@@ -264,7 +265,26 @@ impl Renderer {
         gradients: &mut Gradients,
     ) {
         let frame = Frame::new(self.grid, softness, backdrop);
-        self.run_backward::<L, Nothing>(strokes, 1, &frame, loss);
+        self.run_backward(strokes, 1, &frame, Single::<L, Nothing>::of(&frame, loss));
+        self.reduce(strokes, false, gradients);
+    }
+
+    /// The derivatives of the sum of two `losses`, each of the canvas on one of the `backdrops`. Takes little longer than
+    /// one of them, because the strokes let through the same of both backdrops.
+    pub fn backward_on_mattes<L: CanvasLoss>(
+        &mut self,
+        strokes: &Strokes,
+        softness: Softness,
+        backdrops: [Backdrop<'_>; 2],
+        losses: [&L; 2],
+        gradients: &mut Gradients,
+    ) {
+        let frames = backdrops.map(|backdrop| Frame::new(self.grid, softness, backdrop));
+        let pass = Double {
+            frames: &frames,
+            losses,
+        };
+        self.run_backward(strokes, 1, &frames[0], pass);
         self.reduce(strokes, false, gradients);
     }
 
@@ -278,7 +298,7 @@ impl Renderer {
         gradients: &mut Gradients,
     ) {
         let frame = Frame::new(self.grid, softness, backdrop);
-        self.run_backward::<L, Worths>(strokes, 1, &frame, loss);
+        self.run_backward(strokes, 1, &frame, Single::<L, Worths>::of(&frame, loss));
         self.reduce(strokes, true, gradients);
     }
 
@@ -293,7 +313,8 @@ impl Renderer {
         survey: &mut Survey,
     ) {
         let frame = Frame::new(self.grid, softness, backdrop);
-        self.run_backward::<L, Stiffnesses>(strokes, least, &frame, loss);
+        let pass = Single::<L, Stiffnesses>::of(&frame, loss);
+        self.run_backward(strokes, least, &frame, pass);
         self.sum_slopes();
         survey.firsts.clone_from(&self.flat.firsts);
         survey.vertices.clone_from(&self.flat.vertices);
@@ -308,12 +329,12 @@ impl Renderer {
         }
     }
 
-    fn run_backward<L: CanvasLoss, X: Extras>(
+    fn run_backward(
         &mut self,
         strokes: &Strokes,
         least: usize,
         frame: &Frame<'_>,
-        loss: &L,
+        pass: impl BackwardPass,
     ) {
         self.bin(strokes, least, frame.reach);
         let Self {
@@ -329,14 +350,10 @@ impl Renderer {
             .with_max_len(1)
             .for_each(|(tile, work)| {
                 work.list_segments(flat, frame.origin(tile), frame.reach);
-                if let (Backdrop::Color(color), true) = (frame.backdrop, work.listed.is_empty())
-                    && let Some((share, backdrop)) = loss.flat(tile, color)
+                if work.listed.is_empty()
+                    && let Some(total) = pass.flat(tile)
                 {
-                    work.total = TileSums {
-                        loss: share,
-                        backdrop,
-                        ..TileSums::default()
-                    };
+                    work.total = total;
                     return;
                 }
                 let mut looks = std::mem::take(&mut work.looks);
@@ -349,7 +366,7 @@ impl Renderer {
                 let job = frame.job(flat, tile, work, weights);
                 let total = with_scratch(scratch, |scratch| {
                     kernel::draw(level, &job, scratch);
-                    kernel::differentiate::<L, X>(level, &job, loss, scratch, &mut looks, &mut ends)
+                    pass.tile(level, &job, scratch, (&mut looks, &mut ends))
                 });
                 work.total = total;
                 (work.looks, work.ends) = (looks, ends);
@@ -480,18 +497,103 @@ impl TileWork {
             let margin = flat.looks[stroke][0] + reach.outside;
             let first = flat.firsts[stroke] as usize;
             let vertices = &flat.vertices[first..flat.firsts[stroke + 1] as usize];
-            for (k, ends) in vertices.windows(2).enumerate() {
-                let touches = (0..2).all(|axis| {
-                    let (a, b) = (ends[0][axis], ends[1][axis]);
-                    a.max(b) + margin > origin[axis]
-                        && a.min(b) - margin < origin[axis] + TILE as f32
-                });
-                if touches {
-                    segments.push((first + k) as u32);
+            if vertices.len() == 2 {
+                segments.push(first as u32);
+                return true;
+            }
+            // Within reach of the tile's left, top, right and bottom edge.
+            let sides = |[x, y]: [f32; 2]| {
+                u8::from(x + margin > origin[0])
+                    | u8::from(y + margin > origin[1]) << 1
+                    | u8::from(x - margin < origin[0] + TILE as f32) << 2
+                    | u8::from(y - margin < origin[1] + TILE as f32) << 3
+            };
+            let mut before = sides(vertices[0]);
+            for (segment, &end) in (first as u32..).zip(&vertices[1..]) {
+                let sides = sides(end);
+                if before | sides == 0b1111 {
+                    segments.push(segment);
                 }
+                before = sides;
             }
             segments.len() as u32 > listed.first
         });
+    }
+}
+
+/// What follows pass 1 in a tile.
+trait BackwardPass: Sync {
+    /// The sums of a tile without strokes, if they are known without looking at its pixels.
+    fn flat(&self, tile: usize) -> Option<TileSums>;
+
+    /// The sums of the tile of `job`, which pass 1 has drawn, and those of its strokes and segments.
+    fn tile(
+        &self,
+        level: Level,
+        job: &TileJob<'_>,
+        scratch: &mut Scratch,
+        rows: (&mut [LookSums], &mut [EndSums]),
+    ) -> TileSums;
+}
+
+/// The derivatives of one loss, and `X`.
+struct Single<'a, L, X> {
+    frame: &'a Frame<'a>,
+    loss: &'a L,
+    extras: PhantomData<X>,
+}
+
+impl<'a, L: CanvasLoss, X: Extras> Single<'a, L, X> {
+    fn of(frame: &'a Frame<'a>, loss: &'a L) -> Self {
+        Self {
+            frame,
+            loss,
+            extras: PhantomData,
+        }
+    }
+}
+
+impl<L: CanvasLoss, X: Extras> BackwardPass for Single<'_, L, X> {
+    fn flat(&self, tile: usize) -> Option<TileSums> {
+        self.frame.flat_sums(tile, self.loss)
+    }
+
+    fn tile(
+        &self,
+        level: Level,
+        job: &TileJob<'_>,
+        scratch: &mut Scratch,
+        (looks, ends): (&mut [LookSums], &mut [EndSums]),
+    ) -> TileSums {
+        kernel::differentiate::<L, X>(level, job, self.loss, scratch, looks, ends)
+    }
+}
+
+/// The derivatives of the sum of two losses, each on its own backdrop.
+struct Double<'a, L> {
+    frames: &'a [Frame<'a>; 2],
+    losses: [&'a L; 2],
+}
+
+impl<L: CanvasLoss> BackwardPass for Double<'_, L> {
+    fn flat(&self, tile: usize) -> Option<TileSums> {
+        let [first, second] = [0, 1].map(|i| self.frames[i].flat_sums(tile, self.losses[i]));
+        let (mut sums, second) = (first?, second?);
+        sums.loss += second.loss;
+        add(&mut sums.backdrop, &second.backdrop);
+        Some(sums)
+    }
+
+    fn tile(
+        &self,
+        level: Level,
+        job: &TileJob<'_>,
+        scratch: &mut Scratch,
+        (looks, ends): (&mut [LookSums], &mut [EndSums]),
+    ) -> TileSums {
+        let other = self.frames[1].backdrop(job.tile);
+        let losses = self.losses;
+        kernel::differentiate_on_mattes(level, job, other, losses, scratch, looks, ends)
     }
 }
 
@@ -527,6 +629,27 @@ impl<'a> Frame<'a> {
         [x as f32, y as f32]
     }
 
+    /// What is behind all strokes in tile `tile`.
+    fn backdrop(&self, tile: usize) -> &TileRgb {
+        match self.backdrop {
+            Backdrop::Color(_) => &self.flat,
+            Backdrop::Canvas(canvas) => &canvas.tiles()[tile],
+        }
+    }
+
+    /// The sums of tile `tile` if no stroke touches it, where they are known without looking at its pixels.
+    fn flat_sums(&self, tile: usize, loss: &impl CanvasLoss) -> Option<TileSums> {
+        let Backdrop::Color(color) = self.backdrop else {
+            return None;
+        };
+        let (loss, backdrop) = loss.flat(tile, color)?;
+        Some(TileSums {
+            loss,
+            backdrop,
+            ..TileSums::default()
+        })
+    }
+
     /// The share of tile `tile`, behind these weights.
     fn job<'b>(
         &'b self,
@@ -541,10 +664,7 @@ impl<'a> Frame<'a> {
             flat,
             listed: &work.listed,
             segments: &work.segments,
-            backdrop: match self.backdrop {
-                Backdrop::Color(_) => &self.flat,
-                Backdrop::Canvas(canvas) => &canvas.tiles()[tile],
-            },
+            backdrop: self.backdrop(tile),
             weights: weights.unwrap_or(&FULL),
             edge: self.edge,
             reach: self.reach,

@@ -2,7 +2,7 @@
 
 use fearless_simd::{f32x16, prelude::*};
 
-use super::super::grid::{BlockRgb, Lanes};
+use super::super::grid::{BLOCKS, BlockRgb, Lanes, TileRgb};
 use super::super::strokes::LOOK;
 use super::lanes::{load, store, total};
 
@@ -25,11 +25,13 @@ pub(super) struct EdgeBlock {
 }
 
 /// What is asked for besides derivatives.
-pub(in crate::render) trait Extras {
+pub(in crate::render) trait Extras: Sync {
     /// Every stroke's worth.
     const WORTH: bool;
     /// Every vertex's stiffness.
     const STIFFNESS: bool;
+    /// The derivatives of two losses at once, each of the canvas on its own backdrop.
+    const MATTES: bool;
 }
 
 /// Derivatives alone.
@@ -38,20 +40,72 @@ pub(in crate::render) struct Nothing;
 pub(in crate::render) struct Worths;
 /// Stiffnesses, too.
 pub(in crate::render) struct Stiffnesses;
+/// Derivatives of two losses at once.
+pub(in crate::render) struct Mattes;
 
 impl Extras for Nothing {
     const WORTH: bool = false;
     const STIFFNESS: bool = false;
+    const MATTES: bool = false;
 }
 
 impl Extras for Worths {
     const WORTH: bool = true;
     const STIFFNESS: bool = false;
+    const MATTES: bool = false;
 }
 
 impl Extras for Stiffnesses {
     const WORTH: bool = false;
     const STIFFNESS: bool = true;
+    const MATTES: bool = false;
+}
+
+impl Extras for Mattes {
+    const WORTH: bool = false;
+    const STIFFNESS: bool = false;
+    const MATTES: bool = true;
+}
+
+/// What tells the canvas on a second backdrop from that on the first, in one block.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Matte {
+    /// Transmittance of the strokes behind.
+    pub(super) through: Lanes,
+    /// The derivative of the second loss by the transmittance of all strokes: `Σ ∂L/∂canvas` times the difference between
+    /// the backdrops.
+    pub(super) gradient: Lanes,
+}
+
+/// What a stroke is laid on in a tile.
+pub(super) struct Grounds<'a> {
+    /// The colours behind the stroke.
+    pub(super) behind: &'a mut TileRgb,
+    /// `∂L/∂canvas`.
+    pub(super) gradient: &'a TileRgb,
+    /// `canvas − target`.
+    pub(super) error: &'a TileRgb,
+    pub(super) mattes: &'a mut [Matte; BLOCKS],
+}
+
+impl Grounds<'_> {
+    #[inline(always)]
+    pub(super) fn at(&mut self, block: usize) -> Ground<'_> {
+        Ground {
+            behind: &mut self.behind[block],
+            gradient: &self.gradient[block],
+            error: &self.error[block],
+            matte: &mut self.mattes[block],
+        }
+    }
+}
+
+/// What a stroke is laid on in one block.
+pub(super) struct Ground<'a> {
+    behind: &'a mut BlockRgb,
+    gradient: &'a BlockRgb,
+    error: &'a BlockRgb,
+    matte: &'a mut Matte,
 }
 
 /// Sums of one stroke in lanes.
@@ -76,17 +130,20 @@ impl<S: Simd> Sums<S> {
 
     /// Lays the stroke on what is behind it in one block; returns `∂L/∂m`, and `|c − B|²` if stiffness is asked for.
     #[inline(always)]
-    #[allow(clippy::too_many_arguments)]
     pub(super) fn blend<X: Extras>(
         &mut self,
         simd: S,
         alpha: f32x16<S>,
         t: f32x16<S>,
         rgb: &[f32x16<S>; 3],
-        behind: &mut BlockRgb,
-        gradient: &BlockRgb,
-        error: &BlockRgb,
+        ground: Ground<'_>,
     ) -> (f32x16<S>, f32x16<S>) {
+        let Ground {
+            behind,
+            gradient,
+            error,
+            matte,
+        } = ground;
         let zero = f32x16::splat(simd, 0.0);
         let seen = t * alpha;
         let (mut along, mut change, mut contrast2) = (zero, zero, zero);
@@ -110,6 +167,12 @@ impl<S: Simd> Sums<S> {
         if X::WORTH {
             self.worth += change;
         }
+        if X::MATTES {
+            // The second colour behind is the first one and `through` times the difference between the backdrops.
+            let through = load(simd, &matte.through);
+            along -= load(simd, &matte.gradient) * through;
+            store(through - alpha * through, &mut matte.through);
+        }
         let d_alpha = t * along;
         self.opacity += d_alpha * alpha;
         (d_alpha, contrast2)
@@ -118,19 +181,16 @@ impl<S: Simd> Sums<S> {
     /// Lays the stroke on a block of its soft edge; returns `pull`, which times `q` is `∂L/∂d · u`, and the stiffness if that
     /// is asked for.
     #[inline(always)]
-    #[allow(clippy::too_many_arguments)]
     pub(super) fn blend_edge<X: Extras>(
         &mut self,
         simd: S,
         kept: &EdgeBlock,
         t: &Lanes,
         rgb: &[f32x16<S>; 3],
-        behind: &mut BlockRgb,
-        gradient: &BlockRgb,
-        error: &BlockRgb,
+        ground: Ground<'_>,
     ) -> (f32x16<S>, f32x16<S>) {
         let (alpha, t) = (load(simd, &kept.alpha), load(simd, t));
-        let (d_alpha, contrast2) = self.blend::<X>(simd, alpha, t, rgb, behind, gradient, error);
+        let (d_alpha, contrast2) = self.blend::<X>(simd, alpha, t, rgb, ground);
         let slope = load(simd, &kept.slope);
         let d_distance = d_alpha * slope;
         self.radius += d_distance;
