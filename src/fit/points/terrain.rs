@@ -6,7 +6,7 @@
 
 use super::LEAST;
 use crate::math;
-use crate::render::{Piece, Pieces, StrokeRef, Survey, flattened};
+use crate::render::{Piece, Pieces, StrokeRef, Survey};
 
 /// One stroke and the survey of its vertices.
 pub(super) struct Terrain<'a> {
@@ -95,12 +95,12 @@ impl<'a> Terrain<'a> {
     /// What changing the stroke to `changed` gains, if the vertices of the pieces that depend on point `k` shift to the
     /// nearest places of the new path.
     pub(super) fn gain(&self, changed: StrokeRef<'_>, k: usize) -> f32 {
-        let line = flattened(changed);
+        let around = Around::new(changed, k);
         let touched = self.pieces.iter().filter(|cut| cut.piece.depends_on(k));
         let vertices = touched.flat_map(|cut| cut.first..=cut.first + cut.steps);
         let growth = |i: usize| {
             let (v, g) = (self.vertices[i], self.slopes[i]);
-            let to = nearest(&line, v);
+            let to = around.nearest(v);
             let shift = [to[0] - v[0], to[1] - v[1]];
             let length2 = shift[0] * shift[0] + shift[1] * shift[1];
             g[0] * shift[0] + g[1] * shift[1] + 0.5 * self.stiffness[i] * length2
@@ -109,20 +109,40 @@ impl<'a> Terrain<'a> {
     }
 }
 
-/// The place on a polyline that is nearest to `p`.
-fn nearest(line: &[[f32; 2]], p: [f32; 2]) -> [f32; 2] {
-    let mut best = (f32::INFINITY, p);
-    for ends in line.windows(2) {
-        let (a, b) = (ends[0], ends[1]);
-        let axis = [b[0] - a[0], b[1] - a[1]];
-        let length2 = (axis[0] * axis[0] + axis[1] * axis[1]).max(f32::MIN_POSITIVE);
-        let h = ((p[0] - a[0]) * axis[0] + (p[1] - a[1]) * axis[1]) / length2;
-        let h = h.clamp(0.0, 1.0);
-        let q = [a[0] + h * axis[0], a[1] + h * axis[1]];
-        let away2 = (p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]);
-        if away2 < best.0 {
-            best = (away2, q);
+/// The part of a changed path around its change, as segments.
+struct Around(Vec<[[f32; 2]; 2]>);
+
+impl Around {
+    /// The pieces of `changed` that depend on point `k` or on a neighbour of it.
+    fn new(changed: StrokeRef<'_>, k: usize) -> Self {
+        let count = changed.points.len();
+        let near = [k + count - 1, k, k + 1].map(|i| i % count);
+        let is_near = |piece: &Piece| near.iter().any(|&i| piece.depends_on(i));
+        let mut segments = Vec::new();
+        for piece in Pieces::of(changed).filter(is_near) {
+            let mut from = piece.from.place(changed.points);
+            for to in piece.places(changed.points) {
+                segments.push([from, to]);
+                from = to;
+            }
         }
+        Self(segments)
     }
-    best.1
+
+    /// The place that is nearest to `p`.
+    fn nearest(&self, p: [f32; 2]) -> [f32; 2] {
+        let mut best = (f32::INFINITY, p);
+        for [a, b] in &self.0 {
+            let axis = [b[0] - a[0], b[1] - a[1]];
+            let length2 = (axis[0] * axis[0] + axis[1] * axis[1]).max(f32::MIN_POSITIVE);
+            let h = ((p[0] - a[0]) * axis[0] + (p[1] - a[1]) * axis[1]) / length2;
+            let h = h.clamp(0.0, 1.0);
+            let q = [a[0] + h * axis[0], a[1] + h * axis[1]];
+            let away2 = (p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]);
+            if away2 < best.0 {
+                best = (away2, q);
+            }
+        }
+        best.1
+    }
 }
