@@ -1,11 +1,14 @@
 //! The drawing as it is written to a file, and resvg's render of that.
 
+use rayon::prelude::*;
+
 use super::base::Base;
 use super::config::{Background, Config};
 use super::drawing::Drawing;
+use super::surface::Surface;
 use crate::error::Result;
 use crate::image::Image;
-use crate::scene::Quantized;
+use crate::scene::{Quantized, Scene};
 use crate::svg::WriteOptions;
 use crate::{metrics, verify};
 
@@ -51,19 +54,37 @@ impl<'a> Writer<'a> {
 
     /// Rounds and writes `drawing`, and renders the file.
     pub(super) fn render(&self, drawing: &Drawing) -> Result<RenderedFile> {
+        let (file, ()) = self.render_beside(drawing, |_, _| ())?;
+        Ok(file)
+    }
+
+    /// The same, while `other` work goes on with the drawing as it is written.
+    pub(super) fn render_beside<T: Send>(
+        &self,
+        drawing: &Drawing,
+        other: impl FnOnce(&Scene, &[Surface]) -> T + Send,
+    ) -> Result<(RenderedFile, T)> {
         let rounded = self.round(drawing);
-        let text = Base::write(self.base, &rounded.scene, &self.options);
-        let (mut drawn, mut mse) = (Vec::new(), 0.0_f64);
-        for surface in &drawing.surfaces {
-            let image = verify::render_like(&text, surface.picture(), surface.matte)?;
-            mse = mse.max(metrics::mse(surface.picture(), &image)?);
-            drawn.push(image);
-        }
-        Ok(RenderedFile {
+        let surfaces = &drawing.surfaces;
+        let render = || {
+            let text = Base::write(self.base, &rounded.scene, &self.options);
+            let render = |surface: &Surface| {
+                let image = verify::render_like(&text, surface.picture(), surface.matte)?;
+                let mse = metrics::mse(surface.picture(), &image)?;
+                Ok((image, mse))
+            };
+            let rendered: Result<Vec<_>> = surfaces.par_iter().map(render).collect();
+            rendered.map(|rendered| (rendered, text.len()))
+        };
+        let (rendered, other) = rayon::join(render, || other(&rounded.scene, surfaces));
+        let (rendered, bytes) = rendered?;
+        let (drawn, errors): (Vec<_>, Vec<_>) = rendered.into_iter().unzip();
+        let file = RenderedFile {
             rounded,
-            bytes: text.len(),
             drawn,
-            mse,
-        })
+            bytes,
+            mse: errors.into_iter().fold(0.0, f64::max),
+        };
+        Ok((file, other))
     }
 }

@@ -45,11 +45,12 @@ pub(super) fn prune(session: &mut Session<'_>) {
         let to_keep = least_gains(session)[1];
         let drawing = &mut session.drawing;
         let survey = drawing.survey(LEAST);
-        let strokes = drawing.free().iter().enumerate();
-        let removals: Vec<Option<Edit>> = strokes
-            .map(|(i, stroke)| edits::best_loss(&Terrain::new(&survey, stroke, i)))
-            .map(|edit| edit.filter(|edit| -edit.gain < to_keep))
-            .collect();
+        let strokes = drawing.free();
+        let removal = |i: usize| {
+            let edit = edits::best_loss(&Terrain::new(&survey, strokes.get(i), i));
+            edit.filter(|edit| -edit.gain < to_keep)
+        };
+        let removals: Vec<Option<Edit>> = (0..strokes.len()).into_par_iter().map(removal).collect();
         let count = removals.iter().flatten().count();
         if count == 0 {
             return;

@@ -4,15 +4,20 @@
 //! tiny-skia rounds up after every translucent stroke, Cairo and Skia do not, and each has edges of its own. So settling
 //! corrects for a mean of the two: the browser's share is just large enough to keep it within [`Settling::browser_db`].
 
+use rayon::prelude::*;
+
 use super::drawing::Drawing;
 use super::file::RenderedFile;
 use super::recipe::Settling;
+use super::session::Session;
+use super::surface::Surface;
 use crate::browser;
 use crate::error::Result;
 use crate::image::Image;
 use crate::math;
 use crate::metrics;
 use crate::render::Canvas;
+use crate::scene::Scene;
 
 /// Renders of a file by the model of a browser and by our own renderer, beside resvg's; one per surface.
 pub(super) struct Renderings {
@@ -35,33 +40,35 @@ struct Errors {
 }
 
 impl Renderings {
-    pub(super) fn of(
-        drawing: &mut Drawing,
-        file: &RenderedFile,
-        settling: Settling,
-    ) -> Result<Self> {
-        let scene = &file.rounded.scene;
-        let soft = drawing.soft(scene);
-        let surfaces = &drawing.surfaces;
-        let backdrops: Vec<Image> = surfaces.iter().map(|s| s.empty(scene).to_image()).collect();
-        let shown = browser::draw(scene.strokes(), &backdrops);
+    /// Writes the drawing and renders the file.
+    pub(super) fn of(session: &mut Session<'_>) -> Result<(RenderedFile, Self)> {
+        let (file, shown) = session.render_file_beside(shown)?;
+        let drawing = &mut session.drawing;
+        let soft = drawing.soft(&file.rounded.scene);
         let drawn = &file.drawn;
-        let mut errors = Vec::new();
-        for (i, surface) in surfaces.iter().enumerate() {
+        let errors = |(i, surface): (usize, &Surface)| {
             let picture = surface.picture();
-            errors.push(Errors {
-                drawn: metrics::mse(picture, &drawn[i])?,
-                shown: metrics::mse(picture, &shown[i])?,
-                soft: metrics::mse(picture, &soft[i])?,
-                apart: metrics::mse(&drawn[i], &shown[i])?,
-            });
-        }
-        Ok(Self {
-            settling,
+            let to_picture = |image: &Image| metrics::mse(picture, image);
+            let (files, others) = rayon::join(
+                || (to_picture(&drawn[i]), to_picture(&shown[i])),
+                || (to_picture(&soft[i]), metrics::mse(&drawn[i], &shown[i])),
+            );
+            Ok(Errors {
+                drawn: files.0?,
+                shown: files.1?,
+                soft: others.0?,
+                apart: others.1?,
+            })
+        };
+        let surfaces = drawing.surfaces.par_iter().enumerate();
+        let errors: Result<_> = surfaces.map(errors).collect();
+        let seen = Self {
+            settling: session.recipe.settling,
+            errors: errors?,
             shown,
             soft,
-            errors,
-        })
+        };
+        Ok((file, seen))
     }
 
     /// The largest value over all mattes.
@@ -110,6 +117,12 @@ impl Renderings {
         });
         corrected.collect()
     }
+}
+
+/// The browser's renders of `scene`, one per surface.
+fn shown(scene: &Scene, surfaces: &[Surface]) -> Vec<Image> {
+    let backdrops: Vec<Image> = surfaces.iter().map(|s| s.empty(scene).to_image()).collect();
+    browser::draw(scene.strokes(), &backdrops)
 }
 
 fn corrected(target: &Image, soft: &Image, seen: [&Image; 2], shares: [f32; 2]) -> Image {

@@ -25,12 +25,12 @@ use super::progress::{CancelToken, Observer, Position, Tracker};
 use super::recipe::Recipe;
 use super::result::Stop;
 use super::shading;
-use super::surface::Prepared;
+use super::surface::{Prepared, Surface};
 use crate::clock::Instant;
 use crate::error::Result;
 use crate::image::Image;
 use crate::metrics::psnr_db;
-use crate::scene::Shade;
+use crate::scene::{Scene, Shade};
 
 /// A fit under way: first the fields that are fixed, then those that change.
 pub(super) struct Session<'a> {
@@ -241,6 +241,16 @@ impl<'a> Session<'a> {
     pub(super) fn render_file(&mut self) -> Result<RenderedFile> {
         let (writer, drawing) = (self.writer, &self.drawing);
         self.timer.writing(drawing.len(), || writer.render(drawing))
+    }
+
+    /// The same, while `other` work goes on with the drawing as it is written.
+    pub(super) fn render_file_beside<T: Send>(
+        &mut self,
+        other: impl FnOnce(&Scene, &[Surface]) -> T + Send,
+    ) -> Result<(RenderedFile, T)> {
+        let (writer, drawing) = (self.writer, &self.drawing);
+        let render = || writer.render_beside(drawing, other);
+        self.timer.writing(drawing.len(), render)
     }
 
     /// The price of strokes and points in the current drawing.

@@ -36,7 +36,10 @@ impl Drawing {
         if let (Some(color), Some(was)) = (self.surfaces[0].color_mut(), memento.color) {
             *color = was;
         }
-        self.halve(memento.halvings);
+        // What strokes are fitted to has changed only if the resolution has, or if some of them were frozen.
+        if memento.halvings != self.surface().halvings() || !self.is_thawed() {
+            self.halve(memento.halvings);
+        }
         self.free = memento.strokes;
         self.stage_of = memento.stage_of;
         self.counters = memento.counters;

@@ -89,11 +89,10 @@ fn run(session: &mut Session<'_>, restricted: Restricted) -> Result<RenderedFile
     let Restricted { rates, ties } = restricted;
     let settling = session.recipe.settling;
     session.progress.settle();
-    let mut file = session.render_file()?;
     if !allows_round(session, 0) {
-        return Ok(file);
+        return session.render_file();
     }
-    let mut seen = Renderings::of(&mut session.drawing, &file, settling)?;
+    let (mut file, mut seen) = Renderings::of(session)?;
     let mut best = Best::of(session, &file, &seen);
     let (mut share, mut pace) = (seen.first_share(), 1.0);
     let mut round = 0;
@@ -110,8 +109,7 @@ fn run(session: &mut Session<'_>, restricted: Restricted) -> Result<RenderedFile
         if session.progress.is_halted() {
             break;
         }
-        file = session.render_file()?;
-        seen = Renderings::of(&mut session.drawing, &file, settling)?;
+        (file, seen) = Renderings::of(session)?;
         if seen.badness() < best.badness {
             best = Best::of(session, &file, &seen);
         }
