@@ -33,6 +33,8 @@ pub(super) struct Drawing {
     pub(super) bounds: Bounds,
     /// The edge of the finished drawing.
     edge: Softness,
+    /// Whether the canvases show the drawing as it is.
+    is_rendered: bool,
     pub(super) counters: Counters,
 }
 
@@ -69,6 +71,7 @@ impl Drawing {
             stage_of: Vec::new(),
             bounds,
             edge,
+            is_rendered: false,
             counters: Counters::default(),
         }
     }
@@ -85,6 +88,7 @@ impl Drawing {
 
     /// Mutable access to the free strokes.
     pub(super) fn free_mut(&mut self) -> &mut Strokes {
+        self.is_rendered = false;
         &mut self.free
     }
 
@@ -104,7 +108,7 @@ impl Drawing {
             return false;
         }
         self.halve(halvings);
-        enlarge(&mut self.free, now - halvings);
+        enlarge(self.free_mut(), now - halvings);
         true
     }
 
@@ -137,6 +141,7 @@ impl Drawing {
             change(&mut moved);
             // No stroke could make up for a background that is not finite.
             if moved.iter().all(|c| c.is_finite()) {
+                self.is_rendered = false;
                 *color = moved.map(|c| c.clamp(0.0, 1.0));
             }
         }
@@ -174,7 +179,7 @@ impl Drawing {
         self.thaw();
         self.render();
         self.surfaces.iter_mut().for_each(Surface::freeze);
-        self.frozen = std::mem::take(&mut self.free);
+        self.frozen = std::mem::take(self.free_mut());
     }
 
     /// Frees all strokes.
@@ -186,11 +191,13 @@ impl Drawing {
     /// Lets errors count as `focus` says, everywhere alike if `None`. Nothing may be frozen.
     pub(super) fn focus_on(&mut self, focus: Option<&Focus>) {
         self.surfaces.iter_mut().for_each(|s| s.focus_on(focus));
+        self.is_rendered = false;
         self.renderer = renderer(self.surface(), self.level);
         self.render();
     }
 
     fn free_all(&mut self) {
+        self.is_rendered = false;
         self.frozen.append(&mut self.free);
         std::mem::swap(&mut self.frozen, &mut self.free);
     }
@@ -198,14 +205,15 @@ impl Drawing {
     /// Adds `strokes` on top, in px of the picture, as part of stage `stage`.
     pub(super) fn extend_by(&mut self, strokes: &[Stroke], stage: usize) {
         let halvings = self.surface().halvings();
-        self.free.append(&mut scene::reduced(strokes, halvings));
+        self.free_mut()
+            .append(&mut scene::reduced(strokes, halvings));
         self.stage_of.resize(self.len(), stage);
     }
 
     /// Adds `capsules` on top, as part of stage `stage`.
     pub(super) fn extend(&mut self, capsules: impl IntoIterator<Item = Params>, stage: usize) {
         for capsule in capsules {
-            self.free.push_capsule(&capsule);
+            self.free_mut().push_capsule(&capsule);
         }
         self.stage_of.resize(self.len(), stage);
     }
@@ -218,12 +226,12 @@ impl Drawing {
         let kept = |i: usize| i < frozen || keep.get(i - frozen).copied().unwrap_or(false);
         let mut i = 0..;
         self.stage_of.retain(|_| i.next().is_some_and(kept));
-        self.free.retain(keep);
+        self.free_mut().retain(keep);
     }
 
     /// Puts the free strokes into the order that `sources` lists them in. Places keep their stages.
     pub(super) fn reorder(&mut self, sources: &[usize]) {
-        self.free = sources.iter().map(|&i| self.free.get(i)).collect();
+        *self.free_mut() = sources.iter().map(|&i| self.free.get(i)).collect();
     }
 
     /// Removes the `count` free strokes of least worth.
@@ -318,12 +326,16 @@ impl Drawing {
         gradients
     }
 
-    /// Renders all strokes to the canvases.
+    /// Renders all strokes to the canvases, unless these show them already.
     pub(super) fn render(&mut self) {
+        if self.is_rendered {
+            return;
+        }
         let (free, frozen) = (&self.free, self.frozen.len());
         for surface in &mut self.surfaces {
             surface.render(&mut self.renderer, free, self.edge, frozen);
         }
+        self.is_rendered = true;
     }
 
     /// The derivatives of another `loss` on the first surface, with respect to all strokes, which must be free.

@@ -155,6 +155,9 @@ struct Listed {
     first: u32,
 }
 
+/// Most shares of the sums over tiles, which are taken one by one by the threads.
+const SHARES: usize = 16;
+
 /// Renders strokes on pictures of one size; keeps its memory from call to call.
 #[derive(Debug)]
 pub struct Renderer {
@@ -315,7 +318,7 @@ impl Renderer {
         let frame = Frame::new(self.grid, softness, backdrop);
         let pass = Single::<L, Stiffnesses>::of(&frame, loss);
         self.run_backward(strokes, least, &frame, pass);
-        self.sum_slopes();
+        self.reduce(strokes, false, &mut Gradients::default());
         survey.firsts.clone_from(&self.flat.firsts);
         survey.vertices.clone_from(&self.flat.vertices);
         survey.slopes.clone_from(&self.slopes);
@@ -400,78 +403,124 @@ impl Renderer {
 
     /// Adds the tiles' sums in tile order.
     fn reduce(&mut self, strokes: &Strokes, with_worth: bool, gradients: &mut Gradients) {
-        let clear = |values: &mut Vec<f32>, len: usize| {
+        let worths = if with_worth { strokes.len() } else { 0 };
+        for (values, count) in [
+            (&mut gradients.strokes, strokes.numbers().len()),
+            (&mut gradients.worth, worths),
+        ] {
             values.clear();
-            values.resize(len, 0.0);
-        };
+            values.resize(count, 0.0);
+        }
         gradients.loss = 0.0;
         gradients.backdrop = [0.0; 3];
         gradients.blocks = 0;
-        clear(&mut gradients.strokes, strokes.numbers().len());
-        clear(
-            &mut gradients.worth,
-            if with_worth { strokes.len() } else { 0 },
-        );
         for work in &self.tiles {
             gradients.loss += work.total.loss;
             gradients.blocks += work.total.blocks;
             add(&mut gradients.backdrop, &work.total.backdrop);
-            for (listed, sums) in work.listed.iter().zip(&work.looks) {
+        }
+        let Self {
+            ref flat,
+            ref tiles,
+            ref mut slopes,
+            least,
+            ..
+        } = *self;
+        slopes.clear();
+        slopes.resize(flat.vertices.len(), [0.0; 2]);
+        let shares = shares(strokes, flat, slopes, gradients);
+        shares.into_par_iter().for_each(|mut share| {
+            share.gather(strokes, flat, tiles);
+            share.hand_back(strokes, flat, least);
+        });
+    }
+}
+
+/// Some strokes, one after another, and what is summed up for them.
+struct Share<'a> {
+    ids: Range<usize>,
+    /// The derivatives by their numbers.
+    numbers: &'a mut [f32],
+    /// Their worths; empty if nobody asks for them.
+    worths: &'a mut [f32],
+    /// The derivatives by their vertices.
+    slopes: &'a mut [[f32; 2]],
+}
+
+/// Shares of all sums, for strokes that are summed up at a time.
+fn shares<'a>(
+    strokes: &Strokes,
+    flat: &Flat,
+    mut slopes: &'a mut [[f32; 2]],
+    gradients: &'a mut Gradients,
+) -> Vec<Share<'a>> {
+    let size = CHUNK.max(strokes.len().div_ceil(SHARES));
+    let (mut numbers, mut worths) = (
+        gradients.strokes.as_mut_slice(),
+        gradients.worth.as_mut_slice(),
+    );
+    let share = |start: usize| {
+        let ids = start..strokes.len().min(start + size);
+        let count = strokes.range(ids.end - 1).end - strokes.range(start).start;
+        let vertices = flat.firsts[ids.end] - flat.firsts[start];
+        let worth = ids.len().min(worths.len());
+        Share {
+            ids,
+            numbers: numbers.split_off_mut(..count).unwrap_or_default(),
+            worths: worths.split_off_mut(..worth).unwrap_or_default(),
+            slopes: slopes
+                .split_off_mut(..vertices as usize)
+                .unwrap_or_default(),
+        }
+    };
+    (0..strokes.len()).step_by(size).map(share).collect()
+}
+
+impl Share<'_> {
+    /// Adds the sums of the `tiles`.
+    fn gather(&mut self, strokes: &Strokes, flat: &Flat, tiles: &[TileWork]) {
+        let before = strokes.range(self.ids.start).start;
+        let first = flat.firsts[self.ids.start];
+        for work in tiles {
+            let [start, end] = [self.ids.start, self.ids.end].map(|id| {
+                let is_before = |listed: &Listed| (listed.stroke as usize) < id;
+                work.listed.partition_point(is_before)
+            });
+            for (listed, sums) in work.listed[start..end].iter().zip(&work.looks[start..end]) {
                 let stroke = listed.stroke as usize;
-                let end = strokes.range(stroke).end;
-                add(&mut gradients.strokes[end - LOOK..end], sums);
-                if with_worth {
-                    gradients.worth[stroke] += sums[WORTH];
+                let end = strokes.range(stroke).end - before;
+                add(&mut self.numbers[end - LOOK..end], sums);
+                if let Some(worth) = self.worths.get_mut(stroke - self.ids.start) {
+                    *worth += sums[WORTH];
                 }
             }
-        }
-        self.sum_slopes();
-        self.hand_back(strokes, gradients);
-    }
-
-    /// Adds the tiles' derivatives by vertices, in tile order.
-    fn sum_slopes(&mut self) {
-        self.slopes.clear();
-        self.slopes.resize(self.flat.vertices.len(), [0.0; 2]);
-        for work in &self.tiles {
-            for (&segment, ends) in work.segments.iter().zip(&work.ends) {
-                let slopes = &mut self.slopes[segment as usize..][..2];
+            let [start, end] = [start, end].map(|slot| {
+                let listed = work.listed.get(slot);
+                listed.map_or(work.segments.len(), |listed| listed.first as usize)
+            });
+            for (&segment, ends) in work.segments[start..end].iter().zip(&work.ends[start..end]) {
+                let slopes = &mut self.slopes[(segment - first) as usize..][..2];
                 add(slopes.as_flattened_mut(), ends);
             }
         }
     }
 
     /// The derivatives by points, from those by vertices.
-    fn hand_back(&self, strokes: &Strokes, gradients: &mut Gradients) {
-        let mut parts = Vec::with_capacity(strokes.len().div_ceil(CHUNK));
-        let mut rest = gradients.strokes.as_mut_slice();
-        for first in (0..strokes.len()).step_by(CHUNK) {
-            let ids = first..strokes.len().min(first + CHUNK);
-            let numbers = strokes.range(ids.end - 1).end - strokes.range(first).start;
-            let (part, others) = rest.split_at_mut(numbers);
-            parts.push((ids, part));
-            rest = others;
-        }
-        parts
-            .into_par_iter()
-            .for_each(|(ids, part)| self.hand_back_chunk(strokes, ids, part));
-    }
-
-    /// The derivatives by points of the strokes `ids`; `numbers` are all those of these strokes.
-    fn hand_back_chunk(&self, strokes: &Strokes, ids: Range<usize>, numbers: &mut [f32]) {
-        let start = strokes.range(ids.start).start;
-        for i in ids {
+    fn hand_back(&mut self, strokes: &Strokes, flat: &Flat, least: usize) {
+        let before = strokes.range(self.ids.start).start;
+        let first = flat.firsts[self.ids.start];
+        for i in self.ids.clone() {
             let stroke = strokes.get(i);
-            let slopes =
-                &self.slopes[self.flat.firsts[i] as usize..self.flat.firsts[i + 1] as usize];
+            let [start, end] = [i, i + 1].map(|i| (flat.firsts[i] - first) as usize);
+            let slopes = &self.slopes[start..end];
             let range = strokes.range(i);
-            let points = &mut numbers[range.start - start..range.end - start];
+            let points = &mut self.numbers[range.start - before..range.end - before];
             if slopes.len() == stroke.points.len() && stroke.is_straight() {
                 add(points, slopes.as_flattened());
                 continue;
             }
             let mut slopes = slopes.iter();
-            walk(stroke, self.least, |vertex| {
+            walk(stroke, least, |vertex| {
                 let Some(slope) = slopes.next() else {
                     return;
                 };

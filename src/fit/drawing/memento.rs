@@ -40,14 +40,14 @@ impl Drawing {
         if memento.halvings != self.surface().halvings() || !self.is_thawed() {
             self.halve(memento.halvings);
         }
-        self.free = memento.strokes;
+        *self.free_mut() = memento.strokes;
         self.stage_of = memento.stage_of;
         self.counters = memento.counters;
         if memento.frozen > 0 {
             // Only the frozen strokes may be there when they are rendered.
-            let free = self.free.split_off(memento.frozen);
+            let free = self.free_mut().split_off(memento.frozen);
             self.freeze();
-            self.free = free;
+            *self.free_mut() = free;
         }
     }
 

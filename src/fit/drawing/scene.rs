@@ -11,7 +11,7 @@ impl Drawing {
         let halvings = self.surface().halvings();
         for (index, stage) in scene.stages.iter().enumerate() {
             let mut strokes = reduced(&stage.strokes, halvings);
-            self.free.append(&mut strokes);
+            self.free_mut().append(&mut strokes);
             self.stage_of.resize(self.len(), index);
         }
     }
