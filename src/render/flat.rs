@@ -202,11 +202,6 @@ impl Piece {
         within.chain([self.to.vertex()])
     }
 
-    /// The places of the vertices behind the start.
-    pub(crate) fn places(self, points: &[[f32; 2]]) -> impl Iterator<Item = [f32; 2]> {
-        self.vertices(points, 1).map(|vertex| vertex.place(points))
-    }
-
     /// Whether the piece changes with point `k`.
     pub(crate) fn depends_on(&self, k: usize) -> bool {
         let of = |knot: Knot| match knot {

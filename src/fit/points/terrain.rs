@@ -6,7 +6,7 @@
 
 use super::LEAST;
 use crate::math;
-use crate::render::{Piece, Pieces, StrokeRef, Survey};
+use crate::render::{Piece, Pieces, StrokeRef, Survey, flattened};
 
 /// One stroke and the survey of its vertices.
 pub(super) struct Terrain<'a> {
@@ -95,12 +95,14 @@ impl<'a> Terrain<'a> {
     /// What changing the stroke to `changed` gains, if the vertices of the pieces that depend on point `k` shift to the
     /// nearest places of the new path.
     pub(super) fn gain(&self, changed: StrokeRef<'_>, k: usize) -> f32 {
-        let around = Around::new(changed, k);
+        let line = Polyline::new(flattened(changed));
+        let mut segment = 0;
         let touched = self.pieces.iter().filter(|cut| cut.piece.depends_on(k));
         let vertices = touched.flat_map(|cut| cut.first..=cut.first + cut.steps);
         let growth = |i: usize| {
             let (v, g) = (self.vertices[i], self.slopes[i]);
-            let to = around.nearest(v);
+            let to;
+            (to, segment) = line.nearest(v, segment);
             let shift = [to[0] - v[0], to[1] - v[1]];
             let length2 = shift[0] * shift[0] + shift[1] * shift[1];
             g[0] * shift[0] + g[1] * shift[1] + 0.5 * self.stiffness[i] * length2
@@ -109,40 +111,67 @@ impl<'a> Terrain<'a> {
     }
 }
 
-/// The part of a changed path around its change, as segments.
-struct Around(Vec<[[f32; 2]; 2]>);
+/// A polyline of at least two vertices, in which the place nearest to another is found without visiting all segments.
+struct Polyline {
+    vertices: Vec<[f32; 2]>,
+    /// The least and the greatest coordinates of each run of [`RUN`] segments.
+    boxes: Vec<[[f32; 2]; 2]>,
+}
 
-impl Around {
-    /// The pieces of `changed` that depend on point `k` or on a neighbour of it.
-    fn new(changed: StrokeRef<'_>, k: usize) -> Self {
-        let count = changed.points.len();
-        let near = [k + count - 1, k, k + 1].map(|i| i % count);
-        let is_near = |piece: &Piece| near.iter().any(|&i| piece.depends_on(i));
-        let mut segments = Vec::new();
-        for piece in Pieces::of(changed).filter(is_near) {
-            let mut from = piece.from.place(changed.points);
-            for to in piece.places(changed.points) {
-                segments.push([from, to]);
-                from = to;
-            }
-        }
-        Self(segments)
+/// The number of segments in a box.
+const RUN: usize = 8;
+
+impl Polyline {
+    fn new(vertices: Vec<[f32; 2]>) -> Self {
+        let segments = vertices.len() - 1;
+        let run = |first: usize| bounds(&vertices[first..=(first + RUN).min(segments)]);
+        let boxes = (0..segments).step_by(RUN).map(run).collect();
+        Self { vertices, boxes }
     }
 
-    /// The place that is nearest to `p`.
-    fn nearest(&self, p: [f32; 2]) -> [f32; 2] {
-        let mut best = (f32::INFINITY, p);
-        for [a, b] in &self.0 {
-            let axis = [b[0] - a[0], b[1] - a[1]];
-            let length2 = (axis[0] * axis[0] + axis[1] * axis[1]).max(f32::MIN_POSITIVE);
-            let h = ((p[0] - a[0]) * axis[0] + (p[1] - a[1]) * axis[1]) / length2;
-            let h = h.clamp(0.0, 1.0);
-            let q = [a[0] + h * axis[0], a[1] + h * axis[1]];
-            let away2 = (p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]);
-            if away2 < best.0 {
-                best = (away2, q);
+    /// The place that is nearest to `p`, and its segment: the first of several. The search is short if segment `guess` is
+    /// near to `p`.
+    fn nearest(&self, p: [f32; 2], guess: usize) -> ([f32; 2], usize) {
+        let segments = self.vertices.len() - 1;
+        let (mut best, mut best_at) = (self.nearest_of(guess, p), guess);
+        for (run, &[low, high]) in self.boxes.iter().enumerate() {
+            let corner = [0, 1].map(|axis| p[axis].max(low[axis]).min(high[axis]));
+            if distance2(p, corner) > best.1 {
+                continue;
+            }
+            for at in run * RUN..(run * RUN + RUN).min(segments) {
+                let found = self.nearest_of(at, p);
+                if found.1 < best.1 || (found.1 == best.1 && at < best_at) {
+                    (best, best_at) = (found, at);
+                }
             }
         }
-        best.1
+        (best.0, best_at)
     }
+
+    /// The place on segment `at` that is nearest to `p`, and the square of its distance.
+    fn nearest_of(&self, at: usize, p: [f32; 2]) -> ([f32; 2], f32) {
+        let (a, b) = (self.vertices[at], self.vertices[at + 1]);
+        let axis = [b[0] - a[0], b[1] - a[1]];
+        let length2 = (axis[0] * axis[0] + axis[1] * axis[1]).max(f32::MIN_POSITIVE);
+        let h = ((p[0] - a[0]) * axis[0] + (p[1] - a[1]) * axis[1]) / length2;
+        let h = h.clamp(0.0, 1.0);
+        let q = [a[0] + h * axis[0], a[1] + h * axis[1]];
+        (q, distance2(p, q))
+    }
+}
+
+/// The least and the greatest coordinates of `vertices`.
+fn bounds(vertices: &[[f32; 2]]) -> [[f32; 2]; 2] {
+    let first = [vertices[0]; 2];
+    vertices.iter().fold(first, |[low, high], v| {
+        [
+            [low[0].min(v[0]), low[1].min(v[1])],
+            [high[0].max(v[0]), high[1].max(v[1])],
+        ]
+    })
+}
+
+fn distance2(p: [f32; 2], q: [f32; 2]) -> f32 {
+    (p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1])
 }
