@@ -28,6 +28,7 @@
 mod capsule;
 mod lanes;
 mod sums;
+mod touching;
 mod union;
 
 use std::ops::Range;
@@ -37,12 +38,13 @@ use fearless_simd::{Level, dispatch, f32x16, prelude::*};
 pub(super) use capsule::Capsule;
 pub(super) use lanes::{load, members, store, total};
 pub(super) use sums::{EndSums, Extras, LookSums, Mattes, Nothing, Stiffnesses, WORTH, Worths};
+pub(super) use touching::{Listed, list_segments};
 
+use super::CanvasLoss;
 use super::edge::{Edge, Reach, SoftEdge};
 use super::flat::Flat;
 use super::grid::{BLOCKS, BlockRgb, BlockSet, Lanes, TileRgb, TileWeights, flat_tile};
 use super::strokes::LOOK;
-use super::{CanvasLoss, Listed};
 use capsule::length;
 use sums::{EdgeBlock, Grounds, Matte, Shifts, Sums};
 use union::{Kept, Segments, Union};

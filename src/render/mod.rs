@@ -90,7 +90,8 @@ pub(crate) use flat::{Knot, Piece, Pieces};
 use gradients::add;
 use grid::{FULL, TileWeights, clear_padding, edge_weights, flat_tile};
 use kernel::{
-    EndSums, Extras, LookSums, Nothing, Scratch, Stiffnesses, TileJob, TileSums, WORTH, Worths,
+    EndSums, Extras, Listed, LookSums, Nothing, Scratch, Stiffnesses, TileJob, TileSums, WORTH,
+    Worths,
 };
 
 /// A differentiable loss over the canvas, told tile by tile while the tile is still in cache.
@@ -145,14 +146,6 @@ struct TileWork {
     weights: Option<Box<TileWeights>>,
     /// What a veil in front of all strokes lets through.
     veil: Option<Box<TileWeights>>,
-}
-
-/// A stroke that may touch a tile.
-#[derive(Debug, Clone, Copy)]
-struct Listed {
-    stroke: u32,
-    /// The index of its first segment in the tile's list; the next stroke's segments follow.
-    first: u32,
 }
 
 /// Most shares of the sums over tiles, which are taken one by one by the threads.
@@ -240,7 +233,7 @@ impl Renderer {
             .enumerate()
             .with_max_len(1);
         tiles.for_each(|(tile, (work, out))| {
-            work.list_segments(flat, frame.origin(tile), frame.reach);
+            work.list_segments(level, flat, frame.origin(tile), frame.reach);
             let job = frame.job(flat, tile, work, work.weights.as_deref());
             if job.listed.is_empty() {
                 out.clone_from(job.backdrop);
@@ -352,7 +345,7 @@ impl Renderer {
             .enumerate()
             .with_max_len(1)
             .for_each(|(tile, work)| {
-                work.list_segments(flat, frame.origin(tile), frame.reach);
+                work.list_segments(level, flat, frame.origin(tile), frame.reach);
                 if work.listed.is_empty()
                     && let Some(total) = pass.flat(tile)
                 {
@@ -534,39 +527,12 @@ impl Share<'_> {
 }
 
 impl TileWork {
-    /// Lists the segments whose bounding boxes touch the tile at `origin`, and drops strokes that have none.
-    fn list_segments(&mut self, flat: &Flat, origin: [f32; 2], reach: Reach) {
+    /// Lists the segments of the listed strokes that touch the tile at `origin`.
+    fn list_segments(&mut self, level: Level, flat: &Flat, origin: [f32; 2], reach: Reach) {
         let Self {
             listed, segments, ..
         } = self;
-        segments.clear();
-        listed.retain_mut(|listed| {
-            let stroke = listed.stroke as usize;
-            listed.first = segments.len() as u32;
-            let margin = flat.looks[stroke][0] + reach.outside;
-            let first = flat.firsts[stroke] as usize;
-            let vertices = &flat.vertices[first..flat.firsts[stroke + 1] as usize];
-            if vertices.len() == 2 {
-                segments.push(first as u32);
-                return true;
-            }
-            // Within reach of the tile's left, top, right and bottom edge.
-            let sides = |[x, y]: [f32; 2]| {
-                u8::from(x + margin > origin[0])
-                    | u8::from(y + margin > origin[1]) << 1
-                    | u8::from(x - margin < origin[0] + TILE as f32) << 2
-                    | u8::from(y - margin < origin[1] + TILE as f32) << 3
-            };
-            let mut before = sides(vertices[0]);
-            for (segment, &end) in (first as u32..).zip(&vertices[1..]) {
-                let sides = sides(end);
-                if before | sides == 0b1111 {
-                    segments.push(segment);
-                }
-                before = sides;
-            }
-            segments.len() as u32 > listed.first
-        });
+        kernel::list_segments(level, flat, origin, reach, listed, segments);
     }
 }
 

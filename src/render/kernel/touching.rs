@@ -1,0 +1,121 @@
+//! Which segments of a stroke touch a tile.
+
+use fearless_simd::{Level, dispatch, f32x16, prelude::*};
+
+use super::super::edge::Reach;
+use super::super::flat::Flat;
+use super::super::grid::{LANES, Lanes, TILE};
+use super::lanes::{load, members};
+
+/// A stroke that may touch a tile.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::render) struct Listed {
+    pub(in crate::render) stroke: u32,
+    /// The index of its first segment in the tile's list; the next stroke's segments follow.
+    pub(in crate::render) first: u32,
+}
+
+/// The segments between the vertices that a vector holds, two lanes each.
+const SEGMENTS: usize = LANES / 2 - 1;
+
+/// Lists the segments whose bounding boxes touch the tile at `origin`, each by its first vertex, and drops strokes that have
+/// none.
+pub(in crate::render) fn list_segments(
+    level: Level,
+    flat: &Flat,
+    origin: [f32; 2],
+    reach: Reach,
+    listed: &mut Vec<Listed>,
+    segments: &mut Vec<u32>,
+) {
+    dispatch!(level, simd => list(simd, flat, origin, reach, listed, segments));
+}
+
+#[inline(always)]
+fn list<S: Simd>(
+    simd: S,
+    flat: &Flat,
+    origin: [f32; 2],
+    reach: Reach,
+    listed: &mut Vec<Listed>,
+    segments: &mut Vec<u32>,
+) {
+    let sides = Sides::new(simd, origin);
+    segments.clear();
+    let mut kept = 0;
+    for slot in 0..listed.len() {
+        let stroke = listed[slot].stroke as usize;
+        let before = segments.len();
+        let first = flat.firsts[stroke];
+        let vertices = &flat.vertices[first as usize..flat.firsts[stroke + 1] as usize];
+        if vertices.len() == 2 {
+            segments.push(first);
+        } else {
+            let margin = flat.looks[stroke][0] + reach.outside;
+            sides.touched(simd, vertices, margin, |segment| {
+                segments.push(first + segment as u32);
+            });
+        }
+        if segments.len() > before {
+            listed[kept] = Listed {
+                first: before as u32,
+                ..listed[slot]
+            };
+            kept += 1;
+        }
+    }
+    listed.truncate(kept);
+}
+
+/// The sides of a tile, in lanes of x and y by turns.
+struct Sides<S: Simd> {
+    /// Left and top.
+    low: f32x16<S>,
+    /// Right and bottom.
+    high: f32x16<S>,
+}
+
+impl<S: Simd> Sides<S> {
+    #[inline(always)]
+    fn new(simd: S, [x, y]: [f32; 2]) -> Self {
+        let mut low = Lanes::splat(x);
+        low.0
+            .iter_mut()
+            .skip(1)
+            .step_by(2)
+            .for_each(|lane| *lane = y);
+        let low = load(simd, &low);
+        Self {
+            low,
+            high: low + TILE as f32,
+        }
+    }
+
+    /// Calls `visit` with the segments of a polyline that come within `margin` of the tile on all four sides.
+    #[inline(always)]
+    fn touched(&self, simd: S, vertices: &[[f32; 2]], margin: f32, mut visit: impl FnMut(usize)) {
+        let mut rest = vertices.as_flattened();
+        let count = vertices.len() - 1;
+        for first in (0..count).step_by(SEGMENTS) {
+            let places = match rest.first_chunk() {
+                Some(places) => f32x16::load_array_ref(simd, places),
+                None => {
+                    let mut places = Lanes::splat(f32::NAN);
+                    places.0[..rest.len()].copy_from_slice(rest);
+                    load(simd, &places)
+                }
+            };
+            let from_low = (places + margin).simd_gt(self.low).to_bitmask();
+            let to_high = (places - margin).simd_lt(self.high).to_bitmask();
+            // Of each segment either end has to be on the inner side, of all sides.
+            let [from_low, to_high] = [from_low | from_low >> 2, to_high | to_high >> 2];
+            let inside = from_low & to_high;
+            let those = (1 << (2 * SEGMENTS.min(count - first))) - 1;
+            let touching = inside & inside >> 1 & 0x5555 & those;
+            for bit in members(touching) {
+                visit(first + bit / 2);
+            }
+            rest = rest.get(2 * SEGMENTS..).unwrap_or_default();
+        }
+    }
+}
