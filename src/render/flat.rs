@@ -13,7 +13,7 @@ use crate::sdf;
 use super::strokes::{LOOK, StrokeRef, Strokes};
 
 /// Strokes that are flattened at a time.
-pub(super) const CHUNK: usize = 128;
+pub(super) const CHUNK: usize = 32;
 
 /// Strokes as polylines.
 #[derive(Debug, Default)]
