@@ -294,7 +294,7 @@ impl Image {
         let pixels = red.iter().zip(green).zip(blue);
         let mut rgb = vec![0; 3 * red.len()];
         for (bytes, ((&r, &g), &b)) in rgb.chunks_exact_mut(3).zip(pixels) {
-            bytes.copy_from_slice(&[r, g, b].map(byte));
+            bytes.copy_from_slice(&[r, g, b].map(level));
         }
         rgb
     }
@@ -312,7 +312,7 @@ impl fmt::Debug for Image {
 }
 
 /// The nearest of 0..=255 to a value of 0..1.
-fn byte(value: f32) -> u8 {
+pub(crate) fn level(value: f32) -> u8 {
     // `as` saturates, so values beyond 0..1 become the nearer end.
     (value * 255.0 + 0.5) as u8
 }

@@ -6,10 +6,12 @@
 mod similarity;
 mod ssimulacra2;
 
+use std::borrow::Cow;
+
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::image::Image;
+use crate::image::{Image, level};
 use crate::math;
 use crate::scene::Rgb;
 
@@ -69,8 +71,7 @@ impl Agreement {
     /// # Errors
     /// [`ErrorKind::Picture`] when their sizes differ.
     pub fn between(a: &Image, b: &Image) -> Result<Self> {
-        let (a, b) = levels_of_both(a, b)?;
-        let sums = Sums::new(&a, &b);
+        let sums = Sums::between(a, b)?;
         Ok(Self {
             psnr_db: psnr_db(sums.mse()),
             max_abs: sums.max_abs,
@@ -118,8 +119,7 @@ impl Largest {
 /// # Errors
 /// [`ErrorKind::Picture`] when the sizes differ.
 pub fn mse(a: &Image, b: &Image) -> Result<f64> {
-    let (a, b) = levels_of_both(a, b)?;
-    Ok(Sums::new(&a, &b).mse())
+    Ok(Sums::between(a, b)?.mse())
 }
 
 /// Mean absolute error over 8-bit RGB on white, 0..1.
@@ -127,8 +127,7 @@ pub fn mse(a: &Image, b: &Image) -> Result<f64> {
 /// # Errors
 /// [`ErrorKind::Picture`] when the sizes differ.
 pub fn l1(a: &Image, b: &Image) -> Result<f64> {
-    let (a, b) = levels_of_both(a, b)?;
-    Ok(Sums::new(&a, &b).l1())
+    Ok(Sums::between(a, b)?.l1())
 }
 
 /// Peak signal-to-noise ratio over 8-bit RGB on white, dB; infinite for equal pictures.
@@ -204,6 +203,12 @@ pub fn ssimulacra2_map(reference: &Image, picture: &Image) -> Result<Vec<f32>> {
 
 /// Interleaved RGB of both pictures as a viewer shows them on white.
 fn levels_of_both(a: &Image, b: &Image) -> Result<(Vec<u8>, Vec<u8>)> {
+    let [a, b] = both_on_white(a, b)?;
+    Ok((a.to_rgb8(), b.to_rgb8()))
+}
+
+/// Both pictures as a viewer shows them on white, of one size.
+fn both_on_white<'a>(a: &'a Image, b: &'a Image) -> Result<[Cow<'a, Image>; 2]> {
     let size = |image: &Image| (image.width(), image.height());
     if size(a) != size(b) {
         let ((aw, ah), (bw, bh)) = (size(a), size(b));
@@ -212,11 +217,10 @@ fn levels_of_both(a: &Image, b: &Image) -> Result<(Vec<u8>, Vec<u8>)> {
         );
         return Err(Error::new(ErrorKind::Picture, message));
     }
-    let levels = |image: &Image| match image.alpha() {
-        Some(_) => image.flattened(WHITE).to_rgb8(),
-        None => image.to_rgb8(),
-    };
-    Ok((levels(a), levels(b)))
+    Ok([a, b].map(|image| match image.alpha() {
+        Some(_) => Cow::Owned(image.flattened(WHITE)),
+        None => Cow::Borrowed(image),
+    }))
 }
 
 /// Sums over all differences, in integers, so that the order of summation does not matter.
@@ -229,19 +233,32 @@ struct Sums {
 
 impl Sums {
     fn new(a: &[u8], b: &[u8]) -> Self {
-        let mut sums = Self {
-            count: a.len() as u64,
+        Self::of(a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)))
+    }
+
+    /// The sums over two pictures, without keeping their levels.
+    fn between(a: &Image, b: &Image) -> Result<Self> {
+        let [a, b] = both_on_white(a, b)?;
+        let planes = a.planes().iter().zip(b.planes());
+        Ok(Self::of(planes.flat_map(|(a, b)| {
+            let differences = a.iter().zip(b);
+            differences.map(|(&a, &b)| level(a).abs_diff(level(b)))
+        })))
+    }
+
+    fn of(differences: impl Iterator<Item = u8>) -> Self {
+        let none = Self {
+            count: 0,
             squares: 0,
             absolutes: 0,
             max_abs: 0,
         };
-        for (&a, &b) in a.iter().zip(b) {
-            let d = a.abs_diff(b);
-            sums.squares += u64::from(d) * u64::from(d);
-            sums.absolutes += u64::from(d);
-            sums.max_abs = sums.max_abs.max(d);
-        }
-        sums
+        differences.fold(none, |sums, d| Self {
+            count: sums.count + 1,
+            squares: sums.squares + u64::from(d) * u64::from(d),
+            absolutes: sums.absolutes + u64::from(d),
+            max_abs: sums.max_abs.max(d),
+        })
     }
 
     fn mse(&self) -> f64 {

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use ::image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use ::image::{ExtendedColorType, ImageEncoder};
 
-use super::{Image, byte};
+use super::{Image, level};
 use crate::error::{Error, ErrorKind, Result};
 
 /// 8-bit RGB, or RGBA where there is alpha.
@@ -64,7 +64,7 @@ fn size(image: &Image) -> Result<(u32, u32)> {
 fn with_alpha(rgb: &[u8], alpha: &[f32]) -> Vec<u8> {
     let pixels = rgb.chunks_exact(3).zip(alpha);
     pixels
-        .flat_map(|(p, &a)| [p[0], p[1], p[2], byte(a)])
+        .flat_map(|(p, &a)| [p[0], p[1], p[2], level(a)])
         .collect()
 }
 
