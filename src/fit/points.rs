@@ -152,10 +152,15 @@ impl Options {
         let may_grow = stroke.points.len() < most;
         let fits = |edit: &Edit| written_points(edit.of(stroke)) <= most;
         let insertion = || edits::best_insertion(&terrain, points).filter(fits);
+        // One stroke may have most of all points.
+        let (removal, toggle) = rayon::join(
+            || edits::best_removal(&terrain),
+            || edits::best_toggle(&terrain).filter(fits),
+        );
         Self {
             insertion: may_grow.then(insertion).flatten(),
-            removal: edits::best_removal(&terrain),
-            toggle: edits::best_toggle(&terrain).filter(fits),
+            removal,
+            toggle,
         }
     }
 }
