@@ -50,6 +50,7 @@ impl Recipe {
             },
             polish: Polish {
                 iterations: 130,
+                coarse_share: 0.3,
                 rates: Rates {
                     position: 1.3,
                     radius: 0.3,
@@ -128,7 +129,7 @@ const BALANCED: Recipe = Recipe {
     },
     polish: Polish {
         iterations: 1200,
-        coarse_share: 0.3,
+        coarse_share: 0.6,
         rates: Rates {
             position: 2.5,
             radius: 0.5,
