@@ -232,7 +232,7 @@ struct Sums {
     max_abs: u8,
 }
 
-/// Differences whose squares add up in 32 bits, which the compiler turns into vectors.
+/// So many squares of differences cannot overflow 32 bits, whose sums the compiler turns into vectors.
 const ADDED_IN_32_BITS: usize = 1 << 16;
 
 impl Sums {
@@ -252,6 +252,7 @@ impl Sums {
         Ok(sums)
     }
 
+    /// Adds the differences of two rows of numbers of equal length.
     fn add<T: Copy>(&mut self, a: &[T], b: &[T], difference: impl Fn(T, T) -> u8) {
         let chunks = a.chunks(ADDED_IN_32_BITS).zip(b.chunks(ADDED_IN_32_BITS));
         for (a, b) in chunks {

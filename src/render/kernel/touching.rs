@@ -4,8 +4,8 @@ use fearless_simd::{Level, dispatch, f32x16, prelude::*};
 
 use super::super::edge::Reach;
 use super::super::flat::Flat;
-use super::super::grid::{LANES, Lanes, TILE};
-use super::lanes::{load, members};
+use super::super::grid::{LANES, TILE};
+use super::lanes::members;
 
 /// A stroke that may touch a tile.
 #[derive(Debug, Clone, Copy)]
@@ -18,6 +18,9 @@ pub(in crate::render) struct Listed {
 /// The segments between the vertices that a vector holds, two lanes each.
 const SEGMENTS: usize = LANES / 2 - 1;
 
+/// The lanes of a vector of vertices that hold an x.
+const LANES_OF_X: u64 = 0x5555;
+
 /// Lists the segments whose bounding boxes touch the tile at `origin`, each by its first vertex, and drops strokes that have
 /// none.
 pub(in crate::render) fn list_segments(
@@ -28,42 +31,33 @@ pub(in crate::render) fn list_segments(
     listed: &mut Vec<Listed>,
     segments: &mut Vec<u32>,
 ) {
-    dispatch!(level, simd => list(simd, flat, origin, reach, listed, segments));
-}
-
-#[inline(always)]
-fn list<S: Simd>(
-    simd: S,
-    flat: &Flat,
-    origin: [f32; 2],
-    reach: Reach,
-    listed: &mut Vec<Listed>,
-    segments: &mut Vec<u32>,
-) {
-    let sides = Sides::new(simd, origin);
     segments.clear();
     let mut kept = 0;
-    for slot in 0..listed.len() {
-        let stroke = listed[slot].stroke as usize;
-        let before = segments.len();
-        let first = flat.firsts[stroke];
-        let vertices = &flat.vertices[first as usize..flat.firsts[stroke + 1] as usize];
-        if vertices.len() == 2 {
-            segments.push(first);
-        } else {
-            let margin = flat.looks[stroke][0] + reach.outside;
-            sides.touched(simd, vertices, margin, |segment| {
-                segments.push(first + segment as u32);
-            });
+    // Not `retain_mut`: the compiler may build its closure without the instructions of the level.
+    dispatch!(level, simd => {
+        let sides = Sides::new(simd, origin);
+        for slot in 0..listed.len() {
+            let stroke = listed[slot].stroke as usize;
+            let before = segments.len();
+            let first = flat.firsts[stroke];
+            let vertices = &flat.vertices[first as usize..flat.firsts[stroke + 1] as usize];
+            if vertices.len() == 2 {
+                segments.push(first);
+            } else {
+                let margin = flat.looks[stroke][0] + reach.outside;
+                sides.touched(simd, vertices, margin, |segment| {
+                    segments.push(first + segment as u32);
+                });
+            }
+            if segments.len() > before {
+                listed[kept] = Listed {
+                    first: before as u32,
+                    ..listed[slot]
+                };
+                kept += 1;
+            }
         }
-        if segments.len() > before {
-            listed[kept] = Listed {
-                first: before as u32,
-                ..listed[slot]
-            };
-            kept += 1;
-        }
-    }
+    });
     listed.truncate(kept);
 }
 
@@ -78,20 +72,15 @@ struct Sides<S: Simd> {
 impl<S: Simd> Sides<S> {
     #[inline(always)]
     fn new(simd: S, [x, y]: [f32; 2]) -> Self {
-        let mut low = Lanes::splat(x);
-        low.0
-            .iter_mut()
-            .skip(1)
-            .step_by(2)
-            .for_each(|lane| *lane = y);
-        let low = load(simd, &low);
+        let low: [f32; LANES] = std::array::from_fn(|lane| [x, y][lane % 2]);
+        let low = f32x16::load_array_ref(simd, &low);
         Self {
             low,
             high: low + TILE as f32,
         }
     }
 
-    /// Calls `visit` with the segments of a polyline that come within `margin` of the tile on all four sides.
+    /// Calls `visit` with the index of each segment of a polyline that comes within `margin` of the tile on all four sides.
     #[inline(always)]
     fn touched(&self, simd: S, vertices: &[[f32; 2]], margin: f32, mut visit: impl FnMut(usize)) {
         let mut rest = vertices.as_flattened();
@@ -100,18 +89,18 @@ impl<S: Simd> Sides<S> {
             let places = match rest.first_chunk() {
                 Some(places) => f32x16::load_array_ref(simd, places),
                 None => {
-                    let mut places = Lanes::splat(f32::NAN);
-                    places.0[..rest.len()].copy_from_slice(rest);
-                    load(simd, &places)
+                    let mut places = [0.0; LANES];
+                    places[..rest.len()].copy_from_slice(rest);
+                    f32x16::load_array_ref(simd, &places)
                 }
             };
             let from_low = (places + margin).simd_gt(self.low).to_bitmask();
             let to_high = (places - margin).simd_lt(self.high).to_bitmask();
-            // Of each segment either end has to be on the inner side, of all sides.
-            let [from_low, to_high] = [from_low | from_low >> 2, to_high | to_high >> 2];
+            // Of each of the four sides, one end of a segment at least has to be on the inner one.
+            let [from_low, to_high] = [from_low, to_high].map(|ends| ends | ends >> 2);
             let inside = from_low & to_high;
-            let those = (1 << (2 * SEGMENTS.min(count - first))) - 1;
-            let touching = inside & inside >> 1 & 0x5555 & those;
+            let present = (1 << (2 * SEGMENTS.min(count - first))) - 1;
+            let touching = inside & inside >> 1 & LANES_OF_X & present;
             for bit in members(touching) {
                 visit(first + bit / 2);
             }
