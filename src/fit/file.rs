@@ -52,6 +52,15 @@ impl<'a> Writer<'a> {
         scene.quantized(self.options.precision)
     }
 
+    /// How many bytes `drawing` has as a file.
+    pub(super) fn bytes(&self, drawing: &Drawing) -> usize {
+        self.text(&self.round(drawing)).len()
+    }
+
+    fn text(&self, rounded: &Quantized) -> String {
+        Base::write(self.base, &rounded.scene, &self.options)
+    }
+
     /// Rounds and writes `drawing`, and renders the file.
     pub(super) fn render(&self, drawing: &Drawing) -> Result<RenderedFile> {
         let (file, ()) = self.render_beside(drawing, |_, _| ())?;
@@ -67,7 +76,7 @@ impl<'a> Writer<'a> {
         let rounded = self.round(drawing);
         let surfaces = &drawing.surfaces;
         let render = || {
-            let text = Base::write(self.base, &rounded.scene, &self.options);
+            let text = self.text(&rounded);
             let render = |surface: &Surface| {
                 let image = verify::render_like(&text, surface.picture(), surface.matte)?;
                 let mse = metrics::mse(surface.picture(), &image)?;

@@ -47,6 +47,8 @@ pub(super) struct Corrections {
     pub(super) before: Option<(usize, f64)>,
     /// Fidelity of the last file, dB.
     pub(super) last_db: f64,
+    /// Whether strokes were removed from the last file for bytes.
+    pub(super) shortened: bool,
     /// Fidelity gained by doubling the strokes, dB.
     pub(super) db_per_doubling: f64,
 }
@@ -63,6 +65,7 @@ impl History {
                 count: 0,
                 before: None,
                 last_db: 0.0,
+                shortened: false,
                 db_per_doubling,
             },
             stacking_db: None,

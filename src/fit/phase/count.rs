@@ -38,7 +38,10 @@ pub(in crate::fit) fn meet_fidelity(session: &mut Session<'_>) -> Outcome {
     let missing_db = wanted_db - corrections.last_db;
     let doublings = missing_db / corrections.db_per_doubling;
     let is_met = (0.0..=correction.excess_db).contains(&-missing_db);
-    let ends = is_met || corrections.count >= correction.count || session.cut_by().is_some();
+    // What more strokes would add, bytes have taken away.
+    let is_full = missing_db > 0.0 && corrections.shortened;
+    let is_last = corrections.count >= correction.count || session.cut_by().is_some();
+    let ends = is_met || is_full || is_last;
     let outcome = if ends {
         Outcome::Over
     } else {
@@ -110,21 +113,44 @@ fn slope(
     }
 }
 
-/// Removes the strokes of least worth if the best file has more bytes than allowed.
+/// By how many bytes the drawing will exceed the budget when it has settled; 0 if it will not.
+pub(in crate::fit) fn excess(session: &Session<'_>) -> usize {
+    let Some(most) = session.config.budget.bytes else {
+        return 0;
+    };
+    let bytes = session.writer.bytes(&session.drawing) as f64 * session.recipe.settling.growth;
+    (bytes as usize).saturating_sub(most)
+}
+
+/// Removes the strokes that are worth least for their bytes, until `excess` bytes are gone or all strokes are.
+pub(in crate::fit) fn shorten(session: &mut Session<'_>, excess: usize) {
+    let worth = session.drawing.judge().worth;
+    let strokes = session.drawing.free().iter();
+    let bytes: Vec<usize> = strokes.map(|s| session.price.bytes_of(s)).collect();
+    let per_byte = |i: usize| worth[i] / bytes[i] as f32;
+    let mut order: Vec<usize> = (0..worth.len()).collect();
+    order.sort_by(|&i, &j| per_byte(i).total_cmp(&per_byte(j)).then(i.cmp(&j)));
+    let mut keep = vec![true; worth.len()];
+    let mut gone = 0;
+    for i in order {
+        if gone >= excess {
+            break;
+        }
+        gone += bytes[i];
+        keep[i] = false;
+    }
+    session.drawing.retain_free(&keep);
+    session.history.stop = Stop::Bytes;
+    session.history.corrections.shortened = true;
+}
+
+/// Removes strokes if the best file has more bytes than allowed.
 pub(in crate::fit) fn meet_bytes(session: &mut Session<'_>) -> Outcome {
     let bytes = session.best.as_ref().map_or(0, |best| best.bytes);
     let most = session.config.budget.bytes.unwrap_or(usize::MAX);
     if bytes <= most || session.drawing.len() == 0 {
         return Outcome::Over;
     }
-    if session.history.stop != Stop::Bytes
-        && let Some(best) = session.history.best.clone()
-    {
-        session.drawing.restore(best);
-    }
-    session.history.stop = Stop::Bytes;
-    let share = (bytes - most) as f64 / bytes as f64;
-    let count = (session.drawing.len() as f64 * share).ceil() as usize;
-    session.drawing.remove_least(count.max(1));
+    shorten(session, bytes - most);
     Outcome::Removed
 }

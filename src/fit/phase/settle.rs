@@ -9,7 +9,7 @@
 //!
 //! [`renderers`]: crate::fit::renderers
 
-use super::{palette, pens, sharing, stack, widths};
+use super::{count, palette, pens, sharing, stack, widths};
 use crate::error::Result;
 use crate::fit::budget;
 use crate::fit::config::Colors;
@@ -70,8 +70,23 @@ fn restrict(session: &mut Session<'_>) -> Result<Restricted> {
     if session.config.colors != Colors::Free {
         session.drawing.remove_hidden();
     }
-    let ties = sharing::run(session);
+    let ties = share_within_bytes(session);
     Ok(Restricted { rates, ties })
+}
+
+/// Makes strokes share widths and colours, of as many strokes as the budget of bytes allows then.
+fn share_within_bytes(session: &mut Session<'_>) -> Ties {
+    session.history.corrections.shortened = false;
+    loop {
+        let unshared = session.drawing.memento();
+        let ties = sharing::run(session);
+        let excess = count::excess(session);
+        if excess == 0 || session.drawing.free().is_empty() {
+            return ties;
+        }
+        session.drawing.revert(unshared);
+        count::shorten(session, excess);
+    }
 }
 
 /// [`run`] with errors that count as the user's mask says, but not less where detail hides them: renderers differ most at
@@ -109,9 +124,13 @@ fn run(session: &mut Session<'_>, restricted: Restricted) -> Result<RenderedFile
         if session.progress.is_halted() {
             break;
         }
+        let before = seen.badness();
         (file, seen) = Renderings::of(session)?;
         if seen.badness() < best.badness {
             best = Best::of(session, &file, &seen);
+        }
+        if (psnr_db(seen.badness()) - psnr_db(before)).abs() < settling.least_db {
+            break;
         }
         share = seen.next_share(share);
         pace *= settling.next_pace;

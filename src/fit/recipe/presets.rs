@@ -67,6 +67,7 @@ impl Recipe {
             },
             settling: Settling {
                 rounds: 0,
+                growth: 1.0,
                 ..settling
             },
             ..BALANCED
@@ -129,6 +130,7 @@ const BALANCED: Recipe = Recipe {
     },
     polish: Polish {
         iterations: 1200,
+        work: 90.0,
         coarse_share: 0.6,
         rates: Rates {
             position: 2.5,
@@ -153,6 +155,7 @@ const BALANCED: Recipe = Recipe {
         share: 0.5,
         swapped: 0.2,
         per_stroke: 7.0,
+        pixels: 8.0,
         capsules: 0.8,
         filled: 0.995,
         reach: 0.5,
@@ -200,6 +203,7 @@ const BALANCED: Recipe = Recipe {
     },
     settling: Settling {
         rounds: 5,
+        least_db: 0.02,
         iterations: 20,
         rate: 0.02,
         color_rate: 5.0,
@@ -207,6 +211,7 @@ const BALANCED: Recipe = Recipe {
         browser_db: 0.4,
         offset_taken: 0.7,
         share_per_db: 0.15,
+        growth: 1.005,
     },
     correction: Correction {
         regained_db: 1.5,
