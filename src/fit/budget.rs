@@ -3,7 +3,7 @@
 use super::base::Base;
 use super::config::{Budget, Config, MAX_STROKES};
 use super::file::RenderedFile;
-use super::recipe::Recipe;
+use super::recipe::{Points, Recipe};
 use super::result::Stop;
 use crate::image::Image;
 use crate::math::Point;
@@ -42,6 +42,33 @@ pub(super) fn max_strokes(config: &Config, limit: Option<usize>, base: Option<&B
     let most = config.most_strokes().max(brought);
     let most = most.min(MAX_STROKES.saturating_sub(base.map_or(0, Base::elements)));
     limit.map_or(most, |limit| limit.min(most))
+}
+
+/// Most points of a drawing of `strokes` strokes and `pixels` pixels, unless bytes or a price limit them.
+pub(super) fn points(
+    config: &Config,
+    recipe: &Points,
+    strokes: usize,
+    pixels: usize,
+) -> Option<usize> {
+    let is_limited = config.budget.bytes.is_some() || config.quality_for(pixels).is_some();
+    let most = config
+        .points
+        .map_or(recipe.per_stroke, |most| recipe.per_stroke.min(most as f32));
+    let by_pixels = pixels as f32 / recipe.pixels;
+    (!is_limited).then_some(by_pixels.min(most * strokes as f32) as usize)
+}
+
+/// The recipe for the budget: fewer iterations of polish where a budget of strokes makes points dense.
+pub(super) fn within_work(config: &Config, pixels: usize) -> Recipe {
+    let mut recipe = config.recipe();
+    let polish = &mut recipe.polish;
+    let points = |strokes| points(config, &recipe.points, strokes, pixels);
+    if let Some(points) = config.budget.strokes.and_then(points) {
+        let iterations = polish.work * pixels as f32 / points.max(1) as f32;
+        polish.iterations = polish.iterations.min(iterations as usize);
+    }
+    recipe
 }
 
 /// Bytes of a typical stroke, to estimate how many strokes a budget of bytes allows.

@@ -12,7 +12,7 @@ mod terrain;
 
 use rayon::prelude::*;
 
-use super::budget::typical_bytes;
+use super::budget::{self, typical_bytes};
 use super::drawing::Drawing;
 use super::recipe::Points;
 use super::session::Session;
@@ -111,17 +111,9 @@ fn edit(session: &mut Session<'_>, spare: f32) -> Vec<Option<usize>> {
 /// How many more points the drawing may have.
 fn room(session: &Session<'_>) -> usize {
     let (config, strokes) = (session.config, session.drawing.free());
-    let by_strokes = match (
-        config.budget.bytes,
-        config.quality_for(session.drawing.pixels()),
-    ) {
-        // Bytes or a price limit them.
-        (Some(_), _) | (_, Some(_)) => usize::MAX,
-        (None, None) => {
-            let most = session.recipe.points.per_stroke * strokes.len() as f32;
-            (most as usize).saturating_sub(strokes.points())
-        }
-    };
+    let pixels = session.target.width() * session.target.height();
+    let most = budget::points(config, &session.recipe.points, strokes.len(), pixels);
+    let by_strokes = most.map_or(usize::MAX, |most| most.saturating_sub(strokes.points()));
     let by_bytes = config.budget.bytes.map_or(usize::MAX, |bytes| {
         let left = bytes as f32 * session.recipe.points.filled - session.bytes() as f32;
         (left.max(0.0) / session.price.point_bytes() as f32) as usize

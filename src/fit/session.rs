@@ -95,10 +95,10 @@ impl<'a> Session<'a> {
         watch: Watch<'a>,
         started: Instant,
     ) -> Result<Self> {
-        let recipe = config.recipe();
+        let pixels = picture.width() * picture.height();
+        let recipe = budget::within_work(config, pixels);
         let limit = budget::strokes(config, &recipe, base, picture);
         let before = Before::of(base);
-        let pixels = picture.width() * picture.height();
         let plan = Plan::new(config, &recipe, limit, before, pixels);
         let page_width = Base::page_width(base, &config.file);
         let pens = config.pens.as_ref();
