@@ -44,7 +44,7 @@ pub(super) fn max_strokes(config: &Config, limit: Option<usize>, base: Option<&B
     limit.map_or(most, |limit| limit.min(most))
 }
 
-/// Most points of a drawing of `strokes` strokes and `pixels` pixels, unless bytes or a price limit them.
+/// Most points of a drawing of `strokes` strokes, unless bytes or a price limit them.
 pub(super) fn points(
     config: &Config,
     recipe: &Points,
@@ -52,21 +52,22 @@ pub(super) fn points(
     pixels: usize,
 ) -> Option<usize> {
     let is_limited = config.budget.bytes.is_some() || config.quality_for(pixels).is_some();
-    let most = config
-        .points
-        .map_or(recipe.per_stroke, |most| recipe.per_stroke.min(most as f32));
-    let by_pixels = pixels as f32 / recipe.pixels;
-    (!is_limited).then_some(by_pixels.min(most * strokes as f32) as usize)
+    let most = match config.points {
+        _ if !config.allows_points() => 2.0,
+        Some(most) => recipe.per_stroke.min(most as f32),
+        None => recipe.per_stroke,
+    };
+    (!is_limited).then_some((most * strokes as f32) as usize)
 }
 
-/// The recipe for the budget: fewer iterations of polish where a budget of strokes makes points dense.
-pub(super) fn within_work(config: &Config, pixels: usize) -> Recipe {
+/// The recipe for the budget: a shorter polish where a budget of strokes makes points dense.
+pub(super) fn recipe(config: &Config, pixels: usize) -> Recipe {
     let mut recipe = config.recipe();
-    let polish = &mut recipe.polish;
-    let points = |strokes| points(config, &recipe.points, strokes, pixels);
-    if let Some(points) = config.budget.strokes.and_then(points) {
-        let iterations = polish.work * pixels as f32 / points.max(1) as f32;
-        polish.iterations = polish.iterations.min(iterations as usize);
+    let (polish, most) = (&mut recipe.polish, recipe.points);
+    let strokes = config.budget.strokes;
+    let points = strokes.and_then(|strokes| points(config, &most, strokes, pixels));
+    if points.is_some_and(|points| points as f32 * polish.dense > pixels as f32) {
+        polish.iterations = (polish.iterations as f32 * polish.dense_share) as usize;
     }
     recipe
 }

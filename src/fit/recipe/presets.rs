@@ -50,6 +50,7 @@ impl Recipe {
             },
             polish: Polish {
                 iterations: 130,
+                dense_share: 1.0,
                 coarse_share: 0.3,
                 rates: Rates {
                     position: 1.3,
@@ -130,7 +131,8 @@ const BALANCED: Recipe = Recipe {
     },
     polish: Polish {
         iterations: 1200,
-        work: 90.0,
+        dense: 16.0,
+        dense_share: 0.75,
         coarse_share: 0.6,
         rates: Rates {
             position: 2.5,
@@ -155,7 +157,6 @@ const BALANCED: Recipe = Recipe {
         share: 0.5,
         swapped: 0.2,
         per_stroke: 7.0,
-        pixels: 8.0,
         capsules: 0.8,
         filled: 0.995,
         reach: 0.5,
