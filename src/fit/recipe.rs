@@ -168,7 +168,7 @@ pub struct Polish {
     /// Points are dense if there may be one for fewer pixels than this, by a budget of strokes.
     pub dense: f32,
     /// Iterations if points are dense, in units of `iterations`. 1 instead of 0.75: +0.2 dB at 1.4 of the time on
-    /// 256×256 px at 1,000 strokes, and +0.1 at 1.35 on 320×240 px at 2,300.
+    /// 256×256 px at 1,000 strokes, and +0.1 at 1.35 on 320×214 px at 2,300.
     pub dense_share: f32,
     /// Share of the iterations that keep the resolution of the last stage; the rest are at full resolution. Five photographs
     /// of 768×512 px at 1,024 strokes: 0.6, 0.75 instead of 0.3: −0.02, −0.13 dB at 0.83, 0.75 of the time, and
