@@ -25,8 +25,8 @@
 // Lanes are never passed through closures of `array::map`: those are compiled on their own, without the
 // instruction set of their caller.
 
-mod capsule;
 mod lanes;
+mod segment;
 mod sums;
 mod touching;
 mod union;
@@ -35,8 +35,8 @@ use std::ops::Range;
 
 use fearless_simd::{Level, dispatch, f32x16, prelude::*};
 
-pub(super) use capsule::Capsule;
 pub(super) use lanes::{load, members, store, total};
+pub(super) use segment::{Segment, length};
 pub(super) use sums::{EndSums, Extras, LookSums, Mattes, Nothing, Stiffnesses, WORTH, Worths};
 pub(super) use touching::{Listed, list_segments};
 
@@ -45,7 +45,6 @@ use super::edge::{Edge, Reach, SoftEdge};
 use super::flat::Flat;
 use super::grid::{BLOCKS, BlockRgb, BlockSet, Lanes, TileRgb, TileWeights, flat_tile};
 use super::strokes::LOOK;
-use capsule::length;
 use sums::{EdgeBlock, Grounds, Matte, Shifts, Sums};
 use union::{Kept, Segments, Union};
 
@@ -172,8 +171,10 @@ impl TileJob<'_> {
 
     /// The segments of a listed stroke.
     #[inline(always)]
-    fn segments(&self, range: Range<usize>) -> Segments<'_> {
+    fn segments(&self, slot: usize, range: Range<usize>) -> Segments<'_> {
+        let [low, high] = self.flat.boxes[self.listed[slot].stroke as usize];
         Segments {
+            y: [low[1], high[1]],
             vertices: &self.flat.vertices,
             listed: &self.segments[range],
             origin: self.origin,
@@ -229,12 +230,12 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
     for slot in (0..job.listed.len()).rev() {
         let look = job.look(slot);
         let range = job.range(slot);
-        let segments = job.segments(range.clone());
+        let segments = job.segments(slot, range.clone());
         let is_capsule = range.len() == 1;
         let radius = look[0];
-        let capsule = segments.capsule(simd, 0, radius);
+        let segment = segments.get(0);
         let (touched, core) = if is_capsule {
-            capsule.blocks(simd, radius, job.reach)
+            segment.blocks(simd, radius, job.reach)
         } else {
             union.blocks(simd, segments, radius, job.reach, &mut near[range.clone()])
         };
@@ -251,8 +252,8 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
         let opacity = f32x16::splat(simd, look[LOOK - 1].max(FAINTEST));
         if is_capsule {
             for block in members(visit.edge) {
-                let distance2 = capsule.at_pixels(simd, block).distance2();
-                let (alpha, kept) = cover(edge, distance2, capsule.radius, opacity);
+                let distance2 = segment.at_pixels(simd, block).distance2();
+                let (alpha, kept) = cover(edge, distance2, radius, opacity);
                 kept_edges.push(kept);
                 kept_transmittance.push(veils[block].through);
                 if see_through(simd, alpha, &rgb, &mut color[block], &mut veils[block]) {
@@ -260,10 +261,10 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
                 }
             }
         } else {
-            union.measure(simd, segments, &near[range], visit.edge);
+            union.measure(simd, &near[range], visit.edge);
             for block in members(visit.edge) {
                 let distance2 = union.distance2(simd, block);
-                let (alpha, kept) = cover(edge, distance2, capsule.radius, opacity);
+                let (alpha, kept) = cover(edge, distance2, radius, opacity);
                 kept_edges.push(kept);
                 kept_nearest.push(union.nearest(block));
                 kept_transmittance.push(veils[block].through);
@@ -297,7 +298,7 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
 fn cover<S: Simd, E: SoftEdge>(
     edge: E,
     distance2: f32x16<S>,
-    radius: f32x16<S>,
+    radius: f32,
     opacity: f32x16<S>,
 ) -> (f32x16<S>, EdgeBlock) {
     let length = length(distance2);
@@ -382,9 +383,9 @@ fn back_to_front<S: Simd, X: Extras>(
         let slot = visit.slot as usize;
         let look = job.look(slot);
         let range = job.range(slot);
-        let segments = job.segments(range.clone());
+        let segments = job.segments(slot, range.clone());
         let is_capsule = range.len() == 1;
-        let capsule = segments.capsule(simd, 0, look[0]);
+        let segment = segments.get(0);
         let rgb = splat_rgb(simd, look);
         let mut stroke = Sums::new(simd);
         let mut shifts = Shifts::new(simd);
@@ -398,7 +399,7 @@ fn back_to_front<S: Simd, X: Extras>(
             for ((block, kept), t) in edges {
                 let (pull, stiffness) =
                     stroke.blend_edge::<X>(simd, kept, t, &rgb, grounds.at(block));
-                let nearest = capsule.at_pixels(simd, block);
+                let nearest = segment.at_pixels(simd, block);
                 shifts.pull(pull, nearest.q, nearest.h);
                 if X::STIFFNESS {
                     shifts.stiffen(stiffness, nearest.h);
@@ -430,9 +431,8 @@ fn back_to_front<S: Simd, X: Extras>(
             blocks: &kept_edges[at_edge..],
             nearest: &kept_nearest[at_nearest..],
         };
-        for (k, segment) in range.enumerate() {
-            let capsule = segments.capsule(simd, k, 0.0);
-            ends[segment] = kept.ends::<_, X>(simd, &capsule, k, near[segment]);
+        for (k, at) in range.enumerate() {
+            ends[at] = kept.ends::<_, X>(simd, &segments.get(k), k, near[at]);
         }
     }
     [total(backdrop[0]), total(backdrop[1]), total(backdrop[2])]

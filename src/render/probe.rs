@@ -22,7 +22,7 @@ use fearless_simd::{Level, dispatch, f32x16, prelude::*};
 
 use super::edge::{Reach, Smoothstep, SoftEdge};
 use super::grid::{BLOCK, BLOCKS, BlockSet, LANES, Lanes, TILE, TILE_BLOCKS, TileRgb, flat_tile};
-use super::kernel::{Capsule, load, members, store, total};
+use super::kernel::{Segment, length, load, members, store, total};
 use super::strokes::{OPACITY, Params, RADIUS, RED};
 use crate::image::Image;
 use crate::math;
@@ -135,12 +135,13 @@ fn cover<S: Simd>(simd: S, shape: &Params) -> Vec<(usize, Lanes)> {
     };
     let edge = Smoothstep::new(1.0);
     let &[ax, ay, bx, by, radius, ..] = shape;
-    let capsule = Capsule::new(simd, [[ax, ay], [bx, by]], radius, [0.0; 2]);
-    let (touched, _) = capsule.blocks(simd, radius, reach);
+    let segment = Segment::new([[ax, ay], [bx, by]], [0.0; 2]);
+    let (touched, _) = segment.blocks(simd, radius, reach);
     members(touched)
         .map(|block| {
             let mut coverage = Lanes::splat(0.0);
-            store(edge.eval(capsule.distance(simd, block)).0, &mut coverage);
+            let length = length(segment.at_pixels(simd, block).distance2());
+            store(edge.eval(radius - length).0, &mut coverage);
             (block, coverage)
         })
         .collect()

@@ -14,8 +14,8 @@ use fearless_simd::{f32x16, prelude::*};
 
 use super::super::edge::Reach;
 use super::super::grid::{BLOCKS, BlockSet, LANES, Lanes};
-use super::capsule::{BLOCK_RADIUS, Capsule, ROWS, limits};
 use super::lanes::{load, members, store};
+use super::segment::{BLOCK_RADIUS, Segment, limits, rows_within};
 use super::sums::{EdgeBlock, EndSums, Extras, Shifts};
 
 /// The segments of one stroke that may touch a tile.
@@ -27,15 +27,16 @@ pub(super) struct Segments<'a> {
     pub(super) listed: &'a [u32],
     /// The tile's top left corner, px.
     pub(super) origin: [f32; 2],
+    /// The smallest and the largest y of the stroke's vertices, px.
+    pub(super) y: [f32; 2],
 }
 
 impl Segments<'_> {
-    /// Segment `k` of the list, swept by a disc.
+    /// Segment `k` of the list.
     #[inline(always)]
-    pub(super) fn capsule<S: Simd>(&self, simd: S, k: usize, radius: f32) -> Capsule<S> {
+    pub(super) fn get(&self, k: usize) -> Segment {
         let at = self.listed[k] as usize;
-        let ends = [self.vertices[at], self.vertices[at + 1]];
-        Capsule::new(simd, ends, radius, self.origin)
+        Segment::new([self.vertices[at], self.vertices[at + 1]], self.origin)
     }
 
     /// Whether segment `k` of the list starts where the one before it ends.
@@ -47,15 +48,24 @@ impl Segments<'_> {
 /// Squared distances before any segment is looked at, px².
 const FAR: Lanes = Lanes::splat(f32::INFINITY);
 
-/// How a segment lies to the blocks of a tile.
+/// A limit that nothing is below or above.
+const NEVER: f32 = f32::NAN;
+
+/// A segment, and how it lies to the blocks of a row.
 #[derive(Debug, Clone, Copy)]
 struct Sight {
+    segment: Segment,
+    /// Where `(p−a)·(b−a)` of a block's centre is at most this, all pixels of the block lie before the start, which the
+    /// segment before has, too.
+    start: f32,
+    /// Where it is at least this, all pixels lie beyond the end, which the next segment has, too.
+    end: f32,
     /// The squared distances of the blocks' centres.
-    centers: [Lanes; ROWS],
-    /// Blocks all of whose pixels lie before the start.
-    before: BlockSet,
-    /// Blocks all of whose pixels lie beyond the end.
-    after: BlockSet,
+    centers: Lanes,
+    /// Blocks before the start, a bit each.
+    before: u64,
+    /// Blocks beyond the end.
+    after: u64,
 }
 
 /// Scratch for one stroke at a time.
@@ -88,81 +98,80 @@ impl Union {
         reach: Reach,
         near: &mut [BlockSet],
     ) -> (BlockSet, BlockSet) {
-        let least = self.look(simd, segments);
+        self.take(segments);
+        near.fill(0);
         let [outer, inner] = limits(radius, reach);
-        let mut core = 0;
-        let mut limits2 = least;
-        for (row, least) in least.iter().enumerate() {
-            core |= least.simd_lt(inner * inner).to_bitmask() << (row * LANES);
+        let (mut touched, mut core) = (0, 0);
+        let y = [0, 1].map(|side| segments.y[side] - segments.origin[1]);
+        for row in rows_within(outer, y) {
+            let least = self.look(simd, row);
             let limit = (least.sqrt() + 2.0 * BLOCK_RADIUS).min(outer);
-            limits2[row] = limit * limit;
+            let limit2 = limit * limit;
+            let mut touched_here = 0;
+            let mut before_next = 0;
+            for (sight, near) in self.sights.iter().zip(&mut *near).rev() {
+                let is_near = load(simd, &sight.centers).simd_lt(limit2).to_bitmask();
+                let near_here = is_near & !sight.before & (!sight.after | before_next);
+                before_next = sight.before;
+                *near |= near_here << (row * LANES);
+                touched_here |= near_here;
+            }
+            let core_here = least.simd_lt(inner * inner).to_bitmask() & touched_here;
+            touched |= touched_here << (row * LANES);
+            core |= core_here << (row * LANES);
         }
-        let mut touched = 0;
-        for (k, (sight, near)) in self.sights.iter().zip(&mut *near).enumerate() {
-            *near = 0;
-            for (row, centers) in sight.centers.iter().enumerate() {
-                let is_near = load(simd, centers).simd_lt(limits2[row]);
-                *near |= is_near.to_bitmask() << (row * LANES);
-            }
-            if segments.follows(k) {
-                *near &= !sight.before;
-            }
-            if segments.follows(k + 1) {
-                *near &= !sight.after | self.sights[k + 1].before;
-            }
-            touched |= *near;
-        }
-        (touched, core & touched)
+        (touched, core)
     }
 
-    /// Looks at every segment from the blocks' centres; returns the squared distances of the nearest ones.
+    /// Takes the segments to look at.
     #[inline(always)]
-    fn look<S: Simd>(&mut self, simd: S, segments: Segments<'_>) -> [f32x16<S>; ROWS] {
-        let mut least = [f32x16::splat(simd, f32::INFINITY); ROWS];
+    fn take(&mut self, segments: Segments<'_>) {
         self.sights.clear();
         for k in 0..segments.listed.len() {
-            let capsule = segments.capsule(simd, k, 0.0);
+            let segment = segments.get(k);
             // `(p−a)·(b−a)` differs by at most this between a pixel and the centre of its block.
-            let slack = BLOCK_RADIUS * capsule.length2.sqrt();
-            let mut sight = Sight {
-                centers: [Lanes::splat(0.0); ROWS],
+            let slack = BLOCK_RADIUS * segment.length2.sqrt();
+            let (joins_last, joins_next) = (segments.follows(k), segments.follows(k + 1));
+            self.sights.push(Sight {
+                segment,
+                start: if joins_last { -slack } else { NEVER },
+                end: if joins_next {
+                    segment.length2 + slack
+                } else {
+                    NEVER
+                },
+                centers: FAR,
                 before: 0,
                 after: 0,
-            };
-            for (row, least) in least.iter_mut().enumerate() {
-                let nearest = capsule.at_centers(simd, row);
-                let distance2 = nearest.distance2();
-                store(distance2, &mut sight.centers[row]);
-                *least = distance2.simd_lt(*least).select(distance2, *least);
-                let (before, after) = (
-                    nearest.dot.simd_le(-slack),
-                    nearest.dot.simd_ge(capsule.length2 + slack),
-                );
-                sight.before |= before.to_bitmask() << (row * LANES);
-                sight.after |= after.to_bitmask() << (row * LANES);
-            }
-            self.sights.push(sight);
+            });
+        }
+    }
+
+    /// Looks at every segment from the centres of a row of blocks; returns the squared distances of the nearest ones.
+    #[inline(always)]
+    fn look<S: Simd>(&mut self, simd: S, row: usize) -> f32x16<S> {
+        let mut least = f32x16::splat(simd, f32::INFINITY);
+        for sight in &mut self.sights {
+            let nearest = sight.segment.at_centers(simd, row);
+            let distance2 = nearest.distance2();
+            store(distance2, &mut sight.centers);
+            least = distance2.simd_lt(least).select(distance2, least);
+            sight.before = nearest.dot.simd_le(sight.start).to_bitmask();
+            sight.after = nearest.dot.simd_ge(sight.end).to_bitmask();
         }
         least
     }
 
     /// Finds the distances of the pixels of the blocks in `edge`, and the segments that are nearest to them.
     #[inline(always)]
-    pub(super) fn measure<S: Simd>(
-        &mut self,
-        simd: S,
-        segments: Segments<'_>,
-        near: &[BlockSet],
-        edge: BlockSet,
-    ) {
+    pub(super) fn measure<S: Simd>(&mut self, simd: S, near: &[BlockSet], edge: BlockSet) {
         for block in members(edge) {
             self.distances2[block] = FAR;
         }
-        for (k, near) in near.iter().enumerate() {
-            let capsule = segments.capsule(simd, k, 0.0);
+        for (k, (sight, near)) in self.sights.iter().zip(near).enumerate() {
             let index = f32x16::splat(simd, k as f32);
             for block in members(near & edge) {
-                let distance2 = capsule.at_pixels(simd, block).distance2();
+                let distance2 = sight.segment.at_pixels(simd, block).distance2();
                 let least = load(simd, &self.distances2[block]);
                 let nearest = load(simd, &self.nearest[block]);
                 let is_nearer = distance2.simd_lt(least);
@@ -204,7 +213,7 @@ impl Kept<'_> {
     pub(super) fn ends<S: Simd, X: Extras>(
         &self,
         simd: S,
-        capsule: &Capsule<S>,
+        segment: &Segment,
         k: usize,
         near: BlockSet,
     ) -> EndSums {
@@ -217,7 +226,7 @@ impl Kept<'_> {
         for block in members(blocks) {
             let at = (self.edge & ((1 << block) - 1)).count_ones() as usize;
             let is_nearest = load(simd, &self.nearest[at]).simd_eq(k as f32);
-            let nearest = capsule.at_pixels(simd, block);
+            let nearest = segment.at_pixels(simd, block);
             let pull = is_nearest.select(load(simd, &self.blocks[at].slope), zero);
             shifts.pull(pull, nearest.q, nearest.h);
             if X::STIFFNESS {

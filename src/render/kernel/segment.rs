@@ -1,9 +1,11 @@
-//! A segment swept by a disc: its distances from the pixels of a block, and from the centres of a tile's blocks.
+//! A segment: its distances from the pixels of a block, and from the centres of a tile's blocks.
+
+use std::ops::Range;
 
 use fearless_simd::{f32x16, prelude::*};
 
 use super::super::edge::Reach;
-use super::super::grid::{BLOCK, BLOCKS, BlockSet, LANES, Lanes, TILE_BLOCKS};
+use super::super::grid::{BLOCK, BLOCKS, BlockSet, LANES, Lanes, TILE, TILE_BLOCKS};
 use super::lanes::load;
 
 /// Guard in `1/|b−a|²` and in `|q| = sqrt(q·q + ε)`, px². Larger would blunt the distance near the
@@ -33,21 +35,21 @@ const fn lattice(columns: usize, side: f32) -> [Lanes; 2] {
     centers
 }
 
-/// A segment swept by a disc, splatted for the lanes, relative to its tile.
-#[derive(Clone, Copy)]
-pub(in crate::render) struct Capsule<S: Simd> {
+/// A segment from `a` to `b`, relative to its tile.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::render) struct Segment {
     a: [f32; 2],
-    axis: [f32x16<S>; 2],
+    /// `b − a`.
+    axis: [f32; 2],
     /// `|b−a|²`.
     pub(super) length2: f32,
     /// `1/(|b−a|² + ε)`.
-    inverse_length2: f32x16<S>,
-    pub(super) radius: f32x16<S>,
+    inverse_length2: f32,
 }
 
 /// How a segment lies to some pixels or centres.
 #[derive(Clone, Copy)]
-pub(super) struct Nearest<S: Simd> {
+pub(in crate::render) struct Nearest<S: Simd> {
     /// `(p−a)·(b−a)`.
     pub(super) dot: f32x16<S>,
     /// Where on the segment the nearest point is, 0 at `a` and 1 at `b`.
@@ -59,33 +61,26 @@ pub(super) struct Nearest<S: Simd> {
 impl<S: Simd> Nearest<S> {
     /// The squared distance.
     #[inline(always)]
-    pub(super) fn distance2(&self) -> f32x16<S> {
+    pub(in crate::render) fn distance2(&self) -> f32x16<S> {
         self.q[0] * self.q[0] + self.q[1] * self.q[1]
     }
 }
 
-impl<S: Simd> Capsule<S> {
-    #[inline(always)]
-    pub(in crate::render) fn new(
-        simd: S,
-        [a, b]: [[f32; 2]; 2],
-        radius: f32,
-        origin: [f32; 2],
-    ) -> Self {
+impl Segment {
+    pub(in crate::render) fn new([a, b]: [[f32; 2]; 2], origin: [f32; 2]) -> Self {
         let axis = [b[0] - a[0], b[1] - a[1]];
         let length2 = axis[0] * axis[0] + axis[1] * axis[1];
         Self {
             a: [a[0] - origin[0], a[1] - origin[1]],
-            axis: [f32x16::splat(simd, axis[0]), f32x16::splat(simd, axis[1])],
+            axis,
             length2,
-            inverse_length2: f32x16::splat(simd, 1.0 / (length2 + EPSILON)),
-            radius: f32x16::splat(simd, radius),
+            inverse_length2: 1.0 / (length2 + EPSILON),
         }
     }
 
     /// The nearest points to those at `pa = p − a`.
     #[inline(always)]
-    fn nearest(&self, pa: [f32x16<S>; 2]) -> Nearest<S> {
+    fn nearest<S: Simd>(&self, pa: [f32x16<S>; 2]) -> Nearest<S> {
         let dot = pa[0] * self.axis[0] + pa[1] * self.axis[1];
         let h = (dot * self.inverse_length2).max(0.0).min(1.0);
         let q = [pa[0] - h * self.axis[0], pa[1] - h * self.axis[1]];
@@ -94,7 +89,7 @@ impl<S: Simd> Capsule<S> {
 
     /// The nearest points to the pixels of a block.
     #[inline(always)]
-    pub(super) fn at_pixels(&self, simd: S, block: usize) -> Nearest<S> {
+    pub(in crate::render) fn at_pixels<S: Simd>(&self, simd: S, block: usize) -> Nearest<S> {
         let x = (block % TILE_BLOCKS * BLOCK) as f32 - self.a[0];
         let y = (block / TILE_BLOCKS * BLOCK) as f32 - self.a[1];
         self.nearest([load(simd, &PIXELS[0]) + x, load(simd, &PIXELS[1]) + y])
@@ -102,7 +97,7 @@ impl<S: Simd> Capsule<S> {
 
     /// The nearest points to the centres of 16 blocks, a quarter of the tile.
     #[inline(always)]
-    pub(super) fn at_centers(&self, simd: S, row: usize) -> Nearest<S> {
+    pub(super) fn at_centers<S: Simd>(&self, simd: S, row: usize) -> Nearest<S> {
         let y = (row * LANES / TILE_BLOCKS * BLOCK) as f32 - self.a[1];
         self.nearest([
             load(simd, &CENTERS[0]) - self.a[0],
@@ -110,16 +105,10 @@ impl<S: Simd> Capsule<S> {
         ])
     }
 
-    /// The signed distance at the pixels of a block.
+    /// The blocks that a disc of this radius, widened by its soft edge, can touch as it sweeps the segment, and those wholly
+    /// in its hard core, from the distances of the blocks' centres.
     #[inline(always)]
-    pub(in crate::render) fn distance(&self, simd: S, block: usize) -> f32x16<S> {
-        self.radius - length(self.at_pixels(simd, block).distance2())
-    }
-
-    /// The blocks that the stroke widened by its soft edge can touch, and those wholly in its hard
-    /// core, from the distances of the blocks' centres.
-    #[inline(always)]
-    pub(in crate::render) fn blocks(
+    pub(in crate::render) fn blocks<S: Simd>(
         &self,
         simd: S,
         radius: f32,
@@ -136,7 +125,7 @@ impl<S: Simd> Capsule<S> {
     }
 }
 
-/// How near to the centre line a block's centre is if a stroke touches the block, and if it covers all of it, px.
+/// How near to a segment a block's centre is if a stroke touches the block, and if it covers all of it, px.
 #[inline(always)]
 pub(super) fn limits(radius: f32, reach: Reach) -> [f32; 2] {
     [
@@ -145,8 +134,20 @@ pub(super) fn limits(radius: f32, reach: Reach) -> [f32; 2] {
     ]
 }
 
+/// The rows of 16 block centres of which some may be within `outer` of a stroke that is between `top` and `bottom`, px
+/// from the top of the tile.
+#[inline(always)]
+pub(super) fn rows_within(outer: f32, [top, bottom]: [f32; 2]) -> Range<usize> {
+    let side = (TILE / ROWS) as f32;
+    let margin = outer - 0.5 * BLOCK as f32;
+    // Conversions saturate, and what is no number becomes 0.
+    let first = ((top - margin) / side) as usize;
+    let last = ((bottom + margin) / side) as usize;
+    first..(last + 1).min(ROWS)
+}
+
 /// `|q|` from `q·q`, with the guard.
 #[inline(always)]
-pub(super) fn length<S: Simd>(distance2: f32x16<S>) -> f32x16<S> {
+pub(in crate::render) fn length<S: Simd>(distance2: f32x16<S>) -> f32x16<S> {
     (distance2 + EPSILON).sqrt()
 }
