@@ -133,7 +133,7 @@ pub(super) fn walk(stroke: StrokeRef<'_>, least: usize, mut visit: impl FnMut(Ve
     };
     visit(first.from.vertex());
     for piece in pieces {
-        piece.vertices(stroke.points, least).for_each(&mut visit);
+        piece.vertices(stroke, least).for_each(&mut visit);
     }
 }
 
@@ -182,22 +182,23 @@ pub(crate) struct Piece {
 
 impl Piece {
     /// How many segments the piece becomes.
-    pub(crate) fn steps(&self, points: &[[f32; 2]], least: usize) -> usize {
+    pub(crate) fn steps(&self, stroke: StrokeRef<'_>, least: usize) -> usize {
         let Some(control) = self.control else {
             return least;
         };
+        let points = stroke.points;
         let (a, c, b) = (
             self.from.place(points),
             points[control],
             self.to.place(points),
         );
         let bend = [0, 1].map(|k| a[k] - 2.0 * c[k] + b[k]);
-        sdf::steps(Vector::from(bend)).max(least)
+        sdf::steps(Vector::from(bend), f64::from(stroke.flatness())).max(least)
     }
 
     /// The vertices of the piece behind its start.
-    fn vertices(self, points: &[[f32; 2]], least: usize) -> impl Iterator<Item = Vertex> {
-        let steps = self.steps(points, least);
+    fn vertices(self, stroke: StrokeRef<'_>, least: usize) -> impl Iterator<Item = Vertex> {
+        let steps = self.steps(stroke, least);
         let within = (1..steps).map(move |step| self.vertex(step as f32 / steps as f32));
         within.chain([self.to.vertex()])
     }
@@ -318,7 +319,7 @@ mod tests {
                     points: &points,
                     off: &off,
                     closed,
-                    look: &[1.0; LOOK],
+                    look: &[1.0, 1.0, 1.0, 1.0, [0.2, 0.6, 1.0][kinds as usize % 3]],
                 });
             }
         }
@@ -331,6 +332,7 @@ mod tests {
             off: stroke.off.to_vec(),
             closed: stroke.closed,
             radius: 1.0,
+            flatness: stroke.flatness(),
         }
     }
 
@@ -364,6 +366,23 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn translucent_strokes_have_fewer_segments() {
+        let segments = |opacity: f32| {
+            let hook = StrokeRef {
+                points: &[[0.0, 0.0], [40.0, 0.0], [40.0, 40.0]],
+                off: &[false, true, false],
+                closed: false,
+                look: &[1.0, 1.0, 1.0, 1.0, opacity],
+            };
+            let mut count = 0;
+            walk(hook, 1, |_| count += 1);
+            count - 1
+        };
+        // The square root of the bend, 57 px, over four times 0.08, 0.32 and 0.5 px.
+        assert_eq!([1.0, 0.5, 0.1, 0.0].map(segments), [14, 7, 6, 6]);
     }
 
     #[test]

@@ -23,6 +23,14 @@ pub const RED: usize = 5;
 /// 0..1.
 pub const OPACITY: usize = 8;
 
+/// Largest distance between a curve and the segments that are drawn in its place, px, for a stroke of this opacity.
+///
+/// An outline in the wrong place changes the picture less, the more translucent the stroke is. So its segments may be
+/// longer, and there are fewer of them. 0.08 px for all strokes: +0.01 dB on five photographs at 1.13 of the time.
+pub(super) fn flatness(opacity: f32) -> f32 {
+    (0.08 / (opacity * opacity)).min(0.5)
+}
+
 /// The numbers of a capsule: the strokes that seeding proposes.
 pub type Params = [f32; PARAMS];
 
@@ -86,6 +94,11 @@ impl StrokeRef<'_> {
     /// 0..1.
     pub fn opacity(&self) -> f32 {
         self.look[4]
+    }
+
+    /// Largest distance between a curve of the path and the segments that the renderer draws in its place, px.
+    pub fn flatness(&self) -> f32 {
+        flatness(self.opacity())
     }
 
     /// Length of the lines through the points in their order, px.

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! The points of a path are **on** it or **off** it, as [`scene::Path`](crate::scene::Path) says. Each of its quadratic
-//! curves becomes segments at equal steps of the curve's parameter, as many as keep within [`FLATNESS`] of it. Flattening
+//! curves becomes segments at equal steps of the curve's parameter, as many as keep within [`Path::flatness`] of it. Flattening
 //! is linear in the points, so the derivative by a point is the sum of the derivatives by the vertices times their weights.
 //!
 //! **Ties.** Where several segments are equally near, all of the derivative goes to the first of them in drawing order. At
@@ -18,9 +18,6 @@
 
 use super::{Capsule, CapsuleJet};
 use crate::math::{Point2, Real, Vector2};
-
-/// Largest distance between a curve and its segments, px.
-pub(crate) const FLATNESS: f64 = 0.08;
 
 /// Most segments of one curve.
 pub(crate) const MAX_STEPS: usize = 64;
@@ -102,6 +99,8 @@ pub struct Path<T: Real> {
     pub closed: bool,
     /// Radius, px.
     pub radius: T,
+    /// Largest distance between a curve and its segments, px.
+    pub flatness: T,
 }
 
 /// A path's distance at a point, with its derivatives. The one by the radius is always 1.
@@ -156,7 +155,8 @@ impl<T: Real> Path<T> {
             if knots[at].1 {
                 let (control, to) = (&knots[at].0, &knots[at + 1].0);
                 let [a, b, c] = [from, control, to].map(|mean| mean.place(&self.points));
-                let steps = steps(a - b * T::of(2.0) + c.coords);
+                let bend = a - b * T::of(2.0) + c.coords;
+                let steps = steps(bend, self.flatness.to_f64());
                 for k in 1..=steps {
                     let t = T::of(k as f64) / T::of(steps as f64);
                     means.push(bernstein([from, control, to], t));
@@ -224,12 +224,12 @@ fn bernstein<T: Real>([from, control, to]: [&Mean<T>; 3], t: T) -> Mean<T> {
     Mean(weighted.into_iter().flatten().collect())
 }
 
-/// How many segments keep within [`FLATNESS`] of a curve, from its second difference `a − 2b + c`.
+/// How many segments keep within `flatness` of a curve, px, from its second difference `a − 2b + c`.
 ///
 /// A curve is at most a quarter of that from its chord, and each halving of the step quarters the distance. The hair that
 /// is taken off keeps curves in round numbers, whose ratio is a whole number, from hanging on rounding.
-pub(crate) fn steps<T: Real>(bend: Vector2<T>) -> usize {
-    let ratio = bend.dot(&bend).sqrt().to_f64() / (4.0 * FLATNESS);
+pub(crate) fn steps<T: Real>(bend: Vector2<T>, flatness: f64) -> usize {
+    let ratio = bend.dot(&bend).sqrt().to_f64() / (4.0 * flatness);
     let steps = ratio.sqrt() - 1e-3;
     // `ceil` is a call where the target has no instruction for it.
     let whole = steps as usize;
@@ -243,6 +243,7 @@ mod tests {
     use crate::sdf::Combination;
 
     const EPS: f64 = 1e-3;
+    const FLATNESS: f64 = 0.08;
 
     fn coordinate(i: u64, k: u64) -> f64 {
         f64::from(rng::draw(2, 0, i, k)) * 16.0 - 4.0
@@ -260,6 +261,7 @@ mod tests {
             off: (0..5).map(is_off).collect(),
             closed,
             radius: 1.5,
+            flatness: FLATNESS,
         }
     }
 
@@ -333,6 +335,7 @@ mod tests {
             off: vec![false, true, true, false],
             closed: false,
             radius: 1.0,
+            flatness: FLATNESS,
         };
         let middle = Point2::new(32.5, 16.5);
         let curves = [

@@ -35,7 +35,7 @@ impl<'a> Terrain<'a> {
         let range = survey.firsts[index] as usize..survey.firsts[index + 1] as usize;
         let mut first = 0;
         let cut = |piece: Piece| {
-            let steps = piece.steps(stroke.points, LEAST);
+            let steps = piece.steps(stroke, LEAST);
             first += steps;
             Cut {
                 piece,

@@ -3,7 +3,7 @@
 use crate::scene;
 use crate::sdf::{Flattened, Path};
 
-use super::super::strokes::{LOOK, PARAMS, StrokeRef, Strokes};
+use super::super::strokes::{LOOK, PARAMS, StrokeRef, Strokes, flatness};
 
 /// A colour: three values, 0..1 in any sensible scene.
 pub type Rgb = [f64; 3];
@@ -66,6 +66,7 @@ impl Stroke {
             off: self.off.clone(),
             closed: self.closed,
             radius: self.radius,
+            flatness: f64::from(flatness(self.opacity as f32)),
         };
         path.flattened()
     }
