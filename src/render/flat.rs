@@ -1,15 +1,16 @@
 //! Flattening: paths to polylines, and derivatives by the vertices of polylines to derivatives by points of paths.
 //!
 //! The renderer knows polylines alone. Each line of a path is one segment or more, and each quadratic Bézier curve as
-//! many as [`sdf`](crate::sdf) says, at equal steps of its parameter. So every vertex is a mean of at most three
-//! points with fixed weights: flattening is linear, and the derivative by a point is the same weights times the
-//! derivatives by the vertices.
+//! many as [`sdf`](crate::sdf) says, at equal steps of its parameter. So every vertex is a mean, with fixed weights, of the
+//! ends of its piece and the control point between them: flattening is linear, and the derivative by a point is the same
+//! weights times the derivatives by the vertices.
 
 use rayon::prelude::*;
 
 use crate::math::Vector;
 use crate::sdf;
 
+use super::gradients::add;
 use super::strokes::{LOOK, StrokeRef, Strokes};
 
 /// Strokes that are flattened at a time.
@@ -27,36 +28,12 @@ pub(super) struct Flat {
     pub(super) looks: Vec<[f32; LOOK]>,
     /// The smallest and the largest x and y of the vertices of each stroke, px.
     pub(super) boxes: Vec<[[f32; 2]; 2]>,
+    /// How many segments each curve has become, curve by curve.
+    curves: Vec<u32>,
+    /// The first curve of each stroke in that list.
+    first_curves: Vec<u32>,
     /// Memory for the polylines of [`CHUNK`] strokes each.
     parts: Vec<Self>,
-}
-
-/// A vertex as a mean of points.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Vertex {
-    /// Indices of three points of the path.
-    pub(super) of: [usize; 3],
-    pub(super) weights: [f32; 3],
-}
-
-impl Vertex {
-    fn at(point: usize) -> Self {
-        Self {
-            of: [point; 3],
-            weights: [1.0, 0.0, 0.0],
-        }
-    }
-
-    /// The place of the vertex.
-    pub(super) fn place(&self, points: &[[f32; 2]]) -> [f32; 2] {
-        let mut place = points[self.of[0]].map(|v| self.weights[0] * v);
-        for k in 1..3 {
-            for (sum, v) in place.iter_mut().zip(points[self.of[k]]) {
-                *sum += self.weights[k] * v;
-            }
-        }
-        place
-    }
 }
 
 impl Flat {
@@ -74,9 +51,12 @@ impl Flat {
         let parts = std::mem::take(&mut self.parts);
         self.clear();
         for part in &parts {
-            let before = self.vertices.len() as u32;
-            self.firsts
-                .extend(part.firsts.iter().map(|first| before + first));
+            let after = |count: usize| move |first: &u32| count as u32 + first;
+            let firsts = part.firsts.iter().map(after(self.vertices.len()));
+            self.firsts.extend(firsts);
+            let firsts = part.first_curves.iter().map(after(self.curves.len()));
+            self.first_curves.extend(firsts);
+            self.curves.extend(&part.curves);
             self.vertices.extend(&part.vertices);
             self.looks.extend(&part.looks);
             self.boxes.extend(&part.boxes);
@@ -90,6 +70,8 @@ impl Flat {
         self.firsts.clear();
         self.looks.clear();
         self.boxes.clear();
+        self.curves.clear();
+        self.first_curves.clear();
     }
 
     fn push(&mut self, stroke: StrokeRef<'_>, least: usize) {
@@ -102,15 +84,14 @@ impl Flat {
         } else {
             [f32::NAN; LOOK]
         });
+        self.first_curves.push(self.curves.len() as u32);
         if least == 1 && stroke.is_straight() {
             self.vertices.extend(stroke.points);
             if stroke.closed || stroke.points.len() == 1 {
                 self.vertices.push(stroke.points[0]);
             }
         } else {
-            walk(stroke, least, |vertex| {
-                self.vertices.push(vertex.place(stroke.points))
-            });
+            flatten(stroke, least, &mut self.vertices, &mut self.curves);
         }
         let (mut low, mut high) = ([f32::INFINITY; 2], [f32::NEG_INFINITY; 2]);
         for vertex in &self.vertices[first..] {
@@ -121,19 +102,58 @@ impl Flat {
         }
         self.boxes.push([low, high]);
     }
+
+    /// Adds the derivatives by the vertices of stroke `i` to those by its points.
+    pub(super) fn hand_back(
+        &self,
+        i: usize,
+        stroke: StrokeRef<'_>,
+        least: usize,
+        slopes: &[[f32; 2]],
+        points: &mut [[f32; 2]],
+    ) {
+        if slopes.len() == points.len() && stroke.is_straight() {
+            add(points.as_flattened_mut(), slopes.as_flattened());
+            return;
+        }
+        let mut curves = self.curves[self.first_curves[i] as usize..].iter();
+        let mut pieces = Pieces::of(stroke).peekable();
+        let Some(first) = pieces.peek() else {
+            slopes.iter().for_each(|slope| add(&mut points[0], slope));
+            return;
+        };
+        first.from.hand_back(slopes[0], points);
+        let mut rest = &slopes[1..];
+        for piece in pieces {
+            let steps = match piece.control {
+                Some(_) => curves.next().map_or(0, |&steps| steps as usize),
+                None => least,
+            };
+            let (own, next) = rest.split_at(steps);
+            piece.hand_back(own, points);
+            rest = next;
+        }
+    }
 }
 
-/// Calls `visit` with the vertices of a path, in order.
-pub(super) fn walk(stroke: StrokeRef<'_>, least: usize, mut visit: impl FnMut(Vertex)) {
+/// Appends the vertices of the polyline that replaces a stroke, and the number of segments of each curve.
+pub(super) fn flatten(
+    stroke: StrokeRef<'_>,
+    least: usize,
+    vertices: &mut Vec<[f32; 2]>,
+    curves: &mut Vec<u32>,
+) {
     let mut pieces = Pieces::of(stroke).peekable();
-    let Some(first) = pieces.peek() else {
-        visit(Vertex::at(0));
-        visit(Vertex::at(0));
-        return;
-    };
-    visit(first.from.vertex());
+    match pieces.peek() {
+        Some(first) => vertices.push(first.from.place(stroke.points)),
+        None => vertices.extend([stroke.points[0]; 2]),
+    }
     for piece in pieces {
-        piece.vertices(stroke, least).for_each(&mut visit);
+        let steps = piece.steps(stroke, least);
+        if piece.control.is_some() {
+            curves.push(steps as u32);
+        }
+        vertices.extend(piece.vertices(stroke.points, steps));
     }
 }
 
@@ -147,27 +167,24 @@ pub(crate) enum Knot {
 }
 
 impl Knot {
-    fn vertex(self) -> Vertex {
-        match self {
-            Self::Point(i) => Vertex::at(i),
-            Self::Between(i, k) => Vertex {
-                of: [i, k, k],
-                weights: [0.5, 0.5, 0.0],
-            },
-        }
-    }
-
-    /// The point other than `control` that the knot depends on, and the shares of both.
-    fn shares(self, control: usize) -> (usize, [f32; 2]) {
-        match self {
-            Self::Point(i) => (i, [1.0, 0.0]),
-            Self::Between(i, k) => (if i == control { k } else { i }, [0.5, 0.5]),
-        }
-    }
-
     /// The place of the knot.
     pub(crate) fn place(self, points: &[[f32; 2]]) -> [f32; 2] {
-        self.vertex().place(points)
+        match self {
+            Self::Point(i) => points[i],
+            Self::Between(i, k) => [0, 1].map(|axis| 0.5 * points[i][axis] + 0.5 * points[k][axis]),
+        }
+    }
+
+    /// Adds the derivative by the knot to those by the points that it depends on.
+    fn hand_back(self, slope: [f32; 2], points: &mut [[f32; 2]]) {
+        match self {
+            Self::Point(i) => add(&mut points[i], &slope),
+            Self::Between(i, k) => {
+                let half = slope.map(|v| 0.5 * v);
+                add(&mut points[i], &half);
+                add(&mut points[k], &half);
+            }
+        }
     }
 }
 
@@ -196,11 +213,40 @@ impl Piece {
         sdf::steps(Vector::from(bend), f64::from(stroke.flatness())).max(least)
     }
 
-    /// The vertices of the piece behind its start.
-    fn vertices(self, stroke: StrokeRef<'_>, least: usize) -> impl Iterator<Item = Vertex> {
-        let steps = self.steps(stroke, least);
-        let within = (1..steps).map(move |step| self.vertex(step as f32 / steps as f32));
-        within.chain([self.to.vertex()])
+    /// The vertices of the piece behind its start, as one of so many segments.
+    fn vertices(self, points: &[[f32; 2]], steps: usize) -> impl Iterator<Item = [f32; 2]> {
+        let (a, b) = (self.from.place(points), self.to.place(points));
+        let c = self.control.map_or(a, |control| points[control]);
+        (1..=steps).map(move |step| {
+            let [of_a, of_c, of_b] = self.weights(step, steps);
+            [0, 1].map(|axis| of_a * a[axis] + of_c * c[axis] + of_b * b[axis])
+        })
+    }
+
+    /// The weights of the start, the control point and the end in the vertex after `step` of so many segments.
+    fn weights(&self, step: usize, steps: usize) -> [f32; 3] {
+        let t = step as f32 / steps as f32;
+        let s = 1.0 - t;
+        match self.control {
+            None => [s, 0.0, t],
+            Some(_) => [s * s, 2.0 * t * s, t * t],
+        }
+    }
+
+    /// Adds the derivatives by the vertices behind the start to those by the points that they depend on.
+    fn hand_back(&self, slopes: &[[f32; 2]], points: &mut [[f32; 2]]) {
+        let mut sums = [[0.0; 2]; 3];
+        for (step, slope) in (1..).zip(slopes) {
+            for (sum, weight) in sums.iter_mut().zip(self.weights(step, slopes.len())) {
+                add(sum, &slope.map(|v| weight * v));
+            }
+        }
+        let [by_start, by_control, by_end] = sums;
+        self.from.hand_back(by_start, points);
+        self.to.hand_back(by_end, points);
+        if let Some(control) = self.control {
+            add(&mut points[control], &by_control);
+        }
     }
 
     /// Whether the piece changes with point `k`.
@@ -210,28 +256,6 @@ impl Piece {
             Knot::Between(i, j) => i == k || j == k,
         };
         self.control == Some(k) || of(self.from) || of(self.to)
-    }
-
-    /// The vertex at parameter `t` between the knots.
-    fn vertex(&self, t: f32) -> Vertex {
-        let Some(control) = self.control else {
-            let index = |knot: Knot| knot.shares(usize::MAX).0;
-            return Vertex {
-                of: [index(self.from), index(self.to), index(self.to)],
-                weights: [1.0 - t, t, 0.0],
-            };
-        };
-        let (a, b, c) = ((1.0 - t) * (1.0 - t), 2.0 * t * (1.0 - t), t * t);
-        let (start, [of_start, start_of_control]) = self.from.shares(control);
-        let (end, [of_end, end_of_control]) = self.to.shares(control);
-        Vertex {
-            of: [start, control, end],
-            weights: [
-                a * of_start,
-                b + a * start_of_control + c * end_of_control,
-                c * of_end,
-            ],
-        }
     }
 }
 
@@ -336,21 +360,27 @@ mod tests {
         }
     }
 
-    /// The shares of the points in a vertex.
-    fn shares(count: usize, of: impl Iterator<Item = (usize, f32)>) -> Vec<f32> {
-        let mut shares = vec![0.0; count];
-        of.for_each(|(i, weight)| shares[i] += weight);
-        shares
+    /// What each vertex hands back to each point, the same for x and y: the weight of the point in the vertex.
+    fn weights(flat: &Flat, i: usize, stroke: StrokeRef<'_>) -> Vec<Vec<f32>> {
+        let count = (flat.firsts[i + 1] - flat.firsts[i]) as usize;
+        let weights = |vertex: usize| {
+            let mut slopes = vec![[0.0; 2]; count];
+            slopes[vertex] = [1.0, -2.0];
+            let mut points = vec![[0.0; 2]; stroke.points.len()];
+            flat.hand_back(i, stroke, 1, &slopes, &mut points);
+            points.iter().for_each(|[x, y]| assert_eq!(-2.0 * x, *y));
+            points.iter().map(|point| point[0]).collect()
+        };
+        (0..count).map(weights).collect()
     }
 
     #[test]
-    fn vertices_and_weights_are_those_of_the_distance_field() {
-        for stroke in strokes().iter() {
+    fn vertices_hand_back_to_points_by_the_weights_of_the_distance_field() {
+        let (strokes, mut flat) = (strokes(), Flat::default());
+        flat.fill(&strokes, 1);
+        for (i, stroke) in strokes.iter().enumerate() {
             let count = stroke.points.len();
-            let mut weights = Vec::new();
-            walk(stroke, 1, |vertex| {
-                weights.push(shares(count, vertex.of.into_iter().zip(vertex.weights)));
-            });
+            let mut weights = weights(&flat, i, stroke);
             if count == 1 {
                 // The renderer's dot is a segment of no length.
                 weights.pop();
@@ -358,12 +388,29 @@ mod tests {
             let means = for_reference(stroke).flattened().means;
             assert_eq!(weights.len(), means.len(), "{stroke:?}");
             for (got, mean) in weights.iter().zip(means) {
-                let expected = shares(count, mean.0.into_iter());
+                let mut expected = vec![0.0; count];
+                mean.0.iter().for_each(|&(k, weight)| expected[k] += weight);
                 let apart = got.iter().zip(&expected).map(|(g, e)| (g - e).abs());
                 assert!(
                     apart.fold(0.0, f32::max) < 1e-6,
                     "{stroke:?}: {got:?} {expected:?}"
                 );
+            }
+        }
+    }
+
+    #[test]
+    fn vertices_are_the_weighted_means_of_points() {
+        let (strokes, mut flat) = (strokes(), Flat::default());
+        flat.fill(&strokes, 1);
+        for (i, stroke) in strokes.iter().enumerate() {
+            let vertices = &flat.vertices[flat.firsts[i] as usize..];
+            for (vertex, weights) in vertices.iter().zip(weights(&flat, i, stroke)) {
+                for axis in [0, 1] {
+                    let terms = weights.iter().zip(stroke.points);
+                    let mean: f32 = terms.map(|(w, p)| w * p[axis]).sum();
+                    assert!((vertex[axis] - mean).abs() < 1e-4, "{stroke:?}");
+                }
             }
         }
     }
@@ -377,9 +424,9 @@ mod tests {
                 closed: false,
                 look: &[1.0, 1.0, 1.0, 1.0, opacity],
             };
-            let mut count = 0;
-            walk(hook, 1, |_| count += 1);
-            count - 1
+            let mut curves = Vec::new();
+            flatten(hook, 1, &mut Vec::new(), &mut curves);
+            curves[0]
         };
         // The square root of the bend, 57 px, over four times 0.08, 0.32 and 0.5 px.
         assert_eq!([1.0, 0.5, 0.1, 0.0].map(segments), [14, 7, 6, 6]);
@@ -392,9 +439,7 @@ mod tests {
             flat.fill(&strokes, least);
             for (i, stroke) in strokes.iter().enumerate() {
                 let mut expected = Vec::new();
-                walk(stroke, least, |vertex| {
-                    expected.push(vertex.place(stroke.points))
-                });
+                flatten(stroke, least, &mut expected, &mut Vec::new());
                 let range = flat.firsts[i] as usize..flat.firsts[i + 1] as usize;
                 assert_eq!(flat.vertices[range], expected, "{stroke:?}");
                 assert!(expected.len() > least || stroke.points.len() == 1);

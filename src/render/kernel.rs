@@ -27,6 +27,7 @@
 
 mod lanes;
 mod segment;
+mod stack;
 mod sums;
 mod touching;
 mod union;
@@ -37,7 +38,7 @@ use fearless_simd::{Level, dispatch, f32x16, prelude::*};
 
 pub(super) use lanes::{load, members, store, total};
 pub(super) use segment::{Segment, length};
-pub(super) use sums::{EndSums, Extras, LookSums, Mattes, Nothing, Stiffnesses, WORTH, Worths};
+pub(super) use sums::{Extras, Mattes, Nothing, Stiffnesses, Sums, Worths};
 pub(super) use touching::{Listed, list_segments};
 
 use super::CanvasLoss;
@@ -45,8 +46,9 @@ use super::edge::{Edge, Reach, SoftEdge};
 use super::flat::Flat;
 use super::grid::{BLOCKS, BlockRgb, BlockSet, Lanes, TileRgb, TileWeights, flat_tile};
 use super::strokes::LOOK;
-use sums::{EdgeBlock, Grounds, Matte, Shifts, Sums};
-use union::{Kept, Segments, Union};
+use stack::Stack;
+use sums::{EdgeBlock, Grounds, Looks, Matte, OfSegment, OfStroke, Shifts};
+use union::{Kept, Segments, Union, shared};
 
 /// Transmittance below which nothing behind shows: a sixty-fourth of an 8-bit level. Four times as
 /// much costs gradients of tailed edges their third digit.
@@ -66,8 +68,11 @@ const CLEAR: Matte = Matte {
 struct Visit {
     /// Index in the tile's list of strokes.
     slot: u32,
-    /// Blocks on the soft edge, visited first.
+    /// Blocks on the soft edge, visited first: those in which several segments can be nearest, and then those of each
+    /// segment alone.
     edge: BlockSet,
+    /// Those in which several segments can be nearest.
+    shared: BlockSet,
     /// Blocks in the hard core, where coverage is 1 and no distance is needed.
     core: BlockSet,
 }
@@ -102,11 +107,13 @@ pub(super) struct Scratch {
     second: TileRgb,
     mattes: [Matte; BLOCKS],
     visits: Vec<Visit>,
-    kept_transmittance: Vec<Lanes>,
-    kept_edges: Vec<EdgeBlock>,
-    /// For each block on the soft edge of a stroke of several segments, which of them is the nearest to each pixel.
-    kept_nearest: Vec<Lanes>,
-    /// For each listed segment of a stroke that has several, the blocks in which it can be nearest.
+    /// The transmittance before each block that pass 1 visits.
+    kept_transmittance: Stack<Lanes>,
+    /// What else is kept of those on a soft edge.
+    kept_edges: Stack<EdgeBlock>,
+    /// Where several segments of a stroke can be nearest, which of them is the nearest to each pixel.
+    kept_nearest: Stack<Lanes>,
+    /// For each listed segment, the blocks in which it can be nearest.
     near: Vec<BlockSet>,
     union: Union,
 }
@@ -121,9 +128,9 @@ impl Scratch {
             second: flat_tile([0.0; 3]),
             mattes: [CLEAR; BLOCKS],
             visits: Vec::new(),
-            kept_transmittance: Vec::new(),
-            kept_edges: Vec::new(),
-            kept_nearest: Vec::new(),
+            kept_transmittance: Stack::new(Lanes::splat(0.0)),
+            kept_edges: Stack::new(EdgeBlock::EMPTY),
+            kept_nearest: Stack::new(Lanes::splat(0.0)),
             near: Vec::new(),
             union: Union::new(),
         })
@@ -231,17 +238,20 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
         let look = job.look(slot);
         let range = job.range(slot);
         let segments = job.segments(slot, range.clone());
-        let is_capsule = range.len() == 1;
+        let near = &mut near[range];
         let radius = look[0];
-        let segment = segments.get(0);
-        let (touched, core) = if is_capsule {
-            segment.blocks(simd, radius, job.reach)
+        let (touched, core) = if near.len() == 1 {
+            let (touched, core) = segments.get(0).blocks(simd, radius, job.reach);
+            near[0] = touched;
+            (touched, core)
         } else {
-            union.blocks(simd, segments, radius, job.reach, &mut near[range.clone()])
+            union.blocks(simd, segments, radius, job.reach, near)
         };
+        let edge_blocks = touched & !core & live;
         let visit = Visit {
             slot: slot as u32,
-            edge: touched & !core & live,
+            edge: edge_blocks,
+            shared: shared(near) & edge_blocks,
             core: touched & core & live,
         };
         if visit.edge | visit.core == 0 {
@@ -250,32 +260,40 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
         visits.push(visit);
         let rgb = splat_rgb(simd, look);
         let opacity = f32x16::splat(simd, look[LOOK - 1].max(FAINTEST));
-        if is_capsule {
-            for block in members(visit.edge) {
-                let distance2 = segment.at_pixels(simd, block).distance2();
-                let (alpha, kept) = cover(edge, distance2, radius, opacity);
-                kept_edges.push(kept);
-                kept_transmittance.push(veils[block].through);
+        let mut through = kept_transmittance.push(visit.edge | visit.core).iter_mut();
+        let mut edges = kept_edges.push(visit.edge).iter_mut();
+        if visit.shared != 0 {
+            union.measure(simd, near, visit.shared);
+            let nearest = kept_nearest.push(visit.shared).iter_mut();
+            let kept = nearest.zip(&mut edges).zip(&mut through);
+            for (block, ((nearest, kept), through)) in members(visit.shared).zip(kept) {
+                *nearest = union.nearest(block);
+                let alpha = cover(edge, union.distance2(simd, block), radius, opacity, kept);
+                *through = veils[block].through;
                 if see_through(simd, alpha, &rgb, &mut color[block], &mut veils[block]) {
                     live &= !(1 << block);
                 }
             }
-        } else {
-            union.measure(simd, &near[range], visit.edge);
-            for block in members(visit.edge) {
-                let distance2 = union.distance2(simd, block);
-                let (alpha, kept) = cover(edge, distance2, radius, opacity);
-                kept_edges.push(kept);
-                kept_nearest.push(union.nearest(block));
-                kept_transmittance.push(veils[block].through);
+        }
+        for (k, near) in near.iter().enumerate() {
+            let alone = near & visit.edge & !visit.shared;
+            if alone == 0 {
+                continue;
+            }
+            let segment = segments.get(k);
+            let kept = (&mut edges).zip(&mut through);
+            for (block, (kept, through)) in members(alone).zip(kept) {
+                let distance2 = segment.at_pixels(simd, block).distance2();
+                let alpha = cover(edge, distance2, radius, opacity, kept);
+                *through = veils[block].through;
                 if see_through(simd, alpha, &rgb, &mut color[block], &mut veils[block]) {
                     live &= !(1 << block);
                 }
             }
         }
         // σ is 1 and σ' is 0 here: no distance to evaluate, and nothing but `T` to keep for pass 2.
-        for block in members(visit.core) {
-            kept_transmittance.push(veils[block].through);
+        for (block, through) in members(visit.core).zip(through) {
+            *through = veils[block].through;
             if see_through(simd, opacity, &rgb, &mut color[block], &mut veils[block]) {
                 live &= !(1 << block);
             }
@@ -293,26 +311,22 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
     }
 }
 
-/// `m` in a block on the soft edge, from the squared distances of its pixels, and what is kept of it.
+/// `m` in a block on the soft edge, from the squared distances of its pixels; writes what is kept of it to `kept`.
 #[inline(always)]
 fn cover<S: Simd, E: SoftEdge>(
     edge: E,
     distance2: f32x16<S>,
     radius: f32,
     opacity: f32x16<S>,
-) -> (f32x16<S>, EdgeBlock) {
+    kept: &mut EdgeBlock,
+) -> f32x16<S> {
     let length = length(distance2);
     let (value, derivative) = edge.eval(radius - length);
     let alpha = opacity * value;
-    let mut kept = EdgeBlock {
-        alpha: Lanes::splat(0.0),
-        slope: Lanes::splat(0.0),
-        inverse: Lanes::splat(0.0),
-    };
     store(alpha, &mut kept.alpha);
     store(opacity * derivative, &mut kept.slope);
     store(1.0 / length, &mut kept.inverse);
-    (alpha, kept)
+    alpha
 }
 
 /// Adds one stroke, seen through those in front of it. Returns whether nothing behind it can matter any more.
@@ -345,8 +359,7 @@ fn back_to_front<S: Simd, X: Extras>(
     simd: S,
     job: &TileJob<'_>,
     scratch: &mut Scratch,
-    looks: &mut [LookSums],
-    ends: &mut [EndSums],
+    sums: &mut Sums,
 ) -> [f32; 3] {
     let Scratch {
         color: behind,
@@ -375,28 +388,42 @@ fn back_to_front<S: Simd, X: Extras>(
         error,
         mattes,
     };
-    // What pass 1 kept is read from its end: pass 2 visits the same strokes in reverse, and in each of them the
-    // same blocks in the same order.
-    let (mut at, mut at_edge) = (kept_transmittance.len(), kept_edges.len());
-    let mut at_nearest = kept_nearest.len();
+    // Pass 2 visits the same strokes in reverse, and in each of them the same blocks in the same order.
     for visit in visits.iter().rev() {
         let slot = visit.slot as usize;
         let look = job.look(slot);
         let range = job.range(slot);
         let segments = job.segments(slot, range.clone());
-        let is_capsule = range.len() == 1;
-        let segment = segments.get(0);
+        let near = &near[range];
         let rgb = splat_rgb(simd, look);
-        let mut stroke = Sums::new(simd);
-        let mut shifts = Shifts::new(simd);
-        at -= (visit.edge.count_ones() + visit.core.count_ones()) as usize;
-        at_edge -= visit.edge.count_ones() as usize;
-        let mut seen_through = kept_transmittance[at..].iter();
-        let edges = members(visit.edge)
-            .zip(&mut kept_edges[at_edge..])
-            .zip(&mut seen_through);
-        if is_capsule {
-            for ((block, kept), t) in edges {
+        let mut stroke = Looks::new(simd);
+        let first = sums.segments.len() as u32;
+        let mut through = kept_transmittance.pop(visit.edge | visit.core).iter();
+        let edges = kept_edges.pop(visit.edge);
+        let (of_shared, alone) = edges.split_at_mut(visit.shared.count_ones() as usize);
+        for (block, (kept, t)) in members(visit.shared).zip(of_shared.iter_mut().zip(&mut through))
+        {
+            let (pull, stiffness) = stroke.blend_edge::<X>(simd, kept, t, &rgb, grounds.at(block));
+            // What the segments need, in the place of what is not needed any more.
+            store(pull, &mut kept.slope);
+            if X::STIFFNESS {
+                store(stiffness, &mut kept.inverse);
+            }
+        }
+        let of_shared = Kept {
+            shared: visit.shared,
+            blocks: of_shared,
+            nearest: kept_nearest.pop(visit.shared),
+        };
+        let mut alone = alone.iter();
+        for (k, near) in near.iter().enumerate() {
+            if near & visit.edge == 0 {
+                continue;
+            }
+            let segment = segments.get(k);
+            let mut shifts = Shifts::new(simd);
+            let kept = (&mut alone).zip(&mut through);
+            for (block, (kept, t)) in members(near & visit.edge & !visit.shared).zip(kept) {
                 let (pull, stiffness) =
                     stroke.blend_edge::<X>(simd, kept, t, &rgb, grounds.at(block));
                 let nearest = segment.at_pixels(simd, block);
@@ -405,35 +432,25 @@ fn back_to_front<S: Simd, X: Extras>(
                     shifts.stiffen(stiffness, nearest.h);
                 }
             }
-        } else {
-            for ((block, kept), t) in edges {
-                let (pull, stiffness) =
-                    stroke.blend_edge::<X>(simd, kept, t, &rgb, grounds.at(block));
-                // What the segments need, in the place of what is not needed any more.
-                store(pull, &mut kept.slope);
-                if X::STIFFNESS {
-                    store(stiffness, &mut kept.inverse);
-                }
+            of_shared.pull::<_, X>(simd, &segment, k, *near, &mut shifts);
+            sums.segments.push(OfSegment {
+                id: segments.listed[k],
+                ends: shifts.ends(),
+            });
+            if X::STIFFNESS {
+                sums.stiffness.push(shifts.stiffness());
             }
         }
         let opacity = f32x16::splat(simd, look[LOOK - 1].max(FAINTEST));
-        for (block, t) in members(visit.core).zip(seen_through) {
+        for (block, t) in members(visit.core).zip(through) {
             stroke.blend::<X>(simd, opacity, load(simd, t), &rgb, grounds.at(block));
         }
-        looks[slot] = stroke.finish(look[LOOK - 1].max(FAINTEST));
-        if is_capsule {
-            ends[range.start] = shifts.finish::<X>();
-            continue;
-        }
-        at_nearest -= visit.edge.count_ones() as usize;
-        let kept = Kept {
-            edge: visit.edge,
-            blocks: &kept_edges[at_edge..],
-            nearest: &kept_nearest[at_nearest..],
-        };
-        for (k, at) in range.enumerate() {
-            ends[at] = kept.ends::<_, X>(simd, &segments.get(k), k, near[at]);
-        }
+        sums.strokes.push(OfStroke {
+            id: job.listed[slot].stroke,
+            first,
+            look: stroke.look(look[LOOK - 1].max(FAINTEST)),
+            worth: if X::WORTH { stroke.worth() } else { 0.0 },
+        });
     }
     [total(backdrop[0]), total(backdrop[1]), total(backdrop[2])]
 }
@@ -446,21 +463,20 @@ pub(super) fn draw(level: Level, job: &TileJob<'_>, scratch: &mut Scratch) {
     }
 }
 
-/// After pass 1: the tile's loss and the derivatives of it. `looks` has one row per stroke of the job, and `ends` one per
-/// segment, all 0.
+/// After pass 1: the tile's loss, and the derivatives of it in `sums`, which are empty before.
 pub(super) fn differentiate<L: CanvasLoss, X: Extras>(
     level: Level,
     job: &TileJob<'_>,
     loss: &L,
     scratch: &mut Scratch,
-    looks: &mut [LookSums],
-    ends: &mut [EndSums],
+    sums: &mut Sums,
 ) -> TileSums {
     dispatch!(level, simd => {
         let Scratch { color, error, gradient, .. } = scratch;
         let value = loss.tile(job.tile, color, error, gradient);
-        let backdrop = back_to_front::<_, X>(simd, job, scratch, looks, ends);
-        TileSums { loss: value, backdrop, blocks: scratch.kept_transmittance.len() as u64 }
+        let blocks = scratch.kept_transmittance.len() as u64;
+        let backdrop = back_to_front::<_, X>(simd, job, scratch, sums);
+        TileSums { loss: value, backdrop, blocks }
     })
 }
 
@@ -471,8 +487,7 @@ pub(super) fn differentiate_on_mattes<L: CanvasLoss>(
     other: &TileRgb,
     losses: [&L; 2],
     scratch: &mut Scratch,
-    looks: &mut [LookSums],
-    ends: &mut [EndSums],
+    sums: &mut Sums,
 ) -> TileSums {
     dispatch!(level, simd => {
         let Scratch { color, error, gradient, .. } = scratch;
@@ -481,8 +496,9 @@ pub(super) fn differentiate_on_mattes<L: CanvasLoss>(
         let Scratch { color, error, second, .. } = scratch;
         let loss = first + losses[1].tile(job.tile, color, error, second);
         add_second_loss(simd, job.backdrop, other, scratch);
-        let backdrop = back_to_front::<_, Mattes>(simd, job, scratch, looks, ends);
-        TileSums { loss, backdrop, blocks: scratch.kept_transmittance.len() as u64 }
+        let blocks = scratch.kept_transmittance.len() as u64;
+        let backdrop = back_to_front::<_, Mattes>(simd, job, scratch, sums);
+        TileSums { loss, backdrop, blocks }
     })
 }
 

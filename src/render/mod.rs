@@ -85,14 +85,11 @@ pub use strokes::{
 
 use crate::coverage::Coverage;
 use edge::{Edge, Reach};
-use flat::{CHUNK, Flat, walk};
+use flat::{CHUNK, Flat, flatten};
 pub(crate) use flat::{Knot, Piece, Pieces};
 use gradients::add;
 use grid::{FULL, TileWeights, clear_padding, edge_weights, flat_tile};
-use kernel::{
-    EndSums, Extras, Listed, LookSums, Nothing, Scratch, Stiffnesses, TileJob, TileSums, WORTH,
-    Worths,
-};
+use kernel::{Extras, Listed, Nothing, Scratch, Stiffnesses, Sums, TileJob, TileSums, Worths};
 
 /// A differentiable loss over the canvas, told tile by tile while the tile is still in cache.
 pub trait CanvasLoss: Sync {
@@ -138,10 +135,7 @@ struct TileWork {
     listed: Vec<Listed>,
     /// Those of their segments that may, each by its first vertex.
     segments: Vec<u32>,
-    /// One row for each listed stroke.
-    looks: Vec<LookSums>,
-    /// One row for each listed segment.
-    ends: Vec<EndSums>,
+    sums: Sums,
     total: TileSums,
     weights: Option<Box<TileWeights>>,
     /// What a veil in front of all strokes lets through.
@@ -318,9 +312,8 @@ impl Renderer {
         survey.stiffness.clear();
         survey.stiffness.resize(self.flat.vertices.len(), 0.0);
         for work in &self.tiles {
-            for (&segment, ends) in work.segments.iter().zip(&work.ends) {
-                survey.stiffness[segment as usize] += ends[4];
-                survey.stiffness[segment as usize + 1] += ends[5];
+            for (segment, stiffness) in work.sums.segments.iter().zip(&work.sums.stiffness) {
+                add(&mut survey.stiffness[segment.id as usize..], stiffness);
             }
         }
     }
@@ -350,22 +343,18 @@ impl Renderer {
                     && let Some(total) = pass.flat(tile)
                 {
                     work.total = total;
+                    work.sums.clear();
                     return;
                 }
-                let mut looks = std::mem::take(&mut work.looks);
-                let mut ends = std::mem::take(&mut work.ends);
-                looks.clear();
-                looks.resize(work.listed.len(), LookSums::default());
-                ends.clear();
-                ends.resize(work.segments.len(), EndSums::default());
+                let mut sums = std::mem::take(&mut work.sums);
+                sums.clear();
                 let weights = work.veil.as_deref().or(work.weights.as_deref());
                 let job = frame.job(flat, tile, work, weights);
                 let total = with_scratch(scratch, |scratch| {
                     kernel::draw(level, &job, scratch);
-                    pass.tile(level, &job, scratch, (&mut looks, &mut ends))
+                    pass.tile(level, &job, scratch, &mut sums)
                 });
-                work.total = total;
-                (work.looks, work.ends) = (looks, ends);
+                (work.total, work.sums) = (total, sums);
             });
     }
 
@@ -474,26 +463,29 @@ impl Share<'_> {
     fn gather(&mut self, strokes: &Strokes, flat: &Flat, tiles: &[TileWork]) {
         let before = strokes.range(self.ids.start).start;
         let first = flat.firsts[self.ids.start];
-        for work in tiles {
-            let [start, end] = [self.ids.start, self.ids.end].map(|id| {
-                let is_before = |listed: &Listed| (listed.stroke as usize) < id;
-                work.listed.partition_point(is_before)
-            });
-            for (listed, sums) in work.listed[start..end].iter().zip(&work.looks[start..end]) {
-                let stroke = listed.stroke as usize;
+        for Sums {
+            strokes: looks,
+            segments,
+            ..
+        } in tiles.iter().map(|work| &work.sums)
+        {
+            let [start, end] = [self.ids.start, self.ids.end]
+                .map(|id| looks.partition_point(|row| (row.id as usize) < id));
+            for row in &looks[start..end] {
+                let stroke = row.id as usize;
                 let end = strokes.range(stroke).end - before;
-                add(&mut self.numbers[end - LOOK..end], sums);
+                add(&mut self.numbers[end - LOOK..end], &row.look);
                 if let Some(worth) = self.worths.get_mut(stroke - self.ids.start) {
-                    *worth += sums[WORTH];
+                    *worth += row.worth;
                 }
             }
-            let [start, end] = [start, end].map(|slot| {
-                let listed = work.listed.get(slot);
-                listed.map_or(work.segments.len(), |listed| listed.first as usize)
+            let [start, end] = [start, end].map(|at| {
+                let row = looks.get(at);
+                row.map_or(segments.len(), |row| row.first as usize)
             });
-            for (&segment, ends) in work.segments[start..end].iter().zip(&work.ends[start..end]) {
-                let slopes = &mut self.slopes[(segment - first) as usize..][..2];
-                add(slopes.as_flattened_mut(), ends);
+            for row in &segments[start..end] {
+                let slopes = &mut self.slopes[(row.id - first) as usize..];
+                add(slopes.as_flattened_mut(), row.ends.as_flattened());
             }
         }
     }
@@ -507,21 +499,9 @@ impl Share<'_> {
             let [start, end] = [i, i + 1].map(|i| (flat.firsts[i] - first) as usize);
             let slopes = &self.slopes[start..end];
             let range = strokes.range(i);
-            let points = &mut self.numbers[range.start - before..range.end - before];
-            if slopes.len() == stroke.points.len() && stroke.is_straight() {
-                add(points, slopes.as_flattened());
-                continue;
-            }
-            let mut slopes = slopes.iter();
-            walk(stroke, least, |vertex| {
-                let Some(slope) = slopes.next() else {
-                    return;
-                };
-                for (&k, weight) in vertex.of.iter().zip(vertex.weights) {
-                    points[2 * k] += weight * slope[0];
-                    points[2 * k + 1] += weight * slope[1];
-                }
-            });
+            let numbers = &mut self.numbers[range.start - before..range.end - before];
+            let (points, _) = numbers.as_chunks_mut();
+            flat.hand_back(i, stroke, least, slopes, &mut points[..stroke.points.len()]);
         }
     }
 }
@@ -547,7 +527,7 @@ trait BackwardPass: Sync {
         level: Level,
         job: &TileJob<'_>,
         scratch: &mut Scratch,
-        rows: (&mut [LookSums], &mut [EndSums]),
+        sums: &mut Sums,
     ) -> TileSums;
 }
 
@@ -578,9 +558,9 @@ impl<L: CanvasLoss, X: Extras> BackwardPass for Single<'_, L, X> {
         level: Level,
         job: &TileJob<'_>,
         scratch: &mut Scratch,
-        (looks, ends): (&mut [LookSums], &mut [EndSums]),
+        sums: &mut Sums,
     ) -> TileSums {
-        kernel::differentiate::<L, X>(level, job, self.loss, scratch, looks, ends)
+        kernel::differentiate::<L, X>(level, job, self.loss, scratch, sums)
     }
 }
 
@@ -604,11 +584,11 @@ impl<L: CanvasLoss> BackwardPass for Double<'_, L> {
         level: Level,
         job: &TileJob<'_>,
         scratch: &mut Scratch,
-        (looks, ends): (&mut [LookSums], &mut [EndSums]),
+        sums: &mut Sums,
     ) -> TileSums {
         let other = self.frames[1].backdrop(job.tile);
         let losses = self.losses;
-        kernel::differentiate_on_mattes(level, job, other, losses, scratch, looks, ends)
+        kernel::differentiate_on_mattes(level, job, other, losses, scratch, sums)
     }
 }
 
@@ -691,9 +671,7 @@ impl<'a> Frame<'a> {
 /// closed path ends where it starts.
 pub fn flattened(stroke: StrokeRef<'_>) -> Vec<[f32; 2]> {
     let mut vertices = Vec::new();
-    walk(stroke, 1, |vertex| {
-        vertices.push(vertex.place(stroke.points))
-    });
+    flatten(stroke, 1, &mut vertices, &mut Vec::new());
     vertices
 }
 

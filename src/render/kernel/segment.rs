@@ -143,7 +143,7 @@ pub(super) fn rows_within(outer: f32, [top, bottom]: [f32; 2]) -> Range<usize> {
     // Conversions saturate, and what is no number becomes 0.
     let first = ((top - margin) / side) as usize;
     let last = ((bottom + margin) / side) as usize;
-    first..(last + 1).min(ROWS)
+    first..last.min(ROWS - 1) + 1
 }
 
 /// `|q|` from `q·q`, with the guard.

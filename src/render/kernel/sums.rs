@@ -1,4 +1,4 @@
-//! What pass 2 sums up over a tile: the derivatives of one stroke's look, and of the ends of one segment.
+//! What pass 2 sums up over a tile: the derivatives of strokes' looks, and of the ends of segments.
 
 use fearless_simd::{f32x16, prelude::*};
 
@@ -6,12 +6,43 @@ use super::super::grid::{BLOCKS, BlockRgb, Lanes, TileRgb};
 use super::super::strokes::LOOK;
 use super::lanes::{load, store, total};
 
-/// `∂L` of the look of one stroke over one tile, then its worth.
-pub(in crate::render) type LookSums = [f32; LOOK + 1];
-/// Index of the leave-one-out change of the squared error.
-pub(in crate::render) const WORTH: usize = LOOK;
-/// `∂L` of the two ends of one segment over one tile, then the stiffness of each.
-pub(in crate::render) type EndSums = [f32; 6];
+/// What pass 2 tells of one tile, for the strokes and segments that it visits, in drawing order.
+#[derive(Debug, Default)]
+pub(in crate::render) struct Sums {
+    pub(in crate::render) strokes: Vec<OfStroke>,
+    pub(in crate::render) segments: Vec<OfSegment>,
+    /// The stiffness at both ends of each segment, if it is asked for.
+    pub(in crate::render) stiffness: Vec<[f32; 2]>,
+}
+
+/// The sums of one stroke over one tile.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::render) struct OfStroke {
+    pub(in crate::render) id: u32,
+    /// The index of its first segment in [`Sums::segments`].
+    pub(in crate::render) first: u32,
+    /// `∂L` of its look.
+    pub(in crate::render) look: [f32; LOOK],
+    /// The leave-one-out change of the squared error, if it is asked for.
+    pub(in crate::render) worth: f32,
+}
+
+/// The sums of one segment over one tile.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::render) struct OfSegment {
+    /// Its first vertex.
+    pub(in crate::render) id: u32,
+    /// `∂L` of its two ends.
+    pub(in crate::render) ends: [[f32; 2]; 2],
+}
+
+impl Sums {
+    pub(in crate::render) fn clear(&mut self) {
+        self.strokes.clear();
+        self.segments.clear();
+        self.stiffness.clear();
+    }
+}
 
 /// What pass 1 keeps of a block on the soft edge.
 #[derive(Debug, Clone, Copy)]
@@ -22,6 +53,15 @@ pub(super) struct EdgeBlock {
     pub(super) slope: Lanes,
     /// `1/|q|`.
     pub(super) inverse: Lanes,
+}
+
+impl EdgeBlock {
+    /// Nothing kept yet.
+    pub(super) const EMPTY: Self = Self {
+        alpha: Lanes::splat(0.0),
+        slope: Lanes::splat(0.0),
+        inverse: Lanes::splat(0.0),
+    };
 }
 
 /// What is asked for besides derivatives.
@@ -109,14 +149,14 @@ pub(super) struct Ground<'a> {
 }
 
 /// Sums of one stroke in lanes.
-pub(super) struct Sums<S: Simd> {
+pub(super) struct Looks<S: Simd> {
     color: [f32x16<S>; 3],
     opacity: f32x16<S>,
     radius: f32x16<S>,
     worth: f32x16<S>,
 }
 
-impl<S: Simd> Sums<S> {
+impl<S: Simd> Looks<S> {
     #[inline(always)]
     pub(super) fn new(simd: S) -> Self {
         let zero = f32x16::splat(simd, 0.0);
@@ -200,16 +240,22 @@ impl<S: Simd> Sums<S> {
         (pull, 2.0 * (seen * seen) * contrast2)
     }
 
+    /// `∂L` of the look of a stroke of this opacity.
     #[inline(always)]
-    pub(super) fn finish(&self, opacity: f32) -> LookSums {
+    pub(super) fn look(&self, opacity: f32) -> [f32; LOOK] {
         [
             total(self.radius),
             total(self.color[0]),
             total(self.color[1]),
             total(self.color[2]),
             total(self.opacity) / opacity,
-            total(self.worth),
         ]
+    }
+
+    /// The leave-one-out change of the squared error.
+    #[inline(always)]
+    pub(super) fn worth(&self) -> f32 {
+        total(self.worth)
     }
 }
 
@@ -251,15 +297,19 @@ impl<S: Simd> Shifts<S> {
         self.stiffness[1] += k * h;
     }
 
+    /// `∂L` of both ends.
     #[inline(always)]
-    pub(super) fn finish<X: Extras>(&self) -> EndSums {
-        let (bx, by) = (total(self.of_b[0]), total(self.of_b[1]));
-        let [ax, ay] = [total(self.whole[0]) - bx, total(self.whole[1]) - by];
-        let (mut of_a, mut of_b) = (0.0, 0.0);
-        if X::STIFFNESS {
-            of_b = total(self.stiffness[1]);
-            of_a = total(self.stiffness[0]) - of_b;
-        }
-        [ax, ay, bx, by, of_a, of_b]
+    pub(super) fn ends(&self) -> [[f32; 2]; 2] {
+        let of_b = [total(self.of_b[0]), total(self.of_b[1])];
+        let whole = [total(self.whole[0]), total(self.whole[1])];
+        let of_a = [whole[0] - of_b[0], whole[1] - of_b[1]];
+        [of_a, of_b]
+    }
+
+    /// The stiffness at both ends.
+    #[inline(always)]
+    pub(super) fn stiffness(&self) -> [f32; 2] {
+        let of_b = total(self.stiffness[1]);
+        [total(self.stiffness[0]) - of_b, of_b]
     }
 }

@@ -16,7 +16,7 @@ use super::super::edge::Reach;
 use super::super::grid::{BLOCKS, BlockSet, LANES, Lanes};
 use super::lanes::{load, members, store};
 use super::segment::{BLOCK_RADIUS, Segment, limits, rows_within};
-use super::sums::{EdgeBlock, EndSums, Extras, Shifts};
+use super::sums::{EdgeBlock, Extras, Shifts};
 
 /// The segments of one stroke that may touch a tile.
 #[derive(Clone, Copy)]
@@ -162,15 +162,19 @@ impl Union {
         least
     }
 
-    /// Finds the distances of the pixels of the blocks in `edge`, and the segments that are nearest to them.
+    /// Finds the distances of the pixels of the blocks in `shared`, and the segments that are nearest to them.
     #[inline(always)]
-    pub(super) fn measure<S: Simd>(&mut self, simd: S, near: &[BlockSet], edge: BlockSet) {
-        for block in members(edge) {
-            self.distances2[block] = FAR;
-        }
+    pub(super) fn measure<S: Simd>(&mut self, simd: S, near: &[BlockSet], shared: BlockSet) {
+        let mut seen = 0;
         for (k, (sight, near)) in self.sights.iter().zip(near).enumerate() {
             let index = f32x16::splat(simd, k as f32);
-            for block in members(near & edge) {
+            let blocks = near & shared;
+            for block in members(blocks & !seen) {
+                let distance2 = sight.segment.at_pixels(simd, block).distance2();
+                store(distance2, &mut self.distances2[block]);
+                store(index, &mut self.nearest[block]);
+            }
+            for block in members(blocks & seen) {
                 let distance2 = sight.segment.at_pixels(simd, block).distance2();
                 let least = load(simd, &self.distances2[block]);
                 let nearest = load(simd, &self.nearest[block]);
@@ -181,6 +185,7 @@ impl Union {
                 );
                 store(is_nearer.select(index, nearest), &mut self.nearest[block]);
             }
+            seen |= blocks;
         }
     }
 
@@ -197,10 +202,21 @@ impl Union {
     }
 }
 
-/// What was kept of a stroke of several segments.
+/// The blocks in which several segments can be nearest, from those in which each can.
+#[inline(always)]
+pub(super) fn shared(near: &[BlockSet]) -> BlockSet {
+    let (mut once, mut twice) = (0, 0);
+    for near in near {
+        twice |= once & near;
+        once |= near;
+    }
+    twice
+}
+
+/// What was kept of the blocks in which several segments can be nearest.
 pub(super) struct Kept<'a> {
-    /// Its blocks on the soft edge.
-    pub(super) edge: BlockSet,
+    /// The blocks.
+    pub(super) shared: BlockSet,
     /// For each of these, `pull` in `slope`, and the stiffness in `inverse`.
     pub(super) blocks: &'a [EdgeBlock],
     /// For each of these, the segments that are nearest to its pixels.
@@ -208,23 +224,19 @@ pub(super) struct Kept<'a> {
 }
 
 impl Kept<'_> {
-    /// The sums of segment `k`, over the pixels that have it as the nearest, in the blocks `near` it.
+    /// Adds to the sums of segment `k` the pixels that have it as the nearest, in the blocks `near` it.
     #[inline(always)]
-    pub(super) fn ends<S: Simd, X: Extras>(
+    pub(super) fn pull<S: Simd, X: Extras>(
         &self,
         simd: S,
         segment: &Segment,
         k: usize,
         near: BlockSet,
-    ) -> EndSums {
-        let blocks = near & self.edge;
-        if blocks == 0 {
-            return EndSums::default();
-        }
+        shifts: &mut Shifts<S>,
+    ) {
         let zero = f32x16::splat(simd, 0.0);
-        let mut shifts = Shifts::new(simd);
-        for block in members(blocks) {
-            let at = (self.edge & ((1 << block) - 1)).count_ones() as usize;
+        for block in members(near & self.shared) {
+            let at = (self.shared & ((1 << block) - 1)).count_ones() as usize;
             let is_nearest = load(simd, &self.nearest[at]).simd_eq(k as f32);
             let nearest = segment.at_pixels(simd, block);
             let pull = is_nearest.select(load(simd, &self.blocks[at].slope), zero);
@@ -234,6 +246,5 @@ impl Kept<'_> {
                 shifts.stiffen(is_nearest.select(stiffness, zero), nearest.h);
             }
         }
-        shifts.finish::<X>()
     }
 }
