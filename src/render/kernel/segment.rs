@@ -151,3 +151,23 @@ pub(super) fn rows_within(outer: f32, [top, bottom]: [f32; 2]) -> Range<usize> {
 pub(in crate::render) fn length<S: Simd>(distance2: f32x16<S>) -> f32x16<S> {
     (distance2 + EPSILON).sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_those_in_reach() {
+        assert_eq!(rows_within(1.0, [9.0, 10.0]), 1..2);
+        assert_eq!(rows_within(4.0, [9.0, 10.0]), 0..2);
+        assert_eq!(rows_within(4.0, [-90.0, -80.0]).len(), 1);
+        assert_eq!(rows_within(4.0, [90.0, 99.0]).len(), 0);
+    }
+
+    #[test]
+    fn a_stroke_of_any_height_reaches_all_rows() {
+        for far in [1e3, 1e30, f32::INFINITY] {
+            assert_eq!(rows_within(2.0, [-far, far]), 0..ROWS);
+        }
+    }
+}
