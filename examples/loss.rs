@@ -35,7 +35,7 @@ impl CanvasLoss for Brightness {
         &self,
         tile: usize,
         canvas: &TileRgb,
-        error: &mut TileRgb,
+        mut error: Option<&mut TileRgb>,
         gradient: &mut TileRgb,
     ) -> f64 {
         let target = &self.target.tiles()[tile];
@@ -45,7 +45,9 @@ impl CanvasLoss for Brightness {
                 let mut brightness = 0.0;
                 for channel in 0..3 {
                     let e = canvas[block][channel].0[lane] - target[block][channel].0[lane];
-                    error[block][channel].0[lane] = e;
+                    if let Some(error) = &mut error {
+                        error[block][channel].0[lane] = e;
+                    }
                     brightness += SHARES[channel] * e;
                 }
                 for channel in 0..3 {

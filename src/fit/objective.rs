@@ -129,23 +129,29 @@ impl CanvasLoss for Objective<'_> {
         &self,
         tile: usize,
         canvas: &TileRgb,
-        error: &mut TileRgb,
+        mut error: Option<&mut TileRgb>,
         gradient: &mut TileRgb,
     ) -> f64 {
         let target = &self.target.tiles()[tile];
-        let mut sums = Lanes::splat(0.0);
+        // Sums of their own for the channels do not wait for each other.
+        let mut sums = [Lanes::splat(0.0); 3];
         for block in 0..canvas.len() {
-            for channel in 0..3 {
+            for (channel, sums) in sums.iter_mut().enumerate() {
                 let (c, t) = (&canvas[block][channel], &target[block][channel]);
-                let (e, g) = (&mut error[block][channel], &mut gradient[block][channel]);
-                for lane in 0..sums.0.len() {
+                let g = &mut gradient[block][channel];
+                let mut e = Lanes::splat(0.0);
+                for lane in 0..e.0.len() {
                     e.0[lane] = c.0[lane] - t.0[lane];
                     sums.0[lane] += self.loss.value(e.0[lane]);
                     g.0[lane] = self.loss.derivative(e.0[lane]) * self.scale;
                 }
+                if let Some(error) = &mut error {
+                    error[block][channel] = e;
+                }
             }
         }
-        sums.0.iter().map(|&s| f64::from(s)).sum::<f64>() * f64::from(self.scale)
+        let sums = sums.iter().flat_map(|sums| sums.0);
+        sums.map(f64::from).sum::<f64>() * f64::from(self.scale)
     }
 
     fn flat(&self, tile: usize, color: [f32; 3]) -> Option<(f64, [f32; 3])> {
@@ -203,7 +209,7 @@ mod tests {
             };
             for (tile, pixels) in canvas.tiles().iter().enumerate() {
                 let (mut error, mut gradient) = (*pixels, *pixels);
-                let expected = objective.tile(tile, pixels, &mut error, &mut gradient);
+                let expected = objective.tile(tile, pixels, Some(&mut error), &mut gradient);
                 let (loss, slope) = objective.flat(tile, color).unwrap();
                 assert!(
                     (loss - expected).abs() < 1e-5 * expected,

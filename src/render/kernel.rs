@@ -223,7 +223,7 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
         union,
         ..
     } = scratch;
-    *color = flat_tile([0.0; 3]);
+    color.as_flattened_mut().fill(Lanes::splat(0.0));
     for (veil, weights) in veils.iter_mut().zip(job.weights) {
         *veil = Veil::clear(weights);
     }
@@ -352,7 +352,7 @@ fn see_through<S: Simd>(
     less_one.simd_lt(OPAQUE).all_true()
 }
 
-/// Pass 2, over the blocks that pass 1 visited. `scratch.gradient` and `scratch.error` are given;
+/// Pass 2, over the blocks that pass 1 visited. `scratch.gradient` is given, and `scratch.error` if worth is asked for;
 /// `scratch.color` becomes the colour behind.
 #[inline(always)]
 fn back_to_front<S: Simd, X: Extras>(
@@ -473,7 +473,7 @@ pub(super) fn differentiate<L: CanvasLoss, X: Extras>(
 ) -> TileSums {
     dispatch!(level, simd => {
         let Scratch { color, error, gradient, .. } = scratch;
-        let value = loss.tile(job.tile, color, error, gradient);
+        let value = loss.tile(job.tile, color, X::WORTH.then_some(error), gradient);
         let blocks = scratch.kept_transmittance.len() as u64;
         let backdrop = back_to_front::<_, X>(simd, job, scratch, sums);
         TileSums { loss: value, backdrop, blocks }
@@ -490,11 +490,11 @@ pub(super) fn differentiate_on_mattes<L: CanvasLoss>(
     sums: &mut Sums,
 ) -> TileSums {
     dispatch!(level, simd => {
-        let Scratch { color, error, gradient, .. } = scratch;
-        let first = losses[0].tile(job.tile, color, error, gradient);
+        let Scratch { color, gradient, .. } = scratch;
+        let first = losses[0].tile(job.tile, color, None, gradient);
         change_backdrop(simd, job.backdrop, other, scratch);
-        let Scratch { color, error, second, .. } = scratch;
-        let loss = first + losses[1].tile(job.tile, color, error, second);
+        let Scratch { color, second, .. } = scratch;
+        let loss = first + losses[1].tile(job.tile, color, None, second);
         add_second_loss(simd, job.backdrop, other, scratch);
         let blocks = scratch.kept_transmittance.len() as u64;
         let backdrop = back_to_front::<_, Mattes>(simd, job, scratch, sums);

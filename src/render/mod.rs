@@ -93,13 +93,13 @@ use kernel::{Extras, Listed, Nothing, Scratch, Stiffnesses, Sums, TileJob, TileS
 
 /// A differentiable loss over the canvas, told tile by tile while the tile is still in cache.
 pub trait CanvasLoss: Sync {
-    /// Writes the signed error `canvas − target` and `∂L/∂canvas` of tile `tile` and returns its
-    /// share of the loss. On the padding of a tile the canvas is 0.
+    /// Writes `∂L/∂canvas` of tile `tile` and, if it is asked for, the signed error `canvas − target`; returns the
+    /// tile's share of the loss. On the padding of a tile the canvas is 0.
     fn tile(
         &self,
         tile: usize,
         canvas: &TileRgb,
-        error: &mut TileRgb,
+        error: Option<&mut TileRgb>,
         gradient: &mut TileRgb,
     ) -> f64;
 

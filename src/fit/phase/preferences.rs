@@ -16,7 +16,7 @@ pub(super) struct PreferredColor {
 struct Shown;
 
 impl CanvasLoss for Shown {
-    fn tile(&self, _: usize, _: &TileRgb, _: &mut TileRgb, gradient: &mut TileRgb) -> f64 {
+    fn tile(&self, _: usize, _: &TileRgb, _: Option<&mut TileRgb>, gradient: &mut TileRgb) -> f64 {
         for [red, ..] in gradient.iter_mut() {
             *red = Lanes::splat(1.0);
         }
