@@ -4,6 +4,8 @@
 //! `Σ g·δ + ½ Σ H|δ|²`. The stiffness is a bound, after Gauss and Newton, so that gains are underestimated and losses
 //! overestimated, as long as the shift is short.
 
+use std::ops::Range;
+
 use super::LEAST;
 use crate::math;
 use crate::render::{Piece, Pieces, StrokeRef, Survey, flattened};
@@ -95,14 +97,19 @@ impl<'a> Terrain<'a> {
     /// What changing the stroke to `changed` gains, if the vertices of the pieces that depend on point `k` shift to the
     /// nearest places of the new path.
     pub(super) fn gain(&self, changed: StrokeRef<'_>, k: usize) -> f32 {
-        let line = Polyline::new(flattened(changed));
-        let mut segment = 0;
+        let line = Polyline(flattened(changed));
+        let (mut last, mut segment) = (usize::MAX, 0);
         let touched = self.pieces.iter().filter(|cut| cut.piece.depends_on(k));
         let vertices = touched.flat_map(|cut| cut.first..=cut.first + cut.steps);
         let growth = |i: usize| {
             let (v, g) = (self.vertices[i], self.slopes[i]);
             let to;
-            (to, segment) = line.nearest(v, segment);
+            (to, segment) = if i == last || i == last.wrapping_add(1) {
+                line.nearest_from(v, segment)
+            } else {
+                line.nearest(v)
+            };
+            last = i;
             let shift = [to[0] - v[0], to[1] - v[1]];
             let length2 = shift[0] * shift[0] + shift[1] * shift[1];
             g[0] * shift[0] + g[1] * shift[1] + 0.5 * self.stiffness[i] * length2
@@ -111,47 +118,54 @@ impl<'a> Terrain<'a> {
     }
 }
 
-/// A polyline of at least two vertices, in which the place nearest to another is found without visiting all segments.
-struct Polyline {
-    vertices: Vec<[f32; 2]>,
-    /// The least and the greatest coordinates of each run of [`RUN`] segments.
-    boxes: Vec<[[f32; 2]; 2]>,
-}
-
-/// The number of segments in a box.
-const RUN: usize = 8;
+/// A polyline of at least two vertices.
+struct Polyline(Vec<[f32; 2]>);
 
 impl Polyline {
-    fn new(vertices: Vec<[f32; 2]>) -> Self {
-        let segments = vertices.len() - 1;
-        let run = |first: usize| bounds(&vertices[first..=(first + RUN).min(segments)]);
-        let boxes = (0..segments).step_by(RUN).map(run).collect();
-        Self { vertices, boxes }
+    fn segments(&self) -> Range<usize> {
+        0..self.0.len() - 1
     }
 
-    /// The place that is nearest to `p`, and its segment: the first of several. The search is short if segment `guess` is
-    /// near to `p`.
-    fn nearest(&self, p: [f32; 2], guess: usize) -> ([f32; 2], usize) {
-        let segments = self.vertices.len() - 1;
-        let (mut best, mut best_at) = (self.nearest_of(guess, p), guess);
-        for (run, &[low, high]) in self.boxes.iter().enumerate() {
-            let corner = [0, 1].map(|axis| p[axis].max(low[axis]).min(high[axis]));
-            if distance2(p, corner) > best.1 {
-                continue;
-            }
-            for at in run * RUN..(run * RUN + RUN).min(segments) {
-                let found = self.nearest_of(at, p);
-                if found.1 < best.1 || (found.1 == best.1 && at < best_at) {
-                    (best, best_at) = (found, at);
-                }
+    /// The place that is nearest to `p`, and its segment: the first of several.
+    fn nearest(&self, p: [f32; 2]) -> ([f32; 2], usize) {
+        let mut best = (self.nearest_of(0, p), 0);
+        for at in self.segments().skip(1) {
+            let found = self.nearest_of(at, p);
+            if found.1 < best.0.1 {
+                best = (found, at);
             }
         }
-        (best.0, best_at)
+        (best.0.0, best.1)
+    }
+
+    /// The nearest place that is reached from segment `from` along the polyline without going away from `p`.
+    fn nearest_from(&self, p: [f32; 2], from: usize) -> ([f32; 2], usize) {
+        let mut best = (self.nearest_of(from, p), from);
+        self.follow(p, from + 1..self.segments().end, &mut best);
+        self.follow(p, (0..from).rev(), &mut best);
+        (best.0.0, best.1)
+    }
+
+    /// Goes along the segments as long as that does not lead away from `p`.
+    fn follow(
+        &self,
+        p: [f32; 2],
+        segments: impl Iterator<Item = usize>,
+        best: &mut (([f32; 2], f32), usize),
+    ) {
+        for at in segments {
+            let found = self.nearest_of(at, p);
+            // Where a segment ends the next one starts, as near to `p`.
+            if found.1 > best.0.1 {
+                return;
+            }
+            *best = (found, at);
+        }
     }
 
     /// The place on segment `at` that is nearest to `p`, and the square of its distance.
     fn nearest_of(&self, at: usize, p: [f32; 2]) -> ([f32; 2], f32) {
-        let (a, b) = (self.vertices[at], self.vertices[at + 1]);
+        let (a, b) = (self.0[at], self.0[at + 1]);
         let axis = [b[0] - a[0], b[1] - a[1]];
         let length2 = (axis[0] * axis[0] + axis[1] * axis[1]).max(f32::MIN_POSITIVE);
         let h = ((p[0] - a[0]) * axis[0] + (p[1] - a[1]) * axis[1]) / length2;
@@ -159,17 +173,6 @@ impl Polyline {
         let q = [a[0] + h * axis[0], a[1] + h * axis[1]];
         (q, distance2(p, q))
     }
-}
-
-/// The least and the greatest coordinates of `vertices`.
-fn bounds(vertices: &[[f32; 2]]) -> [[f32; 2]; 2] {
-    let first = [vertices[0]; 2];
-    vertices.iter().fold(first, |[low, high], v| {
-        [
-            [low[0].min(v[0]), low[1].min(v[1])],
-            [high[0].max(v[0]), high[1].max(v[1])],
-        ]
-    })
 }
 
 fn distance2(p: [f32; 2], q: [f32; 2]) -> f32 {
