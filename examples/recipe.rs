@@ -78,6 +78,7 @@ pub(crate) const ROWS: &[Row] = rows! {
     Strokes Double stages.growth;
     Strokes Single stages.scale;
     Strokes Count stages.iterations;
+    Strokes Single stages.polished_share;
     Strokes Single stages.rates.position;
     Strokes Single stages.rates.radius;
     Strokes Single stages.rates.color;

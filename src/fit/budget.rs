@@ -60,9 +60,14 @@ pub(super) fn points(
     (!is_limited).then_some((most * strokes as f32) as usize)
 }
 
-/// The recipe for the budget: a shorter polish where a budget of strokes makes points dense.
+/// The recipe for the budget: shorter stages where the polish follows, and a shorter polish where a budget of strokes makes
+/// points dense.
 pub(super) fn recipe(config: &Config, pixels: usize) -> Recipe {
     let mut recipe = config.recipe();
+    let stages = &mut recipe.stages;
+    if config.polish && recipe.polish.iterations > 0 {
+        stages.iterations = (stages.iterations as f32 * stages.polished_share) as usize;
+    }
     let (polish, most) = (&mut recipe.polish, recipe.points);
     let strokes = config.budget.strokes;
     let points = strokes.and_then(|strokes| points(config, &most, strokes, pixels));

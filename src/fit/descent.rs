@@ -78,7 +78,7 @@ impl Descent {
             step: 0,
             used_before,
             hurried_from: None,
-            adam: Adam::new(drawing.free().numbers().len(), recipe.optimizer.strokes),
+            adam: adam(drawing, recipe, &course),
             background: Adam::new(3, recipe.optimizer.background),
             scales: scales(&course.rates, drawing, recipe),
             ties: Ties::default(),
@@ -153,7 +153,7 @@ impl Descent {
 
     /// Resets the optimiser after a change of resolution, which changes the size of all gradients.
     pub(super) fn forget(&mut self, drawing: &Drawing, recipe: &Recipe) {
-        self.adam = Adam::new(drawing.free().numbers().len(), recipe.optimizer.strokes);
+        self.adam = adam(drawing, recipe, &self.course);
         self.scales = scales(&self.course.rates, drawing, recipe);
     }
 
@@ -171,6 +171,17 @@ impl Course {
         let end = self.rates.last;
         Schedule::Cosine { end }.factor(self.before + at, self.of) as f32 * self.pace
     }
+}
+
+/// The optimiser of the free strokes, at the resolution that the drawing has now.
+fn adam(drawing: &Drawing, recipe: &Recipe, course: &Course) -> Adam<f32> {
+    let is_reduced = course.joint.is_some() && drawing.surface().halvings() > 0;
+    let params = if is_reduced {
+        recipe.optimizer.reduced
+    } else {
+        recipe.optimizer.strokes
+    };
+    Adam::new(drawing.free().numbers().len(), params)
 }
 
 /// The step size of each number of the free strokes. The geometry of large strokes moves farther, and that of traced

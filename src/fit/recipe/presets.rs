@@ -18,6 +18,10 @@ impl Recipe {
             Preset::Best => Self {
                 polish: Polish {
                     iterations: 3600,
+                    rates: Rates {
+                        last: 0.03,
+                        ..BALANCED.polish.rates
+                    },
                     ..BALANCED.polish
                 },
                 relocation: Relocation {
@@ -42,6 +46,7 @@ impl Recipe {
             stages: Stages {
                 scale: 0.25,
                 iterations: 20,
+                polished_share: 1.0,
                 rates: Rates {
                     position: 1.5,
                     ..stages.rates
@@ -96,6 +101,7 @@ const BALANCED: Recipe = Recipe {
         pixels_per_stroke: 250,
         scale: 0.3,
         iterations: 120,
+        polished_share: 0.34,
         rates: Rates {
             position: 1.0,
             radius: 0.3,
@@ -110,7 +116,7 @@ const BALANCED: Recipe = Recipe {
     },
     edge: EdgeShape {
         final_slope: 1.2,
-        annealed: 0.7,
+        annealed: 0.55,
     },
     domain: Domain {
         margin: 8.0,
@@ -122,6 +128,10 @@ const BALANCED: Recipe = Recipe {
             betas: [0.9, 0.9],
             eps: 1e-10,
         },
+        reduced: AdamParams {
+            betas: [0.9, 0.8],
+            eps: 1e-10,
+        },
         background: AdamParams {
             betas: [0.9, 0.999],
             eps: 1e-8,
@@ -130,21 +140,21 @@ const BALANCED: Recipe = Recipe {
         radius_factors: [0.25, 4.0],
     },
     polish: Polish {
-        iterations: 1200,
+        iterations: 1000,
         dense: 16.0,
-        dense_share: 0.75,
-        coarse_share: 0.6,
+        dense_share: 0.7,
+        coarse_share: 0.7,
         rates: Rates {
             position: 2.5,
             radius: 0.5,
             color: 0.02,
             opacity: 0.03,
-            last: 0.03,
+            last: 0.06,
         },
         softness: 2.4,
     },
     relocation: Relocation {
-        every: 30,
+        every: 25,
         share: 0.3,
         scale: 0.5,
         gain: 4.0,
@@ -161,7 +171,7 @@ const BALANCED: Recipe = Recipe {
         filled: 0.995,
         reach: 0.5,
         shortest: 0.5,
-        gain: 60.0,
+        gain: 120.0,
         smoothness: 0.7,
         spared: 0.3,
         beyond_db: 6.0,
