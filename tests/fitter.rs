@@ -42,7 +42,7 @@ fn stages_that_shrink_are_refused_rather_than_never_end() {
 
 #[test]
 fn no_iterations_of_polish_are_none() {
-    let picture = sample("noto-gem");
+    let picture = sample("noto-rocket");
     let none = drawn(
         &picture,
         &with_recipe(|recipe| recipe.polish.iterations = 0),
