@@ -112,6 +112,33 @@ fn a_fidelity_is_met_by_few_strokes() {
 }
 
 #[test]
+fn a_disc_without_antialiasing_reaches_the_fidelity_that_is_asked_for() {
+    let shade = |x: usize, y: usize| {
+        let away2 = (x as f32 - 32.0).powi(2) + (y as f32 - 32.0).powi(2);
+        if away2 < 400.0 {
+            40.0 / 255.0
+        } else {
+            240.0 / 255.0
+        }
+    };
+    let plane: Vec<f32> = (0..64 * 64).map(|i| shade(i % 64, i / 64)).collect();
+    let picture = Image::new(64, 64, [plane.clone(), plane.clone(), plane]).unwrap();
+    for least in [28.0, 30.0, 32.0] {
+        let config = Config {
+            budget: Budget {
+                psnr_db: Some(least),
+                ..Budget::default()
+            },
+            ..Config::default()
+        };
+        let fit = drawn(&picture, &config);
+        let reached = verdict(&fit, &config).fidelity.psnr_db;
+        assert_eq!(fit.stop, Stop::Psnr, "{reached} dB of {least}");
+        assert!(reached >= least, "{reached} dB of {least}");
+    }
+}
+
+#[test]
 fn bytes_are_met() {
     let picture = sample("noto-hibiscus");
     for most in [2_000, 12_345] {

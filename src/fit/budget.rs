@@ -60,12 +60,13 @@ pub(super) fn points(
     (!is_limited).then_some((most * strokes as f32) as usize)
 }
 
-/// The recipe for the budget: shorter stages where the polish follows, and a shorter polish where a budget of strokes makes
-/// points dense.
+/// The recipe for the budget: shorter stages where a polish follows and the number of strokes does not depend on what
+/// stages gain, and a shorter polish where a budget of strokes makes points dense.
 pub(super) fn recipe(config: &Config, pixels: usize) -> Recipe {
     let mut recipe = config.recipe();
     let stages = &mut recipe.stages;
-    if config.polish && recipe.polish.iterations > 0 {
+    let is_counted = config.budget.psnr_db.is_none() && config.quality_for(pixels).is_none();
+    if is_counted && config.polish && recipe.polish.iterations > 0 {
         stages.iterations = (stages.iterations as f32 * stages.polished_share) as usize;
     }
     let (polish, most) = (&mut recipe.polish, recipe.points);
