@@ -133,25 +133,25 @@ impl CanvasLoss for Objective<'_> {
         gradient: &mut TileRgb,
     ) -> f64 {
         let target = &self.target.tiles()[tile];
-        // Sums of their own for the channels do not wait for each other.
-        let mut sums = [Lanes::splat(0.0); 3];
+        let mut sums = Lanes::splat(0.0);
         for block in 0..canvas.len() {
-            for (channel, sums) in sums.iter_mut().enumerate() {
+            for channel in 0..3 {
                 let (c, t) = (&canvas[block][channel], &target[block][channel]);
                 let g = &mut gradient[block][channel];
-                let mut e = Lanes::splat(0.0);
-                for lane in 0..e.0.len() {
-                    e.0[lane] = c.0[lane] - t.0[lane];
-                    sums.0[lane] += self.loss.value(e.0[lane]);
-                    g.0[lane] = self.loss.derivative(e.0[lane]) * self.scale;
+                for lane in 0..sums.0.len() {
+                    let e = c.0[lane] - t.0[lane];
+                    sums.0[lane] += self.loss.value(e);
+                    g.0[lane] = self.loss.derivative(e) * self.scale;
                 }
                 if let Some(error) = &mut error {
-                    error[block][channel] = e;
+                    let e = &mut error[block][channel];
+                    for lane in 0..e.0.len() {
+                        e.0[lane] = c.0[lane] - t.0[lane];
+                    }
                 }
             }
         }
-        let sums = sums.iter().flat_map(|sums| sums.0);
-        sums.map(f64::from).sum::<f64>() * f64::from(self.scale)
+        sums.0.iter().map(|&s| f64::from(s)).sum::<f64>() * f64::from(self.scale)
     }
 
     fn flat(&self, tile: usize, color: [f32; 3]) -> Option<(f64, [f32; 3])> {
