@@ -143,6 +143,7 @@ impl CanvasLoss for Objective<'_> {
                     sums.0[lane] += self.loss.value(e);
                     g.0[lane] = self.loss.derivative(e) * self.scale;
                 }
+                // In a loop of its own: inside the one above it would keep that from being vectorised well.
                 if let Some(error) = &mut error {
                     let e = &mut error[block][channel];
                     for lane in 0..e.0.len() {
