@@ -160,3 +160,33 @@ fn a_fit_that_is_stopped_at_any_call_goes_on_to_the_same_drawing() {
     }
     assert!(failed.is_empty(), "stopped at calls {failed:?}");
 }
+
+/// Noise takes three times the strokes that a plan without a budget guesses.
+#[test]
+fn progress_is_not_done_while_much_is_to_come() {
+    let noise = |k: usize| {
+        (0..96 * 96)
+            .map(|i| (i * i * k % 97) as f32 / 96.0)
+            .collect()
+    };
+    let picture = Image::new(96, 96, [noise(3), noise(5), noise(7)]).unwrap();
+    let config = Config {
+        quality: Some(55.0),
+        recipe: Some(Recipe::of(Preset::Draft)),
+        ..Config::default()
+    };
+    let mut told = Vec::new();
+    let mut watch = |progress: &Progress<'_>| {
+        told.push((progress.polishing, progress.settling, progress.done));
+        ControlFlow::Continue(())
+    };
+    let fit = Fitter::new(config).observer(&mut watch).fit(&picture);
+    assert!(fit.unwrap().scene.len() > 300);
+    assert!(told.is_sorted_by(|a, b| a.2 <= b.2), "it never decreases");
+    let growing: Vec<_> = told.iter().filter(|told| !told.0).collect();
+    let polishing: Vec<_> = told.iter().filter(|told| told.0 && !told.1).collect();
+    let (polished, half) = (polishing.len(), polishing.len() / 2);
+    assert!(growing.iter().all(|told| told.2 < 0.7), "polish is to come");
+    assert!(polishing[half].2 < 0.8, "half of it is to come");
+    assert!(polishing[..polished - 1].iter().all(|told| told.2 < 1.0));
+}

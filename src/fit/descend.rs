@@ -26,7 +26,7 @@ pub(super) fn descend(
         let drawing = &mut session.drawing;
         descent.step(drawing, &session.annealing, (step, done), aim);
         let goes_on = match aim {
-            None => session.advance(descent.gradients.loss),
+            None => session.advance(descent.left(), descent.gradients.loss),
             Some(Aim { mse, .. }) => {
                 session.progress.tell(&session.drawing, mse) && session.timer.allows_step()
             }

@@ -86,6 +86,11 @@ impl Descent {
         }
     }
 
+    /// How many iterations are to come.
+    pub(super) fn left(&self) -> usize {
+        self.course.iterations - self.step
+    }
+
     /// The index of the next iteration and the share of the course that is over, or `None` at its end. If a limited
     /// time runs out faster than the iterations, the share follows the time.
     pub(super) fn tick(&mut self, timer: &mut Timer) -> Option<(usize, f32)> {

@@ -179,10 +179,12 @@ impl<'a> Tracker<'a> {
         self.settling = true;
     }
 
-    /// Counts an iteration of `strokes` strokes, when a share `time_used` of a limited time is used.
-    pub(super) fn advance(&mut self, strokes: usize, time_used: f32) {
+    /// Counts an iteration of `strokes` strokes, when a share `time_used` of a limited time is used. At least `rest`
+    /// strokes × iterations are to come: where gains decide how many strokes there are, the plan was a guess.
+    pub(super) fn advance(&mut self, strokes: usize, rest: usize, time_used: f32) {
         let position = &mut self.position;
         position.done += strokes as f64;
+        self.planned = self.planned.max(position.done + rest as f64);
         let done = (position.done / self.planned).max(f64::from(time_used));
         position.fraction = done.clamp(position.fraction, 1.0);
     }

@@ -18,7 +18,7 @@ use super::focus::Focus;
 use super::forecast::Forecast;
 use super::history::{self, History};
 use super::masking;
-use super::order::Phase;
+use super::order::{Phase, Purpose};
 use super::plan::{Before, Plan};
 use super::price::Price;
 use super::progress::{CancelToken, Observer, Position, Tracker};
@@ -193,11 +193,18 @@ impl<'a> Session<'a> {
             .unwrap_or_else(|| Descent::new(drawing, recipe, course, used))
     }
 
-    /// Counts an iteration of the free strokes, after which the mean squared error is `mse`. Returns whether to go on.
-    pub(super) fn advance(&mut self, mse: f64) -> bool {
+    /// Counts an iteration of the free strokes, after which the mean squared error is `mse` and the descent has `left`
+    /// more of them. Returns whether to go on.
+    pub(super) fn advance(&mut self, left: usize, mse: f64) -> bool {
         self.timer.step(self.drawing.len());
         let strokes = self.drawing.free().len();
-        self.progress.advance(strokes, self.timer.used());
+        let is_planned = matches!(self.phase, Phase::Stage(Purpose::Trace | Purpose::Plan));
+        let polish = match is_planned && self.config.polish && !self.config.progressive {
+            true => self.drawing.len() * self.recipe.polish.iterations,
+            false => 0,
+        };
+        let rest = strokes * left + polish;
+        self.progress.advance(strokes, rest, self.timer.used());
         if self.timer.is_over() {
             self.progress.stop(Stop::Time);
         }
