@@ -62,15 +62,16 @@
 
 mod edge;
 mod flat;
+mod frame;
 mod gradients;
 mod grid;
 mod kernel;
 pub mod probe;
 pub mod reference;
+mod shares;
 mod strokes;
 
 use std::marker::PhantomData;
-use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 use fearless_simd::Level;
@@ -84,12 +85,14 @@ pub use strokes::{
 };
 
 use crate::coverage::Coverage;
-use edge::{Edge, Reach};
-use flat::{CHUNK, Flat, flatten};
+use edge::Reach;
+use flat::{Flat, flatten};
 pub(crate) use flat::{Knot, Piece, Pieces};
+use frame::Frame;
 use gradients::add;
-use grid::{FULL, TileWeights, clear_padding, edge_weights, flat_tile};
+use grid::{FULL, TileWeights, clear_padding, edge_weights};
 use kernel::{Extras, Listed, Nothing, Scratch, Stiffnesses, Sums, TileJob, TileSums, Worths};
+use shares::shares;
 
 /// A differentiable loss over the canvas, told tile by tile while the tile is still in cache.
 pub trait CanvasLoss: Sync {
@@ -141,9 +144,6 @@ struct TileWork {
     /// What a veil in front of all strokes lets through.
     veil: Option<Box<TileWeights>>,
 }
-
-/// Most shares of the sums over tiles, which are taken one by one by the threads.
-const SHARES: usize = 16;
 
 /// Renders strokes on pictures of one size; keeps its memory from call to call.
 #[derive(Debug)]
@@ -418,94 +418,6 @@ impl Renderer {
     }
 }
 
-/// Some strokes, one after another, and what is summed up for them.
-struct Share<'a> {
-    ids: Range<usize>,
-    /// The derivatives by their numbers.
-    numbers: &'a mut [f32],
-    /// Their worths; empty if nobody asks for them.
-    worths: &'a mut [f32],
-    /// The derivatives by their vertices.
-    slopes: &'a mut [[f32; 2]],
-}
-
-/// Shares of all sums, for strokes that are summed up at a time.
-fn shares<'a>(
-    strokes: &Strokes,
-    flat: &Flat,
-    mut slopes: &'a mut [[f32; 2]],
-    gradients: &'a mut Gradients,
-) -> Vec<Share<'a>> {
-    let size = CHUNK.max(strokes.len().div_ceil(SHARES));
-    let (mut numbers, mut worths) = (
-        gradients.strokes.as_mut_slice(),
-        gradients.worth.as_mut_slice(),
-    );
-    let share = |start: usize| {
-        let ids = start..strokes.len().min(start + size);
-        let count = strokes.range(ids.end - 1).end - strokes.range(start).start;
-        let vertices = flat.firsts[ids.end] - flat.firsts[start];
-        let worth = ids.len().min(worths.len());
-        Share {
-            ids,
-            numbers: numbers.split_off_mut(..count).unwrap_or_default(),
-            worths: worths.split_off_mut(..worth).unwrap_or_default(),
-            slopes: slopes
-                .split_off_mut(..vertices as usize)
-                .unwrap_or_default(),
-        }
-    };
-    (0..strokes.len()).step_by(size).map(share).collect()
-}
-
-impl Share<'_> {
-    /// Adds the sums of the `tiles`.
-    fn gather(&mut self, strokes: &Strokes, flat: &Flat, tiles: &[TileWork]) {
-        let before = strokes.range(self.ids.start).start;
-        let first = flat.firsts[self.ids.start];
-        for Sums {
-            strokes: looks,
-            segments,
-            ..
-        } in tiles.iter().map(|work| &work.sums)
-        {
-            let [start, end] = [self.ids.start, self.ids.end]
-                .map(|id| looks.partition_point(|row| (row.id as usize) < id));
-            for row in &looks[start..end] {
-                let stroke = row.id as usize;
-                let end = strokes.range(stroke).end - before;
-                add(&mut self.numbers[end - LOOK..end], &row.look);
-                if let Some(worth) = self.worths.get_mut(stroke - self.ids.start) {
-                    *worth += row.worth;
-                }
-            }
-            let [start, end] = [start, end].map(|at| {
-                let row = looks.get(at);
-                row.map_or(segments.len(), |row| row.first as usize)
-            });
-            for row in &segments[start..end] {
-                let slopes = &mut self.slopes[(row.id - first) as usize..];
-                add(slopes.as_flattened_mut(), row.ends.as_flattened());
-            }
-        }
-    }
-
-    /// The derivatives by points, from those by vertices.
-    fn hand_back(&mut self, strokes: &Strokes, flat: &Flat, least: usize) {
-        let before = strokes.range(self.ids.start).start;
-        let first = flat.firsts[self.ids.start];
-        for i in self.ids.clone() {
-            let stroke = strokes.get(i);
-            let [start, end] = [i, i + 1].map(|i| (flat.firsts[i] - first) as usize);
-            let slopes = &self.slopes[start..end];
-            let range = strokes.range(i);
-            let numbers = &mut self.numbers[range.start - before..range.end - before];
-            let (points, _) = numbers.as_chunks_mut();
-            flat.hand_back(i, stroke, least, slopes, &mut points[..stroke.points.len()]);
-        }
-    }
-}
-
 impl TileWork {
     /// Lists the segments of the listed strokes that touch the tile at `origin`.
     fn list_segments(&mut self, level: Level, flat: &Flat, origin: [f32; 2], reach: Reach) {
@@ -589,81 +501,6 @@ impl<L: CanvasLoss> BackwardPass for Double<'_, L> {
         let other = self.frames[1].backdrop(job.tile);
         let losses = self.losses;
         kernel::differentiate_on_mattes(level, job, other, losses, scratch, sums)
-    }
-}
-
-/// What one call renders.
-struct Frame<'a> {
-    grid: Grid,
-    backdrop: Backdrop<'a>,
-    /// A tile of the backdrop's colour, if it is flat.
-    flat: TileRgb,
-    edge: Edge,
-    reach: Reach,
-}
-
-impl<'a> Frame<'a> {
-    fn new(grid: Grid, softness: Softness, backdrop: Backdrop<'a>) -> Self {
-        let (edge, reach) = Edge::new(softness.coverage, softness.width);
-        let flat = match backdrop {
-            Backdrop::Color(color) => flat_tile(color),
-            Backdrop::Canvas(_) => flat_tile([0.0; 3]),
-        };
-        Self {
-            grid,
-            backdrop,
-            flat,
-            edge,
-            reach,
-        }
-    }
-
-    /// The top left corner of tile `tile`, px.
-    fn origin(&self, tile: usize) -> [f32; 2] {
-        let (x, y) = self.grid.origin(tile);
-        [x as f32, y as f32]
-    }
-
-    /// What is behind all strokes in tile `tile`.
-    fn backdrop(&self, tile: usize) -> &TileRgb {
-        match self.backdrop {
-            Backdrop::Color(_) => &self.flat,
-            Backdrop::Canvas(canvas) => &canvas.tiles()[tile],
-        }
-    }
-
-    /// The sums of tile `tile` if no stroke touches it, where they are known without looking at its pixels.
-    fn flat_sums(&self, tile: usize, loss: &impl CanvasLoss) -> Option<TileSums> {
-        let Backdrop::Color(color) = self.backdrop else {
-            return None;
-        };
-        let (loss, backdrop) = loss.flat(tile, color)?;
-        Some(TileSums {
-            loss,
-            backdrop,
-            ..TileSums::default()
-        })
-    }
-
-    /// The share of tile `tile`, behind these weights.
-    fn job<'b>(
-        &'b self,
-        flat: &'b Flat,
-        tile: usize,
-        work: &'b TileWork,
-        weights: Option<&'b TileWeights>,
-    ) -> TileJob<'b> {
-        TileJob {
-            tile,
-            origin: self.origin(tile),
-            flat,
-            listed: &work.listed,
-            segments: &work.segments,
-            backdrop: self.backdrop(tile),
-            weights: weights.unwrap_or(&FULL),
-            edge: self.edge,
-            reach: self.reach,
-        }
     }
 }
 

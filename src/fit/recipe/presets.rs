@@ -55,7 +55,7 @@ impl Recipe {
             },
             polish: Polish {
                 iterations: 130,
-                dense_share: 1.0,
+                dense_share: 0.9,
                 coarse_share: 0.3,
                 rates: Rates {
                     position: 1.3,
@@ -142,7 +142,7 @@ const BALANCED: Recipe = Recipe {
     polish: Polish {
         iterations: 1000,
         dense: 16.0,
-        dense_share: 0.7,
+        dense_share: 0.65,
         coarse_share: 0.7,
         rates: Rates {
             position: 2.5,

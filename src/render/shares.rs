@@ -1,0 +1,102 @@
+//! Sums over tiles: what each tile tells of its strokes and segments, added up in tile order.
+//!
+//! The strokes are cut in shares, which the threads take one by one, so that no two of them write to one place.
+
+use std::ops::Range;
+
+use super::TileWork;
+use super::flat::{CHUNK, Flat};
+use super::gradients::{Gradients, add};
+use super::kernel::Sums;
+use super::strokes::{LOOK, Strokes};
+
+/// Most shares.
+const SHARES: usize = 16;
+
+/// Some strokes, one after another, and what is summed up for them.
+pub(super) struct Share<'a> {
+    ids: Range<usize>,
+    /// The derivatives by their numbers.
+    numbers: &'a mut [f32],
+    /// Their worths; empty if nobody asks for them.
+    worths: &'a mut [f32],
+    /// The derivatives by their vertices.
+    slopes: &'a mut [[f32; 2]],
+}
+
+/// Shares of all sums, for strokes that are summed up at a time.
+pub(super) fn shares<'a>(
+    strokes: &Strokes,
+    flat: &Flat,
+    mut slopes: &'a mut [[f32; 2]],
+    gradients: &'a mut Gradients,
+) -> Vec<Share<'a>> {
+    let size = CHUNK.max(strokes.len().div_ceil(SHARES));
+    let (mut numbers, mut worths) = (
+        gradients.strokes.as_mut_slice(),
+        gradients.worth.as_mut_slice(),
+    );
+    let share = |start: usize| {
+        let ids = start..strokes.len().min(start + size);
+        let count = strokes.range(ids.end - 1).end - strokes.range(start).start;
+        let vertices = flat.firsts[ids.end] - flat.firsts[start];
+        let worth = ids.len().min(worths.len());
+        Share {
+            ids,
+            numbers: numbers.split_off_mut(..count).unwrap_or_default(),
+            worths: worths.split_off_mut(..worth).unwrap_or_default(),
+            slopes: slopes
+                .split_off_mut(..vertices as usize)
+                .unwrap_or_default(),
+        }
+    };
+    (0..strokes.len()).step_by(size).map(share).collect()
+}
+
+impl Share<'_> {
+    /// Adds the sums of the `tiles`.
+    pub(super) fn gather(&mut self, strokes: &Strokes, flat: &Flat, tiles: &[TileWork]) {
+        let before = strokes.range(self.ids.start).start;
+        let first = flat.firsts[self.ids.start];
+        for Sums {
+            strokes: looks,
+            segments,
+            ..
+        } in tiles.iter().map(|work| &work.sums)
+        {
+            let [start, end] = [self.ids.start, self.ids.end]
+                .map(|id| looks.partition_point(|row| (row.id as usize) < id));
+            for row in &looks[start..end] {
+                let stroke = row.id as usize;
+                let end = strokes.range(stroke).end - before;
+                add(&mut self.numbers[end - LOOK..end], &row.look);
+                if let Some(worth) = self.worths.get_mut(stroke - self.ids.start) {
+                    *worth += row.worth;
+                }
+            }
+            let [start, end] = [start, end].map(|at| {
+                let row = looks.get(at);
+                row.map_or(segments.len(), |row| row.first as usize)
+            });
+            for row in &segments[start..end] {
+                let slopes = &mut self.slopes[(row.id - first) as usize..];
+                add(slopes.as_flattened_mut(), row.ends.as_flattened());
+            }
+        }
+    }
+
+    /// The derivatives by points, from those by vertices.
+    pub(super) fn hand_back(&mut self, strokes: &Strokes, flat: &Flat, least: usize) {
+        let before = strokes.range(self.ids.start).start;
+        let first = flat.firsts[self.ids.start];
+        for i in self.ids.clone() {
+            let stroke = strokes.get(i);
+            let [start, end] = [i, i + 1].map(|i| (flat.firsts[i] - first) as usize);
+            let slopes = &self.slopes[start..end];
+            let range = strokes.range(i);
+            let numbers = &mut self.numbers[range.start - before..range.end - before];
+            let (points, _) = numbers.as_chunks_mut();
+            flat.hand_back(i, stroke, least, slopes, &mut points[..stroke.points.len()]);
+        }
+    }
+}
