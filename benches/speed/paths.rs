@@ -7,6 +7,7 @@ use strokefit::fit::Simd;
 use strokefit::render::{Canvas, Grid, StrokeRef, Strokes};
 use strokefit::rng;
 
+use super::count::Count;
 use super::{BACKDROP, Bench, OPACITIES, SIZES, Speed, Workload};
 
 /// Segments of a path.
@@ -22,8 +23,8 @@ pub(crate) fn print(target: &Canvas, rounds: usize) {
         "\npaths: million pairs per second on one thread, and over those of capsules of the size of a segment"
     );
     println!(
-        "{:<12} {:>8} {:>8} {:>9} {:>15} {:>15} {:>15}",
-        "strokes", "segments", "number", "lanes/pr", "forward", "backward", "worth"
+        "{:<12} {:>8} {:>8} {:>9} {:>15} {:>15} {:>15} {:>9}",
+        "strokes", "segments", "number", "lanes/pr", "forward", "backward", "worth", "per lane"
     );
     for (name, radius_px, length_px) in SIZES {
         for opacity in OPACITIES {
@@ -64,6 +65,10 @@ fn row(name: &str, size: StrokeSize, target: &Canvas, rounds: usize) {
         } = speeds[i];
         [forward, backward, worth].map(|s| workloads[i].count.pairs as f64 / s / 1e6)
     };
+    let lanes_per_pair = |i: usize| {
+        let count: &Count = &workloads[i].count;
+        count.lanes() as f64 / count.pairs as f64
+    };
     for (i, workload) in workloads.iter().enumerate() {
         let segments = if i == 0 { 1 } else { SEGMENTS[i - 1] };
         print!(
@@ -71,12 +76,16 @@ fn row(name: &str, size: StrokeSize, target: &Canvas, rounds: usize) {
             workload.name,
             segments,
             workload.strokes.len(),
-            workload.count.lanes() as f64 / workload.count.pairs as f64
+            lanes_per_pair(i)
         );
         for (rate, of_capsules) in rates(i).iter().zip(rates(0)) {
             print!(" {rate:>8.0} {:>5.2}×", rate / of_capsules);
         }
-        println!();
+        // Where strokes are opaque, how many pairs are hidden depends on how the strokes lie.
+        let [_, backward, _] = rates(i);
+        let [_, of_capsules, _] = rates(0);
+        let per_lane = backward * lanes_per_pair(i) / (of_capsules * lanes_per_pair(0));
+        println!(" {per_lane:>8.2}×");
     }
 }
 
