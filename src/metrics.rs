@@ -8,6 +8,7 @@ mod ssimulacra2;
 
 use std::borrow::Cow;
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, ErrorKind, Result};
@@ -245,11 +246,26 @@ impl Sums {
     /// The sums over two pictures, without keeping their levels.
     fn between(a: &Image, b: &Image) -> Result<Self> {
         let [a, b] = both_on_white(a, b)?;
-        let mut sums = Self::default();
-        for (a, b) in a.planes().iter().zip(b.planes()) {
+        let planes = a.planes().par_iter().zip(b.planes());
+        let chunks = planes.flat_map(|(a, b)| {
+            let size = ADDED_IN_32_BITS;
+            a.par_chunks(size).zip(b.par_chunks(size))
+        });
+        let of_chunk = |(a, b): (&[f32], &[f32])| {
+            let mut sums = Self::default();
             sums.add(a, b, |a, b| level(a).abs_diff(level(b)));
+            sums
+        };
+        Ok(chunks.map(of_chunk).reduce(Self::default, Self::plus))
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self {
+            count: self.count + other.count,
+            squares: self.squares + other.squares,
+            absolutes: self.absolutes + other.absolutes,
+            max_abs: self.max_abs.max(other.max_abs),
         }
-        Ok(sums)
     }
 
     /// Adds the differences of two rows of numbers of equal length.

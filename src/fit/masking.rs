@@ -11,6 +11,10 @@
 //! all pixels, each weighted by its σ²: errors that remain in a drawing are roughly as large as the detail they are of, so that
 //! the price of a byte keeps its meaning.
 
+use std::collections::VecDeque;
+
+use rayon::prelude::*;
+
 use super::focus::Focus;
 use super::recipe::Masking;
 use crate::image::Image;
@@ -24,63 +28,92 @@ const LUMA: [f64; 3] = [0.299, 0.587, 0.114];
 
 /// How much an error counts at each pixel of `picture`, in units of the mean over its detail.
 pub(super) fn weights(picture: &Image, masking: Masking) -> Focus {
-    let picture = picture.flattened(WHITE);
-    let [red, green, blue] = picture.planes();
-    let luma: Vec<f64> = red
-        .iter()
-        .zip(green)
-        .zip(blue)
-        .map(|((&r, &g), &b)| {
-            LUMA[0] * f64::from(r) + LUMA[1] * f64::from(g) + LUMA[2] * f64::from(b)
-        })
-        .collect();
-    let squares = luma.iter().map(|v| v * v).collect();
     let size = [picture.width(), picture.height()];
-    let means = window_means(luma, size, masking.window);
+    let (mut means, mut variances) = (luma(picture), Vec::new());
+    variances.par_extend(means.par_iter().map(|v| v * v));
+    rayon::join(
+        || average(&mut means, size, masking.window),
+        || average(&mut variances, size, masking.window),
+    );
     let ceiling = masking.ceiling * masking.ceiling;
-    let variances: Vec<f64> = window_means(squares, size, masking.window)
-        .iter()
-        .zip(means)
-        .map(|(square, mean)| (square - mean * mean).clamp(0.0, ceiling))
-        .collect();
+    let of_square = |(square, mean): (&mut f64, &f64)| {
+        *square = (*square - mean * mean).clamp(0.0, ceiling);
+    };
+    variances.par_iter_mut().zip(&means).for_each(of_square);
     let weight = |variance: f64| masking.contrast / (masking.contrast + variance.sqrt());
     let detail: f64 = variances.iter().sum();
     let seen: f64 = variances.iter().map(|&v| v * weight(v)).sum();
     // A picture of one colour has no detail, and all its errors count alike.
     let unit = if detail > 0.0 { seen / detail } else { 1.0 };
-    let weights = variances.iter().map(|&v| (weight(v) / unit) as f32);
+    let weights = variances.par_iter().map(|&v| (weight(v) / unit) as f32);
     Focus::of_weights(size, weights.collect())
 }
 
-/// The means of `values` over the windows of 2`radius` + 1 rows and columns around each pixel, as far as these are in the
-/// picture.
-fn window_means(values: Vec<f64>, [width, height]: [usize; 2], radius: usize) -> Vec<f64> {
-    let rows = running_means(&values, width, radius);
-    let columns = running_means(&transposed(&rows, width), height, radius);
-    transposed(&columns, height)
+/// The luma of each pixel, on white.
+fn luma(picture: &Image) -> Vec<f64> {
+    let on_white = picture.alpha().map(|_| picture.flattened(WHITE));
+    let [red, green, blue] = on_white.as_ref().unwrap_or(picture).planes();
+    let pixels = red.par_iter().zip(green).zip(blue);
+    let luma = |((&r, &g), &b): ((&f32, &f32), &f32)| {
+        LUMA[0] * f64::from(r) + LUMA[1] * f64::from(g) + LUMA[2] * f64::from(b)
+    };
+    pixels.map(luma).collect()
 }
 
-/// The running means of rows of `length` values.
-fn running_means(values: &[f64], length: usize, radius: usize) -> Vec<f64> {
-    let mut means = Vec::with_capacity(values.len());
-    for row in values.chunks_exact(length) {
-        let mut sum: f64 = row.iter().take(radius).sum();
-        for i in 0..length {
-            sum += row.get(i + radius).copied().unwrap_or(0.0);
-            let first = i.saturating_sub(radius);
-            let end = length.min(i + radius + 1);
-            means.push(sum / (end - first) as f64);
-            if i >= radius {
-                sum -= row[first];
-            }
+/// Replaces each value by the mean of the window of 2`radius` + 1 rows and columns around it, as far as that is in the
+/// picture.
+fn average(values: &mut [f64], [width, height]: [usize; 2], radius: usize) {
+    let rows = values.par_chunks_exact_mut(width);
+    rows.for_each_init(Vec::new, |before, row| average_row(row, before, radius));
+    average_columns(values, [width, height], radius);
+}
+
+/// Replaces each value by the mean of those at most `radius` away; `before` is scratch.
+fn average_row(row: &mut [f64], before: &mut Vec<f64>, radius: usize) {
+    before.clear();
+    before.extend_from_slice(row);
+    let mut sum: f64 = before.iter().take(radius).sum();
+    for (i, value) in row.iter_mut().enumerate() {
+        sum += before.get(i + radius).copied().unwrap_or(0.0);
+        *value = sum / in_reach(i, before.len(), radius) as f64;
+        if i >= radius {
+            sum -= before[i - radius];
         }
     }
-    means
 }
 
-fn transposed(values: &[f64], width: usize) -> Vec<f64> {
-    let column = |x: usize| values.iter().skip(x).step_by(width).copied();
-    (0..width).flat_map(column).collect()
+/// The same for all columns at once.
+fn average_columns(values: &mut [f64], [width, height]: [usize; 2], radius: usize) {
+    let row = |y: usize| y * width..(y + 1) * width;
+    // Rows are needed once more after they are replaced.
+    let mut before: VecDeque<Vec<f64>> = VecDeque::new();
+    let mut sums = vec![0.0; width];
+    for y in 0..radius.min(height) {
+        add(&mut sums, &values[row(y)]);
+    }
+    for y in 0..height {
+        if y + radius < height {
+            add(&mut sums, &values[row(y + radius)]);
+        }
+        before.push_back(values[row(y)].to_vec());
+        let count = in_reach(y, height, radius) as f64;
+        for (value, sum) in values[row(y)].iter_mut().zip(&sums) {
+            *value = sum / count;
+        }
+        if y >= radius {
+            let gone = before.pop_front().unwrap_or_default();
+            sums.iter_mut().zip(gone).for_each(|(sum, v)| *sum -= v);
+        }
+    }
+}
+
+fn add(sums: &mut [f64], values: &[f64]) {
+    sums.iter_mut().zip(values).for_each(|(sum, v)| *sum += v);
+}
+
+/// How many of `length` places are at most `radius` away from place `i`.
+fn in_reach(i: usize, length: usize, radius: usize) -> usize {
+    length.min(i + radius + 1) - i.saturating_sub(radius)
 }
 
 #[cfg(test)]
@@ -104,7 +137,8 @@ mod tests {
     fn means_are_those_of_the_window() {
         let (width, height) = (5, 4);
         let values: Vec<f64> = (0..width * height).map(|i| (i * i % 7) as f64).collect();
-        let means = window_means(values.clone(), [width, height], 1);
+        let mut means = values.clone();
+        average(&mut means, [width, height], 1);
         for y in 0..height {
             for x in 0..width {
                 let rows = y.saturating_sub(1)..height.min(y + 2);

@@ -12,6 +12,7 @@
 
 mod weights;
 
+use fearless_simd::{Level, dispatch};
 use rayon::prelude::*;
 
 use super::CHANNELS;
@@ -126,10 +127,10 @@ impl Scales {
         let enlarged = |levels: &[u8]| -> Vec<[f32; 3]> {
             let (pixels, _) = levels.as_chunks::<3>();
             let size = [width * factor, height * factor];
-            let places = (0..size[0] * size[1]).map(|i| [i % size[0], i / size[0]]);
+            let at = |i: usize| i / size[0] / factor * width + i % size[0] / factor;
+            let places = (0..size[0] * size[1]).into_par_iter();
             places
-                .map(|[x, y]| pixels[y / factor * width + x / factor])
-                .map(|pixel| pixel.map(|level| linear[usize::from(level)]))
+                .map(|i| pixels[at(i)].map(|level| linear[usize::from(level)]))
                 .collect()
         };
         Self {
@@ -145,7 +146,7 @@ impl Scales {
         let (width, height) = (self.width, self.height);
         let [columns, rows] = [width.div_ceil(2), height.div_ceil(2)];
         for plane in &mut self.linear {
-            let halved = (0..columns * rows).map(|i| {
+            let halved = (0..columns * rows).into_par_iter().map(|i| {
                 let [x, y] = [2 * (i % columns), 2 * (i / columns)];
                 let [right, below] = [(x + 1).min(width - 1), (y + 1).min(height - 1)];
                 let four = [(x, y), (right, y), (x, below), (right, below)];
@@ -191,16 +192,29 @@ fn linear_light(level: u8) -> f32 {
 /// Planes X, Y and B − Y, shifted and scaled to about 0..1.
 fn xyb(linear: &[[f32; 3]]) -> [Vec<f32>; 3] {
     let black = math::cbrt(OPSIN_BIAS);
-    let convert = |rgb: &[f32; 3]| {
-        let [long, medium, short] = OPSIN.map(|row| {
-            let response: f32 = row.iter().zip(rgb).map(|(weight, v)| weight * v).sum();
-            math::cbrt(response + OPSIN_BIAS) - black
-        });
-        let (x, y) = (0.5 * (long - medium), 0.5 * (long + medium));
-        [14.0 * x + 0.42, y + 0.01, short - y + 0.55]
+    let mut planes = [0, 1, 2].map(|_| vec![0.0; linear.len()]);
+    let [x, y, b] = planes.each_mut().map(|plane| plane.par_chunks_mut(CHUNK));
+    let chunks = x.zip(y).zip(b).zip(linear.par_chunks(CHUNK));
+    chunks.for_each(|(((x, y), b), linear)| {
+        for (i, rgb) in linear.iter().enumerate() {
+            [x[i], y[i], b[i]] = xyb_of(rgb, black);
+        }
+    });
+    planes
+}
+
+/// Pixels that a thread converts at a time.
+const CHUNK: usize = 1 << 14;
+
+#[inline(always)]
+fn xyb_of(rgb: &[f32; 3], black: f32) -> [f32; 3] {
+    let cone = |[r, g, b]: [f32; 3]| {
+        let response = r * rgb[0] + g * rgb[1] + b * rgb[2];
+        math::cbrt(response + OPSIN_BIAS) - black
     };
-    let pixels: Vec<[f32; 3]> = linear.par_iter().map(convert).collect();
-    [0, 1, 2].map(|c| pixels.iter().map(|pixel| pixel[c]).collect())
+    let [long, medium, short] = [cone(OPSIN[0]), cone(OPSIN[1]), cone(OPSIN[2])];
+    let (x, y) = (0.5 * (long - medium), 0.5 * (long + medium));
+    [14.0 * x + 0.42, y + 0.01, short - y + 0.55]
 }
 
 /// Both pictures at one scale, reference first.
@@ -297,6 +311,13 @@ impl Window {
 
     /// The errors of row `y` of these planes.
     fn errors(&mut self, reference: &[f32], picture: &[f32], y: usize) -> &[[f32; KINDS]] {
+        dispatch!(Level::new(), _simd => self.measure(reference, picture, y));
+        &self.errors
+    }
+
+    /// Finds the errors of row `y`, with the instructions of the caller.
+    #[inline(always)]
+    fn measure(&mut self, reference: &[f32], picture: &[f32], y: usize) {
         let row =
             |plane: &'_ [f32], y: usize| y * self.width..((y + 1) * self.width).min(plane.len());
         self.down.iter_mut().for_each(|sums| sums.fill(0.0));
@@ -312,13 +333,14 @@ impl Window {
             blur(down, both);
         }
         let (a, b) = (&reference[row(reference, y)], &picture[row(picture, y)]);
+        let [mean_a, mean_b, aa, bb, ab] = &self.both;
         for (x, errors) in self.errors.iter_mut().enumerate() {
-            *errors = errors_at([a[x], b[x]], [0, 1, 2, 3, 4].map(|i| self.both[i][x]));
+            *errors = errors_at([a[x], b[x]], [mean_a[x], mean_b[x], aa[x], bb[x], ab[x]]);
         }
-        &self.errors
     }
 }
 
+#[inline(always)]
 fn add_row(sums: &mut [Vec<f32>; 5], a: &[f32], b: &[f32], tap: f32) {
     let [sum_a, sum_b, sum_aa, sum_bb, sum_ab] = sums;
     let sums = sum_a
@@ -336,6 +358,7 @@ fn add_row(sums: &mut [Vec<f32>; 5], a: &[f32], b: &[f32], tap: f32) {
     }
 }
 
+#[inline(always)]
 fn blur(from: &[f32], to: &mut [f32]) {
     for (t, f) in to.iter_mut().zip(from) {
         *t = TAPS[0] * f;
@@ -345,18 +368,17 @@ fn blur(from: &[f32], to: &mut [f32]) {
             break;
         }
         let rest = from.len() - shift;
-        to[..rest]
-            .iter_mut()
-            .zip(&from[shift..])
-            .for_each(|(t, f)| *t += tap * f);
-        to[shift..]
-            .iter_mut()
-            .zip(&from[..rest])
-            .for_each(|(t, f)| *t += tap * f);
+        for (t, f) in to[..rest].iter_mut().zip(&from[shift..]) {
+            *t += tap * f;
+        }
+        for (t, f) in to[shift..].iter_mut().zip(&from[..rest]) {
+            *t += tap * f;
+        }
     }
 }
 
 /// Structure, artefact and lost detail at a pixel: its values in both pictures, and the blurred values, squares and product.
+#[inline(always)]
 fn errors_at([a, b]: [f32; 2], [mean_a, mean_b, aa, bb, ab]: [f32; 5]) -> [f32; KINDS] {
     let luminance = 1.0 - (mean_a - mean_b) * (mean_a - mean_b);
     let covariance = 2.0 * (ab - mean_a * mean_b) + C2;

@@ -4,19 +4,37 @@
 //! between two of them. An antialiased pixel belongs to the nearer one of the colours beside it, so that the border
 //! of an area lies where it covers half of a pixel.
 
+use std::borrow::Cow;
+
+use rayon::prelude::*;
+
 use crate::scene::Rgb;
 
 /// A pixel on one or two mattes: the colour on the first one, and that on the second one or zeros.
 pub(super) type Pixel = [f32; 6];
 
 /// The pixels of target and canvas.
-pub(super) struct Pixels {
+pub(super) struct Pixels<'a> {
     pub(super) width: usize,
     pub(super) height: usize,
-    pub(super) target: Vec<Pixel>,
-    pub(super) canvas: Vec<Pixel>,
+    pub(super) target: Planes<'a>,
+    pub(super) canvas: Planes<'a>,
     /// How much an error counts, if not everywhere alike.
-    pub(super) weights: Option<Vec<f32>>,
+    pub(super) weights: Option<&'a [f32]>,
+}
+
+/// Red, green and blue on each matte.
+#[derive(Debug, Default)]
+pub(super) struct Planes<'a>(pub(super) Vec<Cow<'a, [f32]>>);
+
+impl Planes<'_> {
+    /// Pixel `i`, row by row.
+    pub(super) fn at(&self, i: usize) -> Pixel {
+        let mut pixel = [0.0; 6];
+        let values = pixel.iter_mut().zip(&self.0);
+        values.for_each(|(value, plane)| *value = plane[i]);
+        pixel
+    }
 }
 
 /// What a pixel belongs to: the canvas, an area of one of the colours, or nothing that is known.
@@ -31,8 +49,6 @@ pub(super) enum Label {
 pub(super) struct Areas {
     pub(super) labels: Vec<Label>,
     pub(super) colors: Vec<Pixel>,
-    /// The share of the squared residual that lies in pixels close to one of the colours.
-    pub(super) flat_share: f32,
 }
 
 /// Most colours of a picture.
@@ -47,69 +63,82 @@ const FLAT: f32 = 0.05;
 const LEAST_SHARE: f32 = 0.004;
 
 impl Areas {
-    pub(super) fn new(pixels: &Pixels) -> Self {
+    /// The areas, unless less than `least_flat` of the squared residual lies in pixels close to one of few colours.
+    pub(super) fn of(pixels: &Pixels<'_>, least_flat: f32) -> Option<Self> {
         let edges = pixels.edges();
         let (colors, flat_share) = colors(pixels, &edges);
-        let nearest = |i: usize| {
-            let mut best = (
-                distance2(&pixels.target[i], &pixels.canvas[i]),
-                Label::Canvas,
-            );
-            for (k, color) in colors.iter().enumerate() {
-                let away = distance2(&pixels.target[i], color);
-                if away < best.0 {
-                    best = (away, Label::Color(k as u8));
-                }
-            }
-            if best.0 < 4.0 * NEAR * NEAR {
-                best.1
-            } else {
-                Label::Unknown
-            }
-        };
-        let inner: Vec<Label> = (0..edges.len()).map(nearest).collect();
-        let mut areas = Self {
-            labels: inner.clone(),
-            colors,
-            flat_share,
-        };
-        for i in (0..edges.len()).filter(|&i| edges[i]) {
-            areas.labels[i] = areas.beside(pixels, &edges, &inner, i);
+        if flat_share < least_flat {
+            return None;
         }
-        areas
-    }
-
-    /// The label of the edge pixel `i`: the nearest one of those around it.
-    fn beside(&self, pixels: &Pixels, edges: &[bool], inner: &[Label], i: usize) -> Label {
-        let mut best = (f32::INFINITY, inner[i]);
-        for k in pixels.around(i, 2).filter(|&k| !edges[k]) {
-            let away = match inner[k] {
-                Label::Canvas => distance2(&pixels.target[i], &pixels.canvas[i]),
-                Label::Color(c) => distance2(&pixels.target[i], &self.colors[usize::from(c)]),
-                Label::Unknown => continue,
-            };
-            if away < best.0 {
-                best = (away, inner[k]);
-            }
-        }
-        best.1
+        let all = (0..edges.len()).into_par_iter();
+        let inner: Vec<Label> = all
+            .clone()
+            .map(|i| nearest_label(pixels, &colors, i))
+            .collect();
+        let label = |i: usize| match edges[i] {
+            true => label_beside(pixels, &colors, &edges, &inner, i),
+            false => inner[i],
+        };
+        let labels = all.map(label).collect();
+        Some(Self { labels, colors })
     }
 }
 
+/// The label of pixel `i` alone.
+fn nearest_label(pixels: &Pixels<'_>, colors: &[Pixel], i: usize) -> Label {
+    let (target, canvas) = (pixels.target.at(i), pixels.canvas.at(i));
+    let mut best = (distance2(&target, &canvas), Label::Canvas);
+    for (k, color) in colors.iter().enumerate() {
+        let away = distance2(&target, color);
+        if away < best.0 {
+            best = (away, Label::Color(k as u8));
+        }
+    }
+    if best.0 < 4.0 * NEAR * NEAR {
+        best.1
+    } else {
+        Label::Unknown
+    }
+}
+
+/// The label of the edge pixel `i`: the nearest one of those around it, which have their own.
+fn label_beside(
+    pixels: &Pixels<'_>,
+    colors: &[Pixel],
+    edges: &[bool],
+    inner: &[Label],
+    i: usize,
+) -> Label {
+    let target = pixels.target.at(i);
+    let mut best = (f32::INFINITY, inner[i]);
+    for k in pixels.around(i, 2).filter(|&k| !edges[k]) {
+        let away = match inner[k] {
+            Label::Canvas => distance2(&target, &pixels.canvas.at(i)),
+            Label::Color(c) => distance2(&target, &colors[usize::from(c)]),
+            Label::Unknown => continue,
+        };
+        if away < best.0 {
+            best = (away, inner[k]);
+        }
+    }
+    best.1
+}
+
 /// The colours of the pixels that differ from the canvas and are no edges, and the share of flat pixels among those.
-fn colors(pixels: &Pixels, edges: &[bool]) -> (Vec<Pixel>, f32) {
-    let residual2 = |i: usize| distance2(&pixels.target[i], &pixels.canvas[i]);
-    let differs: Vec<usize> = (0..edges.len())
-        .filter(|&i| !edges[i] && residual2(i) > NEAR * NEAR)
-        .collect();
-    let stride = differs.len().div_ceil(SAMPLES).max(1);
-    let samples: Vec<usize> = differs.into_iter().step_by(stride).collect();
+fn colors(pixels: &Pixels<'_>, edges: &[bool]) -> (Vec<Pixel>, f32) {
+    let residual2 = |i: usize| distance2(&pixels.target.at(i), &pixels.canvas.at(i));
+    let differs = |i: usize| !edges[i] && residual2(i) > NEAR * NEAR;
+    let differs: Vec<bool> = (0..edges.len()).into_par_iter().map(differs).collect();
+    let count = differs.iter().filter(|differs| **differs).count();
+    let stride = count.div_ceil(SAMPLES).max(1);
+    let samples = (0..edges.len()).filter(|&i| differs[i]).step_by(stride);
+    let samples: Vec<usize> = samples.collect();
     let all: f32 = samples.iter().map(|&i| residual2(i)).sum();
     let mut means: Vec<(Pixel, f32)> = Vec::new();
     for round in 0..3 {
         let mut sums: Vec<(Pixel, f32)> = means.iter().map(|_| ([0.0; 6], 0.0)).collect();
         for &i in &samples {
-            let pixel = &pixels.target[i];
+            let pixel = &pixels.target.at(i);
             let weight = residual2(i);
             let found = nearest(&means, pixel, NEAR);
             let k = match found {
@@ -137,7 +166,7 @@ fn colors(pixels: &Pixels, edges: &[bool]) -> (Vec<Pixel>, f32) {
     }
     means.sort_by(|a, b| b.1.total_cmp(&a.1));
     means.truncate(MOST_COLORS);
-    let is_flat = |&&i: &&usize| nearest(&means, &pixels.target[i], FLAT).is_some();
+    let is_flat = |&&i: &&usize| nearest(&means, &pixels.target.at(i), FLAT).is_some();
     let flat: f32 = samples.iter().filter(is_flat).map(|&i| residual2(i)).sum();
     (
         means.into_iter().map(|(mean, _)| mean).collect(),
@@ -156,34 +185,36 @@ fn nearest(means: &[(Pixel, f32)], pixel: &Pixel, limit: f32) -> Option<usize> {
     best.1
 }
 
-impl Pixels {
+impl Pixels<'_> {
     /// Whether each pixel is one of an edge: its colour lies between those of its neighbours on opposite sides.
     fn edges(&self) -> Vec<bool> {
-        (0..self.target.len()).map(|i| self.is_edge(i)).collect()
+        let all = (0..self.width * self.height).into_par_iter();
+        all.map(|i| self.is_edge(i)).collect()
     }
 
     fn is_edge(&self, i: usize) -> bool {
+        let pixel = self.target.at(i);
         let (x, y) = (i % self.width, i / self.width);
         let at = |dx: isize, dy: isize| {
             let x = x.checked_add_signed(dx).filter(|&x| x < self.width)?;
             let y = y.checked_add_signed(dy).filter(|&y| y < self.height)?;
-            Some(&self.target[y * self.width + x])
+            Some(self.target.at(y * self.width + x))
         };
         [(1, 0), (0, 1), (1, 1), (1, -1)]
             .iter()
             .any(|&(dx, dy)| match (at(-dx, -dy), at(dx, dy)) {
-                (Some(a), Some(b)) => is_between(a, b, &self.target[i]),
+                (Some(a), Some(b)) => is_between(&a, &b, &pixel),
                 _ => false,
             })
     }
 
     /// How much of pixel `i` a stroke of `color` covers, if nothing else does.
     pub(super) fn coverage(&self, i: usize, color: &Pixel) -> f32 {
-        let (target, canvas) = (&self.target[i], &self.canvas[i]);
+        let (target, canvas) = (self.target.at(i), self.canvas.at(i));
         let along: f32 = (0..6)
             .map(|k| (target[k] - canvas[k]) * (color[k] - canvas[k]))
             .sum();
-        (along / distance2(color, canvas).max(1e-6)).clamp(0.0, 1.0)
+        (along / distance2(color, &canvas).max(1e-6)).clamp(0.0, 1.0)
     }
 
     /// The pixel at a place of the picture plane.

@@ -36,7 +36,7 @@ struct Gap {
 }
 
 /// Joins lines of one colour across what covers them, the straightest first.
-pub(super) fn bridged(lines: Vec<Colored>, areas: &Areas, pixels: &Pixels) -> Vec<Colored> {
+pub(super) fn bridged(lines: Vec<Colored>, areas: &Areas, pixels: &Pixels<'_>) -> Vec<Colored> {
     let mut gaps = gaps(&lines, areas, pixels);
     gaps.sort_by(|a, b| {
         b.straightness
@@ -107,7 +107,7 @@ fn joined(
 }
 
 /// All gaps that a line could go on across.
-fn gaps(lines: &[Colored], areas: &Areas, pixels: &Pixels) -> Vec<Gap> {
+fn gaps(lines: &[Colored], areas: &Areas, pixels: &Pixels<'_>) -> Vec<Gap> {
     const CELL: f32 = 32.0;
     let cell = |at: [f32; 2]| at.map(|v| (v / CELL).floor() as i32);
     let mut cells: BTreeMap<[i32; 2], Vec<End>> = BTreeMap::new();
@@ -149,7 +149,7 @@ fn leaving(line: &Line, is_end: bool) -> (Spot, [f32; 2]) {
 }
 
 /// The gap between two ends, if a line may go on across it: it is short, straight and shows no canvas.
-fn gap(lines: &[Colored], ends: [End; 2], areas: &Areas, pixels: &Pixels) -> Option<Gap> {
+fn gap(lines: &[Colored], ends: [End; 2], areas: &Areas, pixels: &Pixels<'_>) -> Option<Gap> {
     let [a, b] = ends;
     let color = lines[a.0].color;
     let is_same = a.0 == b.0;
@@ -195,6 +195,7 @@ fn gap(lines: &[Colored], ends: [End; 2], areas: &Areas, pixels: &Pixels) -> Opt
 
 #[cfg(test)]
 mod tests {
+    use super::super::areas::Planes;
     use super::*;
 
     /// A straight line of colour 0 along y = 20 px.
@@ -222,13 +223,12 @@ mod tests {
         let areas = Areas {
             labels: (0..64 * 40).map(label).collect(),
             colors: Vec::new(),
-            flat_share: 1.0,
         };
         let pixels = Pixels {
             width: 64,
             height: 40,
-            target: Vec::new(),
-            canvas: Vec::new(),
+            target: Planes::default(),
+            canvas: Planes::default(),
             weights: None,
         };
         bridged(lines, &areas, &pixels)

@@ -19,17 +19,17 @@ impl Gain {
         own: u8,
         color: &Pixel,
         areas: &Areas,
-        pixels: &Pixels,
+        pixels: &Pixels<'_>,
     ) -> Self {
         let mut gain = Self::default();
         for (i, coverage) in coverage(path, radius, pixels) {
-            let (target, canvas) = (&pixels.target[i], &pixels.canvas[i]);
+            let (target, canvas) = (pixels.target.at(i), pixels.canvas.at(i));
             if !matches!(areas.labels[i], Label::Color(k) if k != own) {
-                let before = distance2(target, canvas);
+                let before = distance2(&target, &canvas);
                 let drawn = std::array::from_fn(|k| canvas[k] + coverage * (color[k] - canvas[k]));
-                let weight = pixels.weights.as_ref().map_or(1.0, |weights| weights[i]);
+                let weight = pixels.weights.map_or(1.0, |weights| weights[i]);
                 gain.under += weight * before;
-                gain.removed += weight * (before - distance2(target, &drawn));
+                gain.removed += weight * (before - distance2(&target, &drawn));
             }
         }
         gain
@@ -37,7 +37,7 @@ impl Gain {
 }
 
 /// The pixels that a stroke touches, and those 1 px around it, with their coverage.
-fn coverage(path: &Path, radius: f32, pixels: &Pixels) -> Vec<(usize, f32)> {
+fn coverage(path: &Path, radius: f32, pixels: &Pixels<'_>) -> Vec<(usize, f32)> {
     let mut line: Vec<[f32; 2]> = path.flattened(0.1).iter().map(|p| [p.x, p.y]).collect();
     if let [dot] = line[..] {
         line.push(dot);

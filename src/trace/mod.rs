@@ -20,11 +20,14 @@ mod shape;
 mod skeleton;
 mod spline;
 
+use std::borrow::Cow;
+
 use rayon::prelude::*;
 
+use crate::image::Image;
 use crate::scene::{Path, Stroke};
 use crate::seed::Residual;
-use areas::{Areas, Label, Pixel, Pixels};
+use areas::{Areas, Label, Pixel, Pixels, Planes};
 use bridges::Colored;
 use gain::Gain;
 use lines::Line;
@@ -62,10 +65,9 @@ pub fn trace(residuals: &[Residual<'_>], tracing: Tracing) -> Vec<Traced> {
     let Some(pixels) = Pixels::of(residuals) else {
         return Vec::new();
     };
-    let areas = Areas::new(&pixels);
-    if areas.flat_share < tracing.flat {
+    let Some(areas) = Areas::of(&pixels, tracing.flat) else {
         return Vec::new();
-    }
+    };
     let keys: Vec<Option<u8>> = areas
         .labels
         .iter()
@@ -99,7 +101,7 @@ pub fn trace(residuals: &[Residual<'_>], tracing: Tracing) -> Vec<Traced> {
 }
 
 /// The area of a shape, px², to which antialiased pixels add as much as is covered of them.
-fn area(shape: &Shape, color: u8, areas: &Areas, pixels: &Pixels) -> f32 {
+fn area(shape: &Shape, color: u8, areas: &Areas, pixels: &Pixels<'_>) -> f32 {
     let Some(color) = areas.colors.get(usize::from(color)) else {
         return 0.0;
     };
@@ -129,7 +131,7 @@ fn stroke(
         is_covered,
     }: &Colored,
     areas: &Areas,
-    pixels: &Pixels,
+    pixels: &Pixels<'_>,
     mattes: usize,
     tracing: &Tracing,
 ) -> Option<(bool, Traced)> {
@@ -154,44 +156,25 @@ fn median(values: impl Iterator<Item = f32>) -> Option<f32> {
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f32::total_cmp).1)
 }
 
-impl Pixels {
+impl<'a> Pixels<'a> {
     /// The pixels of pictures on one or two mattes.
-    fn of(residuals: &[Residual<'_>]) -> Option<Self> {
-        let first = residuals.first()?.target.level(0);
-        let (width, height) = (first.width(), first.height());
-        let canvases: Vec<_> = residuals.iter().map(|r| r.canvas.to_image()).collect();
+    fn of(residuals: &[Residual<'a>]) -> Option<Self> {
+        let first = residuals.first()?;
+        let size = |image: &Image| [image.width(), image.height()];
         let targets = residuals.iter().map(|r| r.target.level(0));
-        let gather = |planes: Vec<&[f32]>| -> Vec<Pixel> {
-            let pixel = |i: usize| {
-                let mut pixel = [0.0; 6];
-                pixel
-                    .iter_mut()
-                    .zip(&planes)
-                    .for_each(|(p, plane)| *p = plane[i]);
-                pixel
-            };
-            (0..width * height).map(pixel).collect()
-        };
-        let planes = |image: &'_ crate::image::Image| image.planes().each_ref().map(|p| p.len());
-        if canvases.iter().any(|c| planes(c) != planes(first)) {
+        let canvases: Vec<Image> = residuals.iter().map(|r| r.canvas.to_image()).collect();
+        let [width, height] = size(first.target.level(0));
+        if canvases.iter().any(|c| size(c) != [width, height]) {
             return None;
         }
-        let target = gather(
-            targets
-                .flat_map(|t| t.planes().iter().map(|p| &p[..]))
-                .collect(),
-        );
-        let canvas = canvases
-            .iter()
-            .flat_map(|c| c.planes().iter().map(|p| &p[..]));
-        let canvas = gather(canvas.collect());
-        let weights = residuals[0].weights;
+        let target = targets.flat_map(|t| t.planes().iter().map(Cow::from));
+        let canvas = canvases.into_iter().flat_map(Image::into_planes);
         Some(Self {
             width,
             height,
-            target,
-            canvas,
-            weights: weights.map(|weights| weights.level(0).planes()[0].clone()),
+            target: Planes(target.collect()),
+            canvas: Planes(canvas.map(Cow::from).collect()),
+            weights: first.weights.map(|weights| &*weights.level(0).planes()[0]),
         })
     }
 }
