@@ -74,6 +74,11 @@ pub(super) enum Outcome {
     Rejected,
 }
 
+/// Whether all strokes are polished once no more are planned. Each layer of a progressive drawing has been already.
+fn polishes_all(config: &Config) -> bool {
+    config.polish && !config.progressive
+}
+
 /// The phase that follows `phase`, given its outcome.
 pub(super) fn next(phase: Phase, outcome: Outcome, config: &Config) -> Phase {
     use Outcome::{Met, Rejected, Removed, Seeded};
@@ -85,8 +90,7 @@ pub(super) fn next(phase: Phase, outcome: Outcome, config: &Config) -> Phase {
         (Phase::Trace, _) => Phase::Grow,
 
         (Phase::Grow, Seeded(purpose)) => Phase::Stage(purpose),
-        // Each layer of a progressive drawing has been polished already.
-        (Phase::Grow, _) if config.polish && !config.progressive => Phase::Polish(Purpose::Plan),
+        (Phase::Grow, _) if polishes_all(config) => Phase::Polish(Purpose::Plan),
         (Phase::Grow, _) => Phase::Settle,
 
         (Phase::Stage(purpose), _) if config.progressive => Phase::StagePolish(purpose),
@@ -120,6 +124,11 @@ impl Phase {
             Some(base) if config.pens.is_none() && config.colors.allow(&base.scene) => Self::Base,
             _ => Self::Trace,
         }
+    }
+
+    /// Whether it is a planned stage, and a polish of all strokes is to come.
+    pub(super) fn precedes_polish(self, config: &Config) -> bool {
+        matches!(self, Self::Stage(Purpose::Trace | Purpose::Plan)) && polishes_all(config)
     }
 
     /// Whether a fit can go on from a state in the middle of this phase.

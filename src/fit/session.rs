@@ -18,7 +18,7 @@ use super::focus::Focus;
 use super::forecast::Forecast;
 use super::history::{self, History};
 use super::masking;
-use super::order::{Phase, Purpose};
+use super::order::Phase;
 use super::plan::{Before, Plan};
 use super::price::Price;
 use super::progress::{CancelToken, Observer, Position, Tracker};
@@ -198,8 +198,7 @@ impl<'a> Session<'a> {
     pub(super) fn advance(&mut self, left: usize, mse: f64) -> bool {
         self.timer.step(self.drawing.len());
         let strokes = self.drawing.free().len();
-        let is_planned = matches!(self.phase, Phase::Stage(Purpose::Trace | Purpose::Plan));
-        let polish = match is_planned && self.config.polish && !self.config.progressive {
+        let polish = match self.phase.precedes_polish(self.config) {
             true => self.drawing.len() * self.recipe.polish.iterations,
             false => 0,
         };
