@@ -7,7 +7,6 @@ use strokefit::fit::Simd;
 use strokefit::render::{Canvas, Grid, StrokeRef, Strokes};
 use strokefit::rng;
 
-use super::count::Count;
 use super::{BACKDROP, Bench, OPACITIES, SIZES, Speed, Workload};
 
 /// Segments of a path.
@@ -66,7 +65,7 @@ fn row(name: &str, size: StrokeSize, target: &Canvas, rounds: usize) {
         [forward, backward, worth].map(|s| workloads[i].count.pairs as f64 / s / 1e6)
     };
     let lanes_per_pair = |i: usize| {
-        let count: &Count = &workloads[i].count;
+        let count = &workloads[i].count;
         count.lanes() as f64 / count.pairs as f64
     };
     for (i, workload) in workloads.iter().enumerate() {

@@ -98,13 +98,14 @@ impl<'a> Terrain<'a> {
     /// nearest places of the new path.
     pub(super) fn gain(&self, changed: StrokeRef<'_>, k: usize) -> f32 {
         let line = Polyline(flattened(changed));
-        let (mut last, mut segment) = (usize::MAX, 0);
+        // The first vertex is looked for from the first segment on.
+        let (mut last, mut segment) = (0, 0);
         let touched = self.pieces.iter().filter(|cut| cut.piece.depends_on(k));
         let vertices = touched.flat_map(|cut| cut.first..=cut.first + cut.steps);
         let growth = |i: usize| {
             let (v, g) = (self.vertices[i], self.slopes[i]);
             let to;
-            (to, segment) = if i == last || i == last.wrapping_add(1) {
+            (to, segment) = if i == last || i == last + 1 {
                 line.nearest_from(v, segment)
             } else {
                 line.nearest(v)
