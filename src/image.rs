@@ -16,6 +16,7 @@ mod profile;
 mod remark;
 mod rows;
 
+use std::borrow::Cow;
 use std::fmt;
 use std::path::Path;
 
@@ -256,8 +257,13 @@ impl Image {
     /// The picture flattened onto `matte`: opaque, composited in encoded values as SVG renderers do.
     #[must_use]
     pub fn flattened(&self, matte: Rgb) -> Self {
+        self.on(matte).into_owned()
+    }
+
+    /// The same, without a copy of a picture that is opaque.
+    pub(crate) fn on(&self, matte: Rgb) -> Cow<'_, Self> {
         let Some(alpha) = &self.alpha else {
-            return self.clone();
+            return Cow::Borrowed(self);
         };
         let mut planes = self.planes.clone();
         for (plane, matte) in planes.iter_mut().zip(matte) {
@@ -265,12 +271,7 @@ impl Image {
                 *value = matte + a * (*value - matte);
             }
         }
-        Self {
-            width: self.width,
-            height: self.height,
-            planes,
-            alpha: None,
-        }
+        Cow::Owned(Self::from_planes(self.width, self.height, planes))
     }
 
     /// The upper left `width × height` px, without alpha. `None` if the picture is smaller or a side

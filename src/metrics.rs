@@ -218,10 +218,7 @@ fn both_on_white<'a>(a: &'a Image, b: &'a Image) -> Result<[Cow<'a, Image>; 2]> 
         );
         return Err(Error::new(ErrorKind::Picture, message));
     }
-    Ok([a, b].map(|image| match image.alpha() {
-        Some(_) => Cow::Owned(image.flattened(WHITE)),
-        None => Cow::Borrowed(image),
-    }))
+    Ok([a, b].map(|image| image.on(WHITE)))
 }
 
 /// Sums over all differences, in integers, so that the order of summation does not matter.
@@ -238,25 +235,37 @@ const ADDED_IN_32_BITS: usize = 1 << 16;
 
 impl Sums {
     fn new(a: &[u8], b: &[u8]) -> Self {
-        let mut sums = Self::default();
-        sums.add(a, b, |a, b| a.abs_diff(b));
-        sums
+        Self::of(a, b, |a, b| a.abs_diff(b))
     }
 
     /// The sums over two pictures, without keeping their levels.
     fn between(a: &Image, b: &Image) -> Result<Self> {
         let [a, b] = both_on_white(a, b)?;
-        let planes = a.planes().par_iter().zip(b.planes());
-        let chunks = planes.flat_map(|(a, b)| {
-            let size = ADDED_IN_32_BITS;
-            a.par_chunks(size).zip(b.par_chunks(size))
-        });
-        let of_chunk = |(a, b): (&[f32], &[f32])| {
-            let mut sums = Self::default();
-            sums.add(a, b, |a, b| level(a).abs_diff(level(b)));
-            sums
+        let planes = a.planes().iter().zip(b.planes());
+        let planes = planes.map(|(a, b)| Self::of(a, b, |a, b| level(a).abs_diff(level(b))));
+        Ok(planes.fold(Self::default(), Self::plus))
+    }
+
+    /// The sums over the differences of two rows of numbers of equal length.
+    fn of<T: Copy + Sync>(a: &[T], b: &[T], difference: impl Fn(T, T) -> u8 + Sync) -> Self {
+        let chunks = a.par_chunks(ADDED_IN_32_BITS);
+        let chunks = chunks.zip(b.par_chunks(ADDED_IN_32_BITS));
+        let of_chunk = |(a, b): (&[T], &[T])| {
+            let (mut squares, mut absolutes, mut max_abs) = (0, 0, 0);
+            for (&a, &b) in a.iter().zip(b) {
+                let d = difference(a, b);
+                squares += u32::from(d) * u32::from(d);
+                absolutes += u32::from(d);
+                max_abs = d.max(max_abs);
+            }
+            Self {
+                count: a.len() as u64,
+                squares: u64::from(squares),
+                absolutes: u64::from(absolutes),
+                max_abs,
+            }
         };
-        Ok(chunks.map(of_chunk).reduce(Self::default, Self::plus))
+        chunks.map(of_chunk).reduce(Self::default, Self::plus)
     }
 
     fn plus(self, other: Self) -> Self {
@@ -265,24 +274,6 @@ impl Sums {
             squares: self.squares + other.squares,
             absolutes: self.absolutes + other.absolutes,
             max_abs: self.max_abs.max(other.max_abs),
-        }
-    }
-
-    /// Adds the differences of two rows of numbers of equal length.
-    fn add<T: Copy>(&mut self, a: &[T], b: &[T], difference: impl Fn(T, T) -> u8) {
-        let chunks = a.chunks(ADDED_IN_32_BITS).zip(b.chunks(ADDED_IN_32_BITS));
-        for (a, b) in chunks {
-            let (mut squares, mut absolutes, mut max_abs) = (0, 0, 0);
-            for (&a, &b) in a.iter().zip(b) {
-                let d = difference(a, b);
-                squares += u32::from(d) * u32::from(d);
-                absolutes += u32::from(d);
-                max_abs = d.max(max_abs);
-            }
-            self.count += a.len() as u64;
-            self.squares += u64::from(squares);
-            self.absolutes += u64::from(absolutes);
-            self.max_abs = self.max_abs.max(max_abs);
         }
     }
 

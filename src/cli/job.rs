@@ -298,7 +298,7 @@ fn one_color_db(picture: &Image) -> f64 {
         let center = mean(&mut plane.iter().map(|&v| f64::from(v)));
         mean(&mut plane.iter().map(|&v| away2(v, center)))
     };
-    let flat = picture.flattened([1.0; 3]);
+    let flat = picture.on([1.0; 3]);
     psnr_db(flat.planes().iter().map(variance).sum::<f64>() / 3.0)
 }
 

@@ -27,7 +27,7 @@ impl Focus {
     /// # Errors
     /// [`ErrorKind::Picture`] when it is black everywhere.
     pub fn new(mask: &Image) -> Result<Self> {
-        let mask = mask.flattened(BLACK);
+        let mask = mask.on(BLACK);
         let [red, green, blue] = mask.planes();
         let channels = red.iter().zip(green).zip(blue);
         let weights: Vec<f32> = channels

@@ -29,11 +29,11 @@ const LUMA: [f64; 3] = [0.299, 0.587, 0.114];
 /// How much an error counts at each pixel of `picture`, in units of the mean over its detail.
 pub(super) fn weights(picture: &Image, masking: Masking) -> Focus {
     let size = [picture.width(), picture.height()];
-    let (mut means, mut variances) = (luma(picture), Vec::new());
-    variances.par_extend(means.par_iter().map(|v| v * v));
+    let mut means = luma(picture);
+    let mut variances: Vec<f64> = means.par_iter().map(|v| v * v).collect();
     rayon::join(
-        || average(&mut means, size, masking.window),
-        || average(&mut variances, size, masking.window),
+        || average(&mut means, size[0], masking.window),
+        || average(&mut variances, size[0], masking.window),
     );
     let ceiling = masking.ceiling * masking.ceiling;
     let of_square = |(square, mean): (&mut f64, &f64)| {
@@ -51,8 +51,8 @@ pub(super) fn weights(picture: &Image, masking: Masking) -> Focus {
 
 /// The luma of each pixel, on white.
 fn luma(picture: &Image) -> Vec<f64> {
-    let on_white = picture.alpha().map(|_| picture.flattened(WHITE));
-    let [red, green, blue] = on_white.as_ref().unwrap_or(picture).planes();
+    let on_white = picture.on(WHITE);
+    let [red, green, blue] = on_white.planes();
     let pixels = red.par_iter().zip(green).zip(blue);
     let luma = |((&r, &g), &b): ((&f32, &f32), &f32)| {
         LUMA[0] * f64::from(r) + LUMA[1] * f64::from(g) + LUMA[2] * f64::from(b)
@@ -62,31 +62,19 @@ fn luma(picture: &Image) -> Vec<f64> {
 
 /// Replaces each value by the mean of the window of 2`radius` + 1 rows and columns around it, as far as that is in the
 /// picture.
-fn average(values: &mut [f64], [width, height]: [usize; 2], radius: usize) {
+fn average(values: &mut [f64], width: usize, radius: usize) {
+    // A row is a picture 1 px wide, if it is turned.
     let rows = values.par_chunks_exact_mut(width);
-    rows.for_each_init(Vec::new, |before, row| average_row(row, before, radius));
-    average_columns(values, [width, height], radius);
+    rows.for_each(|row| average_rows(row, 1, radius));
+    average_rows(values, width, radius);
 }
 
-/// Replaces each value by the mean of those at most `radius` away; `before` is scratch.
-fn average_row(row: &mut [f64], before: &mut Vec<f64>, radius: usize) {
-    before.clear();
-    before.extend_from_slice(row);
-    let mut sum: f64 = before.iter().take(radius).sum();
-    for (i, value) in row.iter_mut().enumerate() {
-        sum += before.get(i + radius).copied().unwrap_or(0.0);
-        *value = sum / in_reach(i, before.len(), radius) as f64;
-        if i >= radius {
-            sum -= before[i - radius];
-        }
-    }
-}
-
-/// The same for all columns at once.
-fn average_columns(values: &mut [f64], [width, height]: [usize; 2], radius: usize) {
+/// Replaces each row of `width` values by the mean of the rows at most `radius` away.
+fn average_rows(values: &mut [f64], width: usize, radius: usize) {
+    let height = values.len() / width;
     let row = |y: usize| y * width..(y + 1) * width;
     // Rows are needed once more after they are replaced.
-    let mut before: VecDeque<Vec<f64>> = VecDeque::new();
+    let mut before = VecDeque::new();
     let mut sums = vec![0.0; width];
     for y in 0..radius.min(height) {
         add(&mut sums, &values[row(y)]);
@@ -95,13 +83,13 @@ fn average_columns(values: &mut [f64], [width, height]: [usize; 2], radius: usiz
         if y + radius < height {
             add(&mut sums, &values[row(y + radius)]);
         }
-        before.push_back(values[row(y)].to_vec());
         let count = in_reach(y, height, radius) as f64;
         for (value, sum) in values[row(y)].iter_mut().zip(&sums) {
+            before.push_back(*value);
             *value = sum / count;
         }
         if y >= radius {
-            let gone = before.pop_front().unwrap_or_default();
+            let gone = before.drain(..width);
             sums.iter_mut().zip(gone).for_each(|(sum, v)| *sum -= v);
         }
     }
@@ -138,7 +126,7 @@ mod tests {
         let (width, height) = (5, 4);
         let values: Vec<f64> = (0..width * height).map(|i| (i * i % 7) as f64).collect();
         let mut means = values.clone();
-        average(&mut means, [width, height], 1);
+        average(&mut means, width, 1);
         for y in 0..height {
             for x in 0..width {
                 let rows = y.saturating_sub(1)..height.min(y + 2);
