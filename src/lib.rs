@@ -112,6 +112,8 @@
 //! | quality | sets the price: each byte has to remove as much squared error as one pixel has at this many dB |
 //! | frozen, free | strokes that are kept as they are; strokes that are fitted |
 //! | polish | joint fit of all free strokes |
+//! | dense, sparse | of points: how many pixels there are for each that a budget allows; dense ones change the polish |
+//! | jitter | differentiating strokes a little beside their places, so that a drawing depends less on antialiasing |
 //! | relocation | moving the strokes of least worth to where candidates gain more, during the polish |
 //! | survey | how the squared error depends on the vertices of all strokes, so that the gain of a new point is known |
 //! | join | making one stroke of two that look alike and meet end to end |

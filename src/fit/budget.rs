@@ -52,30 +52,40 @@ pub(super) fn points(
     pixels: usize,
 ) -> Option<usize> {
     let is_limited = config.budget.bytes.is_some() || config.quality_for(pixels).is_some();
-    let most = match config.points {
-        _ if !config.allows_points() => 2.0,
-        Some(most) => recipe.per_stroke.min(most as f32),
-        None => recipe.per_stroke,
-    };
+    let most = per_stroke(config, recipe.per_stroke);
     (!is_limited).then_some((most * strokes as f32) as usize)
 }
 
-/// The recipe for the budget: shorter stages where a polish follows and the number of strokes does not depend on what
-/// stages gain, and a shorter polish where a budget of strokes makes points dense.
-pub(super) fn recipe(config: &Config, pixels: usize) -> Recipe {
+/// Points per stroke, where `usual` is the number of them without a limit on the points of a stroke.
+fn per_stroke(config: &Config, usual: f32) -> f32 {
+    match config.points {
+        _ if !config.allows_points() => 2.0,
+        Some(most) => usual.min(most as f32),
+        None => usual,
+    }
+}
+
+/// The recipe for the budget: where the number of strokes does not depend on what stages gain, these are shorter if a
+/// polish follows, and the polish depends on how dense points are.
+pub(super) fn recipe(config: &Config, base: Option<&Base>, target: &Image) -> Recipe {
+    let pixels = target.width() * target.height();
     let mut recipe = config.recipe();
-    let stages = &mut recipe.stages;
     let is_counted = config.budget.psnr_db.is_none() && config.quality_for(pixels).is_none();
-    if is_counted && config.polish && recipe.polish.iterations > 0 {
-        stages.iterations = (stages.iterations as f32 * stages.polished_share) as usize;
+    if !is_counted || !config.polish || recipe.polish.iterations == 0 {
+        return recipe;
     }
-    let (polish, most) = (&mut recipe.polish, recipe.points);
-    let strokes = config.budget.strokes;
-    let points = strokes.and_then(|strokes| points(config, &most, strokes, pixels));
-    if points.is_some_and(|points| points as f32 * polish.dense > pixels as f32) {
-        polish.iterations = (polish.iterations as f32 * polish.dense_share) as usize;
-    }
-    recipe
+    let stages = &mut recipe.stages;
+    stages.iterations = (stages.iterations as f32 * stages.polished_share) as usize;
+    let Some(strokes) = strokes(config, &recipe, base, target) else {
+        return recipe;
+    };
+    // Strokes of a budget of strokes have many points, which take their time: there a longer polish brings too little.
+    let (usual, sparsest) = match config.budget.bytes {
+        Some(_) => (recipe.points.bought, f32::INFINITY),
+        None => (recipe.points.per_stroke, recipe.polish.sparse),
+    };
+    let points = per_stroke(config, usual) * strokes as f32;
+    recipe.for_density((pixels as f32 / points).min(sparsest))
 }
 
 /// Bytes of a typical stroke, to estimate how many strokes a budget of bytes allows.
@@ -151,6 +161,61 @@ mod tests {
         bytes: Some(100),
         time: None,
     };
+
+    /// The recipe for 64×64 px.
+    fn recipe_for(budget: Budget, points: Option<usize>) -> Recipe {
+        let config = Config {
+            budget,
+            points,
+            ..Config::default()
+        };
+        recipe(&config, None, &Image::filled(64, 64, [0.5; 3]).unwrap())
+    }
+
+    fn strokes_only(strokes: usize) -> Budget {
+        Budget {
+            strokes: Some(strokes),
+            ..Budget::default()
+        }
+    }
+
+    #[test]
+    fn a_polish_is_the_longer_the_sparser_points_are() {
+        let usual = Config::default().recipe();
+        let iterations = |budget| recipe_for(budget, None).polish.iterations;
+        let all = usual.polish.iterations;
+        // 29 and 12 px per point; of bytes, more than 300.
+        assert_eq!(iterations(strokes_only(20)), all);
+        assert_eq!(iterations(strokes_only(50)), all * 65 / 100);
+        let few_bytes = Budget {
+            bytes: Some(300),
+            ..Budget::default()
+        };
+        assert_eq!(iterations(few_bytes), all * 5 / 2);
+        assert_eq!(iterations(strokes_only(1)), all);
+    }
+
+    #[test]
+    fn only_dense_points_are_jittered() {
+        let [dense, straight, sparse] = [(50, None), (50, Some(2)), (20, None)]
+            .map(|(strokes, points)| recipe_for(strokes_only(strokes), points));
+        assert!(dense.polish.jitter.px > 0.0);
+        assert!(dense.domain.min_opacity > sparse.domain.min_opacity);
+        assert_eq!(straight.polish.jitter.px, 0.0, "100 points are not dense");
+        assert_eq!(sparse.polish.jitter.px, 0.0);
+    }
+
+    #[test]
+    fn where_gains_decide_nothing_is_known_of_density() {
+        let psnr = Budget {
+            psnr_db: Some(30.0),
+            ..strokes_only(50)
+        };
+        let usual = Config::default().recipe();
+        for budget in [Budget::default(), psnr] {
+            assert_eq!(recipe_for(budget, None), usual);
+        }
+    }
 
     #[test]
     fn a_drawing_meets_the_first_of_its_budgets() {

@@ -3,7 +3,7 @@
 //! An iteration is one step of the optimiser ([`Descent::step`]). A joint course also switches to full resolution and
 //! relocates strokes between its steps. After every iteration the observer is called, and the state can be kept.
 
-use super::descent::{Aim, Descent};
+use super::descent::{Aim, Descent, Joint};
 use super::points;
 use super::relocation;
 use super::session::Session;
@@ -45,7 +45,7 @@ pub(super) fn descend(
 /// What a joint course does between its steps: it switches to full resolution after its coarse share, and at intervals it
 /// changes the points of strokes and relocates strokes.
 fn rearrange(session: &mut Session<'_>, descent: &mut Descent, step: usize, done: f32) {
-    let Some(limit) = descent.course.joint else {
+    let Some(Joint { limit, .. }) = descent.course.joint else {
         return;
     };
     let (polish, relocation) = (session.recipe.polish, session.recipe.relocation);

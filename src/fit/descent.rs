@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::anneal::Annealing;
 use super::deadline::Timer;
 use super::drawing::Drawing;
-use super::recipe::{Rates, Recipe};
+use super::recipe::{Jitter, Rates, Recipe};
 use super::ties::Ties;
 use crate::optim::{Adam, Optimizer, Schedule};
 use crate::render::{Canvas, Gradients, LOOK};
@@ -29,8 +29,16 @@ pub(super) struct Course {
     pub(super) softness: Option<f32>,
     /// Share of a limited time for descent by which the course has to end.
     pub(super) until: f32,
-    /// Set for a joint course: most strokes of the drawing, frozen ones included.
-    pub(super) joint: Option<usize>,
+    /// Set for a joint course.
+    pub(super) joint: Option<Joint>,
+}
+
+/// What only a joint course of all strokes does.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub(super) struct Joint {
+    /// Most strokes of the drawing, frozen ones included.
+    pub(super) limit: usize,
+    pub(super) jitter: Jitter,
 }
 
 /// Targets other than the picture: settling corrects it for the offsets of the renderers.
@@ -133,7 +141,13 @@ impl Descent {
             Some(from) => annealing.at(from, done),
             None => annealing.last(),
         };
+        let jitter = course.joint.map(|joint| joint.jitter);
+        let jitter = jitter.filter(|jitter| jitter.begins_by(done));
+        let still = jitter.map(|jitter| jitter.apply(drawing.free_mut(), step));
         drawing.differentiate::<false>(edge, aim.map(|aim| aim.targets), &mut self.gradients);
+        if let Some(still) = still {
+            drawing.free_mut().numbers_mut().copy_from_slice(&still);
+        }
         // A time limit may have shortened the course.
         let by_time = course.joint.is_some() || self.hurried_from.is_some();
         let at = if by_time {

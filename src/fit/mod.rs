@@ -29,6 +29,7 @@ mod focus;
 mod forecast;
 mod hidden;
 mod history;
+mod jitter;
 mod masking;
 mod memory;
 mod objective;

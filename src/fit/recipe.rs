@@ -44,6 +44,8 @@ pub struct Recipe {
     pub optimizer: AdamSettings,
     /// The joint fit of all strokes.
     pub polish: Polish,
+    /// What is different where points are dense.
+    pub dense: Dense,
     /// How strokes of little worth make room for better ones during the polish.
     pub relocation: Relocation,
     /// How strokes get and lose points during the polish.
@@ -173,12 +175,12 @@ pub struct Polish {
     /// Iterations; 0 for none. 1,200 instead of 1,000: +0.02 dB on photographs of 2,300 strokes, and less than chance
     /// elsewhere. Drafts 140 instead of 130: +0.04 at 1.05 of the time.
     pub iterations: usize,
-    /// Points are dense if there may be one for fewer pixels than this, by a budget of strokes.
-    pub dense: f32,
-    /// Iterations if points are dense, in units of `iterations`. 1 instead of 0.75, when these were 1,200: +0.2 dB at 1.4
-    /// of the time on 256×256 px at 1,000 strokes, and +0.1 at 1.35 on 320×214 px at 2,300. Of 1,000, on the former (seeds 0
-    /// to 2): 0.7, 0.6 instead of 0.65: +0.12, −0.20 dB at 1.09, 0.90 of the time.
-    pub dense_share: f32,
+    /// Points are sparse if a budget of bytes allows one for more pixels than this. A polish is then longer in proportion to the pixels
+    /// per point, because each point matters more.
+    pub sparse: f32,
+    /// Most iterations where points are sparse, in units of `iterations`. 2.5 instead of 1: eight photographs at 8,000 bytes +0.13 dB, nine
+    /// other pictures at 5,000 bytes +0.34, at 1.8 of the time; 3: +0.02 and −0.02. Drafts stay short.
+    pub sparse_share: f32,
     /// Share of the iterations that keep the resolution of the last stage; the rest are at full resolution. Five photographs
     /// of 768×512 px at 1,024 strokes: 0.6, 0.8 instead of 0.7: +0.02, −0.12 dB at 1.08, 0.93 of the time, and
     /// SSIMULACRA2 −1.0, −0.2. Drafts have too few iterations for that.
@@ -188,8 +190,35 @@ pub struct Polish {
     /// Colours 0.03 and opacity 0.05: −0.01. Drafts, of few iterations: ends by 1.3 px and a last rate of 20 %: +0.05
     /// over 10 %.
     pub rates: Rates,
+    /// None, unless points are dense.
+    pub jitter: Jitter,
     /// Softness at the start, in units of the final one. 1, 1.5, 2.5: −0.19, 0, +0.17 dB; 3: −0.02 against 2.4.
     pub softness: f32,
+}
+
+/// Strokes that are differentiated beside their places, which makes a drawing robust against antialiasing.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Jitter {
+    /// Farthest that a stroke moves along each axis, px; 0 for no jitter.
+    pub px: f32,
+    /// Share of the polish after which strokes are jittered. 0.7, 0.92 instead of 0.85, where points are dense: −0.2, −0.1 dB.
+    pub from: f32,
+}
+
+/// What a budget changes that makes points dense.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Dense {
+    /// Points are dense if a budget allows one for fewer pixels than this.
+    pub pixels: f32,
+    /// Iterations of the polish, in units of `polish.iterations`. 1 instead of 0.75, when these were 1,200: +0.2 dB at 1.4
+    /// of the time on 256×256 px at 1,000 strokes, and +0.1 at 1.35 on 320×214 px at 2,300. Of 1,000, on the former (seeds 0
+    /// to 2): 0.7, 0.6 instead of 0.65: +0.12, −0.20 dB at 1.09, 0.90 of the time.
+    pub share: f32,
+    /// Least opacity. 0.3 instead of 0.1: eight drawings of flat art +0.4 dB, six photographs +0.06. Elsewhere 0.3
+    /// costs flat art one unit of SSIMULACRA2. Not for drafts.
+    pub min_opacity: f32,
+    /// `polish.jitter.px`. 0.1 instead of 0: the eight +0.4 dB, text of 2,500 strokes +2.6, photographs 0.00; elsewhere −0.05. Drafts: −0.8, with the opacity.
+    pub jitter: f32,
 }
 
 /// How strokes of little worth make room for better ones during the polish.
@@ -229,6 +258,8 @@ pub struct Points {
     /// Most points per stroke, on average, of a drawing whose budget is in strokes or in dB. Bytes, or a quality, limit
     /// the points of others.
     pub per_stroke: f32,
+    /// Points per stroke, on average, of a drawing whose budget is in bytes: an estimate, made before it is drawn.
+    pub bought: f32,
     /// Share of a budget of bytes that is planned for strokes of two points; the rest is for more points.
     pub capsules: f32,
     /// Share of a budget of bytes that is filled with points before the file is written.
@@ -484,6 +515,20 @@ impl Points {
 }
 
 impl Recipe {
+    /// The recipe if a budget allows a point for each `pixels` pixels.
+    pub(super) fn for_density(mut self, pixels: f32) -> Self {
+        let (dense, polish) = (self.dense, &mut self.polish);
+        let share = if pixels < dense.pixels {
+            polish.jitter.px = dense.jitter;
+            self.domain.min_opacity = dense.min_opacity;
+            dense.share
+        } else {
+            (pixels / polish.sparse).clamp(1.0, polish.sparse_share)
+        };
+        polish.iterations = (polish.iterations as f32 * share) as usize;
+        self
+    }
+
     /// Iterations that a stroke takes part in: those of its stage and, `is_polished`, those of the polish.
     pub(super) fn iterations(&self, is_polished: bool) -> usize {
         let polish = if is_polished {

@@ -96,7 +96,7 @@ impl<'a> Session<'a> {
         started: Instant,
     ) -> Result<Self> {
         let pixels = picture.width() * picture.height();
-        let recipe = budget::recipe(config, pixels);
+        let recipe = budget::recipe(config, base, picture);
         let limit = budget::strokes(config, &recipe, base, picture);
         let before = Before::of(base);
         let plan = Plan::new(config, &recipe, limit, before, pixels);

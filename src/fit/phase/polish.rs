@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::fit::config::Colors;
 use crate::fit::descend::descend;
-use crate::fit::descent::Course;
+use crate::fit::descent::{Course, Joint};
 use crate::fit::order::{Outcome, Purpose};
 use crate::fit::points;
 use crate::fit::session::Session;
@@ -45,7 +45,10 @@ pub(super) fn run(session: &mut Session<'_>, limit: usize, iterations: usize) ->
         pace: 1.0,
         softness: Some(polish.softness),
         until: Shares::of(session).polish,
-        joint: Some(limit),
+        joint: Some(Joint {
+            limit,
+            jitter: polish.jitter,
+        }),
     };
     let mut descent = session.descent(course);
     descend(session, &mut descent, None)?;

@@ -26,8 +26,10 @@ impl Recipe {
             ("pens.ladder − 1", self.pens.ladder - 1.0),
             ("optimizer.radius_factors", self.optimizer.radius_factors[0]),
             ("edge.final_slope", self.edge.final_slope as f32),
-            ("polish.dense", self.polish.dense),
+            ("dense.pixels", self.dense.pixels),
+            ("polish.sparse", self.polish.sparse),
             ("points.per_stroke", self.points.per_stroke),
+            ("points.bought", self.points.bought),
             ("points.gain", self.points.gain),
             ("points.reach", self.points.reach),
             ("points.shortest", self.points.shortest),
@@ -46,7 +48,9 @@ impl Recipe {
             ("tracing.explained", self.tracing.explained),
             ("edge.annealed", self.edge.annealed),
             ("domain.min_opacity", self.domain.min_opacity),
-            ("polish.dense_share", self.polish.dense_share),
+            ("dense.share", self.dense.share),
+            ("dense.min_opacity", self.dense.min_opacity),
+            ("polish.jitter.from", self.polish.jitter.from),
             ("stages.polished_share", self.stages.polished_share),
             ("polish.coarse_share", self.polish.coarse_share),
             ("relocation.share", self.relocation.share),
@@ -75,6 +79,9 @@ impl Recipe {
             (0.0..=1e6).contains(&margin),
             "0 to 1000000",
         )?;
+        let longest = self.polish.sparse_share;
+        let is_longer = (1.0..=MAX_SPARSE_SHARE).contains(&longest);
+        demand("polish.sparse_share", longest, is_longer, "1 to 1000")?;
         let [least, most] = self.optimizer.radius_factors;
         demand(
             "optimizer.radius_factors",
@@ -118,6 +125,8 @@ impl Recipe {
 
 /// With greater growth, the second stage of any drawing would be its last.
 const MAX_GROWTH: f64 = 100.0;
+/// A polish that is longer by more than this never ends.
+const MAX_SPARSE_SHARE: f32 = 1000.0;
 /// Radius and length of the largest shape that can be probed, in units of the scale.
 const MAX_RADIUS: f32 = 1.0;
 const MAX_LENGTH: f32 = 4.5;
@@ -170,6 +179,7 @@ mod tests {
             "radius_factors",
             "0.25",
         );
+        refused(|r| r.polish.sparse_share = 0.5, "sparse_share", "0.5");
         refused(|r| r.edge.annealed = 1.5, "edge.annealed", "1.5");
         refused(|r| r.relocation.every = 0, "relocation.every", "0");
         refused(|r| r.relocation.share = f32::NAN, "relocation.share", "NaN");

@@ -1,9 +1,9 @@
 //! The numbers of the presets.
 
 use super::{
-    AdamSettings, BackgroundChoice, Correction, Domain, EdgeShape, Joins, Masking, Pens, Points,
-    Polish, Preset, Rates, Recipe, Recoloring, Relocation, Rounds, Settling, ShadeChoice, Sharing,
-    Stages, TimeShares,
+    AdamSettings, BackgroundChoice, Correction, Dense, Domain, EdgeShape, Jitter, Joins, Masking,
+    Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Relocation, Rounds, Settling,
+    ShadeChoice, Sharing, Stages, TimeShares,
 };
 use crate::optim::AdamParams;
 use crate::seed::Probing;
@@ -18,6 +18,7 @@ impl Recipe {
             Preset::Best => Self {
                 polish: Polish {
                     iterations: 3600,
+                    sparse_share: 2.0,
                     rates: Rates {
                         last: 0.03,
                         ..BALANCED.polish.rates
@@ -37,7 +38,9 @@ impl Recipe {
     fn draft() -> Self {
         let Self {
             stages,
+            domain,
             polish,
+            dense,
             relocation,
             settling,
             ..
@@ -55,7 +58,7 @@ impl Recipe {
             },
             polish: Polish {
                 iterations: 130,
-                dense_share: 0.9,
+                sparse_share: 1.0,
                 coarse_share: 0.3,
                 rates: Rates {
                     position: 1.3,
@@ -64,6 +67,12 @@ impl Recipe {
                     ..polish.rates
                 },
                 ..polish
+            },
+            dense: Dense {
+                share: 0.9,
+                min_opacity: domain.min_opacity,
+                jitter: 0.0,
+                ..dense
             },
             relocation: Relocation {
                 every: 20,
@@ -141,8 +150,8 @@ const BALANCED: Recipe = Recipe {
     },
     polish: Polish {
         iterations: 1000,
-        dense: 16.0,
-        dense_share: 0.65,
+        sparse: 160.0,
+        sparse_share: 2.5,
         coarse_share: 0.7,
         rates: Rates {
             position: 2.5,
@@ -151,7 +160,17 @@ const BALANCED: Recipe = Recipe {
             opacity: 0.03,
             last: 0.06,
         },
+        jitter: Jitter {
+            px: 0.0,
+            from: 0.85,
+        },
         softness: 2.4,
+    },
+    dense: Dense {
+        pixels: 16.0,
+        share: 0.65,
+        min_opacity: 0.3,
+        jitter: 0.1,
     },
     relocation: Relocation {
         every: 25,
@@ -167,6 +186,7 @@ const BALANCED: Recipe = Recipe {
         share: 0.5,
         swapped: 0.2,
         per_stroke: 7.0,
+        bought: 4.0,
         capsules: 0.8,
         filled: 0.995,
         reach: 0.5,
