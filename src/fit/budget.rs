@@ -51,9 +51,13 @@ pub(super) fn points(
     strokes: usize,
     pixels: usize,
 ) -> Option<usize> {
-    let is_limited = config.budget.bytes.is_some() || config.quality_for(pixels).is_some();
     let most = per_stroke(config, recipe.per_stroke);
-    (!is_limited).then_some((most * strokes as f32) as usize)
+    (!prices_points(config, pixels)).then_some((most * strokes as f32) as usize)
+}
+
+/// Whether bytes or a price limit the points of a drawing, and not their number.
+pub(super) fn prices_points(config: &Config, pixels: usize) -> bool {
+    config.budget.bytes.is_some() || config.quality_for(pixels).is_some()
 }
 
 /// Points per stroke, where `usual` is the number of them without a limit on the points of a stroke.

@@ -98,11 +98,11 @@ fn edit(session: &mut Session<'_>, spare: f32) -> Vec<Option<usize>> {
     let share = session.price.point_bytes() as f32 / stroke_bytes;
     let prices = least_gains(session).map(|least| least.max(spare * share / points.gain));
     let room = room(session);
-    let most = session.config.points.unwrap_or(usize::MAX);
+    let limits = Limits::of(session);
     let drawing = &mut session.drawing;
     let survey = drawing.survey(LEAST);
     let strokes = drawing.free();
-    let options = |i: usize| Options::new(&survey, strokes.get(i), i, most, &points);
+    let options = |i: usize| Options::new(&survey, strokes.get(i), i, limits, &points);
     let options: Vec<Options> = (0..strokes.len()).into_par_iter().map(options).collect();
     let chosen = choose(options, room, prices, &points);
     drawing.edit(&chosen)
@@ -121,6 +121,26 @@ fn room(session: &Session<'_>) -> usize {
     by_strokes.min(by_bytes)
 }
 
+/// Which edits a stroke may have.
+#[derive(Debug, Clone, Copy)]
+struct Limits {
+    /// Most points of a stroke.
+    most: usize,
+    /// Whether corners may become smooth and control points corners. That needs no point more, but disturbs a fit. So it
+    /// is for drawings whose points have a price; others have more of them than they use.
+    toggles: bool,
+}
+
+impl Limits {
+    fn of(session: &Session<'_>) -> Self {
+        let pixels = session.drawing.pixels();
+        Self {
+            most: session.config.points.unwrap_or(usize::MAX),
+            toggles: budget::prices_points(session.config, pixels),
+        }
+    }
+}
+
 /// The best edit of each kind of one stroke.
 #[derive(Debug, Default)]
 struct Options {
@@ -134,20 +154,23 @@ impl Options {
         survey: &Survey,
         stroke: StrokeRef<'_>,
         index: usize,
-        most: usize,
+        limits: Limits,
         points: &Points,
     ) -> Self {
         if !stroke.is_finite() {
             return Self::default();
         }
         let terrain = Terrain::new(survey, stroke, index);
-        let may_grow = stroke.points.len() < most;
-        let fits = |edit: &Edit| written_points(edit.of(stroke)) <= most;
+        let may_grow = stroke.points.len() < limits.most;
+        let fits = |edit: &Edit| written_points(edit.of(stroke)) <= limits.most;
         let insertion = || edits::best_insertion(&terrain, points).filter(fits);
         // One stroke may have most of all points.
         let (removal, toggle) = rayon::join(
             || edits::best_removal(&terrain),
-            || edits::best_toggle(&terrain).filter(fits),
+            || {
+                let toggle = || edits::best_toggle(&terrain).filter(fits);
+                limits.toggles.then(toggle).flatten()
+            },
         );
         Self {
             insertion: may_grow.then(insertion).flatten(),

@@ -70,6 +70,7 @@ impl Recipe {
             },
             dense: Dense {
                 share: 0.9,
+                position: 1.3,
                 min_opacity: domain.min_opacity,
                 jitter: 0.0,
                 ..dense
@@ -167,8 +168,9 @@ const BALANCED: Recipe = Recipe {
         softness: 2.4,
     },
     dense: Dense {
-        pixels: 16.0,
-        share: 0.65,
+        pixels: 20.0,
+        share: 0.75,
+        position: 1.5,
         min_opacity: 0.3,
         jitter: 0.1,
     },
