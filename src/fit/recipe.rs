@@ -210,13 +210,15 @@ pub struct Jitter {
 pub struct Dense {
     /// Points are dense if a budget allows one for fewer pixels than this.
     pub pixels: f32,
-    /// Iterations of the polish, in units of `polish.iterations`. 1 instead of 0.75, when these were 1,200: +0.2 dB at 1.4
-    /// of the time on 256×256 px at 1,000 strokes, and +0.1 at 1.35 on 320×214 px at 2,300. Of 1,000, on the former (seeds 0
-    /// to 2): 0.7, 0.6 instead of 0.65: +0.12, −0.20 dB at 1.09, 0.90 of the time.
+    /// Iterations of the polish, in units of `polish.iterations`.
     pub share: f32,
-    /// `polish.rates.position`. 1.0, 1.5 instead of 2.5, at 650 iterations: four drawings of flat art +0.8, +0.6 dB, three
-    /// photographs −0.4, −0.1; 1.5 at 750 is 0.1 dB above 2.5 at 650 on these, in the same time.
+    /// `polish.rates.position`. In about the same time, 1.5 and a share of 0.75 instead of 2.5 and 0.65: flat art of 500 to
+    /// 2,500 strokes +0.6 dB, photographs of 1,000 to 2,300 0.0. 1.0 and 1.5 at a share of 0.65: four drawings of flat art
+    /// +0.8, +0.6 dB, four photographs −0.2, 0.0. Where points are not dense, 1.5 costs photographs 0.3 dB.
     pub position: f32,
+    /// Points are so dense that edges cancel edges if a budget allows one for fewer pixels than this. 20 instead of 16: flat
+    /// art of 500 strokes −0.4 dB.
+    pub canceling: f32,
     /// Least opacity. 0.3 instead of 0.1: eight drawings of flat art +0.4 dB, six photographs +0.06. Elsewhere 0.3
     /// costs flat art one unit of SSIMULACRA2. Not for drafts.
     pub min_opacity: f32,
@@ -521,10 +523,12 @@ impl Recipe {
     /// The recipe if a budget allows a point for each `pixels` pixels.
     pub(super) fn for_density(mut self, pixels: f32) -> Self {
         let (dense, polish) = (self.dense, &mut self.polish);
-        let share = if pixels < dense.pixels {
+        if pixels < dense.canceling {
             polish.jitter.px = dense.jitter;
-            polish.rates.position = dense.position;
             self.domain.min_opacity = dense.min_opacity;
+        }
+        let share = if pixels < dense.pixels {
+            polish.rates.position = dense.position;
             dense.share
         } else {
             (pixels / polish.sparse).clamp(1.0, polish.sparse_share)

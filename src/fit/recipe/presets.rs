@@ -171,6 +171,7 @@ const BALANCED: Recipe = Recipe {
         pixels: 20.0,
         share: 0.75,
         position: 1.5,
+        canceling: 16.0,
         min_opacity: 0.3,
         jitter: 0.1,
     },
