@@ -28,7 +28,6 @@ impl Recipe {
             ("edge.final_slope", self.edge.final_slope as f32),
             ("dense.pixels", self.dense.pixels),
             ("dense.position", self.dense.position),
-            ("dense.canceling", self.dense.canceling),
             ("polish.sparse", self.polish.sparse),
             ("points.per_stroke", self.points.per_stroke),
             ("points.bought", self.points.bought),

@@ -168,10 +168,9 @@ const BALANCED: Recipe = Recipe {
         softness: 2.4,
     },
     dense: Dense {
-        pixels: 20.0,
+        pixels: 16.0,
         share: 0.75,
         position: 1.5,
-        canceling: 16.0,
         min_opacity: 0.3,
         jitter: 0.1,
     },
