@@ -190,9 +190,7 @@ mod tests {
         let all = usual.polish.iterations;
         // 29 and 12 px per point; of bytes, more than 300.
         assert_eq!(iterations(strokes_only(20)), all);
-        let dense = (all as f32 * usual.dense.share) as usize;
-        assert!(dense < all);
-        assert_eq!(iterations(strokes_only(50)), dense);
+        assert_eq!(iterations(strokes_only(50)), all * 75 / 100);
         let few_bytes = Budget {
             bytes: Some(300),
             ..Budget::default()

@@ -164,13 +164,11 @@ impl Options {
         let may_grow = stroke.points.len() < limits.most;
         let fits = |edit: &Edit| written_points(edit.of(stroke)) <= limits.most;
         let insertion = || edits::best_insertion(&terrain, points).filter(fits);
+        let toggled = limits.toggles.then_some(&terrain);
         // One stroke may have most of all points.
         let (removal, toggle) = rayon::join(
             || edits::best_removal(&terrain),
-            || {
-                let toggle = || edits::best_toggle(&terrain).filter(fits);
-                limits.toggles.then(toggle).flatten()
-            },
+            || edits::best_toggle(toggled?).filter(fits),
         );
         Self {
             insertion: may_grow.then(insertion).flatten(),

@@ -45,6 +45,12 @@ impl Recipe {
             settling,
             ..
         } = BALANCED;
+        let rates = Rates {
+            position: 1.3,
+            radius: 0.3,
+            last: 0.2,
+            ..polish.rates
+        };
         Self {
             stages: Stages {
                 scale: 0.25,
@@ -60,17 +66,12 @@ impl Recipe {
                 iterations: 130,
                 sparse_share: 1.0,
                 coarse_share: 0.3,
-                rates: Rates {
-                    position: 1.3,
-                    radius: 0.3,
-                    last: 0.2,
-                    ..polish.rates
-                },
+                rates,
                 ..polish
             },
             dense: Dense {
                 share: 0.9,
-                position: 1.3,
+                position: rates.position,
                 min_opacity: domain.min_opacity,
                 jitter: 0.0,
                 ..dense
