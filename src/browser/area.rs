@@ -1,5 +1,6 @@
 //! How much of each pixel an outline covers.
 
+use std::cmp::Ordering;
 use std::ops::Range;
 
 use super::outline::{Outline, Piece};
@@ -59,29 +60,34 @@ impl Area {
             side.iter()
                 .for_each(|edge| self.slice(edge, turn, &mut slices));
         }
-        slices.sort_by(|a, b| {
-            a.quarter
-                .cmp(&b.quarter)
-                .then(a.middle().total_cmp(&b.middle()))
-        });
+        slices.sort_by(Slice::order);
         let mut rows = NOWHERE;
         for quarter in slices.chunk_by(|a, b| a.quarter == b.quarter) {
             let y = quarter[0].quarter / 4;
             let mut winding = 0;
+            let mut left = None;
             for slice in quarter {
-                let before = winding;
                 winding += slice.turn;
-                let sign = match (before, winding) {
-                    (0, _) => 1.0,
-                    (_, 0) => -1.0,
-                    _ => continue,
-                };
-                let [top, bottom] = slice.x;
-                self.add_piece(y, Point::new(top, 0.0), Point::new(bottom, 0.25), sign);
+                if winding == 0 {
+                    if let Some(left) = left.take() {
+                        self.add_between(y, left, slice.x);
+                    }
+                } else if left.is_none() {
+                    left = Some(slice.x);
+                }
             }
             rows = union(&rows, &(y..y + 1));
         }
         self.paint(rows, paint);
+    }
+
+    /// Adds what lies between two edges in a quarter of row `y`, each by its x at the top and at the bottom.
+    fn add_between(&mut self, y: usize, [l, to_l]: [f32; 2], [r, to_r]: [f32; 2]) {
+        let meet = 0.5 * (l.min(to_l).max(r.min(to_r)) + l.max(to_l).min(r.max(to_r)));
+        let ends = if to_l > to_r { [meet; 2] } else { [to_l, to_r] };
+        for ((top, bottom), sign) in [(l, ends[0]), (r, ends[1])].into_iter().zip([1.0, -1.0]) {
+            self.add_piece(y, Point::new(top, 0.0), Point::new(bottom, 0.25), sign);
+        }
     }
 
     /// Appends the parts of an edge in each quarter of a row on the picture.
@@ -183,8 +189,12 @@ struct Slice {
 }
 
 impl Slice {
-    fn middle(&self) -> f32 {
-        0.5 * (self.x[0] + self.x[1])
+    /// From the top to the bottom, and from the left to the right where a quarter begins: edges may cross further down.
+    fn order(&self, other: &Self) -> Ordering {
+        let ([top, bottom], [other_top, other_bottom]) = (self.x, other.x);
+        let by_quarter = self.quarter.cmp(&other.quarter);
+        let by_top = by_quarter.then(top.total_cmp(&other_top));
+        by_top.then(bottom.total_cmp(&other_bottom))
     }
 }
 
@@ -194,12 +204,21 @@ fn union(a: &Range<usize>, b: &Range<usize>) -> Range<usize> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::contour::Contour;
+    use super::super::window::Window;
     use super::*;
+    use crate::scene::{Path, Stroke};
 
     /// Coverages of a stroke on 12×10 px.
     fn covered(a: [f32; 2], b: [f32; 2], radius: f32) -> Vec<Vec<u8>> {
+        let contour = Contour::of(&Stroke {
+            path: Path::line(a.into(), b.into()),
+            radius,
+            color: [0.0; 3],
+            opacity: 1.0,
+        });
         let mut outline = Outline::default();
-        outline.trace(a.into(), b.into(), radius);
+        outline.follow(&contour, Window::all(12, 10)[0]);
         let mut rows = vec![vec![0; 12]; 10];
         let mut area = Area::new(12, 10);
         for _ in 0..2 {

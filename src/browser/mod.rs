@@ -27,13 +27,22 @@
 //! ```
 
 mod area;
-mod bend;
+mod contour;
+mod curve;
 mod outline;
+mod pieces;
+mod side;
+mod window;
+
+use rayon::prelude::*;
 
 use area::Area;
+use contour::Contour;
 use outline::Outline;
+use window::Window;
 
 use crate::image::Image;
+use crate::math::Point;
 use crate::scene::{Stroke, quantum};
 
 /// The strokes, back to front, on each of the `pages`, which are opaque and of one size.
@@ -41,33 +50,63 @@ pub fn draw<'a>(strokes: impl Iterator<Item = &'a Stroke>, pages: &[Image]) -> V
     let Some((width, height)) = pages.first().map(|page| (page.width(), page.height())) else {
         return Vec::new();
     };
-    let (mut outline, mut area) = (Outline::default(), Area::new(width, height));
+    let shapes: Vec<Shape> = strokes.map(Shape::of).collect();
     let mut pictures: Vec<Vec<u8>> = pages.iter().map(Image::to_rgb8).collect();
-    for stroke in strokes {
-        let paint = Paint::of(stroke);
-        let lay = |y: usize, x: usize, coverages: &[u8]| {
-            for picture in &mut pictures {
-                paint.lay(&mut picture[3 * (y * width + x)..], coverages);
-            }
-        };
-        match stroke.path.points() {
-            [only] => {
-                outline.trace(only.at, only.at, stroke.radius);
-                area.fill(&outline, lay);
-            }
-            [a, b] if a.is_on && b.is_on => {
-                outline.trace(a.at, b.at, stroke.radius);
-                area.fill(&outline, lay);
-            }
-            _ => {
-                outline.clear();
-                bend::trace(&stroke.path, stroke.radius, &mut outline);
-                area.fill_winding(&outline, lay);
-            }
+    let windows = Window::all(width, height);
+    let drawn: Vec<Vec<Vec<u8>>> = windows
+        .par_iter()
+        .map(|&window| {
+            let seen = pictures.iter().map(|rgb| window.cut_out(rgb, width));
+            draw_window(&shapes, window, seen.collect())
+        })
+        .collect();
+    for (window, seen) in windows.iter().zip(&drawn) {
+        for (picture, seen) in pictures.iter_mut().zip(seen) {
+            window.put_back(seen, picture, width);
         }
     }
     let pictures = pictures.iter();
     pictures.map(|rgb| image(rgb, width, height)).collect()
+}
+
+/// What a window shows of `shapes`, on `pictures` of its size.
+fn draw_window(shapes: &[Shape], window: Window, mut pictures: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
+    let [width, height] = window.size;
+    let (mut outline, mut area) = (Outline::default(), Area::new(width, height));
+    for shape in shapes.iter().filter(|shape| window.touches(shape.bounds)) {
+        outline.follow(&shape.contour, window);
+        let lay = |y: usize, x: usize, coverages: &[u8]| {
+            for picture in &mut pictures {
+                shape
+                    .paint
+                    .lay(&mut picture[3 * (y * width + x)..], coverages);
+            }
+        };
+        if shape.contour.is_convex {
+            area.fill(&outline, lay);
+        } else {
+            area.fill_winding(&outline, lay);
+        }
+    }
+    pictures
+}
+
+/// A stroke that is ready to be drawn.
+struct Shape {
+    contour: Contour,
+    bounds: [Point; 2],
+    paint: Paint,
+}
+
+impl Shape {
+    fn of(stroke: &Stroke) -> Self {
+        let contour = Contour::of(stroke);
+        Self {
+            bounds: contour.bounds(),
+            contour,
+            paint: Paint::of(stroke),
+        }
+    }
 }
 
 fn image(rgb: &[u8], width: usize, height: usize) -> Image {

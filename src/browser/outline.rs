@@ -1,8 +1,11 @@
-//! The outline that a stroke is filled by.
+//! The outline that a contour is filled by, within a window.
 
+use super::contour::{Contour, Part};
+use super::curve::{monotone, on_parabola};
+use super::window::Window;
 use crate::math::{Point, Vector};
 
-/// A straight piece of an outline, px.
+/// A straight piece of an outline, px of its window.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Piece {
     pub(super) top: Point,
@@ -27,138 +30,59 @@ impl Piece {
     }
 }
 
-/// An outline by its left and its right side, each from top to bottom.
+/// An outline by its left and its right side.
 #[derive(Debug, Default)]
 pub(super) struct Outline {
     pub(super) sides: [Vec<Piece>; 2],
 }
 
 impl Outline {
-    /// Replaces the outline by that of the stroke from `a` to `b`: two lines and four quarter circles.
-    pub(super) fn trace(&mut self, a: Point, b: Point, radius: f32) {
-        self.clear();
-        let direction = (b - a).try_normalize(0.0);
-        let along = direction.unwrap_or(Vector::new(1.0, 0.0)) * radius;
-        let across = left_of(along);
-        self.line(a + across, b + across);
-        self.turn(b, across, along);
-        self.turn(b, along, -across);
-        self.line(b - across, a - across);
-        self.turn(a, -across, -along);
-        self.turn(a, -along, across);
-        for side in &mut self.sides {
-            side.sort_by(|e, f| e.top.y.total_cmp(&f.top.y));
-        }
-        self.run_on();
-    }
-
-    /// Takes everything away.
-    pub(super) fn clear(&mut self) {
+    /// Replaces the outline by that of `contour`, as `window` shows it. Each side of a convex one goes from top to bottom.
+    pub(super) fn follow(&mut self, contour: &Contour, window: Window) {
         self.sides.iter_mut().for_each(Vec::clear);
-    }
-
-    /// Adds the rectangle around the segment from `a` to `b`; `along` is the radius in its direction.
-    pub(super) fn add_line(&mut self, a: Point, b: Point, along: Vector) {
-        let across = left_of(along);
-        self.line(a + across, b + across);
-        self.line(b + across, b - across);
-        self.line(b - across, a - across);
-        self.line(a - across, a + across);
-    }
-
-    /// Adds the area that a line across a curve sweeps.
-    pub(super) fn add_curve(&mut self, curve: Curve, radius: f32) {
-        let ends = |curve: Curve| [0.0, 1.0].map(|t| curve.beside(t, radius).0);
-        let [[start, end], [back, home]] = [curve, curve.reversed()].map(ends);
-        self.beside(curve, radius, [0.0, 1.0], MAX_HALVINGS);
-        self.line(end, back);
-        self.beside(curve.reversed(), radius, [0.0, 1.0], MAX_HALVINGS);
-        self.line(home, start);
-    }
-
-    /// Adds the half disc beyond the end `b` of a stroke that comes `along`.
-    pub(super) fn add_cap(&mut self, b: Point, along: Vector) {
-        let across = left_of(along);
-        self.turn(b, across, along);
-        self.turn(b, along, -across);
-        self.line(b - across, b + across);
-    }
-
-    /// Adds the sector of a disc on the outside of a bend at `p`, from the direction `before` to `after`. If it is more
-    /// than a quarter, its first arc is a quarter.
-    pub(super) fn add_join(&mut self, p: Point, before: Vector, after: Vector) {
-        let turns_left = before.perp(&after) < 0.0;
-        let [from, to] = if turns_left {
-            [left_of(-after), left_of(-before)]
-        } else {
-            [left_of(before), left_of(after)]
+        let is_cut = !window.contains(contour.bounds());
+        let mut add = |is_down: bool, part: Part| {
+            if is_cut {
+                window.clip(part, |part| self.add(is_down, part));
+            } else {
+                self.add(is_down, part);
+            }
         };
-        self.line(p, p + from);
-        if before.dot(&after) > 0.0 {
-            self.turn(p, from, to);
-        } else {
-            self.turn(p, from, before);
-            self.turn(p, before, to);
+        for part in &contour.parts {
+            match part.seen_from(window.origin()) {
+                Part::Line([a, b]) => {
+                    let is_down = a.y < b.y;
+                    add(is_down, Part::Line(if is_down { [a, b] } else { [b, a] }));
+                }
+                Part::Parabola(points) => monotone(points, 1).for_each(|[a, c, b]| {
+                    let is_down = a.y <= b.y;
+                    add(
+                        is_down,
+                        Part::Parabola(if is_down { [a, c, b] } else { [b, c, a] }),
+                    );
+                }),
+            }
         }
-        self.line(p + to, p);
-    }
-
-    /// The left side of a part of a curve, as parabolas. One that turns by more than a quarter, or is not
-    /// [`near`](is_near) the side in its middle, is halved.
-    fn beside(&mut self, curve: Curve, radius: f32, [start, end]: [f32; 2], halvings: u32) {
-        let half = 0.5 * (start + end);
-        let [(from, d_from), middle, (to, d_to)] =
-            [start, half, end].map(|t| curve.beside(t, radius));
-        let (gap, turn) = (to - from, d_from.perp(&d_to));
-        // How far it is along both tangents to where they cross.
-        let (ahead, behind) = (gap.perp(&d_to) / turn, d_from.perp(&gap) / turn);
-        let crosses = ahead * behind > 0.0;
-        let knee = from + if crosses { d_from * ahead } else { gap * 0.5 };
-        let is_plain = crosses || d_from.dot(&d_to) > 0.0;
-        let is_wide = (knee - from).dot(&(knee - to)) <= 0.0;
-        let parabola = [from, knee, to];
-        if halvings == 0 || is_plain && is_wide && is_near(parabola, middle) {
-            monotone(parabola).for_each(|part| self.chords(part));
-            return;
+        if contour.is_convex {
+            for side in &mut self.sides {
+                side.sort_by(|e, f| e.top.y.total_cmp(&f.top.y));
+            }
+            self.run_on();
         }
-        self.beside(curve, radius, [start, half], halvings - 1);
-        self.beside(curve, radius, [half, end], halvings - 1);
     }
 
-    /// An arc of a quarter or less.
-    fn turn(&mut self, center: Point, from: Vector, to: Vector) {
-        self.arc(center, from, to, QUARTER_BULGE * from.norm());
-    }
-
-    fn line(&mut self, from: Point, to: Point) {
-        let is_down = from.y < to.y;
-        let (top, bottom) = if is_down { (from, to) } else { (to, from) };
-        self.push(is_down, snapped(top), snapped(bottom), false);
-    }
-
-    /// The arc around `center` from `from` to `to`, as parabolas that touch it at their ends. One parabola would
-    /// reach `bulge` px outside of the arc; beyond [`MAX_BULGE`] the arc is halved.
-    fn arc(&mut self, center: Point, from: Vector, to: Vector, bulge: f32) {
-        let sum = from + to;
-        let cosine = from.dot(&to) / from.norm_squared();
-        if bulge > MAX_BULGE {
-            let middle = sum / (2.0 + 2.0 * cosine).sqrt();
-            self.arc(center, from, middle, bulge / 4.0);
-            self.arc(center, middle, to, bulge / 4.0);
-            return;
-        }
-        let knee = sum / (1.0 + cosine);
-        for part in monotone([from, knee, to].map(|v| center + v)) {
-            self.chords(part);
+    /// Adds a part that goes down, or stands for one that `is_down`.
+    fn add(&mut self, is_down: bool, part: Part) {
+        match part {
+            Part::Line([top, bottom]) => self.push(is_down, snapped(top), snapped(bottom), false),
+            Part::Parabola(points) => self.chords(is_down, points),
         }
     }
 
     /// The chords of a parabola that does not turn back in y. Snapping its upper end shifts the whole parabola. The
     /// end of a tall chord moves along it to a whole px, that of another only in y, but never below the snapped
     /// lower end.
-    fn chords(&mut self, [from, knee, to]: [Point; 3]) {
-        let is_down = from.y <= to.y;
-        let (start, end) = if is_down { (from, to) } else { (to, from) };
+    fn chords(&mut self, is_down: bool, [start, knee, end]: [Point; 3]) {
         let (mut top, last) = (snapped(start), snapped(end));
         let shift = Vector::new(0.0, top.y - start.y);
         let count = chord_count(start, knee, end);
@@ -180,7 +104,7 @@ impl Outline {
         }
     }
 
-    /// Adds an edge to its side. The outline is traced with its inside on the right, so an edge that goes down
+    /// Adds an edge to its side. A contour is traced with its inside on the right, so an edge that goes down
     /// belongs to the right side.
     fn push(&mut self, is_down: bool, top: Point, bottom: Point, goes_on: bool) {
         if top.y < bottom.y {
@@ -208,104 +132,6 @@ impl Outline {
     }
 }
 
-/// Enough for the sharpest bend of a parabola.
-const MAX_HALVINGS: u32 = 10;
-
-/// A parabola whose control point is at neither end.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Curve(pub(super) [Point; 3]);
-
-impl Curve {
-    fn reversed(self) -> Self {
-        let Self([a, c, b]) = self;
-        Self([b, c, a])
-    }
-
-    /// The direction at `t`; that of the end where the curve comes to a halt.
-    pub(super) fn direction(self, t: f32) -> Vector {
-        let Self([a, c, b]) = self;
-        let speed = (c - a) * (1.0 - t) + (b - c) * t;
-        let direction = speed.try_normalize(0.0).or((b - c).try_normalize(0.0));
-        direction.unwrap_or(Vector::new(1.0, 0.0))
-    }
-
-    /// The point `radius` to the left of that at `t`, and the direction there.
-    fn beside(self, t: f32, radius: f32) -> (Point, Vector) {
-        let Self([a, c, b]) = self;
-        let direction = self.direction(t);
-        (
-            on_parabola(a, c, b, t) + left_of(direction) * radius,
-            direction,
-        )
-    }
-
-    /// The point where a curve turns back that lies on a line, or nearly so.
-    pub(super) fn turning_point(self) -> Option<Point> {
-        let Self([a, c, b]) = self;
-        let (there, back) = (c - a, b - c);
-        let longer = if there.norm() > back.norm() {
-            there
-        } else {
-            back
-        };
-        let is_straight = there.perp(&back).abs() <= FLAT * longer.norm();
-        let t = there.dot(&longer) / (there - back).dot(&longer);
-        (is_straight && there.dot(&back) < 0.0).then(|| on_parabola(a, c, b, t))
-    }
-}
-
-/// Width in px within which a curve is a line.
-const FLAT: f32 = 0.01;
-
-/// The vector to the left of another, of its length, as seen with y down.
-fn left_of(along: Vector) -> Vector {
-    Vector::new(along.y, -along.x)
-}
-
-/// How far the parabola of a quarter is outside of a circle of radius 1. That of half an arc is a quarter as far.
-const QUARTER_BULGE: f32 = 0.0607;
-
-/// How far outside a parabola may be, px.
-const MAX_BULGE: f32 = 0.25;
-
-/// Whether a parabola is at most [`MAX_BULGE`] away from a point that it should go through in this direction. If it
-/// comes by before or after its middle, it has to be nearer.
-fn is_near([from, knee, to]: [Point; 3], (point, direction): (Point, Vector)) -> bool {
-    let away = |t: f32| on_parabola(from, knee, to, t) - point;
-    if away(0.5).norm() <= MAX_BULGE {
-        return true;
-    }
-    // It comes by where at² + bt + c = 0.
-    let along = |v: Vector| v.dot(&direction);
-    let (a, b, c) = (
-        along((from - knee) + (to - knee)),
-        2.0 * along(knee - from),
-        along(from - point),
-    );
-    let root = (b * b - 4.0 * a * c).sqrt();
-    let q = -0.5 * (b + root.copysign(b));
-    let mut passes = [q / a, c / q]
-        .into_iter()
-        .filter(|t| (0.0..=1.0).contains(t));
-    let (Some(t), None) = (passes.next(), passes.next()) else {
-        return false;
-    };
-    away(t).norm() <= MAX_BULGE * (1.0 - 2.0 * (t - 0.5).abs())
-}
-
-/// The parabola, in two where it turns back in y.
-fn monotone([from, knee, to]: [Point; 3]) -> impl Iterator<Item = [Point; 3]> {
-    let (before, after) = (knee.y - from.y, to.y - knee.y);
-    if before * after >= 0.0 {
-        return [Some([from, knee, to]), None].into_iter().flatten();
-    }
-    let t = before / (before - after);
-    let turn = on_parabola(from, knee, to, t);
-    let knees = [from + (knee - from) * t, knee + (to - knee) * t].map(|p| Point::new(p.x, turn.y));
-    let parts = [[from, knees[0], turn], [turn, knees[1], to]];
-    parts.map(Some).into_iter().flatten()
-}
-
 /// Two chords for a parabola that bends by less than 4 px, and twice as many for each four times of that.
 fn chord_count(start: Point, knee: Point, end: Point) -> u32 {
     let bend = ((knee - start) - (end - knee)).abs();
@@ -321,11 +147,6 @@ const MAX_CHORDS: u32 = 64;
 
 /// Height of a tall chord, px.
 const TALL: f32 = 2.0;
-
-fn on_parabola(start: Point, knee: Point, end: Point, t: f32) -> Point {
-    let u = 1.0 - t;
-    Point::from(start.coords * (u * u) + knee.coords * (2.0 * t * u) + end.coords * (t * t))
-}
 
 /// The point with its y rounded to a quarter of a px; x stays.
 fn snapped(p: Point) -> Point {
@@ -360,9 +181,17 @@ fn is_slight(side: &[Piece], i: usize) -> bool {
 mod tests {
     use super::*;
 
+    use crate::scene::{Path, Stroke};
+
     fn outline(a: [f32; 2], b: [f32; 2], radius: f32) -> Outline {
         let mut outline = Outline::default();
-        outline.trace(a.into(), b.into(), radius);
+        let contour = Contour::of(&Stroke {
+            path: Path::line(a.into(), b.into()),
+            radius,
+            color: [0.0; 3],
+            opacity: 1.0,
+        });
+        outline.follow(&contour, Window::all(200, 200)[0]);
         outline
     }
 
