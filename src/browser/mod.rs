@@ -1,17 +1,21 @@
 //! A model of how a browser draws strokes: Chromium on the CPU, as version 156 was seen to.
 //!
-//! The rules were found from Chromium's pictures of single strokes and of stacks of them. Each half of a cap is
-//! two parabolas, up to 1/4 px outside of the circle. A parabola becomes a few chords. The y of every end of a
-//! chord or line is rounded to a quarter of a px, and a slight bend within a row of pixels is moved to the next
-//! row. The end of a chord that is 2 px high or more moves along it to a whole px instead. A pixel's coverage is the exact area inside of this outline, 0 to 255. Products of colours, opacities
-//! and coverages are rounded down, so that each translucent stroke darkens a picture by half a level, where
-//! tiny-skia brightens it.
+//! The rules were found from Chromium's pictures of single strokes and of stacks of them, and follow Skia's stroker and
+//! its rasteriser with analytic antialiasing:
 //!
-//! A stroke of several pieces is filled by the rule `nonzero`, as the union of its pieces, of the outside of each bend
-//! and of its caps. The sides of a curve are parabolas as well, up to 1/4 px away: as few as Skia's stroker takes.
+//! - A stroke becomes a `contour`: both sides (`side`) of its `pieces`, arcs on the outside of bends, and caps. Sides of curves are
+//!   parabolas up to 1/4 px away, arcs are parabolas up to 1/4 px outside.
+//! - The page is drawn in tiles, and each clips contours to its `window`.
+//! - The `outline` within a window is made of lines: a parabola becomes a few chords. The y of every end of a chord or
+//!   line is rounded to a quarter of a px, and a slight bend of a capsule's side within a row of pixels is moved to the
+//!   next row. The end of a chord that is 2 px high or more moves along it to a whole px instead.
+//! - A pixel's coverage is the exact `area` inside of this outline, 0 to 255, by the rule `nonzero`. Where edges cross, their order
+//!   is that at the top of a quarter of a row.
+//! - Products of colours, opacities and coverages are rounded down, so that each translucent stroke darkens a picture
+//!   by half a level, where tiny-skia brightens it.
 //!
-//! On drawings of 2,000 strokes the model agrees with Chromium to 53 to 57 dB, and resvg to 39 to 47; on random
-//! polylines to 52, on random curves to 46 to 55, and resvg to 38 to 44 (docs/engines.md).
+//! On drawings of 500 strokes and more the model agrees with Chromium to 54 to 57 dB, where resvg does to 39 to 47; on single strokes
+//! that bend, to 51 to 63 (docs/engines.md).
 //!
 //! ```
 //! use strokefit::browser;

@@ -83,10 +83,15 @@ pub(super) fn recipe(config: &Config, base: Option<&Base>, target: &Image) -> Re
     let Some(strokes) = strokes(config, &recipe, base, target) else {
         return recipe;
     };
+    let usual = match config.budget.bytes {
+        Some(_) => recipe.points.bought,
+        None => recipe.points.per_stroke,
+    };
     // Strokes of a budget of strokes have many points, which take their time: there a longer polish brings too little.
-    let (usual, sparsest) = match config.budget.bytes {
-        Some(_) => (recipe.points.bought, f32::INFINITY),
-        None => (recipe.points.per_stroke, recipe.polish.sparse),
+    let sparsest = if config.budget.bytes.is_none() && config.allows_points() {
+        recipe.polish.sparse
+    } else {
+        f32::INFINITY
     };
     let points = per_stroke(config, usual) * strokes as f32;
     recipe.for_density((pixels as f32 / points).min(sparsest))
@@ -197,6 +202,8 @@ mod tests {
         };
         assert_eq!(iterations(few_bytes), all * 5 / 2);
         assert_eq!(iterations(strokes_only(1)), all);
+        let straight = recipe_for(strokes_only(1), Some(2));
+        assert_eq!(straight.polish.iterations, all * 5 / 2);
     }
 
     #[test]
