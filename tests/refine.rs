@@ -227,6 +227,30 @@ fn a_base_that_meets_a_budget_is_written_as_it_is() {
     }
 }
 
+/// Fitting anew what a budget leaves little room for may end worse than it began.
+#[test]
+fn a_base_that_is_better_than_its_refinement_is_kept() {
+    let place = Place::new();
+    let picture = committed("samples/rocket-320.png");
+    for seed in ["0", "1", "2"] {
+        let within = ["--bytes", "3000", "--seed", seed];
+        let base = draft(&place, &[&["fit", &picture], &within[..]].concat(), "a.svg");
+        let refine = ["refine", "a.svg", &picture];
+        let refined = draft(&place, &[&refine, &within[..]].concat(), "b.svg");
+        assert!(
+            refined >= base,
+            "seed {seed}: {base:.2} dB, then {refined:.2}"
+        );
+        // The base is translucent, and stays only where it may.
+        draft(
+            &place,
+            &[&refine, &within[..], &["--opaque"]].concat(),
+            "c.svg",
+        );
+        assert!(!read(&place, "c.svg").contains("opacity"));
+    }
+}
+
 #[test]
 fn a_traced_picture_gains_and_stays_as_it_is() {
     let place = Place::new();

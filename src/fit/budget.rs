@@ -118,6 +118,18 @@ pub(super) fn needs_file(budget: &Budget, recipe: &Recipe) -> bool {
     recipe.settling.rounds > 0 || budget.psnr_db.is_some() || budget.bytes.is_some()
 }
 
+/// Whether of two files the one is taken that serves the budget better, and not the one that is worth its price.
+pub(super) fn compares_files(config: &Config, recipe: &Recipe) -> bool {
+    let Budget {
+        strokes,
+        psnr_db,
+        bytes,
+        ..
+    } = config.budget;
+    let is_limited = strokes.is_some() || bytes.is_some() || psnr_db.is_some();
+    is_limited && config.quality.is_none() && needs_file(&config.budget, recipe)
+}
+
 /// The first budget that a drawing of `strokes` strokes, written as `file`, meets.
 pub(super) fn met(budget: &Budget, strokes: usize, file: &RenderedFile) -> Option<Stop> {
     let is_reached = |db| psnr_db(file.mse) >= db;

@@ -9,7 +9,7 @@ use super::widths::Widths;
 use crate::coverage::CoverageSchedule;
 use crate::error::{Error, ErrorKind, Result};
 use crate::math;
-use crate::scene::{MAX_POINTS, MAX_PRECISION, Rgb, Scene, quantum};
+use crate::scene::{MAX_POINTS, MAX_PRECISION, Rgb, Scene, Stroke, quantum};
 use crate::svg::{Form, WriteOptions};
 use crate::threads::Workers;
 
@@ -182,6 +182,12 @@ impl Config {
     pub(super) fn allows_points(&self) -> bool {
         let pays = self.file.form != Form::Outlines;
         self.points.map_or(pays, |most| most > 2)
+    }
+
+    /// Whether a stroke is as opaque, and has as few points, as all strokes have to be.
+    pub(super) fn allows(&self, stroke: &Stroke) -> bool {
+        let points = stroke.path.points().len();
+        self.points.is_none_or(|most| points <= most) && (!self.opaque || stroke.opacity >= 1.0)
     }
 
     /// The quality that sets the price of a stroke in a drawing of `pixels` pixels, unless strokes are free.

@@ -9,11 +9,17 @@ use crate::fit::result::Stop;
 use crate::fit::session::Session;
 use crate::math;
 
-/// Ends the fit if the base, as it is, already meets a budget.
+/// Ends the fit if the base, as it is, already meets a budget. Otherwise the base is the best file until another one is
+/// better.
 pub(in crate::fit) fn try_base(session: &mut Session<'_>) -> Result<Outcome> {
     let file = session.writer.render(&session.drawing)?;
     let strokes = session.drawing.len();
     let Some(stop) = budget::met(&session.config.budget, strokes, &file) else {
+        let allows = |stroke| session.config.allows(stroke);
+        let is_allowed = file.rounded.scene.strokes().all(allows);
+        if is_allowed && budget::compares_files(session.config, &session.recipe) {
+            session.set_best(file);
+        }
         return Ok(Outcome::Over);
     };
     session.history.stop = stop;
