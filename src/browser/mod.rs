@@ -34,6 +34,7 @@ mod area;
 mod contour;
 mod curve;
 mod outline;
+mod part;
 mod pieces;
 mod side;
 mod window;

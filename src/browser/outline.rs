@@ -1,7 +1,8 @@
 //! The outline that a contour is filled by, within a window.
 
-use super::contour::{Contour, Part};
+use super::contour::Contour;
 use super::curve::{monotone, on_parabola};
+use super::part::Part;
 use super::window::Window;
 use crate::math::{Point, Vector};
 

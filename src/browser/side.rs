@@ -1,7 +1,7 @@
 //! One side of a stroke, or its whole contour, as it is being traced.
 
-use super::contour::Part;
 use super::curve::{Curve, left_of, on_parabola};
+use super::part::Part;
 use crate::math::{Point, Vector};
 
 /// A line of parts that join.

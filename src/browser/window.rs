@@ -6,8 +6,8 @@
 
 use std::ops::Range;
 
-use super::contour::Part;
 use super::curve::{monotone, on_parabola};
+use super::part::Part;
 use crate::math::{Point, Vector};
 
 /// A tile, or the part of it that is on the picture.
