@@ -130,6 +130,7 @@ impl Sides {
         } else if let ([first, ..], [.., last]) = (pieces, pieces) {
             left.cap(last.end(), directions(last)[1] * radius);
             left.parts.extend(back);
+            // The way back along the right side has led here.
             left.end = right_start;
             left.cap(first.start(), -directions(first)[0] * radius);
         }
