@@ -11,6 +11,8 @@ use crate::scene::{Piece, Stroke};
 #[derive(Debug)]
 pub(super) struct Contour {
     pub(super) parts: Vec<Part>,
+    /// The smallest and the largest coordinates of its ends and control points.
+    pub(super) bounds: [Point; 2],
     /// Whether it is that of a capsule. Any other may turn anywhere and cross itself.
     pub(super) is_convex: bool,
 }
@@ -34,17 +36,17 @@ impl Contour {
             _ => false,
         };
         Self {
+            bounds: bounds(&parts),
             parts,
             is_convex: is_capsule,
         }
     }
+}
 
-    /// The smallest and the largest coordinates of its ends and control points.
-    pub(super) fn bounds(&self) -> [Point; 2] {
-        let points = self.parts.iter().flat_map(Part::points);
-        let empty = [f32::INFINITY, f32::NEG_INFINITY].map(|v| Point::new(v, v));
-        points.fold(empty, |[low, high], p| [low.inf(p), high.sup(p)])
-    }
+fn bounds(parts: &[Part]) -> [Point; 2] {
+    let points = parts.iter().flat_map(Part::points);
+    let empty = [f32::INFINITY, f32::NEG_INFINITY].map(|v| Point::new(v, v));
+    points.fold(empty, |[low, high], p| [low.inf(p), high.sup(p)])
 }
 
 /// Both sides of a stroke, each traced from its start to its end.

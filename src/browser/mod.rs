@@ -47,7 +47,6 @@ use outline::Outline;
 use window::Window;
 
 use crate::image::Image;
-use crate::math::Point;
 use crate::scene::{Stroke, quantum};
 
 /// The strokes, back to front, on each of the `pages`, which are opaque and of one size.
@@ -78,7 +77,10 @@ pub fn draw<'a>(strokes: impl Iterator<Item = &'a Stroke>, pages: &[Image]) -> V
 fn draw_window(shapes: &[Shape], window: Window, mut pictures: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
     let [width, height] = window.size;
     let (mut outline, mut area) = (Outline::default(), Area::new(width, height));
-    for shape in shapes.iter().filter(|shape| window.touches(shape.bounds)) {
+    for shape in shapes
+        .iter()
+        .filter(|shape| window.touches(shape.contour.bounds))
+    {
         outline.follow(&shape.contour, window);
         let lay = |y: usize, x: usize, coverages: &[u8]| {
             for picture in &mut pictures {
@@ -99,16 +101,13 @@ fn draw_window(shapes: &[Shape], window: Window, mut pictures: Vec<Vec<u8>>) -> 
 /// A stroke that is ready to be drawn.
 struct Shape {
     contour: Contour,
-    bounds: [Point; 2],
     paint: Paint,
 }
 
 impl Shape {
     fn of(stroke: &Stroke) -> Self {
-        let contour = Contour::of(stroke);
         Self {
-            bounds: contour.bounds(),
-            contour,
+            contour: Contour::of(stroke),
             paint: Paint::of(stroke),
         }
     }

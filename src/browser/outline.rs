@@ -41,7 +41,7 @@ impl Outline {
     /// Replaces the outline by that of `contour`, as `window` shows it. Each side of a convex one goes from top to bottom.
     pub(super) fn follow(&mut self, contour: &Contour, window: Window) {
         self.sides.iter_mut().for_each(Vec::clear);
-        let is_cut = !window.contains(contour.bounds());
+        let is_cut = !window.contains(contour.bounds);
         let mut add = |is_down: bool, part: Part| {
             if is_cut {
                 window.clip(part, |part| self.add(is_down, part));

@@ -175,8 +175,8 @@ pub struct Polish {
     /// Iterations; 0 for none. 1,200 instead of 1,000: +0.02 dB on photographs of 2,300 strokes, and less than chance
     /// elsewhere. Drafts 140 instead of 130: +0.04 at 1.05 of the time.
     pub iterations: usize,
-    /// Points are sparse if a budget of bytes, or of straight strokes, allows one for more pixels than this. A polish is then longer in proportion to the pixels
-    /// per point, because each point matters more.
+    /// Points are sparse if a budget of bytes, or of straight strokes, allows one for more pixels than this. A polish is
+    /// then longer in proportion to the pixels per point, because each point matters more.
     pub sparse: f32,
     /// Most iterations where points are sparse, in units of `iterations`. 2.5 instead of 1: eight photographs at 8,000 bytes +0.13 dB, nine
     /// other pictures at 5,000 bytes +0.34, at 1.8 of the time; 3: +0.02 and −0.02. Drafts stay short.
