@@ -116,6 +116,10 @@ pub(crate) const ROWS: &[Row] = rows! {
     Strokes Double settling.browser_db;
     Strokes Double settling.offset_taken;
     Strokes Double settling.share_per_db;
+    Strokes Double settling.nudging.added_db;
+    Strokes Count settling.nudging.sweeps;
+    Strokes Count settling.nudging.tries;
+    Strokes Single settling.nudging.reach_px;
     Colors Count coloring.rounds.count;
     Colors Double coloring.rounds.iterations;
     Colors Single coloring.rounds.rate;

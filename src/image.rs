@@ -11,6 +11,7 @@ mod decode;
 mod encode;
 mod foreign;
 mod header;
+mod mask;
 #[cfg(feature = "formats")]
 mod profile;
 mod remark;
@@ -24,6 +25,7 @@ use std::path::Path;
 pub use animate::{Animation, AnimationFormat};
 pub use decode::Limits;
 pub(crate) use header::{Embeddable, stated_size};
+pub use mask::Mask;
 pub use remark::Remark;
 pub use rows::{Rows, Sample};
 

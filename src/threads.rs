@@ -1,6 +1,7 @@
 //! Worker threads, where the platform has them.
 
 use std::io;
+use std::sync::{Mutex, PoisonError};
 
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
@@ -37,6 +38,26 @@ impl Workers {
             Self::Pool(pool) => pool.install(work),
             Self::Caller => work(),
         }
+    }
+}
+
+/// Scratch of each worker of rayon's current ones.
+#[derive(Debug)]
+pub(crate) struct PerWorker<T>(Vec<Mutex<T>>);
+
+impl<T> PerWorker<T> {
+    /// What `make` makes, once for each worker.
+    pub(crate) fn new(make: impl Fn() -> T) -> Self {
+        let workers = 0..rayon::current_num_threads();
+        Self(workers.map(|_| Mutex::new(make())).collect())
+    }
+
+    /// Runs `work` with the scratch of this worker.
+    pub(crate) fn with<R>(&self, work: impl FnOnce(&mut T) -> R) -> R {
+        // A worker never waits here: no other has its index. A panic elsewhere leaves only stale
+        // numbers behind, which all work overwrites, so a poisoned lock is as good as another.
+        let index = rayon::current_thread_index().unwrap_or(0) % self.0.len();
+        work(&mut self.0[index].lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 

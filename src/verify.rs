@@ -30,6 +30,7 @@
 #[cfg(feature = "cli")]
 mod elements;
 mod limits;
+mod mask;
 mod painting;
 mod placement;
 mod raster;
@@ -44,6 +45,7 @@ use serde::{Deserialize, Serialize};
 
 #[cfg(feature = "cli")]
 pub use elements::{Element, elements};
+pub use mask::mask;
 pub use painting::Painting;
 use raster::draw;
 use tree::parse;

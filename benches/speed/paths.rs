@@ -7,6 +7,7 @@ use strokefit::fit::Simd;
 use strokefit::render::{Canvas, Grid, StrokeRef, Strokes};
 use strokefit::rng;
 
+use super::count::Count;
 use super::{BACKDROP, Bench, OPACITIES, SIZES, Speed, Workload};
 
 /// Segments of a path.
@@ -22,8 +23,16 @@ pub(crate) fn print(target: &Canvas, rounds: usize) {
         "\npaths: million pairs per second on one thread, and over those of capsules of the size of a segment"
     );
     println!(
-        "{:<12} {:>8} {:>8} {:>9} {:>15} {:>15} {:>15} {:>9}",
-        "strokes", "segments", "number", "lanes/pr", "forward", "backward", "worth", "per lane"
+        "{:<12} {:>8} {:>8} {:>9} {:>15} {:>15} {:>15} {:>9} {:>11}",
+        "strokes",
+        "segments",
+        "number",
+        "lanes/pr",
+        "forward",
+        "backward",
+        "worth",
+        "per lane",
+        "per segment"
     );
     for (name, radius_px, length_px) in SIZES {
         for opacity in OPACITIES {
@@ -84,8 +93,26 @@ fn row(name: &str, size: StrokeSize, target: &Canvas, rounds: usize) {
         let [_, backward, _] = rates(i);
         let [_, of_capsules, _] = rates(0);
         let per_lane = backward * lanes_per_pair(i) / (of_capsules * lanes_per_pair(0));
-        println!(" {per_lane:>8.2}×");
+        // A pixel that several segments of a path cover is one pair of the path, and one of each of them.
+        let of_segments = Count::of(grid, &capsules(&workload.strokes)).pairs as f64;
+        let per_segment = backward / of_capsules * of_segments / workload.count.pairs as f64;
+        println!(" {per_lane:>8.2}× {per_segment:>10.2}×");
     }
+}
+
+/// The segments of polylines, as strokes of their own.
+fn capsules(paths: &Strokes) -> Strokes {
+    let mut capsules = Strokes::new();
+    for path in paths.iter() {
+        for ends in path.points.windows(2) {
+            capsules.push(StrokeRef {
+                points: ends,
+                off: &[false; 2],
+                ..path
+            });
+        }
+    }
+    capsules
 }
 
 /// `count` random walks of `segments` steps of the length of `size`, the same in every run. They turn back at the borders of

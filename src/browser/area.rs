@@ -39,22 +39,28 @@ impl Area {
     /// Calls `paint` with each row that `outline` covers, the first pixel, and the coverage, 0 to 255, of that
     /// and those to its right.
     pub(super) fn fill(&mut self, outline: &Outline, paint: impl FnMut(usize, usize, &[u8])) {
+        let rows = if outline.is_convex {
+            self.add_sides(outline)
+        } else {
+            self.add_winding(outline)
+        };
+        self.paint(rows, paint);
+    }
+
+    /// Adds what lies between the sides of a convex outline, and says in which rows.
+    fn add_sides(&mut self, outline: &Outline) -> Range<usize> {
         let mut rows = NOWHERE;
         for (side, sign) in outline.sides.iter().zip([1.0, -1.0]) {
             for edge in side {
                 rows = union(&rows, &self.add(edge, sign));
             }
         }
-        self.paint(rows, paint);
+        rows
     }
 
-    /// As [`fill`](Self::fill) with an outline that may turn anywhere and cross itself. What is within it is filled by
+    /// The same for an outline that may turn anywhere and cross itself. What is within it is filled by
     /// the rule `nonzero`, once. All heights are quarters of a px, so that no edge ends within a quarter of a row.
-    pub(super) fn fill_winding(
-        &mut self,
-        outline: &Outline,
-        paint: impl FnMut(usize, usize, &[u8]),
-    ) {
+    fn add_winding(&mut self, outline: &Outline) -> Range<usize> {
         let mut slices = Vec::new();
         for (side, turn) in outline.sides.iter().zip([1, -1]) {
             side.iter()
@@ -78,7 +84,7 @@ impl Area {
             }
             rows = union(&rows, &(y..y + 1));
         }
-        self.paint(rows, paint);
+        rows
     }
 
     /// Adds what lies between two edges in a quarter of row `y`, each by its x at the top and at the bottom.

@@ -33,6 +33,7 @@
 mod area;
 mod contour;
 mod curve;
+mod masker;
 mod outline;
 mod part;
 mod pieces;
@@ -43,6 +44,7 @@ use rayon::prelude::*;
 
 use area::Area;
 use contour::Contour;
+pub use masker::Masker;
 use outline::Outline;
 use window::Window;
 
@@ -82,18 +84,13 @@ fn draw_window(shapes: &[Shape], window: Window, mut pictures: Vec<Vec<u8>>) -> 
         .filter(|shape| window.touches(shape.contour.bounds))
     {
         outline.follow(&shape.contour, window);
-        let lay = |y: usize, x: usize, coverages: &[u8]| {
+        area.fill(&outline, |y, x, coverages| {
             for picture in &mut pictures {
                 shape
                     .paint
                     .lay(&mut picture[3 * (y * width + x)..], coverages);
             }
-        };
-        if shape.contour.is_convex {
-            area.fill(&outline, lay);
-        } else {
-            area.fill_winding(&outline, lay);
-        }
+        });
     }
     pictures
 }

@@ -35,12 +35,15 @@ impl Piece {
 #[derive(Debug, Default)]
 pub(super) struct Outline {
     pub(super) sides: [Vec<Piece>; 2],
+    /// Whether it is that of a capsule. Any other may turn anywhere and cross itself.
+    pub(super) is_convex: bool,
 }
 
 impl Outline {
     /// Replaces the outline by that of `contour`, as `window` shows it. Each side of a convex one goes from top to bottom.
     pub(super) fn follow(&mut self, contour: &Contour, window: Window) {
         self.sides.iter_mut().for_each(Vec::clear);
+        self.is_convex = contour.is_convex;
         let is_cut = !window.contains(contour.bounds);
         let mut add = |is_down: bool, part: Part| {
             if is_cut {
@@ -203,7 +206,7 @@ mod tests {
             ([9.8, 3.1], [2.6, 3.9], 0.6),
             ([40.0, 40.3], [40.0, 40.3], 31.7),
         ] {
-            let Outline { sides } = outline(a, b, radius);
+            let Outline { sides, .. } = outline(a, b, radius);
             let [left, right] = sides
                 .each_ref()
                 .map(|side| (side[0].top.y, side[side.len() - 1].bottom.y));
@@ -216,7 +219,7 @@ mod tests {
 
     #[test]
     fn heights_are_quarters_of_a_px() {
-        let Outline { sides } = outline([5.3, 6.13], [9.8, 11.91], 2.2);
+        let Outline { sides, .. } = outline([5.3, 6.13], [9.8, 11.91], 2.2);
         for edge in sides.iter().flatten() {
             assert_eq!((4.0 * edge.top.y).fract(), 0.0, "{edge:?}");
         }
@@ -224,7 +227,7 @@ mod tests {
 
     #[test]
     fn a_dot_is_as_wide_as_its_stroke_and_bulges_between() {
-        let Outline { sides } = outline([20.0, 20.0], [20.0, 20.0], 3.0);
+        let Outline { sides, .. } = outline([20.0, 20.0], [20.0, 20.0], 3.0);
         let reach = |edge: &Piece| (edge.top - Point::new(20.0, 20.0)).norm();
         let reaches = sides.iter().flatten().map(reach);
         let most = reaches.fold(0.0_f32, f32::max);

@@ -55,6 +55,21 @@ impl Window {
         }
     }
 
+    /// The columns and rows of a picture of `size` that the window shows, px.
+    pub(super) fn shown(self, size: [usize; 2]) -> [Range<usize>; 2] {
+        [0, 1].map(|axis| {
+            let corner = self.corner[axis];
+            let start = corner + usize::from(corner > 0);
+            // The window after this one, if there is one, shows what lies beyond.
+            let end = if corner + STEP < size[axis] {
+                corner + STEP + 1
+            } else {
+                size[axis]
+            };
+            start..end
+        })
+    }
+
     /// The bytes of each row of the window.
     fn rows(self, width: usize) -> impl Iterator<Item = Range<usize>> {
         let ([x, y], [columns, rows]) = (self.corner, self.size);

@@ -65,9 +65,9 @@ pub use memory::predicted_rss_bytes;
 pub use objective::Objective;
 pub use progress::{CancelToken, Observer, Progress};
 pub use recipe::{
-    AdamSettings, BackgroundChoice, Correction, Domain, EdgeShape, Joins, Masking, Pens, Points,
-    Polish, Preset, Rates, Recipe, Recoloring, Relocation, Rounds, Settling, ShadeChoice, Stages,
-    TimeShares,
+    AdamSettings, BackgroundChoice, Correction, Domain, EdgeShape, Joins, Masking, Nudging, Pens,
+    Points, Polish, Preset, Rates, Recipe, Recoloring, Relocation, Rounds, Settling, ShadeChoice,
+    Stages, TimeShares,
 };
 pub use result::{Fit, StageRecord, Stop};
 pub use simd::Simd;

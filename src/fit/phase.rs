@@ -13,6 +13,7 @@
 
 pub(super) mod count;
 pub(super) mod grow;
+mod nudge;
 mod palette;
 mod pens;
 pub(super) mod polish;

@@ -398,8 +398,29 @@ pub struct Settling {
     /// What a round adds to the browser's share of the offset for each dB of shortfall beyond `browser_db`. Half,
     /// twice: −0.01, −0.03 dB.
     pub share_per_db: f64,
+    /// What follows the rounds.
+    pub nudging: Nudging,
     /// Bytes of a settled file in units of those before, at most; photographs 1.003, flat art 0.994 to 1.005.
     pub growth: f64,
+}
+
+/// How points are nudged to where rasterisers draw the strokes better.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Nudging {
+    /// Strokes are nudged if renderers add at least this to the error of the drawing, dB.
+    pub added_db: f64,
+    /// Most visits of each stroke.
+    pub sweeps: usize,
+    /// A sweep that brings less than this, dB, is the last.
+    pub least_db: f64,
+    /// Places that are tried in a visit.
+    pub tries: usize,
+    /// Most places that are tried in all, unless one sweep has more.
+    pub trials: usize,
+    /// Farthest that a point moves along each axis, px.
+    pub reach_px: f32,
+    /// Most pixels of the picture. Masks of all strokes take some hundred bytes per pixel.
+    pub most_pixels: usize,
 }
 
 /// How the number of strokes is corrected to meet a fidelity.

@@ -20,6 +20,7 @@ use crate::render::Canvas;
 use crate::scene::Scene;
 
 /// Renders of a file by the model of a browser and by our own renderer, beside resvg's; one per surface.
+#[derive(Clone)]
 pub(super) struct Renderings {
     settling: Settling,
     /// The browser's renders.
@@ -74,6 +75,16 @@ impl Renderings {
     /// The largest value over all mattes.
     fn largest(&self, of: impl Fn(&Errors) -> f64) -> f64 {
         self.errors.iter().map(of).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// The browser's renders.
+    pub(super) fn shown(&self) -> &[Image] {
+        &self.shown
+    }
+
+    /// By how many dB renderers are less faithful than our own render.
+    pub(super) fn added_db(&self) -> f64 {
+        10.0 * math::log10(self.badness() / self.largest(|errors| errors.soft).max(MIN_ERROR))
     }
 
     /// The browser's share of the offset in the first round.

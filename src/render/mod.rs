@@ -60,6 +60,7 @@
 //!
 //! [`mod@reference`] is the same in naive `f64`, against which all of this is tested.
 
+pub(crate) mod area;
 mod edge;
 mod flat;
 mod frame;
@@ -72,7 +73,6 @@ mod shares;
 mod strokes;
 
 use std::marker::PhantomData;
-use std::sync::{Mutex, PoisonError};
 
 use fearless_simd::Level;
 use rayon::prelude::*;
@@ -85,6 +85,7 @@ pub use strokes::{
 };
 
 use crate::coverage::Coverage;
+use crate::threads::PerWorker;
 use edge::Reach;
 use flat::{Flat, flatten};
 pub(crate) use flat::{Knot, Piece, Pieces};
@@ -156,7 +157,7 @@ pub struct Renderer {
     /// `∂L/∂vertex`.
     slopes: Vec<[f32; 2]>,
     tiles: Vec<TileWork>,
-    scratch: Vec<Mutex<Box<Scratch>>>,
+    scratch: PerWorker<Box<Scratch>>,
 }
 
 impl Renderer {
@@ -174,9 +175,7 @@ impl Renderer {
             least: 1,
             slopes: Vec::new(),
             tiles: (0..grid.len()).map(tile).collect(),
-            scratch: (0..rayon::current_num_threads())
-                .map(|_| Mutex::new(Scratch::new()))
-                .collect(),
+            scratch: PerWorker::new(Scratch::new),
         }
     }
 
@@ -236,7 +235,7 @@ impl Renderer {
                 }
                 return;
             }
-            with_scratch(scratch, |scratch| {
+            scratch.with(|scratch| {
                 kernel::draw(level, &job, scratch);
                 out.clone_from(scratch.canvas());
             });
@@ -350,7 +349,7 @@ impl Renderer {
                 sums.clear();
                 let weights = work.veil.as_deref().or(work.weights.as_deref());
                 let job = frame.job(flat, tile, work, weights);
-                let total = with_scratch(scratch, |scratch| {
+                let total = scratch.with(|scratch| {
                     kernel::draw(level, &job, scratch);
                     pass.tile(level, &job, scratch, &mut sums)
                 });
@@ -510,14 +509,4 @@ pub fn flattened(stroke: StrokeRef<'_>) -> Vec<[f32; 2]> {
     let mut vertices = Vec::new();
     flatten(stroke, 1, &mut vertices, &mut Vec::new());
     vertices
-}
-
-/// Runs `f` with the scratch of this worker.
-fn with_scratch<R>(scratch: &[Mutex<Box<Scratch>>], f: impl FnOnce(&mut Scratch) -> R) -> R {
-    // A worker never waits here: no other has its index. A panic elsewhere leaves only stale
-    // numbers behind, which every tile overwrites, so a poisoned lock is as good as another.
-    let index = rayon::current_thread_index().unwrap_or(0) % scratch.len();
-    f(&mut scratch[index]
-        .lock()
-        .unwrap_or_else(PoisonError::into_inner))
 }

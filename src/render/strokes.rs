@@ -216,6 +216,14 @@ impl Strokes {
         }
     }
 
+    /// Moves the points of stroke `i`, of which there are as many as before.
+    pub fn move_points(&mut self, i: usize, points: &[[f32; 2]]) {
+        let range = self.range(i);
+        let numbers = self.numbers[range].iter_mut();
+        let points = points.as_flattened();
+        numbers.zip(points).for_each(|(number, &at)| *number = at);
+    }
+
     /// The strokes, back to front.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = StrokeRef<'_>> {
         (0..self.len()).map(|i| self.get(i))

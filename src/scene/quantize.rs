@@ -94,6 +94,12 @@ impl Scene {
         quantized
     }
 
+    /// The stroke as the file of this scene with `precision` decimals has it; `None` if it is not written.
+    pub(crate) fn quantized_stroke(&self, stroke: &Stroke, precision: u8) -> Option<Stroke> {
+        let written = Written::new(stroke, self, precision).ok()?;
+        Some(written.stroke())
+    }
+
     /// The strokes of `stage` that can be written; the others are counted.
     fn written(&self, stage: &Stage, precision: u8, dropped: &mut Dropped) -> Vec<Written> {
         let written = |stroke: &Stroke| {

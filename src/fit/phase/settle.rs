@@ -3,13 +3,14 @@
 //! An SVG renderer rounds to 8 bits after every stroke and has its own antialiasing. So its picture differs from our
 //! canvas by an offset, which hardly changes when strokes move a little. Each round writes and renders the drawing,
 //! subtracts a part of that offset from the target, and descends for a few iterations. The best file is kept.
-//! [`renderers`] says which renderers count, and how much.
+//! [`renderers`] says which renderers count, and how much. Where they still add much to the error, the strokes are
+//! [nudged](super::nudge).
 //!
 //! Before that, the drawing is restricted to its palette and pens, which change it by more than settling does.
 //!
 //! [`renderers`]: crate::fit::renderers
 
-use super::{count, palette, pens, sharing, stack, widths};
+use super::{count, nudge, palette, pens, sharing, stack, widths};
 use crate::error::Result;
 use crate::fit::budget;
 use crate::fit::config::Colors;
@@ -126,7 +127,7 @@ fn run(session: &mut Session<'_>, restricted: Restricted) -> Result<RenderedFile
         }
         let before = seen.badness();
         (file, seen) = Renderings::of(session)?;
-        if seen.badness() < best.badness {
+        if seen.badness() < best.seen.badness() {
             best = Best::of(session, &file, &seen);
         }
         if (psnr_db(seen.badness()) - psnr_db(before)).abs() < settling.least_db {
@@ -135,23 +136,36 @@ fn run(session: &mut Session<'_>, restricted: Restricted) -> Result<RenderedFile
         share = seen.next_share(share);
         pace *= settling.next_pace;
     }
-    session.drawing.revert(best.memento);
+    nudged(session, best)
+}
+
+/// The best file, and its drawing, after nudging where renderers add much to the error.
+fn nudged(session: &mut Session<'_>, best: Best) -> Result<RenderedFile> {
+    session.drawing.revert(best.memento.clone());
+    let least_db = session.recipe.settling.nudging.added_db;
+    if best.seen.added_db() >= least_db && nudge::run(session, &best.file, &best.seen) {
+        let (file, seen) = Renderings::of(session)?;
+        if seen.badness() < best.seen.badness() {
+            return Ok(file);
+        }
+        session.drawing.revert(best.memento);
+    }
     Ok(best.file)
 }
 
 /// The best file so far, and the drawing that it was written from.
 struct Best {
     file: RenderedFile,
+    seen: Renderings,
     memento: Memento,
-    badness: f64,
 }
 
 impl Best {
     fn of(session: &Session<'_>, file: &RenderedFile, seen: &Renderings) -> Self {
         Self {
             file: file.clone(),
+            seen: seen.clone(),
             memento: session.drawing.memento(),
-            badness: seen.badness(),
         }
     }
 }

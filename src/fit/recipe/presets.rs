@@ -2,7 +2,7 @@
 
 use super::{
     AdamSettings, BackgroundChoice, Correction, Dense, Domain, EdgeShape, Jitter, Joins, Masking,
-    Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Relocation, Rounds, Settling,
+    Nudging, Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Relocation, Rounds, Settling,
     ShadeChoice, Sharing, Stages, TimeShares,
 };
 use crate::optim::AdamParams;
@@ -245,6 +245,15 @@ const BALANCED: Recipe = Recipe {
         browser_db: 0.4,
         offset_taken: 0.7,
         share_per_db: 0.15,
+        nudging: Nudging {
+            added_db: 1.0,
+            sweeps: 8,
+            least_db: 0.05,
+            tries: 8,
+            trials: 1 << 16,
+            reach_px: 0.1,
+            most_pixels: 1 << 20,
+        },
         growth: 1.005,
     },
     correction: Correction {

@@ -1,0 +1,339 @@
+//! Nudging: points move by a tenth of a px at most, to where rasterisers draw the strokes better.
+//!
+//! A rasteriser rounds where edges are: tiny-skia takes samples a quarter of a px apart, Chromium rounds the heights of the
+//! ends of lines and chords to quarters of a px. Where lines are thin, or a drawing is exact, that is most of the error, and no
+//! gradient knows of it. So a few random places are tried for each stroke in turn, and the best of them is taken
+//! if it is better than the present one.
+//!
+//! Three [`RASTERIZERS`] judge a place, so that a drawing does not become better in one program by being worse in others. The
+//! larger the error of a rasteriser is, the more it counts. For each trial one stroke is drawn, on its own: [`Stacks`] knows what
+//! its mask does to the pictures. Strokes that have no pixel in common are visited at once, by all threads.
+
+mod rasterizer;
+mod stacks;
+
+use std::f32::consts::SQRT_2;
+
+use rayon::prelude::*;
+
+use crate::fit::file::RenderedFile;
+use crate::fit::recipe::Nudging;
+use crate::fit::renderers::Renderings;
+use crate::fit::session::Session;
+use crate::image::Mask;
+use crate::math;
+use crate::metrics::psnr_db;
+use crate::render::Strokes;
+use crate::rng;
+use crate::scene::{Scene, Stroke};
+use crate::threads::PerWorker;
+use rasterizer::{Easel, RASTERIZERS, Scratch};
+use stacks::{Change, Each, Ground, Stacks, changes};
+
+/// First word of the keys of random draws, so that nothing else uses the same.
+const DRAWS: u64 = 1 << 40;
+
+/// How far from its outline a rasteriser covers a part of a pixel, px, at most.
+const FRINGE: f32 = 1.5;
+
+/// Share of the trials that move a whole stroke, not one of its points.
+const WHOLE: f32 = 0.25;
+
+/// Nudges the strokes of the drawing, of which `file` was written and `seen` was rendered. Returns whether any has moved.
+pub(super) fn run(session: &mut Session<'_>, file: &RenderedFile, seen: &Renderings) -> bool {
+    let nudging = session.recipe.settling.nudging;
+    let (drawing, timer) = (&session.drawing, &session.timer);
+    let strokes = drawing.free().len();
+    if drawing.pixels() > nudging.most_pixels || strokes == 0 || !timer.allows_round() {
+        return false;
+    }
+    let mut nudger = Nudger::of(session, file, seen);
+    let affordable = nudging.trials / (nudging.tries * strokes);
+    for sweep in 0..nudging.sweeps.min(affordable.max(1)) {
+        let before = nudger.stacks.errors();
+        let weights = weights(before);
+        for set in 0..nudger.sets.len() {
+            if session.timer.allows_round() {
+                nudger.visit_all(set, sweep, weights);
+            }
+        }
+        let [was, is] = [before, nudger.stacks.errors()].map(|errors| psnr_db(largest(errors)));
+        let goes_on = session.progress.tell(&session.drawing, file.mse);
+        if is - was < nudging.least_db || !goes_on {
+            break;
+        }
+    }
+    let has_moved = nudger.strokes != *session.drawing.free();
+    *session.drawing.free_mut() = nudger.strokes;
+    has_moved
+}
+
+fn largest(errors: Each<f64>) -> f64 {
+    errors.into_iter().fold(f64::MIN_POSITIVE, f64::max)
+}
+
+/// How much each rasteriser counts: as its error counts in the sum of the fourth powers of all errors.
+fn weights(errors: Each<f64>) -> Each<f32> {
+    let largest = largest(errors);
+    errors.map(|error| math::powi(error / largest, 3) as f32)
+}
+
+/// The strokes as they are moved, and what rasterisers make of them.
+struct Nudger<'a> {
+    nudging: Nudging,
+    seed: u64,
+    scene: &'a Scene,
+    /// Decimals of the file.
+    precision: u8,
+    /// The strokes before they were nudged, and now.
+    homes: Strokes,
+    strokes: Strokes,
+    /// The strokes as the file has them; `None` for one that is not written.
+    written: Vec<Option<Stroke>>,
+    /// For each stroke, the pixels of which it may come to cover more or less.
+    fringes: Vec<Vec<u32>>,
+    /// Sets of strokes whose fringes are apart.
+    sets: Vec<Vec<usize>>,
+    stacks: Stacks,
+    scratch: PerWorker<Scratch>,
+}
+
+/// A better place for a stroke.
+struct Nudge {
+    id: usize,
+    points: Vec<[f32; 2]>,
+    written: Stroke,
+    changes: Vec<Change>,
+}
+
+impl<'a> Nudger<'a> {
+    fn of(session: &Session<'_>, file: &'a RenderedFile, seen: &Renderings) -> Self {
+        let (drawing, config) = (&session.drawing, session.config);
+        let (scene, precision) = (&file.rounded.scene, config.file.precision);
+        let nudging = session.recipe.settling.nudging;
+        let picture = drawing.surface().picture();
+        let size = [picture.width(), picture.height()];
+        let scratch = PerWorker::new(|| Scratch::new(size));
+        let strokes = drawing.free().clone();
+        let written: Vec<Option<Stroke>> = strokes
+            .iter()
+            .map(|stroke| scene.quantized_stroke(&stroke.to_stroke(), precision))
+            .collect();
+        let drawn = |stroke: &Option<Stroke>| match stroke {
+            Some(stroke) => scratch.with(|scratch| drawn(stroke, nudging.reach_px, scratch)),
+            None => Default::default(),
+        };
+        let (masks, fringes): (Vec<Each<Mask>>, Vec<Vec<u32>>) =
+            written.par_iter().map(drawn).unzip();
+        let mut order: Vec<usize> = (0..strokes.len()).collect();
+        order.sort_by_key(|&i| rng::bits(config.seed, DRAWS, i as u64, 0));
+        Self {
+            nudging,
+            seed: config.seed,
+            scene,
+            precision,
+            homes: strokes.clone(),
+            strokes,
+            sets: apart(order, &fringes, drawing.pixels()),
+            stacks: Stacks::of(session, file, seen, &written, &masks),
+            written,
+            fringes,
+            scratch,
+        }
+    }
+
+    /// Visits the strokes of a set. How one of them is best drawn does not depend on the others.
+    fn visit_all(&mut self, set: usize, sweep: usize, weights: Each<f32>) {
+        let this = &*self;
+        let visit = |&id: &usize| {
+            let visit = |easel: &mut Easel<'_>| this.visit(id, sweep, weights, easel);
+            this.scratch
+                .with(|scratch| scratch.on(&this.fringes[id], visit))
+        };
+        let nudges: Vec<Option<Nudge>> = this.sets[set].par_iter().map(visit).collect();
+        let nudges = nudges.into_iter().flatten();
+        nudges.for_each(|nudge| self.take(nudge));
+    }
+
+    /// Tries a few places for stroke `id`.
+    fn visit(
+        &self,
+        id: usize,
+        sweep: usize,
+        weights: Each<f32>,
+        easel: &mut Easel<'_>,
+    ) -> Option<Nudge> {
+        let present = self.written[id].as_ref()?;
+        let grounds = self.stacks.grounds(id, &self.written, &self.fringes[id]);
+        let trial = Trial::new(&grounds, weights);
+        let (mut least, mut best) = (0.0, None);
+        for k in 0..self.nudging.tries {
+            let points = self.place(id, sweep, k);
+            let tried = self.written_at(id, &points);
+            let Some(tried) = tried.filter(|tried| tried != present) else {
+                continue;
+            };
+            if let Some((change, masks)) = trial.judge(&tried, least, easel) {
+                least = change;
+                best = Some((points, tried, masks));
+            }
+        }
+        best.map(|(points, written, masks)| Nudge {
+            id,
+            points,
+            written,
+            changes: changes(&grounds, &masks, easel),
+        })
+    }
+
+    /// Stroke `id` with these points, as the file would have it.
+    fn written_at(&self, id: usize, points: &[[f32; 2]]) -> Option<Stroke> {
+        let mut stroke = self.strokes.get(id);
+        stroke.points = points;
+        self.scene
+            .quantized_stroke(&stroke.to_stroke(), self.precision)
+    }
+
+    /// A place to try for stroke `id`: near its present one, and within reach of its first one.
+    fn place(&self, id: usize, sweep: usize, k: usize) -> Vec<[f32; 2]> {
+        let key = DRAWS + 1 + (sweep * self.nudging.tries + k) as u64;
+        let draw = |n| rng::draw(self.seed, key, id as u64, n);
+        let reach = self.nudging.reach_px;
+        let shift = [0, 1].map(|axis| reach * (2.0 * draw(axis) - 1.0));
+        let homes = self.homes.get(id).points;
+        let one = if draw(2) < WHOLE {
+            None
+        } else {
+            Some((draw(3) * homes.len() as f32) as usize)
+        };
+        let mut points = self.strokes.get(id).points.to_vec();
+        for (i, (point, home)) in points.iter_mut().zip(homes).enumerate() {
+            if one.is_none_or(|one| one == i) {
+                for ((at, shift), home) in point.iter_mut().zip(shift).zip(home) {
+                    *at = (*at + shift).clamp(home - reach, home + reach);
+                }
+            }
+        }
+        points
+    }
+
+    fn take(&mut self, nudge: Nudge) {
+        let Nudge {
+            id,
+            points,
+            written,
+            changes,
+        } = nudge;
+        self.written[id] = Some(written);
+        self.strokes.move_points(id, &points);
+        self.stacks.change(id, &self.fringes[id], &changes);
+    }
+}
+
+/// What `stroke` covers, and the pixels of which it may cover more or less once it is moved within `reach` px.
+fn drawn(stroke: &Stroke, reach: f32, scratch: &mut Scratch) -> (Each<Mask>, Vec<u32>) {
+    let beyond = reach * SQRT_2 + FRINGE;
+    let wide = scratch.swept(stroke, beyond);
+    let narrow = scratch.swept(stroke, -beyond);
+    let masks = scratch.on(wide.pixels(), |easel| {
+        RASTERIZERS.map(|rasterizer| easel.mask(rasterizer, stroke))
+    });
+    let mut inside = narrow
+        .iter()
+        .filter(|&(_, level)| level == u8::MAX)
+        .peekable();
+    let is_fringe = |pixel: &u32| {
+        while inside.next_if(|(inside, _)| inside < pixel).is_some() {}
+        inside.peek().is_none_or(|(inside, _)| inside != pixel)
+    };
+    (
+        masks,
+        wide.pixels().iter().copied().filter(is_fringe).collect(),
+    )
+}
+
+/// What is known of a stroke before it is tried elsewhere.
+struct Trial<'a> {
+    grounds: &'a [Each<Ground>],
+    weights: Each<f32>,
+    /// The squared error that the stroke adds, for each rasteriser.
+    present: Each<f32>,
+    /// The rasterisers, the one that counts most first.
+    order: Each<usize>,
+}
+
+impl<'a> Trial<'a> {
+    fn new(grounds: &'a [Each<Ground>], weights: Each<f32>) -> Self {
+        let mut order = std::array::from_fn(|i| i);
+        order.sort_by(|&i, &j| f32::total_cmp(&weights[j], &weights[i]));
+        let present = |i: usize| grounds.iter().map(|ground| ground[i].error()).sum();
+        Self {
+            grounds,
+            weights,
+            present: std::array::from_fn(present),
+            order,
+        }
+    }
+
+    /// By how much the stroke changes the squared error if it is drawn as `tried`, and what it covers then; `None` as soon as
+    /// the change, added up in the order of the rasterisers, is not below `least`.
+    fn judge(
+        &self,
+        tried: &Stroke,
+        least: f32,
+        easel: &mut Easel<'_>,
+    ) -> Option<(f32, Each<Mask>)> {
+        let mut masks = Each::<Mask>::default();
+        let mut change = 0.0;
+        for i in self.order {
+            masks[i] = easel.mask(RASTERIZERS[i], tried);
+            let errors = easel
+                .chosen(&masks[i])
+                .map(|(slot, level)| self.grounds[slot][i].error_at(level));
+            change += self.weights[i] * (errors.sum::<f32>() - self.present[i]);
+            if change >= least {
+                return None;
+            }
+        }
+        Some((change, masks))
+    }
+}
+
+/// Sets of strokes, those in each with fringes that have no pixel in common.
+fn apart(mut waiting: Vec<usize>, fringes: &[Vec<u32>], pixels: usize) -> Vec<Vec<usize>> {
+    waiting.retain(|&id| !fringes[id].is_empty());
+    let mut sets = Vec::new();
+    while !waiting.is_empty() {
+        let mut taken = vec![false; pixels];
+        let (set, later) = waiting.into_iter().partition(|&id| {
+            let is_free = !fringes[id].iter().any(|&pixel| taken[pixel as usize]);
+            if is_free {
+                fringes[id]
+                    .iter()
+                    .for_each(|&pixel| taken[pixel as usize] = true);
+            }
+            is_free
+        });
+        sets.push(set);
+        waiting = later;
+    }
+    sets
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strokes_of_a_set_have_no_pixel_in_common_and_none_is_left_out() {
+        let fringes = [vec![0, 1], vec![1, 2], vec![2, 3], Vec::new(), vec![4]];
+        let sets = apart(vec![4, 1, 0, 2, 3], &fringes, 5);
+        assert_eq!(sets, [vec![4, 1], vec![0, 2]]);
+    }
+
+    #[test]
+    fn a_rasteriser_counts_the_more_the_larger_its_error_is() {
+        assert_eq!(weights([2.0, 1.0, 0.0]), [1.0, 0.125, 0.0]);
+        assert_eq!(weights([0.0; 3]), [0.0; 3]);
+    }
+}

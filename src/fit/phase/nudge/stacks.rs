@@ -1,0 +1,424 @@
+//! Which strokes cover each pixel, for each rasteriser, and what it shows of them.
+//!
+//! Where strokes in front let through `T` and those behind have the colour `B`, a stroke of colour `c` and opacity `o` that
+//! covers `m` of a pixel adds `m·T·o·(c − B)` to its colour. So the squared error there is a polynomial of the second
+//! degree in `m`. Levels are not rounded here; the pictures begin as renderers have rounded them.
+
+use std::cmp::Ordering;
+
+use super::rasterizer::{Easel, RASTERIZERS};
+use crate::fit::file::RenderedFile;
+use crate::fit::renderers::Renderings;
+use crate::fit::session::Session;
+use crate::image::{Image, Mask};
+use crate::scene::{Rgb, Stroke};
+
+/// Most surfaces of a drawing.
+const SURFACES: usize = 2;
+
+/// A colour for each surface.
+type Colors = [Rgb; SURFACES];
+
+/// A value for each rasteriser.
+pub(super) type Each<T> = [T; RASTERIZERS.len()];
+
+/// A stroke in a pixel.
+#[derive(Debug, Clone, Copy)]
+struct Layer {
+    stroke: u32,
+    /// How much of the pixel it covers, 0 to 255.
+    levels: Each<u8>,
+}
+
+/// Which strokes cover each pixel.
+pub(super) struct Stacks {
+    surfaces: usize,
+    /// How much an error counts at each pixel, if not everywhere alike.
+    weights: Option<Vec<f32>>,
+    targets: Vec<Colors>,
+    /// What lies behind all strokes.
+    bottoms: Vec<Colors>,
+    /// The strokes of each pixel, back to front.
+    layers: Vec<Vec<Layer>>,
+    pictures: Each<Vec<Colors>>,
+}
+
+/// How a pixel depends on how much of it a stroke covers.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Ground {
+    /// How much of the pixel the stroke covers, 0 to 255.
+    level: u8,
+    /// What covering all of it adds to the colours.
+    whole: Colors,
+    /// The squared error that coverage adds: the coefficients of its first and its second power.
+    error: [f32; 2],
+}
+
+impl Stacks {
+    /// The stacks of the strokes of `file`, `written` as they are there, which cover `masks`.
+    pub(super) fn of(
+        session: &Session<'_>,
+        file: &RenderedFile,
+        seen: &Renderings,
+        written: &[Option<Stroke>],
+        masks: &[Each<Mask>],
+    ) -> Self {
+        let surfaces = session.drawing.surfaces.iter();
+        let (targets, bottoms): (Vec<_>, Vec<_>) = surfaces
+            .map(|surface| {
+                let bottom = surface.empty(&file.rounded.scene).to_image();
+                (surface.picture().clone(), bottom)
+            })
+            .unzip();
+        let (targets, bottoms) = (colors(&targets), colors(&bottoms));
+        let mut stacks = Self {
+            surfaces: session.drawing.surfaces.len(),
+            weights: session.focus.as_ref().map(|focus| focus.values().to_vec()),
+            layers: vec![Vec::new(); targets.len()],
+            pictures: [colors(&file.drawn), colors(seen.shown()), bottoms.clone()],
+            targets,
+            bottoms,
+        };
+        for (id, masks) in masks.iter().enumerate() {
+            for (rasterizer, mask) in masks.iter().enumerate() {
+                for (pixel, level) in mask.iter() {
+                    stacks.level_mut(pixel as usize, id)[rasterizer] = level;
+                }
+            }
+        }
+        // Nobody has drawn exact areas yet.
+        let composed = stacks.pictures.last_mut().into_iter().flatten();
+        for (colors, layers) in composed.zip(&stacks.layers) {
+            for layer in layers {
+                if let Some(stroke) = &written[layer.stroke as usize] {
+                    let [.., level] = layer.levels;
+                    blend(colors, share(level) * stroke.opacity, stroke.color);
+                }
+            }
+        }
+        stacks
+    }
+
+    /// Where it is kept how much of a pixel stroke `id` covers.
+    fn level_mut(&mut self, pixel: usize, id: usize) -> &mut Each<u8> {
+        let (layers, stroke) = (&mut self.layers[pixel], id as u32);
+        let at = match layers.binary_search_by_key(&stroke, |layer| layer.stroke) {
+            Ok(at) => at,
+            Err(at) => {
+                let levels = Default::default();
+                layers.insert(at, Layer { stroke, levels });
+                at
+            }
+        };
+        &mut layers[at].levels
+    }
+
+    /// The squared error of each rasteriser's pictures, on the surface where it is largest.
+    pub(super) fn errors(&self) -> Each<f64> {
+        self.pictures.each_ref().map(|pictures| {
+            let of = |surface: usize| {
+                let pixels = pictures.iter().zip(&self.targets).enumerate();
+                let errors = pixels.map(|(pixel, (picture, target))| {
+                    let channels = picture[surface].iter().zip(target[surface]);
+                    let error = channels.map(|(a, b)| (a - b) * (a - b)).sum::<f32>();
+                    f64::from(self.weight(pixel) * error)
+                });
+                errors.sum()
+            };
+            (0..self.surfaces).map(of).fold(0.0, f64::max)
+        })
+    }
+
+    /// How much an error counts at a pixel.
+    fn weight(&self, pixel: usize) -> f32 {
+        self.weights.as_ref().map_or(1.0, |weights| weights[pixel])
+    }
+
+    /// How these pixels depend on stroke `id`.
+    pub(super) fn grounds(
+        &self,
+        id: usize,
+        strokes: &[Option<Stroke>],
+        pixels: &[u32],
+    ) -> Vec<Each<Ground>> {
+        let Some(stroke) = &strokes[id] else {
+            return Vec::new();
+        };
+        let ground = |&pixel: &u32| {
+            let pixel = pixel as usize;
+            let mut levels = Each::default();
+            let mut through = [1.0; RASTERIZERS.len()];
+            let mut behind = [self.bottoms[pixel]; RASTERIZERS.len()];
+            for layer in &self.layers[pixel] {
+                let Some(other) = &strokes[layer.stroke as usize] else {
+                    continue;
+                };
+                let order = (layer.stroke as usize).cmp(&id);
+                if order == Ordering::Equal {
+                    levels = layer.levels;
+                    continue;
+                }
+                for (rasterizer, &level) in layer.levels.iter().enumerate() {
+                    let m = share(level) * other.opacity;
+                    if order == Ordering::Less {
+                        blend(&mut behind[rasterizer], m, other.color);
+                    } else {
+                        through[rasterizer] *= 1.0 - m;
+                    }
+                }
+            }
+            std::array::from_fn(|i| {
+                let colors = [&self.pictures[i][pixel], &self.targets[pixel], &behind[i]];
+                let mut ground = Ground::of(stroke, levels[i], through[i], colors, self.surfaces);
+                ground.error = ground.error.map(|term| self.weight(pixel) * term);
+                ground
+            })
+        };
+        pixels.iter().map(ground).collect()
+    }
+
+    /// Changes what stroke `id` covers of these pixels.
+    pub(super) fn change(&mut self, id: usize, pixels: &[u32], changes: &[Change]) {
+        for &Change {
+            slot,
+            levels,
+            colors,
+        } in changes
+        {
+            let pixel = pixels[slot] as usize;
+            *self.level_mut(pixel, id) = levels;
+            for (pictures, change) in self.pictures.iter_mut().zip(colors) {
+                let values = pictures[pixel].as_flattened_mut().iter_mut();
+                let change = change.as_flattened();
+                values
+                    .zip(change)
+                    .for_each(|(value, change)| *value += change);
+            }
+        }
+    }
+}
+
+/// What happens to a pixel, one of some, when a stroke moves.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Change {
+    slot: usize,
+    levels: Each<u8>,
+    /// What is added to the colours.
+    colors: Each<Colors>,
+}
+
+/// What happens to the pixels of `easel`, of these `grounds`, when a stroke comes to cover `masks`.
+pub(super) fn changes(
+    grounds: &[Each<Ground>],
+    masks: &Each<Mask>,
+    easel: &Easel<'_>,
+) -> Vec<Change> {
+    let mut levels = vec![Each::default(); grounds.len()];
+    for (rasterizer, mask) in masks.iter().enumerate() {
+        for (slot, level) in easel.chosen(mask) {
+            levels[slot][rasterizer] = level;
+        }
+    }
+    let changes = grounds.iter().zip(levels).enumerate();
+    let changed =
+        changes.filter(|(_, (ground, levels))| ground.map(|ground| ground.level) != *levels);
+    let change = |(slot, (ground, levels)): (usize, (&Each<Ground>, Each<u8>))| Change {
+        slot,
+        levels,
+        colors: std::array::from_fn(|i| {
+            let more = share(levels[i]) - share(ground[i].level);
+            ground[i].whole.map(|rgb| rgb.map(|v| more * v))
+        }),
+    };
+    changed.map(change).collect()
+}
+
+impl Ground {
+    /// That of a `stroke` which covers `level` 255ths of the pixel and is seen `through` others, on so many surfaces.
+    fn of(
+        stroke: &Stroke,
+        level: u8,
+        through: f32,
+        [picture, target, behind]: [&Colors; 3],
+        surfaces: usize,
+    ) -> Self {
+        let mut ground = Self {
+            level,
+            ..Self::default()
+        };
+        let factor = through * stroke.opacity;
+        for surface in 0..surfaces {
+            for channel in 0..3 {
+                let whole = factor * (stroke.color[channel] - behind[surface][channel]);
+                let present = picture[surface][channel] - target[surface][channel];
+                let bare = present - share(level) * whole;
+                ground.whole[surface][channel] = whole;
+                ground.error[0] += 2.0 * bare * whole;
+                ground.error[1] += whole * whole;
+            }
+        }
+        ground
+    }
+
+    /// The squared error that a stroke adds that covers so much of the pixel.
+    pub(super) fn error_at(&self, level: u8) -> f32 {
+        let m = share(level);
+        m * (self.error[0] + m * self.error[1])
+    }
+
+    /// The squared error that the stroke adds now.
+    pub(super) fn error(&self) -> f32 {
+        self.error_at(self.level)
+    }
+}
+
+fn share(level: u8) -> f32 {
+    f32::from(level) / 255.0
+}
+
+fn blend(behind: &mut Colors, m: f32, color: Rgb) {
+    for behind in behind {
+        for (value, color) in behind.iter_mut().zip(color) {
+            *value += m * (color - *value);
+        }
+    }
+}
+
+/// The colours of each pixel in pictures of one size.
+fn colors(pictures: &[Image]) -> Vec<Colors> {
+    let planes = pictures.first().map(Image::planes);
+    let mut colors = vec![Colors::default(); planes.map_or(0, |[red, ..]| red.len())];
+    for (surface, picture) in pictures.iter().enumerate() {
+        for (channel, plane) in picture.planes().iter().enumerate() {
+            for (colors, &value) in colors.iter_mut().zip(plane) {
+                colors[surface][channel] = value;
+            }
+        }
+    }
+    colors
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng;
+    use crate::scene::Path;
+
+    const PIXELS: usize = 30;
+
+    fn draw(key: u64, i: usize) -> f32 {
+        rng::draw(0, 1, key, i as u64)
+    }
+
+    fn mask(key: u64) -> Mask {
+        let level = |i: usize| (255.0 * draw(key, i)) as u8;
+        (0..PIXELS as u32).zip((0..PIXELS).map(level)).collect()
+    }
+
+    fn stroke(key: u64) -> Stroke {
+        Stroke {
+            path: Path::dot([0.0, 0.0].into()),
+            radius: 1.0,
+            color: [0, 1, 2].map(|c| draw(key, 900 + c)),
+            opacity: 0.3 + 0.7 * draw(key, 990),
+        }
+    }
+
+    /// The pictures of strokes that cover these masks.
+    fn composed(
+        bottoms: &[Colors],
+        strokes: &[Option<Stroke>],
+        masks: &[Each<Mask>],
+    ) -> Each<Vec<Colors>> {
+        std::array::from_fn(|i| {
+            let mut pictures = bottoms.to_vec();
+            for (stroke, masks) in strokes.iter().flatten().zip(masks) {
+                for (pixel, level) in masks[i].iter() {
+                    let m = share(level) * stroke.opacity;
+                    blend(&mut pictures[pixel as usize], m, stroke.color);
+                }
+            }
+            pictures
+        })
+    }
+
+    fn stacked(masks: &[Each<Mask>], strokes: &[Option<Stroke>]) -> Stacks {
+        let colors = |key: u64| {
+            let color = |i: usize| [0, 1, 2].map(|c| draw(key, 3 * i + c));
+            (0..PIXELS).map(|i| [color(i), color(i + PIXELS)]).collect()
+        };
+        let bottoms: Vec<Colors> = colors(50);
+        let mut stacks = Stacks {
+            surfaces: SURFACES,
+            weights: Some((0..PIXELS).map(|i| draw(60, i)).collect()),
+            targets: colors(51),
+            pictures: composed(&bottoms, strokes, masks),
+            bottoms,
+            layers: vec![Vec::new(); PIXELS],
+        };
+        for (id, masks) in masks.iter().enumerate() {
+            for (rasterizer, mask) in masks.iter().enumerate() {
+                for (pixel, level) in mask.iter() {
+                    stacks.level_mut(pixel as usize, id)[rasterizer] = level;
+                }
+            }
+        }
+        stacks
+    }
+
+    #[test]
+    fn what_a_mask_does_to_pictures_and_errors_is_foretold() {
+        let strokes: Vec<Option<Stroke>> = (0..4).map(|key| Some(stroke(key))).collect();
+        let keys = |id: u64| [10 * id + 100, 10 * id + 101, 10 * id + 102];
+        let mut masks: Vec<Each<Mask>> = (0..4).map(|id| keys(id).map(mask)).collect();
+        let mut stacks = stacked(&masks, &strokes);
+        let pixels: Vec<u32> = (0..PIXELS as u32).collect();
+        for id in [2, 0, 3] {
+            let grounds = stacks.grounds(id, &strokes, &pixels);
+            let moved = keys(id as u64).map(|key| mask(key + 1000));
+            let error = |i: usize, mask: &Mask| -> f32 {
+                let levels = mask
+                    .iter()
+                    .map(|(pixel, level)| grounds[pixel as usize][i].error_at(level));
+                levels.sum()
+            };
+            let foretold: Each<f32> =
+                std::array::from_fn(|i| error(i, &moved[i]) - error(i, &masks[id][i]));
+            let before = all_errors(&stacks);
+            let mut scratch = super::super::rasterizer::Scratch::new([PIXELS, 1]);
+            let changes = scratch.on(&pixels, |easel| changes(&grounds, &moved, easel));
+            stacks.change(id, &pixels, &changes);
+            masks[id] = moved;
+            let expected = composed(&stacks.bottoms, &strokes, &masks);
+            for (pictures, expected) in stacks.pictures.iter().zip(&expected) {
+                for (a, b) in pictures
+                    .as_flattened()
+                    .as_flattened()
+                    .iter()
+                    .zip(expected.as_flattened().as_flattened())
+                {
+                    assert!((a - b).abs() < 1e-5, "{a} {b}");
+                }
+            }
+            for ((after, before), foretold) in all_errors(&stacks).iter().zip(before).zip(foretold)
+            {
+                assert!(
+                    (after - before - foretold).abs() < 1e-4,
+                    "{before} {after} {foretold}"
+                );
+            }
+        }
+    }
+
+    /// The weighted squared error of each rasteriser, on all surfaces.
+    fn all_errors(stacks: &Stacks) -> Each<f32> {
+        stacks.pictures.each_ref().map(|pictures| {
+            let pixels = pictures.iter().zip(&stacks.targets).enumerate();
+            let error = pixels.map(|(pixel, (a, b))| {
+                let values = a.as_flattened().iter().zip(b.as_flattened());
+                stacks.weight(pixel) * values.map(|(a, b)| (a - b) * (a - b)).sum::<f32>()
+            });
+            error.sum()
+        })
+    }
+}

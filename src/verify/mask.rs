@@ -1,0 +1,123 @@
+//! What resvg covers with a single stroke.
+
+use std::ops::Range;
+
+use resvg::tiny_skia::{
+    FillRule, LineCap, LineJoin, Mask as Raster, Path, PathBuilder, Rect, Stroke as Pen, Transform,
+};
+
+use crate::image::Mask;
+use crate::scene::{Piece, Stroke};
+
+/// The length of the segment that a dot is written as, px.
+const DOT: f32 = 0.01;
+
+/// The pixels of a picture of `width`×`height` px that `stroke`, which is as its file has it, covers.
+pub fn mask(stroke: &Stroke, width: usize, height: usize) -> Mask {
+    covered(stroke, [width, height]).unwrap_or_default()
+}
+
+fn covered(stroke: &Stroke, size: [usize; 2]) -> Option<Mask> {
+    let pen = Pen {
+        width: 2.0 * stroke.radius,
+        line_cap: LineCap::Round,
+        line_join: LineJoin::Round,
+        ..Pen::default()
+    };
+    let outline = center_line(stroke)?.stroke(&pen, 1.0)?;
+    let [columns, rows] = touched(outline.bounds(), size);
+    let mut raster = Raster::new(columns.len() as u32, rows.len() as u32)?;
+    let corner = Transform::from_translate(-(columns.start as f32), -(rows.start as f32));
+    raster.fill_path(&outline, FillRule::Winding, true, corner);
+    let width = size[0];
+    let levels = rows.zip(raster.data().chunks_exact(columns.len()));
+    let covered = levels.flat_map(|(y, levels)| (y * width + columns.start..).zip(levels));
+    Some(
+        covered
+            .map(|(pixel, &level)| (pixel as u32, level))
+            .collect(),
+    )
+}
+
+/// The columns and rows of a picture of `size` that a box touches.
+fn touched(bounds: Rect, size: [usize; 2]) -> [Range<usize>; 2] {
+    let sides = [
+        (bounds.left(), bounds.right()),
+        (bounds.top(), bounds.bottom()),
+    ];
+    [0, 1].map(|axis| {
+        let (low, high) = sides[axis];
+        let end = (high.ceil().max(0.0) as usize).min(size[axis]);
+        (low.floor().max(0.0) as usize).min(end)..end
+    })
+}
+
+/// The centre line as resvg reads it from the file.
+fn center_line(stroke: &Stroke) -> Option<Path> {
+    let mut line = PathBuilder::new();
+    for piece in stroke.path.pieces() {
+        if line.is_empty() {
+            line.move_to(piece.start().x, piece.start().y);
+        }
+        match piece {
+            Piece::Line([_, b]) => line.line_to(b.x, b.y),
+            Piece::Curve([_, c, b]) => line.quad_to(c.x, c.y, b.x, b.y),
+        }
+    }
+    if let ([dot], true) = (stroke.path.points(), line.is_empty()) {
+        line.move_to(dot.at.x, dot.at.y);
+        line.line_to(dot.at.x + DOT, dot.at.y);
+    }
+    if stroke.path.is_closed() {
+        line.close();
+    }
+    line.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{self, PathPoint, Scene, Stage};
+    use crate::svg::{self, WriteOptions};
+    use crate::verify::{self, Size};
+
+    #[test]
+    fn masks_are_what_resvg_draws_in_white_on_black() {
+        let (width, height) = (60, 50);
+        let [on, off] = [PathPoint::on, PathPoint::off];
+        let bent = |closed| {
+            let points = vec![
+                on([-5.0, 20.0].into()),
+                off([70.0, 3.25].into()),
+                on([40.0, 44.5].into()),
+                on([12.0, 41.0].into()),
+            ];
+            scene::Path::new(points, closed).unwrap()
+        };
+        let paths = [
+            bent(false),
+            bent(true),
+            scene::Path::line([20.0, 9.0].into(), [44.5, 30.25].into()),
+            scene::Path::dot([25.5, 24.5].into()),
+        ];
+        for path in paths {
+            let stroke = Stroke {
+                path,
+                radius: 1.75,
+                color: [1.0; 3],
+                opacity: 1.0,
+            };
+            let scene = Scene {
+                stages: vec![Stage {
+                    strokes: vec![stroke.clone()],
+                }],
+                ..Scene::empty(width, height, Some([0.0; 3]))
+            };
+            let text = svg::write(&scene, &WriteOptions::default());
+            let drawn = verify::render(&text, Size::Exact { width, height }, None).unwrap();
+            let drawn = (0..).zip(drawn.to_rgb8().into_iter().step_by(3));
+            let mask = mask(&stroke, width as usize, height as usize);
+            assert_eq!(mask, drawn.collect(), "{:?}", stroke.path);
+        }
+    }
+}
