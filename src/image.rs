@@ -9,9 +9,9 @@
 mod animate;
 mod decode;
 mod encode;
+mod footprint;
 mod foreign;
 mod header;
-mod mask;
 #[cfg(feature = "formats")]
 mod profile;
 mod remark;
@@ -24,8 +24,8 @@ use std::path::Path;
 #[cfg(feature = "animation")]
 pub use animate::{Animation, AnimationFormat};
 pub use decode::Limits;
+pub use footprint::Footprint;
 pub(crate) use header::{Embeddable, stated_size};
-pub use mask::Mask;
 pub use remark::Remark;
 pub use rows::{Rows, Sample};
 

@@ -118,6 +118,11 @@
 //! | survey | how the squared error depends on the vertices of all strokes, so that the gain of a new point is known |
 //! | join | making one stroke of two that look alike and meet end to end |
 //! | settle | last steps against renders of the written file, by resvg and by the model of a browser |
+//! | nudge | to move points by a tenth of a px at most, to where rasterisers draw the stroke better |
+//! | rasteriser | a way to antialias: that of resvg, of a browser, or exact areas |
+//! | footprint | the pixels that a stroke covers, and how much of each, as a rasteriser draws it |
+//! | fragment | a stroke in a pixel, with how much of it each rasteriser covers |
+//! | fringe | the pixels that a stroke may come to cover more or less when it is nudged |
 //! | offset | difference between a renderer's picture of the file and our own canvas, per channel |
 //! | phase | one step in the order of a fit: a stage, the polish, the settling, … |
 //! | session | a fit under way: all that its phases hand around |

@@ -29,8 +29,8 @@
 
 #[cfg(feature = "cli")]
 mod elements;
+mod footprint;
 mod limits;
-mod mask;
 mod painting;
 mod placement;
 mod raster;
@@ -45,7 +45,7 @@ use serde::{Deserialize, Serialize};
 
 #[cfg(feature = "cli")]
 pub use elements::{Element, elements};
-pub use mask::mask;
+pub use footprint::footprint;
 pub use painting::Painting;
 use raster::draw;
 use tree::parse;

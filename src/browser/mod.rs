@@ -33,7 +33,7 @@
 mod area;
 mod contour;
 mod curve;
-mod masker;
+mod footprinter;
 mod outline;
 mod part;
 mod pieces;
@@ -44,7 +44,7 @@ use rayon::prelude::*;
 
 use area::Area;
 use contour::Contour;
-pub use masker::Masker;
+pub use footprinter::Footprinter;
 use outline::Outline;
 use window::Window;
 

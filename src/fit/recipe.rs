@@ -409,6 +409,8 @@ pub struct Settling {
 pub struct Nudging {
     /// Strokes are nudged if renderers add at least this to the error of the drawing, dB.
     pub added_db: f64,
+    /// Where all rasterisers are as faithful as this, dB, nudging ends: the model of a browser is hardly better.
+    pub until_db: f64,
     /// Most visits of each stroke.
     pub sweeps: usize,
     /// A sweep that brings less than this, dB, is the last.

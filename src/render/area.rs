@@ -8,7 +8,7 @@
 use std::f32::consts::FRAC_1_SQRT_2;
 use std::ops::Range;
 
-use crate::image::Mask;
+use crate::image::Footprint;
 use crate::math::{Point, Vector};
 use crate::scene::Stroke;
 
@@ -21,7 +21,7 @@ const HALF_DIAGONAL: f32 = FRAC_1_SQRT_2;
 /// Below this squared distance, px², the direction to the centre line is taken from the line.
 const ON_LINE2: f32 = 1e-6;
 
-/// Some pixels of a picture: those that a mask is wanted of.
+/// Some pixels of a picture: those that a footprint is wanted of.
 pub(crate) struct Region<'a> {
     /// Their indices, counted row by row, rising.
     pub(crate) pixels: &'a [u32],
@@ -72,7 +72,7 @@ struct Nearest {
 }
 
 /// The pixels of `region` that `stroke` covers.
-pub(crate) fn mask(stroke: &Stroke, region: &Region<'_>) -> Mask {
+pub(crate) fn footprint(stroke: &Stroke, region: &Region<'_>) -> Footprint {
     let far = Nearest {
         distance2: f32::INFINITY,
         across: Vector::new(1.0, 0.0),
@@ -199,7 +199,7 @@ mod tests {
             width: SIDE,
         };
         let mut areas = vec![0.0; SIDE * SIDE];
-        for (pixel, level) in mask(stroke, &region).iter() {
+        for (pixel, level) in footprint(stroke, &region).iter() {
             areas[pixel as usize] = f32::from(level) / 255.0;
         }
         areas

@@ -6,11 +6,11 @@
 //! if it is better than the present one.
 //!
 //! Three [`RASTERIZERS`] judge a place, so that a drawing does not become better in one program by being worse in others. The
-//! larger the error of a rasteriser is, the more it counts. For each trial one stroke is drawn, on its own: [`Stacks`] knows what
-//! its mask does to the pictures. Strokes that have no pixel in common are visited at once, by all threads.
+//! larger the error of a rasteriser is, the more it counts. For each trial one stroke is drawn, on its own: [`Fragments`] know what
+//! its footprint does to the pictures. Strokes that have no pixel in common are visited at once, by all threads.
 
+mod fragments;
 mod rasterizer;
-mod stacks;
 
 use std::f32::consts::SQRT_2;
 
@@ -20,15 +20,15 @@ use crate::fit::file::RenderedFile;
 use crate::fit::recipe::Nudging;
 use crate::fit::renderers::Renderings;
 use crate::fit::session::Session;
-use crate::image::Mask;
+use crate::image::Footprint;
 use crate::math;
 use crate::metrics::psnr_db;
 use crate::render::Strokes;
 use crate::rng;
 use crate::scene::{Scene, Stroke};
 use crate::threads::PerWorker;
-use rasterizer::{Easel, RASTERIZERS, Scratch};
-use stacks::{Change, Each, Ground, Stacks, changes};
+use fragments::{Change, Each, Fragments, Response, changes};
+use rasterizer::{RASTERIZERS, Scratch, Selection};
 
 /// First word of the keys of random draws, so that nothing else uses the same.
 const DRAWS: u64 = 1 << 40;
@@ -47,19 +47,24 @@ pub(super) fn run(session: &mut Session<'_>, file: &RenderedFile, seen: &Renderi
     if drawing.pixels() > nudging.most_pixels || strokes == 0 || !timer.allows_round() {
         return false;
     }
+    let values = 3.0 * drawing.pixels() as f64;
+    let worst_db = |errors: Each<f64>| psnr_db(largest(errors) / values);
     let mut nudger = Nudger::of(session, file, seen);
     let affordable = nudging.trials / (nudging.tries * strokes);
     for sweep in 0..nudging.sweeps.min(affordable.max(1)) {
-        let before = nudger.stacks.errors();
+        let before = nudger.fragments.errors();
+        if worst_db(before) >= nudging.until_db {
+            break;
+        }
         let weights = weights(before);
         for set in 0..nudger.sets.len() {
             if session.timer.allows_round() {
                 nudger.visit_all(set, sweep, weights);
             }
         }
-        let [was, is] = [before, nudger.stacks.errors()].map(|errors| psnr_db(largest(errors)));
+        let gain_db = worst_db(nudger.fragments.errors()) - worst_db(before);
         let goes_on = session.progress.tell(&session.drawing, file.mse);
-        if is - was < nudging.least_db || !goes_on {
+        if gain_db < nudging.least_db || !goes_on {
             break;
         }
     }
@@ -94,7 +99,7 @@ struct Nudger<'a> {
     fringes: Vec<Vec<u32>>,
     /// Sets of strokes whose fringes are apart.
     sets: Vec<Vec<usize>>,
-    stacks: Stacks,
+    fragments: Fragments,
     scratch: PerWorker<Scratch>,
 }
 
@@ -123,7 +128,7 @@ impl<'a> Nudger<'a> {
             Some(stroke) => scratch.with(|scratch| drawn(stroke, nudging.reach_px, scratch)),
             None => Default::default(),
         };
-        let (masks, fringes): (Vec<Each<Mask>>, Vec<Vec<u32>>) =
+        let (footprints, fringes): (Vec<Each<Footprint>>, Vec<Vec<u32>>) =
             written.par_iter().map(drawn).unzip();
         let mut order: Vec<usize> = (0..strokes.len()).collect();
         order.sort_by_key(|&i| rng::bits(config.seed, DRAWS, i as u64, 0));
@@ -135,7 +140,7 @@ impl<'a> Nudger<'a> {
             homes: strokes.clone(),
             strokes,
             sets: apart(order, &fringes, drawing.pixels()),
-            stacks: Stacks::of(session, file, seen, &written, &masks),
+            fragments: Fragments::of(session, file, seen, &written, &footprints),
             written,
             fringes,
             scratch,
@@ -146,7 +151,7 @@ impl<'a> Nudger<'a> {
     fn visit_all(&mut self, set: usize, sweep: usize, weights: Each<f32>) {
         let this = &*self;
         let visit = |&id: &usize| {
-            let visit = |easel: &mut Easel<'_>| this.visit(id, sweep, weights, easel);
+            let visit = |selection: &mut Selection<'_>| this.visit(id, sweep, weights, selection);
             this.scratch
                 .with(|scratch| scratch.on(&this.fringes[id], visit))
         };
@@ -161,11 +166,13 @@ impl<'a> Nudger<'a> {
         id: usize,
         sweep: usize,
         weights: Each<f32>,
-        easel: &mut Easel<'_>,
+        selection: &mut Selection<'_>,
     ) -> Option<Nudge> {
         let present = self.written[id].as_ref()?;
-        let grounds = self.stacks.grounds(id, &self.written, &self.fringes[id]);
-        let trial = Trial::new(&grounds, weights);
+        let responses = self
+            .fragments
+            .responses(id, &self.written, &self.fringes[id]);
+        let trial = Trial::new(&responses, weights);
         let (mut least, mut best) = (0.0, None);
         for k in 0..self.nudging.tries {
             let points = self.place(id, sweep, k);
@@ -173,16 +180,16 @@ impl<'a> Nudger<'a> {
             let Some(tried) = tried.filter(|tried| tried != present) else {
                 continue;
             };
-            if let Some((change, masks)) = trial.judge(&tried, least, easel) {
+            if let Some((change, footprints)) = trial.judge(&tried, least, selection) {
                 least = change;
-                best = Some((points, tried, masks));
+                best = Some((points, tried, footprints));
             }
         }
-        best.map(|(points, written, masks)| Nudge {
+        best.map(|(points, written, footprints)| Nudge {
             id,
             points,
             written,
-            changes: changes(&grounds, &masks, easel),
+            changes: changes(&responses, &footprints, selection),
         })
     }
 
@@ -226,17 +233,17 @@ impl<'a> Nudger<'a> {
         } = nudge;
         self.written[id] = Some(written);
         self.strokes.move_points(id, &points);
-        self.stacks.change(id, &self.fringes[id], &changes);
+        self.fragments.change(id, &self.fringes[id], &changes);
     }
 }
 
 /// What `stroke` covers, and the pixels of which it may cover more or less once it is moved within `reach` px.
-fn drawn(stroke: &Stroke, reach: f32, scratch: &mut Scratch) -> (Each<Mask>, Vec<u32>) {
+fn drawn(stroke: &Stroke, reach: f32, scratch: &mut Scratch) -> (Each<Footprint>, Vec<u32>) {
     let beyond = reach * SQRT_2 + FRINGE;
     let wide = scratch.swept(stroke, beyond);
     let narrow = scratch.swept(stroke, -beyond);
-    let masks = scratch.on(wide.pixels(), |easel| {
-        RASTERIZERS.map(|rasterizer| easel.mask(rasterizer, stroke))
+    let footprints = scratch.on(wide.pixels(), |selection| {
+        RASTERIZERS.map(|rasterizer| selection.footprint(rasterizer, stroke))
     });
     let mut inside = narrow
         .iter()
@@ -247,14 +254,14 @@ fn drawn(stroke: &Stroke, reach: f32, scratch: &mut Scratch) -> (Each<Mask>, Vec
         inside.peek().is_none_or(|(inside, _)| inside != pixel)
     };
     (
-        masks,
+        footprints,
         wide.pixels().iter().copied().filter(is_fringe).collect(),
     )
 }
 
 /// What is known of a stroke before it is tried elsewhere.
 struct Trial<'a> {
-    grounds: &'a [Each<Ground>],
+    responses: &'a [Each<Response>],
     weights: Each<f32>,
     /// The squared error that the stroke adds, for each rasteriser.
     present: Each<f32>,
@@ -263,12 +270,12 @@ struct Trial<'a> {
 }
 
 impl<'a> Trial<'a> {
-    fn new(grounds: &'a [Each<Ground>], weights: Each<f32>) -> Self {
+    fn new(responses: &'a [Each<Response>], weights: Each<f32>) -> Self {
         let mut order = std::array::from_fn(|i| i);
         order.sort_by(|&i, &j| f32::total_cmp(&weights[j], &weights[i]));
-        let present = |i: usize| grounds.iter().map(|ground| ground[i].error()).sum();
+        let present = |i: usize| responses.iter().map(|response| response[i].error()).sum();
         Self {
-            grounds,
+            responses,
             weights,
             present: std::array::from_fn(present),
             order,
@@ -281,21 +288,21 @@ impl<'a> Trial<'a> {
         &self,
         tried: &Stroke,
         least: f32,
-        easel: &mut Easel<'_>,
-    ) -> Option<(f32, Each<Mask>)> {
-        let mut masks = Each::<Mask>::default();
+        selection: &mut Selection<'_>,
+    ) -> Option<(f32, Each<Footprint>)> {
+        let mut footprints = Each::<Footprint>::default();
         let mut change = 0.0;
         for i in self.order {
-            masks[i] = easel.mask(RASTERIZERS[i], tried);
-            let errors = easel
-                .chosen(&masks[i])
-                .map(|(slot, level)| self.grounds[slot][i].error_at(level));
+            footprints[i] = selection.footprint(RASTERIZERS[i], tried);
+            let errors = selection
+                .chosen(&footprints[i])
+                .map(|(slot, level)| self.responses[slot][i].error_at(level));
             change += self.weights[i] * (errors.sum::<f32>() - self.present[i]);
             if change >= least {
                 return None;
             }
         }
-        Some((change, masks))
+        Some((change, footprints))
     }
 }
 

@@ -246,7 +246,8 @@ const BALANCED: Recipe = Recipe {
         offset_taken: 0.7,
         share_per_db: 0.15,
         nudging: Nudging {
-            added_db: 1.0,
+            added_db: 0.9,
+            until_db: 51.0,
             sweeps: 8,
             least_db: 0.05,
             tries: 8,

@@ -1,7 +1,7 @@
 //! Ways to antialias the edges of strokes.
 
-use crate::browser::Masker;
-use crate::image::Mask;
+use crate::browser::Footprinter;
+use crate::image::Footprint;
 use crate::render::area::{self, Region, Slots};
 use crate::scene::Stroke;
 use crate::verify;
@@ -25,12 +25,12 @@ pub(super) const RASTERIZERS: [Rasterizer; 3] =
 pub(super) struct Scratch {
     width: usize,
     height: usize,
-    masker: Masker,
+    footprinter: Footprinter,
     slots: Slots,
 }
 
 /// Some pixels of the picture, and scratch to draw on them.
-pub(super) struct Easel<'a> {
+pub(super) struct Selection<'a> {
     pixels: &'a [u32],
     scratch: &'a mut Scratch,
 }
@@ -40,28 +40,32 @@ impl Scratch {
         Self {
             width,
             height,
-            masker: Masker::new(width, height),
+            footprinter: Footprinter::new(width, height),
             slots: Slots::new(width * height),
         }
     }
 
     /// What `stroke` covers if its radius is larger by so many px.
-    pub(super) fn swept(&self, stroke: &Stroke, wider: f32) -> Mask {
+    pub(super) fn swept(&self, stroke: &Stroke, wider: f32) -> Footprint {
         let radius = stroke.radius + wider;
         if radius <= 0.0 {
-            return Mask::default();
+            return Footprint::default();
         }
         let stroke = Stroke {
             radius,
             ..stroke.clone()
         };
-        verify::mask(&stroke, self.width, self.height)
+        verify::footprint(&stroke, self.width, self.height)
     }
 
     /// Runs `work` with these pixels chosen.
-    pub(super) fn on<T>(&mut self, pixels: &[u32], work: impl FnOnce(&mut Easel<'_>) -> T) -> T {
+    pub(super) fn on<T>(
+        &mut self,
+        pixels: &[u32],
+        work: impl FnOnce(&mut Selection<'_>) -> T,
+    ) -> T {
         self.slots.set(pixels);
-        let done = work(&mut Easel {
+        let done = work(&mut Selection {
             pixels,
             scratch: self,
         });
@@ -70,19 +74,19 @@ impl Scratch {
     }
 }
 
-impl Easel<'_> {
+impl Selection<'_> {
     /// What `stroke` covers. Exact areas are known of the chosen pixels alone.
-    pub(super) fn mask(&mut self, rasterizer: Rasterizer, stroke: &Stroke) -> Mask {
+    pub(super) fn footprint(&mut self, rasterizer: Rasterizer, stroke: &Stroke) -> Footprint {
         let Scratch {
             width,
             height,
-            ref mut masker,
+            ref mut footprinter,
             ref slots,
         } = *self.scratch;
         match rasterizer {
-            Rasterizer::Resvg => verify::mask(stroke, width, height),
-            Rasterizer::Browser => masker.mask(stroke),
-            Rasterizer::Area => area::mask(
+            Rasterizer::Resvg => verify::footprint(stroke, width, height),
+            Rasterizer::Browser => footprinter.footprint(stroke),
+            Rasterizer::Area => area::footprint(
                 stroke,
                 &Region {
                     pixels: self.pixels,
@@ -93,10 +97,11 @@ impl Easel<'_> {
         }
     }
 
-    /// Of the chosen pixels, those that `mask` covers: the place of each among them, and its coverage, 0 to 255.
-    pub(super) fn chosen(&self, mask: &Mask) -> impl Iterator<Item = (usize, u8)> {
+    /// Of the chosen pixels, those that `footprint` covers: the place of each among them, and its coverage, 0 to 255.
+    pub(super) fn chosen(&self, footprint: &Footprint) -> impl Iterator<Item = (usize, u8)> {
         let slots = &self.scratch.slots;
-        mask.iter()
+        footprint
+            .iter()
             .filter_map(|(pixel, level)| Some((slots.find(pixel)?, level)))
     }
 }

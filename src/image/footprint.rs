@@ -2,13 +2,13 @@
 
 /// The pixels of a picture that a shape covers, and how much of each.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Mask {
+pub struct Footprint {
     pixels: Vec<u32>,
     /// 1 to 255.
     levels: Vec<u8>,
 }
 
-impl Mask {
+impl Footprint {
     /// The indices of the pixels, counted row by row, rising.
     pub fn pixels(&self) -> &[u32] {
         &self.pixels
@@ -21,8 +21,8 @@ impl Mask {
     }
 }
 
-/// The mask of pixels by rising index, each with its coverage, 0 to 255.
-impl FromIterator<(u32, u8)> for Mask {
+/// The footprint of pixels by rising index, each with its coverage, 0 to 255.
+impl FromIterator<(u32, u8)> for Footprint {
     fn from_iter<I: IntoIterator<Item = (u32, u8)>>(covered: I) -> Self {
         let covered = covered.into_iter().filter(|&(_, level)| level > 0);
         let (pixels, levels) = covered.unzip();
@@ -36,10 +36,10 @@ mod tests {
 
     #[test]
     fn only_what_is_covered_counts() {
-        let mask: Mask = [(12, 0), (13, 255), (24, 51), (99, 0)]
+        let footprint: Footprint = [(12, 0), (13, 255), (24, 51), (99, 0)]
             .into_iter()
             .collect();
-        assert_eq!(mask.iter().collect::<Vec<_>>(), [(13, 255), (24, 51)]);
-        assert_eq!(mask.pixels(), [13, 24]);
+        assert_eq!(footprint.iter().collect::<Vec<_>>(), [(13, 255), (24, 51)]);
+        assert_eq!(footprint.pixels(), [13, 24]);
     }
 }

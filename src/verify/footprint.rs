@@ -6,18 +6,18 @@ use resvg::tiny_skia::{
     FillRule, LineCap, LineJoin, Mask as Raster, Path, PathBuilder, Rect, Stroke as Pen, Transform,
 };
 
-use crate::image::Mask;
+use crate::image::Footprint;
 use crate::scene::{Piece, Stroke};
 
 /// The length of the segment that a dot is written as, px.
 const DOT: f32 = 0.01;
 
 /// The pixels of a picture of `width`×`height` px that `stroke`, which is as its file has it, covers.
-pub fn mask(stroke: &Stroke, width: usize, height: usize) -> Mask {
+pub fn footprint(stroke: &Stroke, width: usize, height: usize) -> Footprint {
     covered(stroke, [width, height]).unwrap_or_default()
 }
 
-fn covered(stroke: &Stroke, size: [usize; 2]) -> Option<Mask> {
+fn covered(stroke: &Stroke, size: [usize; 2]) -> Option<Footprint> {
     let pen = Pen {
         width: 2.0 * stroke.radius,
         line_cap: LineCap::Round,
@@ -32,11 +32,8 @@ fn covered(stroke: &Stroke, size: [usize; 2]) -> Option<Mask> {
     let width = size[0];
     let levels = rows.zip(raster.data().chunks_exact(columns.len()));
     let covered = levels.flat_map(|(y, levels)| (y * width + columns.start..).zip(levels));
-    Some(
-        covered
-            .map(|(pixel, &level)| (pixel as u32, level))
-            .collect(),
-    )
+    let covered = covered.map(|(pixel, &level)| (pixel as u32, level));
+    Some(covered.collect())
 }
 
 /// The columns and rows of a picture of `size` that a box touches.
@@ -82,7 +79,7 @@ mod tests {
     use crate::verify::{self, Size};
 
     #[test]
-    fn masks_are_what_resvg_draws_in_white_on_black() {
+    fn footprints_are_what_resvg_draws_in_white_on_black() {
         let (width, height) = (60, 50);
         let [on, off] = [PathPoint::on, PathPoint::off];
         let bent = |closed| {
@@ -116,8 +113,8 @@ mod tests {
             let text = svg::write(&scene, &WriteOptions::default());
             let drawn = verify::render(&text, Size::Exact { width, height }, None).unwrap();
             let drawn = (0..).zip(drawn.to_rgb8().into_iter().step_by(3));
-            let mask = mask(&stroke, width as usize, height as usize);
-            assert_eq!(mask, drawn.collect(), "{:?}", stroke.path);
+            let footprint = footprint(&stroke, width as usize, height as usize);
+            assert_eq!(footprint, drawn.collect(), "{:?}", stroke.path);
         }
     }
 }

@@ -4,17 +4,17 @@ use super::area::Area;
 use super::contour::Contour;
 use super::outline::Outline;
 use super::window::Window;
-use crate::image::Mask;
+use crate::image::Footprint;
 use crate::scene::Stroke;
 
 /// Tells of single strokes how much of each pixel a browser covers with them; keeps its memory from call to call.
-pub struct Masker {
+pub struct Footprinter {
     size: [usize; 2],
     windows: Vec<(Window, Area)>,
     outline: Outline,
 }
 
-impl Masker {
+impl Footprinter {
     /// One for pictures of `width`×`height` px.
     pub fn new(width: usize, height: usize) -> Self {
         let windows = Window::all(width, height).into_iter();
@@ -28,7 +28,7 @@ impl Masker {
     }
 
     /// The pixels that `stroke` covers.
-    pub fn mask(&mut self, stroke: &Stroke) -> Mask {
+    pub fn footprint(&mut self, stroke: &Stroke) -> Footprint {
         let contour = Contour::of(stroke);
         let [width, _] = self.size;
         let mut pixels = Vec::new();
@@ -67,7 +67,7 @@ mod tests {
     use crate::scene::{Path, PathPoint};
 
     #[test]
-    fn masks_are_what_is_drawn_in_white_on_black() {
+    fn footprints_are_what_is_drawn_in_white_on_black() {
         let (width, height) = (300, 270);
         let [on, off] = [PathPoint::on, PathPoint::off];
         let bent = vec![
@@ -81,7 +81,7 @@ mod tests {
             Path::dot([254.5, 254.5].into()),
             Path::dot([900.0, 9.0].into()),
         ];
-        let mut masker = Masker::new(width, height);
+        let mut footprinter = Footprinter::new(width, height);
         for path in paths {
             let stroke = Stroke {
                 path,
@@ -92,7 +92,7 @@ mod tests {
             let page = Image::filled(width, height, [0.0; 3]).unwrap();
             let drawn = draw([&stroke].into_iter(), &[page]).remove(0).to_rgb8();
             let drawn = (0..).zip(drawn.into_iter().step_by(3));
-            assert_eq!(masker.mask(&stroke), drawn.collect());
+            assert_eq!(footprinter.footprint(&stroke), drawn.collect());
         }
     }
 }

@@ -1,16 +1,18 @@
-//! Which strokes cover each pixel, for each rasteriser, and what it shows of them.
+//! An A-buffer: which strokes cover each pixel, and how much of it, for each rasteriser.
 //!
 //! Where strokes in front let through `T` and those behind have the colour `B`, a stroke of colour `c` and opacity `o` that
 //! covers `m` of a pixel adds `m·T·o·(c − B)` to its colour. So the squared error there is a polynomial of the second
 //! degree in `m`. Levels are not rounded here; the pictures begin as renderers have rounded them.
+//!
+//! Source: Carpenter, "The A-buffer, an antialiased hidden surface method", SIGGRAPH 1984.
 
 use std::cmp::Ordering;
 
-use super::rasterizer::{Easel, RASTERIZERS};
+use super::rasterizer::{RASTERIZERS, Selection};
 use crate::fit::file::RenderedFile;
 use crate::fit::renderers::Renderings;
 use crate::fit::session::Session;
-use crate::image::{Image, Mask};
+use crate::image::{Footprint, Image};
 use crate::scene::{Rgb, Stroke};
 
 /// Most surfaces of a drawing.
@@ -24,14 +26,14 @@ pub(super) type Each<T> = [T; RASTERIZERS.len()];
 
 /// A stroke in a pixel.
 #[derive(Debug, Clone, Copy)]
-struct Layer {
+struct Fragment {
     stroke: u32,
     /// How much of the pixel it covers, 0 to 255.
     levels: Each<u8>,
 }
 
 /// Which strokes cover each pixel.
-pub(super) struct Stacks {
+pub(super) struct Fragments {
     surfaces: usize,
     /// How much an error counts at each pixel, if not everywhere alike.
     weights: Option<Vec<f32>>,
@@ -39,13 +41,24 @@ pub(super) struct Stacks {
     /// What lies behind all strokes.
     bottoms: Vec<Colors>,
     /// The strokes of each pixel, back to front.
-    layers: Vec<Vec<Layer>>,
+    lists: Vec<Vec<Fragment>>,
     pictures: Each<Vec<Colors>>,
 }
 
-/// How a pixel depends on how much of it a stroke covers.
+/// How a stroke is seen in a pixel.
+#[derive(Debug, Clone, Copy)]
+struct Sight {
+    /// How much of the pixel it covers, 0 to 255.
+    level: u8,
+    /// What the strokes in front let through.
+    through: f32,
+    /// The colours behind it.
+    behind: Colors,
+}
+
+/// How a pixel responds to how much of it a stroke covers.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Ground {
+pub(super) struct Response {
     /// How much of the pixel the stroke covers, 0 to 255.
     level: u8,
     /// What covering all of it adds to the colours.
@@ -54,14 +67,14 @@ pub(super) struct Ground {
     error: [f32; 2],
 }
 
-impl Stacks {
-    /// The stacks of the strokes of `file`, `written` as they are there, which cover `masks`.
+impl Fragments {
+    /// The fragments of the strokes of `file`, `written` as they are there, which cover `footprints`.
     pub(super) fn of(
         session: &Session<'_>,
         file: &RenderedFile,
         seen: &Renderings,
         written: &[Option<Stroke>],
-        masks: &[Each<Mask>],
+        footprints: &[Each<Footprint>],
     ) -> Self {
         let surfaces = session.drawing.surfaces.iter();
         let (targets, bottoms): (Vec<_>, Vec<_>) = surfaces
@@ -71,46 +84,46 @@ impl Stacks {
             })
             .unzip();
         let (targets, bottoms) = (colors(&targets), colors(&bottoms));
-        let mut stacks = Self {
+        let mut fragments = Self {
             surfaces: session.drawing.surfaces.len(),
             weights: session.focus.as_ref().map(|focus| focus.values().to_vec()),
-            layers: vec![Vec::new(); targets.len()],
+            lists: vec![Vec::new(); targets.len()],
             pictures: [colors(&file.drawn), colors(seen.shown()), bottoms.clone()],
             targets,
             bottoms,
         };
-        for (id, masks) in masks.iter().enumerate() {
-            for (rasterizer, mask) in masks.iter().enumerate() {
-                for (pixel, level) in mask.iter() {
-                    stacks.level_mut(pixel as usize, id)[rasterizer] = level;
+        for (id, footprints) in footprints.iter().enumerate() {
+            for (rasterizer, footprint) in footprints.iter().enumerate() {
+                for (pixel, level) in footprint.iter() {
+                    fragments.level_mut(pixel as usize, id)[rasterizer] = level;
                 }
             }
         }
         // Nobody has drawn exact areas yet.
-        let composed = stacks.pictures.last_mut().into_iter().flatten();
-        for (colors, layers) in composed.zip(&stacks.layers) {
-            for layer in layers {
-                if let Some(stroke) = &written[layer.stroke as usize] {
-                    let [.., level] = layer.levels;
+        let composed = fragments.pictures.last_mut().into_iter().flatten();
+        for (colors, list) in composed.zip(&fragments.lists) {
+            for fragment in list {
+                if let Some(stroke) = &written[fragment.stroke as usize] {
+                    let [.., level] = fragment.levels;
                     blend(colors, share(level) * stroke.opacity, stroke.color);
                 }
             }
         }
-        stacks
+        fragments
     }
 
     /// Where it is kept how much of a pixel stroke `id` covers.
     fn level_mut(&mut self, pixel: usize, id: usize) -> &mut Each<u8> {
-        let (layers, stroke) = (&mut self.layers[pixel], id as u32);
-        let at = match layers.binary_search_by_key(&stroke, |layer| layer.stroke) {
+        let (list, stroke) = (&mut self.lists[pixel], id as u32);
+        let at = match list.binary_search_by_key(&stroke, |fragment| fragment.stroke) {
             Ok(at) => at,
             Err(at) => {
                 let levels = Default::default();
-                layers.insert(at, Layer { stroke, levels });
+                list.insert(at, Fragment { stroke, levels });
                 at
             }
         };
-        &mut layers[at].levels
+        &mut list[at].levels
     }
 
     /// The squared error of each rasteriser's pictures, on the surface where it is largest.
@@ -134,47 +147,50 @@ impl Stacks {
         self.weights.as_ref().map_or(1.0, |weights| weights[pixel])
     }
 
-    /// How these pixels depend on stroke `id`.
-    pub(super) fn grounds(
+    /// How each of these pixels responds to stroke `id`.
+    pub(super) fn responses(
         &self,
         id: usize,
         strokes: &[Option<Stroke>],
         pixels: &[u32],
-    ) -> Vec<Each<Ground>> {
+    ) -> Vec<Each<Response>> {
         let Some(stroke) = &strokes[id] else {
             return Vec::new();
         };
-        let ground = |&pixel: &u32| {
+        let responses = pixels.iter().map(|&pixel| {
             let pixel = pixel as usize;
-            let mut levels = Each::default();
-            let mut through = [1.0; RASTERIZERS.len()];
-            let mut behind = [self.bottoms[pixel]; RASTERIZERS.len()];
-            for layer in &self.layers[pixel] {
-                let Some(other) = &strokes[layer.stroke as usize] else {
-                    continue;
-                };
-                let order = (layer.stroke as usize).cmp(&id);
-                if order == Ordering::Equal {
-                    levels = layer.levels;
-                    continue;
-                }
-                for (rasterizer, &level) in layer.levels.iter().enumerate() {
-                    let m = share(level) * other.opacity;
-                    if order == Ordering::Less {
-                        blend(&mut behind[rasterizer], m, other.color);
-                    } else {
-                        through[rasterizer] *= 1.0 - m;
-                    }
+            let sights = self.sights(id, strokes, pixel);
+            std::array::from_fn(|i| {
+                let colors = [&self.pictures[i][pixel], &self.targets[pixel]];
+                let response = Response::of(stroke, &sights[i], colors, self.surfaces);
+                response.weighted(self.weight(pixel))
+            })
+        });
+        responses.collect()
+    }
+
+    /// How stroke `id` is seen in a pixel.
+    fn sights(&self, id: usize, strokes: &[Option<Stroke>], pixel: usize) -> Each<Sight> {
+        let mut sights = [Sight {
+            level: 0,
+            through: 1.0,
+            behind: self.bottoms[pixel],
+        }; RASTERIZERS.len()];
+        for fragment in &self.lists[pixel] {
+            let Some(other) = &strokes[fragment.stroke as usize] else {
+                continue;
+            };
+            let order = (fragment.stroke as usize).cmp(&id);
+            for (sight, &level) in sights.iter_mut().zip(&fragment.levels) {
+                let m = share(level) * other.opacity;
+                match order {
+                    Ordering::Less => blend(&mut sight.behind, m, other.color),
+                    Ordering::Equal => sight.level = level,
+                    Ordering::Greater => sight.through *= 1.0 - m,
                 }
             }
-            std::array::from_fn(|i| {
-                let colors = [&self.pictures[i][pixel], &self.targets[pixel], &behind[i]];
-                let mut ground = Ground::of(stroke, levels[i], through[i], colors, self.surfaces);
-                ground.error = ground.error.map(|term| self.weight(pixel) * term);
-                ground
-            })
-        };
-        pixels.iter().map(ground).collect()
+        }
+        sights
     }
 
     /// Changes what stroke `id` covers of these pixels.
@@ -207,42 +223,45 @@ pub(super) struct Change {
     colors: Each<Colors>,
 }
 
-/// What happens to the pixels of `easel`, of these `grounds`, when a stroke comes to cover `masks`.
+/// What happens to the pixels of `selection`, of these `responses`, when a stroke comes to cover `footprints`.
 pub(super) fn changes(
-    grounds: &[Each<Ground>],
-    masks: &Each<Mask>,
-    easel: &Easel<'_>,
+    responses: &[Each<Response>],
+    footprints: &Each<Footprint>,
+    selection: &Selection<'_>,
 ) -> Vec<Change> {
-    let mut levels = vec![Each::default(); grounds.len()];
-    for (rasterizer, mask) in masks.iter().enumerate() {
-        for (slot, level) in easel.chosen(mask) {
+    let mut levels = vec![Each::default(); responses.len()];
+    for (rasterizer, footprint) in footprints.iter().enumerate() {
+        for (slot, level) in selection.chosen(footprint) {
             levels[slot][rasterizer] = level;
         }
     }
-    let changes = grounds.iter().zip(levels).enumerate();
-    let changed =
-        changes.filter(|(_, (ground, levels))| ground.map(|ground| ground.level) != *levels);
-    let change = |(slot, (ground, levels)): (usize, (&Each<Ground>, Each<u8>))| Change {
+    let changes = responses.iter().zip(levels).enumerate();
+    let changed = changes
+        .filter(|(_, (response, levels))| response.map(|response| response.level) != *levels);
+    let change = |(slot, (response, levels)): (usize, (&Each<Response>, Each<u8>))| Change {
         slot,
         levels,
         colors: std::array::from_fn(|i| {
-            let more = share(levels[i]) - share(ground[i].level);
-            ground[i].whole.map(|rgb| rgb.map(|v| more * v))
+            let more = share(levels[i]) - share(response[i].level);
+            response[i].whole.map(|rgb| rgb.map(|v| more * v))
         }),
     };
     changed.map(change).collect()
 }
 
-impl Ground {
-    /// That of a `stroke` which covers `level` 255ths of the pixel and is seen `through` others, on so many surfaces.
+impl Response {
+    /// That to a `stroke` as it is seen, of a pixel with these colours in picture and target, on so many surfaces.
     fn of(
         stroke: &Stroke,
-        level: u8,
-        through: f32,
-        [picture, target, behind]: [&Colors; 3],
+        &Sight {
+            level,
+            through,
+            behind,
+        }: &Sight,
+        [picture, target]: [&Colors; 2],
         surfaces: usize,
     ) -> Self {
-        let mut ground = Self {
+        let mut response = Self {
             level,
             ..Self::default()
         };
@@ -252,12 +271,20 @@ impl Ground {
                 let whole = factor * (stroke.color[channel] - behind[surface][channel]);
                 let present = picture[surface][channel] - target[surface][channel];
                 let bare = present - share(level) * whole;
-                ground.whole[surface][channel] = whole;
-                ground.error[0] += 2.0 * bare * whole;
-                ground.error[1] += whole * whole;
+                response.whole[surface][channel] = whole;
+                response.error[0] += 2.0 * bare * whole;
+                response.error[1] += whole * whole;
             }
         }
-        ground
+        response
+    }
+
+    /// The same where an error counts this much.
+    fn weighted(self, weight: f32) -> Self {
+        Self {
+            error: self.error.map(|term| weight * term),
+            ..self
+        }
     }
 
     /// The squared error that a stroke adds that covers so much of the pixel.
@@ -310,7 +337,7 @@ mod tests {
         rng::draw(0, 1, key, i as u64)
     }
 
-    fn mask(key: u64) -> Mask {
+    fn footprint(key: u64) -> Footprint {
         let level = |i: usize| (255.0 * draw(key, i)) as u8;
         (0..PIXELS as u32).zip((0..PIXELS).map(level)).collect()
     }
@@ -324,16 +351,16 @@ mod tests {
         }
     }
 
-    /// The pictures of strokes that cover these masks.
+    /// The pictures of strokes that cover these footprints.
     fn composed(
         bottoms: &[Colors],
         strokes: &[Option<Stroke>],
-        masks: &[Each<Mask>],
+        footprints: &[Each<Footprint>],
     ) -> Each<Vec<Colors>> {
         std::array::from_fn(|i| {
             let mut pictures = bottoms.to_vec();
-            for (stroke, masks) in strokes.iter().flatten().zip(masks) {
-                for (pixel, level) in masks[i].iter() {
+            for (stroke, footprints) in strokes.iter().flatten().zip(footprints) {
+                for (pixel, level) in footprints[i].iter() {
                     let m = share(level) * stroke.opacity;
                     blend(&mut pictures[pixel as usize], m, stroke.color);
                 }
@@ -342,55 +369,56 @@ mod tests {
         })
     }
 
-    fn stacked(masks: &[Each<Mask>], strokes: &[Option<Stroke>]) -> Stacks {
+    fn collected(footprints: &[Each<Footprint>], strokes: &[Option<Stroke>]) -> Fragments {
         let colors = |key: u64| {
             let color = |i: usize| [0, 1, 2].map(|c| draw(key, 3 * i + c));
             (0..PIXELS).map(|i| [color(i), color(i + PIXELS)]).collect()
         };
         let bottoms: Vec<Colors> = colors(50);
-        let mut stacks = Stacks {
+        let mut fragments = Fragments {
             surfaces: SURFACES,
             weights: Some((0..PIXELS).map(|i| draw(60, i)).collect()),
             targets: colors(51),
-            pictures: composed(&bottoms, strokes, masks),
+            pictures: composed(&bottoms, strokes, footprints),
             bottoms,
-            layers: vec![Vec::new(); PIXELS],
+            lists: vec![Vec::new(); PIXELS],
         };
-        for (id, masks) in masks.iter().enumerate() {
-            for (rasterizer, mask) in masks.iter().enumerate() {
-                for (pixel, level) in mask.iter() {
-                    stacks.level_mut(pixel as usize, id)[rasterizer] = level;
+        for (id, footprints) in footprints.iter().enumerate() {
+            for (rasterizer, footprint) in footprints.iter().enumerate() {
+                for (pixel, level) in footprint.iter() {
+                    fragments.level_mut(pixel as usize, id)[rasterizer] = level;
                 }
             }
         }
-        stacks
+        fragments
     }
 
     #[test]
     fn what_a_mask_does_to_pictures_and_errors_is_foretold() {
         let strokes: Vec<Option<Stroke>> = (0..4).map(|key| Some(stroke(key))).collect();
         let keys = |id: u64| [10 * id + 100, 10 * id + 101, 10 * id + 102];
-        let mut masks: Vec<Each<Mask>> = (0..4).map(|id| keys(id).map(mask)).collect();
-        let mut stacks = stacked(&masks, &strokes);
+        let mut footprints: Vec<Each<Footprint>> =
+            (0..4).map(|id| keys(id).map(footprint)).collect();
+        let mut fragments = collected(&footprints, &strokes);
         let pixels: Vec<u32> = (0..PIXELS as u32).collect();
         for id in [2, 0, 3] {
-            let grounds = stacks.grounds(id, &strokes, &pixels);
-            let moved = keys(id as u64).map(|key| mask(key + 1000));
-            let error = |i: usize, mask: &Mask| -> f32 {
-                let levels = mask
+            let responses = fragments.responses(id, &strokes, &pixels);
+            let moved = keys(id as u64).map(|key| footprint(key + 1000));
+            let error = |i: usize, footprint: &Footprint| -> f32 {
+                let levels = footprint
                     .iter()
-                    .map(|(pixel, level)| grounds[pixel as usize][i].error_at(level));
+                    .map(|(pixel, level)| responses[pixel as usize][i].error_at(level));
                 levels.sum()
             };
             let foretold: Each<f32> =
-                std::array::from_fn(|i| error(i, &moved[i]) - error(i, &masks[id][i]));
-            let before = all_errors(&stacks);
+                std::array::from_fn(|i| error(i, &moved[i]) - error(i, &footprints[id][i]));
+            let before = all_errors(&fragments);
             let mut scratch = super::super::rasterizer::Scratch::new([PIXELS, 1]);
-            let changes = scratch.on(&pixels, |easel| changes(&grounds, &moved, easel));
-            stacks.change(id, &pixels, &changes);
-            masks[id] = moved;
-            let expected = composed(&stacks.bottoms, &strokes, &masks);
-            for (pictures, expected) in stacks.pictures.iter().zip(&expected) {
+            let changes = scratch.on(&pixels, |selection| changes(&responses, &moved, selection));
+            fragments.change(id, &pixels, &changes);
+            footprints[id] = moved;
+            let expected = composed(&fragments.bottoms, &strokes, &footprints);
+            for (pictures, expected) in fragments.pictures.iter().zip(&expected) {
                 for (a, b) in pictures
                     .as_flattened()
                     .as_flattened()
@@ -400,7 +428,8 @@ mod tests {
                     assert!((a - b).abs() < 1e-5, "{a} {b}");
                 }
             }
-            for ((after, before), foretold) in all_errors(&stacks).iter().zip(before).zip(foretold)
+            for ((after, before), foretold) in
+                all_errors(&fragments).iter().zip(before).zip(foretold)
             {
                 assert!(
                     (after - before - foretold).abs() < 1e-4,
@@ -411,12 +440,12 @@ mod tests {
     }
 
     /// The weighted squared error of each rasteriser, on all surfaces.
-    fn all_errors(stacks: &Stacks) -> Each<f32> {
-        stacks.pictures.each_ref().map(|pictures| {
-            let pixels = pictures.iter().zip(&stacks.targets).enumerate();
+    fn all_errors(fragments: &Fragments) -> Each<f32> {
+        fragments.pictures.each_ref().map(|pictures| {
+            let pixels = pictures.iter().zip(&fragments.targets).enumerate();
             let error = pixels.map(|(pixel, (a, b))| {
                 let values = a.as_flattened().iter().zip(b.as_flattened());
-                stacks.weight(pixel) * values.map(|(a, b)| (a - b) * (a - b)).sum::<f32>()
+                fragments.weight(pixel) * values.map(|(a, b)| (a - b) * (a - b)).sum::<f32>()
             });
             error.sum()
         })
