@@ -3,7 +3,7 @@
 //!
 //! Nothing outside the text is ever read. References to files and addresses are not followed. No fonts are
 //! loaded, so text is drawn only where it is outlines. Pictures embedded as `data:` are drawn in a build with
-//! the feature `formats`.
+//! the feature `formats`. Only [`footprint`] takes a stroke instead, and says which pixels resvg covers with it.
 //!
 //! ```
 //! use strokefit::verify::{self, Size};

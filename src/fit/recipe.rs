@@ -404,24 +404,27 @@ pub struct Settling {
     pub growth: f64,
 }
 
-/// How points are nudged to where rasterisers draw the strokes better.
+/// How points are nudged to where rasterisers draw the strokes better; `docs/engines.md` has what was measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Nudging {
-    /// Strokes are nudged if renderers add at least this to the error of the drawing, dB.
+    /// Strokes are nudged if renderers add at least this to the error of the drawing, dB. Photographs of few strokes have 0.0 to
+    /// 0.3, flat art of few strokes up to 0.3, thin lines and flat art of many strokes 1.0 to 6.
     pub added_db: f64,
-    /// Where all rasterisers are as faithful as this, dB, nudging ends: the model of a browser is hardly better.
+    /// Where all rasterisers are as faithful as this, dB, nudging ends: the model of a browser is hardly better. 52: resvg gains
+    /// 1.4 dB on a drawing of 53 dB, and Chromium falls 0.7 dB behind it.
     pub until_db: f64,
-    /// Most visits of each stroke.
+    /// Most visits of each stroke. 4 instead of 8: −0.2 dB on bicycle of 500 strokes, at half of the time.
     pub sweeps: usize,
     /// A sweep that brings less than this, dB, is the last.
     pub least_db: f64,
-    /// Places that are tried in a visit.
+    /// Places that are tried in a visit. 4 instead of 8: −0.1 to −0.2 dB, at half of the time.
     pub tries: usize,
     /// Most places that are tried in all, unless one sweep has more.
     pub trials: usize,
-    /// Farthest that a point moves along each axis, px.
+    /// Farthest that a point moves along each axis, px. 0.07, 0.15: no change beyond 0.1 dB. Without a limit, Cairo lost 5 dB
+    /// before exact areas judged as well.
     pub reach_px: f32,
-    /// Most pixels of the picture. Masks of all strokes take some hundred bytes per pixel.
+    /// Most pixels of the picture. The fragments of all strokes take some hundred bytes per pixel.
     pub most_pixels: usize,
 }
 
