@@ -144,6 +144,13 @@ pub(super) fn met(budget: &Budget, strokes: usize, file: &RenderedFile) -> Optio
     }
 }
 
+/// Whether `new` meets the limits on bytes and fidelity that `old` meets.
+pub(super) fn meets_as_much(budget: &Budget, new: &RenderedFile, old: &RenderedFile) -> bool {
+    let fits = |f: &RenderedFile| budget.bytes.is_none_or(|most| f.bytes <= most);
+    let reaches = |f: &RenderedFile| budget.psnr_db.is_none_or(|db| psnr_db(f.mse) >= db);
+    (fits(new) || !fits(old)) && (reaches(new) || !reaches(old))
+}
+
 /// Whether `new` serves the budget better than `old`. Few enough bytes count first, then enough fidelity. Of two files
 /// that have both, the one with fewer strokes is better; of two that lack fidelity, the one with less error.
 pub(super) fn is_better(budget: &Budget, new: &RenderedFile, old: &RenderedFile) -> bool {
@@ -275,6 +282,14 @@ mod tests {
         assert_eq!(met(&BUDGET, 9, &long), Some(Stop::Bytes));
         assert_eq!(met(&BUDGET, 10, &good), Some(Stop::Strokes));
         assert_eq!(met(&Budget::default(), 10, &good), None);
+    }
+
+    #[test]
+    fn no_limit_that_was_met_is_given_up() {
+        let (short, long, poor) = (file(90, 0.009), file(150, 0.009), file(90, 0.02));
+        let meets = |new, old| meets_as_much(&BUDGET, new, old);
+        assert!(!meets(&long, &short) && !meets(&poor, &short));
+        assert!(meets(&short, &long) && meets(&long, &long) && meets(&poor, &poor));
     }
 
     #[test]

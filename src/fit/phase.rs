@@ -9,6 +9,7 @@
 //! | `widths`, `pens` | strokes get the widths of given pens, and share few pens in the smallest form |
 //! | `sharing` | strokes of a drawing of lines come to share widths and colours |
 //! | `settle` | the last steps are taken against renders of the written file |
+//! | `nudge` | points move by a tenth of a px at most, to where rasterisers draw the strokes better |
 //! | `count` | strokes are added and removed until budgets are met |
 
 pub(super) mod count;

@@ -33,7 +33,7 @@ use rasterizer::{RASTERIZERS, Scratch, Selection};
 /// First word of the keys of random draws, so that nothing else uses the same.
 const DRAWS: u64 = 1 << 40;
 
-/// How far from its outline a rasteriser covers a part of a pixel, px, at most.
+/// How far from its outline a rasteriser covers a part of a pixel, with what rounding to the file's decimals adds, px, at most.
 const FRINGE: f32 = 1.5;
 
 /// Share of the trials that move a whole stroke, not one of its points.
@@ -42,35 +42,54 @@ const WHOLE: f32 = 0.25;
 /// Nudges the strokes of the drawing, of which `file` was written and `seen` was rendered. Returns whether any has moved.
 pub(super) fn run(session: &mut Session<'_>, file: &RenderedFile, seen: &Renderings) -> bool {
     let nudging = session.recipe.settling.nudging;
-    let (drawing, timer) = (&session.drawing, &session.timer);
-    let strokes = drawing.free().len();
-    if drawing.pixels() > nudging.most_pixels || strokes == 0 || !timer.allows_round() {
+    let sweeps = affordable(session, nudging);
+    if sweeps == 0 || !goes_on(session, file.mse) {
         return false;
     }
-    let values = 3.0 * drawing.pixels() as f64;
-    let worst_db = |errors: Each<f64>| psnr_db(largest(errors) / values);
     let mut nudger = Nudger::of(session, file, seen);
-    let affordable = nudging.trials / (nudging.tries * strokes);
-    for sweep in 0..nudging.sweeps.min(affordable.max(1)) {
+    'sweeps: for sweep in 0..sweeps {
         let before = nudger.fragments.errors();
         if worst_db(before) >= nudging.until_db {
             break;
         }
         let weights = weights(before);
         for set in 0..nudger.sets.len() {
-            if session.timer.allows_round() {
-                nudger.visit_all(set, sweep, weights);
+            if !goes_on(session, file.mse) {
+                break 'sweeps;
             }
+            nudger.visit_all(set, sweep, weights);
         }
-        let gain_db = worst_db(nudger.fragments.errors()) - worst_db(before);
-        let goes_on = session.progress.tell(&session.drawing, file.mse);
-        if gain_db < nudging.least_db || !goes_on {
+        if worst_db(nudger.fragments.errors()) - worst_db(before) < nudging.least_db {
             break;
         }
     }
     let has_moved = nudger.strokes != *session.drawing.free();
     *session.drawing.free_mut() = nudger.strokes;
     has_moved
+}
+
+/// How often each stroke may be visited.
+fn affordable(session: &Session<'_>, nudging: Nudging) -> usize {
+    let drawing = &session.drawing;
+    // Whole px are coarser than any nudge.
+    let is_coarse = session.config.file.precision == 0;
+    if is_coarse || drawing.pixels() > nudging.most_pixels || drawing.free().is_empty() {
+        return 0;
+    }
+    let affordable = nudging.trials / (nudging.tries * drawing.free().len());
+    nudging.sweeps.min(affordable)
+}
+
+/// Tells the observer, and says whether there is time to go on.
+fn goes_on(session: &mut Session<'_>, mse: f64) -> bool {
+    let goes_on = session.progress.tell(&session.drawing, mse);
+    session.heed();
+    goes_on && session.timer.allows_round()
+}
+
+/// The fidelity of the worst rasteriser, dB.
+fn worst_db(errors: Each<f64>) -> f64 {
+    psnr_db(largest(errors))
 }
 
 fn largest(errors: Each<f64>) -> f64 {

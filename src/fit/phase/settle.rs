@@ -139,18 +139,27 @@ fn run(session: &mut Session<'_>, restricted: Restricted) -> Result<RenderedFile
     nudged(session, best)
 }
 
-/// The best file, and its drawing, after nudging where renderers add much to the error.
+/// The best file, and its drawing, after nudging where renderers add much to the error. A nudged file has to meet what the
+/// other one meets.
 fn nudged(session: &mut Session<'_>, best: Best) -> Result<RenderedFile> {
-    session.drawing.revert(best.memento.clone());
-    let least_db = session.recipe.settling.nudging.added_db;
-    if best.seen.added_db() >= least_db && nudge::run(session, &best.file, &best.seen) {
-        let (file, seen) = Renderings::of(session)?;
-        if seen.badness() < best.seen.badness() {
-            return Ok(file);
-        }
-        session.drawing.revert(best.memento);
+    let Best {
+        file,
+        seen,
+        memento,
+    } = best;
+    session.drawing.revert(memento.clone());
+    let adds_much = seen.added_db() >= session.recipe.settling.nudging.added_db;
+    if session.progress.is_halted() || !adds_much || !nudge::run(session, &file, &seen) {
+        return Ok(file);
     }
-    Ok(best.file)
+    let (nudged, seen_nudged) = Renderings::of(session)?;
+    let is_better = seen_nudged.badness() < seen.badness()
+        && budget::meets_as_much(&session.config.budget, &nudged, &file);
+    if is_better {
+        return Ok(nudged);
+    }
+    session.drawing.revert(memento);
+    Ok(file)
 }
 
 /// The best file so far, and the drawing that it was written from.

@@ -64,7 +64,7 @@ pub(super) struct Response {
     /// What covering all of it adds to the colours.
     whole: Colors,
     /// The squared error that coverage adds: the coefficients of its first and its second power.
-    error: [f32; 2],
+    coefficients: [f32; 2],
 }
 
 impl Fragments {
@@ -126,7 +126,7 @@ impl Fragments {
         &mut list[at].levels
     }
 
-    /// The squared error of each rasteriser's pictures, on the surface where it is largest.
+    /// The mean squared error of each rasteriser's pictures, on the surface where it is largest.
     pub(super) fn errors(&self) -> Each<f64> {
         self.pictures.each_ref().map(|pictures| {
             let of = |surface: usize| {
@@ -138,8 +138,16 @@ impl Fragments {
                 });
                 errors.sum()
             };
-            (0..self.surfaces).map(of).fold(0.0, f64::max)
+            (0..self.surfaces).map(of).fold(0.0, f64::max) / self.values()
         })
+    }
+
+    /// How many values of a picture count, those of a weight in proportion.
+    fn values(&self) -> f64 {
+        let pixels = 0..self.targets.len();
+        3.0 * pixels
+            .map(|pixel| f64::from(self.weight(pixel)))
+            .sum::<f64>()
     }
 
     /// How much an error counts at a pixel.
@@ -272,8 +280,8 @@ impl Response {
                 let present = picture[surface][channel] - target[surface][channel];
                 let bare = present - share(level) * whole;
                 response.whole[surface][channel] = whole;
-                response.error[0] += 2.0 * bare * whole;
-                response.error[1] += whole * whole;
+                response.coefficients[0] += 2.0 * bare * whole;
+                response.coefficients[1] += whole * whole;
             }
         }
         response
@@ -282,7 +290,7 @@ impl Response {
     /// The same where an error counts this much.
     fn weighted(self, weight: f32) -> Self {
         Self {
-            error: self.error.map(|term| weight * term),
+            coefficients: self.coefficients.map(|term| weight * term),
             ..self
         }
     }
@@ -290,7 +298,7 @@ impl Response {
     /// The squared error that a stroke adds that covers so much of the pixel.
     pub(super) fn error_at(&self, level: u8) -> f32 {
         let m = share(level);
-        m * (self.error[0] + m * self.error[1])
+        m * (self.coefficients[0] + m * self.coefficients[1])
     }
 
     /// The squared error that the stroke adds now.
@@ -394,7 +402,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_mask_does_to_pictures_and_errors_is_foretold() {
+    fn what_a_footprint_does_to_pictures_and_errors_is_foretold() {
         let strokes: Vec<Option<Stroke>> = (0..4).map(|key| Some(stroke(key))).collect();
         let keys = |id: u64| [10 * id + 100, 10 * id + 101, 10 * id + 102];
         let mut footprints: Vec<Each<Footprint>> =
