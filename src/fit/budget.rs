@@ -132,10 +132,9 @@ pub(super) fn compares_files(config: &Config, recipe: &Recipe) -> bool {
 
 /// The first budget that a drawing of `strokes` strokes, written as `file`, meets.
 pub(super) fn met(budget: &Budget, strokes: usize, file: &RenderedFile) -> Option<Stop> {
-    let is_reached = |db| psnr_db(file.mse) >= db;
     if budget.strokes.is_some_and(|most| strokes >= most) {
         Some(Stop::Strokes)
-    } else if budget.psnr_db.is_some_and(is_reached) {
+    } else if reaches(budget, file) {
         Some(Stop::Psnr)
     } else if budget.bytes.is_some_and(|most| file.bytes >= most) {
         Some(Stop::Bytes)
@@ -146,18 +145,24 @@ pub(super) fn met(budget: &Budget, strokes: usize, file: &RenderedFile) -> Optio
 
 /// Whether `new` meets the limits on bytes and fidelity that `old` meets.
 pub(super) fn meets_as_much(budget: &Budget, new: &RenderedFile, old: &RenderedFile) -> bool {
-    let fits = |f: &RenderedFile| budget.bytes.is_none_or(|most| f.bytes <= most);
-    let reaches = |f: &RenderedFile| budget.psnr_db.is_none_or(|db| psnr_db(f.mse) >= db);
-    (fits(new) || !fits(old)) && (reaches(new) || !reaches(old))
+    (fits(budget, new) || !fits(budget, old)) && (reaches(budget, new) || !reaches(budget, old))
+}
+
+/// Whether `file` has no more bytes than allowed.
+fn fits(budget: &Budget, file: &RenderedFile) -> bool {
+    budget.bytes.is_none_or(|most| file.bytes <= most)
+}
+
+/// Whether a fidelity is asked for, and `file` has it.
+fn reaches(budget: &Budget, file: &RenderedFile) -> bool {
+    budget.psnr_db.is_some_and(|db| psnr_db(file.mse) >= db)
 }
 
 /// Whether `new` serves the budget better than `old`. Few enough bytes count first, then enough fidelity. Of two files
 /// that have both, the one with fewer strokes is better; of two that lack fidelity, the one with less error.
 pub(super) fn is_better(budget: &Budget, new: &RenderedFile, old: &RenderedFile) -> bool {
-    let fits = |f: &RenderedFile| budget.bytes.is_none_or(|most| f.bytes <= most);
-    let reached = |f: &RenderedFile| budget.psnr_db.is_some_and(|db| psnr_db(f.mse) >= db);
-    match (fits(new), fits(old)) {
-        (true, true) => match (reached(new), reached(old)) {
+    match (fits(budget, new), fits(budget, old)) {
+        (true, true) => match (reaches(budget, new), reaches(budget, old)) {
             (true, true) => new.rounded.scene.len() < old.rounded.scene.len(),
             (false, false) => new.mse < old.mse,
             (reaches, _) => reaches,
