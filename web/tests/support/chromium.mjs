@@ -27,6 +27,12 @@ export class Chromium {
         "--force-color-profile=srgb", "--no-first-run", "--hide-scrollbars", `--user-data-dir=${join(this.folder, "profile")}`, ...flags],
       { stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"] },
     );
+    this.ended = new Promise((done) => {
+      this.process.once("exit", (code, signal) => done(`${program} ended: ${signal ?? code}`)).once("error", done);
+    });
+    this.ended.then((how) => this.#abandon(new Error(how)));
+    // What could not be written is told by how the process ended.
+    this.process.stdio[3].on("error", () => {});
     let text = "";
     this.process.stdio[4].setEncoding("utf8").on("data", (part) => {
       const messages = (text + part).split("\0");
@@ -43,6 +49,13 @@ export class Chromium {
     if (message.method) this.#listeners.forEach((listener) => listener(message));
   }
 
+  // A process that has ended answers nothing.
+  #abandon(error) {
+    this.send = () => Promise.reject(error);
+    this.#answers.forEach(({ failed }) => failed(error));
+    this.#answers.clear();
+  }
+
   send(method, params = {}, sessionId = undefined) {
     const id = ++this.#number;
     this.process.stdio[3].write(`${JSON.stringify({ id, method, params, sessionId })}\0`);
@@ -54,7 +67,8 @@ export class Chromium {
   }
 
   async open(address, width = 1200, height = 900) {
-    const { targetId } = await this.send("Target.createTarget", { url: "about:blank", width, height });
+    // Without a size, which a window has and a tab of Chromium 156 may not have; `resize` gives it.
+    const { targetId } = await this.send("Target.createTarget", { url: "about:blank" });
     const { sessionId } = await this.send("Target.attachToTarget", { targetId, flatten: true });
     const page = new Page(this, sessionId);
     await page.send("Page.enable");
@@ -67,9 +81,8 @@ export class Chromium {
   }
 
   async close() {
-    const gone = new Promise((done) => this.process.once("exit", done));
-    await this.send("Browser.close").catch(() => {});
-    await gone;
+    this.send("Browser.close").catch(() => {});
+    await this.ended;
     rmSync(this.folder, { recursive: true, force: true, maxRetries: 10, retryDelay: 100 });
   }
 }
