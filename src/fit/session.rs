@@ -261,6 +261,10 @@ impl<'a> Session<'a> {
 
     /// The price of strokes and points in the current drawing.
     pub(super) fn price_now(&mut self) -> Price {
+        // What is free is so in every drawing, which need not be rendered to say so.
+        if self.price.per_byte() == 0.0 {
+            return self.price;
+        }
         self.price.at(self.drawing.mse(), self.drawing.pixels())
     }
 

@@ -1,5 +1,7 @@
 //! The changes of a stroke's points, each with its gain.
 
+use std::ops::Range;
+
 use super::terrain::{Cut, Terrain};
 use crate::fit::recipe::Points;
 use crate::render::{Knot, Piece, StrokeRef};
@@ -38,6 +40,17 @@ impl Edit {
         }
     }
 
+    /// Takes all changes back.
+    fn reset(&mut self, terrain: &Terrain<'_>) {
+        self.points.clear();
+        self.points.extend_from_slice(terrain.stroke.points);
+        self.off.clear();
+        self.off.extend_from_slice(terrain.stroke.off);
+        self.sources.clear();
+        self.sources
+            .extend((0..terrain.stroke.points.len()).map(Some));
+    }
+
     fn insert(&mut self, k: usize, at: [f32; 2], is_off: bool) {
         self.points.insert(k, at);
         self.off.insert(k, is_off);
@@ -57,19 +70,43 @@ impl Edit {
     }
 }
 
+/// A new point, before any list of points is copied for it.
+#[derive(Debug, Clone, Copy)]
+struct Insertion {
+    gain: f32,
+    /// The index of the new point.
+    place: usize,
+    at: [f32; 2],
+    is_off: bool,
+    /// The former index of a point that moves, and where to.
+    moved: Option<(usize, [f32; 2])>,
+}
+
+impl Insertion {
+    fn into_edit(self, terrain: &Terrain<'_>) -> Edit {
+        let mut edit = Edit::of_none(terrain);
+        if let Some((k, to)) = self.moved {
+            edit.points[k] = to;
+        }
+        edit.insert(self.place, self.at, self.is_off);
+        edit.gain = self.gain;
+        edit
+    }
+}
+
 /// The new point that gains most.
 pub(super) fn best_insertion(terrain: &Terrain<'_>, points: &Points) -> Option<Edit> {
-    let cuts = terrain.pieces.iter().enumerate();
-    let insertions = cuts.flat_map(|(i, &cut)| {
+    let within = |(i, &cut): (usize, &Cut)| {
         let chord = Chord::of(terrain, cut.piece).filter(|chord| chord.length > points.shortest);
-        chord
-            .into_iter()
-            .flat_map(move |chord| match cut.piece.control {
-                None => within_line(terrain, cut, chord, points),
-                Some(control) => Vec::from_iter(within_curve(terrain, i, control, chord, points)),
-            })
-    });
-    best(insertions)
+        let insertions = chord.map(|chord| match cut.piece.control {
+            None => within_line(terrain, cut, chord, points),
+            Some(control) => [within_curve(terrain, i, control, chord, points), None],
+        });
+        insertions.into_iter().flatten().flatten()
+    };
+    let insertions = terrain.pieces.iter().enumerate().flat_map(within);
+    let best = insertions.reduce(|best, other| if other.gain > best.gain { other } else { best });
+    best.map(|insertion| insertion.into_edit(terrain))
 }
 
 /// The point that is missed least.
@@ -78,12 +115,7 @@ pub(super) fn best_removal(terrain: &Terrain<'_>) -> Option<Edit> {
     if count < 3 {
         return None;
     }
-    let removal = |k: usize| {
-        let mut edit = Edit::of_none(terrain);
-        edit.remove(k);
-        valued(terrain, edit, k)
-    };
-    best((0..count).filter_map(removal))
+    best_change(terrain, 0..count, |edit, k| edit.remove(k))
 }
 
 /// The point that is missed least, where an end may move.
@@ -104,10 +136,10 @@ fn best_retraction(terrain: &Terrain<'_>) -> Option<Edit> {
     }
     let retraction = |(k, end): (usize, usize)| {
         let tip = terrain.tip(end).filter(|_| off[k])?;
-        let mut edit = Edit::of_none(terrain);
-        edit.points[end] = tip;
-        edit.remove(k);
-        valued(terrain, edit, k)
+        best_change(terrain, k..k + 1, |edit, k| {
+            edit.points[end] = tip;
+            edit.remove(k);
+        })
     };
     let ends = [(1, 0), (count - 2, count - 1)];
     best(ends.into_iter().filter_map(retraction))
@@ -122,37 +154,47 @@ pub(super) fn best_toggle(terrain: &Terrain<'_>) -> Option<Edit> {
         ..
     } = terrain.stroke;
     let count = points.len();
-    let toggle = |k: usize| {
-        if !closed && (k == 0 || k + 1 == count) {
-            return None;
-        }
+    if count < 3 {
+        return None;
+    }
+    let inner = if closed { 0..count } else { 1..count - 1 };
+    best_change(terrain, inner, |edit, k| {
         let neighbours = [(k + count - 1) % count, (k + 1) % count];
         let [a, b] = neighbours.map(|i| match off[i] {
             true => [0, 1].map(|axis| 0.5 * (points[i][axis] + points[k][axis])),
             false => points[i],
         });
-        let mut edit = Edit::of_none(terrain);
         // A quadratic curve is farthest from its chord at a quarter of its ends and half of its control point.
         edit.points[k] = [0, 1].map(|axis| match off[k] {
             true => 0.25 * (a[axis] + b[axis]) + 0.5 * points[k][axis],
             false => 2.0 * points[k][axis] - 0.5 * (a[axis] + b[axis]),
         });
         edit.off[k] = !off[k];
-        valued(terrain, edit, k)
-    };
-    if count < 3 {
-        return None;
-    }
-    best((0..count).filter_map(toggle))
+    })
 }
 
-/// The edit of point `k` with its gain, if it leaves a path.
-fn valued(terrain: &Terrain<'_>, mut edit: Edit, k: usize) -> Option<Edit> {
-    if !edit.is_path(terrain.stroke.closed) {
-        return None;
+/// The most gaining `change` of one of the points `of` that leaves a path.
+fn best_change(
+    terrain: &Terrain<'_>,
+    of: Range<usize>,
+    change: impl Fn(&mut Edit, usize),
+) -> Option<Edit> {
+    let mut trial = Edit::of_none(terrain);
+    let mut best: Option<(usize, f32)> = None;
+    for k in of {
+        trial.reset(terrain);
+        change(&mut trial, k);
+        if trial.is_path(terrain.stroke.closed) {
+            let gain = terrain.gain(trial.of(terrain.stroke), k);
+            if best.is_none_or(|(_, most)| gain > most) {
+                best = Some((k, gain));
+            }
+        }
     }
-    edit.gain = terrain.gain(edit.of(terrain.stroke), k);
-    Some(edit)
+    let (k, gain) = best?;
+    trial.reset(terrain);
+    change(&mut trial, k);
+    Some(Edit { gain, ..trial })
 }
 
 fn best(edits: impl Iterator<Item = Edit>) -> Option<Edit> {
@@ -194,9 +236,14 @@ impl Chord {
 
 /// A corner or a control point in the middle of a line. A corner shifts vertices like a tent, a control point like a
 /// parabola.
-fn within_line(terrain: &Terrain<'_>, cut: Cut, chord: Chord, points: &Points) -> Vec<Edit> {
+fn within_line(
+    terrain: &Terrain<'_>,
+    cut: Cut,
+    chord: Chord,
+    points: &Points,
+) -> [Option<Insertion>; 2] {
     let (Knot::Point(from), Knot::Point(to)) = (cut.piece.from, cut.piece.to) else {
-        return Vec::new();
+        return [None; 2];
     };
     let at = |k: usize| k as f32 / cut.steps as f32;
     let tent = (0..=cut.steps).map(|k| 1.0 - (2.0 * at(k) - 1.0).abs());
@@ -207,15 +254,16 @@ fn within_line(terrain: &Terrain<'_>, cut: Cut, chord: Chord, points: &Points) -
     let middle = [0, 1].map(|axis| 0.5 * (chord.a[axis] + chord.b[axis]));
     // The line that closes a path ends at a point before its start.
     let place = if to > from { to } else { from + 1 };
-    let edit = |(shift, gain): (f32, f32), is_off: bool, worth: f32| {
-        let mut edit = Edit::of_none(terrain);
-        edit.insert(place, chord.moved(middle, shift), is_off);
-        edit.gain = gain * worth;
-        edit
+    let insertion = |(shift, gain): (f32, f32), is_off: bool, worth: f32| Insertion {
+        gain: gain * worth,
+        place,
+        at: chord.moved(middle, shift),
+        is_off,
+        moved: None,
     };
-    vec![
-        edit(corner, false, 1.0),
-        edit(control, true, points.smoothness),
+    [
+        Some(insertion(corner, false, 1.0)),
+        Some(insertion(control, true, points.smoothness)),
     ]
 }
 
@@ -227,10 +275,9 @@ fn within_curve(
     control: usize,
     chord: Chord,
     points: &Points,
-) -> Option<Edit> {
+) -> Option<Insertion> {
     let cut = terrain.pieces[i];
     let most = points.reach * chord.length;
-    let mut edit = Edit::of_none(terrain);
     match (cut.piece.from, cut.piece.to) {
         (Knot::Point(_), Knot::Point(_)) => {
             let c = terrain.stroke.points[control];
@@ -242,9 +289,13 @@ fn within_curve(
             let first = terrain.shift(cut.first, first, chord.across, most);
             let second = terrain.shift(cut.first, second, chord.across, most);
             // Both move at once, and halfway, since each counts the other's share of the slope.
-            edit.points[control] = chord.moved(halves[0], 0.5 * first.0);
-            edit.insert(control + 1, chord.moved(halves[1], 0.5 * second.0), true);
-            edit.gain = 0.5 * (first.1 + second.1);
+            Some(Insertion {
+                gain: 0.5 * (first.1 + second.1),
+                place: control + 1,
+                at: chord.moved(halves[1], 0.5 * second.0),
+                is_off: true,
+                moved: Some((control, chord.moved(halves[0], 0.5 * first.0))),
+            })
         }
         (_, Knot::Between(_, next)) => {
             let ahead = terrain.pieces.get(i + 1)?.steps.div_ceil(2);
@@ -261,12 +312,16 @@ fn within_curve(
             let weights = (0..=back + ahead).map(weight);
             let first = cut.first + cut.steps - back;
             let (shift, gain) = terrain.shift(first, weights, along.across, most);
-            edit.insert(control + 1, along.moved(chord.b, shift), true);
-            edit.gain = gain;
+            Some(Insertion {
+                gain,
+                place: control + 1,
+                at: along.moved(chord.b, shift),
+                is_off: true,
+                moved: None,
+            })
         }
-        _ => return None,
+        _ => None,
     }
-    Some(edit)
 }
 
 /// The share that the first of two control points, which cut a curve in two, has in the curve's point at `t`.
