@@ -1,21 +1,36 @@
-//! Pictures: planar `f32`, sRGB-encoded. This module alone uses the crates `image`, `moxcms`, `gif` and
-//! `crc32fast`.
+//! Pictures: planar `f32`, sRGB-encoded. This module alone uses the crates `image`, `tiff`, `zune-jpeg`, `moxcms`,
+//! `gif` and `crc32fast`.
 //!
 //! It reads PNG, JPEG, WebP, GIF, BMP, TIFF, ICO, QOI, TGA, DDS, Radiance HDR, farbfeld and PNM (the first
-//! frame or page), with 8 or 16 bits or floats, grey or colour, and applies the orientation given by EXIF. It converts
-//! colours to sRGB from the profile that a file may have. It keeps alpha; [`Image::flattened`] composites onto a matte.
+//! frame or page), with 8 or 16 bits or floats, grey, colour or CMYK, and applies the orientation given by EXIF. It converts
+//! colours to sRGB from those that a file states: by an ICC profile, or the chunks of a PNG. It keeps alpha;
+//! [`Image::flattened`] composites onto a matte.
 
 #[cfg(feature = "animation")]
 mod animate;
+#[cfg(feature = "formats")]
+mod dds;
 mod decode;
+mod decoded;
 mod encode;
 mod footprint;
 mod foreign;
+mod formats;
 mod header;
+#[cfg(feature = "formats")]
+mod ico;
+#[cfg(feature = "formats")]
+mod jpeg;
+mod light;
+mod png;
 #[cfg(feature = "formats")]
 mod profile;
 mod remark;
 mod rows;
+#[cfg(feature = "formats")]
+mod tiff;
+#[cfg(feature = "formats")]
+mod tone;
 
 use std::borrow::Cow;
 use std::fmt;
@@ -25,6 +40,7 @@ use std::path::Path;
 pub use animate::{Animation, AnimationFormat};
 pub use decode::Limits;
 pub use footprint::Footprint;
+pub use formats::{FORMATS, Format};
 pub(crate) use header::{Embeddable, stated_size};
 pub use remark::Remark;
 pub use rows::{Rows, Sample};
@@ -192,8 +208,8 @@ impl Image {
         decode::open(path.as_ref(), limits)
     }
 
-    /// Decodes the bytes of a picture file, and detects the format from the bytes only. Messages call the
-    /// file `name`.
+    /// Decodes the bytes of a picture file, and detects the format from the bytes, that of compressed TGA without a footer
+    /// from the name. Messages call the file `name`.
     ///
     /// # Errors
     /// [`ErrorKind::Picture`] when there are no bytes, or they are not a picture, cut short, damaged, of 0×0
@@ -211,7 +227,7 @@ impl Image {
         name: &str,
         limits: Limits,
     ) -> Result<(Self, Vec<Remark>)> {
-        decode::decode(bytes, limits).map_err(|error| error.within(name))
+        decode::decode(bytes, name, limits).map_err(|error| error.within(name))
     }
 
     /// The picture as a PNG file: 8-bit RGB, or RGBA where there is alpha.

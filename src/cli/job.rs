@@ -51,8 +51,13 @@ impl Job<'_> {
         let start = Instant::now();
         let (picture, remarks) = input::picture_within(self.input, self.options.limits())?;
         let input = Input::new(self.input.display().to_string(), &picture).remarking(&remarks);
-        for remark in &input.remarks {
-            verbosity.detail(format_args!("{}: {remark}", input::name(self.input)));
+        for remark in &remarks {
+            let line = format!("{}: {remark}", input::name(self.input));
+            if remark.is_warning() {
+                verbosity.say(line);
+            } else {
+                verbosity.detail(line);
+            }
         }
         events.tell(&Event::Start(input.clone()));
         self.foretell(&picture, verbosity);

@@ -1,16 +1,20 @@
 //! Decodes the bytes of a picture file to an [`Image`].
 
+#[cfg(feature = "formats")]
+mod special;
+
 use std::cell::Cell;
 use std::fs::File;
 use std::io::{self, BufRead, Cursor, Read, Seek, SeekFrom};
 use std::path::Path;
 
+use ::image::error::UnsupportedErrorKind;
 use ::image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
 
+use super::decoded::{Coding, Decoded, Failure};
 use super::rows::{self, Rows, Sample};
-use super::{Image, Remark, foreign, header};
+use super::{Image, Remark, foreign, formats, header, light, png};
 use crate::error::{Error, ErrorKind, Result};
-use crate::math;
 
 /// Limits on the size of a picture file. They are checked on the header, before memory is spent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,17 +36,10 @@ impl Default for Limits {
     }
 }
 
-/// The files that this build reads.
-const READABLE: &str = if cfg!(feature = "formats") {
-    "a PNG, JPEG, WebP, GIF, BMP, TIFF, ICO, QOI, TGA, DDS, HDR or PNM file"
-} else {
-    "a PNG file, or use a build with the feature `formats`"
-};
-
 /// Reads and decodes the file at `path`.
 pub(super) fn open(path: &Path, limits: Limits) -> Result<(Image, Vec<Remark>)> {
     read(path, limits)
-        .and_then(|bytes| decode(&bytes, limits))
+        .and_then(|bytes| decode(&bytes, &path.to_string_lossy(), limits))
         .map_err(|error| error.within(path.display()))
 }
 
@@ -66,9 +63,10 @@ fn unreadable(error: io::Error) -> Error {
     Error::new(ErrorKind::Io, remedy).caused_by(error)
 }
 
-/// Decodes the bytes of a picture file, and says what of it is changed or left out.
-pub(super) fn decode(bytes: &[u8], limits: Limits) -> Result<(Image, Vec<Remark>)> {
-    let format = format(bytes, limits)?;
+/// Decodes the bytes of a picture file, and says what of it is changed or left out. The name tells what nothing else
+/// does.
+pub(super) fn decode(bytes: &[u8], name: &str, limits: Limits) -> Result<(Image, Vec<Remark>)> {
+    let format = format(bytes, name, limits)?;
     if let Some((width, height)) = header::size(bytes, format) {
         check_size(width, height, limits)?;
     }
@@ -76,26 +74,34 @@ pub(super) fn decode(bytes: &[u8], limits: Limits) -> Result<(Image, Vec<Remark>
         return Err(truncated(format));
     }
     let ran_out = Cell::new(false);
-    let watched = Supply {
-        inner: Cursor::new(bytes),
-        ran_out: &ran_out,
-    };
-    let (picture, profile) = samples(watched, format, limits).map_err(|error| {
+    let decoded = samples(bytes, &ran_out, format, limits).map_err(|failure| match failure {
+        Failure::Ours(error) => error,
         // The JPEG decoder always reads to the end.
-        if ran_out.get() && format != ImageFormat::Jpeg {
-            return truncated(format).caused_by(error);
+        Failure::Theirs(error) if ran_out.get() && format != ImageFormat::Jpeg => {
+            truncated(format).caused_by(error)
         }
-        refused(error, format)
-    })??;
-    let (image, clipped) = planar(&picture, format)?;
-    let (image, converted) = match profile {
-        Some(profile) => in_srgb(image, &profile),
+        Failure::Theirs(error) => refused(error, format),
+    })?;
+    image(decoded, format)
+}
+
+/// The picture in sRGB, and what there is to say of it.
+fn image(decoded: Decoded, format: ImageFormat) -> Result<(Image, Vec<Remark>)> {
+    let (image, clipped) = planar(&decoded.picture, format)?;
+    let (image, converted) = match &decoded.coding {
+        #[cfg(feature = "formats")]
+        coding if decoded.is_ink => special::of_inks(image, coding.as_ref())?,
+        Some(coding) => in_srgb(image, coding),
         None => (image, None),
     };
-    let clipped = (clipped > 0).then_some(Remark::Clipped(clipped));
-    let frames = header::has_more(bytes, format).then_some(Remark::FirstOfSeveral);
-    let remarks = [converted, clipped, frames].into_iter().flatten();
-    Ok((image, remarks.collect()))
+    let is_clear = image.alpha().is_some_and(|a| a.iter().all(|&a| a == 0.0));
+    let remarks = [
+        converted,
+        (clipped > 0).then_some(Remark::Clipped(clipped)),
+        decoded.has_more.then_some(Remark::FirstOfSeveral),
+        is_clear.then_some(Remark::Transparent),
+    ];
+    Ok((image, remarks.into_iter().flatten().collect()))
 }
 
 #[cfg(feature = "formats")]
@@ -103,15 +109,16 @@ use super::profile::to_srgb as in_srgb;
 
 /// The library alone leaves colours as they are.
 #[cfg(not(feature = "formats"))]
-fn in_srgb(image: Image, _: &[u8]) -> (Image, Option<Remark>) {
+fn in_srgb(image: Image, _: &Coding) -> (Image, Option<Remark>) {
     let why = "of no use to this build, which lacks the feature `formats`,";
     (image, Some(Remark::ProfileIgnored(why)))
 }
 
-/// The format, by the first bytes.
-fn format(bytes: &[u8], limits: Limits) -> Result<ImageFormat> {
+/// The format of a file that is read.
+fn format(bytes: &[u8], name: &str, limits: Limits) -> Result<ImageFormat> {
+    let give = || format!("give {}", formats::readable());
     if bytes.is_empty() {
-        return Err(bad(format!("the file is empty: give {READABLE}")));
+        return Err(bad(format!("the file is empty: {}", give())));
     }
     if bytes.len() as u64 > limits.max_bytes {
         return Err(bad(format!(
@@ -119,16 +126,13 @@ fn format(bytes: &[u8], limits: Limits) -> Result<ImageFormat> {
             limits.max_bytes >> 20
         )));
     }
-    let tga = header::is_tga(bytes).then_some(ImageFormat::Tga);
-    let found = ::image::guess_format(bytes).ok().or(tga);
-    found
-        .filter(|format| format.reading_enabled())
-        .ok_or_else(|| {
-            bad(match foreign::advice(bytes) {
-                Some(advice) => advice,
-                None => format!("not a picture in a known format: give {READABLE}"),
-            })
+    let found = formats::detect(bytes, name).filter(|_| !foreign::is_cgbi(bytes));
+    found.ok_or_else(|| {
+        bad(match foreign::advice(bytes) {
+            Some(advice) => advice,
+            None => format!("not a picture in a known format: {}", give()),
         })
+    })
 }
 
 fn check_size(width: u32, height: u32, limits: Limits) -> Result<()> {
@@ -146,35 +150,55 @@ fn check_size(width: u32, height: u32, limits: Limits) -> Result<()> {
     Ok(())
 }
 
-/// The decoded samples in the orientation given by EXIF, and the colour profile.
+/// The decoded samples in the orientation given by EXIF. `ran_out` tells whether the file is too short.
 fn samples(
-    bytes: Supply<'_>,
+    bytes: &[u8],
+    ran_out: &Cell<bool>,
     format: ImageFormat,
     limits: Limits,
-) -> Result<Result<Decoded>, ImageError> {
+) -> Result<Decoded, Failure> {
+    #[cfg(feature = "formats")]
+    if let Some(decoded) = special::samples(bytes, ran_out, format, limits)? {
+        return Ok(decoded);
+    }
+    general(bytes, ran_out, format, limits)
+}
+
+/// The samples by the decoder that the crate `image` has for the format.
+fn general(
+    bytes: &[u8],
+    ran_out: &Cell<bool>,
+    format: ImageFormat,
+    limits: Limits,
+) -> Result<Decoded, Failure> {
     let mut allowed = ::image::Limits::no_limits();
     allowed.max_alloc = Some(limits.max_bytes);
-    let mut reader = ImageReader::with_format(bytes, format);
+    let mut reader = ImageReader::with_format(Supply::new(bytes, ran_out), format);
     reader.limits(allowed.clone());
     let mut decoder = reader.into_decoder()?;
     let (width, height) = decoder.dimensions();
-    if let Err(error) = check_size(width, height, limits) {
-        return Ok(Err(error));
-    }
+    check_size(width, height, limits)?;
     allowed.reserve(decoder.total_bytes())?;
     decoder.set_limits(allowed)?;
     // A picture with damaged metadata can still be used.
     let orientation = decoder
         .orientation()
         .unwrap_or(::image::metadata::Orientation::NoTransforms);
-    let profile = decoder.icc_profile().ok().flatten();
+    let icc = decoder.icc_profile().ok().flatten();
+    let coding = match format {
+        ImageFormat::Png => png::coding(bytes, icc),
+        _ => icc.map(Coding::Icc),
+    };
     let mut picture = DynamicImage::from_decoder(decoder)?;
     picture.apply_orientation(orientation);
-    Ok(Ok((picture, profile)))
+    Ok(Decoded {
+        picture,
+        #[cfg(feature = "formats")]
+        is_ink: false,
+        coding,
+        has_more: header::has_more(bytes, format),
+    })
 }
-
-/// Samples, and the colour profile of their file.
-type Decoded = (DynamicImage, Option<Vec<u8>>);
 
 fn bad(message: impl Into<String>) -> Error {
     Error::new(ErrorKind::Picture, message)
@@ -196,8 +220,12 @@ fn refused(error: ImageError, format: ImageFormat) -> Error {
     let message = match &error {
         ImageError::Limits(_) => "the picture needs too much memory: scale it down".into(),
         ImageError::Unsupported(e) => {
+            let kind = match e.kind() {
+                UnsupportedErrorKind::GenericFeature(kind) => kind.clone(),
+                _ => e.to_string(),
+            };
             format!(
-                "this kind of {} cannot be read ({e}): save it as an ordinary PNG",
+                "this kind of {} is not read ({kind}): save it as an ordinary PNG, for example with magick IN OUT.png",
                 name(format)
             )
         }
@@ -223,6 +251,13 @@ fn one_line(error: &ImageError) -> String {
 struct Supply<'a> {
     inner: Cursor<&'a [u8]>,
     ran_out: &'a Cell<bool>,
+}
+
+impl<'a> Supply<'a> {
+    fn new(bytes: &'a [u8], ran_out: &'a Cell<bool>) -> Self {
+        let inner = Cursor::new(bytes);
+        Self { inner, ran_out }
+    }
 }
 
 impl Read for Supply<'_> {
@@ -284,21 +319,12 @@ fn floats(picture: &DynamicImage, samples: &[f32], format: ImageFormat) -> Resul
     let is_linear = format == ImageFormat::Hdr;
     let level = |v: f32| match v.clamp(0.0, 1.0) {
         v if v.is_nan() => 0.0,
-        v if is_linear => encoded(v),
+        v if is_linear => light::encoded(v),
         v => v,
     };
     let clipped = samples.iter().filter(|v| !(0.0..=1.0).contains(*v));
     let image = rows::planar(packed(picture, samples), level)?;
     Ok((image, clipped.count()))
-}
-
-/// Light of 0..1 as sRGB encodes it.
-fn encoded(light: f32) -> f32 {
-    if light <= 0.003_130_8 {
-        12.92 * light
-    } else {
-        1.055 * math::powf(light, 1.0 / 2.4) - 0.055
-    }
 }
 
 fn packed<'a, T>(picture: &DynamicImage, samples: &'a [T]) -> Rows<'a, T> {

@@ -30,7 +30,7 @@ const MAGICK: &str = "magick IN OUT.png";
 const PDF: &str = "pdftoppm -png -r 150 IN OUT";
 const RAW: &str = "darktable-cli IN OUT.png";
 
-const FOREIGN: [Foreign; 19] = [
+const FOREIGN: [Foreign; 20] = [
     foreign("AVIF", 4, b"ftypavif", AVIF),
     foreign("AVIF", 4, b"ftypavis", AVIF),
     foreign("HEIC", 4, b"ftypheic", HEIC),
@@ -50,10 +50,24 @@ const FOREIGN: [Foreign; 19] = [
     foreign("Canon raw", 4, b"ftypcrx ", RAW),
     foreign("Fuji raw", 0, b"FUJIFILMCCD-RAW", RAW),
     foreign("Krita", 30, b"mimetypeapplication/x-krita", MAGICK),
+    CGBI,
 ];
+
+/// A PNG that begins as those that Apple's tools pack for devices: rows of BGRA, without the frame of zlib.
+const CGBI: Foreign = foreign(
+    "Apple's optimised PNG (CgBI)",
+    0,
+    b"\x89PNG\r\n\x1a\n\0\0\0\x04CgBI",
+    "xcrun pngcrush -revert-iphone-optimizations IN OUT.png",
+);
 
 /// Bytes of a text that may come before the root element of an SVG.
 const PROLOG: usize = 4096;
+
+/// Whether the file begins as a PNG and is none.
+pub(super) fn is_cgbi(bytes: &[u8]) -> bool {
+    bytes.starts_with(CGBI.magic)
+}
 
 /// What the file is and how to convert it, if its format is known.
 pub(super) fn advice(bytes: &[u8]) -> Option<String> {

@@ -35,9 +35,40 @@ pub(crate) fn stated_size(bytes: &[u8]) -> Option<(Embeddable, u32, u32)> {
     Some((format, width, height))
 }
 
-/// Whether the file ends as those of TGA do: nothing at their beginning tells them.
-pub(super) fn is_tga(bytes: &[u8]) -> bool {
+/// Whether the file is a TGA: nothing at the beginning tells. It ends as TGA 2 does, or has a header that makes sense
+/// and is either as long as its samples take or has the name of one.
+pub(super) fn is_tga(bytes: &[u8], is_named: bool) -> bool {
+    let is_exact = || tga_length(bytes).is_some_and(|length| length == bytes.len() as u64);
     bytes.ends_with(b"TRUEVISION-XFILE.\0")
+        || tga_length(bytes).is_some() && (is_named || is_exact())
+}
+
+/// The bytes of a TGA without footer, 0 if it is compressed; `None` if the header makes no sense.
+fn tga_length(bytes: &[u8]) -> Option<u64> {
+    let header: &[u8; 18] = bytes.first_chunk()?;
+    let [id, has_map, kind, ..] = *header;
+    let (entry, depth, descriptor) = (header[7], header[16], header[17]);
+    let is_mapped = matches!(kind, 1 | 9);
+    let is_sane = matches!(kind, 1..=3 | 9..=11)
+        && has_map <= 1
+        && (has_map == 1 || !is_mapped)
+        && (has_map == 0 || matches!(entry, 15 | 16 | 24 | 32))
+        && matches!(depth, 8 | 15 | 16 | 24 | 32)
+        && descriptor & 0xc0 == 0;
+    let (width, height) = (le16(bytes, 12)?, le16(bytes, 14)?);
+    if !is_sane || width == 0 || height == 0 {
+        return None;
+    }
+    let whole = |bits: u8| u64::from(bits.div_ceil(8));
+    let map = u64::from(has_map) * u64::from(le16(bytes, 5)?) * whole(entry);
+    let samples = u64::from(width) * u64::from(height) * whole(depth);
+    let length = 18 + u64::from(id) + map + samples;
+    Some(if kind > 8 { 0 } else { length })
+}
+
+/// Whether the file is a TIFF with 64-bit offsets.
+pub(super) fn is_big_tiff(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"II\x2b\0") || bytes.starts_with(b"MM\0\x2b")
 }
 
 /// Whether frames or pages follow the first.
@@ -45,7 +76,6 @@ pub(super) fn has_more(bytes: &[u8], format: ImageFormat) -> bool {
     match format {
         ImageFormat::Gif => gif_frames(bytes).take(2).count() > 1,
         ImageFormat::WebP => webp_is_animated(bytes),
-        ImageFormat::Tiff => tiff_has_pages(bytes).unwrap_or(false),
         _ => false,
     }
 }
@@ -90,19 +120,6 @@ fn webp_is_animated(bytes: &[u8]) -> bool {
     is_extended && bytes.get(20).is_some_and(|flags| flags & 2 != 0)
 }
 
-/// Whether a second directory follows that of the first page.
-fn tiff_has_pages(bytes: &[u8]) -> Option<bool> {
-    type Read = fn(&[u8], usize) -> Option<u32>;
-    let (word, long): (Read, Read) = match bytes.first()? {
-        b'I' => (le16, le32),
-        _ => (be16, be32),
-    };
-    let first = long(bytes, 4)? as usize;
-    let entries = word(bytes, first)? as usize;
-    let next = long(bytes, first.checked_add(2 + 12 * entries)?)?;
-    Some(next != 0)
-}
-
 /// Width and height as written in the header, where their place is fixed or easily found.
 pub(super) fn size(bytes: &[u8], format: ImageFormat) -> Option<(u32, u32)> {
     match format {
@@ -120,6 +137,41 @@ pub(super) fn jpeg_is_whole(bytes: &[u8]) -> bool {
     segments(bytes).any(|segment| segment.marker == 0xd9)
 }
 
+/// The frame of a JPEG: how it is coded, and its samples.
+#[cfg(feature = "formats")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct JpegFrame {
+    /// The marker's number: 0 to 2 baseline and progressive, 3 lossless, 9 and more arithmetic.
+    pub(super) coding: u8,
+    /// Bits of a sample.
+    pub(super) bits: u8,
+    /// Samples of a pixel.
+    pub(super) components: u8,
+    /// Whether Adobe's marker is there, whose CMYK is inverted.
+    pub(super) is_adobe: bool,
+}
+
+/// The frame of a JPEG; `None` if there is none.
+#[cfg(feature = "formats")]
+pub(super) fn jpeg_frame(bytes: &[u8]) -> Option<JpegFrame> {
+    let frame = segments(bytes).find(|segment| is_frame(segment.marker))?;
+    let is_adobe = |segment: Segment| {
+        let body = bytes.get(segment.at + 4..);
+        segment.marker == 0xee && body.is_some_and(|body| body.starts_with(b"Adobe"))
+    };
+    Some(JpegFrame {
+        coding: frame.marker - 0xc0,
+        bits: *bytes.get(frame.at + 4)?,
+        components: *bytes.get(frame.at + 9)?,
+        is_adobe: segments(bytes).any(is_adobe),
+    })
+}
+
+/// Whether the marker begins a frame.
+fn is_frame(marker: u8) -> bool {
+    (0xc0..=0xcf).contains(&marker) && !matches!(marker, 0xc4 | 0xc8 | 0xcc)
+}
+
 fn bmp_size(bytes: &[u8]) -> Option<(u32, u32)> {
     match le32(bytes, 14)? {
         // The oldest header has 16-bit sides.
@@ -130,7 +182,6 @@ fn bmp_size(bytes: &[u8]) -> Option<(u32, u32)> {
 }
 
 fn jpeg_size(bytes: &[u8]) -> Option<(u32, u32)> {
-    let is_frame = |m: u8| (0xc0..=0xcf).contains(&m) && !matches!(m, 0xc4 | 0xc8 | 0xcc);
     let frame = segments(bytes).find(|segment| is_frame(segment.marker))?;
     Some((be16(bytes, frame.at + 7)?, be16(bytes, frame.at + 5)?))
 }
@@ -167,28 +218,28 @@ fn next_marker(bytes: &[u8], from: usize) -> Option<usize> {
     Some(from + found)
 }
 
-fn be32(bytes: &[u8], at: usize) -> Option<u32> {
+pub(super) fn be32(bytes: &[u8], at: usize) -> Option<u32> {
     bytes
         .get(at..)?
         .first_chunk()
         .map(|b| u32::from_be_bytes(*b))
 }
 
-fn le32(bytes: &[u8], at: usize) -> Option<u32> {
+pub(super) fn le32(bytes: &[u8], at: usize) -> Option<u32> {
     bytes
         .get(at..)?
         .first_chunk()
         .map(|b| u32::from_le_bytes(*b))
 }
 
-fn be16(bytes: &[u8], at: usize) -> Option<u32> {
+pub(super) fn be16(bytes: &[u8], at: usize) -> Option<u32> {
     bytes
         .get(at..)?
         .first_chunk()
         .map(|b| u16::from_be_bytes(*b).into())
 }
 
-fn le16(bytes: &[u8], at: usize) -> Option<u32> {
+pub(super) fn le16(bytes: &[u8], at: usize) -> Option<u32> {
     bytes
         .get(at..)?
         .first_chunk()

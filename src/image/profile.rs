@@ -1,8 +1,12 @@
 //! Colour profiles: pictures in other colours than sRGB are converted. The one door of `moxcms`.
 
-use moxcms::{ColorProfile, DataColorSpace, Layout, TransformOptions};
+use moxcms::{
+    Chromaticity, CicpColorPrimaries, CicpProfile, ColorPrimaries, ColorProfile, DataColorSpace,
+    Layout, MatrixCoefficients, ToneReprCurve, TransferCharacteristics, TransformOptions,
+};
 
-use super::{Image, Remark};
+use super::decoded::Coding;
+use super::{Image, Remark, tone};
 
 /// Steps of each channel in the colours that tell whether a profile is that of sRGB.
 const PROBES: usize = 6;
@@ -11,32 +15,125 @@ const PROBES: usize = 6;
 /// sRGB have many profiles, which differ in the last digits of their tables.
 const SAME: f32 = 1.5 / 255.0;
 
-/// The picture in sRGB, and what there is to say of that. A profile that is sRGB's changes nothing.
-pub(super) fn to_srgb(image: Image, icc: &[u8]) -> (Image, Option<Remark>) {
-    let Ok(profile) = ColorProfile::new_from_slice(icc) else {
-        return (image, Some(Remark::ProfileIgnored("damaged")));
+/// The picture in sRGB, and what there is to say of that. Colours that are sRGB's stay as they are.
+pub(super) fn to_srgb(image: Image, coding: &Coding) -> (Image, Option<Remark>) {
+    let outcome = match coding {
+        Coding::Icc(icc) => converted(&image, icc),
+        Coding::Cicp(primaries, transfer) => stated(&image, *primaries, *transfer),
+        Coding::Gamma {
+            gamma,
+            chromaticities,
+        } => {
+            let profile = of_gamma(*gamma, *chromaticities);
+            through(&image, &profile, Layout::Rgb)
+        }
     };
+    match outcome {
+        Ok(Some(planes)) => (Image { planes, ..image }, Some(Remark::Converted)),
+        Ok(None) => (image, None),
+        Err(why) => (image, Some(Remark::ProfileIgnored(why))),
+    }
+}
+
+/// Planes in sRGB; `None` if colours stay as they are; or why they cannot be converted.
+type Outcome = Result<Option<[Vec<f32>; 3]>, &'static str>;
+
+const UNKNOWN: &str = "of an unknown kind";
+
+/// A picture by its ICC profile.
+fn converted(image: &Image, icc: &[u8]) -> Outcome {
+    let profile = ColorProfile::new_from_slice(icc).map_err(|_| "damaged")?;
     let layout = match profile.color_space {
         DataColorSpace::Rgb => Layout::Rgb,
         DataColorSpace::Gray => Layout::Gray,
         // The decoder has made RGB of it.
-        _ => return (image, Some(Remark::ProfileIgnored("not of RGB or grey"))),
+        _ => return Err("not of RGB or grey"),
     };
-    let Some(conversion) = Conversion::new(&profile, layout) else {
-        return (image, Some(Remark::ProfileIgnored("of an unknown kind")));
-    };
+    through(image, &profile, layout)
+}
+
+/// A picture by the code points of its primaries and transfer function.
+fn stated(image: &Image, primaries: u8, transfer: u8) -> Outcome {
+    let primaries = CicpColorPrimaries::try_from(primaries).map_err(|_| UNKNOWN)?;
+    let curve = TransferCharacteristics::try_from(transfer).map_err(|_| UNKNOWN)?;
+    let profile = ColorProfile::new_from_cicp(CicpProfile {
+        color_primaries: primaries,
+        transfer_characteristics: curve,
+        matrix_coefficients: MatrixCoefficients::Identity,
+        full_range: true,
+    });
+    match tone::Transfer::of(transfer) {
+        Some(transfer) => {
+            let matrix = profile.transform_matrix(&ColorProfile::new_srgb()).v;
+            Ok(Some(tone::to_srgb(image.planes(), transfer, matrix)))
+        }
+        None => through(image, &profile, Layout::Rgb),
+    }
+}
+
+/// The profile of colours that are powers of light: sRGB's where nothing else is said.
+fn of_gamma(gamma: Option<f64>, chromaticities: Option<[f64; 8]>) -> ColorProfile {
+    let mut profile = ColorProfile::new_srgb();
+    if let Some(
+        [
+            white_x,
+            white_y,
+            red_x,
+            red_y,
+            green_x,
+            green_y,
+            blue_x,
+            blue_y,
+        ],
+    ) = chromaticities
+    {
+        let place = |x: f64, y: f64| Chromaticity::new(x as f32, y as f32);
+        let primaries = ColorPrimaries {
+            red: place(red_x, red_y),
+            green: place(green_x, green_y),
+            blue: place(blue_x, blue_y),
+        };
+        profile.update_rgb_colorimetry(place(white_x, white_y).to_xyyb(), primaries);
+    }
+    if let Some(gamma) = gamma {
+        let curve = ToneReprCurve::Parametric(vec![(1.0 / gamma) as f32]);
+        profile.cicp = None;
+        profile.red_trc = Some(curve.clone());
+        profile.green_trc = Some(curve.clone());
+        profile.blue_trc = Some(curve);
+    }
+    profile
+}
+
+/// A picture through a profile of red, green and blue, or grey.
+fn through(image: &Image, profile: &ColorProfile, layout: Layout) -> Outcome {
+    let conversion = Conversion::new(profile, layout).ok_or(UNKNOWN)?;
     if conversion.is_none() {
-        return (image, None);
+        return Ok(None);
     }
-    match conversion.of(image.planes(), image.width()) {
-        Some(planes) => (Image { planes, ..image }, Some(Remark::Converted)),
-        None => (image, Some(Remark::ProfileIgnored("of an unknown kind"))),
+    let converted = conversion.of(image.planes(), image.width());
+    converted.map(Some).ok_or(UNKNOWN)
+}
+
+/// Red, green and blue of amounts of cyan, magenta, yellow and black in a picture of this width, if the profile is one of
+/// these inks.
+pub(super) fn of_inks(
+    inks: &[Vec<f32>; 4],
+    width: usize,
+    icc: &[u8],
+) -> Result<[Vec<f32>; 3], &'static str> {
+    let profile = ColorProfile::new_from_slice(icc).map_err(|_| "damaged")?;
+    if profile.color_space != DataColorSpace::Cmyk {
+        return Err("not of CMYK");
     }
+    // Four channels of any meaning are called so.
+    let conversion = Conversion::new(&profile, Layout::Rgba).ok_or(UNKNOWN)?;
+    conversion.of(inks, width).ok_or(UNKNOWN)
 }
 
 /// From the colours of a profile to sRGB.
 struct Conversion {
-    /// Samples of a pixel, 1 or 3.
+    /// Samples of a pixel, 1, 3 or 4.
     channels: usize,
     /// In `f64`: with `f32`, the last digits depend on the processor.
     transform: std::sync::Arc<moxcms::TransformF64Executor>,
@@ -46,7 +143,11 @@ impl Conversion {
     fn new(profile: &ColorProfile, layout: Layout) -> Option<Self> {
         let (srgb, options) = (ColorProfile::new_srgb(), TransformOptions::default());
         let transform = profile.create_transform_f64(layout, &srgb, Layout::Rgb, options);
-        let channels = if layout == Layout::Gray { 1 } else { 3 };
+        let channels = match layout {
+            Layout::Gray => 1,
+            Layout::Rgb => 3,
+            _ => 4,
+        };
         transform.ok().map(|transform| Self {
             channels,
             transform,
@@ -74,7 +175,7 @@ impl Conversion {
     }
 
     /// The planes of a picture of this width in sRGB; `None` if the conversion fails.
-    fn of(&self, planes: &[Vec<f32>; 3], width: usize) -> Option<[Vec<f32>; 3]> {
+    fn of(&self, planes: &[Vec<f32>], width: usize) -> Option<[Vec<f32>; 3]> {
         let mut converted = [0, 1, 2].map(|c| Vec::with_capacity(planes[c].len()));
         let (mut row, mut out) = (vec![0.0; self.channels * width], vec![0.0; 3 * width]);
         for start in (0..planes[0].len()).step_by(width) {

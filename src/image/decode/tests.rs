@@ -387,3 +387,171 @@ fn formats_that_are_not_read_are_named_with_a_way_to_convert_them() {
     let svg = message(b"<svg xmlns=\"http://www.w3.org/2000/svg\"/>");
     assert!(svg.contains("strokefit render"), "{svg}");
 }
+
+/// A file of `tests/data/pictures`: a chart of four patches, in forms that are easily read wrong.
+fn chart(name: &str) -> Vec<u8> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/pictures/");
+    std::fs::read(format!("{folder}{name}")).unwrap()
+}
+
+/// Red, green, blue and yellow of the chart, as 8-bit levels, found in the middle of each patch at this scale.
+fn patches(image: &Image, scale: f64) -> [[f32; 3]; 4] {
+    [(34, 20), (72, 16), (24, 48), (72, 48)].map(|(x, y)| {
+        let at = |v: i32| (f64::from(v) * scale) as usize;
+        let i = at(y) * image.width() + at(x);
+        image.planes().each_ref().map(|plane| plane[i] * 255.0)
+    })
+}
+
+const CHART: [[f32; 3]; 4] = [
+    [200.0, 40.0, 40.0],
+    [40.0, 160.0, 60.0],
+    [40.0, 70.0, 200.0],
+    [240.0, 210.0, 60.0],
+];
+
+/// By how many levels the farthest channel of a patch is off.
+fn worst(found: [[f32; 3]; 4], expected: [[f32; 3]; 4]) -> f32 {
+    let pairs = found.iter().flatten().zip(expected.iter().flatten());
+    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+}
+
+#[test]
+#[cfg(feature = "formats")]
+fn charts_have_their_colours_in_every_form() {
+    for (name, tolerance) in [
+        ("chart_expected.png", 0.0),
+        ("uint32.tiff", 4.0),
+        ("palette.tiff", 4.0),
+        ("ycbcr.tiff", 4.0),
+        ("big.tiff", 0.0),
+        ("cicp_p3.png", 4.0),
+        ("gama10_16.png", 4.0),
+        ("plain.dds", 0.0),
+    ] {
+        let image = decoded(&chart(name)).unwrap();
+        assert_eq!((image.width(), image.height()), (96, 64), "{name}");
+        let found = patches(&image, 1.0);
+        assert!(worst(found, CHART) <= tolerance, "{name}: {found:?}");
+    }
+}
+
+#[test]
+#[cfg(feature = "formats")]
+fn icons_of_rgb_show_their_largest_picture() {
+    for name in ["multi.ico", "bmp24.ico"] {
+        let image = decoded(&chart(name)).unwrap();
+        assert_eq!((image.width(), image.height()), (48, 32), "{name}");
+        let found = patches(&image, 0.5);
+        assert!(worst(found, CHART) <= 1.0, "{name}: {found:?}");
+    }
+}
+
+#[test]
+#[cfg(feature = "formats")]
+fn inks_are_seen_by_the_profile_of_the_file() {
+    let expected = decoded(&chart("cmyk_expected.png")).unwrap();
+    for name in ["cmyk_icc.jpg", "cmyk_icc.tiff"] {
+        let (image, remarks) = read(&chart(name));
+        let found = patches(&image, 1.0);
+        assert!(
+            worst(found, patches(&expected, 1.0)) <= 12.0,
+            "{name}: {found:?}"
+        );
+        assert_eq!(remarks, [Remark::Converted], "{name}");
+    }
+}
+
+#[test]
+#[cfg(feature = "formats")]
+fn premultiplied_colours_become_straight() {
+    let image = decoded(&chart("assocalpha.tiff")).unwrap();
+    let found = patches(&image, 1.0);
+    assert!(worst(found, CHART) <= 12.0, "{found:?}");
+    let alpha = image.alpha().unwrap()[20 * 96 + 34];
+    assert!((alpha * 255.0 - 128.0).abs() < 0.5, "{alpha}");
+}
+
+#[test]
+#[cfg(feature = "formats")]
+fn light_of_pq_keeps_its_colours() {
+    let image = decoded(&chart("cicp_pq.png")).unwrap();
+    let found = patches(&image, 1.0);
+    assert!(found[0][0] - found[0][1] >= 90.0, "{found:?}");
+}
+
+#[test]
+#[cfg(feature = "formats")]
+fn grey_floats_are_a_picture() {
+    let image = decoded(&chart("float32_grey.tiff")).unwrap();
+    assert_eq!((image.width(), image.height()), (96, 64));
+    let found = patches(&image, 1.0);
+    for ([red, green, blue], [r, g, b]) in found.into_iter().zip(CHART) {
+        let luma = 0.299 * r + 0.587 * g + 0.114 * b;
+        assert!(
+            red == green && green == blue && (red - luma).abs() < 12.0,
+            "{found:?}"
+        );
+    }
+}
+
+#[test]
+#[cfg(feature = "formats")]
+fn kinds_that_are_not_read_are_named() {
+    for (name, words) in [
+        ("twelvebit.jpg", "12 bits per sample"),
+        ("lossless.jpg", "lossless JPEG"),
+        ("cgbi.png", "Apple's optimised PNG"),
+    ] {
+        let message = message(&chart(name));
+        assert!(
+            message.contains(words) && message.contains("OUT.png"),
+            "{message}"
+        );
+    }
+}
+
+#[test]
+fn a_picture_of_nothing_says_so() {
+    let outcome = Image::decode_remarking(&chart("alltransparent.png"), "a", Limits::default());
+    assert_eq!(outcome.unwrap().1, [Remark::Transparent]);
+}
+
+#[test]
+#[cfg(feature = "formats")]
+fn a_tga_without_a_footer_is_read_from_below() {
+    // Its descriptor says that the first row is the lowest, and its rows begin with the uppermost.
+    let image = decoded(&chart("footerless.tga")).unwrap();
+    let [red, green, blue, yellow] = CHART;
+    assert_eq!(worst(patches(&image, 1.0), [blue, yellow, red, green]), 0.0);
+}
+
+#[test]
+#[cfg(feature = "formats")]
+fn compressed_tga_without_a_footer_is_told_by_its_name() {
+    // 2×1 px: a run of two.
+    let mut bytes = vec![0, 0, 10, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 1, 0, 24, 0];
+    bytes.extend([0x81, 3, 2, 1]);
+    assert!(decoded(&bytes).is_err());
+    let image = Image::decode(&bytes, "a/B.TGA", Limits::default()).unwrap();
+    assert_eq!(image.to_rgb8(), [1, 2, 3, 1, 2, 3]);
+}
+
+#[test]
+#[cfg(feature = "formats")]
+fn every_cut_of_every_chart_is_an_error_or_a_picture() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/pictures");
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let bytes = std::fs::read(&path).unwrap();
+        let name = path.to_string_lossy();
+        for cut in (0..bytes.len().min(400)).chain((400..bytes.len()).step_by(977)) {
+            let _ = Image::decode(&bytes[..cut], &name, Limits::default());
+        }
+        for at in 0..bytes.len().min(400) {
+            let mut damaged = bytes.clone();
+            damaged[at] ^= 0x81;
+            let _ = Image::decode(&damaged, &name, Limits::default());
+        }
+    }
+}
