@@ -23,11 +23,15 @@ async function decode(file) {
   }
 }
 
-// Whether a file is a PNG without a colour profile. The fit then reads it itself, as the program does: canvases
-// multiply colours by alpha and round, which is not undone to the bit. Profiles are left to the browser.
+// Whether a file is a PNG that says nothing of its colours, or that they are sRGB. The fit then reads it itself, as the
+// program does: canvases multiply colours by alpha and round, which is not undone to the bit. Other colours are left to
+// the browser.
 function isPlainPng(data) {
   const head = new Uint8Array(data, 0, Math.min(data.byteLength, 4096));
   const text = String.fromCharCode(...head);
   const end = text.indexOf("IDAT");
-  return text.startsWith("\x89PNG\r\n\x1a\n") && !text.slice(0, end < 0 ? undefined : end).includes("iCCP");
+  const chunks = text.slice(0, end < 0 ? undefined : end);
+  const says = (...names) => names.some((name) => chunks.includes(name));
+  const isSrgb = !says("cICP", "iCCP") && (says("sRGB") || !says("gAMA", "cHRM"));
+  return text.startsWith("\x89PNG\r\n\x1a\n") && isSrgb && !says("CgBI");
 }

@@ -112,6 +112,12 @@ describe("the page", { skip: !program }, () => {
     assert.ok(svg === native(picture("noto-gem.png"), ["--strokes", "100", "--preset", "draft"]));
   });
 
+  it("compares transparent pictures on white", async () => {
+    // noto-gem, of the last test.
+    const db = await page.value("parseFloat(document.getElementById('shown-db').textContent)");
+    assert.ok(db > 20, `${db} dB`);
+  });
+
   it("makes large pictures smaller, and says what it cannot read", async () => {
     await page.value("document.getElementById('side').value = 500");
     await page.choose(picture("coffee-550x220.png"));

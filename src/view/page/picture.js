@@ -160,6 +160,9 @@ export class Comparison {
     const size = [width, height].map((side) => Math.max(1, Math.round(side * scale)));
     this.canvas = new OffscreenCanvas(...size);
     this.context = this.canvas.getContext("2d", { willReadFrequently: true });
+    // Transparent pages are compared on white, and so is what they should look like.
+    this.context.fillStyle = "#fff";
+    this.context.fillRect(0, 0, ...size);
     this.context.drawImage(target, 0, 0, ...size);
     this.target = this.pixels().data;
     this.context.scale(size[0] / width, size[1] / height);
@@ -172,7 +175,7 @@ export class Comparison {
     return this.context.getImageData(0, 0, this.canvas.width, this.canvas.height);
   }
 
-  // Starts with the bare page; transparent pages are compared on white.
+  // Starts with the bare page.
   clear(scene) {
     this.context.fillStyle = "#fff";
     this.context.fillRect(...this.page);
