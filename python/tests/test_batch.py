@@ -155,7 +155,8 @@ def test_killed_workers_lose_nothing(tmp_path: Path) -> None:
 def test_a_picture_that_ends_its_process_is_a_row(crowd: Path, bomb: dict[str, str], tmp_path: Path) -> None:
     (crowd / "0/bomb.png").write_bytes((crowd / "0/1.png").read_bytes())
     status, words = ended(batch(crowd, "-o", tmp_path / "out", "--workers", 2, *FLAGS, **bomb))
-    assert status == 0 and "30 drawn, 4 failed" in words
+    assert status == 1 and "30 drawn, 4 failed" in words
+    assert f"error: {crowd / 'text.jpg'}: ValueError: the picture" in words
     assert "its process ended 3 times" in str(rows(tmp_path / "out")[str(crowd / "0/bomb.png")]["error"])
 
 

@@ -117,7 +117,7 @@ def test_the_bytes_are_those_of_the_local_engine(
     cluster: Cluster, crowd: Path, expected: dict[str, object], tmp_path: Path
 ) -> None:
     status, words = ended(cluster.batch(crowd, "-o", tmp_path / "out"))
-    assert status == 0 and "200 drawn, 2 failed" in words, words
+    assert status == 1 and "200 drawn, 2 failed" in words, words
     assert drawings(tmp_path / "out") == expected
     status, words = ended(cluster.batch(crowd, "-o", tmp_path / "out"), timeout_s=10)
     assert status == 0 and "0 drawn, 0 failed" in words and "202 were done before" in words
@@ -129,7 +129,7 @@ def test_a_killed_node_loses_nothing(cluster: Cluster, crowd: Path, expected: di
     until(lambda: noted(out) >= 50)
     cluster.kill_node()
     status, words = ended(process)
-    assert status == 0 and "200 drawn, 2 failed" in words, words
+    assert status == 1 and "200 drawn, 2 failed" in words, words
     assert drawings(out) == expected
     cluster.grow(2)
 
@@ -161,7 +161,7 @@ def test_a_picture_that_ends_its_process_is_a_row(cluster: Cluster, crowd: Path,
         (tmp_path / "in" / name).write_bytes((crowd / "0/0.png").read_bytes())
     # URLs are read where the picture is drawn.
     status, words = ended(cluster.batch((tmp_path / "in").as_uri(), "-o", tmp_path / "out"))
-    assert status == 0 and "2 drawn, 1 failed" in words, words
+    assert status == 1 and "2 drawn, 1 failed" in words, words
     errors = [row["error"] for row in rows(tmp_path / "out").values() if row["error"]]
     assert errors == ["it was lost 5 times, at last by WorkerCrashedError"]
 

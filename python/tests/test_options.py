@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.metadata
 import re
 from pathlib import Path
 
@@ -81,9 +82,9 @@ def test_numpy_numbers_are_numbers(waves: np.ndarray) -> None:
         ("quality", 99, "a quality of 99 is out of range: give 0 to 60"),
         ("preset", "fast", "preset: 'fast' is not a preset: give draft, balanced or best"),
         ("precision", 7, "precision=7: give a whole number from 0 to 6"),
-        ("background", "white", "'white' is not a background: give auto, none"),
+        ("background", "whitish", "'whitish' is not a background: give auto, none"),
         ("colors", 0, "colors=0: give a whole number from 1 to 4096"),
-        ("palette", ["red"], "'red' is not a colour"),
+        ("palette", ["rot"], "'rot' is not a colour"),
         ("form", "tiny", "'tiny' is not a form: give plain, smallest or outlines"),
         ("group", "hue", "'hue' is not a grouping"),
         ("order", "random", "'random' is not an order: give fitted or travel"),
@@ -107,6 +108,19 @@ def test_values_out_of_range_are_refused(waves: np.ndarray, option: str, value: 
 def test_other_types_are_refused_by_name(waves: np.ndarray, option: str) -> None:
     with pytest.raises(TypeError, match=option):
         strokefit.fit(waves, **{option: object()})
+
+
+def test_names_that_are_no_option_bring_the_nearest(waves: np.ndarray) -> None:
+    with pytest.raises(TypeError, match=r"fit\(\) has no option 'stroke'; did you mean 'strokes'\?"):
+        strokefit.fit(waves, stroke=9)
+    with pytest.raises(TypeError, match=r"refine\(\) has no option 'colours'; did you mean 'colors'\?"):
+        strokefit.refine("<svg/>", waves, colours=9)
+    with pytest.raises(TypeError, match=r"'preset_' is no option of a batch; did you mean 'preset'\?"):
+        strokefit.batch(".", "out", preset_="draft")
+
+
+def test_the_version_is_that_of_the_package() -> None:
+    assert strokefit.__version__ == importlib.metadata.version("strokefit")
 
 
 def test_colors_and_a_palette_exclude_each_other(waves: np.ndarray) -> None:

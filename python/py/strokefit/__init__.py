@@ -15,6 +15,8 @@ pictures. Lengths are in
 px of the picture, with pixel centres at +0.5. The command line is `python -m strokefit`.
 """
 
+from importlib.metadata import version as _version
+
 from ._api import fit, judge, refine, render
 from ._batch import Estimate, Progress, Summary, batch, estimate_batch
 from ._drawing import Drawing
@@ -22,6 +24,9 @@ from ._native import CancelToken
 from ._picture import Picture
 from ._report import Agreement, Fidelity, Report
 from ._strokes import Stroke, Strokes
+
+#: Version of the package, and of the program in it.
+__version__ = _version("strokefit")
 
 __all__ = [
     "Agreement",
@@ -35,6 +40,7 @@ __all__ = [
     "Stroke",
     "Strokes",
     "Summary",
+    "__version__",
     "batch",
     "estimate_batch",
     "fit",

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import difflib
+import functools
+import inspect
 import json
 import os
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Optional, Union, cast
+from typing import TYPE_CHECKING, Any, Optional, TypeVar, Union, cast
 
 from . import _native
 from ._drawing import Drawing
@@ -22,8 +25,34 @@ if TYPE_CHECKING:
 Svg = Union[str, "os.PathLike[str]", Drawing]
 Palette = Union[str, "os.PathLike[str]", Iterable[str]]
 Progress = Callable[[float, int, float], object]
+_Function = TypeVar("_Function", bound=Callable[..., Any])
 
 
+def nearest(name: str, known: Iterable[str]) -> str:
+    """The known name that was probably meant, as the end of a message.
+
+    >>> nearest("stroke", ["strokes", "psnr"]), nearest("colours", ["colors"]), nearest("zebra", ["psnr"])
+    ("; did you mean 'strokes'?", "; did you mean 'colors'?", '')
+    """
+    near = difflib.get_close_matches(name, list(known), 1, 0.7)
+    return f"; did you mean {near[0]!r}?" if near else ""
+
+
+def _suggests(function: _Function) -> _Function:
+    """The function, which names the option that was probably meant where there is none of a name."""
+    known = inspect.signature(function).parameters
+
+    @functools.wraps(function)
+    def suggesting(*args: Any, **options: Any) -> Any:
+        for name in options:
+            if name not in known:
+                raise TypeError(f"{function.__name__}() has no option {name!r}{nearest(name, known)}")
+        return function(*args, **options)
+
+    return cast(_Function, suggesting)
+
+
+@_suggests
 def fit(
     picture: Picture,
     *,
@@ -76,7 +105,7 @@ def fit(
         opaque: Use opaque strokes only.
         points: Most points of a stroke, 2 to 65535; 2 draws line segments alone. As many as pay by default.
         precision: Decimals of coordinates and widths, 0 to 6.
-        background: `auto` keeps transparency, `#rrggbb` flattens onto that colour, `none` draws no background.
+        background: `auto` keeps transparency, `#rrggbb` or a name such as `white` flattens onto that colour, `none` draws no background.
         colors: At most so many colours, the background included.
         palette: Only these colours: `["#102030", …]`, `"#102030,…"`, or a file with one colour a line or a GIMP
             palette.
@@ -144,6 +173,7 @@ def fit(
     )
 
 
+@_suggests
 def refine(
     base: Svg,
     picture: Picture,

@@ -8,7 +8,7 @@ import time
 from typing import Any, Optional
 
 from . import batch, estimate_batch
-from .progress import Progress
+from .progress import Progress, Summary
 
 _EXAMPLES = """examples:
   python -m strokefit.batch photos -o out                          Parquet: path, svg, report, error
@@ -17,8 +17,8 @@ _EXAMPLES = """examples:
   python -m strokefit.batch photos -o out --dry-run                how many, and how long
   python -m strokefit.batch s3://bucket/photos -o out --engine ray --address auto
 
-A run that was ended goes on when the same command is given again. Exit status: 0 every input has its row, be it an
-error; 1 the run failed; 2 usage; 130 Ctrl-C."""
+A run that was ended goes on when the same command is given again. Exit status: 0 every input has its
+drawing; 1 the run failed, or inputs did, which have their error as a row and are named; 2 usage; 130 Ctrl-C."""
 
 #: Between two lines of progress, s: on a terminal, and in a log.
 _EVERY_S = {True: 0.5, False: 60.0}
@@ -37,9 +37,10 @@ def main(args: Optional[list[str]] = None) -> int:
             return 0
         with _Line(quiet) as line:
             summary = batch(src, dst, progress=line, **given)
+        _tell_failed(summary)
         if not quiet:
             print(summary, file=sys.stderr)
-        return 0
+        return 1 if summary.failed else 0
     except (TypeError, ValueError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
@@ -49,6 +50,15 @@ def main(args: Optional[list[str]] = None) -> int:
     except KeyboardInterrupt:
         print("Stopped. The same command goes on.", file=sys.stderr)
         return 130
+
+
+def _tell_failed(summary: Summary) -> None:
+    """Names the inputs that failed, the first ones."""
+    for path, error in summary.failures:
+        print(f"error: {path}: {error}", file=sys.stderr)
+    more = summary.failed - len(summary.failures)
+    if more:
+        print(f"error: {more:,} more inputs failed: their rows have the errors", file=sys.stderr)
 
 
 class _Line:

@@ -137,7 +137,7 @@ def _session(address: Optional[str]) -> Iterator[Any]:
     try:
         import ray
     except ImportError:
-        raise ImportError("the engine ray needs Ray: pip install 'strokefit[ray]'") from None
+        raise ImportError("the engine ray needs Ray: pip install ray pyarrow") from None
     if ray.is_initialized():
         yield ray
         return

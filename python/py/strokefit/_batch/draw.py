@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, Optional
 
 import numpy as np
 
-from .._api import _palette, fit
+from .._api import _palette, fit, nearest
 from .._report import Report
 from .inputs import Input, read
 
@@ -55,7 +55,8 @@ def whole(options: dict[str, Any]) -> dict[str, Any]:
     known = {name: option.default for name, option in inspect.signature(fit).parameters.items() if name not in _OWN}
     for name in options:
         if name not in known:
-            raise TypeError(f"{name!r} is no option of a batch: give those of fit, such as {', '.join(list(known)[:5])}")
+            such = nearest(name, known) or f": give those of fit, such as {', '.join(list(known)[:5])}"
+            raise TypeError(f"{name!r} is no option of a batch{such}")
     values = {**known, **options, "palette": _palette(options.get("palette"))}
     values = {name: value.item() if isinstance(value, np.generic) else value for name, value in values.items()}
     fit(np.zeros((4, 4), np.uint8), threads=1, **values)

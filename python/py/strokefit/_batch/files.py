@@ -150,7 +150,7 @@ def _system_of(scheme: str, host: str) -> tuple[FileSystem, Any]:
         import pyarrow
         from pyarrow.fs import FileSystem, FSSpecHandler, PyFileSystem
     except ImportError:
-        raise ImportError(f"{scheme}:// needs pyarrow: pip install 'strokefit[parquet]'") from None
+        raise ImportError(f"{scheme}:// needs pyarrow: pip install pyarrow") from None
     try:
         system, _ = FileSystem.from_uri(f"{scheme}://{host}/")
         return system, _path_in_uri

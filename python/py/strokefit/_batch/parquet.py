@@ -91,7 +91,7 @@ def schema() -> pa.Schema:
     try:
         import pyarrow as pa
     except ImportError:
-        raise ImportError("Parquet needs pyarrow: pip install 'strokefit[parquet]', or give files=True (--files)") from None
+        raise ImportError("Parquet needs pyarrow: pip install pyarrow, or give files=True (--files)") from None
     text = {"svg": pa.large_string(), "report": pa.string(), "error": pa.string()}
     return pa.schema([pa.field("path", pa.string(), nullable=False), *text.items()])
 

@@ -12,6 +12,9 @@ from .draw import Row
 #: Percentiles of a summary.
 PERCENTS = (5, 25, 50, 75, 95, 100)
 
+#: Failures that are named.
+_NAMED = 10
+
 #: What a drawing that equals its picture counts as: no budget asks for more.
 _EQUAL_DB = 100.0
 
@@ -94,6 +97,8 @@ class Summary(NamedTuple):
     psnr_db_percentiles: list[float]
     #: Size of the SVG.
     svg_bytes_percentiles: list[float]
+    #: The first ten of the inputs with an error: path and error.
+    failures: list[tuple[str, str]]
 
     def __str__(self) -> str:
         lines = [f"{self.drawn:,} drawn, {self.failed:,} failed in {duration(self.wall_s)}, {duration(self.cpu_s)} of CPU"]
@@ -119,11 +124,14 @@ class Tally:
         self._start_s = time.monotonic()
         self._drawn = self._failed = 0
         self._cpu_s = 0.0
+        self._failures: list[tuple[str, str]] = []
         self._times, self._fidelities, self._sizes = Percentiles(), Percentiles(), Percentiles()
 
     def add(self, row: Row) -> None:
         if row.report is None:
             self._failed += 1
+            if len(self._failures) < _NAMED:
+                self._failures.append((row.path, row.error or ""))
             return
         self._drawn += 1
         cpu_s, psnr_db = row.report["cpu_s"] or 0.0, row.report["fidelity"]["psnr_db"]
@@ -149,6 +157,7 @@ class Tally:
             cpu_s_percentiles=self._times.of(),
             psnr_db_percentiles=self._fidelities.of(),
             svg_bytes_percentiles=self._sizes.of(),
+            failures=self._failures,
         )
 
 
