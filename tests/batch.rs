@@ -239,6 +239,7 @@ fn events_tell_of_each_stage_and_end_with_the_report() {
         assert_eq!(event["iterations"], stage["iterations"]);
     }
     assert_eq!(named("polish").len(), 1, "{text}");
+    assert_eq!(named("polish")[0]["done"], 1.0);
     let mut done = named("done")[0].clone();
     done.as_object_mut().unwrap().remove("event");
     assert_eq!(done, record);

@@ -565,6 +565,31 @@ fn pictures_of_more_formats_are_read_and_others_named() {
 }
 
 #[test]
+fn what_matters_of_colours_is_said_unasked() {
+    let place = Place::new();
+    let clear = committed("tests/data/pictures/alltransparent.png");
+    let output = place.done(&["fit", &clear, "-o", "a.svg"]);
+    assert!(stderr(&output).contains("every pixel of the picture is transparent"));
+    let inks = committed("tests/data/pictures/cmyk_icc.jpg");
+    let output = place.done(&["fit", &inks, "-o", "a.svg", "--report", "r.json"]);
+    assert!(!stderr(&output).contains("sRGB"));
+    let remark = &place.report("r.json")["input"]["remarks"][0];
+    assert!(remark.as_str().unwrap().contains("sRGB"), "{remark}");
+}
+
+#[test]
+fn an_svg_after_the_picture_is_the_output() {
+    let place = Place::new();
+    place.picture("a.png", 20, 16);
+    place.done(&["fit", "a.png", "b.svg", "--strokes", "5"]);
+    assert!(place.path("b.svg").exists());
+    let words = ["no output is named", "add -o a.svg"];
+    assert_refused(&place, &["fit", "a.png"], 2, &words);
+    let words = ["hint: strokefit fit a.png -o c.svg"];
+    assert_refused(&place, &["a.png", "-o", "c.svg"], 2, &words);
+}
+
+#[test]
 fn a_large_picture_is_drawn_as_a_screen_shows_it() {
     let place = Place::new();
     let picture = image::GrayImage::from_fn(1536, 1024, |x, y| {

@@ -384,6 +384,17 @@ fn chromium_shows_strokes_stages_and_fidelity() {
 }
 
 #[test]
+fn an_svg_by_another_program_is_called_so() {
+    let place = Place::new();
+    let traced = committed("tests/data/chelsea-traced.svg");
+    let output = place.run(&["view", &traced]);
+    assert_eq!(output.status.code(), Some(1));
+    let said = stderr(&output);
+    assert!(said.contains("no drawing by strokefit"), "{said}");
+    assert!(said.contains("hint: strokefit check"), "{said}");
+}
+
+#[test]
 fn a_drawing_and_a_picture_of_another_shape_are_refused() {
     let place = drawn();
     let square = image::RgbImage::new(20, 20);

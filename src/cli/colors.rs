@@ -13,9 +13,9 @@ use super::domain;
 #[command(next_help_heading = "Look")]
 pub(super) struct Args {
     /// At most N colours, including the background
-    #[arg(long, value_name = "N", value_parser = domain::colors, allow_negative_numbers = true)]
+    #[arg(long, alias = "colours", value_name = "N", value_parser = domain::colors, allow_negative_numbers = true)]
     colors: Option<usize>,
-    /// Only these colours: a list #rrggbb,#rrggbb,..., a file with one colour per line, or a GIMP palette. Paper
+    /// Only these colours: a list #rrggbb,white,..., a file with one colour per line, or a GIMP palette. Paper
     /// stays as it is if none of them is like it
     #[arg(long, value_name = "LIST|FILE", conflicts_with = "colors", value_parser = palette)]
     palette: Option<Colors>,
@@ -37,7 +37,8 @@ const MAX_BYTES: u64 = 1 << 20;
 /// A list, or what a file says.
 fn palette(text: &str) -> Result<Colors, String> {
     let read = |text: &str| Colors::palette(text).map_err(|error| error.to_string());
-    if text.starts_with('#') || text.contains(',') && !Path::new(text).exists() {
+    let is_file = Path::new(text).exists();
+    if text.starts_with('#') || !is_file && (text.contains(',') || read(text).is_ok()) {
         return read(text);
     }
     let remedy =
@@ -68,8 +69,10 @@ mod tests {
     }
 
     #[test]
-    fn a_list_of_names_is_refused_by_its_first_name() {
-        let message = palette("red,blue").unwrap_err();
-        assert!(message.contains("'red' is not a colour"), "{message}");
+    fn a_list_of_names_is_understood_or_refused_by_the_first_that_is_none() {
+        let both = Colors::Palette(vec![[255, 0, 0], [0, 0, 255]]);
+        assert_eq!(palette("red,blue"), Ok(both));
+        let message = palette("rot,blau").unwrap_err();
+        assert!(message.contains("'rot' is not a colour"), "{message}");
     }
 }

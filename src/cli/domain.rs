@@ -9,6 +9,18 @@ use strokefit::scene::{MAX_POINTS, MAX_PRECISION};
 /// More threads than any machine has cores only waste memory.
 const MAX_THREADS: usize = 1024;
 
+/// Units of sizes, in bytes.
+const UNITS: [(&str, usize); 8] = [
+    ("", 1),
+    ("B", 1),
+    ("k", 1000),
+    ("kB", 1000),
+    ("KiB", 1 << 10),
+    ("M", 1_000_000),
+    ("MB", 1_000_000),
+    ("MiB", 1 << 20),
+];
+
 type Parsed<T> = Result<T, String>;
 
 /// A limit on strokes.
@@ -45,8 +57,26 @@ pub(super) fn colors(text: &str) -> Parsed<usize> {
     whole(text, 1..=Colors::MAX)
 }
 
+/// A number of bytes, with a unit or without: `20000`, `20kB`, `1.5MB`, `64KiB`.
 pub(super) fn bytes(text: &str) -> Parsed<usize> {
-    whole(text, 1..=usize::MAX)
+    let remedy = "give bytes, 1 or more, such as 20000, 20kB, 1.5MB or 64KiB";
+    let digits = text.find(|c: char| !(c.is_ascii_digit() || c == '.'));
+    let (number, unit) = text.split_at(digits.unwrap_or(text.len()));
+    let factor = UNITS
+        .iter()
+        .find(|(name, _)| name.eq_ignore_ascii_case(unit.trim()));
+    let bytes = match factor {
+        Some((_, 1)) => number.parse().ok(),
+        Some((_, factor)) => number.parse().ok().and_then(|n: f64| {
+            let bytes = n * *factor as f64;
+            // Beyond this, numbers of this type are not all whole.
+            (bytes < (1_u64 << 53) as f64).then_some(bytes as usize)
+        }),
+        None => None,
+    };
+    bytes
+        .filter(|bytes| *bytes > 0)
+        .ok_or_else(|| remedy.into())
 }
 
 pub(super) fn stages(text: &str) -> Parsed<usize> {
@@ -125,6 +155,18 @@ mod tests {
         for text in ["+", "+0", "++3", "+-3"] {
             assert!(stroke_limit(text).is_err(), "{text}");
         }
+        for text in [
+            "kB",
+            "1.5",
+            "1.5B",
+            "1e3",
+            "-2kB",
+            "0.0001kB",
+            "9GB",
+            "99999999999999MB",
+        ] {
+            assert!(bytes(text).is_err(), "{text}");
+        }
         assert!(precision("7").is_err() && precision("-1").is_err());
     }
 
@@ -135,6 +177,16 @@ mod tests {
         assert_eq!(stroke_limit("+300"), Ok(StrokeLimit::More(300)));
         assert_eq!(StrokeLimit::More(300).total(200), 500);
         assert_eq!(precision("0"), Ok(0));
+        for (text, value) in [
+            ("20000", 20_000),
+            ("20kB", 20_000),
+            ("20 KB", 20_000),
+            ("1.5MB", 1_500_000),
+            ("64KiB", 65_536),
+            ("7b", 7),
+        ] {
+            assert_eq!(bytes(text), Ok(value), "{text}");
+        }
         assert_eq!(psnr("32.5"), Ok(32.5));
         assert_eq!(seconds("0.5"), Ok(Duration::from_millis(500)));
     }

@@ -89,6 +89,14 @@ impl<'a> Phases<'a> {
         }
     }
 
+    /// Tells of the last part, with which all the work is done.
+    pub(super) fn finish(&mut self) {
+        if let Some((_, phase)) = &mut self.current {
+            phase.done = 1.0;
+        }
+        self.end();
+    }
+
     fn goes_on(&self, progress: &Progress<'_>) -> bool {
         self.current.as_ref().is_some_and(|(polish, phase)| {
             *polish == progress.polishing && phase.stage == progress.stage

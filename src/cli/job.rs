@@ -128,7 +128,10 @@ impl Job<'_> {
             interrupt.observe(progress)
         };
         let fit = draw(picture, start, &mut observer);
-        phases.end();
+        match &fit {
+            Ok(fit) if fit.stop != Stop::Interrupted => phases.finish(),
+            _ => phases.end(),
+        }
         bar.clear();
         if let Some(line) = narration.end() {
             verbosity.detail(line);

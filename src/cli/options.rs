@@ -10,13 +10,17 @@ use strokefit::fit::{
     self, Background, Checkpoint, Colors, Config, Execution, Fit, Fitter, Focus, Observer, Preset,
     Simd, Widths,
 };
-use strokefit::image::Limits;
+use strokefit::image::{Image, Limits};
 use strokefit::svg::WriteOptions;
 
 use super::domain::StrokeLimit;
 use super::interrupt::GRACE;
 use super::pictures::FilmOptions;
 use super::{colors, complain, domain, form, input, words};
+
+/// Weight of an error where the mask of `--focus` is black. Without any, ends of strokes are left there as they come: a cat
+/// of 400 strokes has 32.7 dB inside and 15.3 outside, with this weight 32.8 and 25.2, with 0.02 32.2 and 28.0.
+const FLOOR: f32 = 0.002;
 
 /// The options of a command that draws.
 #[derive(Debug, clap::Args)]
@@ -52,7 +56,7 @@ pub(super) struct Budget {
     /// Stop when the file reaches DB decibels of PSNR: 25 is rough, 30 fair, 35 good
     #[arg(long, value_name = "DB", value_parser = domain::psnr, allow_negative_numbers = true)]
     pub(super) psnr: Option<f64>,
-    /// At most N bytes of SVG
+    /// At most N bytes of SVG; 20kB, 1.5MB and 64KiB are understood
     #[arg(long, value_name = "N", value_parser = domain::bytes, allow_negative_numbers = true)]
     pub(super) bytes: Option<usize>,
     /// At most this many seconds, from reading the picture to writing the SVG
@@ -99,11 +103,11 @@ pub(super) struct Look {
     /// Skip the joint fit of all strokes after the stages. The fit is faster and some dB worse
     #[arg(long)]
     no_polish: bool,
-    /// Background colour: auto, none or #rrggbb. auto keeps transparency; with --opaque it flattens a picture
-    /// with translucent areas onto white. #rrggbb flattens onto that colour
+    /// Background colour: auto, none, #rrggbb or a name such as white. auto keeps transparency; with --opaque it flattens a picture
+    /// with translucent areas onto white. A colour is what the picture is flattened onto
     #[arg(long, value_name = "COLOR", default_value_t)]
     background: Background,
-    /// Grey picture of the input's size that says how much an error counts where: white 1, black 0. Strokes go where
+    /// Grey picture of the input's size that says how much an error counts where: white 1, black 0.002. Strokes go where
     /// people look, a face before a wall
     #[arg(long, value_name = "MASK.png")]
     focus: Option<PathBuf>,
@@ -136,9 +140,12 @@ pub(super) struct How {
 /// The presets, with their help.
 fn preset() -> impl TypedValueParser<Value = Preset> {
     words::one_of([
-        (Preset::Draft, "A tenth of the time, about 1 dB worse"),
+        (Preset::Draft, "An eighth of the time, 2 to 3 dB worse"),
         (Preset::Balanced, "The default"),
-        (Preset::Best, "Three times the time, up to 0.2 dB better"),
+        (
+            Preset::Best,
+            "Three to five times the time, 0.7 to 0.9 dB better",
+        ),
     ])
 }
 
@@ -242,8 +249,10 @@ impl Options {
     /// Reads the mask.
     fn focus(&self, path: &Path) -> Result<Focus> {
         let (mask, _) = input::picture_within(path, self.limits())?;
-        let focus = Focus::new(&mask).map_err(|error| error.within(input::name(path)))?;
-        Ok(focus)
+        let within = |error: strokefit::Error| error.within(input::name(path));
+        // Refuses a mask that is black everywhere.
+        Focus::new(&mask).map_err(within)?;
+        Ok(Focus::new(&lifted(mask)?).map_err(within)?)
     }
 
     pub(super) fn execution(&self) -> Execution {
@@ -252,6 +261,19 @@ impl Options {
             simd: self.how.simd,
         }
     }
+}
+
+/// The mask with its black lifted to the floor.
+fn lifted(mask: Image) -> Result<Image> {
+    let mask = mask.flattened([0.0; 3]);
+    let (width, height) = (mask.width(), mask.height());
+    let lift = |plane: Vec<f32>| {
+        plane
+            .into_iter()
+            .map(|v| FLOOR + (1.0 - FLOOR) * v)
+            .collect()
+    };
+    Ok(Image::new(width, height, mask.into_planes().map(lift))?)
 }
 
 impl Budget {

@@ -1,11 +1,12 @@
 //! Turns clap's errors into one line that says what is wrong, and advice.
 
+use std::ffi::OsString;
 use std::path::Path;
 
-use clap::error::{ContextKind, ContextValue};
+use clap::error::ErrorKind;
 
-/// What is wrong, and the advice.
-pub(super) fn parts(error: &clap::Error) -> (String, Option<String>) {
+/// What is wrong with the arguments, which begin with the program's name, and the advice.
+pub(super) fn parts(error: &clap::Error, args: &[OsString]) -> (String, Option<String>) {
     let message = error.to_string();
     let paragraphs: Vec<String> = message
         .split("\n\n")
@@ -19,18 +20,47 @@ pub(super) fn parts(error: &clap::Error) -> (String, Option<String>) {
         .map(str::trim)
         .collect();
     let tips = (!tips.is_empty()).then(|| tips.join("; "));
-    let advice = forgotten(error).or(tips).or_else(|| further(&paragraphs));
+    let advice = forgotten(error, args)
+        .or(tips)
+        .or_else(|| further(&paragraphs));
     (wrong, advice)
 }
 
-/// The command that was meant, where a picture stands in place of the subcommand.
-fn forgotten(error: &clap::Error) -> Option<String> {
-    match error.get(ContextKind::InvalidSubcommand)? {
-        ContextValue::String(word) if Path::new(word).is_file() => {
-            let output = Path::new(word).with_extension("svg");
-            Some(format!("strokefit fit {word} -o {}", output.display()))
-        }
-        _ => None,
+/// The command that was meant, where a picture was given and no subcommand.
+fn forgotten(error: &clap::Error, args: &[OsString]) -> Option<String> {
+    let is_missing = match error.kind() {
+        ErrorKind::InvalidSubcommand => true,
+        // Options of `fit` where those of the program are.
+        ErrorKind::UnknownArgument => error
+            .to_string()
+            .contains("Usage: strokefit [OPTIONS] <COMMAND>"),
+        _ => false,
+    };
+    let words = args.get(1..).filter(|_| is_missing)?;
+    let words: Vec<&str> = words
+        .iter()
+        .map(|word| word.to_str())
+        .collect::<Option<_>>()?;
+    let picture = words.iter().map(Path::new).find(|path| path.is_file())?;
+    let names_output = |word: &&&str| word.starts_with("-o") || word.starts_with("--output");
+    let output = match words.iter().find(names_output) {
+        Some(_) => String::new(),
+        None => format!(
+            " -o {}",
+            quoted(&picture.with_extension("svg").to_string_lossy())
+        ),
+    };
+    let words: Vec<String> = words.into_iter().map(quoted).collect();
+    Some(format!("strokefit fit {}{output}", words.join(" ")))
+}
+
+/// The word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "-_./=,:+@%".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', "'\\''"))
     }
 }
 

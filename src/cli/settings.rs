@@ -131,7 +131,11 @@ fn flags(path: &Path, text: &str, command: &Command) -> Result<Vec<OsString>> {
 
 /// The flag that one line stands for.
 fn flag(at: &str, command: &Command, key: &str, value: &Value) -> Result<OsString> {
-    let Some(arg) = settable(command).find(|arg| arg.get_long() == Some(key)) else {
+    let is_named = |arg: &&Arg| {
+        let others = arg.get_all_aliases().unwrap_or_default();
+        arg.get_long() == Some(key) || others.contains(&key)
+    };
+    let Some(arg) = settable(command).find(is_named) else {
         let error = misuse(format!("{at}: no option is called {key}"));
         let advice = similar(command, key).map_or_else(
             || format!("strokefit {} --help lists the options", command.get_name()),
@@ -172,7 +176,7 @@ fn check(at: &str, command: &Command, flag: &OsString) -> Result<()> {
                 ErrorKind::InvalidValue | ErrorKind::ValueValidation
             ) =>
         {
-            let (wrong, advice) = parts(&e);
+            let (wrong, advice) = parts(&e, &[]);
             let wrong = misuse(format!("{at}: {wrong}"));
             Err(Hint::maybe_on(wrong, advice))
         }

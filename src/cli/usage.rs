@@ -27,13 +27,13 @@ pub(super) fn command() -> Command {
 
 /// The parsed arguments, or the status to leave with: help was shown, or an error.
 pub(super) fn parse(args: Vec<OsString>) -> Result<Args, Status> {
-    match understand(args) {
+    match understand(args.clone()) {
         Ok(Understood::Run(args)) => Ok(*args),
         Ok(Understood::Print(text)) => Err(match Output::Stdout.write(text.as_bytes()) {
             Ok(()) => Status::Done,
             Err(error) => fail(&error),
         }),
-        Err(error) => Err(refuse(&error)),
+        Err(error) => Err(refuse(&error, &args)),
     }
 }
 
@@ -56,14 +56,14 @@ fn understand(args: Vec<OsString>) -> Result<Understood> {
 }
 
 /// Says what is wrong with the arguments, or shows the help that they ask for.
-fn refuse(error: &anyhow::Error) -> Status {
+fn refuse(error: &anyhow::Error, args: &[OsString]) -> Status {
     let Some(error) = error.downcast_ref::<clap::Error>() else {
         return fail(error);
     };
     // Called without any argument: clap prints the help on standard error.
     let asks = error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
     if error.use_stderr() && !asks {
-        return fail(&told(error));
+        return fail(&told(error, args));
     }
     match error.print() {
         Ok(()) if asks => Status::Usage,
@@ -75,8 +75,8 @@ fn refuse(error: &anyhow::Error) -> Status {
 }
 
 /// What clap says is wrong, in one line, with what it advises or where to read on.
-fn told(error: &clap::Error) -> anyhow::Error {
-    let (wrong, advice) = parts(error);
+fn told(error: &clap::Error, args: &[OsString]) -> anyhow::Error {
+    let (wrong, advice) = parts(error, args);
     Hint::maybe_on(misuse(wrong), advice)
 }
 
@@ -86,7 +86,9 @@ mod tests {
 
     fn refusal(args: &[&str]) -> (String, String) {
         let args = ["strokefit"].iter().chain(args);
-        let (wrong, advice) = parts(&command().try_get_matches_from(args).unwrap_err());
+        let args: Vec<OsString> = args.map(OsString::from).collect();
+        let error = command().try_get_matches_from(&args).unwrap_err();
+        let (wrong, advice) = parts(&error, &args);
         (wrong, advice.unwrap_or_default())
     }
 
@@ -110,9 +112,19 @@ mod tests {
 
     #[test]
     fn without_a_tip_the_help_of_the_command_is_named() {
-        let (wrong, advice) = refusal(&["fit", "a.png"]);
+        let (wrong, advice) = refusal(&["render", "a.svg"]);
         assert!(wrong.contains("--output"), "{wrong}");
-        assert_eq!(advice, "strokefit fit --help lists the options");
+        assert_eq!(advice, "strokefit render --help lists the options");
+    }
+
+    #[test]
+    fn a_forgotten_command_keeps_all_that_was_given() {
+        let (_, advice) = refusal(&["Cargo.toml", "-o", "a b.svg", "--strokes", "5"]);
+        assert_eq!(advice, "strokefit fit Cargo.toml -o 'a b.svg' --strokes 5");
+        let (_, advice) = refusal(&["--strokes", "5", "Cargo.toml"]);
+        assert_eq!(advice, "strokefit fit --strokes 5 Cargo.toml -o Cargo.svg");
+        let (_, advice) = refusal(&["gone.png", "-o", "b.svg"]);
+        assert!(!advice.contains("strokefit fit"), "{advice}");
     }
 
     #[test]

@@ -7,9 +7,10 @@ use anyhow::Result;
 use strokefit::fit::{Background, Base, Budget, Config, Fit, Fitter, Observer};
 use strokefit::image::Image;
 use strokefit::svg;
-use strokefit::verify;
+use strokefit::verify::{self, Size};
 use strokefit::view::Viewer;
 
+use super::hint::Hint;
 use super::interrupt::GRACE;
 use super::job::Draw;
 use super::options::Options;
@@ -39,7 +40,7 @@ pub(super) fn run(args: &Args) -> Result<Status> {
     }
     let text = input::svg(&args.file)?;
     let name = input::name(&args.file);
-    let scene = svg::read(&text).map_err(|e| e.within(&name))?;
+    let scene = svg::read(&text).map_err(|error| unread(error, &text, &name))?;
     let picture = args.input.as_deref().map(input::picture).transpose()?;
     if let Some(picture) = &picture {
         // Refuses a picture of another shape.
@@ -51,6 +52,20 @@ pub(super) fn run(args: &Args) -> Result<Status> {
     tell(&viewer);
     viewer.wait();
     Ok(Status::Done)
+}
+
+/// Why a file cannot be looked at: another program's is no damaged one of strokefit's.
+fn unread(error: strokefit::Error, text: &str, name: &str) -> anyhow::Error {
+    if verify::render(text, Size::Scale(1.0), None).is_err() {
+        return error.within(name).into();
+    }
+    let message = format!(
+        "{name}: is no drawing by strokefit ({error}): strokes alone can be looked at one by one"
+    );
+    Hint::on(
+        anyhow::anyhow!(message),
+        "strokefit check FILE.svg PICTURE compares any SVG, and strokefit refine lays strokes on it",
+    )
 }
 
 fn tell(viewer: &Viewer) {

@@ -79,7 +79,7 @@ impl fmt::Display for Background {
 impl FromStr for Background {
     type Err = Error;
 
-    /// `auto`, `none` or `#rrggbb`.
+    /// `auto`, `none`, `#rrggbb`, `#rgb` or the name of a colour, such as `white`.
     fn from_str(text: &str) -> Result<Self> {
         let unknown = || {
             refusal(format!(
@@ -104,7 +104,7 @@ impl Colors {
     /// Most colours that can be asked for; more are as good as any.
     pub const MAX: usize = 4096;
 
-    /// The palette that `text` is: colours `#rrggbb` with commas between, or one a line, or a GIMP palette.
+    /// The palette that `text` is: colours `#rrggbb`, `#rgb` or names such as `red` with commas between, or one a line, or a GIMP palette.
     /// A colour that comes twice counts once.
     ///
     /// # Errors
@@ -190,13 +190,47 @@ fn levels(line: &str) -> Option<[u8; 3]> {
     Some([words.next()??, words.next()??, words.next()??])
 }
 
-/// The channels of `#rrggbb`.
+/// Names of colours, those of CSS 2.1 and a few more.
+const NAMES: [(&str, [u8; 3]); 22] = [
+    ("aqua", [0, 255, 255]),
+    ("black", [0, 0, 0]),
+    ("blue", [0, 0, 255]),
+    ("brown", [165, 42, 42]),
+    ("cyan", [0, 255, 255]),
+    ("fuchsia", [255, 0, 255]),
+    ("gray", [128, 128, 128]),
+    ("green", [0, 128, 0]),
+    ("grey", [128, 128, 128]),
+    ("lime", [0, 255, 0]),
+    ("magenta", [255, 0, 255]),
+    ("maroon", [128, 0, 0]),
+    ("navy", [0, 0, 128]),
+    ("olive", [128, 128, 0]),
+    ("orange", [255, 165, 0]),
+    ("pink", [255, 192, 203]),
+    ("purple", [128, 0, 128]),
+    ("red", [255, 0, 0]),
+    ("silver", [192, 192, 192]),
+    ("teal", [0, 128, 128]),
+    ("white", [255, 255, 255]),
+    ("yellow", [255, 255, 0]),
+];
+
+/// The channels of `#rrggbb`, `#rgb` or a name.
 fn channels(text: &str) -> Option<[u8; 3]> {
-    let digits = text
-        .strip_prefix('#')
-        .filter(|d| d.len() == 6 && d.bytes().all(|b| b.is_ascii_hexdigit()))?;
-    let [_, channels @ ..] = u32::from_str_radix(digits, 16).ok()?.to_be_bytes();
-    Some(channels)
+    let Some(digits) = text.strip_prefix('#') else {
+        let mut names = NAMES.iter();
+        let named = names.find(|(name, _)| name.eq_ignore_ascii_case(text));
+        return named.map(|(_, channels)| *channels);
+    };
+    let is_hex = digits.bytes().all(|b| b.is_ascii_hexdigit());
+    let number = u32::from_str_radix(digits, 16).ok().filter(|_| is_hex)?;
+    let [_, channels @ ..] = number.to_be_bytes();
+    match digits.len() {
+        6 => Some(channels),
+        3 => Some([8, 4, 0].map(|shift| (number >> shift & 15) as u8 * 17)),
+        _ => None,
+    }
 }
 
 /// The palette of these texts, which have a line number where they are lines.
@@ -286,11 +320,20 @@ mod tests {
     }
 
     #[test]
+    fn colours_may_be_short_or_named() {
+        let background = |text: &str| text.parse::<Background>().unwrap().to_string();
+        assert_eq!(background("white"), "#ffffff");
+        assert_eq!(background("Red"), "#ff0000");
+        assert_eq!(background("#1fA"), "#11ffaa");
+        assert_eq!(Colors::palette("red,#102030").unwrap(), red_and_ink());
+    }
+
+    #[test]
     fn what_is_no_palette_is_refused_with_its_place() {
         for (text, words) in [
             ("#ff0000,#12", "'#12' is not a colour"),
             ("no-such-file", "'no-such-file' is not a colour"),
-            ("#ff0000\nred", "line 2: 'red'"),
+            ("#ff0000\nrot", "line 2: 'rot'"),
             ("GIMP Palette\n300 0 0", "line 2: '300 0 0'"),
             ("GIMP Palette\n#\n", "no colour"),
             ("", "no colour"),
@@ -305,7 +348,9 @@ mod tests {
     fn errors_name_the_value_and_the_remedy() {
         let drft = message::<Preset>("drft");
         assert!(drft.contains("'drft'") && drft.contains("draft, balanced or best"));
-        for text in ["", "#fff", "white", "#gggggg", "#+12345", "ffffff"] {
+        for text in [
+            "", "#ffff", "whitish", "#gggggg", "#+12345", "ffffff", "#", "#+12",
+        ] {
             let error = message::<Background>(text);
             assert!(error.contains(&format!("'{text}'")) && error.contains("auto, none"));
         }
