@@ -136,7 +136,7 @@ fn typos_are_answered_with_what_was_meant() {
         &place,
         &["fit", "cat.png"],
         2,
-        &["--output", "hint: strokefit fit --help"],
+        &["--output", "hint: add -o cat.svg"],
     );
 }
 

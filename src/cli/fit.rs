@@ -76,7 +76,10 @@ fn places<'a>(
 
 fn unnamed(output: &Path) -> anyhow::Error {
     let advice = format!("add -o {}", output.display());
-    Hint::on(misuse("no output is named: give one with -o"), advice)
+    Hint::on(
+        misuse("no output is named: give one with -o or --output"),
+        advice,
+    )
 }
 
 #[cfg(test)]
