@@ -165,3 +165,48 @@ fn pixelwise<T: Copy>(samples: &mut [T], channels: usize, change: impl Fn(T, T) 
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bytes(samples: Samples) -> Vec<u8> {
+        match samples {
+            Samples::U8(samples) => samples,
+            _ => panic!("other samples than bytes"),
+        }
+    }
+
+    #[test]
+    fn bits_are_unpacked_row_by_row_and_stretched() {
+        let packed = Samples::U8(vec![0b1011_0000, 0b0100_0000]);
+        let unpacked = packed.unpacked(3, 2, 1).stretched(1);
+        assert_eq!(bytes(unpacked), [255, 0, 255, 0, 255, 0]);
+        let packed = Samples::U8(vec![0x1f, 0xa0]);
+        assert_eq!(bytes(packed.unpacked(3, 1, 4).stretched(4)), [17, 255, 170]);
+    }
+
+    #[test]
+    fn planes_become_pixels_of_the_channels_that_count() {
+        let planes = Samples::U8(vec![1, 2, 10, 20, 100, 200]);
+        let pixels = planes.interleaved(3);
+        assert_eq!(bytes(pixels.first_of(3, 2)), [1, 10, 2, 20]);
+    }
+
+    #[test]
+    fn alpha_is_taken_out_of_colours_of_every_type() {
+        let mut samples = Samples::U8(vec![50, 100, 7, 0, 200, 100]);
+        samples.unmultiply(2);
+        assert_eq!(bytes(samples), [128, 100, 0, 0, 255, 100]);
+        let mut samples = Samples::F32(vec![0.25, 0.5, 0.75, 0.5]);
+        samples.unmultiply(4);
+        assert!(matches!(samples, Samples::F32(v) if v == [0.5, 1.0, 1.0, 0.5]));
+    }
+
+    #[test]
+    fn long_integers_keep_their_first_bits() {
+        let read = Samples::of(DecodingResult::U32(vec![0, 0x8000_0000, u32::MAX]));
+        assert!(matches!(read, Ok(Samples::U16(v)) if v == [0, 0x8000, 0xffff]));
+        assert!(Samples::of(DecodingResult::I8(vec![1])).is_err());
+    }
+}
