@@ -141,7 +141,7 @@ fn a_word_that_is_none_is_refused_with_those_that_are() {
             "draft, balanced or best",
         ),
         (
-            "grey".parse::<Background>().map(|_| ()),
+            "mauve".parse::<Background>().map(|_| ()),
             "auto, none or a colour",
         ),
         ("#ff".parse::<Colors>().map(|_| ()), "#rrggbb"),
@@ -151,7 +151,7 @@ fn a_word_that_is_none_is_refused_with_those_that_are() {
     ];
     for ((refusal, remedy), word) in refusals
         .into_iter()
-        .zip(["bset", "grey", "#ff", "tiny", "hue", "12"])
+        .zip(["bset", "mauve", "#ff", "tiny", "hue", "12"])
     {
         let error = refusal.unwrap_err();
         assert_eq!(error.kind(), ErrorKind::Config);

@@ -395,6 +395,7 @@ fn chart(name: &str) -> Vec<u8> {
 }
 
 /// Red, green, blue and yellow of the chart, as 8-bit levels, found in the middle of each patch at this scale.
+#[cfg(feature = "formats")]
 fn patches(image: &Image, scale: f64) -> [[f32; 3]; 4] {
     [(34, 20), (72, 16), (24, 48), (72, 48)].map(|(x, y)| {
         let at = |v: i32| (f64::from(v) * scale) as usize;
@@ -403,6 +404,7 @@ fn patches(image: &Image, scale: f64) -> [[f32; 3]; 4] {
     })
 }
 
+#[cfg(feature = "formats")]
 const CHART: [[f32; 3]; 4] = [
     [200.0, 40.0, 40.0],
     [40.0, 160.0, 60.0],
@@ -411,6 +413,7 @@ const CHART: [[f32; 3]; 4] = [
 ];
 
 /// By how many levels the farthest channel of a patch is off.
+#[cfg(feature = "formats")]
 fn worst(found: [[f32; 3]; 4], expected: [[f32; 3]; 4]) -> f32 {
     let pairs = found.iter().flatten().zip(expected.iter().flatten());
     pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
