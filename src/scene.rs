@@ -3,6 +3,7 @@
 //! Coordinates are in px, with pixel centres at +0.5. Colours are sRGB-encoded, 0..1, and are composited in
 //! that encoding, as SVG renderers do.
 
+mod filled_loop;
 mod grid;
 mod overlap;
 mod path;

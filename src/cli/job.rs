@@ -8,7 +8,7 @@ use strokefit::fit::{
     self, DEFAULT_QUALITY, DEFAULT_STROKES, Fit, Observer, Progress, SCREEN_PIXELS, Stop,
 };
 use strokefit::image::Image;
-use strokefit::metrics::psnr_db;
+use strokefit::metrics::{Agreement, psnr_db};
 use strokefit::report::{self, Event, FitReport, Input, Judged, Run, Usage};
 use strokefit::scene::Dropped;
 use strokefit::verify::MIN_AGREEMENT_DB;
@@ -183,6 +183,12 @@ impl Job<'_> {
             && 10 * strokes >= 9 * DEFAULT_STROKES
             && self.base.is_none()
         {
+            if drawn.judged.verdict.fidelity.psnr_db < NOISE_DB {
+                verbosity.say(format_args!(
+                    "{}: the picture is of dots or noise finer than strokes: blur it, or give the picture before it was dithered",
+                    output::name(&self.output)
+                ));
+            }
             verbosity.say(format_args!(
                 "{}: more strokes would pay, but {strokes} are the most unless --strokes or --quality asks for more",
                 output::name(&self.output)
@@ -230,17 +236,9 @@ impl Job<'_> {
         self.tell_capped(drawn, verbosity);
         self.tell_poor(drawn);
         if !drawn.judged.holds() {
-            let remedy = if drawn.judged.fit.target.width() * drawn.judged.fit.target.height()
-                < FEW_PIXELS
-            {
-                "strokes are as wide as its pixels: draw the picture at 16 times its size, enlarged without smoothing"
-            } else {
-                "try --opaque or a higher --precision"
-            };
             complain(format_args!(
-                "{name}: fidelity check failed: resvg's render agrees with the fit to {:.2} dB, less than {MIN_AGREEMENT_DB} dB: \
-                 the file was kept; {remedy}",
-                drawn.judged.verdict.agreement.psnr_db
+                "{name}: fidelity check failed: {}: the file was kept; try --opaque or a higher --precision",
+                disagreement(&drawn.judged.verdict.agreement)
             ));
             return Status::Disagrees;
         }
@@ -293,8 +291,22 @@ impl<'a> Outputs<'a> {
     }
 }
 
-/// A picture of fewer pixels is small.
-const FEW_PIXELS: usize = 32 * 32;
+/// A drawing of as many strokes as are allowed, and yet less faithful than this, dB, is one of noise.
+const NOISE_DB: f64 = 22.0;
+
+/// How resvg's render differs from our own.
+fn disagreement(agreement: &Agreement) -> String {
+    let Agreement {
+        psnr_db, patch_abs, ..
+    } = *agreement;
+    if agreement.has_gap() {
+        format!("resvg draws 5×5 px by {patch_abs} of 255 levels otherwise than the fit")
+    } else {
+        format!(
+            "resvg's render agrees with the fit to {psnr_db:.2} dB, less than {MIN_AGREEMENT_DB} dB"
+        )
+    }
+}
 
 /// A drawing this much worse than a page of one colour is spoken of, dB.
 const POOR_DB: f64 = 1.0;

@@ -1,5 +1,7 @@
 //! Whether an engine draws a file as it is meant.
 
+use crate::metrics::Agreement;
+
 /// How far below resvg's fidelity an engine's may be, dB.
 pub const MAX_SHORTFALL_DB: f64 = 0.6;
 
@@ -9,16 +11,27 @@ pub const MAX_SHORTFALL_DB: f64 = 0.6;
 /// pixel, something is missing or in another place.
 pub const MIN_DB_AGAINST_RESVG: f64 = 36.0;
 
-/// Whether an engine draws what resvg draws: its render is close to resvg's, or its fidelity, where that is
-/// known, falls short of resvg's by no more than [`MAX_SHORTFALL_DB`].
-pub fn passes(against_resvg_db: f64, shortfall_db: Option<f64>) -> bool {
-    against_resvg_db >= MIN_DB_AGAINST_RESVG
-        || shortfall_db.is_some_and(|db| db <= MAX_SHORTFALL_DB)
+/// Whether an engine draws what resvg draws: it leaves no gap, and its render is close to resvg's, or its fidelity, where that
+/// is known, falls short of resvg's by no more than [`MAX_SHORTFALL_DB`].
+pub fn passes(against_resvg: &Agreement, shortfall_db: Option<f64>) -> bool {
+    let is_close = against_resvg.psnr_db >= MIN_DB_AGAINST_RESVG;
+    let is_as_faithful = shortfall_db.is_some_and(|db| db <= MAX_SHORTFALL_DB);
+    !against_resvg.has_gap() && (is_close || is_as_faithful)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_engine_that_leaves_a_gap_fails() {
+        let gap = Agreement {
+            psnr_db: 50.0,
+            max_abs: 255,
+            patch_abs: 200,
+        };
+        assert!(!passes(&gap, Some(0.0)));
+    }
 
     #[test]
     fn an_engine_must_be_as_faithful_or_agree() {
@@ -32,8 +45,13 @@ mod tests {
             (41.0, Some(5.0), true),
             (f64::NAN, Some(f64::NAN), false),
         ] {
+            let against_resvg = Agreement {
+                psnr_db: against_resvg_db,
+                max_abs: 90,
+                patch_abs: 9,
+            };
             assert_eq!(
-                passes(against_resvg_db, shortfall_db),
+                passes(&against_resvg, shortfall_db),
                 verdict,
                 "{against_resvg_db} {shortfall_db:?}"
             );

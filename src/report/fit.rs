@@ -262,6 +262,7 @@ mod tests {
             agreement: Agreement {
                 psnr_db: 41.0,
                 max_abs: 12,
+                patch_abs: 3,
             },
             alpha: Some(OnMattes {
                 black_db: 28.5,
@@ -304,7 +305,7 @@ mod tests {
             "seed": 7,
             "fidelity": {"psnr_db": null, "ssim": 1.0, "mse": 0.0, "l1": 0.0, "ssimulacra2": 100.0},
             "soft": {"psnr_db": null, "ssim": 1.0, "mse": 0.0, "l1": 0.0, "ssimulacra2": 100.0},
-            "agreement": {"psnr_db": 41.0, "max_abs": 12},
+            "agreement": {"psnr_db": 41.0, "max_abs": 12, "patch_abs": 3},
             "alpha": {
                 "black_db": 28.5, "white_db": null, "magenta_db": 29.0,
                 "black_ssimulacra2": 61.5, "white_ssimulacra2": 100.0, "magenta_ssimulacra2": 60.0,

@@ -6,7 +6,13 @@ use crate::error::Result;
 use crate::fit::{Base, Fit, Focus};
 use crate::metrics::{Quality, null_is_infinite};
 use crate::scene::Scene;
-use crate::verify::{self, OnMattes, Verdict};
+use crate::verify::{self, MIN_AGREEMENT_DB, OnMattes, Verdict};
+
+/// How much less faithful than our own render a file may be that does not agree with it, dB.
+const MAX_LOSS_DB: f64 = 1.0;
+
+/// A picture of fewer pixels is small: its strokes are about as wide as its pixels.
+const FEW_PIXELS: usize = 32 * 32;
 
 /// A finished drawing with its file, judged by resvg's render.
 #[derive(Debug, Clone)]
@@ -65,10 +71,17 @@ impl Judged {
         (!is_part).then_some(&self.fit.scene)
     }
 
-    /// Whether the file is as good as the fit. It is if resvg's render agrees with our own, or if resvg's is the one more
-    /// faithful to the picture: in one of a few pixels both differ at all edges, and the file was settled for resvg.
+    /// Whether the file is as good as the fit: it has all that our own render has, and resvg's render agrees with that, or is
+    /// about as faithful to the picture. In a picture of few pixels, or of noise, all is edges, at which renders differ.
     pub fn holds(&self) -> bool {
-        self.verdict.agrees() || self.verdict.fidelity.psnr_db >= self.soft.psnr_db
+        let Verdict {
+            fidelity,
+            agreement,
+        } = self.verdict;
+        let pixels = self.fit.target.width() * self.fit.target.height();
+        let is_as_faithful = fidelity.psnr_db >= self.soft.psnr_db - MAX_LOSS_DB;
+        let is_close = agreement.psnr_db >= MIN_AGREEMENT_DB;
+        !agreement.has_gap() && (is_close || is_as_faithful || pixels < FEW_PIXELS)
     }
 }
 

@@ -69,7 +69,8 @@ impl Scene {
     /// The scene rounded to what its SVG with `precision` decimals (at most [`MAX_PRECISION`](super::MAX_PRECISION)) holds.
     ///
     /// Coordinates and widths are rounded, widths kept at [`MIN_WIDTH`] or more; colours and
-    /// opacities become multiples of 1/255; a path shorter than the precision becomes a dot. Off-points are
+    /// opacities become multiples of 1/255; a path shorter than the precision becomes a dot; a closed path that its pen
+    /// fills becomes an open one that ends where it starts. Off-points are
     /// rounded so that the file also holds the on-points that they imply.
     /// [`Dropped`] counts what is left out. Stages without strokes are left out as well.
     pub fn quantized(&self, precision: u8) -> Quantized {
@@ -147,7 +148,7 @@ impl Written {
             .units(2.0 * f64::from(stroke.radius))
             .max(grid.units_above(MIN_WIDTH));
         Ok(Self {
-            path: WrittenPath::rounded(&stroke.path, &grid),
+            path: WrittenPath::rounded(&stroke.path, &grid).opened_if_filled(width),
             width,
             color: stroke.color.map(quantum),
             opacity: quantum(stroke.opacity),

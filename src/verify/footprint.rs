@@ -73,10 +73,64 @@ fn center_line(stroke: &Stroke) -> Option<Path> {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::HashSet;
+
+    use proptest::prelude::*;
+
     use super::*;
+    use crate::math::Point;
     use crate::scene::{self, PathPoint, Scene, Stage};
+    use crate::sdf::Capsule;
     use crate::svg::{self, WriteOptions};
     use crate::verify::{self, Size};
+
+    /// The farthest that a place of the page within the stroke's discs is from their edge, of places that are not covered.
+    fn deepest_hole(stroke: &Stroke, side: usize) -> f32 {
+        let covered: HashSet<u32> = footprint(stroke, side, side)
+            .iter()
+            .filter(|&(_, level)| level >= 128)
+            .map(|(pixel, _)| pixel)
+            .collect();
+        let line = stroke.path.flattened(0.02);
+        let depth = |pixel: usize| {
+            let p = Point::new((pixel % side) as f32 + 0.5, (pixel / side) as f32 + 0.5);
+            let capsule = |ends: &[Point]| Capsule {
+                a: ends[0],
+                b: ends[1],
+                radius: stroke.radius,
+            };
+            let depths = line.windows(2).map(|ends| capsule(ends).distance(p, 1e-9));
+            depths.fold(f32::MIN, f32::max)
+        };
+        let holes = (0..side * side).filter(|&pixel| !covered.contains(&(pixel as u32)));
+        holes.map(depth).fold(f32::MIN, f32::max)
+    }
+
+    proptest! {
+        #[test]
+        fn no_written_stroke_has_a_hole(
+            points in prop::collection::vec((-1.5..1.5_f32, -1.5..1.5_f32, any::<bool>()), 3..11),
+            [x, y] in [3.0..45.0_f32, 3.0..45.0_f32],
+            radius in 2.0..42.0_f32,
+            is_round in any::<bool>(),
+        ) {
+            // A loop around the page's middle, or any points.
+            let count = points.len() as f32;
+            let points = points.iter().enumerate().map(|(i, &(dx, dy, is_on))| {
+                let (sin, cos) = (i as f32 / count * std::f32::consts::TAU).sin_cos();
+                let [u, v] = if is_round { [cos + 0.2 * dx, sin + 0.2 * dy] } else { [dx, dy] };
+                PathPoint { at: Point::new(60.0 + x * u, 60.0 + y * v), is_on }
+            });
+            let stroke = Stroke {
+                path: scene::Path::new(points.collect(), true).unwrap(),
+                radius,
+                color: [0.0; 3],
+                opacity: 1.0,
+            };
+            let written = Scene::empty(120, 120, None).quantized_stroke(&stroke, 2).unwrap();
+            prop_assert!(deepest_hole(&written, 120) < 1.5, "{written:?}");
+        }
+    }
 
     #[test]
     fn footprints_are_what_resvg_draws_in_white_on_black() {

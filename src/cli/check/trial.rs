@@ -136,7 +136,7 @@ impl<'a> Trial<'a> {
                 y,
             }),
             wall_s: drawn.wall.as_secs_f64(),
-            passed: engines::passes(agreement.psnr_db, shortfall_db),
+            passed: engines::passes(&agreement, shortfall_db),
         });
         self.keep(engine.name, &drawn.image)
     }
