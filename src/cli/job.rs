@@ -218,7 +218,7 @@ impl Job<'_> {
             Stop::Time => "allow more time".into(),
             Stop::Interrupted => "let it end".into(),
             _ if !looks.is_empty() => format!("leave out {}", looks.join(", ")),
-            _ => "strokes are too coarse for it: draw the picture at twice its size".into(),
+            _ => "what is missing is finer than strokes: draw the picture at twice its size, or without its noise".into(),
         }
     }
 

@@ -36,10 +36,15 @@ pub(super) fn strokes(
 }
 
 /// Most strokes of the drawing if the budgets allow `limit`.
-pub(super) fn max_strokes(config: &Config, limit: Option<usize>, base: Option<&Base>) -> usize {
+pub(super) fn max_strokes(
+    config: &Config,
+    limit: Option<usize>,
+    base: Option<&Base>,
+    pixels: usize,
+) -> usize {
     // What a base brings stays, however much that is.
     let brought = base.map_or(0, |base| base.scene.len());
-    let most = config.most_strokes().max(brought);
+    let most = config.most_strokes(pixels).max(brought);
     let most = most.min(MAX_STROKES.saturating_sub(base.map_or(0, Base::elements)));
     limit.map_or(most, |limit| limit.min(most))
 }

@@ -159,6 +159,12 @@ pub const DEFAULT_STROKES: usize = 5000;
 /// Most strokes of a drawing: resvg reads at most a million elements.
 pub const MAX_STROKES: usize = 900_000;
 
+/// Fewest pixels for each stroke, unless a number of strokes is asked for: more strokes draw noise.
+const PIXELS_PER_STROKE: usize = 16;
+
+/// Strokes that any picture may have, however small it is.
+const MIN_STROKES: usize = 100;
+
 /// Beyond this quality, dB, a stroke may cost less than one 8-bit level of one pixel.
 const MAX_QUALITY: f64 = 60.0;
 
@@ -213,12 +219,17 @@ impl Config {
         self.quality.is_none() && !bounded
     }
 
-    /// Most strokes that a drawing may have, whatever its budget.
-    pub(super) fn most_strokes(&self) -> usize {
-        if self.is_open() {
+    /// Most strokes that a drawing of `pixels` pixels may have, whatever its budget.
+    pub(super) fn most_strokes(&self, pixels: usize) -> usize {
+        let most = if self.is_open() {
             DEFAULT_STROKES
         } else {
             MAX_STROKES
+        };
+        // Whoever names a number of strokes shall have it.
+        match self.budget.strokes {
+            Some(_) => most,
+            None => most.min((pixels / PIXELS_PER_STROKE).max(MIN_STROKES)),
         }
     }
 

@@ -34,6 +34,8 @@ pub(super) struct OpenStage {
     pub(super) planned: PlannedStage,
     /// Time from the beginning of the fit to that of the stage.
     pub(super) began: Duration,
+    /// Strokes of the drawing before the stage, and their fidelity at the stage's resolution, dB.
+    pub(super) before: (usize, f64),
     /// How many of its strokes were worth their price; `None` while they are being fitted.
     pub(super) accepted: Option<usize>,
 }
@@ -43,8 +45,15 @@ pub(super) struct OpenStage {
 pub(super) struct Corrections {
     /// Corrections so far.
     pub(super) count: usize,
-    /// Strokes before the last correction, and their fidelity, dB.
+    /// Strokes of the last drawing that was far from that fidelity, and its own, dB.
+    pub(super) approached: Option<(usize, f64)>,
+    /// Strokes of the last file, and its fidelity, dB.
     pub(super) before: Option<(usize, f64)>,
+    /// The most strokes of a file that missed the fidelity, and the fewest of one that reached it.
+    pub(super) missed: usize,
+    pub(super) reached: usize,
+    /// Whether the last strokes that were added brought too little for others to be of use.
+    pub(super) is_hopeless: bool,
     /// Fidelity of the last file, dB.
     pub(super) last_db: f64,
     /// Whether strokes were removed from the last file for bytes.
@@ -63,7 +72,11 @@ impl History {
             stop: Stop::Strokes,
             corrections: Corrections {
                 count: 0,
+                approached: None,
                 before: None,
+                missed: 0,
+                reached: usize::MAX,
+                is_hopeless: false,
                 last_db: 0.0,
                 shortened: false,
                 db_per_doubling,

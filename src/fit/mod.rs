@@ -128,7 +128,10 @@ fn run(session: &mut Session<'_>) -> Result<Outcome> {
         Phase::Grow => grow::next_stage(session)?,
         Phase::Stage(purpose) => grow::stage(session, purpose)?,
         Phase::StagePolish(_) => grow::stage_polish(session)?,
-        Phase::Polish(purpose) => polish::polish(session, purpose)?,
+        Phase::Polish(purpose) => {
+            polish::polish(session, purpose)?;
+            count::approach_fidelity(session)
+        }
         Phase::Settle | Phase::Shorten => settle::settle(session)?,
         Phase::MeetFidelity => count::meet_fidelity(session),
         Phase::MeetBytes => count::meet_bytes(session),

@@ -5,7 +5,7 @@
 //!           ↓
 //!         grow ⇄ stage        add strokes, stage by stage
 //!           ↓
-//!         polish              fit all strokes jointly
+//!         polish ⇄ stage      fit all strokes jointly, and double them while far from the fidelity asked for
 //!           ↓
 //!         settle              fit them to what the file looks like
 //!           ↓
@@ -103,6 +103,7 @@ pub(super) fn next(phase: Phase, outcome: Outcome, config: &Config) -> Phase {
             Purpose::Correct => Phase::Polish(Purpose::Correct),
         },
 
+        (Phase::Polish(_), Seeded(purpose)) => Phase::Stage(purpose),
         (Phase::Polish(_), _) => Phase::Settle,
         (Phase::Settle, _) => Phase::MeetFidelity,
 

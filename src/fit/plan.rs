@@ -74,7 +74,7 @@ impl Plan {
             open: counts.is_none(),
             counts: counts.unwrap_or_default(),
             pixels,
-            most: config.most_strokes(),
+            most: config.most_strokes(pixels),
             recipe,
         }
     }
@@ -102,7 +102,7 @@ impl Plan {
             None if self.open => {
                 let Stages { first, growth, .. } = self.recipe;
                 let count = first as f64 * math::powi(growth, (self.covered + step) as i32);
-                (count as usize).min(self.pixels.min(self.most).saturating_sub(before))
+                (count as usize).min(self.most.saturating_sub(before))
             }
             None => return None,
         };
@@ -179,14 +179,14 @@ mod tests {
     }
 
     #[test]
-    fn open_plans_go_on_to_a_stroke_per_pixel() {
+    fn open_plans_go_on_to_a_stroke_for_sixteen_pixels() {
         let config = Config::default();
         let plan = Plan::new(
             &config,
             &Recipe::of(config.preset),
             None,
             Before::default(),
-            100,
+            3200,
         );
         let mut strokes = 0;
         let mut index = 0;
@@ -194,7 +194,7 @@ mod tests {
             strokes += stage.count;
             index += 1;
         }
-        assert_eq!(strokes, 100);
+        assert_eq!(strokes, 200);
     }
 
     #[test]

@@ -67,11 +67,7 @@ pub(super) fn prune(session: &mut Session<'_>) {
 
 /// What a point has to gain to be added and to stay.
 fn least_gains(session: &mut Session<'_>) -> [f32; 2] {
-    let (now, least) = (
-        session.price_now().of_point(),
-        session.least_price().of_point(),
-    );
-    [0, 1].map(|k| now[k].max(least[k]))
+    session.price_now().of_point()
 }
 
 /// What a stroke is worth that could be spared, where a budget binds. A freed stroke would be used where it is worth

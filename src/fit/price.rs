@@ -1,5 +1,6 @@
 //! The price of a stroke: the squared error that its bytes have to remove.
 
+use super::config::{Config, DEFAULT_QUALITY};
 use crate::math;
 use crate::render::{Params, StrokeRef, Strokes};
 use crate::scene::Stroke;
@@ -24,12 +25,26 @@ impl Price {
     /// At quality `q` each byte has to remove as much squared error as one pixel has at `q` dB: 3·10^(−q/10). Without a
     /// quality strokes are free.
     pub(super) fn new(quality: Option<f64>, file: WriteOptions) -> Self {
-        let wanted_mse = quality.map_or(0.0, |q| math::powf(10.0, -q / 10.0));
+        let wanted_mse = quality.map_or(0.0, mse);
         Self {
             per_byte: 3.0 * wanted_mse as f32,
             wanted_mse,
             errors: None,
             file,
+        }
+    }
+
+    /// The price of what `config` draws of a picture of `pixels` pixels: that of its quality, or of a fidelity, to be met by few
+    /// strokes of not too many points, that is `beyond_db` lower.
+    pub(super) fn of(config: &Config, beyond_db: f64, pixels: usize) -> Self {
+        let wanted_db = config.budget.psnr_db.map(|db| db + beyond_db);
+        match config.quality_for(pixels) {
+            // A large picture has a lower price for each pixel, but people see as well what is wrong with it.
+            Some(quality) => Self {
+                wanted_mse: mse(config.quality.unwrap_or(DEFAULT_QUALITY)),
+                ..Self::new(Some(quality), config.file)
+            },
+            None => Self::new(wanted_db, config.file),
         }
     }
 
@@ -115,6 +130,11 @@ impl Price {
         let points = [[123.46, 78.91], [127.82, 74.57], [134.24, 76.35]];
         bytes(&points).saturating_sub(bytes(&points[..2])).max(1)
     }
+}
+
+/// The mean squared error of a fidelity, dB.
+fn mse(psnr_db: f64) -> f64 {
+    math::powf(10.0, -psnr_db / 10.0)
 }
 
 /// What a squared error counts, of which `wanted` is that at the quality.

@@ -150,8 +150,8 @@ impl<'a> Session<'a> {
             radii,
             target,
             annealing,
-            limit: budget::max_strokes(config, limit, base),
-            price: Price::new(config.quality_for(pixels), config.file),
+            limit: budget::max_strokes(config, limit, base, pixels),
+            price: Price::of(config, recipe.points.beyond_db, pixels),
             writer: Writer::of(config, base),
             drawing,
             history: History::new(records, recipe.correction.db_per_doubling),
@@ -266,13 +266,6 @@ impl<'a> Session<'a> {
             return self.price;
         }
         self.price.at(self.drawing.mse(), self.drawing.pixels())
-    }
-
-    /// The price of points where only a fidelity is asked for, to be met by few strokes of not too many points.
-    pub(super) fn least_price(&self) -> Price {
-        let wanted_db = self.config.budget.psnr_db;
-        let quality = wanted_db.map(|db| db + self.recipe.points.beyond_db);
-        Price::new(quality, self.config.file)
     }
 
     /// About how many bytes the drawing has as a file.
@@ -396,7 +389,7 @@ fn page(
         && config.pens.is_none()
         && !(config.opaque && picture.alpha().is_some());
     let pixels = picture.width() * picture.height();
-    let price = Price::new(config.quality_for(pixels), config.file);
+    let price = Price::of(config, recipe.points.beyond_db, pixels);
     let choose = || shading::choose(picture, &recipe.background.shade, price.per_byte());
     let shade = may_be.then(choose).flatten();
     let background = match shade {

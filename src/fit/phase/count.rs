@@ -3,11 +3,19 @@
 use super::grow;
 use crate::error::Result;
 use crate::fit::budget;
+use crate::fit::history::Corrections;
 use crate::fit::order::{Outcome, Purpose};
 use crate::fit::recipe::Correction;
 use crate::fit::result::Stop;
 use crate::fit::session::Session;
 use crate::math;
+use crate::metrics::psnr_db;
+
+/// What doublings to come may gain, in units of the last one.
+const HOPE: f64 = 1.3;
+
+/// Strokes too few for their gains to tell of those of many.
+const FEW_STROKES: usize = 400;
 
 /// Ends the fit if the base, as it is, already meets a budget. Otherwise the base is the best file until another one is
 /// better.
@@ -28,30 +36,57 @@ pub(in crate::fit) fn try_base(session: &mut Session<'_>) -> Result<Outcome> {
     Ok(Outcome::Met)
 }
 
+/// Doubles the strokes if the polished drawing is so far below the fidelity asked for that its file need not be looked at.
+pub(in crate::fit) fn approach_fidelity(session: &mut Session<'_>) -> Outcome {
+    let Some(wanted_db) = session.config.budget.psnr_db else {
+        return Outcome::Over;
+    };
+    let correction = session.recipe.correction;
+    let now = (session.drawing.len(), psnr_db(session.drawing.mse()));
+    let before = session.history.corrections.approached.replace(now);
+    let missing_db = wanted_db - now.1;
+    let leads_there = before.is_none_or(|before| {
+        let slope = db_per_doubling(before, now);
+        slope >= correction.least_db_per_doubling()
+            && is_within_reach(now.0, missing_db, slope, session.limit)
+    });
+    let is_far = missing_db >= correction.db_per_doubling;
+    if is_far && leads_there && session.cut_by().is_none() {
+        resize(session, 2 * now.0)
+    } else {
+        Outcome::Over
+    }
+}
+
+/// Whether `strokes` strokes, which gain `slope` dB per doubling, gain `missing_db` before there are more than `most`. The next
+/// doublings may gain more than the last one.
+fn is_within_reach(strokes: usize, missing_db: f64, slope: f64, most: usize) -> bool {
+    let doublings = missing_db / (HOPE * slope);
+    strokes < FEW_STROKES || strokes as f64 * math::exp2(doublings) <= most as f64
+}
+
 /// Adds or removes strokes if the last file misses or exceeds the fidelity asked for.
 pub(in crate::fit) fn meet_fidelity(session: &mut Session<'_>) -> Outcome {
     let Some(wanted_db) = session.config.budget.psnr_db else {
         return Outcome::Over;
     };
+    let is_cut = session.cut_by().is_some();
     let correction = session.recipe.correction;
+    let strokes = session.drawing.len();
     let corrections = &mut session.history.corrections;
-    let now = (session.drawing.len(), corrections.last_db);
-    // What new strokes gain on a base depends on that base, so that it is measured.
-    if let Some(before) = corrections.before.filter(|_| session.base.is_some()) {
-        corrections.db_per_doubling = slope(&correction, before, now);
-    }
-    corrections.before = Some(now);
+    corrections.measure(strokes, wanted_db, &correction);
     let missing_db = wanted_db - corrections.last_db;
-    let doublings = missing_db / corrections.db_per_doubling;
     let is_met = (0.0..=correction.excess_db).contains(&-missing_db);
-    // What more strokes would add, bytes have taken away.
+    // What more strokes would add, bytes have taken away; or there may not be as many as it takes.
     let is_full = missing_db > 0.0 && corrections.shortened;
-    let is_last = corrections.count >= correction.count || session.cut_by().is_some();
-    let ends = is_met || is_full || is_last;
-    let outcome = if ends {
-        Outcome::Over
-    } else {
-        resize(session, doublings)
+    let is_last = corrections.count >= correction.count || is_cut;
+    let slope = corrections.db_per_doubling;
+    let is_full = is_full || !is_within_reach(strokes, missing_db, slope, session.limit);
+    let next = corrections.next(strokes, missing_db, &correction);
+    corrections.count += 1;
+    let outcome = match next {
+        Some(next) if !(is_met || is_full || is_last) => resize(session, next),
+        _ => Outcome::Over,
     };
     if outcome == Outcome::Over {
         session.stop_at(wanted_db);
@@ -59,30 +94,52 @@ pub(in crate::fit) fn meet_fidelity(session: &mut Session<'_>) -> Outcome {
     outcome
 }
 
-/// Multiplies the number of strokes by `2^doublings`, within ½ and 2. The outcome is `Over` if none can be added or
-/// removed.
-fn resize(session: &mut Session<'_>, doublings: f64) -> Outcome {
-    let (strokes, most) = (session.drawing.len(), session.limit);
-    let factor = math::exp2(doublings.clamp(-1.0, 1.0));
-    let wanted = ((strokes as f64 * factor) as usize).clamp(1, most);
-    let outcome = if doublings > 0.0 {
-        let added = wanted.max(strokes + 1).min(most).saturating_sub(strokes);
-        if added == 0 {
-            return Outcome::Over;
+/// Adds or removes strokes, so that there are `wanted` of them. The outcome is `Over` if none can be added or removed.
+fn resize(session: &mut Session<'_>, wanted: usize) -> Outcome {
+    let strokes = session.drawing.len();
+    let wanted = wanted.min(session.limit);
+    if wanted > strokes {
+        grow::seed_correction(session, wanted - strokes, wanted);
+        return Outcome::Seeded(Purpose::Correct);
+    }
+    let removed = (strokes - wanted).min(dispensable(session));
+    if removed == 0 {
+        return Outcome::Over;
+    }
+    session.drawing.remove_least(removed);
+    Outcome::Removed
+}
+
+impl Corrections {
+    /// Takes down that the last file has `strokes` strokes, and what these have gained since the file before.
+    fn measure(&mut self, strokes: usize, wanted_db: f64, correction: &Correction) {
+        let now = (strokes, self.last_db);
+        if let Some(before) = self.before.replace(now) {
+            let (missed_db, brought_db) = (wanted_db - before.1, now.1 - before.1);
+            // Fewer strokes than before, or a file that reached the fidelity, leave hope.
+            let helps = missed_db <= 0.0 || brought_db >= correction.least_gain * missed_db;
+            self.is_hopeless = strokes > before.0 && !helps;
+            let usual = correction.db_per_doubling;
+            let measured = db_per_doubling(before, now);
+            self.db_per_doubling = measured.clamp(correction.least_db_per_doubling(), usual);
         }
-        grow::seed_correction(session, added, wanted);
-        Outcome::Seeded(Purpose::Correct)
-    } else {
-        let removed = strokes.saturating_sub(wanted);
-        let removed = removed.min(dispensable(session));
-        if removed == 0 {
-            return Outcome::Over;
+        if self.last_db < wanted_db {
+            self.missed = self.missed.max(strokes);
+        } else {
+            self.reached = self.reached.min(strokes);
         }
-        session.drawing.remove_least(removed);
-        Outcome::Removed
-    };
-    session.history.corrections.count += 1;
-    outcome
+    }
+
+    /// The number of strokes to try after `strokes`, whose file misses `missing_db`: at most twice and at least half as many. `None` if
+    /// the numbers that missed and reached the fidelity are too close together for another.
+    fn next(&self, strokes: usize, missing_db: f64, correction: &Correction) -> Option<usize> {
+        let doublings = (missing_db / self.db_per_doubling).clamp(-1.0, 1.0);
+        let wanted = (strokes as f64 * math::exp2(doublings)).round() as usize;
+        // A file of more strokes may miss what one of fewer reached.
+        let [low, high] = [self.missed + 1, self.reached.saturating_sub(1)];
+        let is_narrow = self.reached as f64 <= self.missed as f64 * (1.0 + correction.precision);
+        (low <= high && !is_narrow && !self.is_hopeless).then(|| wanted.clamp(low, high).max(1))
+    }
 }
 
 /// How many of the strokes of least worth could go before the drawing is clearly below the fidelity asked for.
@@ -103,20 +160,12 @@ fn dispensable(session: &mut Session<'_>) -> usize {
     worth.iter().take_while(is_spared).count()
 }
 
-/// Fidelity gained by doubling the strokes, dB, measured on two drawings with these numbers of strokes and fidelities.
-fn slope(
-    correction: &Correction,
-    (few, few_db): (usize, f64),
-    (many, many_db): (usize, f64),
-) -> f64 {
-    let usual = correction.db_per_doubling;
+/// Fidelity gained by doubling the strokes, dB, measured on two drawings with these numbers of strokes and fidelities; the sign of
+/// an infinity if the numbers are equal.
+fn db_per_doubling((few, few_db): (usize, f64), (many, many_db): (usize, f64)) -> f64 {
     let doublings = math::log2(many.max(1) as f64 / few.max(1) as f64);
     let slope = (many_db - few_db) / doublings;
-    if slope.is_finite() {
-        slope.clamp(usual * correction.least_part, usual)
-    } else {
-        usual
-    }
+    if slope.is_nan() { 0.0 } else { slope }
 }
 
 /// By how many bytes the drawing will exceed the budget when it has settled; 0 if it will not.

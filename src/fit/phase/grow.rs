@@ -9,9 +9,12 @@ use crate::fit::history::OpenStage;
 use crate::fit::order::{Outcome, Purpose};
 use crate::fit::plan::PlannedStage;
 use crate::fit::price::Price;
+use crate::fit::recipe::Stages;
 use crate::fit::result::Stop;
 use crate::fit::search::search;
 use crate::fit::session::Session;
+use crate::math;
+use crate::metrics::psnr_db;
 
 /// Seeds the next stage, unless the plan or a budget has ended.
 pub(in crate::fit) fn next_stage(session: &mut Session<'_>) -> Result<Outcome> {
@@ -38,13 +41,15 @@ pub(in crate::fit) fn next_stage(session: &mut Session<'_>) -> Result<Outcome> {
 /// Why further stages are superfluous, if they are.
 pub(super) fn enough(session: &Session<'_>) -> Option<Stop> {
     let stages = session.recipe.stages;
+    let staged_db = session.history.records.last()?.psnr_db;
+    let strokes = session.drawing.len();
     let pays = session.history.stage.is_none_or(|stage| {
         let least = stages.paying_share * stage.planned.count as f64;
-        stage
-            .accepted
-            .is_none_or(|accepted| accepted as f64 >= least)
+        let is_worth = |accepted: usize| accepted as f64 >= least;
+        let gains =
+            session.config.budget.psnr_db.is_none() || stage.gains(strokes, staged_db, &stages);
+        gains && stage.accepted.is_none_or(is_worth)
     });
-    let staged_db = session.history.records.last()?.psnr_db;
     // A base has been polished before, and gains less from another polish than new stages do.
     let gains = session.config.polish && session.base.is_none();
     let later_db = if gains { stages.polish_gain_db } else { 0.0 };
@@ -55,6 +60,19 @@ pub(super) fn enough(session: &Session<'_>) -> Option<Stop> {
         Some(Stop::Psnr)
     } else {
         None
+    }
+}
+
+impl OpenStage {
+    /// Whether the stage, with which the drawing has `strokes` strokes and `psnr_db`, added enough to its fidelity to be followed by others. Otherwise it takes
+    /// more than strokes of two points.
+    fn gains(&self, strokes: usize, psnr_db: f64, stages: &Stages) -> bool {
+        let (before, before_db) = self.before;
+        if before < stages.first * 4 {
+            return true;
+        }
+        let doublings = math::log2(strokes.max(1) as f64 / before.max(1) as f64);
+        psnr_db - before_db >= stages.least_slope_db * doublings
     }
 }
 
@@ -107,9 +125,11 @@ fn seed(session: &mut Session<'_>, planned: PlannedStage) {
         count,
         scale,
     } = planned;
+    let mut before = (0, 0.0);
     timer.searching(count, || {
         drawing.sharpen(drawing.bounds.drawable(scale));
         drawing.freeze();
+        before = (drawing.len(), psnr_db(drawing.mse()));
         let candidates = search(drawing, count, scale, recipe.probing, config.seed);
         // The best candidate is drawn last, so that none of lesser gain hides it.
         drawing.extend(candidates.iter().rev().map(|c| c.stroke), index);
@@ -117,6 +137,7 @@ fn seed(session: &mut Session<'_>, planned: PlannedStage) {
     session.history.stage = Some(OpenStage {
         planned,
         began,
+        before,
         accepted: None,
     });
 }
@@ -167,10 +188,13 @@ pub(in crate::fit) fn stage_polish(session: &mut Session<'_>) -> Result<Outcome>
         return Ok(Outcome::Over);
     };
     let missing = planned.count - accepted.unwrap_or(planned.count);
-    let iterations = session.recipe.polish.iterations;
+    let polish = session.recipe.polish;
     let limit = session.drawing.len() + missing;
-    polish::run(session, limit, iterations)?;
-    record(session, session.recipe.stages.iterations + iterations);
+    polish::run(session, limit, polish)?;
+    record(
+        session,
+        session.recipe.stages.iterations + polish.iterations,
+    );
     Ok(match accepted {
         Some(0) => Outcome::Rejected,
         _ => Outcome::Over,

@@ -4,17 +4,18 @@ use crate::error::Result;
 use crate::fit::config::Colors;
 use crate::fit::descend::descend;
 use crate::fit::descent::{Course, Joint};
-use crate::fit::order::{Outcome, Purpose};
+use crate::fit::order::Purpose;
 use crate::fit::points;
+use crate::fit::recipe::Polish;
 use crate::fit::session::Session;
 use crate::svg::{Form, Group};
 
 /// Fits all strokes of the drawing jointly.
-pub(in crate::fit) fn polish(session: &mut Session<'_>, purpose: Purpose) -> Result<Outcome> {
+pub(in crate::fit) fn polish(session: &mut Session<'_>, purpose: Purpose) -> Result<()> {
     let is_begun = session.resumed.is_some();
     if !is_begun {
         if session.progress.stopped().is_some() || !session.timer.allows_polish() {
-            return Ok(Outcome::Over);
+            return Ok(());
         }
         session.drawing.thaw();
         session.progress.enter(session.history.records.len());
@@ -24,19 +25,33 @@ pub(in crate::fit) fn polish(session: &mut Session<'_>, purpose: Purpose) -> Res
         Some(_) => session.drawing.len(),
         None => session.limit,
     };
-    let all = session.recipe.polish.iterations;
-    let iterations = match purpose {
-        Purpose::Correct => (all as f64 * session.recipe.correction.polish_share) as usize,
-        Purpose::Trace | Purpose::Plan | Purpose::TopUp => all,
-    };
-    run(session, limit, iterations)?;
-    Ok(Outcome::Over)
+    let correction = session.recipe.correction;
+    let mut polish = of_density(session);
+    if purpose == Purpose::Correct {
+        // What is far from the fidelity asked for is polished again, with more strokes.
+        let share = match session.history.corrections.before {
+            Some(_) => correction.polish_share,
+            None => correction.approach_share,
+        };
+        polish.iterations = (polish.iterations as f64 * share) as usize;
+    }
+    run(session, limit, polish)
+}
+
+/// The polish for as many points as the drawing has, where a fidelity is asked for: it is known only now.
+fn of_density(session: &Session<'_>) -> Polish {
+    let recipe = session.recipe;
+    if session.config.budget.psnr_db.is_none() {
+        return recipe.polish;
+    }
+    let density = session.drawing.pixels() as f32 / session.drawing.free().points().max(1) as f32;
+    recipe.for_density(density.min(recipe.polish.sparse)).polish
 }
 
 /// Fits the free strokes jointly, and may add strokes until the drawing has `limit`.
-pub(super) fn run(session: &mut Session<'_>, limit: usize, iterations: usize) -> Result<()> {
+pub(super) fn run(session: &mut Session<'_>, limit: usize, polish: Polish) -> Result<()> {
     session.progress.polish();
-    let polish = session.recipe.polish;
+    let iterations = polish.iterations;
     let course = Course {
         iterations,
         before: 0,

@@ -9,6 +9,7 @@ use crate::fit::points::written_points;
 use crate::fit::result::Stop;
 use crate::fit::session::Session;
 use crate::fit::surface::Surface;
+use crate::metrics::psnr_db;
 use crate::render::{Canvas, Strokes};
 use crate::scene::Stroke;
 use crate::trace::{Traced, trace};
@@ -43,6 +44,7 @@ pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> 
     session.progress.enter(index);
     session.drawing.sharpen(0.0);
     session.drawing.freeze();
+    let before = (session.drawing.len(), psnr_db(session.drawing.mse()));
     session.drawing.extend_by(&strokes, index);
     session.drawing.counters.traced_until = index + 1;
     session.history.stage = Some(OpenStage {
@@ -52,6 +54,7 @@ pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> 
             scale: SCALE,
         },
         began,
+        before,
         accepted: None,
     });
     Ok(Outcome::Seeded(Purpose::Trace))

@@ -122,7 +122,8 @@ const BALANCED: Recipe = Recipe {
         },
         softest: 4.0,
         paying_share: 0.3,
-        polish_gain_db: 2.0,
+        polish_gain_db: 12.0,
+        least_slope_db: 1.3,
         min_scale: 2.5,
     },
     edge: EdgeShape {
@@ -263,6 +264,9 @@ const BALANCED: Recipe = Recipe {
         db_per_doubling: 2.8,
         least_part: 0.125,
         excess_db: 0.1,
+        precision: 0.1,
+        least_gain: 0.2,
+        approach_share: 0.2,
         polish_share: 0.4,
     },
     background: BackgroundChoice {
