@@ -11,6 +11,11 @@ use crate::metrics::psnr_db;
 use crate::scene::{Path, Stroke};
 use crate::svg;
 
+/// Bytes of a file without layers.
+const FILE_BYTES: usize = 200;
+/// Bytes of a layer without strokes.
+pub(super) const LAYER_BYTES: usize = 170;
+
 /// An estimate of how many strokes the budgets allow, those of `base` included; `None` if they set no limit.
 pub(super) fn strokes(
     config: &Config,
@@ -18,7 +23,7 @@ pub(super) fn strokes(
     base: Option<&Base>,
     target: &Image,
 ) -> Option<usize> {
-    let kept = base.map_or(0, Base::bytes);
+    let kept = base.map_or(FILE_BYTES + LAYER_BYTES, Base::bytes);
     let share = if config.allows_points() {
         recipe.points.capsules
     } else {

@@ -3,6 +3,7 @@
 //! An iteration is one step of the optimiser ([`Descent::step`]). A joint course also switches to full resolution and
 //! relocates strokes between its steps. After every iteration the observer is called, and the state can be kept.
 
+use super::budget;
 use super::descent::{Aim, Descent, Joint};
 use super::points;
 use super::relocation;
@@ -42,6 +43,14 @@ pub(super) fn descend(
     Ok(())
 }
 
+/// The most strokes that the drawing may have for its bytes.
+fn affordable(session: &Session<'_>) -> usize {
+    points::bytes_left(session).map_or(usize::MAX, |left| {
+        let bytes = budget::typical_bytes(session.config, &session.target) as f32;
+        session.drawing.len() + (left.max(0.0) / bytes) as usize
+    })
+}
+
 /// What a joint course does between its steps: it switches to full resolution after its coarse share, and at intervals it
 /// changes the points of strokes and relocates strokes.
 fn rearrange(session: &mut Session<'_>, descent: &mut Descent, step: usize, done: f32) {
@@ -58,12 +67,13 @@ fn rearrange(session: &mut Session<'_>, descent: &mut Descent, step: usize, done
     }
     let changes_points = session.recipe.points.lasts(done) && session.config.allows_points();
     if changes_points {
-        let sources = points::rearrange(session);
+        let sources = points::rearrange(session, done);
         descent.follow(&sources, &session.drawing, &session.recipe);
     }
     // Relocation comes last, because it fills the places that joined strokes have left.
     let wanted = relocation::wanted(session);
     if session.timer.affordable(wanted) == wanted {
+        let limit = limit.min(affordable(session));
         let sources = relocation::relocate(session, limit, std::convert::identity);
         descent.follow(&sources, &session.drawing, &session.recipe);
     }

@@ -250,6 +250,21 @@ impl Drawing {
         stages.map(<[usize]>::len).collect()
     }
 
+    /// Joins the topmost `count` stages with the one below them.
+    pub(super) fn join_stages(&mut self, count: usize) {
+        let mut stages: Vec<usize> = self.stage_of.clone();
+        stages.dedup();
+        let first = stages
+            .len()
+            .checked_sub(count + 1)
+            .and_then(|k| stages.get(k));
+        if let Some(&first) = first {
+            self.stage_of
+                .iter_mut()
+                .for_each(|stage| *stage = first.min(*stage));
+        }
+    }
+
     /// How many of the free strokes, from the bottom, are in stages that were traced.
     pub(super) fn traced(&self) -> usize {
         let free = self.stage_of.get(self.frozen.len()..).unwrap_or_default();

@@ -60,6 +60,10 @@ pub(super) struct Corrections {
     pub(super) shortened: bool,
     /// Fidelity gained by doubling the strokes, dB.
     pub(super) db_per_doubling: f64,
+    /// Bytes of the drawing once strokes share widths and colours, in units of those before.
+    pub(super) restricted: f32,
+    /// Whether bytes that were left have been used.
+    pub(super) refilled: bool,
 }
 
 impl History {
@@ -80,6 +84,8 @@ impl History {
                 last_db: 0.0,
                 shortened: false,
                 db_per_doubling,
+                restricted: 1.0,
+                refilled: false,
             },
             stacking_db: None,
             best: None,

@@ -12,6 +12,7 @@
 //!         fidelity ─→ stage ─→ polish ─→ settle ─→ fidelity     until the file is as faithful as asked for
 //!           ↓
 //!         bytes ─→ shorten ─→ bytes                             until it is as short as asked for
+//!         bytes ─→ polish ─→ settle                             once, if bytes are left
 //! ```
 
 use serde::{Deserialize, Serialize};
@@ -72,6 +73,8 @@ pub(super) enum Outcome {
     Removed,
     /// None of the strokes of a stage was worth its price.
     Rejected,
+    /// The file may have more bytes.
+    Short,
 }
 
 /// Whether all strokes are polished once no more are planned. Each layer of a progressive drawing has been already.
@@ -81,7 +84,7 @@ fn polishes_all(config: &Config) -> bool {
 
 /// The phase that follows `phase`, given its outcome.
 pub(super) fn next(phase: Phase, outcome: Outcome, config: &Config) -> Phase {
-    use Outcome::{Met, Rejected, Removed, Seeded};
+    use Outcome::{Met, Rejected, Removed, Seeded, Short};
     match (phase, outcome) {
         (Phase::Base, Met) => Phase::Done,
         (Phase::Base, _) => Phase::Trace,
@@ -112,6 +115,7 @@ pub(super) fn next(phase: Phase, outcome: Outcome, config: &Config) -> Phase {
         (Phase::MeetFidelity, _) => Phase::MeetBytes,
 
         (Phase::MeetBytes, Removed) => Phase::Shorten,
+        (Phase::MeetBytes, Short) => Phase::Polish(Purpose::Correct),
         (Phase::Shorten, _) => Phase::MeetBytes,
         (Phase::MeetBytes | Phase::Done, _) => Phase::Done,
     }

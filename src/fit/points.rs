@@ -8,6 +8,7 @@
 
 mod edits;
 mod joins;
+mod shed;
 mod terrain;
 
 use rayon::prelude::*;
@@ -18,6 +19,7 @@ use super::recipe::Points;
 use super::session::Session;
 use crate::render::{StrokeRef, Strokes, Survey};
 use edits::Edit;
+pub(super) use shed::shed;
 use terrain::Terrain;
 
 /// Most points that a stroke loses at the end of the polish.
@@ -26,10 +28,16 @@ const PRUNINGS: usize = 30;
 /// Least segments of a line or a curve in a survey.
 const LEAST: usize = 4;
 
-/// Changes the points of the free strokes where that pays. Returns the former index of each number of the free strokes,
+/// Changes the points of the free strokes where that pays, when a share `done` of the polish is over. Returns the former index of each number of the free strokes,
 /// `None` for a new one.
-pub(super) fn rearrange(session: &mut Session<'_>) -> Vec<Option<usize>> {
-    let spare = spare(session);
+pub(super) fn rearrange(session: &mut Session<'_>, done: f32) -> Vec<Option<usize>> {
+    let excess = excess(session);
+    if excess > 0 {
+        return shed(session, excess);
+    }
+    // Bytes that are left late in the polish are for points: no stroke will come for them.
+    let has_strokes = session.config.budget.bytes.is_some() && done >= session.recipe.points.alone;
+    let spare = if has_strokes { 0.0 } else { spare(session) };
     let joined = joins::join(session, spare);
     let edited = edit(session, spare);
     match joined {
@@ -104,14 +112,29 @@ fn edit(session: &mut Session<'_>, spare: f32) -> Vec<Option<usize>> {
     drawing.edit(&chosen)
 }
 
+/// The bytes that are left for more points and strokes, less than 0 if there are too many of these; `None` without a budget of bytes.
+pub(super) fn bytes_left(session: &Session<'_>) -> Option<f32> {
+    let most = session.config.budget.bytes? as f32 * session.recipe.points.filled;
+    let layers = session.layers_to_join() * budget::LAYER_BYTES;
+    let bytes = session
+        .writer
+        .bytes(&session.drawing)
+        .saturating_sub(layers) as f32;
+    Some(most - bytes * session.history.corrections.restricted)
+}
+
+/// By how many bytes the drawing exceeds its budget.
+fn excess(session: &Session<'_>) -> usize {
+    bytes_left(session).map_or(0, |left| (-left).max(0.0) as usize)
+}
+
 /// How many more points the drawing may have.
 fn room(session: &Session<'_>) -> usize {
     let (config, strokes) = (session.config, session.drawing.free());
     let pixels = session.target.width() * session.target.height();
     let most = budget::points(config, &session.recipe.points, strokes.len(), pixels);
     let by_strokes = most.map_or(usize::MAX, |most| most.saturating_sub(strokes.points()));
-    let by_bytes = config.budget.bytes.map_or(usize::MAX, |bytes| {
-        let left = bytes as f32 * session.recipe.points.filled - session.bytes() as f32;
+    let by_bytes = bytes_left(session).map_or(usize::MAX, |left| {
         (left.max(0.0) / session.price.point_bytes() as f32) as usize
     });
     by_strokes.min(by_bytes)

@@ -270,6 +270,8 @@ pub struct Points {
     pub capsules: f32,
     /// Share of a budget of bytes that is filled with points before the file is written.
     pub filled: f32,
+    /// Share of the polish after which bytes that are left are for points alone.
+    pub alone: f32,
     /// Farthest that a new corner moves from its line at once, in units of the line's length.
     pub reach: f32,
     /// Lines and curves shorter than this, px, get no point.
@@ -449,6 +451,8 @@ pub struct Correction {
     pub precision: f64,
     /// Least share of the missing fidelity that more strokes have to bring, or none of them will bring the rest.
     pub least_gain: f64,
+    /// A file that uses less than this share of its bytes gets more points.
+    pub filled: f64,
     /// Iterations of polish as long as the drawing is far from the fidelity, in units of those of the first polish.
     pub approach_share: f64,
     /// Iterations of polish after a correction, in units of those of the first polish.

@@ -268,12 +268,24 @@ impl<'a> Session<'a> {
         self.price.at(self.drawing.mse(), self.drawing.pixels())
     }
 
-    /// About how many bytes the drawing has as a file.
-    pub(super) fn bytes(&self) -> usize {
-        let strokes = self.drawing.free().iter();
-        let strokes: usize = strokes.map(|stroke| self.price.bytes_of(stroke)).sum();
-        let layers = self.history.records.len();
-        self.base.map_or(FILE_BYTES, Base::bytes) + LAYER_BYTES * layers + strokes
+    /// How many layers of the drawing are joined with the one below because they would take much of a budget of bytes.
+    pub(super) fn layers_to_join(&self) -> usize {
+        let Some(most) = self
+            .config
+            .budget
+            .bytes
+            .filter(|_| !self.config.progressive)
+        else {
+            return 0;
+        };
+        let kept = Before::of(self.base).layers.max(1);
+        let more = self.drawing.stage_sizes().len().saturating_sub(kept);
+        let bytes = (more * budget::LAYER_BYTES) as f64;
+        if bytes > LAYERS_SHARE * most as f64 {
+            more
+        } else {
+            0
+        }
     }
 
     /// Makes `file`, rendered from the current drawing, the best file so far.
@@ -369,10 +381,8 @@ impl<'a> Session<'a> {
     }
 }
 
-/// Bytes of a file without layers.
-const FILE_BYTES: usize = 240;
-/// Bytes of a layer without strokes.
-const LAYER_BYTES: usize = 170;
+/// Most of a budget of bytes, as a share, that is for layers.
+const LAYERS_SHARE: f64 = 0.03;
 
 /// The background and the shade of a new drawing. A shade, with `auto`, replaces the background. It has any colours and
 /// opacities, so that a drawing of few colours or of given pens has none, and neither has one of opaque strokes that is

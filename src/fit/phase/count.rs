@@ -5,6 +5,7 @@ use crate::error::Result;
 use crate::fit::budget;
 use crate::fit::history::Corrections;
 use crate::fit::order::{Outcome, Purpose};
+use crate::fit::points;
 use crate::fit::recipe::Correction;
 use crate::fit::result::Stop;
 use crate::fit::session::Session;
@@ -177,35 +178,33 @@ pub(in crate::fit) fn excess(session: &Session<'_>) -> usize {
     (bytes as usize).saturating_sub(most)
 }
 
-/// Removes the strokes that are worth least for their bytes, until `excess` bytes are gone or all strokes are.
+/// Takes away `excess` bytes of points and strokes, or all strokes.
 pub(in crate::fit) fn shorten(session: &mut Session<'_>, excess: usize) {
-    let worth = session.drawing.judge().worth;
-    let strokes = session.drawing.free().iter();
-    let bytes: Vec<usize> = strokes.map(|s| session.price.bytes_of(s)).collect();
-    let per_byte = |i: usize| worth[i] / bytes[i] as f32;
-    let mut order: Vec<usize> = (0..worth.len()).collect();
-    order.sort_by(|&i, &j| per_byte(i).total_cmp(&per_byte(j)).then(i.cmp(&j)));
-    let mut keep = vec![true; worth.len()];
-    let mut gone = 0;
-    for i in order {
-        if gone >= excess {
-            break;
-        }
-        gone += bytes[i];
-        keep[i] = false;
-    }
-    session.drawing.retain_free(&keep);
+    points::shed(session, excess);
     session.history.stop = Stop::Bytes;
     session.history.corrections.shortened = true;
 }
 
-/// Removes strokes if the best file has more bytes than allowed.
+/// Takes away points and strokes if the best file has more bytes than allowed. If it has clearly fewer, because strokes came to share
+/// widths and colours, more points are to be added.
 pub(in crate::fit) fn meet_bytes(session: &mut Session<'_>) -> Outcome {
+    let Some(most) = session.config.budget.bytes else {
+        return Outcome::Over;
+    };
     let bytes = session.best.as_ref().map_or(0, |best| best.bytes);
-    let most = session.config.budget.bytes.unwrap_or(usize::MAX);
-    if bytes <= most || session.drawing.len() == 0 {
+    if session.drawing.len() == 0 || session.cut_by().is_some() {
         return Outcome::Over;
     }
-    shorten(session, bytes - most);
-    Outcome::Removed
+    if bytes > most {
+        shorten(session, bytes - most);
+        return Outcome::Removed;
+    }
+    let corrections = &mut session.history.corrections;
+    let is_filled = bytes as f64 >= session.recipe.correction.filled * most as f64;
+    let is_last = std::mem::replace(&mut corrections.refilled, true);
+    let may_polish = session.config.polish && session.config.allows_points();
+    if is_filled || is_last || !may_polish || session.config.budget.psnr_db.is_some() {
+        return Outcome::Over;
+    }
+    Outcome::Short
 }

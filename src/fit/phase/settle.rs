@@ -78,10 +78,16 @@ fn restrict(session: &mut Session<'_>) -> Result<Restricted> {
 /// Makes strokes share widths and colours, of as many strokes as the budget of bytes allows then.
 fn share_within_bytes(session: &mut Session<'_>) -> Ties {
     session.history.corrections.shortened = false;
+    session.drawing.join_stages(session.layers_to_join());
+    let before = session.writer.bytes(&session.drawing).max(1);
     loop {
         let unshared = session.drawing.memento();
         let ties = sharing::run(session);
         let excess = count::excess(session);
+        if !session.history.corrections.shortened {
+            let bytes = session.writer.bytes(&session.drawing);
+            session.history.corrections.restricted = bytes as f32 / before as f32;
+        }
         if excess == 0 || session.drawing.free().is_empty() {
             return ties;
         }

@@ -1,0 +1,103 @@
+//! Shedding: the points and strokes that are worth least for their bytes go, until a drawing is short enough.
+
+use rayon::prelude::*;
+
+use super::LEAST;
+use super::edits::{self, Edit};
+use super::terrain::Terrain;
+use crate::fit::session::Session;
+
+/// One in this many offers is taken at a time.
+const AT_A_TIME: usize = 4;
+
+/// What a stroke can spare, and what that is worth.
+struct Offer {
+    stroke: usize,
+    /// A point that goes; `None` if it is the whole stroke.
+    edit: Option<Edit>,
+    bytes: usize,
+    loss_per_byte: f32,
+}
+
+/// Takes away about `excess` bytes of free strokes and of their points, or all of them. Returns the former index of each number of the
+/// free strokes.
+pub(in crate::fit) fn shed(session: &mut Session<'_>, excess: usize) -> Vec<Option<usize>> {
+    let mut sources: Vec<Option<usize>> = (0..session.drawing.free().numbers().len())
+        .map(Some)
+        .collect();
+    let mut left = excess;
+    while left > 0 && !session.drawing.free().is_empty() {
+        let mut offers = offers(session);
+        // A stroke loses a point at a time, so that each loss is that of the stroke as it is; and what the next round offers may be
+        // cheaper than the dearest offers of this one.
+        offers.truncate(offers.len().div_ceil(AT_A_TIME));
+        let is_wanted = |offer: &Offer| {
+            let before = left;
+            left = left.saturating_sub(offer.bytes);
+            before > 0
+        };
+        let taken = offers.into_iter().take_while(is_wanted).collect();
+        let kept = take(session, taken);
+        sources = kept.into_iter().map(|from| sources[from?]).collect();
+    }
+    sources
+}
+
+/// The best offer of each free stroke, the cheapest first.
+fn offers(session: &mut Session<'_>) -> Vec<Offer> {
+    let price = session.price;
+    let point_bytes = price.point_bytes();
+    let drawing = &mut session.drawing;
+    let survey = drawing.survey(LEAST);
+    let worth = drawing.judge().worth;
+    let strokes = drawing.free();
+    let offer = |i: usize| {
+        let stroke = strokes.get(i);
+        let bytes = price.bytes_of(stroke).max(1);
+        let whole = Offer {
+            stroke: i,
+            edit: None,
+            bytes,
+            loss_per_byte: worth[i].max(0.0) / bytes as f32,
+        };
+        let edit = stroke
+            .is_finite()
+            .then(|| edits::best_loss(&Terrain::new(&survey, stroke, i)))
+            .flatten();
+        let part = edit.map(|edit| Offer {
+            stroke: i,
+            bytes: point_bytes,
+            loss_per_byte: -edit.gain / point_bytes as f32,
+            edit: Some(edit),
+        });
+        match part {
+            Some(part) if part.loss_per_byte < whole.loss_per_byte => part,
+            _ => whole,
+        }
+    };
+    let mut offers: Vec<Offer> = (0..strokes.len()).into_par_iter().map(offer).collect();
+    let order = |a: &Offer, b: &Offer| {
+        let by_loss = a.loss_per_byte.total_cmp(&b.loss_per_byte);
+        by_loss.then(a.stroke.cmp(&b.stroke))
+    };
+    offers.sort_by(order);
+    offers
+}
+
+/// Applies the offers. Returns the former index of each number of the free strokes.
+fn take(session: &mut Session<'_>, offers: Vec<Offer>) -> Vec<Option<usize>> {
+    let drawing = &mut session.drawing;
+    let count = drawing.free().len();
+    let mut edits: Vec<Option<Edit>> = (0..count).map(|_| None).collect();
+    let mut keep = vec![true; count];
+    for offer in offers {
+        keep[offer.stroke] = offer.edit.is_some();
+        edits[offer.stroke] = offer.edit;
+    }
+    let edited = drawing.edit(&edits);
+    let strokes = drawing.free();
+    let stay = (0..count).filter(|&i| keep[i]).map(|i| strokes.range(i));
+    let sources = stay.flat_map(|range| edited[range].to_vec()).collect();
+    drawing.retain_free(&keep);
+    sources
+}
