@@ -1,6 +1,9 @@
 //! The end of a fit: its result, from the best file.
 
+use super::budget;
+use super::config::Budget;
 use super::drawing::Drawing;
+use super::file::RenderedFile;
 use super::result::{Fit, StageRecord};
 use super::session::Session;
 use super::surface;
@@ -9,15 +12,37 @@ use crate::image::Image;
 use crate::metrics::psnr_db;
 use crate::scene::{Dropped, Quantized, Scene, Stage};
 
-/// The result of the fit: the best file or, if no file was looked at, the drawing as it is.
-pub(super) fn finish(mut session: Session<'_>) -> Result<Fit> {
-    let rounded = match session.best.take() {
-        Some(best) => best.rounded,
+/// A finished drawing, and its file if that was looked at.
+pub(super) struct Drawn {
+    pub(super) fit: Fit,
+    budget: Budget,
+    file: Option<RenderedFile>,
+}
+
+impl Drawn {
+    /// The other one if it serves the budget better.
+    pub(super) fn or_better(self, other: Option<Self>) -> Self {
+        let is_better = |other: &Self| {
+            let files = other.file.as_ref().zip(self.file.as_ref());
+            files.is_some_and(|(new, old)| budget::is_better(&self.budget, new, old))
+        };
+        other.filter(is_better).unwrap_or(self)
+    }
+}
+
+/// The result of the fit: the best file or, if no file was looked at and none is to be `compared`, the drawing as it is.
+pub(super) fn finish(mut session: Session<'_>, compared: bool) -> Result<Drawn> {
+    let file = match session.best.take() {
+        None if compared => Some(session.writer.render(&session.drawing)?),
+        best => best,
+    };
+    let rounded = match &file {
+        Some(file) => file.rounded.clone(),
         None => session.writer.round(&session.drawing),
     };
     let stages = records(&mut session, &rounded);
     let soft = soft(&mut session.drawing, &rounded.scene)?;
-    Ok(Fit {
+    let fit = Fit {
         soft,
         scene: rounded.scene,
         base: session.base.cloned(),
@@ -32,6 +57,11 @@ pub(super) fn finish(mut session: Session<'_>) -> Result<Fit> {
             invisible: rounded.dropped.invisible + session.drawing.counters.hidden,
             ..rounded.dropped
         },
+    };
+    Ok(Drawn {
+        fit,
+        budget: session.config.budget,
+        file,
     })
 }
 

@@ -43,6 +43,7 @@ mod recipe;
 mod relocation;
 mod renderers;
 mod result;
+mod rivals;
 mod search;
 mod session;
 mod shading;
@@ -76,6 +77,7 @@ pub use widths::Widths;
 use crate::clock::Instant;
 use crate::error::Result;
 use crate::image::Image;
+use finish::Drawn;
 use order::{Outcome, Phase};
 use phase::{count, grow, polish, settle, trace};
 use session::{Session, Watch};
@@ -94,6 +96,33 @@ impl Fitter<'_> {
     pub fn fit(mut self, picture: &Image) -> Result<Fit> {
         let since = self.since.unwrap_or_else(Instant::now);
         self.prepare(picture)?;
+        let rivals = self.rivals(picture);
+        let competes = !rivals.is_empty();
+        let mut best: Option<Drawn> = None;
+        for rival in rivals {
+            best = Some(rival.draw(picture, since, competes)?.or_better(best));
+        }
+        Ok(self.draw(picture, since, competes)?.or_better(best).fit)
+    }
+
+    /// The fits of the drawings that this one competes with.
+    fn rivals(&self, picture: &Image) -> Vec<Fitter<'static>> {
+        let configs = match self.base {
+            Some(_) => Vec::new(),
+            None => rivals::of(&self.config, picture),
+        };
+        let fitter = |config| Fitter {
+            execution: self.execution,
+            focus: self.focus.clone(),
+            token: self.token.clone(),
+            ..Fitter::new(config)
+        };
+        configs.into_iter().map(fitter).collect()
+    }
+
+    /// Draws `picture` once, by a configuration that was checked. A drawing that `competes` with others has a file to be
+    /// compared by.
+    fn draw(self, picture: &Image, since: Instant, competes: bool) -> Result<Drawn> {
         let (config, base, focus) = (&self.config, self.base.as_ref(), self.focus);
         let level = self.execution.simd.require()?;
         let mut nobody = ();
@@ -115,7 +144,7 @@ impl Fitter<'_> {
                 session.phase = order::next(session.phase, outcome, config);
                 session.keep(None);
             }
-            finish::finish(session)
+            finish::finish(session, competes)
         })
     }
 }
