@@ -25,6 +25,7 @@ mod light;
 mod png;
 #[cfg(feature = "formats")]
 mod profile;
+mod reduce;
 mod remark;
 mod rows;
 #[cfg(feature = "formats")]

@@ -64,6 +64,8 @@ pub struct Scene {
     pub width: u32,
     /// Height in px, at least 1.
     pub height: u32,
+    /// Width and height at which the drawing is shown, px, if it is of a reduced picture.
+    pub page: Option<[u32; 2]>,
     /// The colour behind all strokes; `None` if the drawing is transparent.
     pub background: Option<Rgb>,
     /// A gradient on the background, behind all strokes, if there is one.
@@ -78,6 +80,7 @@ impl Scene {
         Self {
             width,
             height,
+            page: None,
             background,
             shade: None,
             stages: Vec::new(),

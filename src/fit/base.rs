@@ -28,7 +28,8 @@ impl Base {
     /// picture, or when it would change the strokes on top of it.
     pub fn read(text: String, picture: &Image, kept: bool) -> Result<Self> {
         let of_its_size = |scene: &Scene| {
-            (scene.width as usize, scene.height as usize) == (picture.width(), picture.height())
+            let [width, height] = scene.page.unwrap_or([scene.width, scene.height]);
+            (width as usize, height as usize) == (picture.width(), picture.height())
         };
         let own = svg::read(&text).ok().filter(of_its_size);
         if let Some(scene) = own.filter(|_| !kept) {

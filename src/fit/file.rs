@@ -19,6 +19,8 @@ pub(super) struct Writer<'a> {
     /// Whether the file has a rectangle of the background's colour.
     pub(super) has_background: bool,
     options: WriteOptions,
+    /// Size of the picture, px, if the drawing is of a reduced one.
+    page: Option<[u32; 2]>,
 }
 
 /// A drawing as it is written to a file, and resvg's render of that.
@@ -34,7 +36,7 @@ pub(super) struct RenderedFile {
 }
 
 impl<'a> Writer<'a> {
-    pub(super) fn of(config: &Config, base: Option<&'a Base>) -> Self {
+    pub(super) fn of(config: &Config, base: Option<&'a Base>, page: Option<[u32; 2]>) -> Self {
         let has_background = match base {
             Some(base) => base.document.is_none() && base.scene.background.is_some(),
             None => config.background != Background::None,
@@ -43,12 +45,16 @@ impl<'a> Writer<'a> {
             base,
             has_background,
             options: config.file,
+            page: base.map_or(page, |base| base.scene.page),
         }
     }
 
     /// Rounds `drawing` to the numbers that its file holds.
     pub(super) fn round(&self, drawing: &Drawing) -> Quantized {
-        let scene = drawing.scene(self.has_background);
+        let scene = Scene {
+            page: self.page,
+            ..drawing.scene(self.has_background)
+        };
         scene.quantized(self.options.precision)
     }
 

@@ -40,6 +40,8 @@ pub struct Fitter<'a> {
     pub(super) checkpoint: Option<&'a mut Checkpoint>,
     pub(super) since: Option<Instant>,
     pub(super) grace: Duration,
+    /// Size of the picture, px, if a reduced one is drawn.
+    pub(super) page: Option<[u32; 2]>,
 }
 
 impl<'a> Fitter<'a> {
@@ -55,6 +57,7 @@ impl<'a> Fitter<'a> {
             checkpoint: None,
             since: None,
             grace: Duration::ZERO,
+            page: None,
         }
     }
 
@@ -150,7 +153,8 @@ impl<'a> Fitter<'a> {
 
 fn check_size(scene: &Scene, picture: &Image) -> Result<()> {
     let (width, height) = (picture.width(), picture.height());
-    if (scene.width as usize, scene.height as usize) == (width, height) {
+    let is_of_size = |[w, h]: [u32; 2]| (w as usize, h as usize) == (width, height);
+    if is_of_size([scene.width, scene.height]) || scene.page.is_some_and(is_of_size) {
         return Ok(());
     }
     let message = format!(

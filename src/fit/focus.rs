@@ -73,6 +73,13 @@ impl Focus {
         Err(Error::new(ErrorKind::Picture, message))
     }
 
+    /// The mask reduced like a picture.
+    pub(super) fn reduced(&self, width: usize, height: usize) -> Self {
+        Self {
+            weights: Arc::new(Pyramid::new(self.weights.level(0).reduced(width, height))),
+        }
+    }
+
     /// The weights and their reductions.
     pub(super) fn weights(&self) -> &Pyramid {
         &self.weights

@@ -40,6 +40,7 @@ mod points;
 mod price;
 mod progress;
 mod recipe;
+mod reduction;
 mod relocation;
 mod renderers;
 mod result;
@@ -96,6 +97,8 @@ impl Fitter<'_> {
     pub fn fit(mut self, picture: &Image) -> Result<Fit> {
         let since = self.since.unwrap_or_else(Instant::now);
         self.prepare(picture)?;
+        let reduced = self.reduce(picture);
+        let picture = reduced.as_ref().unwrap_or(picture);
         let rivals = self.rivals(picture);
         let competes = !rivals.is_empty();
         let mut best: Option<Drawn> = None;
@@ -103,6 +106,21 @@ impl Fitter<'_> {
             best = Some(rival.draw(picture, since, competes)?.or_better(best));
         }
         Ok(self.draw(picture, since, competes)?.or_better(best).fit)
+    }
+
+    /// The picture reduced to the pixels that its drawing needs, if these are fewer, or to those that its base was drawn of.
+    fn reduce(&mut self, picture: &Image) -> Option<Image> {
+        let side = |px: usize| u32::try_from(px).unwrap_or(u32::MAX);
+        let page = [side(picture.width()), side(picture.height())];
+        let [width, height] = match &self.base {
+            Some(base) if base.document.is_some() || base.scene.page != Some(page) => return None,
+            Some(base) => [base.scene.width, base.scene.height].map(|px| px as usize),
+            None => reduction::size(picture, &self.config)?,
+        };
+        // A page of a given width has the proportions of the drawing.
+        self.page = Some(page).filter(|_| self.config.file.width.is_none());
+        self.focus = self.focus.take().map(|focus| focus.reduced(width, height));
+        Some(picture.reduced(width, height))
     }
 
     /// The fits of the drawings that this one competes with.
@@ -114,6 +132,7 @@ impl Fitter<'_> {
         let fitter = |config| Fitter {
             execution: self.execution,
             focus: self.focus.clone(),
+            page: self.page,
             token: self.token.clone(),
             ..Fitter::new(config)
         };
@@ -123,7 +142,7 @@ impl Fitter<'_> {
     /// Draws `picture` once, by a configuration that was checked. A drawing that `competes` with others has a file to be
     /// compared by.
     fn draw(self, picture: &Image, since: Instant, competes: bool) -> Result<Drawn> {
-        let (config, base, focus) = (&self.config, self.base.as_ref(), self.focus);
+        let (config, base, focus, page) = (&self.config, self.base.as_ref(), self.focus, self.page);
         let level = self.execution.simd.require()?;
         let mut nobody = ();
         let observer = self.observer.unwrap_or(&mut nobody);
@@ -134,7 +153,7 @@ impl Fitter<'_> {
                 token,
                 grace,
             };
-            let wishes = (config, base, focus);
+            let wishes = (config, base, focus, page);
             let mut session = Session::new(picture, wishes, level, watch, since)?;
             if let Some(checkpoint) = checkpoint {
                 session.resume(checkpoint)?;

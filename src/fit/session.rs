@@ -68,6 +68,14 @@ pub(super) struct Session<'a> {
     keeper: Option<Keeper<'a>>,
 }
 
+/// What to draw: the configuration, the base, where errors count, and the size of the picture, px, if a reduced one is drawn.
+pub(super) type Wishes<'a> = (
+    &'a Config,
+    Option<&'a Base>,
+    Option<Focus>,
+    Option<[u32; 2]>,
+);
+
 /// Who is told of a fit and may stop it, and how long the fit may then go on.
 pub(super) struct Watch<'a> {
     pub(super) observer: &'a mut (dyn Observer + Send),
@@ -90,7 +98,7 @@ type State = (Phase, History, Memento, Position, Duration, Option<Descent>);
 impl<'a> Session<'a> {
     pub(super) fn new(
         picture: &Image,
-        (config, base, focus): (&'a Config, Option<&'a Base>, Option<Focus>),
+        (config, base, focus, page): Wishes<'a>,
         level: Level,
         watch: Watch<'a>,
         started: Instant,
@@ -112,7 +120,7 @@ impl<'a> Session<'a> {
             shade,
         } = Prepared::new(
             picture,
-            page(picture, config, base, &recipe),
+            choose_background(picture, config, base, &recipe),
             base,
             &recipe,
             coarsest,
@@ -152,7 +160,7 @@ impl<'a> Session<'a> {
             annealing,
             limit: budget::max_strokes(config, limit, base, pixels),
             price: Price::of(config, recipe.points.beyond_db, pixels),
-            writer: Writer::of(config, base),
+            writer: Writer::of(config, base, page),
             drawing,
             history: History::new(records, recipe.correction.db_per_doubling),
             best: None,
@@ -387,7 +395,7 @@ const LAYERS_SHARE: f64 = 0.03;
 /// The background and the shade of a new drawing. A shade, with `auto`, replaces the background. It has any colours and
 /// opacities, so that a drawing of few colours or of given pens has none, and neither has one of opaque strokes that is
 /// transparent.
-fn page(
+fn choose_background(
     picture: &Image,
     config: &Config,
     base: Option<&Base>,

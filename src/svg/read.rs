@@ -83,8 +83,11 @@ impl<'a> Parser<'a> {
     }
 
     fn page(&mut self, root: &Element) -> Parsed<Scene> {
-        let (width, height) = page_size(root)?;
-        let mut scene = Scene::empty(width, height, None);
+        let (width, height, page) = page_size(root)?;
+        let mut scene = Scene {
+            page,
+            ..Scene::empty(width, height, None)
+        };
         loop {
             match self.next()? {
                 Tag::Open(e)
@@ -276,8 +279,8 @@ impl Element {
     }
 }
 
-/// Width and height of the picture in px, from the `viewBox`.
-fn page_size(root: &Element) -> Parsed<(u32, u32)> {
+/// Width and height of the picture in px, from the `viewBox`, and those of the page if that is larger.
+fn page_size(root: &Element) -> Parsed<(u32, u32, Option<[u32; 2]>)> {
     root.only(&["width", "height", "viewBox"])?;
     let (width, height) = root.parsed("viewBox", |text| {
         let (width, height) = text.strip_prefix("0 0 ")?.split_once(' ')?;
@@ -287,11 +290,16 @@ fn page_size(root: &Element) -> Parsed<(u32, u32)> {
     match root.find("width").and_then(Length::parse) {
         Some(length) => root.expect("height", &length.scaled(height, width).to_string())?,
         None => {
+            let side = |name| root.find(name).and_then(|text| text.parse::<u32>().ok());
+            let page = side("width").zip(side("height"));
+            if let Some((w, h)) = page.filter(|&(w, h)| w > width && h > height) {
+                return Ok((width, height, Some([w, h])));
+            }
             root.expect("width", &width.to_string())?;
             root.expect("height", &height.to_string())?;
         }
     }
-    Ok((width, height))
+    Ok((width, height, None))
 }
 
 /// Checks that a rectangle is the page, and has nothing else but a fill.

@@ -38,9 +38,10 @@ pub fn stroke_bytes(stroke: &Stroke, options: &WriteOptions) -> usize {
 fn head(scene: &Scene, options: &WriteOptions) -> String {
     let Scene { width, height, .. } = *scene;
     let (svg, inkscape) = (dialect::SVG_NAMESPACE, dialect::INKSCAPE_NAMESPACE);
-    let (page_width, page_height) = match options.width {
-        Some(length) => (length.to_string(), length.scaled(height, width).to_string()),
-        None => (width.to_string(), height.to_string()),
+    let (page_width, page_height) = match (options.width, scene.page) {
+        (Some(length), _) => (length.to_string(), length.scaled(height, width).to_string()),
+        (None, Some([width, height])) => (width.to_string(), height.to_string()),
+        (None, None) => (width.to_string(), height.to_string()),
     };
     let mut out = format!(
         "<svg xmlns=\"{svg}\" xmlns:inkscape=\"{inkscape}\" \

@@ -1,0 +1,211 @@
+//! Reduction of a picture to the pixels that its drawing needs.
+//!
+//! A picture may be larger than its detail: it was enlarged, or is out of focus. Then fewer pixels say the same. And a
+//! photograph of many pixels has more detail than the strokes of its drawing can show. The fit takes the reduced picture for its
+//! target; the file is of the size of the picture.
+
+use rayon::prelude::*;
+
+use super::config::{Budget, Config, SCREEN_PIXELS};
+use crate::image::Image;
+use crate::metrics::psnr_db;
+
+/// Pixels that a drawing of as many strokes as pay needs. It is made for a screen, of which this is twice the size.
+const ENOUGH_PIXELS: usize = 2 * SCREEN_PIXELS;
+
+/// Pixels that a stroke needs, where their number is given: a dozen for each of its points, and more for their places.
+const PIXELS_PER_STROKE: usize = 200;
+
+/// Bytes of a stroke, about.
+const BYTES_PER_STROKE: usize = 70;
+
+/// Fidelity of a picture that was halved and enlarged again, dB, from which on its half is as good. Strokes end far below.
+const SAME_DB: f64 = 44.0;
+
+/// The same for pictures with lines and sharp edges, whose places half as many pixels tell as well.
+const NEARLY_SAME_DB: f64 = 36.0;
+
+/// Share of pixels whose neighbours have their colour: flat art and drawings of lines have more, photographs mostly less.
+const FLAT_SHARE: f64 = 0.6;
+
+/// Largest difference of neighbours of one colour.
+const ONE_COLOR: f32 = 4.0 / 255.0;
+
+/// A reduction by less than this along each side is not worth it.
+const LEAST_FACTOR: f64 = 1.4;
+
+/// Width and height to which `picture` is reduced before it is drawn by `config`; `None` if all of its pixels count.
+pub(super) fn size(picture: &Image, config: &Config) -> Option<[usize; 2]> {
+    // Pens given in px are those of the picture.
+    if config.pens.is_some() {
+        return None;
+    }
+    let needed = needed(config);
+    let all = pixels(picture);
+    let mut factor = 1.0;
+    let mut reduced = None;
+    while pixels(reduced.as_ref().unwrap_or(picture)) > needed {
+        let now = reduced.as_ref().unwrap_or(picture);
+        let half = now.reduced(now.width().div_ceil(2), now.height().div_ceil(2));
+        if !suffices(&half, now, config) {
+            break;
+        }
+        factor *= 2.0;
+        reduced = Some(half);
+    }
+    let least = (all as f64 / needed as f64).sqrt();
+    let factor = f64::min(factor, least);
+    let side = |px: usize| ((px as f64 / factor).round() as usize).max(1);
+    (factor >= LEAST_FACTOR).then(|| [side(picture.width()), side(picture.height())])
+}
+
+fn pixels(picture: &Image) -> usize {
+    picture.width() * picture.height()
+}
+
+/// Pixels that a drawing by `config` needs, whatever the picture.
+fn needed(config: &Config) -> usize {
+    let Budget { strokes, bytes, .. } = config.budget;
+    let by_bytes = bytes.map(|bytes| bytes / BYTES_PER_STROKE);
+    let counted = strokes.into_iter().chain(by_bytes).min();
+    let by_count = counted.map_or(0, |count| count.saturating_mul(PIXELS_PER_STROKE));
+    by_count.max(ENOUGH_PIXELS)
+}
+
+/// Whether a drawing of the picture's half is as good as one of the picture.
+fn suffices(half: &Image, picture: &Image, config: &Config) -> bool {
+    let loss_db = psnr_db(mse_enlarged(half, picture));
+    // A fidelity, or a quality of its own, is asked for of all that is in the picture.
+    let is_for_screen = config.budget.psnr_db.is_none() && config.quality.is_none();
+    let wanted_db = config.budget.psnr_db.unwrap_or(0.0) + 10.0;
+    loss_db >= SAME_DB.max(wanted_db)
+        || (is_for_screen && (loss_db >= NEARLY_SAME_DB || flat_share(picture) < FLAT_SHARE))
+}
+
+/// The mean squared error of `half`, enlarged linearly, against `picture`.
+fn mse_enlarged(half: &Image, picture: &Image) -> f64 {
+    let [width, height] = [picture.width(), picture.height()];
+    let [columns, rows] = [half.width(), half.height()];
+    // The pixels of the half beside a place between them, and the share of the second.
+    let beside = |at: usize, old: usize, new: usize| {
+        let place = (at as f32 + 0.5) * new as f32 / old as f32 - 0.5;
+        let first = (place.max(0.0) as usize).min(new - 1);
+        (
+            first,
+            (first + 1).min(new - 1),
+            (place - first as f32).clamp(0.0, 1.0),
+        )
+    };
+    let across: Vec<_> = (0..width).map(|x| beside(x, width, columns)).collect();
+    let of_plane = |(small, large): (&Vec<f32>, &Vec<f32>)| {
+        let of_row = |(y, line): (usize, &[f32])| {
+            let (top, bottom, share) = beside(y, height, rows);
+            let at = |x: usize| {
+                let [top, bottom] = [top, bottom].map(|row| small[row * columns + x]);
+                top + share * (bottom - top)
+            };
+            let errors = line
+                .iter()
+                .zip(&across)
+                .map(|(value, &(left, right, share))| {
+                    let (left, right) = (at(left), at(right));
+                    let error = value - (left + share * (right - left));
+                    f64::from(error * error)
+                });
+            errors.sum::<f64>()
+        };
+        // Summed in the order of the rows, so that the number of threads does not matter.
+        let sums: Vec<f64> = large.par_chunks(width).enumerate().map(of_row).collect();
+        sums.iter().sum::<f64>()
+    };
+    let planes = half.planes().iter().zip(picture.planes());
+    planes.map(of_plane).sum::<f64>() / (3 * width * height) as f64
+}
+
+/// Share of the pixels that have the colour of the pixels to the right and below.
+fn flat_share(picture: &Image) -> f64 {
+    let width = picture.width();
+    let count = pixels(picture);
+    let is_flat = |&i: &usize| {
+        let is_near = |plane: &Vec<f32>, k: usize| (plane[i] - plane[k]).abs() <= ONE_COLOR;
+        let others = [i + 1, i + width].map(|k| k.min(count - 1));
+        picture
+            .planes()
+            .iter()
+            .all(|plane| others.iter().all(|&k| is_near(plane, k)))
+    };
+    let flat = (0..count).into_par_iter().filter(is_flat).count();
+    flat as f64 / count as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::Budget;
+
+    /// A picture of 1,600×1,200 px whose detail is `period` px wide.
+    fn waves(period: f32) -> Image {
+        let wave = |at: usize| (at as f32 * std::f32::consts::TAU / period).sin();
+        Image::from_fn(1600, 1200, 3, |x, y, _| {
+            0.5 + 0.2 * wave(x) * wave(y + x / 3)
+        })
+        .unwrap()
+    }
+
+    /// Thin black lines on white.
+    fn lines() -> Image {
+        Image::from_fn(1600, 1200, 1, |x, y, _| {
+            f32::from(u8::from((x + y) % 40 > 1))
+        })
+        .unwrap()
+    }
+
+    fn with(budget: Budget) -> Config {
+        Config {
+            budget,
+            ..Config::default()
+        }
+    }
+
+    #[test]
+    fn what_was_enlarged_is_reduced_whatever_is_asked_for() {
+        let psnr = Budget {
+            psnr_db: Some(34.0),
+            ..Budget::default()
+        };
+        for budget in [Budget::default(), psnr] {
+            let [width, height] = size(&waves(90.0), &with(budget)).unwrap();
+            assert!(
+                (width * height).abs_diff(ENOUGH_PIXELS) < 2000,
+                "{width}×{height}"
+            );
+        }
+    }
+
+    #[test]
+    fn detail_is_kept_where_a_fidelity_is_asked_for() {
+        let psnr = Budget {
+            psnr_db: Some(34.0),
+            ..Budget::default()
+        };
+        assert_eq!(size(&waves(5.0), &with(psnr)), None);
+        assert!(
+            size(&waves(5.0), &Config::default()).is_some(),
+            "a screen does not show it"
+        );
+    }
+
+    #[test]
+    fn many_strokes_keep_their_pixels() {
+        let strokes = Budget {
+            strokes: Some(20_000),
+            ..Budget::default()
+        };
+        assert_eq!(size(&waves(90.0), &with(strokes)), None);
+    }
+
+    #[test]
+    fn lines_are_kept() {
+        assert_eq!(size(&lines(), &Config::default()), None);
+    }
+}
