@@ -590,10 +590,10 @@ fn an_svg_after_the_picture_is_the_output() {
 }
 
 #[test]
-fn a_large_picture_is_drawn_as_a_screen_shows_it() {
+fn a_large_picture_is_drawn_of_fewer_pixels() {
     let place = Place::new();
-    let picture = image::GrayImage::from_fn(1536, 1024, |x, y| {
-        image::Luma([((x / 96 + y / 96) % 2 * 200) as u8])
+    let picture = image::GrayImage::from_fn(1536, 1280, |x, y| {
+        image::Luma([(((x * x + y * y) as f32 / 2e4).sin() * 50.0 + 120.0) as u8])
     });
     picture.save(place.path("in.png")).unwrap();
     let fit = |options: &[&str]| {
@@ -602,10 +602,26 @@ fn a_large_picture_is_drawn_as_a_screen_shows_it() {
     };
     let said = fit(&[]);
     assert!(
-        said.contains("1.6 megapixels") && said.contains("--quality 24;"),
+        said.contains("1536×1280 px were drawn as 971×810"),
         "{said}"
     );
-    assert!(!fit(&["--quality", "24"]).contains("megapixels"));
+    let text = fs::read_to_string(place.path("out.svg")).unwrap();
+    assert!(text.contains(r#"width="1536" height="1280" viewBox="0 0 971 810""#));
+    // What is drawn of a reduced picture goes on from there.
+    let refine = [
+        "refine",
+        "out.svg",
+        "in.png",
+        "-o",
+        "more.svg",
+        "--strokes",
+        "+20",
+        "--preset",
+        "draft",
+    ];
+    place.done(&refine);
+    let more = fs::read_to_string(place.path("more.svg")).unwrap();
+    assert!(more.contains(r#"width="1536" height="1280" viewBox="0 0 971 810""#));
 }
 
 #[test]

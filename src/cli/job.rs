@@ -1,5 +1,6 @@
 //! One drawing from start to end: read, fit, write, verify, report.
 
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -10,7 +11,7 @@ use strokefit::fit::{
 use strokefit::image::Image;
 use strokefit::metrics::{Agreement, psnr_db};
 use strokefit::report::{self, Event, FitReport, Input, Judged, Run, Usage};
-use strokefit::scene::Dropped;
+use strokefit::scene::{Dropped, Scene};
 use strokefit::verify::MIN_AGREEMENT_DB;
 
 use super::events::{Events, Phases};
@@ -64,6 +65,7 @@ impl Job<'_> {
         let bar = Bar::new(verbosity.quiet, heading);
         let fit = self.watched(&picture, start, events, bar, verbosity, draw)?;
         tell_dropped(fit.dropped, verbosity);
+        tell_reduced(&fit.scene, input::name(self.input), verbosity);
         let judged = Judged::new(fit)?;
         outputs.svg.1.write(judged.svg.as_bytes())?;
         let drawn = Drawn {
@@ -234,6 +236,14 @@ impl Job<'_> {
             return Status::Interrupted(signal);
         }
         self.tell_capped(drawn, verbosity);
+        if let Some(most) = self.options.budget.bytes.filter(|_| is_blank(drawn)) {
+            complain(format_args!(
+                "{name}: target not reached: no stroke fits in {most} bytes: the empty page takes {}, and a first stroke about \
+                 {FIRST_STROKE_BYTES} more",
+                drawn.judged.svg.len()
+            ));
+            return Status::TargetMissed;
+        }
         self.tell_poor(drawn);
         if !drawn.judged.holds() {
             complain(format_args!(
@@ -294,6 +304,18 @@ impl<'a> Outputs<'a> {
 /// A drawing of as many strokes as are allowed, and yet less faithful than this, dB, is one of noise.
 const NOISE_DB: f64 = 22.0;
 
+/// Bytes of a layer with one stroke, about.
+const FIRST_STROKE_BYTES: usize = 250;
+
+/// A page without strokes as faithful as this, dB, needs none.
+const BLANK_DB: f64 = 40.0;
+
+/// Whether a drawing should have strokes and has none.
+fn is_blank(drawn: &Drawn) -> bool {
+    let Judged { fit, verdict, .. } = &drawn.judged;
+    fit.base.is_none() && fit.scene.is_empty() && verdict.fidelity.psnr_db < BLANK_DB
+}
+
 /// How resvg's render differs from our own.
 fn disagreement(agreement: &Agreement) -> String {
     let Agreement {
@@ -332,6 +354,16 @@ pub(super) struct Drawn {
     pub(super) judged: Judged,
     /// From the start of the job until the SVG is written.
     pub(super) wall: Duration,
+}
+
+/// Says that a reduced picture was drawn.
+fn tell_reduced(scene: &Scene, name: impl Display, verbosity: Verbosity) {
+    if let Some([width, height]) = scene.page {
+        verbosity.say(format_args!(
+            "{name}: {width}×{height} px were drawn as {}×{}, which show as much as strokes do; figures are for those",
+            scene.width, scene.height
+        ));
+    }
 }
 
 fn tell_dropped(dropped: Dropped, verbosity: Verbosity) {
