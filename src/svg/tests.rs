@@ -98,10 +98,25 @@ fn scene() -> impl Strategy<Value = Scene> {
         .prop_map(|(width, height, background, shade, stages)| Scene {
             width,
             height,
+            page: None,
             background,
             shade,
             stages,
         })
+}
+
+#[test]
+fn the_page_of_a_reduced_picture_is_read_back() {
+    let scene = Scene {
+        page: Some([4000, 3001]),
+        ..Scene::empty(1000, 750, None)
+    };
+    let text = write(&scene, &WriteOptions::default());
+    assert!(
+        text.contains(r#"width="4000" height="3001" viewBox="0 0 1000 750""#),
+        "{text}"
+    );
+    assert_eq!(read(&text).unwrap(), scene);
 }
 
 /// A stroke of few looks between few places, so that neighbours often share a look or an end.

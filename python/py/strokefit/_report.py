@@ -71,6 +71,8 @@ class Agreement(TypedDict):
     psnr_db: Optional[float]
     #: Largest difference of a channel of a pixel, 0..255.
     max_abs: int
+    #: Largest difference of a channel's mean over 5×5 px, 0..255.
+    patch_abs: int
 
 
 class OnMattes(TypedDict):
