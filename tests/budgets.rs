@@ -138,7 +138,7 @@ fn a_longer_fit_of_few_strokes_is_never_worse() {
         let picture = picture(name);
         let db = |preset| {
             let fit = drawn(&picture, of_strokes(8), preset);
-            self::db(&Judged::new(fit).unwrap())
+            Judged::new(fit).unwrap().verdict.fidelity.psnr_db
         };
         let [draft, balanced, best] = [Preset::Draft, Preset::Balanced, Preset::Best].map(db);
         assert!(
@@ -151,10 +151,11 @@ fn a_longer_fit_of_few_strokes_is_never_worse() {
 #[test]
 fn an_enlarged_picture_gets_about_the_same_drawing() {
     let small = picture("coffee-300");
-    let [width, height] = [small.width(), small.height()];
-    let large = Image::from_fn(8 * width, 8 * height, 3, |x, y, c| {
-        small.planes()[c][(y / 8) * width + x / 8]
-    });
+    let pixels = image::open(path("coffee-300")).unwrap().to_rgb8();
+    let [width, height] = [small.width(), small.height()].map(|px| 8 * px);
+    let smooth = image::imageops::FilterType::CatmullRom;
+    let large = image::imageops::resize(&pixels, width as u32, height as u32, smooth);
+    let large = Image::from_fn(width, height, 3, |x, y, c| large[(x as u32, y as u32)].0[c]);
     let strokes = |picture: &Image| drawn(picture, Budget::default(), Preset::Draft).scene.len();
     let [few, many] = [strokes(&small), strokes(&large.unwrap())];
     assert!(many.abs_diff(few) * 4 <= few, "{few} {many}");

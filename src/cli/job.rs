@@ -5,9 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::Result;
-use strokefit::fit::{
-    self, DEFAULT_QUALITY, DEFAULT_STROKES, Fit, Observer, Progress, SCREEN_PIXELS, Stop,
-};
+use strokefit::fit::{self, DEFAULT_STROKES, Fit, Observer, Progress, Stop};
 use strokefit::image::Image;
 use strokefit::metrics::{Agreement, psnr_db};
 use strokefit::report::{self, Event, FitReport, Input, Judged, Run, Usage};
@@ -91,21 +89,12 @@ impl Job<'_> {
         Ok(drawn)
     }
 
-    /// Says what was chosen for a large picture, and how much memory is about to be used.
+    /// Says how much memory is about to be used.
     fn foretell(&self, picture: &Image, verbosity: Verbosity) {
-        let (config, pixels) = (self.options.config(), picture.width() * picture.height());
-        if let Some(quality) = config
-            .quality_for(pixels)
-            .filter(|_| config.is_open() && pixels > SCREEN_PIXELS)
-        {
-            verbosity.say(format_args!(
-                "{}: {:.1} megapixels are drawn as a screen shows them, with --quality {quality:.0}; --quality {DEFAULT_QUALITY} draws every detail",
-                input::name(self.input),
-                pixels as f64 / 1e6,
-            ));
+        if verbosity.verbose {
+            let bytes = fit::predicted_rss_bytes(picture, &self.options.config());
+            verbosity.detail(format_args!("needs about {} MiB of memory", bytes >> 20));
         }
-        let bytes = fit::predicted_rss_bytes(picture, &self.options.config());
-        verbosity.detail(format_args!("needs about {} MiB of memory", bytes >> 20));
     }
 
     /// Draws, showing and telling how it goes.
@@ -180,17 +169,16 @@ impl Job<'_> {
     /// Says that the drawing has as many strokes as one may have if nothing is said of their number.
     fn tell_capped(&self, drawn: &Drawn, verbosity: Verbosity) {
         let strokes = drawn.judged.fit.scene.len();
-        if self.options.config().is_open()
+        let is_capped = self.options.config().is_open()
             && drawn.judged.fit.stop == Stop::Strokes
-            && 10 * strokes >= 9 * DEFAULT_STROKES
-            && self.base.is_none()
-        {
-            if drawn.judged.verdict.fidelity.psnr_db < NOISE_DB {
-                verbosity.say(format_args!(
-                    "{}: the picture is of dots or noise finer than strokes: blur it, or give the picture before it was dithered",
-                    output::name(&self.output)
-                ));
-            }
+            && self.base.is_none();
+        if is_capped && drawn.judged.verdict.fidelity.psnr_db < NOISE_DB {
+            verbosity.say(format_args!(
+                "{}: the picture is of dots or noise finer than strokes: blur it, or give the picture before it was dithered",
+                output::name(&self.output)
+            ));
+        }
+        if is_capped && 10 * strokes >= 9 * DEFAULT_STROKES {
             verbosity.say(format_args!(
                 "{}: more strokes would pay, but {strokes} are the most unless --strokes or --quality asks for more",
                 output::name(&self.output)
@@ -251,6 +239,11 @@ impl Job<'_> {
                 disagreement(&drawn.judged.verdict.agreement)
             ));
             return Status::Disagrees;
+        }
+        if drawn.judged.is_tiny() && drawn.judged.verdict.agreement.psnr_db < MIN_AGREEMENT_DB {
+            complain(format_args!(
+                "{name}: strokes are as wide as the pixels of so small a picture: draw it at 16 times its size, enlarged without smoothing"
+            ));
         }
         let reached = drawn.judged.verdict.fidelity.psnr_db;
         if let Some(wanted) = self.options.budget.psnr.filter(|wanted| reached < *wanted) {

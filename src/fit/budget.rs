@@ -12,7 +12,7 @@ use crate::scene::{Path, Stroke};
 use crate::svg;
 
 /// Bytes of a file without layers.
-const FILE_BYTES: usize = 200;
+pub(super) const FILE_BYTES: usize = 200;
 /// Bytes of a layer without strokes.
 pub(super) const LAYER_BYTES: usize = 170;
 
@@ -138,6 +138,14 @@ pub(super) fn compares_files(config: &Config, recipe: &Recipe) -> bool {
     } = config.budget;
     let is_limited = strokes.is_some() || bytes.is_some() || psnr_db.is_some();
     is_limited && config.quality.is_none() && needs_file(&config.budget, recipe)
+}
+
+/// Why a fit ends that draws all that is planned.
+pub(super) fn planned_stop(budget: &Budget) -> Stop {
+    match (budget.strokes, budget.bytes) {
+        (None, Some(_)) => Stop::Bytes,
+        _ => Stop::Strokes,
+    }
 }
 
 /// The first budget that a drawing of `strokes` strokes, written as `file`, meets.

@@ -67,13 +67,14 @@ pub(super) struct Corrections {
 }
 
 impl History {
-    /// The history of a new fit, with the `records` of its base's layers.
-    pub(super) fn new(records: Vec<StageRecord>, db_per_doubling: f64) -> Self {
+    /// The history of a new fit, with the `records` of its base's layers, that ends for `stop` unless something else
+    /// ends it first.
+    pub(super) fn new(records: Vec<StageRecord>, db_per_doubling: f64, stop: Stop) -> Self {
         Self {
             records,
             traced: [0; 2],
             stage: None,
-            stop: Stop::Strokes,
+            stop,
             corrections: Corrections {
                 count: 0,
                 approached: None,

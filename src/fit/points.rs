@@ -116,10 +116,7 @@ fn edit(session: &mut Session<'_>, spare: f32) -> Vec<Option<usize>> {
 pub(super) fn bytes_left(session: &Session<'_>) -> Option<f32> {
     let most = session.config.budget.bytes? as f32 * session.recipe.points.filled;
     let layers = session.layers_to_join() * budget::LAYER_BYTES;
-    let bytes = session
-        .writer
-        .bytes(&session.drawing)
-        .saturating_sub(layers) as f32;
+    let bytes = session.bytes().saturating_sub(layers) as f32;
     Some(most - bytes * session.history.corrections.restricted)
 }
 

@@ -18,8 +18,14 @@ pub(super) struct Price {
     wanted_mse: f64,
     /// The drawing's squared error and that at the quality.
     errors: Option<[f64; 2]>,
+    /// The price of a stroke's bytes, in units of that of a point's.
+    of_strokes: f32,
     file: WriteOptions,
 }
+
+/// The price of a stroke's bytes where a fidelity is asked for, in units of that of a point's: as many strokes come as it takes, but
+/// none that draws nothing.
+const WANTED: f32 = 0.1;
 
 impl Price {
     /// At quality `q` each byte has to remove as much squared error as one pixel has at `q` dB: 3·10^(−q/10). Without a
@@ -30,6 +36,7 @@ impl Price {
             per_byte: 3.0 * wanted_mse as f32,
             wanted_mse,
             errors: None,
+            of_strokes: 1.0,
             file,
         }
     }
@@ -44,7 +51,10 @@ impl Price {
                 wanted_mse: mse(config.quality.unwrap_or(DEFAULT_QUALITY)),
                 ..Self::new(Some(quality), config.file)
             },
-            None => Self::new(wanted_db, config.file),
+            None => Self {
+                of_strokes: WANTED,
+                ..Self::new(wanted_db, config.file)
+            },
         }
     }
 
@@ -89,7 +99,7 @@ impl Price {
         if self.per_byte == 0.0 {
             return 0.0;
         }
-        self.stake(self.of_bytes(self.bytes_of(stroke)))
+        self.stake(self.of_strokes * self.of_bytes(self.bytes_of(stroke)))
     }
 
     /// The least gain of `stroke` to be added.
@@ -97,7 +107,7 @@ impl Price {
         if self.per_byte == 0.0 {
             return 0.0;
         }
-        self.entry(self.of_bytes(stroke_bytes(stroke, &self.file)))
+        self.entry(self.of_strokes * self.of_bytes(stroke_bytes(stroke, &self.file)))
     }
 
     /// The least gain of a capsule to be added.

@@ -31,6 +31,7 @@ use crate::error::Result;
 use crate::image::Image;
 use crate::metrics::psnr_db;
 use crate::scene::{Scene, Shade};
+use crate::svg::Form;
 
 /// A fit under way: first the fields that are fixed, then those that change.
 pub(super) struct Session<'a> {
@@ -162,7 +163,11 @@ impl<'a> Session<'a> {
             price: Price::of(config, recipe.points.beyond_db, pixels),
             writer: Writer::of(config, base, page),
             drawing,
-            history: History::new(records, recipe.correction.db_per_doubling),
+            history: History::new(
+                records,
+                recipe.correction.db_per_doubling,
+                budget::planned_stop(&config.budget),
+            ),
             best: None,
             progress: Tracker::new(
                 watch.observer,
@@ -274,6 +279,18 @@ impl<'a> Session<'a> {
             return self.price;
         }
         self.price.at(self.drawing.mse(), self.drawing.pixels())
+    }
+
+    /// Bytes of the drawing as a file; about, if its strokes will come to share pens, which makes them shorter.
+    pub(super) fn bytes(&self) -> usize {
+        if self.config.file.form != Form::Smallest {
+            return self.writer.bytes(&self.drawing);
+        }
+        let strokes = self.drawing.free().iter();
+        let strokes: usize = strokes.map(|stroke| self.price.bytes_of(stroke)).sum();
+        let layers = self.drawing.stage_sizes().len();
+        let empty = self.base.map_or(budget::FILE_BYTES, Base::bytes);
+        empty + layers * budget::LAYER_BYTES + strokes
     }
 
     /// How many layers of the drawing are joined with the one below because they would take much of a budget of bytes.

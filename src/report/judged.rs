@@ -78,10 +78,14 @@ impl Judged {
             fidelity,
             agreement,
         } = self.verdict;
-        let pixels = self.fit.target.width() * self.fit.target.height();
         let is_as_faithful = fidelity.psnr_db >= self.soft.psnr_db - MAX_LOSS_DB;
         let is_close = agreement.psnr_db >= MIN_AGREEMENT_DB;
-        !agreement.has_gap() && (is_close || is_as_faithful || pixels < FEW_PIXELS)
+        !agreement.has_gap() && (is_close || is_as_faithful || self.is_tiny())
+    }
+
+    /// Whether strokes are about as wide as the pixels of the picture.
+    pub fn is_tiny(&self) -> bool {
+        self.fit.target.width() * self.fit.target.height() < FEW_PIXELS
     }
 }
 

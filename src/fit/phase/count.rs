@@ -18,6 +18,9 @@ const HOPE: f64 = 1.3;
 /// Strokes too few for their gains to tell of those of many.
 const FEW_STROKES: usize = 400;
 
+/// Below so many strokes, one more may be what is missing.
+const VERY_FEW_STROKES: usize = 32;
+
 /// Ends the fit if the base, as it is, already meets a budget. Otherwise the base is the best file until another one is
 /// better.
 pub(in crate::fit) fn try_base(session: &mut Session<'_>) -> Result<Outcome> {
@@ -119,7 +122,7 @@ impl Corrections {
             let (missed_db, brought_db) = (wanted_db - before.1, now.1 - before.1);
             // Fewer strokes than before, or a file that reached the fidelity, leave hope.
             let helps = missed_db <= 0.0 || brought_db >= correction.least_gain * missed_db;
-            self.is_hopeless = strokes > before.0 && !helps;
+            self.is_hopeless = strokes > before.0.max(VERY_FEW_STROKES) && !helps;
             let usual = correction.db_per_doubling;
             let measured = db_per_doubling(before, now);
             self.db_per_doubling = measured.clamp(correction.least_db_per_doubling(), usual);
