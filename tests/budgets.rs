@@ -150,14 +150,16 @@ fn a_longer_fit_of_few_strokes_is_never_worse() {
 
 #[test]
 fn an_enlarged_picture_gets_about_the_same_drawing() {
-    let small = picture("coffee-300");
     let pixels = image::open(path("coffee-300")).unwrap().to_rgb8();
-    let [width, height] = [small.width(), small.height()].map(|px| 8 * px);
-    let smooth = image::imageops::FilterType::CatmullRom;
-    let large = image::imageops::resize(&pixels, width as u32, height as u32, smooth);
-    let large = Image::from_fn(width, height, 3, |x, y, c| large[(x as u32, y as u32)].0[c]);
-    let strokes = |picture: &Image| drawn(picture, Budget::default(), Preset::Draft).scene.len();
-    let [few, many] = [strokes(&small), strokes(&large.unwrap())];
+    let strokes = |times: u32| {
+        let [width, height] = [times * pixels.width(), times * pixels.height()];
+        let smooth = image::imageops::FilterType::CatmullRom;
+        let large = image::imageops::resize(&pixels, width, height, smooth);
+        let of = |x: usize, y: usize, c: usize| large[(x as u32, y as u32)].0[c];
+        let large = Image::from_fn(width as usize, height as usize, 3, of).unwrap();
+        drawn(&large, Budget::default(), Preset::Draft).scene.len()
+    };
+    let [few, many] = [strokes(4), strokes(10)];
     assert!(many.abs_diff(few) * 4 <= few, "{few} {many}");
 }
 

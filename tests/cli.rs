@@ -480,10 +480,9 @@ fn what_is_said_to_help_helps() {
     let (free, line) = asked_for_60(&place, "in.png", &[]);
     assert!(free > opaque, "{opaque} {free}");
 
-    assert!(
-        line.contains("draw the picture at twice its size"),
-        "{line}"
-    );
+    assert!(line.contains("allow more strokes"), "{line}");
+    let (many, _) = asked_for_60(&place, "in.png", &["--strokes", "400"]);
+    assert!(many > free, "{free} {many}");
     let (large, _) = asked_for_60(&place, "twice.png", &[]);
     assert!(large > free, "{free} {large}");
 }
@@ -602,11 +601,11 @@ fn a_large_picture_is_drawn_of_fewer_pixels() {
     };
     let said = fit(&[]);
     assert!(
-        said.contains("1536×1280 px were drawn as 971×810"),
+        said.contains("1536×1280 px were drawn as 768×640"),
         "{said}"
     );
     let text = fs::read_to_string(place.path("out.svg")).unwrap();
-    assert!(text.contains(r#"width="1536" height="1280" viewBox="0 0 971 810""#));
+    assert!(text.contains(r#"width="1536" height="1280" viewBox="0 0 768 640""#));
     // What is drawn of a reduced picture goes on from there.
     let refine = [
         "refine",
@@ -621,7 +620,7 @@ fn a_large_picture_is_drawn_of_fewer_pixels() {
     ];
     place.done(&refine);
     let more = fs::read_to_string(place.path("more.svg")).unwrap();
-    assert!(more.contains(r#"width="1536" height="1280" viewBox="0 0 971 810""#));
+    assert!(more.contains(r#"width="1536" height="1280" viewBox="0 0 768 640""#));
 }
 
 #[test]

@@ -117,7 +117,7 @@ fn more_points_draw_better() {
         (12.0, 80.0),
     ];
     let zigzag = picture(&zigzag, false);
-    let db: Vec<f64> = [2, 3, 6].map(|n| fitted(&zigzag, 2, Some(n)).1).into();
+    let db: Vec<f64> = [2, 3, 6].map(|n| fitted(&zigzag, 3, Some(n)).1).into();
     assert!(db[1] > db[0] && db[2] > db[0], "{db:?}");
 }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::Result;
-use strokefit::fit::{self, DEFAULT_STROKES, Fit, Observer, Progress, Stop};
+use strokefit::fit::{self, DEFAULT_STROKES, Fit, Observer, PIXELS_PER_STROKE, Progress, Stop};
 use strokefit::image::Image;
 use strokefit::metrics::{Agreement, psnr_db};
 use strokefit::report::{self, Event, FitReport, Input, Judged, Run, Usage};
@@ -169,10 +169,12 @@ impl Job<'_> {
     /// Says that the drawing has as many strokes as one may have if nothing is said of their number.
     fn tell_capped(&self, drawn: &Drawn, verbosity: Verbosity) {
         let strokes = drawn.judged.fit.scene.len();
-        let is_capped = self.options.config().is_open()
-            && drawn.judged.fit.stop == Stop::Strokes
-            && self.base.is_none();
-        if is_capped && drawn.judged.verdict.fidelity.psnr_db < NOISE_DB {
+        let is_open = self.options.config().is_open() && self.base.is_none();
+        let is_capped = is_open && drawn.judged.fit.stop == Stop::Strokes;
+        let target = &drawn.judged.fit.target;
+        let most = DEFAULT_STROKES.min(target.width() * target.height() / PIXELS_PER_STROKE);
+        let is_full = is_open && 10 * strokes >= 9 * most;
+        if is_full && drawn.judged.verdict.fidelity.psnr_db < NOISE_DB {
             verbosity.say(format_args!(
                 "{}: the picture is of dots or noise finer than strokes: blur it, or give the picture before it was dithered",
                 output::name(&self.output)
@@ -203,11 +205,12 @@ impl Job<'_> {
     fn remedy(&self, stop: Stop) -> String {
         let looks = self.options.limiting_looks();
         match stop {
-            Stop::Strokes => "allow more strokes".into(),
+            Stop::Strokes if self.options.budget.strokes.is_some() => "allow more strokes".into(),
             Stop::Bytes => "allow more bytes".into(),
             Stop::Time => "allow more time".into(),
             Stop::Interrupted => "let it end".into(),
             _ if !looks.is_empty() => format!("leave out {}", looks.join(", ")),
+            Stop::Strokes => "allow more strokes, by --strokes".into(),
             _ => "what is missing is finer than strokes: draw the picture at twice its size, or without its noise".into(),
         }
     }

@@ -160,7 +160,7 @@ pub const DEFAULT_STROKES: usize = 5000;
 pub const MAX_STROKES: usize = 900_000;
 
 /// Fewest pixels for each stroke, unless a number of strokes is asked for: more strokes draw noise.
-const PIXELS_PER_STROKE: usize = 16;
+pub const PIXELS_PER_STROKE: usize = 16;
 
 /// Strokes that any picture may have, however small it is.
 const MIN_STROKES: usize = 100;

@@ -59,7 +59,7 @@ pub use base::Base;
 pub use checkpoint::Checkpoint;
 pub use config::{
     Background, Budget, Colors, Config, DEFAULT_QUALITY, DEFAULT_STROKES, Execution, Look,
-    MAX_STROKES, SCREEN_PIXELS,
+    MAX_STROKES, PIXELS_PER_STROKE, SCREEN_PIXELS,
 };
 pub use fitter::Fitter;
 pub use focus::Focus;

@@ -16,6 +16,9 @@ const ENOUGH_PIXELS: usize = 2 * SCREEN_PIXELS;
 /// Pixels that a stroke needs, where their number is given: a dozen for each of its points, and more for their places.
 const PIXELS_PER_STROKE: usize = 200;
 
+/// Fewest pixels that a picture is reduced to, however little detail it has: the price of strokes is that of a screen.
+const LEAST_PIXELS: usize = SCREEN_PIXELS;
+
 /// Bytes of a stroke, about.
 const BYTES_PER_STROKE: usize = 70;
 
@@ -36,25 +39,28 @@ const LEAST_FACTOR: f64 = 1.4;
 
 /// Width and height to which `picture` is reduced before it is drawn by `config`; `None` if all of its pixels count.
 pub(super) fn size(picture: &Image, config: &Config) -> Option<[usize; 2]> {
+    let all = pixels(picture);
+    let counted = counted(config);
+    let enough = counted.max(ENOUGH_PIXELS);
     // Pens given in px are those of the picture.
-    if config.pens.is_some() {
+    if config.pens.is_some() || all as f64 <= enough as f64 * LEAST_FACTOR * LEAST_FACTOR {
         return None;
     }
-    let needed = needed(config);
-    let all = pixels(picture);
     let mut factor = 1.0;
     let mut reduced = None;
-    while pixels(reduced.as_ref().unwrap_or(picture)) > needed {
+    loop {
         let now = reduced.as_ref().unwrap_or(picture);
         let half = now.reduced(now.width().div_ceil(2), now.height().div_ceil(2));
-        if !suffices(&half, now, config) {
+        let loss_db = psnr_db(mse_enlarged(&half, now));
+        if is_same(loss_db, config) && pixels(&half) >= counted.max(LEAST_PIXELS) {
+            factor *= 2.0;
+        } else if pixels(now) > enough && shows_no_more(loss_db, now, config) {
+            factor = f64::min(2.0 * factor, (all as f64 / enough as f64).sqrt());
+        } else {
             break;
         }
-        factor *= 2.0;
         reduced = Some(half);
     }
-    let least = (all as f64 / needed as f64).sqrt();
-    let factor = f64::min(factor, least);
     let side = |px: usize| ((px as f64 / factor).round() as usize).max(1);
     (factor >= LEAST_FACTOR).then(|| [side(picture.width()), side(picture.height())])
 }
@@ -63,23 +69,24 @@ fn pixels(picture: &Image) -> usize {
     picture.width() * picture.height()
 }
 
-/// Pixels that a drawing by `config` needs, whatever the picture.
-fn needed(config: &Config) -> usize {
+/// Pixels that the strokes need that `config` counts; 0 if it counts none.
+fn counted(config: &Config) -> usize {
     let Budget { strokes, bytes, .. } = config.budget;
     let by_bytes = bytes.map(|bytes| bytes / BYTES_PER_STROKE);
-    let counted = strokes.into_iter().chain(by_bytes).min();
-    let by_count = counted.map_or(0, |count| count.saturating_mul(PIXELS_PER_STROKE));
-    by_count.max(ENOUGH_PIXELS)
+    let strokes = strokes.into_iter().chain(by_bytes).min();
+    strokes.map_or(0, |count| count.saturating_mul(PIXELS_PER_STROKE))
 }
 
-/// Whether a drawing of the picture's half is as good as one of the picture.
-fn suffices(half: &Image, picture: &Image, config: &Config) -> bool {
-    let loss_db = psnr_db(mse_enlarged(half, picture));
+/// Whether a picture has no detail that its half lacks, from which it can be enlarged again to `loss_db`.
+fn is_same(loss_db: f64, config: &Config) -> bool {
+    loss_db >= SAME_DB.max(config.budget.psnr_db.unwrap_or(0.0) + 10.0)
+}
+
+/// Whether strokes show no more of `picture` than of its half, from which it can be enlarged again to `loss_db`.
+fn shows_no_more(loss_db: f64, picture: &Image, config: &Config) -> bool {
     // A fidelity, or a quality of its own, is asked for of all that is in the picture.
     let is_for_screen = config.budget.psnr_db.is_none() && config.quality.is_none();
-    let wanted_db = config.budget.psnr_db.unwrap_or(0.0) + 10.0;
-    loss_db >= SAME_DB.max(wanted_db)
-        || (is_for_screen && (loss_db >= NEARLY_SAME_DB || flat_share(picture) < FLAT_SHARE))
+    is_for_screen && (loss_db >= NEARLY_SAME_DB || flat_share(picture) < FLAT_SHARE)
 }
 
 /// The mean squared error of `half`, enlarged linearly, against `picture`.
@@ -141,11 +148,11 @@ fn flat_share(picture: &Image) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::Budget;
+    use crate::math;
 
     /// A picture of 1,600×1,200 px whose detail is `period` px wide.
     fn waves(period: f32) -> Image {
-        let wave = |at: usize| (at as f32 * std::f32::consts::TAU / period).sin();
+        let wave = |at: usize| math::sin(at as f32 * std::f32::consts::TAU / period);
         Image::from_fn(1600, 1200, 3, |x, y, _| {
             0.5 + 0.2 * wave(x) * wave(y + x / 3)
         })
@@ -174,11 +181,7 @@ mod tests {
             ..Budget::default()
         };
         for budget in [Budget::default(), psnr] {
-            let [width, height] = size(&waves(90.0), &with(budget)).unwrap();
-            assert!(
-                (width * height).abs_diff(ENOUGH_PIXELS) < 2000,
-                "{width}×{height}"
-            );
+            assert_eq!(size(&waves(90.0), &with(budget)), Some([800, 600]));
         }
     }
 

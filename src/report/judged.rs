@@ -12,7 +12,7 @@ use crate::verify::{self, MIN_AGREEMENT_DB, OnMattes, Verdict};
 const MAX_LOSS_DB: f64 = 1.0;
 
 /// A picture of fewer pixels is small: its strokes are about as wide as its pixels.
-const FEW_PIXELS: usize = 32 * 32;
+const FEW_PIXELS: usize = 64 * 64;
 
 /// A finished drawing with its file, judged by resvg's render.
 #[derive(Debug, Clone)]

@@ -78,7 +78,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::math::Point;
+    use crate::math::{self, Point};
     use crate::scene::{self, PathPoint, Scene, Stage};
     use crate::sdf::Capsule;
     use crate::svg::{self, WriteOptions};
@@ -117,7 +117,7 @@ mod tests {
             // A loop around the page's middle, or any points.
             let count = points.len() as f32;
             let points = points.iter().enumerate().map(|(i, &(dx, dy, is_on))| {
-                let (sin, cos) = (i as f32 / count * std::f32::consts::TAU).sin_cos();
+                let (sin, cos) = math::sin_cos(i as f32 / count * std::f32::consts::TAU);
                 let [u, v] = if is_round { [cos + 0.2 * dx, sin + 0.2 * dy] } else { [dx, dy] };
                 PathPoint { at: Point::new(60.0 + x * u, 60.0 + y * v), is_on }
             });
