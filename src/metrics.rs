@@ -89,7 +89,7 @@ impl Agreement {
         })
     }
 
-    /// Whether one render lacks something of a few px that the other has.
+    /// True if one render lacks something of a few px that the other has.
     pub fn has_gap(&self) -> bool {
         self.patch_abs > MAX_PATCH_ABS
     }

@@ -91,7 +91,7 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    /// Whether the SVG is drawn as it was fitted: agreement of [`MIN_AGREEMENT_DB`] or more, and no gap.
+    /// True if the SVG is drawn as it was fitted: agreement of [`MIN_AGREEMENT_DB`] or more, and no gap.
     pub fn agrees(&self) -> bool {
         self.agreement.psnr_db >= MIN_AGREEMENT_DB && !self.agreement.has_gap()
     }

@@ -306,13 +306,13 @@ const FIRST_STROKE_BYTES: usize = 250;
 /// A page without strokes as faithful as this, dB, needs none.
 const BLANK_DB: f64 = 40.0;
 
-/// Whether a drawing should have strokes and has none.
+/// True if a drawing should have strokes and has none.
 fn is_blank(drawn: &Drawn) -> bool {
     let Judged { fit, verdict, .. } = &drawn.judged;
     fit.base.is_none() && fit.scene.is_empty() && verdict.fidelity.psnr_db < BLANK_DB
 }
 
-/// How resvg's render differs from our own.
+/// Difference of resvg's render from our own, in words.
 fn disagreement(agreement: &Agreement) -> String {
     let Agreement {
         psnr_db, patch_abs, ..

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use clap::error::ErrorKind;
 
-/// What is wrong with the arguments, which begin with the program's name, and the advice.
+/// Fault of the arguments, which begin with the program's name, and the advice.
 pub(super) fn parts(error: &clap::Error, args: &[OsString]) -> (String, Option<String>) {
     let message = error.to_string();
     let paragraphs: Vec<String> = message

@@ -11,7 +11,7 @@ pub const MAX_SHORTFALL_DB: f64 = 0.6;
 /// pixel, something is missing or in another place.
 pub const MIN_DB_AGAINST_RESVG: f64 = 36.0;
 
-/// Whether an engine draws what resvg draws: it leaves no gap, and its render is close to resvg's, or its fidelity, where that
+/// True if an engine draws what resvg draws: it leaves no gap, and its render is close to resvg's, or its fidelity, where that
 /// is known, falls short of resvg's by no more than [`MAX_SHORTFALL_DB`].
 pub fn passes(against_resvg: &Agreement, shortfall_db: Option<f64>) -> bool {
     let is_close = against_resvg.psnr_db >= MIN_DB_AGAINST_RESVG;

@@ -52,7 +52,7 @@ pub(super) struct Corrections {
     /// The most strokes of a file that missed the fidelity, and the fewest of one that reached it.
     pub(super) missed: usize,
     pub(super) reached: usize,
-    /// Whether the last strokes that were added brought too little for others to be of use.
+    /// True if the last strokes that were added brought too little for others to be of use.
     pub(super) is_hopeless: bool,
     /// Fidelity of the last file, dB.
     pub(super) last_db: f64,
@@ -62,7 +62,7 @@ pub(super) struct Corrections {
     pub(super) db_per_doubling: f64,
     /// Bytes of the drawing once strokes share widths and colours, in units of those before.
     pub(super) restricted: f32,
-    /// Whether bytes that were left have been used.
+    /// True if bytes that were left have been used.
     pub(super) refilled: bool,
 }
 

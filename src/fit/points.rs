@@ -28,7 +28,8 @@ const PRUNINGS: usize = 30;
 /// Least segments of a line or a curve in a survey.
 const LEAST: usize = 4;
 
-/// Changes the points of the free strokes where that pays, when a share `done` of the polish is over. Returns the former index of each number of the free strokes,
+/// Changes the points of the free strokes where that pays, when a share `done` of the polish is over. Returns the former index of each
+/// number of the free strokes,
 /// `None` for a new one.
 pub(super) fn rearrange(session: &mut Session<'_>, done: f32) -> Vec<Option<usize>> {
     let excess = excess(session);

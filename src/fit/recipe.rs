@@ -101,8 +101,8 @@ pub struct Stages {
     /// Growing ends when less than this share of a stage's strokes is worth its price. Half, twice, at the
     /// default quality: +0.11, −0.04 dB at +0.7, −5.6 % of the bytes.
     pub paying_share: f64,
-    /// The least that the polish adds to the fidelity of the stages, dB. Growing ends this much below the fidelity
-    /// asked for.
+    /// Growing ends this much below the fidelity asked for, dB. The polish brings 5 dB on photographs and 15 on flat art, and a search
+    /// from below begins with few strokes. 8 instead of 12: kodim04 at 36 dB takes 32.8 instead of 11.7 s.
     pub polish_gain_db: f64,
     /// The least that a stage has to add to the fidelity for each doubling of the strokes, where a fidelity is asked for, dB. Photographs
     /// gain 2.2; flat art, whose edges strokes of two points follow badly, falls from 2 to 0.1.
@@ -270,7 +270,7 @@ pub struct Points {
     pub capsules: f32,
     /// Share of a budget of bytes that is filled with points before the file is written.
     pub filled: f32,
-    /// Share of the polish after which bytes that are left are for points alone.
+    /// Share of the polish after which bytes that are left are for points alone. A guess.
     pub alone: f32,
     /// Farthest that a new corner moves from its line at once, in units of the line's length.
     pub reach: f32,
@@ -447,13 +447,15 @@ pub struct Correction {
     pub least_part: f64,
     /// A fidelity is met if it is exceeded by no more than this, dB.
     pub excess_db: f64,
-    /// The number of strokes is found if this share more than a number that missed the fidelity reaches it.
+    /// The number of strokes is found if this share more than a number that missed the fidelity reaches it. A guess.
     pub precision: f64,
-    /// Least share of the missing fidelity that more strokes have to bring, or none of them will bring the rest.
+    /// Least share of the missing fidelity that more strokes have to bring, or none of them will bring the rest. Without this end,
+    /// parrots-256 at 42 dB takes 23 instead of 10 s for 0.3 dB.
     pub least_gain: f64,
-    /// A file that uses less than this share of its bytes gets more points.
+    /// A file that uses less than this share of its bytes gets more points. A guess.
     pub filled: f64,
-    /// Iterations of polish as long as the drawing is far from the fidelity, in units of those of the first polish.
+    /// Iterations of polish as long as the drawing is far from the fidelity, in units of those of the first polish. 0.4 instead of 0.2:
+    /// kodim04 at 36 dB takes 24 instead of 11.7 s.
     pub approach_share: f64,
     /// Iterations of polish after a correction, in units of those of the first polish.
     pub polish_share: f64,

@@ -25,7 +25,7 @@ const BYTES_PER_STROKE: usize = 70;
 /// Fidelity of a picture that was halved and enlarged again, dB, from which on its half is as good. Strokes end far below.
 const SAME_DB: f64 = 44.0;
 
-/// The same for pictures with lines and sharp edges, whose places half as many pixels tell as well.
+/// Such a fidelity of lines and sharp edges, whose places half as many pixels tell as well.
 const NEARLY_SAME_DB: f64 = 36.0;
 
 /// Share of pixels whose neighbours have their colour: flat art and drawings of lines have more, photographs mostly less.
@@ -77,12 +77,12 @@ fn counted(config: &Config) -> usize {
     strokes.map_or(0, |count| count.saturating_mul(PIXELS_PER_STROKE))
 }
 
-/// Whether a picture has no detail that its half lacks, from which it can be enlarged again to `loss_db`.
+/// True if a picture has no detail that its half lacks, from which it can be enlarged again to `loss_db`.
 fn is_same(loss_db: f64, config: &Config) -> bool {
     loss_db >= SAME_DB.max(config.budget.psnr_db.unwrap_or(0.0) + 10.0)
 }
 
-/// Whether strokes show no more of `picture` than of its half, from which it can be enlarged again to `loss_db`.
+/// True if strokes show no more of `picture` than of its half, from which it can be enlarged again to `loss_db`.
 fn shows_no_more(loss_db: f64, picture: &Image, config: &Config) -> bool {
     // A fidelity, or a quality of its own, is asked for of all that is in the picture.
     let is_for_screen = config.budget.psnr_db.is_none() && config.quality.is_none();

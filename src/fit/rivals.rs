@@ -1,7 +1,7 @@
 //! Rivals of a drawing of few strokes.
 //!
-//! Where few strokes draw a picture, which of many good places each of them finds is chance, and moves the fidelity by some dB. There
-//! a fit also draws as a shorter one would, which takes a fraction of its time, and keeps the better drawing. So a longer fit is never worse than a
+//! Chance decides which of many good places each of a few strokes finds, and moves the fidelity by some dB. So a fit of few strokes also
+//! draws as the shorter presets would, which takes a fraction of its time, and keeps the best drawing. A longer preset is therefore never worse than a
 //! shorter one.
 
 use super::budget;

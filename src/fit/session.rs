@@ -69,7 +69,7 @@ pub(super) struct Session<'a> {
     keeper: Option<Keeper<'a>>,
 }
 
-/// What to draw: the configuration, the base, where errors count, and the size of the picture, px, if a reduced one is drawn.
+/// Task of a fit: the configuration, the base, where errors count, and the size of the picture, px, if a reduced one is drawn.
 pub(super) type Wishes<'a> = (
     &'a Config,
     Option<&'a Base>,
@@ -293,7 +293,7 @@ impl<'a> Session<'a> {
         empty + layers * budget::LAYER_BYTES + strokes
     }
 
-    /// How many layers of the drawing are joined with the one below because they would take much of a budget of bytes.
+    /// Number of layers of the drawing that are joined with the one below because they would take much of a budget of bytes.
     pub(super) fn layers_to_join(&self) -> usize {
         let Some(most) = self
             .config

@@ -21,7 +21,7 @@ pub(super) fn size(bytes: &[u8]) -> Option<(u32, u32)> {
     Some((le32(bytes, 16)?, le32(bytes, 12)?))
 }
 
-/// Whether faces of a cube, layers or smaller copies follow the first picture; copies do not count.
+/// True if faces of a cube, layers or smaller copies follow the first picture; copies do not count.
 pub(super) fn has_more(bytes: &[u8]) -> bool {
     let is_cube_or_volume = |caps: u32| caps & 0x20_0200 != 0;
     le32(bytes, 112).is_some_and(is_cube_or_volume)

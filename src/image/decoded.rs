@@ -1,4 +1,4 @@
-//! What the decoders hand over: samples, and what they mean.
+//! Output of the decoders: samples, and their meaning.
 
 #[cfg(feature = "formats")]
 use ::image::ImageFormat;

@@ -64,7 +64,7 @@ const CGBI: Foreign = foreign(
 /// Bytes of a text that may come before the root element of an SVG.
 const PROLOG: usize = 4096;
 
-/// Whether the file begins as a PNG and is none.
+/// True if the file begins as a PNG and is none.
 pub(super) fn is_cgbi(bytes: &[u8]) -> bool {
     bytes.starts_with(CGBI.magic)
 }

@@ -35,7 +35,7 @@ pub(crate) fn stated_size(bytes: &[u8]) -> Option<(Embeddable, u32, u32)> {
     Some((format, width, height))
 }
 
-/// Whether the file is a TGA: nothing at the beginning tells. It ends as TGA 2 does, or has a header that makes sense
+/// True if the file is a TGA: nothing at the beginning tells. It ends as TGA 2 does, or has a header that makes sense
 /// and is either as long as its samples take or has the name of one.
 pub(super) fn is_tga(bytes: &[u8], is_named: bool) -> bool {
     let is_exact = || tga_length(bytes).is_some_and(|length| length == bytes.len() as u64);
@@ -66,7 +66,7 @@ fn tga_length(bytes: &[u8]) -> Option<u64> {
     Some(if kind > 8 { 0 } else { length })
 }
 
-/// Whether the file is a TIFF with 64-bit offsets.
+/// True if the file is a TIFF with 64-bit offsets.
 pub(super) fn is_big_tiff(bytes: &[u8]) -> bool {
     bytes.starts_with(b"II\x2b\0") || bytes.starts_with(b"MM\0\x2b")
 }
@@ -147,7 +147,7 @@ pub(super) struct JpegFrame {
     pub(super) bits: u8,
     /// Samples of a pixel.
     pub(super) components: u8,
-    /// Whether Adobe's marker is there, whose CMYK is inverted.
+    /// True if Adobe's marker is there, whose CMYK is inverted.
     pub(super) is_adobe: bool,
 }
 
@@ -167,7 +167,7 @@ pub(super) fn jpeg_frame(bytes: &[u8]) -> Option<JpegFrame> {
     })
 }
 
-/// Whether the marker begins a frame.
+/// True if the marker begins a frame.
 fn is_frame(marker: u8) -> bool {
     (0xc0..=0xcf).contains(&marker) && !matches!(marker, 0xc4 | 0xc8 | 0xcc)
 }

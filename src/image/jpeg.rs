@@ -26,7 +26,7 @@ pub(super) fn check(bytes: &[u8]) -> Result<(), Failure> {
     Err(unsupported(ImageFormat::Jpeg, kind))
 }
 
-/// Whether the picture is one of four inks.
+/// True if the picture is one of four inks.
 pub(super) fn is_ink(bytes: &[u8]) -> bool {
     header::jpeg_frame(bytes).is_some_and(|frame| frame.components == 4)
 }

@@ -37,7 +37,7 @@ pub(super) fn coding(bytes: &[u8], icc: Option<Vec<u8>>) -> Option<Coding> {
     })
 }
 
-/// Whether code points name known primaries, and a transfer function of displays.
+/// True if code points name known primaries, and a transfer function of displays.
 fn is_stated(primaries: u8, transfer: u8) -> bool {
     matches!(primaries, 1 | 4..=9 | 11 | 12 | 22) && matches!(transfer, 1 | 4..=8 | 11..=16 | 18)
 }

@@ -55,7 +55,7 @@ struct Span {
     weights: [f32; 2],
 }
 
-/// What each value of an axis of `new` values covers of one of `old` values.
+/// Spans of an axis of `old` values that the values of one of `new` values cover.
 fn spans(old: usize, new: usize) -> Vec<Span> {
     let step = old as f64 / new as f64;
     let span = |i: usize| {

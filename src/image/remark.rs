@@ -21,7 +21,7 @@ pub enum Remark {
 }
 
 impl Remark {
-    /// Whether colours may be off, or nothing is there: what a user should hear of unasked.
+    /// True if colours may be off, or nothing is there: what a user should hear of unasked.
     pub fn is_warning(&self) -> bool {
         matches!(
             self,

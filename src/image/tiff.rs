@@ -70,7 +70,7 @@ struct Page {
     width: usize,
     height: usize,
     color: ColorType,
-    /// What the first sample after those of the colour is.
+    /// Meaning of the first sample after those of the colour.
     extra: Option<u16>,
     palette: Option<palette::Palette>,
 }

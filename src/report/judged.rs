@@ -8,7 +8,7 @@ use crate::metrics::{Quality, null_is_infinite};
 use crate::scene::Scene;
 use crate::verify::{self, MIN_AGREEMENT_DB, OnMattes, Verdict};
 
-/// How much less faithful than our own render a file may be that does not agree with it, dB.
+/// Fidelity that a file may lack against our own render although it does not agree with it, dB.
 const MAX_LOSS_DB: f64 = 1.0;
 
 /// A picture of fewer pixels is small: its strokes are about as wide as its pixels.
@@ -71,7 +71,7 @@ impl Judged {
         (!is_part).then_some(&self.fit.scene)
     }
 
-    /// Whether the file is as good as the fit: it has all that our own render has, and resvg's render agrees with that, or is
+    /// True if the file is as good as the fit: it has all that our own render has, and resvg's render agrees with that, or is
     /// about as faithful to the picture. In a picture of few pixels, or of noise, all is edges, at which renders differ.
     pub fn holds(&self) -> bool {
         let Verdict {
@@ -83,7 +83,7 @@ impl Judged {
         !agreement.has_gap() && (is_close || is_as_faithful || self.is_tiny())
     }
 
-    /// Whether strokes are about as wide as the pixels of the picture.
+    /// True if strokes are about as wide as the pixels of the picture.
     pub fn is_tiny(&self) -> bool {
         self.fit.target.width() * self.fit.target.height() < FEW_PIXELS
     }

@@ -34,7 +34,7 @@ impl WrittenPath {
     }
 }
 
-/// Whether a place inside the loop is out of the pen's reach.
+/// True if a place inside the loop is out of the pen's reach.
 fn leaves_gap(path: &WrittenPath, width: i64) -> bool {
     let segments = path.segments(TOLERANCE);
     let float = |p: [i64; 2]| p.map(|units| units as f64);
@@ -61,7 +61,7 @@ fn leaves_gap(path: &WrittenPath, width: i64) -> bool {
         .any(|p| is_inside(p, &segments) && !is_reached(p, &segments, reach))
 }
 
-/// Whether the loop winds around `p`.
+/// True if the loop winds around `p`.
 fn is_inside(p: [f64; 2], segments: &[[[f64; 2]; 2]]) -> bool {
     let crossing = |&[a, b]: &[[f64; 2]; 2]| {
         let side = (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
@@ -74,7 +74,7 @@ fn is_inside(p: [f64; 2], segments: &[[[f64; 2]; 2]]) -> bool {
     segments.iter().map(crossing).sum::<i32>() != 0
 }
 
-/// Whether a segment comes as near to `p` as `reach`.
+/// True if a segment comes as near to `p` as `reach`.
 fn is_reached(p: [f64; 2], segments: &[[[f64; 2]; 2]], reach: f64) -> bool {
     segments.iter().any(|&[a, b]| {
         let along = [b[0] - a[0], b[1] - a[1]];

@@ -64,10 +64,11 @@ pub(super) fn enough(session: &Session<'_>) -> Option<Stop> {
 }
 
 impl OpenStage {
-    /// Whether the stage, with which the drawing has `strokes` strokes and `psnr_db`, added enough to its fidelity to be followed by others. Otherwise it takes
-    /// more than strokes of two points.
+    /// True if the stage added enough fidelity to be followed by others, now that the drawing has `strokes` strokes and `psnr_db`.
+    /// Where it did not, strokes of two points do not help: the polish, which bends them, has to come first.
     fn gains(&self, strokes: usize, psnr_db: f64, stages: &Stages) -> bool {
         let (before, before_db) = self.before;
+        // The first few strokes gain by chance.
         if before < stages.first * 4 {
             return true;
         }

@@ -10,7 +10,7 @@ use crate::fit::session::Session;
 /// One in this many offers is taken at a time.
 const AT_A_TIME: usize = 4;
 
-/// What a stroke can spare, and what that is worth.
+/// A part that a stroke can spare, with its worth.
 struct Offer {
     stroke: usize,
     /// A point that goes; `None` if it is the whole stroke.

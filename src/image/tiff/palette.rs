@@ -11,7 +11,7 @@ use super::samples::Samples;
 use super::{Failure, damaged, explained};
 use crate::image::header::is_big_tiff;
 
-/// What `PhotometricInterpretation` says of numbers of colours, and of grey.
+/// Values of `PhotometricInterpretation` for numbers of colours, and of grey.
 const PALETTE: u16 = 3;
 const GREY: u16 = 1;
 
