@@ -141,7 +141,7 @@ fn flat_share(picture: &Image) -> f64 {
             .iter()
             .all(|plane| others.iter().all(|&k| is_near(plane, k)))
     };
-    let flat = (0..count).into_par_iter().filter(is_flat).count();
+    let flat = (0..count).filter(is_flat).count();
     flat as f64 / count as f64
 }
 
