@@ -106,7 +106,14 @@ impl Fitter<'_> {
         for rival in rivals {
             best = Some(rival.draw(picture, since, competes)?.or_better(best));
         }
-        Ok(self.draw(picture, since, competes)?.or_better(best).fit)
+        let drawn = self.draw(picture, since, competes)?;
+        let stop = drawn.fit.stop;
+        let mut fit = drawn.or_better(best).fit;
+        // Whoever stopped the fit is told so, whichever drawing is the better one.
+        if stop == Stop::Interrupted {
+            fit.stop = stop;
+        }
+        Ok(fit)
     }
 
     /// The picture reduced to the pixels that its drawing needs, if these are fewer, or to those that its base was drawn of.
