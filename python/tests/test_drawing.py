@@ -195,8 +195,8 @@ def test_renders_have_the_size_and_channels_asked_for(drawing: strokefit.Drawing
     for scale in (0, -1, float("nan"), 1e9):
         with pytest.raises(ValueError, match="scale|size of 1 to"):
             drawing.to_numpy(scale)
-    with pytest.raises(ValueError, match="'red' is not a background"):
-        drawing.to_numpy(background="red")
+    with pytest.raises(ValueError, match="'reddish' is not a background"):
+        drawing.to_numpy(background="reddish")
 
 
 def test_svgs_are_drawings_text_or_files(drawing: strokefit.Drawing, tmp_path: Path) -> None:

@@ -157,7 +157,7 @@ import resource, numpy as np, strokefit
 picture = np.zeros((4000, 4000), np.uint8)
 resource.setrlimit(resource.RLIMIT_AS, ({limit} << 20, resource.RLIM_INFINITY))
 try:
-    strokefit.fit(picture)
+    strokefit.fit(picture, strokes=100_000)  # so many need all pixels
 except MemoryError as error:
     print(error)
 """
