@@ -143,15 +143,17 @@ def test_a_killed_batch_goes_on(cluster: Cluster, crowd: Path, expected: dict[st
     kept = noted(out)
     assert kept < 202
     status, words = ended(cluster.batch(crowd, "-o", out))
-    assert status == 0 and f"{kept} were done before" in words, words
+    # The two pictures that fail may be among those that were done before.
+    assert status == (0 if " 0 failed" in words else 1) and f"{kept} were done before" in words, words
     assert drawings(out) == expected
 
 
 def test_two_batches_do_not_write_to_one_folder(cluster: Cluster, crowd: Path, tmp_path: Path) -> None:
     racers = [cluster.batch(crowd, "-o", tmp_path / "out") for _ in range(2)]
-    (first, said), (second, words) = sorted((ended(racer) for racer in racers), key=lambda end: end[0])
-    assert first == 0 and "200 drawn, 2 failed" in said
-    assert second == 1 and "is being written to by process" in words
+    refused = "is being written to by process"
+    (first, said), (second, words) = sorted((ended(racer) for racer in racers), key=lambda end: refused in end[1])
+    assert first == 1 and "200 drawn, 2 failed" in said
+    assert second == 1 and refused in words
     assert len(rows(tmp_path / "out")) == 202
 
 
