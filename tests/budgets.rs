@@ -1,10 +1,11 @@
 //! Budgets hold, and no drawing has a hole: what cases of users showed.
 #![allow(missing_docs, clippy::unwrap_used)]
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use strokefit::fit::{Budget, Config, Fit, Fitter, Look, Preset};
+use strokefit::fit::{Budget, Config, Fit, Fitter, Look, Preset, Progress, Stop};
 use strokefit::image::Image;
 use strokefit::report::Judged;
 
@@ -89,6 +90,30 @@ fn every_budget_of_bytes_is_kept_without_a_hole() {
         assert!(judged.holds(), "{bytes}: {:?}", judged.verdict.agreement);
         assert!(judged.svg.len() <= bytes, "{bytes}");
         assert!(bytes < 4000 || db(&judged) >= 43.0, "{}", db(&judged));
+    }
+}
+
+#[test]
+fn a_fit_that_is_stopped_keeps_its_bytes() {
+    let picture = picture("cartoon");
+    for last in [1, 60, 400, 900] {
+        let mut calls = 0;
+        let mut observer = |_: &Progress<'_>| {
+            calls += 1;
+            if calls < last {
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
+            }
+        };
+        let config = Config {
+            budget: of_bytes(1200),
+            ..Config::default()
+        };
+        let fit = Fitter::new(config).observer(&mut observer).fit(&picture);
+        let fit = fit.unwrap();
+        assert_eq!(fit.stop, Stop::Interrupted, "{last}");
+        assert!(fit.svg().len() <= 1200, "{last}: {}", fit.svg().len());
     }
 }
 

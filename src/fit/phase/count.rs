@@ -196,18 +196,20 @@ pub(in crate::fit) fn meet_bytes(session: &mut Session<'_>) -> Outcome {
         return Outcome::Over;
     };
     let bytes = session.best.as_ref().map_or(0, |best| best.bytes);
-    if session.drawing.len() == 0 || session.cut_by().is_some() {
+    if session.drawing.len() == 0 {
         return Outcome::Over;
     }
+    // A fit that is cut short keeps its bytes, too; it only adds nothing.
     if bytes > most {
         shorten(session, bytes - most);
         return Outcome::Removed;
     }
+    let is_cut = session.cut_by().is_some();
     let corrections = &mut session.history.corrections;
     let is_filled = bytes as f64 >= session.recipe.correction.filled * most as f64;
     let is_last = std::mem::replace(&mut corrections.refilled, true);
     let may_polish = session.config.polish && session.config.allows_points();
-    if is_filled || is_last || !may_polish || session.config.budget.psnr_db.is_some() {
+    if is_filled || is_last || is_cut || !may_polish || session.config.budget.psnr_db.is_some() {
         return Outcome::Over;
     }
     Outcome::Short
