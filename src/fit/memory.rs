@@ -21,18 +21,23 @@ const PER_STROKE: u64 = 8000;
 /// such, which is found out by reducing it.
 pub fn predicted_rss_bytes(picture: &Image, config: &Config) -> u64 {
     let all = picture.width() * picture.height();
-    let reduced = reduction::size(picture, config);
-    let pixels = reduced.map_or(all, |[width, height]| width * height);
-    let side = |px: usize| u32::try_from(px).unwrap_or(u32::MAX);
-    let page = [side(picture.width()), side(picture.height())];
-    let read = reduced.map_or(0, |_| read_bytes(page));
+    match reduction::size(picture, config) {
+        Some([width, height]) => of_pixels(width * height, Some(all), config),
+        None => of_pixels(all, None, config),
+    }
+}
+
+/// The predicted peak memory, bytes, of a process that has drawn `target`, the reduced picture of a page of `page` px if there is one.
+pub(crate) fn rss_bytes_of(target: &Image, page: Option<[u32; 2]>, config: &Config) -> u64 {
+    let read = page.map(|[width, height]| width as usize * height as usize);
+    of_pixels(target.width() * target.height(), read, config)
+}
+
+/// Predicted peak memory, bytes, for a drawing of `pixels` pixels, of a picture of which `read` were read if it was reduced.
+fn of_pixels(pixels: usize, read: Option<usize>, config: &Config) -> u64 {
     let recipe = config.recipe();
     let limit = config.budget.strokes.map(|n| n.min(MAX_STROKES));
     let strokes = Plan::new(config, &recipe, limit, Before::default(), pixels).strokes();
+    let read = PER_PIXEL_READ * read.unwrap_or(0) as u64;
     BASE + read + PER_PIXEL * pixels as u64 + PER_STROKE * strokes as u64
-}
-
-/// Bytes for a picture of this size, px, that is reduced before it is drawn.
-pub(crate) fn read_bytes([width, height]: [u32; 2]) -> u64 {
-    PER_PIXEL_READ * u64::from(width) * u64::from(height)
 }

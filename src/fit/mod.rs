@@ -64,7 +64,7 @@ pub use config::{
 pub use fitter::Fitter;
 pub use focus::Focus;
 pub use memory::predicted_rss_bytes;
-pub(crate) use memory::read_bytes;
+pub(crate) use memory::rss_bytes_of;
 pub use objective::Objective;
 pub use progress::{CancelToken, Observer, Progress};
 pub use recipe::{

@@ -14,7 +14,7 @@ use crate::metrics::psnr_db;
 const ENOUGH_PIXELS: usize = 2 * SCREEN_PIXELS;
 
 /// Pixels that a stroke needs, where their number is given: a dozen for each of its points, and more for their places.
-const PIXELS_PER_STROKE: usize = 200;
+const SHOWN_PER_STROKE: usize = 200;
 
 /// Fewest pixels that a picture is reduced to, however little detail it has: the price of strokes is that of a screen.
 const LEAST_PIXELS: usize = SCREEN_PIXELS;
@@ -74,7 +74,7 @@ fn counted(config: &Config) -> usize {
     let Budget { strokes, bytes, .. } = config.budget;
     let by_bytes = bytes.map(|bytes| bytes / BYTES_PER_STROKE);
     let strokes = strokes.into_iter().chain(by_bytes).min();
-    strokes.map_or(0, |count| count.saturating_mul(PIXELS_PER_STROKE))
+    strokes.map_or(0, |count| count.saturating_mul(SHOWN_PER_STROKE))
 }
 
 /// True if a picture has no detail that its half lacks, from which it can be enlarged again to `loss_db`.

@@ -5,7 +5,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::{Input, Judged, OnFocus, SCHEMA, Usage, gzip_bytes, per_stroke};
-use crate::fit::{Base, Config, StageRecord, Stop, predicted_rss_bytes, read_bytes};
+use crate::fit::{Base, Config, StageRecord, Stop, rss_bytes_of};
 use crate::metrics::{Agreement, Quality};
 use crate::scene::Dropped;
 use crate::svg::{self, Travel};
@@ -184,8 +184,7 @@ impl FitReport {
             wall_s: run.wall.as_secs_f64(),
             cpu_s: run.usage.cpu_s,
             peak_rss_bytes: run.usage.peak_rss_bytes,
-            predicted_rss_bytes: predicted_rss_bytes(&fit.target, run.config)
-                + fit.scene.page.map_or(0, read_bytes),
+            predicted_rss_bytes: rss_bytes_of(&fit.target, fit.scene.page, run.config),
             stop: stop_word(fit.stop).into(),
             stacking_db: fit.stacking_db,
             travel: svg::travel(&fit.scene, &fit.file),

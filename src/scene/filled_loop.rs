@@ -5,6 +5,7 @@
 //! the pen. An open path that ends where it starts has one ring and no hole, and with round caps it is the same union of
 //! discs. So such paths are written open.
 
+use super::overlap::{Segment, gap};
 use super::written_path::{WrittenPath, WrittenPoint};
 use super::{MAX_POINTS, PathPoint};
 
@@ -38,7 +39,7 @@ impl WrittenPath {
 fn leaves_gap(path: &WrittenPath, width: i64) -> bool {
     let segments = path.segments(TOLERANCE);
     let float = |p: [i64; 2]| p.map(|units| units as f64);
-    let segments: Vec<[[f64; 2]; 2]> = segments.iter().map(|ends| ends.map(float)).collect();
+    let segments: Vec<Segment> = segments.iter().map(|ends| ends.map(float)).collect();
     let ends = || segments.iter().flatten();
     let low = ends().fold([f64::INFINITY; 2], |low, p| {
         [low[0].min(p[0]), low[1].min(p[1])]
@@ -58,12 +59,12 @@ fn leaves_gap(path: &WrittenPath, width: i64) -> bool {
     let places = (0..PLACES).flat_map(|row| (0..PLACES).map(move |column| [column, row]));
     places
         .map(|[column, row]| [at(0, column), at(1, row)])
-        .any(|p| is_inside(p, &segments) && !is_reached(p, &segments, reach))
+        .any(|p| is_inside(p, &segments) && segments.iter().all(|&s| gap(p, s) > reach))
 }
 
 /// True if the loop winds around `p`.
-fn is_inside(p: [f64; 2], segments: &[[[f64; 2]; 2]]) -> bool {
-    let crossing = |&[a, b]: &[[f64; 2]; 2]| {
+fn is_inside(p: [f64; 2], segments: &[Segment]) -> bool {
+    let crossing = |&[a, b]: &Segment| {
         let side = (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
         match (a[1] <= p[1], b[1] <= p[1]) {
             (true, false) if side > 0.0 => 1,
@@ -72,18 +73,6 @@ fn is_inside(p: [f64; 2], segments: &[[[f64; 2]; 2]]) -> bool {
         }
     };
     segments.iter().map(crossing).sum::<i32>() != 0
-}
-
-/// True if a segment comes as near to `p` as `reach`.
-fn is_reached(p: [f64; 2], segments: &[[[f64; 2]; 2]], reach: f64) -> bool {
-    segments.iter().any(|&[a, b]| {
-        let along = [b[0] - a[0], b[1] - a[1]];
-        let length2 = along[0] * along[0] + along[1] * along[1];
-        let there = [p[0] - a[0], p[1] - a[1]];
-        let h = ((there[0] * along[0] + there[1] * along[1]) / length2).clamp(0.0, 1.0);
-        let away = [there[0] - h * along[0], there[1] - h * along[1]];
-        away[0] * away[0] + away[1] * away[1] <= reach * reach
-    })
 }
 
 #[cfg(test)]

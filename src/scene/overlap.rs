@@ -85,7 +85,8 @@ const APART: i64 = UNITS_PER_PX * 3 / 2;
 /// How far segments may be from their curve, px: less than half of what [`APART`] is above the diagonal of a pixel.
 const TOLERANCE: f64 = 0.04;
 
-type Segment = [[f64; 2]; 2];
+/// A segment from one place to another, in units.
+pub(super) type Segment = [[f64; 2]; 2];
 
 /// Whether some of these segments come nearer to each other than this.
 fn is_nearer(a: &[Segment], b: &[Segment], reach: f64) -> bool {
@@ -109,8 +110,8 @@ fn distance(a: Segment, b: Segment) -> f64 {
     gaps.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// From a point to a segment.
-fn gap([x, y]: [f64; 2], [a, b]: Segment) -> f64 {
+/// Distance of a point from a segment, in units.
+pub(super) fn gap([x, y]: [f64; 2], [a, b]: Segment) -> f64 {
     let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
     let length2 = dx * dx + dy * dy;
     let along = ((x - a[0]) * dx + (y - a[1]) * dy) / length2.max(f64::MIN_POSITIVE);

@@ -126,14 +126,14 @@ fn seed(session: &mut Session<'_>, planned: PlannedStage) {
         count,
         scale,
     } = planned;
-    let mut before = (0, 0.0);
-    timer.searching(count, || {
+    let before = timer.searching(count, || {
         drawing.sharpen(drawing.bounds.drawable(scale));
         drawing.freeze();
-        before = (drawing.len(), psnr_db(drawing.mse()));
+        let before = (drawing.len(), psnr_db(drawing.mse()));
         let candidates = search(drawing, count, scale, recipe.probing, config.seed);
         // The best candidate is drawn last, so that none of lesser gain hides it.
         drawing.extend(candidates.iter().rev().map(|c| c.stroke), index);
+        before
     });
     session.history.stage = Some(OpenStage {
         planned,

@@ -28,7 +28,7 @@ pub(in crate::fit) fn polish(session: &mut Session<'_>, purpose: Purpose) -> Res
     let correction = session.recipe.correction;
     let mut polish = of_density(session);
     if purpose == Purpose::Correct {
-        // What is far from the fidelity asked for is polished again, with more strokes.
+        // What is far from the fidelity asked for is polished again, with more strokes; and bytes that are left need few iterations.
         let share = match session.history.corrections.before {
             Some(_) => correction.polish_share,
             None => correction.approach_share,

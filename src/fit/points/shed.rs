@@ -97,7 +97,9 @@ fn take(session: &mut Session<'_>, offers: Vec<Offer>) -> Vec<Option<usize>> {
     let edited = drawing.edit(&edits);
     let strokes = drawing.free();
     let stay = (0..count).filter(|&i| keep[i]).map(|i| strokes.range(i));
-    let sources = stay.flat_map(|range| edited[range].to_vec()).collect();
+    let sources = stay
+        .flat_map(|range| edited[range].iter().copied())
+        .collect();
     drawing.retain_free(&keep);
     sources
 }
