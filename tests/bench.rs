@@ -1,6 +1,7 @@
 //! `strokefit bench` as its users meet it: files, lines, exit statuses, and going on where it stopped.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+#[path = "all/support"]
 mod support {
     pub(crate) mod picture;
     pub(crate) mod place;

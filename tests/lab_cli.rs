@@ -1,6 +1,7 @@
 //! `strokefit lab` as its users meet it.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+#[path = "all/support"]
 mod support {
     pub(crate) mod output;
     pub(crate) mod picture;

@@ -1,7 +1,7 @@
 //! What must hold for any bytes at all. Each target panics where it does not.
 //!
 //! `cargo fuzz run TARGET` drives them where there is a nightly toolchain and `cargo-fuzz`; the program of
-//! this crate drives them on a stable one, and `tests/fuzz.rs` does so for a moment.
+//! this crate drives them on a stable one, and `tests/all/fuzz.rs` does so for a moment.
 
 mod drive;
 mod scene;

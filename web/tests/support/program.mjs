@@ -32,7 +32,7 @@ export function inFolder(run) {
   }
 }
 
-// Takes note of a test that is skipped, as tests/support/skip.rs does; `.ci/run` lists and counts the notes.
+// Takes note of a test that is skipped, as tests/all/support/skip.rs does; `.ci/run` lists and counts the notes.
 export function skipped(what, reason) {
   const line = `SKIPPED ${what}: ${reason}\n`;
   process.stderr.write(line);

@@ -1,0 +1,105 @@
+//! Transparency is fitted: no background is drawn, and a drawing looks right on whatever it is laid.
+
+use crate::support::drafts::draft;
+use crate::support::fits::{drawn, sample};
+use strokefit::fit::{Background, Config, Execution, Fit, Fitter, Simd};
+use strokefit::image::Image;
+use strokefit::verify::{self, Size};
+
+fn text(fit: &Fit) -> String {
+    fit.svg()
+}
+
+/// A red square of half opacity in a clear page.
+fn glass() -> Image {
+    let inside = |i: usize| (12..36).contains(&(i % 48)) && (8..32).contains(&(i / 48));
+    let alpha = (0..48 * 40)
+        .map(|i| if inside(i) { 0.5 } else { 0.0 })
+        .collect();
+    let red = Image::filled(48, 40, [0.9, 0.2, 0.1]).unwrap();
+    red.with_alpha(alpha).unwrap()
+}
+
+#[test]
+fn pictures_look_right_on_every_matte() {
+    for (name, strokes, min_db) in [
+        ("noto-gem", 150, 36.0),
+        ("noto-hibiscus", 150, 32.0),
+        ("noto-rocket", 150, 30.0),
+    ] {
+        let picture = sample(name);
+        let fit = drawn(&picture, &draft(strokes));
+        let seen = verify::on_mattes(&text(&fit), &picture).unwrap();
+        for db in [seen.black_db, seen.white_db, seen.magenta_db] {
+            assert!(db > min_db, "{name}: {seen:?}");
+        }
+        let verdict = verify::verify(&text(&fit), &fit.target, &fit.soft).unwrap();
+        assert!(verdict.agreement.psnr_db > 36.0, "{name}: {verdict:?}");
+        assert_eq!(verdict.fidelity.psnr_db, seen.white_db, "{name}");
+    }
+}
+
+#[test]
+fn a_clear_picture_has_no_ground_and_the_same_alpha() {
+    let picture = sample("noto-gem");
+    let text = text(&drawn(&picture, &draft(150)));
+    assert!(!text.contains("<rect"));
+    let seen = verify::render(&text, Size::Scale(1.0), None).unwrap();
+    let pairs = seen.alpha().unwrap().iter().zip(picture.alpha().unwrap());
+    let error: f32 = pairs.map(|(a, b)| (a - b).abs()).sum();
+    let mean = error / picture.alpha().unwrap().len() as f32;
+    assert!(mean < 0.005, "alpha is off by {mean} in the mean");
+}
+
+#[test]
+fn glass_is_drawn_as_glass() {
+    let fit = drawn(&glass(), &draft(40));
+    let seen = verify::render(&text(&fit), Size::Scale(1.0), None).unwrap();
+    let at = |x: usize, y: usize| y * 48 + x;
+    let alpha = seen.alpha().unwrap();
+    assert!(
+        (alpha[at(24, 20)] - 0.5).abs() < 0.1,
+        "{}",
+        alpha[at(24, 20)]
+    );
+    assert!(alpha[at(3, 3)] < 0.05, "{}", alpha[at(3, 3)]);
+}
+
+#[test]
+fn without_a_colour_none_is_what_auto_is() {
+    let none = Config {
+        background: Background::None,
+        ..draft(30)
+    };
+    let picture = sample("noto-gem");
+    assert_eq!(
+        drawn(&picture, &none).scene,
+        drawn(&picture, &draft(30)).scene
+    );
+}
+
+#[test]
+fn on_a_colour_a_drawing_is_opaque() {
+    let config = Config {
+        background: Background::Color([0.2, 0.4, 0.6]),
+        ..draft(40)
+    };
+    let fit = drawn(&glass(), &config);
+    assert!(text(&fit).contains("<rect width=\"48\" height=\"40\" fill=\"#336699\"/>"));
+    assert_eq!((fit.target.alpha(), fit.soft.alpha()), (None, None));
+    assert_eq!(fit.target, glass().flattened([0.2, 0.4, 0.6]));
+}
+
+#[test]
+fn neither_threads_nor_instructions_change_a_clear_drawing() {
+    let scalar = Execution {
+        threads: Some(1),
+        simd: "scalar".parse::<Simd>().unwrap(),
+    };
+    let picture = sample("noto-gem");
+    let slow = Fitter::new(draft(30))
+        .execution(scalar)
+        .fit(&picture)
+        .unwrap();
+    assert_eq!(slow.scene, drawn(&picture, &draft(30)).scene);
+}

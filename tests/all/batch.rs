@@ -1,0 +1,257 @@
+//! Several pictures at once: names, tables, failures, events.
+
+use std::fs;
+
+use crate::support::output::stderr;
+use crate::support::place::{Place, STROKEFIT};
+use crate::support::refusal::assert_refused;
+
+const QUICK: [&str; 4] = ["--strokes", "12", "--preset", "draft"];
+
+fn with<'a>(args: &[&'a str]) -> Vec<&'a str> {
+    [args, &QUICK].concat()
+}
+
+#[test]
+fn each_picture_has_its_files_and_its_row() {
+    let place = Place::new();
+    place.picture("a.png", 20, 30);
+    place.picture("b c.png", 30, 20);
+    fs::create_dir(place.path("out")).unwrap();
+    let args = [
+        "fit",
+        "a.png",
+        "b c.png",
+        "-o",
+        "out/{stem}.svg",
+        "--report",
+        "{stem}.json",
+    ];
+    let output = place.done(&with(&args));
+    assert_eq!(
+        place.names(),
+        ["a.json", "a.png", "b c.json", "b c.png", "out"]
+    );
+    let table = stderr(&output);
+    let lines: Vec<_> = table.lines().collect();
+    assert_eq!(lines.len(), 4, "{table}");
+    for name in ["a", "b c"] {
+        let record = place.report(&format!("{name}.json"));
+        assert_eq!(record["input"]["path"], format!("{name}.png"));
+        let bytes = fs::metadata(place.path(&format!("out/{name}.svg")))
+            .unwrap()
+            .len();
+        assert_eq!(record["svg_bytes"], bytes);
+        let row = lines
+            .iter()
+            .find(|line| line.starts_with(&format!("{name}.png")))
+            .unwrap();
+        assert!(row.contains(&format!(" {bytes} ")), "{table}");
+    }
+    assert_eq!(lines[3], "2 drawn, 0 failed");
+}
+
+#[test]
+fn a_picture_alone_and_among_others_gives_the_same_bytes() {
+    let place = Place::new();
+    place.picture("a.png", 20, 30);
+    place.picture("b.png", 30, 20);
+    place.run(&with(&["fit", "a.png", "b.png", "-o", "{stem}.svg"]));
+    place.run(&with(&["fit", "b.png", "-o", "alone.svg"]));
+    let read = |name: &str| fs::read(place.path(name)).unwrap();
+    assert!(read("b.svg") == read("alone.svg"));
+}
+
+#[test]
+fn a_failure_does_not_stop_the_others_and_the_status_is_the_worst() {
+    let place = Place::new();
+    place.file("bad.png", "no picture");
+    place.picture("good.png", 20, 30);
+    let args = ["fit", "bad.png", "gone.png", "good.png", "-o", "{stem}.svg"];
+    let output = place.run(&with(&args));
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(place.names(), ["bad.png", "good.png", "good.svg"]);
+    let said = stderr(&output);
+    for words in [
+        "error: bad.png: not a picture",
+        "error: gone.png: no such file",
+        "1 drawn, 2 failed",
+    ] {
+        assert!(said.contains(words), "{said}");
+    }
+    let args = [
+        "fit",
+        "good.png",
+        "bad.png",
+        "-o",
+        "{stem}.svg",
+        "--psnr",
+        "99",
+    ];
+    assert_eq!(place.run(&with(&args)).status.code(), Some(1));
+    place.picture("other.png", 20, 31);
+    let args = [
+        "fit",
+        "good.png",
+        "other.png",
+        "-o",
+        "{stem}.svg",
+        "--psnr",
+        "99",
+    ];
+    let output = place.run(&with(&args));
+    assert_eq!(output.status.code(), Some(3));
+    assert!(
+        stderr(&output).contains("good.svg: target not reached"),
+        "{}",
+        stderr(&output)
+    );
+}
+
+#[test]
+fn outputs_that_would_collide_are_refused_before_the_work() {
+    let place = Place::new();
+    place.picture("a.png", 20, 30);
+    place.picture("b.png", 20, 30);
+    fs::create_dir(place.path("in")).unwrap();
+    place.picture("in/a.png", 20, 30);
+    for (args, words) in [
+        (
+            &["fit", "a.png", "b.png", "-o", "out.svg"][..],
+            ["out.svg", "{stem}"],
+        ),
+        (
+            &["fit", "a.png", "b.png", "-o", "-"],
+            ["standard output", "{stem}"],
+        ),
+        (
+            &["fit", "a.png", "in/a.png", "-o", "{stem}.svg"],
+            ["a.svg", "different names"],
+        ),
+        (
+            &[
+                "fit",
+                "a.png",
+                "b.png",
+                "-o",
+                "{stem}.svg",
+                "--report",
+                "r.json",
+            ],
+            ["r.json", "{stem}"],
+        ),
+        (
+            &["fit", "a.png", "-o", "{stem}.svg", "--report", "./a.svg"],
+            ["a.svg", "same place"],
+        ),
+        (
+            &["fit", "a.png", "-o", "-", "--events", "-"],
+            ["standard output", "same place"],
+        ),
+        (
+            &[
+                "fit",
+                "in/a.png",
+                "b.png",
+                "-o",
+                "{stem}.svg",
+                "-o",
+                "{stem}.png",
+            ],
+            ["overwritten", "b.png"],
+        ),
+        (
+            &[
+                "fit",
+                "a.png",
+                "b.png",
+                "-o",
+                "{stem}.svg",
+                "--events",
+                "b.png",
+            ],
+            ["overwritten", "b.png"],
+        ),
+        (
+            &["fit", "-", "-o", "{stem}.svg"],
+            ["standard input", "{stem}"],
+        ),
+    ] {
+        assert_refused(&place, args, 2, &words);
+    }
+    let args = ["fit", "a.png", "b.png", "-o", "a.png/{stem}.svg"];
+    assert_refused(&place, &args, 1, &["a.png/a.svg", "is a file"]);
+}
+
+#[test]
+fn events_tell_of_each_stage_and_end_with_the_report() {
+    let place = Place::new();
+    place.picture("a.png", 40, 30);
+    place.file("bad.png", "no picture");
+    let args = [
+        "fit",
+        "a.png",
+        "bad.png",
+        "-o",
+        "{stem}.svg",
+        "--events",
+        "-",
+        "--report",
+        "{stem}.json",
+        "-q",
+    ];
+    let output = place.run(&with(&args));
+    let text = String::from_utf8(output.stdout).unwrap();
+    let events: Vec<serde_json::Value> = text
+        .lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect();
+    let named = |name: &str| {
+        events
+            .iter()
+            .filter(|e| e["event"] == name)
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(
+        events[0],
+        serde_json::json!({"event": "start", "path": "a.png", "width": 40, "height": 30})
+    );
+
+    let (record, stages) = (place.report("a.json"), named("stage"));
+    assert_eq!(
+        stages.len(),
+        record["stages"].as_array().unwrap().len(),
+        "{text}"
+    );
+    for (event, stage) in stages.iter().zip(record["stages"].as_array().unwrap()) {
+        assert_eq!(event["stage"], stage["index"]);
+        assert_eq!(event["iterations"], stage["iterations"]);
+    }
+    assert_eq!(named("polish").len(), 1, "{text}");
+    assert_eq!(named("polish")[0]["done"], 1.0);
+    let mut done = named("done")[0].clone();
+    done.as_object_mut().unwrap().remove("event");
+    assert_eq!(done, record);
+    assert_eq!(named("failed")[0]["path"], "bad.png");
+    assert_eq!(events.len(), stages.len() + 4, "{text}");
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn names_that_are_not_unicode_work() {
+    use std::os::unix::ffi::OsStrExt;
+    let place = Place::new();
+    place.picture("a.png", 20, 30);
+    let odd = std::ffi::OsStr::from_bytes(b"x\xff.png");
+    fs::copy(place.path("a.png"), place.path("a.png").with_file_name(odd)).unwrap();
+    let output = place
+        .command(STROKEFIT)
+        .arg("fit")
+        .arg(odd)
+        .args(with(&["-o", "{stem}.svg"]))
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let drawn = std::ffi::OsStr::from_bytes(b"x\xff.svg");
+    assert!(place.path("a.png").with_file_name(drawn).exists());
+}

@@ -1,0 +1,224 @@
+//! Budgets hold, and no drawing has a hole: what cases of users showed.
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use strokefit::fit::{Budget, Config, Fit, Fitter, Look, Preset, Progress, Stop};
+use strokefit::image::Image;
+use strokefit::report::Judged;
+
+fn path(name: &str) -> PathBuf {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folders = ["samples", "tests/data/pictures"];
+    let files = folders.map(|folder| root.join(folder).join(format!("{name}.png")));
+    files.into_iter().find(|path| path.exists()).unwrap()
+}
+
+fn picture(name: &str) -> Image {
+    Image::open(path(name)).unwrap()
+}
+
+fn of_bytes(bytes: usize) -> Budget {
+    Budget {
+        bytes: Some(bytes),
+        ..Budget::default()
+    }
+}
+
+fn of_psnr(db: f64) -> Budget {
+    Budget {
+        psnr_db: Some(db),
+        ..Budget::default()
+    }
+}
+
+fn of_strokes(strokes: usize) -> Budget {
+    Budget {
+        strokes: Some(strokes),
+        ..Budget::default()
+    }
+}
+
+fn drawn(picture: &Image, budget: Budget, preset: Preset) -> Fit {
+    let config = Config {
+        budget,
+        preset,
+        look: Some(Look::Exact),
+        ..Config::default()
+    };
+    Fitter::new(config).fit(picture).unwrap()
+}
+
+fn judged(name: &str, budget: Budget) -> Judged {
+    Judged::new(drawn(&picture(name), budget, Preset::Balanced)).unwrap()
+}
+
+fn db(judged: &Judged) -> f64 {
+    judged.verdict.fidelity.psnr_db
+}
+
+#[test]
+fn as_many_bytes_as_a_fidelity_takes_draw_as_well() {
+    let cases = [
+        ("blob2", 35.0),
+        ("rrect", 35.0),
+        ("heart", 38.0),
+        ("gasket", 38.0),
+        ("bicycle", 34.0),
+    ];
+    for (name, wanted_db) in cases {
+        let by_db = judged(name, of_psnr(wanted_db));
+        let bytes = by_db.svg.len() + 20;
+        let by_bytes = judged(name, of_bytes(bytes));
+        assert!(db(&by_db) >= wanted_db, "{name}: {}", db(&by_db));
+        assert!(by_bytes.svg.len() <= bytes, "{name}");
+        assert!(
+            db(&by_bytes) >= db(&by_db) - 2.0,
+            "{name}: {} of {}",
+            db(&by_bytes),
+            db(&by_db)
+        );
+    }
+}
+
+#[test]
+fn every_budget_of_bytes_is_kept_without_a_hole() {
+    for bytes in [2000, 2400, 2600, 4000] {
+        let judged = judged("cartoon", of_bytes(bytes));
+        assert!(judged.holds(), "{bytes}: {:?}", judged.verdict.agreement);
+        assert!(judged.svg.len() <= bytes, "{bytes}");
+        assert!(bytes < 4000 || db(&judged) >= 43.0, "{}", db(&judged));
+    }
+}
+
+#[test]
+fn a_fit_that_is_stopped_keeps_its_bytes() {
+    let picture = picture("cartoon");
+    for last in [1, 60, 400, 900] {
+        let mut calls = 0;
+        let mut observer = |_: &Progress<'_>| {
+            calls += 1;
+            if calls < last {
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
+            }
+        };
+        let config = Config {
+            budget: of_bytes(1200),
+            ..Config::default()
+        };
+        let fit = Fitter::new(config).observer(&mut observer).fit(&picture);
+        let fit = fit.unwrap();
+        assert_eq!(fit.stop, Stop::Interrupted, "{last}");
+        assert!(fit.svg().len() <= 1200, "{last}: {}", fit.svg().len());
+    }
+}
+
+#[test]
+fn a_few_bytes_hold_a_stroke() {
+    let heart = judged("heart", of_bytes(600));
+    assert!(
+        !heart.fit.scene.is_empty() && db(&heart) > 20.0,
+        "{}",
+        db(&heart)
+    );
+}
+
+#[test]
+fn black_areas_have_no_gash() {
+    let comic = judged("comic", Budget::default());
+    let agreement = comic.verdict.agreement;
+    assert!(
+        agreement.max_abs < 160 && agreement.patch_abs < 40,
+        "{agreement:?}"
+    );
+}
+
+#[test]
+fn a_fidelity_of_a_transparent_picture_takes_few_strokes() {
+    let by_default = judged("noto-gem", Budget::default());
+    let by_db = judged("noto-gem", of_psnr(db(&by_default)));
+    let [few, usual] = [&by_db, &by_default].map(|judged| judged.fit.scene.len());
+    assert!(
+        db(&by_db) >= db(&by_default) && few <= 2 * usual,
+        "{few} {usual}"
+    );
+}
+
+#[test]
+fn a_fidelity_beyond_reach_ends_the_search() {
+    // Noise of 28 dB on grey: each stroke draws a few of its grains.
+    let noise = |x: usize, y: usize| (x * 7919 + y * 104_729) % 8191 % 52;
+    let grain = Image::from_fn(96, 96, 1, |x, y, _| 0.4 + noise(x, y) as f32 / 255.0).unwrap();
+    let fit = drawn(&grain, of_psnr(45.0), Preset::Draft);
+    assert!(fit.scene.len() <= 96 * 96 / 16, "{}", fit.scene.len());
+}
+
+#[test]
+fn a_longer_fit_of_few_strokes_is_never_worse() {
+    for name in ["cartoon", "heart", "gasket"] {
+        let picture = picture(name);
+        let db = |preset| {
+            let fit = drawn(&picture, of_strokes(8), preset);
+            Judged::new(fit).unwrap().verdict.fidelity.psnr_db
+        };
+        let [draft, balanced, best] = [Preset::Draft, Preset::Balanced, Preset::Best].map(db);
+        assert!(
+            draft <= balanced && balanced <= best,
+            "{name}: {draft} {balanced} {best}"
+        );
+    }
+}
+
+#[test]
+fn an_enlarged_picture_gets_about_the_same_drawing() {
+    let pixels = image::open(path("coffee-300")).unwrap().to_rgb8();
+    let strokes = |times: u32| {
+        let [width, height] = [times * pixels.width(), times * pixels.height()];
+        let smooth = image::imageops::FilterType::CatmullRom;
+        let large = image::imageops::resize(&pixels, width, height, smooth);
+        let of = |x: usize, y: usize, c: usize| large[(x as u32, y as u32)].0[c];
+        let large = Image::from_fn(width as usize, height as usize, 3, of).unwrap();
+        drawn(&large, Budget::default(), Preset::Draft).scene.len()
+    };
+    let [few, many] = [strokes(4), strokes(10)];
+    assert!(many.abs_diff(few) * 4 <= few, "{few} {many}");
+}
+
+/// Runs the program; gives its status and what it says.
+fn run(name: &str, options: &[&str]) -> (Option<i32>, String) {
+    let folder = tempfile::tempdir().unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_strokefit"))
+        .arg("fit")
+        .arg(path(name))
+        .arg("-o")
+        .arg(folder.path().join("out.svg"))
+        .args(options)
+        .output()
+        .unwrap();
+    (
+        output.status.code(),
+        String::from_utf8(output.stderr).unwrap(),
+    )
+}
+
+#[test]
+fn bytes_too_few_for_a_stroke_are_said() {
+    let (status, said) = run("heart", &["--bytes", "300"]);
+    assert_eq!(status, Some(3), "{said}");
+    assert!(said.contains("no stroke fits in 300 bytes"), "{said}");
+}
+
+#[test]
+fn a_picture_of_nine_pixels_is_drawn() {
+    assert_eq!(run("s3x3", &[]).0, Some(0));
+}
+
+#[test]
+fn a_dithered_picture_is_drawn_with_a_hint() {
+    let (status, said) = run("dither", &["--preset", "draft"]);
+    assert_eq!(status, Some(0), "{said}");
+    assert!(said.contains("dots or noise finer than strokes"), "{said}");
+}

@@ -1,0 +1,109 @@
+//! The examples do what they say.
+
+#[path = "../../examples/fit.rs"]
+mod fit;
+#[path = "../../examples/loss.rs"]
+mod loss;
+#[path = "../../examples/memory.rs"]
+mod memory;
+#[path = "../../examples/observer.rs"]
+mod observer;
+#[path = "../../examples/recipe.rs"]
+mod recipe;
+#[path = "../../examples/refine.rs"]
+mod refine;
+
+use crate::support::repository::committed;
+use strokefit::fit::{Preset, Recipe, Stop};
+use strokefit::image::{Image, Limits};
+use strokefit::svg::{self, WriteOptions};
+use strokefit::verify::{self, Size};
+
+#[test]
+fn fit_writes_a_faithful_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = folder.path().join("gem.svg");
+    let quality = fit::draw(committed("samples/noto-gem.png").as_ref(), &output, 100).unwrap();
+    assert!(quality.psnr_db > 35.0, "{quality:?}");
+    let text = std::fs::read_to_string(output).unwrap();
+    assert!((1..=100).contains(&svg::read(&text).unwrap().len()));
+}
+
+#[test]
+fn observer_sees_the_drawing_grow_and_stops_it_before_its_time() {
+    let mut patience = observer::Patience::default();
+    let picture = Image::open(committed("samples/noto-gem.png")).unwrap();
+    let drawing = observer::draw(&picture, &mut patience).unwrap();
+    assert_eq!(drawing.stop, Stop::Interrupted);
+    assert!(patience.strokes.len() > 2, "{:?}", patience.strokes);
+    assert!(patience.strokes.is_sorted(), "{:?}", patience.strokes);
+    assert!(!drawing.scene.is_empty());
+}
+
+#[test]
+fn memory_gives_text_and_bytes_that_belong_together() {
+    let file = std::fs::read(committed("samples/noto-rocket.png")).unwrap();
+    let (text, png) = memory::convert(&file).unwrap();
+    let drawn = verify::render(&text, Size::Scale(2.0), None).unwrap();
+    assert!(png == drawn.encode_png().unwrap());
+    let picture = Image::decode(&png, "png", Limits::default()).unwrap();
+    assert_eq!((picture.width(), picture.height()), (512, 512));
+    assert!(picture.alpha().is_some(), "the rocket stands on nothing");
+    let error = memory::convert(b"no picture").unwrap_err().to_string();
+    assert!(error.starts_with("the picture: "), "{error}");
+}
+
+#[test]
+fn loss_gets_the_brightness_right_and_leaves_the_colours_alone() {
+    let picture = Image::open(committed("samples/coffee-300.png")).unwrap();
+    let scene = loss::draw(&picture).unwrap();
+    let text = svg::write(&scene, &WriteOptions::default());
+    let drawn = verify::render(&text, Size::Scale(1.0), Some([1.0; 3])).unwrap();
+    let (mut brightness, mut colors) = (0.0, 0.0);
+    for i in 0..picture.width() * picture.height() {
+        let errors = [0, 1, 2].map(|c| drawn.planes()[c][i] - picture.planes()[c][i]);
+        let sum: f32 = errors.iter().zip(loss::SHARES).map(|(e, s)| e * s).sum();
+        brightness += sum * sum;
+        colors += errors.iter().map(|e| e * e).sum::<f32>() / 3.0;
+    }
+    let pixels = (picture.width() * picture.height()) as f32;
+    let (brightness, colors) = (brightness / pixels, colors / pixels);
+    assert!(
+        brightness < 0.005 && colors > 10.0 * brightness,
+        "{brightness} {colors}"
+    );
+}
+
+#[test]
+fn refine_keeps_the_base_and_comes_closer() {
+    let picture = Image::open(committed("samples/noto-gem.png"))
+        .unwrap()
+        .flattened([1.0; 3]);
+    let body = r##"<circle cx="128" cy="128" r="90" fill="#40a0e0"/>"##;
+    let base = format!(
+        r#"<svg xmlns="http://www.w3.org/2000/svg" width="256" height="256" viewBox="0 0 256 256">{body}</svg>"#
+    );
+    let (text, [before, after]) = refine::refine(&base, &picture, 60).unwrap();
+    assert!(text.contains(body), "{text}");
+    assert!(after.psnr_db > before.psnr_db + 5.0, "{before:?} {after:?}");
+}
+
+#[test]
+fn recipe_tells_what_a_number_is_worth() {
+    let sample = image::open(committed("samples/coffee-300.png")).unwrap();
+    let small = sample.thumbnail(40, 40).to_rgb8();
+    let (width, height) = small.dimensions();
+    let plane = |c: usize| small.pixels().map(|p| f32::from(p[c]) / 255.0).collect();
+    let size = (width as usize, height as usize);
+    let picture = [Image::new(size.0, size.1, [plane(0), plane(1), plane(2)]).unwrap()];
+    let row = |name| recipe::ROWS.iter().find(|row| row.0 == name).unwrap();
+    let iterations = row("polish.iterations");
+    let usual = recipe::measure(&picture, iterations.1, Recipe::of(Preset::Balanced)).unwrap();
+    let [db, _] = recipe::change(&picture, iterations, usual, 0.01).unwrap();
+    assert!(db < -0.5, "{db} dB by a hundredth of the iterations");
+    // Stages that shrink are refused.
+    assert_eq!(
+        recipe::change(&picture, row("stages.growth"), usual, 0.5),
+        None
+    );
+}

@@ -1,0 +1,507 @@
+//! Whole fits: budgets are met, drawings model what the scene needs, and nothing but the picture and the
+//! configuration decides what comes out.
+
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+use crate::support::drafts::draft;
+use crate::support::fits::{drawn, sample};
+use strokefit::browser;
+use strokefit::coverage::CoverageSchedule;
+use strokefit::fit::{
+    Background, Budget, Config, Execution, Fit, Fitter, Preset, Progress, Rates, Recipe, Simd, Stop,
+};
+use strokefit::image::Image;
+use strokefit::metrics;
+use strokefit::scene::Scene;
+use strokefit::svg;
+use strokefit::verify::{self, Verdict};
+
+/// Agreement that every drawing has to have, dB.
+const AGREEMENT_DB: f64 = 36.0;
+
+fn text(fit: &Fit, config: &Config) -> String {
+    svg::write(&fit.scene, &config.file)
+}
+
+fn verdict(fit: &Fit, config: &Config) -> Verdict {
+    verify::verify(&text(fit, config), &fit.target, &fit.soft).unwrap()
+}
+
+/// A smooth ramp with a dark disc.
+fn ball(width: usize, height: usize) -> Image {
+    let plane = |c: usize| {
+        let value = |i: usize| {
+            let (x, y) = ((i % width) as f32, (i / width) as f32);
+            let away = (x - 30.0).hypot(y - 24.0);
+            if away < 14.0 {
+                0.1 * c as f32 + away / 40.0
+            } else {
+                0.5 + 0.4 * x / width as f32
+            }
+        };
+        (0..width * height).map(value).collect()
+    };
+    Image::new(width, height, [plane(0), plane(1), plane(2)]).unwrap()
+}
+
+#[test]
+fn samples_are_drawn_as_they_were_fitted() {
+    for (name, strokes, min_db) in [
+        ("chelsea-cat", 400, 26.0),
+        ("coffee-300", 400, 26.0),
+        ("rocket-320", 300, 28.0),
+        ("noto-gem", 100, 34.0),
+        ("noto-hibiscus", 200, 30.0),
+    ] {
+        let config = draft(strokes);
+        let fit = drawn(&sample(name), &config);
+        let verdict = verdict(&fit, &config);
+        assert_eq!(fit.scene.len(), strokes, "{name}");
+        assert!(
+            verdict.agreement.psnr_db > AGREEMENT_DB,
+            "{name}: {verdict:?}"
+        );
+        assert!(verdict.fidelity.psnr_db > min_db, "{name}: {verdict:?}");
+    }
+}
+
+#[test]
+fn every_coverage_function_ends_in_a_drawing_that_renderers_agree_on() {
+    let picture = ball(64, 48);
+    for word in [
+        "smoothstep",
+        "sigmoid",
+        "tanh",
+        "atan",
+        "atan:4",
+        "raw",
+        "sigmoid>smoothstep",
+    ] {
+        let coverage: CoverageSchedule = word.parse().unwrap();
+        let config = Config {
+            coverage,
+            ..draft(40)
+        };
+        let fit = drawn(&picture, &config);
+        let verdict = verdict(&fit, &config);
+        assert!(verdict.fidelity.psnr_db > 26.0, "{word}: {verdict:?}");
+    }
+}
+
+#[test]
+fn a_fidelity_is_met_by_few_strokes() {
+    let picture = sample("coffee-300");
+    let config = Config {
+        budget: Budget {
+            psnr_db: Some(25.0),
+            ..Budget::default()
+        },
+        preset: Preset::Draft,
+        ..Config::default()
+    };
+    let fit = drawn(&picture, &config);
+    let reached = verdict(&fit, &config).fidelity.psnr_db;
+    assert_eq!(fit.stop, Stop::Psnr);
+    assert!((25.0..26.0).contains(&reached), "{reached} dB");
+}
+
+#[test]
+fn a_disc_without_antialiasing_reaches_the_fidelity_that_is_asked_for() {
+    let shade = |x: usize, y: usize| {
+        let away2 = (x as f32 - 32.0).powi(2) + (y as f32 - 32.0).powi(2);
+        if away2 < 400.0 {
+            40.0 / 255.0
+        } else {
+            240.0 / 255.0
+        }
+    };
+    let plane: Vec<f32> = (0..64 * 64).map(|i| shade(i % 64, i / 64)).collect();
+    let picture = Image::new(64, 64, [plane.clone(), plane.clone(), plane]).unwrap();
+    for least in [28.0, 30.0, 32.0] {
+        let config = Config {
+            budget: Budget {
+                psnr_db: Some(least),
+                ..Budget::default()
+            },
+            ..Config::default()
+        };
+        let fit = drawn(&picture, &config);
+        let reached = verdict(&fit, &config).fidelity.psnr_db;
+        assert_eq!(fit.stop, Stop::Psnr, "{reached} dB of {least}");
+        assert!(reached >= least, "{reached} dB of {least}");
+    }
+}
+
+#[test]
+fn bytes_are_met() {
+    let picture = sample("noto-hibiscus");
+    for most in [2_000, 12_345] {
+        let config = Config {
+            budget: Budget {
+                bytes: Some(most),
+                ..Budget::default()
+            },
+            ..draft(1)
+        };
+        let bytes = text(&drawn(&picture, &config), &config).len();
+        assert!(bytes <= most && bytes * 10 > most * 8, "{bytes} of {most}");
+    }
+}
+
+#[test]
+fn a_picture_of_one_colour_needs_no_stroke() {
+    let picture = Image::filled(70, 50, [51.0 / 255.0, 102.0 / 255.0, 1.0]).unwrap();
+    let config = Config {
+        preset: Preset::Draft,
+        ..Config::default()
+    };
+    let fit = drawn(&picture, &config);
+    assert_eq!(fit.scene.len(), 0);
+    assert_eq!(verdict(&fit, &config).fidelity.mse, 0.0);
+}
+
+/// A capsule drawn at four times the size, and reduced.
+#[test]
+fn one_capsule_on_a_flat_page_is_one_stroke_or_two() {
+    let (width, height) = (100, 75);
+    let inside = |x: f32, y: f32| {
+        let [ax, ay, bx, by] = [22.5, 20.0, 75.0, 52.5];
+        let along =
+            ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / ((bx - ax).powi(2) + (by - ay).powi(2));
+        let h = along.clamp(0.0, 1.0);
+        (x - ax - h * (bx - ax)).hypot(y - ay - h * (by - ay)) < 6.0
+    };
+    let covered = |i: usize| {
+        let samples = (0..16).filter(|k| {
+            let at = |i: usize, k: usize| i as f32 + (k as f32 + 0.5) / 4.0;
+            inside(at(i % width, k % 4), at(i / width, k / 4))
+        });
+        samples.count() as f32 / 16.0
+    };
+    let plane = |page: f32, ink: f32| {
+        (0..width * height)
+            .map(|i| page + covered(i) * (ink - page))
+            .collect()
+    };
+    let picture = Image::new(
+        width,
+        height,
+        [plane(0.94, 0.16), plane(0.94, 0.24), plane(0.92, 0.63)],
+    )
+    .unwrap();
+    let fit = drawn(&picture, &Config::default());
+    assert!((1..=2).contains(&fit.scene.len()), "{}", fit.scene.len());
+}
+
+/// Six lines drawn with two pens come back with two, so that each is selected at once in an editor, and with two points
+/// each.
+#[test]
+fn strokes_share_the_pens_of_the_picture() {
+    let line = |i: usize, pen: &str| {
+        let y = 10 + 14 * i;
+        format!(r#"<path d="M14 {y}L{} {}" {pen}/>"#, 130 - 5 * i, y + 6)
+    };
+    let thin = r##"stroke="#c02010" stroke-width="2.6""##;
+    let thick = r##"stroke="#1030a0" stroke-width="5.3""##;
+    let lines: String = (0..6).map(|i| line(i, [thin, thick][i % 2])).collect();
+    let picture = verify::render(
+        &format!(
+            r#"<svg xmlns="http://www.w3.org/2000/svg" width="144" height="100" stroke-linecap="round">{lines}</svg>"#
+        ),
+        verify::Size::Scale(1.0),
+        Some([1.0; 3]),
+    )
+    .unwrap();
+    let config = Config::default();
+    let fit = drawn(&picture, &config);
+    assert_eq!(fit.scene.len(), 6);
+    let written = svg::read(&text(&fit, &config)).unwrap();
+    let looks = written.strokes().map(|s| (s.color, s.radius, s.opacity));
+    let mut looks: Vec<String> = looks.map(|look| format!("{look:?}")).collect();
+    looks.sort();
+    looks.dedup();
+    assert_eq!(looks.len(), 2, "{looks:?}");
+    assert!(written.strokes().all(|s| s.opacity == 1.0));
+    assert!(written.strokes().all(|s| s.path.points().len() == 2));
+    assert!(verdict(&fit, &config).fidelity.psnr_db > 38.0);
+}
+
+#[test]
+fn quality_decides_how_many_strokes_a_scene_gets() {
+    let count = |picture: &Image, quality: f64| {
+        let config = Config {
+            preset: Preset::Draft,
+            quality: Some(quality),
+            ..Config::default()
+        };
+        drawn(picture, &config).scene.len()
+    };
+    let (cat, gem) = (sample("chelsea-cat"), sample("noto-gem"));
+    let counts = [count(&cat, 20.0), count(&cat, 25.0), count(&cat, 30.0)];
+    assert!(counts.windows(2).all(|w| w[1] > w[0] * 3 / 2), "{counts:?}");
+    assert!(
+        count(&gem, 30.0) * 3 < counts[2],
+        "flat art gets as many strokes as a photograph"
+    );
+}
+
+#[test]
+fn opaque_drawings_are_opaque() {
+    let config = Config {
+        opaque: true,
+        ..draft(60)
+    };
+    let fit = drawn(&ball(64, 48), &config);
+    assert!(fit.scene.strokes().all(|stroke| stroke.opacity == 1.0));
+    assert!(!text(&fit, &config).contains("stroke-opacity"));
+}
+
+#[test]
+fn progressive_drawings_are_better_with_every_layer() {
+    let config = Config {
+        progressive: true,
+        ..draft(400)
+    };
+    let fit = drawn(&sample("coffee-300"), &config);
+    let layers: Vec<f64> = fit.stages.iter().map(|stage| stage.layer_psnr_db).collect();
+    assert!(layers.len() >= 6, "{layers:?}");
+    assert!(layers.windows(2).all(|w| w[1] > w[0] + 0.3), "{layers:?}");
+}
+
+#[test]
+fn threads_simd_and_repetition_change_no_byte() {
+    let picture = sample("noto-rocket");
+    let config = draft(80);
+    let written = |threads, simd| {
+        let execution = Execution {
+            threads: Some(threads),
+            simd,
+        };
+        text(
+            &Fitter::new(config.clone())
+                .execution(execution)
+                .fit(&picture)
+                .unwrap(),
+            &config,
+        )
+    };
+    let expected = written(1, Simd::Auto);
+    for threads in [1, 2, 3] {
+        assert!(
+            written(threads, Simd::Auto) == expected,
+            "{threads} threads"
+        );
+    }
+    for simd in Simd::ALL.into_iter().filter(|simd| simd.level().is_some()) {
+        assert!(written(2, simd) == expected, "{simd}");
+    }
+}
+
+/// Five lines of 1.1 px, none of them level, drawn with exact areas.
+fn thin_lines(width: usize, height: usize) -> Image {
+    let darkness = |x: f32, y: f32| {
+        let lines = (1..6).map(|k| {
+            let slope = 0.07 * k as f32 - 0.2;
+            let away = (y - 11.3 * k as f32 - slope * x).abs() / slope.hypot(1.0);
+            (1.05 - away).clamp(0.0, 1.0)
+        });
+        lines.fold(0.0, f32::max)
+    };
+    let plane: Vec<f32> = (0..width * height)
+        .map(|i| 1.0 - darkness((i % width) as f32 + 0.5, (i / width) as f32 + 0.5))
+        .collect();
+    Image::new(width, height, [plane.clone(), plane.clone(), plane]).unwrap()
+}
+
+#[test]
+fn nudged_lines_are_drawn_better_where_they_were_drawn_worst() {
+    let picture = thin_lines(96, 72);
+    let page = Image::filled(96, 72, [1.0; 3]).unwrap();
+    let with = |sweeps: usize, threads: usize| {
+        let mut recipe = Recipe::of(Preset::Balanced);
+        recipe.settling.nudging.sweeps = sweeps;
+        let config = Config {
+            recipe: Some(recipe),
+            ..budget_of(12)
+        };
+        let execution = Execution {
+            threads: Some(threads),
+            ..Execution::default()
+        };
+        let fitter = Fitter::new(config.clone()).execution(execution);
+        let fit = fitter.fit(&picture).unwrap();
+        let shown = browser::draw(fit.scene.strokes(), std::slice::from_ref(&page)).remove(0);
+        let by_resvg = verdict(&fit, &config).fidelity.psnr_db;
+        let by_browser = metrics::psnr(&picture, &shown).unwrap();
+        (by_resvg.min(by_browser), text(&fit, &config))
+    };
+    let (plain_db, _) = with(0, 2);
+    let (nudged_db, text) = with(8, 2);
+    assert!(nudged_db > plain_db + 0.5, "{plain_db}, {nudged_db}");
+    for threads in [1, 3] {
+        assert!(with(8, threads).1 == text, "{threads} threads");
+    }
+}
+
+fn budget_of(strokes: usize) -> Config {
+    let budget = Budget {
+        strokes: Some(strokes),
+        ..Budget::default()
+    };
+    Config {
+        budget,
+        background: Background::Color([1.0; 3]),
+        ..Config::default()
+    }
+}
+
+#[test]
+fn another_seed_is_another_drawing() {
+    let picture = ball(64, 48);
+    let with = |seed| {
+        let config = Config { seed, ..draft(30) };
+        text(&drawn(&picture, &config), &config)
+    };
+    assert_ne!(with(1), with(2));
+}
+
+#[test]
+fn an_observer_sees_progress_and_may_stop() {
+    let picture = ball(64, 48);
+    let mut seen = Vec::new();
+    let mut watch = |progress: &Progress<'_>| {
+        seen.push(progress.done);
+        if seen.len() == 40 {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    };
+    let fit = Fitter::new(draft(100))
+        .observer(&mut watch)
+        .fit(&picture)
+        .unwrap();
+    assert_eq!(fit.stop, Stop::Interrupted);
+    assert_eq!(seen.len(), 40);
+    assert!(
+        seen.windows(2).all(|w| w[0] <= w[1]) && seen.iter().all(|done| (0.0..=1.0).contains(done))
+    );
+}
+
+/// Stopped in the first iterations of a large stage, whose strokes are as they were seeded.
+#[test]
+fn a_fit_that_may_finish_after_it_was_stopped_is_better_for_it() {
+    let picture = sample("coffee-300");
+    let stopped = |grace: Duration| {
+        let mut last = 0;
+        let mut watch = |progress: &Progress<'_>| {
+            last += usize::from(progress.strokes > 500);
+            if last > 2 {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        };
+        let config = Config {
+            budget: Budget {
+                strokes: Some(1000),
+                ..Budget::default()
+            },
+            ..Config::default()
+        };
+        let fit = Fitter::new(config.clone())
+            .observer(&mut watch)
+            .grace(grace)
+            .fit(&picture)
+            .unwrap();
+        assert_eq!(fit.stop, Stop::Interrupted);
+        verdict(&fit, &config).fidelity.psnr_db
+    };
+    let (at_once, finished) = (stopped(Duration::ZERO), stopped(Duration::from_secs(2)));
+    assert!(finished > at_once + 1.0, "{at_once} {finished}");
+}
+
+#[test]
+fn the_drawing_can_be_seen_while_it_grows() {
+    let picture = sample("coffee-300");
+    let mut seen = Vec::new();
+    let mut watch = |progress: &Progress<'_>| {
+        let scene = progress.scene();
+        assert_eq!(
+            (scene.width as usize, scene.height as usize),
+            (picture.width(), picture.height())
+        );
+        assert_eq!(scene.len(), progress.strokes);
+        seen.push(scene);
+        ControlFlow::Continue(())
+    };
+    let fit = Fitter::new(draft(100))
+        .observer(&mut watch)
+        .fit(&picture)
+        .unwrap();
+    // Large strokes are fitted to a reduced picture; what is seen is in px of the whole one all the same.
+    let reach = |scene: &Scene| {
+        scene
+            .strokes()
+            .map(|s| s.path.ends().0.x)
+            .fold(0.0, f32::max)
+    };
+    assert!(reach(&seen[seen.len() / 3]) > 200.0);
+    assert_eq!(seen.last().unwrap().len(), fit.scene.len());
+}
+
+#[test]
+fn strokes_that_become_no_numbers_are_dropped_and_counted() {
+    let mut recipe = Recipe::of(Preset::Draft);
+    let poison = |rates: Rates| Rates {
+        position: f32::NAN,
+        color: f32::NAN,
+        ..rates
+    };
+    recipe.stages.rates = poison(recipe.stages.rates);
+    recipe.polish.rates = poison(recipe.polish.rates);
+    let config = Config {
+        recipe: Some(recipe),
+        // All at once: a stage of which nothing is left is the last.
+        stages: Some(1),
+        ..draft(40)
+    };
+    let fit = drawn(&ball(64, 48), &config);
+    assert!(fit.scene.is_empty());
+    assert!(fit.dropped.non_finite > 10, "{:?}", fit.dropped);
+    // Nor is the page poisoned: it has the picture's mean colour, not black.
+    let verdict = verdict(&fit, &config);
+    assert!(verdict.fidelity.psnr_db > 12.0, "{verdict:?}");
+}
+
+/// A fit of strokes without number in so many seconds, which began so many seconds ago.
+fn limited(limit_s: f32, began_s: u64) -> Fit {
+    let config = Config {
+        budget: Budget {
+            strokes: Some(100_000),
+            time: Some(Duration::from_secs_f32(limit_s)),
+            ..Budget::default()
+        },
+        preset: Preset::Best,
+        ..Config::default()
+    };
+    let since = Instant::now() - Duration::from_secs(began_s);
+    let fitter = Fitter::new(config).since(since);
+    fitter.fit(&ball(64, 48)).unwrap()
+}
+
+#[test]
+fn what_there_is_time_for_is_drawn() {
+    let fit = limited(0.2, 0);
+    assert_eq!(fit.stop, Stop::Time);
+    assert!(fit.scene.len() > 1);
+}
+
+#[test]
+fn time_counts_from_when_it_began() {
+    let fit = limited(5.0, 5);
+    assert_eq!(fit.stop, Stop::Time);
+    // The first stage is sought in any case.
+    assert_eq!(fit.stages.len(), 1);
+}

@@ -1,0 +1,342 @@
+//! The forms of a file, as users of the program and of the library meet them.
+
+use std::collections::BTreeSet;
+use std::fs;
+
+use crate::support::output::stderr;
+use crate::support::place::Place;
+use crate::support::refusal;
+use crate::support::repository::committed;
+use strokefit::image::Image;
+use strokefit::scene::Stage;
+use strokefit::svg;
+use strokefit::verify::{self, Size};
+
+/// A folder with a drawing of a sample.
+struct Drawn {
+    place: Place,
+    text: String,
+    report: serde_json::Value,
+}
+
+fn sample(name: &str) -> String {
+    committed(&format!("samples/{name}.png"))
+}
+
+/// A draft of a sample in 150 strokes.
+fn drawn(name: &str, options: &[&str]) -> Drawn {
+    drawn_with(name, &[&["--strokes", "150"], options].concat())
+}
+
+/// A draft of a sample.
+fn drawn_with(name: &str, options: &[&str]) -> Drawn {
+    fitted(name, &[&["--preset", "draft"], options].concat())
+}
+
+fn fitted(name: &str, options: &[&str]) -> Drawn {
+    let place = Place::new();
+    let input = sample(name);
+    let fixed = ["fit", &input, "-o", "a.svg", "--report", "a.json", "-q"];
+    place.done(&[&fixed[..], options].concat());
+    Drawn {
+        text: fs::read_to_string(place.path("a.svg")).unwrap(),
+        report: place.report("a.json"),
+        place,
+    }
+}
+
+impl Drawn {
+    fn number(&self, field: &str) -> f64 {
+        self.report[field].as_f64().unwrap()
+    }
+
+    fn psnr_db(&self) -> f64 {
+        self.report["fidelity"]["psnr_db"].as_f64().unwrap()
+    }
+
+    /// All colours of strokes and background.
+    fn colors(&self) -> BTreeSet<String> {
+        let scene = svg::read(&self.text).unwrap();
+        let strokes = scene.strokes().map(|stroke| stroke.color);
+        let hex = |rgb: [f32; 3]| {
+            let [r, g, b] = rgb.map(|c| (c * 255.0).round() as u8);
+            format!("#{r:02x}{g:02x}{b:02x}")
+        };
+        strokes.chain(scene.background).map(hex).collect()
+    }
+}
+
+fn image(text: &str) -> Image {
+    let size = Size::Exact {
+        width: 300,
+        height: 200,
+    };
+    verify::render(text, size, Some([1.0; 3])).unwrap()
+}
+
+/// How alike resvg draws two files, dB.
+fn agreement(a: &str, b: &str) -> f64 {
+    strokefit::metrics::Agreement::between(&image(a), &image(b))
+        .unwrap()
+        .psnr_db
+}
+
+/// A refusal whose line of error has `words`.
+#[track_caller]
+fn assert_refused(options: &[&str], words: &str) {
+    let place = Place::new();
+    place.file("bad.gpl", "GIMP Palette\n1 2 x\n");
+    let input = sample("noto-gem");
+    let fit = ["fit", &input, "-o", "a.svg"];
+    refusal::assert_refused(&place, &[&fit[..], options].concat(), 2, &[words]);
+}
+
+#[test]
+fn one_element_is_one_stroke() {
+    let drawn = drawn("coffee-300", &[]);
+    let elements = drawn.text.matches("<path").count();
+    assert_eq!(elements as f64, drawn.number("strokes"));
+}
+
+#[test]
+fn the_smallest_file_of_as_many_strokes_is_a_fifth_shorter() {
+    let options = ["--opaque", "--precision", "1"];
+    let plain = drawn("coffee-300", &options);
+    let smallest = drawn(
+        "coffee-300",
+        &[&options[..], &["--form", "smallest"]].concat(),
+    );
+    assert!(smallest.number("bytes_per_stroke") < 0.8 * plain.number("bytes_per_stroke"));
+    assert!(smallest.number("svg_gzip_bytes") < plain.number("svg_gzip_bytes"));
+}
+
+#[test]
+fn an_opaque_capsule_of_the_smallest_file_takes_52_bytes_at_most() {
+    for name in ["coffee-300", "noto-hibiscus", "noto-telescope"] {
+        let options = ["--opaque", "--precision", "1", "--form", "smallest"];
+        let capsules = ["--strokes", "600", "--points", "2"];
+        let drawn = fitted(name, &[&capsules, &options[..]].concat());
+        let bytes = drawn.number("bytes_per_stroke");
+        assert_eq!(drawn.number("strokes"), 600.0);
+        assert!(bytes <= 52.0, "{name}: {bytes}");
+        let scene = svg::read(&drawn.text).unwrap();
+        assert_eq!(scene.len(), 600);
+    }
+}
+
+#[test]
+fn a_budget_of_bytes_buys_more_in_the_smallest_form() {
+    let bought = |form: &str| {
+        let drawn = drawn_with(
+            "coffee-300",
+            &[
+                "--bytes", "9000", "--opaque", "--form", form, "--look", "exact",
+            ],
+        );
+        assert!(drawn.text.len() <= 9000);
+        (drawn.number("strokes"), drawn.psnr_db())
+    };
+    let (plain, smallest) = (bought("plain"), bought("smallest"));
+    assert!(smallest.0 > 1.2 * plain.0);
+    assert!(smallest.1 > plain.1 + 0.2, "{smallest:?} {plain:?}");
+}
+
+#[test]
+fn outlines_look_like_the_strokes() {
+    let strokes = drawn("coffee-300", &[]);
+    let scene = svg::read(&strokes.text).unwrap();
+    let options = svg::WriteOptions {
+        form: svg::Form::Outlines,
+        ..svg::WriteOptions::default()
+    };
+    let outlines = svg::write(&scene, &options);
+    assert!(!outlines.contains("stroke="));
+    assert!(agreement(&strokes.text, &outlines) > 40.0);
+}
+
+#[test]
+fn outlines_are_verified_but_not_read_back() {
+    let drawn = drawn("noto-gem", &["--outline"]);
+    assert!(drawn.report["agreement"]["psnr_db"].as_f64().unwrap() > 36.0);
+    let message = svg::read(&drawn.text).unwrap_err().to_string();
+    assert!(message.contains("<g> has no fill"), "{message}");
+}
+
+#[test]
+fn a_page_has_the_width_that_was_asked_for() {
+    let drawn = drawn("coffee-300", &["--width", "120mm"]);
+    let head = r#"width="120mm" height="80mm" viewBox="0 0 300 200""#;
+    assert!(drawn.text.contains(head));
+    let input = sample("coffee-300");
+    drawn.place.done(&["check", "a.svg", &input]);
+}
+
+#[test]
+fn at_most_so_many_colours_are_used() {
+    for options in [vec!["--colors", "5"], vec!["--colors", "5", "--opaque"]] {
+        assert_eq!(
+            drawn("coffee-300", &options).colors().len(),
+            5,
+            "{options:?}"
+        );
+    }
+}
+
+#[test]
+fn a_background_that_was_asked_for_is_one_of_the_colours() {
+    let colors = drawn("coffee-300", &["--colors", "3", "--background", "#00ff00"]).colors();
+    assert_eq!(colors.len(), 3);
+    assert!(colors.contains("#00ff00"));
+}
+
+#[test]
+fn only_colours_of_the_palette_are_used() {
+    let palette = ["#000000", "#ffffff", "#c0392b", "#d35400"];
+    let drawn = drawn("coffee-300", &["--palette", &palette.join(",")]);
+    let palette = palette.map(String::from).into_iter().collect();
+    assert!(drawn.colors().is_subset(&palette));
+}
+
+/// Strokes that know their palette make up for each other's missing colours; colours that are exchanged
+/// afterwards do not.
+#[test]
+fn a_palette_is_fitted_and_not_only_applied() {
+    let free = drawn("coffee-300", &[]);
+    let fitted = drawn(
+        "coffee-300",
+        &["--palette", "#200804,#f0e0d0,#a03010,#c08050"],
+    );
+    let palette = [[32, 8, 4], [240, 224, 208], [160, 48, 16], [192, 128, 80]]
+        .map(|rgb| rgb.map(|c: u8| f32::from(c) / 255.0));
+    let nearest = |wanted: [f32; 3]| {
+        let away = |c: &[f32; 3]| (0..3).map(|k| (c[k] - wanted[k]).powi(2)).sum::<f32>();
+        palette
+            .into_iter()
+            .min_by(|a, b| away(a).total_cmp(&away(b)))
+            .unwrap()
+    };
+    let mut applied = svg::read(&free.text).unwrap();
+    applied.background = applied.background.map(nearest);
+    for stroke in applied
+        .stages
+        .iter_mut()
+        .flat_map(|stage| &mut stage.strokes)
+    {
+        stroke.color = nearest(stroke.color);
+    }
+    let text = svg::write(&applied, &svg::WriteOptions::default());
+    let target = Image::open(sample("coffee-300")).unwrap();
+    let applied = verify::fidelity(&text, &target).unwrap().psnr_db;
+    assert!(
+        fitted.psnr_db() > applied + 1.0,
+        "{} {applied}",
+        fitted.psnr_db()
+    );
+}
+
+#[test]
+fn every_colour_has_one_layer_and_the_report_says_what_that_costs() {
+    let by_stage = drawn("coffee-300", &["--colors", "6"]);
+    let by_color = drawn("coffee-300", &["--colors", "6", "--group", "color"]);
+    assert!(by_color.text.contains(r#"<g id="color-1""#));
+    let scene = svg::read(&by_color.text).unwrap();
+    let one_color = |stage: &Stage| {
+        stage
+            .strokes
+            .iter()
+            .all(|s| s.color == stage.strokes[0].color)
+    };
+    assert!(scene.stages.iter().all(one_color));
+    // The background is one of the six.
+    assert!(scene.stages.len() <= 6, "{}", scene.stages.len());
+    let (cost, lost) = (
+        by_color.number("stacking_db"),
+        by_stage.psnr_db() - by_color.psnr_db(),
+    );
+    assert!(lost < 4.0 && (cost - lost).abs() < 1.0, "{cost} {lost}");
+    assert!(by_stage.report["stacking_db"].is_null());
+}
+
+/// Blue ink on paper that is not quite white.
+fn ink(place: &Place) -> Image {
+    let picture = image::RgbImage::from_fn(120, 90, |x, y| {
+        let (x, y) = (x as f32 - 60.0, y as f32 - 45.0);
+        let away = ((x * x + y * y).sqrt() - 30.0).abs();
+        image::Rgb(if away < 3.0 {
+            [10, 20, 200]
+        } else {
+            [250, 247, 240]
+        })
+    });
+    picture.save(place.path("ink.png")).unwrap();
+    Image::open(place.path("ink.png")).unwrap()
+}
+
+#[test]
+fn paper_stays_paper_if_the_palette_has_nothing_like_it() {
+    let place = Place::new();
+    let picture = ink(&place);
+    let fit = ["fit", "ink.png", "-o", "a.svg", "--strokes", "20"];
+    let output = place.done(&[&fit[..], &["--palette", "#0000ff"]].concat());
+    assert!(!stderr(&output).contains("warning"));
+    let text = fs::read_to_string(place.path("a.svg")).unwrap();
+    let scene = svg::read(&text).unwrap();
+    assert!(
+        scene
+            .strokes()
+            .all(|stroke| stroke.color == [0.0, 0.0, 1.0])
+    );
+    assert!(scene.background.unwrap().iter().all(|&c| c > 0.9));
+    assert!(verify::fidelity(&text, &picture).unwrap().psnr_db > 20.0);
+    // A palette with something like it is all there is.
+    place.done(&[&fit[..], &["--palette", "#0000ff,#ffffff"]].concat());
+    let scene = svg::read(&fs::read_to_string(place.path("a.svg")).unwrap()).unwrap();
+    assert_eq!(scene.background, Some([1.0; 3]));
+}
+
+#[test]
+fn strokes_that_nobody_can_see_are_left_out_and_counted() {
+    let white = ["--colors", "1", "--background", "#ffffff"];
+    let drawn_white = drawn("coffee-300", &white);
+    assert_eq!(drawn_white.number("strokes"), 0.0);
+    let unseen = &drawn_white.report["dropped_for"]["invisible"];
+    assert!(unseen.as_u64() > Some(0) && drawn_white.report["dropped"].as_u64() >= unseen.as_u64());
+    // A background of the one colour is all that pays.
+    let plain = drawn("coffee-300", &white[..2]);
+    assert_eq!(plain.number("strokes"), 0.0);
+}
+
+#[test]
+fn a_drawing_worse_than_a_page_of_one_colour_is_spoken_of() {
+    let place = Place::new();
+    ink(&place);
+    let fit = ["fit", "ink.png", "-o", "a.svg", "--colors", "1"];
+    let poor = place.done(&[&fit[..], &["--background", "#000000"]].concat());
+    let line = stderr(&poor);
+    assert!(line.contains("warning: a page of one colour"), "{line}");
+    assert!(!stderr(&place.done(&fit)).contains("warning"));
+}
+
+#[test]
+fn options_that_make_no_sense_are_refused() {
+    assert_refused(&["--width", "12"], "such as 120mm");
+    assert_refused(&["--width", "-3mm"], "such as 120mm");
+    assert_refused(&["--outline", "--form", "smallest"], "--outline");
+    assert_refused(&["--form", "tiny"], "smallest");
+    assert_refused(
+        &["--form", "elements"],
+        "give plain, which has one element per stroke now",
+    );
+    assert_refused(&["--group", "size"], "color");
+}
+
+#[test]
+fn bad_palettes_are_refused() {
+    assert_refused(&["--colors", "0"], "whole number");
+    assert_refused(&["--palette", "#12,#ffffff"], "'#12' is not a colour");
+    assert_refused(&["--palette", "none.gpl"], "no such file");
+    assert_refused(&["--palette", "bad.gpl"], "line 2");
+    assert_refused(&["--palette", "#ffffff", "--colors", "3"], "--colors");
+    let ground = ["--palette", "#ffffff", "--background", "#000000"];
+    assert_refused(&ground, "the background #000000 is not in the palette");
+}

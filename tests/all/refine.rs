@@ -1,0 +1,607 @@
+//! `refine`: drawings are taken up where they were left, foreign files stay as they are under the strokes,
+//! and what cannot be refined is refused.
+
+use std::collections::BTreeSet;
+use std::fs;
+
+use crate::support::output::stderr;
+use crate::support::place::Place;
+use crate::support::refusal::assert_refused;
+use crate::support::repository::committed;
+use strokefit::svg;
+
+/// The cat in 8 colours, traced with the `vtracer` crate 0.6.5 at its defaults, but for speckles of 16 px,
+/// no decimals and a layer difference of 48.
+const TRACED: &str = include_str!("../data/chelsea-traced.svg");
+
+const NAMESPACE: &str = "xmlns=\"http://www.w3.org/2000/svg\"";
+
+/// Draws or refines with the options of a draft; returns the fidelity in dB.
+#[track_caller]
+fn draft(place: &Place, args: &[&str], out: &str) -> f64 {
+    let ends = [
+        "-q",
+        "-o",
+        out,
+        "--preset",
+        "draft",
+        "--report",
+        "report.json",
+    ];
+    place.done(&[args, &ends].concat());
+    place.report("report.json")["fidelity"]["psnr_db"]
+        .as_f64()
+        .unwrap()
+}
+
+fn read(place: &Place, name: &str) -> String {
+    fs::read_to_string(place.path(name)).unwrap()
+}
+
+fn layers(place: &Place, name: &str) -> Vec<usize> {
+    let scene = svg::read(&read(place, name)).unwrap();
+    scene
+        .stages
+        .iter()
+        .map(|stage| stage.strokes.len())
+        .collect()
+}
+
+/// The text before and after what was put into it, which is returned.
+#[track_caller]
+fn put_into<'a>(base: &str, refined: &'a str) -> &'a str {
+    let (head, tail) = base.split_at(base.rfind("</").unwrap());
+    assert!(refined.starts_with(head) && refined.ends_with(tail));
+    &refined[head.len()..refined.len() - tail.len()]
+}
+
+#[test]
+fn strokes_with_a_plus_count_beyond_those_of_the_base() {
+    let place = Place::new();
+    let picture = committed("samples/coffee-300.png");
+    let strokes = |name: &str| layers(&place, name).iter().sum::<usize>();
+    draft(&place, &["fit", &picture, "--strokes", "+60"], "base.svg");
+    assert_eq!(strokes("base.svg"), 60);
+    draft(
+        &place,
+        &["refine", "base.svg", &picture, "--strokes", "+40"],
+        "more.svg",
+    );
+    assert_eq!(strokes("more.svg"), 100);
+    // As many in all as there are is no change, which is said with what would be one.
+    let full = place.done(&[
+        "refine",
+        "base.svg",
+        &picture,
+        "--strokes",
+        "60",
+        "-o",
+        "full.svg",
+    ]);
+    assert_eq!(strokes("full.svg"), 60);
+    let line = stderr(&full);
+    assert!(
+        line.contains("hint:") && line.contains("--strokes +60"),
+        "{line}"
+    );
+    let layers = put_into(TRACED, &refined_more(&place))
+        .matches("<path")
+        .count();
+    assert_eq!(layers, 30);
+}
+
+/// A file of another program with 20 strokes, and then 10 more.
+fn refined_more(place: &Place) -> String {
+    place.file("traced.svg", TRACED);
+    let picture = committed("samples/chelsea-cat.png");
+    draft(
+        place,
+        &["refine", "traced.svg", &picture, "--strokes", "+20"],
+        "a.svg",
+    );
+    draft(
+        place,
+        &["refine", "a.svg", &picture, "--strokes", "+10"],
+        "b.svg",
+    );
+    read(place, "b.svg")
+}
+
+#[test]
+fn a_drawing_in_two_goes_is_as_good_as_one_in_one_go() {
+    let place = Place::new();
+    let picture = committed("samples/coffee-300.png");
+    let whole = draft(&place, &["fit", &picture, "--strokes", "300"], "whole.svg");
+    draft(&place, &["fit", &picture, "--strokes", "150"], "half.svg");
+    let both = draft(
+        &place,
+        &["refine", "half.svg", &picture, "--strokes", "300"],
+        "both.svg",
+    );
+    assert!(both > whole - 0.3, "{both} dB in two goes, {whole} in one");
+    assert_eq!(layers(&place, "both.svg").iter().sum::<usize>(), 300);
+    assert_eq!(place.report("report.json")["base"]["strokes"], 150);
+}
+
+/// Without polish the first stages of a plan are the same whether or not others follow: the stages that are
+/// there are not planned again, and the drawing ends as good as the whole one.
+#[test]
+fn the_stages_that_are_missing_are_added() {
+    let place = Place::new();
+    let picture = committed("samples/coffee-300.png");
+    let plain = ["fit", &picture, "--no-polish", "--strokes"];
+    let whole = draft(&place, &[&plain[..], &["200"]].concat(), "whole.svg");
+    let counts = layers(&place, "whole.svg");
+    let first: usize = counts[..5].iter().sum();
+    let first = first.to_string();
+    draft(
+        &place,
+        &[&plain[..], &[&first, "--stages", "5"]].concat(),
+        "first.svg",
+    );
+    let refine = [
+        "refine",
+        "first.svg",
+        &picture,
+        "--no-polish",
+        "--strokes",
+        "200",
+    ];
+    let both = draft(&place, &refine, "both.svg");
+    assert!(
+        (both - whole).abs() < 0.3,
+        "{both} dB in two goes, {whole} in one"
+    );
+    let both = layers(&place, "both.svg");
+    assert_eq!(both.len(), counts.len(), "{both:?} for {counts:?}");
+    assert_eq!(both[..5], layers(&place, "first.svg"));
+}
+
+#[test]
+fn a_layer_that_nothing_is_seen_of_goes_and_the_others_are_numbered_on() {
+    let place = Place::new();
+    let head = format!(r#"<svg {NAMESPACE} width="300" height="200" viewBox="0 0 300 200">"#);
+    let paths = ["M9 9L40 90", "M-90 9L-40 90", "M200 9L9 190"];
+    let layer = |(k, d): (usize, &str)| {
+        let id = k + 1;
+        format!(
+            r##"<g id="stage-{id}" fill="none" stroke-linecap="round"><path d="{d}" stroke="#999999" stroke-width="5"/></g>"##
+        )
+    };
+    let body: String = paths.into_iter().enumerate().map(layer).collect();
+    place.file("three.svg", format!("{head}{body}</svg>"));
+    let picture = committed("samples/coffee-300.png");
+    let enough = ["refine", "three.svg", &picture, "--psnr", "1"];
+    draft(&place, &enough, "two.svg");
+    assert_eq!(layers(&place, "two.svg"), [1, 1]);
+    assert!(!read(&place, "two.svg").contains("M-90 9"));
+    let report = place.report("report.json");
+    let records = report["stages"].as_array().unwrap().iter();
+    let records: Vec<_> = records.map(|s| (&s["index"], &s["strokes"])).collect();
+    assert_eq!(
+        format!("{records:?}"),
+        "[(Number(1), Number(1)), (Number(2), Number(1))]"
+    );
+    assert_eq!(report["dropped"], 1);
+    assert_eq!(report["dropped_for"]["off_page"], 1);
+}
+
+#[test]
+fn a_base_that_meets_a_budget_is_written_as_it_is() {
+    let place = Place::new();
+    let picture = committed("samples/chelsea-cat.png");
+    place.file("traced.svg", TRACED);
+    draft(&place, &["fit", &picture, "--strokes", "80"], "own.svg");
+    draft(
+        &place,
+        &["refine", "traced.svg", &picture, "--strokes", "20"],
+        "laid.svg",
+    );
+    for (base, budget) in [
+        ("own.svg", ["--strokes", "80"]),
+        ("own.svg", ["--psnr", "20"]),
+        ("laid.svg", ["--strokes", "20"]),
+        ("traced.svg", ["--psnr", "15"]),
+    ] {
+        draft(
+            &place,
+            &[&["refine", base, &picture], &budget[..]].concat(),
+            "again.svg",
+        );
+        assert!(
+            read(&place, "again.svg") == read(&place, base),
+            "{base} {budget:?}"
+        );
+    }
+}
+
+/// Fitting anew what a budget leaves little room for may end worse than it began.
+#[test]
+fn a_base_that_is_better_than_its_refinement_is_kept() {
+    let place = Place::new();
+    let picture = committed("samples/rocket-320.png");
+    for seed in ["0", "1", "2"] {
+        let within = ["--bytes", "3000", "--seed", seed];
+        let base = draft(&place, &[&["fit", &picture], &within[..]].concat(), "a.svg");
+        let refine = ["refine", "a.svg", &picture];
+        let refined = draft(&place, &[&refine, &within[..]].concat(), "b.svg");
+        assert!(
+            refined >= base,
+            "seed {seed}: {base:.2} dB, then {refined:.2}"
+        );
+        // The base is translucent, and stays only where it may.
+        draft(
+            &place,
+            &[&refine, &within[..], &["--opaque"]].concat(),
+            "c.svg",
+        );
+        assert!(!read(&place, "c.svg").contains("opacity"));
+    }
+}
+
+#[test]
+fn a_traced_picture_gains_and_stays_as_it_is() {
+    let place = Place::new();
+    let picture = committed("samples/chelsea-cat.png");
+    place.file("traced.svg", TRACED);
+    let before = draft(
+        &place,
+        &["refine", "traced.svg", &picture, "--psnr", "1"],
+        "same.svg",
+    );
+    let refine = ["refine", "traced.svg", &picture, "--strokes", "200"];
+    let after = draft(&place, &refine, "refined.svg");
+    assert!(after > before + 3.0, "from {before} to {after} dB");
+    let refined = read(&place, "refined.svg");
+    assert_eq!(put_into(TRACED, &refined).matches("<path").count(), 200);
+    let record = place.report("report.json");
+    assert_eq!(
+        (&record["base"]["elements"], &record["base"]["strokes"]),
+        (&59.into(), &0.into())
+    );
+    assert!(record["agreement"]["psnr_db"].as_f64().unwrap() > 40.0);
+}
+
+#[test]
+fn strokes_laid_on_a_file_are_taken_up_again() {
+    let place = Place::new();
+    let picture = committed("samples/chelsea-cat.png");
+    place.file("traced.svg", TRACED);
+    let refine = |base, strokes| ["refine", base, picture.as_str(), "--strokes", strokes];
+    draft(&place, &refine("traced.svg", "100"), "first.svg");
+    let twice = draft(&place, &refine("first.svg", "200"), "second.svg");
+    assert_eq!(place.report("report.json")["base"]["strokes"], 100);
+    let second = read(&place, "second.svg");
+    assert_eq!(put_into(TRACED, &second).matches("<path").count(), 200);
+    let once = draft(&place, &refine("traced.svg", "200"), "once.svg");
+    assert!(twice > once - 0.3, "{twice} dB in two goes, {once} in one");
+}
+
+#[test]
+fn a_frozen_drawing_stays_as_it_is_and_stays_a_drawing() {
+    let place = Place::new();
+    let picture = committed("samples/coffee-300.png");
+    let before = draft(&place, &["fit", &picture, "--strokes", "60"], "own.svg");
+    let refine = [
+        "refine",
+        "own.svg",
+        &picture,
+        "--freeze-base",
+        "--strokes",
+        "60",
+    ];
+    let after = draft(&place, &refine, "more.svg");
+    put_into(&read(&place, "own.svg"), &read(&place, "more.svg"));
+    assert_eq!(layers(&place, "more.svg").iter().sum::<usize>(), 120);
+    assert!(after > before, "from {before} to {after} dB");
+}
+
+/// Another prefix, other units, a viewBox, and properties that strokes would inherit.
+#[test]
+fn the_root_does_not_change_the_strokes() {
+    let place = Place::new();
+    place.picture("in.png", 60, 40);
+    let root = "<s:svg xmlns:s=\"http://www.w3.org/2000/svg\" width=\"30mm\" height=\"20mm\" \
+                viewBox=\"-5 7 30 20\" stroke-opacity=\"0.2\" stroke-dasharray=\"1 2\" fill=\"red\" \
+                shape-rendering=\"crispEdges\" stroke-linecap=\"butt\">";
+    let base = format!(
+        "{root}<s:style>svg{{stroke:blue;stroke-width:9}}</s:style>\
+         <s:rect x=\"-5\" y=\"7\" width=\"30\" height=\"20\" fill=\"#888\"/><s:g id=\"stage-3\"/></s:svg>"
+    );
+    place.file("base.svg", &base);
+    let db = draft(
+        &place,
+        &["refine", "base.svg", "in.png", "--strokes", "30"],
+        "out.svg",
+    );
+    let refined = read(&place, "out.svg");
+    let layers = put_into(&base, &refined);
+    assert!(
+        layers.contains("<g id=\"stage-4\"") && !layers.contains("stage-3"),
+        "{layers}"
+    );
+    let agreement = &place.report("report.json")["agreement"]["psnr_db"];
+    assert!(
+        db > 25.0 && agreement.as_f64().unwrap() > 36.0,
+        "{db} {agreement}"
+    );
+}
+
+#[test]
+fn what_is_passed_through_and_what_cannot_be_seen_is_said() {
+    let place = Place::new();
+    place.picture("in.png", 30, 20);
+    let base = format!(
+        "<svg {NAMESPACE} viewBox=\"0 0 30 20\"><text>a</text><image href=\"/etc/hostname\"/><g/></svg>"
+    );
+    place.file("base.svg", base);
+    let refine = [
+        "refine",
+        "base.svg",
+        "in.png",
+        "-o",
+        "out.svg",
+        "--strokes",
+        "3",
+    ];
+    let said = stderr(&place.done(&refine));
+    for words in ["keeping 3 elements", "fonts", "other files"] {
+        assert!(said.contains(words), "no {words:?} in {said}");
+    }
+}
+
+#[test]
+fn the_page_keeps_its_width() {
+    let place = Place::new();
+    place.picture("in.png", 60, 40);
+    draft(
+        &place,
+        &["fit", "in.png", "--strokes", "5", "--width", "120mm"],
+        "own.svg",
+    );
+    draft(
+        &place,
+        &["refine", "own.svg", "in.png", "--strokes", "9"],
+        "more.svg",
+    );
+    assert!(read(&place, "more.svg").contains("width=\"120mm\" height=\"80mm\""));
+}
+
+/// What is clear in both stays clear, and no background is drawn.
+#[test]
+fn transparency_is_kept() {
+    let place = Place::new();
+    let picture = committed("samples/noto-gem.png");
+    draft(&place, &["fit", &picture, "--strokes", "40"], "own.svg");
+    draft(
+        &place,
+        &["refine", "own.svg", &picture, "--strokes", "60"],
+        "more.svg",
+    );
+    let alpha = &place.report("report.json")["alpha"];
+    assert!(alpha["black_db"].as_f64().unwrap() > 25.0, "{alpha}");
+    assert!(!read(&place, "more.svg").contains("<rect"));
+}
+
+#[test]
+fn what_cannot_be_refined_is_refused() {
+    let place = Place::new();
+    place.picture("in.png", 30, 20);
+    let svg = |root: &str, inside: &str| format!("<svg {NAMESPACE} {root}>{inside}</svg>");
+    let page = "width=\"30\" height=\"20\"";
+    let nested = "<g>".repeat(3000) + &"</g>".repeat(3000);
+    let bomb =
+        "<!DOCTYPE svg [<!ENTITY a \"haha\"><!ENTITY b \"&a;&a;&a;&a;\"><!ENTITY c \"&c;\">]>";
+    for (name, text, words) in [
+        ("empty.svg", String::new(), "empty"),
+        ("text.svg", "this is no SVG".into(), "no <svg>"),
+        ("html.svg", "<html></html>".into(), "<html>"),
+        (
+            "cut.svg",
+            svg(page, "<g>").replace("</svg>", ""),
+            "ends within",
+        ),
+        ("mixed.svg", svg(page, "<g>"), "not well-formed"),
+        (
+            "alien.svg",
+            svg(page, "").replace("http:", "https:"),
+            "namespace",
+        ),
+        (
+            "other.svg",
+            svg("width=\"30\" height=\"30\"", ""),
+            "aspect ratio",
+        ),
+        (
+            "unit.svg",
+            svg("width=\"30furlong\" height=\"20furlong\"", ""),
+            "viewBox",
+        ),
+        (
+            "percent.svg",
+            svg("width=\"100%\" height=\"100%\"", ""),
+            "viewBox",
+        ),
+        (
+            "faint.svg",
+            svg(&format!("{page} opacity=\"0.5\""), "<g/>"),
+            "root element",
+        ),
+        (
+            "styled.svg",
+            svg(page, "<style>path{fill:red}</style>"),
+            "style sheet",
+        ),
+        (
+            "hidden.svg",
+            svg(&format!("{page} display=\"none\""), ""),
+            "root element",
+        ),
+        ("nested.svg", svg(page, &nested), "nested"),
+        (
+            "bomb.svg",
+            bomb.to_owned() + &svg(page, "<text>&c;</text>"),
+            "entity",
+        ),
+        ("outside.svg", svg(page, "<text>&x;</text>"), "entity"),
+    ] {
+        place.file(name, text);
+        let refine = ["refine", name, "in.png", "-o", "out.svg"];
+        assert_refused(&place, &refine, 1, &[name, words]);
+    }
+}
+
+#[test]
+fn usage_that_makes_no_sense_is_refused() {
+    let place = Place::new();
+    place.picture("in.png", 30, 20);
+    place.file(
+        "base.svg",
+        format!("<svg {NAMESPACE} viewBox=\"0 0 30 20\"/>"),
+    );
+    let refine = |base, input, output| ["refine", base, input, "-o", output];
+    assert_refused(&place, &refine("-", "-", "out.svg"), 2, &["standard input"]);
+    assert_refused(
+        &place,
+        &refine("base.svg", "in.png", "base.svg"),
+        2,
+        &["overwritten"],
+    );
+    let background = [
+        &refine("base.svg", "in.png", "out.svg")[..],
+        &["--background", "none"],
+    ]
+    .concat();
+    assert_refused(&place, &background, 2, &["--background"]);
+}
+
+/// The colours of the strokes of a text, and of its background.
+fn colors(text: &str) -> BTreeSet<&str> {
+    let after = |word: &'static str| {
+        text.split(word)
+            .skip(1)
+            .filter_map(|rest| rest.split('"').next())
+    };
+    after("stroke=\"")
+        .chain(after("<rect width=\"300\" height=\"200\" fill=\""))
+        .collect()
+}
+
+#[test]
+fn the_strokes_of_a_base_get_the_few_colours_too() {
+    let place = Place::new();
+    let picture = committed("samples/coffee-300.png");
+    draft(&place, &["fit", &picture, "--strokes", "80"], "base.svg");
+    let refine = ["refine", "base.svg", &picture, "--colors", "5", "--strokes"];
+    // Also where no stroke is to be added.
+    for (strokes, form) in [("120", "plain"), ("80", "plain"), ("120", "smallest")] {
+        let args = [&refine[..], &[strokes, "--form", form, "--opaque"]].concat();
+        draft(&place, &args, "few.svg");
+        let few = read(&place, "few.svg");
+        assert_eq!(colors(&few).len(), 5, "{strokes} strokes, {form}");
+        // In five colours, some strokes are hidden by others of their colour.
+        let hidden = place.report("report.json")["dropped"].as_u64().unwrap();
+        let drawn = svg::read(&few).unwrap().len() as u64;
+        assert_eq!((drawn + hidden).to_string(), strokes);
+        assert!(hidden < drawn / 4, "{hidden}");
+    }
+    // What has few colours already is left as it is.
+    let strokes = svg::read(&read(&place, "few.svg"))
+        .unwrap()
+        .len()
+        .to_string();
+    let again = [
+        "refine",
+        "few.svg",
+        &picture,
+        "--colors",
+        "5",
+        "--strokes",
+        &strokes,
+    ];
+    draft(
+        &place,
+        &[&again[..], &["--form", "smallest"]].concat(),
+        "again.svg",
+    );
+    assert_eq!(read(&place, "again.svg"), read(&place, "few.svg"));
+}
+
+#[test]
+fn only_what_is_laid_on_a_document_gets_few_colours() {
+    let place = Place::new();
+    let picture = committed("samples/chelsea-cat.png");
+    place.file("traced.svg", TRACED);
+    let palette = ["--palette", "#1f130b,#e4caba", "--strokes", "40"];
+    let args = [&["refine", "traced.svg", &picture], &palette[..]].concat();
+    draft(&place, &args, "laid.svg");
+    let laid = read(&place, "laid.svg");
+    assert_eq!(
+        colors(put_into(TRACED, &laid)),
+        ["#1f130b", "#e4caba"].into()
+    );
+}
+
+#[test]
+fn a_clear_drawing_keeps_few_colours() {
+    let place = Place::new();
+    let picture = committed("samples/noto-gem.png");
+    let few = ["--colors", "4", "--strokes"];
+    draft(
+        &place,
+        &[&["fit", &picture], &few[..], &["60"]].concat(),
+        "clear.svg",
+    );
+    assert_eq!(colors(&read(&place, "clear.svg")).len(), 4);
+    draft(
+        &place,
+        &[&["refine", "clear.svg", &picture], &few[..], &["90"]].concat(),
+        "more.svg",
+    );
+    let more = read(&place, "more.svg");
+    assert_eq!(colors(&more).len(), 4);
+    assert!(!more.contains("<rect"));
+    let palette = ["--palette", "#29b6f6,#ffffff", "--strokes", "60"];
+    draft(
+        &place,
+        &[&["fit", &picture], &palette[..]].concat(),
+        "given.svg",
+    );
+    assert_eq!(
+        colors(&read(&place, "given.svg")),
+        ["#29b6f6", "#ffffff"].into()
+    );
+}
+
+#[test]
+fn a_base_whose_background_is_not_in_the_palette_is_refused() {
+    let place = Place::new();
+    let picture = committed("samples/coffee-300.png");
+    let background = ["--background", "#a95327", "--strokes", "20"];
+    draft(
+        &place,
+        &[&["fit", &picture], &background[..]].concat(),
+        "base.svg",
+    );
+    let refine = ["refine", "base.svg", &picture, "-q"];
+    assert_refused(
+        &place,
+        &[
+            &refine[..],
+            &["-o", "few.svg", "--palette", "#ffffff,#000000"],
+        ]
+        .concat(),
+        2,
+        &["the background #a95327 is not in the palette: add it"],
+    );
+    let args = [
+        &refine[..3],
+        &["--palette", "#ffffff,#a95327", "--strokes", "30"],
+    ]
+    .concat();
+    draft(&place, &args, "few.svg");
+    assert_eq!(
+        colors(&read(&place, "few.svg")),
+        ["#a95327", "#ffffff"].into()
+    );
+}

@@ -1,0 +1,858 @@
+//! The fast renderer against the naive one in `f64`: images, gradients, leave-one-out; the same bits
+//! at every SIMD level and number of threads.
+
+use proptest::prelude::*;
+
+use crate::support::paths::paths;
+use strokefit::coverage::Coverage;
+use strokefit::fit::{Objective, Simd};
+use strokefit::image::Image;
+use strokefit::loss::Loss;
+use strokefit::math::Point;
+use strokefit::render::reference::{self, Reference};
+use strokefit::render::{
+    Backdrop, Canvas, Gradients, Grid, Params, Renderer, Softness, StrokeRef, Strokes, Survey,
+};
+use strokefit::rng::draw;
+use strokefit::scene::{Path, PathPoint, Stroke};
+
+/// ε of the fast renderer's distances, px².
+const EPS: f64 = 1e-6;
+/// What culling behind opaque strokes (1/4096) and `f32` may change a channel by.
+const IMAGE_TOLERANCE: f64 = 4e-4;
+/// Largest error of a gradient, relative to the largest gradient of its kind in the scene.
+const GRADIENT_TOLERANCE: f64 = 1e-3;
+
+/// Gradients and worths below this are as good as none.
+const FAINT: f64 = 1e-6;
+
+#[derive(Clone)]
+struct Case {
+    name: String,
+    width: usize,
+    height: usize,
+    strokes: Strokes,
+    tolerance: f64,
+}
+
+/// Random strokes of mixed size and opacity, some off the picture.
+fn random(seed: u64, width: usize, height: usize, count: usize) -> Case {
+    let u = |i: usize, k: u64| draw(seed, 9, i as u64, k);
+    let stroke = |i: usize| -> Params {
+        let (x, y) = (
+            (u(i, 0) * 1.2 - 0.1) * width as f32,
+            (u(i, 1) * 1.2 - 0.1) * height as f32,
+        );
+        let (angle, length) = (u(i, 2) * 6.3, u(i, 3).powi(2) * 40.0);
+        let opacity = if u(i, 8) > 0.8 { 1.0 } else { u(i, 8) };
+        let radius = 0.2 + 9.0 * u(i, 4).powi(2);
+        [
+            x,
+            y,
+            x + length * angle.cos(),
+            y + length * angle.sin(),
+            radius,
+            u(i, 5),
+            u(i, 6),
+            u(i, 7),
+            opacity,
+        ]
+    };
+    Case {
+        name: format!("random {count} on {width}×{height}"),
+        width,
+        height,
+        strokes: (0..count).map(stroke).collect(),
+        tolerance: GRADIENT_TOLERANCE,
+    }
+}
+
+/// One kind of trouble each.
+fn degenerate() -> Vec<Case> {
+    let case = |name: &str, strokes: &[Params]| Case {
+        name: name.into(),
+        width: 40,
+        height: 36,
+        strokes: strokes.iter().collect(),
+        tolerance: GRADIENT_TOLERANCE,
+    };
+    let red = |a: [f32; 2], b: [f32; 2], radius: f32, opacity: f32| {
+        [a[0], a[1], b[0], b[1], radius, 0.9, 0.2, 0.1, opacity]
+    };
+    vec![
+        case("nothing", &[]),
+        case("zero length", &[red([20.3, 17.1], [20.3, 17.1], 4.2, 0.7)]),
+        case("zero radius", &[red([5.2, 6.1], [30.4, 25.7], 0.0, 0.9)]),
+        case(
+            "negative radius",
+            &[red([5.2, 6.1], [30.4, 25.7], -2.0, 0.9)],
+        ),
+        case(
+            "off the picture",
+            &[red([-50.0, -9.0], [-45.0, 50.0], 3.0, 1.0)],
+        ),
+        case(
+            "across the edge",
+            &[red([-12.0, 8.0], [60.0, 30.0], 5.0, 0.6)],
+        ),
+        case("opacity 0", &[red([5.0, 6.0], [30.0, 25.0], 3.0, 0.0)]),
+        case(
+            "opaque and stacked",
+            &[red([5.0, 6.0], [30.0, 25.0], 6.0, 1.0); 5],
+        ),
+        case(
+            "on pixel centres",
+            &[red([10.5, 10.5], [30.5, 10.5], 1.5, 0.8)],
+        ),
+        case(
+            "covers everything",
+            &[
+                red([20.0, 18.0], [21.0, 18.0], 90.0, 1.0),
+                red([9.0, 9.0], [30.0, 20.0], 3.0, 0.5),
+            ],
+        ),
+        // Its ends are known to 1/128 px only, in f32.
+        Case {
+            tolerance: 3e-3,
+            ..case("very long", &[red([-1e5, -1e5], [1e5, 1.001e5], 2.0, 0.5)])
+        },
+    ]
+}
+
+/// A path of every kind between two ordinary strokes, in a picture of two tiles by two.
+fn along_paths() -> Vec<Case> {
+    let (width, height) = (40, 36);
+    let others = random(7, width, height, 2).strokes;
+    let paths = paths(width as f32, height as f32).into_iter();
+    let case = |(k, (name, path)): (usize, (&str, Path))| {
+        let mut strokes = Strokes::new();
+        strokes.push(others.get(0));
+        strokes.push_stroke(&Stroke {
+            path,
+            radius: [1.3, 4.2, 0.4][k % 3],
+            color: [0.9, 0.2, 0.1],
+            opacity: [0.6, 1.0][k % 2],
+        });
+        strokes.push(others.get(1));
+        Case {
+            name: name.into(),
+            width,
+            height,
+            strokes,
+            tolerance: GRADIENT_TOLERANCE,
+        }
+    };
+    paths.enumerate().map(case).collect()
+}
+
+/// One stroke of a thousand points, along a walk that crosses itself and the borders of tiles.
+fn long(radius: f32, opacity: f32) -> Case {
+    let (width, height) = (75, 70);
+    let u = |i: usize, k: u64| draw(3, 4, i as u64, k) - 0.5;
+    let walk = (0..1000).scan([35.0, 33.0], |at, i| {
+        for (k, v) in at.iter_mut().enumerate() {
+            *v = (*v + 7.0 * u(i, k as u64)).clamp(-5.0, 78.0);
+        }
+        Some(PathPoint {
+            at: Point::new(at[0], at[1]),
+            is_on: i == 0 || i == 999 || u(i, 2) > -0.2,
+        })
+    });
+    let stroke = Stroke {
+        path: Path::new(walk.collect(), false).unwrap(),
+        radius,
+        color: [0.2, 0.9, 0.4],
+        opacity,
+    };
+    Case {
+        name: format!("a thousand points, {radius} px"),
+        width,
+        height,
+        strokes: Strokes::from_iter([&stroke]),
+        tolerance: GRADIENT_TOLERANCE,
+    }
+}
+
+/// Segments end to end along the border of two tiles, and on both sides of it.
+fn along_borders() -> Case {
+    let points = [
+        [32.0, -3.0],
+        [32.0, 9.0],
+        [31.0, 17.0],
+        [33.0, 31.9],
+        [32.0, 32.0],
+        [20.0, 32.1],
+        [3.0, 31.5],
+        [32.0, 33.0],
+        [50.0, 32.0],
+        [64.0, 63.9],
+        [64.1, 40.0],
+    ];
+    let points = points.map(|[x, y]| PathPoint::on(Point::new(x, y)));
+    let stroke = Stroke {
+        path: Path::new(points.to_vec(), false).unwrap(),
+        radius: 1.1,
+        color: [0.7, 0.1, 0.4],
+        opacity: 0.7,
+    };
+    Case {
+        name: "along the borders of tiles".into(),
+        width: 70,
+        height: 66,
+        strokes: Strokes::from_iter([&stroke]),
+        tolerance: GRADIENT_TOLERANCE,
+    }
+}
+
+/// Random strokes of one to nine points, open and closed, straight and curved.
+fn random_paths(seed: u64, width: usize, height: usize, count: usize) -> Case {
+    let capsules = random(seed, width, height, count);
+    let u = |i: usize, k: u64| draw(seed, 11, i as u64, k);
+    let stroke = |(i, capsule): (usize, StrokeRef<'_>)| {
+        let points = 1 + (u(i, 0) * 9.0) as usize;
+        let closed = u(i, 1) < 0.3;
+        let [x, y] = capsule.points[0];
+        let spread = 4.0 + 30.0 * u(i, 2);
+        let point = |k: usize| {
+            let at = [0, 1].map(|axis| spread * (u(i, 3 + 3 * k as u64 + axis) - 0.5));
+            let is_end = !closed && (k == 0 || k == points - 1) || points == 1;
+            PathPoint {
+                at: Point::new(x + at[0], y + at[1]),
+                is_on: is_end || u(i, 5 + 3 * k as u64) < 0.5,
+            }
+        };
+        Stroke {
+            path: Path::new((0..points).map(point).collect(), closed).unwrap(),
+            radius: capsule.radius(),
+            color: capsule.color(),
+            opacity: capsule.opacity(),
+        }
+    };
+    let strokes: Vec<Stroke> = capsules.strokes.iter().enumerate().map(stroke).collect();
+    Case {
+        name: format!("random paths {count} on {width}×{height}"),
+        strokes: strokes.iter().collect(),
+        ..capsules
+    }
+}
+
+fn cases() -> Vec<Case> {
+    let mut cases = degenerate();
+    // Sizes around the blocks of 4 and the tiles of 32, so that every tail length occurs.
+    for (k, (width, height)) in [(1, 1), (3, 70), (33, 31), (64, 64), (97, 35)]
+        .into_iter()
+        .enumerate()
+    {
+        cases.push(random(k as u64, width, height, 30));
+        cases.push(random_paths(k as u64, width, height, 20));
+    }
+    cases.push(random(99, 70, 66, 200));
+    cases.extend(along_paths());
+    cases.push(along_borders());
+    cases.push(long(1.0, 0.5));
+    cases.push(long(9.0, 0.6));
+    cases
+}
+
+fn target(case: &Case) -> Image {
+    let plane = |c: u64| {
+        (0..case.width * case.height)
+            .map(|i| draw(5, c, i as u64, 0))
+            .collect()
+    };
+    Image::new(case.width, case.height, [plane(0), plane(1), plane(2)]).unwrap()
+}
+
+const BACKGROUND: [f32; 3] = [0.3, 0.6, 0.8];
+
+fn naive(case: &Case) -> reference::Scene {
+    reference::Scene {
+        width: case.width,
+        height: case.height,
+        background: BACKGROUND.map(f64::from),
+        strokes: case.strokes.iter().map(reference::Stroke::from).collect(),
+    }
+}
+
+fn oracle(coverage: Coverage, softness: f32) -> Reference {
+    Reference {
+        eps: EPS,
+        cut: true,
+        ..Reference::new(coverage, f64::from(softness))
+    }
+}
+
+fn renderer(case: &Case, simd: Simd) -> Renderer {
+    Renderer::new(Grid::new(case.width, case.height), simd.level().unwrap())
+}
+
+fn rendered(case: &Case, simd: Simd, softness: Softness) -> Image {
+    let mut canvas = Canvas::flat(Grid::new(case.width, case.height), [0.0; 3]);
+    renderer(case, simd).forward(
+        &case.strokes,
+        softness,
+        Backdrop::Color(BACKGROUND),
+        &mut canvas,
+    );
+    canvas.to_image()
+}
+
+fn differentiated(case: &Case, simd: Simd, softness: Softness, loss: Loss) -> Gradients {
+    let target = Canvas::from_image(&target(case));
+    let mut gradients = Gradients::default();
+    renderer(case, simd).backward_with_worth(
+        &case.strokes,
+        softness,
+        Backdrop::Color(BACKGROUND),
+        &Objective::new(loss, &target),
+        &mut gradients,
+    );
+    gradients
+}
+
+/// The backdrops and targets of two losses: a colour and a picture.
+fn two_mattes(case: &Case) -> ([Canvas; 2], Canvas) {
+    let first = target(case);
+    let [red, green, blue] = first.planes().clone();
+    let second = Image::new(case.width, case.height, [blue, red, green]).unwrap();
+    let below = second
+        .planes()
+        .clone()
+        .map(|plane| plane.iter().map(|v| 1.0 - v).collect());
+    let below = Image::new(case.width, case.height, below).unwrap();
+    (
+        [first, second].map(|image| Canvas::from_image(&image)),
+        Canvas::from_image(&below),
+    )
+}
+
+fn differentiated_on_mattes(case: &Case, simd: Simd, softness: Softness) -> Gradients {
+    let (targets, below) = two_mattes(case);
+    let losses = targets
+        .each_ref()
+        .map(|target| Objective::new(Loss::L2, target));
+    let mut gradients = Gradients::default();
+    renderer(case, simd).backward_on_mattes(
+        &case.strokes,
+        softness,
+        [Backdrop::Color(BACKGROUND), Backdrop::Canvas(&below)],
+        losses.each_ref(),
+        &mut gradients,
+    );
+    gradients
+}
+
+/// The same in two passes.
+fn differentiated_one_by_one(case: &Case, simd: Simd, softness: Softness) -> [Gradients; 2] {
+    let (targets, below) = two_mattes(case);
+    let backdrops = [Backdrop::Color(BACKGROUND), Backdrop::Canvas(&below)];
+    [0, 1].map(|i| {
+        let loss = Objective::new(Loss::L2, &targets[i]);
+        let mut gradients = Gradients::default();
+        let mut renderer = renderer(case, simd);
+        renderer.backward(&case.strokes, softness, backdrops[i], &loss, &mut gradients);
+        gradients
+    })
+}
+
+fn report(failures: Vec<String>) {
+    assert!(
+        failures.is_empty(),
+        "{} failures:\n{}",
+        failures.len(),
+        failures.join("\n")
+    );
+}
+
+fn levels() -> impl Iterator<Item = Simd> {
+    Simd::ALL.into_iter().filter(|simd| simd.level().is_some())
+}
+
+/// What differs between the fast image and the naive one.
+fn image_failures(case: &Case, softness: Softness) -> Vec<String> {
+    let fast = rendered(case, Simd::Auto, softness);
+    let slow = oracle(softness.coverage, softness.width).render(&naive(case));
+    let mut failures = Vec::new();
+    for (i, expected) in slow.iter().enumerate() {
+        for (plane, expected) in fast.planes().iter().zip(expected) {
+            let got = f64::from(plane[i]);
+            if (got - expected).abs() > IMAGE_TOLERANCE || got.is_nan() {
+                failures.push(format!(
+                    "{}, {} {}: {got} not {expected} at {i}",
+                    case.name, softness.coverage, softness.width
+                ));
+            }
+        }
+    }
+    failures
+}
+
+#[test]
+fn images_are_the_oracles() {
+    let mut failures = Vec::new();
+    for case in cases() {
+        for coverage in Coverage::EACH {
+            for width in [0.6, 1.0, 3.0] {
+                failures.extend(image_failures(&case, Softness { coverage, width }));
+            }
+        }
+    }
+    report(failures);
+}
+
+/// The kinds of numbers whose gradients are of one unit.
+const KINDS: [&str; 4] = ["points", "radius", "colour", "opacity"];
+
+/// Gradients of one stroke by number: its kind and its value. Those by points that coincide are added up, since it hangs
+/// on rounding which of them a pixel counts for.
+fn by_number(stroke: StrokeRef<'_>, gradients: &[f64]) -> Vec<(usize, f64)> {
+    let (points, look) = gradients.split_at(2 * stroke.points.len());
+    let summed = |k: usize| -> f64 {
+        let same = stroke.points.iter().zip(points.as_chunks::<2>().0);
+        let same = same.filter(|(p, _)| **p == stroke.points[k / 2]);
+        same.map(|(_, g)| g[k % 2]).sum()
+    };
+    let points = (0..points.len()).map(|k| (0, summed(k)));
+    let look = look.iter().zip([1, 2, 2, 2, 3]);
+    points.chain(look.map(|(&g, kind)| (kind, g))).collect()
+}
+
+/// The gradients of all strokes by number, with the names of the numbers.
+fn numbered(strokes: &Strokes, gradients: &[f64]) -> Vec<(String, usize, f64)> {
+    let of_stroke = |i: usize| {
+        let values = by_number(strokes.get(i), &gradients[strokes.range(i)]);
+        let named = move |(k, (kind, value))| {
+            (
+                format!("{} of stroke {i}, number {k}", KINDS[kind]),
+                kind,
+                value,
+            )
+        };
+        values.into_iter().enumerate().map(named)
+    };
+    (0..strokes.len()).flat_map(of_stroke).collect()
+}
+
+/// The pixels of a picture in `f64`.
+fn pixels(image: &Image) -> Vec<[f64; 3]> {
+    let [red, green, blue] = image.planes();
+    let pixels = red.iter().zip(green).zip(blue);
+    pixels
+        .map(|((&r, &g), &b)| [r, g, b].map(f64::from))
+        .collect()
+}
+
+/// `∂L/∂canvas` of the mean loss.
+fn slopes(loss: Loss, canvas: &[[f64; 3]], target: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    let slopes = loss.gradient(canvas.as_flattened(), target.as_flattened());
+    slopes.as_chunks().0.to_vec()
+}
+
+/// What differs between the fast gradients and worths and the naive ones.
+fn gradient_failures(case: &Case, coverage: Coverage, width: f32, loss: Loss) -> Vec<String> {
+    let fast = differentiated(case, Simd::Auto, Softness { coverage, width }, loss);
+    let (scene, oracle) = (naive(case), oracle(coverage, width));
+    let canvas = oracle.render(&scene);
+    let target = pixels(&target(case));
+    let slow = oracle.gradients(&scene, &slopes(loss, &canvas, &target));
+    let mut failures = Vec::new();
+    let mut compare = |what: &str, got: f64, expected: f64, within: f64| {
+        if (got - expected).abs() > within || got.is_nan() {
+            failures.push(format!(
+                "{}, {coverage}: {what}: {got} not {expected}",
+                case.name
+            ));
+        }
+    };
+    let flat: Vec<f64> = slow.strokes.iter().flat_map(|s| s.to_params()).collect();
+    let expected = numbered(&case.strokes, &flat);
+    let got: Vec<f64> = fast.strokes.iter().copied().map(f64::from).collect();
+    let got = numbered(&case.strokes, &got);
+    let mut largest = [FAINT; KINDS.len()];
+    for (_, kind, value) in &expected {
+        largest[*kind] = value.abs().max(largest[*kind]);
+    }
+    for ((name, kind, expected), (.., got)) in expected.iter().zip(&got) {
+        compare(name, *got, *expected, case.tolerance * largest[*kind]);
+    }
+    for (&got, expected) in fast.backdrop.iter().zip(slow.background) {
+        compare("background", f64::from(got), expected, 1e-4);
+    }
+    let worths = oracle.leave_one_out(&scene, &target);
+    let largest = worths.iter().fold(FAINT, |m, v| m.max(v.abs()));
+    for (&got, expected) in fast.worth.iter().zip(worths) {
+        compare("worth", f64::from(got), expected, case.tolerance * largest);
+    }
+    failures
+}
+
+#[test]
+fn gradients_and_worths_are_the_oracles() {
+    let mut failures = Vec::new();
+    let losses = [Loss::L2, Loss::L1].into_iter().cycle();
+    let edges: Vec<_> = Coverage::EACH.into_iter().zip(losses).collect();
+    for case in cases() {
+        for &(coverage, loss) in &edges {
+            failures.extend(gradient_failures(&case, coverage, 1.5, loss));
+        }
+    }
+    report(failures);
+}
+
+#[test]
+fn gradients_on_two_mattes_are_the_sums_of_those_on_each() {
+    let mut failures = Vec::new();
+    for (case, coverage) in cases().iter().zip(Coverage::EACH.iter().cycle()) {
+        let softness = Softness {
+            coverage: *coverage,
+            width: 1.5,
+        };
+        let both = differentiated_on_mattes(case, Simd::Auto, softness);
+        let [first, second] = differentiated_one_by_one(case, Simd::Auto, softness);
+        let values = |g: &Gradients| -> Vec<f64> { g.strokes.iter().map(|&v| v.into()).collect() };
+        let [got, first, second] = [&both, &first, &second].map(|g| {
+            let loss = (String::from("loss"), KINDS.len(), g.loss);
+            let mut numbers = numbered(&case.strokes, &values(g));
+            let backdrop = g
+                .backdrop
+                .iter()
+                .map(|&v| (String::from("backdrop"), KINDS.len(), v.into()));
+            numbers.extend(backdrop.chain([loss]));
+            numbers
+        });
+        let mut largest = [FAINT; KINDS.len() + 1];
+        for (_, kind, value) in first.iter().chain(&second) {
+            largest[*kind] = value.abs().max(largest[*kind]);
+        }
+        for ((name, kind, got), ((.., first), (.., second))) in
+            got.iter().zip(first.iter().zip(&second))
+        {
+            if (got - first - second).abs() > 1e-5 * largest[*kind] || got.is_nan() {
+                failures.push(format!(
+                    "{}, {coverage}: {name}: {got} not {first} + {second}",
+                    case.name
+                ));
+            }
+        }
+    }
+    report(failures);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+
+    /// Any paths, images and gradients: a few strokes, whose segments lie thick and far.
+    #[test]
+    fn random_paths_are_drawn_as_the_oracle_draws_them(
+        seed in 0_u64..1 << 40, count in 1_usize..5, width in 1_usize..80, height in 1_usize..50,
+    ) {
+        let case = random_paths(seed, width, height, count);
+        let softness = Softness { coverage: Coverage::Smoothstep, width: 1.5 };
+        let failures = image_failures(&case, softness);
+        prop_assert!(failures.is_empty(), "{}", failures.join("\n"));
+        let failures = gradient_failures(&case, Coverage::Tanh, 1.5, Loss::L2);
+        prop_assert!(failures.is_empty(), "{}", failures.join("\n"));
+    }
+
+    /// A stroke is no other when its line is cut in two, or when a tile sees a part of it alone.
+    #[test]
+    fn a_point_on_a_line_changes_no_picture(seed in 0_u64..1 << 40, share in 0.0_f32..1.0) {
+        let whole = random(seed, 60, 50, 1);
+        let stroke = whole.strokes.get(0);
+        let [a, b] = [stroke.points[0], stroke.points[1]];
+        let between = [0, 1].map(|k| a[k] + share * (b[k] - a[k]));
+        let mut cut = whole.clone();
+        cut.strokes = Strokes::new();
+        cut.strokes.push(StrokeRef { points: &[a, between, b], off: &[false; 3], ..stroke });
+        let softness = Softness { coverage: Coverage::Smoothstep, width: 1.5 };
+        let [whole, cut] = [whole, cut].map(|case| rendered(&case, Simd::Auto, softness));
+        for (x, y) in whole.planes().iter().flatten().zip(cut.planes().iter().flatten()) {
+            prop_assert!((x - y).abs() < 1e-3, "{x} {y}");
+        }
+    }
+}
+
+/// The loss rises as its gradient says, by central differences of the fast renderer itself.
+#[test]
+fn gradients_are_central_differences() {
+    let softness = Softness {
+        coverage: Coverage::Smoothstep,
+        width: 3.0,
+    };
+    let mut failures = Vec::new();
+    for case in [random(4, 48, 40, 12), random_paths(4, 48, 40, 6)] {
+        let gradients = differentiated(&case, Simd::Auto, softness, Loss::L2);
+        for (k, &gradient) in gradients.strokes.iter().enumerate() {
+            let step = 2e-3;
+            let loss = |sign: f32| {
+                let mut moved = case.clone();
+                moved.strokes.numbers_mut()[k] += sign * step;
+                differentiated(&moved, Simd::Auto, softness, Loss::L2).loss
+            };
+            let difference = (loss(1.0) - loss(-1.0)) / f64::from(2.0 * step);
+            let gradient = f64::from(gradient);
+            if (difference - gradient).abs() > 2e-5 + 0.02 * gradient.abs() {
+                failures.push(format!(
+                    "{}, number {k}: {gradient} but rises by {difference}",
+                    case.name
+                ));
+            }
+        }
+    }
+    report(failures);
+}
+
+/// What a survey says of `case`, with at least `least` segments for each line and curve.
+fn surveyed(case: &Case, least: usize, softness: Softness) -> Survey {
+    let target = Canvas::from_image(&target(case));
+    let mut survey = Survey::default();
+    renderer(case, Simd::Auto).survey(
+        &case.strokes,
+        least,
+        softness,
+        Backdrop::Color(BACKGROUND),
+        &Objective::new(Loss::L2, &target),
+        &mut survey,
+    );
+    survey
+}
+
+/// The strokes of a case as the polylines of a survey, for the reference.
+fn polylines(case: &Case, survey: &Survey) -> reference::Scene {
+    let mut scene = naive(case);
+    for (i, stroke) in scene.strokes.iter_mut().enumerate() {
+        let vertices = survey.firsts[i] as usize..survey.firsts[i + 1] as usize;
+        let places = survey.vertices[vertices].iter();
+        stroke.points = places.map(|v| v.map(f64::from)).collect();
+        stroke.off = vec![false; stroke.points.len()];
+        stroke.closed = false;
+    }
+    scene
+}
+
+/// Values by vertex, added up over those within a thousandth of a px: where a line lies on itself, it hangs on rounding
+/// which of them a pixel counts for.
+fn by_place(vertices: &[[f32; 2]], values: impl Fn(usize) -> f64) -> Vec<f64> {
+    let is_same = |i: usize, k: usize| {
+        let apart = [0, 1].map(|axis| (vertices[i][axis] - vertices[k][axis]).abs());
+        apart.iter().all(|&v| v < 1e-3)
+    };
+    let same = |i: usize| (0..vertices.len()).filter(move |&k| is_same(i, k));
+    let sum = |i: usize| same(i).map(&values).sum();
+    (0..vertices.len()).map(sum).collect()
+}
+
+#[test]
+fn surveys_are_the_oracles() {
+    let softness = Softness {
+        coverage: Coverage::Smoothstep,
+        width: 1.5,
+    };
+    let mut failures = Vec::new();
+    let cases = along_paths()
+        .into_iter()
+        .chain([random_paths(2, 64, 64, 8), random(2, 64, 64, 8)]);
+    for (case, least) in cases.zip([1, 2, 4].into_iter().cycle()) {
+        let survey = surveyed(&case, least, softness);
+        let (scene, oracle) = (
+            polylines(&case, &survey),
+            oracle(softness.coverage, softness.width),
+        );
+        let canvas = oracle.render(&scene);
+        let slow = oracle.gradients(&scene, &slopes(Loss::L2, &canvas, &pixels(&target(&case))));
+        let stiffness = oracle.stiffness(&scene);
+        for (i, stiffness) in stiffness.iter().enumerate() {
+            let range = survey.firsts[i] as usize..survey.firsts[i + 1] as usize;
+            let vertices = &survey.vertices[range.clone()];
+            let mut compare = |what: &str, got: Vec<f64>, expected: Vec<f64>| {
+                let largest = expected.iter().fold(FAINT, |m, v| m.max(v.abs()));
+                for (k, (got, expected)) in got.iter().zip(&expected).enumerate() {
+                    if (got - expected).abs() > case.tolerance * largest || got.is_nan() {
+                        failures.push(format!(
+                            "{}, {least} segments: {what} of vertex {k} of stroke {i}: {got} not {expected}",
+                            case.name
+                        ));
+                    }
+                }
+            };
+            for axis in 0..2 {
+                compare(
+                    "slope",
+                    by_place(vertices, |k| {
+                        f64::from(survey.slopes[range.start + k][axis])
+                    }),
+                    by_place(vertices, |k| slow.strokes[i].points[k][axis]),
+                );
+            }
+            compare(
+                "stiffness",
+                by_place(vertices, |k| f64::from(survey.stiffness[range.start + k])),
+                by_place(vertices, |k| stiffness[k]),
+            );
+        }
+    }
+    report(failures);
+}
+
+/// The squared error over the picture does not curve more, after Gauss and Newton, than a vertex is stiff.
+#[test]
+fn stiffness_is_an_upper_bound() {
+    let oracle = oracle(Coverage::Smoothstep, 1.5);
+    let step = 1e-4;
+    for case in [random_paths(5, 40, 36, 4), long_and_few()] {
+        let scene = naive(&case);
+        let straight = reference::Scene {
+            strokes: scene
+                .strokes
+                .iter()
+                .map(|s| reference::Stroke {
+                    off: vec![false; s.points.len()],
+                    closed: false,
+                    ..s.clone()
+                })
+                .collect(),
+            ..scene
+        };
+        let stiffness = oracle.stiffness(&straight);
+        let (mut most, mut checked) = (0.0_f64, 0);
+        for (i, stroke) in straight.strokes.iter().enumerate() {
+            for (k, &bound) in stiffness[i].iter().enumerate() {
+                assert!(k < stroke.points.len());
+                for axis in 0..2 {
+                    let at = |sign: f64| {
+                        let mut moved = straight.clone();
+                        moved.strokes[i].points[k][axis] += sign * step;
+                        oracle.render(&moved)
+                    };
+                    let (low, high) = (at(-1.0), at(1.0));
+                    let pairs = low.as_flattened().iter().zip(high.as_flattened());
+                    let curvature: f64 = pairs
+                        .map(|(l, h)| 2.0 * ((h - l) / (2.0 * step)).powi(2))
+                        .sum();
+                    assert!(
+                        curvature <= 1.001 * bound + 1e-6,
+                        "{}: {curvature} {bound}",
+                        case.name
+                    );
+                    most = most.max(curvature / bound.max(1e-9));
+                    checked += 1;
+                }
+            }
+        }
+        assert!(checked > 8 && most > 0.3, "{}: {checked} {most}", case.name);
+    }
+}
+
+/// Two strokes, of four and of two points.
+fn long_and_few() -> Case {
+    let mut case = along_borders();
+    let stroke = case.strokes.get(0);
+    let mut strokes = Strokes::new();
+    strokes.push(StrokeRef {
+        points: &stroke.points[1..5],
+        off: &[false; 4],
+        ..stroke
+    });
+    strokes.push(StrokeRef {
+        points: &stroke.points[5..7],
+        off: &[false; 2],
+        ..stroke
+    });
+    case.strokes = strokes;
+    case
+}
+
+#[test]
+fn every_level_gives_the_same_bits() {
+    for case in cases() {
+        for coverage in Coverage::EACH {
+            let softness = Softness {
+                coverage,
+                width: 1.25,
+            };
+            let expected = differentiated(&case, Simd::Scalar, softness, Loss::L2);
+            let on_mattes = differentiated_on_mattes(&case, Simd::Scalar, softness);
+            for simd in levels() {
+                let got = differentiated(&case, simd, softness, Loss::L2);
+                let bits = |g: &Gradients| -> Vec<u32> {
+                    let strokes = g.strokes.iter();
+                    strokes
+                        .chain(&g.backdrop)
+                        .chain(&g.worth)
+                        .map(|v| v.to_bits())
+                        .collect()
+                };
+                assert_eq!(
+                    bits(&got),
+                    bits(&expected),
+                    "{simd}, {coverage}, {}",
+                    case.name
+                );
+                assert_eq!(
+                    bits(&differentiated_on_mattes(&case, simd, softness)),
+                    bits(&on_mattes),
+                    "{simd}, {coverage}, {} on two mattes",
+                    case.name
+                );
+                assert_eq!(
+                    got.loss.to_bits(),
+                    expected.loss.to_bits(),
+                    "{simd}, {coverage}, {}",
+                    case.name
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn every_number_of_threads_gives_the_same_bits() {
+    let mut case = random(1, 200, 150, 300);
+    case.strokes
+        .append(&mut random_paths(1, 200, 150, 100).strokes);
+    let softness = Softness {
+        coverage: Coverage::Smoothstep,
+        width: 1.25,
+    };
+    let with_threads = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        let gradients = pool.install(|| differentiated(&case, Simd::Auto, softness, Loss::L2));
+        (gradients.strokes, gradients.worth, gradients.loss.to_bits())
+    };
+    let expected = with_threads(1);
+    for threads in [2, 3, 8] {
+        assert_eq!(with_threads(threads), expected, "{threads} threads");
+    }
+}
+
+#[test]
+fn strokes_with_numbers_that_are_not_finite_draw_nothing_and_spoil_nothing() {
+    let softness = Softness {
+        coverage: Coverage::Smoothstep,
+        width: 1.0,
+    };
+    for clean in [random(2, 40, 40, 5), random_paths(2, 40, 40, 5)] {
+        let expected = rendered(&clean, Simd::Auto, softness);
+        let gradients = differentiated(&clean, Simd::Auto, softness, Loss::L2);
+        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            for i in 0..clean.strokes.len() {
+                for k in 0..clean.strokes.range(i).len() {
+                    let mut case = clean.clone();
+                    case.strokes.push(clean.strokes.get(i));
+                    let number = case.strokes.range(clean.strokes.len()).start + k;
+                    case.strokes.numbers_mut()[number] = bad;
+                    let name = format!("{}: number {k} of stroke {i} is {bad}", clean.name);
+                    assert_eq!(rendered(&case, Simd::Auto, softness), expected, "{name}");
+                    let got = differentiated(&case, Simd::Auto, softness, Loss::L2);
+                    let others = gradients.strokes.len();
+                    assert_eq!(got.strokes[..others], gradients.strokes, "{name}");
+                    assert!(got.strokes[others..].iter().all(|&v| v == 0.0), "{name}");
+                    assert_eq!(got.worth.last(), Some(&0.0), "{name}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! Pages that shade: a gradient is chosen where the picture is one, and kept.
+
+use crate::support::drafts::draft;
+use crate::support::fits::{drawn, sample};
+use strokefit::fit::{Background, Base, Colors, Config, Fitter};
+use strokefit::image::Image;
+use strokefit::{svg, verify};
+
+/// A ramp with a red square on it.
+fn sign() -> Image {
+    let (width, height) = (96, 64);
+    let inside = |i: usize| (30..50).contains(&(i % width)) && (20..40).contains(&(i / width));
+    let plane = |from: f32, to: f32, thing: f32| -> Vec<f32> {
+        let part = |i: usize| ((i % width) as f32 + 0.5) / width as f32;
+        let ramp = |i: usize| ((from + (to - from) * part(i)) * 255.0).round() / 255.0;
+        let value = |i: usize| if inside(i) { thing } else { ramp(i) };
+        (0..width * height).map(value).collect()
+    };
+    let planes = [
+        plane(0.2, 0.9, 0.9),
+        plane(0.5, 0.6, 0.1),
+        plane(0.9, 0.3, 0.1),
+    ];
+    Image::new(width, height, planes).unwrap()
+}
+
+#[test]
+fn a_glow_and_a_fade_are_a_gradient_each() {
+    for name in ["glow-300", "fade-400"] {
+        let picture = sample(name);
+        let fit = drawn(&picture, &Config::default());
+        assert!(fit.scene.shade.is_some() && fit.scene.len() <= 40, "{name}");
+        let seen = verify::on_mattes(&fit.svg(), &picture).unwrap();
+        let scores = [
+            seen.black_ssimulacra2,
+            seen.white_ssimulacra2,
+            seen.magenta_ssimulacra2,
+        ];
+        assert!(
+            scores.iter().all(|&score| score >= 85.0),
+            "{name}: {seen:?}"
+        );
+    }
+}
+
+#[test]
+fn strokes_are_drawn_on_a_shade() {
+    let fit = drawn(&sign(), &draft(20));
+    assert!(fit.scene.shade.is_some() && fit.scene.background.is_none());
+    assert!(!fit.scene.is_empty());
+    let verdict = verify::verify(&fit.svg(), &fit.target, &fit.soft).unwrap();
+    assert!(
+        verdict.fidelity.psnr_db > 30.0 && verdict.agreement.psnr_db > 36.0,
+        "{verdict:?}"
+    );
+    assert_eq!(svg::read(&fit.svg()).unwrap(), fit.scene);
+}
+
+#[test]
+fn a_refined_drawing_keeps_its_shade() {
+    let picture = sign();
+    let first = drawn(&picture, &draft(5));
+    let base = Base::read(first.svg(), &picture, false).unwrap();
+    let second = Fitter::new(draft(15)).on(base).fit(&picture).unwrap();
+    assert_eq!(second.scene.shade, first.scene.shade);
+    assert_eq!(svg::read(&second.svg()).unwrap(), second.scene);
+}
+
+#[test]
+fn a_background_or_colours_that_are_given_leave_no_shade() {
+    let picture = sign();
+    let shade = |config: Config| drawn(&picture, &config).scene.shade;
+    let background = Background::Color([1.0; 3]);
+    assert_eq!(
+        shade(Config {
+            background,
+            ..draft(5)
+        }),
+        None
+    );
+    let background = Background::None;
+    assert_eq!(
+        shade(Config {
+            background,
+            ..draft(5)
+        }),
+        None
+    );
+    let colors = Colors::AtMost(3);
+    assert_eq!(shade(Config { colors, ..draft(5) }), None);
+}
+
+#[test]
+fn other_samples_have_no_shade() {
+    for name in [
+        "chelsea-cat",
+        "coffee-300",
+        "rocket-320",
+        "noto-gem",
+        "noto-hibiscus",
+        "bicycle",
+    ] {
+        assert_eq!(drawn(&sample(name), &draft(1)).scene.shade, None, "{name}");
+    }
+}
