@@ -1,7 +1,7 @@
 //! All tuned numbers of a fit, each with what was measured when it was chosen.
 //!
-//! "±x dB" is the change of fidelity at equal numbers of strokes; `docs/accuracy.md` names the pictures and has the
-//! complete tables. "Half, twice" is the change at half and at twice the value, in the mean of four samples at 300 strokes
+//! "±x dB" is the change of fidelity at equal numbers of strokes; the pages of `docs/notebook` name the pictures and have
+//! the complete tables. "Half, twice" is the change at half and at twice the value, in the mean of four samples at 300 strokes
 //! (`cargo run --release --example recipe`); other seeds move it by up to 0.1 dB, so that less says only that the
 //! number is uncritical. [`Recipe::of`] has the numbers of the presets, and [`Recipe::check`] refuses numbers that no
 //! fit can run with. A checkpoint is bound to its recipe, so that no fit mixes two tunings.
