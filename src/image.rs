@@ -13,7 +13,6 @@ mod dds;
 mod decode;
 mod decoded;
 mod encode;
-mod footprint;
 mod foreign;
 mod formats;
 mod header;
@@ -40,7 +39,6 @@ use std::path::Path;
 #[cfg(feature = "animation")]
 pub use animate::{Animation, AnimationFormat};
 pub use decode::Limits;
-pub use footprint::Footprint;
 pub use formats::{FORMATS, Format};
 pub(crate) use header::{Embeddable, stated_size};
 pub use remark::Remark;

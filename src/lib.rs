@@ -52,8 +52,10 @@
 //! render                          strokes → canvas, ∂L/∂canvas → ∂L/∂strokes, worth
 //! seed                            residual → candidates, ranked by gain in closed form
 //! trace                           residual → strokes along the lines that are seen
-//! svg  verify                     drawing → SVG text → resvg's render of it
-//! engines  browser                other programs' renders of it
+//! svg                             drawing → SVG text
+//! rasters                         stroke → the pixels that resvg, Chromium and exact renderers cover
+//! verify                          SVG text → resvg's render of it
+//! engines                         other programs' renders of it
 //! fit                             stages, polish, settling, budgets
 //! report                          plain records, tables, plots
 //! animation  view                 frames of a drawing, a live page
@@ -117,9 +119,9 @@
 //! | relocation | moving the strokes of least worth to where candidates gain more, during the polish |
 //! | survey | how the squared error depends on the vertices of all strokes, so that the gain of a new point is known |
 //! | join | making one stroke of two that look alike and meet end to end |
-//! | settle | last steps against renders of the written file, by resvg and by the model of a browser |
+//! | settle | last steps against renders of the written file, by resvg and by the model of Chromium |
 //! | nudge | to move points by a tenth of a px at most, to where rasterisers draw the stroke better |
-//! | rasteriser | a way to antialias: that of resvg, of a browser, or exact areas |
+//! | rasteriser | a way to antialias: that of resvg, of Chromium, or exact areas; see [`rasters`] |
 //! | footprint | the pixels that a stroke covers, and how much of each, as a rasteriser draws it |
 //! | fragment | a stroke in a pixel, with how much of it each rasteriser covers |
 //! | fringe | the pixels that a stroke may come to cover more or less when it is nudged |
@@ -171,7 +173,6 @@
 pub mod animation;
 #[cfg(feature = "cli")]
 pub mod bench;
-pub mod browser;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod clock;
@@ -187,6 +188,7 @@ pub mod loss;
 pub mod math;
 pub mod metrics;
 pub mod optim;
+pub mod rasters;
 pub mod render;
 pub mod report;
 pub mod rng;

@@ -1,9 +1,8 @@
-//! The independent judge: SVG *text* as `resvg` draws it. The one door of usvg, resvg and
-//! tiny-skia.
+//! The independent judge: SVG *text* as `resvg` draws it. The one door of usvg and resvg.
 //!
 //! Nothing outside the text is ever read. References to files and addresses are not followed. No fonts are
 //! loaded, so text is drawn only where it is outlines. Pictures embedded as `data:` are drawn in a build with
-//! the feature `formats`. Only [`footprint`] takes a stroke instead, and says which pixels resvg covers with it.
+//! the feature `formats`.
 //!
 //! ```
 //! use strokefit::verify::{self, Size};
@@ -29,7 +28,6 @@
 
 #[cfg(feature = "cli")]
 mod elements;
-mod footprint;
 mod limits;
 mod painting;
 mod placement;
@@ -45,7 +43,6 @@ use serde::{Deserialize, Serialize};
 
 #[cfg(feature = "cli")]
 pub use elements::{Element, elements};
-pub use footprint::footprint;
 pub use painting::Painting;
 use raster::draw;
 use tree::parse;

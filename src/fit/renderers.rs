@@ -11,11 +11,11 @@ use super::file::RenderedFile;
 use super::recipe::Settling;
 use super::session::Session;
 use super::surface::Surface;
-use crate::browser;
 use crate::error::Result;
 use crate::image::Image;
 use crate::math;
 use crate::metrics;
+use crate::rasters::chromium;
 use crate::render::Canvas;
 use crate::scene::Scene;
 
@@ -133,7 +133,7 @@ impl Renderings {
 /// The browser's renders of `scene`, one per surface.
 fn shown(scene: &Scene, surfaces: &[Surface]) -> Vec<Image> {
     let backdrops: Vec<Image> = surfaces.iter().map(|s| s.empty(scene).to_image()).collect();
-    browser::draw(scene.strokes(), &backdrops)
+    chromium::draw(scene.strokes(), &backdrops)
 }
 
 fn corrected(target: &Image, soft: &Image, seen: [&Image; 2], shares: [f32; 2]) -> Image {

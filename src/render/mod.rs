@@ -60,7 +60,6 @@
 //!
 //! [`mod@reference`] is the same in naive `f64`, against which all of this is tested.
 
-pub(crate) mod area;
 mod edge;
 mod flat;
 mod frame;

@@ -15,11 +15,11 @@ use crate::support::place::{Place, STROKEFIT};
 use crate::support::repository::committed;
 use crate::support::verdicts::{entry, record};
 use serde_json::Value;
-use strokefit::browser;
 use strokefit::engines::{DrawRequest, Engine};
 use strokefit::fit::{Budget, Config, Fitter};
 use strokefit::image::Image;
 use strokefit::metrics;
+use strokefit::rasters::chromium;
 use strokefit::scene::{self, Axis, PathPoint, Scene, Shade, ShadeStop, Stage, Stroke};
 use strokefit::svg::{self, Form, WriteOptions};
 use strokefit::verify::{self, Size};
@@ -226,7 +226,7 @@ fn draws_as_foreseen(
     let background = scene.background.unwrap_or([1.0; 3]);
     let [width, height] = size.map(|side| side as usize);
     let page = Image::filled(width, height, background).unwrap();
-    let foreseen = browser::draw(scene.strokes(), &[page]).remove(0);
+    let foreseen = chromium::draw(scene.strokes(), &[page]).remove(0);
     let [db, of_resvg] = [&foreseen, &resvg].map(|image| metrics::psnr(image, &drawn).unwrap());
     let line =
         format!("{name}: Chromium agrees to {of_resvg:.1} dB with resvg, {db:.1} with its model\n");

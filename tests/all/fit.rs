@@ -6,13 +6,13 @@ use std::time::{Duration, Instant};
 
 use crate::support::drafts::draft;
 use crate::support::fits::{drawn, sample};
-use strokefit::browser;
 use strokefit::coverage::CoverageSchedule;
 use strokefit::fit::{
     Background, Budget, Config, Execution, Fit, Fitter, Preset, Progress, Rates, Recipe, Simd, Stop,
 };
 use strokefit::image::Image;
 use strokefit::metrics;
+use strokefit::rasters::chromium;
 use strokefit::scene::Scene;
 use strokefit::svg;
 use strokefit::verify::{self, Verdict};
@@ -331,7 +331,7 @@ fn nudged_lines_are_drawn_better_where_they_were_drawn_worst() {
         };
         let fitter = Fitter::new(config.clone()).execution(execution);
         let fit = fitter.fit(&picture).unwrap();
-        let shown = browser::draw(fit.scene.strokes(), std::slice::from_ref(&page)).remove(0);
+        let shown = chromium::draw(fit.scene.strokes(), std::slice::from_ref(&page)).remove(0);
         let by_resvg = verdict(&fit, &config).fidelity.psnr_db;
         let by_browser = metrics::psnr(&picture, &shown).unwrap();
         (by_resvg.min(by_browser), text(&fit, &config))

@@ -5,12 +5,11 @@
 //! gradient knows of it. So a few random places are tried for each stroke in turn, and the best of them is taken
 //! if it is better than the present one.
 //!
-//! Three [`RASTERIZERS`] judge a place, so that a drawing does not become better in one program by being worse in others. The
+//! Three [rasterisers](Rasterizer) judge a place, so that a drawing does not become better in one program by being worse in others. The
 //! larger the error of a rasteriser is, the more it counts. For each trial one stroke is drawn, on its own: [`Fragments`] know what
 //! its footprint does to the pictures. Strokes that have no pixel in common are visited at once, by all threads.
 
 mod fragments;
-mod rasterizer;
 
 use std::f32::consts::SQRT_2;
 
@@ -20,15 +19,14 @@ use crate::fit::file::RenderedFile;
 use crate::fit::recipe::Nudging;
 use crate::fit::renderers::Renderings;
 use crate::fit::session::Session;
-use crate::image::Footprint;
 use crate::math;
 use crate::metrics::psnr_db;
+use crate::rasters::{Footprint, PerRasterizer, Rasterizer, Rasters, Selection};
 use crate::render::Strokes;
 use crate::rng;
 use crate::scene::{Scene, Stroke};
 use crate::threads::PerWorker;
-use fragments::{Change, Each, Fragments, Response, changes};
-use rasterizer::{RASTERIZERS, Scratch, Selection};
+use fragments::{Change, Fragments, Response, changes};
 
 /// First word of the keys of random draws, so that nothing else uses the same.
 const DRAWS: u64 = 1 << 40;
@@ -88,16 +86,16 @@ fn goes_on(session: &mut Session<'_>, mse: f64) -> bool {
 }
 
 /// The fidelity of the worst rasteriser, dB.
-fn worst_db(errors: Each<f64>) -> f64 {
+fn worst_db(errors: PerRasterizer<f64>) -> f64 {
     psnr_db(largest(errors))
 }
 
-fn largest(errors: Each<f64>) -> f64 {
+fn largest(errors: PerRasterizer<f64>) -> f64 {
     errors.into_iter().fold(f64::MIN_POSITIVE, f64::max)
 }
 
 /// How much each rasteriser counts: as its error counts in the sum of the fourth powers of all errors.
-fn weights(errors: Each<f64>) -> Each<f32> {
+fn weights(errors: PerRasterizer<f64>) -> PerRasterizer<f32> {
     let largest = largest(errors);
     errors.map(|error| math::powi(error / largest, 3) as f32)
 }
@@ -119,7 +117,7 @@ struct Nudger<'a> {
     /// Sets of strokes whose fringes are apart.
     sets: Vec<Vec<usize>>,
     fragments: Fragments,
-    scratch: PerWorker<Scratch>,
+    scratch: PerWorker<Rasters>,
 }
 
 /// A better place for a stroke.
@@ -137,7 +135,7 @@ impl<'a> Nudger<'a> {
         let nudging = session.recipe.settling.nudging;
         let picture = drawing.surface().picture();
         let size = [picture.width(), picture.height()];
-        let scratch = PerWorker::new(|| Scratch::new(size));
+        let scratch = PerWorker::new(|| Rasters::new(size));
         let strokes = drawing.free().clone();
         let written: Vec<Option<Stroke>> = strokes
             .iter()
@@ -147,7 +145,7 @@ impl<'a> Nudger<'a> {
             Some(stroke) => scratch.with(|scratch| drawn(stroke, nudging.reach_px, scratch)),
             None => Default::default(),
         };
-        let (footprints, fringes): (Vec<Each<Footprint>>, Vec<Vec<u32>>) =
+        let (footprints, fringes): (Vec<PerRasterizer<Footprint>>, Vec<Vec<u32>>) =
             written.par_iter().map(drawn).unzip();
         let mut order: Vec<usize> = (0..strokes.len()).collect();
         order.sort_by_key(|&i| rng::bits(config.seed, DRAWS, i as u64, 0));
@@ -167,7 +165,7 @@ impl<'a> Nudger<'a> {
     }
 
     /// Visits the strokes of a set. How one of them is best drawn does not depend on the others.
-    fn visit_all(&mut self, set: usize, sweep: usize, weights: Each<f32>) {
+    fn visit_all(&mut self, set: usize, sweep: usize, weights: PerRasterizer<f32>) {
         let this = &*self;
         let visit = |&id: &usize| {
             let visit = |selection: &mut Selection<'_>| this.visit(id, sweep, weights, selection);
@@ -184,7 +182,7 @@ impl<'a> Nudger<'a> {
         &self,
         id: usize,
         sweep: usize,
-        weights: Each<f32>,
+        weights: PerRasterizer<f32>,
         selection: &mut Selection<'_>,
     ) -> Option<Nudge> {
         let present = self.written[id].as_ref()?;
@@ -257,12 +255,16 @@ impl<'a> Nudger<'a> {
 }
 
 /// What `stroke` covers, and the pixels of which it may cover more or less once it is moved within `reach` px.
-fn drawn(stroke: &Stroke, reach: f32, scratch: &mut Scratch) -> (Each<Footprint>, Vec<u32>) {
+fn drawn(
+    stroke: &Stroke,
+    reach: f32,
+    scratch: &mut Rasters,
+) -> (PerRasterizer<Footprint>, Vec<u32>) {
     let beyond = reach * SQRT_2 + FRINGE;
     let wide = scratch.swept(stroke, beyond);
     let narrow = scratch.swept(stroke, -beyond);
     let footprints = scratch.on(wide.pixels(), |selection| {
-        RASTERIZERS.map(|rasterizer| selection.footprint(rasterizer, stroke))
+        Rasterizer::ALL.map(|rasterizer| selection.footprint(rasterizer, stroke))
     });
     let mut inside = narrow
         .iter()
@@ -280,16 +282,16 @@ fn drawn(stroke: &Stroke, reach: f32, scratch: &mut Scratch) -> (Each<Footprint>
 
 /// What is known of a stroke before it is tried elsewhere.
 struct Trial<'a> {
-    responses: &'a [Each<Response>],
-    weights: Each<f32>,
+    responses: &'a [PerRasterizer<Response>],
+    weights: PerRasterizer<f32>,
     /// The squared error that the stroke adds, for each rasteriser.
-    present: Each<f32>,
+    present: PerRasterizer<f32>,
     /// The rasterisers, the one that counts most first.
-    order: Each<usize>,
+    order: PerRasterizer<usize>,
 }
 
 impl<'a> Trial<'a> {
-    fn new(responses: &'a [Each<Response>], weights: Each<f32>) -> Self {
+    fn new(responses: &'a [PerRasterizer<Response>], weights: PerRasterizer<f32>) -> Self {
         let mut order = std::array::from_fn(|i| i);
         order.sort_by(|&i, &j| f32::total_cmp(&weights[j], &weights[i]));
         let present = |i: usize| responses.iter().map(|response| response[i].error()).sum();
@@ -308,13 +310,13 @@ impl<'a> Trial<'a> {
         tried: &Stroke,
         least: f32,
         selection: &mut Selection<'_>,
-    ) -> Option<(f32, Each<Footprint>)> {
-        let mut footprints = Each::<Footprint>::default();
+    ) -> Option<(f32, PerRasterizer<Footprint>)> {
+        let mut footprints = PerRasterizer::<Footprint>::default();
         let mut change = 0.0;
         for i in self.order {
-            footprints[i] = selection.footprint(RASTERIZERS[i], tried);
+            footprints[i] = selection.footprint(Rasterizer::ALL[i], tried);
             let errors = selection
-                .chosen(&footprints[i])
+                .covered(&footprints[i])
                 .map(|(slot, level)| self.responses[slot][i].error_at(level));
             change += self.weights[i] * (errors.sum::<f32>() - self.present[i]);
             if change >= least {

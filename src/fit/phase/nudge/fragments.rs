@@ -8,11 +8,11 @@
 
 use std::cmp::Ordering;
 
-use super::rasterizer::{RASTERIZERS, Selection};
 use crate::fit::file::RenderedFile;
 use crate::fit::renderers::Renderings;
 use crate::fit::session::Session;
-use crate::image::{Footprint, Image};
+use crate::image::Image;
+use crate::rasters::{Footprint, PerRasterizer, Rasterizer, Selection};
 use crate::scene::{Rgb, Stroke};
 
 /// Most surfaces of a drawing.
@@ -21,15 +21,12 @@ const SURFACES: usize = 2;
 /// A colour for each surface.
 type Colors = [Rgb; SURFACES];
 
-/// A value for each rasteriser.
-pub(super) type Each<T> = [T; RASTERIZERS.len()];
-
 /// A stroke in a pixel.
 #[derive(Debug, Clone, Copy)]
 struct Fragment {
     stroke: u32,
     /// How much of the pixel it covers, 0 to 255.
-    levels: Each<u8>,
+    levels: PerRasterizer<u8>,
 }
 
 /// Which strokes cover each pixel.
@@ -42,7 +39,7 @@ pub(super) struct Fragments {
     bottoms: Vec<Colors>,
     /// The strokes of each pixel, back to front.
     lists: Vec<Vec<Fragment>>,
-    pictures: Each<Vec<Colors>>,
+    pictures: PerRasterizer<Vec<Colors>>,
 }
 
 /// How a stroke is seen in a pixel.
@@ -74,7 +71,7 @@ impl Fragments {
         file: &RenderedFile,
         seen: &Renderings,
         written: &[Option<Stroke>],
-        footprints: &[Each<Footprint>],
+        footprints: &[PerRasterizer<Footprint>],
     ) -> Self {
         let surfaces = session.drawing.surfaces.iter();
         let (targets, bottoms): (Vec<_>, Vec<_>) = surfaces
@@ -113,7 +110,7 @@ impl Fragments {
     }
 
     /// Where it is kept how much of a pixel stroke `id` covers.
-    fn level_mut(&mut self, pixel: usize, id: usize) -> &mut Each<u8> {
+    fn level_mut(&mut self, pixel: usize, id: usize) -> &mut PerRasterizer<u8> {
         let (list, stroke) = (&mut self.lists[pixel], id as u32);
         let at = match list.binary_search_by_key(&stroke, |fragment| fragment.stroke) {
             Ok(at) => at,
@@ -127,7 +124,7 @@ impl Fragments {
     }
 
     /// The mean squared error of each rasteriser's pictures, on the surface where it is largest.
-    pub(super) fn errors(&self) -> Each<f64> {
+    pub(super) fn errors(&self) -> PerRasterizer<f64> {
         self.pictures.each_ref().map(|pictures| {
             let of = |surface: usize| {
                 let pixels = pictures.iter().zip(&self.targets).enumerate();
@@ -161,7 +158,7 @@ impl Fragments {
         id: usize,
         strokes: &[Option<Stroke>],
         pixels: &[u32],
-    ) -> Vec<Each<Response>> {
+    ) -> Vec<PerRasterizer<Response>> {
         let Some(stroke) = &strokes[id] else {
             return Vec::new();
         };
@@ -178,12 +175,12 @@ impl Fragments {
     }
 
     /// How stroke `id` is seen in a pixel.
-    fn sights(&self, id: usize, strokes: &[Option<Stroke>], pixel: usize) -> Each<Sight> {
+    fn sights(&self, id: usize, strokes: &[Option<Stroke>], pixel: usize) -> PerRasterizer<Sight> {
         let mut sights = [Sight {
             level: 0,
             through: 1.0,
             behind: self.bottoms[pixel],
-        }; RASTERIZERS.len()];
+        }; Rasterizer::ALL.len()];
         for fragment in &self.lists[pixel] {
             let Some(other) = &strokes[fragment.stroke as usize] else {
                 continue;
@@ -226,34 +223,37 @@ impl Fragments {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Change {
     slot: usize,
-    levels: Each<u8>,
+    levels: PerRasterizer<u8>,
     /// What is added to the colours.
-    colors: Each<Colors>,
+    colors: PerRasterizer<Colors>,
 }
 
 /// What happens to the pixels of `selection`, of these `responses`, when a stroke comes to cover `footprints`.
 pub(super) fn changes(
-    responses: &[Each<Response>],
-    footprints: &Each<Footprint>,
+    responses: &[PerRasterizer<Response>],
+    footprints: &PerRasterizer<Footprint>,
     selection: &Selection<'_>,
 ) -> Vec<Change> {
-    let mut levels = vec![Each::default(); responses.len()];
+    let mut levels = vec![PerRasterizer::default(); responses.len()];
     for (rasterizer, footprint) in footprints.iter().enumerate() {
-        for (slot, level) in selection.chosen(footprint) {
+        for (slot, level) in selection.covered(footprint) {
             levels[slot][rasterizer] = level;
         }
     }
     let changes = responses.iter().zip(levels).enumerate();
     let changed = changes
         .filter(|(_, (response, levels))| response.map(|response| response.level) != *levels);
-    let change = |(slot, (response, levels)): (usize, (&Each<Response>, Each<u8>))| Change {
-        slot,
-        levels,
-        colors: std::array::from_fn(|i| {
-            let more = share(levels[i]) - share(response[i].level);
-            response[i].whole.map(|rgb| rgb.map(|v| more * v))
-        }),
-    };
+    let change =
+        |(slot, (response, levels)): (usize, (&PerRasterizer<Response>, PerRasterizer<u8>))| {
+            Change {
+                slot,
+                levels,
+                colors: std::array::from_fn(|i| {
+                    let more = share(levels[i]) - share(response[i].level);
+                    response[i].whole.map(|rgb| rgb.map(|v| more * v))
+                }),
+            }
+        };
     changed.map(change).collect()
 }
 
@@ -336,6 +336,7 @@ fn colors(pictures: &[Image]) -> Vec<Colors> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rasters::Rasters;
     use crate::rng;
     use crate::scene::Path;
 
@@ -363,8 +364,8 @@ mod tests {
     fn composed(
         bottoms: &[Colors],
         strokes: &[Option<Stroke>],
-        footprints: &[Each<Footprint>],
-    ) -> Each<Vec<Colors>> {
+        footprints: &[PerRasterizer<Footprint>],
+    ) -> PerRasterizer<Vec<Colors>> {
         std::array::from_fn(|i| {
             let mut pictures = bottoms.to_vec();
             for (stroke, footprints) in strokes.iter().flatten().zip(footprints) {
@@ -377,7 +378,7 @@ mod tests {
         })
     }
 
-    fn collected(footprints: &[Each<Footprint>], strokes: &[Option<Stroke>]) -> Fragments {
+    fn collected(footprints: &[PerRasterizer<Footprint>], strokes: &[Option<Stroke>]) -> Fragments {
         let colors = |key: u64| {
             let color = |i: usize| [0, 1, 2].map(|c| draw(key, 3 * i + c));
             (0..PIXELS).map(|i| [color(i), color(i + PIXELS)]).collect()
@@ -405,7 +406,7 @@ mod tests {
     fn what_a_footprint_does_to_pictures_and_errors_is_foretold() {
         let strokes: Vec<Option<Stroke>> = (0..4).map(|key| Some(stroke(key))).collect();
         let keys = |id: u64| [10 * id + 100, 10 * id + 101, 10 * id + 102];
-        let mut footprints: Vec<Each<Footprint>> =
+        let mut footprints: Vec<PerRasterizer<Footprint>> =
             (0..4).map(|id| keys(id).map(footprint)).collect();
         let mut fragments = collected(&footprints, &strokes);
         let pixels: Vec<u32> = (0..PIXELS as u32).collect();
@@ -418,10 +419,10 @@ mod tests {
                     .map(|(pixel, level)| responses[pixel as usize][i].error_at(level));
                 levels.sum()
             };
-            let foretold: Each<f32> =
+            let foretold: PerRasterizer<f32> =
                 std::array::from_fn(|i| error(i, &moved[i]) - error(i, &footprints[id][i]));
             let before = all_errors(&fragments);
-            let mut scratch = super::super::rasterizer::Scratch::new([PIXELS, 1]);
+            let mut scratch = Rasters::new([PIXELS, 1]);
             let changes = scratch.on(&pixels, |selection| changes(&responses, &moved, selection));
             fragments.change(id, &pixels, &changes);
             footprints[id] = moved;
@@ -448,7 +449,7 @@ mod tests {
     }
 
     /// The weighted squared error of each rasteriser, on all surfaces.
-    fn all_errors(fragments: &Fragments) -> Each<f32> {
+    fn all_errors(fragments: &Fragments) -> PerRasterizer<f32> {
         fragments.pictures.each_ref().map(|pictures| {
             let pixels = pictures.iter().zip(&fragments.targets).enumerate();
             let error = pixels.map(|(pixel, (a, b))| {

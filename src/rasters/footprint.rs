@@ -2,7 +2,7 @@
 
 /// The pixels of a picture that a shape covers, and how much of each.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Footprint {
+pub(crate) struct Footprint {
     pixels: Vec<u32>,
     /// 1 to 255.
     levels: Vec<u8>,
@@ -10,12 +10,12 @@ pub struct Footprint {
 
 impl Footprint {
     /// The indices of the pixels, counted row by row, rising.
-    pub fn pixels(&self) -> &[u32] {
+    pub(crate) fn pixels(&self) -> &[u32] {
         &self.pixels
     }
 
     /// The index of each pixel, and its coverage, 1 to 255.
-    pub fn iter(&self) -> impl Iterator<Item = (u32, u8)> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (u32, u8)> {
         let levels = self.levels.iter().copied();
         self.pixels.iter().copied().zip(levels)
     }

@@ -8,7 +8,8 @@
 use std::f32::consts::FRAC_1_SQRT_2;
 use std::ops::Range;
 
-use crate::image::Footprint;
+use super::footprint::Footprint;
+use super::slots::Slots;
 use crate::math::{Point, Vector};
 use crate::scene::Stroke;
 
@@ -22,46 +23,13 @@ const HALF_DIAGONAL: f32 = FRAC_1_SQRT_2;
 const ON_LINE2: f32 = 1e-6;
 
 /// Some pixels of a picture: those that a footprint is wanted of.
-pub(crate) struct Region<'a> {
+pub(super) struct Region<'a> {
     /// Their indices, counted row by row, rising.
-    pub(crate) pixels: &'a [u32],
+    pub(super) pixels: &'a [u32],
     /// For each pixel of the picture, its place among these, if any.
-    pub(crate) slots: &'a Slots,
+    pub(super) slots: &'a Slots,
     /// Width of the picture, px.
-    pub(crate) width: usize,
-}
-
-/// For each pixel of a picture, its place among some of them.
-#[derive(Debug)]
-pub(crate) struct Slots(Vec<u32>);
-
-const NOWHERE: u32 = u32::MAX;
-
-impl Slots {
-    /// None, of a picture of so many pixels.
-    pub(crate) fn new(pixels: usize) -> Self {
-        Self(vec![NOWHERE; pixels])
-    }
-
-    /// Gives each of these pixels its place among them.
-    pub(crate) fn set(&mut self, pixels: &[u32]) {
-        for (slot, &pixel) in (0..).zip(pixels) {
-            self.0[pixel as usize] = slot;
-        }
-    }
-
-    /// Takes their places from these pixels.
-    pub(crate) fn clear(&mut self, pixels: &[u32]) {
-        for &pixel in pixels {
-            self.0[pixel as usize] = NOWHERE;
-        }
-    }
-
-    /// The place of this pixel.
-    pub(crate) fn find(&self, pixel: u32) -> Option<usize> {
-        let slot = self.0[pixel as usize];
-        (slot != NOWHERE).then_some(slot as usize)
-    }
+    pub(super) width: usize,
 }
 
 /// How the centre line lies to the centre of a pixel.
@@ -72,7 +40,7 @@ struct Nearest {
 }
 
 /// The pixels of `region` that `stroke` covers.
-pub(crate) fn footprint(stroke: &Stroke, region: &Region<'_>) -> Footprint {
+pub(super) fn footprint(stroke: &Stroke, region: &Region<'_>) -> Footprint {
     let far = Nearest {
         distance2: f32::INFINITY,
         across: Vector::new(1.0, 0.0),
@@ -98,7 +66,7 @@ impl Region<'_> {
     fn look_from(&self, [a, b]: [Point; 2], reach: f32, nearest: &mut [Nearest]) {
         let along = b - a;
         let per_length2 = 1.0 / along.norm_squared().max(f32::MIN_POSITIVE);
-        let height = self.slots.0.len() / self.width;
+        let height = self.slots.pixels() / self.width;
         for row in range(a.y.min(b.y) - reach, a.y.max(b.y) + reach, height) {
             let y = row as f32 + 0.5;
             // The part of the line that is near enough to the row.

@@ -18,14 +18,14 @@
 //! that bend, to 51 to 63 (docs/engines.md).
 //!
 //! ```
-//! use strokefit::browser;
 //! use strokefit::image::Image;
+//! use strokefit::rasters::chromium;
 //! use strokefit::scene::{Path, Stroke};
 //!
 //! let path = Path::line([3.0, 2.5].into(), [9.0, 2.5].into());
 //! let stroke = Stroke { path, radius: 1.0, color: [0.0; 3], opacity: 0.5 };
 //! let page = Image::filled(12, 5, [1.0; 3])?;
-//! let picture = browser::draw([&stroke].into_iter(), &[page]).remove(0);
+//! let picture = chromium::draw([&stroke].into_iter(), &[page]).remove(0);
 //! assert_eq!(picture.to_rgb8()[3 * (2 * 12 + 6)], 127);
 //! # Ok::<(), strokefit::Error>(())
 //! ```
@@ -44,7 +44,7 @@ use rayon::prelude::*;
 
 use area::Area;
 use contour::Contour;
-pub use footprinter::Footprinter;
+pub(super) use footprinter::Footprinter;
 use outline::Outline;
 use window::Window;
 

@@ -1,4 +1,4 @@
-//! What resvg covers with a single stroke.
+//! The pixels that resvg covers with a single stroke.
 
 use std::ops::Range;
 
@@ -6,14 +6,14 @@ use resvg::tiny_skia::{
     FillRule, LineCap, LineJoin, Mask as Raster, Path, PathBuilder, Rect, Stroke as Pen, Transform,
 };
 
-use crate::image::Footprint;
+use super::footprint::Footprint;
 use crate::scene::{Piece, Stroke};
 
 /// The length of the segment that a dot is written as, px.
 const DOT: f32 = 0.01;
 
 /// The pixels of a picture of `width`×`height` px that `stroke`, which is as its file has it, covers.
-pub fn footprint(stroke: &Stroke, width: usize, height: usize) -> Footprint {
+pub(super) fn footprint(stroke: &Stroke, width: usize, height: usize) -> Footprint {
     covered(stroke, [width, height]).unwrap_or_default()
 }
 

@@ -4,11 +4,11 @@ use super::area::Area;
 use super::contour::Contour;
 use super::outline::Outline;
 use super::window::Window;
-use crate::image::Footprint;
+use crate::rasters::footprint::Footprint;
 use crate::scene::Stroke;
 
 /// Tells of single strokes how much of each pixel a browser covers with them; keeps its memory from call to call.
-pub struct Footprinter {
+pub(in crate::rasters) struct Footprinter {
     size: [usize; 2],
     windows: Vec<(Window, Area)>,
     outline: Outline,
@@ -16,7 +16,7 @@ pub struct Footprinter {
 
 impl Footprinter {
     /// One for pictures of `width`×`height` px.
-    pub fn new(width: usize, height: usize) -> Self {
+    pub(in crate::rasters) fn new(width: usize, height: usize) -> Self {
         let windows = Window::all(width, height).into_iter();
         Self {
             size: [width, height],
@@ -28,7 +28,7 @@ impl Footprinter {
     }
 
     /// The pixels that `stroke` covers.
-    pub fn footprint(&mut self, stroke: &Stroke) -> Footprint {
+    pub(in crate::rasters) fn footprint(&mut self, stroke: &Stroke) -> Footprint {
         let contour = Contour::of(stroke);
         let [width, _] = self.size;
         let mut pixels = Vec::new();
@@ -61,8 +61,8 @@ impl Footprinter {
 
 #[cfg(test)]
 mod tests {
+    use super::super::draw;
     use super::*;
-    use crate::browser::draw;
     use crate::image::Image;
     use crate::scene::{Path, PathPoint};
 
