@@ -1,4 +1,4 @@
-"""Measures what docs/batch.md and docs/notebook/2026-11-22-batches.md say: `python python/batch_figures.py [NAME…]`, from the root of a clone.
+"""Measures what docs/batch.md and its page of the notebook say: `python python/batch_figures.py [NAME…]`, from the root of a clone.
 
 NAME is overhead, workers, again, memory or costs; all of them unless given. Leave the machine idle meanwhile. With Ray
 installed, both engines are measured.

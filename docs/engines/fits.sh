@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The table of fits in docs/engines.md: every sample, or those NAMED, at 500 and 2,000 strokes and at the defaults.
+# The table of fits in docs/notebook/2026-11-25-engines.md: every sample, or those NAMED, at 500 and 2,000 strokes and at the defaults.
 # Run in the repository's folder; STROKEFIT is the program, strokefit unless set.
 set -euo pipefail
 strokefit=${STROKEFIT:-strokefit}
