@@ -1,4 +1,4 @@
-//! `strokefit check`: how faithful an SVG is to a picture, in each installed program that draws SVG.
+//! `strokefit check`: the fidelity of an SVG to a picture, in each installed program that draws SVG.
 
 mod map;
 mod table;

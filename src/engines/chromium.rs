@@ -1,4 +1,4 @@
-//! Chromium and its kin, which draw with Skia.
+//! Chromium and browsers made of it, which draw with Skia.
 
 use std::ffi::OsString;
 use std::fs;

@@ -1,4 +1,4 @@
-//! Other programs that draw SVG: what Inkscape, librsvg, Chromium and CairoSVG make of a file.
+//! Other programs that draw SVG: a file as Inkscape, librsvg, Chromium and CairoSVG render it.
 //!
 //! resvg is the judge ([`verify`](crate::verify)); the engines tell whether people who use another program see
 //! the same. Each engine runs as a child process without a window. A temporary folder serves as its home,

@@ -1,4 +1,4 @@
-//! Whether an engine draws a file as it is meant.
+//! The verdict: an engine draws a file as it is meant, or not.
 
 use crate::metrics::Agreement;
 

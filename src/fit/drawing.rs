@@ -1,4 +1,4 @@
-//! The drawing in progress: its strokes, how many of them are frozen, and the resolution that they are fitted at.
+//! The drawing in progress: its strokes, the number of frozen ones, and the resolution of the fit.
 
 mod memento;
 mod scene;

@@ -1,4 +1,4 @@
-//! The drawing as it is written to a file, and resvg's render of that.
+//! The drawing as a written file, and resvg's render of that file.
 
 use rayon::prelude::*;
 

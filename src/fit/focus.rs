@@ -1,4 +1,4 @@
-//! Where an error counts: a weight for each pixel.
+//! Weights of errors: how much an error counts in each pixel.
 //!
 //! The fit minimises `Σ w·(c − t)²`. It looks at canvas and target through a veil that lets through `√w`, so that all
 //! derivatives, worths and gains are those of the weighted error, exactly; see [`Renderer::veil`](crate::render::Renderer::veil).

@@ -1,8 +1,8 @@
-//! How a time limit is divided among the parts of a fit, in seconds.
+//! The division of a time limit among the parts of a fit, in seconds.
 //!
-//! Descent gets all the time that later parts do not need. After it, the drawing is written and settled against its
-//! file, and finally the file is judged, which renders it once more. The forecast estimates all of these from the
-//! duration of the last write, and of steps and searches.
+//! Descent gets all the time that later parts do not need. These write the drawing, settle it against its file, and
+//! judge the file, which renders it once more. The forecast estimates all of them from the durations of the last write,
+//! of steps and of searches.
 
 use std::time::Duration;
 

@@ -1,5 +1,5 @@
-//! Hidden strokes: those without which the drawing looks the same, since they are covered or have the colour of what is
-//! behind them. A palette makes many, and nobody who edits the file wants one.
+//! Hidden strokes: without them the drawing looks the same, because they are covered or have the colour of what they
+//! cover. A palette makes many of them, and they are in the way of whoever edits the file.
 
 use super::drawing::Drawing;
 use crate::image::Image;

@@ -2,9 +2,9 @@
 //!
 //! An SVG renderer antialiases each edge in its own way, so that a file differs from our own render as if every stroke
 //! were somewhere else by up to a tenth of a px. Where strokes are dense, the fit would otherwise cancel edges with
-//! edges, exactly in our own render and in no other. With noise in the places of strokes, an edge costs what its contrast is
-//! (Bishop, "Training with noise is equivalent to Tikhonov regularization", Neural Computation 7, 1995). So drawings
-//! have fewer of them.
+//! edges, exactly in our own render and in no other. With noise in the places of strokes, an edge costs in proportion to its
+//! contrast (Bishop, "Training with noise is equivalent to Tikhonov regularization", Neural Computation 7, 1995), and
+//! drawings have fewer such edges.
 
 use super::recipe::Jitter;
 use crate::render::Strokes;

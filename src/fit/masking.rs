@@ -1,6 +1,6 @@
-//! What the eye sees of an error: weights from the picture itself.
+//! Masking: weights of errors by how well the eye sees them, from the picture itself.
 //!
-//! An error is plain to see where the picture is smooth, and hidden where it has detail of its own (*contrast masking*). With
+//! An error is easy to see where the picture is smooth. Detail of the picture hides it (*contrast masking*). With
 //! the standard deviation σ of the luma in a window around a pixel, an error there counts
 //!
 //! ```text
@@ -8,7 +8,7 @@
 //! ```
 //!
 //! up to a ceiling of σ, since an outline has as large a σ as texture and hides less. Weights are in units of the mean of w over
-//! all pixels, each weighted by its σ²: errors that remain in a drawing are roughly as large as the detail they are of, so that
+//! all pixels, each weighted by its σ². The errors that remain in a drawing are roughly as large as the detail around them, so
 //! the price of a byte keeps its meaning.
 
 use std::collections::VecDeque;

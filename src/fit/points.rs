@@ -3,8 +3,8 @@
 //! A survey tells how the squared error depends on the vertices of all strokes ([`terrain`]), and so what every change of
 //! a stroke's points would gain ([`edits`]): a new corner or control point, a point that is taken away, a corner that
 //! becomes smooth or a control point that becomes a corner. Each stroke may change by one edit at a time; descent then
-//! fits it. The rule is the one for strokes: what does not pay its price goes, what pays comes, and where the budget has
-//! no room left, points that gain more take the place of points that are missed less.
+//! fits it. The rule for strokes holds: what does not pay its price goes, and what pays comes. If the budget has
+//! no room left, points that gain more take the places of points that cost less to lose.
 
 mod edits;
 mod joins;

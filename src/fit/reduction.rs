@@ -2,7 +2,7 @@
 //!
 //! A picture may be larger than its detail: it was enlarged, or is out of focus. Then fewer pixels say the same. And a
 //! photograph of many pixels has more detail than the strokes of its drawing can show. The fit takes the reduced picture for its
-//! target; the file is of the size of the picture.
+//! target; the file has the size of the picture.
 
 use rayon::prelude::*;
 

@@ -1,8 +1,8 @@
 //! The renderers that a file is settled for: resvg, the judge, and the browser, which differs most from it.
 //!
-//! A drawing that is tuned to resvg alone is off in every other renderer by the full difference between the two:
+//! If a drawing is tuned to resvg alone, every other renderer is off by its full difference from resvg:
 //! tiny-skia rounds up after every translucent stroke, Cairo and Skia do not, and each has edges of its own. So settling
-//! corrects for a mean of the two: the browser's share is just large enough to keep it within [`Settling::browser_db`].
+//! corrects for a mean of the two. The browser's share is just large enough to keep it within [`Settling::browser_db`].
 
 use rayon::prelude::*;
 

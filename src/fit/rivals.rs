@@ -1,8 +1,8 @@
 //! Rivals of a drawing of few strokes.
 //!
-//! Chance decides which of many good places each of a few strokes finds, and moves the fidelity by some dB. So a fit of few strokes also
-//! draws as the shorter presets would, which takes a fraction of its time, and keeps the best drawing. A longer preset is therefore never worse than a
-//! shorter one.
+//! Each of a few strokes has many good places, and chance decides which one it finds; that moves the fidelity by some dB. So a
+//! fit of few strokes also draws as the shorter presets would, in a fraction of its time, and keeps the best drawing. A longer preset is
+//! therefore never worse than a shorter one.
 
 use super::budget;
 use super::config::{Budget, Config};

@@ -1,4 +1,4 @@
-//! DDS beyond what the general decoder does: pictures that are not compressed, and sizes that are no multiple of 4.
+//! DDS that the general decoder refuses: uncompressed pictures, and sizes that are no multiple of 4.
 
 use std::borrow::Cow;
 

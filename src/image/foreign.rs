@@ -1,4 +1,4 @@
-//! Formats that are not read: what they are called, and how to make a PNG of such a file.
+//! Formats that are not read: their names, and a way to make a PNG of such a file.
 
 /// A picture format by its first bytes.
 struct Foreign {

@@ -1,4 +1,4 @@
-//! The formats that are read: how their files are told, and what is read of them.
+//! The formats that are read: their marks, and the kinds of each that are read.
 
 use ::image::ImageFormat;
 

@@ -1,4 +1,4 @@
-//! ICO: the largest of its pictures, which is a PNG, or a bitmap without a head and with a mask.
+//! ICO: the largest of its pictures, a PNG or a bitmap without a head and with a mask.
 
 use std::io::Cursor;
 

@@ -1,4 +1,4 @@
-//! JPEG beyond what the general decoder does: kinds that are refused by name, and inks. The one door of `zune-jpeg`.
+//! JPEG that the general decoder refuses: kinds to be named, and inks. The one door of `zune-jpeg`.
 
 use ::image::metadata::Orientation;
 use ::image::{DynamicImage, ImageBuffer, ImageFormat};

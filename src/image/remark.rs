@@ -1,4 +1,4 @@
-//! What reading a picture has changed or left out.
+//! Remarks: changes and omissions in reading a picture.
 
 use std::fmt;
 

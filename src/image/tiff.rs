@@ -1,4 +1,4 @@
-//! TIFF, by the crate `tiff`, whose one door this is: what lies between its samples and a picture.
+//! TIFF: from the samples of the crate `tiff` to a picture. The one door of that crate.
 
 mod palette;
 mod samples;

@@ -1,7 +1,7 @@
 //! Light beyond white: PQ and HLG, brought to what a page of sRGB can show.
 //!
-//! White of graphics is at 203 cd/m² in both, as ITU-R BT.2408 has it. What is no brighter stays as it is, so a
-//! screenshot keeps its colours; what is brighter is bent towards white, down to half its light, so that the brightest
+//! White of graphics is at 203 cd/m² in both, as ITU-R BT.2408 has it. Light up to that stays as it is, so a
+//! screenshot keeps its colours; brighter light is bent towards white, down to half its light, so that the brightest
 //! pixel is white. All three channels of a pixel shrink by one factor, which keeps the hue.
 
 use super::light;

@@ -1,7 +1,7 @@
 //! Largest difference of the mean of a patch.
 //!
 //! Antialiasing makes two renders of one drawing differ along all edges, by much in single pixels and by nothing on
-//! average. What is missing from one of them differs in the mean of a whole patch.
+//! average. A missing part differs in the mean of a whole patch.
 
 use rayon::prelude::*;
 

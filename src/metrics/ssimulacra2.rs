@@ -1,4 +1,4 @@
-//! SSIMULACRA2 2.1 (Sneyers 2022–2023): how different two pictures look to people.
+//! SSIMULACRA2 2.1 (Sneyers 2022–2023): the difference of two pictures as people see it.
 //!
 //! Both pictures are compared in the XYB colour space of JPEG XL at six scales, each half as large as the one before,
 //! halved in linear light. At each pixel there are three kinds of error: a change of *structure* (SSIM without

@@ -1,4 +1,4 @@
-//! How renderers antialias a stroke: resvg by samples, Chromium by areas of a rounded outline, others by exact areas.
+//! Rasterisers, which antialias a stroke each in its own way: resvg by samples, Chromium by areas of a rounded outline, others by exact areas.
 //!
 //! [`Rasters`] draws single strokes by each [`Rasterizer`], and says which pixels they cover. [`chromium::draw`] draws whole
 //! pictures; resvg does so itself, from the file (see [`verify`](crate::verify)).

@@ -1,4 +1,4 @@
-//! What one call renders: the edges of its strokes, and what is behind them.
+//! The input of one call: the edges of its strokes, and the backdrop behind them.
 
 use super::edge::{Edge, Reach};
 use super::flat::Flat;

@@ -1,4 +1,4 @@
-//! What the backward passes tell: derivatives by the numbers of strokes, and by the vertices of their polylines.
+//! The output of the backward passes: derivatives by the numbers of strokes, and by the vertices of their polylines.
 
 /// Derivatives of a loss by everything that was drawn.
 #[derive(Debug, Clone, Default)]

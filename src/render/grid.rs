@@ -1,4 +1,4 @@
-//! How a picture is cut into tiles and blocks, and pictures stored that way.
+//! The division of a picture into tiles and blocks, and pictures stored that way.
 //!
 //! A *block* is 4×4 px, one SIMD register of 16 lanes; a *tile* is 8×8 blocks, so that a set of
 //! blocks is one `u64`. Square blocks waste fewer lanes on the small slanted strokes that a drawing

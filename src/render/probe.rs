@@ -1,4 +1,4 @@
-//! What a stroke laid on top of a canvas would be worth, in closed form.
+//! The gain of a stroke laid on top of a canvas, in closed form.
 //!
 //! A stroke of coverage `m`, opacity `v` and colour `c = u/v` over a fixed canvas `C` with residual
 //! `e = target − C` leaves `e − m(u − vC)`. Its gain, the squared error that it removes, is quadratic

@@ -1,4 +1,4 @@
-//! Sums over tiles: what each tile tells of its strokes and segments, added up in tile order.
+//! Sums over tiles: the results of each tile for its strokes and segments, added up in tile order.
 //!
 //! The strokes are cut in shares, which the threads take one by one, so that no two of them write to one place.
 

@@ -1,4 +1,4 @@
-//! What `strokefit check` found.
+//! The report of `strokefit check`.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,4 @@
-//! What `strokefit fit` and `strokefit refine` did.
+//! The report of `strokefit fit` and `strokefit refine`.
 
 use std::time::Duration;
 

@@ -2,7 +2,7 @@
 //! from them.
 //!
 //! Scripts rely on the field names: fields may be added, none is renamed. Times are in seconds; errors are
-//! those of [`metrics`](crate::metrics). `psnr_db` is `null` where two pictures are equal, since JSON has no
+//! as in [`metrics`](crate::metrics). `psnr_db` is `null` where two pictures are equal, since JSON has no
 //! infinity. Fields that do not apply, or that could not be measured, are `null` as well.
 
 mod check;

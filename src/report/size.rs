@@ -1,4 +1,4 @@
-//! How long a file is. The one door of `flate2`.
+//! The length of a file. The one door of `flate2`.
 
 use std::io::Write;
 

@@ -1,6 +1,6 @@
-//! The shade: a gradient over the whole page, on the background and behind all strokes.
+//! The shade: a gradient over the whole background, behind all strokes.
 //!
-//! A shade holds what its SVG elements hold, and no more: hundredths of a px, thousandths of its axis, 8-bit colours
+//! A shade holds exactly what its SVG elements hold: hundredths of a px, thousandths of its axis, 8-bit colours
 //! and opacities. So it is rounded once, where it is made, and reading gives back what was written.
 
 use super::{Rgb, UNITS_PER_PX, quantum};

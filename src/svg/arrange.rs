@@ -1,4 +1,4 @@
-//! Reorders strokes so that those of equal colour, width and opacity (of one *look*) become neighbours.
+//! Reorders strokes so that strokes of equal colour, width and opacity (of one *look*) become neighbours.
 //!
 //! Two strokes may swap if they share no pixel or have the same colour. Among the orders that keep all other
 //! pairs as they are, a greedy search picks one with few changes of look. The result depends only on the

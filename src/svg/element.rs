@@ -1,4 +1,4 @@
-//! Elements of the SVG: which strokes share one, and which attributes neighbours share.
+//! Elements of the SVG: groups of strokes in one element, and attributes that neighbours share.
 
 use std::collections::BTreeMap;
 

@@ -22,8 +22,8 @@
 //! - The shade is a `linearGradient` from `x1 y1` to `x2 y2` or a `radialGradient`, in px to the hundredth, with offsets to the
 //!   thousandth. It is never in the unit of a layer, and has as many decimals with any precision.
 //! - Each `M` begins a stroke, `L` draws lines, `Q` and `T` quadratic curves, and `z` closes a path. The numbers of a
-//!   step are absolute or, after a small letter, relative, whichever is shorter. A step does without a letter if that of
-//!   the last one serves and nothing is longer, but never after `M`.
+//!   step are absolute or, after a small letter, relative, whichever is shorter. A step has no letter of its own if the
+//!   last one serves and nothing gets longer, but never after `M`.
 //! - `T` draws a curve whose control point mirrors the last one. So a run of off-points takes one pair of numbers for
 //!   each, and one more at its end: the on-points that they imply are in the file, and off-points are rounded so
 //!   that these are exact.
@@ -49,7 +49,7 @@
 //!
 //! A path with any other step (`C`, `S`, `A`, `H`, `V`, a `T` after a line) is not of this dialect, and neither is one of
 //! more than [`MAX_POINTS`](crate::scene::MAX_POINTS) points: [`read`] refuses the file, and a [`Document`] keeps it as
-//! it is, below new strokes. What has no effect is left out when it is read: points that coincide, on-points
+//! it is, below new strokes. Reading leaves out points without effect: points that coincide, and on-points
 //! exactly halfway between two off-points.
 //!
 //! Reading returns the scene to the bit as it was written: quantised, and arranged if the form asks for it.

@@ -2,8 +2,8 @@
 //!
 //! Two strokes keep their order if the picture depends on it: they meet, and they differ in colour or one is
 //! translucent. All others may change places. An open path may be drawn from either end, and a closed one from any of
-//! its points. The nearest end comes next at first, as far as strokes below have been drawn; then [`steps`] improve
-//! that by reversing parts of the tour and moving strokes.
+//! its points. At first the nearest end comes next, unless a stroke below it is still to be drawn; then [`steps`] improve
+//! the tour by reversing parts of it and moving strokes.
 //!
 //! Antialiased edges of one opaque colour that lie over each other may come out one 8-bit level different, because
 //! renderers round after every stroke; and resvg, which bends curves within 1/4 px, does so in another way from their

@@ -1,4 +1,4 @@
-//! How far a pen moves to draw a file: along strokes, and between them.
+//! The travel of a pen that draws a file: its ways along strokes, and between them.
 
 use serde::{Deserialize, Serialize};
 

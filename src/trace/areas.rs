@@ -1,7 +1,7 @@
 //! The areas of one colour in a picture, apart from the canvas behind them.
 //!
-//! Most pixels of flat art and of drawings of lines have one of few colours. The others are the antialiased pixels
-//! between two of them. An antialiased pixel belongs to the nearer one of the colours beside it, so that the border
+//! Most pixels of flat art and of drawings of lines have one of few colours. The others are antialiased pixels
+//! between two colours. An antialiased pixel belongs to the nearer of the colours beside it, so the border
 //! of an area lies where it covers half of a pixel.
 
 use std::borrow::Cow;

@@ -1,4 +1,4 @@
-//! Bridges: a line that another one covers goes on beyond it, and a line whose ends meet is a ring.
+//! Bridges: a line goes on below the line that covers it. Rings: the ends of a line meet.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! What a traced stroke explains of the residual, in closed form.
+//! The part of the residual that a traced stroke explains, in closed form.
 
 use super::areas::{Areas, Label, Pixel, Pixels, distance2};
 use crate::scene::Path;

@@ -7,10 +7,10 @@
 //! lines      the graph's edges, joined to long lines that run through crossings
 //! bridges    lines that go on below others, and rings
 //! spline     corners and control points
-//! gain       what each stroke explains
+//! gain       the share of the residual that each stroke explains
 //! ```
 //!
-//! The result is right about what there is, and about a pixel wrong about where it is; descent makes it exact.
+//! The result has the right lines, about a pixel off their places; descent makes it exact.
 
 mod areas;
 mod bridges;

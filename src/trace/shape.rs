@@ -1,4 +1,4 @@
-//! Connected shapes: their pixels, and how far each is from the outside.
+//! Connected shapes: their pixels, and the distance of each from the outside.
 
 /// A connected set of pixels in a frame that leaves a border of one pixel around it.
 #[derive(Debug, Clone)]

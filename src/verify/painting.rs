@@ -1,4 +1,4 @@
-//! A picture that grows: one SVG after another is drawn over it.
+//! A picture that grows, as one SVG after another is drawn over it.
 
 use resvg::tiny_skia::Pixmap;
 

@@ -1,4 +1,4 @@
-//! Where strokes appended to an SVG are drawn, and whether they are drawn unchanged. resvg is asked, so that
+//! The places where strokes appended to an SVG are drawn, and changes to them. resvg draws a probe, so that
 //! units, `viewBox`, style sheets and inheritance are resolved by the renderer itself.
 
 use resvg::usvg::{BlendMode, Color, Group, LineCap, Node, Opacity, Paint, Path, Stroke};

@@ -1,4 +1,4 @@
-//! What the fit and the server share: the fit puts in the drawing so far, the page its requests.
+//! The state that fit and server share: the drawing so far from the fit, requests from the page.
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};

@@ -1,4 +1,4 @@
-//! The picture of where a render differs for the eye.
+//! The map of the places where a render differs for the eye.
 
 use anyhow::Result;
 use strokefit::image::Image;

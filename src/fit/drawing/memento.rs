@@ -1,4 +1,4 @@
-//! Copies of a drawing, to go back to or to go on from.
+//! Copies of a drawing, to return to or to continue from.
 
 use serde::{Deserialize, Serialize};
 

@@ -5,8 +5,8 @@
 //! gradient knows of it. So a few random places are tried for each stroke in turn, and the best of them is taken
 //! if it is better than the present one.
 //!
-//! Three [rasterisers](Rasterizer) judge a place, so that a drawing does not become better in one program by being worse in others. The
-//! larger the error of a rasteriser is, the more it counts. For each trial one stroke is drawn, on its own: [`Fragments`] know what
+//! Three [rasterisers](Rasterizer) judge a place, so that a drawing does not become better in one program and worse in others.
+//! The larger the error of a rasteriser is, the more it counts. Each trial draws one stroke, on its own: [`Fragments`] know what
 //! its footprint does to the pictures. Strokes that have no pixel in common are visited at once, by all threads.
 
 mod fragments;

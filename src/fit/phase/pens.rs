@@ -1,4 +1,4 @@
-//! Few pens: opaque strokes that look nearly alike come to share a pen, and the rest is fitted to that.
+//! Few pens: nearly equal opaque strokes come to share a pen, and everything else is fitted to that.
 //!
 //! The smallest form of a file has one path for all strokes of a pen that can be drawn directly one after the other.
 //! Pens are merged pair by pair, the cheapest pair first, as long as no other stroke has to be drawn between the two.

@@ -1,4 +1,4 @@
-//! Wishes: the colour that would suit each stroke best.
+//! Preferred colours: the colour that would suit each stroke best.
 
 use crate::fit::drawing::Drawing;
 use crate::render::{CanvasLoss, Gradients, LOOK, Lanes, TileRgb};

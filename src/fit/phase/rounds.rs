@@ -1,4 +1,4 @@
-//! Descent in rounds: colours or pens are chosen between them, and one schedule of rates spans all of them.
+//! Descent in rounds. Colours or pens are chosen between two rounds; one schedule of rates spans all of them.
 
 use crate::error::Result;
 use crate::fit::descend::descend;

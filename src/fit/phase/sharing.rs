@@ -1,8 +1,8 @@
-//! Shared widths and colours: strokes of a drawing of lines that look nearly alike come to have the same width and the
-//! same colour, as if drawn with one pen, so that an editor selects them together. Nearly opaque strokes become opaque.
+//! Shared widths and colours: nearly equal strokes of a drawing of lines get one width and one colour, as if drawn with one
+//! pen, so that an editor selects them together. Nearly opaque strokes become opaque.
 //!
-//! Of all groups of strokes the two are merged, again and again, whose one width or colour adds least squared error, as
-//! long as all that is added is small against what the drawing has. What is shared stays shared while the strokes settle.
+//! Greedy agglomeration: it merges, again and again, the two groups of strokes whose common width or colour adds the least
+//! squared error, until the sum reaches a share of the drawing's error. Shared numbers stay shared while the strokes settle.
 
 use std::f32::consts::TAU;
 use std::ops::Range;

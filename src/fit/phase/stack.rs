@@ -1,8 +1,8 @@
 //! Colours one above the other: all strokes of a colour are neighbours in the order of the drawing, so that its file has
 //! one layer for each colour.
 //!
-//! The colours are stacked in an order that changes little: of two colours, the one that lies below where their strokes
-//! meet, by the pixels that show, also lies below in the stack. What is still different is fitted again.
+//! The order of the colours changes little: where strokes of two colours meet, the colour that lies below in more of the
+//! visible pixels also lies below in the stack. The fit then repairs the rest.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! Tracing: strokes are laid along the lines that are seen in what is not drawn yet.
+//! Tracing: strokes are laid along the lines of the residual.
 
 use super::grow;
 use crate::error::Result;

@@ -1,8 +1,8 @@
 //! Given pens: every stroke gets the width of one of them, and the rest is fitted to that.
 //!
-//! The drawing has been fitted with widths between those of the thinnest and the widest pen. Rounds come in pairs. In the
-//! first of a pair widths are free, so that the strokes show where they tend to; then each gets the nearest pen. In the
-//! second of a pair widths stay as they are, and the drawing after it is compared with the best one so far.
+//! The drawing has been fitted with widths between the thinnest and the widest pen. Rounds come in pairs. In the first
+//! round widths are free, so that strokes tend to one pen or another; then each gets the nearest pen. In the second round
+//! widths stay as they are. The drawing after it is compared with the best one so far.
 
 use super::rounds;
 use crate::error::Result;

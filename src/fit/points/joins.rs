@@ -1,7 +1,7 @@
-//! Joins: two strokes of about one look that meet end to end become one, if this costs less than the bytes of a stroke.
+//! Joins: two nearly equal strokes that meet end to end become one, if this costs less than the bytes of a stroke.
 //!
-//! Pairs are found by their ends and looks. What joining them costs is then rendered: if all joins together cost more
-//! than they save, the less alike half of the pairs is left out, and so on.
+//! Ends, widths and colours give the pairs. A render of all joins then tells their cost. If they cost more than they save, the less
+//! alike half of the pairs is left out, and so on.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! The survey around one stroke: what a shift of its vertices does to the squared error.
+//! The survey around one stroke: the change of the squared error by a shift of its vertices.
 //!
 //! With the slope g and the stiffness H of each vertex, a shift δ changes the squared error by about
 //! `Σ g·δ + ½ Σ H|δ|²`. The stiffness is a bound, after Gauss and Newton, so that gains are underestimated and losses

@@ -1,4 +1,4 @@
-//! Which numbers of a recipe no fit can run with.
+//! The numbers of a recipe that no fit can run with.
 
 use super::Recipe;
 use crate::error::{Error, ErrorKind, Result};

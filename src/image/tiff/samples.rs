@@ -1,4 +1,4 @@
-//! Rows of samples of one type, and what is done to all of them.
+//! Rows of samples of one type, and the operations on all of them.
 
 use ::image::{DynamicImage, ImageBuffer, ImageFormat};
 use tiff::decoder::DecodingResult;

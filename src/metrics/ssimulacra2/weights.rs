@@ -1,4 +1,4 @@
-//! The weights of SSIMULACRA2 2.1: those of the reference implementation, to seven digits.
+//! The weights of SSIMULACRA2 2.1, as in the reference implementation, to seven digits.
 
 /// By channel (X, Y, B − Y), scale (finest first), norm (mean, fourth) and kind of error (structure, artefact, lost).
 pub(super) const WEIGHTS: [[[[f64; 3]; 2]; 6]; 3] = [

@@ -1,4 +1,4 @@
-//! How much of each pixel an outline covers.
+//! The share of each pixel that an outline covers.
 
 use std::cmp::Ordering;
 use std::ops::Range;

@@ -1,4 +1,4 @@
-//! What single strokes cover.
+//! The pixels that single strokes cover.
 
 use super::area::Area;
 use super::contour::Contour;

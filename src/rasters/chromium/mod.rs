@@ -1,4 +1,4 @@
-//! A model of how a browser draws strokes: Chromium on the CPU, as version 156 was seen to.
+//! A model of Chromium, which draws strokes as version 156 was seen to draw them on the CPU.
 //!
 //! The rules were found from Chromium's pictures of single strokes and of stacks of them, and follow Skia's stroker and
 //! its rasteriser with analytic antialiasing:

@@ -1,4 +1,4 @@
-//! What contours are made of.
+//! The parts that contours are made of.
 
 use crate::math::{Point, Vector};
 

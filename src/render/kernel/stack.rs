@@ -1,4 +1,4 @@
-//! What pass 1 keeps for pass 2, which takes it back from the end.
+//! The stack: pass 1 pushes what pass 2 needs, and pass 2 takes it back from the end.
 
 use super::super::grid::BlockSet;
 

@@ -1,4 +1,4 @@
-//! What pass 2 sums up over a tile: the derivatives of strokes' looks, and of the ends of segments.
+//! Sums of pass 2 over a tile: derivatives by radius, colour and opacity of strokes, and by the ends of segments.
 
 use fearless_simd::{f32x16, prelude::*};
 

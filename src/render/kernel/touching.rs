@@ -1,4 +1,4 @@
-//! Which segments of a stroke touch a tile.
+//! The segments of a stroke that touch a tile.
 
 use fearless_simd::{Level, dispatch, f32x16, prelude::*};
 

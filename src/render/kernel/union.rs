@@ -1,4 +1,4 @@
-//! Strokes of several segments: which segments can be nearest to the pixels of a block, and which one is.
+//! Strokes of several segments: the segments that can be nearest to the pixels of a block, and the one that is.
 //!
 //! Two things are known from a block's centre alone, since its pixels are within [`BLOCK_RADIUS`] of it.
 //!

@@ -1,4 +1,4 @@
-//! What the reference draws: strokes and scenes in `f64`.
+//! Strokes and scenes in `f64`, which the reference draws.
 
 use crate::scene;
 use crate::sdf::{Flattened, Path};

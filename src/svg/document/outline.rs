@@ -1,4 +1,4 @@
-//! The facts about an SVG's text that are needed to insert layers: where its root ends, and which layers it has.
+//! The facts about an SVG's text that layers need: the end of its root, and the layers that it has.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! Reads a shade: a gradient, and the page in it.
+//! Reads a shade: a gradient, and the rectangle that it fills.
 
 use super::super::dialect::{self, SHADE_ID, Unit};
 use super::{Element, Parsed, Parser, Tag, sides, unexpected};

@@ -1,4 +1,4 @@
-//! Which strokes have to be drawn before which.
+//! Precedence: the pairs of strokes that keep their order.
 
 use crate::scene::{Swept, Written};
 

@@ -1,4 +1,4 @@
-//! Writes a shade: a gradient, and the page in it.
+//! Writes a shade: a gradient, and the rectangle that it fills.
 
 use super::super::dialect::{self, SHADE_ID, Unit};
 use crate::scene::{Shade, WrittenAxis, WrittenStop};
