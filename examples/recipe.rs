@@ -1,4 +1,4 @@
-//! What the tuned numbers of a fit are worth: halves and doubles each, and prints what that does to some pictures.
+//! Halves and doubles each tuned number of a fit, and prints the change of fidelity on some pictures.
 //!
 //! ```sh
 //! cargo run --release --example recipe -- samples/{coffee-300,rocket-320,noto-hibiscus,bicycle}.png

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! The loss of a picture is the **mean over all values**, rows·columns·3, as in `PyTorch`'s `l1_loss` and
-//! `mse_loss`. The gradient is that of the mean.
+//! `mse_loss`. The gradient is the derivative of this mean.
 
 use crate::math::Real;
 

@@ -1,4 +1,4 @@
-//! How fast the renderer is, and how near to what the machine can do.
+//! The speed of the renderer, and the limits of the machine.
 //!
 //! ```text
 //! cargo bench --bench speed [-- PICTURE]

@@ -1,4 +1,4 @@
-//! What must hold for any bytes at all. Each target panics where it does not.
+//! Properties that hold for any bytes. Each target panics where one does not hold.
 //!
 //! `cargo fuzz run TARGET` drives them where there is a nightly toolchain and `cargo-fuzz`; the program of
 //! this crate drives them on a stable one, and `tests/all/fuzz.rs` does so for a moment.

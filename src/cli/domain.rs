@@ -1,4 +1,4 @@
-//! What option values may be. Each parser's error says what would be right; clap adds the value
+//! Values that options may have. Each parser's error says what would be right; clap adds the value
 //! and the option's name.
 
 use std::time::Duration;

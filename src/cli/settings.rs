@@ -1,7 +1,7 @@
 //! Configuration files: `--config FILE` reads one, `--print-config` writes one.
 //!
 //! A key is the long name of a flag, and its value is the flag's value. The file's entries are inserted as flags
-//! before those of the command line: all rules for flags apply to them, and flags on the command line win. The
+//! before the flags of the command line: all rules for flags apply to them, and the command line wins. The
 //! one door of `toml`.
 
 use std::collections::BTreeMap;

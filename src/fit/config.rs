@@ -1,4 +1,4 @@
-//! What to fit ([`Config`]) and how to run ([`Execution`]). How a fit runs never changes a byte of the drawing.
+//! The choices of a drawing ([`Config`]) and of its run ([`Execution`]). A run never changes a byte of the drawing.
 
 use std::collections::BTreeSet;
 use std::time::Duration;

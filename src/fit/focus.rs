@@ -1,7 +1,7 @@
 //! Weights of errors: how much an error counts in each pixel.
 //!
 //! The fit minimises `Σ w·(c − t)²`. It looks at canvas and target through a veil that lets through `√w`, so that all
-//! derivatives, worths and gains are those of the weighted error, exactly; see [`Renderer::veil`](crate::render::Renderer::veil).
+//! derivatives, worths and gains belong to the weighted error, exactly; see [`Renderer::veil`](crate::render::Renderer::veil).
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! What each phase of a fit does; [`order`](super::order) says when.
+//! The phases of a fit; [`order`](super::order) says which follows which.
 //!
 //! | file | what happens there |
 //! | --- | --- |

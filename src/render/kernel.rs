@@ -17,8 +17,8 @@
 //! derivatives: at the nearest point the distance does not change with `h` (envelope theorem), up
 //! to the guard [`EPSILON`].
 //!
-//! A stroke of several segments is the union of their capsules, with one coverage: at each pixel, `d` and its derivatives
-//! are those of the nearest segment, the first of them where several are.
+//! A stroke of several segments is the union of their capsules, with one coverage: at each pixel the nearest segment gives
+//! `d` and its derivatives, the first one if several are equally near.
 //!
 //! Degenerate cases: a zero-length capsule is a disc; on the centre line `u` tends to 0 with the guard instead of being undefined.
 
