@@ -13,7 +13,7 @@ mod written_path;
 
 pub use grid::MAX_PRECISION;
 pub(crate) use grid::UNITS_PER_PX;
-pub(crate) use overlap::Swept;
+pub(crate) use overlap::overlaps;
 pub use path::{MAX_POINTS, Path, PathPoint, Piece};
 pub use quantize::{Dropped, MIN_WIDTH, Quantized};
 pub(crate) use quantize::{Written, color, quantum};

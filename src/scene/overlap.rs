@@ -4,9 +4,32 @@ use super::grid::UNITS_PER_PX;
 use super::quantize::Written;
 use crate::math;
 
+/// The pairs of strokes that may share a pixel and whose order `matters` where they do, the lower stroke of each first. The
+/// pairs come in no useful order, but always in the same one.
+pub(crate) fn overlaps<'a>(
+    strokes: impl IntoIterator<Item = &'a Written>,
+    matters: impl Fn(&Written, &Written) -> bool,
+) -> Vec<[usize; 2]> {
+    let strokes: Vec<&Written> = strokes.into_iter().collect();
+    let swept: Vec<Swept> = strokes.iter().copied().map(Swept::new).collect();
+    // A sweep from left to right compares a stroke with those alone that reach as far right as its left end.
+    let mut from_left: Vec<usize> = (0..strokes.len()).collect();
+    from_left.sort_by_key(|&i| swept[i].span());
+    let (mut open, mut pairs): (Vec<usize>, Vec<_>) = (Vec::new(), Vec::new());
+    for i in from_left {
+        open.retain(|&k| swept[k].span()[1] >= swept[i].span()[0]);
+        let partners = open
+            .iter()
+            .filter(|&&k| matters(strokes[i], strokes[k]) && swept[i].meets(&swept[k]));
+        pairs.extend(partners.map(|&k| [i.min(k), i.max(k)]));
+        open.push(i);
+    }
+    pairs
+}
+
 /// Where a stroke may leave ink: what is needed to compare it with many others.
 #[derive(Debug, Clone)]
-pub(crate) struct Swept {
+struct Swept {
     /// In units.
     width: i64,
     /// From where to where the points lie along each axis, in units.
@@ -16,7 +39,7 @@ pub(crate) struct Swept {
 }
 
 impl Swept {
-    pub(crate) fn new(stroke: &Written) -> Self {
+    fn new(stroke: &Written) -> Self {
         Self {
             width: stroke.width,
             bounds: bounds(stroke),
@@ -24,15 +47,15 @@ impl Swept {
         }
     }
 
-    /// Whether the order of the two strokes can change the picture.
-    pub(crate) fn meets(&self, other: &Self) -> bool {
+    /// True if the order of the two strokes can change the picture.
+    fn meets(&self, other: &Self) -> bool {
         let reach = reach(self.width, other.width);
         are_near(&self.bounds, &other.bounds, reach)
             && is_nearer(&self.segments, &other.segments, reach as f64)
     }
 
     /// From where to where, along the x axis, the stroke can meet others, in units.
-    pub(crate) fn span(&self) -> [i64; 2] {
+    fn span(&self) -> [i64; 2] {
         let [near, far] = self.bounds[0];
         let margin = (self.width + APART + 1) / 2;
         [near - margin, far + margin]

@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::dialect::Unit;
 use super::options::{Form, Group, Order, WriteOptions};
 use super::{path, tour};
-use crate::scene::{Scene, Stage, Written, WrittenPath};
+use crate::scene::{Scene, Stage, Written, WrittenPath, overlaps};
 
 /// Strokes of a layer, and their common colour if layers are by colour.
 #[derive(Debug, Clone)]
@@ -226,14 +226,11 @@ fn begin<'a, R, K: Ord>(
 
 /// For each stroke, the later ones that must stay above it.
 fn above(strokes: &[Written]) -> Vec<Vec<usize>> {
-    let above = |(i, below): (usize, &Written)| {
-        let later = strokes.iter().enumerate().skip(i + 1);
-        later
-            .filter(|(_, stroke)| stroke.color != below.color && stroke.meets(below))
-            .map(|(k, _)| k)
-            .collect()
-    };
-    strokes.iter().enumerate().map(above).collect()
+    let mut above = vec![Vec::new(); strokes.len()];
+    for [lower, upper] in overlaps(strokes, |a, b| a.color != b.color) {
+        above[lower].push(upper);
+    }
+    above
 }
 
 #[cfg(test)]

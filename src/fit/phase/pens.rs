@@ -18,7 +18,7 @@ use crate::fit::recipe::Recipe;
 use crate::fit::session::Session;
 use crate::math;
 use crate::render::{StrokeRef, Strokes};
-use crate::scene::{Rgb, Written, color, quantum};
+use crate::scene::{Rgb, Written, color, overlaps, quantum};
 use crate::svg::Form;
 
 /// Makes the strokes of each stage share pens if the file has the smallest form, and returns whether it has. Strokes
@@ -286,23 +286,22 @@ impl Order {
     fn new(strokes: &Strokes) -> Self {
         let count = strokes.len();
         // Which strokes meet does not depend on the decimals.
-        let written: Vec<_> = strokes
-            .iter()
-            .map(|stroke| Written::anywhere(&stroke.to_stroke(), 2))
-            .collect();
-        let meet =
-            |i: usize, k: usize| matches!((&written[i], &written[k]), (Ok(a), Ok(b)) if a.meets(b));
+        let written = strokes.iter().enumerate();
+        let written = written
+            .filter_map(|(i, stroke)| Some((i, Written::anywhere(&stroke.to_stroke(), 2).ok()?)));
+        let (ids, written): (Vec<usize>, Vec<Written>) = written.unzip();
+        let mut pairs = overlaps(&written, |_, _| true);
+        pairs.sort_unstable();
         let none = vec![0_u64; count.div_ceil(64)];
         let mut order = Self {
             later: vec![none.clone(); count],
             earlier: vec![none; count],
         };
-        for i in (0..count).rev() {
-            for k in (i + 1..count).filter(|&k| meet(i, k)) {
-                let beyond = order.later[k].clone();
-                unite(&mut order.later[i], &beyond);
-                set(&mut order.later[i], k);
-            }
+        // From the top down, all that comes after the upper stroke of a pair is known when the pair is met.
+        for [i, k] in pairs.into_iter().rev().map(|pair| pair.map(|at| ids[at])) {
+            let beyond = order.later[k].clone();
+            unite(&mut order.later[i], &beyond);
+            set(&mut order.later[i], k);
         }
         for i in 0..count {
             for k in (i + 1..count).filter(|&k| is_set(&order.later[i], k)) {

@@ -13,7 +13,7 @@ use super::rounds;
 use crate::error::Result;
 use crate::fit::session::Session;
 use crate::metrics::psnr_db;
-use crate::scene::{Written, quantum};
+use crate::scene::{Written, overlaps, quantum};
 
 /// Number of neighbouring strokes that are compared with each other, which takes time with its square.
 const WINDOW: usize = 4096;
@@ -99,12 +99,13 @@ fn order(session: &mut Session<'_>) -> Vec<Color> {
 fn stacked(strokes: &[(Written, f32)]) -> Vec<Color> {
     let mut below: BTreeMap<(Color, Color), f32> = BTreeMap::new();
     for window in strokes.chunks(WINDOW) {
-        for (i, (lower, weight)) in window.iter().enumerate() {
-            for (upper, other) in &window[i + 1..] {
-                if upper.color != lower.color && upper.meets(lower) {
-                    *below.entry((lower.color, upper.color)).or_default() += weight.min(*other);
-                }
-            }
+        let mut pairs = overlaps(window.iter().map(|(s, _)| s), |a, b| a.color != b.color);
+        // Sums depend on their order.
+        pairs.sort_unstable();
+        for [(lower, weight), (upper, other)] in
+            pairs.into_iter().map(|pair| pair.map(|i| &window[i]))
+        {
+            *below.entry((lower.color, upper.color)).or_default() += weight.min(*other);
         }
     }
     let mut left: Vec<Color> = strokes.iter().map(|(stroke, _)| stroke.color).collect();

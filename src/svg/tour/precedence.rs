@@ -1,6 +1,6 @@
 //! Precedence: the pairs of strokes that keep their order.
 
-use crate::scene::{Swept, Written};
+use crate::scene::{Written, overlaps};
 
 /// The pairs of strokes whose order the picture depends on.
 #[derive(Debug, Clone)]
@@ -15,7 +15,14 @@ impl Precedence {
     pub(super) fn of(strokes: &[Written]) -> Self {
         let mut above = vec![Vec::new(); strokes.len()];
         let mut below = vec![Vec::new(); strokes.len()];
-        for [first, later] in pairs(strokes) {
+        // Most drawings for a pen are of one colour.
+        let is_plain = |s: &Written| s.opacity == u8::MAX && s.color == strokes[0].color;
+        let pairs = if strokes.iter().all(is_plain) {
+            Vec::new()
+        } else {
+            overlaps(strokes, depends_on_order)
+        };
+        for [first, later] in pairs {
             above[first].push(later);
             below[later].push(first);
         }
@@ -38,29 +45,7 @@ impl Precedence {
     }
 }
 
-/// The pairs, found by a sweep from left to right.
-fn pairs(strokes: &[Written]) -> Vec<[usize; 2]> {
-    // Most drawings for a pen are of one colour.
-    let is_plain = |s: &Written| s.opacity == u8::MAX && s.color == strokes[0].color;
-    if strokes.iter().all(is_plain) {
-        return Vec::new();
-    }
-    let swept: Vec<Swept> = strokes.iter().map(Swept::new).collect();
-    let mut from_left: Vec<usize> = (0..strokes.len()).collect();
-    from_left.sort_by_key(|&i| swept[i].span());
-    let (mut open, mut pairs): (Vec<usize>, Vec<_>) = (Vec::new(), Vec::new());
-    for i in from_left {
-        open.retain(|&k| swept[k].span()[1] >= swept[i].span()[0]);
-        let partners = open
-            .iter()
-            .filter(|&&k| depends_on_order(&strokes[i], &strokes[k]) && swept[i].meets(&swept[k]));
-        pairs.extend(partners.map(|&k| [i.min(k), i.max(k)]));
-        open.push(i);
-    }
-    pairs
-}
-
-/// Whether the order of two strokes shows where they meet.
+/// True if the order of two strokes shows where they meet.
 fn depends_on_order(a: &Written, b: &Written) -> bool {
     a.color != b.color || a.opacity < u8::MAX || b.opacity < u8::MAX
 }
