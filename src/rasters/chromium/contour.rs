@@ -1,4 +1,8 @@
 //! The contour of a stroke, as Skia's stroker draws it: lines and parabolas.
+//!
+//! tiny-skia's port of that stroker, by which resvg strokes, does not give this contour: it makes two parabolas or more of
+//! each arc, where Skia is content with one up to a radius of 4 px. With it the model agrees with Chromium to 1.5 to 9 dB
+//! less.
 
 use super::curve::{Curve, left_of};
 use super::part::Part;
@@ -13,7 +17,7 @@ pub(super) struct Contour {
     pub(super) parts: Vec<Part>,
     /// The smallest and the largest coordinates of its ends and control points.
     pub(super) bounds: [Point; 2],
-    /// Whether it is that of a capsule. Any other may turn anywhere and cross itself.
+    /// True for a capsule. Any other may turn anywhere and cross itself.
     pub(super) is_convex: bool,
 }
 
@@ -105,6 +109,7 @@ impl Sides {
             (from, to) = (-from, -to);
             std::mem::swap(&mut outer, &mut inner);
         }
+        // Skia builds an arc of quarters and a rest.
         if cosine > 0.0 {
             outer.turn(pivot, from, to);
         } else {
@@ -112,6 +117,7 @@ impl Sides {
             outer.turn(pivot, from, along);
             outer.turn(pivot, along, to);
         }
+        // Where the stroke is wider than its pieces are long, a direct line would cut off a corner.
         inner.line_to(pivot);
         inner.line_to(pivot - to);
     }
@@ -126,6 +132,7 @@ impl Sides {
         let back = right.parts.iter().rev().map(|part| part.reversed());
         let [left_start, right_start] = [&left, &right].map(|side| side.start);
         if is_closed {
+            // Two rings, the right one traced backwards, so that the nonzero rule leaves a hole within.
             left.line_to(left_start);
             left.parts.push(Part::Line([right_start, right.end]));
             left.parts.extend(back);
