@@ -374,11 +374,11 @@ impl Drawing {
     }
 }
 
-/// A renderer for `surface`, which looks through its veil.
+/// A renderer for `surface`, with its weights of errors.
 fn renderer(surface: &Surface, level: Level) -> Renderer {
     let mut renderer = Renderer::new(surface.grid(), level);
-    if let Some(veil) = surface.veil() {
-        renderer.veil(veil);
+    if let Some(roots) = surface.error_weights() {
+        renderer.set_error_weights(roots);
     }
     renderer
 }

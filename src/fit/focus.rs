@@ -1,7 +1,7 @@
 //! Weights of errors: how much an error counts in each pixel.
 //!
-//! The fit minimises `Σ w·(c − t)²`. It looks at canvas and target through a veil that lets through `√w`, so that all
-//! derivatives, worths and gains belong to the weighted error, exactly; see [`Renderer::veil`](crate::render::Renderer::veil).
+//! The fit minimises `Σ w·(c − t)²`. It multiplies canvas and target by `√w`, so that all
+//! derivatives, worths and gains are those of the weighted error, exactly; see [`Renderer::set_error_weights`](crate::render::Renderer::set_error_weights).
 
 use std::sync::Arc;
 
@@ -86,7 +86,7 @@ impl Focus {
     }
 
     /// The roots of the weights of the picture halved `halvings` times.
-    pub(super) fn veil(&self, halvings: usize) -> Canvas {
+    pub(super) fn roots(&self, halvings: usize) -> Canvas {
         let weights = self.weights.level(halvings);
         let roots = |plane: &Vec<f32>| plane.iter().map(|weight| weight.sqrt()).collect();
         let planes = [0, 1, 2].map(|c| roots(&weights.planes()[c]));
@@ -175,7 +175,7 @@ mod tests {
         Focus::new(&Image::new(64, 48, [plane.clone(), plane.clone(), plane]).unwrap()).unwrap()
     }
 
-    /// Loss, worth and ∂L/∂color of a dot on white, seen through the veil of `focus`.
+    /// Loss, worth and ∂L/∂color of a dot on white, weighted by `focus`.
     fn judged(focus: Option<&Focus>, x: f32) -> (f64, f32, f32) {
         let target = Canvas::from_image(&checks());
         let dot = Stroke {
@@ -190,15 +190,15 @@ mod tests {
             width: 1.0,
         };
         let mut renderer = Renderer::new(target.grid(), fearless_simd::Level::new());
-        let veil = focus.map(|focus| focus.veil(0));
-        let target = match &veil {
-            Some(veil) => {
-                renderer.veil(veil);
-                target.darkened(veil)
+        let roots = focus.map(|focus| focus.roots(0));
+        let target = match &roots {
+            Some(roots) => {
+                renderer.set_error_weights(roots);
+                target.multiplied(roots)
             }
             None => target,
         };
-        let objective = Objective::new(Loss::L2, &target).veiled(veil.as_ref());
+        let objective = Objective::new(Loss::L2, &target).weighted(roots.as_ref());
         let mut gradients = Gradients::default();
         let white = Backdrop::Color([1.0; 3]);
         renderer.backward_with_worth(&strokes, softness, white, &objective, &mut gradients);

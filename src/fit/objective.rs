@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::loss::Loss;
-use crate::render::{Canvas, CanvasLoss, Lanes, TILE, TileRgb, darken};
+use crate::render::{Canvas, CanvasLoss, Lanes, TILE, TileRgb, multiply};
 
 /// The mean of `loss` over width·height·3 values against `target`.
 #[derive(Debug, Clone, Copy)]
@@ -11,8 +11,8 @@ pub struct Objective<'a> {
     loss: Loss,
     target: &'a Canvas,
     moments: Option<&'a Moments>,
-    /// What a veil in front of the canvas lets through; the target is behind it already.
-    veil: Option<&'a Canvas>,
+    /// The roots of the weights of errors. The target is multiplied by them already.
+    error_weights: Option<&'a Canvas>,
     /// 1/(width·height·3).
     scale: f32,
 }
@@ -22,8 +22,8 @@ pub struct Objective<'a> {
 #[derive(Debug)]
 pub(super) struct Moments(Vec<TileMoments>);
 
-/// What lets everything through.
-const CLEAR: Lanes = Lanes::splat(1.0);
+/// Weights where all errors count alike.
+const EQUAL: Lanes = Lanes::splat(1.0);
 
 #[derive(Debug, Clone, Copy, Default)]
 struct TileMoments {
@@ -36,8 +36,8 @@ struct TileMoments {
 }
 
 impl Moments {
-    /// The sums of `target`, which is behind `veil` already.
-    pub(super) fn of(target: &Canvas, veil: Option<&Canvas>) -> Self {
+    /// The sums of `target`, which is multiplied by `error_weights` already.
+    pub(super) fn of(target: &Canvas, error_weights: Option<&Canvas>) -> Self {
         let grid = target.grid();
         let moments = |(tile, pixels): (usize, &TileRgb)| {
             let (x, y) = grid.origin(tile);
@@ -46,16 +46,16 @@ impl Moments {
                 pixels: (columns * rows) as f64,
                 ..TileMoments::default()
             };
-            let veil = veil.map(|veil| veil.tiles()[tile].as_flattened());
-            if let Some(veil) = veil {
-                let through = veil.iter().step_by(3).flat_map(|lanes| lanes.0);
-                moments.pixels = through.map(|v| f64::from(v) * f64::from(v)).sum();
+            let roots = error_weights.map(|roots| roots.tiles()[tile].as_flattened());
+            if let Some(roots) = roots {
+                let roots = roots.iter().step_by(3).flat_map(|lanes| lanes.0);
+                moments.pixels = roots.map(|v| f64::from(v) * f64::from(v)).sum();
             }
             for (i, lanes) in pixels.as_flattened().iter().enumerate() {
-                let through = veil.map_or(&CLEAR, |veil| &veil[i]);
-                for (value, through) in lanes.0.into_iter().zip(through.0) {
+                let roots = roots.map_or(&EQUAL, |roots| &roots[i]);
+                for (value, root) in lanes.0.into_iter().zip(roots.0) {
                     let value = f64::from(value);
-                    moments.sums[i % 3] += f64::from(through) * value;
+                    moments.sums[i % 3] += f64::from(root) * value;
                     moments.squares += value * value;
                 }
             }
@@ -73,7 +73,7 @@ impl<'a> Objective<'a> {
             loss,
             target,
             moments: None,
-            veil: None,
+            error_weights: None,
             scale: 1.0 / (grid.width * grid.height * 3) as f32,
         }
     }
@@ -86,22 +86,25 @@ impl<'a> Objective<'a> {
         }
     }
 
-    /// The same with canvas and target seen through `veil`; see [`Renderer::veil`](crate::render::Renderer::veil). The
-    /// target is behind it already.
-    pub(super) fn veiled(self, veil: Option<&'a Canvas>) -> Self {
-        Self { veil, ..self }
+    /// The objective with weighted errors; see
+    /// [`Renderer::set_error_weights`](crate::render::Renderer::set_error_weights). The target is multiplied by the roots already.
+    pub(super) fn weighted(self, error_weights: Option<&'a Canvas>) -> Self {
+        Self {
+            error_weights,
+            ..self
+        }
     }
 
-    /// The loss of `canvas`, which is not behind the veil.
+    /// The loss of `canvas`, which is not multiplied by the roots of the weights.
     pub(super) fn of(&self, canvas: &Canvas) -> f64 {
         let tiles = canvas.tiles().par_iter().enumerate();
         let sum = |(tile, canvas): (usize, &TileRgb)| {
             let target = &self.target.tiles()[tile];
-            match self.veil {
-                Some(veil) => {
-                    let mut seen = *canvas;
-                    darken(&mut seen, &veil.tiles()[tile]);
-                    self.sum(&seen, target)
+            match self.error_weights {
+                Some(roots) => {
+                    let mut weighted = *canvas;
+                    multiply(&mut weighted, &roots.tiles()[tile]);
+                    self.sum(&weighted, target)
                 }
                 None => self.sum(canvas, target),
             }
@@ -155,7 +158,7 @@ impl CanvasLoss for Objective<'_> {
         sums.0.iter().map(|&s| f64::from(s)).sum::<f64>() * f64::from(self.scale)
     }
 
-    fn flat(&self, tile: usize, color: [f32; 3]) -> Option<(f64, [f32; 3])> {
+    fn uniform(&self, tile: usize, color: [f32; 3]) -> Option<(f64, [f32; 3])> {
         let &TileMoments {
             pixels,
             sums,
@@ -191,34 +194,35 @@ mod tests {
 
     #[test]
     fn a_tile_in_one_colour_is_judged_by_its_sums_as_by_its_pixels() {
-        // A veil lets through the same of all channels.
+        // A pixel has the same weight in all channels.
         let through: Vec<f32> = (0..40 * 33).map(|i| 1.5 * rng::draw(0, 9, 9, i)).collect();
         let planes = [through.clone(), through.clone(), through];
-        let veil = Canvas::from_image(&Image::from_planes(40, 33, planes));
+        let roots = Canvas::from_image(&Image::from_planes(40, 33, planes));
         let color = [0.2, 0.5, 0.9];
-        for veil in [None, Some(&veil)] {
-            let target = match veil {
-                Some(veil) => random(1).darkened(veil),
+        for roots in [None, Some(&roots)] {
+            let target = match roots {
+                Some(roots) => random(1).multiplied(roots),
                 None => random(1),
             };
-            let moments = Moments::of(&target, veil);
+            let moments = Moments::of(&target, roots);
             let objective = Objective::squared(&target, Some(&moments));
             let flat = Canvas::flat(Grid::new(40, 33), color);
-            let canvas = match veil {
-                Some(veil) => flat.darkened(veil),
+            let canvas = match roots {
+                Some(roots) => flat.multiplied(roots),
                 None => flat,
             };
             for (tile, pixels) in canvas.tiles().iter().enumerate() {
                 let (mut error, mut gradient) = (*pixels, *pixels);
                 let expected = objective.tile(tile, pixels, Some(&mut error), &mut gradient);
-                let (loss, slope) = objective.flat(tile, color).unwrap();
+                let (loss, slope) = objective.uniform(tile, color).unwrap();
                 assert!(
                     (loss - expected).abs() < 1e-5 * expected,
                     "{loss} {expected}"
                 );
                 for channel in 0..3 {
                     let lanes = gradient.iter().enumerate().flat_map(|(block, gradient)| {
-                        let through = veil.map_or(CLEAR, |veil| veil.tiles()[tile][block][channel]);
+                        let through =
+                            roots.map_or(EQUAL, |roots| roots.tiles()[tile][block][channel]);
                         gradient[channel].0.into_iter().zip(through.0)
                     });
                     let sum: f32 = lanes.map(|(g, through)| g * through).sum();

@@ -1,8 +1,8 @@
-//! The renderers that a file is settled for: resvg, the judge, and the browser, which differs most from it.
+//! The renderers that a file is settled for: resvg, the judge, and Chromium, which differs most from it.
 //!
 //! If a drawing is tuned to resvg alone, every other renderer is off by its full difference from resvg:
 //! tiny-skia rounds up after every translucent stroke, Cairo and Skia do not, and each has edges of its own. So settling
-//! corrects for a mean of the two. The browser's share is just large enough to keep it within [`Settling::browser_db`].
+//! corrects for a mean of the two: Chromium's share is just large enough to keep it within [`Settling::browser_db`].
 
 use rayon::prelude::*;
 
@@ -19,46 +19,46 @@ use crate::rasters::chromium;
 use crate::render::Canvas;
 use crate::scene::Scene;
 
-/// Renders of a file by the model of a browser and by our own renderer, beside resvg's; one per surface.
+/// Renders of a file by the model of Chromium and by our own renderer, beside resvg's; one per surface.
 #[derive(Clone)]
 pub(super) struct Renderings {
     settling: Settling,
-    /// The browser's renders.
-    shown: Vec<Image>,
+    /// Chromium's renders.
+    chromium: Vec<Image>,
     /// Our own renders.
-    soft: Vec<Image>,
+    own: Vec<Image>,
     errors: Vec<Errors>,
 }
 
 /// Mean squared errors against the picture on one matte.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Errors {
-    drawn: f64,
-    shown: f64,
-    soft: f64,
-    /// Between resvg and the browser.
-    apart: f64,
+    resvg: f64,
+    chromium: f64,
+    own: f64,
+    /// Between resvg and Chromium.
+    between: f64,
 }
 
 impl Renderings {
     /// Writes the drawing and renders the file.
     pub(super) fn of(session: &mut Session<'_>) -> Result<(RenderedFile, Self)> {
-        let (file, shown) = session.render_file_beside(shown)?;
+        let (file, chromium) = session.render_file_beside(by_chromium)?;
         let drawing = &mut session.drawing;
-        let soft = drawing.soft(&file.rounded.scene);
-        let drawn = &file.drawn;
+        let own = drawing.soft(&file.rounded.scene);
+        let resvg = &file.drawn;
         let errors = |(i, surface): (usize, &Surface)| {
             let picture = surface.picture();
             let to_picture = |image: &Image| metrics::mse(picture, image);
             let (files, others) = rayon::join(
-                || (to_picture(&drawn[i]), to_picture(&shown[i])),
-                || (to_picture(&soft[i]), metrics::mse(&drawn[i], &shown[i])),
+                || (to_picture(&resvg[i]), to_picture(&chromium[i])),
+                || (to_picture(&own[i]), metrics::mse(&resvg[i], &chromium[i])),
             );
             Ok(Errors {
-                drawn: files.0?,
-                shown: files.1?,
-                soft: others.0?,
-                apart: others.1?,
+                resvg: files.0?,
+                chromium: files.1?,
+                own: others.0?,
+                between: others.1?,
             })
         };
         let surfaces = drawing.surfaces.par_iter().enumerate();
@@ -66,8 +66,8 @@ impl Renderings {
         let seen = Self {
             settling: session.recipe.settling,
             errors: errors?,
-            shown,
-            soft,
+            chromium,
+            own,
         };
         Ok((file, seen))
     }
@@ -77,22 +77,22 @@ impl Renderings {
         self.errors.iter().map(of).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// The browser's renders.
-    pub(super) fn shown(&self) -> &[Image] {
-        &self.shown
+    /// Chromium's renders.
+    pub(super) fn chromium(&self) -> &[Image] {
+        &self.chromium
     }
 
     /// By how many dB renderers are less faithful than our own render.
     pub(super) fn added_db(&self) -> f64 {
-        10.0 * math::log10(self.badness() / self.largest(|errors| errors.soft).max(MIN_ERROR))
+        10.0 * math::log10(self.worst_mse() / self.largest(|errors| errors.own).max(MIN_ERROR))
     }
 
-    /// The browser's share of the offset in the first round.
+    /// Chromium's share of the offset in the first round.
     pub(super) fn first_share(&self) -> f64 {
         self.largest(|errors| errors.fair_share(self.settling.browser_db))
     }
 
-    /// The browser's share in the next round, after one with `share`.
+    /// Chromium's share in the next round, after one with `share`.
     pub(super) fn next_share(&self, share: f64) -> f64 {
         let shortfall_db = self.largest(Errors::shortfall_db);
         let Settling {
@@ -103,15 +103,15 @@ impl Renderings {
         (share + share_per_db * (shortfall_db - browser_db)).clamp(0.0, 1.0)
     }
 
-    /// The error by which files are compared: that in resvg, or in the browser divided by what is allowed there, if
+    /// The error by which files are compared: that in resvg, or in Chromium divided by what is allowed there, if
     /// larger.
-    pub(super) fn badness(&self) -> f64 {
+    pub(super) fn worst_mse(&self) -> f64 {
         let allowed = ratio(self.settling.browser_db);
-        self.largest(|errors| errors.drawn.max(errors.shown / allowed))
+        self.largest(|errors| errors.resvg.max(errors.chromium / allowed))
     }
 
     /// The targets of the next round, one per surface: the picture less a part of the renderers' offset from our own
-    /// render. The browser has `share` of that offset, resvg the rest.
+    /// render. Chromium has `share` of that offset, resvg the rest.
     pub(super) fn targets(
         &self,
         drawing: &Drawing,
@@ -122,45 +122,47 @@ impl Renderings {
         let shares = [1.0 - share, share].map(|share| (taken * share) as f32);
         let surfaces = drawing.surfaces.iter().enumerate();
         let corrected = surfaces.map(|(i, surface)| {
-            let pictures = [&file.drawn[i], &self.shown[i]];
-            let target = corrected(surface.picture(), &self.soft[i], pictures, shares);
-            surface.veiled(Canvas::from_image(&target))
+            let pictures = [&file.drawn[i], &self.chromium[i]];
+            let target = corrected(surface.picture(), &self.own[i], pictures, shares);
+            surface.weighted(Canvas::from_image(&target))
         });
         corrected.collect()
     }
 }
 
-/// The browser's renders of `scene`, one per surface.
-fn shown(scene: &Scene, surfaces: &[Surface]) -> Vec<Image> {
+/// Chromium's renders of `scene`, one per surface.
+fn by_chromium(scene: &Scene, surfaces: &[Surface]) -> Vec<Image> {
     let backdrops: Vec<Image> = surfaces.iter().map(|s| s.empty(scene).to_image()).collect();
     chromium::draw(scene.strokes(), &backdrops)
 }
 
-fn corrected(target: &Image, soft: &Image, seen: [&Image; 2], shares: [f32; 2]) -> Image {
+/// `target` less the offset of two renders from our `own`: `renders` by resvg and Chromium, and the share of each.
+fn corrected(target: &Image, own: &Image, renders: [&Image; 2], shares: [f32; 2]) -> Image {
     let planes = [0, 1, 2].map(|c| {
-        let [drawn, shown] = seen.map(|image| &image.planes()[c]);
-        let pixels = target.planes()[c].iter().zip(&soft.planes()[c]);
-        let pixels = pixels.zip(drawn.iter().zip(shown));
-        let offset = |soft, drawn, shown| shares[0] * (drawn - soft) + shares[1] * (shown - soft);
+        let [resvg, chromium] = renders.map(|image| &image.planes()[c]);
+        let pixels = target.planes()[c].iter().zip(&own.planes()[c]);
+        let pixels = pixels.zip(resvg.iter().zip(chromium));
+        let offset =
+            |own, resvg, chromium| shares[0] * (resvg - own) + shares[1] * (chromium - own);
         pixels
-            .map(|((target, &soft), (&drawn, &shown))| target - offset(soft, drawn, shown))
+            .map(|((target, &own), (&resvg, &chromium))| target - offset(own, resvg, chromium))
             .collect()
     });
     Image::from_planes(target.width(), target.height(), planes)
 }
 
 impl Errors {
-    /// By how many dB the browser is less faithful than resvg.
+    /// By how many dB Chromium is less faithful than resvg.
     fn shortfall_db(&self) -> f64 {
-        let [shown, drawn] = [self.shown, self.drawn].map(|mse| mse.max(MIN_ERROR));
-        10.0 * math::log10(shown / drawn)
+        let [chromium, resvg] = [self.chromium, self.resvg].map(|mse| mse.max(MIN_ERROR));
+        10.0 * math::log10(chromium / resvg)
     }
 
-    /// The browser's share `s` of the offset that leaves the browser `aim_db` behind resvg. With a difference `d²`
-    /// between the two and an error `e²` that both have, resvg's error is then `e² + s²·d²`, and the browser's
+    /// Chromium's share `s` of the offset that leaves Chromium `aim_db` behind resvg. With a difference `d²`
+    /// between the two and an error `e²` that both have, resvg's error is then `e² + s²·d²`, and Chromium's
     /// `e² + (1 − s)²·d²`.
     fn fair_share(&self, aim_db: f64) -> f64 {
-        let (ratio, d2) = (ratio(aim_db), self.apart / self.soft.max(MIN_ERROR));
+        let (ratio, d2) = (ratio(aim_db), self.between / self.own.max(MIN_ERROR));
         // (ratio − 1)·d²·s² + 2·d²·s = d² − (ratio − 1)
         let (a, b, c) = ((ratio - 1.0) * d2, d2, d2 - (ratio - 1.0));
         if c <= 0.0 {
@@ -184,12 +186,12 @@ mod tests {
 
     const AIM_DB: f64 = 0.4;
 
-    fn errors(soft: f64, apart: f64) -> Errors {
+    fn errors(own: f64, between: f64) -> Errors {
         Errors {
-            drawn: soft,
-            shown: soft,
-            soft,
-            apart,
+            resvg: own,
+            chromium: own,
+            own,
+            between,
         }
     }
 
@@ -201,12 +203,12 @@ mod tests {
 
     #[test]
     fn the_share_leaves_the_browser_at_the_aim() {
-        for apart in [2e-4, 1e-3, 1e-2] {
-            let errors = errors(1e-3, apart);
+        for between in [2e-4, 1e-3, 1e-2] {
+            let errors = errors(1e-3, between);
             let share = errors.fair_share(AIM_DB);
-            let left = |share: f64| errors.soft + share * share * apart;
+            let left = |share: f64| errors.own + share * share * between;
             let shortfall_db = 10.0 * math::log10(left(1.0 - share) / left(share));
-            assert!((shortfall_db - AIM_DB).abs() < 1e-9, "{apart}: {share}");
+            assert!((shortfall_db - AIM_DB).abs() < 1e-9, "{between}: {share}");
         }
     }
 

@@ -179,9 +179,9 @@ pub(super) struct Surface {
     min_scale: f32,
     /// Where errors count, if not everywhere alike.
     focus: Option<Focus>,
-    /// What canvas and target are seen through, at the current resolution.
-    veil: Option<Canvas>,
-    /// The picture, halved, and behind the veil.
+    /// The roots of the weights of errors, at the current resolution; `None` where all count alike.
+    error_weights: Option<Canvas>,
+    /// The picture, halved, and multiplied by these roots.
     target: Canvas,
     /// The target's sums.
     moments: Moments,
@@ -206,7 +206,7 @@ impl Surface {
             frozen,
             moments: Moments::of(&target, None),
             focus: None,
-            veil: None,
+            error_weights: None,
             target,
             pyramid,
         }
@@ -220,15 +220,15 @@ impl Surface {
         }
     }
 
-    /// What canvas and target are seen through, at the current resolution.
-    pub(super) fn veil(&self) -> Option<&Canvas> {
-        self.veil.as_ref()
+    /// The roots of the weights of errors, at the current resolution; `None` where all count alike.
+    pub(super) fn error_weights(&self) -> Option<&Canvas> {
+        self.error_weights.as_ref()
     }
 
-    /// `canvas` behind the veil.
-    pub(super) fn veiled(&self, canvas: Canvas) -> Canvas {
-        match &self.veil {
-            Some(veil) => canvas.darkened(veil),
+    /// `canvas` multiplied by the roots of the weights of errors.
+    pub(super) fn weighted(&self, canvas: Canvas) -> Canvas {
+        match &self.error_weights {
+            Some(roots) => canvas.multiplied(roots),
             None => canvas,
         }
     }
@@ -273,9 +273,9 @@ impl Surface {
     /// Switches to the picture halved `halvings` times, with nothing frozen.
     pub(super) fn halve(&mut self, halvings: usize) {
         self.halvings = halvings;
-        self.veil = self.focus.as_ref().map(|focus| focus.veil(halvings));
-        self.target = self.veiled(Canvas::from_image(self.pyramid.level(halvings)));
-        self.moments = Moments::of(&self.target, self.veil.as_ref());
+        self.error_weights = self.focus.as_ref().map(|focus| focus.roots(halvings));
+        self.target = self.weighted(Canvas::from_image(self.pyramid.level(halvings)));
+        self.moments = Moments::of(&self.target, self.error_weights.as_ref());
         self.frozen = self.bottom.canvas(self.target.grid(), halvings);
         self.canvas.clone_from(&self.frozen);
     }
@@ -330,13 +330,13 @@ impl Surface {
         self.objective(None).of(canvas)
     }
 
-    /// The loss against the picture, or against `target`, which is behind the veil.
+    /// The loss against the picture, or against `target`, which is weighted already.
     pub(super) fn objective<'a>(&'a self, target: Option<&'a Canvas>) -> Objective<'a> {
         let objective = match target {
             Some(target) => Objective::squared(target, None),
             None => Objective::squared(&self.target, Some(&self.moments)),
         };
-        objective.veiled(self.veil())
+        objective.weighted(self.error_weights())
     }
 
     /// What lies behind all strokes, at full resolution.

@@ -32,7 +32,7 @@ pub(super) struct Region<'a> {
     pub(super) width: usize,
 }
 
-/// How the centre line lies to the centre of a pixel.
+/// Place of the centre line as seen from the centre of a pixel.
 #[derive(Clone, Copy)]
 struct Nearest {
     distance2: f32,
@@ -47,6 +47,7 @@ pub(super) fn footprint(stroke: &Stroke, region: &Region<'_>) -> Footprint {
     };
     let mut nearest = vec![far; region.pixels.len()];
     let mut vertices = stroke.path.flattened(FLATNESS);
+    // A dot is a line without a length.
     if let [dot] = *vertices {
         vertices.push(dot);
     }
@@ -67,6 +68,7 @@ impl Region<'_> {
         let along = b - a;
         let per_length2 = 1.0 / along.norm_squared().max(f32::MIN_POSITIVE);
         let height = self.slots.pixels() / self.width;
+        // Row by row, only the pixels beside the part of the line that is near enough to the row.
         for row in range(a.y.min(b.y) - reach, a.y.max(b.y) + reach, height) {
             let y = row as f32 + 0.5;
             // The part of the line that is near enough to the row.
@@ -82,6 +84,7 @@ impl Region<'_> {
                 };
                 let nearest = &mut nearest[slot];
                 let p = Vector::new(column as f32 + 0.5 - a.x, y - a.y);
+                // Squared distances are compared, so that one root is enough, of the nearest.
                 let h = (p.dot(&along) * per_length2).clamp(0.0, 1.0);
                 let q = p - along * h;
                 let distance2 = q.norm_squared();
@@ -105,13 +108,14 @@ fn range(from: f32, to: f32, end: usize) -> Range<usize> {
     from..to
 }
 
-/// How much of a pixel a stroke of this radius covers.
+/// Share of a pixel that a stroke of this radius covers.
 fn covered(radius: f32, &Nearest { distance2, across }: &Nearest) -> f32 {
     let distance = distance2.sqrt();
     if distance >= radius + HALF_DIAGONAL {
         return 0.0;
     }
     let across = across.abs() / across.norm().max(f32::MIN_POSITIVE);
+    // Seen along the outline a pixel is a trapezoid, the convolution of its two sides.
     let [wide, narrow] = [across.max(), across.min()].map(|width| 0.5 * width);
     integral(radius - distance, wide, narrow) - integral(-radius - distance, wide, narrow)
 }
@@ -119,6 +123,7 @@ fn covered(radius: f32, &Nearest { distance2, across }: &Nearest) -> f32 {
 /// The integral, up to `at`, of the convolution of two boxes of half these widths, of area 1.
 fn integral(at: f32, wide: f32, narrow: f32) -> f32 {
     let away = at.abs();
+    // The flat top of the trapezoid, its slope, and what is beyond.
     let from_middle = if away <= wide - narrow {
         0.5 * away / wide
     } else if away < wide + narrow {

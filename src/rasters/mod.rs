@@ -1,4 +1,4 @@
-//! Rasterisers, which antialias a stroke each in its own way: resvg by samples, Chromium by areas of a rounded outline, others by exact areas.
+//! Rasterisers of strokes: resvg takes samples, Chromium the areas of a rounded outline, others exact areas.
 //!
 //! [`Rasters`] draws single strokes by each [`Rasterizer`], and says which pixels they cover. [`chromium::draw`] draws whole
 //! pictures; resvg does so itself, from the file (see [`verify`](crate::verify)).
@@ -101,6 +101,7 @@ impl Selection<'_> {
         match rasterizer {
             Rasterizer::Resvg => resvg::footprint(stroke, width, height),
             Rasterizer::Chromium => chromium.footprint(stroke),
+            // It looks at pixels one by one, so that few pixels save time; the others fill an outline.
             Rasterizer::Exact => {
                 let pixels = self.pixels;
                 let region = Region {

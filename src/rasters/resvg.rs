@@ -25,6 +25,7 @@ fn covered(stroke: &Stroke, size: [usize; 2]) -> Option<Footprint> {
         ..Pen::default()
     };
     let outline = center_line(stroke)?.stroke(&pen, 1.0)?;
+    // Only the box of the outline is drawn. It lies on whole pixels, so that samples fall where they do on the page.
     let [columns, rows] = touched(outline.bounds(), size);
     let mut raster = Raster::new(columns.len() as u32, rows.len() as u32)?;
     let corner = Transform::from_translate(-(columns.start as f32), -(rows.start as f32));

@@ -8,13 +8,13 @@ use fearless_simd::{f32x16, i32x16, prelude::*};
 
 use crate::coverage::Coverage;
 
-/// What the kernels need of a soft edge.
+/// A soft edge as the kernels need it.
 pub(super) trait SoftEdge: Copy + Send + Sync {
     /// `σ(d)` and `∂σ/∂d`, `d` in px, positive inside.
     fn eval<S: Simd>(self, d: f32x16<S>) -> (f32x16<S>, f32x16<S>);
 }
 
-/// How far the soft edge reaches on both sides of the outline.
+/// Extent of the soft edge on both sides of the outline.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Reach {
     /// Coverage is dropped at signed distances below `−outside`, px.
@@ -87,6 +87,7 @@ impl SoftEdge for Tailed {
             Tail::Raw => raw(x),
         };
         let zero = f32x16::splat(d.token(), 0.0);
+        // Tails are cut where the blocks that a stroke touches end, or its edge would depend on the grid.
         let kept = d.simd_ge(-self.outside);
         (
             kept.select(value, zero),
@@ -146,6 +147,7 @@ fn logistic<S: Simd>(x: f32x16<S>) -> (f32x16<S>, f32x16<S>) {
 #[inline(always)]
 fn exp<S: Simd>(x: f32x16<S>) -> f32x16<S> {
     let x = x.max(-87.0).min(87.0);
+    // exp(x) = 2ⁿ·exp(r), with n the whole number nearest to x / ln 2, so that |r| ≤ ln 2 / 2.
     let n = (x * std::f32::consts::LOG2_E + 0.5).floor();
     let r = x - n * 0.693_359_4 - n * -2.121_944_4e-4;
     let mut p = r * 1.987_569_1e-4 + 1.398_2e-3;
@@ -153,6 +155,7 @@ fn exp<S: Simd>(x: f32x16<S>) -> f32x16<S> {
         p = p * r + coefficient;
     }
     let power: i32x16<S> = n.to_int();
+    // 2ⁿ by its exponent bits.
     let scale: f32x16<S> = ((power + 127) << 23).bitcast();
     (p * r * r + r + 1.0) * scale
 }
@@ -165,6 +168,7 @@ fn arctangent<S: Simd>(x: f32x16<S>) -> (f32x16<S>, f32x16<S>) {
     let size = x.abs();
     let far = size.simd_gt(2.414_213_6);
     let near = size.simd_le(0.414_213_57);
+    // Near 0 the series of x itself; beyond tan 3π/8 that of −1/x; between, that of (x − 1)/(x + 1).
     let reduced = far.select(-1.0 / size.max(1e-30), (size - 1.0) / (size + 1.0));
     let reduced = near.select(size, reduced);
     let base = far.select(

@@ -1,17 +1,17 @@
-//! The input of one call: the edges of its strokes, and the backdrop behind them.
+//! The frame of one call: the edges of its strokes, and the backdrop.
 
 use super::edge::{Edge, Reach};
-use super::flat::Flat;
-use super::grid::{FULL, Grid, TileRgb, TileWeights, flat_tile};
+use super::grid::{FULL, Grid, TileRgb, TileWeights, uniform_tile};
 use super::kernel::{TileJob, TileSums};
+use super::polylines::Polylines;
 use super::{Backdrop, CanvasLoss, Softness, TileWork};
 
-/// What one call renders.
+/// Edges and backdrop of one call.
 pub(super) struct Frame<'a> {
     grid: Grid,
     backdrop: Backdrop<'a>,
-    /// A tile of the backdrop's colour, if it is flat.
-    flat: TileRgb,
+    /// A tile of the backdrop's colour, if it has one.
+    uniform: TileRgb,
     edge: Edge,
     pub(super) reach: Reach,
 }
@@ -19,14 +19,14 @@ pub(super) struct Frame<'a> {
 impl<'a> Frame<'a> {
     pub(super) fn new(grid: Grid, softness: Softness, backdrop: Backdrop<'a>) -> Self {
         let (edge, reach) = Edge::new(softness.coverage, softness.width);
-        let flat = match backdrop {
-            Backdrop::Color(color) => flat_tile(color),
-            Backdrop::Canvas(_) => flat_tile([0.0; 3]),
+        let uniform = match backdrop {
+            Backdrop::Color(color) => uniform_tile(color),
+            Backdrop::Canvas(_) => uniform_tile([0.0; 3]),
         };
         Self {
             grid,
             backdrop,
-            flat,
+            uniform,
             edge,
             reach,
         }
@@ -38,20 +38,20 @@ impl<'a> Frame<'a> {
         [x as f32, y as f32]
     }
 
-    /// What is behind all strokes in tile `tile`.
+    /// The backdrop in tile `tile`.
     pub(super) fn backdrop(&self, tile: usize) -> &TileRgb {
         match self.backdrop {
-            Backdrop::Color(_) => &self.flat,
+            Backdrop::Color(_) => &self.uniform,
             Backdrop::Canvas(canvas) => &canvas.tiles()[tile],
         }
     }
 
     /// The sums of tile `tile` if no stroke touches it, where they are known without looking at its pixels.
-    pub(super) fn flat_sums(&self, tile: usize, loss: &impl CanvasLoss) -> Option<TileSums> {
+    pub(super) fn uniform_sums(&self, tile: usize, loss: &impl CanvasLoss) -> Option<TileSums> {
         let Backdrop::Color(color) = self.backdrop else {
             return None;
         };
-        let (loss, backdrop) = loss.flat(tile, color)?;
+        let (loss, backdrop) = loss.uniform(tile, color)?;
         Some(TileSums {
             loss,
             backdrop,
@@ -62,7 +62,7 @@ impl<'a> Frame<'a> {
     /// The share of tile `tile`, behind these weights.
     pub(super) fn job<'b>(
         &'b self,
-        flat: &'b Flat,
+        polylines: &'b Polylines,
         tile: usize,
         work: &'b TileWork,
         weights: Option<&'b TileWeights>,
@@ -70,7 +70,7 @@ impl<'a> Frame<'a> {
         TileJob {
             tile,
             origin: self.origin(tile),
-            flat,
+            polylines,
             listed: &work.listed,
             segments: &work.segments,
             backdrop: self.backdrop(tile),

@@ -1,4 +1,4 @@
-//! The output of the backward passes: derivatives by the numbers of strokes, and by the vertices of their polylines.
+//! Results of the backward passes: derivatives by the numbers of strokes, and by the vertices of their polylines.
 
 /// Derivatives of a loss by everything that was drawn.
 #[derive(Debug, Clone, Default)]
@@ -16,7 +16,7 @@ pub struct Gradients {
     pub blocks: u64,
 }
 
-/// How the loss depends on the vertices of polylines that are as fine as their points could become.
+/// Dependence of the loss on the vertices of polylines that are as fine as their points could become.
 #[derive(Debug, Clone, Default)]
 pub struct Survey {
     /// The first vertex of each stroke, and behind the last stroke the number of all vertices.

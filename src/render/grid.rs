@@ -1,4 +1,4 @@
-//! The division of a picture into tiles and blocks, and pictures stored that way.
+//! Pictures cut into tiles and blocks, and stored that way.
 //!
 //! A *block* is 4×4 px, one SIMD register of 16 lanes; a *tile* is 8×8 blocks, so that a set of
 //! blocks is one `u64`. Square blocks waste fewer lanes on the small slanted strokes that a drawing
@@ -30,7 +30,7 @@ pub(super) type BlockSet = u64;
 pub struct Lanes(pub [f32; LANES]);
 
 impl Lanes {
-    /// The same value in every lane.
+    /// One value in every lane.
     pub const fn splat(value: f32) -> Self {
         Self([value; LANES])
     }
@@ -43,7 +43,7 @@ pub type BlockRgb = [Lanes; 3];
 pub type TileRgb = [BlockRgb; BLOCKS];
 
 /// A tile in one colour.
-pub(super) fn flat_tile(color: [f32; 3]) -> TileRgb {
+pub(super) fn uniform_tile(color: [f32; 3]) -> TileRgb {
     [color.map(Lanes::splat); BLOCKS]
 }
 
@@ -76,7 +76,7 @@ impl Grid {
         self.columns * self.rows
     }
 
-    /// Whether there is no tile.
+    /// True if there is no tile.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -115,6 +115,7 @@ impl Grid {
         y1: f32,
     ) -> [std::ops::Range<usize>; 2] {
         let range = |lo: f32, hi: f32, size: usize, count: usize| {
+            // Written so that NaN fails, too.
             if !(lo < size as f32 && hi > 0.0) {
                 return 0..0;
             }
@@ -139,7 +140,7 @@ pub struct Canvas {
 impl Canvas {
     /// A canvas in one colour; the padding is 0.
     pub fn flat(grid: Grid, color: [f32; 3]) -> Self {
-        let mut tiles = vec![flat_tile(color); grid.len()];
+        let mut tiles = vec![uniform_tile(color); grid.len()];
         for (tile, pixels) in tiles.iter_mut().enumerate() {
             if let Some(weights) = edge_weights(&grid, tile) {
                 clear_padding(pixels, &weights);
@@ -165,9 +166,9 @@ impl Canvas {
     }
 
     /// The canvas times `through`, channel by channel.
-    pub fn darkened(mut self, through: &Self) -> Self {
+    pub fn multiplied(mut self, through: &Self) -> Self {
         for (tile, through) in self.tiles.iter_mut().zip(&through.tiles) {
-            darken(tile, through);
+            multiply(tile, through);
         }
         self
     }
@@ -197,7 +198,7 @@ impl Canvas {
         [rgb[0].0[lane], rgb[1].0[lane], rgb[2].0[lane]]
     }
 
-    /// How the canvas is cut into tiles.
+    /// The grid of tiles.
     pub fn grid(&self) -> Grid {
         self.grid
     }
@@ -214,7 +215,7 @@ impl Canvas {
 }
 
 /// Multiplies a tile by another.
-pub(crate) fn darken(tile: &mut TileRgb, through: &TileRgb) {
+pub(crate) fn multiply(tile: &mut TileRgb, through: &TileRgb) {
     let lanes = tile.as_flattened_mut().iter_mut();
     for (lanes, through) in lanes.zip(through.as_flattened()) {
         for (value, through) in lanes.0.iter_mut().zip(through.0) {

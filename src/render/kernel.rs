@@ -43,8 +43,8 @@ pub(super) use touching::{Listed, list_segments};
 
 use super::CanvasLoss;
 use super::edge::{Edge, Reach, SoftEdge};
-use super::flat::Flat;
-use super::grid::{BLOCKS, BlockRgb, BlockSet, Lanes, TileRgb, TileWeights, flat_tile};
+use super::grid::{BLOCKS, BlockRgb, BlockSet, Lanes, TileRgb, TileWeights, uniform_tile};
+use super::polylines::Polylines;
 use super::strokes::LOOK;
 use stack::Stack;
 use sums::{EdgeBlock, Grounds, Looks, Matte, OfSegment, OfStroke, Shifts};
@@ -77,16 +77,16 @@ struct Visit {
     core: BlockSet,
 }
 
-/// What pass 1 sees through the strokes so far.
+/// Share of the light that the strokes drawn so far let through.
 #[derive(Debug, Clone, Copy)]
-struct Veil {
-    /// Transmittance.
+struct Transmittance {
+    /// That of all of them.
     through: Lanes,
     /// Largest transmittance that leaving out any one stroke gives.
     less_one: Lanes,
 }
 
-impl Veil {
+impl Transmittance {
     /// Fully transparent where `weights` is 1, on the picture; opaque where it is 0, on the padding.
     fn clear(weights: &Lanes) -> Self {
         Self {
@@ -94,13 +94,37 @@ impl Veil {
             less_one: *weights,
         }
     }
+
+    /// Adds one stroke behind the others, and to `color` what is seen of it. Returns true if nothing behind it can matter
+    /// any more.
+    #[inline(always)]
+    fn add<S: Simd>(
+        &mut self,
+        simd: S,
+        alpha: f32x16<S>,
+        rgb: &[f32x16<S>; 3],
+        color: &mut BlockRgb,
+    ) -> bool {
+        let t = load(simd, &self.through);
+        let weight = t * alpha;
+        for (color, &c) in color.iter_mut().zip(rgb) {
+            store(load(simd, color) + weight * c, color);
+        }
+        let less_one = load(simd, &self.less_one);
+        // The largest transmittance with any one stroke left out: `t` if it is the new one; otherwise that of before,
+        // dimmed by the new one. While this shows anything, worth still depends on what lies behind.
+        let less_one = (less_one - less_one * alpha).max(t);
+        store(t - weight, &mut self.through);
+        store(less_one, &mut self.less_one);
+        less_one.simd_lt(OPAQUE).all_true()
+    }
 }
 
 /// Scratch of one worker, reused from tile to tile.
 #[derive(Debug)]
 pub(super) struct Scratch {
     color: TileRgb,
-    veils: [Veil; BLOCKS],
+    transmittances: [Transmittance; BLOCKS],
     error: TileRgb,
     gradient: TileRgb,
     /// `∂L/∂canvas` of the second of two losses.
@@ -109,7 +133,7 @@ pub(super) struct Scratch {
     visits: Vec<Visit>,
     /// The transmittance before each block that pass 1 visits.
     kept_transmittance: Stack<Lanes>,
-    /// What else is kept of those on a soft edge.
+    /// The rest that is kept of those on a soft edge.
     kept_edges: Stack<EdgeBlock>,
     /// Where several segments of a stroke can be nearest, which of them is the nearest to each pixel.
     kept_nearest: Stack<Lanes>,
@@ -121,11 +145,11 @@ pub(super) struct Scratch {
 impl Scratch {
     pub(super) fn new() -> Box<Self> {
         Box::new(Self {
-            color: flat_tile([0.0; 3]),
-            veils: [Veil::clear(&Lanes::splat(1.0)); BLOCKS],
-            error: flat_tile([0.0; 3]),
-            gradient: flat_tile([0.0; 3]),
-            second: flat_tile([0.0; 3]),
+            color: uniform_tile([0.0; 3]),
+            transmittances: [Transmittance::clear(&Lanes::splat(1.0)); BLOCKS],
+            error: uniform_tile([0.0; 3]),
+            gradient: uniform_tile([0.0; 3]),
+            second: uniform_tile([0.0; 3]),
             mattes: [CLEAR; BLOCKS],
             visits: Vec::new(),
             kept_transmittance: Stack::new(Lanes::splat(0.0)),
@@ -136,7 +160,7 @@ impl Scratch {
         })
     }
 
-    /// What pass 1 has drawn.
+    /// The canvas that pass 1 has drawn.
     pub(super) fn canvas(&self) -> &TileRgb {
         &self.color
     }
@@ -145,7 +169,7 @@ impl Scratch {
 /// One tile's share of the work.
 pub(super) struct TileJob<'a> {
     /// All strokes of the call.
-    pub(super) flat: &'a Flat,
+    pub(super) polylines: &'a Polylines,
     /// The strokes that may touch this tile, back to front.
     pub(super) listed: &'a [Listed],
     /// Their segments that may, each by its first vertex.
@@ -154,7 +178,7 @@ pub(super) struct TileJob<'a> {
     pub(super) tile: usize,
     /// The tile's top left corner, px.
     pub(super) origin: [f32; 2],
-    /// What is behind all strokes.
+    /// The tile of the backdrop.
     pub(super) backdrop: &'a TileRgb,
     /// 1 on the picture, 0 on the padding, through which nothing is seen.
     pub(super) weights: &'a TileWeights,
@@ -173,16 +197,16 @@ impl TileJob<'_> {
 
     /// Radius, red, green, blue and opacity of a listed stroke.
     fn look(&self, slot: usize) -> &[f32; LOOK] {
-        &self.flat.looks[self.listed[slot].stroke as usize]
+        &self.polylines.looks[self.listed[slot].stroke as usize]
     }
 
     /// The segments of a listed stroke.
     #[inline(always)]
     fn segments(&self, slot: usize, range: Range<usize>) -> Segments<'_> {
-        let [low, high] = self.flat.boxes[self.listed[slot].stroke as usize];
+        let [low, high] = self.polylines.boxes[self.listed[slot].stroke as usize];
         Segments {
             y: [low[1], high[1]],
-            vertices: &self.flat.vertices,
+            vertices: &self.polylines.vertices,
             listed: &self.segments[range],
             origin: self.origin,
         }
@@ -214,7 +238,7 @@ fn splat_rgb<S: Simd>(simd: S, &[_, red, green, blue, _]: &[f32; LOOK]) -> [f32x
 fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scratch: &mut Scratch) {
     let Scratch {
         color,
-        veils,
+        transmittances,
         visits,
         kept_transmittance,
         kept_edges,
@@ -223,9 +247,10 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
         union,
         ..
     } = scratch;
+    // Start with nothing drawn and all blocks in view.
     color.as_flattened_mut().fill(Lanes::splat(0.0));
-    for (veil, weights) in veils.iter_mut().zip(job.weights) {
-        *veil = Veil::clear(weights);
+    for (transmittance, weights) in transmittances.iter_mut().zip(job.weights) {
+        *transmittance = Transmittance::clear(weights);
     }
     visits.clear();
     kept_transmittance.clear();
@@ -235,6 +260,8 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
     let mut live = BlockSet::MAX;
     // The list is back to front, so the walk starts at its end.
     for slot in (0..job.listed.len()).rev() {
+        // Sort the tile's blocks by what the stroke does there: nothing, a soft edge, or full coverage. Blocks that are opaque
+        // by now drop out.
         let look = job.look(slot);
         let range = job.range(slot);
         let segments = job.segments(slot, range.clone());
@@ -257,11 +284,14 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
         if visit.edge | visit.core == 0 {
             continue;
         }
+        // Make room for what pass 2 needs. The two cursors walk over it in the order in which the blocks are visited: shared
+        // ones, those of each segment alone, the core.
         visits.push(visit);
         let rgb = splat_rgb(simd, look);
         let opacity = f32x16::splat(simd, look[LOOK - 1].max(FAINTEST));
         let mut through = kept_transmittance.push(visit.edge | visit.core).iter_mut();
         let mut edges = kept_edges.push(visit.edge).iter_mut();
+        // Near joints, several segments compete for each pixel: the nearest one decides.
         if visit.shared != 0 {
             union.measure(simd, near, visit.shared);
             let nearest = kept_nearest.push(visit.shared).iter_mut();
@@ -269,12 +299,13 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
             for (block, ((nearest, kept), through)) in members(visit.shared).zip(kept) {
                 *nearest = union.nearest(block);
                 let alpha = cover(edge, union.distance2(simd, block), radius, opacity, kept);
-                *through = veils[block].through;
-                if see_through(simd, alpha, &rgb, &mut color[block], &mut veils[block]) {
+                *through = transmittances[block].through;
+                if transmittances[block].add(simd, alpha, &rgb, &mut color[block]) {
                     live &= !(1 << block);
                 }
             }
         }
+        // Elsewhere on the edge one segment is the nearest throughout the block, so that nothing has to be compared.
         for (k, near) in near.iter().enumerate() {
             let alone = near & visit.edge & !visit.shared;
             if alone == 0 {
@@ -285,16 +316,16 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
             for (block, (kept, through)) in members(alone).zip(kept) {
                 let distance2 = segment.at_pixels(simd, block).distance2();
                 let alpha = cover(edge, distance2, radius, opacity, kept);
-                *through = veils[block].through;
-                if see_through(simd, alpha, &rgb, &mut color[block], &mut veils[block]) {
+                *through = transmittances[block].through;
+                if transmittances[block].add(simd, alpha, &rgb, &mut color[block]) {
                     live &= !(1 << block);
                 }
             }
         }
         // σ is 1 and σ' is 0 here: no distance to evaluate, and nothing but `T` to keep for pass 2.
         for (block, through) in members(visit.core).zip(through) {
-            *through = veils[block].through;
-            if see_through(simd, opacity, &rgb, &mut color[block], &mut veils[block]) {
+            *through = transmittances[block].through;
+            if transmittances[block].add(simd, opacity, &rgb, &mut color[block]) {
                 live &= !(1 << block);
             }
         }
@@ -303,8 +334,12 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
         }
     }
     // The backdrop is the last thing seen, through whatever all strokes let through.
-    for ((color, veil), backdrop) in color.iter_mut().zip(veils.iter()).zip(job.backdrop) {
-        let t = load(simd, &veil.through);
+    for ((color, transmittance), backdrop) in color
+        .iter_mut()
+        .zip(transmittances.iter())
+        .zip(job.backdrop)
+    {
+        let t = load(simd, &transmittance.through);
         for (color, backdrop) in color.iter_mut().zip(backdrop) {
             store(load(simd, color) + t * load(simd, backdrop), color);
         }
@@ -325,31 +360,9 @@ fn cover<S: Simd, E: SoftEdge>(
     let alpha = opacity * value;
     store(alpha, &mut kept.alpha);
     store(opacity * derivative, &mut kept.slope);
+    // Pass 2 would have to take the root again.
     store(1.0 / length, &mut kept.inverse);
     alpha
-}
-
-/// Adds one stroke, seen through those in front of it. Returns whether nothing behind it can matter any more.
-#[inline(always)]
-fn see_through<S: Simd>(
-    simd: S,
-    alpha: f32x16<S>,
-    rgb: &[f32x16<S>; 3],
-    color: &mut BlockRgb,
-    veil: &mut Veil,
-) -> bool {
-    let t = load(simd, &veil.through);
-    let weight = t * alpha;
-    for (color, &c) in color.iter_mut().zip(rgb) {
-        store(load(simd, color) + weight * c, color);
-    }
-    let less_one = load(simd, &veil.less_one);
-    // The largest transmittance with any one stroke left out: `t` if it is the new one; otherwise that of before,
-    // dimmed by the new one. While this shows anything, worth still depends on what lies behind.
-    let less_one = (less_one - less_one * alpha).max(t);
-    store(t - weight, &mut veil.through);
-    store(less_one, &mut veil.less_one);
-    less_one.simd_lt(OPAQUE).all_true()
 }
 
 /// Pass 2, over the blocks that pass 1 visited. `scratch.gradient` is given, and `scratch.error` if worth is asked for;
@@ -363,7 +376,7 @@ fn back_to_front<S: Simd, X: Extras>(
 ) -> [f32; 3] {
     let Scratch {
         color: behind,
-        veils,
+        transmittances,
         error,
         gradient,
         visits,
@@ -376,10 +389,11 @@ fn back_to_front<S: Simd, X: Extras>(
     } = scratch;
     // Behind the rearmost stroke is the backdrop.
     behind.clone_from(job.backdrop);
+    // ∂L/∂backdrop = Σ T·g, with the transmittance of all strokes.
     let mut backdrop = [f32x16::splat(simd, 0.0); 3];
-    for (veil, g) in veils.iter().zip(gradient.iter()) {
+    for (transmittance, g) in transmittances.iter().zip(gradient.iter()) {
         for (sum, g) in backdrop.iter_mut().zip(g) {
-            *sum += load(simd, &veil.through) * load(simd, g);
+            *sum += load(simd, &transmittance.through) * load(simd, g);
         }
     }
     let mut grounds = Grounds {
@@ -398,9 +412,11 @@ fn back_to_front<S: Simd, X: Extras>(
         let rgb = splat_rgb(simd, look);
         let mut stroke = Looks::new(simd);
         let first = sums.segments.len() as u32;
+        // Take back what pass 1 kept: the cursors walk in its order.
         let mut through = kept_transmittance.pop(visit.edge | visit.core).iter();
         let edges = kept_edges.pop(visit.edge);
         let (of_shared, alone) = edges.split_at_mut(visit.shared.count_ones() as usize);
+        // Near joints, blend the stroke once, since it has one coverage. Which segment a pixel pulls at is sorted out below.
         for (block, (kept, t)) in members(visit.shared).zip(of_shared.iter_mut().zip(&mut through))
         {
             let (pull, stiffness) = stroke.blend_edge::<X>(simd, kept, t, &rgb, grounds.at(block));
@@ -415,6 +431,7 @@ fn back_to_front<S: Simd, X: Extras>(
             blocks: of_shared,
             nearest: kept_nearest.pop(visit.shared),
         };
+        // Give each segment the pull of its own blocks, and of those pixels near joints that it is nearest to.
         let mut alone = alone.iter();
         for (k, near) in near.iter().enumerate() {
             if near & visit.edge == 0 {
@@ -442,9 +459,11 @@ fn back_to_front<S: Simd, X: Extras>(
             }
         }
         let opacity = f32x16::splat(simd, look[LOOK - 1].max(FAINTEST));
+        // In the core, coverage does not change with the shape: only colour, opacity and worth have a part in it.
         for (block, t) in members(visit.core).zip(through) {
             stroke.blend::<X>(simd, opacity, load(simd, t), &rgb, grounds.at(block));
         }
+        // The sum over `m = o·σ` becomes the derivative by the opacity when divided by it, hence the least opacity.
         sums.strokes.push(OfStroke {
             id: job.listed[slot].stroke,
             first,
@@ -473,6 +492,7 @@ pub(super) fn differentiate<L: CanvasLoss, X: Extras>(
 ) -> TileSums {
     dispatch!(level, simd => {
         let Scratch { color, error, gradient, .. } = scratch;
+        // Only worth needs the error itself.
         let value = loss.tile(job.tile, color, X::WORTH.then_some(error), gradient);
         let blocks = scratch.kept_transmittance.len() as u64;
         let backdrop = back_to_front::<_, X>(simd, job, scratch, sums);
@@ -480,7 +500,7 @@ pub(super) fn differentiate<L: CanvasLoss, X: Extras>(
     })
 }
 
-/// The same for the sum of two losses: the second is of the canvas on the backdrop `other`.
+/// [`differentiate`] for the sum of two losses: the second is of the canvas on the backdrop `other`.
 pub(super) fn differentiate_on_mattes<L: CanvasLoss>(
     level: Level,
     job: &TileJob<'_>,
@@ -492,6 +512,7 @@ pub(super) fn differentiate_on_mattes<L: CanvasLoss>(
     dispatch!(level, simd => {
         let Scratch { color, gradient, .. } = scratch;
         let first = losses[0].tile(job.tile, color, None, gradient);
+        // Both canvases have the same strokes, so that one pass 1 serves both.
         change_backdrop(simd, job.backdrop, other, scratch);
         let Scratch { color, second, .. } = scratch;
         let loss = first + losses[1].tile(job.tile, color, None, second);
@@ -505,8 +526,8 @@ pub(super) fn differentiate_on_mattes<L: CanvasLoss>(
 /// Makes the canvas on the backdrop `from` that on `to`.
 #[inline(always)]
 fn change_backdrop<S: Simd>(simd: S, from: &TileRgb, to: &TileRgb, scratch: &mut Scratch) {
-    for (block, veil) in scratch.veils.iter().enumerate() {
-        let through = load(simd, &veil.through);
+    for (block, transmittance) in scratch.transmittances.iter().enumerate() {
+        let through = load(simd, &transmittance.through);
         for (channel, color) in scratch.color[block].iter_mut().enumerate() {
             let change = load(simd, &to[block][channel]) - load(simd, &from[block][channel]);
             store(load(simd, color) + through * change, color);
@@ -529,6 +550,7 @@ fn add_second_loss<S: Simd>(simd: S, first: &TileRgb, other: &TileRgb, scratch: 
         for channel in 0..3 {
             let change = load(simd, &other[block][channel]) - load(simd, &first[block][channel]);
             let g = load(simd, &second[block][channel]);
+            // On the second backdrop the canvas is the first one plus `T·(B₂ − B₁)`.
             by_through += g * change;
             let sum = &mut gradient[block][channel];
             store(load(simd, sum) + g, sum);

@@ -61,11 +61,11 @@
 //! [`mod@reference`] is the same in naive `f64`, against which all of this is tested.
 
 mod edge;
-mod flat;
 mod frame;
 mod gradients;
 mod grid;
 mod kernel;
+mod polylines;
 pub mod probe;
 pub mod reference;
 mod shares;
@@ -77,7 +77,7 @@ use fearless_simd::Level;
 use rayon::prelude::*;
 
 pub use gradients::{Gradients, Survey};
-pub(crate) use grid::darken;
+pub(crate) use grid::multiply;
 pub use grid::{BlockRgb, Canvas, Grid, Lanes, TILE, TileRgb};
 pub use strokes::{
     AX, AY, BX, BY, LOOK, OPACITY, PARAMS, Params, RADIUS, RED, StrokeMut, StrokeRef, Strokes,
@@ -86,12 +86,12 @@ pub use strokes::{
 use crate::coverage::Coverage;
 use crate::threads::PerWorker;
 use edge::Reach;
-use flat::{Flat, flatten};
-pub(crate) use flat::{Knot, Piece, Pieces};
 use frame::Frame;
 use gradients::add;
 use grid::{FULL, TileWeights, clear_padding, edge_weights};
 use kernel::{Extras, Listed, Nothing, Scratch, Stiffnesses, Sums, TileJob, TileSums, Worths};
+pub(crate) use polylines::{Knot, Piece, Pieces};
+use polylines::{Polylines, flatten};
 use shares::shares;
 
 /// A differentiable loss over the canvas, told tile by tile while the tile is still in cache.
@@ -108,12 +108,12 @@ pub trait CanvasLoss: Sync {
 
     /// The share of tile `tile` in the loss, and its derivative by `color`, if all pixels of the tile have that colour;
     /// `None` if that is not known without looking at the pixels.
-    fn flat(&self, _tile: usize, _color: [f32; 3]) -> Option<(f64, [f32; 3])> {
+    fn uniform(&self, _tile: usize, _color: [f32; 3]) -> Option<(f64, [f32; 3])> {
         None
     }
 }
 
-/// What lies behind all strokes.
+/// Colour or picture behind all strokes.
 #[derive(Debug, Clone, Copy)]
 pub enum Backdrop<'a> {
     /// One colour.
@@ -141,8 +141,8 @@ struct TileWork {
     sums: Sums,
     total: TileSums,
     weights: Option<Box<TileWeights>>,
-    /// What a veil in front of all strokes lets through.
-    veil: Option<Box<TileWeights>>,
+    /// The roots of the weights of errors, 0 on the padding.
+    error_weights: Option<Box<TileWeights>>,
 }
 
 /// Renders strokes on pictures of one size; keeps its memory from call to call.
@@ -150,8 +150,8 @@ struct TileWork {
 pub struct Renderer {
     grid: Grid,
     level: Level,
-    flat: Flat,
-    /// The least number of segments that `flat` has for each line and each curve.
+    polylines: Polylines,
+    /// The least number of segments that `polylines` has for each line and each curve.
     least: usize,
     /// `∂L/∂vertex`.
     slopes: Vec<[f32; 2]>,
@@ -170,7 +170,7 @@ impl Renderer {
         Self {
             grid,
             level,
-            flat: Flat::default(),
+            polylines: Polylines::default(),
             least: 1,
             slopes: Vec::new(),
             tiles: (0..grid.len()).map(tile).collect(),
@@ -178,18 +178,18 @@ impl Renderer {
         }
     }
 
-    /// How the picture is cut.
+    /// The grid of tiles.
     pub fn grid(&self) -> Grid {
         self.grid
     }
 
-    /// Lays a veil in front of all strokes, for the backward passes alone, that lets through the shares in the first
-    /// channel of `through`. They then render a canvas that is darker by that, and tell the loss of it.
+    /// Sets how much errors count, for the backward passes alone: the roots `√w` of the weights, in the first channel of
+    /// `roots`. These passes then multiply the canvas by the roots, and tell the loss of that.
     ///
-    /// With the roots of weights, and a target that is darkened alike, everything that they tell of a squared error,
-    /// the worth included, is exactly that of the weighted squared error: `(√w·c − √w·t)² = w·(c − t)²`.
-    pub fn veil(&mut self, through: &Canvas) {
-        for (work, tile) in self.tiles.iter_mut().zip(through.tiles()) {
+    /// With a target that is multiplied alike, everything that they tell of a squared error, the worth included, is exactly
+    /// that of the weighted squared error: `(√w·c − √w·t)² = w·(c − t)²`.
+    pub fn set_error_weights(&mut self, roots: &Canvas) {
+        for (work, tile) in self.tiles.iter_mut().zip(roots.tiles()) {
             let of = |block: usize| {
                 let mut lanes = tile[block][0];
                 let weights = work.weights.as_deref().unwrap_or(&FULL);
@@ -198,7 +198,7 @@ impl Renderer {
                 }
                 lanes
             };
-            work.veil = Some(Box::new(std::array::from_fn(of)));
+            work.error_weights = Some(Box::new(std::array::from_fn(of)));
         }
     }
 
@@ -214,7 +214,7 @@ impl Renderer {
         self.bin(strokes, 1, frame.reach);
         let Self {
             level,
-            ref flat,
+            ref polylines,
             ref mut tiles,
             ref scratch,
             ..
@@ -225,8 +225,8 @@ impl Renderer {
             .enumerate()
             .with_max_len(1);
         tiles.for_each(|(tile, (work, out))| {
-            work.list_segments(level, flat, frame.origin(tile), frame.reach);
-            let job = frame.job(flat, tile, work, work.weights.as_deref());
+            work.list_segments(level, polylines, frame.origin(tile), frame.reach);
+            let job = frame.job(polylines, tile, work, work.weights.as_deref());
             if job.listed.is_empty() {
                 out.clone_from(job.backdrop);
                 if let Some(weights) = &work.weights {
@@ -276,7 +276,7 @@ impl Renderer {
         self.reduce(strokes, false, gradients);
     }
 
-    /// The same, and every stroke's worth.
+    /// The derivatives, and every stroke's worth.
     pub fn backward_with_worth<L: CanvasLoss>(
         &mut self,
         strokes: &Strokes,
@@ -290,7 +290,7 @@ impl Renderer {
         self.reduce(strokes, true, gradients);
     }
 
-    /// How `loss` depends on the vertices of polylines with at least `least` segments for each line and each curve.
+    /// Surveys how `loss` depends on the vertices of polylines with at least `least` segments for each line and each curve.
     pub fn survey<L: CanvasLoss>(
         &mut self,
         strokes: &Strokes,
@@ -304,11 +304,12 @@ impl Renderer {
         let pass = Single::<L, Stiffnesses>::of(&frame, loss);
         self.run_backward(strokes, least, &frame, pass);
         self.reduce(strokes, false, &mut Gradients::default());
-        survey.firsts.clone_from(&self.flat.firsts);
-        survey.vertices.clone_from(&self.flat.vertices);
+        survey.firsts.clone_from(&self.polylines.firsts);
+        survey.vertices.clone_from(&self.polylines.vertices);
         survey.slopes.clone_from(&self.slopes);
         survey.stiffness.clear();
-        survey.stiffness.resize(self.flat.vertices.len(), 0.0);
+        survey.stiffness.resize(self.polylines.vertices.len(), 0.0);
+        // Only a survey asks for stiffness, so that its sums are made here, on one thread.
         for work in &self.tiles {
             for (segment, stiffness) in work.sums.segments.iter().zip(&work.sums.stiffness) {
                 add(&mut survey.stiffness[segment.id as usize..], stiffness);
@@ -326,7 +327,7 @@ impl Renderer {
         self.bin(strokes, least, frame.reach);
         let Self {
             level,
-            ref flat,
+            ref polylines,
             ref mut tiles,
             ref scratch,
             ..
@@ -336,9 +337,10 @@ impl Renderer {
             .enumerate()
             .with_max_len(1)
             .for_each(|(tile, work)| {
-                work.list_segments(level, flat, frame.origin(tile), frame.reach);
+                work.list_segments(level, polylines, frame.origin(tile), frame.reach);
+                // An empty tile of one colour is known without looking at its pixels: most of a page of line art.
                 if work.listed.is_empty()
-                    && let Some(total) = pass.flat(tile)
+                    && let Some(total) = pass.uniform(tile)
                 {
                     work.total = total;
                     work.sums.clear();
@@ -346,8 +348,10 @@ impl Renderer {
                 }
                 let mut sums = std::mem::take(&mut work.sums);
                 sums.clear();
-                let weights = work.veil.as_deref().or(work.weights.as_deref());
-                let job = frame.job(flat, tile, work, weights);
+                // The weights of errors are 0 on the padding, too.
+                let weights = work.error_weights.as_deref().or(work.weights.as_deref());
+                // Both passes run on one tile at once, while what pass 1 keeps is still in the cache.
+                let job = frame.job(polylines, tile, work, weights);
                 let total = scratch.with(|scratch| {
                     kernel::draw(level, &job, scratch);
                     pass.tile(level, &job, scratch, &mut sums)
@@ -358,12 +362,20 @@ impl Renderer {
 
     /// Flattens the strokes and lists for each tile those whose bounding box touches it, back to front.
     fn bin(&mut self, strokes: &Strokes, least: usize, reach: Reach) {
-        self.flat.fill(strokes, least);
+        // Every stroke is flattened once for all tiles.
+        self.polylines.fill(strokes, least);
         self.least = least;
         for work in &mut self.tiles {
             work.listed.clear();
         }
-        for (id, (look, [low, high])) in self.flat.looks.iter().zip(&self.flat.boxes).enumerate() {
+        // Strokes come in drawing order, and so do the lists.
+        for (id, (look, [low, high])) in self
+            .polylines
+            .looks
+            .iter()
+            .zip(&self.polylines.boxes)
+            .enumerate()
+        {
             let margin = look[0] + reach.outside;
             let [columns, rows] = self.grid.tiles_touched(
                 low[0] - margin,
@@ -400,36 +412,43 @@ impl Renderer {
             add(&mut gradients.backdrop, &work.total.backdrop);
         }
         let Self {
-            ref flat,
+            ref polylines,
             ref tiles,
             ref mut slopes,
             least,
             ..
         } = *self;
         slopes.clear();
-        slopes.resize(flat.vertices.len(), [0.0; 2]);
-        let shares = shares(strokes, flat, slopes, gradients);
+        slopes.resize(polylines.vertices.len(), [0.0; 2]);
+        // Threads share out strokes, not tiles: each sum has one owner, and adds in tile order whatever the threads.
+        let shares = shares(strokes, polylines, slopes, gradients);
         shares.into_par_iter().for_each(|mut share| {
-            share.gather(strokes, flat, tiles);
-            share.hand_back(strokes, flat, least);
+            share.gather(strokes, polylines, tiles);
+            share.hand_back(strokes, polylines, least);
         });
     }
 }
 
 impl TileWork {
     /// Lists the segments of the listed strokes that touch the tile at `origin`.
-    fn list_segments(&mut self, level: Level, flat: &Flat, origin: [f32; 2], reach: Reach) {
+    fn list_segments(
+        &mut self,
+        level: Level,
+        polylines: &Polylines,
+        origin: [f32; 2],
+        reach: Reach,
+    ) {
         let Self {
             listed, segments, ..
         } = self;
-        kernel::list_segments(level, flat, origin, reach, listed, segments);
+        kernel::list_segments(level, polylines, origin, reach, listed, segments);
     }
 }
 
-/// What follows pass 1 in a tile.
+/// Work that follows pass 1 in a tile.
 trait BackwardPass: Sync {
     /// The sums of a tile without strokes, if they are known without looking at its pixels.
-    fn flat(&self, tile: usize) -> Option<TileSums>;
+    fn uniform(&self, tile: usize) -> Option<TileSums>;
 
     /// The sums of the tile of `job`, which pass 1 has drawn, and those of its strokes and segments.
     fn tile(
@@ -459,8 +478,8 @@ impl<'a, L: CanvasLoss, X: Extras> Single<'a, L, X> {
 }
 
 impl<L: CanvasLoss, X: Extras> BackwardPass for Single<'_, L, X> {
-    fn flat(&self, tile: usize) -> Option<TileSums> {
-        self.frame.flat_sums(tile, self.loss)
+    fn uniform(&self, tile: usize) -> Option<TileSums> {
+        self.frame.uniform_sums(tile, self.loss)
     }
 
     fn tile(
@@ -481,8 +500,8 @@ struct Double<'a, L> {
 }
 
 impl<L: CanvasLoss> BackwardPass for Double<'_, L> {
-    fn flat(&self, tile: usize) -> Option<TileSums> {
-        let [first, second] = [0, 1].map(|i| self.frames[i].flat_sums(tile, self.losses[i]));
+    fn uniform(&self, tile: usize) -> Option<TileSums> {
+        let [first, second] = [0, 1].map(|i| self.frames[i].uniform_sums(tile, self.losses[i]));
         let (mut sums, second) = (first?, second?);
         sums.loss += second.loss;
         add(&mut sums.backdrop, &second.backdrop);

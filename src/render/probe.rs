@@ -1,4 +1,4 @@
-//! The gain of a stroke laid on top of a canvas, in closed form.
+//! Gain of a stroke that is laid on top of a canvas, in closed form.
 //!
 //! A stroke of coverage `m`, opacity `v` and colour `c = u/v` over a fixed canvas `C` with residual
 //! `e = target − C` leaves `e − m(u − vC)`. Its gain, the squared error that it removes, is quadratic
@@ -21,7 +21,9 @@ use std::ops::Range;
 use fearless_simd::{Level, dispatch, f32x16, prelude::*};
 
 use super::edge::{Reach, Smoothstep, SoftEdge};
-use super::grid::{BLOCK, BLOCKS, BlockSet, LANES, Lanes, TILE, TILE_BLOCKS, TileRgb, flat_tile};
+use super::grid::{
+    BLOCK, BLOCKS, BlockSet, LANES, Lanes, TILE, TILE_BLOCKS, TileRgb, uniform_tile,
+};
 use super::kernel::{Segment, length, load, members, store, total};
 use super::strokes::{OPACITY, Params, RADIUS, RED};
 use crate::image::Image;
@@ -42,8 +44,8 @@ impl Patch {
     /// A patch to be filled.
     pub fn new() -> Box<Self> {
         Box::new(Self {
-            canvas: flat_tile([0.0; 3]),
-            residual: flat_tile([0.0; 3]),
+            canvas: uniform_tile([0.0; 3]),
+            residual: uniform_tile([0.0; 3]),
             inside: [Lanes::splat(0.0); BLOCKS],
         })
     }
@@ -56,6 +58,7 @@ impl Patch {
             let top = y as isize + block_start(block / TILE_BLOCKS);
             let columns = visible(left, width);
             let rows = visible(top, height);
+            // Beyond the picture nothing counts: coverage is multiplied by `inside`.
             if columns.len() * rows.len() < LANES {
                 self.clear(block);
             }
@@ -167,7 +170,7 @@ pub struct Probes {
     level: Level,
     /// The capsules, [`ANGLES`] of each size, and then the dots.
     templates: Vec<Template>,
-    /// How many sizes of capsules there are.
+    /// Number of sizes of capsules.
     sizes: usize,
     /// The blocks of a patch that they touch.
     blocks: Vec<usize>,
@@ -332,6 +335,7 @@ impl Sums {
 
     #[inline(always)]
     fn solve(&self, min_opacity: f32) -> Probe {
+        // Too little of the shape is on the picture to tell a colour.
         if self.s < 1e-3 {
             return Probe {
                 color: [0.0; 3],
@@ -340,6 +344,7 @@ impl Sums {
             };
         }
         let dot = |a: &[f32; 3], b: &[f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        // The variance of the canvas under the shape: without it, opacity and colour cannot be told apart.
         let spread = self.q - dot(&self.x, &self.x) / self.s;
         let pull = dot(&self.x, &self.y) / self.s - self.z;
         // On a flat canvas opacity and colour say the same, and the opaque stroke is preferred.

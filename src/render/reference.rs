@@ -68,7 +68,7 @@ pub struct Reference {
     /// Where in a pixel it is sampled, px from its upper left corner in x and y: ½ is the centre,
     /// and 0 is for data that has pixels at integer coordinates.
     pub sample_offset: f64,
-    /// Whether coverage beyond [`Coverage::support`] is dropped, as the fast renderer does.
+    /// True if coverage beyond [`Coverage::support`] is dropped, as the fast renderer does.
     pub cut: bool,
 }
 
@@ -172,7 +172,7 @@ impl Reference {
         changes
     }
 
-    /// The same as [`leave_one_out`](Self::leave_one_out), by rendering the scene again without
+    /// [`leave_one_out`](Self::leave_one_out) by rendering the scene again without
     /// each stroke.
     pub fn leave_one_out_by_removal(&self, scene: &Scene, target: &[Rgb]) -> Vec<f64> {
         let whole = squared_error(&self.render(scene), target);
@@ -202,7 +202,7 @@ impl Reference {
         (value, self.coverage.derivative(d, self.softness))
     }
 
-    /// What each stroke is at the sample point `p`, back to front.
+    /// Each stroke at the sample point `p`, back to front.
     fn layers(&self, scene: &Scene, shapes: &[Flattened<f64>], p: Point2<f64>) -> Vec<Layer> {
         let mut behind = scene.background;
         let mut layers = Vec::with_capacity(scene.strokes.len());
@@ -242,7 +242,7 @@ struct Layer {
     m: f64,
     /// The colour of all strokes behind.
     behind: Rgb,
-    /// How much of the stroke the strokes in front let through.
+    /// Share of the stroke that those in front let through.
     transmittance: f64,
 }
 

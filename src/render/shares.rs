@@ -5,9 +5,9 @@
 use std::ops::Range;
 
 use super::TileWork;
-use super::flat::{CHUNK, Flat};
 use super::gradients::{Gradients, add};
 use super::kernel::Sums;
+use super::polylines::{CHUNK, Polylines};
 use super::strokes::{LOOK, Strokes};
 
 /// Most shares.
@@ -27,7 +27,7 @@ pub(super) struct Share<'a> {
 /// Shares of all sums, for strokes that are summed up at a time.
 pub(super) fn shares<'a>(
     strokes: &Strokes,
-    flat: &Flat,
+    polylines: &Polylines,
     mut slopes: &'a mut [[f32; 2]],
     gradients: &'a mut Gradients,
 ) -> Vec<Share<'a>> {
@@ -36,10 +36,11 @@ pub(super) fn shares<'a>(
         gradients.strokes.as_mut_slice(),
         gradients.worth.as_mut_slice(),
     );
+    // Cut all sums at the same strokes, so that each share can be written without a lock.
     let share = |start: usize| {
         let ids = start..strokes.len().min(start + size);
         let count = strokes.range(ids.end - 1).end - strokes.range(start).start;
-        let vertices = flat.firsts[ids.end] - flat.firsts[start];
+        let vertices = polylines.firsts[ids.end] - polylines.firsts[start];
         let worth = ids.len().min(worths.len());
         Share {
             ids,
@@ -55,15 +56,16 @@ pub(super) fn shares<'a>(
 
 impl Share<'_> {
     /// Adds the sums of the `tiles`.
-    pub(super) fn gather(&mut self, strokes: &Strokes, flat: &Flat, tiles: &[TileWork]) {
+    pub(super) fn gather(&mut self, strokes: &Strokes, polylines: &Polylines, tiles: &[TileWork]) {
         let before = strokes.range(self.ids.start).start;
-        let first = flat.firsts[self.ids.start];
+        let first = polylines.firsts[self.ids.start];
         for Sums {
             strokes: looks,
             segments,
             ..
         } in tiles.iter().map(|work| &work.sums)
         {
+            // A tile lists its strokes in drawing order, so that the share's are one run.
             let [start, end] = [self.ids.start, self.ids.end]
                 .map(|id| looks.partition_point(|row| (row.id as usize) < id));
             for row in &looks[start..end] {
@@ -74,6 +76,7 @@ impl Share<'_> {
                     *worth += row.worth;
                 }
             }
+            // So are their segments.
             let [start, end] = [start, end].map(|at| {
                 let row = looks.get(at);
                 row.map_or(segments.len(), |row| row.first as usize)
@@ -86,17 +89,17 @@ impl Share<'_> {
     }
 
     /// The derivatives by points, from those by vertices.
-    pub(super) fn hand_back(&mut self, strokes: &Strokes, flat: &Flat, least: usize) {
+    pub(super) fn hand_back(&mut self, strokes: &Strokes, polylines: &Polylines, least: usize) {
         let before = strokes.range(self.ids.start).start;
-        let first = flat.firsts[self.ids.start];
+        let first = polylines.firsts[self.ids.start];
         for i in self.ids.clone() {
             let stroke = strokes.get(i);
-            let [start, end] = [i, i + 1].map(|i| (flat.firsts[i] - first) as usize);
+            let [start, end] = [i, i + 1].map(|i| (polylines.firsts[i] - first) as usize);
             let slopes = &self.slopes[start..end];
             let range = strokes.range(i);
             let numbers = &mut self.numbers[range.start - before..range.end - before];
             let (points, _) = numbers.as_chunks_mut();
-            flat.hand_back(i, stroke, least, slopes, &mut points[..stroke.points.len()]);
+            polylines.hand_back(i, stroke, least, slopes, &mut points[..stroke.points.len()]);
         }
     }
 }

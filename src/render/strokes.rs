@@ -34,7 +34,7 @@ pub(super) fn flatness(opacity: f32) -> f32 {
 /// The numbers of a capsule: the strokes that seeding proposes.
 pub type Params = [f32; PARAMS];
 
-/// How many numbers a stroke has besides its points: radius, red, green, blue, opacity.
+/// Numbers of a stroke besides its points: radius, red, green, blue, opacity.
 pub const LOOK: usize = 5;
 
 /// Strokes, back to front, as one row of numbers.
@@ -44,12 +44,12 @@ pub const LOOK: usize = 5;
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Strokes {
     numbers: Vec<f32>,
-    /// Whether each point, of all strokes, is off its path.
+    /// For each point of all strokes, true if it is off its path.
     off: Vec<bool>,
     outlines: Vec<Outline>,
 }
 
-/// What the numbers of a stroke mean.
+/// Meaning of the numbers of a stroke.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 struct Outline {
     /// The index after its last point, among those of all strokes.
@@ -62,9 +62,9 @@ struct Outline {
 pub struct StrokeRef<'a> {
     /// The points of its path, px.
     pub points: &'a [[f32; 2]],
-    /// Whether each point is off the path.
+    /// For each point, true if it is off the path.
     pub off: &'a [bool],
-    /// Whether the last point is joined to the first.
+    /// True if the last point is joined to the first.
     pub closed: bool,
     /// Radius, red, green, blue, opacity.
     pub look: &'a [f32; LOOK],
@@ -109,12 +109,12 @@ impl StrokeRef<'_> {
             .sum()
     }
 
-    /// Whether the path has no curve.
+    /// True if the path has no curve.
     pub fn is_straight(&self) -> bool {
         !self.off.contains(&true)
     }
 
-    /// Whether every number is finite.
+    /// True if every number is finite.
     pub fn is_finite(&self) -> bool {
         // 0 times a number is 0, and NaN if the number is not finite; so there is nothing to branch on.
         let zero = |sum: f32, v: &f32| sum + 0.0 * v;
@@ -156,7 +156,7 @@ impl Strokes {
         self.outlines.len()
     }
 
-    /// Whether there is no stroke.
+    /// True if there is no stroke.
     pub fn is_empty(&self) -> bool {
         self.outlines.is_empty()
     }
@@ -303,7 +303,7 @@ impl Strokes {
     }
 }
 
-/// What a stroke without numbers would look like.
+/// Look of a stroke without numbers.
 static NO_LOOK: [f32; LOOK] = [0.0; LOOK];
 
 impl<'a> FromIterator<StrokeRef<'a>> for Strokes {

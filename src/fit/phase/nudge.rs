@@ -37,7 +37,8 @@ const FRINGE: f32 = 1.5;
 /// Share of the trials that move a whole stroke, not one of its points.
 const WHOLE: f32 = 0.25;
 
-/// Nudges the strokes of the drawing, of which `file` was written and `seen` was rendered. Returns whether any has moved.
+/// Nudges the strokes of the drawing. `file` is the SVG written from it, `seen` the renders of that file. Returns true if a
+/// stroke has moved.
 pub(super) fn run(session: &mut Session<'_>, file: &RenderedFile, seen: &Renderings) -> bool {
     let nudging = session.recipe.settling.nudging;
     let sweeps = affordable(session, nudging);
@@ -114,7 +115,7 @@ struct Nudger<'a> {
     written: Vec<Option<Stroke>>,
     /// For each stroke, the pixels of which it may come to cover more or less.
     fringes: Vec<Vec<u32>>,
-    /// Sets of strokes whose fringes are apart.
+    /// Sets of strokes whose fringes have no pixel in common.
     sets: Vec<Vec<usize>>,
     fragments: Fragments,
     scratch: PerWorker<Rasters>,
@@ -156,7 +157,7 @@ impl<'a> Nudger<'a> {
             precision,
             homes: strokes.clone(),
             strokes,
-            sets: apart(order, &fringes, drawing.pixels()),
+            sets: independent_sets(order, &fringes, drawing.pixels()),
             fragments: Fragments::of(session, file, seen, &written, &footprints),
             written,
             fringes,
@@ -328,7 +329,11 @@ impl<'a> Trial<'a> {
 }
 
 /// Sets of strokes, those in each with fringes that have no pixel in common.
-fn apart(mut waiting: Vec<usize>, fringes: &[Vec<u32>], pixels: usize) -> Vec<Vec<usize>> {
+fn independent_sets(
+    mut waiting: Vec<usize>,
+    fringes: &[Vec<u32>],
+    pixels: usize,
+) -> Vec<Vec<usize>> {
     waiting.retain(|&id| !fringes[id].is_empty());
     let mut sets = Vec::new();
     while !waiting.is_empty() {
@@ -355,7 +360,7 @@ mod tests {
     #[test]
     fn strokes_of_a_set_have_no_pixel_in_common_and_none_is_left_out() {
         let fringes = [vec![0, 1], vec![1, 2], vec![2, 3], Vec::new(), vec![4]];
-        let sets = apart(vec![4, 1, 0, 2, 3], &fringes, 5);
+        let sets = independent_sets(vec![4, 1, 0, 2, 3], &fringes, 5);
         assert_eq!(sets, [vec![4, 1], vec![0, 2]]);
     }
 

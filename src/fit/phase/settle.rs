@@ -131,12 +131,12 @@ fn run(session: &mut Session<'_>, restricted: Restricted) -> Result<RenderedFile
         if session.progress.is_halted() {
             break;
         }
-        let before = seen.badness();
+        let before = seen.worst_mse();
         (file, seen) = Renderings::of(session)?;
-        if seen.badness() < best.seen.badness() {
+        if seen.worst_mse() < best.seen.worst_mse() {
             best = Best::of(session, &file, &seen);
         }
-        if (psnr_db(seen.badness()) - psnr_db(before)).abs() < settling.least_db {
+        if (psnr_db(seen.worst_mse()) - psnr_db(before)).abs() < settling.least_db {
             break;
         }
         share = seen.next_share(share);
@@ -159,7 +159,7 @@ fn nudged(session: &mut Session<'_>, best: Best) -> Result<RenderedFile> {
         return Ok(file);
     }
     let (nudged, seen_nudged) = Renderings::of(session)?;
-    let is_better = seen_nudged.badness() < seen.badness()
+    let is_better = seen_nudged.worst_mse() < seen.worst_mse()
         && budget::meets_as_much(&session.config.budget, &nudged, &file);
     if is_better {
         return Ok(nudged);

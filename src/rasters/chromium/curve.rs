@@ -36,7 +36,7 @@ impl Curve {
             .then(|| corners.into_iter().flatten().collect())
     }
 
-    /// Whether none of the three points is farther from the line between the other two, which are the farthest apart, than
+    /// True if none of the three points is farther from the line between the other two, which are the farthest apart, than
     /// [`STRAIGHT`].
     fn is_straight(self) -> bool {
         let Self([a, c, b]) = self;

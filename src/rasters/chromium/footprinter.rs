@@ -1,6 +1,6 @@
-//! The pixels that single strokes cover.
+//! Footprints of single strokes.
 
-use super::area::Area;
+use super::accumulator::Accumulator;
 use super::contour::Contour;
 use super::outline::Outline;
 use super::window::Window;
@@ -10,7 +10,7 @@ use crate::scene::Stroke;
 /// Tells of single strokes how much of each pixel a browser covers with them; keeps its memory from call to call.
 pub(in crate::rasters) struct Footprinter {
     size: [usize; 2],
-    windows: Vec<(Window, Area)>,
+    windows: Vec<(Window, Accumulator)>,
     outline: Outline,
 }
 
@@ -21,7 +21,7 @@ impl Footprinter {
         Self {
             size: [width, height],
             windows: windows
-                .map(|window| (window, Area::new(window.size[0], window.size[1])))
+                .map(|window| (window, Accumulator::new(window.size[0], window.size[1])))
                 .collect(),
             outline: Outline::default(),
         }
@@ -32,14 +32,15 @@ impl Footprinter {
         let contour = Contour::of(stroke);
         let [width, _] = self.size;
         let mut pixels = Vec::new();
-        for (window, area) in &mut self.windows {
+        for (window, accumulator) in &mut self.windows {
             if !window.touches(contour.bounds) {
                 continue;
             }
             self.outline.follow(&contour, *window);
             let [columns, rows] = window.shown(self.size);
             let [left, top] = window.corner;
-            area.fill(&self.outline, |y, x, coverages| {
+            // Tiles overlap: each tells of the pixels that it shows.
+            accumulator.fill(&self.outline, |y, x, coverages| {
                 let y = top + y;
                 if !rows.contains(&y) {
                     return;

@@ -9,7 +9,7 @@
 //! - The `outline` within a window is made of lines: a parabola becomes a few chords. The y of every end of a chord or
 //!   line is rounded to a quarter of a px, and a slight bend of a capsule's side within a row of pixels is moved to the
 //!   next row. The end of a chord that is 2 px high or more moves along it to a whole px instead.
-//! - A pixel's coverage is the exact `area` inside of this outline, 0 to 255, by the rule `nonzero`. Where edges cross, their order
+//! - A pixel's coverage is the exact area inside of this outline, 0 to 255, which an `accumulator` adds up by the rule `nonzero`. Where edges cross, their order
 //!   is that at the top of a quarter of a row.
 //! - Products of colours, opacities and coverages are rounded down, so that each translucent stroke darkens a picture
 //!   by half a level, where tiny-skia brightens it.
@@ -30,7 +30,7 @@
 //! # Ok::<(), strokefit::Error>(())
 //! ```
 
-mod area;
+mod accumulator;
 mod contour;
 mod curve;
 mod footprinter;
@@ -42,7 +42,7 @@ mod window;
 
 use rayon::prelude::*;
 
-use area::Area;
+use accumulator::Accumulator;
 use contour::Contour;
 pub(super) use footprinter::Footprinter;
 use outline::Outline;
@@ -58,6 +58,7 @@ pub fn draw<'a>(strokes: impl Iterator<Item = &'a Stroke>, pages: &[Image]) -> V
     };
     let shapes: Vec<Shape> = strokes.map(Shape::of).collect();
     let mut pictures: Vec<Vec<u8>> = pages.iter().map(Image::to_rgb8).collect();
+    // Tiles are independent, as in Chromium, and put back in order since they overlap.
     let windows = Window::all(width, height);
     let drawn: Vec<Vec<Vec<u8>>> = windows
         .par_iter()
@@ -75,16 +76,16 @@ pub fn draw<'a>(strokes: impl Iterator<Item = &'a Stroke>, pages: &[Image]) -> V
     pictures.map(|rgb| image(rgb, width, height)).collect()
 }
 
-/// What a window shows of `shapes`, on `pictures` of its size.
+/// Draws `shapes` on `pictures`, as far as a window of their size shows them.
 fn draw_window(shapes: &[Shape], window: Window, mut pictures: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
     let [width, height] = window.size;
-    let (mut outline, mut area) = (Outline::default(), Area::new(width, height));
+    let (mut outline, mut accumulator) = (Outline::default(), Accumulator::new(width, height));
     for shape in shapes
         .iter()
         .filter(|shape| window.touches(shape.contour.bounds))
     {
         outline.follow(&shape.contour, window);
-        area.fill(&outline, |y, x, coverages| {
+        accumulator.fill(&outline, |y, x, coverages| {
             for picture in &mut pictures {
                 shape
                     .paint
@@ -118,7 +119,7 @@ fn image(rgb: &[u8], width: usize, height: usize) -> Image {
     Image::from_planes(width, height, planes)
 }
 
-/// What a stroke is painted with, 0 to 255.
+/// Colour and opacity of a stroke, 0 to 255.
 struct Paint {
     /// The colour times the opacity.
     color: [u32; 3],
@@ -139,6 +140,7 @@ impl Paint {
             let coverage = u32::from(coverage);
             let rest = 255 - product(self.opacity, coverage);
             for (value, &color) in pixel.iter_mut().zip(&self.color) {
+                // Both products are rounded down, so that a picture darkens by half a level a stroke.
                 let sum = product(color, coverage) + product(u32::from(*value), rest);
                 *value = sum.min(255) as u8;
             }

@@ -11,7 +11,7 @@ use crate::math::{Point, Vector};
 pub(super) struct Piece {
     pub(super) top: Point,
     pub(super) bottom: Point,
-    /// Whether its curve goes on below it.
+    /// True if its curve goes on below it.
     goes_on: bool,
 }
 
@@ -35,7 +35,7 @@ impl Piece {
 #[derive(Debug, Default)]
 pub(super) struct Outline {
     pub(super) sides: [Vec<Piece>; 2],
-    /// Whether it is that of a capsule. Any other may turn anywhere and cross itself.
+    /// True for a capsule. Any other may turn anywhere and cross itself.
     pub(super) is_convex: bool,
 }
 
@@ -53,6 +53,7 @@ impl Outline {
             }
         };
         for part in &contour.parts {
+            // Parts go down from here on, and remember on which side they are.
             match part.seen_from(window.origin()) {
                 Part::Line([a, b]) => {
                     let is_down = a.y < b.y;
@@ -67,6 +68,7 @@ impl Outline {
                 }),
             }
         }
+        // Skia fills convex outlines by another routine, which walks down both sides at once.
         if contour.is_convex {
             for side in &mut self.sides {
                 side.sort_by(|e, f| e.top.y.total_cmp(&f.top.y));
@@ -92,6 +94,7 @@ impl Outline {
         let count = chord_count(start, knee, end);
         let mut before = top;
         for i in 1..=count {
+            // The last chord ends where the curve does, whatever rounding made of the others.
             let place = on_parabola(start, knee, end, i as f32 / count as f32) + shift;
             let mut bottom = if i == count { last } else { snapped(place) };
             if i < count && place.y - before.y >= TALL {
@@ -99,6 +102,7 @@ impl Outline {
                 let slope = (place.x - top.x) / (place.y - top.y);
                 bottom = Point::new(place.x - slope * (place.y - y), y);
             }
+            // A chord that rounding leaves without a height is not drawn: the next one begins at its top.
             bottom.y = bottom.y.min(last.y);
             if bottom.y > top.y {
                 self.push(is_down, top, bottom, i < count);
@@ -173,7 +177,7 @@ fn unseen_bends(side: &[Piece], other: &[Piece]) -> Vec<usize> {
     (1..side.len()).filter(is_unseen).collect()
 }
 
-/// Whether `side` hardly bends where its edge `i` begins, between two curves or lines.
+/// True if `side` hardly bends where its edge `i` begins, between two curves or lines.
 fn is_slight(side: &[Piece], i: usize) -> bool {
     let (upper, Some(lower)) = (&side[i - 1], side.get(i)) else {
         return false;

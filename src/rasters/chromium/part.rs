@@ -1,4 +1,4 @@
-//! The parts that contours are made of.
+//! The parts of contours: lines and parabolas.
 
 use crate::math::{Point, Vector};
 

@@ -20,6 +20,7 @@ fn straightened(piece: Piece) -> Vec<Piece> {
             None => return vec![piece],
         },
     };
+    // Skia leaves out what has no length, since it has no direction.
     let lines = corners.windows(2).map(|ends| [ends[0], ends[1]]);
     let lines = lines.filter(|[a, b]| a != b);
     lines.map(Piece::Line).collect()

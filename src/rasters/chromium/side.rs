@@ -47,6 +47,7 @@ impl Side {
     /// [`near`](is_near) the side in its middle, is halved.
     fn beside_part(&mut self, curve: Curve, radius: f32, [start, end]: [f32; 2], halvings: u32) {
         let half = 0.5 * (start + end);
+        // The parabola has the side's tangents at both ends, so that its control point is where these cross.
         let [(from, d_from), middle, (to, d_to)] =
             [start, half, end].map(|t| curve.beside(t, radius));
         let (gap, turn) = (to - from, d_from.perp(&d_to));
@@ -56,6 +57,8 @@ impl Side {
         let knee = from + if crosses { d_from * ahead } else { gap * 0.5 };
         let is_plain = crosses || d_from.dot(&d_to) > 0.0;
         let is_wide = (knee - from).dot(&(knee - to)) <= 0.0;
+        // Skia's conditions: the tangents cross ahead, or the part is all but straight; it turns by less than a quarter; its
+        // middle is near.
         if halvings == 0 || is_plain && is_wide && is_near([from, knee, to], middle) {
             self.parabola_to(knee, to);
             return;
@@ -92,10 +95,10 @@ impl Side {
 /// Enough for the sharpest bend of a parabola.
 const MAX_HALVINGS: u32 = 10;
 
-/// How far outside a parabola may be, px.
+/// Largest distance of a parabola outside its arc, px.
 const MAX_BULGE: f32 = 0.25;
 
-/// Whether a parabola is at most [`MAX_BULGE`] away from a point that it should go through in this direction. If it
+/// True if a parabola is at most [`MAX_BULGE`] away from a point that it should go through in this direction. If it
 /// comes by before or after its middle, it has to be nearer.
 fn is_near([from, knee, to]: [Point; 3], (point, direction): (Point, Vector)) -> bool {
     let away = |t: f32| on_parabola(from, knee, to, t) - point;

@@ -89,13 +89,13 @@ impl Window {
         Point::new(x as f32, y as f32)
     }
 
-    /// Whether a box is within the window.
+    /// True if a box is within the window.
     pub(super) fn contains(self, [low, high]: [Point; 2]) -> bool {
         let (from, to) = (Point::from(self.origin()), self.end() + self.origin());
         low.x >= from.x && low.y >= from.y && high.x <= to.x && high.y <= to.y
     }
 
-    /// Whether a box and the window have anything in common.
+    /// True if a box and the window have anything in common.
     pub(super) fn touches(self, [low, high]: [Point; 2]) -> bool {
         let (from, to) = (Point::from(self.origin()), self.end() + self.origin());
         low.x < to.x && low.y < to.y && high.x > from.x && high.y > from.y
@@ -108,6 +108,7 @@ impl Window {
             Part::Line([from, to]) => [from, from + (to - from) * 0.5, to],
             Part::Parabola(points) => points,
         };
+        // Clipping may have turned a part over; whoever fills it expects it to go down.
         let mut keep = |[from, knee, to]: [Point; 3], is_side: bool| {
             let [from, to] = if from.y <= to.y {
                 [from, to]
@@ -120,11 +121,14 @@ impl Window {
             });
         };
         let end = self.end();
+        // A part that does not turn back in x crosses each side of the window at most once.
         for curve in monotone(curve, 0) {
+            // Above and below the window nothing is left.
             let Some(curve) = within(curve, 1, [0.0, end.y]) else {
                 continue;
             };
             let side = |curve: [Point; 3], x: f32| curve.map(|p| Point::new(x, p.y));
+            // To the left and right a line along the side is left, which keeps the winding number.
             let [left, rest] = cut(curve, 0, 0.0);
             if let Some(left) = left {
                 keep(side(left, 0.0), true);
@@ -143,7 +147,7 @@ impl Window {
     }
 }
 
-/// What of a parabola that does not turn back along an axis is between two values there.
+/// The part of a parabola between two values along an axis, in which it does not turn back.
 fn within(curve: [Point; 3], axis: usize, [low, high]: [f32; 2]) -> Option<[Point; 3]> {
     let [_, above] = cut(curve, axis, low);
     let [below, _] = cut(above?, axis, high);
@@ -162,6 +166,7 @@ fn cut(curve: [Point; 3], axis: usize, value: f32) -> [Option<[Point; 3]>; 2] {
         return [None, Some(curve)];
     }
     let half = knee - from;
+    // The root of a·t² + 2·half·t = value − from that lies between 0 and 1, in the form that loses no digits.
     let root = (half * half + (from - 2.0 * knee + to) * (value - from))
         .max(0.0)
         .sqrt();

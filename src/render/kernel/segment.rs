@@ -47,7 +47,7 @@ pub(in crate::render) struct Segment {
     inverse_length2: f32,
 }
 
-/// How a segment lies to some pixels or centres.
+/// Nearest points of a segment, seen from some pixels or centres.
 #[derive(Clone, Copy)]
 pub(in crate::render) struct Nearest<S: Simd> {
     /// `(p−a)·(b−a)`.
@@ -82,6 +82,7 @@ impl Segment {
     #[inline(always)]
     fn nearest<S: Simd>(&self, pa: [f32x16<S>; 2]) -> Nearest<S> {
         let dot = pa[0] * self.axis[0] + pa[1] * self.axis[1];
+        // Clamped to the ends: beyond them the nearest point is the end itself.
         let h = (dot * self.inverse_length2).max(0.0).min(1.0);
         let q = [pa[0] - h * self.axis[0], pa[1] - h * self.axis[1]];
         Nearest { dot, h, q }
@@ -125,7 +126,8 @@ impl Segment {
     }
 }
 
-/// How near to a segment a block's centre is if a stroke touches the block, and if it covers all of it, px.
+/// Distances between a segment and a block's centre, px: below the first a stroke may touch the block, below the second it
+/// covers all of it.
 #[inline(always)]
 pub(super) fn limits(radius: f32, reach: Reach) -> [f32; 2] {
     [
@@ -139,6 +141,7 @@ pub(super) fn limits(radius: f32, reach: Reach) -> [f32; 2] {
 #[inline(always)]
 pub(super) fn rows_within(outer: f32, [top, bottom]: [f32; 2]) -> Range<usize> {
     let side = (TILE / ROWS) as f32;
+    // Centres lie half a block inside their row's outermost edges.
     let margin = outer - 0.5 * BLOCK as f32;
     // Conversions saturate, and what is no number becomes 0.
     let first = ((top - margin) / side) as usize;

@@ -1,4 +1,4 @@
-//! The stack: pass 1 pushes what pass 2 needs, and pass 2 takes it back from the end.
+//! Memory that pass 1 fills for pass 2, which takes it back from the end.
 
 use super::super::grid::BlockSet;
 
@@ -7,7 +7,7 @@ use super::super::grid::BlockSet;
 pub(super) struct Stack<T> {
     items: Vec<T>,
     len: usize,
-    /// What new memory is filled with.
+    /// Content of new memory.
     empty: T,
 }
 

@@ -1,4 +1,4 @@
-//! Sums of pass 2 over a tile: derivatives by radius, colour and opacity of strokes, and by the ends of segments.
+//! Sums of pass 2 over a tile: the derivatives of strokes' looks, and of the ends of segments.
 
 use fearless_simd::{f32x16, prelude::*};
 
@@ -6,7 +6,7 @@ use super::super::grid::{BLOCKS, BlockRgb, Lanes, TileRgb};
 use super::super::strokes::LOOK;
 use super::lanes::{load, store, total};
 
-/// What pass 2 tells of one tile, for the strokes and segments that it visits, in drawing order.
+/// Results of pass 2 in one tile, for the strokes and segments that it visits, in drawing order.
 #[derive(Debug, Default)]
 pub(in crate::render) struct Sums {
     pub(in crate::render) strokes: Vec<OfStroke>,
@@ -44,7 +44,7 @@ impl Sums {
     }
 }
 
-/// What pass 1 keeps of a block on the soft edge.
+/// A block on the soft edge, as pass 1 keeps it for pass 2.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct EdgeBlock {
     /// `m = o·σ(d)`.
@@ -64,7 +64,7 @@ impl EdgeBlock {
     };
 }
 
-/// What is asked for besides derivatives.
+/// Results that are asked for besides derivatives.
 pub(in crate::render) trait Extras: Sync {
     /// Every stroke's worth.
     const WORTH: bool;
@@ -107,7 +107,7 @@ impl Extras for Mattes {
     const MATTES: bool = true;
 }
 
-/// What tells the canvas on a second backdrop from that on the first, in one block.
+/// Difference between the canvases on a second backdrop and on the first, in one block.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Matte {
     /// Transmittance of the strokes behind.
@@ -117,7 +117,7 @@ pub(super) struct Matte {
     pub(super) gradient: Lanes,
 }
 
-/// What a stroke is laid on in a tile.
+/// The tile that a stroke is laid on.
 pub(super) struct Grounds<'a> {
     /// The colours behind the stroke.
     pub(super) behind: &'a mut TileRgb,
@@ -140,7 +140,7 @@ impl Grounds<'_> {
     }
 }
 
-/// What a stroke is laid on in one block.
+/// The block that a stroke is laid on.
 pub(super) struct Ground<'a> {
     behind: &'a mut BlockRgb,
     gradient: &'a BlockRgb,
@@ -186,6 +186,7 @@ impl<S: Simd> Looks<S> {
         } = ground;
         let zero = f32x16::splat(simd, 0.0);
         let seen = t * alpha;
+        // `along` becomes g·(c − B), `change` the stroke's part in worth, `contrast2` |c − B|².
         let (mut along, mut change, mut contrast2) = (zero, zero, zero);
         for channel in 0..3 {
             let back = load(simd, &behind[channel]);
@@ -193,6 +194,7 @@ impl<S: Simd> Looks<S> {
             let g = load(simd, &gradient[channel]);
             along += g * contrast;
             self.color[channel] += seen * g;
+            // What is behind the next stroke has this one on it.
             store(back + alpha * contrast, &mut behind[channel]);
             if X::WORTH {
                 // This `delta` is −δ of the head, hence the minus before 2e.
@@ -213,6 +215,7 @@ impl<S: Simd> Looks<S> {
             along -= load(simd, &matte.gradient) * through;
             store(through - alpha * through, &mut matte.through);
         }
+        // ∂L/∂m. The sum for the opacity has a factor m, which the caller divides out.
         let d_alpha = t * along;
         self.opacity += d_alpha * alpha;
         (d_alpha, contrast2)
@@ -236,6 +239,7 @@ impl<S: Simd> Looks<S> {
         self.radius += d_distance;
         // Pass 1 kept 1/|q|, which costs a root; `q` is computed again.
         let pull = d_distance * load(simd, &kept.inverse);
+        // k = 2|∂C/∂d|², the bound of the second derivative that the reference explains.
         let seen = t * slope;
         (pull, 2.0 * (seen * seen) * contrast2)
     }
@@ -302,6 +306,7 @@ impl<S: Simd> Shifts<S> {
     pub(super) fn ends(&self) -> [[f32; 2]; 2] {
         let of_b = [total(self.of_b[0]), total(self.of_b[1])];
         let whole = [total(self.whole[0]), total(self.whole[1])];
+        // The shares of both ends are 1 − h and h, so that one product is enough.
         let of_a = [whole[0] - of_b[0], whole[1] - of_b[1]];
         [of_a, of_b]
     }

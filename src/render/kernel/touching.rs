@@ -3,8 +3,8 @@
 use fearless_simd::{Level, dispatch, f32x16, prelude::*};
 
 use super::super::edge::Reach;
-use super::super::flat::Flat;
 use super::super::grid::{LANES, TILE};
+use super::super::polylines::Polylines;
 use super::lanes::members;
 
 /// A stroke that may touch a tile.
@@ -25,7 +25,7 @@ const LANES_OF_X: u64 = 0x5555;
 /// none.
 pub(in crate::render) fn list_segments(
     level: Level,
-    flat: &Flat,
+    polylines: &Polylines,
     origin: [f32; 2],
     reach: Reach,
     listed: &mut Vec<Listed>,
@@ -39,16 +39,18 @@ pub(in crate::render) fn list_segments(
         for slot in 0..listed.len() {
             let stroke = listed[slot].stroke as usize;
             let before = segments.len();
-            let first = flat.firsts[stroke];
-            let vertices = &flat.vertices[first as usize..flat.firsts[stroke + 1] as usize];
+            let first = polylines.firsts[stroke];
+            let vertices = &polylines.vertices[first as usize..polylines.firsts[stroke + 1] as usize];
+            // The box of a single segment is that of its stroke, which touches the tile already.
             if vertices.len() == 2 {
                 segments.push(first);
             } else {
-                let margin = flat.looks[stroke][0] + reach.outside;
+                let margin = polylines.looks[stroke][0] + reach.outside;
                 sides.touched(simd, vertices, margin, |segment| {
                     segments.push(first + segment as u32);
                 });
             }
+            // The list is compacted in place: strokes without a segment here drop out.
             if segments.len() > before {
                 listed[kept] = Listed {
                     first: before as u32,
@@ -86,6 +88,7 @@ impl<S: Simd> Sides<S> {
         let mut rest = vertices.as_flattened();
         let count = vertices.len() - 1;
         for first in (0..count).step_by(SEGMENTS) {
+            // Vertices are x and y by turns, as in memory. Vectors overlap by one vertex, because segments share their ends.
             let places = match rest.first_chunk() {
                 Some(places) => f32x16::load_array_ref(simd, places),
                 None => {
@@ -94,12 +97,14 @@ impl<S: Simd> Sides<S> {
                     f32x16::load_array_ref(simd, &places)
                 }
             };
+            // One bit a lane: the vertex is on the inner side of left or top, and of right or bottom.
             let from_low = (places + margin).simd_gt(self.low).to_bitmask();
             let to_high = (places - margin).simd_lt(self.high).to_bitmask();
             // Of each of the four sides, one end of a segment at least has to be on the inner one.
             let [from_low, to_high] = [from_low, to_high].map(|ends| ends | ends >> 2);
             let inside = from_low & to_high;
             let present = (1 << (2 * SEGMENTS.min(count - first))) - 1;
+            // Both axes have to agree: x is in the even lanes, y beside it in the odd ones.
             let touching = inside & inside >> 1 & LANES_OF_X & present;
             for bit in members(touching) {
                 visit(first + bit / 2);

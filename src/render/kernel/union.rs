@@ -39,7 +39,7 @@ impl Segments<'_> {
         Segment::new([self.vertices[at], self.vertices[at + 1]], self.origin)
     }
 
-    /// Whether segment `k` of the list starts where the one before it ends.
+    /// True if segment `k` of the list starts where the one before it ends.
     fn follows(&self, k: usize) -> bool {
         k > 0 && k < self.listed.len() && self.listed[k] == self.listed[k - 1] + 1
     }
@@ -104,11 +104,16 @@ impl Union {
         let (mut touched, mut core) = (0, 0);
         let y = [0, 1].map(|side| segments.y[side] - segments.origin[1]);
         for row in rows_within(outer, y) {
+            // Squared distances of the row's block centres, from each segment and from the nearest one.
             let least = self.look(simd, row);
+            // A segment farther than the nearest by two radii of a block wins no pixel of it; nor does one out of the stroke's
+            // reach.
             let limit = (least.sqrt() + 2.0 * BLOCK_RADIUS).min(outer);
             let limit2 = limit * limit;
             let mut touched_here = 0;
             let mut before_next = 0;
+            // From the last segment to the first: a segment gives way to the next one only where that one does not give way to
+            // it.
             for (sight, near) in self.sights.iter().zip(&mut *near).rev() {
                 let is_near = load(simd, &sight.centers).simd_lt(limit2).to_bitmask();
                 let near_here = is_near & !sight.before & (!sight.after | before_next);
@@ -116,6 +121,7 @@ impl Union {
                 *near |= near_here << (row * LANES);
                 touched_here |= near_here;
             }
+            // A block in the core is covered whichever segment is the nearest.
             let core_here = least.simd_lt(inner * inner).to_bitmask() & touched_here;
             touched |= touched_here << (row * LANES);
             core |= core_here << (row * LANES);
@@ -169,6 +175,7 @@ impl Union {
         for (k, (sight, near)) in self.sights.iter().zip(near).enumerate() {
             let index = f32x16::splat(simd, k as f32);
             let blocks = near & shared;
+            // The first segment of a block writes, so that nothing has to be cleared; later ones compare.
             for block in members(blocks & !seen) {
                 let distance2 = sight.segment.at_pixels(simd, block).distance2();
                 store(distance2, &mut self.distances2[block]);
@@ -207,13 +214,14 @@ impl Union {
 pub(super) fn shared(near: &[BlockSet]) -> BlockSet {
     let (mut once, mut twice) = (0, 0);
     for near in near {
+        // A carry-less count up to two, for all 64 blocks at once.
         twice |= once & near;
         once |= near;
     }
     twice
 }
 
-/// What was kept of the blocks in which several segments can be nearest.
+/// Blocks in which several segments can be nearest, as they were kept.
 pub(super) struct Kept<'a> {
     /// The blocks.
     pub(super) shared: BlockSet,
@@ -236,7 +244,9 @@ impl Kept<'_> {
     ) {
         let zero = f32x16::splat(simd, 0.0);
         for block in members(near & self.shared) {
+            // Kept blocks are packed: the place of one is the number of members before it.
             let at = (self.shared & ((1 << block) - 1)).count_ones() as usize;
+            // Pixels that are nearer to another segment pull at that one.
             let is_nearest = load(simd, &self.nearest[at]).simd_eq(k as f32);
             let nearest = segment.at_pixels(simd, block);
             let pull = is_nearest.select(load(simd, &self.blocks[at].slope), zero);

@@ -1,4 +1,4 @@
-//! Strokes and scenes in `f64`, which the reference draws.
+//! Drawings for the reference: strokes and scenes in `f64`.
 
 use crate::scene;
 use crate::sdf::{Flattened, Path};
@@ -13,9 +13,9 @@ pub type Rgb = [f64; 3];
 pub struct Stroke {
     /// The points of the centre line, px: x, y.
     pub points: Vec<[f64; 2]>,
-    /// Whether each point is off the path, the control point of a curve.
+    /// For each point, true if it is off the path, the control point of a curve.
     pub off: Vec<bool>,
-    /// Whether the last point is joined to the first.
+    /// True if the last point is joined to the first.
     pub closed: bool,
     /// Half the stroke width, px.
     pub radius: f64,
@@ -77,7 +77,7 @@ impl Stroke {
     }
 }
 
-/// What is drawn.
+/// A drawing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     /// Columns of pixels.

@@ -85,7 +85,11 @@ impl Fragments {
             surfaces: session.drawing.surfaces.len(),
             weights: session.focus.as_ref().map(|focus| focus.values().to_vec()),
             lists: vec![Vec::new(); targets.len()],
-            pictures: [colors(&file.drawn), colors(seen.shown()), bottoms.clone()],
+            pictures: [
+                colors(&file.drawn),
+                colors(seen.chromium()),
+                bottoms.clone(),
+            ],
             targets,
             bottoms,
         };

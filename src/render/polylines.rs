@@ -18,7 +18,7 @@ pub(super) const CHUNK: usize = 32;
 
 /// Strokes as polylines.
 #[derive(Debug, Default)]
-pub(super) struct Flat {
+pub(super) struct Polylines {
     /// The vertices of all polylines, px.
     pub(super) vertices: Vec<[f32; 2]>,
     /// The first vertex of each stroke, and behind the last stroke the number of all vertices. A polyline has at least
@@ -28,7 +28,7 @@ pub(super) struct Flat {
     pub(super) looks: Vec<[f32; LOOK]>,
     /// The smallest and the largest x and y of the vertices of each stroke, px.
     pub(super) boxes: Vec<[[f32; 2]; 2]>,
-    /// How many segments each curve has become, curve by curve.
+    /// Number of segments of each curve, curve by curve.
     curves: Vec<u32>,
     /// The first curve of each stroke in that list.
     first_curves: Vec<u32>,
@@ -36,7 +36,7 @@ pub(super) struct Flat {
     parts: Vec<Self>,
 }
 
-impl Flat {
+impl Polylines {
     /// Flattens `strokes`. Each line and each curve becomes `least` segments or more.
     pub(super) fn fill(&mut self, strokes: &Strokes, least: usize) {
         let count = strokes.len().div_ceil(CHUNK);
@@ -51,6 +51,7 @@ impl Flat {
         let parts = std::mem::take(&mut self.parts);
         self.clear();
         for part in &parts {
+            // Indices of a chunk count from its own start.
             let after = |count: usize| move |first: &u32| count as u32 + first;
             let firsts = part.firsts.iter().map(after(self.vertices.len()));
             self.firsts.extend(firsts);
@@ -85,6 +86,7 @@ impl Flat {
             [f32::NAN; LOOK]
         });
         self.first_curves.push(self.curves.len() as u32);
+        // A path of lines is its own polyline.
         if least == 1 && stroke.is_straight() {
             self.vertices.extend(stroke.points);
             if stroke.closed || stroke.points.len() == 1 {
@@ -112,6 +114,7 @@ impl Flat {
         slopes: &[[f32; 2]],
         points: &mut [[f32; 2]],
     ) {
+        // Points and vertices are the same: nothing to weigh.
         if slopes.len() == points.len() && stroke.is_straight() {
             add(points.as_flattened_mut(), slopes.as_flattened());
             return;
@@ -119,9 +122,11 @@ impl Flat {
         let mut curves = self.curves[self.first_curves[i] as usize..].iter();
         let mut pieces = Pieces::of(stroke).peekable();
         let Some(first) = pieces.peek() else {
+            // A dot: both ends of its segment are its only point.
             slopes.iter().for_each(|slope| add(&mut points[0], slope));
             return;
         };
+        // The first vertex stands for a knot alone; every other one belongs to the piece that it ends.
         first.from.hand_back(slopes[0], points);
         let mut rest = &slopes[1..];
         for piece in pieces {
@@ -198,7 +203,7 @@ pub(crate) struct Piece {
 }
 
 impl Piece {
-    /// How many segments the piece becomes.
+    /// Number of segments that the piece becomes.
     pub(crate) fn steps(&self, stroke: StrokeRef<'_>, least: usize) -> usize {
         let Some(control) = self.control else {
             return least;
@@ -209,6 +214,7 @@ impl Piece {
             points[control],
             self.to.place(points),
         );
+        // The second difference: how far chords are from the curve depends on it and the number of steps alone.
         let bend = [0, 1].map(|k| a[k] - 2.0 * c[k] + b[k]);
         sdf::steps(Vector::from(bend), f64::from(stroke.flatness())).max(least)
     }
@@ -249,7 +255,7 @@ impl Piece {
         }
     }
 
-    /// Whether the piece changes with point `k`.
+    /// True if the piece changes with point `k`.
     pub(crate) fn depends_on(&self, k: usize) -> bool {
         let of = |knot: Knot| match knot {
             Knot::Point(i) => i == k,
@@ -360,14 +366,14 @@ mod tests {
         }
     }
 
-    /// What each vertex hands back to each point, the same for x and y: the weight of the point in the vertex.
-    fn weights(flat: &Flat, i: usize, stroke: StrokeRef<'_>) -> Vec<Vec<f32>> {
-        let count = (flat.firsts[i + 1] - flat.firsts[i]) as usize;
+    /// Derivatives that each vertex hands back to each point, equal for x and y: the weight of the point in the vertex.
+    fn weights(polylines: &Polylines, i: usize, stroke: StrokeRef<'_>) -> Vec<Vec<f32>> {
+        let count = (polylines.firsts[i + 1] - polylines.firsts[i]) as usize;
         let weights = |vertex: usize| {
             let mut slopes = vec![[0.0; 2]; count];
             slopes[vertex] = [1.0, -2.0];
             let mut points = vec![[0.0; 2]; stroke.points.len()];
-            flat.hand_back(i, stroke, 1, &slopes, &mut points);
+            polylines.hand_back(i, stroke, 1, &slopes, &mut points);
             points.iter().for_each(|[x, y]| assert_eq!(-2.0 * x, *y));
             points.iter().map(|point| point[0]).collect()
         };
@@ -376,11 +382,11 @@ mod tests {
 
     #[test]
     fn vertices_hand_back_to_points_by_the_weights_of_the_distance_field() {
-        let (strokes, mut flat) = (strokes(), Flat::default());
-        flat.fill(&strokes, 1);
+        let (strokes, mut polylines) = (strokes(), Polylines::default());
+        polylines.fill(&strokes, 1);
         for (i, stroke) in strokes.iter().enumerate() {
             let count = stroke.points.len();
-            let mut weights = weights(&flat, i, stroke);
+            let mut weights = weights(&polylines, i, stroke);
             if count == 1 {
                 // The renderer's dot is a segment of no length.
                 weights.pop();
@@ -401,11 +407,11 @@ mod tests {
 
     #[test]
     fn vertices_are_the_weighted_means_of_points() {
-        let (strokes, mut flat) = (strokes(), Flat::default());
-        flat.fill(&strokes, 1);
+        let (strokes, mut polylines) = (strokes(), Polylines::default());
+        polylines.fill(&strokes, 1);
         for (i, stroke) in strokes.iter().enumerate() {
-            let vertices = &flat.vertices[flat.firsts[i] as usize..];
-            for (vertex, weights) in vertices.iter().zip(weights(&flat, i, stroke)) {
+            let vertices = &polylines.vertices[polylines.firsts[i] as usize..];
+            for (vertex, weights) in vertices.iter().zip(weights(&polylines, i, stroke)) {
                 for axis in [0, 1] {
                     let terms = weights.iter().zip(stroke.points);
                     let mean: f32 = terms.map(|(w, p)| w * p[axis]).sum();
@@ -433,15 +439,15 @@ mod tests {
     }
 
     #[test]
-    fn a_flat_scene_has_the_vertices_of_its_paths() {
-        let (strokes, mut flat) = (strokes(), Flat::default());
+    fn a_flattened_scene_has_the_vertices_of_its_paths() {
+        let (strokes, mut polylines) = (strokes(), Polylines::default());
         for least in [1, 3] {
-            flat.fill(&strokes, least);
+            polylines.fill(&strokes, least);
             for (i, stroke) in strokes.iter().enumerate() {
                 let mut expected = Vec::new();
                 flatten(stroke, least, &mut expected, &mut Vec::new());
-                let range = flat.firsts[i] as usize..flat.firsts[i + 1] as usize;
-                assert_eq!(flat.vertices[range], expected, "{stroke:?}");
+                let range = polylines.firsts[i] as usize..polylines.firsts[i + 1] as usize;
+                assert_eq!(polylines.vertices[range], expected, "{stroke:?}");
                 assert!(expected.len() > least || stroke.points.len() == 1);
             }
         }

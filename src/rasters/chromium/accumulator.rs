@@ -1,4 +1,4 @@
-//! The share of each pixel that an outline covers.
+//! Coverage of each pixel by an outline.
 
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -8,7 +8,7 @@ use crate::math::Point;
 
 /// Accumulates coverage: each edge changes the coverage of everything to its right in its row, and the running
 /// sum of these changes along a row is the coverage.
-pub(super) struct Area {
+pub(super) struct Accumulator {
     width: usize,
     height: usize,
     /// By how much more a pixel is covered than the one to its left, row by row; each row has
@@ -26,7 +26,7 @@ const NOWHERE: Range<usize> = Range {
     end: 0,
 };
 
-impl Area {
+impl Accumulator {
     pub(super) fn new(width: usize, height: usize) -> Self {
         Self {
             width,
@@ -58,7 +58,7 @@ impl Area {
         rows
     }
 
-    /// The same for an outline that may turn anywhere and cross itself. What is within it is filled by
+    /// Adds the inside of an outline that may turn anywhere and cross itself. It is filled by
     /// the rule `nonzero`, once. All heights are quarters of a px, so that no edge ends within a quarter of a row.
     fn add_winding(&mut self, outline: &Outline) -> Range<usize> {
         let mut slices = Vec::new();
@@ -66,6 +66,7 @@ impl Area {
             side.iter()
                 .for_each(|edge| self.slice(edge, turn, &mut slices));
         }
+        // From left to right in each quarter, the winding number tells where the inside begins and ends.
         slices.sort_by(Slice::order);
         let mut rows = NOWHERE;
         for quarter in slices.chunk_by(|a, b| a.quarter == b.quarter) {
@@ -89,6 +90,7 @@ impl Area {
 
     /// Adds what lies between two edges in a quarter of row `y`, each by its x at the top and at the bottom.
     fn add_between(&mut self, y: usize, [l, to_l]: [f32; 2], [r, to_r]: [f32; 2]) {
+        // Edges that cross within the quarter both end in the middle of the stretch that they share.
         let meet = 0.5 * (l.min(to_l).max(r.min(to_r)) + l.max(to_l).min(r.max(to_r)));
         let ends = if to_l > to_r { [meet; 2] } else { [to_l, to_r] };
         for ((top, bottom), sign) in [(l, ends[0]), (r, ends[1])].into_iter().zip([1.0, -1.0]) {
@@ -151,6 +153,7 @@ impl Area {
         let width = self.width as f32;
         let height = sign * (lower.y - upper.y);
         let (left, right) = (upper.x.min(lower.x), upper.x.max(lower.x));
+        // An edge to the left of the picture covers its whole row.
         if right <= 0.0 {
             return self.change(y, 0, height, 0.0);
         }
@@ -158,10 +161,12 @@ impl Area {
             // The edge is off the picture: no coverage changes, but the row's span has to reach its end.
             self.change(y, self.width, 0.0, 0.0);
         }
+        // A piece within one pixel: a trapezoid, by the place of its middle.
         if left.floor() == right.floor() && left < width {
             return self.change(y, left as usize, height, (0.5 * (left + right)).fract());
         }
         let per_px = height / (right - left);
+        // A slanting one is cut at the sides of pixels; what is left of the picture counts for the whole row.
         if left < 0.0 {
             self.change(y, 0, -left * per_px, 0.0);
         }
@@ -177,6 +182,7 @@ impl Area {
     /// Adds what lies to the right of a piece of some `height` with its `middle` at that place in pixel `x`.
     fn change(&mut self, y: usize, x: usize, height: f32, middle: f32) {
         let at = y * (self.width + BEYOND) + x;
+        // Of the pixel itself what is right of the edge is covered, of all further ones everything.
         self.changes[at] += height * (1.0 - middle);
         self.changes[at + 1] += height * middle;
         self.spans[y] = union(&self.spans[y], &(x..x + 2));
@@ -190,7 +196,7 @@ struct Slice {
     quarter: usize,
     /// Where it begins and ends, px.
     x: [f32; 2],
-    /// What it adds to the winding number of what is to its right.
+    /// Its part in the winding number of all that is to its right.
     turn: i32,
 }
 
@@ -226,10 +232,10 @@ mod tests {
         let mut outline = Outline::default();
         outline.follow(&contour, Window::all(12, 10)[0]);
         let mut rows = vec![vec![0; 12]; 10];
-        let mut area = Area::new(12, 10);
+        let mut accumulator = Accumulator::new(12, 10);
         for _ in 0..2 {
             // The second time nothing is left of the first.
-            area.fill(&outline, |y, x, coverages| {
+            accumulator.fill(&outline, |y, x, coverages| {
                 rows[y][x..x + coverages.len()].copy_from_slice(coverages);
             });
         }
