@@ -1,7 +1,7 @@
 //! Rasterisers of strokes: resvg takes samples, Chromium the areas of a rounded outline, others exact areas.
 //!
-//! [`Rasters`] draws single strokes by each [`Rasterizer`], and says which pixels they cover. [`chromium::draw`] draws whole
-//! pictures; resvg does so itself, from the file (see [`verify`](crate::verify)).
+//! [`chromium::draw`] draws whole pictures; resvg does so itself, from the file (see [`verify`](crate::verify)). Within the
+//! crate, `Rasters` draws single strokes by each `Rasterizer`, and says which pixels they cover.
 
 pub mod chromium;
 mod exact;
