@@ -131,7 +131,7 @@ fn clamp(stroke: StrokeMut<'_>, picture: &Image) {
         *x = x.clamp(0.0, far[0]);
         *y = y.clamp(0.0, far[1]);
     }
-    let [radius, shades @ ..] = stroke.look;
+    let [radius, shades @ ..] = stroke.style;
     *radius = radius.clamp(0.6, far[0]);
     for shade in shades {
         *shade = shade.clamp(0.0, 1.0);

@@ -134,7 +134,7 @@ pub(crate) const ROWS: &[Row] = rows! {
     Pens Single pens.ladder;
     Pens Single pens.contrast;
     Pens Count pens.window;
-    Price Single tracing.flat;
+    Price Single tracing.min_flat_share;
     Price Single tracing.explained;
     Price Count tracing.least_area;
     Price Single tracing.pace;

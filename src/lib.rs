@@ -56,7 +56,7 @@
 //! rasters                         stroke → the pixels that resvg, Chromium and exact renderers cover
 //! verify                          SVG text → resvg's render of it
 //! engines                         other programs' renders of it
-//! fit                             stages, polish, settling, budgets
+//! fit                             stages, polish, restricting, settling, budgets
 //! report                          plain records, tables, plots
 //! animation  view                 frames of a drawing, a live page
 //! lab  bench                      experiments, measurements
@@ -119,6 +119,7 @@
 //! | relocation | moving the strokes of least worth to where candidates gain more, during the polish |
 //! | survey | how the squared error depends on the vertices of all strokes, so that the gain of a new point is known |
 //! | join | making one stroke of two that look alike and meet end to end |
+//! | restrict | to give strokes the colours and widths that the file may have |
 //! | settle | last steps against renders of the written file, by resvg and by the model of Chromium |
 //! | nudge | to move points by a tenth of a px at most, to where rasterisers draw the stroke better |
 //! | rasteriser | a way to antialias: that of resvg, of Chromium, or exact areas; see [`rasters`] |
@@ -126,7 +127,7 @@
 //! | fragment | a stroke in a pixel, with how much of it each rasteriser covers |
 //! | fringe | the pixels that a stroke may come to cover more or less when it is nudged |
 //! | offset | difference between a renderer's picture of the file and our own canvas, per channel |
-//! | phase | one step in the order of a fit: a stage, the polish, the settling, … |
+//! | phase | one step in the order of a fit: a stage, the polish, the settling, the nudging, … |
 //! | session | a fit under way: all that its phases hand around |
 //! | surface | one matte's target, backdrop and canvas; a drawing has one, a transparent drawing two |
 //! | course | how long a descent runs, at what step sizes and with which edge |
@@ -141,7 +142,7 @@
 //! | palette | the 8-bit colours that a drawing may have |
 //! | stack | the order of colours, one layer each, that a drawing by colour has |
 //! | pen | a colour and a width that many opaque strokes share; where pens are given, a width that strokes may have |
-//! | sharing | giving strokes of a drawing of lines the same widths and colours where that costs little |
+//! | sharing | giving strokes the same widths and colours where that costs little |
 //! | tie | holds numbers of strokes equal while they are fitted |
 //! | seed | key of all random draws; *seeding* is the search for candidates |
 //! | grace | how long a fit that is asked to stop may take to finish its drawing |
@@ -157,7 +158,7 @@
 //! | page | the area of an SVG file, in px or in units such as mm |
 //! | form | how strokes become elements: one each, the smallest file, outlines |
 //! | travel | how far a pen moves between strokes without drawing (px); see [`svg::travel`](fn@svg::travel) |
-//! | look | colour, width and opacity of a stroke as they are written; strokes of one look may share an element |
+//! | style | colour, width and opacity of a stroke; strokes of one style may share an element |
 //! | dialect | the part of SVG that strokefit writes, and reads as strokes |
 //! | fidelity | the file as resvg renders it, against the target: PSNR (dB), SSIM, MSE, L1, SSIMULACRA2 |
 //! | agreement | two renders against each other: PSNR (dB) and the largest difference (0..255) |

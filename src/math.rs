@@ -14,6 +14,23 @@ pub type Point = Point2<f32>;
 /// A displacement in the picture plane in px.
 pub type Vector = Vector2<f32>;
 
+/// The distance of two places, px.
+pub(crate) fn distance(a: [f32; 2], b: [f32; 2]) -> f32 {
+    let [x, y] = [a[0] - b[0], a[1] - b[1]];
+    (x * x + y * y).sqrt()
+}
+
+/// The place from `a` to `b` that is nearest to `p`, and the square of its distance.
+pub(crate) fn nearest_on_segment(p: [f32; 2], [a, b]: [[f32; 2]; 2]) -> ([f32; 2], f32) {
+    let axis = [b[0] - a[0], b[1] - a[1]];
+    let length2 = (axis[0] * axis[0] + axis[1] * axis[1]).max(f32::MIN_POSITIVE);
+    let h = ((p[0] - a[0]) * axis[0] + (p[1] - a[1]) * axis[1]) / length2;
+    let h = h.clamp(0.0, 1.0);
+    let q = [a[0] + h * axis[0], a[1] + h * axis[1]];
+    let away = [q[0] - p[0], q[1] - p[1]];
+    (q, away[0] * away[0] + away[1] * away[1])
+}
+
 /// A floating-point type for generic formulas: `f32` in the renderer and the fit,
 /// `f64` in the reference and the experiments.
 pub trait Real: nalgebra::RealField + Elementary + Copy {

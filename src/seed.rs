@@ -123,6 +123,7 @@ pub fn propose(level: Level, residuals: &[Residual<'_>], wanted: Wanted) -> Vec<
     let Some(first) = residuals.first() else {
         return Vec::new();
     };
+    // A picture in which the largest shape fits a patch.
     let halvings = (first.target).halvings(wanted.level, wanted.scale, SCALE_LIMIT);
     let residuals: Vec<Reduced<'_>> = residuals
         .iter()
@@ -132,6 +133,7 @@ pub fn propose(level: Level, residuals: &[Residual<'_>], wanted: Wanted) -> Vec<
     let scale = (wanted.scale / reduction).min(SCALE_LIMIT);
     let radii = wanted.probing.radii.map(|r| (r * scale).max(MIN_RADIUS));
     let probes = Probes::new(level, &radii, &wanted.probing.lengths.map(|l| l * scale));
+    // The cells with the largest residual.
     let energy = smoothed_energy(&residuals, (scale / 2.0).round() as usize);
     let cells = Cells::new(
         &residuals[0].canvas,

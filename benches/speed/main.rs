@@ -154,7 +154,7 @@ fn settled(
             points: &points,
             off: &vec![false; points.len()],
             closed: false,
-            look: path.look,
+            style: path.style,
         });
     }
     let backdrop = scene.background.unwrap_or([1.0; 3]);

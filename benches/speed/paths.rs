@@ -143,7 +143,7 @@ fn walks(size: StrokeSize, grid: Grid, count: usize, segments: usize) -> Strokes
             points: &points,
             off: &off,
             closed: false,
-            look: &[size.radius_px, draw(3), draw(4), draw(5), size.opacity],
+            style: &[size.radius_px, draw(3), draw(4), draw(5), size.opacity],
         });
     }
     strokes

@@ -32,7 +32,7 @@ pub(super) struct Options {
     #[command(flatten)]
     pub(super) budget: Budget,
     #[command(flatten)]
-    pub(super) look: Look,
+    pub(super) look: StyleArgs,
     #[command(flatten)]
     pub(super) colors: colors::Args,
     #[command(flatten)]
@@ -66,7 +66,7 @@ pub(super) struct Budget {
 
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Look")]
-pub(super) struct Look {
+pub(super) struct StyleArgs {
     /// Price of a byte, 0 to 60: a stroke stays if each of its bytes removes at least as much squared error
     /// as one pixel has at Q dB [default: 30, less for pictures over 768×512, unless --strokes, --psnr or
     /// --bytes is given]
@@ -85,7 +85,7 @@ pub(super) struct Look {
     /// Which errors count: eye (those that people see, so that smooth places have fewer seams) or exact (all alike, for a
     /// tenth of a dB more) [default: eye, but exact with --psnr]
     #[arg(long, value_name = "LOOK")]
-    look: Option<fit::Look>,
+    look: Option<fit::ErrorWeighting>,
     /// Only these widths of strokes: lengths such as 0.3mm,0.8mm on a page of a --width, or numbers in px of the picture
     #[arg(long, value_name = "WIDTHS", allow_hyphen_values = true)]
     pens: Option<Widths>,

@@ -1,5 +1,11 @@
 //! The budgets of a fit: what they allow, and when they are met.
 
+pub(super) mod memory;
+pub(super) mod plan;
+pub(super) mod price;
+pub(super) mod reduction;
+pub(super) mod rivals;
+
 use super::base::Base;
 use super::config::{Budget, Config, MAX_STROKES};
 use super::file::RenderedFile;

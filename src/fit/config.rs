@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::time::Duration;
 
-use super::recipe::{Preset, Recipe};
+use super::recipe::{Preset, Recipe, SCREEN_PIXELS};
 use super::simd::Simd;
 use super::widths::Widths;
 use crate::coverage::CoverageSchedule;
@@ -26,9 +26,9 @@ pub struct Config {
     pub preset: Preset,
     /// Whether each layer is polished on its own, so that the drawing looks finished after each.
     pub progressive: bool,
-    /// Which errors count; `None` for [`Look::Exact`] where a fidelity is asked for, which is about exact errors, and for
-    /// [`Look::Eye`] elsewhere.
-    pub look: Option<Look>,
+    /// Which errors count; `None` for [`ErrorWeighting::Exact`] where a fidelity is asked for, which is about exact errors, and for
+    /// [`ErrorWeighting::Eye`] elsewhere.
+    pub look: Option<ErrorWeighting>,
     /// Whether all strokes have opacity 1.
     pub opaque: bool,
     /// The coverage function, or two: one while the edge is soft, and one for the final edge.
@@ -78,7 +78,7 @@ impl Default for Config {
 
 /// Which errors count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Look {
+pub enum ErrorWeighting {
     /// Errors that people see: fewer seams where the picture is smooth, for a tenth of a dB.
     Eye,
     /// All errors alike, which gives the most dB.
@@ -150,9 +150,6 @@ pub struct Execution {
 /// The quality of a drawing without a budget, dB, unless the picture is large.
 pub const DEFAULT_QUALITY: f64 = 30.0;
 
-/// Pixels of a picture that a screen shows well at once, 768×512: the default quality is for so many.
-pub const SCREEN_PIXELS: usize = 768 * 512;
-
 /// Most strokes of a drawing for which neither a quality nor a budget is set: nobody edits more.
 pub const DEFAULT_STROKES: usize = 5000;
 
@@ -175,10 +172,10 @@ impl Config {
     }
 
     /// Which errors count.
-    pub(super) fn look(&self) -> Look {
+    pub(super) fn look(&self) -> ErrorWeighting {
         let usual = match self.budget.psnr_db {
-            Some(_) => Look::Exact,
-            None => Look::Eye,
+            Some(_) => ErrorWeighting::Exact,
+            None => ErrorWeighting::Eye,
         };
         self.look.unwrap_or(usual)
     }

@@ -3,15 +3,19 @@
 //! A [`Course`] sets length, step sizes and edge. A [`Descent`] is a course under way; it includes the state of the
 //! optimiser, so that a checkpoint can keep it.
 
+pub(super) mod anneal;
+mod jitter;
+pub(super) mod ties;
+
 use serde::{Deserialize, Serialize};
 
-use super::anneal::Annealing;
-use super::deadline::Timer;
 use super::drawing::Drawing;
 use super::recipe::{Jitter, Rates, Recipe};
-use super::ties::Ties;
+use super::time::Timer;
 use crate::optim::{Adam, Optimizer, Schedule};
-use crate::render::{Canvas, Gradients, LOOK};
+use crate::render::{Canvas, Gradients, STYLE};
+use anneal::Annealing;
+use ties::Ties;
 
 /// The length, the step sizes and the edge of a descent.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
@@ -141,6 +145,7 @@ impl Descent {
             Some(from) => annealing.at(from, done),
             None => annealing.last(),
         };
+        // The gradient, beside the strokes' places if they are jittered.
         let jitter = course.joint.map(|joint| joint.jitter);
         let jitter = jitter.filter(|jitter| jitter.begins_by(done));
         let still = jitter.map(|jitter| jitter.apply(drawing.free_mut(), step));
@@ -156,6 +161,7 @@ impl Descent {
             step
         };
         let rate = course.rate(at);
+        // A step of Adam, within the domains.
         let bounds = drawing.bounds;
         let strokes = drawing.free_mut();
         let slopes = &mut self.gradients.strokes;
@@ -222,8 +228,8 @@ fn scales(rates: &Rates, drawing: &Drawing, recipe: &Recipe) -> Vec<f32> {
         let pace = if i < traced { recipe.tracing.pace } else { 1.0 };
         let ends = position * factor * pace;
         scales.resize(scales.len() + 2 * stroke.points.len(), ends);
-        let look: [f32; LOOK] = [radius * factor, color, color, color, opacity];
-        scales.extend(look);
+        let style: [f32; STYLE] = [radius * factor, color, color, color, opacity];
+        scales.extend(style);
     }
     scales
 }

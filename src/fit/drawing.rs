@@ -1,17 +1,25 @@
 //! The drawing in progress: its strokes, the number of frozen ones, and the resolution of the fit.
 
+pub(super) mod background;
+pub(super) mod bounds;
+pub(super) mod focus;
+pub(super) mod hidden;
+pub(super) mod masking;
 mod memento;
+pub(super) mod objective;
 mod scene;
+pub(super) mod shading;
+pub(super) mod surface;
 
 use fearless_simd::Level;
 
-use super::bounds::Bounds;
-use super::focus::Focus;
-use super::surface::Surface;
 use crate::render::{Canvas, CanvasLoss, Gradients, Params, Renderer, Softness, Strokes, Survey};
 use crate::scene::{Rgb, Shade, Stroke};
+use bounds::Bounds;
+use focus::Focus;
 pub(super) use memento::Memento;
 use scene::enlarge;
+use surface::Surface;
 
 /// A drawing in progress. The *free* strokes are fitted, judged and relocated; the frozen ones behind them are
 /// rendered once, as their backdrop. Large strokes are fitted to a reduced picture. The parameters of strokes are in
@@ -285,6 +293,7 @@ impl Drawing {
         gradients: &mut Gradients,
     ) {
         let (free, frozen) = (&self.free, self.frozen.len());
+        // Two mattes at once cost little more than one, as only colours differ. Worth is known of one at a time.
         if let ([black, white], false) = (self.surfaces.as_slice(), WITH_WORTH) {
             let backdrops = [black, white].map(|surface| surface.backdrop(frozen));
             let [of_black, of_white] = [0, 1]

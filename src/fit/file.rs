@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::base::Base;
 use super::config::{Background, Config};
 use super::drawing::Drawing;
-use super::surface::Surface;
+use super::drawing::surface::Surface;
 use crate::error::Result;
 use crate::image::Image;
 use crate::scene::{Quantized, Scene};

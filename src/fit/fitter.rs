@@ -2,12 +2,12 @@
 
 use std::time::Duration;
 
-use super::background;
 use super::base::Base;
-use super::checkpoint::Checkpoint;
 use super::config::{Config, Execution};
-use super::focus::Focus;
-use super::progress::{CancelToken, Observer};
+use super::drawing::background;
+use super::drawing::focus::Focus;
+use super::run::checkpoint::Checkpoint;
+use super::run::progress::{CancelToken, Observer};
 use crate::clock::Instant;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;

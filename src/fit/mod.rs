@@ -4,85 +4,62 @@
 //! the residual is largest, fits them briefly with all earlier strokes frozen, and keeps those that pay. The polish
 //! then fits all strokes jointly, and relocates those of least worth to where more is to be gained. If the file may have
 //! only a few colours or pens, the strokes are restricted to those. Settling takes the last steps against what the
-//! written file really looks like. Finally the fit adds or removes strokes, and fits them again, until the file is as
-//! faithful and as short as the budgets ask for.
+//! written file really looks like, and nudging moves points to where rasterisers draw the strokes better. Finally the
+//! fit adds or removes strokes, and fits them again, until the file is as faithful and as short as the budgets ask for.
 //!
 //! [`Fitter::fit`] runs the phases: `order` says which follows which, and `phase` has a file for each. The session holds
 //! the whole state of a fit. Between two phases, and between two iterations of most phases, a [`Checkpoint`] can keep
 //! that state, and another process can go on from it.
 
-mod anneal;
-mod background;
 mod base;
-mod bounds;
 mod budget;
-mod checkpoint;
 mod config;
-mod deadline;
-mod descend;
 mod descent;
 mod drawing;
 mod file;
-mod finish;
 mod fitter;
-mod focus;
-mod forecast;
-mod hidden;
-mod history;
-mod jitter;
-mod masking;
-mod memory;
-mod objective;
 mod order;
 mod phase;
-mod plan;
 mod points;
-mod price;
-mod progress;
 mod recipe;
-mod reduction;
-mod relocation;
 mod renderers;
 mod result;
-mod rivals;
-mod search;
-mod session;
-mod shading;
+mod run;
 mod simd;
-mod surface;
-mod ties;
+mod time;
 mod widths;
 mod words;
 
-pub use anneal::final_softness;
 pub use base::Base;
-pub use checkpoint::Checkpoint;
+pub use budget::memory::predicted_rss_bytes;
+pub(crate) use budget::memory::rss_bytes_of;
 pub use config::{
-    Background, Budget, Colors, Config, DEFAULT_QUALITY, DEFAULT_STROKES, Execution, Look,
-    MAX_STROKES, PIXELS_PER_STROKE, SCREEN_PIXELS,
+    Background, Budget, Colors, Config, DEFAULT_QUALITY, DEFAULT_STROKES, ErrorWeighting,
+    Execution, MAX_STROKES, PIXELS_PER_STROKE,
 };
+pub use descent::anneal::final_softness;
+pub use drawing::focus::Focus;
+pub use drawing::objective::Objective;
 pub use fitter::Fitter;
-pub use focus::Focus;
-pub use memory::predicted_rss_bytes;
-pub(crate) use memory::rss_bytes_of;
-pub use objective::Objective;
-pub use progress::{CancelToken, Observer, Progress};
 pub use recipe::{
     AdamSettings, BackgroundChoice, Correction, Domain, EdgeShape, Joins, Masking, Nudging, Pens,
-    Points, Polish, Preset, Rates, Recipe, Recoloring, Relocation, Rounds, Settling, ShadeChoice,
-    Stages, TimeShares,
+    Points, Polish, Preset, Rates, Recipe, Recoloring, Reduction, Relocation, Rounds,
+    SCREEN_PIXELS, Settling, ShadeChoice, Sharing, Stages, TimeShares,
 };
 pub use result::{Fit, StageRecord, Stop};
+pub use run::checkpoint::Checkpoint;
+pub use run::progress::{CancelToken, Observer, Progress};
 pub use simd::Simd;
 pub use widths::Widths;
 
 use crate::clock::Instant;
 use crate::error::Result;
 use crate::image::Image;
-use finish::Drawn;
+use budget::{reduction, rivals};
 use order::{Outcome, Phase};
-use phase::{count, grow, polish, settle, trace};
-use session::{Session, Watch};
+use phase::{count, grow, nudge, polish, restrict, settle, trace};
+use run::finish::{self, Drawn};
+use run::session::{Session, Watch};
 
 impl Fitter<'_> {
     /// Draws `picture`.
@@ -161,13 +138,14 @@ impl Fitter<'_> {
                 token,
                 grace,
             };
-            let wishes = (config, base, focus, page);
-            let mut session = Session::new(picture, wishes, level, watch, since)?;
+            let task = (config, base, focus, page);
+            let mut session = Session::new(picture, task, level, watch, since)?;
             if let Some(checkpoint) = checkpoint {
                 session.resume(checkpoint)?;
             }
             while session.phase != Phase::Done {
                 let outcome = run(&mut session)?;
+                session.mark_as_final();
                 session.phase = order::next(session.phase, outcome, config);
                 session.keep(None);
             }
@@ -188,7 +166,10 @@ fn run(session: &mut Session<'_>) -> Result<Outcome> {
             polish::polish(session, purpose)?;
             count::approach_fidelity(session)
         }
-        Phase::Settle | Phase::Shorten => settle::settle(session)?,
+        Phase::Restrict(_) => restrict::restrict(session)?,
+        Phase::Settle(_) => settle::settle(session)?,
+        Phase::Nudge(_) => nudge::nudge(session)?,
+        Phase::Compare(_) => count::compare(session),
         Phase::MeetFidelity => count::meet_fidelity(session),
         Phase::MeetBytes => count::meet_bytes(session),
         Phase::Done => Outcome::Over,

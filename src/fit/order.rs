@@ -7,12 +7,21 @@
 //!           ↓
 //!         polish ⇄ stage      fit all strokes jointly, and double them while far from the fidelity asked for
 //!           ↓
-//!         settle              fit them to what the file looks like
+//!         finish              restrict ─→ settle ─→ nudge ─→ compare
 //!           ↓
-//!         fidelity ─→ stage ─→ polish ─→ settle ─→ fidelity     until the file is as faithful as asked for
+//!         fidelity ─→ stage ─→ polish ─→ finish ─→ fidelity     until the file is as faithful as asked for
 //!           ↓
-//!         bytes ─→ shorten ─→ bytes                             until it is as short as asked for
-//!         bytes ─→ polish ─→ settle                             once, if bytes are left
+//!         bytes ─→ finish ─→ bytes                              until it is as short as asked for
+//!         bytes ─→ polish ─→ finish                             once, if bytes are left
+//! ```
+//!
+//! To *finish* a drawing takes four phases:
+//!
+//! ```text
+//! restrict    give strokes the colours and widths that the file may have
+//! settle      fit them to what renderers make of the file
+//! nudge       move points to where rasterisers draw the strokes better
+//! compare     keep the file if it is the best so far
 //! ```
 
 use serde::{Deserialize, Serialize};
@@ -35,14 +44,18 @@ pub(super) enum Phase {
     StagePolish(Purpose),
     /// Fit all strokes jointly.
     Polish(Purpose),
-    /// Restrict the drawing to its palette and pens, and settle it against its file.
-    Settle,
+    /// Give the strokes the colours and widths that the file may have.
+    Restrict(Limit),
+    /// Fit the strokes to what renderers make of the file.
+    Settle(Limit),
+    /// Move points by a tenth of a px at most, to where rasterisers draw the strokes better.
+    Nudge(Limit),
+    /// Keep the file if it serves the budget better than the best one so far.
+    Compare(Limit),
     /// Add or remove strokes if the file misses or exceeds the fidelity asked for.
     MeetFidelity,
     /// Remove strokes if the file has more bytes than asked for.
     MeetBytes,
-    /// Settle the drawing again after strokes were removed for bytes.
-    Shorten,
     /// Hand over the best file.
     Done,
 }
@@ -58,6 +71,15 @@ pub(super) enum Purpose {
     TopUp,
     /// To reach the fidelity asked for.
     Correct,
+}
+
+/// The limit that a finished drawing is measured against.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum Limit {
+    /// The fidelity asked for, and then the bytes.
+    Fidelity,
+    /// The bytes alone: strokes were removed for these.
+    Bytes,
 }
 
 /// The result of a phase, as far as the next phase depends on it.
@@ -82,6 +104,9 @@ fn polishes_all(config: &Config) -> bool {
     config.polish && !config.progressive
 }
 
+/// The first of the phases that finish a drawing.
+const FINISH: Phase = Phase::Restrict(Limit::Fidelity);
+
 /// The phase that follows `phase`, given its outcome.
 pub(super) fn next(phase: Phase, outcome: Outcome, config: &Config) -> Phase {
     use Outcome::{Met, Rejected, Removed, Seeded, Short};
@@ -94,29 +119,33 @@ pub(super) fn next(phase: Phase, outcome: Outcome, config: &Config) -> Phase {
 
         (Phase::Grow, Seeded(purpose)) => Phase::Stage(purpose),
         (Phase::Grow, _) if polishes_all(config) => Phase::Polish(Purpose::Plan),
-        (Phase::Grow, _) => Phase::Settle,
+        (Phase::Grow, _) => FINISH,
 
         (Phase::Stage(purpose), _) if config.progressive => Phase::StagePolish(purpose),
         (Phase::Stage(purpose) | Phase::StagePolish(purpose), outcome) => match purpose {
             Purpose::Trace => Phase::Trace,
             Purpose::Plan => Phase::Grow,
-            Purpose::TopUp => Phase::Settle,
+            Purpose::TopUp => FINISH,
             // No further stroke helps.
             Purpose::Correct if outcome == Rejected => Phase::MeetBytes,
             Purpose::Correct => Phase::Polish(Purpose::Correct),
         },
 
         (Phase::Polish(_), Seeded(purpose)) => Phase::Stage(purpose),
-        (Phase::Polish(_), _) => Phase::Settle,
-        (Phase::Settle, _) => Phase::MeetFidelity,
+        (Phase::Polish(_), _) => FINISH,
+
+        (Phase::Restrict(limit), _) => Phase::Settle(limit),
+        (Phase::Settle(limit), _) => Phase::Nudge(limit),
+        (Phase::Nudge(limit), _) => Phase::Compare(limit),
+        (Phase::Compare(Limit::Fidelity), _) => Phase::MeetFidelity,
+        (Phase::Compare(Limit::Bytes), _) => Phase::MeetBytes,
 
         (Phase::MeetFidelity, Seeded(purpose)) => Phase::Stage(purpose),
         (Phase::MeetFidelity, Removed) => Phase::Polish(Purpose::Correct),
         (Phase::MeetFidelity, _) => Phase::MeetBytes,
 
-        (Phase::MeetBytes, Removed) => Phase::Shorten,
+        (Phase::MeetBytes, Removed) => Phase::Restrict(Limit::Bytes),
         (Phase::MeetBytes, Short) => Phase::Polish(Purpose::Correct),
-        (Phase::Shorten, _) => Phase::MeetBytes,
         (Phase::MeetBytes | Phase::Done, _) => Phase::Done,
     }
 }
@@ -144,16 +173,29 @@ impl Phase {
         )
     }
 
+    /// Whether a fit can go on from the state before this phase. No state holds the file that settling hands on.
+    pub(super) fn is_resumable(self) -> bool {
+        !matches!(self, Self::Nudge(_) | Self::Compare(_))
+    }
+
     /// Whether to keep the state before this phase even if the checkpoint is not due: the phase takes long and cannot
     /// be divided, or nothing is left to do.
     pub(super) fn is_milestone(self) -> bool {
-        matches!(self, Self::Settle | Self::Shorten | Self::Done)
+        matches!(self, Self::Restrict(_) | Self::Done)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The phases that finish a drawing.
+    const FINISHED: [Phase; 4] = [
+        FINISH,
+        Phase::Settle(Limit::Fidelity),
+        Phase::Nudge(Limit::Fidelity),
+        Phase::Compare(Limit::Fidelity),
+    ];
 
     /// The phases from the first to the last, each with the outcome that `outcome` gives it.
     fn order(config: &Config, outcome: impl Fn(Phase, usize) -> Outcome) -> Vec<Phase> {
@@ -173,30 +215,23 @@ mod tests {
             _ => Outcome::Over,
         });
         let stage = [Phase::Grow, Phase::Stage(Purpose::Plan)];
-        let rest = [
-            Phase::Grow,
-            Phase::Polish(Purpose::Plan),
-            Phase::Settle,
-            Phase::MeetFidelity,
-            Phase::MeetBytes,
-            Phase::Done,
-        ];
-        assert_eq!(phases, [&stage[..], &stage, &rest].concat());
+        let polish = [Phase::Grow, Phase::Polish(Purpose::Plan)];
+        let rest = [Phase::MeetFidelity, Phase::MeetBytes, Phase::Done];
+        let expected = [&stage[..], &stage, &polish, &FINISHED, &rest];
+        assert_eq!(phases, expected.concat());
     }
 
     #[test]
-    fn what_a_correction_adds_or_removes_is_polished_and_settled() {
+    fn what_a_correction_adds_or_removes_is_polished_and_finished() {
         let phases = order(&Config::default(), |phase, visits| match (phase, visits) {
             (Phase::MeetFidelity, 1) => Outcome::Seeded(Purpose::Correct),
             (Phase::MeetFidelity, 2) => Outcome::Removed,
             _ => Outcome::Over,
         });
         let first = phases.iter().position(|&p| p == Phase::MeetFidelity);
-        let fitted = [
-            Phase::Polish(Purpose::Correct),
-            Phase::Settle,
-            Phase::MeetFidelity,
-        ];
+        let polish = [Phase::Polish(Purpose::Correct)];
+        let meet = [Phase::MeetFidelity];
+        let fitted = [&polish[..], &FINISHED, &meet].concat();
         let stage = [Phase::MeetFidelity, Phase::Stage(Purpose::Correct)];
         let end = [Phase::MeetBytes, Phase::Done];
         let expected = [&stage[..], &fitted, &fitted, &end].concat();
@@ -220,8 +255,8 @@ mod tests {
             Phase::MeetBytes if visits <= 3 => Outcome::Removed,
             _ => Outcome::Over,
         });
-        let shortened = phases.iter().filter(|&&p| p == Phase::Shorten).count();
-        assert_eq!(shortened, 3);
+        let shorter = Phase::Restrict(Limit::Bytes);
+        assert_eq!(phases.iter().filter(|&&p| p == shorter).count(), 3);
     }
 
     #[test]

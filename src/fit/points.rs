@@ -13,17 +13,16 @@ mod terrain;
 
 use rayon::prelude::*;
 
+use super::budget::price::Price;
 use super::budget::{self, typical_bytes};
+use super::config::Config;
 use super::drawing::Drawing;
 use super::recipe::Points;
-use super::session::Session;
+use super::run::session::Session;
 use crate::render::{StrokeRef, Strokes, Survey};
 use edits::Edit;
 pub(super) use shed::shed;
 use terrain::Terrain;
-
-/// Most points that a stroke loses at the end of the polish.
-const PRUNINGS: usize = 30;
 
 /// Least segments of a line or a curve in a survey.
 const LEAST: usize = 4;
@@ -34,12 +33,25 @@ const LEAST: usize = 4;
 pub(super) fn rearrange(session: &mut Session<'_>, done: f32) -> Vec<Option<usize>> {
     let excess = excess(session);
     if excess > 0 {
-        return shed(session, excess);
+        return shed(
+            &mut session.drawing,
+            session.price,
+            session.recipe.points.at_a_time,
+            excess,
+        );
     }
     // Bytes that are left late in the polish are for points: no stroke will come for them.
     let has_strokes = session.config.budget.bytes.is_some() && done >= session.recipe.points.alone;
-    let spare = if has_strokes { 0.0 } else { spare(session) };
-    let joined = joins::join(session, spare);
+    let (config, points) = (session.config, session.recipe.points);
+    let drawing = &mut session.drawing;
+    // Under a price no stroke takes the place of another.
+    let is_priced = config.quality_for(drawing.pixels()).is_some();
+    let spare = match has_strokes || is_priced {
+        true => 0.0,
+        false => quantile_worth(drawing, points.spared),
+    };
+    let most = config.points.unwrap_or(usize::MAX);
+    let joined = joins::join(drawing, session.price, points.joins, most, spare);
     let edited = edit(session, spare);
     match joined {
         None => edited,
@@ -49,10 +61,9 @@ pub(super) fn rearrange(session: &mut Session<'_>, done: f32) -> Vec<Option<usiz
 
 /// Takes away points that are not worth their price now that the strokes are where they belong, as long as that adds as
 /// little error as was foreseen. Each stroke loses at most one point at a time.
-pub(super) fn prune(session: &mut Session<'_>) {
-    for _ in 0..PRUNINGS {
-        let to_keep = least_gains(session)[1];
-        let drawing = &mut session.drawing;
+pub(super) fn prune(drawing: &mut Drawing, price: Price, prunings: usize) {
+    for _ in 0..prunings {
+        let [_, to_keep] = price.in_drawing(drawing).of_point();
         let survey = drawing.survey(LEAST);
         let strokes = drawing.free();
         let removal = |i: usize| {
@@ -74,20 +85,10 @@ pub(super) fn prune(session: &mut Session<'_>) {
     }
 }
 
-/// What a point has to gain to be added and to stay.
-fn least_gains(session: &mut Session<'_>) -> [f32; 2] {
-    session.price_now().of_point()
-}
-
-/// What a stroke is worth that could be spared, where a budget binds. A freed stroke would be used where it is worth
-/// more, and a point has to be worth as much for its bytes. Under a price no stroke takes the place of another.
-fn spare(session: &mut Session<'_>) -> f32 {
-    let pixels = session.drawing.pixels();
-    if session.config.quality_for(pixels).is_some() {
-        return 0.0;
-    }
-    let share = session.recipe.points.spared;
-    let mut worth = session.drawing.judge().worth;
+/// The worth that a `share` of the strokes is below: what a stroke is worth that could be spared, where a budget binds. It
+/// would be used where it is worth more, and a point has to be worth as much for its bytes.
+fn quantile_worth(drawing: &mut Drawing, share: f32) -> f32 {
+    let mut worth = drawing.judge().worth;
     if worth.is_empty() {
         return 0.0;
     }
@@ -101,10 +102,11 @@ fn edit(session: &mut Session<'_>, spare: f32) -> Vec<Option<usize>> {
     let points = session.recipe.points;
     let stroke_bytes = typical_bytes(session.config, &session.target) as f32;
     let share = session.price.point_bytes() as f32 / stroke_bytes;
-    let prices = least_gains(session).map(|least| least.max(spare * share / points.gain));
     let room = room(session);
-    let limits = Limits::of(session);
     let drawing = &mut session.drawing;
+    let limits = Limits::of(session.config, drawing.pixels());
+    let prices = session.price.in_drawing(drawing).of_point();
+    let prices = prices.map(|least| least.max(spare * share / points.gain));
     let survey = drawing.survey(LEAST);
     let strokes = drawing.free();
     let options = |i: usize| Options::new(&survey, strokes.get(i), i, limits, &points);
@@ -149,11 +151,10 @@ struct Limits {
 }
 
 impl Limits {
-    fn of(session: &Session<'_>) -> Self {
-        let pixels = session.drawing.pixels();
+    fn of(config: &Config, pixels: usize) -> Self {
         Self {
-            most: session.config.points.unwrap_or(usize::MAX),
-            toggles: budget::prices_points(session.config, pixels),
+            most: config.points.unwrap_or(usize::MAX),
+            toggles: budget::prices_points(config, pixels),
         }
     }
 }
@@ -295,8 +296,8 @@ impl Drawing {
                 let at = source.map(|k| range.start + 2 * k);
                 sources.extend([at, at.map(|at| at + 1)]);
             }
-            let look = range.start + 2 * stroke.points.len()..range.end;
-            sources.extend(look.map(Some));
+            let style = range.start + 2 * stroke.points.len()..range.end;
+            sources.extend(style.map(Some));
         }
         *self.free_mut() = edited;
         sources

@@ -15,6 +15,9 @@ use crate::optim::AdamParams;
 use crate::seed::Probing;
 use crate::trace::Tracing;
 
+/// Pixels of a picture that a screen shows well at once, 768×512: the default quality is for so many.
+pub const SCREEN_PIXELS: usize = 768 * 512;
+
 /// How much work to spend on a drawing.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Preset {
@@ -64,6 +67,10 @@ pub struct Recipe {
     pub correction: Correction,
     /// How the background is chosen.
     pub background: BackgroundChoice,
+    /// To which pixels a picture is reduced.
+    pub reduction: Reduction,
+    /// Most strokes of a drawing that competes with those of shorter presets. A guess.
+    pub rivals: usize,
     /// How a time limit is divided.
     pub time: TimeShares,
 }
@@ -231,7 +238,7 @@ pub struct Dense {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Relocation {
     /// Iterations between relocations. 60, 30, 20: −0.10, 0, +0.06 dB at a fifth more time, before there were points. 24
-    /// instead of 30, with as many relocations in all: +0.1 dB.
+    /// instead of 30, with as many relocations in all: +0.1 dB. 25 divides the iterations; it was not measured by itself.
     pub every: usize,
     /// Share of the strokes that one relocation may move. 0.1, 0.2, 0.4: −0.06, 0, +0.12 dB; since gains are multiplied,
     /// 0.15 and 0.5: −0.02, 0.00.
@@ -281,10 +288,18 @@ pub struct Points {
     pub gain: f32,
     /// What a control point is taken to gain, in units of what it is found to.
     pub smoothness: f32,
-    /// The strokes could spare one that is worth as much as the stroke that this share of them is worth less than.
+    /// Quantile of stroke worth, 0..1, at which a stroke counts as dispensable. A guess.
     pub spared: f32,
-    /// The quality that sets the price of points where a fidelity is asked for, dB beyond that fidelity.
+    /// Most points that a stroke loses at the end of the polish. A guess.
+    pub prunings: usize,
+    /// One in this many of the points and strokes that could go for bytes goes at a time. A guess: what the next round offers
+    /// may be cheaper than the dearest offers of this one.
+    pub at_a_time: usize,
+    /// The quality that sets the price of points where a fidelity is asked for, dB beyond that fidelity. A guess.
     pub beyond_db: f64,
+    /// The price of a stroke's bytes there, in units of that of a point's: as many strokes come as it takes, but none that
+    /// draws nothing. A guess.
+    pub stroke_price: f32,
     /// Which strokes may be joined end to end.
     pub joins: Joins,
 }
@@ -329,10 +344,12 @@ pub struct Recoloring {
     /// A stroke keeps its colour if it shows in fewer pixels than this. Half, twice: 0.00 dB.
     pub min_shown: f32,
     /// Share of the pixels that show the background where it is paper: a background that a given palette does not
-    /// replace.
+    /// replace. A guess.
     pub paper_share: f32,
-    /// Least difference, per channel, of paper from all colours of the palette.
+    /// Least difference, per channel, of paper from all colours of the palette. A guess.
     pub paper_distance: f32,
+    /// Number of neighbouring strokes that are compared to stack their colours, which takes time with its square. A guess.
+    pub window: usize,
 }
 
 /// How opaque strokes come to share pens (a colour and a width), for the smallest form of a file.
@@ -358,11 +375,21 @@ pub struct Pens {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sharing {
     /// How much the squared error may grow by each of three steps (opaque strokes, few widths, few colours), in units of
-    /// that of the drawing, before the drawing is settled.
+    /// that of the drawing, before the drawing is settled. A guess, as are the other numbers.
     pub error: f64,
+    /// Most times that a step is made shorter because it added too much error.
+    pub trials: i32,
+    /// Most strokes that are compared for their colours; drawings of more are not of a few pens.
+    pub most: usize,
+    /// The least opacity of a stroke that may become opaque. Less is meant to let through what is behind.
+    pub nearly_opaque: f32,
+    /// How much of a stroke lies on other strokes rather than on the page.
+    pub off_page: f32,
+    /// A stroke of a smaller radius, px, covers few pixels in full, so that width and opacity look alike.
+    pub thin: f32,
 }
 
-/// How detail of the picture hides errors, with [`Look::Eye`](super::Look::Eye).
+/// How detail of the picture hides errors, with [`ErrorWeighting::Eye`](super::ErrorWeighting::Eye).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Masking {
     /// Rows and columns of the window to each side of a pixel.
@@ -426,6 +453,8 @@ pub struct Nudging {
     pub tries: usize,
     /// Most places that are tried in all, unless one sweep has more.
     pub trials: usize,
+    /// Share of the trials that move a whole stroke, not one of its points. A guess.
+    pub whole: f32,
     /// Farthest that a point moves along each axis, px. 0.07, 0.15: no change beyond 0.1 dB. Without a limit, Cairo lost 5 dB
     /// before exact areas judged as well.
     pub reach_px: f32,
@@ -452,8 +481,18 @@ pub struct Correction {
     /// Least share of the missing fidelity that more strokes have to bring, or none of them will bring the rest. Without this end,
     /// parrots-256 at 42 dB takes 23 instead of 10 s for 0.3 dB.
     pub least_gain: f64,
+    /// Gain of doublings to come, in units of that of the last one, at most. A guess: with 1, a photograph whose gains rise
+    /// again would be given up.
+    pub hope: f64,
+    /// Strokes too few for their gains to tell of those of many. A guess.
+    pub few_strokes: usize,
+    /// Strokes below which one more may be what is missing. A disc without antialiasing needs 9 for 30 dB, and gains nothing
+    /// by the second to fourth.
+    pub very_few_strokes: usize,
     /// A file that uses less than this share of its bytes gets more points. A guess.
     pub filled: f64,
+    /// Layers are joined that would take more than this share of the bytes. A guess.
+    pub layers_share: f64,
     /// Iterations of polish as long as the drawing is far from the fidelity, in units of those of the first polish. 0.4 instead of 0.2:
     /// kodim04 at 36 dB takes 24 instead of 11.7 s.
     pub approach_share: f64,
@@ -476,7 +515,7 @@ pub struct BackgroundChoice {
     pub shade: ShadeChoice,
 }
 
-/// When a gradient becomes the page, and how it is fitted.
+/// When a gradient becomes the page, and how it is fitted. All of it is a guess.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShadeChoice {
     /// Blocks along the longer side of the picture, whose means are fitted.
@@ -491,6 +530,39 @@ pub struct ShadeChoice {
     pub hopeless_share: f32,
     /// Most stops.
     pub stops: usize,
+    /// How often a shade is fitted to the blocks that the last one has met.
+    pub rounds: usize,
+    /// A line that is level or upright may be worse than the best one by this factor.
+    pub level: f32,
+    /// One more stop has to remove this share of the squared error.
+    pub stop_share: f64,
+    /// How strongly stops that nothing tells about are drawn to the others.
+    pub ridge: f64,
+}
+
+/// To which pixels a picture is reduced before it is drawn; `docs/accuracy.md` has what was measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reduction {
+    /// Pixels that a drawing of as many strokes as pay needs. It is made for a screen, of which this is twice the size.
+    pub enough_pixels: usize,
+    /// Fewest pixels that a picture is reduced to, however little detail it has: the price of strokes is that of a screen.
+    pub least_pixels: usize,
+    /// Pixels that a stroke needs, where their number is given: a dozen for each of its points, and more for their places.
+    pub pixels_per_stroke: usize,
+    /// Bytes of a stroke, about.
+    pub bytes_per_stroke: usize,
+    /// Fidelity of a picture that was halved and enlarged again, dB, from which on its half is as good. Strokes end far
+    /// below.
+    pub same_db: f64,
+    /// Such a fidelity of lines and sharp edges, whose places half as many pixels tell as well.
+    pub nearly_same_db: f64,
+    /// Share of pixels whose neighbours have their colour: flat art and drawings of lines have more, photographs mostly
+    /// less.
+    pub flat_share: f64,
+    /// Largest difference of neighbours of one colour.
+    pub one_color: f32,
+    /// A reduction by less than this along each side is not worth it.
+    pub least_factor: f64,
 }
 
 /// How a time limit is divided among descent, writing and judging. The unit of most durations is a *write*: the time to
@@ -522,7 +594,7 @@ pub struct TimeShares {
     /// steps, so that one of 20 steps takes a drawing from 34 dB to 25.
     pub min_polish: f64,
     /// Share of the time that measuring writes may take.
-    pub rehearsals: f64,
+    pub trial_writes: f64,
     /// Least number of steps that make a round of settling worth its write.
     pub min_round: f64,
     /// Weight of a new measurement in the running mean of the duration of steps.
@@ -550,11 +622,6 @@ impl Rates {
             radius: 0.0,
             ..self
         }
-    }
-
-    /// The same rates, but colours and radii stay as they are.
-    pub(super) fn without_pen(self) -> Self {
-        self.without_color().without_radius()
     }
 }
 

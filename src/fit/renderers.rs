@@ -7,10 +7,9 @@
 use rayon::prelude::*;
 
 use super::drawing::Drawing;
+use super::drawing::surface::Surface;
 use super::file::RenderedFile;
 use super::recipe::Settling;
-use super::session::Session;
-use super::surface::Surface;
 use crate::error::Result;
 use crate::image::Image;
 use crate::math;
@@ -41,10 +40,13 @@ struct Errors {
 }
 
 impl Renderings {
-    /// Writes the drawing and renders the file.
-    pub(super) fn of(session: &mut Session<'_>) -> Result<(RenderedFile, Self)> {
-        let (file, chromium) = session.render_file_beside(by_chromium)?;
-        let drawing = &mut session.drawing;
+    /// The renderings of `file`, which was written from `drawing`; `chromium` are Chromium's renders of it.
+    pub(super) fn of(
+        file: &RenderedFile,
+        chromium: Vec<Image>,
+        drawing: &mut Drawing,
+        settling: Settling,
+    ) -> Result<Self> {
         let own = drawing.soft(&file.rounded.scene);
         let resvg = &file.drawn;
         let errors = |(i, surface): (usize, &Surface)| {
@@ -63,13 +65,12 @@ impl Renderings {
         };
         let surfaces = drawing.surfaces.par_iter().enumerate();
         let errors: Result<_> = surfaces.map(errors).collect();
-        let seen = Self {
-            settling: session.recipe.settling,
+        Ok(Self {
+            settling,
             errors: errors?,
             chromium,
             own,
-        };
-        Ok((file, seen))
+        })
     }
 
     /// The largest value over all mattes.
@@ -131,7 +132,7 @@ impl Renderings {
 }
 
 /// Chromium's renders of `scene`, one per surface.
-fn by_chromium(scene: &Scene, surfaces: &[Surface]) -> Vec<Image> {
+pub(super) fn by_chromium(scene: &Scene, surfaces: &[Surface]) -> Vec<Image> {
     let backdrops: Vec<Image> = surfaces.iter().map(|s| s.empty(scene).to_image()).collect();
     chromium::draw(scene.strokes(), &backdrops)
 }

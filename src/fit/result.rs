@@ -5,7 +5,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::base::Base;
-use super::focus::Focus;
+use super::drawing::focus::Focus;
 use crate::image::Image;
 use crate::scene::{Dropped, Scene};
 use crate::svg::WriteOptions;

@@ -5,7 +5,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::{Background, Colors, Look, Preset};
+use super::{Background, Colors, ErrorWeighting, Preset};
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::{color, quantum};
 
@@ -41,7 +41,7 @@ impl FromStr for Preset {
     }
 }
 
-impl fmt::Display for Look {
+impl fmt::Display for ErrorWeighting {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Eye => "eye",
@@ -50,7 +50,7 @@ impl fmt::Display for Look {
     }
 }
 
-impl FromStr for Look {
+impl FromStr for ErrorWeighting {
     type Err = Error;
 
     /// `eye` or `exact`.

@@ -174,7 +174,7 @@ fn clamp(mut stroke: StrokeMut<'_>, size: [f32; 2]) {
     for c in stroke.color_mut() {
         *c = c.clamp(0.0, 1.0);
     }
-    stroke.look[0] = stroke.look[0].clamp(0.0, LARGEST);
+    stroke.style[0] = stroke.style[0].clamp(0.0, LARGEST);
 }
 
 impl ArticleRun {

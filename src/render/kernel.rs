@@ -45,7 +45,7 @@ use super::CanvasLoss;
 use super::edge::{Edge, Reach, SoftEdge};
 use super::grid::{BLOCKS, BlockRgb, BlockSet, Lanes, TileRgb, TileWeights, uniform_tile};
 use super::polylines::Polylines;
-use super::strokes::LOOK;
+use super::strokes::STYLE;
 use stack::Stack;
 use sums::{EdgeBlock, Grounds, Looks, Matte, OfSegment, OfStroke, Shifts};
 use union::{Kept, Segments, Union, shared};
@@ -196,8 +196,8 @@ impl TileJob<'_> {
     }
 
     /// Radius, red, green, blue and opacity of a listed stroke.
-    fn look(&self, slot: usize) -> &[f32; LOOK] {
-        &self.polylines.looks[self.listed[slot].stroke as usize]
+    fn style(&self, slot: usize) -> &[f32; STYLE] {
+        &self.polylines.styles[self.listed[slot].stroke as usize]
     }
 
     /// The segments of a listed stroke.
@@ -225,7 +225,7 @@ pub(super) struct TileSums {
 }
 
 #[inline(always)]
-fn splat_rgb<S: Simd>(simd: S, &[_, red, green, blue, _]: &[f32; LOOK]) -> [f32x16<S>; 3] {
+fn splat_rgb<S: Simd>(simd: S, &[_, red, green, blue, _]: &[f32; STYLE]) -> [f32x16<S>; 3] {
     [
         f32x16::splat(simd, red),
         f32x16::splat(simd, green),
@@ -262,11 +262,11 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
     for slot in (0..job.listed.len()).rev() {
         // Sort the tile's blocks by what the stroke does there: nothing, a soft edge, or full coverage. Blocks that are opaque
         // by now drop out.
-        let look = job.look(slot);
+        let style = job.style(slot);
         let range = job.range(slot);
         let segments = job.segments(slot, range.clone());
         let near = &mut near[range];
-        let radius = look[0];
+        let radius = style[0];
         let (touched, core) = if near.len() == 1 {
             let (touched, core) = segments.get(0).blocks(simd, radius, job.reach);
             near[0] = touched;
@@ -287,8 +287,8 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
         // Make room for what pass 2 needs. The two cursors walk over it in the order in which the blocks are visited: shared
         // ones, those of each segment alone, the core.
         visits.push(visit);
-        let rgb = splat_rgb(simd, look);
-        let opacity = f32x16::splat(simd, look[LOOK - 1].max(FAINTEST));
+        let rgb = splat_rgb(simd, style);
+        let opacity = f32x16::splat(simd, style[STYLE - 1].max(FAINTEST));
         let mut through = kept_transmittance.push(visit.edge | visit.core).iter_mut();
         let mut edges = kept_edges.push(visit.edge).iter_mut();
         // Near joints, several segments compete for each pixel: the nearest one decides.
@@ -405,11 +405,11 @@ fn back_to_front<S: Simd, X: Extras>(
     // Pass 2 visits the same strokes in reverse, and in each of them the same blocks in the same order.
     for visit in visits.iter().rev() {
         let slot = visit.slot as usize;
-        let look = job.look(slot);
+        let style = job.style(slot);
         let range = job.range(slot);
         let segments = job.segments(slot, range.clone());
         let near = &near[range];
-        let rgb = splat_rgb(simd, look);
+        let rgb = splat_rgb(simd, style);
         let mut stroke = Looks::new(simd);
         let first = sums.segments.len() as u32;
         // Take back what pass 1 kept: the cursors walk in its order.
@@ -458,7 +458,7 @@ fn back_to_front<S: Simd, X: Extras>(
                 sums.stiffness.push(shifts.stiffness());
             }
         }
-        let opacity = f32x16::splat(simd, look[LOOK - 1].max(FAINTEST));
+        let opacity = f32x16::splat(simd, style[STYLE - 1].max(FAINTEST));
         // In the core, coverage does not change with the shape: only colour, opacity and worth have a part in it.
         for (block, t) in members(visit.core).zip(through) {
             stroke.blend::<X>(simd, opacity, load(simd, t), &rgb, grounds.at(block));
@@ -467,7 +467,7 @@ fn back_to_front<S: Simd, X: Extras>(
         sums.strokes.push(OfStroke {
             id: job.listed[slot].stroke,
             first,
-            look: stroke.look(look[LOOK - 1].max(FAINTEST)),
+            style: stroke.style(style[STYLE - 1].max(FAINTEST)),
             worth: if X::WORTH { stroke.worth() } else { 0.0 },
         });
     }

@@ -80,7 +80,7 @@ pub use gradients::{Gradients, Survey};
 pub(crate) use grid::multiply;
 pub use grid::{BlockRgb, Canvas, Grid, Lanes, TILE, TileRgb};
 pub use strokes::{
-    AX, AY, BX, BY, LOOK, OPACITY, PARAMS, Params, RADIUS, RED, StrokeMut, StrokeRef, Strokes,
+    AX, AY, BX, BY, OPACITY, PARAMS, Params, RADIUS, RED, STYLE, StrokeMut, StrokeRef, Strokes,
 };
 
 use crate::coverage::Coverage;
@@ -369,14 +369,14 @@ impl Renderer {
             work.listed.clear();
         }
         // Strokes come in drawing order, and so do the lists.
-        for (id, (look, [low, high])) in self
+        for (id, (style, [low, high])) in self
             .polylines
-            .looks
+            .styles
             .iter()
             .zip(&self.polylines.boxes)
             .enumerate()
         {
-            let margin = look[0] + reach.outside;
+            let margin = style[0] + reach.outside;
             let [columns, rows] = self.grid.tiles_touched(
                 low[0] - margin,
                 low[1] - margin,

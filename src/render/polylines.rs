@@ -11,7 +11,7 @@ use crate::math::Vector;
 use crate::sdf;
 
 use super::gradients::add;
-use super::strokes::{LOOK, StrokeRef, Strokes};
+use super::strokes::{STYLE, StrokeRef, Strokes};
 
 /// Strokes that are flattened at a time.
 pub(super) const CHUNK: usize = 32;
@@ -25,7 +25,7 @@ pub(super) struct Polylines {
     /// one segment; that of a dot has no length.
     pub(super) firsts: Vec<u32>,
     /// Radius, red, green, blue and opacity of each stroke.
-    pub(super) looks: Vec<[f32; LOOK]>,
+    pub(super) styles: Vec<[f32; STYLE]>,
     /// The smallest and the largest x and y of the vertices of each stroke, px.
     pub(super) boxes: Vec<[[f32; 2]; 2]>,
     /// Number of segments of each curve, curve by curve.
@@ -59,7 +59,7 @@ impl Polylines {
             self.first_curves.extend(firsts);
             self.curves.extend(&part.curves);
             self.vertices.extend(&part.vertices);
-            self.looks.extend(&part.looks);
+            self.styles.extend(&part.styles);
             self.boxes.extend(&part.boxes);
         }
         self.firsts.push(self.vertices.len() as u32);
@@ -69,7 +69,7 @@ impl Polylines {
     fn clear(&mut self) {
         self.vertices.clear();
         self.firsts.clear();
-        self.looks.clear();
+        self.styles.clear();
         self.boxes.clear();
         self.curves.clear();
         self.first_curves.clear();
@@ -80,10 +80,10 @@ impl Polylines {
         self.firsts.push(first as u32);
         // A radius that is no number touches no tile: such a stroke draws nothing, and its derivatives are 0.
         let is_finite = stroke.is_finite();
-        self.looks.push(if is_finite {
-            *stroke.look
+        self.styles.push(if is_finite {
+            *stroke.style
         } else {
-            [f32::NAN; LOOK]
+            [f32::NAN; STYLE]
         });
         self.first_curves.push(self.curves.len() as u32);
         // A path of lines is its own polyline.
@@ -349,7 +349,7 @@ mod tests {
                     points: &points,
                     off: &off,
                     closed,
-                    look: &[1.0, 1.0, 1.0, 1.0, [0.2, 0.6, 1.0][kinds as usize % 3]],
+                    style: &[1.0, 1.0, 1.0, 1.0, [0.2, 0.6, 1.0][kinds as usize % 3]],
                 });
             }
         }
@@ -428,7 +428,7 @@ mod tests {
                 points: &[[0.0, 0.0], [40.0, 0.0], [40.0, 40.0]],
                 off: &[false, true, false],
                 closed: false,
-                look: &[1.0, 1.0, 1.0, 1.0, opacity],
+                style: &[1.0, 1.0, 1.0, 1.0, opacity],
             };
             let mut curves = Vec::new();
             flatten(hook, 1, &mut Vec::new(), &mut curves);

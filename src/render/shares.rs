@@ -8,7 +8,7 @@ use super::TileWork;
 use super::gradients::{Gradients, add};
 use super::kernel::Sums;
 use super::polylines::{CHUNK, Polylines};
-use super::strokes::{LOOK, Strokes};
+use super::strokes::{STYLE, Strokes};
 
 /// Most shares.
 const SHARES: usize = 16;
@@ -60,25 +60,25 @@ impl Share<'_> {
         let before = strokes.range(self.ids.start).start;
         let first = polylines.firsts[self.ids.start];
         for Sums {
-            strokes: looks,
+            strokes: styles,
             segments,
             ..
         } in tiles.iter().map(|work| &work.sums)
         {
             // A tile lists its strokes in drawing order, so that the share's are one run.
             let [start, end] = [self.ids.start, self.ids.end]
-                .map(|id| looks.partition_point(|row| (row.id as usize) < id));
-            for row in &looks[start..end] {
+                .map(|id| styles.partition_point(|row| (row.id as usize) < id));
+            for row in &styles[start..end] {
                 let stroke = row.id as usize;
                 let end = strokes.range(stroke).end - before;
-                add(&mut self.numbers[end - LOOK..end], &row.look);
+                add(&mut self.numbers[end - STYLE..end], &row.style);
                 if let Some(worth) = self.worths.get_mut(stroke - self.ids.start) {
                     *worth += row.worth;
                 }
             }
             // So are their segments.
             let [start, end] = [start, end].map(|at| {
-                let row = looks.get(at);
+                let row = styles.get(at);
                 row.map_or(segments.len(), |row| row.first as usize)
             });
             for row in &segments[start..end] {

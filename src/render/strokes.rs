@@ -35,11 +35,11 @@ pub(super) fn flatness(opacity: f32) -> f32 {
 pub type Params = [f32; PARAMS];
 
 /// Numbers of a stroke besides its points: radius, red, green, blue, opacity.
-pub const LOOK: usize = 5;
+pub const STYLE: usize = 5;
 
 /// Strokes, back to front, as one row of numbers.
 ///
-/// Each stroke has the x and y of its points, px, and then its *look*: radius (px), red, green, blue and opacity. So the
+/// Each stroke has the x and y of its points, px, and then its *style*: radius (px), red, green, blue and opacity. So the
 /// numbers of a stroke of two points are those of [`Params`].
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Strokes {
@@ -67,7 +67,7 @@ pub struct StrokeRef<'a> {
     /// True if the last point is joined to the first.
     pub closed: bool,
     /// Radius, red, green, blue, opacity.
-    pub look: &'a [f32; LOOK],
+    pub style: &'a [f32; STYLE],
 }
 
 /// One of [`Strokes`], to be changed.
@@ -76,24 +76,24 @@ pub struct StrokeMut<'a> {
     /// The points of its path, px.
     pub points: &'a mut [[f32; 2]],
     /// Radius, red, green, blue, opacity.
-    pub look: &'a mut [f32; LOOK],
+    pub style: &'a mut [f32; STYLE],
 }
 
 impl StrokeRef<'_> {
     /// Half the stroke width, px.
     pub fn radius(&self) -> f32 {
-        self.look[0]
+        self.style[0]
     }
 
     /// sRGB-encoded, 0..1.
     pub fn color(&self) -> Rgb {
-        let [_, red, green, blue, _] = *self.look;
+        let [_, red, green, blue, _] = *self.style;
         [red, green, blue]
     }
 
     /// 0..1.
     pub fn opacity(&self) -> f32 {
-        self.look[4]
+        self.style[4]
     }
 
     /// Largest distance between a curve of the path and the segments that the renderer draws in its place, px.
@@ -119,7 +119,7 @@ impl StrokeRef<'_> {
         // 0 times a number is 0, and NaN if the number is not finite; so there is nothing to branch on.
         let zero = |sum: f32, v: &f32| sum + 0.0 * v;
         let points = self.points.as_flattened().iter().fold(0.0, zero);
-        self.look.iter().fold(points, zero) == 0.0
+        self.style.iter().fold(points, zero) == 0.0
     }
 
     /// The stroke as a part of a scene.
@@ -141,7 +141,7 @@ impl StrokeRef<'_> {
 impl StrokeMut<'_> {
     /// The colour, to be changed.
     pub fn color_mut(&mut self) -> &mut [f32] {
-        &mut self.look[1..4]
+        &mut self.style[1..4]
     }
 }
 
@@ -184,8 +184,8 @@ impl Strokes {
 
     /// Where the numbers of stroke `i` are.
     pub fn range(&self, i: usize) -> std::ops::Range<usize> {
-        let start = 2 * self.first_point(i) + LOOK * i;
-        start..2 * self.outlines[i].end as usize + LOOK * (i + 1)
+        let start = 2 * self.first_point(i) + STYLE * i;
+        start..2 * self.outlines[i].end as usize + STYLE * (i + 1)
     }
 
     /// Stroke `i`, counted from the back.
@@ -194,14 +194,14 @@ impl Strokes {
     /// When there are not as many.
     pub fn get(&self, i: usize) -> StrokeRef<'_> {
         let Outline { end, closed } = self.outlines[i];
-        let (points, look) = self.numbers[self.range(i)]
+        let (points, style) = self.numbers[self.range(i)]
             .split_last_chunk()
-            .unwrap_or((&[], &NO_LOOK));
+            .unwrap_or((&[], &NO_STYLE));
         StrokeRef {
             points: points.as_chunks().0,
             off: &self.off[self.first_point(i)..end as usize],
             closed,
-            look,
+            style,
         }
     }
 
@@ -209,9 +209,9 @@ impl Strokes {
     pub fn change(&mut self, mut change: impl FnMut(usize, StrokeMut<'_>)) {
         for i in 0..self.len() {
             let range = self.range(i);
-            if let Some((points, look)) = self.numbers[range].split_last_chunk_mut() {
+            if let Some((points, style)) = self.numbers[range].split_last_chunk_mut() {
                 let points = points.as_chunks_mut().0;
-                change(i, StrokeMut { points, look });
+                change(i, StrokeMut { points, style });
             }
         }
     }
@@ -232,7 +232,7 @@ impl Strokes {
     /// Adds a stroke on top.
     pub fn push(&mut self, stroke: StrokeRef<'_>) {
         self.numbers.extend(stroke.points.as_flattened());
-        self.numbers.extend(stroke.look);
+        self.numbers.extend(stroke.style);
         self.off.extend(stroke.off);
         self.outlines.push(Outline {
             end: self.off.len() as u32,
@@ -242,12 +242,12 @@ impl Strokes {
 
     /// Adds a capsule on top.
     pub fn push_capsule(&mut self, capsule: &Params) {
-        if let Some((points, look)) = capsule.split_last_chunk() {
+        if let Some((points, style)) = capsule.split_last_chunk() {
             self.push(StrokeRef {
                 points: points.as_chunks().0,
                 off: &[false; 2],
                 closed: false,
-                look,
+                style,
             });
         }
     }
@@ -262,7 +262,7 @@ impl Strokes {
             points: &places,
             off: &off,
             closed: stroke.path.is_closed(),
-            look: &[stroke.radius, red, green, blue, stroke.opacity],
+            style: &[stroke.radius, red, green, blue, stroke.opacity],
         });
     }
 
@@ -285,7 +285,7 @@ impl Strokes {
         let first = self.first_point(at);
         let outlines = self.outlines.split_off(at).into_iter();
         Self {
-            numbers: self.numbers.split_off(2 * first + LOOK * at),
+            numbers: self.numbers.split_off(2 * first + STYLE * at),
             off: self.off.split_off(first),
             outlines: outlines
                 .map(|outline| Outline {
@@ -304,7 +304,7 @@ impl Strokes {
 }
 
 /// Look of a stroke without numbers.
-static NO_LOOK: [f32; LOOK] = [0.0; LOOK];
+static NO_STYLE: [f32; STYLE] = [0.0; STYLE];
 
 impl<'a> FromIterator<StrokeRef<'a>> for Strokes {
     fn from_iter<I: IntoIterator<Item = StrokeRef<'a>>>(strokes: I) -> Self {

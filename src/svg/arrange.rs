@@ -1,7 +1,7 @@
-//! Reorders strokes so that strokes of equal colour, width and opacity (of one *look*) become neighbours.
+//! Reorders strokes so that strokes of equal colour, width and opacity (of one *style*) become neighbours.
 //!
 //! Two strokes may swap if they share no pixel or have the same colour. Among the orders that keep all other
-//! pairs as they are, a greedy search picks one with few changes of look. The result depends only on the
+//! pairs as they are, a greedy search picks one with few changes of style. The result depends only on the
 //! strokes and on which lies above which, so arranging twice changes nothing.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -44,7 +44,7 @@ pub(super) fn layers(scene: &Scene, options: &WriteOptions) -> Vec<Layer> {
         for layer in &mut layers {
             let strokes = layer.strokes.iter_mut();
             strokes.for_each(|stroke| orient(stroke, options.unit()));
-            layer.strokes = arranged(std::mem::take(&mut layer.strokes), look, |s| s.width);
+            layer.strokes = arranged(std::mem::take(&mut layer.strokes), style_of, |s| s.width);
         }
     }
     if options.order == Order::Travel {
@@ -55,10 +55,11 @@ pub(super) fn layers(scene: &Scene, options: &WriteOptions) -> Vec<Layer> {
     layers
 }
 
-/// The strokes of a layer in an order of little travel. In the smallest form, those of one look stay together.
+/// The strokes of a layer in an order of little travel. In the smallest form, those of one style stay together.
 fn with_little_travel(strokes: Vec<Written>, form: Form) -> Vec<Written> {
     let mut shortened = Vec::with_capacity(strokes.len());
-    let is_together = |a: &Written, b: &Written| form != Form::Smallest || look(a) == look(b);
+    let is_together =
+        |a: &Written, b: &Written| form != Form::Smallest || style_of(a) == style_of(b);
     for run in strokes.chunk_by(is_together) {
         let from = tour::end(&shortened);
         shortened.extend(tour::shortened(run, from));
@@ -95,7 +96,7 @@ fn orient(stroke: &mut Written, unit: Unit) {
 }
 
 /// What strokes must have in common to be one path.
-pub(super) fn look(stroke: &Written) -> (i64, [u8; 3], u8) {
+pub(super) fn style_of(stroke: &Written) -> (i64, [u8; 3], u8) {
     (stroke.width, stroke.color, stroke.opacity)
 }
 
@@ -131,15 +132,15 @@ fn runs(strokes: &[Written]) -> impl Iterator<Item = &[Written]> {
     strokes.chunk_by(|a, b| a.color == b.color)
 }
 
-/// Reorders strokes so that those of one `run` are together as far as possible, and runs of one `kin` follow each
+/// Reorders strokes so that those of one `run` are together as far as possible, and runs of one `group_key` follow each
 /// other.
 fn arranged<R: Ord, K: Ord>(
     mut strokes: Vec<Written>,
     run: impl Fn(&Written) -> R,
-    kin: impl Fn(&Written) -> K,
+    group_key: impl Fn(&Written) -> K,
 ) -> Vec<Written> {
     for window in strokes.chunks_mut(WINDOW) {
-        let order = order(window, &run, &kin);
+        let order = order(window, &run, &group_key);
         let sorted: Vec<_> = order.iter().map(|&i| window[i].clone()).collect();
         window.clone_from_slice(&sorted);
     }
@@ -149,7 +150,7 @@ fn arranged<R: Ord, K: Ord>(
 fn order<R: Ord, K: Ord>(
     strokes: &[Written],
     run: impl Fn(&Written) -> R,
-    kin: impl Fn(&Written) -> K,
+    group_key: impl Fn(&Written) -> K,
 ) -> Vec<usize> {
     let above = above(strokes);
     let mut below = vec![0_usize; strokes.len()];
@@ -163,7 +164,12 @@ fn order<R: Ord, K: Ord>(
         }
     }
     let mut order: Vec<usize> = Vec::with_capacity(strokes.len());
-    while let Some(next) = take(&mut runs, order.last().map(|&i| &strokes[i]), &run, &kin) {
+    while let Some(next) = take(
+        &mut runs,
+        order.last().map(|&i| &strokes[i]),
+        &run,
+        &group_key,
+    ) {
         order.push(next);
         for &i in &above[next] {
             below[i] -= 1;
@@ -176,7 +182,7 @@ fn order<R: Ord, K: Ord>(
     order
 }
 
-/// The strokes of one look.
+/// The strokes of one style.
 #[derive(Default)]
 struct Run<'a> {
     /// Strokes that may be placed next.
@@ -185,41 +191,41 @@ struct Run<'a> {
     left: usize,
 }
 
-/// Takes a stroke of the same look as the last one, or begins a run.
+/// Takes a stroke of the same style as the last one, or begins a run.
 fn take<R: Ord, K: Ord>(
     runs: &mut BTreeMap<R, Run<'_>>,
     last: Option<&Written>,
     run: impl Fn(&Written) -> R,
-    kin: impl Fn(&Written) -> K,
+    group_key: impl Fn(&Written) -> K,
 ) -> Option<usize> {
     let may_go_on = |key: &R| runs.get(key).is_some_and(|run| !run.ready.is_empty());
     let key = last.map(&run).filter(may_go_on);
-    let key = key.or_else(|| begin(runs, last.map(&kin), kin).map(run))?;
+    let key = key.or_else(|| begin(runs, last.map(&group_key), group_key).map(run))?;
     let run = runs.get_mut(&key)?;
     run.left -= 1;
     run.ready.pop_first().map(|(_, i)| i)
 }
 
-/// The first stroke of the next run. It prefers a run that can be placed as a whole, then one of the `last` kin,
-/// then one of the kin with the most such runs, then the run with the most strokes ready.
+/// The first stroke of the next run. It prefers a run that can be placed as a whole, then one of the `last` group,
+/// then one of the group with the most such runs, then the run with the most strokes ready.
 fn begin<'a, R, K: Ord>(
     runs: &BTreeMap<R, Run<'a>>,
     last: Option<K>,
-    kin: impl Fn(&Written) -> K,
+    group_key: impl Fn(&Written) -> K,
 ) -> Option<&'a Written> {
     let ready = || {
         runs.values()
             .filter_map(|run| Some((run, run.ready.first()?.0)))
     };
     let is_whole = |run: &Run<'_>| run.ready.len() == run.left;
-    let mut kins = BTreeMap::<K, usize>::new();
+    let mut counts = BTreeMap::<K, usize>::new();
     for (_, first) in ready().filter(|(run, _)| is_whole(run)) {
-        *kins.entry(kin(first)).or_default() += 1;
+        *counts.entry(group_key(first)).or_default() += 1;
     }
     let rank = |(run, first): &(&Run<'_>, &Written)| {
-        let kin = Some(kin(first));
-        let relatives = kin.as_ref().and_then(|kin| kins.get(kin)).copied();
-        (is_whole(run), kin == last, relatives, run.ready.len())
+        let group = Some(group_key(first));
+        let relatives = group.as_ref().and_then(|group| counts.get(group)).copied();
+        (is_whole(run), group == last, relatives, run.ready.len())
     };
     ready().max_by_key(rank).map(|(_, first)| first)
 }
@@ -249,7 +255,7 @@ mod tests {
     }
 
     fn by_width(strokes: &[Written]) -> Vec<usize> {
-        order(strokes, look, |s| s.width)
+        order(strokes, style_of, |s| s.width)
     }
 
     #[test]

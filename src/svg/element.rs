@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::arrange::look;
+use super::arrange::style_of;
 use super::dialect::{self, Unit};
 use super::options::Form;
 use super::{outline, path};
@@ -78,7 +78,9 @@ fn split(strokes: &[Written]) -> Vec<&[Written]> {
 
 /// Whether `next` can join the element of `strokes` without changing the picture.
 fn joins(strokes: &[Written], next: &Written) -> bool {
-    let is_alike = strokes.last().is_some_and(|last| look(last) == look(next));
+    let is_alike = strokes
+        .last()
+        .is_some_and(|last| style_of(last) == style_of(next));
     is_alike && (next.opacity == u8::MAX || !strokes.iter().any(|stroke| stroke.meets(next)))
 }
 

@@ -51,7 +51,7 @@ pub enum Form {
     /// One stroke, with all its attributes.
     #[default]
     Plain,
-    /// As many strokes of one look as can be drawn together. Groups hold the attributes that neighbours share.
+    /// As many strokes of one style as can be drawn together. Groups hold the attributes that neighbours share.
     /// To allow this, strokes that do not touch may swap places, and a stroke may swap its ends. Numbers are
     /// whole: they count units of the last decimal.
     Smallest,
@@ -78,7 +78,7 @@ pub enum Order {
     Fitted,
     /// With little travel of a pen between strokes. Strokes change places where the picture stays the same, are drawn from
     /// either end, and closed paths begin at any of their points. In the smallest form this applies to the strokes of
-    /// each look.
+    /// each style.
     Travel,
 }
 

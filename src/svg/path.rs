@@ -1,4 +1,4 @@
-//! The attribute `d` of a path, which holds one stroke or several of one look.
+//! The attribute `d` of a path, which holds one stroke or several of one style.
 
 use super::dialect::{MAX_UNITS, Unit};
 use crate::scene::{PathPoint, Piece, UNITS_PER_PX, WrittenPath, WrittenPoint};

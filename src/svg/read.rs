@@ -139,24 +139,24 @@ impl<'a> Parser<'a> {
         let mut stage = Stage::default();
         let unit = group.either("transform", None, Unit::of_transform)?;
         let unit = unit.unwrap_or(Unit::PX);
-        let look = Look {
+        let style = Style {
             layer_width: group.either("stroke-width", None, |text| width(text, unit))?,
-            ..Look::new(unit, has_join)
+            ..Style::new(unit, has_join)
         };
-        self.strokes(&look, &mut stage)?;
+        self.strokes(&style, &mut stage)?;
         Ok(stage)
     }
 
     /// Adds the strokes up to the end of a group.
-    fn strokes(&mut self, look: &Look, stage: &mut Stage) -> Parsed<()> {
+    fn strokes(&mut self, style: &Style, stage: &mut Stage) -> Parsed<()> {
         loop {
             match self.next()? {
                 Tag::Open(e) if e.name == "path" => {
-                    stage.strokes.extend(look.of(&e, &["d"])?.strokes(&e)?);
+                    stage.strokes.extend(style.of(&e, &["d"])?.strokes(&e)?);
                     self.close(&e)?;
                 }
                 // Each group must set an attribute that is not set yet, which bounds their depth.
-                Tag::Open(e) if e.name == "g" => self.strokes(&look.of(&e, &[])?, stage)?,
+                Tag::Open(e) if e.name == "g" => self.strokes(&style.of(&e, &[])?, stage)?,
                 Tag::Open(e) if e.name == "title" => self.close(&e)?,
                 Tag::Open(e) => return Err(unexpected(&e)),
                 Tag::Close => return Ok(()),
@@ -316,7 +316,7 @@ fn background(rect: &Element, width: u32, height: u32) -> Parsed<Rgb> {
 
 /// The attributes that groups set for the strokes in them.
 #[derive(Debug, Clone)]
-struct Look {
+struct Style {
     color: Option<[u8; 3]>,
     width: Option<i64>,
     opacity: Option<u8>,
@@ -332,7 +332,7 @@ fn width(text: &str, unit: Unit) -> Option<i64> {
     unit.parse(text).filter(|&width| width > 0)
 }
 
-impl Look {
+impl Style {
     fn new(unit: Unit, has_join: bool) -> Self {
         Self {
             color: None,
@@ -368,7 +368,7 @@ impl Look {
         })
     }
 
-    /// The strokes of a path with this look.
+    /// The strokes of a path with this style.
     fn strokes(&self, path: &Element) -> Parsed<Vec<Stroke>> {
         let paths = path.parsed("d", |d| path::parse(d, self.unit))?;
         if !self.has_join && paths.iter().any(WrittenPath::has_joins) {

@@ -73,7 +73,7 @@ fn text(number: usize, layer: &Layer, options: &WriteOptions, unit: Unit) -> Str
     let form = options.form;
     let count = layer.strokes.len();
     let plural = if count == 1 { "" } else { "s" };
-    // Programs for plotters take the first digits of a label for the layer's number, be they those of a colour.
+    // Plotter software reads the leading digits of a label as the layer number, so `#102030` would become layer 102030.
     let count_first = match options.order {
         Order::Travel => format!("{number} "),
         Order::Fitted => String::new(),
@@ -100,7 +100,7 @@ fn text(number: usize, layer: &Layer, options: &WriteOptions, unit: Unit) -> Str
     let mut out = format!(
         "<g id=\"{id}\" inkscape:groupmode=\"layer\" inkscape:label=\"{label}\"{}{transform}{}>\n\
          <title>{label}: {count} stroke{plural}</title>\n",
-        look(layer, form),
+        style_attributes(layer, form),
         element::layer_width(&layer.strokes, form, unit)
     );
     element::push(&mut out, &layer.strokes, form, unit);
@@ -111,7 +111,7 @@ fn text(number: usize, layer: &Layer, options: &WriteOptions, unit: Unit) -> Str
 }
 
 /// The attributes of a layer that turn its paths into strokes.
-fn look(layer: &Layer, form: Form) -> &'static str {
+fn style_attributes(layer: &Layer, form: Form) -> &'static str {
     if form == Form::Outlines {
         ""
     } else if layer.strokes.iter().any(|stroke| stroke.path.has_joins()) {

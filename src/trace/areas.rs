@@ -8,6 +8,7 @@ use std::borrow::Cow;
 
 use rayon::prelude::*;
 
+use super::recipe::AreaColors;
 use crate::scene::Rgb;
 
 /// A pixel on one or two mattes: the colour on the first one, and that on the second one or zeros.
@@ -51,29 +52,18 @@ pub(super) struct Areas {
     pub(super) colors: Vec<Pixel>,
 }
 
-/// Most colours of a picture.
-const MOST_COLORS: usize = 24;
-/// Pixels that colours are chosen from.
-const SAMPLES: usize = 65_536;
-/// Farthest that a pixel may be from its colour.
-const NEAR: f32 = 0.12;
-/// Farthest that the pixels of a flat area are from its colour.
-const FLAT: f32 = 0.05;
-/// A colour is one that at least this share of the squared residual is near to.
-const LEAST_SHARE: f32 = 0.004;
-
 impl Areas {
-    /// The areas, unless less than `least_flat` of the squared residual lies in pixels close to one of few colours.
-    pub(super) fn of(pixels: &Pixels<'_>, least_flat: f32) -> Option<Self> {
+    /// The areas, unless less than `min_flat_share` of the squared residual lies in pixels close to one of few colours.
+    pub(super) fn of(pixels: &Pixels<'_>, min_flat_share: f32, choice: AreaColors) -> Option<Self> {
         let edges = pixels.edges();
-        let (colors, flat_share) = colors(pixels, &edges);
-        if flat_share < least_flat {
+        let (colors, flat_share) = colors(pixels, &edges, choice);
+        if flat_share < min_flat_share {
             return None;
         }
         let all = (0..edges.len()).into_par_iter();
         let inner: Vec<Label> = all
             .clone()
-            .map(|i| nearest_label(pixels, &colors, i))
+            .map(|i| nearest_label(pixels, &colors, choice.near, i))
             .collect();
         let label = |i: usize| match edges[i] {
             true => label_beside(pixels, &colors, &edges, &inner, i),
@@ -85,7 +75,7 @@ impl Areas {
 }
 
 /// The label of pixel `i` alone.
-fn nearest_label(pixels: &Pixels<'_>, colors: &[Pixel], i: usize) -> Label {
+fn nearest_label(pixels: &Pixels<'_>, colors: &[Pixel], near: f32, i: usize) -> Label {
     let (target, canvas) = (pixels.target.at(i), pixels.canvas.at(i));
     let mut best = (distance2(&target, &canvas), Label::Canvas);
     for (k, color) in colors.iter().enumerate() {
@@ -94,7 +84,7 @@ fn nearest_label(pixels: &Pixels<'_>, colors: &[Pixel], i: usize) -> Label {
             best = (away, Label::Color(k as u8));
         }
     }
-    if best.0 < 4.0 * NEAR * NEAR {
+    if best.0 < 4.0 * near * near {
         best.1
     } else {
         Label::Unknown
@@ -125,25 +115,27 @@ fn label_beside(
 }
 
 /// The colours of the pixels that differ from the canvas and are no edges, and the share of flat pixels among those.
-fn colors(pixels: &Pixels<'_>, edges: &[bool]) -> (Vec<Pixel>, f32) {
+/// Everything is weighted by the squared residual: what stands out from the canvas is what strokes have to draw.
+fn colors(pixels: &Pixels<'_>, edges: &[bool], choice: AreaColors) -> (Vec<Pixel>, f32) {
+    // Samples: antialiased pixels would add the mixtures of two colours, and what is like the canvas needs no colour.
     let residual2 = |i: usize| distance2(&pixels.target.at(i), &pixels.canvas.at(i));
-    let differs = |i: usize| !edges[i] && residual2(i) > NEAR * NEAR;
+    let differs = |i: usize| !edges[i] && residual2(i) > choice.near * choice.near;
     let differs: Vec<bool> = (0..edges.len()).into_par_iter().map(differs).collect();
     let count = differs.iter().filter(|differs| **differs).count();
-    let stride = count.div_ceil(SAMPLES).max(1);
+    let stride = count.div_ceil(choice.samples).max(1);
     let samples = (0..edges.len()).filter(|&i| differs[i]).step_by(stride);
-    let samples: Vec<usize> = samples.collect();
-    let all: f32 = samples.iter().map(|&i| residual2(i)).sum();
+    let samples: Vec<(Pixel, f32)> = samples
+        .map(|i| (pixels.target.at(i), residual2(i)))
+        .collect();
+    let all: f32 = samples.iter().map(|(_, weight)| weight).sum();
+    // Clusters: the first round begins one wherever none is near, and so needs no number of them; k-means follows.
     let mut means: Vec<(Pixel, f32)> = Vec::new();
     for round in 0..3 {
         let mut sums: Vec<(Pixel, f32)> = means.iter().map(|_| ([0.0; 6], 0.0)).collect();
-        for &i in &samples {
-            let pixel = &pixels.target.at(i);
-            let weight = residual2(i);
-            let found = nearest(&means, pixel, NEAR);
-            let k = match found {
+        for (pixel, weight) in &samples {
+            let k = match nearest(&means, pixel, choice.near) {
                 Some(k) => k,
-                None if round == 0 && means.len() < 4 * MOST_COLORS => {
+                None if round == 0 && means.len() < 4 * choice.most => {
                     means.push((*pixel, 0.0));
                     sums.push(([0.0; 6], 0.0));
                     means.len() - 1
@@ -151,9 +143,8 @@ fn colors(pixels: &Pixels<'_>, edges: &[bool]) -> (Vec<Pixel>, f32) {
                 None => continue,
             };
             let (sum, count) = &mut sums[k];
-            sum.iter_mut()
-                .zip(pixel)
-                .for_each(|(s, p)| *s += weight * p);
+            let channels = sum.iter_mut().zip(pixel);
+            channels.for_each(|(s, p)| *s += weight * p);
             *count += weight;
         }
         for ((mean, weight), (sum, count)) in means.iter_mut().zip(sums) {
@@ -162,12 +153,17 @@ fn colors(pixels: &Pixels<'_>, edges: &[bool]) -> (Vec<Pixel>, f32) {
             }
             *weight = count;
         }
-        means.retain(|(_, weight)| *weight > LEAST_SHARE * all);
+        means.retain(|(_, weight)| *weight > choice.least_share * all);
     }
     means.sort_by(|a, b| b.1.total_cmp(&a.1));
-    means.truncate(MOST_COLORS);
-    let is_flat = |&&i: &&usize| nearest(&means, &pixels.target.at(i), FLAT).is_some();
-    let flat: f32 = samples.iter().filter(is_flat).map(|&i| residual2(i)).sum();
+    means.truncate(choice.most);
+    // The share tells drawings from photographs, whose pixels are near to a mean and not like it.
+    let is_flat = |(pixel, _): &&(Pixel, f32)| nearest(&means, pixel, choice.flat).is_some();
+    let flat: f32 = samples
+        .iter()
+        .filter(is_flat)
+        .map(|(_, weight)| weight)
+        .sum();
     (
         means.into_iter().map(|(mean, _)| mean).collect(),
         flat / all.max(f32::MIN_POSITIVE),

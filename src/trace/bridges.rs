@@ -4,16 +4,8 @@ use std::collections::BTreeMap;
 
 use super::areas::{Areas, Label, Pixels};
 use super::lines::Line;
+use super::recipe::Bridges;
 use super::skeleton::Spot;
-
-/// Longest gap, in units of the line's radius and px.
-const LONGEST: [f32; 2] = [8.0, 3.0];
-/// The cosine of the largest angle between a line's end and the gap.
-const STRAIGHT: f32 = 0.85;
-/// Most px of a gap that may show the canvas.
-const BARE: usize = 3;
-/// A line whose ends meet is a ring if it has this many places or more.
-const LEAST_RING: usize = 8;
 
 /// A line and its colour.
 #[derive(Debug, Clone)]
@@ -36,13 +28,19 @@ struct Gap {
 }
 
 /// Joins lines of one colour across what covers them, the straightest first.
-pub(super) fn bridged(lines: Vec<Colored>, areas: &Areas, pixels: &Pixels<'_>) -> Vec<Colored> {
-    let mut gaps = gaps(&lines, areas, pixels);
+pub(super) fn bridged(
+    lines: Vec<Colored>,
+    areas: &Areas,
+    pixels: &Pixels<'_>,
+    bridges: Bridges,
+) -> Vec<Colored> {
+    let mut gaps = gaps(&lines, areas, pixels, bridges);
     gaps.sort_by(|a, b| {
         b.straightness
             .total_cmp(&a.straightness)
             .then(a.ends.cmp(&b.ends))
     });
+    // Each end goes on across one gap. The gap is found from both of its ends.
     let mut across: BTreeMap<End, Gap> = BTreeMap::new();
     for gap in gaps {
         if gap.ends.iter().all(|end| !across.contains_key(end)) {
@@ -52,6 +50,7 @@ pub(super) fn bridged(lines: Vec<Colored>, areas: &Areas, pixels: &Pixels<'_>) -
             across.insert(b, Gap { ends, ..gap });
         }
     }
+    // What is joined in this way is one line.
     let mut seen = vec![false; lines.len()];
     let mut out = Vec::new();
     for first in 0..lines.len() {
@@ -87,6 +86,7 @@ fn joined(
         ..lines[first].clone()
     };
     let mut at = start;
+    // Goes forwards from there, line by line, until nothing follows or the ring is closed.
     loop {
         seen[at.0] = true;
         let mut spots = lines[at.0].line.spots.clone();
@@ -107,7 +107,8 @@ fn joined(
 }
 
 /// All gaps that a line could go on across.
-fn gaps(lines: &[Colored], areas: &Areas, pixels: &Pixels<'_>) -> Vec<Gap> {
+fn gaps(lines: &[Colored], areas: &Areas, pixels: &Pixels<'_>, bridges: Bridges) -> Vec<Gap> {
+    // Ends are compared with those in cells that a gap can reach into.
     const CELL: f32 = 32.0;
     let cell = |at: [f32; 2]| at.map(|v| (v / CELL).floor() as i32);
     let mut cells: BTreeMap<[i32; 2], Vec<End>> = BTreeMap::new();
@@ -119,18 +120,21 @@ fn gaps(lines: &[Colored], areas: &Areas, pixels: &Pixels<'_>) -> Vec<Gap> {
         for a in [(i, false), (i, true)] {
             let (end, _) = leaving(&line.line, a.1);
             let [column, row] = cell(end.at);
-            let far = (longest(end.radius) / CELL).ceil() as i32;
+            let far = (bridges.longest_for(end.radius) / CELL).ceil() as i32;
             let near = (-far..=far).flat_map(|y| (-far..=far).map(move |x| [column + x, row + y]));
             let others = near.filter_map(|place| cells.get(&place)).flatten();
-            gaps.extend(others.filter_map(|&b| gap(lines, [b, a], areas, pixels)));
+            gaps.extend(others.filter_map(|&b| gap(lines, [b, a], areas, pixels, bridges)));
             cells.entry([column, row]).or_default().push(a);
         }
     }
     gaps
 }
 
-fn longest(radius: f32) -> f32 {
-    LONGEST[0] * radius + LONGEST[1]
+impl Bridges {
+    /// Longest gap, px, of a line with this radius.
+    fn longest_for(&self, radius: f32) -> f32 {
+        self.longest[0] * radius + self.longest[1]
+    }
 }
 
 /// The end of a line, and the direction in which it leaves there.
@@ -149,29 +153,39 @@ fn leaving(line: &Line, is_end: bool) -> (Spot, [f32; 2]) {
 }
 
 /// The gap between two ends, if a line may go on across it: it is short, straight and shows no canvas.
-fn gap(lines: &[Colored], ends: [End; 2], areas: &Areas, pixels: &Pixels<'_>) -> Option<Gap> {
+fn gap(
+    lines: &[Colored],
+    ends: [End; 2],
+    areas: &Areas,
+    pixels: &Pixels<'_>,
+    bridges: Bridges,
+) -> Option<Gap> {
+    // Ends of one colour; a dot has two ends, too, but is no ring.
     let [a, b] = ends;
     let color = lines[a.0].color;
     let is_same = a.0 == b.0;
-    if color != lines[b.0].color || (is_same && lines[a.0].line.spots.len() < LEAST_RING) {
+    if color != lines[b.0].color || (is_same && lines[a.0].line.spots.len() < bridges.least_ring) {
         return None;
     }
+    // About the same width, and not far apart.
     let (from, there) = leaving(&lines[a.0].line, a.1);
     let (to, back) = leaving(&lines[b.0].line, b.1);
     let way = [0, 1].map(|k| to.at[k] - from.at[k]);
     let length = (way[0] * way[0] + way[1] * way[1]).sqrt();
     let (less, more) = (from.radius.min(to.radius), from.radius.max(to.radius));
-    if more > 1.6 * less + 0.5 || length > longest(less) {
+    if more > 1.6 * less + 0.5 || length > bridges.longest_for(less) {
         return None;
     }
+    // Both ends point along the gap. A gap of less than a pixel has no direction.
     let cosine = |d: [f32; 2]| (d[0] * way[0] + d[1] * way[1]) / length;
     let straightness = match length {
         ..1.0 => 1.0,
         _ => cosine(there).min(-cosine(back)),
     };
-    if straightness <= STRAIGHT {
+    if straightness <= bridges.straight {
         return None;
     }
+    // Something lies on the gap: where the canvas shows, there is no line below.
     let own = Label::Color(color);
     let (mut bare, mut covered) = (0, 0);
     let steps = length.ceil() as usize;
@@ -186,7 +200,7 @@ fn gap(lines: &[Colored], ends: [End; 2], areas: &Areas, pixels: &Pixels<'_>) ->
             Some(_) => {}
         }
     }
-    (bare <= BARE).then_some(Gap {
+    (bare <= bridges.bare).then_some(Gap {
         ends,
         straightness,
         is_covered: covered > 0,
@@ -197,6 +211,7 @@ fn gap(lines: &[Colored], ends: [End; 2], areas: &Areas, pixels: &Pixels<'_>) ->
 mod tests {
     use super::super::areas::Planes;
     use super::*;
+    use crate::fit::{Preset, Recipe};
 
     /// A straight line of colour 0 along y = 20 px.
     fn line(xs: std::ops::Range<usize>, radius: f32) -> Colored {
@@ -231,7 +246,12 @@ mod tests {
             canvas: Planes::default(),
             weights: None,
         };
-        bridged(lines, &areas, &pixels)
+        bridged(
+            lines,
+            &areas,
+            &pixels,
+            Recipe::of(Preset::Balanced).tracing.bridges,
+        )
     }
 
     #[test]

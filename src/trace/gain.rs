@@ -1,6 +1,9 @@
 //! The part of the residual that a traced stroke explains, in closed form.
 
+use std::collections::BTreeMap;
+
 use super::areas::{Areas, Label, Pixel, Pixels, distance2};
+use crate::math::nearest_on_segment;
 use crate::scene::Path;
 
 /// The squared residual under a stroke, and how much of it the stroke removes; summed over the channels of one matte.
@@ -43,7 +46,8 @@ fn coverage(path: &Path, radius: f32, pixels: &Pixels<'_>) -> Vec<(usize, f32)> 
         line.push(dot);
     }
     let reach = radius + 1.5;
-    let mut depths: std::collections::BTreeMap<usize, f32> = std::collections::BTreeMap::new();
+    // A stroke is the union of its segments' capsules, so that the deepest one counts.
+    let mut depths: BTreeMap<usize, f32> = BTreeMap::new();
     for ends in line.windows(2) {
         let span = |axis: usize, size: usize| {
             let (a, b) = (ends[0][axis], ends[1][axis]);
@@ -53,7 +57,9 @@ fn coverage(path: &Path, radius: f32, pixels: &Pixels<'_>) -> Vec<(usize, f32)> 
         };
         for y in span(1, pixels.height) {
             for x in span(0, pixels.width) {
-                let depth = radius - distance([x as f32 + 0.5, y as f32 + 0.5], [ends[0], ends[1]]);
+                let center = [x as f32 + 0.5, y as f32 + 0.5];
+                let (_, dist2) = nearest_on_segment(center, [ends[0], ends[1]]);
+                let depth = radius - dist2.sqrt();
                 if depth > -1.5 {
                     let deepest = depths.entry(y * pixels.width + x).or_insert(depth);
                     *deepest = deepest.max(depth);
@@ -65,13 +71,4 @@ fn coverage(path: &Path, radius: f32, pixels: &Pixels<'_>) -> Vec<(usize, f32)> 
     covered
         .map(|(i, depth)| (i, (depth + 0.5).clamp(0.0, 1.0)))
         .collect()
-}
-
-fn distance(p: [f32; 2], [a, b]: [[f32; 2]; 2]) -> f32 {
-    let axis = [b[0] - a[0], b[1] - a[1]];
-    let length2 = (axis[0] * axis[0] + axis[1] * axis[1]).max(f32::MIN_POSITIVE);
-    let h = ((p[0] - a[0]) * axis[0] + (p[1] - a[1]) * axis[1]) / length2;
-    let h = h.clamp(0.0, 1.0);
-    let q = [a[0] + h * axis[0] - p[0], a[1] + h * axis[1] - p[1]];
-    (q[0] * q[0] + q[1] * q[1]).sqrt()
 }

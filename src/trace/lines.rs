@@ -4,7 +4,9 @@
 //! short spurs. Both go. Then, at each node, the two edges that continue each other most straightly become one line,
 //! and so on, so that lines run through crossings and end where nothing continues them.
 
+use super::recipe::LineJoins;
 use super::skeleton::{Edge, Graph, Spot};
+use crate::math::distance;
 
 /// A run of a skeleton from end to end.
 #[derive(Debug, Clone)]
@@ -13,33 +15,23 @@ pub(super) struct Line {
     pub(super) closed: bool,
 }
 
-/// A hook is thinner than this share of its line's radius, and not longer than so many of its radii.
-const HOOK: [f32; 2] = [0.75, 3.0];
-/// Nodes closer than this are one, in units of their radii together.
-const CROSSING: f32 = 0.75;
-/// A spur reaches beyond the disc around its node by less than this, px and in units of that disc's radius.
-const SPUR: [f32; 2] = [1.2, 0.35];
-/// Lines go on at a node if the cosine of their turn is above this.
-const SHARPEST_TURN: f32 = -0.86;
-/// A line is smooth at a node if the cosine of its turn there is above this.
-const SMOOTH_TURN: f32 = 0.82;
-
 impl Line {
     /// Drops the hooks that thinning leaves at slanted ends, where the line is much thinner than elsewhere.
-    fn trim(&mut self) {
+    fn trim(&mut self, [thin_share, longest]: [f32; 2]) {
         let mut radii: Vec<f32> = self.spots.iter().map(|spot| spot.radius).collect();
         let middle = radii.len() / 2;
         let usual = *radii.select_nth_unstable_by(middle, f32::total_cmp).1;
         let hook = |spots: &mut dyn Iterator<Item = &Spot>| {
-            let thin = spots
-                .take_while(|spot| spot.radius < HOOK[0] * usual)
-                .count();
-            if thin as f32 <= HOOK[1] * usual {
+            let is_thin = |spot: &&Spot| spot.radius < thin_share * usual;
+            let thin = spots.take_while(is_thin).count();
+            // What is thin for longer tapers, and is no hook.
+            if thin as f32 <= longest * usual {
                 thin
             } else {
                 0
             }
         };
+        // The radii of lines this thin tell nothing: they are whole pixels.
         if self.closed || usual < 1.5 {
             return;
         }
@@ -62,16 +54,12 @@ impl Line {
 }
 
 /// The lines of a graph.
-pub(super) fn lines(mut graph: Graph) -> Vec<Line> {
-    while prune(&mut graph) || contract(&mut graph) {}
-    let mut lines = chain(&graph);
-    lines.iter_mut().for_each(Line::trim);
+pub(super) fn lines(mut graph: Graph, joins: LineJoins) -> Vec<Line> {
+    // Each makes more of the other: without a spur, a branching point is a place on an edge.
+    while prune(&mut graph, joins.spur) || contract(&mut graph, joins.crossing) {}
+    let mut lines = chain(&graph, joins);
+    lines.iter_mut().for_each(|line| line.trim(joins.hook));
     lines
-}
-
-fn distance(a: [f32; 2], b: [f32; 2]) -> f32 {
-    let [x, y] = [a[0] - b[0], a[1] - b[1]];
-    (x * x + y * y).sqrt()
 }
 
 impl Graph {
@@ -103,7 +91,8 @@ impl Graph {
 }
 
 /// Removes the least of the spurs. Returns whether there was one.
-fn prune(graph: &mut Graph) -> bool {
+fn prune(graph: &mut Graph, spur: [f32; 2]) -> bool {
+    let [px, radii] = spur;
     let degrees = graph.degrees();
     let spur = |edge: &Edge| {
         let [a, b] = edge.nodes?;
@@ -115,7 +104,7 @@ fn prune(graph: &mut Graph) -> bool {
         let (end, node) = (graph.nodes[end], graph.nodes[node]);
         let reach = distance(end.at, node.at).max(graph.length(edge) * 0.8);
         let beyond = reach + end.radius - node.radius;
-        (beyond < SPUR[0] + SPUR[1] * node.radius).then_some(beyond)
+        (beyond < px + radii * node.radius).then_some(beyond)
     };
     let spurs = graph.edges.iter().map(spur).enumerate();
     let spurs = spurs.filter_map(|(i, beyond)| Some((i, beyond?)));
@@ -127,11 +116,11 @@ fn prune(graph: &mut Graph) -> bool {
 }
 
 /// Makes one node of two branching points that belong to one crossing. Returns whether there were such.
-fn contract(graph: &mut Graph) -> bool {
+fn contract(graph: &mut Graph, crossing: f32) -> bool {
     let degrees = graph.degrees();
     let is_short = |edge: &Edge| {
         edge.nodes.is_some_and(|[a, b]| {
-            let reach = CROSSING * (graph.nodes[a].radius + graph.nodes[b].radius);
+            let reach = crossing * (graph.nodes[a].radius + graph.nodes[b].radius);
             let is_inner = degrees[a] > 2 && degrees[b] > 2;
             is_inner && graph.length(edge) < reach.max(2.0)
         })
@@ -161,16 +150,18 @@ fn contract(graph: &mut Graph) -> bool {
 type End = (usize, bool);
 
 /// The lines along edges that continue each other.
-fn chain(graph: &Graph) -> Vec<Line> {
+fn chain(graph: &Graph, joins: LineJoins) -> Vec<Line> {
+    // For each end of an edge, the end that it goes on at, and the cosine of the turn between.
     let runs: Vec<Vec<Spot>> = graph.edges.iter().map(|edge| graph.run(edge)).collect();
     let mut next: Vec<[Option<(End, f32)>; 2]> = vec![[None; 2]; runs.len()];
     for (node, spot) in graph.nodes.iter().enumerate() {
         let ends = ends_at(graph, node);
-        for (a, b, turn) in pairs(&runs, &ends, *spot) {
+        for (a, b, turn) in pairs(&runs, &ends, *spot, joins.sharpest_turn) {
             next[a.0][usize::from(a.1)] = Some((b, turn));
             next[b.0][usize::from(b.1)] = Some((a, turn));
         }
     }
+    // Each edge is in one line. A ring without nodes is one by itself.
     let mut seen = vec![false; runs.len()];
     let mut lines = Vec::new();
     for first in 0..runs.len() {
@@ -186,7 +177,7 @@ fn chain(graph: &Graph) -> Vec<Line> {
             continue;
         }
         let start = start_of(&next, first);
-        lines.push(walk(&runs, &next, start, &mut seen));
+        lines.push(walk(&runs, &next, start, joins.smooth_turn, &mut seen));
     }
     lines
 }
@@ -218,7 +209,7 @@ fn direction(runs: &[Vec<Spot>], (i, is_end): End, node: Spot) -> [f32; 2] {
 }
 
 /// The pairs of ends at a node that continue each other, with the cosines of their turns, the straightest first.
-fn pairs(runs: &[Vec<Spot>], ends: &[End], node: Spot) -> Vec<(End, End, f32)> {
+fn pairs(runs: &[Vec<Spot>], ends: &[End], node: Spot, sharpest_turn: f32) -> Vec<(End, End, f32)> {
     let leaving: Vec<[f32; 2]> = ends.iter().map(|end| direction(runs, *end, node)).collect();
     let mut pairs = Vec::new();
     for (i, a) in leaving.iter().enumerate() {
@@ -226,7 +217,8 @@ fn pairs(runs: &[Vec<Spot>], ends: &[End], node: Spot) -> Vec<(End, End, f32)> {
             pairs.push((ends[i], ends[k], -(a[0] * b[0] + a[1] * b[1])));
         }
     }
-    pairs.retain(|pair| ends.len() == 2 || pair.2 > SHARPEST_TURN);
+    // Two edges that meet alone are one line, however sharp the corner.
+    pairs.retain(|pair| ends.len() == 2 || pair.2 > sharpest_turn);
     pairs.sort_by(|a, b| b.2.total_cmp(&a.2));
     let mut taken: Vec<End> = Vec::new();
     pairs.retain(|(a, b, _)| {
@@ -251,10 +243,12 @@ fn start_of(next: &[[Option<(End, f32)>; 2]], first: usize) -> End {
     at
 }
 
+/// The line from `start` on, which goes along edges until nothing continues it.
 fn walk(
     runs: &[Vec<Spot>],
     next: &[[Option<(End, f32)>; 2]],
     start: End,
+    smooth_turn: f32,
     seen: &mut [bool],
 ) -> Line {
     let mut spots: Vec<Spot> = Vec::new();
@@ -273,7 +267,7 @@ fn walk(
                 closed: false,
             };
         };
-        if turn > SMOOTH_TURN {
+        if turn > smooth_turn {
             smooth_over(&mut spots);
         }
         if seen[entering.0] {
@@ -315,24 +309,22 @@ fn smooth_over(spots: &mut Vec<Spot>) {
 mod tests {
     use super::super::shape::shapes;
     use super::*;
+    use crate::fit::{Preset, Recipe};
+    use crate::math::nearest_on_segment;
 
     /// The lines of the pixels within `reach` of the given segments, in a picture of 80×80 px.
     fn of(segments: &[[[f32; 2]; 2]], reach: f32) -> Vec<Line> {
         let is_near = |i: usize| {
             let p = [(i % 80) as f32 + 0.5, (i / 80) as f32 + 0.5];
-            segments.iter().any(|&[a, b]| {
-                let axis = [b[0] - a[0], b[1] - a[1]];
-                let length2 = axis[0] * axis[0] + axis[1] * axis[1];
-                let h = ((p[0] - a[0]) * axis[0] + (p[1] - a[1]) * axis[1]) / length2.max(1e-6);
-                let h = h.clamp(0.0, 1.0);
-                distance(p, [a[0] + h * axis[0], a[1] + h * axis[1]]) < reach
-            })
+            let dist2 = |&ends: &[[f32; 2]; 2]| nearest_on_segment(p, ends).1;
+            segments.iter().any(|ends| dist2(ends) < reach * reach)
         };
         let keys: Vec<Option<u8>> = (0..6400).map(|i| is_near(i).then_some(0)).collect();
+        let tracing = Recipe::of(Preset::Balanced).tracing;
         let found = shapes(&keys, 80, 4);
         found
             .iter()
-            .flat_map(|(_, shape)| lines(Graph::of(shape)))
+            .flat_map(|(_, shape)| lines(Graph::of(shape, tracing.growth), tracing.lines))
             .collect()
     }
 

@@ -8,6 +8,7 @@
 //! bridges    lines that go on below others, and rings
 //! spline     corners and control points
 //! gain       the share of the residual that each stroke explains
+//! recipe     the tuned numbers of all that
 //! ```
 //!
 //! The result has the right lines, about a pixel off their places; descent makes it exact.
@@ -16,6 +17,7 @@ mod areas;
 mod bridges;
 mod gain;
 mod lines;
+mod recipe;
 mod shape;
 mod skeleton;
 mod spline;
@@ -31,25 +33,9 @@ use areas::{Areas, Label, Pixel, Pixels, Planes};
 use bridges::Colored;
 use gain::Gain;
 use lines::Line;
+pub use recipe::{AreaColors, Bridges, LineJoins, Splines, Tracing};
 use shape::Shape;
 use skeleton::Graph;
-
-/// The tuned numbers of tracing.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tracing {
-    /// The share of the squared residual that has to lie in areas of few colours, or nothing is traced. Drawings of lines
-    /// have 0.88 to 1.00, photographs 0.55 to 0.85.
-    pub flat: f32,
-    /// The share of the squared residual under a stroke that the stroke has to remove. 0.4, 0.6, 0.75: text has 200, 215,
-    /// 253 strokes at equal fidelity, as bars of letters one pixel thin are hardly explained before they are fitted.
-    pub explained: f32,
-    /// Shapes of fewer pixels are not traced. 2, 3, 6: SSIMULACRA2 of a screenshot of a dashboard 70.5, 69.0, 64.5 in 20 kB
-    /// each, as the dots of its letters are small.
-    pub least_area: usize,
-    /// Factor on the steps of traced strokes, which are about where they belong. 0.15, 0.25, 0.4, 1: 39 icons have 42.8,
-    /// 42.8, 42.5, 40.8 dB.
-    pub pace: f32,
-}
 
 /// A traced stroke and what it gains.
 #[derive(Debug, Clone)]
@@ -65,9 +51,11 @@ pub fn trace(residuals: &[Residual<'_>], tracing: Tracing) -> Vec<Traced> {
     let Some(pixels) = Pixels::of(residuals) else {
         return Vec::new();
     };
-    let Some(areas) = Areas::of(&pixels, tracing.flat) else {
+    // Areas of one colour. A picture without them, such as a photograph, has no lines that could be traced.
+    let Some(areas) = Areas::of(&pixels, tracing.min_flat_share, tracing.colors) else {
         return Vec::new();
     };
+    // Connected shapes, and the lines in the middle of each.
     let keys: Vec<Option<u8>> = areas
         .labels
         .iter()
@@ -78,7 +66,7 @@ pub fn trace(residuals: &[Residual<'_>], tracing: Tracing) -> Vec<Traced> {
         .collect();
     let shapes = shape::shapes(&keys, pixels.width, tracing.least_area);
     let colored = |(color, shape): &(u8, Shape)| {
-        let mut lines = lines::lines(Graph::of(shape));
+        let mut lines = lines::lines(Graph::of(shape, tracing.growth), tracing.lines);
         widen(&mut lines, area(shape, *color, &areas, &pixels));
         let colored = |line: Line| Colored {
             line,
@@ -88,7 +76,9 @@ pub fn trace(residuals: &[Residual<'_>], tracing: Tracing) -> Vec<Traced> {
         lines.into_iter().map(colored).collect::<Vec<_>>()
     };
     let lines: Vec<Colored> = shapes.par_iter().flat_map_iter(colored).collect();
-    let lines = bridges::bridged(lines, &areas, &pixels);
+    // Lines that others cover become one before they are drawn, since their halves would be two strokes for ever.
+    let lines = bridges::bridged(lines, &areas, &pixels, tracing.bridges);
+    // Strokes along those lines, if they explain what is there.
     let mattes = residuals.len();
     let traced = |line: &Colored| stroke(line, &areas, &pixels, mattes, &tracing);
     let mut strokes: Vec<(bool, Traced)> = lines.par_iter().filter_map(traced).collect();
@@ -136,7 +126,7 @@ fn stroke(
     tracing: &Tracing,
 ) -> Option<(bool, Traced)> {
     let radius = median(line.spots.iter().map(|spot| spot.radius))?;
-    let path: Path = spline::path(line, radius);
+    let path: Path = spline::path(line, radius, tracing.splines);
     let pixel: &Pixel = areas.colors.get(usize::from(*color))?;
     let gain = Gain::of(&path, radius, *color, pixel, areas, pixels);
     let is_explained = gain.removed > tracing.explained * gain.under;

@@ -30,19 +30,17 @@ pub(super) struct Graph {
     pub(super) edges: Vec<Edge>,
 }
 
-/// How fast the distance to the outside grows towards the middle of a shape from a place that is no end of a line, px
-/// per px.
-const GROWTH: f32 = 0.75;
-
 impl Graph {
-    /// The skeleton of a shape.
-    pub(super) fn of(shape: &Shape) -> Self {
+    /// The skeleton of a shape; for `growth` see [`Tracing`](super::Tracing).
+    pub(super) fn of(shape: &Shape, growth: f32) -> Self {
         let distances: Vec<f32> = shape.distances2().into_iter().map(f32::sqrt).collect();
         let thin = Grid {
             width: shape.width,
             inside: shape.inside.clone(),
+            distances: &distances,
+            growth,
         };
-        let thin = thin.thinned(&distances);
+        let thin = thin.thinned();
         let spot = |i: usize| Spot {
             at: shape.place(i),
             // The nearest pixel outside is half a pixel beyond the outline.
@@ -53,12 +51,15 @@ impl Graph {
 }
 
 /// The pixels of a frame whose border is empty.
-struct Grid {
+struct Grid<'a> {
     width: usize,
     inside: Vec<bool>,
+    /// Distance of each pixel to the outside, px.
+    distances: &'a [f32],
+    growth: f32,
 }
 
-impl Grid {
+impl Grid<'_> {
     /// The neighbours of a pixel, around it, from the right one on.
     fn around(&self, i: usize) -> [usize; 8] {
         let w = self.width;
@@ -89,8 +90,8 @@ impl Grid {
 
     /// Takes away all pixels that are not needed, those nearest to the outside first. From one side at a time, as otherwise
     /// a line two pixels wide would be eaten from its end.
-    fn thinned(mut self, distances: &[f32]) -> Self {
-        let layer = |i: usize| (2.0 * distances[i]) as usize;
+    fn thinned(mut self) -> Self {
+        let layer = |i: usize| (2.0 * self.distances[i]) as usize;
         let mut layers: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for i in (0..self.inside.len()).filter(|&i| self.inside[i]) {
             layers.entry(layer(i)).or_default().push(i);
@@ -98,7 +99,7 @@ impl Grid {
         let mut open: Vec<usize> = Vec::new();
         for members in layers.into_values() {
             open.extend(members);
-            while self.peel(&open, distances) {
+            while self.peel(&open) {
                 open.retain(|&i| self.inside[i]);
             }
         }
@@ -106,13 +107,13 @@ impl Grid {
     }
 
     /// Takes away the pixels of `open` that are not needed, once from each side. Returns whether there were such.
-    fn peel(&mut self, open: &[usize], distances: &[f32]) -> bool {
+    fn peel(&mut self, open: &[usize]) -> bool {
         let mut has_changed = false;
         for side in [0, 4, 2, 6] {
             let is_bare = |i: usize| self.inside[i] && !self.inside[self.around(i)[side]];
             let border: Vec<usize> = open.iter().copied().filter(|&i| is_bare(i)).collect();
             for i in border {
-                if self.is_simple(i) && !self.is_end(i, distances) {
+                if self.is_simple(i) && !self.is_end(i) {
                     self.inside[i] = false;
                     has_changed = true;
                 }
@@ -122,7 +123,7 @@ impl Grid {
     }
 
     /// Whether `i` is the end of a line that does not only taper towards it.
-    fn is_end(&self, i: usize, distances: &[f32]) -> bool {
+    fn is_end(&self, i: usize) -> bool {
         if self.neighbours(i).count() > 1 {
             return false;
         }
@@ -133,102 +134,133 @@ impl Grid {
             } else {
                 std::f32::consts::SQRT_2
             };
-            distances[k] - distances[i] > GROWTH * step
+            self.distances[k] - self.distances[i] > self.growth * step
         })
     }
 
     /// The graph of a shape that is one pixel wide.
     fn graph(&self, spot: impl Fn(usize) -> Spot) -> Graph {
-        const NONE: usize = usize::MAX;
-        let mut graph = Graph::default();
-        let count = |i: usize| self.neighbours(i).count();
-        let is_branch = |i: usize| self.inside[i] && count(i) > 2;
-        // Branching pixels beside each other are one node.
-        let mut node_of = vec![NONE; self.inside.len()];
+        let (node_of, nodes) = self.branches(&spot);
+        let mut graph = Graph {
+            nodes,
+            edges: Vec::new(),
+        };
+        for run in self.runs(&node_of) {
+            let is_ring = self.on_runs(&node_of, run[0]) == 2;
+            let spots: Vec<Spot> = run.iter().map(|&i| spot(i)).collect();
+            if is_ring {
+                graph.edges.push(Edge { nodes: None, spots });
+            } else {
+                let ends = self.branches_beside(&node_of, &run);
+                graph.add(spots, ends);
+            }
+        }
+        graph
+    }
+
+    /// The node that each pixel belongs to, [`NONE`] for most, and the nodes. Branching pixels beside each other are one
+    /// node: where lines cross, thinning leaves several.
+    fn branches(&self, spot: impl Fn(usize) -> Spot) -> (Vec<usize>, Vec<Spot>) {
+        let is_branch = |i: usize| self.inside[i] && self.neighbours(i).count() > 2;
+        let (mut node_of, mut nodes) = (vec![NONE; self.inside.len()], Vec::new());
         let mut stack = Vec::new();
         for start in 0..self.inside.len() {
             if !is_branch(start) || node_of[start] != NONE {
                 continue;
             }
-            let node = graph.nodes.len();
-            node_of[start] = node;
+            node_of[start] = nodes.len();
             stack.push(start);
             let mut members = Vec::new();
             while let Some(i) = stack.pop() {
                 members.push(spot(i));
                 for k in self.neighbours(i).filter(|&k| is_branch(k)) {
                     if node_of[k] == NONE {
-                        node_of[k] = node;
+                        node_of[k] = nodes.len();
                         stack.push(k);
                     }
                 }
             }
-            graph.nodes.push(mean(&members));
+            nodes.push(mean(&members));
         }
+        (node_of, nodes)
+    }
+
+    /// How many neighbours of a pixel belong to no node.
+    fn on_runs(&self, node_of: &[usize], i: usize) -> usize {
+        self.neighbours(i).filter(|&k| node_of[k] == NONE).count()
+    }
+
+    /// The pixels between nodes, run by run. Runs with ends come first, so that none of them begins in its middle; what is
+    /// left are rings.
+    fn runs(&self, node_of: &[usize]) -> Vec<Vec<usize>> {
+        let pixels = (0..self.inside.len()).filter(|&i| self.inside[i] && node_of[i] == NONE);
+        let (ends, rings): (Vec<usize>, Vec<usize>) =
+            pixels.partition(|&i| self.on_runs(node_of, i) < 2);
         let mut seen = vec![false; self.inside.len()];
-        let runs = (0..self.inside.len()).filter(|&i| self.inside[i] && node_of[i] == NONE);
-        let on_runs = |i: usize| self.neighbours(i).filter(|&k| node_of[k] == NONE).count();
-        // Runs with ends come first; what is left are rings.
-        let (ends, rings): (Vec<usize>, Vec<usize>) = runs.partition(|&i| on_runs(i) < 2);
+        let mut runs = Vec::new();
         for start in ends.into_iter().chain(rings) {
-            if seen[start] {
+            if std::mem::replace(&mut seen[start], true) {
                 continue;
             }
-            let mut run = vec![start];
-            seen[start] = true;
-            while let Some(next) = self
-                .neighbours(run[run.len() - 1])
-                .find(|&k| !seen[k] && node_of[k] == NONE)
-            {
+            let (mut run, mut last) = (vec![start], start);
+            let is_next = |seen: &[bool], k: usize| !seen[k] && node_of[k] == NONE;
+            while let Some(next) = self.neighbours(last).find(|&k| is_next(&seen, k)) {
                 seen[next] = true;
                 run.push(next);
+                last = next;
             }
-            let is_ring = on_runs(start) == 2;
-            let mut spots: Vec<Spot> = run.iter().map(|&i| spot(i)).collect();
-            if is_ring {
-                graph.edges.push(Edge { nodes: None, spots });
-                continue;
-            }
-            let branch = |i: usize, taken: Option<usize>| {
-                let nodes = self.neighbours(i).map(|k| node_of[k]);
-                let mut nodes: Vec<usize> = nodes.filter(|&node| node != NONE).collect();
-                nodes.dedup();
-                let other = nodes.iter().find(|&&node| Some(node) != taken);
-                other.or(nodes.first()).copied()
-            };
-            let first = branch(run[0], None);
-            let last = if run.len() == 1 {
-                // A single pixel may lie between two nodes.
-                let other = branch(run[0], first);
-                other.filter(|node| Some(*node) != first)
-            } else {
-                branch(run[run.len() - 1], None)
-            };
-            let mut node = |found: Option<usize>, spot: Option<Spot>| match (found, spot) {
-                (Some(node), _) => node,
-                (None, spot) => {
-                    graph.nodes.extend(spot);
-                    graph.nodes.len() - 1
-                }
-            };
-            let nodes = [
-                node(first, spots.first().copied()),
-                node(last, spots.last().copied()),
-            ];
-            if first.is_none() {
-                spots.remove(0);
-            }
-            if last.is_none() && !spots.is_empty() {
-                spots.pop();
-            }
-            graph.edges.push(Edge {
-                nodes: Some(nodes),
-                spots,
-            });
+            runs.push(run);
         }
-        graph
+        runs
+    }
+
+    /// The nodes beside both ends of a run, where it has any.
+    fn branches_beside(&self, node_of: &[usize], run: &[usize]) -> [Option<usize>; 2] {
+        let beside = |i: usize| {
+            let nodes = self.neighbours(i).map(|k| node_of[k]);
+            let mut nodes: Vec<usize> = nodes.filter(|&node| node != NONE).collect();
+            nodes.dedup();
+            nodes
+        };
+        let at_start = beside(run[0]);
+        let first = at_start.first().copied();
+        let last = match run {
+            // A single pixel may lie between two nodes.
+            [_] => at_start.iter().copied().find(|&node| Some(node) != first),
+            _ => beside(run[run.len() - 1]).first().copied(),
+        };
+        [first, last]
     }
 }
+
+impl Graph {
+    /// Adds the edge along `spots` between two nodes. An end of the skeleton becomes a node of its own.
+    fn add(&mut self, mut spots: Vec<Spot>, [first, last]: [Option<usize>; 2]) {
+        let mut node = |found: Option<usize>, spot: Option<Spot>| {
+            found.unwrap_or_else(|| {
+                self.nodes.extend(spot);
+                self.nodes.len() - 1
+            })
+        };
+        let nodes = [
+            node(first, spots.first().copied()),
+            node(last, spots.last().copied()),
+        ];
+        if first.is_none() {
+            spots.remove(0);
+        }
+        if last.is_none() && !spots.is_empty() {
+            spots.pop();
+        }
+        self.edges.push(Edge {
+            nodes: Some(nodes),
+            spots,
+        });
+    }
+}
+
+/// The node of a pixel that belongs to none.
+const NONE: usize = usize::MAX;
 
 fn mean(spots: &[Spot]) -> Spot {
     let share = 1.0 / spots.len() as f32;

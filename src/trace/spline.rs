@@ -4,29 +4,26 @@
 //! within a tolerance; none makes a straight line.
 
 use super::lines::Line;
-use crate::math::{self, DMatrix, DVector, Point};
+use super::recipe::Splines;
+use crate::math::{self, DMatrix, DVector, Point, nearest_on_segment};
 use crate::scene::{Path, PathPoint};
 
 /// Distance between the places of a resampled line, px.
 const STEP: f32 = 1.0;
-/// The cosine of a corner's turn within [`CORNER_REACH`] radii is less than this.
-const CORNER: f32 = 0.62;
-const CORNER_REACH: f32 = 0.9;
-/// Farthest that a spline may be from its line, px and in units of the radius.
-const TOLERANCE: [f32; 2] = [0.35, 0.03];
-
 type Place = [f32; 2];
 
 /// The path of a line whose stroke has this radius, px.
-pub(super) fn path(line: &Line, radius: f32) -> Path {
+pub(super) fn path(line: &Line, radius: f32, splines: Splines) -> Path {
     let places: Vec<Place> = line.spots.iter().map(|spot| spot.at).collect();
     let mut places = resampled(&places, line.closed);
     if places.len() < 3 {
         return open_path(places, Vec::new());
     }
+    // Pixels make stairs, the larger ones the wider the line is.
     smooth(&mut places, line.closed, (0.25 * radius) as usize + 1);
-    let tolerance = TOLERANCE[0] + TOLERANCE[1] * radius;
-    let corners = corners(&places, line.closed, radius);
+    let [px, radii] = splines.tolerance;
+    let tolerance = px + radii * radius;
+    let corners = corners(&places, line.closed, radius, splines);
     if line.closed {
         return closed_path(places, &corners, tolerance);
     }
@@ -118,12 +115,13 @@ fn smooth(places: &mut [Place], closed: bool, times: usize) {
 }
 
 /// The indices of the corners, in order.
-fn corners(places: &[Place], closed: bool, radius: f32) -> Vec<usize> {
+fn corners(places: &[Place], closed: bool, radius: f32, splines: Splines) -> Vec<usize> {
     let count = places.len();
-    let reach = ((CORNER_REACH * radius / STEP) as usize).clamp(3, 24);
+    let reach = ((splines.corner_reach * radius / STEP) as usize).clamp(3, 24);
     if count < 2 * reach + 1 {
         return Vec::new();
     }
+    // The cosine of the turn at each place.
     let cosine = |i: usize| {
         if !closed && (i < reach || i + reach >= count) {
             return 1.0;
@@ -135,8 +133,9 @@ fn corners(places: &[Place], closed: bool, radius: f32) -> Vec<usize> {
         (u[0] * v[0] + u[1] * v[1]) / lengths.sqrt().max(f32::MIN_POSITIVE)
     };
     let cosines: Vec<f32> = (0..count).map(cosine).collect();
+    // Of neighbouring places that turn, the sharpest one is the corner.
     let is_sharpest = |&i: &usize| {
-        cosines[i] < CORNER
+        cosines[i] < splines.corner
             && (1..=reach).all(|d| {
                 let before = (closed || i >= d).then(|| cosines[(i + count - d) % count]);
                 let after = (closed || i + d < count).then(|| cosines[(i + d) % count]);
@@ -163,38 +162,43 @@ fn controls(run: &[Place], tolerance: f32) -> Vec<Place> {
     if strays(run, &[run[0], run[run.len() - 1]]) <= tolerance {
         return Vec::new();
     }
-    let most = (run.len() / 3).clamp(1, 60);
-    let mut best = (f32::INFINITY, Vec::new());
-    let mut count = 1;
-    loop {
+    fewest(1, (run.len() / 3).clamp(1, 60), tolerance, |count| {
         let found = open_spline(run, count);
         let away = strays(run, &flattened(run, &found, false));
-        if away < best.0 {
-            best = (away, found);
-        }
-        if best.0 <= tolerance || count >= most {
-            return best.1;
-        }
-        count += 1 + count / 6;
-    }
+        (away, found)
+    })
 }
 
 /// The control points of a smooth ring.
 fn ring(places: &[Place], tolerance: f32) -> Vec<PathPoint> {
-    let most = (places.len() / 3).clamp(4, 80);
-    let mut best = (f32::INFINITY, Vec::new());
-    let mut count = 4;
-    loop {
+    let controls = fewest(4, (places.len() / 3).clamp(4, 80), tolerance, |count| {
         let found = closed_spline(places, count);
         let mut line = flattened(places, &found, true);
         line.extend(line.first().copied());
-        let away = strays(places, &line);
-        if away < best.0 {
-            best = (away, found);
+        (strays(places, &line), found)
+    });
+    controls.into_iter().map(off).collect()
+}
+
+/// The control points of the first of the splines of `first` to `most` control points that is within `tolerance`, or else
+/// of the nearest one. `spline` tells how far one of so many is away, and its control points.
+fn fewest(
+    first: usize,
+    most: usize,
+    tolerance: f32,
+    spline: impl Fn(usize) -> (f32, Vec<Place>),
+) -> Vec<Place> {
+    let mut best = (f32::INFINITY, Vec::new());
+    let mut count = first;
+    loop {
+        let found = spline(count);
+        if found.0 < best.0 {
+            best = found;
         }
         if best.0 <= tolerance || count >= most {
-            return best.1.into_iter().map(off).collect();
+            return best.1;
         }
+        // Long lines are tried with a sixth more at a time: a few points too many are removed after the polish.
         count += 1 + count / 6;
     }
 }
@@ -263,6 +267,7 @@ fn closed_spline(places: &[Place], count: usize) -> Vec<Place> {
 
 /// The points whose weighted sums are nearest to the places.
 fn solve(samples: impl Iterator<Item = (Vec<(usize, f32)>, Place)>, count: usize) -> Vec<Place> {
+    // The normal equations; a little ridge keeps them solvable where no place depends on a point.
     let mut normal = DMatrix::<f64>::identity(count, count) * 1e-6;
     let mut right = [DVector::<f64>::zeros(count), DVector::<f64>::zeros(count)];
     for (weights, place) in samples {
@@ -316,7 +321,7 @@ fn strays(places: &[Place], line: &[Place]) -> f32 {
     let away2 = |(i, p): (usize, &Place)| {
         let middle = i * segments / last;
         let near = middle.saturating_sub(WINDOW)..(middle + WINDOW).min(segments);
-        let to = |k: usize| distance2_to(*p, [line[k], line[k + 1]]);
+        let to = |k: usize| nearest_on_segment(*p, [line[k], line[k + 1]]).1;
         near.map(to).fold(f32::INFINITY, f32::min)
     };
     let all = places.iter().enumerate().map(away2);
@@ -326,19 +331,11 @@ fn strays(places: &[Place], line: &[Place]) -> f32 {
 /// Segments to each side in which the nearest one is searched for.
 const WINDOW: usize = 24;
 
-fn distance2_to(p: Place, [a, b]: [Place; 2]) -> f32 {
-    let axis = [b[0] - a[0], b[1] - a[1]];
-    let length2 = (axis[0] * axis[0] + axis[1] * axis[1]).max(f32::MIN_POSITIVE);
-    let h = ((p[0] - a[0]) * axis[0] + (p[1] - a[1]) * axis[1]) / length2;
-    let h = h.clamp(0.0, 1.0);
-    let q = [a[0] + h * axis[0] - p[0], a[1] + h * axis[1] - p[1]];
-    q[0] * q[0] + q[1] * q[1]
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::skeleton::Spot;
     use super::*;
+    use crate::fit::{Preset, Recipe};
 
     fn line(places: impl IntoIterator<Item = Place>, closed: bool) -> Line {
         let spots = places.into_iter().map(|at| Spot { at, radius: 3.0 });
@@ -357,6 +354,10 @@ mod tests {
         (0..240).map(at).collect()
     }
 
+    fn path_of(line: &Line) -> Path {
+        path(line, 3.0, Recipe::of(Preset::Balanced).tracing.splines)
+    }
+
     fn kinds(path: &Path) -> Vec<bool> {
         path.points().iter().map(|p| p.is_on).collect()
     }
@@ -364,12 +365,12 @@ mod tests {
     #[test]
     fn a_straight_line_has_two_points() {
         let places = (0..50).map(|i| [i as f32, 10.0 + 0.5 * i as f32 + 0.2 * (i % 2) as f32]);
-        assert_eq!(kinds(&path(&line(places, false), 3.0)), [true, true]);
+        assert_eq!(kinds(&path_of(&line(places, false))), [true, true]);
     }
 
     #[test]
     fn a_ring_is_a_closed_spline_of_few_control_points() {
-        let path = path(&line(circle(), true), 3.0);
+        let path = path_of(&line(circle(), true));
         assert!(path.is_closed() && path.points().len() <= 12, "{path:?}");
         assert!(path.points().iter().all(|p| !p.is_on));
         for p in path.flattened(0.05) {
@@ -381,7 +382,7 @@ mod tests {
     #[test]
     fn an_arc_ends_where_its_line_does() {
         let places = &circle()[20..140];
-        let path = path(&line(places.iter().copied(), false), 3.0);
+        let path = path_of(&line(places.iter().copied(), false));
         let (a, b) = path.ends();
         assert_eq!([[a.x, a.y], [b.x, b.y]], [places[0], places[119]]);
         assert!(kinds(&path).iter().filter(|is_on| **is_on).count() == 2);
@@ -394,7 +395,7 @@ mod tests {
         };
         let corners = [[10.0, 10.0], [60.0, 12.0], [55.0, 60.0], [12.0, 50.0]];
         let sides = (0..4).flat_map(|i| along(corners[i], corners[(i + 1) % 4]));
-        let path = path(&line(sides, true), 3.0);
+        let path = path_of(&line(sides, true));
         assert_eq!(kinds(&path), [true; 4], "{path:?}");
         assert!(path.is_closed());
     }

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use strokefit::fit::{Budget, Config, Fit, Fitter, Look, Preset, Progress, Stop};
+use strokefit::fit::{Budget, Config, ErrorWeighting, Fit, Fitter, Preset, Progress, Stop};
 use strokefit::image::Image;
 use strokefit::report::Judged;
 
@@ -44,7 +44,7 @@ fn drawn(picture: &Image, budget: Budget, preset: Preset) -> Fit {
     let config = Config {
         budget,
         preset,
-        look: Some(Look::Exact),
+        look: Some(ErrorWeighting::Exact),
         ..Config::default()
     };
     Fitter::new(config).fit(picture).unwrap()

@@ -5,7 +5,7 @@ use crate::support::paths::paths;
 use strokefit::coverage::Coverage;
 use strokefit::loss::Loss;
 use strokefit::render::reference::{Reference, Rgb, Scene, Stroke};
-use strokefit::render::{LOOK, PARAMS};
+use strokefit::render::{PARAMS, STYLE};
 use strokefit::{rng, scene};
 
 /// The step of a central difference, and the error that it is good for.
@@ -143,7 +143,7 @@ fn flat(strokes: &[Stroke], background: Rgb) -> Vec<f64> {
 fn with_params(like: &Scene, params: &[f64]) -> Scene {
     let mut rest = params;
     let stroke = |stroke: &Stroke| {
-        let (params, others) = rest.split_at(2 * stroke.points.len() + LOOK);
+        let (params, others) = rest.split_at(2 * stroke.points.len() + STYLE);
         rest = others;
         stroke.with_params(params)
     };
@@ -167,9 +167,9 @@ fn sets(scene: &Scene) -> Vec<Vec<usize>> {
                 sets.extend([0, 1].map(|axis| same().map(|k| first + 2 * k + axis).collect()));
             }
         }
-        let look = first + 2 * stroke.points.len();
-        sets.extend((look..look + LOOK).map(|k| vec![k]));
-        first = look + LOOK;
+        let style = first + 2 * stroke.points.len();
+        sets.extend((style..style + STYLE).map(|k| vec![k]));
+        first = style + STYLE;
     }
     sets.extend((first..first + 3).map(|k| vec![k]));
     sets

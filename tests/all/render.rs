@@ -406,15 +406,15 @@ const KINDS: [&str; 4] = ["points", "radius", "colour", "opacity"];
 /// Gradients of one stroke by number: its kind and its value. Those by points that coincide are added up, since it hangs
 /// on rounding which of them a pixel counts for.
 fn by_number(stroke: StrokeRef<'_>, gradients: &[f64]) -> Vec<(usize, f64)> {
-    let (points, look) = gradients.split_at(2 * stroke.points.len());
+    let (points, style) = gradients.split_at(2 * stroke.points.len());
     let summed = |k: usize| -> f64 {
         let same = stroke.points.iter().zip(points.as_chunks::<2>().0);
         let same = same.filter(|(p, _)| **p == stroke.points[k / 2]);
         same.map(|(_, g)| g[k % 2]).sum()
     };
     let points = (0..points.len()).map(|k| (0, summed(k)));
-    let look = look.iter().zip([1, 2, 2, 2, 3]);
-    points.chain(look.map(|(&g, kind)| (kind, g))).collect()
+    let style = style.iter().zip([1, 2, 2, 2, 3]);
+    points.chain(style.map(|(&g, kind)| (kind, g))).collect()
 }
 
 /// The gradients of all strokes by number, with the names of the numbers.

@@ -19,7 +19,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use strokefit::fit::{
-    Background, Base, Budget, Colors, Config, Execution, Fit, Fitter, Look, Preset, Recipe, Simd,
+    Background, Base, Budget, Colors, Config, ErrorWeighting, Execution, Fit, Fitter, Preset,
+    Recipe, Simd,
 };
 use strokefit::image::Image;
 use strokefit::svg::{Form, Group, WriteOptions};
@@ -117,7 +118,7 @@ fn draft(budget: Budget) -> Config {
     Config {
         budget,
         preset: Preset::Draft,
-        look: Some(Look::Exact),
+        look: Some(ErrorWeighting::Exact),
         ..Config::default()
     }
 }
@@ -169,7 +170,7 @@ fn option_sets() -> [(&'static str, Config); 4] {
         (
             "100 strokes for the eye, settled",
             Config {
-                look: Some(Look::Eye),
+                look: Some(ErrorWeighting::Eye),
                 recipe: settled(),
                 ..draft(at_most(100))
             },
@@ -244,7 +245,7 @@ fn other_budgets() -> [Case; 3] {
     };
     let balanced = Config {
         budget: at_most(60),
-        look: Some(Look::Exact),
+        look: Some(ErrorWeighting::Exact),
         ..Config::default()
     };
     [

@@ -181,7 +181,7 @@ mod tests {
             quality: Some(25.0),
             preset: Preset::Draft,
             progressive: true,
-            look: Some(strokefit::fit::Look::Exact),
+            look: Some(strokefit::fit::ErrorWeighting::Exact),
             opaque: true,
             coverage: "sigmoid".parse().unwrap(),
             points: Some(6),

@@ -9,7 +9,7 @@ use crate::loss::Loss;
 use crate::math;
 use crate::render::reference::{self, Reference, Rgb};
 use crate::render::{
-    Backdrop, Canvas, Gradients, Grid, LOOK, Renderer, Softness, StrokeRef, Strokes,
+    Backdrop, Canvas, Gradients, Grid, Renderer, STYLE, Softness, StrokeRef, Strokes,
 };
 use crate::rng;
 
@@ -31,7 +31,7 @@ pub(super) const BACKGROUND: [f32; 3] = [0.3, 0.6, 0.8];
 pub(super) const KINDS: usize = 4;
 
 /// The kinds of the last numbers of a stroke.
-const LOOK_KINDS: [usize; LOOK] = [1, 2, 2, 2, 3];
+const STYLE_KINDS: [usize; STYLE] = [1, 2, 2, 2, 3];
 
 /// Strokes on a page.
 #[derive(Debug, Clone)]
@@ -255,7 +255,7 @@ fn merged(strokes: &Strokes, derivatives: Vec<f64>) -> Vec<f64> {
 
 /// The kind of each number.
 pub(super) fn kinds(strokes: &Strokes) -> Vec<usize> {
-    let of = |points: usize| std::iter::repeat_n(0, 2 * points).chain(LOOK_KINDS);
+    let of = |points: usize| std::iter::repeat_n(0, 2 * points).chain(STYLE_KINDS);
     strokes.iter().flat_map(|s| of(s.points.len())).collect()
 }
 
@@ -264,7 +264,7 @@ fn of_kind(numbers: &[f64], kinds: &[usize], kind: usize) -> impl Iterator<Item 
     pairs.filter(move |(_, k)| **k == kind).map(|(v, _)| *v)
 }
 
-/// Random paths of two to six points, every other one closed, with corners and curves; looks and places as of
+/// Random paths of two to six points, every other one closed, with corners and curves; styles and places as of
 /// [`random`] strokes.
 pub(super) fn random_paths(seed: u64, width: usize, height: usize, count: usize) -> Strokes {
     let mut strokes = Strokes::new();

@@ -13,7 +13,7 @@ use crate::loss::Loss;
 use crate::math;
 use crate::optim::{Adam, AdamParams, Optimizer, Schedule};
 use crate::render::reference::Scene;
-use crate::render::{Backdrop, Canvas, Gradients, Grid, LOOK, Renderer, Softness, Strokes};
+use crate::render::{Backdrop, Canvas, Gradients, Grid, Renderer, STYLE, Softness, Strokes};
 
 const SIDE: usize = 16;
 const STROKES: usize = 6;
@@ -107,7 +107,7 @@ fn descend32(
         let (numbers, slopes) = (page.strokes.numbers_mut(), &gradients.strokes);
         adam.step_scaled(numbers, slopes, rate, &scales);
         page.strokes.change(|_, stroke| {
-            let [.., opacity] = stroke.look;
+            let [.., opacity] = stroke.style;
             *opacity = opacity.clamp(0.05, 1.0);
         });
     }
@@ -138,7 +138,7 @@ fn descend64(mut scene: Scene, target: &Image, rates: &[f64], iterations: usize)
         let mut rest = params.as_slice();
         for stroke in &mut scene.strokes {
             *stroke = stroke.with_params(rest);
-            rest = &rest[2 * stroke.points.len() + LOOK..];
+            rest = &rest[2 * stroke.points.len() + STYLE..];
             stroke.opacity = stroke.opacity.clamp(0.05, 1.0);
         }
     }

@@ -162,7 +162,7 @@ fn walk(points: usize) -> Strokes {
         points: &places,
         off: &vec![false; points],
         closed: false,
-        look: &[1.2, 0.9, 0.2, 0.1, 0.6],
+        style: &[1.2, 0.9, 0.2, 0.1, 0.6],
     });
     strokes
 }
@@ -175,7 +175,7 @@ fn pile(count: usize, stroke: Params) -> Specimen {
 fn opaque_stack() -> Strokes {
     let mut strokes = random(3, 40, 36, 30);
     strokes.change(|_, stroke| {
-        let [radius, .., opacity] = stroke.look;
+        let [radius, .., opacity] = stroke.style;
         *radius += 4.0;
         *opacity = 1.0;
     });

@@ -81,7 +81,7 @@ pub(super) fn reduced(strokes: &[Stroke], halvings: usize) -> Strokes {
 /// Multiplies all lengths by a power of two, which changes no digit.
 fn scale(strokes: &mut Strokes, factor: f32) {
     strokes.change(|_, stroke| {
-        let [radius, ..] = stroke.look;
+        let [radius, ..] = stroke.style;
         let lengths = stroke.points.as_flattened_mut().iter_mut();
         lengths.chain([radius]).for_each(|length| *length *= factor);
     });

@@ -3,24 +3,15 @@
 use super::grow;
 use crate::error::Result;
 use crate::fit::budget;
-use crate::fit::history::Corrections;
+use crate::fit::drawing::Drawing;
 use crate::fit::order::{Outcome, Purpose};
 use crate::fit::points;
 use crate::fit::recipe::Correction;
 use crate::fit::result::Stop;
-use crate::fit::session::Session;
+use crate::fit::run::history::Corrections;
+use crate::fit::run::session::Session;
 use crate::math;
 use crate::metrics::psnr_db;
-
-/// Gain of doublings to come, in units of that of the last one, at most; a guess. With 1, a photograph whose gains rise again would
-/// be given up.
-const HOPE: f64 = 1.3;
-
-/// Strokes too few for their gains to tell of those of many. A guess.
-const FEW_STROKES: usize = 400;
-
-/// Strokes below which one more may be what is missing. A disc without antialiasing needs 9 for 30 dB, and gains nothing by the second to fourth.
-const VERY_FEW_STROKES: usize = 32;
 
 /// Ends the fit if the base, as it is, already meets a budget. Otherwise the base is the best file until another one is
 /// better.
@@ -41,6 +32,18 @@ pub(in crate::fit) fn try_base(session: &mut Session<'_>) -> Result<Outcome> {
     Ok(Outcome::Met)
 }
 
+/// Makes the file of the settled drawing the best one if it serves the budget better than the best one so far.
+pub(in crate::fit) fn compare(session: &mut Session<'_>) -> Outcome {
+    if let Some(file) = session.file.take() {
+        session.history.corrections.last_db = psnr_db(file.mse);
+        let best = session.best.as_ref();
+        if best.is_none_or(|best| budget::is_better(&session.config.budget, &file, best)) {
+            session.set_best(file);
+        }
+    }
+    Outcome::Over
+}
+
 /// Doubles the strokes if the polished drawing is so far below the fidelity asked for that its file need not be looked at.
 pub(in crate::fit) fn approach_fidelity(session: &mut Session<'_>) -> Outcome {
     let Some(wanted_db) = session.config.budget.psnr_db else {
@@ -53,7 +56,7 @@ pub(in crate::fit) fn approach_fidelity(session: &mut Session<'_>) -> Outcome {
     let leads_there = before.is_none_or(|before| {
         let slope = db_per_doubling(before, now);
         slope >= correction.least_db_per_doubling()
-            && is_within_reach(now.0, missing_db, slope, session.limit)
+            && is_within_reach(now.0, missing_db, slope, session.limit, &correction)
     });
     let is_far = missing_db >= correction.db_per_doubling;
     if is_far && leads_there && session.cut_by().is_none() {
@@ -65,9 +68,15 @@ pub(in crate::fit) fn approach_fidelity(session: &mut Session<'_>) -> Outcome {
 
 /// True if `strokes` strokes, which gain `slope` dB per doubling, gain `missing_db` before there are more than `most`. The next
 /// doublings may gain more than the last one.
-fn is_within_reach(strokes: usize, missing_db: f64, slope: f64, most: usize) -> bool {
-    let doublings = missing_db / (HOPE * slope);
-    strokes < FEW_STROKES || strokes as f64 * math::exp2(doublings) <= most as f64
+fn is_within_reach(
+    strokes: usize,
+    missing_db: f64,
+    slope: f64,
+    most: usize,
+    correction: &Correction,
+) -> bool {
+    let doublings = missing_db / (correction.hope * slope);
+    strokes < correction.few_strokes || strokes as f64 * math::exp2(doublings) <= most as f64
 }
 
 /// Adds or removes strokes if the last file misses or exceeds the fidelity asked for.
@@ -86,7 +95,8 @@ pub(in crate::fit) fn meet_fidelity(session: &mut Session<'_>) -> Outcome {
     let is_full = missing_db > 0.0 && corrections.shortened;
     let is_last = corrections.count >= correction.count || is_cut;
     let slope = corrections.db_per_doubling;
-    let is_full = is_full || !is_within_reach(strokes, missing_db, slope, session.limit);
+    let is_full =
+        is_full || !is_within_reach(strokes, missing_db, slope, session.limit, &correction);
     let next = corrections.next(strokes, missing_db, &correction);
     corrections.count += 1;
     let outcome = match next {
@@ -107,7 +117,10 @@ fn resize(session: &mut Session<'_>, wanted: usize) -> Outcome {
         grow::seed_correction(session, wanted - strokes, wanted);
         return Outcome::Seeded(Purpose::Correct);
     }
-    let removed = (strokes - wanted).min(dispensable(session));
+    // What the polish regains may go.
+    let wanted_db = session.config.budget.psnr_db.unwrap_or(0.0);
+    let least_db = wanted_db - session.recipe.correction.regained_db;
+    let removed = (strokes - wanted).min(dispensable(&mut session.drawing, least_db));
     if removed == 0 {
         return Outcome::Over;
     }
@@ -123,7 +136,7 @@ impl Corrections {
             let (missed_db, brought_db) = (wanted_db - before.1, now.1 - before.1);
             // Fewer strokes than before, or a file that reached the fidelity, leave hope.
             let helps = missed_db <= 0.0 || brought_db >= correction.least_gain * missed_db;
-            self.is_hopeless = strokes > before.0.max(VERY_FEW_STROKES) && !helps;
+            self.is_hopeless = strokes > before.0.max(correction.very_few_strokes) && !helps;
             let usual = correction.db_per_doubling;
             let measured = db_per_doubling(before, now);
             self.db_per_doubling = measured.clamp(correction.least_db_per_doubling(), usual);
@@ -147,11 +160,8 @@ impl Corrections {
     }
 }
 
-/// How many of the strokes of least worth could go before the drawing is clearly below the fidelity asked for.
-fn dispensable(session: &mut Session<'_>) -> usize {
-    let least_db =
-        session.config.budget.psnr_db.unwrap_or(0.0) - session.recipe.correction.regained_db;
-    let drawing = &mut session.drawing;
+/// How many of the strokes of least worth could go before the drawing falls below a fidelity of `least_db`.
+fn dispensable(drawing: &mut Drawing, least_db: f64) -> usize {
     let values = 3.0 * drawing.pixels() as f64;
     let gradients = drawing.judge();
     let mut worth = gradients.worth;
@@ -174,7 +184,7 @@ fn db_per_doubling((few, few_db): (usize, f64), (many, many_db): (usize, f64)) -
 }
 
 /// By how many bytes the drawing will exceed the budget when it has settled; 0 if it will not.
-pub(in crate::fit) fn excess(session: &Session<'_>) -> usize {
+pub(super) fn excess(session: &Session<'_>) -> usize {
     let Some(most) = session.config.budget.bytes else {
         return 0;
     };
@@ -183,8 +193,9 @@ pub(in crate::fit) fn excess(session: &Session<'_>) -> usize {
 }
 
 /// Takes away `excess` bytes of points and strokes, or all strokes.
-pub(in crate::fit) fn shorten(session: &mut Session<'_>, excess: usize) {
-    points::shed(session, excess);
+pub(super) fn shorten(session: &mut Session<'_>, excess: usize) {
+    let at_a_time = session.recipe.points.at_a_time;
+    points::shed(&mut session.drawing, session.price, at_a_time, excess);
     session.history.stop = Stop::Bytes;
     session.history.corrections.shortened = true;
 }

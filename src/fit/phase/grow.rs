@@ -2,17 +2,17 @@
 
 use super::polish;
 use crate::error::Result;
-use crate::fit::descend::descend;
+use crate::fit::budget::plan::PlannedStage;
+use crate::fit::budget::price::Price;
 use crate::fit::descent::Course;
 use crate::fit::drawing::Drawing;
-use crate::fit::history::OpenStage;
 use crate::fit::order::{Outcome, Purpose};
-use crate::fit::plan::PlannedStage;
-use crate::fit::price::Price;
+use crate::fit::phase::descend::descend;
+use crate::fit::phase::search::search;
 use crate::fit::recipe::Stages;
 use crate::fit::result::Stop;
-use crate::fit::search::search;
-use crate::fit::session::Session;
+use crate::fit::run::history::OpenStage;
+use crate::fit::run::session::Session;
 use crate::math;
 use crate::metrics::psnr_db;
 
@@ -25,7 +25,7 @@ pub(in crate::fit) fn next_stage(session: &mut Session<'_>) -> Result<Outcome> {
         session.history.stop = enough;
         return Ok(Outcome::Over);
     }
-    session.rehearse()?;
+    session.time_a_write()?;
     let index = session.history.records.len();
     let Some(planned) = session.plan.stage(index, session.drawing.len()) else {
         return Ok(top_up(session));
@@ -114,13 +114,8 @@ fn scale(session: &Session<'_>, strokes: usize) -> f32 {
 fn seed(session: &mut Session<'_>, planned: PlannedStage) {
     let began = session.timer.elapsed();
     session.progress.enter(planned.index);
-    let Session {
-        drawing,
-        recipe,
-        config,
-        timer,
-        ..
-    } = session;
+    let (drawing, timer) = (&mut session.drawing, &mut session.timer);
+    let (probing, key) = (session.recipe.probing, session.config.seed);
     let PlannedStage {
         index,
         count,
@@ -130,7 +125,7 @@ fn seed(session: &mut Session<'_>, planned: PlannedStage) {
         drawing.sharpen(drawing.bounds.drawable(scale));
         drawing.freeze();
         let before = (drawing.len(), psnr_db(drawing.mse()));
-        let candidates = search(drawing, count, scale, recipe.probing, config.seed);
+        let candidates = search(drawing, count, scale, probing, key);
         // The best candidate is drawn last, so that none of lesser gain hides it.
         drawing.extend(candidates.iter().rev().map(|c| c.stroke), index);
         before
@@ -159,8 +154,7 @@ pub(in crate::fit) fn stage(session: &mut Session<'_>, purpose: Purpose) -> Resu
     };
     let mut descent = session.descent(course);
     descend(session, &mut descent, None)?;
-    let price = session.price_now();
-    let accepted = accept(&mut session.drawing, price);
+    let accepted = accept(&mut session.drawing, session.price);
     if purpose == Purpose::Trace {
         let [layers, strokes] = &mut session.history.traced;
         (*layers, *strokes) = (*layers + 1, *strokes + accepted);
@@ -204,6 +198,7 @@ pub(in crate::fit) fn stage_polish(session: &mut Session<'_>) -> Result<Outcome>
 
 /// Removes the free strokes that are not worth their `price`, and returns how many are left.
 fn accept(drawing: &mut Drawing, price: Price) -> usize {
+    let price = price.in_drawing(drawing);
     let worth = drawing.judge().worth;
     let strokes = drawing.free().iter().zip(worth);
     let keep: Vec<bool> = strokes

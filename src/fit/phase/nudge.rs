@@ -15,10 +15,14 @@ use std::f32::consts::SQRT_2;
 
 use rayon::prelude::*;
 
+use crate::error::Result;
+use crate::fit::budget;
+use crate::fit::drawing::Drawing;
 use crate::fit::file::RenderedFile;
+use crate::fit::order::Outcome;
 use crate::fit::recipe::Nudging;
 use crate::fit::renderers::Renderings;
-use crate::fit::session::Session;
+use crate::fit::run::session::Session;
 use crate::math;
 use crate::metrics::psnr_db;
 use crate::rasters::{Footprint, PerRasterizer, Rasterizer, Rasters, Selection};
@@ -34,14 +38,43 @@ const DRAWS: u64 = 1 << 40;
 /// How far from its outline a rasteriser covers a part of a pixel, with what rounding to the file's decimals adds, px, at most.
 const FRINGE: f32 = 1.5;
 
-/// Share of the trials that move a whole stroke, not one of its points.
-const WHOLE: f32 = 0.25;
+/// Nudges the strokes of the settled drawing where renderers add much to its error. The nudged file stays if it is more
+/// faithful, and meets what the settled one meets.
+pub(in crate::fit) fn nudge(session: &mut Session<'_>) -> Result<Outcome> {
+    if let Some(seen) = session.renderings.take()
+        && let Some(file) = session.file.take()
+    {
+        session.file = Some(nudged(session, file, &seen)?);
+    }
+    Ok(Outcome::Over)
+}
+
+/// The better one of `file`, whose renders are `seen`, and the file of the nudged drawing.
+fn nudged(
+    session: &mut Session<'_>,
+    file: RenderedFile,
+    seen: &Renderings,
+) -> Result<RenderedFile> {
+    let adds_much = seen.added_db() >= session.recipe.settling.nudging.added_db;
+    let memento = session.drawing.memento();
+    if session.progress.is_halted() || !adds_much || !run(session, &file, seen) {
+        return Ok(file);
+    }
+    let (nudged, seen_nudged) = session.render_for_settling()?;
+    let is_better = seen_nudged.worst_mse() < seen.worst_mse()
+        && budget::meets_as_much(&session.config.budget, &nudged, &file);
+    if is_better {
+        return Ok(nudged);
+    }
+    session.drawing.revert(memento);
+    Ok(file)
+}
 
 /// Nudges the strokes of the drawing. `file` is the SVG written from it, `seen` the renders of that file. Returns true if a
 /// stroke has moved.
-pub(super) fn run(session: &mut Session<'_>, file: &RenderedFile, seen: &Renderings) -> bool {
+fn run(session: &mut Session<'_>, file: &RenderedFile, seen: &Renderings) -> bool {
     let nudging = session.recipe.settling.nudging;
-    let sweeps = affordable(session, nudging);
+    let sweeps = affordable(&session.drawing, session.config.file.precision, nudging);
     if sweeps == 0 || !goes_on(session, file.mse) {
         return false;
     }
@@ -68,10 +101,9 @@ pub(super) fn run(session: &mut Session<'_>, file: &RenderedFile, seen: &Renderi
 }
 
 /// How often each stroke may be visited.
-fn affordable(session: &Session<'_>, nudging: Nudging) -> usize {
-    let drawing = &session.drawing;
+fn affordable(drawing: &Drawing, precision: u8, nudging: Nudging) -> usize {
     // Whole px are coarser than any nudge.
-    let is_coarse = session.config.file.precision == 0;
+    let is_coarse = precision == 0;
     if is_coarse || drawing.pixels() > nudging.most_pixels || drawing.free().is_empty() {
         return 0;
     }
@@ -82,7 +114,7 @@ fn affordable(session: &Session<'_>, nudging: Nudging) -> usize {
 /// Tells the observer, and says whether there is time to go on.
 fn goes_on(session: &mut Session<'_>, mse: f64) -> bool {
     let goes_on = session.progress.tell(&session.drawing, mse);
-    session.heed();
+    session.check_for_stop();
     goes_on && session.timer.allows_round()
 }
 
@@ -226,7 +258,7 @@ impl<'a> Nudger<'a> {
         let reach = self.nudging.reach_px;
         let shift = [0, 1].map(|axis| reach * (2.0 * draw(axis) - 1.0));
         let homes = self.homes.get(id).points;
-        let one = if draw(2) < WHOLE {
+        let one = if draw(2) < self.nudging.whole {
             None
         } else {
             Some((draw(3) * homes.len() as f32) as usize)

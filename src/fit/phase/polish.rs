@@ -1,13 +1,14 @@
 //! Polish: all free strokes and the background are fitted jointly, with relocation.
 
 use crate::error::Result;
-use crate::fit::config::Colors;
-use crate::fit::descend::descend;
+use crate::fit::config::{Colors, Config};
 use crate::fit::descent::{Course, Joint};
+use crate::fit::drawing::Drawing;
 use crate::fit::order::Purpose;
+use crate::fit::phase::descend::descend;
 use crate::fit::points;
-use crate::fit::recipe::Polish;
-use crate::fit::session::Session;
+use crate::fit::recipe::{Polish, Recipe};
+use crate::fit::run::session::Session;
 use crate::svg::{Form, Group};
 
 /// Fits all strokes of the drawing jointly.
@@ -26,7 +27,10 @@ pub(in crate::fit) fn polish(session: &mut Session<'_>, purpose: Purpose) -> Res
         None => session.limit,
     };
     let correction = session.recipe.correction;
-    let mut polish = of_density(session);
+    let mut polish = match session.config.budget.psnr_db {
+        Some(_) => of_density(&session.drawing, &session.recipe),
+        None => session.recipe.polish,
+    };
     if purpose == Purpose::Correct {
         // What is far from the fidelity asked for is polished again, with more strokes; and bytes that are left need few iterations.
         let share = match session.history.corrections.before {
@@ -39,18 +43,15 @@ pub(in crate::fit) fn polish(session: &mut Session<'_>, purpose: Purpose) -> Res
 }
 
 /// The polish for as many points as the drawing has, where a fidelity is asked for: it is known only now.
-fn of_density(session: &Session<'_>) -> Polish {
-    let recipe = session.recipe;
-    if session.config.budget.psnr_db.is_none() {
-        return recipe.polish;
-    }
-    let density = session.drawing.pixels() as f32 / session.drawing.free().points().max(1) as f32;
+fn of_density(drawing: &Drawing, recipe: &Recipe) -> Polish {
+    let density = drawing.pixels() as f32 / drawing.free().points().max(1) as f32;
     recipe.for_density(density.min(recipe.polish.sparse)).polish
 }
 
 /// Fits the free strokes jointly, and may add strokes until the drawing has `limit`.
 pub(super) fn run(session: &mut Session<'_>, limit: usize, polish: Polish) -> Result<()> {
     session.progress.polish();
+    let recipe = session.recipe;
     let iterations = polish.iterations;
     let course = Course {
         iterations,
@@ -59,7 +60,7 @@ pub(super) fn run(session: &mut Session<'_>, limit: usize, polish: Polish) -> Re
         rates: polish.rates,
         pace: 1.0,
         softness: Some(polish.softness),
-        until: Shares::of(session).polish,
+        until: Shares::of(session.config, &recipe).polish,
         joint: Some(Joint {
             limit,
             jitter: polish.jitter,
@@ -68,13 +69,14 @@ pub(super) fn run(session: &mut Session<'_>, limit: usize, polish: Polish) -> Re
     let mut descent = session.descent(course);
     descend(session, &mut descent, None)?;
     if session.config.allows_points() && session.drawing.counters.traced_until > 0 {
-        points::prune(session);
+        let prunings = recipe.points.prunings;
+        points::prune(&mut session.drawing, session.price, prunings);
     }
     Ok(())
 }
 
-/// The shares of a limited time for descent by which polish, palette and the stack of its colours have to end. The rest is for pens. Each part is
-/// in proportion to its iterations.
+/// The shares of a limited time for descent by which polish, palette and the stack of its colours have to end. The rest is
+/// for pens. Each part is in proportion to its iterations.
 pub(super) struct Shares {
     pub(super) polish: f32,
     pub(super) palette: f32,
@@ -82,8 +84,7 @@ pub(super) struct Shares {
 }
 
 impl Shares {
-    pub(super) fn of(session: &Session<'_>) -> Self {
-        let (config, recipe) = (session.config, &session.recipe);
+    pub(super) fn of(config: &Config, recipe: &Recipe) -> Self {
         let polish = 1.0;
         let palette = match config.colors {
             Colors::Free => 0.0,

@@ -2,25 +2,24 @@
 
 use super::grow;
 use crate::error::Result;
-use crate::fit::history::OpenStage;
+use crate::fit::budget::plan::PlannedStage;
+use crate::fit::budget::price::Price;
+use crate::fit::config::Config;
+use crate::fit::drawing::Drawing;
+use crate::fit::drawing::surface::Surface;
 use crate::fit::order::{Outcome, Purpose};
-use crate::fit::plan::PlannedStage;
 use crate::fit::points::written_points;
 use crate::fit::result::Stop;
-use crate::fit::session::Session;
-use crate::fit::surface::Surface;
+use crate::fit::run::history::OpenStage;
+use crate::fit::run::session::Session;
 use crate::metrics::psnr_db;
 use crate::render::{Canvas, Strokes};
 use crate::scene::Stroke;
-use crate::trace::{Traced, trace};
-
-/// Scale of the fit of traced strokes, px: they are about as far from where they belong.
-const SCALE: f32 = 2.0;
-/// Most times that a drawing is traced.
-const ROUNDS: usize = 3;
+use crate::trace::{Traced, Tracing, trace};
 
 /// Adds strokes along the lines of the residual, on top of all others.
 pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> {
+    // Traced until nothing pays, or the fidelity is near.
     let is_rejected = session
         .history
         .stage
@@ -28,9 +27,18 @@ pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> 
     let is_over = session.progress.stopped().is_some()
         || is_rejected
         || !session.config.allows_points()
-        || session.history.traced[0] == ROUNDS
+        || session.history.traced[0] == session.recipe.tracing.rounds
         || grow::enough(session) == Some(Stop::Psnr);
-    let traced = if is_over { Vec::new() } else { lines(session) };
+    let traced = match is_over {
+        true => Vec::new(),
+        false => lines(
+            &mut session.drawing,
+            session.config,
+            session.recipe.tracing,
+            session.price,
+        ),
+    };
+    // As many strokes as there is room and time for; without any, stages go on with what is left.
     let index = session.history.records.len();
     let room = session.limit.saturating_sub(session.drawing.len());
     let count = session.timer.affordable(traced.len().min(room));
@@ -40,6 +48,7 @@ pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> 
         return Ok(Outcome::Over);
     }
     let strokes = most_gaining(traced, count);
+    // They lie on top of all others, which are frozen.
     let began = session.timer.elapsed();
     session.progress.enter(index);
     session.drawing.sharpen(0.0);
@@ -51,7 +60,7 @@ pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> 
         planned: PlannedStage {
             index,
             count,
-            scale: SCALE,
+            scale: session.recipe.tracing.scale,
         },
         began,
         before,
@@ -61,8 +70,7 @@ pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> 
 }
 
 /// The traced strokes that are worth their price, in painting order.
-fn lines(session: &mut Session<'_>) -> Vec<Traced> {
-    let drawing = &mut session.drawing;
+fn lines(drawing: &mut Drawing, config: &Config, tracing: Tracing, price: Price) -> Vec<Traced> {
     let canvases: Vec<Canvas> = if drawing.len() == 0 {
         drawing.surfaces.iter().map(Surface::bare).collect()
     } else {
@@ -72,9 +80,8 @@ fn lines(session: &mut Session<'_>) -> Vec<Traced> {
     };
     let surfaces = drawing.surfaces.iter().zip(&canvases);
     let residuals: Vec<_> = surfaces.map(|(s, canvas)| s.residual_of(canvas)).collect();
-    let mut traced = trace(&residuals, session.recipe.tracing);
-    let most = session.config.points.unwrap_or(usize::MAX);
-    let price = session.price;
+    let mut traced = trace(&residuals, tracing);
+    let most = config.points.unwrap_or(usize::MAX);
     traced.retain(|t| {
         let strokes = Strokes::from_iter([&t.stroke]);
         written_points(strokes.get(0)) <= most && t.gain > price.least_gain(&t.stroke)

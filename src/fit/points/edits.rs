@@ -279,6 +279,7 @@ fn within_curve(
     let cut = terrain.pieces[i];
     let most = points.reach * chord.length;
     match (cut.piece.from, cut.piece.to) {
+        // De Casteljau: the curve is the same with a control point halfway to each end, and each of them can move.
         (Knot::Point(_), Knot::Point(_)) => {
             let c = terrain.stroke.points[control];
             let halves =
@@ -297,6 +298,7 @@ fn within_curve(
                 moved: Some((control, chord.moved(halves[0], 0.5 * first.0))),
             })
         }
+        // The new point pulls both curves beside the knot, most at the knot itself.
         (_, Knot::Between(_, next)) => {
             let ahead = terrain.pieces.get(i + 1)?.steps.div_ceil(2);
             let back = cut.steps.div_ceil(2);

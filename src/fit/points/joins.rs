@@ -6,17 +6,23 @@
 use std::collections::BTreeMap;
 
 use super::written_points;
+use crate::fit::budget::price::Price;
 use crate::fit::drawing::Drawing;
 use crate::fit::recipe::Joins;
-use crate::fit::session::Session;
-use crate::render::{LOOK, StrokeRef, Strokes};
+use crate::math::distance;
+use crate::render::{STYLE, StrokeRef, Strokes};
 
 /// Joins free strokes where that pays. Returns the former index of each number of the free strokes, `None` for a new
-/// one; nothing if no two strokes are joined. A stroke could be spared that is worth `spare`.
-pub(super) fn join(session: &mut Session<'_>, spare: f32) -> Option<Vec<Option<usize>>> {
-    let (joins, price) = (session.recipe.points.joins, session.price_now());
-    let most = session.config.points.unwrap_or(usize::MAX);
-    let drawing = &mut session.drawing;
+/// one; nothing if no two strokes are joined. A stroke has at most `most` points, and one could be spared that is worth
+/// `spare`.
+pub(super) fn join(
+    drawing: &mut Drawing,
+    price: Price,
+    joins: Joins,
+    most: usize,
+    spare: f32,
+) -> Option<Vec<Option<usize>>> {
+    let price = price.in_drawing(drawing);
     let mut pairs = pairs(drawing.free(), most, &joins);
     if pairs.is_empty() {
         return None;
@@ -52,6 +58,7 @@ struct Pair {
 
 /// The pairs of strokes that may be joined, the most alike first, each stroke in one pair at most.
 fn pairs(strokes: &Strokes, most: usize, joins: &Joins) -> Vec<Pair> {
+    // Ends meet only within `reach`, so that those in the cells around are all that could.
     let mut cells: BTreeMap<[i32; 2], Vec<(usize, bool)>> = BTreeMap::new();
     let cell = |p: [f32; 2]| p.map(|v| (v / joins.reach).floor() as i32);
     let may_join = |stroke: StrokeRef<'_>| {
@@ -82,11 +89,13 @@ fn pairs(strokes: &Strokes, most: usize, joins: &Joins) -> Vec<Pair> {
                 }
             }
         }
+        // Only now, so that a stroke meets those below it and not itself.
         for is_end in [false, true] {
             let place = cell(end(stroke, is_end));
             cells.entry(place).or_default().push((i, is_end));
         }
     }
+    // The most alike first, each stroke once.
     pairs.retain(|pair| pair.unlike < joins.alike);
     pairs.sort_by(|a, b| a.unlike.total_cmp(&b.unlike).then(a.upper.cmp(&b.upper)));
     let mut taken = vec![false; strokes.len()];
@@ -117,11 +126,6 @@ fn end(stroke: StrokeRef<'_>, is_end: bool) -> [f32; 2] {
         stroke.points.first()
     };
     end.copied().unwrap_or_default()
-}
-
-fn distance(a: [f32; 2], b: [f32; 2]) -> f32 {
-    let [x, y] = [a[0] - b[0], a[1] - b[1]];
-    (x * x + y * y).sqrt()
 }
 
 impl Drawing {
@@ -164,6 +168,7 @@ fn push_joined(
     strokes: &Strokes,
     pair: &Pair,
 ) {
+    // The points of both, each with the former index of its first number, from end to end.
     let numbered = |i: usize, is_reversed: bool| {
         let (stroke, start) = (strokes.get(i), strokes.range(i).start);
         let points = stroke.points.iter().zip(stroke.off).enumerate();
@@ -180,25 +185,28 @@ fn push_joined(
     if let (Some(last), Some((first, _, _))) = (points.last_mut(), rest.first()) {
         last.0 = [0, 1].map(|axis| 0.5 * (last.0[axis] + first[axis]));
     }
+    // One point in the middle stands for both ends that meet.
     points.extend(&rest[1..]);
+    // The style is the mean by length, so that a short piece does not change a long one.
     let (a, b) = (strokes.get(pair.lower), strokes.get(pair.upper));
     let (weight, other) = (a.length(), b.length());
     let share = other / (weight + other).max(f32::MIN_POSITIVE);
-    let look: [f32; LOOK] = std::array::from_fn(|k| a.look[k] + share * (b.look[k] - a.look[k]));
+    let style: [f32; STYLE] =
+        std::array::from_fn(|k| a.style[k] + share * (b.style[k] - a.style[k]));
     let places: Vec<[f32; 2]> = points.iter().map(|point| point.0).collect();
     let off: Vec<bool> = points.iter().map(|point| point.1).collect();
     joined.push(StrokeRef {
         points: &places,
         off: &off,
         closed: false,
-        look: &look,
+        style: &style,
     });
     sources.extend(
         points
             .iter()
             .flat_map(|point| [point.2, point.2.map(|at| at + 1)]),
     );
-    sources.extend(strokes.range(pair.upper).rev().take(LOOK).rev().map(Some));
+    sources.extend(strokes.range(pair.upper).rev().take(STYLE).rev().map(Some));
 }
 
 #[cfg(test)]

@@ -5,10 +5,8 @@ use rayon::prelude::*;
 use super::LEAST;
 use super::edits::{self, Edit};
 use super::terrain::Terrain;
-use crate::fit::session::Session;
-
-/// One in this many offers is taken at a time.
-const AT_A_TIME: usize = 4;
+use crate::fit::budget::price::Price;
+use crate::fit::drawing::Drawing;
 
 /// A part that a stroke can spare, with its worth.
 struct Offer {
@@ -19,38 +17,42 @@ struct Offer {
     loss_per_byte: f32,
 }
 
-/// Takes away about `excess` bytes of free strokes and of their points, or all of them. Returns the former index of each number of the
+/// Takes away about `excess` bytes of free strokes and of their points, or all of them, one in `at_a_time`
+/// of what could go at a time. Returns the former index of each number of the
 /// free strokes.
-pub(in crate::fit) fn shed(session: &mut Session<'_>, excess: usize) -> Vec<Option<usize>> {
-    let mut sources: Vec<Option<usize>> = (0..session.drawing.free().numbers().len())
-        .map(Some)
-        .collect();
+pub(in crate::fit) fn shed(
+    drawing: &mut Drawing,
+    price: Price,
+    at_a_time: usize,
+    excess: usize,
+) -> Vec<Option<usize>> {
+    let numbers = drawing.free().numbers().len();
+    let mut sources: Vec<Option<usize>> = (0..numbers).map(Some).collect();
     let mut left = excess;
-    while left > 0 && !session.drawing.free().is_empty() {
-        let mut offers = offers(session);
+    while left > 0 && !drawing.free().is_empty() {
+        let mut offers = offers(drawing, price);
         // A stroke loses a point at a time, so that each loss is that of the stroke as it is; and what the next round offers may be
         // cheaper than the dearest offers of this one.
-        offers.truncate(offers.len().div_ceil(AT_A_TIME));
+        offers.truncate(offers.len().div_ceil(at_a_time));
         let is_wanted = |offer: &Offer| {
             let before = left;
             left = left.saturating_sub(offer.bytes);
             before > 0
         };
         let taken = offers.into_iter().take_while(is_wanted).collect();
-        let kept = take(session, taken);
+        let kept = take(drawing, taken);
         sources = kept.into_iter().map(|from| sources[from?]).collect();
     }
     sources
 }
 
 /// The best offer of each free stroke, the cheapest first.
-fn offers(session: &mut Session<'_>) -> Vec<Offer> {
-    let price = session.price;
+fn offers(drawing: &mut Drawing, price: Price) -> Vec<Offer> {
     let point_bytes = price.point_bytes();
-    let drawing = &mut session.drawing;
     let survey = drawing.survey(LEAST);
     let worth = drawing.judge().worth;
     let strokes = drawing.free();
+    // A stroke offers the part that is worth least for its bytes: a point, or all of it.
     let offer = |i: usize| {
         let stroke = strokes.get(i);
         let bytes = price.bytes_of(stroke).max(1);
@@ -85,8 +87,7 @@ fn offers(session: &mut Session<'_>) -> Vec<Offer> {
 }
 
 /// Applies the offers. Returns the former index of each number of the free strokes.
-fn take(session: &mut Session<'_>, offers: Vec<Offer>) -> Vec<Option<usize>> {
-    let drawing = &mut session.drawing;
+fn take(drawing: &mut Drawing, offers: Vec<Offer>) -> Vec<Option<usize>> {
     let count = drawing.free().len();
     let mut edits: Vec<Option<Edit>> = (0..count).map(|_| None).collect();
     let mut keep = vec![true; count];

@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use super::LEAST;
-use crate::math;
+use crate::math::{self, nearest_on_segment};
 use crate::render::{Piece, Pieces, StrokeRef, Survey, flattened};
 
 /// One stroke and the survey of its vertices.
@@ -166,16 +166,6 @@ impl Polyline {
 
     /// The place on segment `at` that is nearest to `p`, and the square of its distance.
     fn nearest_of(&self, at: usize, p: [f32; 2]) -> ([f32; 2], f32) {
-        let (a, b) = (self.0[at], self.0[at + 1]);
-        let axis = [b[0] - a[0], b[1] - a[1]];
-        let length2 = (axis[0] * axis[0] + axis[1] * axis[1]).max(f32::MIN_POSITIVE);
-        let h = ((p[0] - a[0]) * axis[0] + (p[1] - a[1]) * axis[1]) / length2;
-        let h = h.clamp(0.0, 1.0);
-        let q = [a[0] + h * axis[0], a[1] + h * axis[1]];
-        (q, distance2(p, q))
+        nearest_on_segment(p, [self.0[at], self.0[at + 1]])
     }
-}
-
-fn distance2(p: [f32; 2], q: [f32; 2]) -> f32 {
-    (p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1])
 }

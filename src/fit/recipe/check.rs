@@ -11,6 +11,7 @@ impl Recipe {
     /// [`ErrorKind::Config`], naming the number, its value and its domain.
     pub fn check(&self) -> Result<()> {
         self.check_counts()?;
+        // Divisors, and what is drawn or moved by.
         let lengths = [
             ("stages.scale", self.stages.scale),
             ("stages.min_scale", self.stages.min_scale),
@@ -19,6 +20,7 @@ impl Recipe {
             ("probing.lengths", smallest(self.probing.lengths)),
             ("probing.cells", self.probing.cells),
             ("tracing.pace", self.tracing.pace),
+            ("tracing.colors.near", self.tracing.colors.near),
             ("masking.contrast", self.masking.contrast as f32),
             ("masking.ceiling", self.masking.ceiling as f32),
             ("domain.min_radius", self.domain.min_radius),
@@ -44,9 +46,10 @@ impl Recipe {
         for (name, value) in lengths {
             demand(name, value, value.is_finite() && value > 0.0, "above 0")?;
         }
+        // Parts of a whole.
         let shares = [
             ("probing.probed", self.probing.probed),
-            ("tracing.flat", self.tracing.flat),
+            ("tracing.min_flat_share", self.tracing.min_flat_share),
             ("tracing.explained", self.tracing.explained),
             ("edge.annealed", self.edge.annealed),
             ("domain.min_opacity", self.domain.min_opacity),
@@ -111,6 +114,8 @@ impl Recipe {
         let counts = [
             ("stages.count", self.stages.count),
             ("tracing.least_area", self.tracing.least_area),
+            ("tracing.colors.most", self.tracing.colors.most),
+            ("tracing.colors.samples", self.tracing.colors.samples),
             ("masking.window", self.masking.window),
             ("stages.first", self.stages.first),
             ("stages.pixels_per_stroke", self.stages.pixels_per_stroke),
@@ -119,6 +124,8 @@ impl Recipe {
             ("pens.rounds.count", self.pens.rounds.count),
             ("pens.window", self.pens.window),
             ("settling.nudging.tries", self.settling.nudging.tries),
+            ("coloring.window", self.coloring.window),
+            ("points.at_a_time", self.points.at_a_time),
             ("time.min_search", self.time.min_search),
         ];
         let mut counts = counts.into_iter();

@@ -2,12 +2,12 @@
 
 use super::{
     AdamSettings, BackgroundChoice, Correction, Dense, Domain, EdgeShape, Jitter, Joins, Masking,
-    Nudging, Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Relocation, Rounds, Settling,
-    ShadeChoice, Sharing, Stages, TimeShares,
+    Nudging, Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Reduction, Relocation,
+    Rounds, SCREEN_PIXELS, Settling, ShadeChoice, Sharing, Stages, TimeShares,
 };
 use crate::optim::AdamParams;
 use crate::seed::Probing;
-use crate::trace::Tracing;
+use crate::trace::{AreaColors, Bridges, LineJoins, Splines, Tracing};
 
 impl Recipe {
     /// The recipe of a preset.
@@ -45,6 +45,7 @@ impl Recipe {
             settling,
             ..
         } = BALANCED;
+        // With few iterations, steps have to be long until the end.
         let rates = Rates {
             position: 1.3,
             radius: 0.3,
@@ -69,6 +70,7 @@ impl Recipe {
                 rates,
                 ..polish
             },
+            // What helps dense points takes more iterations than a draft has.
             dense: Dense {
                 share: 0.9,
                 position: rates.position,
@@ -82,6 +84,7 @@ impl Recipe {
                 gain: 3.0,
                 ..relocation
             },
+            // A round takes as long as a fifth of the polish.
             settling: Settling {
                 rounds: 0,
                 growth: 1.0,
@@ -100,10 +103,38 @@ const BALANCED: Recipe = Recipe {
         probed: 0.6,
     },
     tracing: Tracing {
-        flat: 0.87,
+        min_flat_share: 0.87,
         explained: 0.4,
         least_area: 2,
         pace: 0.25,
+        rounds: 3,
+        scale: 2.0,
+        colors: AreaColors {
+            most: 24,
+            samples: 65_536,
+            near: 0.12,
+            flat: 0.05,
+            least_share: 0.004,
+        },
+        growth: 0.75,
+        lines: LineJoins {
+            hook: [0.75, 3.0],
+            crossing: 0.75,
+            spur: [1.2, 0.35],
+            sharpest_turn: -0.86,
+            smooth_turn: 0.82,
+        },
+        bridges: Bridges {
+            longest: [8.0, 3.0],
+            straight: 0.85,
+            bare: 3,
+            least_ring: 8,
+        },
+        splines: Splines {
+            corner: 0.62,
+            corner_reach: 0.9,
+            tolerance: [0.35, 0.03],
+        },
     },
     stages: Stages {
         count: 8,
@@ -199,7 +230,10 @@ const BALANCED: Recipe = Recipe {
         gain: 120.0,
         smoothness: 0.7,
         spared: 0.3,
+        prunings: 30,
+        at_a_time: 4,
         beyond_db: 6.0,
+        stroke_price: 0.1,
         joins: Joins {
             reach: 8.0,
             gap: 0.6,
@@ -219,6 +253,7 @@ const BALANCED: Recipe = Recipe {
         min_shown: 1e-3,
         paper_share: 0.25,
         paper_distance: 0.2,
+        window: 4096,
     },
     pens: Pens {
         rounds: Rounds {
@@ -231,7 +266,14 @@ const BALANCED: Recipe = Recipe {
         contrast: 0.02,
         window: 1024,
     },
-    sharing: Sharing { error: 0.1 },
+    sharing: Sharing {
+        error: 0.1,
+        trials: 5,
+        most: 600,
+        nearly_opaque: 0.8,
+        off_page: 0.1,
+        thin: 1.0,
+    },
     masking: Masking {
         window: 6,
         contrast: 0.04,
@@ -254,6 +296,7 @@ const BALANCED: Recipe = Recipe {
             least_db: 0.05,
             tries: 8,
             trials: 1 << 16,
+            whole: 0.25,
             reach_px: 0.1,
             most_pixels: 1 << 20,
         },
@@ -267,7 +310,11 @@ const BALANCED: Recipe = Recipe {
         excess_db: 0.1,
         precision: 0.1,
         least_gain: 0.2,
+        hope: 1.3,
+        few_strokes: 400,
+        very_few_strokes: 32,
         filled: 0.98,
+        layers_share: 0.03,
         approach_share: 0.2,
         polish_share: 0.4,
     },
@@ -282,8 +329,24 @@ const BALANCED: Recipe = Recipe {
             least_gain: 0.25,
             hopeless_share: 0.2,
             stops: 8,
+            rounds: 4,
+            level: 1.1,
+            stop_share: 0.1,
+            ridge: 1e-4,
         },
     },
+    reduction: Reduction {
+        enough_pixels: 2 * SCREEN_PIXELS,
+        least_pixels: SCREEN_PIXELS,
+        pixels_per_stroke: 200,
+        bytes_per_stroke: 70,
+        same_db: 44.0,
+        nearly_same_db: 36.0,
+        flat_share: 0.6,
+        one_color: 4.0 / 255.0,
+        least_factor: 1.4,
+    },
+    rivals: 64,
     time: TimeShares {
         stroke_px: 160.0,
         browser: 0.25,
@@ -294,7 +357,7 @@ const BALANCED: Recipe = Recipe {
         settling: 0.125,
         min_descent: 0.25,
         min_polish: 15.0,
-        rehearsals: 0.01,
+        trial_writes: 0.01,
         min_round: 2.0,
         freshness: 0.2,
         min_search: 8,

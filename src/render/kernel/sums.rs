@@ -3,7 +3,7 @@
 use fearless_simd::{f32x16, prelude::*};
 
 use super::super::grid::{BLOCKS, BlockRgb, Lanes, TileRgb};
-use super::super::strokes::LOOK;
+use super::super::strokes::STYLE;
 use super::lanes::{load, store, total};
 
 /// Results of pass 2 in one tile, for the strokes and segments that it visits, in drawing order.
@@ -21,8 +21,8 @@ pub(in crate::render) struct OfStroke {
     pub(in crate::render) id: u32,
     /// The index of its first segment in [`Sums::segments`].
     pub(in crate::render) first: u32,
-    /// `∂L` of its look.
-    pub(in crate::render) look: [f32; LOOK],
+    /// `∂L` of its style.
+    pub(in crate::render) style: [f32; STYLE],
     /// The leave-one-out change of the squared error, if it is asked for.
     pub(in crate::render) worth: f32,
 }
@@ -244,9 +244,9 @@ impl<S: Simd> Looks<S> {
         (pull, 2.0 * (seen * seen) * contrast2)
     }
 
-    /// `∂L` of the look of a stroke of this opacity.
+    /// `∂L` of the style of a stroke of this opacity.
     #[inline(always)]
-    pub(super) fn look(&self, opacity: f32) -> [f32; LOOK] {
+    pub(super) fn style(&self, opacity: f32) -> [f32; STYLE] {
         [
             total(self.radius),
             total(self.color[0]),

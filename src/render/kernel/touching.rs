@@ -45,7 +45,7 @@ pub(in crate::render) fn list_segments(
             if vertices.len() == 2 {
                 segments.push(first);
             } else {
-                let margin = polylines.looks[stroke][0] + reach.outside;
+                let margin = polylines.styles[stroke][0] + reach.outside;
                 sides.touched(simd, vertices, margin, |segment| {
                     segments.push(first + segment as u32);
                 });

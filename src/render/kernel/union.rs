@@ -105,7 +105,7 @@ impl Union {
         let y = [0, 1].map(|side| segments.y[side] - segments.origin[1]);
         for row in rows_within(outer, y) {
             // Squared distances of the row's block centres, from each segment and from the nearest one.
-            let least = self.look(simd, row);
+            let least = self.measure_row(simd, row);
             // A segment farther than the nearest by two radii of a block wins no pixel of it; nor does one out of the stroke's
             // reach.
             let limit = (least.sqrt() + 2.0 * BLOCK_RADIUS).min(outer);
@@ -155,7 +155,7 @@ impl Union {
 
     /// Looks at every segment from the centres of a row of blocks; returns the squared distances of the nearest ones.
     #[inline(always)]
-    fn look<S: Simd>(&mut self, simd: S, row: usize) -> f32x16<S> {
+    fn measure_row<S: Simd>(&mut self, simd: S, row: usize) -> f32x16<S> {
         let mut least = f32x16::splat(simd, f32::INFINITY);
         for sight in &mut self.sights {
             let nearest = sight.segment.at_centers(simd, row);

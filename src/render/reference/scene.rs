@@ -3,7 +3,7 @@
 use crate::scene;
 use crate::sdf::{Flattened, Path};
 
-use super::super::strokes::{LOOK, PARAMS, StrokeRef, Strokes, flatness};
+use super::super::strokes::{PARAMS, STYLE, StrokeRef, Strokes, flatness};
 
 /// A colour: three values, 0..1 in any sensible scene.
 pub type Rgb = [f64; 3];
@@ -41,15 +41,16 @@ impl Stroke {
     /// The numbers of the stroke, in the order of [`Strokes`]: x and y of its points, then radius, red, green, blue, opacity.
     pub fn to_params(&self) -> Vec<f64> {
         let [red, green, blue] = self.color;
-        let look = [self.radius, red, green, blue, self.opacity];
-        [self.points.as_flattened(), &look].concat()
+        let style = [self.radius, red, green, blue, self.opacity];
+        [self.points.as_flattened(), &style].concat()
     }
 
     /// A stroke of the same kinds of points with these numbers, as many as [`to_params`](Self::to_params) gives.
     #[must_use]
     pub fn with_params(&self, params: &[f64]) -> Self {
-        let (points, look) = params.split_at(2 * self.points.len());
-        let &[radius, red, green, blue, opacity] = look.first_chunk().unwrap_or(&[f64::NAN; LOOK]);
+        let (points, style) = params.split_at(2 * self.points.len());
+        let &[radius, red, green, blue, opacity] =
+            style.first_chunk().unwrap_or(&[f64::NAN; STYLE]);
         Self {
             points: points.as_chunks().0.to_vec(),
             radius,
@@ -73,7 +74,7 @@ impl Stroke {
 
     /// A stroke of the same kinds of points, all of whose numbers are 0.
     pub(super) fn zero(&self) -> Self {
-        self.with_params(&vec![0.0; 2 * self.points.len() + LOOK])
+        self.with_params(&vec![0.0; 2 * self.points.len() + STYLE])
     }
 }
 

@@ -205,7 +205,7 @@ impl<'a, 'b> Walk<'a, 'b> {
             );
         }
         if is_svg {
-            self.look(&element, style, is_root);
+            self.check_style(&element, style, is_root);
         }
         Ok(())
     }
@@ -235,7 +235,7 @@ impl<'a, 'b> Walk<'a, 'b> {
         StrokeStyle::page(scale.map_or(1.0, |width| width / w)).within(root)
     }
 
-    fn look(&mut self, element: &Element, style: StrokeStyle, is_root: bool) {
+    fn check_style(&mut self, element: &Element, style: StrokeStyle, is_root: bool) {
         self.references.note(element, self.line, self.findings);
         if !is_root {
             self.look_at_kind(element);

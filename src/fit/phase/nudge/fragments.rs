@@ -10,7 +10,7 @@ use std::cmp::Ordering;
 
 use crate::fit::file::RenderedFile;
 use crate::fit::renderers::Renderings;
-use crate::fit::session::Session;
+use crate::fit::run::session::Session;
 use crate::image::Image;
 use crate::rasters::{Footprint, PerRasterizer, Rasterizer, Selection};
 use crate::scene::{Rgb, Stroke};

@@ -1,0 +1,214 @@
+//! The plan: how many strokes each stage adds, and how large they are.
+
+use serde::{Deserialize, Serialize};
+
+use crate::fit::base::Base;
+use crate::fit::config::Config;
+use crate::fit::recipe::{Recipe, Stages};
+use crate::math;
+
+/// One planned stage.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(in crate::fit) struct PlannedStage {
+    /// From 0.
+    pub(in crate::fit) index: usize,
+    /// Strokes to add.
+    pub(in crate::fit) count: usize,
+    /// Their typical radius, px.
+    pub(in crate::fit) scale: f32,
+}
+
+/// The layers and strokes of the base.
+#[derive(Debug, Clone, Copy, Default)]
+pub(in crate::fit) struct Before {
+    pub(in crate::fit) layers: usize,
+    pub(in crate::fit) strokes: usize,
+}
+
+impl Before {
+    pub(in crate::fit) fn of(base: Option<&Base>) -> Self {
+        base.map_or_else(Self::default, |Base { scene, .. }| Self {
+            layers: scene.stages.len(),
+            strokes: scene.len(),
+        })
+    }
+}
+
+/// The stages of a fit, coarse to fine.
+#[derive(Debug, Clone)]
+pub(in crate::fit) struct Plan {
+    /// Layers of the base; the numbers of the stages follow theirs.
+    before: usize,
+    /// Stages of an open plan that the strokes of the base stand for.
+    covered: usize,
+    /// Strokes of each planned stage.
+    counts: Vec<usize>,
+    /// Whether stages are added as long as they pay.
+    open: bool,
+    pixels: usize,
+    /// Most strokes of an open plan.
+    most: usize,
+    recipe: Stages,
+}
+
+impl Plan {
+    /// A plan for `limit` strokes, or for as many as will pay, less the strokes that are there `before`.
+    pub(in crate::fit) fn new(
+        config: &Config,
+        recipe: &Recipe,
+        limit: Option<usize>,
+        before: Before,
+        pixels: usize,
+    ) -> Self {
+        let recipe = recipe.stages;
+        let stages = config.stages.unwrap_or(recipe.count);
+        let guess = config
+            .stages
+            .map(|_| (pixels / recipe.pixels_per_stroke).max(recipe.first));
+        let counts = limit
+            .or(guess)
+            .map(|total| rest(&counts(total, stages, recipe.growth), before.strokes));
+        Self {
+            before: before.layers,
+            covered: covered(&recipe, before.strokes),
+            open: counts.is_none(),
+            counts: counts.unwrap_or_default(),
+            pixels,
+            most: config.most_strokes(pixels),
+            recipe,
+        }
+    }
+
+    /// The number of layers, those of the base and those planned so far.
+    pub(in crate::fit) fn len(&self) -> usize {
+        self.before + self.counts.len()
+    }
+
+    /// Strokes of all planned stages; a guess if the plan is open.
+    pub(in crate::fit) fn strokes(&self) -> usize {
+        if self.open {
+            let guess = self.pixels / self.recipe.pixels_per_stroke;
+            guess.clamp(1, self.most)
+        } else {
+            self.counts.iter().sum()
+        }
+    }
+
+    /// Stage `index`, on top of `before` strokes; `None` after the last stage.
+    pub(in crate::fit) fn stage(&self, index: usize, before: usize) -> Option<PlannedStage> {
+        let step = index.checked_sub(self.before)?;
+        let count = match self.counts.get(step) {
+            Some(&count) => count,
+            None if self.open => {
+                let Stages { first, growth, .. } = self.recipe;
+                let count = first as f64 * math::powi(growth, (self.covered + step) as i32);
+                (count as usize).min(self.most.saturating_sub(before))
+            }
+            None => return None,
+        };
+        let spacing = (self.pixels as f32 / (before + count).max(1) as f32).sqrt();
+        (count > 0).then_some(PlannedStage {
+            index,
+            count,
+            scale: self.recipe.scale * spacing,
+        })
+    }
+}
+
+/// `total` strokes in at most `stages` stages, each `growth` times the one before.
+fn counts(total: usize, stages: usize, growth: f64) -> Vec<usize> {
+    let weights: Vec<f64> = (0..stages).map(|k| math::powi(growth, k as i32)).collect();
+    let whole: f64 = weights.iter().sum();
+    let (mut counts, mut before, mut reached) = (Vec::new(), 0, 0.0);
+    for weight in weights {
+        reached += weight;
+        let after = (total as f64 * reached / whole).round() as usize;
+        if after > before {
+            counts.push(after - before);
+        }
+        before = after;
+    }
+    counts
+}
+
+/// What is left of planned stages if there are `before` strokes already. What remains of a stage that is more than half
+/// done is added to the next.
+fn rest(counts: &[usize], before: usize) -> Vec<usize> {
+    let (mut rest, mut there, mut carried) = (Vec::new(), before, 0);
+    for &count in counts {
+        let covered = count.min(there);
+        there -= covered;
+        carried += count - covered;
+        if covered * 2 <= count {
+            rest.push(std::mem::take(&mut carried));
+        }
+    }
+    if carried > 0 {
+        rest.push(carried);
+    }
+    rest
+}
+
+/// How many stages of an open plan `before` strokes stand for.
+fn covered(Stages { first, growth, .. }: &Stages, before: usize) -> usize {
+    let (mut stages, mut strokes) = (0, 0.0);
+    while strokes + *first as f64 * math::powi(*growth, stages) <= before as f64 {
+        strokes += *first as f64 * math::powi(*growth, stages);
+        stages += 1;
+    }
+    stages as usize
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stages_grow_and_add_up() {
+        let counts = counts(1000, 8, 1.6);
+        assert_eq!(counts.len(), 8);
+        assert_eq!(counts.iter().sum::<usize>(), 1000);
+        assert!(counts.windows(2).all(|w| w[1] > w[0]));
+    }
+
+    #[test]
+    fn few_strokes_make_few_stages() {
+        let counts = counts(2, 8, 1.6);
+        assert_eq!(counts.iter().sum::<usize>(), 2);
+        assert!(counts.iter().all(|&count| count > 0));
+    }
+
+    #[test]
+    fn open_plans_go_on_to_a_stroke_for_sixteen_pixels() {
+        let config = Config::default();
+        let plan = Plan::new(
+            &config,
+            &Recipe::of(config.preset),
+            None,
+            Before::default(),
+            3200,
+        );
+        let mut strokes = 0;
+        let mut index = 0;
+        while let Some(stage) = plan.stage(index, strokes) {
+            strokes += stage.count;
+            index += 1;
+        }
+        assert_eq!(strokes, 200);
+    }
+
+    #[test]
+    fn what_is_there_is_not_planned_again() {
+        let counts = [10, 20, 40, 80];
+        assert_eq!(rest(&counts, 0), counts);
+        assert_eq!(rest(&counts, 30), [40, 80]);
+        assert_eq!(rest(&counts, 35), [35, 80]);
+        assert_eq!(
+            rest(&counts, 60),
+            [90],
+            "10 strokes make no stage of their own"
+        );
+        assert_eq!(rest(&counts, 149), [1]);
+        assert!(rest(&counts, 150).is_empty() && rest(&counts, 999).is_empty());
+    }
+}

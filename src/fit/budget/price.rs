@@ -1,0 +1,227 @@
+//! The price of a stroke: the squared error that its bytes have to remove.
+
+use crate::fit::config::{Config, DEFAULT_QUALITY};
+use crate::fit::drawing::Drawing;
+use crate::fit::recipe::Points;
+use crate::math;
+use crate::render::{Params, StrokeRef, Strokes};
+use crate::scene::Stroke;
+use crate::svg::{WriteOptions, stroke_bytes};
+
+/// The price of strokes and points, as squared error summed over pixels and channels.
+///
+/// Squared error below that of the quality counts less and less: of E, the squared error at the quality, and e < E, the
+/// drawing's own, a small gain counts e/E of itself, so that e in all counts E/2 + e²/2E. A drawing that is better than
+/// wanted needs no strokes for what nobody sees. Above E every gain counts in full.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::fit) struct Price {
+    per_byte: f32,
+    /// The mean squared error of the quality.
+    wanted_mse: f64,
+    /// The drawing's squared error and that at the quality.
+    errors: Option<[f64; 2]>,
+    /// The price of a stroke's bytes, in units of that of a point's.
+    of_strokes: f32,
+    file: WriteOptions,
+}
+
+impl Price {
+    /// At quality `q` each byte has to remove as much squared error as one pixel has at `q` dB: 3·10^(−q/10). Without a
+    /// quality strokes are free.
+    pub(in crate::fit) fn new(quality: Option<f64>, file: WriteOptions) -> Self {
+        let wanted_mse = quality.map_or(0.0, mse);
+        Self {
+            per_byte: 3.0 * wanted_mse as f32,
+            wanted_mse,
+            errors: None,
+            of_strokes: 1.0,
+            file,
+        }
+    }
+
+    /// The price of what `config` draws of a picture of `pixels` pixels: that of its quality, or of a fidelity, to be met by few
+    /// strokes of not too many points, as the recipe for `points` says.
+    pub(in crate::fit) fn of(config: &Config, points: &Points, pixels: usize) -> Self {
+        let wanted_db = config.budget.psnr_db.map(|db| db + points.beyond_db);
+        match config.quality_for(pixels) {
+            // A large picture has a lower price for each pixel, but people see as well what is wrong with it.
+            Some(quality) => Self {
+                wanted_mse: mse(config.quality.unwrap_or(DEFAULT_QUALITY)),
+                ..Self::new(Some(quality), config.file)
+            },
+            None => Self {
+                of_strokes: points.stroke_price,
+                ..Self::new(wanted_db, config.file)
+            },
+        }
+    }
+
+    /// The price of a byte.
+    pub(in crate::fit) fn per_byte(&self) -> f32 {
+        self.per_byte
+    }
+
+    /// The price in `drawing` as it is.
+    pub(in crate::fit) fn in_drawing(self, drawing: &mut Drawing) -> Self {
+        // What is free is so in every drawing, which need not be rendered to say so.
+        if self.per_byte == 0.0 {
+            return self;
+        }
+        self.at(drawing.mse(), drawing.pixels())
+    }
+
+    /// The price in a drawing of `pixels` pixels and mean squared error `mse`.
+    fn at(self, mse: f64, pixels: usize) -> Self {
+        let values = 3.0 * pixels as f64;
+        Self {
+            errors: Some([mse * values, self.wanted_mse * values]),
+            ..self
+        }
+    }
+
+    /// The least squared error that something of this price has to remove to come.
+    fn entry(&self, price: f32) -> f32 {
+        let Some([error, wanted]) = self.errors.filter(|_| price > 0.0) else {
+            return price;
+        };
+        let left = counted(error, wanted) - f64::from(price);
+        uncounted(left, wanted).map_or(f32::INFINITY, |left| (error - left) as f32)
+    }
+
+    /// The least squared error that something of this price has to spare to stay.
+    fn stake(&self, price: f32) -> f32 {
+        let Some([error, wanted]) = self.errors.filter(|_| price > 0.0) else {
+            return price;
+        };
+        let without = counted(error, wanted) + f64::from(price);
+        uncounted(without, wanted).map_or(0.0, |without| (without - error) as f32)
+    }
+
+    fn of_bytes(&self, bytes: usize) -> f32 {
+        self.per_byte * bytes as f32
+    }
+
+    /// The least worth of `stroke` to stay.
+    pub(in crate::fit) fn least_worth(&self, stroke: StrokeRef<'_>) -> f32 {
+        if self.per_byte == 0.0 {
+            return 0.0;
+        }
+        self.stake(self.of_strokes * self.of_bytes(self.bytes_of(stroke)))
+    }
+
+    /// The least gain of `stroke` to be added.
+    pub(in crate::fit) fn least_gain(&self, stroke: &Stroke) -> f32 {
+        if self.per_byte == 0.0 {
+            return 0.0;
+        }
+        self.entry(self.of_strokes * self.of_bytes(stroke_bytes(stroke, &self.file)))
+    }
+
+    /// The least gain of a capsule to be added.
+    pub(in crate::fit) fn least_gain_of_capsule(&self, capsule: &Params) -> f32 {
+        self.least_gain(&Strokes::from_iter([capsule]).get(0).to_stroke())
+    }
+
+    /// The least gains of a point to be added and to stay.
+    pub(in crate::fit) fn of_point(&self) -> [f32; 2] {
+        let price = self.of_bytes(self.point_bytes());
+        [self.entry(price), self.stake(price)]
+    }
+
+    /// Bytes of a stroke.
+    pub(in crate::fit) fn bytes_of(&self, stroke: StrokeRef<'_>) -> usize {
+        stroke_bytes(&stroke.to_stroke(), &self.file)
+    }
+
+    /// Bytes that one more point adds to a typical stroke.
+    pub(in crate::fit) fn point_bytes(&self) -> usize {
+        let bytes = |points: &[[f32; 2]]| {
+            self.bytes_of(StrokeRef {
+                points,
+                off: &[false; 3][..points.len()],
+                closed: false,
+                style: &[1.67, 0.4, 0.5, 0.6, 1.0],
+            })
+        };
+        // In the middle of the file's numbers: steps of some px, with one sign of two.
+        let points = [[123.46, 78.91], [127.82, 74.57], [134.24, 76.35]];
+        bytes(&points).saturating_sub(bytes(&points[..2])).max(1)
+    }
+}
+
+/// The mean squared error of a fidelity, dB.
+fn mse(psnr_db: f64) -> f64 {
+    math::powf(10.0, -psnr_db / 10.0)
+}
+
+/// What a squared error counts, of which `wanted` is that at the quality.
+fn counted(error: f64, wanted: f64) -> f64 {
+    if error < wanted {
+        0.5 * (wanted + error * error / wanted)
+    } else {
+        error
+    }
+}
+
+/// The squared error that counts `count`; `None` if none counts so little.
+fn uncounted(count: f64, wanted: f64) -> Option<f64> {
+    match 2.0 * count - wanted {
+        _ if count >= wanted => Some(count),
+        twice if twice >= 0.0 => Some((twice * wanted).sqrt()),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STROKE: Params = [10.0, 10.0, 20.0, 14.0, 2.0, 0.5, 0.25, 0.75, 1.0];
+
+    fn price(quality: Option<f64>) -> Price {
+        Price::new(quality, WriteOptions::default())
+    }
+
+    fn capsule(price: &Price) -> f32 {
+        price.least_gain_of_capsule(&STROKE)
+    }
+
+    #[test]
+    fn ten_db_are_a_tenth_of_the_price() {
+        let (dear, cheap) = (price(Some(20.0)), price(Some(30.0)));
+        assert!((capsule(&dear) / capsule(&cheap) - 10.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn without_a_quality_strokes_are_free() {
+        assert_eq!(capsule(&price(None)), 0.0);
+        assert_eq!(capsule(&price(None).at(0.01, 100)), 0.0);
+    }
+
+    #[test]
+    fn prices_rise_beyond_the_quality() {
+        let price = price(Some(30.0));
+        let at = |db: f64| price.at(math::powf(10.0, -db / 10.0), 10_000);
+        assert!((capsule(&at(20.0)) / capsule(&price) - 1.0).abs() < 1e-3);
+        assert!(capsule(&at(36.0)) > 2.0 * capsule(&price));
+        // What has less error in all than the stroke would have to remove gets no stroke.
+        assert_eq!(capsule(&at(60.0)), f32::INFINITY);
+    }
+
+    #[test]
+    fn what_a_drawing_stands_on_stays_however_good_it_is() {
+        let strokes = Strokes::from_iter([&STROKE]);
+        let price = price(Some(30.0)).at(1e-9, 10_000);
+        let least = price.least_worth(strokes.get(0));
+        assert!(least > 0.0 && least < 10.0, "{least}");
+    }
+
+    #[test]
+    fn counting_is_undone() {
+        for error in [0.0, 0.3, 1.9, 2.0, 7.0] {
+            let again = uncounted(counted(error, 2.0), 2.0).unwrap();
+            assert!((again - error).abs() < 1e-9, "{again} of {error}");
+        }
+        assert_eq!(uncounted(0.9, 2.0), None);
+    }
+}

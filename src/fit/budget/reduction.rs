@@ -1,0 +1,195 @@
+//! Reduction of a picture to the pixels that its drawing needs.
+//!
+//! A picture may be larger than its detail: it was enlarged, or is out of focus. Then fewer pixels say the same. And a
+//! photograph of many pixels has more detail than the strokes of its drawing can show. The fit takes the reduced picture for its
+//! target; the file has the size of the picture.
+
+use rayon::prelude::*;
+
+use crate::fit::config::{Budget, Config};
+use crate::fit::recipe::Reduction;
+use crate::image::Image;
+use crate::metrics::psnr_db;
+
+/// Width and height to which `picture` is reduced before it is drawn by `config`; `None` if all of its pixels count.
+pub(in crate::fit) fn size(picture: &Image, config: &Config) -> Option<[usize; 2]> {
+    let all = pixels(picture);
+    let recipe = config.recipe().reduction;
+    let counted = counted(config, &recipe);
+    let enough = counted.max(recipe.enough_pixels);
+    // Pens given in px are those of the picture.
+    if config.pens.is_some()
+        || all as f64 <= enough as f64 * recipe.least_factor * recipe.least_factor
+    {
+        return None;
+    }
+    let mut factor = 1.0;
+    let mut reduced = None;
+    loop {
+        let now = reduced.as_ref().unwrap_or(picture);
+        let half = now.reduced(now.width().div_ceil(2), now.height().div_ceil(2));
+        let loss_db = psnr_db(mse_enlarged(&half, now));
+        if is_same(loss_db, config, &recipe) && pixels(&half) >= counted.max(recipe.least_pixels) {
+            factor *= 2.0;
+        } else if pixels(now) > enough && shows_no_more(loss_db, now, config, &recipe) {
+            factor = f64::min(2.0 * factor, (all as f64 / enough as f64).sqrt());
+        } else {
+            break;
+        }
+        reduced = Some(half);
+    }
+    let side = |px: usize| ((px as f64 / factor).round() as usize).max(1);
+    (factor >= recipe.least_factor).then(|| [side(picture.width()), side(picture.height())])
+}
+
+fn pixels(picture: &Image) -> usize {
+    picture.width() * picture.height()
+}
+
+/// Pixels that the strokes need that `config` counts; 0 if it counts none.
+fn counted(config: &Config, recipe: &Reduction) -> usize {
+    let Budget { strokes, bytes, .. } = config.budget;
+    let by_bytes = bytes.map(|bytes| bytes / recipe.bytes_per_stroke);
+    let strokes = strokes.into_iter().chain(by_bytes).min();
+    strokes.map_or(0, |count| count.saturating_mul(recipe.pixels_per_stroke))
+}
+
+/// True if a picture has no detail that its half lacks, from which it can be enlarged again to `loss_db`.
+fn is_same(loss_db: f64, config: &Config, recipe: &Reduction) -> bool {
+    loss_db
+        >= recipe
+            .same_db
+            .max(config.budget.psnr_db.unwrap_or(0.0) + 10.0)
+}
+
+/// True if strokes show no more of `picture` than of its half, from which it can be enlarged again to `loss_db`.
+fn shows_no_more(loss_db: f64, picture: &Image, config: &Config, recipe: &Reduction) -> bool {
+    // A fidelity, or a quality of its own, is asked for of all that is in the picture.
+    let is_for_screen = config.budget.psnr_db.is_none() && config.quality.is_none();
+    let is_photograph = || flat_share(picture, recipe.one_color) < recipe.flat_share;
+    is_for_screen && (loss_db >= recipe.nearly_same_db || is_photograph())
+}
+
+/// The mean squared error of `half`, enlarged linearly, against `picture`.
+fn mse_enlarged(half: &Image, picture: &Image) -> f64 {
+    let [width, height] = [picture.width(), picture.height()];
+    let [columns, rows] = [half.width(), half.height()];
+    // The pixels of the half beside a place between them, and the share of the second.
+    let beside = |at: usize, old: usize, new: usize| {
+        let place = (at as f32 + 0.5) * new as f32 / old as f32 - 0.5;
+        let first = (place.max(0.0) as usize).min(new - 1);
+        (
+            first,
+            (first + 1).min(new - 1),
+            (place - first as f32).clamp(0.0, 1.0),
+        )
+    };
+    let across: Vec<_> = (0..width).map(|x| beside(x, width, columns)).collect();
+    let of_plane = |(small, large): (&Vec<f32>, &Vec<f32>)| {
+        let of_row = |(y, line): (usize, &[f32])| {
+            let (top, bottom, share) = beside(y, height, rows);
+            let at = |x: usize| {
+                let [top, bottom] = [top, bottom].map(|row| small[row * columns + x]);
+                top + share * (bottom - top)
+            };
+            let errors = line
+                .iter()
+                .zip(&across)
+                .map(|(value, &(left, right, share))| {
+                    let (left, right) = (at(left), at(right));
+                    let error = value - (left + share * (right - left));
+                    f64::from(error * error)
+                });
+            errors.sum::<f64>()
+        };
+        // Summed in the order of the rows, so that the number of threads does not matter.
+        let sums: Vec<f64> = large.par_chunks(width).enumerate().map(of_row).collect();
+        sums.iter().sum::<f64>()
+    };
+    let planes = half.planes().iter().zip(picture.planes());
+    planes.map(of_plane).sum::<f64>() / (3 * width * height) as f64
+}
+
+/// Share of the pixels that have the colour of the pixels to the right and below.
+fn flat_share(picture: &Image, one_color: f32) -> f64 {
+    let width = picture.width();
+    let count = pixels(picture);
+    let is_flat = |&i: &usize| {
+        let is_near = |plane: &Vec<f32>, k: usize| (plane[i] - plane[k]).abs() <= one_color;
+        let others = [i + 1, i + width].map(|k| k.min(count - 1));
+        picture
+            .planes()
+            .iter()
+            .all(|plane| others.iter().all(|&k| is_near(plane, k)))
+    };
+    let flat = (0..count).filter(is_flat).count();
+    flat as f64 / count as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math;
+
+    /// A picture of 1,600×1,200 px whose detail is `period` px wide.
+    fn waves(period: f32) -> Image {
+        let wave = |at: usize| math::sin(at as f32 * std::f32::consts::TAU / period);
+        Image::from_fn(1600, 1200, 3, |x, y, _| {
+            0.5 + 0.2 * wave(x) * wave(y + x / 3)
+        })
+        .unwrap()
+    }
+
+    /// Thin black lines on white.
+    fn lines() -> Image {
+        Image::from_fn(1600, 1200, 1, |x, y, _| {
+            f32::from(u8::from((x + y) % 40 > 1))
+        })
+        .unwrap()
+    }
+
+    fn with(budget: Budget) -> Config {
+        Config {
+            budget,
+            ..Config::default()
+        }
+    }
+
+    #[test]
+    fn what_was_enlarged_is_reduced_whatever_is_asked_for() {
+        let psnr = Budget {
+            psnr_db: Some(34.0),
+            ..Budget::default()
+        };
+        for budget in [Budget::default(), psnr] {
+            assert_eq!(size(&waves(90.0), &with(budget)), Some([800, 600]));
+        }
+    }
+
+    #[test]
+    fn detail_is_kept_where_a_fidelity_is_asked_for() {
+        let psnr = Budget {
+            psnr_db: Some(34.0),
+            ..Budget::default()
+        };
+        assert_eq!(size(&waves(5.0), &with(psnr)), None);
+        assert!(
+            size(&waves(5.0), &Config::default()).is_some(),
+            "a screen does not show it"
+        );
+    }
+
+    #[test]
+    fn many_strokes_keep_their_pixels() {
+        let strokes = Budget {
+            strokes: Some(20_000),
+            ..Budget::default()
+        };
+        assert_eq!(size(&waves(90.0), &with(strokes)), None);
+    }
+
+    #[test]
+    fn lines_are_kept() {
+        assert_eq!(size(&lines(), &Config::default()), None);
+    }
+}

@@ -1,0 +1,82 @@
+//! Rivals of a drawing of few strokes.
+//!
+//! Each of a few strokes has many good places, and chance decides which one it finds; that moves the fidelity by some dB. So a
+//! fit of few strokes also draws as the shorter presets would, in a fraction of its time, and keeps the best drawing. A longer preset is
+//! therefore never worse than a shorter one.
+
+use crate::fit::budget;
+use crate::fit::config::{Budget, Config};
+use crate::fit::recipe::Preset;
+use crate::image::Image;
+
+/// The configurations of the drawings that a drawing of `picture` by `config` competes with.
+pub(in crate::fit) fn of(config: &Config, picture: &Image) -> Vec<Config> {
+    let Budget {
+        psnr_db,
+        bytes,
+        time,
+        ..
+    } = config.budget;
+    // A search for a fidelity tries several numbers of strokes anyway.
+    let is_alone = psnr_db.is_some() || time.is_some() || config.recipe.is_some();
+    let recipe = config.recipe();
+    let planned = budget::strokes(config, &recipe, None, picture);
+    if is_alone || planned.is_none_or(|strokes| strokes > recipe.rivals) {
+        return Vec::new();
+    }
+    let with = |preset, seed| Config {
+        preset,
+        seed,
+        ..config.clone()
+    };
+    let shorter: &[Preset] = match config.preset {
+        Preset::Draft => &[],
+        Preset::Balanced => &[Preset::Draft],
+        Preset::Best => &[Preset::Draft, Preset::Balanced],
+    };
+    let mut rivals: Vec<Config> = shorter.iter().map(|&p| with(p, config.seed)).collect();
+    // Bytes decide which strokes stay, which is chance as well.
+    if bytes.is_some() && config.preset != Preset::Draft {
+        rivals.push(with(Preset::Balanced, config.seed.wrapping_add(1)));
+    }
+    rivals
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn presets(config: &Config) -> Vec<Preset> {
+        let picture = Image::filled(64, 64, [0.5; 3]).unwrap();
+        of(config, &picture)
+            .iter()
+            .map(|rival| rival.preset)
+            .collect()
+    }
+
+    fn of_strokes(strokes: usize, preset: Preset) -> Config {
+        let budget = Budget {
+            strokes: Some(strokes),
+            ..Budget::default()
+        };
+        Config {
+            budget,
+            preset,
+            ..Config::default()
+        }
+    }
+
+    #[test]
+    fn few_strokes_compete_with_those_of_shorter_fits() {
+        let of = |preset| presets(&of_strokes(20, preset));
+        assert_eq!(of(Preset::Draft), []);
+        assert_eq!(of(Preset::Balanced), [Preset::Draft]);
+        assert_eq!(of(Preset::Best), [Preset::Draft, Preset::Balanced]);
+    }
+
+    #[test]
+    fn many_strokes_and_as_many_as_pay_have_no_rivals() {
+        assert_eq!(presets(&of_strokes(65, Preset::Best)), []);
+        assert_eq!(presets(&Config::default()), []);
+    }
+}

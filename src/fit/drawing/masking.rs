@@ -1,0 +1,204 @@
+//! Masking: weights of errors by how well the eye sees them, from the picture itself.
+//!
+//! An error is easy to see where the picture is smooth. Detail of the picture hides it (*contrast masking*). With
+//! the standard deviation σ of the luma in a window around a pixel, an error there counts
+//!
+//! ```text
+//! w = c / (c + σ)
+//! ```
+//!
+//! up to a ceiling of σ, since an outline has as large a σ as texture and hides less. Weights are in units of the mean of w over
+//! all pixels, each weighted by its σ². The errors that remain in a drawing are roughly as large as the detail around them, so
+//! the price of a byte keeps its meaning.
+
+use std::collections::VecDeque;
+
+use rayon::prelude::*;
+
+use crate::fit::drawing::focus::Focus;
+use crate::fit::recipe::Masking;
+use crate::image::Image;
+use crate::scene::Rgb;
+
+/// What transparent pictures are laid on.
+const WHITE: Rgb = [1.0; 3];
+
+/// Shares of red, green and blue in the luma (ITU-R BT.601).
+const LUMA: [f64; 3] = [0.299, 0.587, 0.114];
+
+/// How much an error counts at each pixel of `picture`, in units of the mean over its detail.
+pub(in crate::fit) fn weights(picture: &Image, masking: Masking) -> Focus {
+    let size = [picture.width(), picture.height()];
+    let mut means = luma(picture);
+    let mut variances: Vec<f64> = means.par_iter().map(|v| v * v).collect();
+    rayon::join(
+        || average(&mut means, size[0], masking.window),
+        || average(&mut variances, size[0], masking.window),
+    );
+    let ceiling = masking.ceiling * masking.ceiling;
+    let of_square = |(square, mean): (&mut f64, &f64)| {
+        *square = (*square - mean * mean).clamp(0.0, ceiling);
+    };
+    variances.par_iter_mut().zip(&means).for_each(of_square);
+    let weight = |variance: f64| masking.contrast / (masking.contrast + variance.sqrt());
+    let detail: f64 = variances.iter().sum();
+    let seen: f64 = variances.iter().map(|&v| v * weight(v)).sum();
+    // A picture of one colour has no detail, and all its errors count alike.
+    let unit = if detail > 0.0 { seen / detail } else { 1.0 };
+    let weights = variances.par_iter().map(|&v| (weight(v) / unit) as f32);
+    Focus::of_weights(size, weights.collect())
+}
+
+/// The luma of each pixel, on white.
+fn luma(picture: &Image) -> Vec<f64> {
+    let on_white = picture.on(WHITE);
+    let [red, green, blue] = on_white.planes();
+    let pixels = red.par_iter().zip(green).zip(blue);
+    let luma = |((&r, &g), &b): ((&f32, &f32), &f32)| {
+        LUMA[0] * f64::from(r) + LUMA[1] * f64::from(g) + LUMA[2] * f64::from(b)
+    };
+    pixels.map(luma).collect()
+}
+
+/// Replaces each value by the mean of the window of 2`radius` + 1 rows and columns around it, as far as that is in the
+/// picture.
+fn average(values: &mut [f64], width: usize, radius: usize) {
+    // A row is a picture 1 px wide, if it is turned.
+    let rows = values.par_chunks_exact_mut(width);
+    rows.for_each(|row| average_rows(row, 1, radius));
+    average_rows(values, width, radius);
+}
+
+/// Replaces each row of `width` values by the mean of the rows at most `radius` away.
+fn average_rows(values: &mut [f64], width: usize, radius: usize) {
+    let height = values.len() / width;
+    let row = |y: usize| y * width..(y + 1) * width;
+    // Rows are needed once more after they are replaced.
+    let mut before = VecDeque::new();
+    let mut sums = vec![0.0; width];
+    for y in 0..radius.min(height) {
+        add(&mut sums, &values[row(y)]);
+    }
+    for y in 0..height {
+        if y + radius < height {
+            add(&mut sums, &values[row(y + radius)]);
+        }
+        let count = in_reach(y, height, radius) as f64;
+        for (value, sum) in values[row(y)].iter_mut().zip(&sums) {
+            before.push_back(*value);
+            *value = sum / count;
+        }
+        if y >= radius {
+            let gone = before.drain(..width);
+            sums.iter_mut().zip(gone).for_each(|(sum, v)| *sum -= v);
+        }
+    }
+}
+
+fn add(sums: &mut [f64], values: &[f64]) {
+    sums.iter_mut().zip(values).for_each(|(sum, v)| *sum += v);
+}
+
+/// How many of `length` places are at most `radius` away from place `i`.
+fn in_reach(i: usize, length: usize, radius: usize) -> usize {
+    length.min(i + radius + 1) - i.saturating_sub(radius)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::{Budget, Config, ErrorWeighting, Fitter, Preset};
+    use crate::metrics;
+
+    const MASKING: Masking = Masking {
+        window: 2,
+        contrast: 0.04,
+        ceiling: 0.2,
+    };
+
+    fn grey(width: usize, values: Vec<f32>) -> Image {
+        let height = values.len() / width;
+        Image::new(width, height, [values.clone(), values.clone(), values]).unwrap()
+    }
+
+    #[test]
+    fn means_are_those_of_the_window() {
+        let (width, height) = (5, 4);
+        let values: Vec<f64> = (0..width * height).map(|i| (i * i % 7) as f64).collect();
+        let mut means = values.clone();
+        average(&mut means, width, 1);
+        for y in 0..height {
+            for x in 0..width {
+                let rows = y.saturating_sub(1)..height.min(y + 2);
+                let window: Vec<f64> = rows
+                    .flat_map(|row| {
+                        let columns = x.saturating_sub(1)..width.min(x + 2);
+                        columns.map(move |column| row * width + column)
+                    })
+                    .map(|i| values[i])
+                    .collect();
+                let mean = window.iter().sum::<f64>() / window.len() as f64;
+                assert!((means[y * width + x] - mean).abs() < 1e-9, "{x} {y}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_error_counts_most_where_the_picture_is_smooth() {
+        let value = |i: usize| {
+            let (x, y) = (i % 24, i / 24);
+            if x < 12 { 0.5 } else { ((x + y) % 2) as f32 }
+        };
+        let picture = grey(24, (0..24 * 8).map(value).collect());
+        let focus = weights(&picture, MASKING);
+        let [weights, ..] = focus.weights().level(0).planes();
+        // The checks deviate by a half, which is above the ceiling: 0.04 / 0.24 of what counts in the smooth half.
+        let (smooth, detailed) = (weights[2], weights[20]);
+        assert!(
+            (detailed / smooth - 0.04 / 0.24).abs() < 0.01,
+            "{smooth} {detailed}"
+        );
+        assert!((detailed - 1.0).abs() < 0.2, "{detailed}");
+    }
+
+    #[test]
+    fn strokes_go_where_errors_are_seen() {
+        // A slope beside checks of 6 px, 96×48 px.
+        let value = |i: usize| {
+            let (x, y) = (i % 96, i / 96);
+            match x < 48 {
+                true => 0.3 + 0.3 * ((x * x + y * y) as f32 / 4608.0),
+                false => 0.2 + 0.6 * ((x / 6 + y / 6) % 2) as f32,
+            }
+        };
+        let picture = grey(96, (0..96 * 48).map(value).collect());
+        let smooth_db = |look| {
+            let config = Config {
+                budget: Budget {
+                    strokes: Some(40),
+                    ..Budget::default()
+                },
+                preset: Preset::Draft,
+                look: Some(look),
+                ..Config::default()
+            };
+            let fit = Fitter::new(config).fit(&picture).unwrap();
+            metrics::psnr_where(&picture, &fit.soft, |i| i % 96 < 48).unwrap()
+        };
+        let (eye, exact) = (
+            smooth_db(ErrorWeighting::Eye),
+            smooth_db(ErrorWeighting::Exact),
+        );
+        assert!(eye > exact + 2.0, "{eye} {exact}");
+    }
+
+    #[test]
+    fn all_errors_count_alike_in_one_colour() {
+        let focus = weights(&grey(6, vec![0.3; 36]), MASKING);
+        assert!(
+            focus.weights().level(0).planes()[0]
+                .iter()
+                .all(|&w| w == 1.0)
+        );
+    }
+}

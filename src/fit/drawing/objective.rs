@@ -1,0 +1,234 @@
+//! The objective of a fit: the mean loss over all pixels against a target, computed tile by tile.
+
+use rayon::prelude::*;
+
+use crate::loss::Loss;
+use crate::render::{Canvas, CanvasLoss, Lanes, TILE, TileRgb, multiply};
+
+/// The mean of `loss` over width·height·3 values against `target`.
+#[derive(Debug, Clone, Copy)]
+pub struct Objective<'a> {
+    loss: Loss,
+    target: &'a Canvas,
+    moments: Option<&'a Moments>,
+    /// The roots of the weights of errors. The target is multiplied by them already.
+    error_weights: Option<&'a Canvas>,
+    /// 1/(width·height·3).
+    scale: f32,
+}
+
+/// Sums over the pixels of each tile of a target, each as often as its error counts. The squared error of a tile in one
+/// colour follows from them, so that an empty part of a page costs nothing.
+#[derive(Debug)]
+pub(in crate::fit) struct Moments(Vec<TileMoments>);
+
+/// Weights where all errors count alike.
+const EQUAL: Lanes = Lanes::splat(1.0);
+
+#[derive(Debug, Clone, Copy, Default)]
+struct TileMoments {
+    /// The number of pixels.
+    pixels: f64,
+    /// Sums of the channels.
+    sums: [f64; 3],
+    /// The sum of the squares of all channels.
+    squares: f64,
+}
+
+impl Moments {
+    /// The sums of `target`, which is multiplied by `error_weights` already.
+    pub(in crate::fit) fn of(target: &Canvas, error_weights: Option<&Canvas>) -> Self {
+        let grid = target.grid();
+        let moments = |(tile, pixels): (usize, &TileRgb)| {
+            let (x, y) = grid.origin(tile);
+            let (columns, rows) = (TILE.min(grid.width - x), TILE.min(grid.height - y));
+            let mut moments = TileMoments {
+                pixels: (columns * rows) as f64,
+                ..TileMoments::default()
+            };
+            let roots = error_weights.map(|roots| roots.tiles()[tile].as_flattened());
+            if let Some(roots) = roots {
+                let roots = roots.iter().step_by(3).flat_map(|lanes| lanes.0);
+                moments.pixels = roots.map(|v| f64::from(v) * f64::from(v)).sum();
+            }
+            for (i, lanes) in pixels.as_flattened().iter().enumerate() {
+                let roots = roots.map_or(&EQUAL, |roots| &roots[i]);
+                for (value, root) in lanes.0.into_iter().zip(roots.0) {
+                    let value = f64::from(value);
+                    moments.sums[i % 3] += f64::from(root) * value;
+                    moments.squares += value * value;
+                }
+            }
+            moments
+        };
+        Self(target.tiles().par_iter().enumerate().map(moments).collect())
+    }
+}
+
+impl<'a> Objective<'a> {
+    /// The loss against `target`.
+    pub fn new(loss: Loss, target: &'a Canvas) -> Self {
+        let grid = target.grid();
+        Self {
+            loss,
+            target,
+            moments: None,
+            error_weights: None,
+            scale: 1.0 / (grid.width * grid.height * 3) as f32,
+        }
+    }
+
+    /// The squared error against `target`, whose `moments` may be known.
+    pub(in crate::fit) fn squared(target: &'a Canvas, moments: Option<&'a Moments>) -> Self {
+        Self {
+            moments,
+            ..Self::new(Loss::L2, target)
+        }
+    }
+
+    /// The objective with weighted errors; see
+    /// [`Renderer::set_error_weights`](crate::render::Renderer::set_error_weights). The target is multiplied by the roots already.
+    pub(in crate::fit) fn weighted(self, error_weights: Option<&'a Canvas>) -> Self {
+        Self {
+            error_weights,
+            ..self
+        }
+    }
+
+    /// The loss of `canvas`, which is not multiplied by the roots of the weights.
+    pub(in crate::fit) fn of(&self, canvas: &Canvas) -> f64 {
+        let tiles = canvas.tiles().par_iter().enumerate();
+        let sum = |(tile, canvas): (usize, &TileRgb)| {
+            let target = &self.target.tiles()[tile];
+            match self.error_weights {
+                Some(roots) => {
+                    let mut weighted = *canvas;
+                    multiply(&mut weighted, &roots.tiles()[tile]);
+                    self.sum(&weighted, target)
+                }
+                None => self.sum(canvas, target),
+            }
+        };
+        let sums: Vec<f64> = tiles.map(sum).collect();
+        sums.iter().sum::<f64>() * f64::from(self.scale)
+    }
+
+    fn sum(&self, canvas: &TileRgb, target: &TileRgb) -> f64 {
+        let mut sums = Lanes::splat(0.0);
+        let lanes = canvas.as_flattened().iter().zip(target.as_flattened());
+        for (c, t) in lanes {
+            for (sum, (c, t)) in sums.0.iter_mut().zip(c.0.iter().zip(&t.0)) {
+                *sum += self.loss.value(c - t);
+            }
+        }
+        sums.0.iter().map(|&s| f64::from(s)).sum()
+    }
+}
+
+/// Padding adds nothing: it is 0 both in a canvas made from a picture and in the renderer's.
+impl CanvasLoss for Objective<'_> {
+    #[inline(always)]
+    fn tile(
+        &self,
+        tile: usize,
+        canvas: &TileRgb,
+        mut error: Option<&mut TileRgb>,
+        gradient: &mut TileRgb,
+    ) -> f64 {
+        let target = &self.target.tiles()[tile];
+        let mut sums = Lanes::splat(0.0);
+        for block in 0..canvas.len() {
+            for channel in 0..3 {
+                let (c, t) = (&canvas[block][channel], &target[block][channel]);
+                let g = &mut gradient[block][channel];
+                for lane in 0..sums.0.len() {
+                    let e = c.0[lane] - t.0[lane];
+                    sums.0[lane] += self.loss.value(e);
+                    g.0[lane] = self.loss.derivative(e) * self.scale;
+                }
+                // In a loop of its own: inside the one above it would keep that from being vectorised well.
+                if let Some(error) = &mut error {
+                    let e = &mut error[block][channel];
+                    for lane in 0..e.0.len() {
+                        e.0[lane] = c.0[lane] - t.0[lane];
+                    }
+                }
+            }
+        }
+        sums.0.iter().map(|&s| f64::from(s)).sum::<f64>() * f64::from(self.scale)
+    }
+
+    fn uniform(&self, tile: usize, color: [f32; 3]) -> Option<(f64, [f32; 3])> {
+        let &TileMoments {
+            pixels,
+            sums,
+            squares,
+        } = self.moments?.0.get(tile)?;
+        let (color, scale) = (color.map(f64::from), f64::from(self.scale));
+        let products = color.iter().zip(sums);
+        let error: f64 = products
+            .map(|(c, sum)| pixels * c * c - 2.0 * c * sum)
+            .sum();
+        let slope = |channel: usize| 2.0 * (pixels * color[channel] - sums[channel]) * scale;
+        let loss = (error + squares).max(0.0) * scale;
+        Some((loss, [0, 1, 2].map(|channel| slope(channel) as f32)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::Image;
+    use crate::render::Grid;
+    use crate::rng;
+
+    /// A picture of 40×33 px, so that tiles are padded.
+    fn random(key: u64) -> Canvas {
+        let plane = |channel: u64| {
+            (0..40 * 33)
+                .map(|i| rng::draw(0, key, channel, i))
+                .collect()
+        };
+        Canvas::from_image(&Image::new(40, 33, [plane(0), plane(1), plane(2)]).unwrap())
+    }
+
+    #[test]
+    fn a_tile_in_one_colour_is_judged_by_its_sums_as_by_its_pixels() {
+        // A pixel has the same weight in all channels.
+        let through: Vec<f32> = (0..40 * 33).map(|i| 1.5 * rng::draw(0, 9, 9, i)).collect();
+        let planes = [through.clone(), through.clone(), through];
+        let roots = Canvas::from_image(&Image::from_planes(40, 33, planes));
+        let color = [0.2, 0.5, 0.9];
+        for roots in [None, Some(&roots)] {
+            let target = match roots {
+                Some(roots) => random(1).multiplied(roots),
+                None => random(1),
+            };
+            let moments = Moments::of(&target, roots);
+            let objective = Objective::squared(&target, Some(&moments));
+            let flat = Canvas::flat(Grid::new(40, 33), color);
+            let canvas = match roots {
+                Some(roots) => flat.multiplied(roots),
+                None => flat,
+            };
+            for (tile, pixels) in canvas.tiles().iter().enumerate() {
+                let (mut error, mut gradient) = (*pixels, *pixels);
+                let expected = objective.tile(tile, pixels, Some(&mut error), &mut gradient);
+                let (loss, slope) = objective.uniform(tile, color).unwrap();
+                assert!(
+                    (loss - expected).abs() < 1e-5 * expected,
+                    "{loss} {expected}"
+                );
+                for channel in 0..3 {
+                    let lanes = gradient.iter().enumerate().flat_map(|(block, gradient)| {
+                        let through =
+                            roots.map_or(EQUAL, |roots| roots.tiles()[tile][block][channel]);
+                        gradient[channel].0.into_iter().zip(through.0)
+                    });
+                    let sum: f32 = lanes.map(|(g, through)| g * through).sum();
+                    assert!((slope[channel] - sum).abs() < 1e-4 * sum.abs().max(1e-3));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! The axis of a shade.
+
+use std::f32::consts::FRAC_PI_2;
+
+use super::Blocks;
+use crate::math::{self, Point, Vector};
+use crate::scene::Axis;
+
+/// Which axes there are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Linear,
+    Radial,
+}
+
+/// Blocks whose values are compared because their offsets are similar: so many groups.
+const GROUPS: usize = 64;
+/// The axis of this kind along which the blocks are most alike across. `None` if nothing changes, or the centre would be
+/// far away. A line that is level or upright may be worse by the factor `level`.
+pub(super) fn of(blocks: &Blocks, kind: Kind, level: f32) -> Option<Axis> {
+    match kind {
+        Kind::Linear => {
+            let angle = direction(blocks)?;
+            let cost = |angle: f32| spread(blocks, line(blocks, angle));
+            // A degree, down to a hundredth of one.
+            let [angle] = search([angle], 0.02, 0.0002, |[angle]| cost(angle));
+            // What is meant to be level or upright is exactly so.
+            let straight = (angle / FRAC_PI_2).round() * FRAC_PI_2;
+            let is_straight = cost(straight) <= level * cost(angle);
+            Some(line(blocks, if is_straight { straight } else { angle }))
+        }
+        Kind::Radial => {
+            let center = center(blocks)?;
+            let step = blocks.size[0].max(blocks.size[1]) / 50.0;
+            let [x, y] = search([center.x, center.y], step, 0.05, |[x, y]| {
+                spread(blocks, circle(blocks, Point::new(x, y)))
+            });
+            Some(circle(blocks, Point::new(x, y)))
+        }
+    }
+}
+
+/// The angle along which values change most: of the largest eigenvector of Σ g gᵀ over all gradients g.
+fn direction(blocks: &Blocks) -> Option<f32> {
+    let [xx, xy, yy] = tensor(blocks, |_, [x, y]| [x * x, x * y, y * y]);
+    let is_flat = xx + yy <= 0.0;
+    // Half the angle whose tangent is 2·xy / (xx − yy), in any quadrant.
+    let (sine, cosine) = (2.0 * xy, xx - yy);
+    let length = math::hypot(sine, cosine);
+    // tan(φ/2) = sin φ / (1 + cos φ), and the tangent of half of φ gives φ itself.
+    let half = |sine: f32, cosine: f32| {
+        if cosine <= -1.0 + 1e-6 {
+            FRAC_PI_2
+        } else {
+            math::atan(sine / (1.0 + cosine))
+        }
+    };
+    (!is_flat && length > 0.0).then(|| half(sine / length, cosine / length))
+}
+
+/// The point that the gradients g at p point to or away from: the least squares of g⊥·(p − c) over all of them.
+fn center(blocks: &Blocks) -> Option<Point> {
+    let [xx, xy, yy] = tensor(blocks, |_, [x, y]| [y * y, -x * y, x * x]);
+    let [bx, by, _] = tensor(blocks, |p, [x, y]| {
+        let along = p.x * y - p.y * x;
+        [y * along, -x * along, 0.0]
+    });
+    let determinant = xx * yy - xy * xy;
+    // Gradients that are parallel have no common point.
+    if determinant <= 1e-3 * (xx + yy) * (xx + yy) {
+        return None;
+    }
+    let [x, y] = [
+        (yy * bx - xy * by) / determinant,
+        (xx * by - xy * bx) / determinant,
+    ];
+    let [width, height] = blocks.size;
+    let is_near = (x - width / 2.0).abs() < 2.0 * width && (y - height / 2.0).abs() < 2.0 * height;
+    is_near.then(|| Point::new(x, y))
+}
+
+/// The sum over blocks and channels of what `term` makes of the place and the gradient. Steep gradients are edges of
+/// things, and do not count.
+fn tensor(blocks: &Blocks, term: impl Fn(Point, [f32; 2]) -> [f32; 3]) -> [f32; 3] {
+    let steepest = 4.0 * blocks.near;
+    let mut sums = [0.0; 3];
+    for (place, slopes) in blocks.slopes() {
+        let size = |[x, y]: &[f32; 2]| math::hypot(*x, *y);
+        if slopes.iter().map(size).fold(0.0, f32::max) > steepest {
+            continue;
+        }
+        for slope in slopes {
+            let terms = term(place, slope);
+            sums.iter_mut()
+                .zip(terms)
+                .for_each(|(sum, term)| *sum += term);
+        }
+    }
+    sums
+}
+
+/// The line in this direction, in radians, from one end of the page to the other.
+fn line(blocks: &Blocks, angle: f32) -> Axis {
+    let (sine, cosine) = math::sin_cos(angle);
+    let along = Vector::new(cosine, sine);
+    let [width, height] = blocks.size;
+    let middle = Point::new(width / 2.0, height / 2.0);
+    let unit = Axis::Linear {
+        from: middle,
+        to: middle + along,
+    };
+    let [first, last] = blocks.extent(unit);
+    Axis::Linear {
+        from: middle + along * first,
+        to: middle + along * last,
+    }
+}
+
+/// The radius from `center` to the farthest corner of the page.
+fn circle(blocks: &Blocks, center: Point) -> Axis {
+    let unit = Axis::Radial {
+        center,
+        radius: 1.0,
+    };
+    let [_, radius] = blocks.extent(unit);
+    Axis::Radial { center, radius }
+}
+
+/// How much blocks of similar offsets differ: the sum of squared differences from the mean of their group.
+fn spread(blocks: &Blocks, axis: Axis) -> f32 {
+    let mut groups = [(0.0_f32, [0.0_f32; 4], 0.0_f32); GROUPS];
+    for block in blocks.all.iter().filter(|block| block.weight > 0.0) {
+        let offset = axis.offset(block.center).clamp(0.0, 1.0);
+        let group = (offset * GROUPS as f32) as usize;
+        let (count, sums, squares) = &mut groups[group.min(GROUPS - 1)];
+        *count += 1.0;
+        for (sum, value) in sums.iter_mut().zip(block.value) {
+            *sum += value;
+            *squares += value * value;
+        }
+    }
+    let spread = |(count, sums, squares): &(f32, [f32; 4], f32)| {
+        let means = sums.iter().map(|sum| sum * sum).sum::<f32>() / count.max(1.0);
+        squares - means
+    };
+    groups.iter().map(spread).sum()
+}
+
+/// A place near `start` where `cost` is least, by steps along each number in turn that are halved where none is an
+/// improvement.
+fn search<const N: usize>(
+    start: [f32; N],
+    mut step: f32,
+    finest: f32,
+    cost: impl Fn([f32; N]) -> f32,
+) -> [f32; N] {
+    let (mut best, mut least) = (start, cost(start));
+    while step >= finest {
+        let mut improved = false;
+        for (i, sign) in (0..N).flat_map(|i| [(i, 1.0), (i, -1.0)]) {
+            let mut moved = best;
+            moved[i] += sign * step;
+            let found = cost(moved);
+            if found < least {
+                (best, least, improved) = (moved, found, true);
+            }
+        }
+        if !improved {
+            step /= 2.0;
+        }
+    }
+    best
+}

@@ -1,0 +1,246 @@
+//! The stops of a shade along a given axis.
+
+use super::Blocks;
+use crate::fit::recipe::ShadeChoice;
+use crate::math::Point;
+use crate::scene::{Axis, Shade, ShadeStop};
+
+/// Places along the axis that stops may have at first.
+const PLACES: usize = 64;
+/// Groups of blocks with similar offsets, whose means stand for them.
+const GROUPS: usize = 256;
+/// Squared error per block that is the rounding of the picture to 8 bit: nothing is gained below.
+const ROUNDING: f64 = 4.0 / 12.0 / (255.0 * 255.0);
+/// The shade along `axis`.
+pub(super) fn of(blocks: &Blocks, axis: Axis, choice: &ShadeChoice) -> Option<Shade> {
+    let profile = Profile::of(blocks, axis, choice.ridge);
+    let mut offsets = vec![0.0, 1.0];
+    let mut error = profile.error(&offsets);
+    while offsets.len() < choice.stops {
+        let places = (1..PLACES).map(|i| i as f64 / PLACES as f64);
+        let with = |place: f64| {
+            let mut more = offsets.clone();
+            let at = more.partition_point(|&offset| offset < place);
+            more.insert(at, place);
+            more
+        };
+        let is_new = |place: &f64| offsets.iter().all(|offset| (offset - place).abs() > 1e-3);
+        let tried = places
+            .filter(is_new)
+            .map(|place| (profile.error(&with(place)), place));
+        let Some((_, place)) = tried.min_by(|(a, _), (b, _)| a.total_cmp(b)) else {
+            break;
+        };
+        let (moved, found) = profile.moved(with(place));
+        if error - found < choice.stop_share * error || error < ROUNDING * profile.count {
+            break;
+        }
+        (offsets, error) = (moved, found);
+    }
+    let stops = profile.stops(&offsets);
+    trimmed(axis, stops)
+}
+
+/// What is written: without stops that say the same as their neighbours at the ends, on an axis that ends where they do.
+fn trimmed(axis: Axis, mut stops: Vec<ShadeStop>) -> Option<Shade> {
+    let alike = |a: &ShadeStop, b: &ShadeStop| {
+        let near = |a: f32, b: f32| (a - b).abs() < 0.5 / 255.0;
+        let clear = |stop: &ShadeStop| near(stop.opacity, 0.0);
+        let colors = a.color.iter().zip(b.color);
+        (clear(a) && clear(b))
+            || near(a.opacity, b.opacity) && colors.into_iter().all(|(&a, b)| near(a, b))
+    };
+    // The last colour goes on for ever, so that a second one like it says nothing. So does the first one on a line, and not
+    // at a centre.
+    while let [.., a, b] = &stops[..] {
+        if stops.len() < 3 || !alike(a, b) {
+            break;
+        }
+        stops.pop();
+    }
+    let is_linear = matches!(axis, Axis::Linear { .. });
+    while let [a, b, ..] = &stops[..] {
+        if stops.len() < 3 || !is_linear || !alike(a, b) {
+            break;
+        }
+        stops.remove(0);
+    }
+    // The axis ends where the stops do.
+    let (first, last) = (stops.first()?.offset, stops.last()?.offset);
+    let first = if is_linear { first } else { 0.0 };
+    for stop in &mut stops {
+        stop.offset = ((stop.offset - first) / (last - first)).clamp(0.0, 1.0);
+    }
+    let axis = match axis {
+        Axis::Linear { from, to } => {
+            let at = |offset: f32| -> Point { from + (to - from) * offset };
+            Axis::Linear {
+                from: at(first),
+                to: at(last),
+            }
+        }
+        Axis::Radial { center, radius } => Axis::Radial {
+            center,
+            radius: radius * last,
+        },
+    };
+    Shade::new(axis, &stops).ok()
+}
+
+/// Mean offset, number and mean value of a group of blocks.
+struct Group {
+    offset: f64,
+    count: f64,
+    value: [f64; 4],
+}
+
+/// How values change along an axis.
+struct Profile {
+    groups: Vec<Group>,
+    /// All blocks.
+    count: f64,
+    /// See [`ShadeChoice`].
+    ridge: f64,
+}
+
+impl Profile {
+    fn of(blocks: &Blocks, axis: Axis, ridge: f64) -> Self {
+        let mut sums = vec![[0.0_f64; 6]; GROUPS];
+        for block in blocks.all.iter().filter(|block| block.weight > 0.0) {
+            let offset = f64::from(axis.offset(block.center).clamp(0.0, 1.0));
+            let group = (offset * GROUPS as f64) as usize;
+            let [r, g, b, a] = block.value.map(f64::from);
+            let terms = [1.0, offset, r, g, b, a];
+            let sums = &mut sums[group.min(GROUPS - 1)];
+            sums.iter_mut()
+                .zip(terms)
+                .for_each(|(sum, term)| *sum += term);
+        }
+        let filled = sums.iter().filter(|sums| sums[0] > 0.0);
+        let groups: Vec<Group> = filled
+            .map(|&[count, offset, r, g, b, a]| Group {
+                offset: offset / count,
+                count,
+                value: [r, g, b, a].map(|sum| sum / count),
+            })
+            .collect();
+        Self {
+            count: groups.iter().map(|group| group.count).sum(),
+            groups,
+            ridge,
+        }
+    }
+
+    /// The best stops at these offsets. The opacity comes first: once it is fixed, premultiplied colours are linear in
+    /// the stops' colours.
+    fn stops(&self, offsets: &[f64]) -> Vec<ShadeStop> {
+        let opacity = self.fitted(offsets, |group| (1.0, group.value[3]));
+        let opacity: Vec<f64> = opacity.iter().map(|v| v.clamp(0.0, 1.0)).collect();
+        let channel = |c: usize| {
+            self.fitted(offsets, |group| {
+                let opacity = between(offsets, &opacity, group.offset);
+                (opacity, group.value[c])
+            })
+        };
+        let colors = [channel(0), channel(1), channel(2)];
+        let stop = |(i, &offset): (usize, &f64)| ShadeStop {
+            offset: offset as f32,
+            color: [0, 1, 2].map(|c: usize| colors[c][i].clamp(0.0, 1.0) as f32),
+            opacity: opacity[i] as f32,
+        };
+        offsets.iter().enumerate().map(stop).collect()
+    }
+
+    /// The squared error of the best stops at these offsets.
+    fn error(&self, offsets: &[f64]) -> f64 {
+        let stops = self.stops(offsets);
+        let plane = |of: &dyn Fn(&ShadeStop) -> f32| -> Vec<f64> {
+            stops.iter().map(|stop| f64::from(of(stop))).collect()
+        };
+        let colors = [0, 1, 2].map(|c: usize| plane(&|stop| stop.color[c]));
+        let opacity = plane(&|stop| stop.opacity);
+        let error = |group: &Group| {
+            let opacity = between(offsets, &opacity, group.offset);
+            let channel = |c: usize| opacity * between(offsets, &colors[c], group.offset);
+            let seen = [channel(0), channel(1), channel(2), opacity];
+            let errors = seen.iter().zip(group.value).map(|(a, b)| (a - b) * (a - b));
+            group.count * errors.sum::<f64>()
+        };
+        self.groups.iter().map(error).sum()
+    }
+
+    /// The offsets, each moved to where the error is least while its neighbours stay, and that error.
+    fn moved(&self, mut offsets: Vec<f64>) -> (Vec<f64>, f64) {
+        let mut least = self.error(&offsets);
+        let mut step = 0.5 / PLACES as f64;
+        while step > 5e-4 {
+            let inner = 1..offsets.len() - 1;
+            for (i, step) in inner.flat_map(|i| [(i, step), (i, -step)]) {
+                let mut tried = offsets.clone();
+                tried[i] += step;
+                if tried[i] <= tried[i - 1] + 2e-3 || tried[i] >= tried[i + 1] - 2e-3 {
+                    continue;
+                }
+                let error = self.error(&tried);
+                if error < least {
+                    (offsets, least) = (tried, error);
+                }
+            }
+            step /= 2.0;
+        }
+        (offsets, least)
+    }
+
+    /// Values at the offsets, linear between them, that are the least squares of `factor · value − wanted` over all blocks.
+    /// `of` tells factor and wanted value of a group.
+    fn fitted(&self, offsets: &[f64], of: impl Fn(&Group) -> (f64, f64)) -> Vec<f64> {
+        let n = offsets.len();
+        let (mut diagonal, mut beside, mut wanted) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+        let (mut weight, mut sum) = (1e-12, 0.0);
+        for group in &self.groups {
+            let (factor, value) = of(group);
+            let (i, part) = segment(offsets, group.offset);
+            let weights = [factor * (1.0 - part), factor * part];
+            diagonal[i] += group.count * weights[0] * weights[0];
+            diagonal[i + 1] += group.count * weights[1] * weights[1];
+            beside[i] += group.count * weights[0] * weights[1];
+            wanted[i] += group.count * weights[0] * value;
+            wanted[i + 1] += group.count * weights[1] * value;
+            weight += group.count * factor * factor;
+            sum += group.count * factor * value;
+        }
+        let (pull, mean) = (self.ridge * weight.max(1e-6), sum / weight);
+        for (diagonal, wanted) in diagonal.iter_mut().zip(&mut wanted) {
+            *diagonal += pull;
+            *wanted += pull * mean;
+        }
+        solved(diagonal, &beside, wanted)
+    }
+}
+
+/// The solution of a symmetric tridiagonal system: elimination forwards, substitution backwards.
+fn solved(mut diagonal: Vec<f64>, beside: &[f64], mut wanted: Vec<f64>) -> Vec<f64> {
+    for i in 1..diagonal.len() {
+        let factor = beside[i - 1] / diagonal[i - 1];
+        diagonal[i] -= factor * beside[i - 1];
+        wanted[i] -= factor * wanted[i - 1];
+    }
+    for i in (0..diagonal.len()).rev() {
+        let known = wanted.get(i + 1).map_or(0.0, |next| beside[i] * next);
+        wanted[i] = (wanted[i] - known) / diagonal[i];
+    }
+    wanted
+}
+
+/// The segment between two offsets that `at` is in, and the part of it before.
+fn segment(offsets: &[f64], at: f64) -> (usize, f64) {
+    let after = offsets.partition_point(|&offset| offset <= at);
+    let i = after.clamp(1, offsets.len() - 1) - 1;
+    let part = (at - offsets[i]) / (offsets[i + 1] - offsets[i]);
+    (i, part.clamp(0.0, 1.0))
+}
+
+fn between(offsets: &[f64], values: &[f64], at: f64) -> f64 {
+    let (i, part) = segment(offsets, at);
+    values[i] + part * (values[i + 1] - values[i])
+}

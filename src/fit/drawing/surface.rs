@@ -1,0 +1,423 @@
+//! The surfaces of a drawing: for each matte the target, the backdrop and the canvas.
+//!
+//! A drawing without alpha has one surface. A transparent drawing is fitted on two at once, a black and a white matte.
+//! A drawing with premultiplied colour P and alpha A looks like P + (1 − A)·g on a matte g. That is linear in every
+//! channel of g, so that a drawing that is right on black and on white is right on every matte. Losses, gradients,
+//! worths and gains are means over the surfaces.
+
+use crate::error::Result;
+use crate::fit::base::Base;
+use crate::fit::config::Background;
+use crate::fit::drawing::background;
+use crate::fit::drawing::focus::Focus;
+use crate::fit::drawing::objective::{Moments, Objective};
+use crate::fit::recipe::Recipe;
+use crate::image::Image;
+use crate::render::{Backdrop, Canvas, Grid, Renderer, Softness, Strokes};
+use crate::scene::{Rgb, Scene, Shade};
+use crate::seed::{Pyramid, Residual};
+use crate::verify;
+
+const BLACK: Rgb = [0.0; 3];
+const WHITE: Rgb = [1.0; 3];
+
+/// A picture, prepared for a fit.
+pub(in crate::fit) struct Prepared {
+    /// The picture to reproduce: without alpha unless there are two surfaces.
+    pub(in crate::fit) target: Image,
+    /// One, or two for a transparent drawing.
+    pub(in crate::fit) surfaces: Vec<Surface>,
+    /// Whether the background keeps its colour.
+    pub(in crate::fit) background_fixed: bool,
+    /// The gradient on the background.
+    pub(in crate::fit) shade: Option<Shade>,
+}
+
+impl Prepared {
+    /// The surfaces for a drawing of `picture` on `base`, or on a `background` and a `shade`, whose first strokes have a
+    /// scale of `scale` px.
+    pub(in crate::fit) fn new(
+        picture: &Image,
+        (background, shade): (Background, Option<Shade>),
+        base: Option<&Base>,
+        recipe: &Recipe,
+        scale: f32,
+    ) -> Result<Self> {
+        let sizes = Sizes {
+            scale,
+            min_scale: recipe.stages.min_scale,
+        };
+        let Some(Base {
+            document, scene, ..
+        }) = base
+        else {
+            return Self::on_page(picture, background, shade, recipe, sizes);
+        };
+        if let Some(document) = document {
+            return Self::on_document(picture, document.text(), sizes);
+        }
+        let background = scene.background.map_or(Background::None, Background::Color);
+        Self::on_page(picture, background, scene.shade.clone(), recipe, sizes)
+    }
+
+    fn on_page(
+        picture: &Image,
+        background: Background,
+        shade: Option<Shade>,
+        recipe: &Recipe,
+        sizes: Sizes,
+    ) -> Result<Self> {
+        let mattes = mattes(picture, background);
+        let target = match *mattes {
+            [_] => picture.flattened(background::matte(background)),
+            _ => picture.clone(),
+        };
+        let (color, is_fixed) = background::choose(background, &target, &recipe.background);
+        let surface = |&matte: &Rgb| {
+            let color = if mattes.len() == 1 { color } else { matte };
+            let target = target.flattened(matte);
+            let bottom = match &shade {
+                Some(shade) => Bottom::shaded(&target, shade, color, background)?,
+                None => Bottom::Color(color),
+            };
+            Ok(Surface::new(target, matte, bottom, sizes))
+        };
+        Ok(Self {
+            surfaces: mattes.iter().map(surface).collect::<Result<_>>()?,
+            background_fixed: is_fixed || mattes.len() > 1 || shade.is_some(),
+            shade,
+            target,
+        })
+    }
+
+    fn on_document(picture: &Image, svg: &str, sizes: Sizes) -> Result<Self> {
+        let surface = |&matte: &Rgb| {
+            let target = picture.flattened(matte);
+            let bottom = Pyramid::new(verify::render_like(svg, &target, matte)?);
+            Ok(Surface::new(target, matte, Bottom::Document(bottom), sizes))
+        };
+        let mattes = mattes(picture, Background::None);
+        Ok(Self {
+            target: picture.clone(),
+            surfaces: mattes.iter().map(surface).collect::<Result<_>>()?,
+            background_fixed: true,
+            shade: None,
+        })
+    }
+}
+
+/// The mattes that a drawing of `picture` is fitted on: two if the picture has alpha and no background colour is set.
+fn mattes(picture: &Image, background: Background) -> Vec<Rgb> {
+    match (picture.alpha(), background) {
+        (Some(_), Background::Auto | Background::None) => vec![BLACK, WHITE],
+        _ => vec![WHITE],
+    }
+}
+
+/// Typical radii, px of the picture.
+#[derive(Debug, Clone, Copy)]
+struct Sizes {
+    /// The scale of the first strokes.
+    scale: f32,
+    /// The least scale of strokes that are fitted to a reduced picture, in px of that picture.
+    min_scale: f32,
+}
+
+/// The backdrop of all strokes, frozen and free, at any resolution.
+enum Bottom {
+    Color(Rgb),
+    /// The render of a base's document.
+    Document(Pyramid),
+    /// The render of a shade on the background of this colour or, if there is none, on the matte.
+    Shade(Option<Rgb>, Pyramid),
+}
+
+impl Bottom {
+    /// A page of the size of `target`, with a shade on `color`, which is that of `background` if it has one.
+    fn shaded(target: &Image, shade: &Shade, color: Rgb, background: Background) -> Result<Self> {
+        let (width, height) = (target.width(), target.height());
+        let page = Image::new(width, height, shade.planes(width, height, color))?;
+        let has_color = matches!(background, Background::Color(_));
+        Ok(Self::Shade(has_color.then_some(color), Pyramid::new(page)))
+    }
+
+    fn pyramid(&self) -> Option<&Pyramid> {
+        match self {
+            Self::Color(_) => None,
+            Self::Document(pyramid) | Self::Shade(_, pyramid) => Some(pyramid),
+        }
+    }
+
+    fn canvas(&self, grid: Grid, halvings: usize) -> Canvas {
+        match self {
+            Self::Color(color) => Canvas::flat(grid, *color),
+            Self::Document(pyramid) | Self::Shade(_, pyramid) => {
+                Canvas::from_image(pyramid.level(halvings))
+            }
+        }
+    }
+
+    /// The backdrop of the free strokes: the canvas `below` if it holds `frozen` strokes, a document or a shade.
+    fn backdrop<'a>(&self, below: &'a Canvas, frozen: usize) -> Backdrop<'a> {
+        match self {
+            Self::Color(color) if frozen == 0 => Backdrop::Color(*color),
+            _ => Backdrop::Canvas(below),
+        }
+    }
+}
+
+/// Target, backdrop and canvas on one matte, at the current resolution of the drawing.
+pub(in crate::fit) struct Surface {
+    /// The matte that the SVG is rendered on.
+    pub(in crate::fit) matte: Rgb,
+    bottom: Bottom,
+    /// The picture on the matte, and its reductions.
+    pyramid: Pyramid,
+    /// How many times the picture is halved.
+    halvings: usize,
+    /// The least scale of strokes in a reduced picture, px of that picture.
+    min_scale: f32,
+    /// Where errors count, if not everywhere alike.
+    focus: Option<Focus>,
+    /// The roots of the weights of errors, at the current resolution; `None` where all count alike.
+    error_weights: Option<Canvas>,
+    /// The picture, halved, and multiplied by these roots.
+    target: Canvas,
+    /// The target's sums.
+    moments: Moments,
+    /// The frozen strokes, rendered over the bottom.
+    frozen: Canvas,
+    /// The last render of all strokes, with the final edge.
+    pub(in crate::fit) canvas: Canvas,
+}
+
+impl Surface {
+    fn new(target: Image, matte: Rgb, bottom: Bottom, Sizes { scale, min_scale }: Sizes) -> Self {
+        let pyramid = Pyramid::new(target);
+        let halvings = halvings(&pyramid, scale, min_scale);
+        let target = Canvas::from_image(pyramid.level(halvings));
+        let frozen = bottom.canvas(target.grid(), halvings);
+        Self {
+            matte,
+            bottom,
+            halvings,
+            min_scale,
+            canvas: frozen.clone(),
+            frozen,
+            moments: Moments::of(&target, None),
+            focus: None,
+            error_weights: None,
+            target,
+            pyramid,
+        }
+    }
+
+    /// Lets errors count as `focus` says, everywhere alike if `None`. Nothing may be frozen.
+    pub(in crate::fit) fn focus_on(&mut self, focus: Option<&Focus>) {
+        if focus.is_some() || self.focus.is_some() {
+            self.focus = focus.cloned();
+            self.halve(self.halvings);
+        }
+    }
+
+    /// The roots of the weights of errors, at the current resolution; `None` where all count alike.
+    pub(in crate::fit) fn error_weights(&self) -> Option<&Canvas> {
+        self.error_weights.as_ref()
+    }
+
+    /// `canvas` multiplied by the roots of the weights of errors.
+    pub(in crate::fit) fn weighted(&self, canvas: Canvas) -> Canvas {
+        match &self.error_weights {
+            Some(roots) => canvas.multiplied(roots),
+            None => canvas,
+        }
+    }
+
+    /// The grid of the canvases, at the current resolution.
+    pub(in crate::fit) fn grid(&self) -> Grid {
+        self.target.grid()
+    }
+
+    /// How many times the picture is halved.
+    pub(in crate::fit) fn halvings(&self) -> usize {
+        self.halvings
+    }
+
+    /// The picture at full resolution.
+    pub(in crate::fit) fn picture(&self) -> &Image {
+        self.pyramid.level(0)
+    }
+
+    /// The background's colour, unless the drawing is on top of a document.
+    pub(in crate::fit) fn color(&self) -> Option<Rgb> {
+        match self.bottom {
+            Bottom::Color(color) => Some(color),
+            Bottom::Shade(color, _) => color,
+            Bottom::Document(_) => None,
+        }
+    }
+
+    /// Mutable access to the background's colour.
+    pub(in crate::fit) fn color_mut(&mut self) -> Option<&mut Rgb> {
+        match &mut self.bottom {
+            Bottom::Color(color) => Some(color),
+            Bottom::Document(_) | Bottom::Shade(..) => None,
+        }
+    }
+
+    /// How many halvings leave strokes of `scale` px of the picture at their least scale or above.
+    pub(in crate::fit) fn halvings_for(&self, scale: f32) -> usize {
+        halvings(&self.pyramid, scale, self.min_scale)
+    }
+
+    /// Switches to the picture halved `halvings` times, with nothing frozen.
+    pub(in crate::fit) fn halve(&mut self, halvings: usize) {
+        self.halvings = halvings;
+        self.error_weights = self.focus.as_ref().map(|focus| focus.roots(halvings));
+        self.target = self.weighted(Canvas::from_image(self.pyramid.level(halvings)));
+        self.moments = Moments::of(&self.target, self.error_weights.as_ref());
+        self.frozen = self.bottom.canvas(self.target.grid(), halvings);
+        self.canvas.clone_from(&self.frozen);
+    }
+
+    /// Makes the canvas the backdrop of the free strokes.
+    pub(in crate::fit) fn freeze(&mut self) {
+        self.frozen.clone_from(&self.canvas);
+    }
+
+    /// Makes the bottom the backdrop of the free strokes.
+    pub(in crate::fit) fn thaw(&mut self) {
+        if let Some(pyramid) = self.bottom.pyramid() {
+            self.frozen = Canvas::from_image(pyramid.level(self.halvings));
+        }
+    }
+
+    /// The backdrop of the free strokes if `frozen` others are frozen.
+    pub(in crate::fit) fn backdrop(&self, frozen: usize) -> Backdrop<'_> {
+        self.bottom.backdrop(&self.frozen, frozen)
+    }
+
+    /// The backdrop of the strokes of `scene`, in a drawing without frozen strokes.
+    pub(in crate::fit) fn backdrop_of(&self, scene: &Scene) -> Backdrop<'_> {
+        match (scene.background, &scene.shade) {
+            (Some(color), None) => Backdrop::Color(color),
+            _ => self.backdrop(0),
+        }
+    }
+
+    /// The same backdrop, as a canvas.
+    pub(in crate::fit) fn empty(&self, scene: &Scene) -> Canvas {
+        match self.backdrop_of(scene) {
+            Backdrop::Color(color) => Canvas::flat(self.grid(), color),
+            Backdrop::Canvas(canvas) => canvas.clone(),
+        }
+    }
+
+    /// Renders the `free` strokes, on top of `frozen` others, to the canvas.
+    pub(in crate::fit) fn render(
+        &mut self,
+        renderer: &mut Renderer,
+        free: &Strokes,
+        edge: Softness,
+        frozen: usize,
+    ) {
+        let backdrop = self.bottom.backdrop(&self.frozen, frozen);
+        renderer.forward(free, edge, backdrop, &mut self.canvas);
+    }
+
+    /// The mean squared error of `canvas`, at the current resolution.
+    pub(in crate::fit) fn mse_of(&self, canvas: &Canvas) -> f64 {
+        self.objective(None).of(canvas)
+    }
+
+    /// The loss against the picture, or against `target`, which is weighted already.
+    pub(in crate::fit) fn objective<'a>(&'a self, target: Option<&'a Canvas>) -> Objective<'a> {
+        let objective = match target {
+            Some(target) => Objective::squared(target, None),
+            None => Objective::squared(&self.target, Some(&self.moments)),
+        };
+        objective.weighted(self.error_weights())
+    }
+
+    /// What lies behind all strokes, at full resolution.
+    pub(in crate::fit) fn bare(&self) -> Canvas {
+        let full = Canvas::from_image(self.picture()).grid();
+        self.bottom.canvas(full, 0)
+    }
+
+    /// The picture and a canvas at any resolution.
+    pub(in crate::fit) fn residual_of<'a>(&'a self, canvas: &'a Canvas) -> Residual<'a> {
+        Residual {
+            target: &self.pyramid,
+            canvas,
+            weights: self.focus.as_ref().map(Focus::weights),
+        }
+    }
+
+    /// Picture and canvas, to search for candidates in.
+    pub(in crate::fit) fn residual(&self) -> Residual<'_> {
+        self.residual_of(&self.canvas)
+    }
+}
+
+/// How many halvings leave strokes of `scale` px a scale of `min_scale` or more.
+fn halvings(pyramid: &Pyramid, scale: f32, min_scale: f32) -> usize {
+    // `Pyramid::halvings` rounds up; with half the scale it leaves one halving less.
+    pyramid.halvings(0, scale / 2.0, min_scale)
+}
+
+/// The transparent picture that looks like these on black and on white.
+pub(in crate::fit) fn transparent(black: &Image, white: &Image) -> Result<Image> {
+    let channels = || black.planes().iter().zip(white.planes());
+    // P on black, P + (1 − A) on white: A is 1 less their difference, a mean over the channels.
+    let mut alpha = vec![1.0; black.width() * black.height()];
+    for (black, white) in channels() {
+        for ((a, b), w) in alpha.iter_mut().zip(black).zip(white) {
+            *a -= (w - b) / 3.0;
+        }
+    }
+    let straight = |plane: &[f32]| {
+        let pixels = plane.iter().zip(&alpha);
+        pixels
+            .map(|(&p, &a)| if a > 0.0 { p / a } else { 0.0 })
+            .collect()
+    };
+    let planes = [0, 1, 2].map(|c| straight(&black.planes()[c]));
+    Image::new(black.width(), black.height(), planes)?.with_alpha(alpha)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn glass() -> Image {
+        let plane = |k: f32| vec![0.25 * k, 0.1 * k, 0.5];
+        let image = Image::new(3, 1, [plane(1.0), plane(2.0), plane(3.0)]).unwrap();
+        image.with_alpha(vec![1.0, 0.5, 0.25]).unwrap()
+    }
+
+    #[test]
+    fn black_and_white_tell_colour_and_alpha() {
+        let glass = glass();
+        let seen = transparent(&glass.flattened(BLACK), &glass.flattened(WHITE)).unwrap();
+        for (a, b) in seen.planes().iter().zip(glass.planes()) {
+            assert!(
+                a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6),
+                "{a:?} {b:?}"
+            );
+        }
+        let alphas = seen.alpha().unwrap().iter().zip(glass.alpha().unwrap());
+        assert!(alphas.into_iter().all(|(a, b)| (a - b).abs() < 1e-6));
+    }
+
+    #[test]
+    fn only_a_picture_with_alpha_and_without_a_background_to_lie_on_is_transparent() {
+        let (glass, wall) = (glass(), Image::filled(3, 1, [0.5; 3]).unwrap());
+        let count = |picture, background| mattes(picture, background).len();
+        assert_eq!(count(&glass, Background::Auto), 2);
+        assert_eq!(count(&glass, Background::None), 2);
+        assert_eq!(count(&glass, Background::Color(WHITE)), 1);
+        assert_eq!(count(&wall, Background::Auto), 1);
+        assert_eq!(count(&wall, Background::None), 1);
+    }
+}

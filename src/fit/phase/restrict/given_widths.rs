@@ -1,0 +1,41 @@
+//! Given widths: every stroke gets the width of one of the pens, and the rest is fitted to that.
+//!
+//! The drawing has been fitted with widths between the thinnest and the widest pen. Rounds come in pairs. In the first
+//! round widths are free, so that strokes tend to one pen or another; then each gets the nearest pen. In the second round
+//! widths stay as they are. The drawing after it is compared with the best one so far.
+
+use super::rounds;
+use super::width_grid::WidthGrid;
+use crate::error::Result;
+use crate::fit::config::Colors;
+use crate::fit::drawing::Drawing;
+use crate::fit::run::session::Session;
+
+/// Gives every stroke the width of a pen, if pens are given. All strokes must be free.
+pub(super) fn run(session: &mut Session<'_>) -> Result<()> {
+    if session.radii.is_empty() {
+        return Ok(());
+    }
+    let free = match session.config.colors {
+        Colors::Free => session.recipe.polish.rates,
+        _ => session.recipe.polish.rates.without_color(),
+    };
+    let rounds = session.recipe.pens.rounds;
+    hand_out(&mut session.drawing, &session.radii);
+    rounds::best(session, rounds, |session, round| {
+        let is_held = round % 2 == 1;
+        let rates = if is_held { free.without_radius() } else { free };
+        rounds::run(session, rounds, round, rates)?;
+        hand_out(&mut session.drawing, &session.radii);
+        Ok(is_held)
+    })?;
+    Ok(())
+}
+
+/// Gives every stroke the nearest of the `radii`.
+fn hand_out(drawing: &mut Drawing, radii: &[f32]) {
+    let grid = WidthGrid::Given(radii);
+    drawing.free_mut().change(|_, stroke| {
+        stroke.style[0] = grid.nearest(stroke.style[0]);
+    });
+}

@@ -1,0 +1,54 @@
+//! Descent in rounds. Colours or widths are chosen between two rounds; one schedule of rates spans all of them.
+
+use crate::error::Result;
+use crate::fit::descent::Course;
+use crate::fit::phase::descend::descend;
+use crate::fit::recipe::{Rates, Rounds};
+use crate::fit::run::session::Session;
+
+/// Runs round `index`, from 0, with the final edge. A time limit may shorten it: what is left is divided equally among
+/// the remaining rounds.
+pub(super) fn run(
+    session: &mut Session<'_>,
+    rounds: Rounds,
+    index: usize,
+    rates: Rates,
+) -> Result<()> {
+    let polish = session.recipe.polish;
+    let iterations = (polish.iterations as f64 * rounds.iterations) as usize / rounds.count;
+    let used = session.timer.used();
+    let course = Course {
+        iterations,
+        before: index * iterations,
+        of: rounds.count * iterations,
+        rates,
+        pace: rounds.rate,
+        softness: None,
+        until: used + (1.0 - used) / (rounds.count - index) as f32,
+        joint: None,
+    };
+    let mut descent = session.descent(course);
+    descend(session, &mut descent, None)
+}
+
+/// Runs `round` for each of the `rounds`, goes back to the best drawing, and returns its mean squared error. A round says
+/// whether the drawing after it is one to go back to.
+pub(super) fn best(
+    session: &mut Session<'_>,
+    rounds: Rounds,
+    mut round: impl FnMut(&mut Session<'_>, usize) -> Result<bool>,
+) -> Result<f64> {
+    let mut best = (session.drawing.mse(), session.drawing.memento());
+    for index in 0..rounds.count {
+        if session.progress.stopped().is_some() {
+            break;
+        }
+        let counts = round(session, index)?;
+        let mse = session.drawing.mse();
+        if counts && mse < best.0 {
+            best = (mse, session.drawing.memento());
+        }
+    }
+    session.drawing.revert(best.1);
+    Ok(best.0)
+}

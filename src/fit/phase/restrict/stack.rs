@@ -1,0 +1,147 @@
+//! Colours one above the other: all strokes of a colour are neighbours in the order of the drawing, so that its file has
+//! one layer for each colour.
+//!
+//! The order of the colours changes little: where strokes of two colours meet, the colour that lies below in more of the
+//! visible pixels also lies below in the stack. The fit then repairs the rest.
+
+use std::collections::BTreeMap;
+
+use super::palette::Palette;
+use super::preferences::{PreferredColor, preferences};
+use super::rounds;
+use crate::error::Result;
+use crate::fit::drawing::Drawing;
+use crate::fit::phase::polish::Shares;
+use crate::fit::recipe::Recoloring;
+use crate::fit::run::session::Session;
+use crate::metrics::psnr_db;
+use crate::render::StrokeRef;
+use crate::scene::{Written, overlaps, quantum};
+
+/// An 8-bit colour.
+type Color = [u8; 3];
+
+/// Stacks the colours, fits the drawing to that, and takes down by how many dB it is worse than before. All strokes must
+/// be free.
+pub(super) fn run(session: &mut Session<'_>, palette: &mut Palette) -> Result<()> {
+    let until = Shares::of(session.config, &session.recipe).stack;
+    session.timer.give_until(until);
+    let coloring = session.recipe.coloring;
+    let rates = session.recipe.polish.rates.without_color();
+    let precision = session.config.file.precision;
+    let free_db = psnr_db(session.drawing.mse());
+    let order = order(&mut session.drawing, coloring, precision);
+    arrange(&mut session.drawing, &order);
+    let mse = rounds::best(session, coloring.rounds, |session, round| {
+        rounds::run(session, coloring.rounds, round, rates)?;
+        palette.recolor(&mut session.drawing, coloring);
+        arrange(&mut session.drawing, &order);
+        Ok(true)
+    })?;
+    session.history.stacking_db = Some(free_db - psnr_db(mse));
+    session.timer.give_until(1.0);
+    Ok(())
+}
+
+/// Sorts the strokes by the colours' place in `order`; those of one colour keep theirs.
+fn arrange(drawing: &mut Drawing, order: &[Color]) {
+    let place = |color: Color| {
+        let place = order.iter().position(|&c| c == color);
+        place.unwrap_or(order.len())
+    };
+    let strokes = drawing.free().iter().enumerate();
+    // Colours that came later are on top, one after the other.
+    let mut keys: Vec<(usize, Color, usize)> = strokes
+        .map(|(i, stroke)| {
+            let color = stroke.color().map(quantum);
+            (place(color), color, i)
+        })
+        .collect();
+    keys.sort_unstable();
+    let sources: Vec<usize> = keys.into_iter().map(|(_, _, i)| i).collect();
+    drawing.reorder(&sources);
+}
+
+/// The colours from the bottom to the top. A stroke counts by the pixels that it shows in;
+/// `precision` is that of the file.
+fn order(drawing: &mut Drawing, coloring: Recoloring, precision: u8) -> Vec<Color> {
+    let shown = preferences(drawing, 0.0, coloring.min_shown);
+    let strokes = drawing.free().iter().zip(&shown);
+    let written = |(stroke, shown): (StrokeRef<'_>, &PreferredColor)| {
+        let written = Written::anywhere(&stroke.to_stroke(), precision).ok()?;
+        Some((written, shown.weight))
+    };
+    stacked(
+        &strokes.filter_map(written).collect::<Vec<_>>(),
+        coloring.window,
+    )
+}
+
+/// The colours of strokes, each with the pixels in which it shows, in an order that agrees with that of the strokes as far
+/// as possible: again and again, the colour comes next whose strokes lie below the remaining colours rather than above.
+fn stacked(strokes: &[(Written, f32)], window: usize) -> Vec<Color> {
+    let mut below: BTreeMap<(Color, Color), f32> = BTreeMap::new();
+    for window in strokes.chunks(window) {
+        let mut pairs = overlaps(window.iter().map(|(s, _)| s), |a, b| a.color != b.color);
+        // Sums depend on their order.
+        pairs.sort_unstable();
+        for [(lower, weight), (upper, other)] in
+            pairs.into_iter().map(|pair| pair.map(|i| &window[i]))
+        {
+            *below.entry((lower.color, upper.color)).or_default() += weight.min(*other);
+        }
+    }
+    let mut left: Vec<Color> = strokes.iter().map(|(stroke, _)| stroke.color).collect();
+    left.sort_unstable();
+    left.dedup();
+    let mut order = Vec::with_capacity(left.len());
+    while !left.is_empty() {
+        let pull = |color: Color| {
+            let pairs = left.iter().map(|&other| {
+                let weight = |pair| below.get(&pair).copied().unwrap_or(0.0);
+                weight((color, other)) - weight((other, color))
+            });
+            pairs.sum::<f32>()
+        };
+        let pulls: Vec<f32> = left.iter().map(|&color| pull(color)).collect();
+        let lowest = (0..left.len()).max_by(|&i, &j| pulls[i].total_cmp(&pulls[j]).then(j.cmp(&i)));
+        order.push(left.remove(lowest.unwrap_or(0)));
+    }
+    order
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Point;
+    use crate::scene::{Path, Stroke};
+
+    /// Vertical strokes at `x`, of grey `level`.
+    fn stroke(x: f32, level: f32) -> (Written, f32) {
+        let stroke = Stroke {
+            path: Path::line(Point::new(x, 10.0), Point::new(x, 50.0)),
+            radius: 4.0,
+            color: [level; 3],
+            opacity: 1.0,
+        };
+        (Written::anywhere(&stroke, 2).unwrap(), 100.0)
+    }
+
+    #[test]
+    fn what_lies_below_where_strokes_meet_is_below_in_the_stack() {
+        // White over black at one place, black over white at two; grey is nowhere near.
+        let strokes = [
+            stroke(10.0, 0.0),
+            stroke(12.0, 1.0),
+            stroke(50.0, 1.0),
+            stroke(52.0, 0.0),
+            stroke(90.0, 1.0),
+            stroke(92.0, 0.0),
+            stroke(200.0, 0.5),
+        ];
+        let order = stacked(&strokes, 100);
+        let place = |level: u8| order.iter().position(|c| c[0] == level).unwrap();
+        assert!(place(255) < place(0), "{order:?}");
+        assert_eq!(order.len(), 3);
+    }
+}

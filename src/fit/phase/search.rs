@@ -1,0 +1,30 @@
+//! Candidates for strokes on a drawing.
+
+use crate::fit::drawing::Drawing;
+use crate::fit::drawing::surface::Surface;
+use crate::seed::{Candidate, Probing, Wanted, propose};
+
+/// At most `count` candidates of `scale` px on top of `drawing`, best first; `seed` is that of the fit.
+pub(in crate::fit) fn search(
+    drawing: &mut Drawing,
+    count: usize,
+    scale: f32,
+    probing: Probing,
+    seed: u64,
+) -> Vec<Candidate> {
+    drawing.counters.searches += 1;
+    drawing.render();
+    let area = drawing.pixel_area();
+    let wanted = Wanted {
+        count,
+        scale: drawing.bounds.drawable(scale) / area.sqrt(),
+        probing,
+        min_opacity: drawing.bounds.min_opacity(),
+        level: drawing.surface().halvings(),
+        key: [seed, drawing.counters.searches],
+    };
+    let residuals: Vec<_> = drawing.surfaces.iter().map(Surface::residual).collect();
+    let mut candidates = propose(drawing.level, &residuals, wanted);
+    candidates.iter_mut().for_each(|c| c.gain *= area);
+    candidates
+}

@@ -1,0 +1,92 @@
+//! The end of a fit: its result, from the best file.
+
+use crate::error::Result;
+use crate::fit::budget;
+use crate::fit::config::Budget;
+use crate::fit::drawing::Drawing;
+use crate::fit::drawing::surface;
+use crate::fit::file::RenderedFile;
+use crate::fit::result::{Fit, StageRecord};
+use crate::fit::run::session::Session;
+use crate::image::Image;
+use crate::metrics::psnr_db;
+use crate::scene::{Dropped, Quantized, Scene, Stage};
+
+/// A finished drawing, and its file if that was looked at.
+pub(in crate::fit) struct Drawn {
+    pub(in crate::fit) fit: Fit,
+    budget: Budget,
+    file: Option<RenderedFile>,
+}
+
+impl Drawn {
+    /// The other one if it serves the budget better.
+    pub(in crate::fit) fn or_better(self, other: Option<Self>) -> Self {
+        let is_better = |other: &Self| {
+            let files = other.file.as_ref().zip(self.file.as_ref());
+            files.is_some_and(|(new, old)| budget::is_better(&self.budget, new, old))
+        };
+        other.filter(is_better).unwrap_or(self)
+    }
+}
+
+/// The result of the fit: the best file or, if no file was looked at and none is to be `compared`, the drawing as it is.
+pub(in crate::fit) fn finish(mut session: Session<'_>, compared: bool) -> Result<Drawn> {
+    let file = match session.best.take() {
+        None if compared => Some(session.writer.render(&session.drawing)?),
+        best => best,
+    };
+    let rounded = match &file {
+        Some(file) => file.rounded.clone(),
+        None => session.writer.round(&session.drawing),
+    };
+    let stages = records(&mut session, &rounded);
+    let soft = soft(&mut session.drawing, &rounded.scene)?;
+    let fit = Fit {
+        soft,
+        scene: rounded.scene,
+        base: session.base.cloned(),
+        focus: session.focus.take(),
+        file: session.config.file,
+        stop: session.cut_by().unwrap_or(session.history.stop),
+        stacking_db: session.history.stacking_db,
+        target: session.target,
+        stages,
+        dropped: Dropped {
+            non_finite: rounded.dropped.non_finite + session.drawing.counters.lost,
+            invisible: rounded.dropped.invisible + session.drawing.counters.hidden,
+            ..rounded.dropped
+        },
+    };
+    Ok(Drawn {
+        fit,
+        budget: session.config.budget,
+        file,
+    })
+}
+
+/// The records of the stages that have strokes in the finished drawing, numbered like its layers, with the final number
+/// of strokes and the fidelity of each layer.
+fn records(session: &mut Session<'_>, rounded: &Quantized) -> Vec<StageRecord> {
+    let mses = session.drawing.layer_mses(&rounded.scene);
+    let layers = rounded.scene.stages.iter().zip(mses);
+    let origins = rounded.origins.iter().enumerate();
+    let record = |((number, &origin), (stage, mse)): ((_, _), (&Stage, _))| {
+        Some(StageRecord {
+            index: number + 1,
+            strokes: stage.strokes.len(),
+            layer_psnr_db: psnr_db(mse),
+            ..*session.history.records.get(origin)?
+        })
+    };
+    origins.zip(layers).filter_map(record).collect()
+}
+
+/// Our own render of `scene`; with alpha if the drawing is transparent.
+fn soft(drawing: &mut Drawing, scene: &Scene) -> Result<Image> {
+    let mut softs = drawing.soft(scene);
+    match softs.as_slice() {
+        [black, white] => surface::transparent(black, white),
+        _ => Ok(softs.remove(0)),
+    }
+}

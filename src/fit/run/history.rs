@@ -1,0 +1,149 @@
+//! The history of a fit, apart from the drawing.
+
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
+use crate::fit::base::Base;
+use crate::fit::budget::plan::PlannedStage;
+use crate::fit::descent::ties::Ties;
+use crate::fit::drawing::{Drawing, Memento};
+use crate::fit::result::{StageRecord, Stop};
+use crate::metrics::psnr_db;
+
+/// The history of a fit, apart from the drawing.
+#[derive(Debug, Serialize, Deserialize)]
+pub(in crate::fit) struct History {
+    /// One record per stage, those of the base included.
+    pub(in crate::fit) records: Vec<StageRecord>,
+    /// Layers and strokes that were traced.
+    pub(in crate::fit) traced: [usize; 2],
+    /// The current stage, or the last one.
+    pub(in crate::fit) stage: Option<OpenStage>,
+    /// What ended the stages, and in the end the fit.
+    pub(in crate::fit) stop: Stop,
+    pub(in crate::fit) corrections: Corrections,
+    /// Numbers of strokes that stay equal while the drawing settles.
+    pub(in crate::fit) ties: Ties,
+    /// How much worse the drawing is because its colours are stacked, dB.
+    pub(in crate::fit) stacking_db: Option<f64>,
+    /// The drawing that the best file was written from.
+    pub(in crate::fit) best: Option<Memento>,
+}
+
+/// A stage that was seeded.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub(in crate::fit) struct OpenStage {
+    pub(in crate::fit) planned: PlannedStage,
+    /// Time from the beginning of the fit to that of the stage.
+    pub(in crate::fit) began: Duration,
+    /// Strokes of the drawing before the stage, and their fidelity at the stage's resolution, dB.
+    pub(in crate::fit) before: (usize, f64),
+    /// How many of its strokes were worth their price; `None` while they are being fitted.
+    pub(in crate::fit) accepted: Option<usize>,
+}
+
+/// Corrections of the number of strokes, towards the fidelity asked for.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub(in crate::fit) struct Corrections {
+    /// Corrections so far.
+    pub(in crate::fit) count: usize,
+    /// Strokes of the last drawing that was far from that fidelity, and its own, dB.
+    pub(in crate::fit) approached: Option<(usize, f64)>,
+    /// Strokes of the last file, and its fidelity, dB.
+    pub(in crate::fit) before: Option<(usize, f64)>,
+    /// The most strokes of a file that missed the fidelity, and the fewest of one that reached it.
+    pub(in crate::fit) missed: usize,
+    pub(in crate::fit) reached: usize,
+    /// True if the last strokes that were added brought too little for others to be of use.
+    pub(in crate::fit) is_hopeless: bool,
+    /// Fidelity of the last file, dB.
+    pub(in crate::fit) last_db: f64,
+    /// Whether strokes were removed from the last file for bytes.
+    pub(in crate::fit) shortened: bool,
+    /// Fidelity gained by doubling the strokes, dB.
+    pub(in crate::fit) db_per_doubling: f64,
+    /// Bytes of the drawing once strokes share widths and colours, in units of those before.
+    pub(in crate::fit) restricted: f32,
+    /// True if bytes that were left have been used.
+    pub(in crate::fit) refilled: bool,
+}
+
+impl History {
+    /// The history of a new fit, with the `records` of its base's layers, that ends for `stop` unless something else
+    /// ends it first.
+    pub(in crate::fit) fn new(records: Vec<StageRecord>, db_per_doubling: f64, stop: Stop) -> Self {
+        Self {
+            records,
+            traced: [0; 2],
+            stage: None,
+            stop,
+            corrections: Corrections {
+                count: 0,
+                approached: None,
+                before: None,
+                missed: 0,
+                reached: usize::MAX,
+                is_hopeless: false,
+                last_db: 0.0,
+                shortened: false,
+                db_per_doubling,
+                restricted: 1.0,
+                refilled: false,
+            },
+            ties: Ties::default(),
+            stacking_db: None,
+            best: None,
+        }
+    }
+
+    /// Records the current stage: its `iterations`, and the mean squared error `mse` after them.
+    pub(in crate::fit) fn record(&mut self, iterations: usize, elapsed: Duration, mse: f64) {
+        let Some(OpenStage { planned, began, .. }) = self.stage else {
+            return;
+        };
+        let psnr_db = psnr_db(mse);
+        match self.records.get_mut(planned.index) {
+            Some(topped_up) => {
+                topped_up.iterations += iterations;
+                topped_up.psnr_db = psnr_db;
+            }
+            None => self.records.push(StageRecord {
+                index: planned.index + 1,
+                strokes: 0,
+                iterations,
+                wall: elapsed.saturating_sub(began),
+                psnr_db,
+                layer_psnr_db: 0.0,
+            }),
+        }
+    }
+
+    /// Sets why a fit ends that aims at a fidelity of `wanted_db`, and whose best file has `best_db`.
+    pub(in crate::fit) fn stop_at(&mut self, wanted_db: f64, best_db: f64) {
+        self.stop = match self.stop {
+            _ if best_db >= wanted_db => Stop::Psnr,
+            Stop::Psnr => Stop::Converged,
+            other => other,
+        };
+    }
+}
+
+/// Adds the strokes of `base` to `drawing`, and returns the records of its layers.
+pub(in crate::fit) fn load(drawing: &mut Drawing, base: &Base) -> Vec<StageRecord> {
+    drawing.load(&base.scene);
+    let mses = drawing.layer_mses(&base.scene).into_iter();
+    mses.enumerate().map(kept_layer).collect()
+}
+
+/// The record of a layer of the base, from its index and the mean squared error after it.
+fn kept_layer((index, mse): (usize, f64)) -> StageRecord {
+    StageRecord {
+        index: index + 1,
+        strokes: 0,
+        iterations: 0,
+        wall: Duration::ZERO,
+        psnr_db: psnr_db(mse),
+        layer_psnr_db: 0.0,
+    }
+}

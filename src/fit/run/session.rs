@@ -1,0 +1,476 @@
+//! A fit under way: the state that its phases share, and how a checkpoint keeps it.
+
+use std::time::Duration;
+
+use fearless_simd::Level;
+
+use crate::clock::Instant;
+use crate::error::Result;
+use crate::fit::base::Base;
+use crate::fit::budget;
+use crate::fit::budget::plan::{Before, Plan};
+use crate::fit::budget::price::Price;
+use crate::fit::config::{Background, Colors, Config, ErrorWeighting};
+use crate::fit::descent::anneal::Annealing;
+use crate::fit::descent::{Course, Descent};
+use crate::fit::drawing::bounds::Bounds;
+use crate::fit::drawing::focus::Focus;
+use crate::fit::drawing::masking;
+use crate::fit::drawing::shading;
+use crate::fit::drawing::surface::{Prepared, Surface};
+use crate::fit::drawing::{Drawing, Memento};
+use crate::fit::file::{RenderedFile, Writer};
+use crate::fit::order::Phase;
+use crate::fit::recipe::{Rates, Recipe};
+use crate::fit::renderers::{self, Renderings};
+use crate::fit::result::Stop;
+use crate::fit::run::checkpoint::{self, Checkpoint};
+use crate::fit::run::history::{self, History};
+use crate::fit::run::progress::{CancelToken, Observer, Position, Tracker};
+use crate::fit::time::Forecast;
+use crate::fit::time::Timer;
+use crate::image::Image;
+use crate::metrics::psnr_db;
+use crate::scene::Shade;
+use crate::svg::Form;
+
+/// A fit under way: first the fields that are fixed, then those that change.
+pub(in crate::fit) struct Session<'a> {
+    pub(in crate::fit) config: &'a Config,
+    pub(in crate::fit) recipe: Recipe,
+    pub(in crate::fit) base: Option<&'a Base>,
+    pub(in crate::fit) focus: Option<Focus>,
+    /// How much an error counts at each pixel while strokes are fitted: as `focus` says, and as it is seen.
+    pub(in crate::fit) weights: Option<Focus>,
+    /// The radii of the pens, px, the thinnest first; none if strokes may have any.
+    pub(in crate::fit) radii: Vec<f32>,
+    /// The picture to reproduce.
+    pub(in crate::fit) target: Image,
+    pub(in crate::fit) annealing: Annealing,
+    pub(in crate::fit) plan: Plan,
+    /// Most strokes of the drawing.
+    pub(in crate::fit) limit: usize,
+    /// What each stroke has to be worth.
+    pub(in crate::fit) price: Price,
+    pub(in crate::fit) writer: Writer<'a>,
+
+    pub(in crate::fit) drawing: Drawing,
+    pub(in crate::fit) history: History,
+    /// The best file so far.
+    pub(in crate::fit) best: Option<RenderedFile>,
+    /// The file of the settled drawing, until it is compared with the best one.
+    pub(in crate::fit) file: Option<RenderedFile>,
+    /// What other renderers make of that file, if strokes were fitted to it.
+    pub(in crate::fit) renderings: Option<Renderings>,
+    pub(in crate::fit) progress: Tracker<'a>,
+    pub(in crate::fit) timer: Timer,
+
+    /// The current phase.
+    pub(in crate::fit) phase: Phase,
+    /// The descent in which a resumed fit was cut off, until its phase takes it up again.
+    pub(in crate::fit) resumed: Option<Descent>,
+    /// How long the fit may go on once it is asked to stop; `None` since it was.
+    grace: Option<Duration>,
+    keeper: Option<Keeper<'a>>,
+}
+
+/// Task of a fit: the configuration, the base, where errors count, and the size of the picture, px, if a reduced one is drawn.
+pub(in crate::fit) type Task<'a> = (
+    &'a Config,
+    Option<&'a Base>,
+    Option<Focus>,
+    Option<[u32; 2]>,
+);
+
+/// Who is told of a fit and may stop it, and how long the fit may then go on.
+pub(in crate::fit) struct Watch<'a> {
+    pub(in crate::fit) observer: &'a mut (dyn Observer + Send),
+    pub(in crate::fit) token: CancelToken,
+    pub(in crate::fit) grace: Duration,
+}
+
+/// The checkpoint that the state is written to.
+struct Keeper<'a> {
+    checkpoint: &'a mut Checkpoint,
+    /// Identifies the fit.
+    fingerprint: u64,
+    /// Whether the last state has been kept.
+    is_final: bool,
+}
+
+/// The state of a fit as a checkpoint holds it.
+type State = (Phase, History, Memento, Position, Duration, Option<Descent>);
+
+impl<'a> Session<'a> {
+    pub(in crate::fit) fn new(
+        picture: &Image,
+        (config, base, focus, page): Task<'a>,
+        level: Level,
+        watch: Watch<'a>,
+        started: Instant,
+    ) -> Result<Self> {
+        // How many strokes there may be, in which stages, and how wide.
+        let pixels = picture.width() * picture.height();
+        let recipe = budget::recipe(config, base, picture);
+        let limit = budget::strokes(config, &recipe, base, picture);
+        let before = Before::of(base);
+        let plan = Plan::new(config, &recipe, limit, before, pixels);
+        let page_width = Base::page_width(base, &config.file);
+        let pens = config.pens.as_ref();
+        let radii = pens.map_or(Ok(Vec::new()), |pens| pens.radii(page_width, picture))?;
+        let widest = radii.last().copied().unwrap_or(f32::INFINITY);
+        // The picture at the resolution of the first stage, and what lies behind all strokes.
+        let coarsest = coarsest(&plan, before, config, base).min(widest);
+        let Prepared {
+            target,
+            mut surfaces,
+            background_fixed,
+            shade,
+        } = Prepared::new(
+            picture,
+            choose_background(picture, config, base, &recipe),
+            base,
+            &recipe,
+            coarsest,
+        )?;
+        let weights = weights(config, &recipe, &target, focus.as_ref());
+        let focus_on = |surface: &mut Surface| surface.focus_on(weights.as_ref());
+        surfaces.iter_mut().for_each(focus_on);
+        // The drawing, with the strokes of the base.
+        let annealing = Annealing {
+            coverage: config.coverage,
+            edge: recipe.edge,
+        };
+        let resolution = (surfaces[0].grid(), surfaces[0].halvings());
+        let bounds = Bounds::new(resolution, recipe.domain, config.opaque, &radii);
+        let edge = annealing.last();
+        let mut drawing = Drawing::new(surfaces, (background_fixed, shade), bounds, edge, level);
+        let records = base.map_or_else(Vec::new, |base| history::load(&mut drawing, base));
+        // How long that may take, and how much work it is.
+        let limit_s = config.budget.time;
+        let forecast = limit_s.map(|limit| forecast(limit, config, &recipe, &drawing));
+        let planned = (plan.strokes() * recipe.iterations(config.polish)) as f64;
+        Ok(Self {
+            config,
+            recipe,
+            base,
+            focus,
+            weights,
+            radii,
+            target,
+            annealing,
+            limit: budget::max_strokes(config, limit, base, pixels),
+            price: Price::of(config, &recipe.points, pixels),
+            writer: Writer::of(config, base, page),
+            drawing,
+            history: History::new(
+                records,
+                recipe.correction.db_per_doubling,
+                budget::planned_stop(&config.budget),
+            ),
+            best: None,
+            file: None,
+            renderings: None,
+            progress: Tracker::new(
+                watch.observer,
+                watch.token,
+                planned,
+                plan.len(),
+                !watch.grace.is_zero(),
+            ),
+            plan,
+            timer: Timer::new(started, forecast),
+            phase: Phase::first(config, base),
+            resumed: None,
+            grace: Some(watch.grace).filter(|grace| !grace.is_zero()),
+            keeper: None,
+        })
+    }
+
+    /// Plans the stages for the strokes that are missing.
+    pub(in crate::fit) fn plan_rest(&mut self) {
+        let [layers, strokes] = self.history.traced;
+        let before = Before::of(self.base);
+        let before = Before {
+            layers: before.layers + layers,
+            strokes: before.strokes + strokes,
+        };
+        let limit = budget::strokes(self.config, &self.recipe, self.base, &self.target);
+        let pixels = self.drawing.pixels();
+        self.plan = Plan::new(self.config, &self.recipe, limit, before, pixels);
+    }
+
+    /// The descent in which the fit was cut off, or else a new one that follows `course`.
+    pub(in crate::fit) fn descent(&mut self, course: Course) -> Descent {
+        let (drawing, recipe, used) = (&self.drawing, &self.recipe, self.timer.used());
+        self.resumed
+            .take()
+            .unwrap_or_else(|| Descent::new(drawing, recipe, course, used))
+    }
+
+    /// Counts an iteration of the free strokes, after which the mean squared error is `mse` and the descent has `left`
+    /// more of them. Returns whether to go on.
+    pub(in crate::fit) fn advance(&mut self, left: usize, mse: f64) -> bool {
+        self.timer.step(self.drawing.len());
+        let strokes = self.drawing.free().len();
+        let polish = match self.phase.precedes_polish(self.config) {
+            true => self.drawing.len() * self.recipe.polish.iterations,
+            false => 0,
+        };
+        let rest = strokes * left + polish;
+        self.progress.advance(strokes, rest, self.timer.used());
+        if self.timer.is_over() {
+            self.progress.stop(Stop::Time);
+        }
+        self.progress.tell(&self.drawing, mse) && self.progress.stopped().is_none()
+    }
+
+    /// Whether the fit was asked to stop, and is finishing its drawing.
+    pub(in crate::fit) fn is_leaving(&self) -> bool {
+        self.progress.is_interrupted()
+    }
+
+    /// Checks for a stop: sets a time limit when the fit has been asked to stop. Returns whether that happened just now.
+    pub(in crate::fit) fn check_for_stop(&mut self) -> bool {
+        if !self.is_leaving() {
+            return false;
+        }
+        let Some(grace) = self.grace.take() else {
+            return false;
+        };
+        let elapsed = self.timer.elapsed();
+        let budget = self.config.budget;
+        let left = budget.time.map(|limit| limit.saturating_sub(elapsed));
+        let limit = left.map_or(grace, |left| left.min(grace));
+        let forecast = forecast(limit, self.config, &self.recipe, &self.drawing);
+        self.timer.restart(forecast);
+        true
+    }
+
+    /// Measures from time to time, if the time is limited, how long it takes to write and render the drawing.
+    pub(in crate::fit) fn time_a_write(&mut self) -> Result<()> {
+        if self.timer.wants_trial_write() {
+            self.render_file()?;
+        }
+        Ok(())
+    }
+
+    /// Rounds, writes and renders the drawing.
+    pub(in crate::fit) fn render_file(&mut self) -> Result<RenderedFile> {
+        let (writer, drawing) = (self.writer, &self.drawing);
+        self.timer.writing(drawing.len(), || writer.render(drawing))
+    }
+
+    /// The same, with what other renderers make of the file.
+    pub(in crate::fit) fn render_for_settling(&mut self) -> Result<(RenderedFile, Renderings)> {
+        let (writer, drawing) = (self.writer, &mut self.drawing);
+        let render = || writer.render_beside(drawing, renderers::by_chromium);
+        let (file, chromium) = self.timer.writing(drawing.len(), render)?;
+        let renderings = Renderings::of(&file, chromium, drawing, self.recipe.settling)?;
+        Ok((file, renderings))
+    }
+
+    /// The step sizes of the polish, for what strokes may still change once the drawing is restricted.
+    pub(in crate::fit) fn restricted_rates(&self) -> Rates {
+        let mut rates = self.recipe.polish.rates;
+        if self.config.colors != Colors::Free {
+            rates = rates.without_color();
+        }
+        if !self.radii.is_empty() {
+            rates = rates.without_radius();
+        }
+        if self.config.file.form == Form::Smallest {
+            rates = rates.without_color().without_radius();
+        }
+        rates
+    }
+
+    /// Bytes of the drawing as a file; about, if its strokes will come to share pens, which makes them shorter.
+    pub(in crate::fit) fn bytes(&self) -> usize {
+        if self.config.file.form != Form::Smallest {
+            return self.writer.bytes(&self.drawing);
+        }
+        let strokes = self.drawing.free().iter();
+        let strokes: usize = strokes.map(|stroke| self.price.bytes_of(stroke)).sum();
+        let layers = self.drawing.stage_sizes().len();
+        let empty = self.base.map_or(budget::FILE_BYTES, Base::bytes);
+        empty + layers * budget::LAYER_BYTES + strokes
+    }
+
+    /// Number of layers of the drawing that are joined with the one below because they would take much of a budget of bytes.
+    pub(in crate::fit) fn layers_to_join(&self) -> usize {
+        let Some(most) = self
+            .config
+            .budget
+            .bytes
+            .filter(|_| !self.config.progressive)
+        else {
+            return 0;
+        };
+        let kept = Before::of(self.base).layers.max(1);
+        let more = self.drawing.stage_sizes().len().saturating_sub(kept);
+        let bytes = (more * budget::LAYER_BYTES) as f64;
+        if bytes > self.recipe.correction.layers_share * most as f64 {
+            more
+        } else {
+            0
+        }
+    }
+
+    /// Makes `file`, rendered from the current drawing, the best file so far.
+    pub(in crate::fit) fn set_best(&mut self, file: RenderedFile) {
+        self.history.best = Some(self.drawing.memento());
+        self.best = Some(file);
+    }
+
+    /// Takes down why a fit ends that aims at a fidelity of `wanted_db`.
+    pub(in crate::fit) fn stop_at(&mut self, wanted_db: f64) {
+        let best_db = self.best.as_ref().map_or(0.0, |best| psnr_db(best.mse));
+        self.history.stop_at(wanted_db, best_db);
+    }
+
+    /// What cut the fit short, if anything did.
+    pub(in crate::fit) fn cut_by(&self) -> Option<Stop> {
+        if self.is_leaving() {
+            return Some(Stop::Interrupted);
+        }
+        let hurried = self.timer.is_hurried().then_some(Stop::Time);
+        self.progress.stopped().or(hurried)
+    }
+
+    /// Goes on from the state in `checkpoint`, if it holds one, and keeps the state there from now on.
+    pub(in crate::fit) fn resume(&mut self, checkpoint: &'a mut Checkpoint) -> Result<()> {
+        let fingerprint = checkpoint::fingerprint(
+            &self.target,
+            self.config,
+            &self.recipe,
+            self.base,
+            self.focus.as_ref(),
+        );
+        match checkpoint.load::<State>(fingerprint)? {
+            Some((phase, history, drawing, position, elapsed, descent)) => {
+                if let Some(best) = history.best.clone() {
+                    self.drawing.restore(best);
+                    self.best = Some(self.writer.render(&self.drawing)?);
+                }
+                self.drawing.restore(drawing);
+                (self.phase, self.history, self.resumed) = (phase, history, descent);
+                self.progress.position = position;
+                self.plan_rest();
+                self.timer.resume(elapsed);
+            }
+            // A checkpoint that cannot be written is refused before any work is done.
+            None => checkpoint.write(fingerprint, &self.state(None))?,
+        }
+        self.keeper = Some(Keeper {
+            checkpoint,
+            fingerprint,
+            is_final: false,
+        });
+        Ok(())
+    }
+
+    /// The current [`State`], to be written.
+    fn state<'s>(&'s self, descent: Option<&'s Descent>) -> impl serde::Serialize + 's {
+        (
+            self.phase,
+            &self.history,
+            self.drawing.memento(),
+            self.progress.position,
+            self.timer.elapsed(),
+            descent,
+        )
+    }
+
+    /// Keeps the state, with the `descent` under way, if that is due: at intervals, before a phase that cannot be
+    /// divided, at the end, and when the fit is interrupted. What an interrupted fit does after that, to finish its
+    /// drawing quickly, is not kept.
+    pub(in crate::fit) fn keep(&mut self, descent: Option<&Descent>) {
+        let Some(keeper) = self.keeper.take() else {
+            return;
+        };
+        let is_resumable = match descent {
+            Some(_) => self.phase.is_divisible(),
+            None => self.phase.is_resumable(),
+        };
+        let is_interrupted = self.progress.is_interrupted();
+        let is_due = keeper.checkpoint.is_due() || is_interrupted || self.phase.is_milestone();
+        if is_resumable && is_due && !keeper.is_final {
+            keeper
+                .checkpoint
+                .keep(keeper.fingerprint, &self.state(descent));
+        }
+        self.keeper = Some(keeper);
+        self.mark_as_final();
+    }
+
+    /// Stops keeping the state if the fit was interrupted: a phase that was cut short is nothing to go on from.
+    pub(in crate::fit) fn mark_as_final(&mut self) {
+        let is_interrupted = self.progress.is_interrupted();
+        if let Some(keeper) = &mut self.keeper {
+            keeper.is_final |= is_interrupted;
+        }
+    }
+}
+
+/// The background and the shade of a new drawing. A shade, with `auto`, replaces the background. It has any colours and
+/// opacities, so that a drawing of few colours or of given pens has none, and neither has one of opaque strokes that is
+/// transparent.
+fn choose_background(
+    picture: &Image,
+    config: &Config,
+    base: Option<&Base>,
+    recipe: &Recipe,
+) -> (Background, Option<Shade>) {
+    let may_be = base.is_none()
+        && config.background == Background::Auto
+        && config.colors == Colors::Free
+        && config.pens.is_none()
+        && !(config.opaque && picture.alpha().is_some());
+    let pixels = picture.width() * picture.height();
+    let price = Price::of(config, &recipe.points, pixels);
+    let choose = || shading::choose(picture, &recipe.background.shade, price.per_byte());
+    let shade = may_be.then(choose).flatten();
+    let background = match shade {
+        Some(_) => Background::None,
+        None => config.background,
+    };
+    (background, shade)
+}
+
+/// How much an error counts at each pixel while strokes are fitted: as `focus` says, and as it is seen.
+fn weights(
+    config: &Config,
+    recipe: &Recipe,
+    target: &Image,
+    focus: Option<&Focus>,
+) -> Option<Focus> {
+    match config.look() {
+        ErrorWeighting::Exact => focus.cloned(),
+        ErrorWeighting::Eye => {
+            let seen = masking::weights(target, recipe.masking);
+            Some(
+                focus
+                    .into_iter()
+                    .fold(seen, |seen, focus| seen.times(focus)),
+            )
+        }
+    }
+}
+
+/// The forecast of a fit that has a time `limit`.
+fn forecast(limit: Duration, config: &Config, recipe: &Recipe, drawing: &Drawing) -> Forecast {
+    let is_transparent = drawing.surfaces.len() > 1;
+    let needs_file = budget::needs_file(&config.budget, recipe);
+    Forecast::new(limit, drawing.pixels(), is_transparent, needs_file, recipe)
+}
+
+/// The scale of the first stage, px, which sets the resolution that the drawing begins at; 0 for full resolution.
+fn coarsest(plan: &Plan, before: Before, config: &Config, base: Option<&Base>) -> f32 {
+    // A reduced picture flatters a base, so that its fidelity has to be measured at full resolution.
+    if base.is_some() && config.budget.psnr_db.is_some() {
+        return 0.0;
+    }
+    let first = plan.stage(before.layers, before.strokes);
+    first.map_or(0.0, |stage| stage.scale)
+}
