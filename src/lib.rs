@@ -146,7 +146,7 @@
 //! | tie | holds numbers of strokes equal while they are fitted |
 //! | seed | key of all random draws; *seeding* is the search for candidates |
 //! | grace | how long a fit that is asked to stop may take to finish its drawing |
-//! | paper | a background that stays although a given palette has nothing like it |
+//! | kept background | a background that stays although a given palette has nothing like it |
 //! | remark | what reading a picture has changed or left out |
 //! | checkpoint | a file with the whole state of a fit, from which it goes on to the same bytes |
 //! | observer | is told of progress after every iteration, and may stop the fit |

@@ -40,7 +40,7 @@ pub struct Probing {
     pub probed: f32,
 }
 
-/// What to search for.
+/// Task of a search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wanted {
     /// Most candidates.
@@ -74,7 +74,7 @@ pub struct Residual<'a> {
     pub target: &'a Pyramid,
     /// The drawing, of the size of the level [`Wanted::level`].
     pub canvas: &'a Canvas,
-    /// How much an error counts at each pixel, 0 to 1, in each channel alike; `None` for 1 everywhere.
+    /// Weight of an error at each pixel, 0 to 1, in each channel alike; `None` for 1 everywhere.
     pub weights: Option<&'a Pyramid>,
 }
 
@@ -109,7 +109,7 @@ impl Pyramid {
         self.levels.len()
     }
 
-    /// How many times to halve level `from` so that a length of `scale` px becomes at most `limit`, as far as there are
+    /// Number of times to halve level `from` so that a length of `scale` px becomes at most `limit`, as far as there are
     /// levels.
     pub fn halvings(&self, from: usize, scale: f32, limit: f32) -> usize {
         let halvings = math::log2(scale / limit).ceil().max(0.0) as usize;
@@ -183,7 +183,7 @@ impl<'a> Reduced<'a> {
         }
     }
 
-    /// How much an error counts at a pixel.
+    /// Weight of an error at a pixel.
     fn weight(&self, x: usize, y: usize) -> f32 {
         let at = |weights: &Image| weights.planes()[0][y * weights.width() + x];
         self.weights.map_or(1.0, at)
@@ -264,7 +264,7 @@ struct Cells {
     height: usize,
     /// Side of a cell, px.
     side: f32,
-    /// How much of the first column and row is outside the picture, px.
+    /// Part of the first column and row that is outside the picture, px.
     shift: [f32; 2],
     columns: usize,
     rows: usize,

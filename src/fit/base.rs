@@ -6,7 +6,7 @@ use crate::scene::Scene;
 use crate::svg::{self, Document, Length, WriteOptions};
 use crate::verify;
 
-/// What a fit goes on from: a document that stays as it is, strokes that are fitted further, or both.
+/// Start of a fit: a document that stays as it is, strokes that are fitted further, or both.
 #[derive(Debug, Clone)]
 pub struct Base {
     /// Any SVG. It stays as it is, byte for byte, and strokes are added on top.

@@ -71,7 +71,7 @@ pub(super) fn points(
     (!prices_points(config, pixels)).then_some((most * strokes as f32) as usize)
 }
 
-/// Whether bytes or a price limit the points of a drawing, and not their number.
+/// True if bytes or a price limit the points of a drawing, and not their number.
 pub(super) fn prices_points(config: &Config, pixels: usize) -> bool {
     config.budget.bytes.is_some() || config.quality_for(pixels).is_some()
 }
@@ -129,12 +129,12 @@ pub(super) fn typical_bytes(config: &Config, target: &Image) -> usize {
     svg::stroke_bytes(&stroke, &config.file).max(1)
 }
 
-/// Whether the fit depends on the render of its file, or on the file's bytes.
+/// True if the fit depends on the render of its file, or on the file's bytes.
 pub(super) fn needs_file(budget: &Budget, recipe: &Recipe) -> bool {
     recipe.settling.rounds > 0 || budget.psnr_db.is_some() || budget.bytes.is_some()
 }
 
-/// Whether of two files the one is taken that serves the budget better, and not the one that is worth its price.
+/// True if two files are compared by the budget rather than by price.
 pub(super) fn compares_files(config: &Config, recipe: &Recipe) -> bool {
     let Budget {
         strokes,
@@ -167,22 +167,22 @@ pub(super) fn met(budget: &Budget, strokes: usize, file: &RenderedFile) -> Optio
     }
 }
 
-/// Whether `new` meets the limits on bytes and fidelity that `old` meets.
+/// True if `new` meets the limits on bytes and fidelity that `old` meets.
 pub(super) fn meets_as_much(budget: &Budget, new: &RenderedFile, old: &RenderedFile) -> bool {
     (fits(budget, new) || !fits(budget, old)) && (reaches(budget, new) || !reaches(budget, old))
 }
 
-/// Whether `file` has no more bytes than allowed.
+/// True if `file` has no more bytes than allowed.
 fn fits(budget: &Budget, file: &RenderedFile) -> bool {
     budget.bytes.is_none_or(|most| file.bytes <= most)
 }
 
-/// Whether a fidelity is asked for, and `file` has it.
+/// True if a fidelity is asked for, and `file` has it.
 fn reaches(budget: &Budget, file: &RenderedFile) -> bool {
     budget.psnr_db.is_some_and(|db| psnr_db(file.mse) >= db)
 }
 
-/// Whether `new` serves the budget better than `old`. Few enough bytes count first, then enough fidelity. Of two files
+/// True if `new` serves the budget better than `old`. Few enough bytes count first, then enough fidelity. Of two files
 /// that have both, the one with fewer strokes is better; of two that lack fidelity, the one with less error.
 pub(super) fn is_better(budget: &Budget, new: &RenderedFile, old: &RenderedFile) -> bool {
     match (fits(budget, new), fits(budget, old)) {

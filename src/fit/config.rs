@@ -22,14 +22,14 @@ pub struct Config {
     /// dB. If it is `None`, a budget of strokes, fidelity or bytes makes strokes free, so that every stroke that
     /// removes error stays; without such a budget [`quality_for`](Self::quality_for) the picture's size applies.
     pub quality: Option<f64>,
-    /// How much work to spend.
+    /// Work to spend.
     pub preset: Preset,
-    /// Whether each layer is polished on its own, so that the drawing looks finished after each.
+    /// True if each layer is polished on its own, so that the drawing looks finished after each.
     pub progressive: bool,
     /// Which errors count; `None` for [`ErrorWeighting::Exact`] where a fidelity is asked for, which is about exact errors, and for
     /// [`ErrorWeighting::Eye`] elsewhere.
     pub look: Option<ErrorWeighting>,
-    /// Whether all strokes have opacity 1.
+    /// True if all strokes have opacity 1.
     pub opaque: bool,
     /// The coverage function, or two: one while the edge is soft, and one for the final edge.
     pub coverage: CoverageSchedule,
@@ -37,13 +37,13 @@ pub struct Config {
     pub points: Option<usize>,
     /// The number of stages; `None` lets the preset and the budget decide.
     pub stages: Option<usize>,
-    /// Whether strokes are polished after the stages.
+    /// True if strokes are polished after the stages.
     pub polish: bool,
     /// The colours that the drawing may have.
     pub colors: Colors,
     /// The widths that strokes may have; any if `None`.
     pub pens: Option<Widths>,
-    /// How the drawing is written. The fit takes its bytes and its render into account.
+    /// Options of the file. The fit takes its bytes and its render into account.
     pub file: WriteOptions,
     /// The colour behind all strokes.
     pub background: Background,
@@ -111,7 +111,7 @@ pub enum Colors {
 }
 
 impl Colors {
-    /// Whether all colours of `scene` are allowed.
+    /// True if all colours of `scene` are allowed.
     pub(super) fn allow(&self, scene: &Scene) -> bool {
         let strokes = scene.strokes().map(|stroke| stroke.color);
         let used: BTreeSet<_> = strokes
@@ -180,14 +180,14 @@ impl Config {
         self.look.unwrap_or(usual)
     }
 
-    /// Whether strokes may have more than two points. In a file of outlines a point takes as many bytes as a stroke, so
+    /// True if strokes may have more than two points. In a file of outlines a point takes as many bytes as a stroke, so
     /// that none pays.
     pub(super) fn allows_points(&self) -> bool {
         let pays = self.file.form != Form::Outlines;
         self.points.map_or(pays, |most| most > 2)
     }
 
-    /// Whether a stroke is as opaque, and has as few points, as all strokes have to be.
+    /// True if a stroke is as opaque, and has as few points, as all strokes have to be.
     pub(super) fn allows(&self, stroke: &Stroke) -> bool {
         let points = stroke.path.points().len();
         self.points.is_none_or(|most| points <= most) && (!self.opaque || stroke.opacity >= 1.0)
@@ -203,7 +203,7 @@ impl Config {
         self.quality.or(self.is_open().then_some(seen.max(0.0)))
     }
 
-    /// Whether neither a quality nor a budget says how many strokes a drawing may have. It then has at most
+    /// True if neither a quality nor a budget says how many strokes a drawing may have. It then has at most
     /// [`DEFAULT_STROKES`].
     pub fn is_open(&self) -> bool {
         let Budget {

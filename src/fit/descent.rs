@@ -37,7 +37,7 @@ pub(super) struct Course {
     pub(super) joint: Option<Joint>,
 }
 
-/// What only a joint course of all strokes does.
+/// Part of a course that only a joint one has.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub(super) struct Joint {
     /// Most strokes of the drawing, frozen ones included.
@@ -98,7 +98,7 @@ impl Descent {
         }
     }
 
-    /// How many iterations are to come.
+    /// Number of iterations to come.
     pub(super) fn left(&self) -> usize {
         self.course.iterations - self.step
     }

@@ -29,7 +29,7 @@ pub(super) struct Drawing {
     pub(super) surfaces: Vec<Surface>,
     pub(super) renderer: Renderer,
     pub(super) level: Level,
-    /// Whether the background keeps its colour.
+    /// True if the background keeps its colour.
     pub(super) background_fixed: bool,
     /// The gradient on the background.
     pub(super) shade: Option<Shade>,
@@ -41,7 +41,7 @@ pub(super) struct Drawing {
     pub(super) bounds: Bounds,
     /// The edge of the finished drawing.
     edge: Softness,
-    /// Whether the canvases show the drawing as it is.
+    /// True if the canvases show the drawing as it is.
     is_rendered: bool,
     pub(super) counters: Counters,
 }
@@ -165,7 +165,7 @@ impl Drawing {
         (1 << (2 * self.surface().halvings())) as f32
     }
 
-    /// Whether no stroke is frozen, so that the background can be fitted.
+    /// True if no stroke is frozen, so that the background can be fitted.
     pub(super) fn is_thawed(&self) -> bool {
         self.frozen.is_empty()
     }
@@ -273,7 +273,7 @@ impl Drawing {
         }
     }
 
-    /// How many of the free strokes, from the bottom, are in stages that were traced.
+    /// Number of free strokes, from the bottom, in stages that were traced.
     pub(super) fn traced(&self) -> usize {
         let free = self.stage_of.get(self.frozen.len()..).unwrap_or_default();
         free.partition_point(|&stage| stage < self.counters.traced_until)

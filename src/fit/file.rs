@@ -12,11 +12,11 @@ use crate::scene::{Quantized, Scene};
 use crate::svg::WriteOptions;
 use crate::{metrics, verify};
 
-/// How the drawing is written.
+/// Writes the drawing.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Writer<'a> {
     base: Option<&'a Base>,
-    /// Whether the file has a rectangle of the background's colour.
+    /// True if the file has a rectangle of the background's colour.
     pub(super) has_background: bool,
     options: WriteOptions,
     /// Size of the picture, px, if the drawing is of a reduced one.
@@ -58,7 +58,7 @@ impl<'a> Writer<'a> {
         scene.quantized(self.options.precision)
     }
 
-    /// How many bytes `drawing` has as a file.
+    /// Bytes of `drawing` as a file.
     pub(super) fn bytes(&self, drawing: &Drawing) -> usize {
         self.text(&self.round(drawing)).len()
     }
@@ -73,7 +73,7 @@ impl<'a> Writer<'a> {
         Ok(file)
     }
 
-    /// The same, while `other` work goes on with the drawing as it is written.
+    /// Rounds and writes `drawing`, and renders the file, while `other` work goes on with the drawing as it is written.
     pub(super) fn render_beside<T: Send>(
         &self,
         drawing: &Drawing,

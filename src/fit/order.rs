@@ -60,7 +60,7 @@ pub(super) enum Phase {
     Done,
 }
 
-/// What a stage is for.
+/// Purpose of a stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Purpose {
     /// To draw the lines that were traced.
@@ -99,7 +99,7 @@ pub(super) enum Outcome {
     Short,
 }
 
-/// Whether all strokes are polished once no more are planned. Each layer of a progressive drawing has been already.
+/// True if all strokes are polished once no more are planned. Each layer of a progressive drawing has been already.
 fn polishes_all(config: &Config) -> bool {
     config.polish && !config.progressive
 }
@@ -160,12 +160,12 @@ impl Phase {
         }
     }
 
-    /// Whether it is a planned stage, and a polish of all strokes is to come.
+    /// True if it is a planned stage, and a polish of all strokes is to come.
     pub(super) fn precedes_polish(self, config: &Config) -> bool {
         matches!(self, Self::Stage(Purpose::Trace | Purpose::Plan)) && polishes_all(config)
     }
 
-    /// Whether a fit can go on from a state in the middle of this phase.
+    /// True if a fit can go on from a state in the middle of this phase.
     pub(super) fn is_divisible(self) -> bool {
         matches!(
             self,
@@ -173,13 +173,13 @@ impl Phase {
         )
     }
 
-    /// Whether a fit can go on from the state before this phase. No state holds the file that settling hands on.
+    /// True if a fit can go on from the state before this phase. No state holds the file that settling hands on.
     pub(super) fn is_resumable(self) -> bool {
         !matches!(self, Self::Nudge(_) | Self::Compare(_))
     }
 
-    /// Whether to keep the state before this phase even if the checkpoint is not due: the phase takes long and cannot
-    /// be divided, or nothing is left to do.
+    /// True if a checkpoint keeps the state before this phase even if it is not due: the phase takes long and cannot be
+    /// divided, or nothing is left to do.
     pub(super) fn is_milestone(self) -> bool {
         matches!(self, Self::Restrict(_) | Self::Done)
     }

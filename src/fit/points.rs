@@ -128,7 +128,7 @@ fn excess(session: &Session<'_>) -> usize {
     bytes_left(session).map_or(0, |left| (-left).max(0.0) as usize)
 }
 
-/// How many more points the drawing may have.
+/// Number of points that the drawing may have more.
 fn room(session: &Session<'_>) -> usize {
     let (config, strokes) = (session.config, session.drawing.free());
     let pixels = session.target.width() * session.target.height();
@@ -145,7 +145,7 @@ fn room(session: &Session<'_>) -> usize {
 struct Limits {
     /// Most points of a stroke.
     most: usize,
-    /// Whether corners may become smooth and control points corners. That needs no point more, but disturbs a fit. So it
+    /// True if corners may become smooth and control points corners. That needs no point more, but disturbs a fit. So it
     /// is for drawings whose points have a price; others have more of them than they use.
     toggles: bool,
 }
@@ -318,7 +318,7 @@ mod tests {
         })
     }
 
-    /// What is chosen of strokes with a new point and a removal of these gains each.
+    /// Gains of the edits chosen of strokes with a new point and a removal of these gains each.
     fn gains(options: &[(f32, f32)], room: usize, price: f32) -> Vec<Option<f32>> {
         let options = options.iter().enumerate();
         let options = options.map(|(i, &(new, old))| Options {

@@ -18,7 +18,7 @@ use crate::trace::Tracing;
 /// Pixels of a picture that a screen shows well at once, 768×512: the default quality is for so many.
 pub const SCREEN_PIXELS: usize = 768 * 512;
 
-/// How much work to spend on a drawing.
+/// Work to spend on a drawing.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Preset {
     /// An eighth of the time, 2 to 3 dB worse.
@@ -33,11 +33,11 @@ pub enum Preset {
 /// The tuned numbers of a fit, by the phase that uses them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Recipe {
-    /// How candidates are searched for.
+    /// Search for candidates.
     pub probing: Probing,
-    /// How lines are traced.
+    /// Tracing of lines.
     pub tracing: Tracing,
-    /// How strokes are added.
+    /// Growth by stages.
     pub stages: Stages,
     /// The soft edge.
     pub edge: EdgeShape,
@@ -47,35 +47,35 @@ pub struct Recipe {
     pub optimizer: AdamSettings,
     /// The joint fit of all strokes.
     pub polish: Polish,
-    /// What is different where points are dense.
+    /// Changes where points are dense.
     pub dense: Dense,
-    /// How strokes of little worth make room for better ones during the polish.
+    /// Relocation: strokes of little worth make room for better ones during the polish.
     pub relocation: Relocation,
-    /// How strokes get and lose points during the polish.
+    /// Points: strokes get and lose them during the polish.
     pub points: Points,
-    /// How a drawing is restricted to a palette.
+    /// Restriction of a drawing to a palette.
     pub coloring: Recoloring,
-    /// How opaque strokes come to share pens.
+    /// Pens that opaque strokes share.
     pub pens: Pens,
     /// Widths and colours that strokes share.
     pub sharing: Sharing,
-    /// What the eye sees of an error.
+    /// Visibility of errors.
     pub masking: Masking,
     /// The last steps, against renders of the written file.
     pub settling: Settling,
-    /// How the number of strokes is corrected to meet a fidelity.
+    /// Correction of the number of strokes to meet a fidelity.
     pub correction: Correction,
-    /// How the background is chosen.
+    /// Choice of the background.
     pub background: BackgroundChoice,
     /// To which pixels a picture is reduced.
     pub reduction: Reduction,
     /// Most strokes of a drawing that competes with those of shorter presets. A guess.
     pub rivals: usize,
-    /// How a time limit is divided.
+    /// Division of a time limit.
     pub time: TimeShares,
 }
 
-/// How strokes are added in stages, each fitted with all earlier strokes frozen.
+/// Growth in stages, each fitted with all earlier strokes frozen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stages {
     /// Number of stages, unless the configuration sets it. With more stages, seeding sees the residual more often.
@@ -215,7 +215,7 @@ pub struct Jitter {
     pub from: f32,
 }
 
-/// What a budget changes that makes points dense.
+/// Changes for a budget that makes points dense.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dense {
     /// Points are dense if a budget allows one for fewer pixels than this. With 20 instead of 16, jitter and opacities cost
@@ -234,7 +234,7 @@ pub struct Dense {
     pub jitter: f32,
 }
 
-/// How strokes of little worth make room for better ones during the polish.
+/// Relocation: strokes of little worth make room for better ones during the polish.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Relocation {
     /// Iterations between relocations. 60, 30, 20: −0.10, 0, +0.06 dB at a fifth more time, before there were points. 24
@@ -246,7 +246,7 @@ pub struct Relocation {
     /// Scale of relocated strokes, in units of the last stage's. 0.25, 0.4, 0.6, 0.8: +0.03, 0, −0.10, −0.34 dB;
     /// 0.5 with steps of 2.5 px: +0.12 together.
     pub scale: f32,
-    /// What a candidate is expected to gain once it is fitted, in units of its closed-form gain. 1, 2, 3, 4, 5, 10: 0,
+    /// Expected gain of a candidate once it is fitted, in units of its closed-form gain. 1, 2, 3, 4, 5, 10: 0,
     /// +0.22, +0.28, +0.25, +0.28, +0.15 dB; flat art gains 0.47 by 4. Drafts, with less time to fit newcomers: 3.
     pub gain: f32,
     /// Share of the polish after which nothing is relocated, so that new strokes have time to be fitted. 0.8, 0.95:
@@ -257,7 +257,7 @@ pub struct Relocation {
     pub fill: usize,
 }
 
-/// How strokes get and lose points during the polish. After each relocation, points are chosen once.
+/// Points: strokes get and lose them during the polish. After each relocation, points are chosen once.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Points {
     /// Share of the polish before which all strokes stay as they are.
@@ -283,10 +283,10 @@ pub struct Points {
     pub reach: f32,
     /// Lines and curves shorter than this, px, get no point.
     pub shortest: f32,
-    /// What a point is expected to gain once it is fitted, in units of the gain that is found. Five photographs of 1,024
+    /// Expected gain of a point once it is fitted, in units of the gain that is found. Five photographs of 1,024
     /// strokes: 30, 120, 200 instead of 60: −0.13, +0.04, +0.03 dB.
     pub gain: f32,
-    /// What a control point is taken to gain, in units of what it is found to.
+    /// Expected gain of a control point, in units of the gain that is found.
     pub smoothness: f32,
     /// Quantile of stroke worth, 0..1, at which a stroke counts as dispensable. A guess.
     pub spared: f32,
@@ -309,7 +309,7 @@ pub struct Points {
 pub struct Joins {
     /// Farthest that two ends may be apart, px.
     pub reach: f32,
-    /// The same in units of the mean width of both strokes.
+    /// Farthest that two ends may be apart, in units of the mean width of both strokes.
     pub gap: f32,
     /// Largest difference of channels, of opacities, and of radii in units of the larger one.
     pub alike: f32,
@@ -328,7 +328,7 @@ pub struct Rounds {
     pub rate: f32,
 }
 
-/// How a drawing is restricted to a palette.
+/// Restriction of a drawing to a palette.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Recoloring {
     /// Rounds of choosing colours and fitting the rest. Half, twice, in 12 colours: count −0.07, −0.01 dB; iterations
@@ -343,16 +343,16 @@ pub struct Recoloring {
     pub means: usize,
     /// A stroke keeps its colour if it shows in fewer pixels than this. Half, twice: 0.00 dB.
     pub min_shown: f32,
-    /// Share of the pixels that show the background where it is paper: a background that a given palette does not
+    /// Share of the pixels that show the background where it is kept: a background that a given palette does not
     /// replace. A guess.
-    pub paper_share: f32,
-    /// Least difference, per channel, of paper from all colours of the palette. A guess.
-    pub paper_distance: f32,
+    pub kept_share: f32,
+    /// Least difference, per channel, of a kept background from all colours of the palette. A guess.
+    pub kept_distance: f32,
     /// Number of neighbouring strokes that are compared to stack their colours, which takes time with its square. A guess.
     pub window: usize,
 }
 
-/// How opaque strokes come to share pens (a colour and a width), for the smallest form of a file.
+/// Pens (a colour and a width), for the smallest form of a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pens {
     /// Rounds of fitting positions to pens, and colours of pens to positions. Half, twice: count −0.06, −0.02 dB;
@@ -371,10 +371,10 @@ pub struct Pens {
     pub window: usize,
 }
 
-/// How strokes of a drawing of lines come to share widths and colours.
+/// Widths and colours that strokes of a drawing of lines share.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sharing {
-    /// How much the squared error may grow by each of three steps (opaque strokes, few widths, few colours), in units of
+    /// Growth of the squared error that is allowed to each of three steps (opaque strokes, few widths, few colours), in units of
     /// that of the drawing, before the drawing is settled. A guess, as are the other numbers.
     pub error: f64,
     /// Most times that a step is made shorter because it added too much error.
@@ -383,13 +383,13 @@ pub struct Sharing {
     pub most: usize,
     /// The least opacity of a stroke that may become opaque. Less is meant to let through what is behind.
     pub nearly_opaque: f32,
-    /// How much of a stroke lies on other strokes rather than on the page.
+    /// Share of a stroke that lies on other strokes rather than on the page.
     pub off_page: f32,
     /// A stroke of a smaller radius, px, covers few pixels in full, so that width and opacity look alike.
     pub thin: f32,
 }
 
-/// How detail of the picture hides errors, with [`ErrorWeighting::Eye`](super::ErrorWeighting::Eye).
+/// Masking: detail of the picture hides errors, with [`ErrorWeighting::Eye`](super::ErrorWeighting::Eye).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Masking {
     /// Rows and columns of the window to each side of a pixel.
@@ -417,7 +417,7 @@ pub struct Settling {
     pub rate: f32,
     /// Additional factor on the rates of colours and opacities, as the strokes hardly move. Half, twice: −0.03, −0.03 dB.
     pub color_rate: f32,
-    /// How far strokes move in a round, in units of the round before. How a renderer antialiases an edge depends on the
+    /// Distance that strokes move in a round, in units of the round before. How a renderer antialiases an edge depends on the
     /// position of the edge, so that a correction holds only for edges that stay where they are.
     /// Half, twice: −0.03, +0.01 dB.
     pub next_pace: f32,
@@ -427,16 +427,16 @@ pub struct Settling {
     /// Share of the offset that a round subtracts from the target. A share of 1 overcorrects edges; with a smaller one
     /// the browser falls behind. Half, twice: −0.01, −0.15 dB.
     pub offset_taken: f64,
-    /// What a round adds to the browser's share of the offset for each dB of shortfall beyond `browser_db`. Half,
+    /// Increase in a round of the browser's share of the offset for each dB of shortfall beyond `browser_db`. Half,
     /// twice: −0.01, −0.03 dB.
     pub share_per_db: f64,
-    /// What follows the rounds.
+    /// Nudging, which follows the rounds.
     pub nudging: Nudging,
     /// Bytes of a settled file in units of those before, at most; photographs 1.003, flat art 0.994 to 1.005.
     pub growth: f64,
 }
 
-/// How points are nudged to where rasterisers draw the strokes better; `docs/engines.md` has what was measured.
+/// Nudging of points to where rasterisers draw the strokes better; `docs/engines.md` has what was measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Nudging {
     /// Strokes are nudged if renderers add at least this to the error of the drawing, dB. Photographs of few strokes have 0.0 to
@@ -462,10 +462,10 @@ pub struct Nudging {
     pub most_pixels: usize,
 }
 
-/// How the number of strokes is corrected to meet a fidelity.
+/// Correction of the number of strokes to meet a fidelity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Correction {
-    /// What the polish is expected to regain when strokes are removed, dB.
+    /// Fidelity that the polish is expected to regain when strokes are removed, dB.
     pub regained_db: f64,
     /// Most corrections.
     pub count: usize,
@@ -500,7 +500,7 @@ pub struct Correction {
     pub polish_share: f64,
 }
 
-/// How the background is chosen.
+/// Choice of the background.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BackgroundChoice {
     /// The most common colour becomes the background if at least this share of the pixels has it; otherwise the mean
@@ -524,19 +524,19 @@ pub struct ShadeChoice {
     pub near: f32,
     /// The least share of the blocks that a gradient has to meet.
     pub least_share: f32,
-    /// How much more of them than the best single colour.
+    /// Share of the blocks that it has to meet beyond those of the best single colour.
     pub least_gain: f32,
     /// Below this share nothing is refined any further.
     pub hopeless_share: f32,
     /// Most stops.
     pub stops: usize,
-    /// How often a shade is fitted to the blocks that the last one has met.
+    /// Number of times that a shade is fitted to the blocks that the last one has met.
     pub rounds: usize,
     /// A line that is level or upright may be worse than the best one by this factor.
     pub level: f32,
     /// One more stop has to remove this share of the squared error.
     pub stop_share: f64,
-    /// How strongly stops that nothing tells about are drawn to the others.
+    /// Pull on stops that nothing tells about, towards the others.
     pub ridge: f64,
 }
 
@@ -565,7 +565,7 @@ pub struct Reduction {
     pub least_factor: f64,
 }
 
-/// How a time limit is divided among descent, writing and judging. The unit of most durations is a *write*: the time to
+/// Division of a time limit among descent, writing and judging. The unit of most durations is a *write*: the time to
 /// round, write and render the drawing once, which is measured during the fit. With these numbers fits end within 5 % of
 /// limits from half a second to ten, in a simulation of machines that draw strokes up to a quarter faster or slower
 /// than expected (`the_limit_is_met_by_a_twentieth`).
@@ -581,7 +581,7 @@ pub struct TimeShares {
     /// Cost of judging and reporting after the fit, in writes of the drawing: it is written and rendered once more, and
     /// compressed for the report.
     pub judging: f64,
-    /// The same cost for a transparent drawing, which is rendered on two mattes.
+    /// That cost for a transparent drawing, which is rendered on two mattes.
     pub judging_transparent: f64,
     /// Cost after the fit that does not depend on the strokes, in writes of an empty drawing: three comparisons,
     /// layers.
@@ -611,12 +611,12 @@ impl Correction {
 }
 
 impl Rates {
-    /// The same rates, but colours stay as they are.
+    /// These rates, but colours stay as they are.
     pub(super) fn without_color(self) -> Self {
         Self { color: 0.0, ..self }
     }
 
-    /// The same rates, but radii stay as they are.
+    /// These rates, but radii stay as they are.
     pub(super) fn without_radius(self) -> Self {
         Self {
             radius: 0.0,
@@ -626,7 +626,7 @@ impl Rates {
 }
 
 impl Points {
-    /// Whether points come and go when a share `done` of the polish is over.
+    /// True if points come and go when a share `done` of the polish is over.
     pub(super) fn lasts(&self, done: f32) -> bool {
         (self.from..self.until).contains(&done)
     }

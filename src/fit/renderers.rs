@@ -133,7 +133,10 @@ impl Renderings {
 
 /// Chromium's renders of `scene`, one per surface.
 pub(super) fn by_chromium(scene: &Scene, surfaces: &[Surface]) -> Vec<Image> {
-    let backdrops: Vec<Image> = surfaces.iter().map(|s| s.empty(scene).to_image()).collect();
+    let backdrops: Vec<Image> = surfaces
+        .iter()
+        .map(|s| s.backdrop_canvas(scene).to_image())
+        .collect();
     chromium::draw(scene.strokes(), &backdrops)
 }
 

@@ -19,7 +19,7 @@ pub struct Fit {
     pub base: Option<Base>,
     /// Where errors counted, if not everywhere alike.
     pub focus: Option<Focus>,
-    /// How the drawing is written. It was fitted and settled for these options.
+    /// Options of the file. The drawing was fitted and settled for these options.
     pub file: WriteOptions,
     /// The target: the picture with its alpha, or flattened onto the background.
     pub target: Image,
@@ -30,7 +30,7 @@ pub struct Fit {
     pub stages: Vec<StageRecord>,
     /// Why the fit ended.
     pub stop: Stop,
-    /// How much worse the drawing is, dB, because its colours were stacked to have one layer each; `None` if they were not.
+    /// Loss of fidelity, dB, because the colours were stacked to have one layer each; `None` if they were not.
     pub stacking_db: Option<f64>,
     /// Strokes that were dropped because they became non-finite or could not be seen.
     pub dropped: Dropped,

@@ -63,7 +63,7 @@ impl Swept {
 }
 
 impl Written {
-    /// Whether the order of the two strokes can change the picture.
+    /// True if the order of the two strokes can change the picture.
     pub(crate) fn meets(&self, other: &Self) -> bool {
         let reach = reach(self.width, other.width);
         are_near(&bounds(self), &bounds(other), reach)
@@ -76,7 +76,7 @@ fn reach(a: i64, b: i64) -> i64 {
     (a + b) / 2 + APART
 }
 
-/// Whether these boxes come nearer to each other than `reach`.
+/// True if these boxes come nearer to each other than `reach`.
 fn are_near(a: &[[i64; 2]; 2], b: &[[i64; 2]; 2], reach: i64) -> bool {
     a.iter()
         .zip(b)
@@ -111,7 +111,7 @@ const TOLERANCE: f64 = 0.04;
 /// A segment from one place to another, in units.
 pub(super) type Segment = [[f64; 2]; 2];
 
-/// Whether some of these segments come nearer to each other than this.
+/// True if some of these segments come nearer to each other than this.
 fn is_nearer(a: &[Segment], b: &[Segment], reach: f64) -> bool {
     let is_near = |&a: &Segment, &b: &Segment| {
         (0..2).all(|axis| {

@@ -28,7 +28,7 @@ pub const MAX_POINTS: usize = 65_535;
 pub struct PathPoint<P = Point> {
     /// The place, px.
     pub at: P,
-    /// Whether the path goes through it; otherwise it is the control point of a curve.
+    /// True if the path goes through it; otherwise it is the control point of a curve.
     pub is_on: bool,
 }
 
@@ -171,7 +171,7 @@ impl Path {
         &self.points
     }
 
-    /// Whether the last point is joined to the first.
+    /// True if the last point is joined to the first.
     pub fn is_closed(&self) -> bool {
         self.closed
     }

@@ -155,7 +155,7 @@ impl Written {
         })
     }
 
-    /// Whether the bounding box reaches into a page of this size.
+    /// True if the bounding box reaches into a page of this size.
     fn touches(&self, width: u32, height: u32) -> bool {
         let reach = self.width / 2;
         [width, height].iter().enumerate().all(|(axis, &side)| {

@@ -153,7 +153,7 @@ impl Shade {
         })
     }
 
-    /// Whether all of it is opaque.
+    /// True if all of it is opaque.
     pub fn is_opaque(&self) -> bool {
         self.stops.iter().all(|stop| stop.opacity == u8::MAX)
     }

@@ -136,7 +136,7 @@ impl WrittenPath {
         &self.points
     }
 
-    /// Whether the last point is joined to the first.
+    /// True if the last point is joined to the first.
     pub(crate) fn is_closed(&self) -> bool {
         self.closed
     }
@@ -160,7 +160,7 @@ impl WrittenPath {
         segments
     }
 
-    /// Whether pieces meet, so that the shape of joins matters.
+    /// True if pieces meet, so that the shape of joins matters.
     pub(crate) fn has_joins(&self) -> bool {
         self.closed || self.pieces().nth(1).is_some()
     }
@@ -230,13 +230,13 @@ impl WrittenPath {
     }
 }
 
-/// Whether an on-point lies where one between these off-points is implied.
+/// True if an on-point lies where one between these off-points is implied.
 fn is_implied(before: &WrittenPoint, point: &WrittenPoint, after: &WrittenPoint) -> bool {
     let is_halfway = |axis: usize| before.at[axis] + after.at[axis] == 2 * point.at[axis];
     point.is_on && !before.is_on && !after.is_on && is_halfway(0) && is_halfway(1)
 }
 
-/// Whether an off-point makes a line, because it lies at one of the two on-points beside it.
+/// True if an off-point makes a line, because it lies at one of the two on-points beside it.
 fn is_straight(before: &WrittenPoint, point: &WrittenPoint, after: &WrittenPoint) -> bool {
     let are_on = before.is_on && after.is_on;
     !point.is_on && are_on && [before.at, after.at].contains(&point.at)

@@ -65,14 +65,14 @@ pub fn write_animated(
     groups.out
 }
 
-/// Whether a line of the writer is a stroke. All other lines are groups, their titles, the background and the shade.
+/// True if a line of the writer is a stroke. All other lines are groups, their titles, the background and the shade.
 fn is_stroke(line: &str) -> bool {
     !["<g", "</", "<title", "<svg", "<rect", "<linear", "<radial"]
         .iter()
         .any(|other| line.starts_with(other))
 }
 
-/// Whether to see the stroke grow tells more than to see it appear.
+/// True if to see the stroke grow tells more than to see it appear.
 fn is_long(stroke: &Stroke) -> bool {
     stroke.path.points().len() > 2 || stroke.path.is_closed()
 }

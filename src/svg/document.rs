@@ -30,7 +30,7 @@ const IDENTITY: Placement = [1.0, 0.0, 0.0, 1.0, 0.0, 0.0];
 pub struct Document {
     text: String,
     outline: Outline,
-    /// Whether the layers need no group of their own, as in strokefit's drawings.
+    /// True if the layers need no group of their own, as in strokefit's drawings.
     is_ours: bool,
     placement: Placement,
     /// Ids that are new in the document: of a stroke to probe, and of the group of layers.

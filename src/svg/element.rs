@@ -76,7 +76,7 @@ fn split(strokes: &[Written]) -> Vec<&[Written]> {
     elements
 }
 
-/// Whether `next` can join the element of `strokes` without changing the picture.
+/// True if `next` can join the element of `strokes` without changing the picture.
 fn joins(strokes: &[Written], next: &Written) -> bool {
     let is_alike = strokes
         .last()

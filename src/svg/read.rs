@@ -324,7 +324,7 @@ struct Style {
     layer_width: Option<i64>,
     /// The unit of their numbers.
     unit: Unit,
-    /// Whether corners are round.
+    /// True if corners are round.
     has_join: bool,
 }
 

@@ -85,7 +85,7 @@ struct Visit {
     stroke: usize,
     /// The point of a closed path that it begins at.
     start: usize,
-    /// Whether an open path is drawn from its last point.
+    /// True if an open path is drawn from its last point.
     is_reversed: bool,
     /// Where the pen is set down and lifted.
     ends: [Spot; 2],

@@ -20,7 +20,7 @@ pub(super) struct Pixels<'a> {
     pub(super) height: usize,
     pub(super) target: Planes<'a>,
     pub(super) canvas: Planes<'a>,
-    /// How much an error counts, if not everywhere alike.
+    /// Weight of an error, if not everywhere alike.
     pub(super) weights: Option<&'a [f32]>,
 }
 
@@ -38,7 +38,7 @@ impl Planes<'_> {
     }
 }
 
-/// What a pixel belongs to: the canvas, an area of one of the colours, or nothing that is known.
+/// Owner of a pixel: the canvas, an area of one of the colours, or nothing that is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Label {
     Canvas,
@@ -182,7 +182,7 @@ fn nearest(means: &[(Pixel, f32)], pixel: &Pixel, limit: f32) -> Option<usize> {
 }
 
 impl Pixels<'_> {
-    /// Whether each pixel is one of an edge: its colour lies between those of its neighbours on opposite sides.
+    /// True if each pixel is one of an edge: its colour lies between those of its neighbours on opposite sides.
     fn edges(&self) -> Vec<bool> {
         let all = (0..self.width * self.height).into_par_iter();
         all.map(|i| self.is_edge(i)).collect()
@@ -204,7 +204,7 @@ impl Pixels<'_> {
             })
     }
 
-    /// How much of pixel `i` a stroke of `color` covers, if nothing else does.
+    /// Share of pixel `i` that a stroke of `color` covers, if nothing else does.
     pub(super) fn coverage(&self, i: usize, color: &Pixel) -> f32 {
         let (target, canvas) = (self.target.at(i), self.canvas.at(i));
         let along: f32 = (0..6)
@@ -229,7 +229,7 @@ impl Pixels<'_> {
     }
 }
 
-/// Whether `pixel` is a mixture of two clearly different ones.
+/// True if `pixel` is a mixture of two clearly different ones.
 fn is_between(a: &Pixel, b: &Pixel, pixel: &Pixel) -> bool {
     let length2 = distance2(a, b);
     if length2 < 0.02 {

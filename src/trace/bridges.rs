@@ -12,7 +12,7 @@ use super::skeleton::Spot;
 pub(super) struct Colored {
     pub(super) line: Line,
     pub(super) color: u8,
-    /// Whether it goes on below another one, which has to be drawn on top of it.
+    /// True if it goes on below another one, which has to be drawn on top of it.
     pub(super) is_covered: bool,
 }
 
@@ -187,7 +187,7 @@ fn gap(
     }
     // Something lies on the gap: where the canvas shows, there is no line below.
     let own = Label::Color(color);
-    let (mut bare, mut covered) = (0, 0);
+    let (mut open, mut covered) = (0, 0);
     let steps = length.ceil() as usize;
     for step in 0..=steps {
         let share = step as f32 / steps.max(1) as f32;
@@ -195,12 +195,12 @@ fn gap(
             .at([0, 1].map(|k| from.at[k] + share * way[k]))
             .map(|i| areas.labels[i])
         {
-            Some(Label::Canvas) | None => bare += 1,
+            Some(Label::Canvas) | None => open += 1,
             Some(label) if label != own => covered += 1,
             Some(_) => {}
         }
     }
-    (bare <= bridges.bare).then_some(Gap {
+    (open <= bridges.open).then_some(Gap {
         ends,
         straightness,
         is_covered: covered > 0,
@@ -229,7 +229,7 @@ mod tests {
         }
     }
 
-    /// What becomes of lines in a page of 64×40 px whose columns from 28 to 35 have the label `between`.
+    /// Lines, bridged, in a page of 64×40 px whose columns from 28 to 35 have the label `between`.
     fn bridged_across(between: Label, lines: Vec<Colored>) -> Vec<Colored> {
         let label = |i: usize| match i % 64 {
             28..36 => between,

@@ -179,7 +179,7 @@ mod tests {
     use crate::seed::Pyramid;
     use crate::verify::{self, Size};
 
-    /// What is traced of an SVG of 96×96 px, on white.
+    /// Strokes that are traced of an SVG of 96×96 px, on white.
     fn traced(content: &str) -> Vec<Traced> {
         let svg = format!(
             r#"<svg xmlns="http://www.w3.org/2000/svg" width="96" height="96" fill="none" stroke-linecap="round" stroke-linejoin="round">{content}</svg>"#

@@ -21,18 +21,18 @@ pub struct Tracing {
     pub scale: f32,
     /// The colours of areas.
     pub colors: AreaColors,
-    /// How fast the distance to the outside grows towards the middle of a shape from a place that is no end of a line, px
+    /// Growth of the distance to the outside towards the middle of a shape from a place that is no end of a line, px
     /// per px. A guess.
     pub growth: f32,
-    /// How lines are made of skeletons.
+    /// Lines of skeletons.
     pub lines: LineJoins,
     /// Which lines go on below others.
     pub bridges: Bridges,
-    /// How lines become splines.
+    /// Splines of lines.
     pub splines: Splines,
 }
 
-/// How the colours of areas are found. All of it is a guess.
+/// Search for the colours of areas. All of it is a guess.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AreaColors {
     /// Most colours of a picture.
@@ -47,7 +47,7 @@ pub struct AreaColors {
     pub least_share: f32,
 }
 
-/// How the edges of a skeleton become lines. All of it is a guess.
+/// Lines of the edges of a skeleton. All of it is a guess.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LineJoins {
     /// A hook is thinner than this share of its line's radius, and not longer than so many of its radii.
@@ -70,17 +70,17 @@ pub struct Bridges {
     /// The cosine of the largest angle between a line's end and the gap.
     pub straight: f32,
     /// Most px of a gap that may show the canvas.
-    pub bare: usize,
+    pub open: usize,
     /// A line whose ends meet is a ring if it has this many places or more.
     pub least_ring: usize,
 }
 
-/// How a line becomes a spline. All of it is a guess.
+/// Spline of a line. All of it is a guess.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Splines {
     /// The cosine of a corner's turn within `corner_reach` radii is less than this.
     pub corner: f32,
-    /// How far to either side of a place its turn is measured, in radii.
+    /// Reach to either side of a place over which its turn is measured, in radii.
     pub corner_reach: f32,
     /// Farthest that a spline may be from its line, px and in units of the radius.
     pub tolerance: [f32; 2],

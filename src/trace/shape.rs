@@ -7,7 +7,7 @@ pub(super) struct Shape {
     pub(super) origin: [isize; 2],
     pub(super) width: usize,
     pub(super) height: usize,
-    /// Whether each pixel of the frame is one of the shape, row by row.
+    /// True if each pixel of the frame is one of the shape, row by row.
     pub(super) inside: Vec<bool>,
 }
 

@@ -79,7 +79,7 @@ impl Grid<'_> {
         self.around(i).into_iter().filter(|&k| self.inside[k])
     }
 
-    /// Whether the shape without pixel `i` has as many parts and as many holes.
+    /// True if the shape without pixel `i` has as many parts and as many holes.
     fn is_simple(&self, i: usize) -> bool {
         let around = self.around(i).map(|k| self.inside[k]);
         let crossings = (0..8)
@@ -122,7 +122,7 @@ impl Grid<'_> {
         has_changed
     }
 
-    /// Whether `i` is the end of a line that does not only taper towards it.
+    /// True if `i` is the end of a line that does not only taper towards it.
     fn is_end(&self, i: usize) -> bool {
         if self.neighbours(i).count() > 1 {
             return false;
@@ -185,7 +185,7 @@ impl Grid<'_> {
         (node_of, nodes)
     }
 
-    /// How many neighbours of a pixel belong to no node.
+    /// Number of neighbours of a pixel that belong to no node.
     fn on_runs(&self, node_of: &[usize], i: usize) -> usize {
         self.neighbours(i).filter(|&k| node_of[k] == NONE).count()
     }

@@ -223,7 +223,7 @@ fn open_weights(count: usize, t: f32) -> Vec<(usize, f32)> {
     weights
 }
 
-/// The same of a closed spline, whose pieces go from middle to middle of neighbouring control points.
+/// The weights of a closed spline, whose pieces go from middle to middle of neighbouring control points.
 fn closed_weights(count: usize, t: f32) -> Vec<(usize, f32)> {
     let u = t * count as f32;
     let k = (u as usize).min(count - 1);

@@ -43,7 +43,7 @@ pub(in crate::fit) struct Plan {
     covered: usize,
     /// Strokes of each planned stage.
     counts: Vec<usize>,
-    /// Whether stages are added as long as they pay.
+    /// True if stages are added as long as they pay.
     open: bool,
     pixels: usize,
     /// Most strokes of an open plan.
@@ -131,7 +131,7 @@ fn counts(total: usize, stages: usize, growth: f64) -> Vec<usize> {
     counts
 }
 
-/// What is left of planned stages if there are `before` strokes already. What remains of a stage that is more than half
+/// Rest of planned stages if there are `before` strokes already. The rest of a stage that is more than half
 /// done is added to the next.
 fn rest(counts: &[usize], before: usize) -> Vec<usize> {
     let (mut rest, mut there, mut carried) = (Vec::new(), before, 0);
@@ -149,7 +149,7 @@ fn rest(counts: &[usize], before: usize) -> Vec<usize> {
     rest
 }
 
-/// How many stages of an open plan `before` strokes stand for.
+/// Number of stages of an open plan that `before` strokes stand for.
 fn covered(Stages { first, growth, .. }: &Stages, before: usize) -> usize {
     let (mut stages, mut strokes) = (0, 0.0);
     while strokes + *first as f64 * math::powi(*growth, stages) <= before as f64 {

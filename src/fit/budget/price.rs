@@ -154,7 +154,7 @@ fn mse(psnr_db: f64) -> f64 {
     math::powf(10.0, -psnr_db / 10.0)
 }
 
-/// What a squared error counts, of which `wanted` is that at the quality.
+/// Counted part of a squared error; `wanted` is the one at the quality.
 fn counted(error: f64, wanted: f64) -> f64 {
     if error < wanted {
         0.5 * (wanted + error * error / wanted)

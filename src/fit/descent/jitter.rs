@@ -11,7 +11,7 @@ use crate::render::Strokes;
 use crate::rng;
 
 impl Jitter {
-    /// Whether strokes are jittered when a share `done` of the polish is over.
+    /// True if strokes are jittered when a share `done` of the polish is over.
     pub(in crate::fit) fn begins_by(&self, done: f32) -> bool {
         self.px > 0.0 && done >= self.from
     }

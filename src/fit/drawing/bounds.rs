@@ -11,7 +11,7 @@ pub(in crate::fit) struct Bounds {
     sides: [f32; 2],
     /// The radii of the thinnest and the widest pen, px of the picture, if pens are given.
     pens: Option<[f32; 2]>,
-    /// How often the picture is halved.
+    /// Number of times that the picture is halved.
     halvings: usize,
 }
 
@@ -36,7 +36,7 @@ impl Bounds {
         }
     }
 
-    /// The same bounds at another resolution.
+    /// These bounds at another resolution.
     pub(in crate::fit) fn on(self, (grid, halvings): (Grid, usize)) -> Self {
         Self {
             halvings,

@@ -14,7 +14,7 @@ use crate::seed::Pyramid;
 
 const BLACK: Rgb = [0.0; 3];
 
-/// How much an error counts at each pixel, 0 to 1.
+/// Weight of an error at each pixel, 0 to 1.
 #[derive(Debug, Clone)]
 pub struct Focus {
     /// The weights, and their reductions.
@@ -49,7 +49,7 @@ impl Focus {
         }
     }
 
-    /// How much an error counts that counts as both say, of masks of one size.
+    /// Products of the weights of two masks of one size.
     pub(in crate::fit) fn times(&self, other: &Self) -> Self {
         let level = self.weights.level(0);
         let weights = self.values().iter().zip(other.values());

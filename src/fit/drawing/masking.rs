@@ -20,13 +20,13 @@ use crate::fit::recipe::Masking;
 use crate::image::Image;
 use crate::scene::Rgb;
 
-/// What transparent pictures are laid on.
+/// Matte of transparent pictures.
 const WHITE: Rgb = [1.0; 3];
 
 /// Shares of red, green and blue in the luma (ITU-R BT.601).
 const LUMA: [f64; 3] = [0.299, 0.587, 0.114];
 
-/// How much an error counts at each pixel of `picture`, in units of the mean over its detail.
+/// Weight of an error at each pixel of `picture`, in units of the mean over its detail.
 pub(in crate::fit) fn weights(picture: &Image, masking: Masking) -> Focus {
     let size = [picture.width(), picture.height()];
     let mut means = luma(picture);
@@ -99,7 +99,7 @@ fn add(sums: &mut [f64], values: &[f64]) {
     sums.iter_mut().zip(values).for_each(|(sum, v)| *sum += v);
 }
 
-/// How many of `length` places are at most `radius` away from place `i`.
+/// Number of the `length` places that are at most `radius` away from place `i`.
 fn in_reach(i: usize, length: usize, radius: usize) -> usize {
     length.min(i + radius + 1) - i.saturating_sub(radius)
 }

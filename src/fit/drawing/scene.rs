@@ -32,7 +32,11 @@ impl Drawing {
 
     /// The mean squared error after each layer of `scene`.
     pub(in crate::fit) fn layer_mses(&mut self, scene: &Scene) -> Vec<f64> {
-        let mut canvases: Vec<Canvas> = self.surfaces.iter().map(|s| s.empty(scene)).collect();
+        let mut canvases: Vec<Canvas> = self
+            .surfaces
+            .iter()
+            .map(|s| s.backdrop_canvas(scene))
+            .collect();
         let mut below = canvases.clone();
         let halvings = self.surface().halvings();
         let mut mses = Vec::new();

@@ -75,7 +75,7 @@ struct Blocks {
     size: [f32; 2],
 }
 
-/// How much of the picture is like a shade.
+/// Likeness of the picture to a shade.
 struct Met {
     /// The share of the blocks that it has met.
     share: f32,

@@ -27,7 +27,7 @@ pub(in crate::fit) struct Prepared {
     pub(in crate::fit) target: Image,
     /// One, or two for a transparent drawing.
     pub(in crate::fit) surfaces: Vec<Surface>,
-    /// Whether the background keeps its colour.
+    /// True if the background keeps its colour.
     pub(in crate::fit) background_fixed: bool,
     /// The gradient on the background.
     pub(in crate::fit) shade: Option<Shade>,
@@ -76,11 +76,11 @@ impl Prepared {
         let surface = |&matte: &Rgb| {
             let color = if mattes.len() == 1 { color } else { matte };
             let target = target.flattened(matte);
-            let bottom = match &shade {
-                Some(shade) => Bottom::shaded(&target, shade, color, background)?,
-                None => Bottom::Color(color),
+            let backdrop = match &shade {
+                Some(shade) => AnyBackdrop::shaded(&target, shade, color, background)?,
+                None => AnyBackdrop::Color(color),
             };
-            Ok(Surface::new(target, matte, bottom, sizes))
+            Ok(Surface::new(target, matte, backdrop, sizes))
         };
         Ok(Self {
             surfaces: mattes.iter().map(surface).collect::<Result<_>>()?,
@@ -93,8 +93,13 @@ impl Prepared {
     fn on_document(picture: &Image, svg: &str, sizes: Sizes) -> Result<Self> {
         let surface = |&matte: &Rgb| {
             let target = picture.flattened(matte);
-            let bottom = Pyramid::new(verify::render_like(svg, &target, matte)?);
-            Ok(Surface::new(target, matte, Bottom::Document(bottom), sizes))
+            let backdrop = Pyramid::new(verify::render_like(svg, &target, matte)?);
+            Ok(Surface::new(
+                target,
+                matte,
+                AnyBackdrop::Document(backdrop),
+                sizes,
+            ))
         };
         let mattes = mattes(picture, Background::None);
         Ok(Self {
@@ -124,7 +129,7 @@ struct Sizes {
 }
 
 /// The backdrop of all strokes, frozen and free, at any resolution.
-enum Bottom {
+enum AnyBackdrop {
     Color(Rgb),
     /// The render of a base's document.
     Document(Pyramid),
@@ -132,7 +137,7 @@ enum Bottom {
     Shade(Option<Rgb>, Pyramid),
 }
 
-impl Bottom {
+impl AnyBackdrop {
     /// A page of the size of `target`, with a shade on `color`, which is that of `background` if it has one.
     fn shaded(target: &Image, shade: &Shade, color: Rgb, background: Background) -> Result<Self> {
         let (width, height) = (target.width(), target.height());
@@ -170,10 +175,10 @@ impl Bottom {
 pub(in crate::fit) struct Surface {
     /// The matte that the SVG is rendered on.
     pub(in crate::fit) matte: Rgb,
-    bottom: Bottom,
+    backdrop: AnyBackdrop,
     /// The picture on the matte, and its reductions.
     pyramid: Pyramid,
-    /// How many times the picture is halved.
+    /// Number of times that the picture is halved.
     halvings: usize,
     /// The least scale of strokes in a reduced picture, px of that picture.
     min_scale: f32,
@@ -185,21 +190,26 @@ pub(in crate::fit) struct Surface {
     target: Canvas,
     /// The target's sums.
     moments: Moments,
-    /// The frozen strokes, rendered over the bottom.
+    /// The frozen strokes, rendered over the backdrop of all.
     frozen: Canvas,
     /// The last render of all strokes, with the final edge.
     pub(in crate::fit) canvas: Canvas,
 }
 
 impl Surface {
-    fn new(target: Image, matte: Rgb, bottom: Bottom, Sizes { scale, min_scale }: Sizes) -> Self {
+    fn new(
+        target: Image,
+        matte: Rgb,
+        backdrop: AnyBackdrop,
+        Sizes { scale, min_scale }: Sizes,
+    ) -> Self {
         let pyramid = Pyramid::new(target);
         let halvings = halvings(&pyramid, scale, min_scale);
         let target = Canvas::from_image(pyramid.level(halvings));
-        let frozen = bottom.canvas(target.grid(), halvings);
+        let frozen = backdrop.canvas(target.grid(), halvings);
         Self {
             matte,
-            bottom,
+            backdrop,
             halvings,
             min_scale,
             canvas: frozen.clone(),
@@ -238,7 +248,7 @@ impl Surface {
         self.target.grid()
     }
 
-    /// How many times the picture is halved.
+    /// Number of times that the picture is halved.
     pub(in crate::fit) fn halvings(&self) -> usize {
         self.halvings
     }
@@ -250,22 +260,22 @@ impl Surface {
 
     /// The background's colour, unless the drawing is on top of a document.
     pub(in crate::fit) fn color(&self) -> Option<Rgb> {
-        match self.bottom {
-            Bottom::Color(color) => Some(color),
-            Bottom::Shade(color, _) => color,
-            Bottom::Document(_) => None,
+        match self.backdrop {
+            AnyBackdrop::Color(color) => Some(color),
+            AnyBackdrop::Shade(color, _) => color,
+            AnyBackdrop::Document(_) => None,
         }
     }
 
     /// Mutable access to the background's colour.
     pub(in crate::fit) fn color_mut(&mut self) -> Option<&mut Rgb> {
-        match &mut self.bottom {
-            Bottom::Color(color) => Some(color),
-            Bottom::Document(_) | Bottom::Shade(..) => None,
+        match &mut self.backdrop {
+            AnyBackdrop::Color(color) => Some(color),
+            AnyBackdrop::Document(_) | AnyBackdrop::Shade(..) => None,
         }
     }
 
-    /// How many halvings leave strokes of `scale` px of the picture at their least scale or above.
+    /// Most halvings that leave strokes of `scale` px of the picture at their least scale or above.
     pub(in crate::fit) fn halvings_for(&self, scale: f32) -> usize {
         halvings(&self.pyramid, scale, self.min_scale)
     }
@@ -276,7 +286,7 @@ impl Surface {
         self.error_weights = self.focus.as_ref().map(|focus| focus.roots(halvings));
         self.target = self.weighted(Canvas::from_image(self.pyramid.level(halvings)));
         self.moments = Moments::of(&self.target, self.error_weights.as_ref());
-        self.frozen = self.bottom.canvas(self.target.grid(), halvings);
+        self.frozen = self.backdrop.canvas(self.target.grid(), halvings);
         self.canvas.clone_from(&self.frozen);
     }
 
@@ -285,16 +295,16 @@ impl Surface {
         self.frozen.clone_from(&self.canvas);
     }
 
-    /// Makes the bottom the backdrop of the free strokes.
+    /// Makes the backdrop of all that of the free strokes.
     pub(in crate::fit) fn thaw(&mut self) {
-        if let Some(pyramid) = self.bottom.pyramid() {
+        if let Some(pyramid) = self.backdrop.pyramid() {
             self.frozen = Canvas::from_image(pyramid.level(self.halvings));
         }
     }
 
     /// The backdrop of the free strokes if `frozen` others are frozen.
     pub(in crate::fit) fn backdrop(&self, frozen: usize) -> Backdrop<'_> {
-        self.bottom.backdrop(&self.frozen, frozen)
+        self.backdrop.backdrop(&self.frozen, frozen)
     }
 
     /// The backdrop of the strokes of `scene`, in a drawing without frozen strokes.
@@ -305,8 +315,8 @@ impl Surface {
         }
     }
 
-    /// The same backdrop, as a canvas.
-    pub(in crate::fit) fn empty(&self, scene: &Scene) -> Canvas {
+    /// The backdrop of the strokes of `scene`, as a canvas.
+    pub(in crate::fit) fn backdrop_canvas(&self, scene: &Scene) -> Canvas {
         match self.backdrop_of(scene) {
             Backdrop::Color(color) => Canvas::flat(self.grid(), color),
             Backdrop::Canvas(canvas) => canvas.clone(),
@@ -321,7 +331,7 @@ impl Surface {
         edge: Softness,
         frozen: usize,
     ) {
-        let backdrop = self.bottom.backdrop(&self.frozen, frozen);
+        let backdrop = self.backdrop.backdrop(&self.frozen, frozen);
         renderer.forward(free, edge, backdrop, &mut self.canvas);
     }
 
@@ -339,10 +349,10 @@ impl Surface {
         objective.weighted(self.error_weights())
     }
 
-    /// What lies behind all strokes, at full resolution.
-    pub(in crate::fit) fn bare(&self) -> Canvas {
+    /// The backdrop of all strokes, at full resolution.
+    pub(in crate::fit) fn full_backdrop(&self) -> Canvas {
         let full = Canvas::from_image(self.picture()).grid();
-        self.bottom.canvas(full, 0)
+        self.backdrop.canvas(full, 0)
     }
 
     /// The picture and a canvas at any resolution.
@@ -360,7 +370,7 @@ impl Surface {
     }
 }
 
-/// How many halvings leave strokes of `scale` px a scale of `min_scale` or more.
+/// Most halvings that leave strokes of `scale` px a scale of `min_scale` or more.
 fn halvings(pyramid: &Pyramid, scale: f32, min_scale: f32) -> usize {
     // `Pyramid::halvings` rounds up; with half the scale it leaves one halving less.
     pyramid.halvings(0, scale / 2.0, min_scale)

@@ -160,7 +160,7 @@ impl Corrections {
     }
 }
 
-/// How many of the strokes of least worth could go before the drawing falls below a fidelity of `least_db`.
+/// Number of strokes of least worth that could go before the drawing falls below a fidelity of `least_db`.
 fn dispensable(drawing: &mut Drawing, least_db: f64) -> usize {
     let values = 3.0 * drawing.pixels() as f64;
     let gradients = drawing.judge();

@@ -51,7 +51,7 @@ fn affordable(session: &Session<'_>) -> usize {
     })
 }
 
-/// What a joint course does between its steps: it switches to full resolution after its coarse share, and at intervals it
+/// Rearranges strokes between the steps of a joint course: it switches to full resolution after its coarse share, and at intervals it
 /// changes the points of strokes and relocates strokes.
 fn rearrange(session: &mut Session<'_>, descent: &mut Descent, step: usize, done: f32) {
     let Some(Joint { limit, .. }) = descent.course.joint else {

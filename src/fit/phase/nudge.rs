@@ -35,7 +35,7 @@ use fragments::{Change, Fragments, Response, changes};
 /// First word of the keys of random draws, so that nothing else uses the same.
 const DRAWS: u64 = 1 << 40;
 
-/// How far from its outline a rasteriser covers a part of a pixel, with what rounding to the file's decimals adds, px, at most.
+/// Farthest from its outline that a rasteriser covers a part of a pixel, rounding to the file's decimals included, px.
 const FRINGE: f32 = 1.5;
 
 /// Nudges the strokes of the settled drawing where renderers add much to its error. The nudged file stays if it is more
@@ -100,7 +100,7 @@ fn run(session: &mut Session<'_>, file: &RenderedFile, seen: &Renderings) -> boo
     has_moved
 }
 
-/// How often each stroke may be visited.
+/// Number of visits that each stroke may have.
 fn affordable(drawing: &Drawing, precision: u8, nudging: Nudging) -> usize {
     // Whole px are coarser than any nudge.
     let is_coarse = precision == 0;
@@ -127,7 +127,7 @@ fn largest(errors: PerRasterizer<f64>) -> f64 {
     errors.into_iter().fold(f64::MIN_POSITIVE, f64::max)
 }
 
-/// How much each rasteriser counts: as its error counts in the sum of the fourth powers of all errors.
+/// Weights of the rasterisers: derivatives of the sum of the fourth powers of all errors.
 fn weights(errors: PerRasterizer<f64>) -> PerRasterizer<f32> {
     let largest = largest(errors);
     errors.map(|error| math::powi(error / largest, 3) as f32)
@@ -287,7 +287,7 @@ impl<'a> Nudger<'a> {
     }
 }
 
-/// What `stroke` covers, and the pixels of which it may cover more or less once it is moved within `reach` px.
+/// Footprints of `stroke`, and the pixels of which it may cover more or less once it is moved within `reach` px.
 fn drawn(
     stroke: &Stroke,
     reach: f32,
@@ -313,7 +313,7 @@ fn drawn(
     )
 }
 
-/// What is known of a stroke before it is tried elsewhere.
+/// State of a stroke before it is tried elsewhere.
 struct Trial<'a> {
     responses: &'a [PerRasterizer<Response>],
     weights: PerRasterizer<f32>,

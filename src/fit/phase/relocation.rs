@@ -12,7 +12,7 @@ use crate::fit::run::session::Session;
 use crate::render::Params;
 use crate::seed::Candidate;
 
-/// How many strokes one relocation may move.
+/// Number of strokes that one relocation may move.
 pub(in crate::fit) fn wanted(session: &Session<'_>) -> usize {
     let free = session.drawing.free().len();
     (free as f32 * session.recipe.relocation.share).ceil() as usize

@@ -92,7 +92,7 @@ impl Best {
     }
 }
 
-/// Whether to run another round after `done` rounds. If the time limit cut the descent short, rounds go on past their
+/// True if another round runs after `done` rounds. If the time limit cut the descent short, rounds go on past their
 /// planned number as long as there is time.
 fn allows_round(session: &Session<'_>, done: usize) -> bool {
     let planned = session.recipe.settling.rounds;

@@ -72,7 +72,11 @@ pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> 
 /// The traced strokes that are worth their price, in painting order.
 fn lines(drawing: &mut Drawing, config: &Config, tracing: Tracing, price: Price) -> Vec<Traced> {
     let canvases: Vec<Canvas> = if drawing.len() == 0 {
-        drawing.surfaces.iter().map(Surface::bare).collect()
+        drawing
+            .surfaces
+            .iter()
+            .map(Surface::full_backdrop)
+            .collect()
     } else {
         drawing.sharpen(0.0);
         drawing.render();

@@ -63,7 +63,7 @@ impl Edit {
         self.sources.remove(k);
     }
 
-    /// Whether the points make a path.
+    /// True if the points make a path.
     fn is_path(&self, closed: bool) -> bool {
         let is_on = |end: Option<&bool>| end == Some(&false);
         closed || (is_on(self.off.first()) && is_on(self.off.last()))

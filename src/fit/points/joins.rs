@@ -50,9 +50,9 @@ pub(super) fn join(
 struct Pair {
     lower: usize,
     upper: usize,
-    /// Whether the end of each is the one that meets; otherwise it is the start.
+    /// True if the end of each is the one that meets; otherwise it is the start.
     ends: [bool; 2],
-    /// How different they look.
+    /// Difference of their styles.
     unlike: f32,
 }
 
@@ -109,7 +109,7 @@ fn pairs(strokes: &Strokes, most: usize, joins: &Joins) -> Vec<Pair> {
     pairs
 }
 
-/// How different two strokes look: the largest difference of their channels and opacities, and of their radii in units
+/// Difference of two styles: the largest difference of their channels and opacities, and of their radii in units
 /// of the larger one.
 fn unlike(a: StrokeRef<'_>, b: StrokeRef<'_>) -> f32 {
     let colors = a.color().into_iter().zip(b.color());

@@ -94,7 +94,7 @@ impl<'a> Terrain<'a> {
             .copied()
     }
 
-    /// What changing the stroke to `changed` gains, if the vertices of the pieces that depend on point `k` shift to the
+    /// Gain of changing the stroke to `changed`, if the vertices of the pieces that depend on point `k` shift to the
     /// nearest places of the new path.
     pub(super) fn gain(&self, changed: StrokeRef<'_>, k: usize) -> f32 {
         let line = Polyline(flattened(changed));

@@ -165,7 +165,7 @@ mod tests {
         }
     }
 
-    /// What `change` makes of the default recipe is refused, with the name and the value.
+    /// Checks that the default recipe is refused after `change`, with the name and the value.
     fn refused(change: impl Fn(&mut Recipe), name: &str, value: &str) {
         let mut recipe = Recipe::of(Preset::Balanced);
         change(&mut recipe);

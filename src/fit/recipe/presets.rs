@@ -127,7 +127,7 @@ const BALANCED: Recipe = Recipe {
         bridges: Bridges {
             longest: [8.0, 3.0],
             straight: 0.85,
-            bare: 3,
+            open: 3,
             least_ring: 8,
         },
         splines: Splines {
@@ -251,8 +251,8 @@ const BALANCED: Recipe = Recipe {
         damping: 0.7,
         means: 10,
         min_shown: 1e-3,
-        paper_share: 0.25,
-        paper_distance: 0.2,
+        kept_share: 0.25,
+        kept_distance: 0.2,
         window: 4096,
     },
     pens: Pens {

@@ -134,7 +134,7 @@ impl Checkpoint {
         Error::new(kind, format!("{}: {what}", self.path.display()))
     }
 
-    /// Whether it is time to write.
+    /// True if it is time to write.
     pub(in crate::fit) fn is_due(&self) -> bool {
         Instant::now() >= self.due
     }

@@ -20,12 +20,12 @@ pub(in crate::fit) struct History {
     pub(in crate::fit) traced: [usize; 2],
     /// The current stage, or the last one.
     pub(in crate::fit) stage: Option<OpenStage>,
-    /// What ended the stages, and in the end the fit.
+    /// Reason that ended the stages, and in the end the fit.
     pub(in crate::fit) stop: Stop,
     pub(in crate::fit) corrections: Corrections,
     /// Numbers of strokes that stay equal while the drawing settles.
     pub(in crate::fit) ties: Ties,
-    /// How much worse the drawing is because its colours are stacked, dB.
+    /// Loss of fidelity because the colours are stacked, dB.
     pub(in crate::fit) stacking_db: Option<f64>,
     /// The drawing that the best file was written from.
     pub(in crate::fit) best: Option<Memento>,
@@ -39,7 +39,7 @@ pub(in crate::fit) struct OpenStage {
     pub(in crate::fit) began: Duration,
     /// Strokes of the drawing before the stage, and their fidelity at the stage's resolution, dB.
     pub(in crate::fit) before: (usize, f64),
-    /// How many of its strokes were worth their price; `None` while they are being fitted.
+    /// Number of its strokes that were worth their price; `None` while they are being fitted.
     pub(in crate::fit) accepted: Option<usize>,
 }
 
@@ -59,7 +59,7 @@ pub(in crate::fit) struct Corrections {
     pub(in crate::fit) is_hopeless: bool,
     /// Fidelity of the last file, dB.
     pub(in crate::fit) last_db: f64,
-    /// Whether strokes were removed from the last file for bytes.
+    /// True if strokes were removed from the last file for bytes.
     pub(in crate::fit) shortened: bool,
     /// Fidelity gained by doubling the strokes, dB.
     pub(in crate::fit) db_per_doubling: f64,

@@ -19,11 +19,11 @@ pub struct Progress<'a> {
     pub done: f64,
     /// Index of the stage under way, from 1; one past the last during polish.
     pub stage: usize,
-    /// How many stages are planned; 0 if that depends on how much each of them gains.
+    /// Number of planned stages; 0 if that depends on how much each of them gains.
     pub stages: usize,
-    /// Whether the strokes are being polished: those of all stages or, in a progressive drawing, those of this one.
+    /// True if the strokes are being polished: those of all stages or, in a progressive drawing, those of this one.
     pub polishing: bool,
-    /// Whether the drawing takes its last steps, against renders of its file.
+    /// True if the drawing takes its last steps, against renders of its file.
     pub settling: bool,
     /// Strokes in the drawing.
     pub strokes: usize,
@@ -83,13 +83,13 @@ impl CancelToken {
         self.0.store(true, Ordering::Relaxed);
     }
 
-    /// Whether [`cancel`](Self::cancel) was called.
+    /// True if [`cancel`](Self::cancel) was called.
     pub fn is_cancelled(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
 }
 
-/// How far a fit has come.
+/// Position of a fit on its way.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub(in crate::fit) struct Position {
     /// Work done, in strokes × iterations.
@@ -98,7 +98,7 @@ pub(in crate::fit) struct Position {
     fraction: f64,
     /// The current stage, from 1.
     stage: usize,
-    /// Whether strokes are being polished.
+    /// True if strokes are being polished.
     polishing: bool,
 }
 
@@ -110,11 +110,11 @@ pub(in crate::fit) struct Tracker<'a> {
     planned: f64,
     stages: usize,
     pub(in crate::fit) position: Position,
-    /// Whether the drawing is being settled.
+    /// True if the drawing is being settled.
     settling: bool,
-    /// Whether a fit that was asked to stop may take time to finish its drawing.
+    /// True if a fit that was asked to stop may take time to finish its drawing.
     has_grace: bool,
-    /// Whether an observer or a token has asked the fit to stop.
+    /// True if an observer or a token has asked the fit to stop.
     asked: bool,
     /// Set once, by whatever stopped the fit first.
     stopped: Option<Stop>,
@@ -146,12 +146,12 @@ impl<'a> Tracker<'a> {
         self.stopped
     }
 
-    /// Whether an observer or a token has asked the fit to stop.
+    /// True if an observer or a token has asked the fit to stop.
     pub(in crate::fit) fn is_interrupted(&self) -> bool {
         self.asked
     }
 
-    /// Whether they stopped it at once.
+    /// True if they stopped it at once.
     pub(in crate::fit) fn is_halted(&self) -> bool {
         self.stopped == Some(Stop::Interrupted)
     }

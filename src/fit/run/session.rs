@@ -40,7 +40,7 @@ pub(in crate::fit) struct Session<'a> {
     pub(in crate::fit) recipe: Recipe,
     pub(in crate::fit) base: Option<&'a Base>,
     pub(in crate::fit) focus: Option<Focus>,
-    /// How much an error counts at each pixel while strokes are fitted: as `focus` says, and as it is seen.
+    /// Weight of an error at each pixel while strokes are fitted: as `focus` says, and as it is seen.
     pub(in crate::fit) weights: Option<Focus>,
     /// The radii of the pens, px, the thinnest first; none if strokes may have any.
     pub(in crate::fit) radii: Vec<f32>,
@@ -50,7 +50,7 @@ pub(in crate::fit) struct Session<'a> {
     pub(in crate::fit) plan: Plan,
     /// Most strokes of the drawing.
     pub(in crate::fit) limit: usize,
-    /// What each stroke has to be worth.
+    /// Price of strokes and points.
     pub(in crate::fit) price: Price,
     pub(in crate::fit) writer: Writer<'a>,
 
@@ -60,7 +60,7 @@ pub(in crate::fit) struct Session<'a> {
     pub(in crate::fit) best: Option<RenderedFile>,
     /// The file of the settled drawing, until it is compared with the best one.
     pub(in crate::fit) file: Option<RenderedFile>,
-    /// What other renderers make of that file, if strokes were fitted to it.
+    /// Other renders of that file, if strokes were fitted to it.
     pub(in crate::fit) renderings: Option<Renderings>,
     pub(in crate::fit) progress: Tracker<'a>,
     pub(in crate::fit) timer: Timer,
@@ -69,7 +69,7 @@ pub(in crate::fit) struct Session<'a> {
     pub(in crate::fit) phase: Phase,
     /// The descent in which a resumed fit was cut off, until its phase takes it up again.
     pub(in crate::fit) resumed: Option<Descent>,
-    /// How long the fit may go on once it is asked to stop; `None` since it was.
+    /// Time that the fit may go on once it is asked to stop; `None` since it was.
     grace: Option<Duration>,
     keeper: Option<Keeper<'a>>,
 }
@@ -94,7 +94,7 @@ struct Keeper<'a> {
     checkpoint: &'a mut Checkpoint,
     /// Identifies the fit.
     fingerprint: u64,
-    /// Whether the last state has been kept.
+    /// True if the last state has been kept.
     is_final: bool,
 }
 
@@ -225,7 +225,7 @@ impl<'a> Session<'a> {
         self.progress.tell(&self.drawing, mse) && self.progress.stopped().is_none()
     }
 
-    /// Whether the fit was asked to stop, and is finishing its drawing.
+    /// True if the fit was asked to stop, and is finishing its drawing.
     pub(in crate::fit) fn is_leaving(&self) -> bool {
         self.progress.is_interrupted()
     }
@@ -261,7 +261,7 @@ impl<'a> Session<'a> {
         self.timer.writing(drawing.len(), || writer.render(drawing))
     }
 
-    /// The same, with what other renderers make of the file.
+    /// Rounds, writes and renders the drawing, with other renders of the file.
     pub(in crate::fit) fn render_for_settling(&mut self) -> Result<(RenderedFile, Renderings)> {
         let (writer, drawing) = (self.writer, &mut self.drawing);
         let render = || writer.render_beside(drawing, renderers::by_chromium);
@@ -329,7 +329,7 @@ impl<'a> Session<'a> {
         self.history.stop_at(wanted_db, best_db);
     }
 
-    /// What cut the fit short, if anything did.
+    /// Reason that cut the fit short, if anything did.
     pub(in crate::fit) fn cut_by(&self) -> Option<Stop> {
         if self.is_leaving() {
             return Some(Stop::Interrupted);
@@ -438,7 +438,7 @@ fn choose_background(
     (background, shade)
 }
 
-/// How much an error counts at each pixel while strokes are fitted: as `focus` says, and as it is seen.
+/// Weight of an error at each pixel while strokes are fitted: as `focus` says, and as it is seen.
 fn weights(
     config: &Config,
     recipe: &Recipe,

@@ -15,7 +15,7 @@ pub(in crate::fit) struct Forecast {
     limit: f64,
     pixels: f64,
     is_transparent: bool,
-    /// Whether the fit itself looks at the file, before it is judged.
+    /// True if the fit itself looks at the file, before it is judged.
     needs_file: bool,
     /// Rounds of settling.
     rounds: usize,
@@ -76,7 +76,7 @@ impl Forecast {
         self.search = span / strokes.max(1) as f64;
     }
 
-    /// Whether to write the drawing once, to measure how long that takes.
+    /// True if it is time to write the drawing once, to measure how long that takes.
     pub(in crate::fit) fn wants_trial_write(&self, now: f64) -> bool {
         now >= self.due
     }
@@ -86,7 +86,7 @@ impl Forecast {
         (now / self.end_of_descent(strokes)) as f32
     }
 
-    /// How many of `wanted` candidates there is time to search for, on a drawing of `strokes` strokes; 0 if too few. Leaves
+    /// Number of `wanted` candidates that there is time to search for, on a drawing of `strokes` strokes; 0 if too few. Leaves
     /// time for a few steps that fit the new strokes.
     pub(in crate::fit) fn affordable(&self, wanted: usize, strokes: usize, now: f64) -> usize {
         let left = self.end_of_descent(strokes) - now - self.steps as f64 * self.step;
@@ -99,17 +99,17 @@ impl Forecast {
         }
     }
 
-    /// Whether there is time for a polish that is long enough to be of use.
+    /// True if there is time for a polish that is long enough to be of use.
     pub(in crate::fit) fn allows_polish(&self, strokes: usize, now: f64) -> bool {
         now + self.shares.min_polish * self.write_s(strokes) < self.end_of_descent(strokes)
     }
 
-    /// Whether another round of settling, of a few steps at least, ends in time.
+    /// True if another round of settling, of a few steps at least, ends in time.
     pub(in crate::fit) fn allows_round(&self, strokes: usize, now: f64) -> bool {
         self.ends_in_time(strokes, now + self.shares.min_round * self.step)
     }
 
-    /// Whether another step of a round of settling ends in time.
+    /// True if another step of a round of settling ends in time.
     pub(in crate::fit) fn allows_step(&self, strokes: usize, now: f64) -> bool {
         self.ends_in_time(strokes, now + self.step)
     }
@@ -120,7 +120,7 @@ impl Forecast {
         end.max(self.limit * self.shares.min_descent)
     }
 
-    /// Whether a file whose writing begins at `now` can be looked at and judged in time.
+    /// True if a file whose writing begins at `now` can be looked at and judged in time.
     fn ends_in_time(&self, strokes: usize, now: f64) -> bool {
         now + self.seeing(strokes) + self.judging(strokes) < self.limit
     }

@@ -20,7 +20,7 @@ pub(in crate::fit) struct Timer {
     strokes: usize,
     /// When the last step ended.
     stepped: Option<Duration>,
-    /// Whether the limit made anything shorter than planned.
+    /// True if the limit made anything shorter than planned.
     is_hurried: bool,
 }
 
@@ -59,7 +59,7 @@ impl Timer {
         self.elapsed().saturating_sub(self.set).as_secs_f64()
     }
 
-    /// Whether the limit made anything shorter than planned.
+    /// True if the limit made anything shorter than planned.
     pub(in crate::fit) fn is_hurried(&self) -> bool {
         self.is_hurried
     }
@@ -100,13 +100,13 @@ impl Timer {
         (self.strokes, self.stepped) = (strokes, Some(now));
     }
 
-    /// Whether to write the drawing once, to measure how long that takes.
+    /// True if it is time to write the drawing once, to measure how long that takes.
     pub(in crate::fit) fn wants_trial_write(&self) -> bool {
         let forecast = self.forecast.as_ref();
         forecast.is_some_and(|forecast| forecast.wants_trial_write(self.now()))
     }
 
-    /// How many of `wanted` candidates there is time to search for; 0 if too few. The first search is never limited.
+    /// Number of `wanted` candidates that there is time to search for; 0 if too few. The first search is never limited.
     pub(in crate::fit) fn affordable(&mut self, wanted: usize) -> usize {
         let Some(forecast) = self.forecast.as_ref().filter(|_| self.strokes > 0) else {
             return wanted;
@@ -116,19 +116,19 @@ impl Timer {
         affordable
     }
 
-    /// Whether there is time for a polish that is long enough to be of use.
+    /// True if there is time for a polish that is long enough to be of use.
     pub(in crate::fit) fn allows_polish(&mut self) -> bool {
         let allows = self.allows(Forecast::allows_polish);
         self.is_hurried |= !allows;
         allows
     }
 
-    /// Whether another round of settling ends in time.
+    /// True if another round of settling ends in time.
     pub(in crate::fit) fn allows_round(&self) -> bool {
         self.allows(Forecast::allows_round)
     }
 
-    /// Whether another step of a round of settling ends in time.
+    /// True if another step of a round of settling ends in time.
     pub(in crate::fit) fn allows_step(&self) -> bool {
         self.allows(Forecast::allows_step)
     }
@@ -150,7 +150,7 @@ impl Timer {
         forecast.map_or(0.0, |forecast| forecast.used(self.strokes, self.now())) / self.until
     }
 
-    /// Whether the whole time for descent is used.
+    /// True if the whole time for descent is used.
     pub(in crate::fit) fn is_over(&self) -> bool {
         self.used() * self.until >= 1.0
     }

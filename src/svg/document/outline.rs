@@ -184,7 +184,7 @@ fn check_root(root: &BytesStart<'_>) -> Result<(), String> {
     Err("the root element has neither a viewBox nor a width and height in px: add one".into())
 }
 
-/// Whether a length is a number with an absolute unit of SVG.
+/// True if a length is a number with an absolute unit of SVG.
 fn is_absolute(length: &str) -> bool {
     let length = length.trim();
     let number = length.trim_end_matches(|c: char| c.is_ascii_alphabetic());
@@ -192,7 +192,7 @@ fn is_absolute(length: &str) -> bool {
     number.parse::<f64>().is_ok() && units.contains(&&length[number.len()..])
 }
 
-/// Whether the element shows something of another file.
+/// True if the element shows something of another file.
 fn refers_outside(tag: &BytesStart<'_>) -> bool {
     let shows = ["image", "use", "feImage"].contains(&tag.local_name().as_ref());
     let target = || attribute(tag, "href").or_else(|| attribute(tag, "xlink:href"));

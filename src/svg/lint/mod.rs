@@ -63,7 +63,7 @@ pub struct Finding {
 }
 
 impl Finding {
-    /// Whether the file refers to something outside itself.
+    /// True if the file refers to something outside itself.
     pub fn is_external(&self) -> bool {
         self.rule == rules::EXTERNAL.name
     }

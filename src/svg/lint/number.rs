@@ -63,7 +63,7 @@ pub(super) fn all(text: &str) -> Vec<f64> {
     numbers
 }
 
-/// Whether a number in the text begins with a dot.
+/// True if a number in the text begins with a dot.
 pub(super) fn has_leading_dot(text: &str) -> bool {
     let mut rest = text;
     while let Some(first) = rest.chars().next() {

@@ -4,7 +4,7 @@ use super::number;
 
 type Point = [f64; 2];
 
-/// Whether a subpath has a segment and all its points coincide. A lone `M` draws nothing in any program, so
+/// True if a subpath has a segment and all its points coincide. A lone `M` draws nothing in any program, so
 /// it does not count.
 pub(super) fn has_zero_length(d: &str) -> bool {
     let mut walk = Walk::default();
@@ -30,7 +30,7 @@ struct Walk {
     here: Point,
     /// Segments since the last `M`.
     segments: usize,
-    /// Whether a point since the last `M` differs from it.
+    /// True if a point since the last `M` differs from it.
     moved: bool,
     found: bool,
 }

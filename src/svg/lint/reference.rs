@@ -72,7 +72,7 @@ impl References {
     }
 }
 
-/// Whether the target is in the file and is not itself an SVG, which could refer to something else.
+/// True if the target is in the file and is not itself an SVG, which could refer to something else.
 fn is_embedded(target: &str) -> bool {
     let kind = target
         .strip_prefix("data:")

@@ -10,13 +10,13 @@ const HAIRLINE_PX: f64 = 1.0;
 /// The stroke style that children of an element inherit.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StrokeStyle {
-    /// Whether a stroke is painted.
+    /// True if a stroke is painted.
     painted: bool,
     /// Width in the element's units.
     width: f64,
     /// px per unit.
     scale: f64,
-    /// Whether the element is drawn in place, and is not a definition.
+    /// True if the element is drawn in place, and is not a definition.
     pub(super) drawn: bool,
 }
 
@@ -60,7 +60,7 @@ impl StrokeStyle {
         (self.strokes(element) && thin).then_some(width_px)
     }
 
-    /// Whether the element has a stroke of zero length.
+    /// True if the element has a stroke of zero length.
     pub(super) fn has_zero_length(self, element: &Element) -> bool {
         self.strokes(element) && is_point(element)
     }

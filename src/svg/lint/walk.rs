@@ -89,7 +89,7 @@ struct Walk<'a, 'b> {
     /// One for each open element.
     styles: Vec<StrokeStyle>,
     references: References,
-    /// Whether the text is a style sheet.
+    /// True if the text is a style sheet.
     in_style: bool,
     findings: &'b mut Findings,
 }
@@ -273,7 +273,7 @@ impl<'a, 'b> Walk<'a, 'b> {
     }
 }
 
-/// Whether lengths in `unit` are px of the page.
+/// True if lengths in `unit` are px of the page.
 fn is_px(unit: &str) -> bool {
     matches!(unit, "" | "px")
 }
@@ -326,7 +326,7 @@ fn kind(name: &str) -> Option<&'static Rule> {
     }
 }
 
-/// Whether a value is a colour with alpha.
+/// True if a value is a colour with alpha.
 fn has_alpha(value: &str) -> bool {
     let value = value.trim();
     let hex = value

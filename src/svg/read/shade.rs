@@ -4,7 +4,7 @@ use super::super::dialect::{self, SHADE_ID, Unit};
 use super::{Element, Parsed, Parser, Tag, sides, unexpected};
 use crate::scene::{MAX_STOPS, Shade, WrittenAxis, WrittenStop};
 
-/// Whether the element begins a shade.
+/// True if the element begins a shade.
 pub(super) fn begins_with(element: &Element) -> bool {
     [dialect::LINEAR, dialect::RADIAL].contains(&element.name.as_str())
 }

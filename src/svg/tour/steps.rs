@@ -174,7 +174,7 @@ impl<'a> Tour<'a> {
         }
     }
 
-    /// Whether no stroke comes before one that it has to follow.
+    /// True if no stroke comes before one that it has to follow.
     fn is_allowed(&mut self, step: Step) -> bool {
         match step {
             Step::Reverse(first, last) => self.may_reverse(first..=last),
@@ -204,7 +204,7 @@ impl<'a> Tour<'a> {
         }
     }
 
-    /// Whether the order of the visits in this range does not matter.
+    /// True if the order of the visits in this range does not matter.
     fn may_reverse(&mut self, mut range: RangeInclusive<usize>) -> bool {
         let all = range.clone();
         let bound = range.position(|i| {

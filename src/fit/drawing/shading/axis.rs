@@ -126,7 +126,7 @@ fn circle(blocks: &Blocks, center: Point) -> Axis {
     Axis::Radial { center, radius }
 }
 
-/// How much blocks of similar offsets differ: the sum of squared differences from the mean of their group.
+/// Spread of blocks of similar offsets: the sum of squared differences from the mean of their group.
 fn spread(blocks: &Blocks, axis: Axis) -> f32 {
     let mut groups = [(0.0_f32, [0.0_f32; 4], 0.0_f32); GROUPS];
     for block in blocks.all.iter().filter(|block| block.weight > 0.0) {

@@ -41,7 +41,7 @@ pub(super) fn of(blocks: &Blocks, axis: Axis, choice: &ShadeChoice) -> Option<Sh
     trimmed(axis, stops)
 }
 
-/// What is written: without stops that say the same as their neighbours at the ends, on an axis that ends where they do.
+/// The shade as it is written: without stops that say the same as their neighbours at the ends, on an axis that ends where they do.
 fn trimmed(axis: Axis, mut stops: Vec<ShadeStop>) -> Option<Shade> {
     let alike = |a: &ShadeStop, b: &ShadeStop| {
         let near = |a: f32, b: f32| (a - b).abs() < 0.5 / 255.0;
@@ -94,7 +94,7 @@ struct Group {
     value: [f64; 4],
 }
 
-/// How values change along an axis.
+/// Values along an axis.
 struct Profile {
     groups: Vec<Group>,
     /// All blocks.

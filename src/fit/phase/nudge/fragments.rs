@@ -25,40 +25,40 @@ type Colors = [Rgb; SURFACES];
 #[derive(Debug, Clone, Copy)]
 struct Fragment {
     stroke: u32,
-    /// How much of the pixel it covers, 0 to 255.
+    /// Coverage of the pixel, 0 to 255.
     levels: PerRasterizer<u8>,
 }
 
 /// Which strokes cover each pixel.
 pub(super) struct Fragments {
     surfaces: usize,
-    /// How much an error counts at each pixel, if not everywhere alike.
+    /// Weight of an error at each pixel, if not everywhere alike.
     weights: Option<Vec<f32>>,
     targets: Vec<Colors>,
-    /// What lies behind all strokes.
-    bottoms: Vec<Colors>,
+    /// Backdrop of all strokes.
+    backdrops: Vec<Colors>,
     /// The strokes of each pixel, back to front.
     lists: Vec<Vec<Fragment>>,
     pictures: PerRasterizer<Vec<Colors>>,
 }
 
-/// How a stroke is seen in a pixel.
+/// View of a stroke in a pixel.
 #[derive(Debug, Clone, Copy)]
 struct Sight {
-    /// How much of the pixel it covers, 0 to 255.
+    /// Coverage of the pixel, 0 to 255.
     level: u8,
-    /// What the strokes in front let through.
+    /// Transmittance of the strokes in front.
     through: f32,
     /// The colours behind it.
     behind: Colors,
 }
 
-/// How a pixel responds to how much of it a stroke covers.
+/// Response of a pixel to the coverage by a stroke.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Response {
-    /// How much of the pixel the stroke covers, 0 to 255.
+    /// Coverage of the pixel by the stroke, 0 to 255.
     level: u8,
-    /// What covering all of it adds to the colours.
+    /// Change of the colours by full coverage.
     whole: Colors,
     /// The squared error that coverage adds: the coefficients of its first and its second power.
     coefficients: [f32; 2],
@@ -74,13 +74,13 @@ impl Fragments {
         footprints: &[PerRasterizer<Footprint>],
     ) -> Self {
         let surfaces = session.drawing.surfaces.iter();
-        let (targets, bottoms): (Vec<_>, Vec<_>) = surfaces
+        let (targets, backdrops): (Vec<_>, Vec<_>) = surfaces
             .map(|surface| {
-                let bottom = surface.empty(&file.rounded.scene).to_image();
-                (surface.picture().clone(), bottom)
+                let backdrop = surface.backdrop_canvas(&file.rounded.scene).to_image();
+                (surface.picture().clone(), backdrop)
             })
             .unzip();
-        let (targets, bottoms) = (colors(&targets), colors(&bottoms));
+        let (targets, backdrops) = (colors(&targets), colors(&backdrops));
         let mut fragments = Self {
             surfaces: session.drawing.surfaces.len(),
             weights: session.focus.as_ref().map(|focus| focus.values().to_vec()),
@@ -88,10 +88,10 @@ impl Fragments {
             pictures: [
                 colors(&file.drawn),
                 colors(seen.chromium()),
-                bottoms.clone(),
+                backdrops.clone(),
             ],
             targets,
-            bottoms,
+            backdrops,
         };
         for (id, footprints) in footprints.iter().enumerate() {
             for (rasterizer, footprint) in footprints.iter().enumerate() {
@@ -143,7 +143,7 @@ impl Fragments {
         })
     }
 
-    /// How many values of a picture count, those of a weight in proportion.
+    /// Number of values of a picture, each as often as its error counts.
     fn values(&self) -> f64 {
         let pixels = 0..self.targets.len();
         3.0 * pixels
@@ -151,12 +151,12 @@ impl Fragments {
             .sum::<f64>()
     }
 
-    /// How much an error counts at a pixel.
+    /// Weight of an error at a pixel.
     fn weight(&self, pixel: usize) -> f32 {
         self.weights.as_ref().map_or(1.0, |weights| weights[pixel])
     }
 
-    /// How each of these pixels responds to stroke `id`.
+    /// Responses of these pixels to stroke `id`.
     pub(super) fn responses(
         &self,
         id: usize,
@@ -178,12 +178,12 @@ impl Fragments {
         responses.collect()
     }
 
-    /// How stroke `id` is seen in a pixel.
+    /// Views of stroke `id` in a pixel.
     fn sights(&self, id: usize, strokes: &[Option<Stroke>], pixel: usize) -> PerRasterizer<Sight> {
         let mut sights = [Sight {
             level: 0,
             through: 1.0,
-            behind: self.bottoms[pixel],
+            behind: self.backdrops[pixel],
         }; Rasterizer::ALL.len()];
         for fragment in &self.lists[pixel] {
             let Some(other) = &strokes[fragment.stroke as usize] else {
@@ -223,16 +223,16 @@ impl Fragments {
     }
 }
 
-/// What happens to a pixel, one of some, when a stroke moves.
+/// Change of a pixel, one of some, when a stroke moves.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Change {
     slot: usize,
     levels: PerRasterizer<u8>,
-    /// What is added to the colours.
+    /// Change of the colours.
     colors: PerRasterizer<Colors>,
 }
 
-/// What happens to the pixels of `selection`, of these `responses`, when a stroke comes to cover `footprints`.
+/// Changes of the pixels of `selection`, of these `responses`, when a stroke comes to cover `footprints`.
 pub(super) fn changes(
     responses: &[PerRasterizer<Response>],
     footprints: &PerRasterizer<Footprint>,
@@ -282,16 +282,16 @@ impl Response {
             for channel in 0..3 {
                 let whole = factor * (stroke.color[channel] - behind[surface][channel]);
                 let present = picture[surface][channel] - target[surface][channel];
-                let bare = present - share(level) * whole;
+                let without = present - share(level) * whole;
                 response.whole[surface][channel] = whole;
-                response.coefficients[0] += 2.0 * bare * whole;
+                response.coefficients[0] += 2.0 * without * whole;
                 response.coefficients[1] += whole * whole;
             }
         }
         response
     }
 
-    /// The same where an error counts this much.
+    /// This response where an error has this weight.
     fn weighted(self, weight: f32) -> Self {
         Self {
             coefficients: self.coefficients.map(|term| weight * term),
@@ -366,12 +366,12 @@ mod tests {
 
     /// The pictures of strokes that cover these footprints.
     fn composed(
-        bottoms: &[Colors],
+        backdrops: &[Colors],
         strokes: &[Option<Stroke>],
         footprints: &[PerRasterizer<Footprint>],
     ) -> PerRasterizer<Vec<Colors>> {
         std::array::from_fn(|i| {
-            let mut pictures = bottoms.to_vec();
+            let mut pictures = backdrops.to_vec();
             for (stroke, footprints) in strokes.iter().flatten().zip(footprints) {
                 for (pixel, level) in footprints[i].iter() {
                     let m = share(level) * stroke.opacity;
@@ -387,13 +387,13 @@ mod tests {
             let color = |i: usize| [0, 1, 2].map(|c| draw(key, 3 * i + c));
             (0..PIXELS).map(|i| [color(i), color(i + PIXELS)]).collect()
         };
-        let bottoms: Vec<Colors> = colors(50);
+        let backdrops: Vec<Colors> = colors(50);
         let mut fragments = Fragments {
             surfaces: SURFACES,
             weights: Some((0..PIXELS).map(|i| draw(60, i)).collect()),
             targets: colors(51),
-            pictures: composed(&bottoms, strokes, footprints),
-            bottoms,
+            pictures: composed(&backdrops, strokes, footprints),
+            backdrops,
             lists: vec![Vec::new(); PIXELS],
         };
         for (id, footprints) in footprints.iter().enumerate() {
@@ -430,7 +430,7 @@ mod tests {
             let changes = scratch.on(&pixels, |selection| changes(&responses, &moved, selection));
             fragments.change(id, &pixels, &changes);
             footprints[id] = moved;
-            let expected = composed(&fragments.bottoms, &strokes, &footprints);
+            let expected = composed(&fragments.backdrops, &strokes, &footprints);
             for (pictures, expected) in fragments.pictures.iter().zip(&expected) {
                 for (a, b) in pictures
                     .as_flattened()

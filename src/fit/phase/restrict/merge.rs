@@ -1,5 +1,5 @@
-//! Greedy agglomeration: the two groups of strokes are merged whose common colour and width add the least squared error,
-//! again and again, up to a number of merges or a squared error.
+//! Greedy agglomeration: it repeatedly merges the two groups of strokes whose common colour and width add the least
+//! squared error, up to a number of merges or a squared error.
 //!
 //! With the weights `u` and `v`, a mean of two values `a` and `b` adds `u·v / (u + v) · (a − b)²` (Ward, "Hierarchical
 //! grouping to optimize an objective function", Journal of the American Statistical Association 58, 1963). All costs are
@@ -27,7 +27,7 @@ pub(super) struct Group {
     pub(super) radius_weight: f32,
 }
 
-/// How far groups are merged, and which of them may be.
+/// Limits of merging.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Rule<'a> {
     /// Most merges.
@@ -36,9 +36,9 @@ pub(super) struct Rule<'a> {
     pub(super) allowance: f32,
     /// Factor on the cost of radii.
     pub(super) contrast: f32,
-    /// Whether only groups of one colour are merged.
+    /// True if only groups of one colour are merged.
     pub(super) keeps_colors: bool,
-    /// How many groups to either side, in the order that they are given in, a group may be merged with.
+    /// Number of groups to either side, in the order that they are given in, that a group may be merged with.
     pub(super) reach: usize,
     /// The radii that groups may have.
     pub(super) grid: WidthGrid<'a>,

@@ -49,7 +49,7 @@ pub(super) fn run(session: &mut Session<'_>) -> Result<Option<Palette>> {
     Ok(Some(palette))
 }
 
-/// The palette for the drawing, unless any colours are allowed. A background that is paper is fixed.
+/// The palette for the drawing, unless any colours are allowed. A background that is kept becomes fixed.
 fn palette(
     drawing: &mut Drawing,
     colors: &Colors,
@@ -66,15 +66,15 @@ fn palette(
     let is_given = has_background && drawing.background_fixed;
     let background = drawing.background().filter(|_| is_given);
     let palette = Palette::new(colors, &preferences, background);
-    if has_background && is_paper(drawing, colors, preferences.last(), coloring) {
+    if has_background && is_kept(drawing, colors, preferences.last(), coloring) {
         drawing.background_fixed = true;
     }
     palette
 }
 
-/// Whether the background is paper, which stays as it is although the given palette has no such colour: much of it
+/// True if the background stays as it is although the given palette has no such colour: much of it
 /// shows, as its `preference` says, and all colours of the palette are far from its own.
-fn is_paper(
+fn is_kept(
     drawing: &Drawing,
     colors: &Colors,
     preference: Option<&PreferredColor>,
@@ -85,16 +85,16 @@ fn is_paper(
     };
     let area = drawing.pixel_area();
     let shown = area * preference.weight / drawing.pixels() as f32;
-    let far2 = 3.0 * coloring.paper_distance * coloring.paper_distance;
+    let far2 = 3.0 * coloring.kept_distance * coloring.kept_distance;
     let is_far = |&c: &[u8; 3]| dist2(color(c), preference.color) > far2;
-    shown >= coloring.paper_share && given.iter().all(is_far)
+    shown >= coloring.kept_share && given.iter().all(is_far)
 }
 
 /// The colours of a drawing.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Palette {
     colors: Vec<Rgb>,
-    /// How many of them, from the first on, are fixed. The others follow the strokes.
+    /// Number of them, from the first on, that are fixed. The others follow the strokes.
     fixed: usize,
 }
 

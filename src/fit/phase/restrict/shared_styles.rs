@@ -167,7 +167,7 @@ fn share(
 struct Order {
     /// For each stroke, or the first stroke of each pen, a bit for each that has to come later.
     later: Vec<Vec<u64>>,
-    /// The same for those that have to come earlier.
+    /// For each, a bit for each that has to come earlier.
     earlier: Vec<Vec<u64>>,
 }
 
@@ -200,7 +200,7 @@ impl Order {
         order
     }
 
-    /// Whether no stroke has to be drawn between the two.
+    /// True if no stroke has to be drawn between the two.
     fn may_join(&self, i: usize, k: usize) -> bool {
         let between = |from: usize, to: usize| {
             let bits = self.later[from].iter().zip(&self.earlier[to]);

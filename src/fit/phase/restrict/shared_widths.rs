@@ -1,8 +1,8 @@
 //! Shared widths and colours: nearly equal strokes of a drawing of lines get one width and one colour, as if drawn with one
 //! pen, so that an editor selects them together. Nearly opaque strokes become opaque.
 //!
-//! Strokes are [merged](super::merge) by their widths and by their colours until this adds 10 % to the squared error of
-//! the drawing. What is shared stays shared while the strokes settle.
+//! Widths and then colours are [merged](super::merge) until the sum of what this adds reaches a share of the drawing's
+//! squared error. Shared numbers stay shared while the strokes settle.
 
 use std::ops::Range;
 
