@@ -206,19 +206,16 @@ mod tests {
 
     #[test]
     fn only_groups_within_reach_are_merged() {
-        // The outer two weigh so little that to merge them costs least.
-        let strokes = [(1.0, 0.01), (2.0, 9.0), (3.0, 0.01)];
+        let strokes = [(1.0, 1.0), (5.0, 1.0), (1.1, 1.0)];
         let one = |reach| {
-            merged(
-                &strokes,
-                Rule {
-                    merges: 1,
-                    reach,
-                    ..RULE
-                },
-            )
+            let rule = Rule {
+                merges: 1,
+                reach,
+                ..RULE
+            };
+            merged(&strokes, rule)
         };
-        assert_eq!(one(1), [vec![0, 1], vec![2]]);
+        assert_eq!(one(1), [vec![0], vec![1, 2]]);
         assert_eq!(one(2), [vec![0, 2], vec![1]]);
     }
 }

@@ -102,7 +102,8 @@ fn make_opaque(drawing: &mut Drawing, recipe: &Recipe, allowance: f32) -> Ties {
     ties
 }
 
-/// Merges neighbours in the order of widths: a width between two others is cheaper to merge with either.
+/// Merges neighbours in the order of widths: a width between two others is cheaper to merge with one of them than they are
+/// with each other.
 fn share_widths(drawing: &mut Drawing, recipe: &Recipe, allowance: f32) -> Ties {
     let strokes = drawing.free().iter().enumerate();
     let mut groups: Vec<Group> = strokes
