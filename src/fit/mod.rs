@@ -10,6 +10,17 @@
 //! [`Fitter::fit`] runs the phases: `order` says which follows which, and `phase` has a file for each. The session holds
 //! the whole state of a fit. Between two phases, and between two iterations of most phases, a [`Checkpoint`] can keep
 //! that state, and another process can go on from it.
+//!
+//! | module | about |
+//! | --- | --- |
+//! | `order`, `phase` | the phases: which follows which, and a file for each |
+//! | `config`, `recipe` | options, and all tuned numbers |
+//! | `budget` | limits, the price of a stroke, the plan of stages, the pixels that a drawing needs |
+//! | `drawing` | strokes in progress, on surfaces of target, backdrop and canvas; the objective; the background |
+//! | `descent` | gradient descent and its annealing |
+//! | `points` | points of strokes that come, go, join |
+//! | `file`, `renderers` | the written file, as resvg and Chromium render it |
+//! | `run`, `time` | a fit under way: session, history, checkpoint, progress, finish; its clock and its forecast |
 
 mod base;
 mod budget;
