@@ -18,6 +18,9 @@
 //! # Ok::<(), strokefit::Error>(())
 //! ```
 
+#[cfg(feature = "animation")]
+mod caption;
+
 use std::ops::Range;
 use std::str::FromStr;
 
@@ -29,7 +32,6 @@ use crate::svg::{self, Timing};
 use crate::{
     image::{Animation, AnimationFormat},
     metrics,
-    report::plot::captioned,
     scene::{Rgb, Stage, Stroke},
     svg::{Form, WriteOptions},
     verify::{Painting, Size},
@@ -98,7 +100,7 @@ impl Legend<'_> {
                 )
             }
         };
-        captioned(&frame, &[text], LEGEND)
+        caption::captioned(&frame, &text, LEGEND)
     }
 }
 

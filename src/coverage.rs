@@ -33,7 +33,7 @@
 //!
 //! At infinite `d` the values are 0 and 1 and the derivatives 0.
 //!
-//! Source: the article that this project started from compares these functions (`strokefit lab`).
+//! Source: the article that this project started from compares these functions (`strokefit-rig lab`).
 //! Smoothstep is Hermite's cubic, as in the OpenGL Shading Language.
 
 use std::f64::consts::PI;

@@ -4,8 +4,6 @@
 //! value and the remedy, and [`std::error::Error::source`] holds the cause.
 
 use std::fmt;
-#[cfg(feature = "cli")]
-use std::{io, path::Path};
 
 /// The result of every fallible function of the library.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
@@ -62,16 +60,6 @@ impl Error {
     pub fn within(mut self, context: impl fmt::Display) -> Self {
         self.message = format!("{context}: {}", self.message);
         self
-    }
-
-    /// The error for a file `path` of results that could not be written.
-    #[cfg(feature = "cli")]
-    pub(crate) fn unwritten(path: &Path, cause: io::Error) -> Self {
-        let message = format!(
-            "cannot write {}: {cause}; choose another folder with -o",
-            path.display()
-        );
-        Self::new(ErrorKind::Io, message).caused_by(cause)
     }
 
     /// The class of the problem.

@@ -130,7 +130,8 @@ impl Image {
     }
 
     /// The picture at half the size (rounded up), each pixel the mean of up to 2×2; alpha is dropped.
-    pub(crate) fn halved(&self) -> Self {
+    #[doc(hidden)]
+    pub fn halved(&self) -> Self {
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
         let half = |plane: &Vec<f32>| {
             let mut out = Vec::with_capacity(width * height);

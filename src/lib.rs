@@ -37,8 +37,8 @@
 //! | feature | what it adds | on by default |
 //! | --- | --- | --- |
 //! | `formats` | pictures other than PNG, colour profiles, and pictures embedded in the SVG of a base | yes |
-//! | `animation` | frames and GIF, WebP or PNG files in the module `animation`, and charts in `report::plot`; needs `formats` | yes |
-//! | `cli` | the program and what it alone uses: `engines`, `view`, `lab`, `bench` and their reports; needs the others | yes |
+//! | `animation` | frames and GIF, WebP or PNG files in the module `animation`; needs `formats` | yes |
+//! | `cli` | the program and what it alone uses: `engines` and `view`; needs the others | yes |
 //!
 //! # The pipeline
 //!
@@ -57,9 +57,8 @@
 //! verify                          SVG text → resvg's render of it
 //! engines                         other programs' renders of it
 //! fit                             stages, polish, restricting, settling, budgets
-//! report                          plain records, tables, plots
+//! report                          plain records
 //! animation  view                 frames of a drawing, a live page
-//! lab  bench                      experiments, measurements
 //! cli                             the command line
 //! ```
 //!
@@ -173,8 +172,6 @@
 
 pub mod animation;
 #[cfg(feature = "cli")]
-pub mod bench;
-#[cfg(feature = "cli")]
 pub mod cli;
 pub mod clock;
 pub mod coverage;
@@ -183,8 +180,6 @@ pub mod engines;
 mod error;
 pub mod fit;
 pub mod image;
-#[cfg(feature = "cli")]
-pub mod lab;
 pub mod loss;
 pub mod math;
 pub mod metrics;
@@ -197,7 +192,8 @@ pub mod scene;
 pub mod sdf;
 pub mod seed;
 pub mod svg;
-mod threads;
+#[doc(hidden)]
+pub mod threads;
 pub mod trace;
 pub mod verify;
 #[cfg(feature = "cli")]

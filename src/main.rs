@@ -4,5 +4,5 @@ use std::env;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    strokefit::cli::main(env::args_os().collect(), &[]).into()
+    strokefit::cli::main(env::args_os().collect()).into()
 }

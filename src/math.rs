@@ -1,12 +1,17 @@
-//! Geometry words of the crate and its elementary functions: the one door of `nalgebra`.
+//! Geometry words of the crate, and its elementary functions: the one door of `libm`.
 
 mod elementary;
+mod linear;
+mod plane;
+mod real;
 
 pub use elementary::{
     Elementary, atan, cbrt, cos, exp, exp2, hypot, ln, log2, log10, powf, powi, sin, sin_cos, tan,
     tanh,
 };
-pub use nalgebra::{DMatrix, DVector, Point2, Vector2};
+pub(crate) use linear::solve_symmetric;
+pub use plane::{Point2, Vector2};
+pub use real::Real;
 
 /// A point of the picture plane in px; x to the right, y down, pixel centres at +0.5.
 pub type Point = Point2<f32>;
@@ -29,38 +34,4 @@ pub(crate) fn nearest_on_segment(p: [f32; 2], [a, b]: [[f32; 2]; 2]) -> ([f32; 2
     let q = [a[0] + h * axis[0], a[1] + h * axis[1]];
     let away = [q[0] - p[0], q[1] - p[1]];
     (q, away[0] * away[0] + away[1] * away[1])
-}
-
-/// A floating-point type for generic formulas: `f32` in the renderer and the fit,
-/// `f64` in the reference and the experiments.
-pub trait Real: nalgebra::RealField + Elementary + Copy {
-    /// `x`, rounded to this type.
-    fn of(x: f64) -> Self;
-
-    /// This number, exactly.
-    fn to_f64(self) -> f64;
-}
-
-impl Real for f32 {
-    #[inline]
-    fn of(x: f64) -> Self {
-        x as Self
-    }
-
-    #[inline]
-    fn to_f64(self) -> f64 {
-        f64::from(self)
-    }
-}
-
-impl Real for f64 {
-    #[inline]
-    fn of(x: f64) -> Self {
-        x
-    }
-
-    #[inline]
-    fn to_f64(self) -> f64 {
-        self
-    }
 }

@@ -9,7 +9,7 @@ use crate::error::{Error, ErrorKind, Result};
 
 /// Who does the work of one fit.
 #[derive(Debug)]
-pub(crate) enum Workers {
+pub enum Workers {
     /// Threads of its own.
     Pool(ThreadPool),
     /// Whoever asks: the platform starts no threads, as WebAssembly does not.
@@ -33,7 +33,7 @@ impl Workers {
     }
 
     /// Runs `work`, which finds these workers as rayon's current ones.
-    pub(crate) fn install<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+    pub fn install<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         match self {
             Self::Pool(pool) => pool.install(work),
             Self::Caller => work(),

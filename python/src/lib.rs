@@ -148,12 +148,12 @@ fn judge(py: Python<'_>, svg: String, picture: &Bound<'_, PyAny>) -> PyResult<St
     })
 }
 
-/// The command line; `host` is the command that starts it.
+/// The command line.
 #[pyfunction]
-fn main(py: Python<'_>, args: Vec<OsString>, host: Vec<OsString>) -> u8 {
+fn main(py: Python<'_>, args: Vec<OsString>) -> u8 {
     /// What a Rust program exits with after a panic.
     const PANICKED: u8 = 101;
-    py.detach(|| panic::catch_unwind(|| cli::main(args, &host)).unwrap_or(PANICKED))
+    py.detach(|| panic::catch_unwind(|| cli::main(args)).unwrap_or(PANICKED))
 }
 
 #[pymodule]

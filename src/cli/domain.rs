@@ -49,7 +49,8 @@ pub(super) fn stroke_limit(text: &str) -> Parsed<StrokeLimit> {
     }
 }
 
-pub(super) fn strokes(text: &str) -> Parsed<usize> {
+/// A number of strokes.
+pub fn strokes(text: &str) -> Parsed<usize> {
     whole(text, 1..=MAX_STROKES)
 }
 
@@ -79,7 +80,8 @@ pub(super) fn bytes(text: &str) -> Parsed<usize> {
         .ok_or_else(|| remedy.into())
 }
 
-pub(super) fn stages(text: &str) -> Parsed<usize> {
+/// A number of stages, or of iterations.
+pub fn stages(text: &str) -> Parsed<usize> {
     whole(text, 1..=MAX_STROKES)
 }
 
@@ -87,7 +89,8 @@ pub(super) fn points(text: &str) -> Parsed<usize> {
     whole(text, 2..=MAX_POINTS)
 }
 
-pub(super) fn threads(text: &str) -> Parsed<usize> {
+/// A number of threads.
+pub fn threads(text: &str) -> Parsed<usize> {
     whole(text, 1..=MAX_THREADS)
 }
 

@@ -17,7 +17,7 @@ pub(super) fn is_stdin(path: &Path) -> bool {
 }
 
 /// The name of the file in messages.
-pub(super) fn name(path: &Path) -> String {
+pub fn name(path: &Path) -> String {
     if is_stdin(path) {
         "standard input".into()
     } else {
@@ -26,7 +26,7 @@ pub(super) fn name(path: &Path) -> String {
 }
 
 /// Reads a picture, within the usual limits.
-pub(super) fn picture(path: &Path) -> Result<Image> {
+pub fn picture(path: &Path) -> Result<Image> {
     Ok(picture_within(path, Limits::default())?.0)
 }
 
@@ -40,7 +40,7 @@ pub(super) fn picture_within(path: &Path, limits: Limits) -> Result<(Image, Vec<
 }
 
 /// Reads an SVG file.
-pub(super) fn svg(path: &Path) -> Result<String> {
+pub fn svg(path: &Path) -> Result<String> {
     text(path, "an SVG file")
 }
 

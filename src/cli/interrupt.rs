@@ -85,7 +85,7 @@ impl Observer for Interrupt {
 
 /// A signal that asked the program to end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Signal(u8);
+pub struct Signal(u8);
 
 impl Signal {
     /// Ends the program the way the signal does, so that a shell's loop over files ends with it. Where

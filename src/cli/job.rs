@@ -18,7 +18,7 @@ use super::narration::Narration;
 use super::options::Options;
 use super::output::{self, Output};
 use super::pictures::{Pictures, Subject};
-use super::progress::Bar;
+use super::progress::FitBar;
 use super::{Status, Verbosity, complain, input};
 
 /// What to draw, and where the results go.
@@ -60,7 +60,7 @@ impl Job<'_> {
         }
         events.tell(&Event::Start(input.clone()));
         self.foretell(&picture, verbosity);
-        let bar = Bar::new(verbosity.quiet, heading);
+        let bar = FitBar::new(verbosity.quiet, heading);
         let fit = self.watched(&picture, start, events, bar, verbosity, draw)?;
         tell_dropped(fit.dropped, verbosity);
         tell_reduced(&fit.scene, input::name(self.input), verbosity);
@@ -103,7 +103,7 @@ impl Job<'_> {
         picture: &Image,
         start: Instant,
         events: &mut Events,
-        mut bar: Bar,
+        mut bar: FitBar,
         verbosity: Verbosity,
         draw: &Draw<'_>,
     ) -> Result<Fit> {
@@ -113,7 +113,8 @@ impl Job<'_> {
         let mut observer = |progress: &Progress<'_>| {
             bar.show(progress);
             if let Some(line) = narration.watch(progress).filter(|_| verbosity.verbose) {
-                bar.aside(|| complain(line));
+                bar.clear();
+                complain(line);
             }
             phases.watch(progress);
             interrupt.observe(progress)

@@ -1,33 +1,34 @@
 //! The command line: arguments, subcommands and exit statuses.
 //!
-//! [`main`] is the whole program. Packages for other languages start it as `strokefit` does.
+//! [`main`] is the whole program. Packages for other languages start it as `strokefit` does. `rig/` builds its own
+//! program from parts of this one.
 
+pub mod bar;
 mod batch;
-mod bench;
 mod check;
 mod colors;
-mod domain;
+pub mod domain;
 mod events;
 mod fit;
 mod form;
 mod hint;
-mod input;
+pub mod input;
 mod interrupt;
 mod job;
-mod lab;
 mod manual;
 mod narration;
 mod options;
-mod output;
+pub mod output;
 mod pictures;
 mod progress;
 mod refine;
 mod refusal;
 mod render;
+mod rig;
 mod settings;
-mod usage;
+pub mod usage;
 mod view;
-mod words;
+pub mod words;
 
 use std::ffi::OsString;
 use std::fmt::Display;
@@ -39,11 +40,10 @@ use hint::Hint;
 use interrupt::Signal;
 use usage::parse;
 
-/// Runs the program and returns its exit status. `args` begin with the program's name. `host` is the command that starts
-/// the program inside another one, such as `python -m strokefit`; it is empty for a program of its own.
-pub fn main(args: Vec<OsString>, host: &[OsString]) -> u8 {
+/// Runs the program and returns its exit status. `args` begin with the program's name.
+pub fn main(args: Vec<OsString>) -> u8 {
     let status = match parse(args) {
-        Ok(args) => run(&args, host).unwrap_or_else(|error| fail(&error)),
+        Ok(args) => run(&args).unwrap_or_else(|error| fail(&error)),
         Err(status) => status,
     };
     // Another program's end does not write what is left here.
@@ -71,9 +71,11 @@ enum Command {
     Refine(refine::Args),
     Check(check::Args),
     Render(render::Args),
-    Bench(bench::Args),
     View(view::Args),
-    Lab(lab::Args),
+    #[command(hide = true)]
+    Bench(rig::Rest),
+    #[command(hide = true)]
+    Lab(rig::Rest),
     Completions(manual::Completions),
     Man(manual::Man),
 }
@@ -102,10 +104,10 @@ the signal does; shells report status 130, 143 or 129. A second signal ends it a
 
 /// How much to say on standard error.
 #[derive(Debug, Clone, Copy, clap::Args)]
-struct Verbosity {
+pub struct Verbosity {
     /// Print errors only
     #[arg(short, long, global = true, conflicts_with = "verbose")]
-    quiet: bool,
+    pub quiet: bool,
     /// Print a line for each part of a fit as it ends, and every few seconds for one that takes long
     #[arg(short, long, global = true)]
     verbose: bool,
@@ -113,14 +115,14 @@ struct Verbosity {
 
 impl Verbosity {
     /// A line for the user, unless quiet.
-    fn say(self, line: impl Display) {
+    pub fn say(self, line: impl Display) {
         if !self.quiet {
             complain(line);
         }
     }
 
     /// A line for the curious.
-    fn detail(self, line: impl Display) {
+    pub fn detail(self, line: impl Display) {
         if self.verbose {
             complain(line);
         }
@@ -129,7 +131,7 @@ impl Verbosity {
 
 /// How the command ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Status {
+pub enum Status {
     /// All is well.
     Done,
     /// Nothing was made.
@@ -142,6 +144,8 @@ enum Status {
     Disagrees,
     /// A signal ended the fit; what was drawn until then is there.
     Interrupted(Signal),
+    /// Another program did the work, and ended with this number.
+    Other(u8),
 }
 
 impl Status {
@@ -152,7 +156,7 @@ impl Status {
             Self::TargetMissed => 1,
             Self::Disagrees => 2,
             Self::Usage => 3,
-            Self::Failed => 4,
+            Self::Failed | Self::Other(_) => 4,
             Self::Interrupted(_) => 5,
         };
         if rank(other) > rank(self) {
@@ -163,7 +167,7 @@ impl Status {
     }
 
     /// The number of this status. If a signal was the cause, it ends the process.
-    fn leave(self) -> u8 {
+    pub fn leave(self) -> u8 {
         match self {
             Self::Done => 0,
             Self::Failed => 1,
@@ -171,28 +175,29 @@ impl Status {
             Self::TargetMissed => 3,
             Self::Disagrees => 4,
             Self::Interrupted(signal) => signal.end(),
+            Self::Other(number) => number,
         }
     }
 }
 
 /// Does what the arguments ask for.
-fn run(args: &Args, host: &[OsString]) -> anyhow::Result<Status> {
+fn run(args: &Args) -> anyhow::Result<Status> {
     strokefit::verify::silence_panics();
     match &args.command {
         Command::Fit(fit) => fit::run(fit, args.verbosity),
         Command::Refine(refine) => refine::run(refine, args.verbosity),
         Command::Check(check) => check::run(check, args.verbosity),
         Command::Render(render) => render::run(render),
-        Command::Bench(bench) => bench::run(bench, host, args.verbosity),
         Command::View(view) => view::run(view),
-        Command::Lab(lab) => lab::run(lab, args.verbosity),
+        Command::Bench(rest) => rig::run(&[], rest, args.verbosity),
+        Command::Lab(rest) => rig::run(&["lab"], rest, args.verbosity),
         Command::Completions(completions) => manual::complete(completions),
         Command::Man(man) => manual::man(man, args.verbosity),
     }
 }
 
 /// Says what went wrong in one line, and what to do in another where there is advice.
-fn fail(error: &anyhow::Error) -> Status {
+pub fn fail(error: &anyhow::Error) -> Status {
     let (wrong, hint) = Hint::split(error);
     complain(format_args!("error: {wrong}"));
     if let Some(hint) = hint {

@@ -11,7 +11,7 @@ const STDOUT: &str = "-";
 
 /// Where data goes.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Output {
+pub enum Output {
     /// Standard output.
     Stdout,
     /// A regular file, there already or to be made: written beside its name, then renamed.
@@ -77,7 +77,7 @@ impl Output {
     }
 
     /// Writes everything.
-    pub(super) fn write(&self, bytes: &[u8]) -> Result<()> {
+    pub fn write(&self, bytes: &[u8]) -> Result<()> {
         match self {
             Self::Stdout => {
                 let mut stdout = io::stdout().lock();

@@ -17,12 +17,13 @@ const TEMPLATE: &str = "{about}{after-help}\n\n{usage-heading} {usage}\n\n{all-a
 
 /// The whole command line.
 pub(super) fn command() -> Command {
-    let command = Args::command().help_template(TEMPLATE);
-    command.mut_subcommands(|sub| {
-        settings::offer(sub)
-            .help_template(TEMPLATE)
-            .mut_subcommands(|sub| sub.help_template(TEMPLATE))
-    })
+    examples_first(Args::command()).mut_subcommands(settings::offer)
+}
+
+/// The command, with help of it and of its subcommands that begins with examples.
+pub fn examples_first(command: Command) -> Command {
+    let command = command.help_template(TEMPLATE);
+    command.mut_subcommands(examples_first)
 }
 
 /// The parsed arguments, or the status to leave with: help was shown, or an error.
@@ -56,7 +57,7 @@ fn understand(args: Vec<OsString>) -> Result<Understood> {
 }
 
 /// Says what is wrong with the arguments, or shows the help that they ask for.
-fn refuse(error: &anyhow::Error, args: &[OsString]) -> Status {
+pub fn refuse(error: &anyhow::Error, args: &[OsString]) -> Status {
     let Some(error) = error.downcast_ref::<clap::Error>() else {
         return fail(error);
     };
@@ -129,7 +130,7 @@ mod tests {
 
     #[test]
     fn help_begins_with_examples() {
-        for name in ["fit", "check", "render", "lab"] {
+        for name in ["fit", "check", "render"] {
             let mut command = command();
             let help = command
                 .find_subcommand_mut(name)

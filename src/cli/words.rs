@@ -6,9 +6,7 @@ use std::str::FromStr;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 /// One of the values, by the words that they are read from and written as, each with its help.
-pub(super) fn one_of<T, const N: usize>(
-    values: [(T, &'static str); N],
-) -> impl TypedValueParser<Value = T>
+pub fn one_of<T, const N: usize>(values: [(T, &'static str); N]) -> impl TypedValueParser<Value = T>
 where
     T: Clone + Display + FromStr<Err = strokefit::Error> + Send + Sync + 'static,
 {

@@ -27,7 +27,8 @@
 mod cairosvg;
 mod chromium;
 mod inkscape;
-pub(crate) mod locate;
+#[doc(hidden)]
+pub mod locate;
 mod process;
 mod rsvg;
 mod sheet;

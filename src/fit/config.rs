@@ -301,7 +301,8 @@ impl Config {
 
 impl Execution {
     /// The worker threads.
-    pub(crate) fn pool(&self) -> Result<Workers> {
+    #[doc(hidden)]
+    pub fn pool(&self) -> Result<Workers> {
         Workers::new(self.threads.unwrap_or(0))
     }
 

@@ -68,7 +68,8 @@ impl Simd {
     ///
     /// # Errors
     /// [`ErrorKind::Config`] when this machine does not have it.
-    pub(crate) fn require(self) -> Result<Level> {
+    #[doc(hidden)]
+    pub fn require(self) -> Result<Level> {
         self.level().ok_or_else(|| {
             let here: Vec<String> = Self::ALL
                 .into_iter()

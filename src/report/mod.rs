@@ -1,5 +1,4 @@
-//! Reports of what commands did: plain records that serialise to JSON, and the tables, plots and pages made
-//! from them.
+//! Reports of what commands did: plain records that serialise to JSON.
 //!
 //! Scripts rely on the field names: fields may be added, none is renamed. Times are in seconds; errors are
 //! as in [`metrics`](crate::metrics). `psnr_db` is `null` where two pictures are equal, since JSON has no
@@ -8,23 +7,11 @@
 mod check;
 mod event;
 mod fit;
-#[cfg(feature = "cli")]
-pub mod inverse;
 mod judged;
-#[cfg(feature = "cli")]
-pub mod pareto;
 #[cfg(feature = "animation")]
 pub mod picture;
-#[cfg(feature = "animation")]
-pub mod plot;
-#[cfg(feature = "cli")]
-pub mod scaling;
 mod scene;
 mod size;
-#[cfg(feature = "cli")]
-pub mod stability;
-#[cfg(feature = "cli")]
-mod table;
 mod usage;
 
 use serde::{Deserialize, Serialize};
@@ -38,8 +25,6 @@ pub use fit::{BaseEntry, FitReport, Run, StageEntry, stop_word};
 pub use judged::{Judged, OnFocus};
 pub use scene::{SceneRecord, ShadeRecord, StrokeRecord};
 pub use size::{gzip_bytes, per_stroke};
-#[cfg(feature = "cli")]
-pub use table::Table;
 pub use usage::Usage;
 
 /// Version of the records' layout.

@@ -2,7 +2,6 @@
 
 use crate::error::Result;
 use crate::image::Image;
-use crate::math;
 
 /// A picture of `values`, row by row, each coloured by `color`. Rows have `width` values; an
 /// incomplete last row is left out.
@@ -21,31 +20,6 @@ pub fn map<V: Copy>(width: usize, values: &[V], color: impl Fn(V) -> [f64; 3]) -
     Image::new(width, height, planes)
 }
 
-/// 0 is black, 1 white.
-pub fn gray(value: f64) -> [f64; 3] {
-    [value; 3]
-}
-
-/// White on the edge of a shape, orange inside and blue outside, with a line every 4 px.
-pub fn distance(d: f64) -> [f64; 3] {
-    let [near, far] = if d >= 0.0 {
-        [[1.0, 0.87, 0.7], [0.85, 0.35, 0.05]]
-    } else {
-        [[0.82, 0.9, 1.0], [0.1, 0.35, 0.7]]
-    };
-    let depth = 1.0 - math::exp(-d.abs() / 12.0);
-    let line = if (d / 4.0 - (d / 4.0).round()).abs() < 0.1 {
-        0.85
-    } else {
-        1.0
-    };
-    let edge = math::exp(-(d * d) * 2.0);
-    std::array::from_fn(|k| {
-        let color = (near[k] + depth * (far[k] - near[k])) * line;
-        color + edge * (1.0 - color)
-    })
-}
-
 /// From dark blue over green to yellow, for 0 to 1; equal steps look equal.
 pub fn heat(value: f64) -> [f64; 3] {
     const STOPS: [[f64; 3]; 5] = [
@@ -61,40 +35,28 @@ pub fn heat(value: f64) -> [f64; 3] {
     std::array::from_fn(|k| STOPS[i][k] + part * (STOPS[i + 1][k] - STOPS[i][k]))
 }
 
-/// Signed numbers: −1 red, 0 white, 1 green.
-pub fn signed(value: f64) -> [f64; 3] {
-    let fade = 1.0 - value.abs().min(1.0);
-    if value < 0.0 {
-        [1.0 - 0.2 * (1.0 - fade), fade, fade]
-    } else {
-        [fade, 1.0 - 0.4 * (1.0 - fade), fade]
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn incomplete_rows_are_left_out() {
-        let image = map(2, &[0.0, 1.0, 0.5], gray).unwrap();
+        let image = map(2, &[0.0, 1.0, 0.5], heat).unwrap();
         assert_eq!((image.width(), image.height()), (2, 1));
-        assert!(map(0, &[0.0], gray).is_err());
-        assert!(map(4, &[0.0], gray).is_err());
+        assert!(map(0, &[0.0], heat).is_err());
+        assert!(map(4, &[0.0], heat).is_err());
     }
 
     #[test]
     fn colours_stay_within_their_range() {
         for i in -50..=50 {
             let value = f64::from(i) / 10.0;
-            for color in [gray, distance, heat, signed] {
-                let image = map(1, &[value], color).unwrap();
-                let planes = image.planes();
-                assert!(
-                    planes.iter().all(|p| (0.0..=1.0).contains(&p[0])),
-                    "{value}"
-                );
-            }
+            let image = map(1, &[value], heat).unwrap();
+            let planes = image.planes();
+            assert!(
+                planes.iter().all(|p| (0.0..=1.0).contains(&p[0])),
+                "{value}"
+            );
         }
     }
 }

@@ -52,7 +52,7 @@ pub(super) trait Place: Copy {
 
 impl Place for Point {
     fn middle(a: Self, b: Self) -> Self {
-        Self::from((a.coords + b.coords) * 0.5)
+        Self::from((a.coords() + b.coords()) * 0.5)
     }
 }
 
@@ -103,7 +103,7 @@ impl Piece {
     fn flatten(self, tolerance: f32, out: &mut Vec<Point>) {
         let [a, c, b] = match self {
             Self::Line([_, end]) => return out.push(end),
-            Self::Curve(points) => points.map(|p| p.coords),
+            Self::Curve(points) => points.map(|p| p.coords()),
         };
         let bend = (a - c * 2.0 + b).norm();
         let steps = steps(bend.into(), tolerance.into());

@@ -155,7 +155,7 @@ impl<T: Real> Path<T> {
             if knots[at].1 {
                 let (control, to) = (&knots[at].0, &knots[at + 1].0);
                 let [a, b, c] = [from, control, to].map(|mean| mean.place(&self.points));
-                let bend = a - b * T::of(2.0) + c.coords;
+                let bend = a.coords() - b.coords() * T::of(2.0) + c.coords();
                 let steps = steps(bend, self.flatness.to_f64());
                 for k in 1..=steps {
                     let t = T::of(k as f64) / T::of(steps as f64);
@@ -203,7 +203,7 @@ impl<T: Real> Path<T> {
 impl<T: Real> Mean<T> {
     /// The place of the vertex.
     pub fn place(&self, points: &[Point2<T>]) -> Point2<T> {
-        let sum = |sum: Vector2<T>, &(i, weight): &(usize, T)| sum + points[i].coords * weight;
+        let sum = |sum: Vector2<T>, &(i, weight): &(usize, T)| sum + points[i].coords() * weight;
         Point2::from(self.0.iter().fold(Vector2::zeros(), sum))
     }
 
@@ -366,11 +366,11 @@ mod tests {
                 let sum: f64 = mean.0.iter().map(|(_, weight)| weight).sum();
                 assert!((sum - 1.0).abs() < 1e-12 && mean.0.iter().all(|(_, w)| *w >= 0.0));
             }
-            let (first, last) = (&polyline.points[0], &polyline.points[means.len() - 1]);
+            let (first, last) = (polyline.points[0], polyline.points[means.len() - 1]);
             let (start, end) = if path.closed {
                 (first, first)
             } else {
-                (&path.points[0], &path.points[4])
+                (path.points[0], path.points[4])
             };
             assert!((first - start).norm() + (last - end).norm() < 1e-12);
         }

@@ -121,7 +121,8 @@ fn the_page_of_a_reduced_picture_is_read_back() {
 
 /// A stroke of few looks between few places, so that neighbours often share a look or an end.
 fn alike() -> impl Strategy<Value = Stroke> {
-    let place = || (0..5_u8, 0..5_u8).prop_map(|(x, y)| Point::new(x.into(), y.into()) * 9.5);
+    let place =
+        || (0..5_u8, 0..5_u8).prop_map(|(x, y)| Point::from([x, y].map(|i| 9.5 * f32::from(i))));
     let look = (0..2_u8, 0..2_u8, 0..3_u8);
     let line = (place(), place()).prop_map(|(a, b)| Path::line(a, b));
     let path = prop_oneof![3 => line, 1 => path(place())];

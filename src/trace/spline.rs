@@ -5,7 +5,7 @@
 
 use super::lines::Line;
 use super::recipe::Splines;
-use crate::math::{self, DMatrix, DVector, Point, nearest_on_segment};
+use crate::math::{self, Point, nearest_on_segment};
 use crate::scene::{Path, PathPoint};
 
 /// Distance between the places of a resampled line, px.
@@ -268,23 +268,25 @@ fn closed_spline(places: &[Place], count: usize) -> Vec<Place> {
 /// The points whose weighted sums are nearest to the places.
 fn solve(samples: impl Iterator<Item = (Vec<(usize, f32)>, Place)>, count: usize) -> Vec<Place> {
     // The normal equations; a little ridge keeps them solvable where no place depends on a point.
-    let mut normal = DMatrix::<f64>::identity(count, count) * 1e-6;
-    let mut right = [DVector::<f64>::zeros(count), DVector::<f64>::zeros(count)];
+    let mut columns = vec![vec![0.0; count]; count];
+    for (i, column) in columns.iter_mut().enumerate() {
+        column[i] = 1e-6;
+    }
+    let mut right = [vec![0.0; count], vec![0.0; count]];
     for (weights, place) in samples {
         for &(i, v) in &weights {
             for &(k, w) in &weights {
-                normal[(i, k)] += f64::from(v) * f64::from(w);
+                columns[k][i] += f64::from(v) * f64::from(w);
             }
             for axis in [0, 1] {
                 right[axis][i] += f64::from(v) * f64::from(place[axis]);
             }
         }
     }
-    let Some(factors) = normal.cholesky() else {
+    let Some([x, y]) = math::solve_symmetric(columns, right) else {
         return Vec::new();
     };
-    let [x, y] = right.map(|column| factors.solve(&column));
-    let pairs = x.iter().zip(y.iter());
+    let pairs = x.iter().zip(&y);
     pairs.map(|(&x, &y)| [x as f32, y as f32]).collect()
 }
 

@@ -1,5 +1,5 @@
 //! Imports go one way: no circle between the files of a folder, and no import against the order of the
-//! modules that `src/lib.rs` lists.
+//! modules that `src/lib.rs` lists. `rig/` compiles this file, too, for its own source.
 //!
 //! Sources are read as text: `use` declarations, and paths that begin with `crate`, `super`, `self` or the
 //! library's name. Names that a module re-exports are followed to the file that they come from. Two things
@@ -9,6 +9,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
+
+/// The library under test, as its program calls it.
+const CRATE: &str = env!("CARGO_PKG_NAME");
 
 /// A module's path from the root of the crate: `["fit", "config"]`.
 type Module = Vec<String>;
@@ -38,7 +41,7 @@ impl Sources {
     fn resolve(&self, from: &Module, path: &[String], depth: usize) -> Option<Module> {
         let (first, mut rest) = path.split_first()?;
         let mut module = match first.as_str() {
-            "crate" | "strokefit" => Module::new(),
+            "crate" | CRATE => Module::new(),
             "self" | "super" => from.clone(),
             child => {
                 let child = [&from[..], &[child.to_owned()]].concat();
@@ -124,7 +127,7 @@ impl Source {
         let is_part = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
         for word in code.split(|c| !is_part(c)) {
             let path: Vec<String> = word.split("::").map(str::to_owned).collect();
-            let ours = ["crate", "super", "self", "strokefit"].contains(&path[0].as_str());
+            let ours = ["crate", "super", "self", CRATE].contains(&path[0].as_str());
             if ours && path.len() > 1 {
                 self.paths.insert(path);
             }
@@ -259,7 +262,8 @@ fn no_files_of_a_folder_import_each_other_in_a_circle() {
 
 #[test]
 fn modules_import_from_those_above_them_in_the_list_of_lib_rs() {
-    let order = order(include_str!("../../src/lib.rs"));
+    let head = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/lib.rs");
+    let order = order(&fs::read_to_string(head).unwrap());
     let place = |module: &str| {
         order
             .iter()

@@ -87,5 +87,7 @@ mod plotter;
 mod progress;
 #[cfg(feature = "cli")]
 mod refine;
+#[cfg(all(feature = "cli", unix))]
+mod rig;
 #[cfg(feature = "cli")]
 mod view;

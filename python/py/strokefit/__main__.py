@@ -11,8 +11,7 @@ def main() -> int:
     # Python only notes Ctrl-C until its own code runs again; the command line answers it as a program does.
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
-    host = [sys.executable, "-m", __package__ or "strokefit"]
-    return _native.main(["strokefit", *sys.argv[1:]], host)
+    return _native.main(["strokefit", *sys.argv[1:]])
 
 
 if __name__ == "__main__":

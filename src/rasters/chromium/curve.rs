@@ -40,7 +40,7 @@ impl Curve {
     /// [`STRAIGHT`].
     fn is_straight(self) -> bool {
         let Self([a, c, b]) = self;
-        let length = |[from, to, _]: &[Point; 3]| (to - from).amax();
+        let length = |[from, to, _]: &[Point; 3]| (*to - *from).amax();
         let pairs = [[a, c, b], [a, b, c], [c, b, a]].into_iter();
         let Some([from, to, between]) = pairs.reduce(|longest, pair| {
             if length(&pair) > length(&longest) {
@@ -73,7 +73,7 @@ pub(super) fn left_of(along: Vector) -> Vector {
 /// The point at `t` of a parabola.
 pub(super) fn on_parabola(start: Point, knee: Point, end: Point, t: f32) -> Point {
     let u = 1.0 - t;
-    Point::from(start.coords * (u * u) + knee.coords * (2.0 * t * u) + end.coords * (t * t))
+    Point::from(start.coords() * (u * u) + knee.coords() * (2.0 * t * u) + end.coords() * (t * t))
 }
 
 /// The parabola, in two where it turns back along an axis.

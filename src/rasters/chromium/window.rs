@@ -262,12 +262,12 @@ mod tests {
                         let p = on_parabola(a, c, b, t);
                         let off = way
                             .iter()
-                            .map(|q| (p - q).norm())
+                            .map(|q| (p - *q).norm())
                             .fold(f32::INFINITY, f32::min);
-                        assert!(off < 0.03, "{p} is {off} off");
+                        assert!(off < 0.03, "{p:?} is {off} off");
                         assert!(
                             [p.x, p.y].iter().all(|v| (-1e-4..10.0001).contains(v)),
-                            "{p}"
+                            "{p:?}"
                         );
                     }
                 }

@@ -1,0 +1,13 @@
+//! Reports of the benchmarks: plain records that serialise to JSON, and the tables, plots and pages made from them.
+//!
+//! The rules of [`strokefit::report`] hold: fields may be added, none is renamed.
+
+pub mod inverse;
+pub mod pareto;
+pub mod picture;
+pub mod plot;
+pub mod scaling;
+pub mod stability;
+mod table;
+
+pub use table::Table;

@@ -1,0 +1,162 @@
+//! What `strokefit-rig stability` found.
+
+use serde::{Deserialize, Serialize};
+use strokefit::report::SCHEMA;
+
+use super::Table;
+
+/// All checks of a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StabilityReport {
+    /// [`SCHEMA`].
+    pub schema: u32,
+    /// One per check, in order.
+    pub entries: Vec<StabilityEntry>,
+}
+
+/// What one check found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StabilityEntry {
+    /// What kind of case it is.
+    pub group: String,
+    /// The case.
+    pub name: String,
+    /// What was checked.
+    pub checked: String,
+    /// What was found.
+    pub figure: String,
+    /// Whether it holds.
+    pub verdict: CaseVerdict,
+    /// Why an exception is one.
+    pub note: String,
+    /// CPU time, s.
+    pub cpu_s: Option<f64>,
+}
+
+/// Whether a case holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum CaseVerdict {
+    /// It does.
+    Pass,
+    /// It does not, for a known reason that does not occur in ordinary drawings; the note names it.
+    Exception,
+    /// It does not.
+    Fail,
+}
+
+impl CaseVerdict {
+    /// The word that a line of the table ends in.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Pass => "pass",
+            Self::Exception => "exception",
+            Self::Fail => "FAIL",
+        }
+    }
+}
+
+impl StabilityReport {
+    /// The report of these checks.
+    pub fn new(entries: Vec<StabilityEntry>) -> Self {
+        Self {
+            schema: SCHEMA,
+            entries,
+        }
+    }
+
+    /// How many checks failed.
+    pub fn failures(&self) -> usize {
+        let failed = |entry: &&StabilityEntry| entry.verdict == CaseVerdict::Fail;
+        self.entries.iter().filter(failed).count()
+    }
+
+    /// The count of each verdict, the exceptions with their reasons, and all checks.
+    pub fn markdown(&self) -> String {
+        let of = |verdict| self.entries.iter().filter(move |e| e.verdict == verdict);
+        let mut exceptions = Table::new(&["case", "figure", "why"]);
+        for StabilityEntry {
+            group,
+            name,
+            figure,
+            note,
+            ..
+        } in of(CaseVerdict::Exception)
+        {
+            exceptions.row([format!("`{group}/{name}`"), figure.clone(), note.clone()]);
+        }
+        format!(
+            "# Hard cases\n\n{} cases: {} hold, {} are exceptions, {} failed.\n\n## Exceptions\n\n{}\n## All\n\n{}",
+            self.entries.len(),
+            of(CaseVerdict::Pass).count(),
+            of(CaseVerdict::Exception).count(),
+            self.failures(),
+            exceptions.markdown(),
+            self.table().markdown()
+        )
+    }
+
+    /// One row per check.
+    pub fn table(&self) -> Table {
+        let mut table = Table::new(&["group", "case", "checked", "figure", "verdict", "note"]);
+        for entry in &self.entries {
+            let verdict = entry.verdict.word().to_owned();
+            let StabilityEntry {
+                group,
+                name,
+                checked,
+                figure,
+                note,
+                ..
+            } = entry.clone();
+            table.row([group, name, checked, figure, verdict, note]);
+        }
+        table
+    }
+}
+
+impl StabilityEntry {
+    /// The line of standard output, ending in the verdict.
+    pub fn line(&self) -> String {
+        let note = if self.note.is_empty() {
+            String::new()
+        } else {
+            format!(" ({})", self.note)
+        };
+        format!(
+            "{}/{}: {}{note}: {}",
+            self.group,
+            self.name,
+            self.figure,
+            self.verdict.word()
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exceptions_are_told_with_their_reasons() {
+        let entry = |name: &str, verdict, note: &str| StabilityEntry {
+            group: "kinks".into(),
+            name: name.into(),
+            checked: String::new(),
+            figure: "2 %".into(),
+            verdict,
+            note: note.into(),
+            cpu_s: None,
+        };
+        let report = StabilityReport::new(vec![
+            entry("a", CaseVerdict::Pass, ""),
+            entry("b", CaseVerdict::Exception, "a jump"),
+        ]);
+        let text = report.markdown();
+        assert!(
+            text.contains("2 cases: 1 hold, 1 are exceptions, 0 failed."),
+            "{text}"
+        );
+        assert!(text.contains("| `kinks/b` | 2 % | a jump |"), "{text}");
+    }
+}

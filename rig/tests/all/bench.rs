@@ -1,0 +1,344 @@
+//! `strokefit-rig` as its users meet it: files, lines, exit statuses, and going on where it stopped.
+
+use std::fs;
+use std::process::Output;
+
+use crate::support::place::{Place, STROKEFIT};
+
+fn bench(place: &Place, args: &[&str]) -> Output {
+    // Peers that happen to be installed would only take time.
+    bench_beside("", place, args)
+}
+
+/// With the programs in the folders `path`.
+fn bench_beside(path: &str, place: &Place, args: &[&str]) -> Output {
+    place
+        .command(STROKEFIT)
+        .args(args)
+        .env("PATH", path)
+        .output()
+        .unwrap()
+}
+
+/// The whole path of a file of the samples.
+fn sample(path: &str) -> String {
+    format!("{}/../samples/{path}", env!("CARGO_MANIFEST_DIR"))
+}
+
+fn lines(output: &Output) -> Vec<String> {
+    let text = String::from_utf8(output.stdout.clone()).unwrap();
+    text.lines().map(str::to_owned).collect()
+}
+
+fn results(place: &Place) -> Vec<serde_json::Value> {
+    let text = fs::read_to_string(place.path("out/results.jsonl")).unwrap();
+    let lines = text.lines();
+    lines
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect()
+}
+
+const FEW: [&str; 9] = [
+    "pareto",
+    "a.png",
+    "-o",
+    "out",
+    "--short",
+    "--strokes",
+    "12",
+    "--preset",
+    "draft",
+];
+
+#[test]
+fn pareto_writes_its_report() {
+    let place = Place::new();
+    place.picture("a.png", 40, 30);
+    let output = bench(&place, &FEW);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    for name in [
+        "pareto.csv",
+        "pareto.json",
+        "pareto.md",
+        "pareto.html",
+        "a-time.svg",
+        "a-bytes.svg",
+        "a-strokes.svg",
+        "a-seen.svg",
+        "a-stages.svg",
+    ] {
+        assert!(place.path("out").join(name).exists(), "{name}");
+    }
+    let results = results(&place);
+    let families: Vec<_> = results
+        .iter()
+        .map(|r| r["family"].as_str().unwrap())
+        .collect();
+    assert_eq!(
+        families.iter().filter(|f| **f == "article").count(),
+        2,
+        "{families:?}"
+    );
+    let drawings = fs::read_dir(place.path("out/svg")).unwrap().count();
+    assert_eq!(drawings, results.len());
+    for line in lines(&output) {
+        let verdict = line.rsplit(": ").next().unwrap();
+        assert!(
+            ["pass", "holds", "does not hold"].contains(&verdict),
+            "{line}"
+        );
+    }
+    let page = fs::read_to_string(place.path("out/pareto.html")).unwrap();
+    assert!(page.contains("data:image/png;base64,") && page.contains("data:image/svg+xml;base64,"));
+}
+
+#[test]
+fn a_run_goes_on_where_it_stopped() {
+    let place = Place::new();
+    place.picture("a.png", 40, 30);
+    assert_eq!(bench(&place, &FEW).status.code(), Some(0));
+    let journal = place.path("out/results.jsonl");
+    let whole = fs::read_to_string(&journal).unwrap();
+    // As if the process had been killed in the middle of a line.
+    let kept = whole.lines().count() - 3;
+    let cut: Vec<&str> = whole.lines().take(kept).collect();
+    fs::write(&journal, format!("{}\n{{\"picture\":", cut.join("\n"))).unwrap();
+    let again = bench(&place, &FEW);
+    assert_eq!(again.status.code(), Some(0), "{again:?}");
+    let text = fs::read_to_string(&journal).unwrap();
+    assert!(
+        text.starts_with(&cut.join("\n")),
+        "what was there is not measured again"
+    );
+    assert_eq!(text.lines().count(), whole.lines().count());
+}
+
+#[test]
+fn drawings_of_others_are_scored() {
+    let place = Place::new();
+    place.picture("a.png", 40, 30);
+    let svg = r##"<svg xmlns="http://www.w3.org/2000/svg" width="40" height="30"><rect width="40" height="30" fill="#808080"/></svg>"##;
+    fs::create_dir(place.path("others")).unwrap();
+    fs::write(place.path("others/a.svg"), svg).unwrap();
+    let args = ["pareto", "a.png", "-o", "out", "--svgs", "others"];
+    let output = bench(&place, &args);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let results = results(&place);
+    assert_eq!(results.len(), 1);
+    assert_eq!(results[0]["family"], "others");
+    assert_eq!(results[0]["svg_bytes"], svg.len());
+    assert!(results[0]["fidelity"]["psnr_db"].as_f64().unwrap() > 5.0);
+}
+
+#[test]
+fn what_cannot_be_measured_is_said_in_a_line() {
+    let place = Place::new();
+    place.picture("a.png", 40, 30);
+    fs::create_dir(place.path("b")).unwrap();
+    place.picture("b/a.png", 40, 30);
+    fs::create_dir(place.path("none")).unwrap();
+    let cases: [(&[&str], i32, &str); 3] = [
+        (&["pareto", "a.png", "b/a.png", "-o", "out"], 2, "called a"),
+        (
+            &["pareto", "a.png", "-o", "out", "--svgs", "none"],
+            2,
+            "a.svg",
+        ),
+        (&["pareto", "missing.png", "-o", "out"], 1, "missing.png"),
+    ];
+    for (args, status, named) in cases {
+        let output = bench(&place, args);
+        assert_eq!(output.status.code(), Some(status), "{args:?} {output:?}");
+        let text = String::from_utf8(output.stderr).unwrap();
+        assert!(text.lines().count() == 1 && text.contains(named), "{text}");
+    }
+}
+
+#[test]
+fn a_case_that_fails_is_told_and_the_rest_goes_on() {
+    let place = Place::new();
+    place.picture("a.png", 40, 30);
+    // A folder in the place of a drawing: it cannot be written.
+    let first = bench(&place, &FEW);
+    assert_eq!(first.status.code(), Some(0));
+    let drawings = place.path("out/svg");
+    let victim = fs::read_dir(&drawings).unwrap().map(|e| e.unwrap().path());
+    let victim = victim.min().unwrap();
+    fs::remove_file(&victim).unwrap();
+    fs::create_dir(&victim).unwrap();
+    fs::remove_file(place.path("out/results.jsonl")).unwrap();
+    let output = bench(&place, &FEW);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let failed: Vec<_> = lines(&output)
+        .into_iter()
+        .filter(|l| l.ends_with(": FAIL"))
+        .collect();
+    assert_eq!(failed.len(), 1, "{failed:?}");
+    assert!(place.path("out/pareto.html").exists());
+}
+
+/// A program in the folder `programs`.
+#[cfg(unix)]
+fn program(place: &Place, name: &str, script: &str) {
+    use std::os::unix::fs::PermissionsExt;
+    let path = place.path("programs").join(name);
+    fs::write(&path, format!("#!/bin/sh\n{script}\n")).unwrap();
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
+}
+
+/// A program that draws a grey page to the file after the word `-o`, and one that says why it does not.
+#[cfg(unix)]
+#[test]
+fn a_peer_that_fails_is_a_case_that_fails() {
+    let place = Place::new();
+    place.picture("a.png", 40, 30);
+    fs::create_dir(place.path("programs")).unwrap();
+    let page = r##"<svg xmlns="http://www.w3.org/2000/svg" width="40" height="30"><rect width="40" height="30" fill="#808080"/></svg>"##;
+    let draw = format!("while [ \"$1\" != -o ]; do shift; done; echo '{page}' > \"$2\"");
+    program(&place, "primitive", &draw);
+    program(&place, "vtracer", "echo 'no bits left' >&2; exit 3");
+    let output = bench_beside(place.path("programs").to_str().unwrap(), &place, &FEW);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let of = |name: &str| -> Vec<String> {
+        let start = format!("a, {name} ");
+        let all = lines(&output).into_iter();
+        all.filter(|line| line.starts_with(&start)).collect()
+    };
+    let (drawn, failed) = (of("primitive"), of("vtracer"));
+    let passes = |line: &String| line.ends_with(": pass");
+    assert!(!drawn.is_empty() && drawn.iter().all(passes), "{drawn:?}");
+    let told =
+        |line: &String| line.contains("no bits left (exit status: 3)") && line.ends_with(": FAIL");
+    assert!(!failed.is_empty() && failed.iter().all(told), "{failed:?}");
+    assert!(place.path("out/pareto.html").exists());
+}
+
+#[test]
+fn stability_holds_and_writes_its_table() {
+    let place = Place::new();
+    let output = bench(&place, &["stability", "-o", "out", "--short"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let lines = lines(&output);
+    assert!(lines.len() > 40, "{lines:?}");
+    for line in &lines {
+        assert!(
+            line.ends_with(": pass") || line.ends_with("): exception"),
+            "{line}"
+        );
+    }
+    for name in [
+        "stability.csv",
+        "stability.json",
+        "stability.md",
+        "agreement.csv",
+        "agreement.png",
+    ] {
+        assert!(place.path("out").join(name).exists(), "{name}");
+    }
+}
+
+#[test]
+fn drawings_are_found_again_stroke_by_stroke() {
+    let place = Place::new();
+    let icon = |name: &str| sample(&format!("icons/{name}.svg"));
+    let (clock, zap) = (icon("clock"), icon("zap"));
+    let output = bench(&place, &["inverse", &clock, &zap, "-o", "out", "--short"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let lines = lines(&output);
+    let found = |start: &str| lines.iter().find(|line| line.starts_with(start)).unwrap();
+    assert!(found("clock").contains(" 2 elements of 2,"), "{lines:?}");
+    assert!(found("zap").contains(" 1 elements of 1,"), "{lines:?}");
+    assert!(
+        found("crossings").contains(" 3 elements of 3,"),
+        "{lines:?}"
+    );
+    assert!(
+        found("translucent").contains(" 2 elements of 2,"),
+        "{lines:?}"
+    );
+    for name in [
+        "inverse.csv",
+        "inverse.json",
+        "inverse.md",
+        "inverse.png",
+        "inverse-elements.svg",
+        "inverse-db.svg",
+        "inverse-bytes.svg",
+        "clock-96.svg",
+    ] {
+        assert!(place.path("out").join(name).exists(), "{name}");
+    }
+    // Who is not installed is said once, each in a line.
+    let said = String::from_utf8(output.stderr).unwrap();
+    for peer in ["pyautotrace", "potrace", "vtracer", "inkscape"] {
+        let start = format!("{peer}: not measured");
+        assert_eq!(said.matches(&start).count(), 1, "{said}");
+    }
+}
+
+/// One that draws a centre line without a width, one that fills areas, and one that fails.
+#[cfg(unix)]
+#[test]
+fn peers_trace_the_pictures_of_known_drawings() {
+    let place = Place::new();
+    fs::create_dir(place.path("programs")).unwrap();
+    let svg = |path: &str| {
+        format!(r##"<svg xmlns="http://www.w3.org/2000/svg" width="96" height="96">{path}</svg>"##)
+    };
+    let stroke = svg(r##"<path style="stroke:#000000; fill:none;" d="M20 20L76 76"/>"##);
+    let area = svg(r##"<path fill="#000000" d="M20 20L76 20L76 76z"/>"##);
+    let version = "[ \"$1\" != --version ] || { echo pyautotrace 1; exit; }";
+    let draw = format!("{version}; echo '{stroke}' > \"$2\"");
+    program(&place, "pyautotrace", &draw);
+    let draw = format!("while [ \"$1\" != --output ]; do shift; done; echo '{area}' > \"$2\"");
+    program(&place, "potrace", &draw);
+    program(&place, "vtracer", "echo 'no bits left' >&2; exit 3");
+    let zap = sample("icons/zap.svg");
+    let programs = place.path("programs");
+    let args = ["inverse", &zap, "-o", "out", "--short"];
+    let output = bench_beside(programs.to_str().unwrap(), &place, &args);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let lines = lines(&output);
+    let line = |peer: &str| {
+        let start = format!("zap at 96 px, {peer}: ");
+        lines.iter().find(|line| line.starts_with(&start)).unwrap()
+    };
+    assert!(line("pyautotrace").contains("1 elements of 1, 2 points of "));
+    assert!(line("pyautotrace").contains(" dB, centre lines "));
+    assert!(line("potrace").ends_with(" dB, no centre lines: pass"));
+    let failed = line("vtracer");
+    assert!(failed.contains("no bits left (exit status: 3)") && failed.ends_with(": FAIL"));
+    // It tells no widths, so it is told that of the drawing: 2 of 24.
+    let told = fs::read_to_string(place.path("out/zap-96-pyautotrace.svg")).unwrap();
+    assert!(told.contains(r#"stroke-width="8.00""#), "{told}");
+    assert!(!place.path("out/zap-96-vtracer.svg").exists());
+    let table = fs::read_to_string(place.path("out/inverse.csv")).unwrap();
+    assert!(table.starts_with("drawing,side_px,jpeg,by,drawn_elements,found_elements,"));
+    let row = table
+        .lines()
+        .find(|row| row.starts_with("zap,96,,potrace,1,1,1,1,"));
+    let cells: Vec<&str> = row.unwrap().split(',').collect();
+    assert_eq!(cells[13..15], ["", ""], "areas have no centre lines");
+}
+
+#[test]
+fn scaling_writes_its_series() {
+    let place = Place::new();
+    let output = bench(&place, &["scaling", "-o", "out", "--short"]);
+    // Growth is a matter of the machine: what is asked here is that it is told.
+    assert!(
+        output.status.code().is_some_and(|code| code < 2),
+        "{output:?}"
+    );
+    let lines = lines(&output);
+    assert_eq!(lines.len(), 6, "{lines:?}");
+    assert!(
+        lines
+            .iter()
+            .all(|l| l.ends_with(": pass") || l.ends_with(": FAIL")),
+        "{lines:?}"
+    );
+    let table = fs::read_to_string(place.path("out/scaling.csv")).unwrap();
+    assert!(table.lines().count() > 15, "{table}");
+    assert!(place.path("out/scaling-pixels.svg").exists());
+}

@@ -1,0 +1,21 @@
+//! The rigs as their users meet them, and what holds for their source.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+mod support {
+    #[path = "../../../../tests/all/support/output.rs"]
+    pub(crate) mod output;
+    #[path = "../../../../tests/all/support/picture.rs"]
+    pub(crate) mod picture;
+    pub(crate) mod place;
+    #[path = "../../../../tests/all/support/program.rs"]
+    pub(crate) mod program;
+}
+
+mod bench;
+#[path = "../../../tests/all/dependencies.rs"]
+mod dependencies;
+mod help;
+#[path = "../../../tests/all/imports.rs"]
+mod imports;
+mod lab_cli;
+mod lab_tables;
