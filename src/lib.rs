@@ -76,7 +76,7 @@
 //! | stroke | all points within a radius (px) of a path, with a colour and an opacity (0..1); see [`scene`] |
 //! | path | the centre line of a stroke: *points*, open or closed; see [`scene::Path`] |
 //! | point | of a path: *on* it, joined to the next by a line, or *off* it, where it is the control point of a curve |
-//! | capsule | the stroke of two on-points; with equal ends it is a *dot*, the stroke of one point; see [`sdf`] |
+//! | capsule | the stroke of two on-points; with equal ends it is a *dot*, the stroke of one point; see `sdf` |
 //! | scene | the drawing: size (px), background, and strokes from back to front, grouped in stages |
 //! | stage | strokes that are added together: seeded where the residual is largest, fitted with all earlier strokes frozen, kept if they pay |
 //! | layer | a group of the SVG, holding the strokes of one stage or of one colour |
@@ -103,7 +103,7 @@
 //! | word | meaning |
 //! | --- | --- |
 //! | candidate | a stroke that seeding proposes, with its best colour and opacity |
-//! | area | the pixels of one colour, antialiased ones with the nearer of the colours beside them; see [`trace`] |
+//! | area | the pixels of one colour, antialiased ones with the nearer of the colours beside them; see `trace` |
 //! | skeleton | the pixels in the middle of an area, as a graph of nodes and edges |
 //! | line | a run of the skeleton that goes straight through crossings; tracing lays a stroke along it |
 //! | bridge | the part of a line that another one covers |
@@ -121,7 +121,7 @@
 //! | restrict | to give strokes the colours and widths that the file may have |
 //! | settle | last steps against renders of the written file, by resvg and by the model of Chromium |
 //! | nudge | to move points by a tenth of a px at most, to where rasterisers draw the stroke better |
-//! | rasteriser | a way to antialias: that of resvg, of Chromium, or exact areas; see [`rasters`] |
+//! | rasteriser | a way to antialias: that of resvg, of Chromium, or exact areas; see `rasters` |
 //! | footprint | the pixels that a stroke covers, and how much of each, as a rasteriser draws it |
 //! | fragment | a stroke in a pixel, with how much of it each rasteriser covers |
 //! | fringe | the pixels that a stroke may come to cover more or less when it is nudged |
@@ -172,10 +172,13 @@
 
 pub mod animation;
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod cli;
+#[doc(hidden)]
 pub mod clock;
 pub mod coverage;
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod engines;
 mod error;
 pub mod fit;
@@ -184,19 +187,25 @@ pub mod loss;
 pub mod math;
 pub mod metrics;
 pub mod optim;
+#[doc(hidden)]
 pub mod rasters;
 pub mod render;
 pub mod report;
+#[doc(hidden)]
 pub mod rng;
 pub mod scene;
+#[doc(hidden)]
 pub mod sdf;
+#[doc(hidden)]
 pub mod seed;
 pub mod svg;
 #[doc(hidden)]
 pub mod threads;
+#[doc(hidden)]
 pub mod trace;
 pub mod verify;
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod view;
 
 // The program calls the library by its name, as any other user does.

@@ -66,7 +66,9 @@ mod gradients;
 mod grid;
 mod kernel;
 mod polylines;
+#[doc(hidden)]
 pub mod probe;
+#[doc(hidden)]
 pub mod reference;
 mod shares;
 mod strokes;

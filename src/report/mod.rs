@@ -9,6 +9,7 @@ mod event;
 mod fit;
 mod judged;
 #[cfg(feature = "animation")]
+#[doc(hidden)]
 pub mod picture;
 mod scene;
 mod size;
