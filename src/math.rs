@@ -6,12 +6,11 @@ mod plane;
 mod real;
 
 pub use elementary::{
-    Elementary, atan, cbrt, cos, exp, exp2, hypot, ln, log2, log10, powf, powi, sin, sin_cos, tan,
-    tanh,
+    Elementary, atan, cbrt, cos, exp, exp2, hypot, ln, log2, log10, powf, sin, sin_cos, tan, tanh,
 };
 pub(crate) use linear::solve_symmetric;
 pub use plane::{Point2, Vector2};
-pub use real::Real;
+pub use real::{Real, powi};
 
 /// A point of the picture plane in px; x to the right, y down, pixel centres at +0.5.
 pub type Point = Point2<f32>;

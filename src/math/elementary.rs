@@ -8,8 +8,6 @@
 //! They come from `libm`, a translation of musl's C library to Rust: sums, products and square roots in a fixed
 //! order. All that it takes from a processor is exact as well (`sqrt`, `fma`, `rint`, `floor` and `ceil`).
 
-use super::Real;
-
 /// Writes a trait with a method for each function, its implementations for `f32` and `f64`, and the functions.
 macro_rules! elementary {
     ($($(#[$doc:meta])* $name:ident($x:ident $(, $y:ident)?): $single:path, $double:path;)*) => {
@@ -67,31 +65,10 @@ pub fn sin_cos<T: Elementary>(x: T) -> (T, T) {
     (sin(x), cos(x))
 }
 
-/// x to a whole power, by squaring. The order of the products, and with it their rounding, is fixed here, which
-/// that of the standard library's function is not.
-#[inline]
-pub fn powi<T: Real>(x: T, exponent: i32) -> T {
-    let (mut power, mut square, mut left) = (T::one(), x, exponent.unsigned_abs());
-    loop {
-        if left & 1 == 1 {
-            power *= square;
-        }
-        left >>= 1;
-        if left == 0 {
-            break;
-        }
-        square *= square;
-    }
-    if exponent < 0 {
-        T::one() / power
-    } else {
-        power
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::powi;
 
     const EXPECTED: [(&str, u64); 14] = [
         ("exp", 0x8517_d15e_b6a9_a67a),

@@ -111,3 +111,25 @@ macro_rules! real {
 }
 
 real! { f32 f64 }
+
+/// x to a whole power, by squaring. The order of the products, and with it their rounding, is fixed here, which
+/// that of the standard library's function is not.
+#[inline]
+pub fn powi<T: Real>(x: T, exponent: i32) -> T {
+    let (mut power, mut square, mut left) = (T::one(), x, exponent.unsigned_abs());
+    loop {
+        if left & 1 == 1 {
+            power *= square;
+        }
+        left >>= 1;
+        if left == 0 {
+            break;
+        }
+        square *= square;
+    }
+    if exponent < 0 {
+        T::one() / power
+    } else {
+        power
+    }
+}

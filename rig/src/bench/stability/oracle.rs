@@ -8,7 +8,7 @@ use strokefit::loss::Loss;
 use strokefit::math;
 use strokefit::render::reference::{self, Reference, Rgb};
 use strokefit::render::{
-    Backdrop, Canvas, Gradients, Grid, STYLE, Renderer, Softness, StrokeRef, Strokes,
+    Backdrop, Canvas, Gradients, Grid, Renderer, STYLE, Softness, StrokeRef, Strokes,
 };
 use strokefit::rng;
 use strokefit::{Error, ErrorKind, Result};

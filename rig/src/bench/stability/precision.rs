@@ -13,7 +13,7 @@ use strokefit::loss::Loss;
 use strokefit::math;
 use strokefit::optim::{Adam, AdamParams, Optimizer, Schedule};
 use strokefit::render::reference::Scene;
-use strokefit::render::{Backdrop, Canvas, Gradients, Grid, STYLE, Renderer, Softness, Strokes};
+use strokefit::render::{Backdrop, Canvas, Gradients, Grid, Renderer, STYLE, Softness, Strokes};
 
 const SIDE: usize = 16;
 const STROKES: usize = 6;
