@@ -45,7 +45,7 @@
 //! Data flows one way. A module imports only from modules above its own:
 //!
 //! ```text
-//! error  clock  threads           what went wrong, what a platform may lack
+//! error  words  clock  threads    what went wrong, choices, what a platform may lack
 //! math  rng                       points, draws by counter
 //! sdf  coverage  scene  image     distances, soft edges, drawings, pictures
 //! metrics  loss  optim            measures, losses, optimisers
@@ -207,6 +207,7 @@ pub mod verify;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod view;
+mod words;
 
 // The program calls the library by its name, as any other user does.
 #[cfg(feature = "cli")]

@@ -9,18 +9,13 @@ mod scene;
 use std::fmt::Display;
 use std::str::FromStr;
 
-use strokefit::fit::{Background, Colors, Preset, Simd};
+use strokefit::fit::{Background, Colors, OPTIONS, Options, Preset, Simd, Value};
 use strokefit::image::{Image, Limits};
+use strokefit::svg;
 use strokefit::verify::{self, Size};
-use strokefit::{coverage, svg};
 
 pub use drive::drive;
 pub use scene::scene;
-
-// The program's own parsers of option values.
-#[path = "../../src/cli/domain.rs"]
-#[allow(dead_code, unused_imports, unreachable_pub)]
-mod domain;
 
 /// What panics for an input for which something does not hold.
 pub type Target = fn(&[u8]);
@@ -81,10 +76,11 @@ pub fn svg(data: &[u8]) {
 pub fn words(data: &[u8]) {
     let text = String::from_utf8_lossy(data);
     let text = text.as_ref();
+    let set = |name: &str| {
+        let set = Options::default().set(name, Value::Written(text));
+        set.err().map(|refusal| refusal.to_string())
+    };
     let refusals = [
-        text.parse::<coverage::CoverageSchedule>()
-            .err()
-            .map(|e| e.to_string()),
         word::<Simd>(text),
         word::<Preset>(text),
         word::<Background>(text),
@@ -92,18 +88,11 @@ pub fn words(data: &[u8]) {
         word::<svg::Form>(text),
         word::<svg::Group>(text),
         word::<svg::Length>(text),
-        domain::strokes(text).err(),
-        domain::bytes(text).err(),
-        domain::stages(text).err(),
-        domain::threads(text).err(),
-        domain::precision(text).err(),
-        domain::pixels(text).err(),
-        domain::psnr(text).err(),
-        domain::seconds(text).err(),
-        domain::scale(text).err(),
     ];
+    let refusals = refusals.into_iter().chain(OPTIONS.split(", ").map(set));
     if !text.contains(char::is_control) {
-        assert!(refusals.iter().flatten().all(|line| !line.contains('\n')));
+        let mut refusals = refusals.flatten();
+        assert!(refusals.all(|line| !line.contains('\n')));
     }
 }
 

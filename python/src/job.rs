@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use strokefit::fit::{self, Base, CancelToken, Config, Execution, Fitter, Observer};
+use strokefit::fit::{self, Base, CancelToken, Fitter, Observer, Options};
 use strokefit::report::{self, FitReport, Judged, Run, Usage};
 
 use crate::failure::{Failure, expect_memory};
@@ -14,8 +14,7 @@ pub(crate) struct Job {
     pub(crate) start: Instant,
     pub(crate) picture: Picture,
     pub(crate) base: Option<BaseText>,
-    pub(crate) config: Config,
-    pub(crate) execution: Execution,
+    pub(crate) options: Options,
     pub(crate) token: CancelToken,
 }
 
@@ -33,12 +32,13 @@ impl Job {
         self,
         observer: &mut (dyn Observer + Send),
     ) -> Result<(Judged, String), Failure> {
+        let Options { config, execution } = self.options;
         let name = self.picture.name();
         let (picture, remarks) = self.picture.read()?;
-        let bytes = fit::predicted_rss_bytes(&picture, &self.config);
+        let bytes = fit::predicted_rss_bytes(&picture, &config);
         expect_memory(bytes, picture.width(), picture.height())?;
-        let mut fitter = Fitter::new(self.config.clone())
-            .execution(self.execution)
+        let mut fitter = Fitter::new(config.clone())
+            .execution(execution)
             .observer(observer)
             .cancelled_by(self.token)
             .since(self.start);
@@ -48,11 +48,11 @@ impl Job {
             fitter = fitter.on(base.map_err(|error| error.within(name))?);
         }
         let fit = fitter.fit(&picture)?;
-        let judged = self.execution.install(|| Judged::new(fit))??;
+        let judged = execution.install(|| Judged::new(fit))??;
         let run = Run {
             input: &name,
             base: base_name.as_deref(),
-            config: &self.config,
+            config: &config,
             wall: self.start.elapsed(),
             // What the process has used says little of one fit among others.
             usage: Usage::default(),

@@ -28,7 +28,6 @@ use aside::aside;
 use columns::Columns;
 use failure::Failure;
 use job::{BaseText, Job};
-use options::Options;
 use picture::Picture;
 
 /// A drawing as Python takes it: the SVG, the report as JSON, and the strokes.
@@ -71,11 +70,9 @@ fn draw<'py>(
     cancel: Option<&Bound<'py, CancelToken>>,
 ) -> PyResult<Drawn<'py>> {
     let start = Instant::now();
-    let options = Options::new(options);
     let job = Job {
         start,
-        config: options.config()?,
-        execution: options.execution()?,
+        options: options::read(options)?,
         picture: Picture::of(picture)?,
         base: base.map(|(text, name, kept)| BaseText { text, name, kept }),
         token: cancel.map_or_else(Default::default, |token| token.get().0.clone()),

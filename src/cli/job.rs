@@ -92,7 +92,7 @@ impl Job<'_> {
     /// Says how much memory is about to be used.
     fn foretell(&self, picture: &Image, verbosity: Verbosity) {
         if verbosity.verbose {
-            let bytes = fit::predicted_rss_bytes(picture, &self.options.config());
+            let bytes = fit::predicted_rss_bytes(picture, self.options.config());
             verbosity.detail(format_args!("needs about {} MiB of memory", bytes >> 20));
         }
     }
@@ -147,7 +147,7 @@ impl Job<'_> {
         let run = Run {
             input: &input,
             base: base.as_deref(),
-            config: &self.options.config(),
+            config: self.options.config(),
             wall: drawn.wall,
             usage: Usage::now(),
         };
@@ -206,7 +206,7 @@ impl Job<'_> {
     fn remedy(&self, stop: Stop) -> String {
         let looks = self.options.limiting_looks();
         match stop {
-            Stop::Strokes if self.options.budget.strokes.is_some() => "allow more strokes".into(),
+            Stop::Strokes if self.options.config().budget.strokes.is_some() => "allow more strokes".into(),
             Stop::Bytes => "allow more bytes".into(),
             Stop::Time => "allow more time".into(),
             Stop::Interrupted => "let it end".into(),
@@ -228,7 +228,13 @@ impl Job<'_> {
             return Status::Interrupted(signal);
         }
         self.tell_capped(drawn, verbosity);
-        if let Some(most) = self.options.budget.bytes.filter(|_| is_blank(drawn)) {
+        if let Some(most) = self
+            .options
+            .config()
+            .budget
+            .bytes
+            .filter(|_| is_blank(drawn))
+        {
             complain(format_args!(
                 "{name}: target not reached: no stroke fits in {most} bytes: the empty page takes {}, and a first stroke about \
                  {FIRST_STROKE_BYTES} more",
@@ -250,7 +256,13 @@ impl Job<'_> {
             ));
         }
         let reached = drawn.judged.verdict.fidelity.psnr_db;
-        if let Some(wanted) = self.options.budget.psnr.filter(|wanted| reached < *wanted) {
+        if let Some(wanted) = self
+            .options
+            .config()
+            .budget
+            .psnr_db
+            .filter(|wanted| reached < *wanted)
+        {
             let remedy = self.remedy(drawn.judged.fit.stop);
             complain(format_args!(
                 "{name}: target not reached: {reached:.2} dB of {wanted}: {remedy}"
@@ -259,6 +271,7 @@ impl Job<'_> {
         }
         if let Some(most) = self
             .options
+            .config()
             .budget
             .bytes
             .filter(|most| drawn.judged.svg.len() > *most)

@@ -87,7 +87,7 @@ fn read(args: &Args, text: String, picture: &Image) -> Result<Base> {
 
 /// Tells the user that the base, with `before` strokes, leaves no room for more.
 fn tell_full(options: &Options, before: usize, verbosity: Verbosity) {
-    let limit = options.budget.strokes.map(|limit| limit.total(before));
+    let limit = options.config_beyond(before).budget.strokes;
     if let Some(most) = limit.filter(|&most| most <= before) {
         verbosity.say(format_args!(
             "hint: the SVG has {before} strokes already, and --strokes {most} allows no more: --strokes +{most} adds {most}"

@@ -139,7 +139,7 @@ pub enum Background {
 }
 
 /// How to run. It never changes the drawing.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Execution {
     /// Worker threads; one per core if `None`.
     pub threads: Option<usize>,

@@ -29,6 +29,7 @@ mod descent;
 mod drawing;
 mod file;
 mod fitter;
+mod options;
 mod order;
 mod phase;
 mod points;
@@ -52,6 +53,7 @@ pub use descent::anneal::final_softness;
 pub use drawing::focus::Focus;
 pub use drawing::objective::Objective;
 pub use fitter::Fitter;
+pub use options::{OPTIONS, Options, Refusal, Value};
 pub use recipe::{
     AdamSettings, BackgroundChoice, Correction, Domain, EdgeShape, Joins, Masking, Nudging, Pens,
     Points, Polish, Preset, Rates, Recipe, Recoloring, Reduction, Relocation, Rounds,

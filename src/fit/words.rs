@@ -8,63 +8,11 @@ use std::str::FromStr;
 use super::{Background, Colors, ErrorWeighting, Preset};
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::{color, quantum};
+use crate::words::words;
 
-impl Preset {
-    /// Every preset, the quickest first.
-    pub const ALL: [Self; 3] = [Self::Draft, Self::Balanced, Self::Best];
-}
+words!(Preset, "a preset": Draft = "draft", Balanced = "balanced", Best = "best");
 
-impl fmt::Display for Preset {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Draft => "draft",
-            Self::Balanced => "balanced",
-            Self::Best => "best",
-        })
-    }
-}
-
-impl FromStr for Preset {
-    type Err = Error;
-
-    /// `draft`, `balanced` or `best`.
-    fn from_str(text: &str) -> Result<Self> {
-        let mut presets = Self::ALL.into_iter();
-        presets
-            .find(|preset| preset.to_string() == text)
-            .ok_or_else(|| {
-                refusal(format!(
-                    "'{}' is not a preset: give draft, balanced or best",
-                    short(text)
-                ))
-            })
-    }
-}
-
-impl fmt::Display for ErrorWeighting {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Eye => "eye",
-            Self::Exact => "exact",
-        })
-    }
-}
-
-impl FromStr for ErrorWeighting {
-    type Err = Error;
-
-    /// `eye` or `exact`.
-    fn from_str(text: &str) -> Result<Self> {
-        match text {
-            "eye" => Ok(Self::Eye),
-            "exact" => Ok(Self::Exact),
-            _ => Err(refusal(format!(
-                "'{}' is not a look: give eye or exact",
-                short(text)
-            ))),
-        }
-    }
-}
+words!(ErrorWeighting, "a look": Eye = "eye", Exact = "exact");
 
 impl fmt::Display for Background {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -6,6 +6,7 @@ use std::str::FromStr;
 use super::dialect::Unit;
 use crate::error::{Error, ErrorKind};
 use crate::scene::UNITS_PER_PX;
+use crate::words::words;
 
 /// How a scene is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -117,63 +118,9 @@ impl FromStr for Form {
     }
 }
 
-impl Group {
-    /// Every grouping.
-    pub const ALL: [Self; 2] = [Self::Stage, Self::Color];
-}
+words!(Group, "a grouping": Stage = "stage", Color = "color");
 
-impl fmt::Display for Group {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Stage => "stage",
-            Self::Color => "color",
-        })
-    }
-}
-
-impl FromStr for Group {
-    type Err = Error;
-
-    /// `stage` or `color`.
-    fn from_str(text: &str) -> Result<Self, Error> {
-        let mut groups = Self::ALL.into_iter();
-        groups
-            .find(|group| group.to_string() == text)
-            .ok_or_else(|| {
-                let message = format!("'{text}' is not a grouping: give stage or color");
-                Error::new(ErrorKind::Config, message)
-            })
-    }
-}
-
-impl Order {
-    /// Every order.
-    pub const ALL: [Self; 2] = [Self::Fitted, Self::Travel];
-}
-
-impl fmt::Display for Order {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Fitted => "fitted",
-            Self::Travel => "travel",
-        })
-    }
-}
-
-impl FromStr for Order {
-    type Err = Error;
-
-    /// `fitted` or `travel`.
-    fn from_str(text: &str) -> Result<Self, Error> {
-        let mut orders = Self::ALL.into_iter();
-        orders
-            .find(|order| order.to_string() == text)
-            .ok_or_else(|| {
-                let message = format!("'{text}' is not an order: give fitted or travel");
-                Error::new(ErrorKind::Config, message)
-            })
-    }
-}
+words!(Order, "an order": Fitted = "fitted", Travel = "travel");
 
 /// A length with its unit, exact to 4 decimals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

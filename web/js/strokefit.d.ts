@@ -11,8 +11,8 @@ export interface Options {
   bytes?: number;
   /** At most so many seconds. It makes the drawing depend on the machine. */
   time?: number;
-  /** Price of a byte, 0 to 60: a stroke stays if each of its bytes removes at least as much squared error as one pixel has at so
-   * many dB. 30 if there is no limit on strokes, dB or bytes. */
+  /** 0 to 60; higher keeps more. A stroke is kept while every byte it costs removes at least the squared error that one pixel has
+   * at so many dB. 30 if there is no limit on strokes, dB or bytes. */
   quality?: number;
   /** How much time to spend for a better drawing. `balanced` if it is left out. */
   preset?: "draft" | "balanced" | "best";
@@ -30,7 +30,7 @@ export interface Options {
   stages?: number;
   /** Whether all strokes are fitted jointly after the stages; true if it is left out. */
   polish?: boolean;
-  /** `auto`, `none` or `#rrggbb`. */
+  /** `auto`, `none`, `#rrggbb` or a name such as `white`. */
   background?: string;
   /** Key of all random draws, 0 or more. */
   seed?: number;
@@ -39,7 +39,7 @@ export interface Options {
   /** Only these widths of strokes: lengths such as `0.3mm,0.8mm` on a page of a `width`, or numbers in px. */
   pens?: string;
   /** What an element of the SVG holds. */
-  form?: "elements" | "plain" | "smallest" | "outlines";
+  form?: "plain" | "smallest" | "outlines";
   /** What a layer of the SVG holds. */
   group?: "stage" | "color";
   /** In which order the strokes of a layer come: as they were fitted, or with little travel of a pen between them. */

@@ -64,6 +64,7 @@ def fit(
     preset: str = "balanced",
     look: Optional[str] = None,
     opaque: bool = False,
+    coverage: str = "smoothstep",
     points: Optional[int] = None,
     precision: int = 2,
     background: str = "auto",
@@ -97,12 +98,14 @@ def fit(
         time: At most so many seconds, from the call to the verdict.
 
     Look:
-        quality: Price of a byte, 0 to 60: a stroke stays if each of its bytes removes at least as much squared error
-            as one pixel has at so many dB. 30 unless there is a budget of strokes, psnr or bytes.
+        quality: 0 to 60; higher keeps more. A stroke is kept while every byte it costs removes at least the squared
+            error that one pixel has at so many dB. 30 unless there is a budget of strokes, psnr or bytes.
         preset: `draft`, `balanced` or `best`: how much time to spend.
         look: Which errors count: those that people see (`eye`), or all alike (`exact`), for a tenth of a dB more; `None` is
             `exact` with `psnr`, and `eye` without.
         opaque: Use opaque strokes only.
+        coverage: Coverage function of soft edges: `smoothstep`, `sigmoid`, `tanh` or `atan[:K]`; `A>B` changes from A to B
+            during the fit.
         points: Most points of a stroke, 2 to 65535; 2 draws line segments alone. As many as pay by default.
         precision: Decimals of coordinates and widths, 0 to 6.
         background: `auto` keeps transparency, `#rrggbb` or a name such as `white` flattens onto that colour, `none` draws no background.
@@ -142,35 +145,7 @@ def fit(
     >>> drawing == strokefit.fit(disc / 255, psnr=30)  # floats of 0..1
     True
     """
-    return _drawing(
-        picture,
-        None,
-        progress,
-        cancel,
-        strokes=strokes,
-        psnr=psnr,
-        bytes=bytes,
-        time=time,
-        quality=quality,
-        preset=preset,
-        look=look,
-        opaque=opaque,
-        points=points,
-        precision=precision,
-        background=background,
-        colors=colors,
-        palette=_palette(palette),
-        pens=pens,
-        form=form,
-        group=group,
-        order=order,
-        width=width,
-        stages=stages,
-        polish=polish,
-        progressive=progressive,
-        seed=seed,
-        threads=threads,
-    )
+    return _drawing(None, **locals())
 
 
 @_suggests
@@ -187,6 +162,7 @@ def refine(
     preset: str = "balanced",
     look: Optional[str] = None,
     opaque: bool = False,
+    coverage: str = "smoothstep",
     points: Optional[int] = None,
     precision: int = 2,
     colors: Optional[int] = None,
@@ -224,35 +200,9 @@ def refine(
     >>> fine.report["fidelity"]["psnr_db"] > rough.report["fidelity"]["psnr_db"]
     True
     """
-    text, name = _svg(base)
-    return _drawing(
-        picture,
-        (text, name, freeze_base),
-        progress,
-        cancel,
-        strokes=strokes,
-        psnr=psnr,
-        bytes=bytes,
-        time=time,
-        quality=quality,
-        preset=preset,
-        look=look,
-        opaque=opaque,
-        points=points,
-        precision=precision,
-        colors=colors,
-        palette=_palette(palette),
-        pens=pens,
-        form=form,
-        group=group,
-        order=order,
-        width=width,
-        stages=stages,
-        polish=polish,
-        progressive=progressive,
-        seed=seed,
-        threads=threads,
-    )
+    options = locals()
+    text, name = _svg(options.pop("base"))
+    return _drawing((text, name, options.pop("freeze_base")), **options)
 
 
 def render(svg: Svg, scale: float = 1.0, background: str = "none") -> NDArray[np.uint8]:
@@ -289,12 +239,14 @@ def judge(svg: Svg, picture: Picture) -> Fidelity:
 
 
 def _drawing(
-    picture: Picture,
     base: Optional[tuple[str, str, bool]],
+    picture: Picture,
     progress: Optional[Progress],
     cancel: Optional[_native.CancelToken],
+    palette: Optional[Palette],
     **options: object,
 ) -> Drawing:
+    options["palette"] = _palette(palette)
     svg, report, columns = _native.draw(native(picture), base, options, progress, cancel)
     return Drawing(svg, cast("Report", json.loads(report)), Strokes(columns))
 
