@@ -14,7 +14,7 @@ use super::pictures;
 use super::view::{self, Watch};
 use super::{Status, Verbosity, fail, input, misuse};
 
-/// What stands for the name of the picture without its extension.
+/// Placeholder for the name of the picture without its extension.
 const STEM: &str = "{stem}";
 
 /// One job for each input.
@@ -178,7 +178,7 @@ fn attempt(
     drawn
 }
 
-/// Refuses jobs of which one would overwrite what another reads or writes.
+/// Refuses jobs if one would overwrite what another reads or writes.
 fn keep_apart(jobs: &[Job<'_>], outputs: &[Outputs<'_>], events: Option<&Path>) -> Result<()> {
     let events = events.map(|path| Output::open(path).map(|output| (path, output)));
     let events = events.transpose()?;

@@ -104,7 +104,7 @@ const SWITCHES: [(&str, &str, Value<'_>); 4] = [
 #[derive(Debug, Clone, Default)]
 pub(super) struct Drawing {
     pub(super) options: Options,
-    /// Whether the limit on strokes counts those beyond the base.
+    /// True if the limit on strokes counts those beyond the base.
     counts_new: bool,
     /// The picture of weights.
     pub(super) focus: Option<PathBuf>,

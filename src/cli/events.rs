@@ -45,7 +45,7 @@ impl Events {
         }
     }
 
-    /// Whether all events were written. A reader that went away has seen what it wanted.
+    /// Fails unless all events were written. A reader that went away has seen what it wanted.
     pub(super) fn close(self) -> Result<()> {
         match self.lost {
             Some(error) if error.kind() != io::ErrorKind::BrokenPipe => {
@@ -64,7 +64,7 @@ fn unwritable(name: &str, error: &io::Error) -> anyhow::Error {
 pub(super) struct Phases<'a> {
     events: &'a mut Events,
     started: Instant,
-    /// Whether the part under way is polish, and what is known of it.
+    /// The part under way: true if it is polish, and what is known of it.
     current: Option<(bool, PhaseEntry)>,
     path: String,
 }

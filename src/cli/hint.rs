@@ -23,12 +23,12 @@ impl fmt::Display for Hint {
 }
 
 impl Hint {
-    /// The same error, carrying `advice`.
+    /// Error that carries `advice`.
     pub(super) fn on(error: impl Into<Error>, advice: impl Into<String>) -> Error {
         error.into().context(Self(advice.into()))
     }
 
-    /// The same error, carrying the advice if there is any.
+    /// Error that carries the advice if there is any.
     pub(super) fn maybe_on(error: Error, advice: Option<String>) -> Error {
         match advice {
             Some(advice) => Self::on(error, advice),
@@ -36,7 +36,7 @@ impl Hint {
         }
     }
 
-    /// What is wrong, and the advice that goes with it.
+    /// Fault in words, and the advice that goes with it.
     pub(super) fn split(error: &Error) -> (String, Option<&Self>) {
         let hint = error.downcast_ref();
         // The advice was put around the error.
@@ -56,7 +56,7 @@ pub(super) fn or_neighbour(error: Error, path: &Path) -> Error {
     }
 }
 
-/// What of the same folder is called most like `path`.
+/// Path in the same folder with the name most like that of `path`.
 fn neighbour(path: &Path) -> Option<PathBuf> {
     let wanted = path.file_name()?.to_string_lossy().to_lowercase();
     let folder = path.parent()?;

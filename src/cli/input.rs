@@ -11,7 +11,7 @@ use super::hint;
 
 const STDIN: &str = "-";
 
-/// Whether the argument means standard input.
+/// True if the argument means standard input.
 pub(super) fn is_stdin(path: &Path) -> bool {
     path == Path::new(STDIN)
 }

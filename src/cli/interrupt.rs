@@ -13,13 +13,13 @@ use std::time::Duration;
 use signal_hook::{consts, flag};
 use strokefit::fit::{Observer, Progress};
 
-/// What asks a program to end.
+/// Signals that ask a program to end.
 #[cfg(unix)]
 const SIGNALS: [i32; 3] = [consts::SIGHUP, consts::SIGINT, consts::SIGTERM];
 #[cfg(not(unix))]
 const SIGNALS: [i32; 2] = [consts::SIGINT, consts::SIGTERM];
 
-/// How long a fit that is asked to end may take to finish its drawing.
+/// Time in which a fit that is asked to end may finish its drawing.
 pub(super) const GRACE: Duration = Duration::from_secs(1);
 
 /// Signals reach the whole process, so what records them is static.
@@ -30,7 +30,7 @@ static WATCH: OnceLock<Interrupt> = OnceLock::new();
 pub(super) struct Interrupt {
     /// The last signal that came; 0 before.
     caught: Arc<AtomicUsize>,
-    /// Whether the next signal ends the program.
+    /// True if the next signal ends the program.
     is_last: Arc<AtomicBool>,
 }
 
@@ -97,7 +97,7 @@ impl Signal {
     }
 }
 
-/// Whether `signal` was set to be ignored when the program started, as `nohup` does; known only on Linux.
+/// True if `signal` was set to be ignored when the program started, as `nohup` does; known only on Linux.
 fn is_ignored(signal: i32) -> bool {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     ignored_signals(&status) >> (signal - 1) & 1 == 1

@@ -21,7 +21,7 @@ use super::pictures::{Pictures, Subject};
 use super::progress::FitBar;
 use super::{Status, Verbosity, complain, input};
 
-/// What to draw, and where the results go.
+/// Picture to draw, and places for the results.
 pub(super) struct Job<'a> {
     /// The SVG to go on from.
     pub(super) base: Option<&'a Path>,
@@ -154,7 +154,7 @@ impl Job<'_> {
         FitReport::of(&drawn.judged, &run)
     }
 
-    /// How it went, in a line.
+    /// Outcome in a line.
     pub(super) fn summary(&self, drawn: &Drawn) -> String {
         format!(
             "{}: {} strokes, {} bytes, {:.2} s, fidelity {:.2} dB, agreement {:.2} dB",
@@ -202,7 +202,7 @@ impl Job<'_> {
         }
     }
 
-    /// What brings a drawing nearer to the fidelity asked for, that ended for this reason.
+    /// Advice on how a drawing that ended for this reason comes nearer to the fidelity asked for.
     fn remedy(&self, stop: Stop) -> String {
         let looks = self.options.limiting_looks();
         match stop {
@@ -340,7 +340,7 @@ fn disagreement(agreement: &Agreement) -> String {
     }
 }
 
-/// A drawing this much worse than a page of one colour is spoken of, dB.
+/// Warns if a drawing is this much worse than a page of one colour, dB.
 const POOR_DB: f64 = 1.0;
 
 /// Fidelity of the best page of one colour, dB; transparent pictures are on white.

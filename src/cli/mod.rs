@@ -102,7 +102,7 @@ failed (a renderer does not draw the SVG as it was fitted). On Ctrl-C, SIGTERM o
 fit, the program writes the drawing as far as it has come, within a second or so, and then ends as
 the signal does; shells report status 130, 143 or 129. A second signal ends it at once.";
 
-/// How much to say on standard error.
+/// Amount of text on standard error.
 #[derive(Debug, Clone, Copy, clap::Args)]
 pub struct Verbosity {
     /// Print errors only
@@ -129,7 +129,7 @@ impl Verbosity {
     }
 }
 
-/// How the command ended.
+/// Outcome of the command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
     /// All is well.

@@ -9,7 +9,7 @@ use super::progress::place;
 /// Time after which a part that has not ended is told of, and told of again.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// What is known of the part under way.
+/// State of the part under way.
 struct Part {
     place: String,
     began: Instant,

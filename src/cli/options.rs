@@ -166,7 +166,7 @@ fn lifted(mask: Image) -> Result<Image> {
     Ok(Image::new(width, height, mask.into_planes().map(lift))?)
 }
 
-/// What one option says of how to run.
+/// Settings of the run that one option sets.
 fn execution(name: &str, text: &str) -> Result<Execution, String> {
     drawing::read(name, text).map(|options| options.execution)
 }

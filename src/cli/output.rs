@@ -100,7 +100,7 @@ impl Output {
         }
     }
 
-    /// Whether the output is this file.
+    /// True if the output is this file.
     pub(super) fn is(&self, path: &Path) -> bool {
         match (self, fs::canonicalize(path)) {
             (Self::File(own), Ok(path)) => *own == path,
@@ -115,7 +115,7 @@ fn canonical(path: &Path) -> PathBuf {
     if let Ok(path) = fs::canonicalize(path) {
         return path;
     }
-    // What is there but has no path, such as a pipe, is written under the name that was given.
+    // An output that is there but has no path, such as a pipe, is written under the name that was given.
     let path = if path.exists() {
         path.to_owned()
     } else {

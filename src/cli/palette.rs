@@ -6,7 +6,7 @@ use std::path::Path;
 
 use strokefit::fit::Colors;
 
-/// Longest file that is taken for a palette, bytes.
+/// Longest file that counts as a palette, bytes.
 const MAX_BYTES: u64 = 1 << 20;
 
 /// The list, or the content of the file.

@@ -11,7 +11,7 @@ use strokefit::verify::{self, Size};
 use super::misuse;
 use super::output::Output;
 
-/// What stands for the number of a frame.
+/// Placeholder for the number of a frame.
 const NUMBER: &str = "{n}";
 
 /// Endings of formats that one might expect, and that are not written.
@@ -19,11 +19,11 @@ const NOT_WRITTEN: [&str; 9] = [
     "jpg", "jpeg", "bmp", "tif", "tiff", "avif", "pdf", "eps", "svgz",
 ];
 
-/// How to film a drawing.
+/// Options of a film of a drawing.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Animation (.gif, .webp, .apng, .animated.svg and {n}.png)")]
 pub(super) struct FilmOptions {
-    /// What each frame adds: a stage, or N strokes [default: as many as give about 50 frames]
+    /// Add a stage, or N strokes, with each frame [default: as many as give about 50 frames]
     #[arg(long, value_name = "stage|N", allow_negative_numbers = true)]
     frames: Option<Step>,
     /// Write the number of strokes below each frame and, in fit, the PSNR
@@ -31,7 +31,7 @@ pub(super) struct FilmOptions {
     legend: bool,
 }
 
-/// What a file holds.
+/// Content of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Format {
     /// The drawing.
@@ -47,7 +47,7 @@ pub(super) enum Format {
 }
 
 impl Format {
-    /// What the name of a file asks for, or `None` when it says nothing.
+    /// Format that the name of a file asks for, or `None` when it says nothing.
     pub(super) fn of(path: &Path) -> Option<Self> {
         let name = path.file_name()?.to_str()?.to_ascii_lowercase();
         let numbered = name.contains(NUMBER);
@@ -73,7 +73,7 @@ pub(super) struct Subject<'a> {
     /// Needed for what moves.
     pub(super) scene: Option<&'a Scene>,
     pub(super) text: &'a str,
-    /// What it is to look like.
+    /// Picture that the drawing is to look like.
     pub(super) target: Option<&'a Image>,
     /// Pixels per px of the drawing.
     pub(super) scale: f64,
@@ -117,7 +117,7 @@ impl<'a> Pictures<'a> {
         Ok(())
     }
 
-    /// Whether any of the files needs the strokes.
+    /// True if any of the files needs the strokes.
     pub(super) fn moves(&self) -> bool {
         self.files.iter().any(|(format, ..)| format.moves())
     }

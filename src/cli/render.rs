@@ -50,7 +50,7 @@ pub(super) fn run(args: &Args) -> Result<Status> {
         )));
     }
     write(&pictures, &text, args.scale).map_err(|error| {
-        // What the file is to blame for.
+        // The file is to blame for errors of the library.
         match error.downcast::<strokefit::Error>() {
             Ok(error) => error.within(input::name(&args.file)).into(),
             Err(error) => error,

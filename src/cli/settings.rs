@@ -79,14 +79,14 @@ pub(super) fn expand(command: &Command, mut args: Vec<OsString>) -> Result<Vec<O
     Ok(args)
 }
 
-/// Whether one of the files to read is standard input.
+/// True if one of the files to read is standard input.
 fn reads_stdin(command: &Command, matches: &ArgMatches) -> bool {
     let ids = command.get_positionals().map(|arg| arg.get_id().as_str());
     let mut names = ids.filter_map(|id| matches.get_raw(id)).flatten();
     names.any(|name| input::is_stdin(Path::new(name)))
 }
 
-/// What `--print-config` prints, if `args` ask for it.
+/// Text that `--print-config` prints, if `args` ask for it.
 pub(super) fn printed(command: &Command, args: &[OsString]) -> Result<Option<String>, clap::Error> {
     let lenient = command.clone().ignore_errors(true);
     let asked = lenient.try_get_matches_from(args).ok().and_then(|matches| {
@@ -164,7 +164,7 @@ fn flag(at: &str, command: &Command, key: &str, value: &Value) -> Result<OsStrin
     Ok(format!("--{key}={text}").into())
 }
 
-/// Whether the command takes the flag's value.
+/// Checks that the command takes the flag's value.
 fn check(at: &str, command: &Command, flag: &OsString) -> Result<()> {
     let outcome = command
         .clone()
@@ -207,7 +207,7 @@ fn is_switch(arg: &Arg) -> bool {
     matches!(arg.get_action(), ArgAction::SetTrue)
 }
 
-/// What undoes the switch `key`.
+/// Switch that undoes the switch `key`.
 fn opposite(key: &str) -> String {
     match key.strip_prefix("no-") {
         Some(rest) => rest.to_owned(),

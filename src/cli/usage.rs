@@ -38,7 +38,7 @@ pub(super) fn parse(args: Vec<OsString>) -> Result<Args, Status> {
     }
 }
 
-/// What the arguments ask for.
+/// Request that the arguments make.
 enum Understood {
     Run(Box<Args>),
     /// The options as a file.
@@ -75,7 +75,7 @@ pub fn refuse(error: &anyhow::Error, args: &[OsString]) -> Status {
     }
 }
 
-/// What clap says is wrong, in one line, with what it advises or where to read on.
+/// Error that says in one line what clap finds wrong, with what it advises or where to read on.
 fn told(error: &clap::Error, args: &[OsString]) -> anyhow::Error {
     let (wrong, advice) = parts(error, args);
     Hint::maybe_on(misuse(wrong), advice)

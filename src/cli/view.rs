@@ -114,7 +114,7 @@ impl Watch {
     }
 }
 
-/// What adds `strokes` to the drawing of `fit`, and fits all of them jointly.
+/// Function that adds `strokes` to the drawing of `fit`, and fits all of them jointly.
 pub(super) fn more(
     options: &Options,
     fit: &Fit,

@@ -21,7 +21,7 @@ pub(super) struct Curve {
     points: Vec<Point>,
     /// Every so many points one is kept, less one.
     skipped: usize,
-    /// How many were offered.
+    /// Number of points that were offered.
     seen: usize,
 }
 

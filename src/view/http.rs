@@ -8,7 +8,7 @@ use std::io::{self, Read, Write};
 const MAX_HEAD: u64 = 16 << 10;
 const MAX_HEADERS: usize = 64;
 
-/// What the page may do: load what it is served with, and ask its own server.
+/// Rights of the page: to load what it is served with, and to ask its own server.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; \
                       connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
@@ -18,7 +18,7 @@ pub(super) struct Request {
     pub(super) method: String,
     /// Of the address, what follows the host, without the query.
     pub(super) path: String,
-    /// What follows `?`.
+    /// Text after `?`.
     pub(super) query: String,
     pub(super) host: Option<String>,
     /// The origin of the page that asks, if the browser names it.
@@ -102,7 +102,7 @@ impl Response {
         }
     }
 
-    /// The same, to be saved as `name`.
+    /// This answer, to be saved as `name`.
     pub(super) fn saved_as(self, name: &'static str) -> Self {
         Self {
             file: Some(name),

@@ -43,8 +43,8 @@ use shared::Shared;
 
 pub use watch::Watched;
 
-/// How long [`Viewer::wait`] waits without a request from the page. Browsers let a page in the background ask
-/// at least once a minute.
+/// Time that [`Viewer::wait`] waits without a request from the page. Browsers let a page in the background ask at least
+/// once a minute.
 pub const PATIENCE: Duration = Duration::from_secs(120);
 
 /// Longest side of the target that is sent to the page, px.

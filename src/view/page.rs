@@ -70,7 +70,7 @@ struct StateRecord<'a> {
     title: &'a str,
     has_target: bool,
     finished: bool,
-    /// Whether more strokes can be had, and how many have been asked for.
+    /// True if more strokes can be had; `more` is the number that was asked for.
     grows: bool,
     more: Option<usize>,
     svg_bytes: Option<usize>,

@@ -15,7 +15,7 @@ use super::shared::{Shared, Wish};
 const MAX_CONNECTIONS: usize = 32;
 /// Most strokes that a page may ask for at once.
 const MAX_MORE: usize = 100_000;
-/// How long a connection may be idle.
+/// Time that a connection may be idle.
 const TIMEOUT: Duration = Duration::from_secs(5);
 
 /// A server on a thread of its own, gone when this is dropped.
@@ -89,10 +89,10 @@ fn listen(listener: &TcpListener, desk: &Arc<Desk>, closing: &AtomicBool) {
     }
 }
 
-/// What answers requests.
+/// Side of the server that answers requests.
 struct Desk {
     host: String,
-    /// What every path starts with.
+    /// Start of every path.
     root: String,
     shared: Arc<Shared>,
     connections: AtomicUsize,
@@ -158,7 +158,7 @@ impl Desk {
     }
 }
 
-/// How many more strokes are asked for.
+/// Number of further strokes that are asked for.
 fn strokes(request: &Request) -> Option<usize> {
     let strokes = usize::try_from(request.number("strokes")?).ok()?;
     (1..=MAX_MORE).contains(&strokes).then_some(strokes)

@@ -8,12 +8,12 @@ use crate::fit::Progress;
 use crate::scene::Scene;
 use crate::svg::{self, WriteOptions};
 
-/// A page that has not asked for this long is taken to be closed or hidden.
+/// A page that has not asked for this long counts as closed or hidden.
 const LOOKING: Duration = Duration::from_secs(3);
 /// Least time between two copies of the drawing.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(250);
 
-/// What the page asks for.
+/// Wish of the page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Wish {
     /// End the fit now.
@@ -42,7 +42,7 @@ pub(super) struct Shown {
     pub(super) scene: Arc<Scene>,
 }
 
-/// What is drawn.
+/// Picture that is drawn.
 #[derive(Debug, Default)]
 pub(super) struct Picture {
     /// From 1.
@@ -61,7 +61,7 @@ pub(super) struct State {
     pub(super) shown: Option<Shown>,
     /// The file, once it is finished.
     pub(super) file: Option<Arc<str>>,
-    /// Whether more strokes can be had.
+    /// True if more strokes can be had.
     pub(super) grows: bool,
     /// The strokes that are to be added when the fit is over.
     pub(super) more: Option<usize>,
@@ -165,7 +165,7 @@ impl Shared {
         inside.state.file = Some(file.into());
     }
 
-    /// What a page that asks is told.
+    /// Returns the state to a page that asks, and notes the time.
     pub(super) fn asked(&self) -> State {
         let mut inside = self.lock();
         inside.asked = Some(Instant::now());

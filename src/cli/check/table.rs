@@ -73,7 +73,7 @@ fn mattes(alpha: &OnMattes) -> String {
     rows.map(row).concat()
 }
 
-/// How a program that did not pass differs from resvg.
+/// Says how a program that did not pass differs from resvg.
 pub(super) fn shortfall(entry: &RendererEntry) -> String {
     let name = &entry.renderer;
     let agreement_db = entry.against_resvg.and_then(|other| other.psnr_db);

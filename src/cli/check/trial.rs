@@ -34,7 +34,7 @@ impl PictureFolder {
     }
 }
 
-/// What has been drawn so far.
+/// Renders so far.
 pub(super) struct Trial<'a> {
     svg: &'a str,
     target: Option<&'a Image>,

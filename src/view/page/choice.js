@@ -1,8 +1,8 @@
-// What is said of single strokes: which one of another drawing it holds for, and the file without some of them.
+// Statements on single strokes: which one of another drawing they hold for, and the file without some of them.
 
 import { walk } from "./picture.js";
 
-// How far apart two strokes are that are not taken for the same one, in widths and colours as `unlike` counts them.
+// Distance from which two strokes are not taken for the same one, in widths and colours as `unlike` counts them.
 const STRANGER = 40;
 
 // The stroke of `strokes` most like `wanted`, both as { stroke, number, stage }; undefined if none is like it.

@@ -167,7 +167,7 @@ export class Comparison {
     this.target = this.pixels().data;
     this.context.scale(size[0] / width, size[1] / height);
     this.page = [0, 0, width, height];
-    // What is shown of the comparison.
+    // Pixels of the comparison that are shown.
     this.residual = new OffscreenCanvas(...size);
   }
 
@@ -175,7 +175,7 @@ export class Comparison {
     return this.context.getImageData(0, 0, this.canvas.width, this.canvas.height);
   }
 
-  // Starts with the bare page.
+  // Starts with the page's background.
   clear(scene) {
     this.context.fillStyle = "#fff";
     this.context.fillRect(...this.page);

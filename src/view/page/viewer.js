@@ -19,7 +19,7 @@ import { drawChart } from "./chart.js";
 import { drawn, mostLike, withoutStrokes } from "./choice.js";
 import { Comparison, bounds, drawPage, drawPoints, drawRing, drawStrokes, strokeAt } from "./picture.js";
 
-// How often the finished drawing is measured on the way from no stroke to all.
+// Number of times that the finished drawing is measured on the way from no stroke to all.
 const MEASURED = 60;
 
 const element = (id) => document.getElementById(id);
@@ -33,10 +33,10 @@ let scene = null;
 let strokes = [];
 let comparison = null;
 let measured = [];
-// What part of the picture is seen: px of the picture per CSS px is 1 / zoom.
+// Part of the picture that is seen: px of the picture per CSS px is 1 / zoom.
 let view = { zoom: 0, x: 0, y: 0 };
 let hidden = new Set();
-// How many strokes from the back are shown; all when it is Infinity, also of a growing drawing.
+// Number of strokes from the back that are shown; all when it is Infinity, also of a growing drawing.
 let shown = Infinity;
 let selected = null;
 // The picture that is large.
@@ -198,7 +198,7 @@ function showSelected() {
   element("numbers").replaceChildren(...(found ? describe(found) : []));
 }
 
-// How many points of a stroke are told.
+// Number of points of a stroke that are told.
 const TOLD_POINTS = 24;
 
 function describe({ stroke: [points, radius, color, opacity, kinds], number, stage }) {
@@ -404,7 +404,7 @@ element("zoom").addEventListener("click", () => zoomTo(strokes[selected - 1]));
 // Which picture is large.
 
 function enlarge(name) {
-  // What is seen stays as large, in px of the picture.
+  // The part that is seen stays as large, in px of the picture.
   const before = element(largest()).clientWidth;
   large = name;
   showState();
