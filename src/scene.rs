@@ -38,7 +38,7 @@ pub struct Stroke {
 }
 
 impl Stroke {
-    /// Whether every number of the stroke is finite.
+    /// True if every number of the stroke is finite.
     pub fn is_finite(&self) -> bool {
         self.path
             .points()
@@ -104,7 +104,7 @@ impl Scene {
             .sum()
     }
 
-    /// Whether the scene has no stroke.
+    /// True if the scene has no stroke.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -166,7 +166,7 @@ impl<T: Real> Capsule<T> {
     }
 }
 
-/// How two distance fields combine into one.
+/// Combination of two distance fields into one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Combination {
     /// Inside either: `max(d₁, d₂)`.

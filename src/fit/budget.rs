@@ -53,7 +53,7 @@ pub(super) fn max_strokes(
     base: Option<&Base>,
     pixels: usize,
 ) -> usize {
-    // What a base brings stays, however much that is.
+    // Strokes that a base brings stay, however many they are.
     let brought = base.map_or(0, |base| base.scene.len());
     let most = config.most_strokes(pixels).max(brought);
     let most = most.min(MAX_STROKES.saturating_sub(base.map_or(0, Base::elements)));

@@ -13,7 +13,7 @@ use crate::scene::{MAX_POINTS, MAX_PRECISION, Rgb, Scene, Stroke, quantum};
 use crate::svg::{Form, WriteOptions};
 use crate::threads::Workers;
 
-/// What to fit. Equal configurations of equal pictures give equal bytes.
+/// Configuration of a fit. Equal configurations of equal pictures give equal bytes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Config {
     /// When to stop adding strokes.
@@ -138,7 +138,7 @@ pub enum Background {
     Color(Rgb),
 }
 
-/// How to run. It never changes the drawing.
+/// Settings of a run. They never change the drawing.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Execution {
     /// Worker threads; one per core if `None`.

@@ -273,7 +273,7 @@ impl Drawing {
         }
     }
 
-    /// Number of free strokes, from the bottom, in stages that were traced.
+    /// Number of free strokes, from the back, in stages that were traced.
     pub(super) fn traced(&self) -> usize {
         let free = self.stage_of.get(self.frozen.len()..).unwrap_or_default();
         free.partition_point(|&stage| stage < self.counters.traced_until)

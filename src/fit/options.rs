@@ -16,12 +16,12 @@ pub const OPTIONS: &str = "strokes, psnr, bytes, time, quality, preset, progress
 /// Most worker threads: more than any machine has cores only waste memory.
 const MAX_THREADS: usize = 1024;
 
-/// What to fit and how to run, set by name.
+/// Configuration of a fit and settings of its run, set by name.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Options {
-    /// What to fit.
+    /// Configuration of the fit.
     pub config: Config,
-    /// How to run.
+    /// Settings of the run.
     pub execution: Execution,
 }
 

@@ -248,8 +248,8 @@ fn sorted(options: &mut [Options], take: impl Fn(&mut Options) -> Option<Edit>) 
     edits
 }
 
-/// The most gaining new point takes the place of the one that is missed least, and so on, at most `count` times, as long
-/// as this gains something.
+/// Puts the new point that gains most in the place of the point whose loss costs least, and so on, at most `count`
+/// times, as long as this gains something.
 fn swap(
     chosen: &mut [Option<Edit>],
     coming: impl Iterator<Item = Edit>,

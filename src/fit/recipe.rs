@@ -543,7 +543,7 @@ pub struct ShadeChoice {
 /// To which pixels a picture is reduced before it is drawn; `docs/accuracy.md` has what was measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reduction {
-    /// Pixels that a drawing of as many strokes as pay needs. It is made for a screen, of which this is twice the size.
+    /// Pixels that a drawing of as many strokes as pay needs: twice the pixels of the screen that it is made for.
     pub enough_pixels: usize,
     /// Fewest pixels that a picture is reduced to, however little detail it has: the price of strokes is that of a screen.
     pub least_pixels: usize,

@@ -11,7 +11,7 @@
 /// Writes a trait with a method for each function, its implementations for `f32` and `f64`, and the functions.
 macro_rules! elementary {
     ($($(#[$doc:meta])* $name:ident($x:ident $(, $y:ident)?): $single:path, $double:path;)*) => {
-        /// What the functions of [`math`](super) can be taken of: `f32` and `f64`.
+        /// Numbers that the functions of [`math`](super) take: `f32` and `f64`.
         pub trait Elementary: Copy {
             $($(#[$doc])* fn $name(self $(, $y: Self)?) -> Self;)*
         }

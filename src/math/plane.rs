@@ -78,7 +78,7 @@ impl<T: Real> Vector2<T> {
         self.norm_squared().sqrt()
     }
 
-    /// The same direction at length 1; `None` up to the length `least`.
+    /// This direction at length 1; `None` up to the length `least`.
     #[inline]
     pub fn try_normalize(&self, least: T) -> Option<Self> {
         let norm = self.norm();
@@ -112,7 +112,7 @@ impl<T: Real> Vector2<T> {
     }
 }
 
-/// What both have as pairs of numbers.
+/// Items that both have as pairs of numbers.
 macro_rules! pair {
     ($($pair:ident)*) => {$(
         impl<T> $pair<T> {

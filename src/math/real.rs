@@ -112,8 +112,8 @@ macro_rules! real {
 
 real! { f32 f64 }
 
-/// x to a whole power, by squaring. The order of the products, and with it their rounding, is fixed here, which
-/// that of the standard library's function is not.
+/// x to a whole power, by squaring. The order of the products, and with it their rounding, is fixed here; the standard
+/// library does not fix it.
 #[inline]
 pub fn powi<T: Real>(x: T, exponent: i32) -> T {
     let (mut power, mut square, mut left) = (T::one(), x, exponent.unsigned_abs());

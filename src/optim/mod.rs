@@ -40,7 +40,7 @@ pub trait Optimizer<T: Real> {
     /// Moves `params` down `gradients` with one learning `rate` for all.
     fn step(&mut self, params: &mut [T], gradients: &[T], rate: T);
 
-    /// The same with the learning rate `rate · scales[i]` for value `i`, since positions, radii, colours and
+    /// Moves `params` with the learning rate `rate · scales[i]` for value `i`, since positions, radii, colours and
     /// opacities need different rates. `scales` are filled once; `rate` follows a [`Schedule`].
     fn step_scaled(&mut self, params: &mut [T], gradients: &[T], rate: T, scales: &[T]);
 

@@ -11,7 +11,7 @@ pub(crate) const UNITS_PER_PX: i64 = 10_i64.pow(MAX_PRECISION as u32);
 pub(super) struct Grid {
     /// 10^precision, at most 10^6.
     per_px: i64,
-    /// How many multiples its points are apart.
+    /// Distance between its points, in multiples.
     step: i64,
 }
 

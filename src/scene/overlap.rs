@@ -71,7 +71,7 @@ impl Written {
     }
 }
 
-/// How near centre lines of these widths have to come for the strokes to share a pixel, in units.
+/// Distance between centre lines of these widths up to which the strokes may share a pixel, in units.
 fn reach(a: i64, b: i64) -> i64 {
     (a + b) / 2 + APART
 }
@@ -105,7 +105,8 @@ fn segments(stroke: &Written) -> Vec<Segment> {
 /// within the rest.
 const APART: i64 = UNITS_PER_PX * 3 / 2;
 
-/// How far segments may be from their curve, px: less than half of what [`APART`] is above the diagonal of a pixel.
+/// Largest distance between segments and their curve, px: less than half of the excess of [`APART`] over the diagonal
+/// of a pixel.
 const TOLERANCE: f64 = 0.04;
 
 /// A segment from one place to another, in units.

@@ -44,7 +44,7 @@ impl<P> PathPoint<P> {
     }
 }
 
-/// A place between two of which there is a middle.
+/// A kind of place that has middles.
 pub(super) trait Place: Copy {
     /// The place halfway between two.
     fn middle(a: Self, b: Self) -> Self;
@@ -185,7 +185,7 @@ impl Path {
         }
     }
 
-    /// The same path with `f` applied to every point.
+    /// This path with `f` applied to every point.
     #[must_use]
     pub fn map(mut self, f: impl Fn(Point) -> Point) -> Self {
         self.points.iter_mut().for_each(|p| p.at = f(p.at));

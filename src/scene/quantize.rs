@@ -23,7 +23,7 @@ pub struct Quantized {
     pub scene: Scene,
     /// For each of its stages, the index in the original scene.
     pub origins: Vec<usize>,
-    /// What is not written.
+    /// Counts of what is not written.
     pub dropped: Dropped,
 }
 

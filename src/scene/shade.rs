@@ -25,7 +25,7 @@ pub struct Shade {
     pub(crate) stops: Vec<WrittenStop>,
 }
 
-/// What the offsets of stops are shares of, px.
+/// Axis of a gradient, px. Offsets of stops are shares of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Axis {
     /// From one point to another; colours are constant across it.
@@ -123,7 +123,7 @@ impl Shade {
         whole.then_some(Self { axis, stops })
     }
 
-    /// What the offsets are shares of.
+    /// Axis of the gradient. Offsets are shares of it.
     pub fn axis(&self) -> Axis {
         let px = |units: i64| (units as f64 / UNITS_PER_PX as f64) as f32;
         match self.axis {
@@ -163,7 +163,7 @@ impl Shade {
         self.at_offset(self.axis().offset(point))
     }
 
-    /// What a page of `width`×`height` px looks like on `behind`: three planes, row by row.
+    /// Page of `width`×`height` px on `behind`: three planes, row by row.
     pub fn planes(&self, width: usize, height: usize, behind: Rgb) -> [Vec<f32>; 3] {
         let axis = self.axis();
         let mut planes: [Vec<f32>; 3] = Default::default();

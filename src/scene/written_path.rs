@@ -262,7 +262,7 @@ const PX: f64 = UNITS_PER_PX as f64;
 /// 4 px wide with bends of 0.01 px, librsvg's render is 35 dB from that of a polyline, with 0.04 px 44 dB.
 const SHARPEST: f64 = 0.02;
 
-/// How far the chord may be from a curve that it replaces because of a bend at an end, px.
+/// Largest distance of the chord from a curve that it replaces because of a bend at an end, px.
 const BESIDE: f64 = 0.1;
 
 /// Where a curve bends most, px, if it does so more sharply than [`SHARPEST`]. At an end, where less of the stroke's width

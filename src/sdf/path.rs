@@ -27,7 +27,7 @@ pub(crate) const MAX_STEPS: usize = 64;
 pub struct Polyline<T: Real> {
     /// The vertices of the centre line, px, at least one.
     pub points: Vec<Point2<T>>,
-    /// Whether the last vertex is joined to the first.
+    /// True if the last vertex is joined to the first.
     pub closed: bool,
     /// Radius, px.
     pub radius: T,
@@ -93,9 +93,9 @@ impl<T: Real> Polyline<T> {
 pub struct Path<T: Real> {
     /// The points, px, at least one.
     pub points: Vec<Point2<T>>,
-    /// Whether each point is off the path: the control point of a curve. The ends of an open path are on it.
+    /// True for a point off the path: the control point of a curve. The ends of an open path are on it.
     pub off: Vec<bool>,
-    /// Whether the last point is joined to the first.
+    /// True if the last point is joined to the first.
     pub closed: bool,
     /// Radius, px.
     pub radius: T,
@@ -121,7 +121,7 @@ pub struct Mean<T>(pub Vec<(usize, T)>);
 pub struct Flattened<T: Real> {
     /// The polyline. It is open; that of a closed path ends where it starts.
     pub polyline: Polyline<T>,
-    /// What each of its vertices is a mean of.
+    /// Each of its vertices as a mean of points of the path.
     pub means: Vec<Mean<T>>,
 }
 
@@ -224,7 +224,7 @@ fn bernstein<T: Real>([from, control, to]: [&Mean<T>; 3], t: T) -> Mean<T> {
     Mean(weighted.into_iter().flatten().collect())
 }
 
-/// How many segments keep within `flatness` of a curve, px, from its second difference `a − 2b + c`.
+/// Number of segments that keep within `flatness` of a curve, px, from its second difference `a − 2b + c`.
 ///
 /// A curve is at most a quarter of that from its chord, and each halving of the step quarters the distance. The hair that
 /// is taken off keeps curves in round numbers, whose ratio is a whole number, from hanging on rounding.

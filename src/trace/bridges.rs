@@ -50,7 +50,7 @@ pub(super) fn bridged(
             across.insert(b, Gap { ends, ..gap });
         }
     }
-    // What is joined in this way is one line.
+    // Lines that are joined in this way are one.
     let mut seen = vec![false; lines.len()];
     let mut out = Vec::new();
     for first in 0..lines.len() {

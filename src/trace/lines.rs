@@ -24,7 +24,7 @@ impl Line {
         let hook = |spots: &mut dyn Iterator<Item = &Spot>| {
             let is_thin = |spot: &&Spot| spot.radius < thin_share * usual;
             let thin = spots.take_while(is_thin).count();
-            // What is thin for longer tapers, and is no hook.
+            // A longer thin part is a taper, no hook.
             if thin as f32 <= longest * usual {
                 thin
             } else {

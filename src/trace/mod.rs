@@ -82,7 +82,7 @@ pub fn trace(residuals: &[Residual<'_>], tracing: Tracing) -> Vec<Traced> {
     let mattes = residuals.len();
     let traced = |line: &Colored| stroke(line, &areas, &pixels, mattes, &tracing);
     let mut strokes: Vec<(bool, Traced)> = lines.par_iter().filter_map(traced).collect();
-    // What goes on below others is drawn before them, and wide strokes before narrow ones.
+    // Lines that go on below others are drawn before them, and wide strokes before narrow ones.
     strokes.sort_by(|a, b| {
         let radius = |t: &(bool, Traced)| t.1.stroke.radius;
         (b.0.cmp(&a.0)).then(radius(b).total_cmp(&radius(a)))

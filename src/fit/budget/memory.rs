@@ -33,7 +33,8 @@ pub(crate) fn rss_bytes_of(target: &Image, page: Option<[u32; 2]>, config: &Conf
     of_pixels(target.width() * target.height(), read, config)
 }
 
-/// Predicted peak memory, bytes, for a drawing of `pixels` pixels, of a picture of which `read` were read if it was reduced.
+/// Predicted peak memory for a drawing of `pixels` pixels, bytes. If the picture was reduced, `read` is its pixels as
+/// it was read.
 fn of_pixels(pixels: usize, read: Option<usize>, config: &Config) -> u64 {
     let recipe = config.recipe();
     let limit = config.budget.strokes.map(|n| n.min(MAX_STROKES));

@@ -63,7 +63,7 @@ impl Price {
 
     /// The price in `drawing` as it is.
     pub(in crate::fit) fn in_drawing(self, drawing: &mut Drawing) -> Self {
-        // What is free is so in every drawing, which need not be rendered to say so.
+        // Free bytes are free in every drawing, so none need be rendered.
         if self.per_byte == 0.0 {
             return self;
         }
@@ -204,7 +204,7 @@ mod tests {
         let at = |db: f64| price.at(math::powf(10.0, -db / 10.0), 10_000);
         assert!((capsule(&at(20.0)) / capsule(&price) - 1.0).abs() < 1e-3);
         assert!(capsule(&at(36.0)) > 2.0 * capsule(&price));
-        // What has less error in all than the stroke would have to remove gets no stroke.
+        // A drawing with less error in all than a stroke would have to remove gets no stroke.
         assert_eq!(capsule(&at(60.0)), f32::INFINITY);
     }
 

@@ -36,7 +36,7 @@ impl Drawing {
         if let (Some(color), Some(was)) = (self.surfaces[0].color_mut(), memento.color) {
             *color = was;
         }
-        // What strokes are fitted to has changed only if the resolution has, or if some of them were frozen.
+        // The target of the strokes has changed only if the resolution has, or if some of them were frozen.
         if memento.halvings != self.surface().halvings() || !self.is_thawed() {
             self.halve(memento.halvings);
         }

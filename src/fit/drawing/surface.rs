@@ -295,7 +295,7 @@ impl Surface {
         self.frozen.clone_from(&self.canvas);
     }
 
-    /// Makes the backdrop of all that of the free strokes.
+    /// Makes the backdrop of all strokes the backdrop of the free ones.
     pub(in crate::fit) fn thaw(&mut self) {
         if let Some(pyramid) = self.backdrop.pyramid() {
             self.frozen = Canvas::from_image(pyramid.level(self.halvings));

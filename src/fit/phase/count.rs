@@ -91,7 +91,7 @@ pub(in crate::fit) fn meet_fidelity(session: &mut Session<'_>) -> Outcome {
     corrections.measure(strokes, wanted_db, &correction);
     let missing_db = wanted_db - corrections.last_db;
     let is_met = (0.0..=correction.excess_db).contains(&-missing_db);
-    // What more strokes would add, bytes have taken away; or there may not be as many as it takes.
+    // The limit on bytes has taken away what more strokes would add; or there may not be as many as it takes.
     let is_full = missing_db > 0.0 && corrections.shortened;
     let is_last = corrections.count >= correction.count || is_cut;
     let slope = corrections.db_per_doubling;
@@ -117,7 +117,7 @@ fn resize(session: &mut Session<'_>, wanted: usize) -> Outcome {
         grow::seed_correction(session, wanted - strokes, wanted);
         return Outcome::Seeded(Purpose::Correct);
     }
-    // What the polish regains may go.
+    // The polish regains this much, so it may go.
     let wanted_db = session.config.budget.psnr_db.unwrap_or(0.0);
     let least_db = wanted_db - session.recipe.correction.regained_db;
     let removed = (strokes - wanted).min(dispensable(&mut session.drawing, least_db));

@@ -2,8 +2,8 @@
 //!
 //! A rasteriser rounds where edges are: tiny-skia takes samples a quarter of a px apart, Chromium rounds the heights of the
 //! ends of lines and chords to quarters of a px. Where lines are thin, or a drawing is exact, that is most of the error, and no
-//! gradient knows of it. So a few random places are tried for each stroke in turn, and the best of them is taken
-//! if it is better than the present one.
+//! gradient knows of it. So each stroke in turn tries a few random places, and goes to the best of them if that is
+//! better than the present one.
 //!
 //! Three [rasterisers](Rasterizer) judge a place, so that a drawing does not become better in one program and worse in others.
 //! The larger the error of a rasteriser is, the more it counts. Each trial draws one stroke, on its own: [`Fragments`] know what
@@ -145,7 +145,7 @@ struct Nudger<'a> {
     strokes: Strokes,
     /// The strokes as the file has them; `None` for one that is not written.
     written: Vec<Option<Stroke>>,
-    /// For each stroke, the pixels of which it may come to cover more or less.
+    /// Pixels of each stroke whose coverage may change.
     fringes: Vec<Vec<u32>>,
     /// Sets of strokes whose fringes have no pixel in common.
     sets: Vec<Vec<usize>>,
@@ -287,7 +287,7 @@ impl<'a> Nudger<'a> {
     }
 }
 
-/// Footprints of `stroke`, and the pixels of which it may cover more or less once it is moved within `reach` px.
+/// Footprints of `stroke`, and the pixels whose coverage may change once it is moved within `reach` px.
 fn drawn(
     stroke: &Stroke,
     reach: f32,

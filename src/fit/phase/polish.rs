@@ -32,7 +32,8 @@ pub(in crate::fit) fn polish(session: &mut Session<'_>, purpose: Purpose) -> Res
         None => session.recipe.polish,
     };
     if purpose == Purpose::Correct {
-        // What is far from the fidelity asked for is polished again, with more strokes; and bytes that are left need few iterations.
+        // A drawing far from the fidelity asked for is polished again, with more strokes; and bytes that are left need
+        // few iterations.
         let share = match session.history.corrections.before {
             Some(_) => correction.polish_share,
             None => correction.approach_share,

@@ -34,14 +34,14 @@ pub(in crate::fit) fn relocate(
         let relocation = recipe.relocation;
         let room = limit.saturating_sub(drawing.len());
         let scale = drawing.spacing(drawing.len()) * recipe.stages.scale * relocation.scale;
-        // What is there is worth this.
+        // Worth of the strokes that are there, and the least worth that pays.
         let worth = drawing.judge().worth;
         let prices: Vec<f32> = drawing
             .free()
             .iter()
             .map(|p| price.least_worth(p))
             .collect();
-        // What could come gains that.
+        // Candidates whose gain pays.
         let count = wanted.max(room.min(wanted * relocation.fill));
         let candidates = search(drawing, count, scale, recipe.probing, config.seed);
         let mut paying: Vec<Candidate> = candidates

@@ -4,7 +4,7 @@ use crate::fit::drawing::Drawing;
 use crate::fit::drawing::surface::Surface;
 use crate::seed::{Candidate, Probing, Wanted, propose};
 
-/// At most `count` candidates of `scale` px on top of `drawing`, best first; `seed` is that of the fit.
+/// At most `count` candidates of `scale` px on top of `drawing`, best first; `seed` is the fit's.
 pub(in crate::fit) fn search(
     drawing: &mut Drawing,
     count: usize,

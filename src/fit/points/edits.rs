@@ -109,7 +109,7 @@ pub(super) fn best_insertion(terrain: &Terrain<'_>, points: &Points) -> Option<E
     best.map(|insertion| insertion.into_edit(terrain))
 }
 
-/// The point that is missed least.
+/// Removal of the point whose loss costs least.
 pub(super) fn best_removal(terrain: &Terrain<'_>) -> Option<Edit> {
     let count = terrain.stroke.points.len();
     if count < 3 {
@@ -118,7 +118,7 @@ pub(super) fn best_removal(terrain: &Terrain<'_>) -> Option<Edit> {
     best_change(terrain, 0..count, |edit, k| edit.remove(k))
 }
 
-/// The point that is missed least, where an end may move.
+/// Removal of the point whose loss costs least, where an end may move.
 pub(super) fn best_loss(terrain: &Terrain<'_>) -> Option<Edit> {
     best(
         [best_removal(terrain), best_retraction(terrain)]
@@ -127,7 +127,8 @@ pub(super) fn best_loss(terrain: &Terrain<'_>) -> Option<Edit> {
     )
 }
 
-/// The control point beside an end that is missed least. A curve that turns back there ends where it turned.
+/// Removal of the control point beside an end whose loss costs least. A curve that turns back there ends where it
+/// turned.
 fn best_retraction(terrain: &Terrain<'_>) -> Option<Edit> {
     let StrokeRef { off, closed, .. } = terrain.stroke;
     let count = off.len();

@@ -70,7 +70,7 @@ impl Recipe {
                 rates,
                 ..polish
             },
-            // What helps dense points takes more iterations than a draft has.
+            // These steps help dense points, but take more iterations than a draft has.
             dense: Dense {
                 share: 0.9,
                 position: rates.position,

@@ -35,7 +35,7 @@ pub(in crate::fit) struct History {
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub(in crate::fit) struct OpenStage {
     pub(in crate::fit) planned: PlannedStage,
-    /// Time from the beginning of the fit to that of the stage.
+    /// Time from the beginning of the fit to the beginning of the stage.
     pub(in crate::fit) began: Duration,
     /// Strokes of the drawing before the stage, and their fidelity at the stage's resolution, dB.
     pub(in crate::fit) before: (usize, f64),

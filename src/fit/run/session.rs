@@ -109,7 +109,7 @@ impl<'a> Session<'a> {
         watch: Watch<'a>,
         started: Instant,
     ) -> Result<Self> {
-        // How many strokes there may be, in which stages, and how wide.
+        // Limit on strokes, their stages and their widths.
         let pixels = picture.width() * picture.height();
         let recipe = budget::recipe(config, base, picture);
         let limit = budget::strokes(config, &recipe, base, picture);
@@ -146,7 +146,7 @@ impl<'a> Session<'a> {
         let edge = annealing.last();
         let mut drawing = Drawing::new(surfaces, (background_fixed, shade), bounds, edge, level);
         let records = base.map_or_else(Vec::new, |base| history::load(&mut drawing, base));
-        // How long that may take, and how much work it is.
+        // Limit on time, and amount of work.
         let limit_s = config.budget.time;
         let forecast = limit_s.map(|limit| forecast(limit, config, &recipe, &drawing));
         let planned = (plan.strokes() * recipe.iterations(config.polish)) as f64;

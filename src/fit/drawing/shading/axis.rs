@@ -24,7 +24,7 @@ pub(super) fn of(blocks: &Blocks, kind: Kind, level: f32) -> Option<Axis> {
             let cost = |angle: f32| spread(blocks, line(blocks, angle));
             // A degree, down to a hundredth of one.
             let [angle] = search([angle], 0.02, 0.0002, |[angle]| cost(angle));
-            // What is meant to be level or upright is exactly so.
+            // An axis that is meant to be level or upright is exactly so.
             let straight = (angle / FRAC_PI_2).round() * FRAC_PI_2;
             let is_straight = cost(straight) <= level * cost(angle);
             Some(line(blocks, if is_straight { straight } else { angle }))

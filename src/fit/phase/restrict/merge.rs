@@ -17,7 +17,7 @@ use crate::scene::Rgb;
 /// Strokes that share a colour and a width.
 #[derive(Debug, Clone)]
 pub(super) struct Group {
-    /// The indices of its strokes; that of the stroke which it began with comes first.
+    /// Indices of its strokes; the one that it began with comes first.
     pub(super) members: Vec<usize>,
     pub(super) color: Rgb,
     /// Growth of the squared error with the squared distance from the colour.

@@ -33,7 +33,7 @@ pub(super) fn preferences(
     min_shown: f32,
 ) -> Vec<PreferredColor> {
     let slopes = drawing.judge();
-    // How much of a stroke shows does not depend on the matte.
+    // The part of a stroke that shows does not depend on the matte.
     let mut shown = Gradients::default();
     drawing.backward(&Shown, &mut shown);
     // The loss is a mean over pixels and channels.

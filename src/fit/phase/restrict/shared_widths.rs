@@ -137,7 +137,7 @@ fn share_colors(drawing: &mut Drawing, recipe: &Recipe, allowance: f32) -> Ties 
             radius: 0.0,
             radius_weight: 0.0,
         };
-        // What is equal in the file is merged first, so that few groups are compared.
+        // Colours that are equal in the file are merged first, so that few groups are compared.
         let alike = |other: &&mut Group| other.color.map(quantum) == group.color.map(quantum);
         match groups.iter_mut().find(alike) {
             Some(other) => other.join(group, WidthGrid::Any),

@@ -62,8 +62,7 @@ fn arrange(drawing: &mut Drawing, order: &[Color]) {
     drawing.reorder(&sources);
 }
 
-/// The colours from the bottom to the top. A stroke counts by the pixels that it shows in;
-/// `precision` is that of the file.
+/// Colours from the back to the front. A stroke counts by the pixels that it shows in; `precision` is the file's.
 fn order(drawing: &mut Drawing, coloring: Recoloring, precision: u8) -> Vec<Color> {
     let shown = preferences(drawing, 0.0, coloring.min_shown);
     let strokes = drawing.free().iter().zip(&shown);
