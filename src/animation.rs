@@ -53,7 +53,7 @@ const LEGEND: usize = 210;
 #[cfg(feature = "animation")]
 const WHITE: Rgb = [1.0; 3];
 
-/// What each frame adds to the previous one.
+/// Increment from one frame to the next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Step {
     /// A stage.
@@ -104,10 +104,10 @@ impl Legend<'_> {
     }
 }
 
-/// How to film a drawing.
+/// Options of a film of a drawing.
 #[derive(Debug, Clone, Copy)]
 pub struct Film<'a> {
-    /// What each frame adds; `None` for about 50 frames.
+    /// Increment of each frame; `None` for about 50 frames.
     pub step: Option<Step>,
     /// The text below each frame.
     pub legend: Legend<'a>,

@@ -45,7 +45,7 @@ impl Error {
         }
     }
 
-    /// The same error with its cause attached.
+    /// This error with its cause attached.
     #[must_use]
     pub fn caused_by(
         mut self,
@@ -55,7 +55,7 @@ impl Error {
         self
     }
 
-    /// The same error, with `context` (such as a file name) before its message.
+    /// This error with `context` (such as a file name) before its message.
     #[must_use]
     pub fn within(mut self, context: impl fmt::Display) -> Self {
         self.message = format!("{context}: {}", self.message);

@@ -172,8 +172,7 @@ impl Image {
         Self::new(width, height, color.map(|c| vec![c; pixels]))
     }
 
-    /// The same picture with this alpha, `width·height` values 0..1. Alpha that is 1 everywhere is
-    /// dropped.
+    /// This picture with this alpha, `width·height` values 0..1. Alpha that is 1 everywhere is dropped.
     ///
     /// # Errors
     /// [`ErrorKind::Picture`] when there are not `width·height` values or one is not finite.
@@ -218,7 +217,7 @@ impl Image {
         Ok(Self::decode_remarking(bytes, name, limits)?.0)
     }
 
-    /// The same, and says what was changed or left out.
+    /// Decodes as [`Image::decode`] does, and says what was changed or left out.
     ///
     /// # Errors
     /// As [`Image::decode`].
@@ -278,7 +277,7 @@ impl Image {
         self.on(matte).into_owned()
     }
 
-    /// The same, without a copy of a picture that is opaque.
+    /// Flattens as [`Self::flattened`] does, without a copy of a picture that is opaque.
     pub(crate) fn on(&self, matte: Rgb) -> Cow<'_, Self> {
         let Some(alpha) = &self.alpha else {
             return Cow::Borrowed(self);

@@ -24,7 +24,7 @@ const CHANNELS: usize = 3;
 /// picture of 5,000 strokes 22; a hole as wide as a patch has its whole contrast, 100 and more.
 const MAX_PATCH_ABS: u8 = 40;
 
-/// How faithful a picture is to another.
+/// Fidelity of a picture to another.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Quality {
     /// Peak signal-to-noise ratio, `−10·log10(mse)` in dB; infinite for equal pictures, `null` in
@@ -37,7 +37,7 @@ pub struct Quality {
     pub mse: f64,
     /// Mean absolute error, 0..1.
     pub l1: f64,
-    /// What people see, 100 for equal pictures; see [`fn@ssimulacra2`].
+    /// Fidelity as people see it, 100 for equal pictures; see [`fn@ssimulacra2`].
     pub ssimulacra2: f64,
 }
 
@@ -154,7 +154,8 @@ pub fn psnr(a: &Image, b: &Image) -> Result<f64> {
     mse(a, b).map(psnr_db)
 }
 
-/// The same over the pixels for which `counts` is true, told by their index, row by row; infinite where there are none.
+/// PSNR of the pixels for which `counts` is true, dB; infinite where there are none. `counts` takes the index of a
+/// pixel, row by row.
 ///
 /// # Errors
 /// [`ErrorKind::Picture`] when the sizes differ.

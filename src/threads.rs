@@ -46,7 +46,7 @@ impl Workers {
 pub(crate) struct PerWorker<T>(Vec<Mutex<T>>);
 
 impl<T> PerWorker<T> {
-    /// What `make` makes, once for each worker.
+    /// Scratch that `make` makes, once for each worker.
     pub(crate) fn new(make: impl Fn() -> T) -> Self {
         let workers = 0..rayon::current_num_threads();
         Self(workers.map(|_| Mutex::new(make())).collect())
@@ -61,7 +61,7 @@ impl<T> PerWorker<T> {
     }
 }
 
-/// Whether the platform has no threads at all.
+/// True if the platform has no threads at all.
 fn is_unsupported(error: &ThreadPoolBuildError) -> bool {
     let cause = std::error::Error::source(error).and_then(|cause| cause.downcast_ref());
     cause.is_some_and(|cause: &io::Error| cause.kind() == io::ErrorKind::Unsupported)

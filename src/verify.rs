@@ -64,7 +64,7 @@ const WHITE: Rgb = [1.0; 3];
 /// or misplaced, or hundreds of faint layers have drifted.
 pub const MIN_AGREEMENT_DB: f64 = 30.0;
 
-/// How large to render.
+/// Size of a render.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Size {
     /// So many px per unit of the SVG's own size.
@@ -78,7 +78,7 @@ pub enum Size {
     },
 }
 
-/// How faithful a drawing is, and how close to our own render.
+/// Fidelity of a drawing, and its agreement with our own render.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Verdict {
     /// The SVG as rendered against the target.
@@ -123,7 +123,7 @@ pub fn verify(svg: &str, target: &Image, soft: &Image) -> Result<Verdict> {
     })
 }
 
-/// How faithful a drawing with transparency is on each of three mattes.
+/// Fidelity of a drawing with transparency on each of three mattes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct OnMattes {
     /// PSNR on black, dB.
@@ -182,7 +182,7 @@ pub fn render_like(svg: &str, target: &Image, matte: Rgb) -> Result<Image> {
     draw(&tree, Size::Exact { width, height }, Some(matte))
 }
 
-/// Whether scaling the SVG to the target's width misses its height by no more than a px.
+/// Checks that scaling the SVG to the target's width misses its height by no more than a px.
 fn check_aspect(tree: &Tree, width: u32, height: u32) -> Result<()> {
     let (svg_width, svg_height) = (
         f64::from(tree.size().width()),
@@ -199,7 +199,7 @@ fn check_aspect(tree: &Tree, width: u32, height: u32) -> Result<()> {
     Err(Error::new(ErrorKind::Svg, message))
 }
 
-/// What resvg does, a panic being an error: the judge does not fall with what it judges, and its arithmetic
+/// Runs resvg, and makes a panic of it an error: the judge does not fall with what it judges, and resvg's arithmetic
 /// has corners that no check of ours foresees. Where panics end the program, as in WebAssembly, this one does, too.
 fn guarded<R>(judge: impl FnOnce() -> R) -> Result<R> {
     GUARDED.set(true);
@@ -213,7 +213,7 @@ fn guarded<R>(judge: impl FnOnce() -> R) -> Result<R> {
 }
 
 thread_local! {
-    /// Whether this thread is within what resvg does.
+    /// True while this thread runs resvg.
     static GUARDED: Cell<bool> = const { Cell::new(false) };
 }
 

@@ -25,7 +25,7 @@ pub(super) const ENGINE: Engine = Engine {
 /// The line that the page writes to the browser's log when the drawing cannot be shown.
 const UNREADABLE: &str = "strokefit: the drawing cannot be shown";
 
-/// How much larger than the picture the window is made, px. Windows cannot be narrower than 500 px, and some
+/// Margin by which the window is made larger than the picture, px. Windows cannot be narrower than 500 px, and some
 /// versions count the invisible window's frame as part of its size.
 const MARGIN: usize = 500;
 

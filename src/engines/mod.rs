@@ -66,7 +66,7 @@ const PNG: &str = "drawing.png";
 pub struct Engine {
     /// Its name in options and reports.
     pub name: &'static str,
-    /// How to get it, in one line.
+    /// Way to get it, in one line.
     pub install: &'static str,
     /// Names of the program, the best first.
     programs: &'static [&'static str],
@@ -74,9 +74,9 @@ pub struct Engine {
     arguments: fn(&Job<'_>) -> io::Result<Vec<OsString>>,
     /// Text in its messages that means that nothing was drawn, whatever the exit status.
     failure: Option<&'static str>,
-    /// Whether the program may be installed in the user's home, so that `HOME` has to stay.
+    /// True if the program may be installed in the user's home, so that `HOME` has to stay.
     keeps_home: bool,
-    /// Whether its picture has a margin to the right and below, to be cut off.
+    /// True if its picture has a margin to the right and below, to be cut off.
     has_margin: bool,
 }
 
@@ -98,7 +98,7 @@ pub struct Rendering {
     pub image: Image,
     /// Version of the program, such as `1.2.2`.
     pub version: String,
-    /// How long the program ran, its start included.
+    /// Time that the program ran, its start included.
     pub wall: Duration,
 }
 

@@ -14,10 +14,10 @@ use crate::error::Result;
 const OUTPUT: &str = "stdout";
 const MESSAGES: &str = "stderr";
 
-/// How often to look whether the program has ended.
+/// Time between two looks at whether the program has ended.
 const PATIENCE: Duration = Duration::from_millis(5);
 
-/// How a program ended.
+/// End of a program.
 pub(super) struct Exit {
     pub(super) status: ExitStatus,
     /// Its standard output.
@@ -52,7 +52,7 @@ pub(super) fn isolate(command: &mut Command, folder: &Path, keeps_home: bool) {
     command.current_dir(folder);
 }
 
-/// Whether this process, and so its children, run as root.
+/// True if this process, and so its children, run as root.
 pub(super) fn is_root() -> bool {
     #[cfg(unix)]
     return rustix::process::geteuid().is_root();
@@ -90,7 +90,7 @@ pub(super) fn run(mut command: Command, folder: &Path, timeout: Duration) -> Res
 struct ProcessGroup(Child);
 
 impl ProcessGroup {
-    /// How the child ended, or `None` after `timeout`.
+    /// Status of the child once it has ended, or `None` after `timeout`.
     fn wait(&mut self, timeout: Duration) -> io::Result<Option<ExitStatus>> {
         let start = Instant::now();
         loop {

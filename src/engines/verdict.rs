@@ -2,7 +2,7 @@
 
 use crate::metrics::Agreement;
 
-/// How far below resvg's fidelity an engine's may be, dB.
+/// Largest shortfall of an engine's fidelity from resvg's, dB.
 pub const MAX_SHORTFALL_DB: f64 = 0.6;
 
 /// PSNR of an engine's render against resvg's, dB, that is good enough whatever the fidelity. Engines round

@@ -3,7 +3,7 @@
 /// A picture format by its first bytes.
 struct Foreign {
     name: &'static str,
-    /// What a file has at this place.
+    /// Bytes that a file has from `at` on.
     magic: &'static [u8],
     at: usize,
     remedy: &'static str,
@@ -69,7 +69,7 @@ pub(super) fn is_cgbi(bytes: &[u8]) -> bool {
     bytes.starts_with(CGBI.magic)
 }
 
-/// What the file is and how to convert it, if its format is known.
+/// Name of the file's format and a way to convert it, if the format is known.
 pub(super) fn advice(bytes: &[u8]) -> Option<String> {
     let is = |f: &&Foreign| {
         bytes

@@ -71,7 +71,7 @@ pub(super) fn is_big_tiff(bytes: &[u8]) -> bool {
     bytes.starts_with(b"II\x2b\0") || bytes.starts_with(b"MM\0\x2b")
 }
 
-/// Whether frames or pages follow the first.
+/// True if frames or pages follow the first.
 pub(super) fn has_more(bytes: &[u8], format: ImageFormat) -> bool {
     match format {
         ImageFormat::Gif => gif_frames(bytes).take(2).count() > 1,
@@ -114,7 +114,7 @@ fn gif_frames(bytes: &[u8]) -> impl Iterator<Item = usize> + '_ {
     })
 }
 
-/// Whether the extended header of a WebP says that it is an animation.
+/// True if the extended header of a WebP says that it is an animation.
 fn webp_is_animated(bytes: &[u8]) -> bool {
     let is_extended = bytes.get(12..16) == Some(b"VP8X");
     is_extended && bytes.get(20).is_some_and(|flags| flags & 2 != 0)
@@ -131,8 +131,8 @@ pub(super) fn size(bytes: &[u8], format: ImageFormat) -> Option<(u32, u32)> {
     }
 }
 
-/// Whether the JPEG's scans reach their end-of-image marker. The decoder fills missing parts with grey and
-/// reports nothing.
+/// True if the JPEG's scans reach their end-of-image marker. The decoder fills missing parts with grey and reports
+/// nothing.
 pub(super) fn jpeg_is_whole(bytes: &[u8]) -> bool {
     segments(bytes).any(|segment| segment.marker == 0xd9)
 }

@@ -42,7 +42,7 @@ pub(super) fn largest(bytes: &[u8]) -> Result<Largest<'_>, Failure> {
     let (length, start) = (le32(entry, 8).unwrap_or(0), le32(entry, 12).unwrap_or(0));
     let whole = bytes.get(start as usize..).unwrap_or_default();
     let picture = whole.get(..length as usize);
-    // What is cut short is told by those who read it.
+    // Those who read the picture tell if it is cut short.
     let picture = picture.unwrap_or(whole);
     if picture.starts_with(PNG) {
         return Ok(Largest::Png(picture));

@@ -154,7 +154,7 @@ impl Conversion {
         })
     }
 
-    /// Whether colours stay as they are.
+    /// True if colours stay as they are.
     fn is_none(&self) -> bool {
         let level = |i: usize| i as f32 / (PROBES - 1) as f32;
         let pixels = 0..if self.channels == 1 {

@@ -57,7 +57,7 @@ pub(super) fn score(reference: &[u8], picture: &[u8], width: usize) -> f64 {
     of_sum(weighted.sum())
 }
 
-/// What the score would be if all of the picture were as bad as it is at each pixel, row by row.
+/// Scores that the picture would have if all of it were as bad as it is at each pixel, row by row.
 ///
 /// The weighted sum that makes the score is a sum over pixels: a mean is, and a fourth norm is shared out by `e⁴`.
 pub(super) fn map(reference: &[u8], picture: &[u8], width: usize) -> Vec<f32> {
@@ -248,7 +248,7 @@ impl Scale {
         let mut shares = vec![0.0; self.width * self.height];
         for (channel, norms) in norms.iter().enumerate() {
             let here = weighted(count).filter(|(_, [c, s, ..])| [*c, *s] == [channel, index]);
-            // What an error and its fourth power count for.
+            // Factors of an error and of its fourth power.
             let mut factors: Norms = [[0.0; NORMS]; KINDS];
             for (weight, [_, _, n, k]) in here {
                 let norm = norms[k][1];
@@ -275,7 +275,7 @@ impl Scale {
         shares
     }
 
-    /// What `f` makes of the errors of each row of a channel.
+    /// Results of `f` for the errors of each row of a channel.
     fn rows<R: Send>(&self, channel: usize, f: impl Fn(&[[f32; KINDS]]) -> R + Sync) -> Vec<R> {
         let rows = (0..self.height).into_par_iter();
         rows.map_init(

@@ -420,7 +420,7 @@ fn back_to_front<S: Simd, X: Extras>(
         for (block, (kept, t)) in members(visit.shared).zip(of_shared.iter_mut().zip(&mut through))
         {
             let (pull, stiffness) = stroke.blend_edge::<X>(simd, kept, t, &rgb, grounds.at(block));
-            // What the segments need, in the place of what is not needed any more.
+            // Values that the segments need, in the place of values that nothing needs any more.
             store(pull, &mut kept.slope);
             if X::STIFFNESS {
                 store(stiffness, &mut kept.inverse);

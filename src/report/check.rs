@@ -7,7 +7,7 @@ use crate::metrics::Quality;
 use crate::svg::Finding;
 use crate::verify::OnMattes;
 
-/// What `strokefit check` found.
+/// Findings of `strokefit check`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CheckReport {
     /// [`SCHEMA`](super::SCHEMA).
@@ -24,11 +24,11 @@ pub struct CheckReport {
     pub renderers: Vec<RendererEntry>,
     /// One per renderer that did not.
     pub not_drawn: Vec<NotDrawn>,
-    /// What programs disagree on, by the text of the file alone; the worst first.
+    /// Findings in the text of the file alone that programs disagree on; the worst first.
     pub lint: Vec<Finding>,
 }
 
-/// What one renderer makes of an SVG.
+/// Render of an SVG by one program, compared with the picture and with resvg.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RendererEntry {
     /// `resvg`, `inkscape`, `rsvg`, `chromium` or `cairosvg`.
@@ -41,7 +41,7 @@ pub struct RendererEntry {
     pub against_resvg: Option<AgainstResvg>,
     /// Wall time of the render, the start of the program included, s.
     pub wall_s: f64,
-    /// Whether it draws the file as resvg does.
+    /// True if it draws the file as resvg does.
     pub passed: bool,
 }
 
@@ -63,7 +63,7 @@ pub struct AgainstResvg {
 pub struct NotDrawn {
     /// Its name.
     pub renderer: String,
-    /// Whether it is there.
+    /// True if it is there.
     pub installed: bool,
     /// Why not, and what to do about it.
     pub reason: String,

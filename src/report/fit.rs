@@ -11,7 +11,7 @@ use crate::scene::Dropped;
 use crate::svg::{self, Travel};
 use crate::verify::OnMattes;
 
-/// What `strokefit fit` did.
+/// Outcome of `strokefit fit`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FitReport {
     /// [`SCHEMA`].
@@ -24,7 +24,7 @@ pub struct FitReport {
     pub points: usize,
     /// Strokes that were dropped because they became non-finite or could not be seen.
     pub dropped: usize,
-    /// How many of them for which reason.
+    /// Number of them for each reason.
     pub dropped_for: Dropped,
     /// One per layer of the drawing, in order.
     pub stages: Vec<StageEntry>,
@@ -45,10 +45,10 @@ pub struct FitReport {
     /// Why no more was done: `strokes`, `psnr`, `bytes`, `time`, `converged` or
     /// `interrupted`.
     pub stop: String,
-    /// How much worse the drawing is, dB, because colours have a layer each; left out if they have not.
+    /// Loss of fidelity because colours have a layer each, dB; left out if they have not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stacking_db: Option<f64>,
-    /// How far a pen moves to draw the file; left out unless its order is one of little travel.
+    /// Travel of a pen that draws the file; left out unless its order is one of little travel.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub travel: Option<Travel>,
     /// Key of every random draw.
@@ -79,10 +79,10 @@ pub struct BaseEntry {
     pub elements: usize,
 }
 
-/// How one stage went.
+/// Outcome of one stage.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct StageEntry {
-    /// From 1; that of the layer.
+    /// Index of the layer, from 1.
     pub index: usize,
     /// Strokes of the stage in the drawing.
     pub strokes: usize,

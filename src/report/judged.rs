@@ -31,7 +31,7 @@ pub struct Judged {
     pub focus: Option<OnFocus>,
 }
 
-/// How faithful a drawing is where errors counted, and where they counted less.
+/// Fidelity of a drawing where errors counted, and where they counted less.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct OnFocus {
     /// PSNR of the pixels for which the mask is 0.5 or more, dB.

@@ -40,7 +40,7 @@ pub struct Input {
     pub width: usize,
     /// Height in px.
     pub height: usize,
-    /// What reading it has changed or left out, in words.
+    /// Changes and omissions in reading it, in words.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub remarks: Vec<String>,
 }
@@ -56,7 +56,7 @@ impl Input {
         }
     }
 
-    /// The same with what reading the picture has changed or left out.
+    /// This record with the changes and omissions in reading the picture.
     #[must_use]
     pub fn remarking(self, remarks: &[Remark]) -> Self {
         let remarks = remarks.iter().map(ToString::to_string).collect();

@@ -16,7 +16,7 @@ use crate::scene::{Scene, Stage, Written, WrittenPath, overlaps};
 pub(super) struct Layer {
     pub(super) strokes: Vec<Written>,
     pub(super) color: Option<[u8; 3]>,
-    /// How many layers below have the same colour.
+    /// Number of layers below that have the same colour.
     pub(super) repeats: usize,
 }
 
@@ -95,7 +95,7 @@ fn orient(stroke: &mut Written, unit: Unit) {
     }
 }
 
-/// What strokes must have in common to be one path.
+/// Numbers that strokes must have in common to be one path.
 pub(super) fn style_of(stroke: &Written) -> (i64, [u8; 3], u8) {
     (stroke.width, stroke.color, stroke.opacity)
 }
@@ -187,7 +187,7 @@ fn order<R: Ord, K: Ord>(
 struct Run<'a> {
     /// Strokes that may be placed next.
     ready: BTreeSet<(&'a Written, usize)>,
-    /// How many are not placed yet, ready or not.
+    /// Number of strokes that are not placed yet, ready or not.
     left: usize,
 }
 

@@ -110,7 +110,7 @@ impl Attribute {
     }
 }
 
-/// How attributes are written.
+/// Style of writing attributes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Style {
     /// In full, colours with six digits.

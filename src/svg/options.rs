@@ -8,16 +8,16 @@ use crate::error::{Error, ErrorKind};
 use crate::scene::UNITS_PER_PX;
 use crate::words::words;
 
-/// How a scene is written.
+/// Options of writing a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WriteOptions {
     /// Decimals of coordinates and widths, 0..=6; a larger number counts as 6.
     pub precision: u8,
-    /// What an element holds.
+    /// Content of an element.
     pub form: Form,
-    /// What a layer holds.
+    /// Content of a layer.
     pub group: Group,
-    /// In which order the strokes of a layer come.
+    /// Order of the strokes of a layer.
     pub order: Order,
     /// Width of the page; its height follows. `None`: one px per pixel of the picture.
     pub width: Option<Length>,
@@ -46,7 +46,7 @@ impl Default for WriteOptions {
     }
 }
 
-/// What an element of the file holds.
+/// Content of an element of the file.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Form {
     /// One stroke, with all its attributes.
@@ -60,7 +60,7 @@ pub enum Form {
     Outlines,
 }
 
-/// What a layer of the file holds.
+/// Content of a layer of the file.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Group {
     /// The strokes that were added together.

@@ -4,7 +4,7 @@ use super::dialect::{self, Unit};
 use crate::math;
 use crate::scene::{UNITS_PER_PX, Written};
 
-/// How far the segments of a curve may be from it, px: less than any rasteriser shows.
+/// Largest distance of segments from their curve, px: less than any rasteriser shows.
 const TOLERANCE: f64 = 0.02;
 
 /// Appends the outline of `stroke` as an element of its own.

@@ -41,7 +41,7 @@ impl Writer {
         let mut control = None;
         while let Some(piece) = pieces.next() {
             match piece {
-                // What closes the path draws this line.
+                // The command that closes the path draws this line.
                 Piece::Line(_) if path.is_closed() && pieces.peek().is_none() => {}
                 Piece::Line([_, to]) => self.push_step('L', &[to]),
                 Piece::Curve([from, knee, to])
@@ -72,8 +72,8 @@ impl Writer {
         }
     }
 
-    /// Appends a step to the last of these places in its shortest form. It does without a letter where that of the last
-    /// step serves, and that is no longer.
+    /// Appends a step to the last of these places in its shortest form. It does without a letter where the letter of
+    /// the last step serves, and that is no longer.
     fn push_step(&mut self, letter: char, places: &[Place]) {
         let from_page = self.lettered(letter, &self.numbers([0, 0], places));
         let from_here = self.at.map(|at| {
@@ -149,7 +149,7 @@ struct Parser {
 }
 
 impl Parser {
-    /// What a letter and the text after it say.
+    /// Takes the step that a letter and the text after it describe; `None` if they describe none.
     fn step(&mut self, letter: char, text: &str, unit: Unit) -> Option<()> {
         match letter {
             'h' => return self.dot(unit.parse(text)?),

@@ -267,7 +267,7 @@ proptest! {
     }
 }
 
-/// How alike resvg draws two files, dB.
+/// Agreement of resvg's renders of two files, dB.
 fn agreement(a: &str, b: &str) -> f64 {
     difference(a, b).psnr_db
 }

@@ -118,7 +118,7 @@ impl Visit {
         vec![forward, forward.flipped()]
     }
 
-    /// The same stroke, drawn the other way.
+    /// This stroke, drawn the other way.
     fn flipped(self) -> Self {
         let [from, to] = self.ends;
         Self {

@@ -7,7 +7,7 @@ use super::options::{Order, WriteOptions};
 use super::tour;
 use crate::scene::{Scene, Written};
 
-/// How far a pen moves to draw a file, in px of the picture. The ways to the first stroke of a layer and from its last
+/// Travel of a pen that draws a file, in px of the picture. The ways to the first stroke of a layer and from its last
 /// one are not counted: that is where pens are changed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Travel {
@@ -19,7 +19,7 @@ pub struct Travel {
     pub layers: Vec<LayerTravel>,
 }
 
-/// How far a pen moves to draw a layer, in px of the picture.
+/// Travel of a pen that draws a layer, in px of the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct LayerTravel {
     /// Strokes of the layer.
@@ -32,7 +32,7 @@ pub struct LayerTravel {
     pub after_px: f64,
 }
 
-/// How far a pen moves to draw the file that [`write`](super::write()) makes of the scene; `None` unless the file is in
+/// Travel of a pen that draws the file that [`write`](super::write()) makes of the scene; `None` unless the file is in
 /// an order of little travel.
 pub fn travel(scene: &Scene, options: &WriteOptions) -> Option<Travel> {
     if options.order != Order::Travel {
@@ -69,7 +69,7 @@ fn layer_travel(before: &Layer, after: &Layer) -> LayerTravel {
     }
 }
 
-/// How far chords may be from the curve whose length they give, px.
+/// Largest distance of chords from the curve whose length they give, px.
 const CHORD: f64 = 1e-3;
 
 /// Length of the centre line of a stroke, px.

@@ -23,10 +23,10 @@ const MAX_LAYERED: f64 = (1_u64 << 28) as f64;
 const MAX_WRITTEN: f64 = (1_u64 << 35) as f64;
 /// Largest side of a part, in pixels. Beyond it tiny-skia, which reckons in fixed point, may hang or panic.
 const MAX_SIDE: f64 = (1_u64 << 20) as f64;
-/// What the smallest part costs, in pixels.
+/// Cost of the smallest part, in pixels.
 const LEAST: f64 = 256.0;
 
-/// What the pictures embedded in an SVG ask for.
+/// Pixels that the pictures embedded in an SVG ask for, and why one was refused.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Embedded(Arc<Mutex<(u64, Option<String>)>>);
 
@@ -191,7 +191,7 @@ impl Reckoning {
         self.layer(2.0 * layer, |this| this.write(layer * per_pixel))
     }
 
-    /// What is done with a further layer of so many pixels.
+    /// Counts a further layer of so many pixels, and what is done `inside` it.
     fn layer(&mut self, pixels: f64, inside: impl FnOnce(&mut Self) -> Reckoned) -> Reckoned {
         self.layered += pixels;
         if self.layered > MAX_LAYERED {

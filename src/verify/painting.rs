@@ -9,8 +9,8 @@ use crate::error::Result;
 use crate::image::Image;
 use crate::scene::Rgb;
 
-/// What has been drawn so far. Parts of a drawing, drawn one after another, give the picture of the
-/// whole to the bit, because a renderer rounds after every stroke.
+/// Render of the parts drawn so far. Parts of a drawing, drawn one after another, give the picture of the whole to the
+/// bit, because a renderer rounds after every stroke.
 pub struct Painting {
     pixmap: Pixmap,
     size: Size,

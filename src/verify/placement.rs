@@ -49,7 +49,7 @@ fn untouched<'a>(group: &'a Group, id: &str) -> Option<&'a Path> {
     })
 }
 
-/// Whether the probe is drawn as it says.
+/// True if the probe is drawn as it says.
 fn is_as_written(path: &Path) -> bool {
     let color = Paint::Color(Color::new_rgb(1, 2, 3));
     let is_plain = |stroke: &Stroke| {

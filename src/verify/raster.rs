@@ -87,7 +87,7 @@ pub(super) fn opaque([r, g, b]: Rgb) -> Color {
     Color::from_rgba8(byte(r), byte(g), byte(b), 255)
 }
 
-/// What was drawn, with its alpha.
+/// Picture of the pixmap, with its alpha.
 pub(super) fn image(pixmap: &Pixmap) -> Result<Image> {
     let pixels = pixmap.pixels();
     let plane = |channel: fn(&PremultipliedColorU8) -> u8| {

@@ -12,7 +12,7 @@ const MAX_PARTS: f64 = 4e6;
 /// Deepest nesting of elements in an unfolded SVG; resvg's own bound is 1024.
 const MAX_DEPTH: usize = 1000;
 
-/// What is wrong.
+/// Result of a check, or what is wrong.
 type Checked<T> = Result<T, String>;
 
 /// Fails when the unfolded document would be too large or too deep.
@@ -44,14 +44,14 @@ pub(super) fn check(document: &Document<'_>) -> Checked<()> {
 
 struct Unfolding<'a, 'input> {
     by_id: HashMap<&'a str, Node<'a, 'input>>,
-    /// What style sheets refer to, and the selectors of what does.
+    /// Selectors of style sheets, each with an id that its rule refers to.
     styled: Vec<(&'a str, &'a str)>,
     /// Parts of the elements that were counted; `None` while that is under way.
     parts: HashMap<NodeId, Option<f64>>,
 }
 
 impl<'a, 'input: 'a> Unfolding<'a, 'input> {
-    /// How many parts an element is made of, itself included.
+    /// Number of parts that an element is made of, itself included.
     fn parts(&mut self, node: Node<'a, 'input>, depth: usize) -> Checked<f64> {
         if depth > MAX_DEPTH {
             return Err(format!(
@@ -83,13 +83,12 @@ impl<'a, 'input: 'a> Unfolding<'a, 'input> {
     }
 }
 
-/// Whether what refers to the element draws all that is in it.
+/// True if a reference to the element draws all that is in it.
 fn unfolds(node: Node<'_, '_>) -> bool {
     !matches!(node.tag_name().name(), "linearGradient" | "radialGradient")
 }
 
-/// Whether path data has numbers beyond 10¹²: arcs of such radii are cut in millions of pieces, which takes
-/// hours.
+/// True if path data has numbers beyond 10¹²: arcs of such radii are cut in millions of pieces, which takes hours.
 fn is_vast(d: &str) -> bool {
     let digits = |text: &str| text.bytes().take_while(u8::is_ascii_digit).count();
     let wholes = d.split(|c: char| !c.is_ascii_digit() && c != '.');
@@ -119,7 +118,7 @@ fn rules(sheet: &str) -> impl Iterator<Item = (&str, &str)> {
     rules.flat_map(|(selector, body)| urls(body).map(move |id| (selector, id)))
 }
 
-/// Whether a selector may mean the element: it names one of its classes, or no class at all.
+/// True if a selector may mean the element: it names one of its classes, or no class at all.
 fn selects(selector: &str, node: Node<'_, '_>) -> bool {
     let classes = node.attribute("class").unwrap_or_default();
     let mut named = classes.split_ascii_whitespace();

@@ -5,8 +5,8 @@ use ::gif::{DisposalMethod, EncodingError, Frame, Repeat};
 use super::{Encoder, Patch};
 use crate::error::{Error, ErrorKind, Result};
 
-/// How carefully each frame's 256 colours are chosen, from 1 (slowest) to 30. At 10 a frame of
-/// 100,000 px takes some 20 ms; below 5 it takes several times as long without a visible difference.
+/// Speed at which each frame's 256 colours are chosen, from 1 (slowest, with most care) to 30. At 10 a frame of 100,000
+/// px takes some 20 ms; below 5 it takes several times as long without a visible difference.
 const SPEED: i32 = 10;
 
 /// An unfinished GIF.

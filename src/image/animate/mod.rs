@@ -167,7 +167,7 @@ mod tests {
             let plane = |c: usize| (0..width * height).map(move |i| level(i, c) as f32 / 255.0);
             Image::new(width, height, [0, 1, 2].map(|c| plane(c).collect())).unwrap()
         };
-        // The same frame twice, too.
+        // One frame comes twice.
         [0, 2, 3, 3, width - 1].map(frame).to_vec()
     }
 

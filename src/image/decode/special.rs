@@ -63,7 +63,7 @@ fn surface(bytes: &[u8], ran_out: &Cell<bool>, limits: Limits) -> Result<Decoded
     })
 }
 
-/// Samples of which the file says nothing more.
+/// Samples without further information in the file.
 fn plain(picture: DynamicImage) -> Decoded {
     Decoded {
         picture,

@@ -24,7 +24,7 @@ fn encode(picture: impl Into<DynamicImage>, format: ImageFormat) -> Vec<u8> {
     bytes.into_inner()
 }
 
-/// Whether the build reads the format.
+/// True if the build reads the format.
 fn is_read(format: ImageFormat) -> bool {
     cfg!(feature = "formats") || format == ImageFormat::Png
 }

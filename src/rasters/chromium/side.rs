@@ -51,7 +51,7 @@ impl Side {
         let [(from, d_from), middle, (to, d_to)] =
             [start, half, end].map(|t| curve.beside(t, radius));
         let (gap, turn) = (to - from, d_from.perp(&d_to));
-        // How far it is along both tangents to where they cross.
+        // Distances along both tangents to where they cross.
         let (ahead, behind) = (gap.perp(&d_to) / turn, d_from.perp(&gap) / turn);
         let crosses = ahead * behind > 0.0;
         let knee = from + if crosses { d_from * ahead } else { gap * 0.5 };

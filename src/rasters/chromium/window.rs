@@ -22,7 +22,7 @@ pub(super) struct Window {
 /// Side of a tile, px.
 const TILE: usize = 256;
 
-/// Tiles begin this many px apart: they overlap by two px, of which each shows one.
+/// Tiles begin this many px apart: they overlap by two px, and each shows one of the two.
 const STEP: usize = TILE - 2;
 
 impl Window {

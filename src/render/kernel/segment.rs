@@ -136,7 +136,7 @@ pub(super) fn limits(radius: f32, reach: Reach) -> [f32; 2] {
     ]
 }
 
-/// The rows of 16 block centres of which some may be within `outer` of a stroke that is between `top` and `bottom`, px
+/// Rows of 16 block centres that may have some within `outer` of a stroke. The stroke is between `top` and `bottom`, px
 /// from the top of the tile.
 #[inline(always)]
 pub(super) fn rows_within(outer: f32, [top, bottom]: [f32; 2]) -> Range<usize> {

@@ -194,7 +194,7 @@ impl<S: Simd> Looks<S> {
             let g = load(simd, &gradient[channel]);
             along += g * contrast;
             self.color[channel] += seen * g;
-            // What is behind the next stroke has this one on it.
+            // The next stroke has this one behind it.
             store(back + alpha * contrast, &mut behind[channel]);
             if X::WORTH {
                 // This `delta` is −δ of the head, hence the minus before 2e.

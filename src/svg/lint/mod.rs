@@ -123,7 +123,7 @@ impl Findings {
         self.insert(at, rule, line, found.into());
     }
 
-    /// The same, with an entry for each different `found`.
+    /// Notes as [`Self::add`] does, but with an entry for each different `found`.
     fn add_each(&mut self, rule: &Rule, line: usize, found: String) {
         let at = self
             .0

@@ -229,7 +229,7 @@ impl<'a, 'b> Walk<'a, 'b> {
             let found = format!("<svg> of width {width}, height {height}, viewBox {view}");
             self.findings.add(rule, self.line, found);
         }
-        // How many px a page in mm has, its printer or its user decides.
+        // The printer or the user decides how many px a page in mm has.
         let in_px = is_px(units[0]);
         let scale = width.filter(|_| w > 0.0 && in_px);
         StrokeStyle::page(scale.map_or(1.0, |width| width / w)).within(root)

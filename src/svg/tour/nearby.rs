@@ -11,7 +11,7 @@ pub(super) struct Nearby<T> {
     side: f64,
     columns: usize,
     rows: usize,
-    /// What is in each cell, row by row.
+    /// Things in each cell, row by row.
     cells: Vec<Vec<(Spot, T)>>,
 }
 

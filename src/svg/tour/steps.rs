@@ -33,7 +33,7 @@ pub(super) struct Tour<'a> {
     precedence: &'a Precedence,
     /// Where the pen comes from.
     from: Option<Spot>,
-    /// What is left of [`EFFORT`].
+    /// Rest of [`EFFORT`].
     effort: usize,
 }
 
