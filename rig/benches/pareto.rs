@@ -21,7 +21,7 @@ use strokefit::report::Usage;
 use strokefit::{Error, ErrorKind, Result};
 use vtracer::{ColorImage, Config};
 
-/// What marks a process that measures one case.
+/// Mark of a process that measures one case.
 const CASE: &str = "--case";
 
 fn main() -> Result<()> {

@@ -62,7 +62,7 @@ const LARGE: random::Look = random::Look {
     opacity: 0.3..1.0,
 };
 
-/// How strokes are distributed, and how many there are of them: about what a stage holds.
+/// Distributions of strokes, and the number of strokes in each: about what a stage holds.
 const LOOKS: [(&str, usize, random::Look); 3] = [
     ("thin", 5000, THIN),
     ("medium", 2000, MEDIUM),
@@ -192,7 +192,7 @@ fn optim(criterion: &mut Criterion, image: &Image) {
     group.finish();
 }
 
-/// What is done with a finished drawing: written, read, rendered, judged.
+/// Times the work on a finished drawing: to write, read, render and judge it.
 fn drawing(criterion: &mut Criterion, image: &Image) {
     let scene = scene(image);
     let options = WriteOptions::default();

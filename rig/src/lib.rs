@@ -1,4 +1,4 @@
-//! What measures strokefit, and the experiments of the article that it started from; see `strokefit-rig --help`.
+//! Measurements of strokefit, and the experiments of the article that it started from; see `strokefit-rig --help`.
 //!
 //! It uses strokefit as any other program does, and is no part of what users install. A module imports only from
 //! modules above its own:

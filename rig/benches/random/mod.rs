@@ -5,7 +5,7 @@ use std::ops::Range;
 use strokefit::render::{Grid, Params, Strokes};
 use strokefit::rng;
 
-/// What random strokes are like.
+/// Distribution of random strokes.
 #[derive(Debug, Clone)]
 pub(crate) struct Look {
     /// Standard deviation of `b − a` along each axis, px.

@@ -168,7 +168,7 @@ struct Veil {
 
 #[derive(Clone, Copy)]
 struct Pixel {
-    /// Whether it is on the picture.
+    /// True if it is on the picture.
     inside: bool,
     through: f32,
     /// Transmittance were the most opaque stroke not there.

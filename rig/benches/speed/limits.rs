@@ -75,7 +75,7 @@ impl Limits {
                 let seconds = together(threads, rounds, || move || run(level, kind, chains));
                 (threads * chains * STEPS * 16) as f64 / seconds / 1e9
             };
-            // How many chains hide the latency depends on the registers there are.
+            // The number of chains that hides the latency depends on the registers there are.
             chains.iter().map(rate).fold(0.0, f64::max)
         };
         let copy = COPIES.map(|bytes| {

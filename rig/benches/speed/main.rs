@@ -67,7 +67,7 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// What to run.
+/// Options of a run.
 #[derive(Debug)]
 struct Options {
     picture: String,

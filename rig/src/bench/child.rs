@@ -15,7 +15,7 @@ use crate::report::pareto::ParetoEntry;
 use crate::report::scaling::PointEntry;
 use strokefit::{Error, ErrorKind, Result};
 
-/// What a child measures.
+/// Measurement that a child makes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum Measurement {

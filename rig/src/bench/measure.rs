@@ -16,7 +16,7 @@ pub const EDGE: Softness = Softness {
     width: 1.25,
 };
 
-/// How many strokes cover a pixel of a random drawing, on average.
+/// Mean number of strokes that cover a pixel of a random drawing.
 pub const DEPTH: f32 = 10.0;
 
 /// Strokes of one size.

@@ -16,12 +16,12 @@ use strokefit::{Error, ErrorKind, Result};
 /// Time between two readings of the memory of a running program.
 const LOOK_EVERY: Duration = Duration::from_millis(2);
 
-/// A program that takes longer is taken to hang, and is ended.
+/// A program that takes longer counts as hanging, and is ended.
 const LONGEST: Duration = Duration::from_secs(600);
 
 /// Somebody else who turns pictures into SVG.
 pub trait Peer {
-    /// What plots and tables call it.
+    /// Name in plots and tables.
     fn name(&self) -> &str;
 
     /// The settings that are run, rough to fine.
@@ -34,7 +34,7 @@ pub trait Peer {
     fn trace(&self, picture: &Image, settings: &str) -> Result<Traced>;
 }
 
-/// What a peer made.
+/// Drawing that a peer made.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Traced {
     /// The SVG.
@@ -56,7 +56,7 @@ struct Program {
     args: &'static [&'static str],
     /// An argument, and the text that the answer contains if the program is able to trace at all.
     can: Option<[&'static str; 2]>,
-    /// Whether it crashes without a display.
+    /// True if it crashes without a display.
     needs_display: bool,
 }
 
@@ -170,7 +170,7 @@ pub struct LinePeer {
 }
 
 impl LinePeer {
-    /// What tables call it.
+    /// Name in tables.
     pub fn name(&self) -> &str {
         self.peer.name()
     }
@@ -286,7 +286,7 @@ impl Program {
     }
 }
 
-/// Whether a window can be opened.
+/// True if a window can be opened.
 fn has_display() -> bool {
     let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
     !cfg!(target_os = "linux") || is_set("DISPLAY") || is_set("WAYLAND_DISPLAY")

@@ -1,4 +1,4 @@
-//! How time and memory grow with strokes, pixels and threads.
+//! Growth of time and memory with strokes, pixels and threads.
 //!
 //! Each point runs in a process of its own, since a process has only one peak memory.
 
@@ -20,9 +20,9 @@ use strokefit::rng;
 
 const BACKDROP: [f32; 3] = [0.5; 3];
 
-/// What a series does not vary: millions of pixels, and strokes.
+/// Values that a series keeps unless it varies them: millions of pixels, and strokes.
 const FIXED: (f64, usize) = (1.0, 5000);
-/// The same in a short run.
+/// Values in a short run.
 const FIXED_SHORT: (f64, usize) = (0.1, 1000);
 
 /// The largest case: millions of pixels, and strokes.
@@ -31,7 +31,7 @@ const LARGEST: (f64, usize) = (24.0, 20_000);
 /// Time spent on one point of [`Workload::Backward`], s.
 const ROUNDS_S: f64 = 1.0;
 
-/// What is timed.
+/// Work that is timed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Workload {
@@ -57,7 +57,7 @@ impl Workload {
     }
 }
 
-/// What grows along a series.
+/// Quantity that grows along a series.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Axis {
     Strokes,
@@ -78,15 +78,15 @@ impl Axis {
 /// One point of a series.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Point {
-    /// What is timed.
+    /// Work that is timed.
     pub workload: Workload,
     /// The picture, resampled to the size; a synthetic one when `None`.
     pub picture: Option<PathBuf>,
     /// Its size, in millions of pixels.
     pub megapixels: f64,
-    /// How many strokes.
+    /// Number of strokes.
     pub strokes: usize,
-    /// How many threads.
+    /// Number of threads.
     pub threads: usize,
 }
 
@@ -235,7 +235,7 @@ struct Time {
 }
 
 impl Point {
-    /// Measures this point. The peak memory of this process is reported as that of the point.
+    /// Measures this point. The peak memory of this process is reported as the point's.
     ///
     /// # Errors
     /// When the picture cannot be read or there are too many threads.

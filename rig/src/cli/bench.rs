@@ -127,7 +127,7 @@ impl Benchmark {
     }
 }
 
-/// What tells a child of this program that it is one.
+/// Arguments that tell a child of this program that it is one.
 const CHILD: [&str; 1] = ["case"];
 
 impl Pareto {

@@ -51,9 +51,9 @@ const FRAME_MS: u32 = 80;
 /// Number of strokes, steps and random start of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ArticleRun {
-    /// How many capsules, unless some are given.
+    /// Number of capsules, unless some are given.
     pub strokes: usize,
-    /// How many steps.
+    /// Number of steps.
     pub iterations: usize,
     /// Coverage function; a mix passes to the second after 70 % of the steps.
     pub coverage: CoverageSchedule,
@@ -258,7 +258,7 @@ fn finish(
     output.picture("article-svg.png", &drawn)
 }
 
-/// What is said of one picture.
+/// Row of the table on one picture.
 struct Row {
     iteration: usize,
     coverage: Coverage,

@@ -40,7 +40,7 @@ const TARGETS: [f64; 2] = [48.0, 16.0];
 
 const METHODS: [Method; 3] = [Method::rmsprop(0.1), Method::adam(2.0), Method::adamw(2.0)];
 
-/// How many starts are nudged, and by how many px more each: a rounding error of single precision.
+/// Number of nudged starts, and the px by which each is moved further: a rounding error of single precision.
 const NUDGES: usize = 17;
 const NUDGE: f64 = 4e-6;
 
@@ -151,8 +151,8 @@ fn experiment(
     Ok(())
 }
 
-/// How often each centred start finds its target when it is moved by rounding errors: a verdict
-/// that a millionth of a px turns is luck.
+/// Counts how often each centred start finds its target when it is moved by rounding errors: a verdict that a millionth
+/// of a px turns is luck.
 fn nudged() -> Table {
     let head = [
         "target",

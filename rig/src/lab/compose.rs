@@ -1,4 +1,4 @@
-//! How do coloured strokes make a picture?
+//! Composition of a picture from coloured strokes.
 //!
 //! The four strokes of the star, red, green, blue and yellow, are laid on grey one after another:
 //! `canvas ← canvas·(1−m) + colour·m` with `m = opacity·coverage`. Shown are `m`, the two products and
@@ -27,7 +27,7 @@ pub const GRAY: Rgb = [0.5; 3];
 
 const OPACITIES: [f64; 2] = [1.0, 0.5];
 
-/// How the small colour experiments render: pixels at integer coordinates.
+/// Renderer of the small colour experiments: pixels at integer coordinates.
 pub fn reference(coverage: Coverage) -> Reference {
     Reference {
         eps: 1e-4,
@@ -100,7 +100,7 @@ fn steps(scene: &Scene, reference: Reference) -> Vec<Overlay> {
     scene.strokes.iter().map(step).collect()
 }
 
-/// How much of each pixel the stroke takes: what white comes to on black.
+/// Share of each pixel that the stroke takes: the value of a white stroke on black.
 fn mask(scene: &Scene, stroke: Stroke, reference: Reference) -> Vec<f64> {
     let alone = Scene {
         background: [0.0; 3],

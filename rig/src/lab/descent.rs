@@ -39,7 +39,7 @@ pub enum MethodKind {
     RmsProp(RmsPropParams),
 }
 
-/// What the article gives Adam and AdamW in the small experiments.
+/// Parameters that the article gives Adam and AdamW in the small experiments.
 const ADAM: AdamParams = AdamParams {
     betas: [0.95, 0.999],
     eps: 1e-8,
@@ -100,7 +100,7 @@ impl fmt::Display for Method {
     }
 }
 
-/// What a descent passed through.
+/// Course of a descent.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory<T> {
     /// The loss before each step and, last, after all of them.

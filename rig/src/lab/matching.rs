@@ -10,7 +10,7 @@ use strokefit::sdf::{Capsule, Circle, Combination};
 
 /// A shape given by a few numbers, the last of which is its radius.
 pub trait Parametric<T: Real>: Sized {
-    /// How many numbers.
+    /// Number of parameters.
     const PARAMS: usize;
 
     /// The shape with these numbers.

@@ -52,7 +52,7 @@ pub const COVERAGES: [Coverage; 5] = [
     Coverage::Sigmoid,
 ];
 
-/// What the functions made of a small problem after `step` steps, a panel each.
+/// Sheet of a small problem after `step` steps, a panel for each function.
 fn sheet_of_step(title: &str, step: usize, panels: Vec<Panel>) -> Result<Image> {
     let sheet = Sheet {
         title: format!("{title}, step {step}"),

@@ -14,7 +14,7 @@ pub enum Notice<'a> {
     Doing {
         /// Which part of the whole is done, 0..1.
         done: f64,
-        /// What comes now.
+        /// Name of the part that comes now.
         what: &'a str,
     },
     /// A file is complete.

@@ -1,4 +1,4 @@
-//! What distances, coverage functions and combinations look like.
+//! Looks of distances, coverage functions and combinations.
 //!
 //! Pictures of the distance to a circle and to a capsule, of each coverage function applied to them,
 //! and of their union, intersection and subtraction; charts and a table of the coverage functions

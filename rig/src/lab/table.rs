@@ -9,7 +9,7 @@ use strokefit::math::Real;
 /// The steps whose losses are in the tables; the loss after all of [`STEPS`] is there too.
 pub const SHOWN: [usize; 6] = [0, 1, 10, 50, 100, 199];
 
-/// How many steps the small experiments make.
+/// Number of steps that the small experiments make.
 pub const STEPS: usize = 200;
 
 /// Labels of a descent: `[experiment, variant, coverage, optimizer, start]`.
@@ -37,7 +37,7 @@ pub trait EitherPrecision: Sync {
     /// The descent, all of it in the precision `T`.
     fn descend<T: Real>(&self) -> Trajectory<T>;
 
-    /// What it is of.
+    /// Labels of the descent.
     fn labels(&self) -> Labels;
 }
 

@@ -1,4 +1,4 @@
-//! What `strokefit-rig scaling` found.
+//! Findings of `strokefit-rig scaling`.
 
 use serde::{Deserialize, Serialize};
 use strokefit::report::SCHEMA;
@@ -40,12 +40,12 @@ impl Default for ScalingReport {
     }
 }
 
-/// How one task grows along one axis.
+/// Growth of one task along one axis.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SeriesEntry {
-    /// What was timed: `backward`, `stages` or `fit`.
+    /// Task that was timed: `backward`, `stages` or `fit`.
     pub task: String,
-    /// What grows: `strokes`, `pixels` or `threads`.
+    /// Quantity that grows: `strokes`, `pixels` or `threads`.
     pub axis: String,
     /// Where each point lies on the axis.
     pub values: Vec<f64>,
@@ -59,11 +59,11 @@ pub struct SeriesEntry {
     pub memory: Exponent,
     /// Points that could not be measured, and why.
     pub failures: Vec<String>,
-    /// Whether growth is no worse than it may be, and all points were measured.
+    /// Verdict: a pass if growth is no worse than it may be, and all points were measured.
     pub verdict: CaseVerdict,
 }
 
-/// What one point took.
+/// Cost of one point.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PointEntry {
     /// Millions of pixels.
@@ -164,7 +164,7 @@ impl SeriesEntry {
         }
     }
 
-    /// The same, but some points could not be measured, if there are `failures`.
+    /// This report, but with points that could not be measured, if there are `failures`.
     #[must_use]
     pub fn failing(mut self, failures: Vec<String>) -> Self {
         if !failures.is_empty() {
@@ -216,7 +216,7 @@ impl ScalingReport {
         ))
     }
 
-    /// How many series, or the largest picture, are beyond their bounds or could not be measured.
+    /// Number of series, and of largest pictures, that are beyond their bounds or could not be measured.
     pub fn failures(&self) -> usize {
         let unmeasured = self.largest_failure.iter().map(|_| CaseVerdict::Fail);
         let largest = self.largest.as_ref().map(largest_verdict);
@@ -225,7 +225,7 @@ impl ScalingReport {
         all.filter(|verdict| *verdict == CaseVerdict::Fail).count()
     }
 
-    /// What is quoted: one row per series.
+    /// Table to quote: one row per series.
     pub fn growth_table(&self) -> Table {
         let mut table = Table::new(&[
             "what",

@@ -1,4 +1,4 @@
-//! What `strokefit-rig stability` found.
+//! Findings of `strokefit-rig stability`.
 
 use serde::{Deserialize, Serialize};
 use strokefit::report::SCHEMA;
@@ -14,18 +14,18 @@ pub struct StabilityReport {
     pub entries: Vec<StabilityEntry>,
 }
 
-/// What one check found.
+/// Finding of one check.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StabilityEntry {
-    /// What kind of case it is.
+    /// Kind of the case.
     pub group: String,
     /// The case.
     pub name: String,
-    /// What was checked.
+    /// Property that was checked.
     pub checked: String,
-    /// What was found.
+    /// Figure that was found.
     pub figure: String,
-    /// Whether it holds.
+    /// Verdict on the case.
     pub verdict: CaseVerdict,
     /// Why an exception is one.
     pub note: String,
@@ -33,7 +33,7 @@ pub struct StabilityEntry {
     pub cpu_s: Option<f64>,
 }
 
-/// Whether a case holds.
+/// Verdict on a case: whether it holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CaseVerdict {
@@ -65,7 +65,7 @@ impl StabilityReport {
         }
     }
 
-    /// How many checks failed.
+    /// Number of checks that failed.
     pub fn failures(&self) -> usize {
         let failed = |entry: &&StabilityEntry| entry.verdict == CaseVerdict::Fail;
         self.entries.iter().filter(failed).count()

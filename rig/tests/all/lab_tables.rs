@@ -112,15 +112,14 @@ impl Row {
         }
     }
 
-    /// Whether a start off by a rounding error of single precision, some 1e-6 px, makes our run
-    /// end as this one.
+    /// True if a start off by a rounding error of single precision, some 1e-6 px, makes our run end as this one.
     fn ends_so_after_a_nudge(&self) -> bool {
         let nudges = (-4..=4).map(|k| f64::from(k) * 4e-6);
         let mut runs = nudges.map(|nudge| self.ours(nudge));
         runs.any(|losses| verdict(&losses) == verdict(&self.losses))
     }
 
-    /// Whether this is the same run as `other`, whatever its precision.
+    /// True if this is the same run as `other`, whatever its precision.
     fn is_run_of(&self, other: &Self) -> bool {
         let key = |row: &Self| {
             let name = (row.experiment.clone(), row.init.clone(), row.alternative);
@@ -130,7 +129,7 @@ impl Row {
     }
 }
 
-/// Whether a run found its target.
+/// True if a run found its target.
 fn verdict(losses: &[f64]) -> bool {
     losses.last().is_some_and(|&loss| loss < CONVERGED)
 }
@@ -149,7 +148,7 @@ fn half_digit(x: f64) -> f64 {
     0.5 * 10_f64.powf(x.abs().log10().floor() - 5.0)
 }
 
-/// What is wrong with our run of `row`, if anything.
+/// Faults of our run of `row`.
 fn judge(row: &Row, chaotic: bool) -> Vec<String> {
     let ours = row.ours(0.0);
     let mut complaints = Vec::new();

@@ -1,4 +1,4 @@
-//! How far centre lines are apart.
+//! Distances between centre lines.
 
 use strokefit::math::Point;
 use strokefit::verify::Element;

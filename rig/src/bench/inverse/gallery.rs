@@ -15,7 +15,7 @@ const PANEL_PX: usize = 192;
 /// Panels of a row at most, unless one drawing has more.
 const COLUMNS: usize = 6;
 
-/// How much of a picture is left below its centre lines.
+/// Share of a picture that is left below its centre lines.
 const FADED: f32 = 0.25;
 
 /// Colours of centre lines, one for each element in turn: Okabe & Ito, "Color universal design", 2008.
@@ -103,7 +103,7 @@ fn decibels(entry: &InverseEntry) -> String {
     format!("{:.1} dB", entry.psnr_db.unwrap_or(f64::NAN))
 }
 
-/// How many px of a panel a px of the picture takes.
+/// Px of a panel for each px of the picture.
 fn zoom(picture: &Image) -> usize {
     (PANEL_PX / picture.width().max(picture.height())).max(1)
 }

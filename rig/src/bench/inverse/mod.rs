@@ -22,13 +22,13 @@ use strokefit::{Error, ErrorKind, Result};
 /// A drawing of known strokes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Drawing {
-    /// What lines of the report call it.
+    /// Name in lines of the report.
     pub name: String,
     /// SVG text.
     pub svg: String,
 }
 
-/// What pictures are made of each drawing.
+/// Pictures that are made of each drawing.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Pictures {
     /// Their longer sides, px.
@@ -179,7 +179,7 @@ impl<'a> Case<'a> {
         })
     }
 
-    /// How many colours the strokes have.
+    /// Number of colours of the strokes.
     fn colors(&self) -> usize {
         let colors: BTreeSet<_> = self.original.iter().map(|element| element.color).collect();
         colors.len()

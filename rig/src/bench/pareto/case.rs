@@ -40,20 +40,20 @@ pub struct Case {
 pub enum Maker {
     /// A fit.
     Fit {
-        /// How much work.
+        /// Amount of work.
         effort: Effort,
         /// The coverage function or mix, in its own words.
         coverage: String,
-        /// How many strokes.
+        /// Number of strokes.
         strokes: usize,
         /// Key of every random draw.
         seed: u64,
     },
     /// The recipe of the article: all strokes at once, from a random start.
     Article {
-        /// How many strokes.
+        /// Number of strokes.
         strokes: usize,
-        /// How many iterations, or as many as fit in a time.
+        /// Number of iterations, or as many as fit in a time.
         limit: Limit,
         /// Key of the random start.
         seed: u64,
@@ -74,7 +74,7 @@ pub enum Maker {
     },
 }
 
-/// How much work a fit spends.
+/// Amount of work that a fit spends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Effort {
@@ -138,7 +138,7 @@ pub enum Limit {
     TimeOf {
         /// The fit.
         effort: Effort,
-        /// What it took, s.
+        /// CPU time that it took, s.
         cpu_s: f64,
     },
 }

@@ -9,7 +9,7 @@ use crate::lab::unwritten;
 use crate::report::pareto::ParetoEntry;
 use strokefit::{Error, ErrorKind, Result};
 
-/// What has been measured so far.
+/// Measurements so far.
 #[derive(Debug)]
 pub(super) struct Journal {
     path: PathBuf,

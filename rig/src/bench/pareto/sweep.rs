@@ -10,7 +10,7 @@ use crate::report::pareto::{OWN, ParetoEntry};
 use strokefit::coverage::CoverageSchedule;
 use strokefit::{Error, ErrorKind, Result};
 
-/// What a run measures.
+/// Measurements of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Work {
     /// Fits, the article's recipe and peers.
@@ -26,11 +26,11 @@ pub enum Work {
 pub struct Sweep {
     /// Numbers of strokes, with every effort and the first coverage function.
     pub strokes: Vec<usize>,
-    /// How much work the fits spend.
+    /// Amounts of work that the fits spend.
     pub efforts: Vec<Effort>,
     /// The first for everything; the others for a draft of the usual number of strokes.
     pub coverages: Vec<CoverageSchedule>,
-    /// How many seeds, for a balanced fit of the usual number of strokes.
+    /// Number of seeds, for a balanced fit of the usual number of strokes.
     pub seeds: u64,
     /// Strokes and iterations of the article's recipe.
     pub article: [usize; 2],
@@ -101,7 +101,7 @@ impl Sweep {
         let others = self.coverages[1..].iter();
         fits.extend(others.map(|coverage| fit(quick, coverage, usual, 0)));
         fits.extend((1..self.seeds).map(|seed| fit(balanced, first, usual, seed)));
-        // What the article's recipe is compared with, at its own number of strokes.
+        // Fits to compare the article's recipe with, at its own number of strokes.
         let beside =
             [Effort::Stages, Effort::Draft].map(|effort| fit(effort, first, self.article[0], 0));
         for maker in beside {
@@ -204,7 +204,7 @@ impl Work {
     }
 }
 
-/// The SVGs in `folders` that have the picture's name; the folder's name is that of the family.
+/// SVGs in `folders` that have the picture's name; a family is named as its folder.
 fn files(folders: &[PathBuf], picture: &Path) -> Result<Vec<Maker>> {
     let name = format!("{}.svg", stem(picture));
     let mut makers = Vec::new();

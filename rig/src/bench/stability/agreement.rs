@@ -1,4 +1,4 @@
-//! How far our render of one stroke is from resvg's, as a map over its width and angle.
+//! Distance of our render of one stroke from resvg's, as a map over its width and angle.
 //!
 //! The stroke is black on white, 40 px long, at four places within a pixel. The error is the root mean
 //! square over the pixels that either render touches, in 8-bit levels. Widths of 1 px and less take

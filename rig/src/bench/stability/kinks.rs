@@ -23,7 +23,7 @@ const SMOOTH: [Coverage; 5] = [
 const JUMP: &str =
     "the derivative of `raw` jumps at its end, and f32 rounds some pixels to the other side";
 
-/// What the gradient of the other end of a disc may make of the largest gradient, as a share.
+/// Largest gradient of the other end of a disc, as a share of the largest gradient.
 const ANOTHER_END: f64 = 0.1;
 
 const DISC: &str = "a capsule of zero length is a disc by definition: the gradient of both ends goes to the first, \
@@ -100,7 +100,7 @@ struct Bend {
 const MEDIAL: &str = "these pixels are equally near to two segments: all of the derivative goes to one of them, and \
                       f32 may take the other one";
 
-/// How far a gradient may be beyond the one-sided slopes at such pixels.
+/// Largest excess of a gradient over the one-sided slopes at such pixels.
 const MEDIAL_WITHIN: f64 = 1e-2;
 
 const BENDS: [Bend; 7] = [
@@ -211,11 +211,11 @@ fn dot() -> Params {
     [11.5, 9.5, 11.5, 9.5, 3.3, 0.9, 0.2, 0.1, 0.7]
 }
 
-/// What was found of a page.
+/// Findings on a page.
 #[derive(Debug, Clone, Copy)]
 struct Found {
     gap: Gap,
-    /// How far gradients are beyond the one-sided slopes.
+    /// Excess of gradients over the one-sided slopes.
     outside: f64,
 }
 
@@ -233,7 +233,8 @@ impl Found {
         self.outside <= WITHIN
     }
 
-    /// The same where pixels are equally near to two segments, so that rounding chooses between two derivatives.
+    /// True if gradients lie between the slopes within [`MEDIAL_WITHIN`]: where pixels are equally near to two
+    /// segments, rounding chooses between two derivatives.
     fn is_nearly_between(self) -> bool {
         self.outside <= MEDIAL_WITHIN
     }
@@ -245,8 +246,7 @@ impl Found {
     }
 }
 
-/// How far the gradients of the reference lie outside of the slopes on both sides, as a share of the
-/// largest of them.
+/// Excess of the reference's gradients over the slopes on both sides, as a share of the largest gradient.
 fn beyond_slopes(page: &Specimen, coverage: Coverage) -> Result<f64> {
     let (scene, target) = (page.naive(), pixels(&page.noise()?));
     let reference = oracle(coverage);

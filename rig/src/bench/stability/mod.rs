@@ -30,7 +30,7 @@ use strokefit::report::Usage;
 /// Gradients and worths in `f32` may differ from `f64` by this share of the largest of their kind.
 pub const WITHIN: f64 = 1e-3;
 
-/// How much is run.
+/// Extent of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Extent {
     /// About half a minute.
@@ -39,7 +39,7 @@ pub enum Extent {
     Full,
 }
 
-/// What a check found.
+/// Finding of a check.
 struct Observation {
     figure: String,
     verdict: CaseVerdict,
@@ -61,7 +61,7 @@ impl Observation {
         }
     }
 
-    /// The same, but a failure that is known and explained by `note` is an exception.
+    /// This observation, but a failure that is known and explained by `note` is an exception.
     fn excepting(self, note: &'static str) -> Self {
         match self.verdict {
             CaseVerdict::Fail if !note.is_empty() => Self {

@@ -41,8 +41,8 @@ pub(super) struct Specimen {
     pub(super) strokes: Strokes,
 }
 
-/// How far `f32` is from `f64`, each relative to the largest value of its kind; the canvas in absolute
-/// terms. Infinite where something is not finite.
+/// Distance of `f32` from `f64`, each relative to the largest value of its kind; the canvas in absolute terms. Infinite
+/// where something is not finite.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Gap {
     pub(super) canvas: f64,
@@ -166,7 +166,7 @@ impl Specimen {
         Ok((canvas.to_image(), gradients))
     }
 
-    /// The same scene for the reference.
+    /// This scene for the reference.
     pub(super) fn naive(&self) -> reference::Scene {
         reference::Scene {
             width: self.width,

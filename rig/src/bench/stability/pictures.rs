@@ -132,7 +132,7 @@ fn noise(x: usize, y: usize) -> [f32; 3] {
     [0, 1, 2].map(|c| rng::draw(11, x as u64, y as u64, c))
 }
 
-/// Whether a drawing of the picture is sound; resvg may draw it otherwise than it was fitted if there is an
+/// Checks that a drawing of the picture is sound; resvg may draw it otherwise than it was fitted if there is an
 /// `exception` for that.
 fn finding(picture: &Image, strokes: usize, exception: &'static str) -> Result<Observation> {
     let config = Config {
@@ -170,7 +170,7 @@ fn drawn(picture: &Image, config: &Config, threads: usize) -> Result<(Fit, Strin
     Ok((fit, text))
 }
 
-/// What is right about a drawing.
+/// Properties of a drawing that make it sound.
 pub(super) struct Sound {
     strokes: usize,
     verdict: Verdict,
@@ -212,7 +212,7 @@ impl Sound {
         self.is_valid() && self.useful
     }
 
-    /// Whether it can be drawn as it was fitted, good or bad.
+    /// True if it can be drawn as it was fitted, good or bad.
     pub(super) fn is_valid(&self) -> bool {
         self.finite && self.verdict.agrees()
     }

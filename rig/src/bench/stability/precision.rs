@@ -121,7 +121,7 @@ fn descend32(
     Ok((page, gradients.loss))
 }
 
-/// The same in `f64`, with the reference renderer.
+/// Descends in `f64`, with the reference renderer.
 fn descend64(mut scene: Scene, target: &Image, rates: &[f64], iterations: usize) -> (Scene, f64) {
     let (reference, target) = (oracle(Coverage::Smoothstep), pixels(target));
     let mut adam = Adam::new(rates.len(), AdamParams::default());

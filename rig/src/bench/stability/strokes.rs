@@ -167,7 +167,7 @@ fn walk(points: usize) -> Strokes {
     strokes
 }
 
-/// The same stroke `count` times.
+/// Page of one stroke, `count` times.
 fn pile(count: usize, stroke: Params) -> Specimen {
     Specimen::new(12, 12, std::iter::repeat_n(stroke, count).collect())
 }
@@ -252,7 +252,7 @@ mod tests {
         assert!(finding.figure.starts_with("27 of 27"), "{}", finding.figure);
     }
 
-    /// What the exception of identical opaque strokes says: there is next to nothing to be wrong about.
+    /// Checks what the exception of identical opaque strokes says: there is next to nothing to be wrong about.
     #[test]
     fn identical_opaque_strokes_have_next_to_no_gradients() {
         let stroke = [3.0, 4.0, 9.0, 7.0, 2.0, 0.9, 0.2, 0.1, 1.0];

@@ -25,7 +25,7 @@ pub struct Capsules {
     pub strokes: Strokes,
 }
 
-/// The same as it is saved.
+/// Capsules as they are saved.
 #[derive(Serialize, Deserialize)]
 struct Saved {
     width: usize,
@@ -60,9 +60,9 @@ impl From<Capsules> for Saved {
 /// The radii of a drawing, in short.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Statistics {
-    /// How many strokes.
+    /// Number of strokes.
     pub strokes: usize,
-    /// How many of radius 0.
+    /// Number of strokes of radius 0.
     pub at_zero: usize,
     /// Mean radius, px.
     pub mean_radius: f64,

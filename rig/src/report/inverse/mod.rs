@@ -1,4 +1,4 @@
-//! What `strokefit-rig inverse` found: how much of a drawing is found again in its picture.
+//! Findings of `strokefit-rig inverse`: how much of a drawing is found again in its picture.
 
 mod charts;
 
@@ -21,7 +21,7 @@ pub struct InverseReport {
     pub entries: Vec<InverseEntry>,
 }
 
-/// What a drawing consists of.
+/// Contents of a drawing.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Inventory {
     /// Elements with a stroke, or else those that are filled.
@@ -47,7 +47,7 @@ pub struct InverseEntry {
     pub jpeg: Option<u8>,
     /// The drawing.
     pub original: Inventory,
-    /// What was found.
+    /// Contents of the drawing that was found.
     pub found: Inventory,
     /// Fidelity of the found file to the picture, dB.
     pub psnr_db: Option<f64>,
@@ -117,7 +117,7 @@ impl InverseReport {
         }
     }
 
-    /// How many drawings could not be made.
+    /// Number of drawings that could not be made.
     pub fn failures(&self) -> usize {
         let failed = self.entries.iter().filter(|e| e.failure.is_some());
         failed.count()

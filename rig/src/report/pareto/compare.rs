@@ -7,15 +7,15 @@ use serde::{Deserialize, Serialize};
 pub struct Comparison {
     /// The picture.
     pub picture: String,
-    /// What is claimed.
+    /// Claim in words.
     pub claim: String,
-    /// What was found.
+    /// Figure that was found.
     pub figure: String,
-    /// Whether it holds.
+    /// Verdict on the claim.
     pub holds: Holds,
 }
 
-/// Whether a claim holds.
+/// Verdict on a claim: whether it holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Holds {

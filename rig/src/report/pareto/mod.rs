@@ -38,9 +38,9 @@ pub struct ParetoReport {
     pub schema: u32,
     /// One per drawing.
     pub entries: Vec<ParetoEntry>,
-    /// What was claimed, and whether it holds.
+    /// Claims, and whether they hold.
     pub comparisons: Vec<Comparison>,
-    /// How much seeds differ.
+    /// Spreads over seeds.
     pub spreads: Vec<Spread>,
 }
 
@@ -59,7 +59,7 @@ pub struct ParetoEntry {
     pub family: String,
     /// With which settings; family and label tell the drawings of a picture apart.
     pub label: String,
-    /// How much work, for our own: `stages`, `draft`, `balanced` or `best`.
+    /// Amount of work, for our own: `stages`, `draft`, `balanced` or `best`.
     pub preset: Option<String>,
     /// The coverage function, for our own.
     pub coverage: Option<String>,
@@ -88,7 +88,7 @@ pub struct ParetoEntry {
 }
 
 impl ParetoEntry {
-    /// What tells the drawing from all others.
+    /// Name that tells the drawing from all others.
     pub fn id(&self) -> String {
         format!(
             "{} {} {} {}",
@@ -106,7 +106,7 @@ impl ParetoEntry {
         format!("{}.svg", name.trim_matches('-'))
     }
 
-    /// How many strokes a fit was given, in words: the second word of its label.
+    /// Number of strokes that a fit was given, in words: the second word of its label.
     fn asked_strokes(&self) -> Option<&str> {
         self.label.split(' ').nth(1).filter(|_| self.family == OWN)
     }
@@ -116,7 +116,7 @@ impl ParetoEntry {
         self.fidelity.map(|quality| quality.psnr_db)
     }
 
-    /// What people see of it, where there is a drawing.
+    /// Fidelity as people see it, where there is a drawing.
     pub fn ssimulacra2(&self) -> Option<f64> {
         self.fidelity.map(|quality| quality.ssimulacra2)
     }
@@ -159,7 +159,7 @@ impl ParetoReport {
         }
     }
 
-    /// How many drawings failed, and claims do not hold.
+    /// Number of drawings that failed, and of claims that do not hold.
     pub fn failures(&self) -> usize {
         let failed = self.entries.iter().filter(|e| e.failure.is_some());
         let refuted = self
@@ -170,7 +170,7 @@ impl ParetoReport {
     }
 }
 
-/// What follows from `entries`. That fits beat the article's own run by so much is a claim, and a failure
+/// Comparisons that follow from `entries`. That fits beat the article's own run by so much is a claim, and a failure
 /// where it does not hold; all other comparisons are findings.
 pub fn comparisons(entries: &[ParetoEntry]) -> Vec<Comparison> {
     let mut all = Vec::new();

@@ -14,7 +14,7 @@ use strokefit::Result;
 pub struct Exhibit {
     /// The picture it is of.
     pub picture: String,
-    /// What is written beneath.
+    /// Text beneath.
     pub caption: String,
     /// The file as resvg draws it, as PNG.
     pub drawn: Vec<u8>,

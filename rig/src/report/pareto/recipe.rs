@@ -10,7 +10,7 @@ const MAX_TIME: f64 = 0.25;
 /// Resolution of CPU time, s.
 const TICK_S: f64 = 0.01;
 
-/// How the label of the article's own run begins. The claim is made of this run only.
+/// Start of the label of the article's own run. The claim is made of this run only.
 const OWN_RUN: &str = "5000 strokes, 1500 iterations";
 /// Least pixels per stroke for the claim; the article's demo has 24. Where strokes are as small as pixels, there
 /// is little to gain.

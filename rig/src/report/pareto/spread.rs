@@ -12,7 +12,7 @@ pub struct Spread {
     pub picture: String,
     /// Who, and with which settings.
     pub label: String,
-    /// How many seeds.
+    /// Number of seeds.
     pub seeds: usize,
     /// Mean and standard deviation of the fidelity, dB.
     pub psnr_db: [f64; 2],

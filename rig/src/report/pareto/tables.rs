@@ -4,7 +4,7 @@ use super::{ParetoEntry, ParetoReport, Spread, optional};
 use crate::report::Table;
 use strokefit::metrics::Quality;
 
-/// What the figures are.
+/// Note on the meaning of the figures.
 pub(super) const NOTE: &str = "Fidelity compares resvg's render of the file with the picture, over 8-bit RGB on white. \
                                Times cover making the drawing, not reading the picture or judging the file. CPU \
                                time is the sum over all threads, in hundredths of a second. Each case is a process \
@@ -71,7 +71,7 @@ impl ParetoReport {
         format!("# Cost against error\n\n{NOTE}\n{sections}")
     }
 
-    /// What is quoted: titles and tables.
+    /// Titles and tables to quote.
     pub(super) fn quoted(&self) -> [(&'static str, Table); 5] {
         [
             ("Fits", self.preset_table()),
@@ -82,7 +82,7 @@ impl ParetoReport {
         ]
     }
 
-    /// What it rests on.
+    /// Tables that the quoted ones rest on.
     pub(super) fn details(&self) -> [(&'static str, Table); 1] {
         [("Drawings", self.table())]
     }

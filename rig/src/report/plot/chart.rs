@@ -33,15 +33,15 @@ pub struct Chart {
     pub title: String,
     /// Below the horizontal axis, and beside the vertical one.
     pub axes: [String; 2],
-    /// Whether the vertical axis is logarithmic; values ≤ 0 are then left out.
+    /// True if the vertical axis is logarithmic; values ≤ 0 are then left out.
     pub logarithmic: bool,
-    /// Whether the horizontal axis is.
+    /// True if the horizontal axis is logarithmic.
     pub logarithmic_x: bool,
     /// The lines, with their legends.
     pub series: Vec<(String, Vec<[f64; 2]>)>,
     /// Points in the colour of the line of the same index.
     pub marks: Vec<Vec<[f64; 2]>>,
-    /// Whether the legend is beside the chart, because lines may be anywhere.
+    /// True if the legend is beside the chart, because lines may be anywhere.
     pub legend_beside: bool,
 }
 
@@ -247,7 +247,7 @@ fn significant(v: f64) -> String {
     format!("{:.digits$}", (v * unit).round() / unit)
 }
 
-/// Whether the numbers of a logarithmic axis need no exponents.
+/// True if the numbers of a logarithmic axis need no exponents.
 fn is_plain((low, high): (f64, f64)) -> bool {
     low > -1.5 && high < 6.0
 }

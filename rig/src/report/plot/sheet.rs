@@ -16,7 +16,7 @@ pub struct Path {
     pub points: Vec<[f64; 2]>,
     /// 8-bit RGB.
     pub color: [u8; 3],
-    /// Whether it ends in an arrow's head.
+    /// True if it ends in an arrow's head.
     pub arrow: bool,
 }
 
@@ -47,7 +47,7 @@ impl Panel {
 pub struct Sheet {
     /// Above all of them; nothing when empty.
     pub title: String,
-    /// How many in a row.
+    /// Number of panels in a row.
     pub columns: usize,
     /// Px of the sheet per px of a picture.
     pub zoom: usize,
