@@ -30,7 +30,7 @@ pub(crate) fn draw(
     let drawing = Fitter::new(config).fit(&picture)?;
     let text = drawing.svg();
     std::fs::write(output, &text)?;
-    // What a renderer that knows nothing of the fit makes of the text.
+    // The judge is a renderer that knows nothing of the fit.
     Ok(verify::fidelity(&text, &drawing.target)?)
 }
 

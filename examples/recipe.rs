@@ -39,7 +39,7 @@ impl Number<'_> {
     }
 }
 
-/// What a fit of a picture has to be like for a number to matter.
+/// Kind of fit for which a number matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Setting {
     /// 300 strokes.

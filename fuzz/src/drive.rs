@@ -13,7 +13,7 @@ use strokefit::rng;
 
 use super::TARGETS;
 
-/// What no input may take.
+/// Most time for an input.
 const LIMIT: Duration = Duration::from_secs(10);
 /// Longest input.
 const LONGEST: usize = 1 << 14;

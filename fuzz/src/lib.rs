@@ -17,7 +17,7 @@ use strokefit::verify::{self, Size};
 pub use drive::drive;
 pub use scene::scene;
 
-/// What panics for an input for which something does not hold.
+/// Function that panics for an input for which something does not hold.
 pub type Target = fn(&[u8]);
 
 /// The targets, by name.
@@ -50,7 +50,7 @@ pub fn picture(data: &[u8]) {
     }
 }
 
-/// What is read is written and read back as it was; what is drawn has the size asked for.
+/// A drawing that is read can be written and read back as it was; a render has the size asked for.
 pub fn svg(data: &[u8]) {
     let text = String::from_utf8_lossy(data);
     if let Ok(scene) = svg::read(&text) {
@@ -96,7 +96,7 @@ pub fn words(data: &[u8]) {
     }
 }
 
-/// What is read is written as what is read the same; why it is not read otherwise.
+/// A value that is read is written as text that reads the same. Returns why it is not read otherwise.
 fn word<T: Display + FromStr<Err = strokefit::Error>>(text: &str) -> Option<String> {
     match text.parse::<T>() {
         Ok(value) => {

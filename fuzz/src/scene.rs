@@ -92,7 +92,7 @@ impl Source<'_> {
     }
 }
 
-/// What an SVG can say is said, and drawn finite; anything else is dropped without harm.
+/// An SVG says all that it can, and its render is finite; anything else is dropped without harm.
 pub fn scene(data: &[u8]) {
     let mut source = Source(data);
     let (scene, softness, precision) = (source.scene(), source.softness(), source.byte() % 8);

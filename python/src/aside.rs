@@ -11,7 +11,7 @@ use strokefit::fit::{CancelToken, Observer, Progress};
 
 use crate::failure::Failure;
 
-/// How often the caller looks for signals: Ctrl-C is answered within this time.
+/// Time between the caller's looks for signals: Ctrl-C is answered within this time.
 const POLL: Duration = Duration::from_millis(50);
 
 /// The stack of the thread, bytes: as much as a program's first thread has on Linux.
@@ -75,7 +75,7 @@ fn run<T: Send>(
     let _ = sender.send(Message::End(outcome));
 }
 
-/// What a panic says.
+/// Text of a panic.
 fn words(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(ToString::to_string);
     text.or_else(|| panic.downcast_ref().cloned())

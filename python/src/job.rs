@@ -8,7 +8,7 @@ use strokefit::report::{self, FitReport, Judged, Run, Usage};
 use crate::failure::{Failure, expect_memory};
 use crate::picture::Picture;
 
-/// What to draw, and how.
+/// Picture to draw, and the options of the drawing.
 pub(crate) struct Job {
     /// Start of the time budget.
     pub(crate) start: Instant,
@@ -22,7 +22,7 @@ pub(crate) struct Job {
 pub(crate) struct BaseText {
     pub(crate) text: String,
     pub(crate) name: String,
-    /// Whether its strokes stay as they are.
+    /// True if its strokes stay as they are.
     pub(crate) kept: bool,
 }
 
@@ -54,7 +54,7 @@ impl Job {
             base: base_name.as_deref(),
             config: &config,
             wall: self.start.elapsed(),
-            // What the process has used says little of one fit among others.
+            // Usage of the process says little of one fit among others.
             usage: Usage::default(),
         };
         let mut report = FitReport::of(&judged, &run);

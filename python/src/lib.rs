@@ -52,7 +52,7 @@ impl CancelToken {
         self.0.cancel();
     }
 
-    /// Whether `cancel()` was called.
+    /// True if `cancel()` was called.
     #[getter]
     fn cancelled(&self) -> bool {
         self.0.is_cancelled()
@@ -148,7 +148,7 @@ fn judge(py: Python<'_>, svg: String, picture: &Bound<'_, PyAny>) -> PyResult<St
 /// The command line.
 #[pyfunction]
 fn main(py: Python<'_>, args: Vec<OsString>) -> u8 {
-    /// What a Rust program exits with after a panic.
+    /// Exit status of a Rust program after a panic.
     const PANICKED: u8 = 101;
     py.detach(|| panic::catch_unwind(|| cli::main(args)).unwrap_or(PANICKED))
 }

@@ -7,7 +7,7 @@ use strokefit::fit::{Options, Refusal, Value};
 
 use crate::failure::Failure;
 
-/// What the dictionary says.
+/// Reads the options that the dictionary gives.
 pub(crate) fn read(given: &Bound<'_, PyDict>) -> PyResult<Options> {
     let mut options = Options::default();
     for (name, object) in given.iter().filter(|(_, object)| !object.is_none()) {

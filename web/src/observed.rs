@@ -49,7 +49,7 @@ impl Observed {
         Self(())
     }
 
-    /// What the watcher threw, which stopped the fit.
+    /// Exception of the watcher, which stopped the fit.
     pub(crate) fn thrown(&self) -> Option<JsValue> {
         THROWN.take()
     }

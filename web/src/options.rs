@@ -4,14 +4,14 @@ use serde_json::Value as Json;
 use strokefit::fit::{self, Config, OPTIONS, Refusal, Value};
 use strokefit::{Error, ErrorKind, Result};
 
-/// What to draw, and what to go on from.
+/// Configuration of the fit, and the drawing to go on from.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub struct Options {
     /// The configuration of the fit.
     pub config: Config,
     /// The text of an SVG to go on from.
     pub base: Option<String>,
-    /// Whether the strokes of the base stay as they are.
+    /// True if the strokes of the base stay as they are.
     pub freeze_base: bool,
 }
 
