@@ -340,7 +340,7 @@ fn fit_writes_a_file_that_check_and_render_understand() {
         "{record}"
     );
 
-    // What the report says is what anyone can measure; the gem's transparent parts are laid on white.
+    // The report says what anyone can measure; the gem's transparent parts are laid on white.
     let check = place.run(&[
         "check",
         "gem.svg",
@@ -593,7 +593,7 @@ fn a_large_picture_is_drawn_of_fewer_pixels() {
     );
     let text = fs::read_to_string(place.path("out.svg")).unwrap();
     assert!(text.contains(r#"width="1536" height="1280" viewBox="0 0 768 640""#));
-    // What is drawn of a reduced picture goes on from there.
+    // A refinement goes on from the drawing of a reduced picture.
     let refine = [
         "refine",
         "out.svg",

@@ -30,7 +30,7 @@ fn allowed() -> Vec<String> {
     quoted.map(str::to_owned).collect()
 }
 
-/// Whether one of the alternatives of a licence expression is allowed as a whole.
+/// True if one of the alternatives of a licence expression is allowed as a whole.
 fn is_allowed(expression: &str, allowed: &[String]) -> bool {
     let all = expression.split(" AND ");
     all.map(|part| part.trim_matches(['(', ')'])).all(|part| {

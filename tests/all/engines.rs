@@ -79,7 +79,7 @@ fn draws_fits_as_faithfully_as_resvg(name: &str) {
         let (resvg, other) = (entry(&record, "resvg"), entry(&record, name));
         let db = |entry: &Value| entry["fidelity"]["psnr_db"].as_f64().unwrap();
         assert!(db(other) >= db(resvg) - 0.6, "{svg}: {record}");
-        // Programs differ along edges, of which the cup has those of 1,300 strokes on 300×200 px.
+        // Programs differ along edges. The cup has the edges of 1,300 strokes on 300×200 px.
         assert!(
             other["against_resvg"]["psnr_db"].as_f64().unwrap() > 39.0,
             "{svg}: {record}"
@@ -98,7 +98,7 @@ struct Fitted {
     name: &'static str,
     text: String,
     target: Image,
-    /// What resvg's render has at least, and how far the model of the browser agrees with Chromium.
+    /// Least fidelity of resvg's render, and least agreement of the model of the browser with Chromium.
     least_db: f64,
     foreseen_db: f64,
 }
@@ -164,7 +164,7 @@ fn draws_fits_of_many_strokes_as_faithfully_as_resvg(name: &str) {
     }
 }
 
-/// What fits are settled for is what Chromium draws.
+/// Chromium draws what fits are settled for.
 #[test]
 fn chromium_draws_as_it_is_foreseen() {
     let Some(chromium) = installed("chromium") else {
@@ -404,7 +404,7 @@ fn kinds() -> Vec<(&'static str, Scene)> {
     kinds
 }
 
-/// What the engine draws of `svg` at this size, and what resvg does.
+/// Renders of `svg` at this size, by the engine and by resvg.
 fn drawn_by_both(
     engine: &Engine,
     program: &Path,
@@ -518,7 +518,7 @@ fn scales_to_the_size_asked_for(name: &str) {
 }
 
 fn leaves_nothing_in_the_home(name: &str) {
-    // What keeps the home leaves it as it is by not being told another; it may look into it.
+    // A program that keeps the home leaves it as it is by not being told another; it may look into it.
     let Some((engine, _)) = installed(name) else {
         return;
     };

@@ -463,7 +463,7 @@ fn strokes_that_become_no_numbers_are_dropped_and_counted() {
     recipe.polish.rates = poison(recipe.polish.rates);
     let config = Config {
         recipe: Some(recipe),
-        // All at once: a stage of which nothing is left is the last.
+        // All at once: a stage that keeps nothing is the last.
         stages: Some(1),
         ..draft(40)
     };

@@ -74,7 +74,7 @@ fn image(text: &str) -> Image {
     verify::render(text, size, Some([1.0; 3])).unwrap()
 }
 
-/// How alike resvg draws two files, dB.
+/// Agreement of resvg's renders of two files, dB.
 fn agreement(a: &str, b: &str) -> f64 {
     strokefit::metrics::Agreement::between(&image(a), &image(b))
         .unwrap()

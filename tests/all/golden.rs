@@ -238,7 +238,8 @@ fn flat(strokes: &[Stroke], background: Rgb) -> Vec<f64> {
     strokes.chain(background).collect()
 }
 
-/// What the golden data's program clamps after each step; its strokes have no opacity to fit.
+/// Scene of the parameters as the golden data's program clamps them after each step; its strokes have no opacity to
+/// fit.
 fn clamped(params: &[f64], case: &Case) -> Scene {
     let (width, height) = (case.cols as f64, case.rows as f64);
     let unit = |rgb: Rgb| rgb.map(|c| c.clamp(0.0, 1.0));

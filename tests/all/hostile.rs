@@ -13,7 +13,7 @@ use strokefit::report::Usage;
 use strokefit::verify::{self, Size};
 use strokefit::{Result, rng, svg};
 
-/// What no file may take, on a busy machine; without others it is a second at most.
+/// Most time for a file, on a busy machine; without others it is a second at most.
 const PATIENCE: Duration = Duration::from_secs(60);
 /// Most memory that the process may have held at the end of a test.
 const MAX_BYTES: u64 = 1_500 << 20;
@@ -373,7 +373,7 @@ fn damaged_svg_files() {
     assert_frugal();
 }
 
-/// What resvg says when it panics is nothing for the user: the program says what is wrong in its own words.
+/// Words of resvg when it panics are nothing for the user: the program says what is wrong in its own words.
 #[test]
 fn a_panic_of_resvg_is_an_error_like_any_other() {
     let folder = tempfile::tempdir().unwrap();

@@ -16,7 +16,7 @@ const CRATE: &str = env!("CARGO_PKG_NAME");
 /// A module's path from the root of the crate: `["fit", "config"]`.
 type Module = Vec<String>;
 
-/// What a file declares by `use` (the name it goes by, and the path), and all the paths it mentions.
+/// Names that a file declares by `use`, with their paths, and all the paths that it mentions.
 #[derive(Default)]
 struct Source {
     names: BTreeMap<String, Vec<String>>,
@@ -81,7 +81,7 @@ impl Sources {
     }
 }
 
-/// How many re-exports of re-exports are followed.
+/// Number of re-exports of re-exports that are followed.
 const RE_EXPORTS: usize = 8;
 
 fn list(folder: &Path, files: &mut Vec<PathBuf>) {

@@ -13,7 +13,7 @@ use crate::support::skip::skip;
 
 /// A fit that takes hours when it is left alone.
 const ENDLESS: [&str; 4] = ["--preset", "best", "--strokes", "30000"];
-/// What no moment of a fit may take, even on a busy machine.
+/// Most time for any moment of a fit, even on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 fn picture(place: &Place, width: u32, height: u32) {
@@ -60,7 +60,7 @@ fn await_arrival(child: &Child, signal: i32) {
     }
 }
 
-/// Whether `signal` is in a set of signals that Linux tells of a process.
+/// True if `signal` is in a set of signals that Linux tells of a process.
 fn is_in(process: u32, set: &str, signal: i32) -> bool {
     let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
     let line = status.lines().find_map(|l| l.strip_prefix(set));

@@ -1,4 +1,4 @@
-//! What a binding needs, with the library alone: `cargo test --no-default-features --test all library::`.
+//! Needs of a binding, with the library alone: `cargo test --no-default-features --test all library::`.
 
 use std::time::Duration;
 

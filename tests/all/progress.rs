@@ -6,7 +6,7 @@ use std::process::Stdio;
 use crate::support::place::{Place, STROKEFIT};
 use crate::support::repository::committed;
 
-/// What a terminal 120 columns wide gets to see of `strokefit ARGS`.
+/// Text that a terminal 120 columns wide gets to see of `strokefit ARGS`.
 fn on_a_terminal(place: &Place, args: &str) -> String {
     let output = place
         .command("script")

@@ -367,7 +367,7 @@ fn the_page_keeps_its_width() {
     assert!(read(&place, "more.svg").contains("width=\"120mm\" height=\"80mm\""));
 }
 
-/// What is clear in both stays clear, and no background is drawn.
+/// Parts that are clear in both stay clear, and no background is drawn.
 #[test]
 fn transparency_is_kept() {
     let place = Place::new();
@@ -505,7 +505,7 @@ fn the_strokes_of_a_base_get_the_few_colours_too() {
         assert_eq!((drawn + hidden).to_string(), strokes);
         assert!(hidden < drawn / 4, "{hidden}");
     }
-    // What has few colours already is left as it is.
+    // A drawing that has few colours already is left as it is.
     let strokes = svg::read(&read(&place, "few.svg"))
         .unwrap()
         .len()

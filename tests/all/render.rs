@@ -18,7 +18,7 @@ use strokefit::scene::{Path, PathPoint, Stroke};
 
 /// ε of the fast renderer's distances, px².
 const EPS: f64 = 1e-6;
-/// What culling behind opaque strokes (1/4096) and `f32` may change a channel by.
+/// Largest change of a channel by culling behind opaque strokes (1/4096) and by `f32`.
 const IMAGE_TOLERANCE: f64 = 4e-4;
 /// Largest error of a gradient, relative to the largest gradient of its kind in the scene.
 const GRADIENT_TOLERANCE: f64 = 1e-3;
@@ -342,7 +342,7 @@ fn differentiated_on_mattes(case: &Case, simd: Simd, softness: Softness) -> Grad
     gradients
 }
 
-/// The same in two passes.
+/// Gradients as in one pass, but made in two.
 fn differentiated_one_by_one(case: &Case, simd: Simd, softness: Softness) -> [Gradients; 2] {
     let (targets, below) = two_mattes(case);
     let backdrops = [Backdrop::Color(BACKGROUND), Backdrop::Canvas(&below)];
@@ -368,7 +368,7 @@ fn levels() -> impl Iterator<Item = Simd> {
     Simd::ALL.into_iter().filter(|simd| simd.level().is_some())
 }
 
-/// What differs between the fast image and the naive one.
+/// Differences between the fast image and the naive one.
 fn image_failures(case: &Case, softness: Softness) -> Vec<String> {
     let fast = rendered(case, Simd::Auto, softness);
     let slow = oracle(softness.coverage, softness.width).render(&naive(case));
@@ -448,7 +448,7 @@ fn slopes(loss: Loss, canvas: &[[f64; 3]], target: &[[f64; 3]]) -> Vec<[f64; 3]>
     slopes.as_chunks().0.to_vec()
 }
 
-/// What differs between the fast gradients and worths and the naive ones.
+/// Differences between the fast gradients and worths and the naive ones.
 fn gradient_failures(case: &Case, coverage: Coverage, width: f32, loss: Loss) -> Vec<String> {
     let fast = differentiated(case, Simd::Auto, Softness { coverage, width }, loss);
     let (scene, oracle) = (naive(case), oracle(coverage, width));
@@ -602,7 +602,7 @@ fn gradients_are_central_differences() {
     report(failures);
 }
 
-/// What a survey says of `case`, with at least `least` segments for each line and curve.
+/// Survey of `case`, with at least `least` segments for each line and curve.
 fn surveyed(case: &Case, least: usize, softness: Softness) -> Survey {
     let target = Canvas::from_image(&target(case));
     let mut survey = Survey::default();

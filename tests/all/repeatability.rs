@@ -1,4 +1,4 @@
-//! The same bytes, today and tomorrow, on every instruction set, number of threads and build profile.
+//! Drawings have equal bytes, today and tomorrow, on every instruction set, number of threads and build profile.
 //!
 //! The table in `tests/all/repeatability/hashes.txt` has the hash of the SVG of each sample under each set of
 //! options, and the least fidelity that it may have in resvg. Where the algorithm is changed on purpose, the new
@@ -28,7 +28,7 @@ use strokefit::verify;
 
 /// A new row's floor is so far below its fidelity, dB, until it is set by hand.
 const CHANCE_DB: f64 = 0.5;
-/// How far the median of all drawings is above the floors at least, dB: 0.27 to 0.40 were seen in five fits of all.
+/// Least excess of the median of all drawings over the floors, dB: 0.27 to 0.40 were seen in five fits of all.
 const MEDIAN_ABOVE_DB: f64 = 0.25;
 
 fn folder(name: &str) -> PathBuf {
@@ -46,10 +46,10 @@ fn samples() -> Vec<String> {
     names
 }
 
-/// What is drawn for one row of the table.
+/// Drawing of one row of the table.
 struct Case {
     sample: String,
-    /// What sets it apart from the other rows of the sample.
+    /// Difference from the other rows of the sample.
     name: &'static str,
     config: Config,
     /// The SVG that it goes on from.
@@ -286,7 +286,7 @@ fn hash(text: &str) -> u64 {
     })
 }
 
-/// How a case is drawn now.
+/// Drawing of a case as it is now.
 struct Drawn {
     /// Sample and name of the case.
     name: String,
@@ -326,7 +326,7 @@ impl Drawn {
     }
 }
 
-/// What is lost against the floors of the table.
+/// Losses against the floors of the table.
 fn losses(drawn: &[Drawn], table: &str) -> Vec<String> {
     let mut above: Vec<(f64, &Drawn)> = drawn
         .iter()

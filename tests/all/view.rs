@@ -14,7 +14,7 @@ use crate::support::place::{Place, STROKEFIT};
 use crate::support::repository::committed;
 use serde_json::Value;
 
-/// What is drawn.
+/// Picture that is drawn.
 fn sample() -> String {
     committed("samples/coffee-300.png")
 }

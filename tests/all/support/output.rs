@@ -1,4 +1,4 @@
-//! What a program said.
+//! Words of a program.
 
 use std::process::Output;
 

@@ -1,4 +1,4 @@
-//! What to expect of a refusal.
+//! Expectations of a refusal.
 
 use super::output::stderr;
 use super::place::Place;

@@ -1,4 +1,4 @@
-//! What `--report` wrote.
+//! Record that `--report` wrote.
 
 use std::fs;
 

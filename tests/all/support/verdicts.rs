@@ -1,4 +1,4 @@
-//! What `check --report -` says of each program.
+//! Verdicts of `check --report -` on each program.
 
 use std::process::Output;
 
@@ -10,7 +10,7 @@ pub(crate) fn record(output: &Output) -> Value {
     serde_json::from_slice(&output.stdout).unwrap_or_else(|e| panic!("{e}: {}", stderr(output)))
 }
 
-/// What is said of a program that drew the file.
+/// Record of a program that drew the file.
 pub(crate) fn entry<'a>(record: &'a Value, name: &str) -> &'a Value {
     let entries = record["renderers"].as_array().unwrap();
     let found = entries.iter().find(|e| e["renderer"] == name);
