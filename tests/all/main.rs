@@ -53,6 +53,7 @@ mod points;
 mod render;
 mod repeatability;
 mod shade;
+mod wording;
 
 // The program, and what the library has for it alone.
 #[cfg(feature = "cli")]
