@@ -85,12 +85,19 @@ fn read(args: &Args, text: String, picture: &Image) -> Result<Base> {
     Ok(Base::read(text, picture, args.freeze_base).map_err(|error| error.within(name))?)
 }
 
-/// Tells the user that the base, with `before` strokes, leaves no room for more.
+/// Tells the user that the base, with `before` strokes, leaves no room for more, or has too many.
 fn tell_full(options: &Options, before: usize, verbosity: Verbosity) {
-    let limit = options.config_beyond(before).budget.strokes;
-    if let Some(most) = limit.filter(|&most| most <= before) {
+    let Some(most) = options.config_beyond(before).budget.strokes else {
+        return;
+    };
+    let remedy = format_args!("--strokes +{most} adds {most}");
+    if most < before {
         verbosity.say(format_args!(
-            "hint: the SVG has {before} strokes already, and --strokes {most} allows no more: --strokes +{most} adds {most}"
+            "hint: the {most} strokes of most worth stay of {before}: {remedy}"
+        ));
+    } else if most == before {
+        verbosity.say(format_args!(
+            "hint: the SVG has {before} strokes already, and --strokes {most} allows no more: {remedy}"
         ));
     }
 }

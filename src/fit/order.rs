@@ -1,18 +1,20 @@
 //! The order of a fit: its phases, and which follows which.
 //!
 //! ```text
-//! base ─→ trace ⇄ stage       draw the lines that are seen
-//!           ↓
-//!         grow ⇄ stage        add strokes, stage by stage
-//!           ↓
-//!         polish ⇄ stage      fit all strokes jointly, and double them while far from the fidelity asked for
-//!           ↓
-//!         finish              restrict ─→ settle ─→ nudge ─→ compare
-//!           ↓
-//!         fidelity ─→ stage ─→ polish ─→ finish ─→ fidelity     until the file is as faithful as asked for
-//!           ↓
-//!         bytes ─→ finish ─→ bytes                              until it is as short as asked for
-//!         bytes ─→ polish ─→ finish                             once, if bytes are left
+//! base ─→ polish              shorten a base of more strokes than may be; otherwise
+//!   ↓
+//! trace ⇄ stage               draw the lines that are seen
+//!   ↓
+//! grow ⇄ stage                add strokes, stage by stage
+//!   ↓
+//! polish ⇄ stage              fit all strokes jointly, and double them while far from the fidelity asked for
+//!   ↓
+//! finish                      restrict ─→ settle ─→ nudge ─→ compare
+//!   ↓
+//! fidelity ─→ stage ─→ polish ─→ finish ─→ fidelity     until the file is as faithful as asked for
+//!   ↓
+//! bytes ─→ finish ─→ bytes                              until it is as short as asked for
+//! bytes ─→ polish ─→ finish                             once, if bytes are left
 //! ```
 //!
 //! To *finish* a drawing takes four phases:
@@ -32,7 +34,7 @@ use super::config::Config;
 /// One step in the order of a fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Phase {
-    /// Keep the base as it is if it already meets a budget.
+    /// Keep the base as it is if it already meets a budget, and shorten it if it has too many strokes.
     Base,
     /// Trace the lines of what is not drawn yet, if there are such.
     Trace,
@@ -112,6 +114,8 @@ pub(super) fn next(phase: Phase, outcome: Outcome, config: &Config) -> Phase {
     use Outcome::{Met, Rejected, Removed, Seeded, Short};
     match (phase, outcome) {
         (Phase::Base, Met) => Phase::Done,
+        (Phase::Base, Removed) if polishes_all(config) => Phase::Polish(Purpose::Plan),
+        (Phase::Base, Removed) => FINISH,
         (Phase::Base, _) => Phase::Trace,
 
         (Phase::Trace, Seeded(purpose)) => Phase::Stage(purpose),
@@ -154,8 +158,15 @@ impl Phase {
     /// The first phase of a fit.
     pub(super) fn first(config: &Config, base: Option<&Base>) -> Self {
         // A base that uses colours outside the palette, or other pens, cannot stay as it is.
+        let may_stay = |base: &Base| config.pens.is_none() && config.colors.allow(&base.scene);
+        let is_long = |base: &Base| {
+            config
+                .budget
+                .strokes
+                .is_some_and(|most| base.scene.len() > most)
+        };
         match base {
-            Some(base) if config.pens.is_none() && config.colors.allow(&base.scene) => Self::Base,
+            Some(base) if may_stay(base) || is_long(base) => Self::Base,
             _ => Self::Trace,
         }
     }

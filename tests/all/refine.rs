@@ -123,6 +123,26 @@ fn a_drawing_in_two_goes_is_as_good_as_one_in_one_go() {
     assert_eq!(place.report("report.json")["base"]["strokes"], 150);
 }
 
+#[test]
+fn a_drawing_of_too_many_strokes_is_shortened() {
+    let place = Place::new();
+    let picture = committed("samples/coffee-300.png");
+    let few = draft(&place, &["fit", &picture, "--strokes", "60"], "few.svg");
+    draft(&place, &["fit", &picture, "--strokes", "300"], "many.svg");
+    let refine = ["refine", "many.svg", &picture, "--strokes", "60"];
+    let shortened = draft(&place, &refine, "shortened.svg");
+    assert!(
+        shortened > few - 0.5,
+        "{shortened} dB of 300 strokes, {few} of as few from the start"
+    );
+    assert_eq!(layers(&place, "shortened.svg").iter().sum::<usize>(), 60);
+    assert_eq!(place.report("report.json")["stop"], "strokes");
+    // Colours outside the palette do not keep a base from being shortened.
+    let palette = ["--palette", "#000000,#808080,#ffffff"];
+    draft(&place, &[&refine[..], &palette].concat(), "grey.svg");
+    assert_eq!(layers(&place, "grey.svg").iter().sum::<usize>(), 60);
+}
+
 /// Without polish the first stages of a plan are the same whether or not others follow: the stages that are
 /// there are not planned again, and the drawing ends as good as the whole one.
 #[test]

@@ -13,11 +13,16 @@ use crate::fit::run::session::Session;
 use crate::math;
 use crate::metrics::psnr_db;
 
-/// Ends the fit if the base, as it is, already meets a budget. Otherwise the base is the best file until another one is
-/// better.
+/// Shortens a base of more strokes than may be, and ends the fit if the base, as it is, already meets a budget. Otherwise
+/// the base is the best file until another one is better.
 pub(in crate::fit) fn try_base(session: &mut Session<'_>) -> Result<Outcome> {
-    let file = session.writer.render(&session.drawing)?;
     let strokes = session.drawing.len();
+    if let Some(most) = session.config.budget.strokes.filter(|&most| most < strokes) {
+        keep_best(&mut session.drawing, most);
+        session.history.stop = Stop::Strokes;
+        return Ok(Outcome::Removed);
+    }
+    let file = session.writer.render(&session.drawing)?;
     let Some(stop) = budget::met(&session.config.budget, strokes, &file) else {
         let allows = |stroke| session.config.allows(stroke);
         let is_allowed = file.rounded.scene.strokes().all(allows);
@@ -30,6 +35,15 @@ pub(in crate::fit) fn try_base(session: &mut Session<'_>) -> Result<Outcome> {
     session.drawing.sharpen(0.0);
     session.set_best(file);
     Ok(Outcome::Met)
+}
+
+/// Removes the strokes of least worth until `most` are left.
+fn keep_best(drawing: &mut Drawing, most: usize) {
+    while drawing.len() > most {
+        // The worth is that of a stroke removed alone; with its neighbours gone, a stroke is worth more.
+        let at_a_time = drawing.len().div_ceil(8);
+        drawing.remove_least(at_a_time.min(drawing.len() - most));
+    }
 }
 
 /// Makes the file of the settled drawing the best one if it serves the budget better than the best one so far.
