@@ -137,10 +137,13 @@ fn a_drawing_of_too_many_strokes_is_shortened() {
     );
     assert_eq!(layers(&place, "shortened.svg").iter().sum::<usize>(), 60);
     assert_eq!(place.report("report.json")["stop"], "strokes");
-    // Colours outside the palette do not keep a base from being shortened.
-    let palette = ["--palette", "#000000,#808080,#ffffff"];
-    draft(&place, &[&refine[..], &palette].concat(), "grey.svg");
-    assert_eq!(layers(&place, "grey.svg").iter().sum::<usize>(), 60);
+    // Other pens do not keep a base from being shortened.
+    draft(
+        &place,
+        &[&refine[..], &["--pens", "3,8"]].concat(),
+        "pens.svg",
+    );
+    assert_eq!(layers(&place, "pens.svg").iter().sum::<usize>(), 60);
 }
 
 /// Without polish the first stages of a plan are the same whether or not others follow: the stages that are
