@@ -219,8 +219,9 @@ proptest! {
         let fitted = WriteOptions { precision: 1, form: Form::Plain, width: None, ..options };
         let travel = WriteOptions { order: Order::Travel, ..fitted };
         let difference = difference(&write(&scene, &fitted), &write(&scene, &travel));
-        // resvg bends a curve within 1/4 px, and not in the same way from its other end: one thin curve alone has 38.5 dB. The edge of a line may fall on the
-        // other side of a few of its 16 samples of a pixel. Strokes in a wrong order differ in whole pixels.
+        // resvg bends a curve within 1/4 px, and not in the same way from its other end: one thin curve alone has 38.5 dB.
+        // The edge of a line may fall on the other side of a few of its 16 samples of a pixel. Strokes in a wrong order
+        // differ in whole pixels.
         let has_curve = scene.strokes().any(|s| s.path.points().iter().any(|p| !p.is_on));
         let least_db = if has_curve { 36.0 } else { 55.0 };
         prop_assert!(difference.psnr_db >= least_db, "{:?}", difference);
