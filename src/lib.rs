@@ -77,6 +77,7 @@
 //! | path | the centre line of a stroke: *points*, open or closed; see [`scene::Path`] |
 //! | point | of a path: *on* it, joined to the next by a line, or *off* it, where it is the control point of a curve |
 //! | capsule | the stroke of two on-points; with equal ends it is a *dot*, the stroke of one point; see `sdf` |
+//! | area | closed *rings*, filled where they wind around a point (SVG's nonzero rule), with a colour and an opacity; see `sdf`. The renderer draws and differentiates areas; nothing seeds or writes them yet |
 //! | scene | the drawing: size (px), background, and strokes from back to front, grouped in stages |
 //! | stage | strokes that are added together: seeded where the residual is largest, fitted with all earlier strokes frozen, kept if they pay |
 //! | layer | a group of the SVG, holding the strokes of one stage or of one colour |

@@ -1,4 +1,4 @@
-//! Signed distance fields of circles, capsules and paths, and their combinations.
+//! Signed distance fields of circles, capsules, paths and areas, and their combinations.
 //!
 //! **Distances are positive inside** the shape, zero on its edge and negative outside, in px. Much of the
 //! literature, including the source of this file, uses the opposite sign.
@@ -8,6 +8,7 @@
 //! capsule        d = r − √(|q|² + ε)
 //!                q = (p−a) − h(b−a),   h = clamp((p−a)·(b−a) / (|b−a|² + ε), 0, 1)
 //! path           d = max dₛ over the capsules of its segments
+//! area           d = ±min |p−s| over the segments of its rings, + where they wind around p
 //! union          d = max(d₁, d₂)
 //! intersection   d = min(d₁, d₂)
 //! subtraction    d = min(d₁, −d₂)
@@ -66,8 +67,10 @@
 //! Source: Inigo Quilez, "2D distance functions" (the segment and the boolean operators), with the sign
 //! reversed and ε added as in the golden data of this crate's tests.
 
+mod area;
 mod path;
 
+pub use area::{Area, AreaJet};
 pub(crate) use path::steps;
 pub use path::{Flattened, Mean, Path, PathJet, Polyline, PolylineJet};
 

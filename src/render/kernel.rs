@@ -20,6 +20,9 @@
 //! A stroke of several segments is the union of their capsules, with one coverage: at each pixel the nearest segment gives
 //! `d` and its derivatives, the first one if several are equally near.
 //!
+//! An area has the same segments without a radius, and each pixel a side of them: `d = ±|q|`, and `∂d/∂a`, `∂d/∂b` with the
+//! sign of the side ([`winding`]). Blocks inside that no segment is near are its hard core.
+//!
 //! Degenerate cases: a zero-length capsule is a disc; on the centre line `u` tends to 0 with the guard instead of being undefined.
 
 // Lanes are never passed through closures of `array::map`: those are compiled on their own, without the
@@ -31,6 +34,7 @@ mod stack;
 mod sums;
 mod touching;
 mod union;
+mod winding;
 
 use std::ops::Range;
 
@@ -49,6 +53,7 @@ use super::strokes::STYLE;
 use stack::Stack;
 use sums::{EdgeBlock, Grounds, Looks, Matte, OfSegment, OfStroke, Shifts};
 use union::{Kept, Segments, Union, shared};
+use winding::Windings;
 
 /// Transmittance below which nothing behind shows: a sixty-fourth of an 8-bit level. Four times as
 /// much costs gradients of tailed edges their third digit.
@@ -140,6 +145,7 @@ pub(super) struct Scratch {
     /// For each listed segment, the blocks in which it can be nearest.
     near: Vec<BlockSet>,
     union: Union,
+    windings: Windings,
 }
 
 impl Scratch {
@@ -157,6 +163,7 @@ impl Scratch {
             kept_nearest: Stack::new(Lanes::splat(0.0)),
             near: Vec::new(),
             union: Union::new(),
+            windings: Windings::new(),
         })
     }
 
@@ -198,6 +205,19 @@ impl TileJob<'_> {
     /// Radius, red, green, blue and opacity of a listed stroke.
     fn style(&self, slot: usize) -> &[f32; STYLE] {
         &self.polylines.styles[self.listed[slot].stroke as usize]
+    }
+
+    /// True if a listed stroke is an area.
+    #[inline(always)]
+    fn is_area(&self, slot: usize) -> bool {
+        self.polylines.areas[self.listed[slot].stroke as usize]
+    }
+
+    /// All vertices of a listed stroke, px.
+    fn vertices(&self, slot: usize) -> &[[f32; 2]] {
+        let stroke = self.listed[slot].stroke as usize;
+        let [first, end] = [stroke, stroke + 1].map(|i| self.polylines.firsts[i] as usize);
+        &self.polylines.vertices[first..end]
     }
 
     /// The segments of a listed stroke.
@@ -245,6 +265,7 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
         kept_nearest,
         near,
         union,
+        windings,
         ..
     } = scratch;
     // Start with nothing drawn and all blocks in view.
@@ -267,7 +288,12 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
         let segments = job.segments(slot, range.clone());
         let near = &mut near[range];
         let radius = style[0];
-        let (touched, core) = if near.len() == 1 {
+        let is_area = job.is_area(slot);
+        let (touched, core) = if is_area {
+            let (near_edge, _) = union.blocks(simd, segments, 0.0, job.reach, near);
+            let inside = windings.fill(job.vertices(slot), job.origin);
+            (near_edge | inside, inside & !near_edge)
+        } else if near.len() == 1 {
             let (touched, core) = segments.get(0).blocks(simd, radius, job.reach);
             near[0] = touched;
             (touched, core)
@@ -289,6 +315,12 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
         visits.push(visit);
         let rgb = splat_rgb(simd, style);
         let opacity = f32x16::splat(simd, style[STYLE - 1].max(FAINTEST));
+        let shape = Shape {
+            edge,
+            radius,
+            opacity,
+            outside: job.reach.outside,
+        };
         let mut through = kept_transmittance.push(visit.edge | visit.core).iter_mut();
         let mut edges = kept_edges.push(visit.edge).iter_mut();
         // Near joints, several segments compete for each pixel: the nearest one decides.
@@ -298,7 +330,8 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
             let kept = nearest.zip(&mut edges).zip(&mut through);
             for (block, ((nearest, kept), through)) in members(visit.shared).zip(kept) {
                 *nearest = union.nearest(block);
-                let alpha = cover(edge, union.distance2(simd, block), radius, opacity, kept);
+                let sides = windings.sides(is_area, block);
+                let alpha = shape.cover(simd, union.distance2(simd, block), sides, kept);
                 *through = transmittances[block].through;
                 if transmittances[block].add(simd, alpha, &rgb, &mut color[block]) {
                     live &= !(1 << block);
@@ -315,7 +348,8 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
             let kept = (&mut edges).zip(&mut through);
             for (block, (kept, through)) in members(alone).zip(kept) {
                 let distance2 = segment.at_pixels(simd, block).distance2();
-                let alpha = cover(edge, distance2, radius, opacity, kept);
+                let sides = windings.sides(is_area, block);
+                let alpha = shape.cover(simd, distance2, sides, kept);
                 *through = transmittances[block].through;
                 if transmittances[block].add(simd, alpha, &rgb, &mut color[block]) {
                     live &= !(1 << block);
@@ -346,23 +380,47 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
     }
 }
 
-/// `m` in a block on the soft edge, from the squared distances of its pixels; writes what is kept of it to `kept`.
-#[inline(always)]
-fn cover<S: Simd, E: SoftEdge>(
+/// One stroke in pass 1.
+struct Shape<S: Simd, E> {
     edge: E,
-    distance2: f32x16<S>,
+    /// px; without a meaning for an area.
     radius: f32,
     opacity: f32x16<S>,
-    kept: &mut EdgeBlock,
-) -> f32x16<S> {
-    let length = length(distance2);
-    let (value, derivative) = edge.eval(radius - length);
-    let alpha = opacity * value;
-    store(alpha, &mut kept.alpha);
-    store(opacity * derivative, &mut kept.slope);
-    // Pass 2 would have to take the root again.
-    store(1.0 / length, &mut kept.inverse);
-    alpha
+    /// Distance from an area's outline, px, beyond which its coverage is 1 inside, as it is 0 outside.
+    outside: f32,
+}
+
+impl<S: Simd, E: SoftEdge> Shape<S, E> {
+    /// `m` in a block on the soft edge, from the squared distances of its pixels, and for an area the `sides` that they are
+    /// on; writes what is kept of it to `kept`.
+    #[inline(always)]
+    fn cover(
+        &self,
+        simd: S,
+        distance2: f32x16<S>,
+        sides: Option<&Lanes>,
+        kept: &mut EdgeBlock,
+    ) -> f32x16<S> {
+        let length = length(distance2);
+        let d = match sides {
+            None => self.radius - length,
+            Some(sides) => load(simd, sides) * length,
+        };
+        let (mut value, mut derivative) = self.edge.eval(d);
+        if let Some(sides) = sides {
+            let is_deep = d.simd_gt(self.outside);
+            value = is_deep.select(f32x16::splat(simd, 1.0), value);
+            derivative = is_deep.select(f32x16::splat(simd, 0.0), derivative);
+            // Pass 2 has the derivatives of −|q| by the segment, which is the distance outside alone.
+            derivative = -load(simd, sides) * derivative;
+        }
+        let alpha = self.opacity * value;
+        store(alpha, &mut kept.alpha);
+        store(self.opacity * derivative, &mut kept.slope);
+        // Pass 2 would have to take the root again.
+        store(1.0 / length, &mut kept.inverse);
+        alpha
+    }
 }
 
 /// Pass 2, over the blocks that pass 1 visited. `scratch.gradient` is given, and `scratch.error` if worth is asked for;
@@ -467,7 +525,7 @@ fn back_to_front<S: Simd, X: Extras>(
         sums.strokes.push(OfStroke {
             id: job.listed[slot].stroke,
             first,
-            style: stroke.style(style[STYLE - 1].max(FAINTEST)),
+            style: stroke.style(style[STYLE - 1].max(FAINTEST), job.is_area(slot)),
             worth: if X::WORTH { stroke.worth() } else { 0.0 },
         });
     }

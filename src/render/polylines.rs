@@ -13,6 +13,9 @@ use crate::sdf;
 use super::gradients::add;
 use super::strokes::{STYLE, StrokeRef, Strokes};
 
+/// The vertex between the rings of an area: no segment that has it is drawn.
+const BETWEEN_RINGS: [f32; 2] = [f32::NAN; 2];
+
 /// Strokes that are flattened at a time.
 pub(super) const CHUNK: usize = 32;
 
@@ -26,6 +29,8 @@ pub(super) struct Polylines {
     pub(super) firsts: Vec<u32>,
     /// Radius, red, green, blue and opacity of each stroke.
     pub(super) styles: Vec<[f32; STYLE]>,
+    /// For each stroke, true if it is an area.
+    pub(super) areas: Vec<bool>,
     /// The smallest and the largest x and y of the vertices of each stroke, px.
     pub(super) boxes: Vec<[[f32; 2]; 2]>,
     /// Number of segments of each curve, curve by curve.
@@ -60,6 +65,7 @@ impl Polylines {
             self.curves.extend(&part.curves);
             self.vertices.extend(&part.vertices);
             self.styles.extend(&part.styles);
+            self.areas.extend(&part.areas);
             self.boxes.extend(&part.boxes);
         }
         self.firsts.push(self.vertices.len() as u32);
@@ -70,6 +76,7 @@ impl Polylines {
         self.vertices.clear();
         self.firsts.clear();
         self.styles.clear();
+        self.areas.clear();
         self.boxes.clear();
         self.curves.clear();
         self.first_curves.clear();
@@ -85,9 +92,10 @@ impl Polylines {
         } else {
             [f32::NAN; STYLE]
         });
+        self.areas.push(stroke.is_area());
         self.first_curves.push(self.curves.len() as u32);
         // A path of lines is its own polyline.
-        if least == 1 && stroke.is_straight() {
+        if least == 1 && stroke.is_straight() && !stroke.is_area() {
             self.vertices.extend(stroke.points);
             if stroke.closed || stroke.points.len() == 1 {
                 self.vertices.push(stroke.points[0]);
@@ -120,45 +128,70 @@ impl Polylines {
             return;
         }
         let mut curves = self.curves[self.first_curves[i] as usize..].iter();
-        let mut pieces = Pieces::of(stroke).peekable();
-        let Some(first) = pieces.peek() else {
-            // A dot: both ends of its segment are its only point.
-            slopes.iter().for_each(|slope| add(&mut points[0], slope));
-            return;
-        };
-        // The first vertex stands for a knot alone; every other one belongs to the piece that it ends.
-        first.from.hand_back(slopes[0], points);
-        let mut rest = &slopes[1..];
-        for piece in pieces {
-            let steps = match piece.control {
-                Some(_) => curves.next().map_or(0, |&steps| steps as usize),
-                None => least,
-            };
-            let (own, next) = rest.split_at(steps);
-            piece.hand_back(own, points);
-            rest = next;
+        let mut rest = slopes;
+        for (first, path) in stroke.paths() {
+            let points = &mut points[first..][..path.points.len()];
+            let count = hand_back(path, least, &mut curves, rest, points);
+            // Behind a ring is the vertex that no segment has.
+            rest = rest.get(count + 1..).unwrap_or_default();
         }
     }
 }
 
-/// Appends the vertices of the polyline that replaces a stroke, and the number of segments of each curve.
+/// Adds the derivatives by the vertices of a path to those by its points, and returns the number of its vertices. `curves`
+/// has the numbers of segments of its curves.
+fn hand_back<'a>(
+    path: StrokeRef<'_>,
+    least: usize,
+    curves: &mut impl Iterator<Item = &'a u32>,
+    slopes: &[[f32; 2]],
+    points: &mut [[f32; 2]],
+) -> usize {
+    let mut pieces = Pieces::of(path).peekable();
+    let Some(first) = pieces.peek() else {
+        // A dot: both ends of its segment are its only point.
+        let dot = &slopes[..2];
+        dot.iter().for_each(|slope| add(&mut points[0], slope));
+        return dot.len();
+    };
+    // The first vertex stands for a knot alone; every other one belongs to the piece that it ends.
+    first.from.hand_back(slopes[0], points);
+    let mut at = 1;
+    for piece in pieces {
+        let steps = match piece.control {
+            Some(_) => curves.next().map_or(0, |&steps| steps as usize),
+            None => least,
+        };
+        piece.hand_back(&slopes[at..at + steps], points);
+        at += steps;
+    }
+    at
+}
+
+/// Appends the vertices of the polylines that replace a stroke, and the number of segments of each curve. Between two rings
+/// of an area there is a vertex that is no number.
 pub(super) fn flatten(
     stroke: StrokeRef<'_>,
     least: usize,
     vertices: &mut Vec<[f32; 2]>,
     curves: &mut Vec<u32>,
 ) {
-    let mut pieces = Pieces::of(stroke).peekable();
-    match pieces.peek() {
-        Some(first) => vertices.push(first.from.place(stroke.points)),
-        None => vertices.extend([stroke.points[0]; 2]),
-    }
-    for piece in pieces {
-        let steps = piece.steps(stroke, least);
-        if piece.control.is_some() {
-            curves.push(steps as u32);
+    for (first, path) in stroke.paths() {
+        if first > 0 {
+            vertices.push(BETWEEN_RINGS);
         }
-        vertices.extend(piece.vertices(stroke.points, steps));
+        let mut pieces = Pieces::of(path).peekable();
+        match pieces.peek() {
+            Some(first) => vertices.push(first.from.place(path.points)),
+            None => vertices.extend([path.points[0]; 2]),
+        }
+        for piece in pieces {
+            let steps = piece.steps(path, least);
+            if piece.control.is_some() {
+                curves.push(steps as u32);
+            }
+            vertices.extend(piece.vertices(path.points, steps));
+        }
     }
 }
 
@@ -349,6 +382,7 @@ mod tests {
                     points: &points,
                     off: &off,
                     closed,
+                    rings: &[],
                     style: &[1.0, 1.0, 1.0, 1.0, [0.2, 0.6, 1.0][kinds as usize % 3]],
                 });
             }
@@ -428,6 +462,7 @@ mod tests {
                 points: &[[0.0, 0.0], [40.0, 0.0], [40.0, 40.0]],
                 off: &[false, true, false],
                 closed: false,
+                rings: &[],
                 style: &[1.0, 1.0, 1.0, 1.0, opacity],
             };
             let mut curves = Vec::new();

@@ -30,6 +30,9 @@
 //! derivative by x of at most `Σ k·w`, `k = 2|∂C/∂d|²` and `∂C/∂d = T·opacity·σ'(d)·(c − B)`, since `w² ≤ w`. Sums of
 //! these bounds also hold for vertices that move together, because the `w` of a pixel add up to 1.
 //!
+//! **Areas.** A stroke with rings is an area: its distance is that of [`sdf::Area`](crate::sdf::Area), and all else is as
+//! for a path, without a radius. A cut makes coverage 1 deep inside it as well as 0 far outside.
+//!
 //! Domain: any finite parameters; a radius of 0 or below leaves what the coverage function has
 //! outside of the edge.
 //!
@@ -41,8 +44,8 @@ mod scene;
 
 use crate::coverage::Coverage;
 use crate::math::{Point2, Vector2};
-use crate::sdf::Flattened;
 
+use scene::Shape;
 pub use scene::{Rgb, Scene, Stroke};
 
 /// The derivatives of a loss by every number of a [`Scene`], each in the place of its number.
@@ -103,7 +106,7 @@ impl Reference {
         let shapes = flattened(scene);
         let mut background = [0.0; 3];
         let mut strokes: Vec<Stroke> = scene.strokes.iter().map(Stroke::zero).collect();
-        let vertices = |shape: &Flattened<f64>| vec![Vector2::zeros(); shape.means.len()];
+        let vertices = |shape: &Shape| vec![Vector2::zeros(); shape.means.len()];
         let mut slopes: Vec<Vec<Vector2<f64>>> = shapes.iter().map(vertices).collect();
         for (p, &g) in self.samples(scene).zip(d_canvas) {
             let layers = self.layers(scene, &shapes, p);
@@ -114,9 +117,8 @@ impl Reference {
             for (i, layer) in layers.iter().enumerate() {
                 let stroke = &scene.strokes[i];
                 let d_distance = accumulate(&mut strokes[i], stroke, layer, g);
-                let jet = shapes[i].polyline.jet(p, self.eps);
-                for (end, by) in jet.ends.into_iter().zip(jet.by_ends) {
-                    slopes[i][end] += by * d_distance;
+                for (vertex, by) in shapes[i].by_vertices(p, self.eps) {
+                    slopes[i][vertex] += by * d_distance;
                 }
             }
         }
@@ -144,10 +146,9 @@ impl Reference {
                 let reach = reach(stroke, layer);
                 let by_distance = layer.transmittance * stroke.opacity * layer.slope;
                 let k = 2.0 * by_distance * by_distance * dot(reach, reach);
-                let jet = shapes[i].polyline.jet(p, 0.0);
                 // The derivatives by both ends are u·(1−h) and u·h, so their lengths are the shares.
-                for (end, by) in jet.ends.into_iter().zip(jet.by_ends) {
-                    stiffness[i][end] += k * by.norm();
+                for (vertex, by) in shapes[i].by_vertices(p, 0.0) {
+                    stiffness[i][vertex] += k * by.norm();
                 }
             }
         }
@@ -193,17 +194,21 @@ impl Reference {
     }
 
     /// Coverage and its derivative by the distance.
-    fn covered(&self, shape: &Flattened<f64>, p: Point2<f64>) -> (f64, f64) {
-        let d = shape.polyline.distance(p, self.eps);
-        if self.cut && d < -self.coverage.support(self.softness) {
+    fn covered(&self, shape: &Shape, p: Point2<f64>) -> (f64, f64) {
+        let d = shape.distance(p, self.eps);
+        let support = self.coverage.support(self.softness);
+        if self.cut && d < -support {
             return (0.0, 0.0);
+        }
+        if self.cut && shape.is_area() && d > support {
+            return (1.0, 0.0);
         }
         let value = self.coverage.value(d, self.softness);
         (value, self.coverage.derivative(d, self.softness))
     }
 
     /// Each stroke at the sample point `p`, back to front.
-    fn layers(&self, scene: &Scene, shapes: &[Flattened<f64>], p: Point2<f64>) -> Vec<Layer> {
+    fn layers(&self, scene: &Scene, shapes: &[Shape], p: Point2<f64>) -> Vec<Layer> {
         let mut behind = scene.background;
         let mut layers = Vec::with_capacity(scene.strokes.len());
         for (stroke, shape) in scene.strokes.iter().zip(shapes) {
@@ -246,16 +251,18 @@ struct Layer {
     transmittance: f64,
 }
 
-/// The paths of all strokes as polylines.
-fn flattened(scene: &Scene) -> Vec<Flattened<f64>> {
-    scene.strokes.iter().map(Stroke::flattened).collect()
+/// The outlines of all strokes.
+fn flattened(scene: &Scene) -> Vec<Shape> {
+    scene.strokes.iter().map(Stroke::shape).collect()
 }
 
 /// Adds what one pixel with `∂L/∂canvas = g` has to say about the look of `stroke`; returns `∂L/∂d` there.
 fn accumulate(sum: &mut Stroke, stroke: &Stroke, layer: &Layer, g: Rgb) -> f64 {
     let d_m = layer.transmittance * dot(g, reach(stroke, layer));
     let d_distance = d_m * stroke.opacity * layer.slope;
-    sum.radius += d_distance;
+    if stroke.rings.is_empty() {
+        sum.radius += d_distance;
+    }
     add(&mut sum.color, layer.transmittance * layer.m, g);
     sum.opacity += d_m * layer.coverage;
     d_distance
@@ -301,6 +308,7 @@ mod tests {
             points: vec![[0.5, 0.5]],
             off: vec![false],
             closed: false,
+            rings: Vec::new(),
             radius: 5.0,
             color: RED,
             opacity,

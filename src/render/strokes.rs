@@ -46,6 +46,8 @@ pub struct Strokes {
     numbers: Vec<f32>,
     /// For each point of all strokes, true if it is off its path.
     off: Vec<bool>,
+    /// The rings of all areas: each by the index behind its last point, among those of its area.
+    rings: Vec<u32>,
     outlines: Vec<Outline>,
 }
 
@@ -54,6 +56,8 @@ pub struct Strokes {
 struct Outline {
     /// The index after its last point, among those of all strokes.
     end: u32,
+    /// The index after its last ring, among those of all areas.
+    rings_end: u32,
     closed: bool,
 }
 
@@ -66,7 +70,9 @@ pub struct StrokeRef<'a> {
     pub off: &'a [bool],
     /// True if the last point is joined to the first.
     pub closed: bool,
-    /// Radius, red, green, blue, opacity.
+    /// For an area, the index behind the last point of each of its rings; none for a stroke.
+    pub rings: &'a [u32],
+    /// Radius, red, green, blue, opacity. The radius of an area is 0.
     pub style: &'a [f32; STYLE],
 }
 
@@ -79,7 +85,32 @@ pub struct StrokeMut<'a> {
     pub style: &'a mut [f32; STYLE],
 }
 
-impl StrokeRef<'_> {
+impl<'a> StrokeRef<'a> {
+    /// True if the points are rings to be filled, and not the centre line of a stroke.
+    pub fn is_area(&self) -> bool {
+        !self.rings.is_empty()
+    }
+
+    /// The paths that the points form: those of an area's rings, or one. Each comes with the index of its first point.
+    pub fn paths(&self) -> impl Iterator<Item = (usize, StrokeRef<'a>)> + use<'a> {
+        let whole = *self;
+        let ends = whole.rings.iter().map(|&end| end as usize);
+        let path = move |(start, end): (usize, usize)| {
+            let path = StrokeRef {
+                points: &whole.points[start..end],
+                off: &whole.off[start..end],
+                closed: whole.closed || whole.is_area(),
+                rings: &[],
+                ..whole
+            };
+            (start, path)
+        };
+        let only = (!whole.is_area()).then_some(whole.points.len());
+        let ends = ends.chain(only);
+        ends.scan(0, |start, end| Some((std::mem::replace(start, end), end)))
+            .map(path)
+    }
+
     /// Half the stroke width, px.
     pub fn radius(&self) -> f32 {
         self.style[0]
@@ -182,6 +213,12 @@ impl Strokes {
             .map_or(0, |before| self.outlines[before].end as usize)
     }
 
+    /// The index of the first ring of stroke `i`, among those of all areas.
+    fn first_ring(&self, i: usize) -> usize {
+        i.checked_sub(1)
+            .map_or(0, |before| self.outlines[before].rings_end as usize)
+    }
+
     /// Where the numbers of stroke `i` are.
     pub fn range(&self, i: usize) -> std::ops::Range<usize> {
         let start = 2 * self.first_point(i) + STYLE * i;
@@ -193,7 +230,11 @@ impl Strokes {
     /// # Panics
     /// When there are not as many.
     pub fn get(&self, i: usize) -> StrokeRef<'_> {
-        let Outline { end, closed } = self.outlines[i];
+        let Outline {
+            end,
+            rings_end,
+            closed,
+        } = self.outlines[i];
         let (points, style) = self.numbers[self.range(i)]
             .split_last_chunk()
             .unwrap_or((&[], &NO_STYLE));
@@ -201,6 +242,7 @@ impl Strokes {
             points: points.as_chunks().0,
             off: &self.off[self.first_point(i)..end as usize],
             closed,
+            rings: &self.rings[self.first_ring(i)..rings_end as usize],
             style,
         }
     }
@@ -234,8 +276,10 @@ impl Strokes {
         self.numbers.extend(stroke.points.as_flattened());
         self.numbers.extend(stroke.style);
         self.off.extend(stroke.off);
+        self.rings.extend(stroke.rings);
         self.outlines.push(Outline {
             end: self.off.len() as u32,
+            rings_end: self.rings.len() as u32,
             closed: stroke.closed,
         });
     }
@@ -247,6 +291,7 @@ impl Strokes {
                 points: points.as_chunks().0,
                 off: &[false; 2],
                 closed: false,
+                rings: &[],
                 style,
             });
         }
@@ -262,18 +307,21 @@ impl Strokes {
             points: &places,
             off: &off,
             closed: stroke.path.is_closed(),
+            rings: &[],
             style: &[stroke.radius, red, green, blue, stroke.opacity],
         });
     }
 
     /// Adds all of `others` on top, and leaves none there.
     pub fn append(&mut self, others: &mut Self) {
-        let points = self.off.len() as u32;
+        let (points, rings) = (self.off.len() as u32, self.rings.len() as u32);
         self.numbers.append(&mut others.numbers);
         self.off.append(&mut others.off);
+        self.rings.append(&mut others.rings);
         let outlines = others.outlines.drain(..);
         self.outlines.extend(outlines.map(|outline| Outline {
             end: outline.end + points,
+            rings_end: outline.rings_end + rings,
             ..outline
         }));
     }
@@ -282,14 +330,16 @@ impl Strokes {
     #[must_use]
     pub fn split_off(&mut self, at: usize) -> Self {
         let at = at.min(self.len());
-        let first = self.first_point(at);
+        let (first, first_ring) = (self.first_point(at), self.first_ring(at));
         let outlines = self.outlines.split_off(at).into_iter();
         Self {
             numbers: self.numbers.split_off(2 * first + STYLE * at),
             off: self.off.split_off(first),
+            rings: self.rings.split_off(first_ring),
             outlines: outlines
                 .map(|outline| Outline {
                     end: outline.end - first as u32,
+                    rings_end: outline.rings_end - first_ring as u32,
                     ..outline
                 })
                 .collect(),

@@ -74,6 +74,7 @@ impl Params {
                 points: vec![turned(self.a[i]), turned(self.b[i])],
                 off: vec![false; 2],
                 closed: false,
+                rings: Vec::new(),
                 radius: self.r[i],
                 color: self.c[i],
                 opacity: 1.0,

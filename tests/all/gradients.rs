@@ -1,6 +1,7 @@
 //! The reference renderer against itself: gradients are central differences, and leaving a stroke
 //! out is what its removal does. On random scenes, and on the degenerate ones that a fit runs into.
 
+use crate::support::areas::areas;
 use crate::support::paths::paths;
 use strokefit::coverage::Coverage;
 use strokefit::loss::Loss;
@@ -37,6 +38,7 @@ fn stroke(seed: u64, i: u64, size: f64) -> Stroke {
         points: vec![[place(0), place(1)], [place(2), place(3)]],
         off: vec![false; 2],
         closed: false,
+        rings: Vec::new(),
         radius: 0.2 + 2.0 * value(4),
         color: [value(5), value(6), value(7)],
         opacity: 0.1 + 0.8 * value(8),
@@ -77,6 +79,22 @@ fn of_paths() -> Vec<(String, Scene)> {
     paths
         .map(|(name, path)| (name.to_owned(), around(with(&path))))
         .collect()
+}
+
+/// An area of every kind, with ordinary strokes around.
+fn of_areas() -> Vec<(String, Scene)> {
+    let areas = areas(9.1, 7.0).into_iter();
+    let case = |rings: crate::support::areas::Rings| {
+        let area = Stroke {
+            points: rings.points.iter().map(|p| p.map(f64::from)).collect(),
+            off: rings.off,
+            rings: rings.ends.iter().map(|&end| end as usize).collect(),
+            radius: 0.0,
+            ..stroke(9, 0, 8.0)
+        };
+        (rings.name, around(area))
+    };
+    areas.map(case).collect()
 }
 
 fn around(kind: Stroke) -> Scene {
@@ -124,7 +142,11 @@ fn degenerate() -> Vec<(String, Scene)> {
 }
 
 fn all() -> impl Iterator<Item = (String, Scene)> {
-    random().into_iter().chain(degenerate()).chain(of_paths())
+    random()
+        .into_iter()
+        .chain(degenerate())
+        .chain(of_paths())
+        .chain(of_areas())
 }
 
 fn target(scene: &Scene) -> Vec<Rgb> {

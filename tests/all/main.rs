@@ -5,6 +5,7 @@
 
 /// Helpers of several modules.
 mod support {
+    pub(crate) mod areas;
     pub(crate) mod drafts;
     pub(crate) mod fits;
     pub(crate) mod paths;

@@ -3,6 +3,7 @@
 
 use proptest::prelude::*;
 
+use crate::support::areas::{Rings, areas};
 use crate::support::paths::paths;
 use strokefit::coverage::Coverage;
 use strokefit::fit::{Objective, Simd};
@@ -145,6 +146,70 @@ fn along_paths() -> Vec<Case> {
     paths.enumerate().map(case).collect()
 }
 
+/// An area of these rings on top.
+fn push_area(strokes: &mut Strokes, rings: &Rings, color: [f32; 3], opacity: f32) {
+    let [red, green, blue] = color;
+    strokes.push(StrokeRef {
+        points: &rings.points,
+        off: &rings.off,
+        closed: true,
+        rings: &rings.ends,
+        style: &[0.0, red, green, blue, opacity],
+    });
+}
+
+/// An area of every kind between two ordinary strokes, in a picture of two tiles by two.
+fn of_areas() -> Vec<Case> {
+    let (width, height) = (40, 36);
+    let others = random(7, width, height, 2).strokes;
+    let areas = areas(width as f32, height as f32).into_iter();
+    let case = |(k, rings): (usize, Rings)| {
+        let mut strokes = Strokes::new();
+        strokes.push(others.get(0));
+        push_area(&mut strokes, &rings, [0.9, 0.2, 0.1], [0.6, 1.0][k % 2]);
+        strokes.push(others.get(1));
+        Case {
+            name: rings.name,
+            width,
+            height,
+            strokes,
+            tolerance: GRADIENT_TOLERANCE,
+        }
+    };
+    areas.enumerate().map(case).collect()
+}
+
+/// Areas of one to three random rings among random strokes.
+fn random_areas(seed: u64, width: usize, height: usize, count: usize) -> Case {
+    let others = random_paths(seed, width, height, count);
+    let u = |i: usize, k: u64| draw(seed, 12, i as u64, k);
+    let mut strokes = Strokes::new();
+    for (i, other) in others.strokes.iter().enumerate() {
+        strokes.push(other);
+        let mut rings = Rings {
+            name: String::new(),
+            points: Vec::new(),
+            off: Vec::new(),
+            ends: Vec::new(),
+        };
+        for ring in 0..1 + (3.0 * u(i, 0)) as u64 {
+            for k in 100 * ring..100 * ring + 3 + (5.0 * u(i, 1 + ring)) as u64 {
+                let [x, y] = other.points[0];
+                let at = [0, 1].map(|axis| 50.0 * (u(i, 10 + 3 * k + axis) - 0.5));
+                rings.points.push([x + at[0], y + at[1]]);
+                rings.off.push(u(i, 12 + 3 * k) < 0.4);
+            }
+            rings.ends.push(rings.points.len() as u32);
+        }
+        push_area(&mut strokes, &rings, other.color(), other.opacity());
+    }
+    Case {
+        name: format!("random areas {count} on {width}×{height}"),
+        strokes,
+        ..others
+    }
+}
+
 /// One stroke of a thousand points, along a walk that crosses itself and the borders of tiles.
 fn long(radius: f32, opacity: f32) -> Case {
     let (width, height) = (75, 70);
@@ -245,9 +310,11 @@ fn cases() -> Vec<Case> {
     {
         cases.push(random(k as u64, width, height, 30));
         cases.push(random_paths(k as u64, width, height, 20));
+        cases.push(random_areas(k as u64, width, height, 6));
     }
     cases.push(random(99, 70, 66, 200));
     cases.extend(along_paths());
+    cases.extend(of_areas());
     cases.push(along_borders());
     cases.push(long(1.0, 0.5));
     cases.push(long(9.0, 0.6));
@@ -398,6 +465,36 @@ fn images_are_the_oracles() {
         }
     }
     report(failures);
+}
+
+/// A ring of as many points as a path may have, in waves around the middle.
+#[test]
+fn an_area_of_65_535_points_is_the_oracles() {
+    let (width, height) = (40, 36);
+    let place = |k: u32| {
+        let angle = k as f32 * (std::f32::consts::TAU / 65_535.0);
+        let radius = 13.0 + 3.0 * (9.0 * angle).sin();
+        [20.3 + radius * angle.cos(), 17.8 + radius * angle.sin()]
+    };
+    let rings = Rings {
+        name: String::new(),
+        points: (0..65_535).map(place).collect(),
+        off: vec![false; 65_535],
+        ends: vec![65_535],
+    };
+    let mut case = Case {
+        name: "65,535 points".into(),
+        width,
+        height,
+        strokes: Strokes::new(),
+        tolerance: GRADIENT_TOLERANCE,
+    };
+    push_area(&mut case.strokes, &rings, [0.9, 0.2, 0.1], 0.8);
+    let softness = Softness {
+        coverage: Coverage::Smoothstep,
+        width: 1.0,
+    };
+    report(image_failures(&case, softness));
 }
 
 /// The kinds of numbers whose gradients are of one unit.

@@ -155,6 +155,7 @@ fn settled(
             points: &points,
             off: &vec![false; points.len()],
             closed: false,
+            rings: &[],
             style: path.style,
         });
     }

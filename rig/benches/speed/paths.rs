@@ -143,6 +143,7 @@ fn walks(size: StrokeSize, grid: Grid, count: usize, segments: usize) -> Strokes
             points: &points,
             off: &off,
             closed: false,
+            rings: &[],
             style: &[size.radius_px, draw(3), draw(4), draw(5), size.opacity],
         });
     }

@@ -140,6 +140,7 @@ impl Price {
                 points,
                 off: &[false; 3][..points.len()],
                 closed: false,
+                rings: &[],
                 style: &[1.67, 0.4, 0.5, 0.6, 1.0],
             })
         };

@@ -199,6 +199,7 @@ fn push_joined(
         points: &places,
         off: &off,
         closed: false,
+        rings: &[],
         style: &style,
     });
     sources.extend(

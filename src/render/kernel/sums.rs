@@ -244,11 +244,11 @@ impl<S: Simd> Looks<S> {
         (pull, 2.0 * (seen * seen) * contrast2)
     }
 
-    /// `∂L` of the style of a stroke of this opacity.
+    /// `∂L` of the style of a stroke of this opacity. An area has no radius to be changed.
     #[inline(always)]
-    pub(super) fn style(&self, opacity: f32) -> [f32; STYLE] {
+    pub(super) fn style(&self, opacity: f32, is_area: bool) -> [f32; STYLE] {
         [
-            total(self.radius),
+            if is_area { 0.0 } else { total(self.radius) },
             total(self.color[0]),
             total(self.color[1]),
             total(self.color[2]),

@@ -44,14 +44,21 @@ pub(in crate::render) fn list_segments(
             // The box of a single segment is that of its stroke, which touches the tile already.
             if vertices.len() == 2 {
                 segments.push(first);
+            } else if polylines.areas[stroke] {
+                sides.touched(simd, vertices, reach.outside, |segment| {
+                    // Of the two around the vertex between rings, one end is no number.
+                    if !(vertices[segment][0] + vertices[segment + 1][0]).is_nan() {
+                        segments.push(first + segment as u32);
+                    }
+                });
             } else {
                 let margin = polylines.styles[stroke][0] + reach.outside;
                 sides.touched(simd, vertices, margin, |segment| {
                     segments.push(first + segment as u32);
                 });
             }
-            // The list is compacted in place: strokes without a segment here drop out.
-            if segments.len() > before {
+            // The list is compacted in place: strokes without a segment here drop out. An area may cover all of the tile.
+            if segments.len() > before || polylines.areas[stroke] {
                 listed[kept] = Listed {
                     first: before as u32,
                     ..listed[slot]

@@ -162,6 +162,7 @@ fn walk(points: usize) -> Strokes {
         points: &places,
         off: &vec![false; points],
         closed: false,
+        rings: &[],
         style: &[1.2, 0.9, 0.2, 0.1, 0.6],
     });
     strokes

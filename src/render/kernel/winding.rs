@@ -1,0 +1,78 @@
+//! The two sides of an area's rings in a tile: inside, where they wind around a pixel, and outside.
+//!
+//! Each row of pixels is scanned from the left. A segment that crosses the row adds ±1 from the first pixel behind the
+//! crossing on, or from the start of the tile if it crosses before that. So the rings are looked at as a whole, however far
+//! from the tile they are, and neighbouring tiles agree.
+
+use super::super::grid::{BLOCK, BLOCKS, BlockSet, Lanes, TILE, TILE_BLOCKS};
+
+/// On which side each pixel of a tile is, by block: 1 inside, −1 outside.
+#[derive(Debug)]
+pub(super) struct Windings {
+    lanes: [Lanes; BLOCKS],
+    /// By row: by how much the winding number grows at each pixel.
+    steps: [[i32; TILE]; TILE],
+}
+
+impl Windings {
+    pub(super) fn new() -> Self {
+        Self {
+            lanes: [Lanes::splat(-1.0); BLOCKS],
+            steps: [[0; TILE]; TILE],
+        }
+    }
+
+    /// The sides of the pixels of a block of an area; a stroke has none.
+    #[inline(always)]
+    pub(super) fn sides(&self, is_area: bool, block: usize) -> Option<&Lanes> {
+        is_area.then_some(&self.lanes[block])
+    }
+
+    /// Looks at rings from the tile at `origin`, px. Returns the blocks all of whose pixels are inside.
+    pub(super) fn fill(&mut self, vertices: &[[f32; 2]], origin: [f32; 2]) -> BlockSet {
+        self.steps.as_flattened_mut().fill(0);
+        for segment in vertices.windows(2) {
+            self.cross([segment[0], segment[1]], origin);
+        }
+        let mut full = BlockSet::MAX;
+        for (y, steps) in self.steps.iter().enumerate() {
+            let mut winding = 0;
+            for (x, step) in steps.iter().enumerate() {
+                winding += step;
+                let block = y / BLOCK * TILE_BLOCKS + x / BLOCK;
+                let lane = y % BLOCK * BLOCK + x % BLOCK;
+                let is_inside = winding != 0;
+                self.lanes[block].0[lane] = if is_inside { 1.0 } else { -1.0 };
+                full &= !(BlockSet::from(!is_inside) << block);
+            }
+        }
+        full
+    }
+
+    /// Adds the crossings of the rows with the segment from `a` to `b`; none if an end is no number.
+    fn cross(&mut self, [a, b]: [[f32; 2]; 2], [left, top]: [f32; 2]) {
+        if a[0].min(b[0]) >= left + TILE as f32 {
+            return;
+        }
+        // One row more on both sides than is crossed, because of rounding: the comparisons below decide.
+        let first = (a[1].min(b[1]) - top - 1.0).max(0.0) as usize;
+        let end = (a[1].max(b[1]) - top + 1.0).max(0.0) as usize;
+        for row in first..end.min(TILE) {
+            let y = top + row as f32 + 0.5;
+            let sense = i32::from(b[1] <= y) - i32::from(a[1] <= y);
+            if sense == 0 {
+                continue;
+            }
+            let x = a[0] + (y - a[1]) * (b[0] - a[0]) / (b[1] - a[1]);
+            // An end is the vertex between two rings.
+            if x.is_nan() {
+                continue;
+            }
+            // The first pixel whose centre is beyond x; those behind the tile's end are of no account.
+            let column = (x - left + 0.5).max(0.0) as usize;
+            if let Some(step) = self.steps[row].get_mut(column) {
+                *step += sense;
+            }
+        }
+    }
+}

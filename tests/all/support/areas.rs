@@ -1,0 +1,126 @@
+//! Areas of every kind, each with one kind of trouble.
+
+/// The points of an area.
+#[derive(Clone)]
+pub(crate) struct Rings {
+    pub(crate) name: String,
+    pub(crate) points: Vec<[f32; 2]>,
+    pub(crate) off: Vec<bool>,
+    /// The index behind the last point of each ring.
+    pub(crate) ends: Vec<u32>,
+}
+
+/// The areas; they lie in and around a picture of `width`×`height` px.
+pub(crate) fn areas(width: f32, height: f32) -> Vec<Rings> {
+    let area = |name: &str, rings: &[&[(f32, f32, char)]]| {
+        let points = rings.concat();
+        let ends = rings.iter().scan(0, |end, ring| {
+            *end += ring.len() as u32;
+            Some(*end)
+        });
+        Rings {
+            name: name.into(),
+            ends: ends.collect(),
+            points: points
+                .iter()
+                .map(|&(x, y, _)| [x * width, y * height])
+                .collect(),
+            off: points.iter().map(|&(.., kind)| kind == '~').collect(),
+        }
+    };
+    let a = (0.131, 0.217, 'o');
+    let b = (0.823, 0.345, 'o');
+    let c = (0.671, 0.871, 'o');
+    let d = (0.247, 0.743, 'o');
+    let off = |(x, y, _): (f32, f32, char)| (x, y, '~');
+    let within =
+        |(x, y, kind): (f32, f32, char)| (0.45 + 0.3 * (x - 0.45), 0.53 + 0.3 * (y - 0.53), kind);
+    let [e, f, g, h] = [a, b, c, d].map(within);
+    vec![
+        area("a triangle", &[&[a, b, c]]),
+        area("a square the other way around", &[&[d, c, b, a]]),
+        area("a round shape", &[&[off(a), off(b), off(c), off(d)]]),
+        area("a drop", &[&[a, off(b), off(c), off(d)]]),
+        area("a hole", &[&[a, b, c, d], &[h, g, f, e]]),
+        area(
+            "a round hole",
+            &[&[a, b, c, d], &[off(h), off(g), off(f), off(e)]],
+        ),
+        area("a ring in a ring", &[&[a, b, c, d], &[e, f, g, h]]),
+        area(
+            "an island in a hole",
+            &[
+                &[a, b, c, d],
+                &[h, g, f, e],
+                &[(0.42, 0.5, 'o'), (0.48, 0.5, 'o'), (0.45, 0.56, 'o')],
+            ],
+        ),
+        area("rings that cross", &[&[a, b, d], &[b, c, (0.3, 0.1, 'o')]]),
+        area("rings that share points", &[&[a, b, d], &[b, c, d]]),
+        area(
+            "rings that share an edge, one of them a hole",
+            &[&[a, b, c, d], &[a, d, h, e]],
+        ),
+        area("a ring that crosses itself", &[&[a, c, b, d]]),
+        area(
+            "a ring around the same place twice",
+            &[&[
+                a,
+                b,
+                c,
+                d,
+                (0.2, 0.3, 'o'),
+                (0.7, 0.4, 'o'),
+                (0.6, 0.8, 'o'),
+            ]],
+        ),
+        area("points that coincide", &[&[a, a, b, b, b, c]]),
+        area("one point", &[&[c]]),
+        area("two points", &[&[a, c]]),
+        area("no area", &[&[a, b, a, b]]),
+        area(
+            "a sliver",
+            &[&[a, b, (0.823, 0.352, 'o'), (0.131, 0.224, 'o')]],
+        ),
+        area(
+            "a dot beside a square",
+            &[&[a, b, c, d], &[(0.05, 0.9, 'o')]],
+        ),
+        area(
+            "all of the picture",
+            &[&[
+                (-0.5, -0.5, 'o'),
+                (1.5, -0.5, 'o'),
+                (1.5, 1.5, 'o'),
+                (-0.5, 1.5, 'o'),
+            ]],
+        ),
+        area(
+            "off the picture",
+            &[&[
+                (-0.5, -0.5, 'o'),
+                (-0.1, -0.5, 'o'),
+                (-0.1, 1.5, 'o'),
+                (-0.5, 1.5, 'o'),
+            ]],
+        ),
+        area(
+            "beyond the right edge",
+            &[&[
+                (0.8, 0.2, 'o'),
+                (9.0, -3.0, '~'),
+                (9.0, 5.0, 'o'),
+                (0.7, 0.9, 'o'),
+            ]],
+        ),
+        area(
+            "on pixel centres",
+            &[&[
+                (2.5 / width, 2.5 / height, 'o'),
+                (6.5 / width, 2.5 / height, 'o'),
+                (6.5 / width, 5.5 / height, 'o'),
+                (2.5 / width, 5.5 / height, 'o'),
+            ]],
+        ),
+    ]
+}
