@@ -289,17 +289,19 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
         let near = &mut near[range];
         let radius = style[0];
         let is_area = job.is_area(slot);
-        let (touched, core) = if is_area {
-            let (near_edge, _) = union.blocks(simd, segments, 0.0, job.reach, near);
-            let inside = windings.fill(job.vertices(slot), job.origin);
-            (near_edge | inside, inside & !near_edge)
-        } else if near.len() == 1 {
+        let (mut touched, mut core) = if near.len() == 1 && !is_area {
             let (touched, core) = segments.get(0).blocks(simd, radius, job.reach);
             near[0] = touched;
             (touched, core)
         } else {
             union.blocks(simd, segments, radius, job.reach, near)
         };
+        // The edge of an area is that of a stroke without radius, which has no core.
+        if is_area {
+            let inside = windings.fill(job.vertices(slot), job.origin);
+            core = inside & !touched;
+            touched |= inside;
+        }
         let edge_blocks = touched & !core & live;
         let visit = Visit {
             slot: slot as u32,

@@ -167,6 +167,7 @@ mod tests {
 
     /// The winding number by its definition: the sum of the angles that the segments are seen under.
     #[test]
+    #[allow(clippy::disallowed_methods)]
     fn windings_are_sums_of_angles() {
         for i in 0..500 {
             let area = Area {
