@@ -29,6 +29,8 @@ impl Windings {
     }
 
     /// Looks at rings from the tile at `origin`, px. Returns the blocks all of whose pixels are inside.
+    // Once, and not in the kernel of every instruction set and edge: its loops unroll to a lot of code.
+    #[inline(never)]
     pub(super) fn fill(&mut self, vertices: &[[f32; 2]], origin: [f32; 2]) -> BlockSet {
         self.steps.as_flattened_mut().fill(0);
         for segment in vertices.windows(2) {
