@@ -3,24 +3,9 @@
 
 use std::time::Duration;
 
-use strokefit::fit::{MAX_STROKES, Refusal, Value};
+use strokefit::fit::{Refusal, Value};
 
 type Parsed<T> = Result<T, String>;
-
-/// A number of strokes.
-pub fn strokes(text: &str) -> Parsed<usize> {
-    told(Value::Written(text).whole(1..=MAX_STROKES))
-}
-
-/// A number of stages, or of iterations.
-pub fn stages(text: &str) -> Parsed<usize> {
-    strokes(text)
-}
-
-/// A number of threads.
-pub fn threads(text: &str) -> Parsed<usize> {
-    told(Value::Written(text).whole(1..=1024))
-}
 
 pub(super) fn pixels(text: &str) -> Parsed<u64> {
     told(Value::Written(text).whole(1..))

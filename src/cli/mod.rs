@@ -6,7 +6,7 @@
 pub mod bar;
 mod batch;
 mod check;
-pub mod domain;
+mod domain;
 mod drawing;
 mod events;
 mod fit;
@@ -28,7 +28,6 @@ mod rig;
 mod settings;
 pub mod usage;
 mod view;
-pub mod words;
 
 use std::ffi::OsString;
 use std::fmt::Display;

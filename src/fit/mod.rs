@@ -53,7 +53,7 @@ pub use descent::anneal::final_softness;
 pub use drawing::focus::Focus;
 pub use drawing::objective::Objective;
 pub use fitter::Fitter;
-pub use options::{OPTIONS, Options, Refusal, Value};
+pub use options::{MAX_THREADS, OPTIONS, Options, Refusal, Value};
 pub use recipe::{
     AdamSettings, BackgroundChoice, Correction, Domain, EdgeShape, Joins, Masking, Nudging, Pens,
     Points, Polish, Preset, Rates, Recipe, Recoloring, Reduction, Relocation, Rounds,

@@ -14,7 +14,7 @@ pub const OPTIONS: &str = "strokes, psnr, bytes, time, quality, preset, progress
     background, seed, colors, palette, pens, form, group, order, precision, width, threads, simd";
 
 /// Most worker threads: more than any machine has cores only waste memory.
-const MAX_THREADS: usize = 1024;
+pub const MAX_THREADS: usize = 1024;
 
 /// Configuration of a fit and settings of its run, set by name.
 #[derive(Debug, Clone, Default, PartialEq)]

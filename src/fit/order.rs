@@ -28,7 +28,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::base::Base;
 use super::config::Config;
 
 /// One step in the order of a fit.
@@ -155,20 +154,9 @@ pub(super) fn next(phase: Phase, outcome: Outcome, config: &Config) -> Phase {
 }
 
 impl Phase {
-    /// The first phase of a fit.
-    pub(super) fn first(config: &Config, base: Option<&Base>) -> Self {
-        // A base that uses colours outside the palette, or other pens, cannot stay as it is.
-        let may_stay = |base: &Base| config.pens.is_none() && config.colors.allow(&base.scene);
-        let is_long = |base: &Base| {
-            config
-                .budget
-                .strokes
-                .is_some_and(|most| base.scene.len() > most)
-        };
-        match base {
-            Some(base) if may_stay(base) || is_long(base) => Self::Base,
-            _ => Self::Trace,
-        }
+    /// The first phase of a fit, on a base or not.
+    pub(super) fn first(has_base: bool) -> Self {
+        if has_base { Self::Base } else { Self::Trace }
     }
 
     /// True if it is a planned stage, and a polish of all strokes is to come.

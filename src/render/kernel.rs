@@ -28,6 +28,7 @@
 // Lanes are never passed through closures of `array::map`: those are compiled on their own, without the
 // instruction set of their caller.
 
+mod front;
 mod lanes;
 mod segment;
 mod stack;
@@ -47,17 +48,14 @@ pub(super) use touching::{Listed, list_segments};
 
 use super::CanvasLoss;
 use super::edge::{Edge, Reach, SoftEdge};
-use super::grid::{BLOCKS, BlockRgb, BlockSet, Lanes, TileRgb, TileWeights, uniform_tile};
+use super::grid::{BLOCKS, BlockSet, Lanes, TileRgb, TileWeights, uniform_tile};
 use super::polylines::Polylines;
 use super::strokes::STYLE;
+use front::{Shape, Transmittance};
 use stack::Stack;
 use sums::{EdgeBlock, Grounds, Looks, Matte, OfSegment, OfStroke, Shifts};
 use union::{Kept, Segments, Union, shared};
 use winding::Windings;
-
-/// Transmittance below which nothing behind shows: a sixty-fourth of an 8-bit level. Four times as
-/// much costs gradients of tailed edges their third digit.
-const OPAQUE: f32 = 1.0 / 16384.0;
 
 /// Least opacity that is drawn, so that the derivative by an opacity of 0 is not 0/0.
 const FAINTEST: f32 = 1e-20;
@@ -80,49 +78,6 @@ struct Visit {
     shared: BlockSet,
     /// Blocks in the hard core, where coverage is 1 and no distance is needed.
     core: BlockSet,
-}
-
-/// Share of the light that the strokes drawn so far let through.
-#[derive(Debug, Clone, Copy)]
-struct Transmittance {
-    /// That of all of them.
-    through: Lanes,
-    /// Largest transmittance that leaving out any one stroke gives.
-    less_one: Lanes,
-}
-
-impl Transmittance {
-    /// Fully transparent where `weights` is 1, on the picture; opaque where it is 0, on the padding.
-    fn clear(weights: &Lanes) -> Self {
-        Self {
-            through: *weights,
-            less_one: *weights,
-        }
-    }
-
-    /// Adds one stroke behind the others, and to `color` what is seen of it. Returns true if nothing behind it can matter
-    /// any more.
-    #[inline(always)]
-    fn add<S: Simd>(
-        &mut self,
-        simd: S,
-        alpha: f32x16<S>,
-        rgb: &[f32x16<S>; 3],
-        color: &mut BlockRgb,
-    ) -> bool {
-        let t = load(simd, &self.through);
-        let weight = t * alpha;
-        for (color, &c) in color.iter_mut().zip(rgb) {
-            store(load(simd, color) + weight * c, color);
-        }
-        let less_one = load(simd, &self.less_one);
-        // The largest transmittance with any one stroke left out: `t` if it is the new one; otherwise that of before,
-        // dimmed by the new one. While this shows anything, worth still depends on what lies behind.
-        let less_one = (less_one - less_one * alpha).max(t);
-        store(t - weight, &mut self.through);
-        store(less_one, &mut self.less_one);
-        less_one.simd_lt(OPAQUE).all_true()
-    }
 }
 
 /// Scratch of one worker, reused from tile to tile.
@@ -379,49 +334,6 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
         for (color, backdrop) in color.iter_mut().zip(backdrop) {
             store(load(simd, color) + t * load(simd, backdrop), color);
         }
-    }
-}
-
-/// One stroke in pass 1.
-struct Shape<S: Simd, E> {
-    edge: E,
-    /// px; without a meaning for an area.
-    radius: f32,
-    opacity: f32x16<S>,
-    /// Distance from an area's outline, px, beyond which its coverage is 1 inside, as it is 0 outside.
-    outside: f32,
-}
-
-impl<S: Simd, E: SoftEdge> Shape<S, E> {
-    /// `m` in a block on the soft edge, from the squared distances of its pixels, and for an area the `sides` that they are
-    /// on; writes what is kept of it to `kept`.
-    #[inline(always)]
-    fn cover(
-        &self,
-        simd: S,
-        distance2: f32x16<S>,
-        sides: Option<&Lanes>,
-        kept: &mut EdgeBlock,
-    ) -> f32x16<S> {
-        let length = length(distance2);
-        let d = match sides {
-            None => self.radius - length,
-            Some(sides) => load(simd, sides) * length,
-        };
-        let (mut value, mut derivative) = self.edge.eval(d);
-        if let Some(sides) = sides {
-            let is_deep = d.simd_gt(self.outside);
-            value = is_deep.select(f32x16::splat(simd, 1.0), value);
-            derivative = is_deep.select(f32x16::splat(simd, 0.0), derivative);
-            // Pass 2 has the derivatives of −|q| by the segment, which is the distance outside alone.
-            derivative = -load(simd, sides) * derivative;
-        }
-        let alpha = self.opacity * value;
-        store(alpha, &mut kept.alpha);
-        store(self.opacity * derivative, &mut kept.slope);
-        // Pass 2 would have to take the root again.
-        store(1.0 / length, &mut kept.inverse);
-        alpha
     }
 }
 

@@ -13,6 +13,8 @@ mod support {
 
     // Of the program.
     #[cfg(feature = "cli")]
+    pub(crate) mod built;
+    #[cfg(feature = "cli")]
     pub(crate) mod engine;
     #[cfg(feature = "cli")]
     pub(crate) mod files;

@@ -17,7 +17,9 @@ use strokefit::coverage::CoverageSchedule;
 use strokefit::fit::Config;
 use strokefit::report::json;
 
-use strokefit::cli::{Status, Verbosity, domain, input, output, words};
+use strokefit::cli::{Status, Verbosity, input, output};
+
+use super::domain;
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Benchmark {
@@ -59,7 +61,7 @@ pub(super) struct Pareto {
     #[arg(long, value_name = "DIR")]
     svgs: Vec<PathBuf>,
     /// Numbers of strokes [default: 10 to 10,000]
-    #[arg(long, value_name = "N", value_delimiter = ',', value_parser = domain::strokes)]
+    #[arg(long, value_name = "N", value_delimiter = ',', value_parser = domain::count)]
     strokes: Vec<usize>,
     /// Presets [default: all]
     #[arg(long, value_name = "PRESET", value_delimiter = ',', value_parser = effort())]
@@ -74,7 +76,7 @@ pub(super) struct Pareto {
 
 /// The presets, and what comes before them.
 fn effort() -> impl TypedValueParser<Value = Effort> {
-    words::one_of([
+    domain::one_of([
         (Effort::Stages, "A draft without polish"),
         (Effort::Draft, "As --preset draft"),
         (Effort::Balanced, "As --preset balanced"),

@@ -11,7 +11,9 @@ use strokefit::fit::{Execution, Simd};
 use strokefit::image::Image;
 
 use strokefit::cli::bar::Bar;
-use strokefit::cli::{Status, Verbosity, domain, input};
+use strokefit::cli::{Status, Verbosity, input};
+
+use super::domain;
 
 /// Repeat the article's experiments, with tables, plots and animations
 #[derive(Debug, clap::Args)]
@@ -62,7 +64,7 @@ struct Article {
     #[arg(long, value_name = "EDGE", default_value = "smoothstep")]
     coverage: CoverageSchedule,
     /// Iterations between two pictures of the progress
-    #[arg(long, value_name = "N", default_value = "30", value_parser = domain::stages, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value = "30", value_parser = domain::count, allow_negative_numbers = true)]
     every: usize,
     /// Continue from the article.json of another run
     #[arg(long, value_name = "FILE")]
@@ -84,10 +86,10 @@ struct Compare {
 #[derive(Debug, clap::Args)]
 struct RunArgs {
     /// Number of strokes
-    #[arg(long, value_name = "N", default_value = "5000", value_parser = domain::strokes, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value = "5000", value_parser = domain::count, allow_negative_numbers = true)]
     strokes: usize,
     /// Number of iterations
-    #[arg(long, value_name = "N", default_value = "1500", value_parser = domain::stages, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value = "1500", value_parser = domain::count, allow_negative_numbers = true)]
     iterations: usize,
     /// Seed of the random start
     #[arg(long, value_name = "S", default_value_t = 0)]

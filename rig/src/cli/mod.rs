@@ -1,6 +1,7 @@
 //! The command line: arguments and subcommands. Messages, hints and exit statuses are those of `strokefit`.
 
 mod bench;
+mod domain;
 mod lab;
 
 use std::ffi::OsString;

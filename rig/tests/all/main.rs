@@ -2,10 +2,12 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod support {
+    pub(crate) mod built;
     #[path = "../../../../tests/all/support/output.rs"]
     pub(crate) mod output;
     #[path = "../../../../tests/all/support/picture.rs"]
     pub(crate) mod picture;
+    #[path = "../../../../tests/all/support/place.rs"]
     pub(crate) mod place;
     #[path = "../../../../tests/all/support/program.rs"]
     pub(crate) mod program;

@@ -2,6 +2,7 @@
 
 use super::grow;
 use crate::error::Result;
+use crate::fit::base::Base;
 use crate::fit::budget;
 use crate::fit::drawing::Drawing;
 use crate::fit::order::{Outcome, Purpose};
@@ -21,6 +22,12 @@ pub(in crate::fit) fn try_base(session: &mut Session<'_>) -> Result<Outcome> {
         keep_best(&mut session.drawing, most);
         session.history.stop = Stop::Strokes;
         return Ok(Outcome::Removed);
+    }
+    // A base that uses colours outside the palette, or other pens, cannot stay as it is.
+    let config = session.config;
+    let may_stay = |base: &Base| config.pens.is_none() && config.colors.allow(&base.scene);
+    if !session.base.is_some_and(may_stay) {
+        return Ok(Outcome::Over);
     }
     let file = session.writer.render(&session.drawing)?;
     let Some(stop) = budget::met(&session.config.budget, strokes, &file) else {

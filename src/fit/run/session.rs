@@ -180,7 +180,7 @@ impl<'a> Session<'a> {
             ),
             plan,
             timer: Timer::new(started, forecast),
-            phase: Phase::first(config, base),
+            phase: Phase::first(base.is_some()),
             resumed: None,
             grace: Some(watch.grace).filter(|grace| !grace.is_zero()),
             keeper: None,

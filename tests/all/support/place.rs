@@ -6,8 +6,7 @@ use std::process::Command;
 
 use tempfile::TempDir;
 
-/// The program under test.
-pub(crate) const STROKEFIT: &str = env!("CARGO_BIN_EXE_strokefit");
+pub(crate) use super::built::STROKEFIT;
 
 /// A folder that is gone when its test is.
 pub(crate) struct Place(TempDir);

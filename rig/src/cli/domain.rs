@@ -1,0 +1,33 @@
+//! Values of options: numbers and choices of a few words.
+
+use std::fmt::Display;
+use std::str::FromStr;
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use strokefit::fit::{MAX_STROKES, MAX_THREADS, Value};
+
+/// One of the values, by the words that they are read from and written as, each with its help.
+pub(super) fn one_of<T, const N: usize>(
+    values: [(T, &'static str); N],
+) -> impl TypedValueParser<Value = T>
+where
+    T: Clone + Display + FromStr<Err = strokefit::Error> + Send + Sync + 'static,
+{
+    let words = values.map(|(value, help)| PossibleValue::new(value.to_string()).help(help));
+    PossibleValuesParser::new(words).try_map(|word| word.parse::<T>())
+}
+
+/// A number of strokes, iterations or frames.
+pub(super) fn count(text: &str) -> Result<usize, String> {
+    whole(text, MAX_STROKES)
+}
+
+/// A number of threads.
+pub(super) fn threads(text: &str) -> Result<usize, String> {
+    whole(text, MAX_THREADS)
+}
+
+fn whole(text: &str, most: usize) -> Result<usize, String> {
+    let number = Value::Written(text).whole(1..=most);
+    number.map_err(|refusal| refusal.to_string())
+}
