@@ -34,9 +34,14 @@ macro_rules! words {
 
 pub(crate) use words;
 
+/// The beginning of a text, for a message.
+pub(crate) fn short(text: &str) -> String {
+    text.chars().take(40).collect()
+}
+
 /// The error of a text that is none of the words.
 pub(crate) fn unknown(text: &str, kind: &str, words: &[&str]) -> Error {
-    let short: String = text.chars().take(40).collect();
+    let short = short(text);
     let words = match words {
         [others @ .., last] => format!("{} or {last}", others.join(", ")),
         [] => String::new(),

@@ -8,7 +8,7 @@ use std::str::FromStr;
 use super::{Background, Colors, ErrorWeighting, Preset};
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::{color, quantum};
-use crate::words::words;
+use crate::words::{short, words};
 
 words!(Preset, "a preset": Draft = "draft", Balanced = "balanced", Best = "best");
 
@@ -218,11 +218,6 @@ fn write_color(f: &mut fmt::Formatter<'_>, [r, g, b]: [u8; 3]) -> fmt::Result {
 
 fn refusal(message: impl Into<String>) -> Error {
     Error::new(ErrorKind::Config, message)
-}
-
-/// The beginning of a text, for a message.
-fn short(text: &str) -> String {
-    text.chars().take(40).collect()
 }
 
 #[cfg(test)]
