@@ -5,6 +5,7 @@
 
 mod filled_loop;
 mod grid;
+mod mark;
 mod overlap;
 mod path;
 mod quantize;
@@ -13,6 +14,7 @@ mod written_path;
 
 pub use grid::MAX_PRECISION;
 pub(crate) use grid::UNITS_PER_PX;
+pub use mark::{Area, Mark};
 pub(crate) use overlap::overlaps;
 pub use path::{MAX_POINTS, Path, PathPoint, Piece};
 pub use quantize::{Dropped, MIN_WIDTH, Quantized};

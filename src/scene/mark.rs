@@ -1,0 +1,117 @@
+//! Marks: what a scene is made of.
+
+use super::{Path, Rgb, Stroke};
+use crate::math::Point;
+
+/// One element of a drawing.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Mark {
+    /// A path swept by a disc.
+    Stroke(Stroke),
+    /// Filled rings.
+    Area(Area),
+}
+
+/// Closed paths, filled where they wind around a point (SVG's nonzero rule), in one colour.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Area {
+    /// The outlines, px: at least one, each closed, on pixel centres at +0.5.
+    pub rings: Vec<Path>,
+    /// sRGB-encoded colour, 0..1.
+    pub color: Rgb,
+    /// 0 (invisible) to 1 (opaque).
+    pub opacity: f32,
+}
+
+impl Mark {
+    /// sRGB-encoded colour, 0..1.
+    pub fn color(&self) -> Rgb {
+        match self {
+            Self::Stroke(stroke) => stroke.color,
+            Self::Area(area) => area.color,
+        }
+    }
+
+    /// 0 (invisible) to 1 (opaque).
+    pub fn opacity(&self) -> f32 {
+        match self {
+            Self::Stroke(stroke) => stroke.opacity,
+            Self::Area(area) => area.opacity,
+        }
+    }
+
+    /// The centre line of a stroke, or the rings of an area.
+    pub fn paths(&self) -> &[Path] {
+        match self {
+            Self::Stroke(stroke) => std::slice::from_ref(&stroke.path),
+            Self::Area(area) => &area.rings,
+        }
+    }
+
+    /// Half the width of a stroke, px; 0 for an area.
+    pub fn radius(&self) -> f32 {
+        match self {
+            Self::Stroke(stroke) => stroke.radius,
+            Self::Area(_) => 0.0,
+        }
+    }
+
+    /// Number of points of all paths together.
+    pub fn points(&self) -> usize {
+        self.paths().iter().map(|path| path.points().len()).sum()
+    }
+
+    /// The stroke, unless the mark is an area.
+    pub fn as_stroke(&self) -> Option<&Stroke> {
+        match self {
+            Self::Stroke(stroke) => Some(stroke),
+            Self::Area(_) => None,
+        }
+    }
+
+    /// The area, unless the mark is a stroke.
+    pub fn as_area(&self) -> Option<&Area> {
+        match self {
+            Self::Stroke(_) => None,
+            Self::Area(area) => Some(area),
+        }
+    }
+
+    /// This mark with `f` applied to every point.
+    #[must_use]
+    pub fn map(self, f: impl Fn(Point) -> Point) -> Self {
+        match self {
+            Self::Stroke(stroke) => Self::Stroke(Stroke {
+                path: stroke.path.map(f),
+                ..stroke
+            }),
+            Self::Area(area) => Self::Area(Area {
+                rings: area.rings.into_iter().map(|ring| ring.map(&f)).collect(),
+                ..area
+            }),
+        }
+    }
+
+    /// True if every number of the mark is finite.
+    pub fn is_finite(&self) -> bool {
+        let points = self.paths().iter().flat_map(Path::points);
+        let mut places = points.flat_map(|p| [p.at.x, p.at.y]);
+        let style = self
+            .color()
+            .into_iter()
+            .chain([self.radius(), self.opacity()]);
+        places.all(f32::is_finite) && style.into_iter().all(f32::is_finite)
+    }
+}
+
+impl From<Stroke> for Mark {
+    fn from(stroke: Stroke) -> Self {
+        Self::Stroke(stroke)
+    }
+}
+
+impl From<Area> for Mark {
+    fn from(area: Area) -> Self {
+        Self::Area(area)
+    }
+}
