@@ -7,7 +7,7 @@
 //!
 //! let stroke = |x| Stroke { path: Path::dot([x, 4.0].into()), radius: 2.0, color: [0.1; 3], opacity: 1.0 };
 //! let scene = Scene {
-//!     stages: vec![Stage { strokes: [3.0, 8.0, 13.0].map(stroke).to_vec() }],
+//!     stages: vec![Stage::from_iter([3.0, 8.0, 13.0].map(stroke))],
 //!     ..Scene::empty(16, 8, Some([1.0; 3]))
 //! };
 //! let film = Film { step: Some(Step::Strokes(2)), legend: Legend::None, scale: 1.0 };
@@ -32,7 +32,7 @@ use crate::svg::{self, Timing};
 use crate::{
     image::{Animation, AnimationFormat},
     metrics,
-    scene::{Rgb, Stage, Stroke},
+    scene::{Mark, Rgb},
     svg::{Form, WriteOptions},
     verify::{Painting, Size},
 };
@@ -141,10 +141,10 @@ impl Film<'_> {
     /// Each as [`verify::render`](crate::verify::render); [`ErrorKind::Picture`] when a legend's
     /// picture is of another size.
     pub fn frames(&self, scene: &Scene) -> impl Iterator<Item = Result<Image>> {
-        let mut strokes = scene.strokes();
+        let mut marks = scene.marks();
         let mut painting = None;
         self.parts(scene).into_iter().map(move |part| {
-            let text = part_svg(scene, part.start == 0, strokes.by_ref().take(part.len()));
+            let text = part_svg(scene, part.start == 0, marks.by_ref().take(part.len()));
             let painting = match &mut painting {
                 Some(painting) => painting,
                 none => none.insert(Painting::new(&text, Size::Scale(self.scale), WHITE)?),
@@ -190,7 +190,7 @@ fn timing(frames: usize) -> Timing {
 
 /// The number of strokes after each stage that has any.
 fn stage_ends(scene: &Scene) -> Vec<usize> {
-    let counts = scene.stages.iter().map(|stage| stage.strokes.len());
+    let counts = scene.stages.iter().map(|stage| stage.marks.len());
     let ends = counts.filter(|&count| count > 0).scan(0, |end, count| {
         *end += count;
         Some(*end)
@@ -199,15 +199,9 @@ fn stage_ends(scene: &Scene) -> Vec<usize> {
 }
 
 #[cfg(feature = "animation")]
-/// Some strokes of `scene` as SVG, not rounded any further; on its background and its shade if they are its first.
-fn part_svg<'a>(
-    scene: &Scene,
-    is_first: bool,
-    strokes: impl Iterator<Item = &'a Stroke>,
-) -> String {
-    let stage = Stage {
-        strokes: strokes.cloned().collect(),
-    };
+/// Some marks of `scene` as SVG, not rounded any further; on its background and its shade if they are its first.
+fn part_svg<'a>(scene: &Scene, is_first: bool, marks: impl Iterator<Item = &'a Mark>) -> String {
+    let stage = marks.cloned().collect();
     let part = Scene {
         stages: vec![stage],
         background: scene.background.filter(|_| is_first),
@@ -231,7 +225,7 @@ fn precision(scene: &Scene) -> u8 {
 #[cfg(all(test, feature = "animation"))]
 mod tests {
     use super::*;
-    use crate::scene::Path;
+    use crate::scene::{Path, Stroke};
     use crate::verify;
 
     fn scene(stages: &[usize]) -> Scene {
@@ -245,9 +239,7 @@ mod tests {
             opacity: 0.6,
         };
         let mut next = 0..;
-        let stage = |&count: &usize| Stage {
-            strokes: next.by_ref().take(count).map(stroke).collect(),
-        };
+        let stage = |&count: &usize| next.by_ref().take(count).map(stroke).collect();
         let stages = stages.iter().map(stage).collect();
         let scene = Scene {
             stages,

@@ -1,4 +1,4 @@
-//! The drawing: a [`Scene`] of [`Stroke`]s, back to front, grouped in [`Stage`]s.
+//! The drawing: a [`Scene`] of [`Mark`]s, strokes and areas, back to front, grouped in [`Stage`]s.
 //!
 //! Coordinates are in px, with pixel centres at +0.5. Colours are sRGB-encoded, 0..1, and are composited in
 //! that encoding, as SVG renderers do.
@@ -39,24 +39,19 @@ pub struct Stroke {
     pub opacity: f32,
 }
 
-impl Stroke {
-    /// True if every number of the stroke is finite.
-    pub fn is_finite(&self) -> bool {
-        self.path
-            .points()
-            .iter()
-            .all(|p| p.at.x.is_finite() && p.at.y.is_finite())
-            && self.radius.is_finite()
-            && self.color.iter().all(|c| c.is_finite())
-            && self.opacity.is_finite()
-    }
-}
-
-/// Strokes that were added together: a layer of the SVG.
+/// Marks that were added together: a layer of the SVG.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Stage {
     /// Back to front.
-    pub strokes: Vec<Stroke>,
+    pub marks: Vec<Mark>,
+}
+
+impl<M: Into<Mark>> FromIterator<M> for Stage {
+    fn from_iter<I: IntoIterator<Item = M>>(marks: I) -> Self {
+        Self {
+            marks: marks.into_iter().map(Into::into).collect(),
+        }
+    }
 }
 
 /// A drawing.
@@ -68,16 +63,16 @@ pub struct Scene {
     pub height: u32,
     /// Width and height at which the drawing is shown, px, if it is of a reduced picture.
     pub page: Option<[u32; 2]>,
-    /// The colour behind all strokes; `None` if the drawing is transparent.
+    /// The colour behind all marks; `None` if the drawing is transparent.
     pub background: Option<Rgb>,
-    /// A gradient on the background, behind all strokes, if there is one.
+    /// A gradient on the background, behind all marks, if there is one.
     pub shade: Option<Shade>,
     /// Back to front.
     pub stages: Vec<Stage>,
 }
 
 impl Scene {
-    /// A scene without strokes.
+    /// A scene without marks.
     pub fn empty(width: u32, height: u32, background: Option<Rgb>) -> Self {
         Self {
             width,
@@ -89,24 +84,32 @@ impl Scene {
         }
     }
 
-    /// All strokes, back to front.
+    /// All marks, back to front.
+    pub fn marks(&self) -> impl Iterator<Item = &Mark> {
+        self.stages.iter().flat_map(|stage| &stage.marks)
+    }
+
+    /// The marks that are strokes, back to front.
     pub fn strokes(&self) -> impl Iterator<Item = &Stroke> {
-        self.stages.iter().flat_map(|stage| &stage.strokes)
+        self.marks().filter_map(Mark::as_stroke)
     }
 
-    /// Number of strokes.
+    /// The marks that are areas, back to front.
+    pub fn areas(&self) -> impl Iterator<Item = &Area> {
+        self.marks().filter_map(Mark::as_area)
+    }
+
+    /// Number of marks.
     pub fn len(&self) -> usize {
-        self.stages.iter().map(|stage| stage.strokes.len()).sum()
+        self.stages.iter().map(|stage| stage.marks.len()).sum()
     }
 
-    /// Number of points of all strokes together.
+    /// Number of points of all marks together.
     pub fn points(&self) -> usize {
-        self.strokes()
-            .map(|stroke| stroke.path.points().len())
-            .sum()
+        self.marks().map(Mark::points).sum()
     }
 
-    /// True if the scene has no stroke.
+    /// True if the scene has no mark.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -126,7 +126,7 @@ pub(super) fn typical_bytes(config: &Config, target: &Image) -> usize {
         color: [1.0 / 3.0; 3].map(|c: f32| c + 0.01),
         opacity: if config.opaque { 1.0 } else { 2.0 / 3.0 },
     };
-    svg::stroke_bytes(&stroke, &config.file).max(1)
+    svg::mark_bytes(&stroke.into(), &config.file).max(1)
 }
 
 /// True if the fit depends on the render of its file, or on the file's bytes.

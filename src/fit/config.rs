@@ -9,7 +9,7 @@ use super::widths::Widths;
 use crate::coverage::CoverageSchedule;
 use crate::error::{Error, ErrorKind, Result};
 use crate::math;
-use crate::scene::{MAX_POINTS, MAX_PRECISION, Rgb, Scene, Stroke, quantum};
+use crate::scene::{MAX_POINTS, MAX_PRECISION, Mark, Rgb, Scene, quantum};
 use crate::svg::{Form, WriteOptions};
 use crate::threads::Workers;
 
@@ -187,10 +187,12 @@ impl Config {
         self.points.map_or(pays, |most| most > 2)
     }
 
-    /// True if a stroke is as opaque, and has as few points, as all strokes have to be.
-    pub(super) fn allows(&self, stroke: &Stroke) -> bool {
-        let points = stroke.path.points().len();
-        self.points.is_none_or(|most| points <= most) && (!self.opaque || stroke.opacity >= 1.0)
+    /// True if a mark is as opaque, and a stroke has as few points, as all have to be.
+    pub(super) fn allows(&self, mark: &Mark) -> bool {
+        let points = mark
+            .as_stroke()
+            .map_or(0, |stroke| stroke.path.points().len());
+        self.points.is_none_or(|most| points <= most) && (!self.opaque || mark.opacity() >= 1.0)
     }
 
     /// The quality that sets the price of a stroke in a drawing of `pixels` pixels, unless strokes are free.

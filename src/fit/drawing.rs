@@ -14,7 +14,7 @@ pub(super) mod surface;
 use fearless_simd::Level;
 
 use crate::render::{Canvas, CanvasLoss, Gradients, Params, Renderer, Softness, Strokes, Survey};
-use crate::scene::{Rgb, Shade, Stroke};
+use crate::scene::{Mark, Rgb, Shade};
 use bounds::Bounds;
 use focus::Focus;
 pub(super) use memento::Memento;
@@ -210,11 +210,10 @@ impl Drawing {
         std::mem::swap(&mut self.frozen, &mut self.free);
     }
 
-    /// Adds `strokes` on top, in px of the picture, as part of stage `stage`.
-    pub(super) fn extend_by(&mut self, strokes: &[Stroke], stage: usize) {
+    /// Adds `marks` on top, in px of the picture, as part of stage `stage`.
+    pub(super) fn extend_by(&mut self, marks: &[Mark], stage: usize) {
         let halvings = self.surface().halvings();
-        self.free_mut()
-            .append(&mut scene::reduced(strokes, halvings));
+        self.free_mut().append(&mut scene::reduced(marks, halvings));
         self.stage_of.resize(self.len(), stage);
     }
 

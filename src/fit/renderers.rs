@@ -137,7 +137,7 @@ pub(super) fn by_chromium(scene: &Scene, surfaces: &[Surface]) -> Vec<Image> {
         .iter()
         .map(|s| s.backdrop_canvas(scene).to_image())
         .collect();
-    chromium::draw(scene.strokes(), &backdrops)
+    chromium::draw(scene.marks(), &backdrops)
 }
 
 /// `target` less the offset of two renders from our `own`: `renders` by resvg and Chromium, and the share of each.

@@ -1,7 +1,7 @@
-//! Rasterisers of strokes: resvg takes samples, Chromium the areas of a rounded outline, others exact areas.
+//! Rasterisers of marks: resvg takes samples, Chromium the areas of a rounded outline, others exact areas.
 //!
 //! [`chromium::draw`] draws whole pictures; resvg does so itself, from the file (see [`verify`](crate::verify)). Within the
-//! crate, `Rasters` draws single strokes by each `Rasterizer`, and says which pixels they cover.
+//! crate, `Rasters` draws single marks by each `Rasterizer`, and says which pixels they cover.
 
 pub mod chromium;
 mod exact;
@@ -14,7 +14,7 @@ use exact::Region;
 pub(crate) use footprint::Footprint;
 use slots::Slots;
 
-use crate::scene::Stroke;
+use crate::scene::{Mark, Stroke};
 
 /// A way to antialias edges.
 #[derive(Debug, Clone, Copy)]
@@ -35,7 +35,7 @@ impl Rasterizer {
 /// A value for each rasteriser.
 pub(crate) type PerRasterizer<T> = [T; Rasterizer::ALL.len()];
 
-/// Draws single strokes by each rasteriser on pictures of one size. One worker uses it at a time.
+/// Draws single marks by each rasteriser on pictures of one size. One worker uses it at a time.
 pub(crate) struct Rasters {
     width: usize,
     height: usize,
@@ -70,7 +70,7 @@ impl Rasters {
             radius,
             ..stroke.clone()
         };
-        resvg::footprint(&stroke, self.width, self.height)
+        resvg::footprint(&stroke.into(), self.width, self.height)
     }
 
     /// Runs `work` with these pixels selected.
@@ -90,19 +90,22 @@ impl Rasters {
 }
 
 impl Selection<'_> {
-    /// The footprint of `stroke`. Exact areas are known of the selected pixels alone.
-    pub(crate) fn footprint(&mut self, rasterizer: Rasterizer, stroke: &Stroke) -> Footprint {
+    /// The footprint of `mark`. Exact areas of strokes are known of the selected pixels alone.
+    pub(crate) fn footprint(&mut self, rasterizer: Rasterizer, mark: &Mark) -> Footprint {
         let Rasters {
             width,
             height,
             ref mut chromium,
             ref slots,
         } = *self.rasters;
-        match rasterizer {
-            Rasterizer::Resvg => resvg::footprint(stroke, width, height),
-            Rasterizer::Chromium => chromium.footprint(stroke),
+        match (rasterizer, mark) {
+            (Rasterizer::Resvg, _) => resvg::footprint(mark, width, height),
+            // Of a filled outline Chromium takes exact areas, but for the rounding of its corners to a quarter of a row.
+            (Rasterizer::Chromium, _) | (Rasterizer::Exact, Mark::Area(_)) => {
+                chromium.footprint(mark)
+            }
             // It looks at pixels one by one, so that few pixels save time; the others fill an outline.
-            Rasterizer::Exact => {
+            (Rasterizer::Exact, Mark::Stroke(stroke)) => {
                 let pixels = self.pixels;
                 let region = Region {
                     pixels,

@@ -7,24 +7,25 @@ use resvg::tiny_skia::{
 };
 
 use super::footprint::Footprint;
-use crate::scene::{Piece, Stroke};
+use crate::scene::{self, Mark, Piece, Stroke};
 
 /// The length of the segment that a dot is written as, px.
 const DOT: f32 = 0.01;
 
-/// The pixels of a picture of `width`×`height` px that `stroke`, which is as its file has it, covers.
-pub(super) fn footprint(stroke: &Stroke, width: usize, height: usize) -> Footprint {
-    covered(stroke, [width, height]).unwrap_or_default()
+/// The pixels of a picture of `width`×`height` px that `mark`, which is as its file has it, covers.
+pub(super) fn footprint(mark: &Mark, width: usize, height: usize) -> Footprint {
+    covered(mark, [width, height]).unwrap_or_default()
 }
 
-fn covered(stroke: &Stroke, size: [usize; 2]) -> Option<Footprint> {
-    let pen = Pen {
-        width: 2.0 * stroke.radius,
-        line_cap: LineCap::Round,
-        line_join: LineJoin::Round,
-        ..Pen::default()
+fn covered(mark: &Mark, size: [usize; 2]) -> Option<Footprint> {
+    let outline = match mark {
+        Mark::Stroke(stroke) => stroked(stroke)?,
+        Mark::Area(area) => {
+            let mut rings = PathBuilder::new();
+            area.rings.iter().for_each(|ring| push(&mut rings, ring));
+            rings.finish()?
+        }
     };
-    let outline = center_line(stroke)?.stroke(&pen, 1.0)?;
     // Only the box of the outline is drawn. It lies on whole pixels, so that samples fall where they do on the page.
     let [columns, rows] = touched(outline.bounds(), size);
     let mut raster = Raster::new(columns.len() as u32, rows.len() as u32)?;
@@ -35,6 +36,19 @@ fn covered(stroke: &Stroke, size: [usize; 2]) -> Option<Footprint> {
     let covered = levels.flat_map(|(y, levels)| (y * width + columns.start..).zip(levels));
     let covered = covered.map(|(pixel, &level)| (pixel as u32, level));
     Some(covered.collect())
+}
+
+/// The outline of a stroke.
+fn stroked(stroke: &Stroke) -> Option<Path> {
+    let pen = Pen {
+        width: 2.0 * stroke.radius,
+        line_cap: LineCap::Round,
+        line_join: LineJoin::Round,
+        ..Pen::default()
+    };
+    let mut line = PathBuilder::new();
+    push(&mut line, &stroke.path);
+    line.finish()?.stroke(&pen, 1.0)
 }
 
 /// The columns and rows of a picture of `size` that a box touches.
@@ -50,11 +64,10 @@ fn touched(bounds: Rect, size: [usize; 2]) -> [Range<usize>; 2] {
     })
 }
 
-/// The centre line as resvg reads it from the file.
-fn center_line(stroke: &Stroke) -> Option<Path> {
-    let mut line = PathBuilder::new();
-    for piece in stroke.path.pieces() {
-        if line.is_empty() {
+/// Appends a path as resvg reads it from the file.
+fn push(line: &mut PathBuilder, path: &scene::Path) {
+    for (i, piece) in path.pieces().enumerate() {
+        if i == 0 {
             line.move_to(piece.start().x, piece.start().y);
         }
         match piece {
@@ -62,14 +75,13 @@ fn center_line(stroke: &Stroke) -> Option<Path> {
             Piece::Curve([_, c, b]) => line.quad_to(c.x, c.y, b.x, b.y),
         }
     }
-    if let ([dot], true) = (stroke.path.points(), line.is_empty()) {
+    if let [dot] = path.points() {
         line.move_to(dot.at.x, dot.at.y);
         line.line_to(dot.at.x + DOT, dot.at.y);
     }
-    if stroke.path.is_closed() {
+    if path.is_closed() {
         line.close();
     }
-    line.finish()
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::math::{self, Point};
-use crate::scene::{Path, PathPoint, Rgb, Stroke};
+use crate::scene::{Area, Mark, Path, PathPoint, Rgb, Stroke};
 
 /// Numbers of a capsule, in the order of the constants below.
 pub const PARAMS: usize = 9;
@@ -153,19 +153,36 @@ impl<'a> StrokeRef<'a> {
         self.style.iter().fold(points, zero) == 0.0
     }
 
-    /// The stroke as a part of a scene.
+    /// The stroke or area as a part of a scene.
+    pub fn to_mark(&self) -> Mark {
+        if !self.is_area() {
+            return self.to_stroke().into();
+        }
+        let area = Area {
+            rings: self.paths().map(|(_, ring)| ring.to_path()).collect(),
+            color: self.color(),
+            opacity: self.opacity(),
+        };
+        area.into()
+    }
+
+    /// The stroke as a part of a scene; of an area, all of its points as one centre line.
     pub fn to_stroke(&self) -> Stroke {
+        Stroke {
+            path: self.to_path(),
+            radius: self.radius(),
+            color: self.color(),
+            opacity: self.opacity(),
+        }
+    }
+
+    fn to_path(self) -> Path {
         let points = self.points.iter().zip(self.off);
         let points = points.map(|(&[x, y], &is_off)| PathPoint {
             at: Point::new(x, y),
             is_on: !is_off,
         });
-        Stroke {
-            path: Path::of_points(points.collect(), self.closed),
-            radius: self.radius(),
-            color: self.color(),
-            opacity: self.opacity(),
-        }
+        Path::of_points(points.collect(), self.closed)
     }
 }
 
@@ -299,16 +316,40 @@ impl Strokes {
 
     /// Adds a stroke of a scene on top.
     pub fn push_stroke(&mut self, stroke: &Stroke) {
-        let points = stroke.path.points();
-        let places: Vec<[f32; 2]> = points.iter().map(|p| [p.at.x, p.at.y]).collect();
-        let off: Vec<bool> = points.iter().map(|p| !p.is_on).collect();
-        let [red, green, blue] = stroke.color;
+        let style = (stroke.radius, stroke.color, stroke.opacity);
+        self.push_paths(std::slice::from_ref(&stroke.path), &[], style);
+    }
+
+    /// Adds a stroke or an area of a scene on top.
+    pub fn push_mark(&mut self, mark: &Mark) {
+        match mark {
+            Mark::Stroke(stroke) => self.push_stroke(stroke),
+            Mark::Area(area) => {
+                let ends = area.rings.iter().scan(0, |end, ring| {
+                    *end += ring.points().len() as u32;
+                    Some(*end)
+                });
+                let ends: Vec<u32> = ends.collect();
+                self.push_paths(&area.rings, &ends, (0.0, area.color, area.opacity));
+            }
+        }
+    }
+
+    fn push_paths(
+        &mut self,
+        paths: &[Path],
+        rings: &[u32],
+        (radius, [red, green, blue], opacity): (f32, Rgb, f32),
+    ) {
+        let points = || paths.iter().flat_map(Path::points);
+        let places: Vec<[f32; 2]> = points().map(|p| [p.at.x, p.at.y]).collect();
+        let off: Vec<bool> = points().map(|p| !p.is_on).collect();
         self.push(StrokeRef {
             points: &places,
             off: &off,
-            closed: stroke.path.is_closed(),
-            rings: &[],
-            style: &[stroke.radius, red, green, blue, stroke.opacity],
+            closed: paths.first().is_some_and(Path::is_closed),
+            rings,
+            style: &[radius, red, green, blue, opacity],
         });
     }
 
@@ -386,6 +427,14 @@ impl<'a> FromIterator<&'a Stroke> for Strokes {
         strokes
             .into_iter()
             .for_each(|stroke| all.push_stroke(stroke));
+        all
+    }
+}
+
+impl<'a> FromIterator<&'a Mark> for Strokes {
+    fn from_iter<I: IntoIterator<Item = &'a Mark>>(marks: I) -> Self {
+        let mut all = Self::new();
+        marks.into_iter().for_each(|mark| all.push_mark(mark));
         all
     }
 }

@@ -24,7 +24,7 @@ pub use check::{AgainstResvg, CheckReport, NotDrawn, RendererEntry};
 pub use event::{Event, PhaseEntry};
 pub use fit::{BaseEntry, FitReport, Run, StageEntry, stop_word};
 pub use judged::{Judged, OnFocus};
-pub use scene::{SceneRecord, ShadeRecord, StrokeRecord};
+pub use scene::{MarkRecord, SceneRecord, ShadeRecord};
 pub use size::{gzip_bytes, per_stroke};
 pub use usage::Usage;
 

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::scene::{Axis, Path, PathPoint, Rgb, Scene, Shade, ShadeStop, Stroke};
+use crate::scene::{Axis, Mark, Path, PathPoint, Rgb, Scene, Shade, ShadeStop};
 
 /// A scene in numbers and colours that a page can hand to a canvas.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -16,14 +16,15 @@ pub struct SceneRecord {
     /// The gradient on it; left out if there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shade: Option<ShadeRecord>,
-    /// Strokes back to front, stage by stage.
-    pub stages: Vec<Vec<StrokeRecord>>,
+    /// Marks back to front, stage by stage.
+    pub stages: Vec<Vec<MarkRecord>>,
 }
 
-/// In JSON a list of five: the points x, y, x, y, … and the radius, px; the colour `#rrggbb`; the opacity, 0..1; the kinds
-/// of the points, `o` on the path and `c` for a control point, and then `z` if the path is closed.
+/// In JSON a list of five: the points x, y, x, y, … and the radius, px, 0 for an area; the colour `#rrggbb`; the opacity,
+/// 0..1; the kinds of the points, `o` on the path and `c` for a control point, with `z` after the points of a closed path,
+/// and so after those of each ring of an area.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct StrokeRecord(pub Vec<f32>, pub f32, pub String, pub f32, pub String);
+pub struct MarkRecord(pub Vec<f32>, pub f32, pub String, pub f32, pub String);
 
 impl From<&Scene> for SceneRecord {
     fn from(scene: &Scene) -> Self {
@@ -34,7 +35,7 @@ impl From<&Scene> for SceneRecord {
             background: scene.background.map(css),
             shade: scene.shade.as_ref().map(ShadeRecord::from),
             stages: stages
-                .map(|stage| stage.strokes.iter().map(StrokeRecord::from).collect())
+                .map(|stage| stage.marks.iter().map(MarkRecord::from).collect())
                 .collect(),
         }
     }
@@ -65,15 +66,15 @@ impl From<&Shade> for ShadeRecord {
     }
 }
 
-impl From<&Stroke> for StrokeRecord {
-    fn from(stroke: &Stroke) -> Self {
-        let points = stroke.path.points().iter();
+impl From<&Mark> for MarkRecord {
+    fn from(mark: &Mark) -> Self {
+        let points = mark.paths().iter().flat_map(Path::points);
         Self(
             points.flat_map(|p| [p.at.x, p.at.y]).collect(),
-            stroke.radius,
-            css(stroke.color),
-            stroke.opacity,
-            kinds(&stroke.path),
+            mark.radius(),
+            css(mark.color()),
+            mark.opacity(),
+            mark.paths().iter().map(kinds).collect(),
         )
     }
 }
@@ -93,7 +94,7 @@ fn css(color: Rgb) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Stage;
+    use crate::scene::{Stage, Stroke};
 
     #[test]
     fn a_page_reads_points_radius_colour_opacity_and_kinds() {
@@ -103,9 +104,7 @@ mod tests {
             color: [1.0, 0.5, 0.0],
             opacity: 0.25,
         };
-        let stage = Stage {
-            strokes: vec![stroke],
-        };
+        let stage = Stage::from_iter([stroke]);
         let scene = Scene {
             stages: vec![stage],
             ..Scene::empty(8, 6, Some([1.0; 3]))

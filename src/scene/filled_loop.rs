@@ -5,7 +5,7 @@
 //! the pen. An open path that ends where it starts has one ring and no hole, and with round caps it is the same union of
 //! discs. So such paths are written open.
 
-use super::overlap::{Segment, gap};
+use super::overlap::{Segment, gap, is_inside};
 use super::written_path::{WrittenPath, WrittenPoint};
 use super::{MAX_POINTS, PathPoint};
 
@@ -60,19 +60,6 @@ fn leaves_gap(path: &WrittenPath, width: i64) -> bool {
     places
         .map(|[column, row]| [at(0, column), at(1, row)])
         .any(|p| is_inside(p, &segments) && segments.iter().all(|&s| gap(p, s) > reach))
-}
-
-/// True if the loop winds around `p`.
-fn is_inside(p: [f64; 2], segments: &[Segment]) -> bool {
-    let crossing = |&[a, b]: &Segment| {
-        let side = (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
-        match (a[1] <= p[1], b[1] <= p[1]) {
-            (true, false) if side > 0.0 => 1,
-            (false, true) if side < 0.0 => -1,
-            _ => 0,
-        }
-    };
-    segments.iter().map(crossing).sum::<i32>() != 0
 }
 
 #[cfg(test)]

@@ -1,60 +1,71 @@
-//! Finds pairs of strokes that may share a pixel, so that their order matters.
+//! Finds pairs of marks that may share a pixel, so that their order matters.
 
 use super::grid::UNITS_PER_PX;
 use super::quantize::Written;
 use crate::math;
 
-/// The pairs of strokes that may share a pixel and whose order `matters` where they do, the lower stroke of each first. The
+/// The pairs of marks that may share a pixel and whose order `matters` where they do, the lower mark of each first. The
 /// pairs come in no useful order, but always in the same one.
 pub(crate) fn overlaps<'a>(
-    strokes: impl IntoIterator<Item = &'a Written>,
+    marks: impl IntoIterator<Item = &'a Written>,
     matters: impl Fn(&Written, &Written) -> bool,
 ) -> Vec<[usize; 2]> {
-    let strokes: Vec<&Written> = strokes.into_iter().collect();
-    let swept: Vec<Swept> = strokes.iter().copied().map(Swept::new).collect();
-    // A sweep from left to right compares a stroke with those alone that reach as far right as its left end.
-    let mut from_left: Vec<usize> = (0..strokes.len()).collect();
+    let marks: Vec<&Written> = marks.into_iter().collect();
+    let swept: Vec<Swept> = marks.iter().copied().map(Swept::new).collect();
+    // A sweep from left to right compares a mark with those alone that reach as far right as its left end.
+    let mut from_left: Vec<usize> = (0..marks.len()).collect();
     from_left.sort_by_key(|&i| swept[i].span());
     let (mut open, mut pairs): (Vec<usize>, Vec<_>) = (Vec::new(), Vec::new());
     for i in from_left {
         open.retain(|&k| swept[k].span()[1] >= swept[i].span()[0]);
         let partners = open
             .iter()
-            .filter(|&&k| matters(strokes[i], strokes[k]) && swept[i].meets(&swept[k]));
+            .filter(|&&k| matters(marks[i], marks[k]) && swept[i].meets(&swept[k]));
         pairs.extend(partners.map(|&k| [i.min(k), i.max(k)]));
         open.push(i);
     }
     pairs
 }
 
-/// Where a stroke may leave ink: what is needed to compare it with many others.
+/// Where a mark may leave ink: what is needed to compare it with many others.
 #[derive(Debug, Clone)]
 struct Swept {
-    /// In units.
+    /// Of a stroke, in units; 0 for an area.
     width: i64,
     /// From where to where the points lie along each axis, in units.
     bounds: [[i64; 2]; 2],
-    /// The centre line, by segments at most [`TOLERANCE`] away from it; that of a dot has no length.
+    /// The paths, by segments at most [`TOLERANCE`] away from them; that of a dot has no length.
     segments: Vec<Segment>,
+    /// A point of each path.
+    starts: Vec<[f64; 2]>,
 }
 
 impl Swept {
-    fn new(stroke: &Written) -> Self {
+    fn new(mark: &Written) -> Self {
+        let starts = mark.paths.iter().flat_map(|path| path.points().first());
         Self {
-            width: stroke.width,
-            bounds: bounds(stroke),
-            segments: segments(stroke),
+            width: mark.width,
+            bounds: bounds(mark),
+            segments: segments(mark),
+            starts: starts.map(|p| p.at.map(|units| units as f64)).collect(),
         }
     }
 
-    /// True if the order of the two strokes can change the picture.
+    /// True if the order of the two marks can change the picture.
     fn meets(&self, other: &Self) -> bool {
         let reach = reach(self.width, other.width);
         are_near(&self.bounds, &other.bounds, reach)
-            && is_nearer(&self.segments, &other.segments, reach as f64)
+            && (is_nearer(&self.segments, &other.segments, reach as f64)
+                || self.covers(other)
+                || other.covers(self))
     }
 
-    /// From where to where, along the x axis, the stroke can meet others, in units.
+    /// True if it is an area that a path of `other` starts in.
+    fn covers(&self, other: &Self) -> bool {
+        self.width == 0 && other.starts.iter().any(|&p| is_inside(p, &self.segments))
+    }
+
+    /// From where to where, along the x axis, the mark can meet others, in units.
     fn span(&self) -> [i64; 2] {
         let [near, far] = self.bounds[0];
         let margin = (self.width + APART + 1) / 2;
@@ -63,15 +74,14 @@ impl Swept {
 }
 
 impl Written {
-    /// True if the order of the two strokes can change the picture.
+    /// True if the order of the two marks can change the picture.
     pub(crate) fn meets(&self, other: &Self) -> bool {
         let reach = reach(self.width, other.width);
-        are_near(&bounds(self), &bounds(other), reach)
-            && is_nearer(&segments(self), &segments(other), reach as f64)
+        are_near(&bounds(self), &bounds(other), reach) && Swept::new(self).meets(&Swept::new(other))
     }
 }
 
-/// Distance between centre lines of these widths up to which the strokes may share a pixel, in units.
+/// Distance between paths of these widths up to which the marks may share a pixel, in units.
 fn reach(a: i64, b: i64) -> i64 {
     (a + b) / 2 + APART
 }
@@ -83,25 +93,25 @@ fn are_near(a: &[[i64; 2]; 2], b: &[[i64; 2]; 2], reach: i64) -> bool {
         .all(|([a_near, a_far], [b_near, b_far])| a_near - b_far < reach && b_near - a_far < reach)
 }
 
-/// From where to where the points of a stroke lie along each axis, in units.
-fn bounds(stroke: &Written) -> [[i64; 2]; 2] {
+/// From where to where the points of a mark lie along each axis, in units.
+fn bounds(mark: &Written) -> [[i64; 2]; 2] {
     [0, 1].map(|axis| {
-        let along = || stroke.path.points().iter().map(|p| p.at[axis]);
+        let along = || mark.points().map(|p| p.at[axis]);
         [along().min().unwrap_or(0), along().max().unwrap_or(0)]
     })
 }
 
-/// The centre line of a stroke as segments that are at most [`TOLERANCE`] away from it; that of a dot has no length.
-fn segments(stroke: &Written) -> Vec<Segment> {
-    let mut segments = stroke.path.segments(TOLERANCE);
-    if let ([dot], []) = (stroke.path.points(), segments.as_slice()) {
+/// The paths of a mark as segments that are at most [`TOLERANCE`] away from them; that of a dot has no length.
+fn segments(mark: &Written) -> Vec<Segment> {
+    let mut segments = mark.segments(TOLERANCE);
+    if let (Some(dot), []) = (mark.points().next(), segments.as_slice()) {
         segments.push([dot.at; 2]);
     }
     let float = |p: [i64; 2]| p.map(|units| units as f64);
     segments.into_iter().map(|ends| ends.map(float)).collect()
 }
 
-/// Strokes farther apart than the diagonal of a pixel have no pixel in common. What chords are away from their curve is
+/// Marks farther apart than the diagonal of a pixel have no pixel in common. What chords are away from their curve is
 /// within the rest.
 const APART: i64 = UNITS_PER_PX * 3 / 2;
 
@@ -150,6 +160,19 @@ fn cross(a: Segment, b: Segment) -> bool {
     side(a, b[0]) * side(a, b[1]) < 0.0 && side(b, a[0]) * side(b, a[1]) < 0.0
 }
 
+/// True if closed paths of these segments wind around `p`.
+pub(super) fn is_inside(p: [f64; 2], segments: &[Segment]) -> bool {
+    let crossing = |&[a, b]: &Segment| {
+        let side = (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
+        match (a[1] <= p[1], b[1] <= p[1]) {
+            (true, false) if side > 0.0 => 1,
+            (false, true) if side < 0.0 => -1,
+            _ => 0,
+        }
+    };
+    segments.iter().map(crossing).sum::<i32>() != 0
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -159,7 +182,7 @@ mod tests {
 
     fn stroke(x: i64, width: i64) -> Written {
         Written {
-            path: WrittenPath::line([x * PX, 10 * PX], [x * PX, 90 * PX]),
+            paths: vec![WrittenPath::line([x * PX, 10 * PX], [x * PX, 90 * PX])],
             width: width * PX,
             color: [0; 3],
             opacity: 255,
@@ -172,7 +195,7 @@ mod tests {
         let touches = [13, 14, 15].map(|x| base.meets(&stroke(x, 2)));
         assert_eq!(touches, [true, true, false]);
         let beyond = Written {
-            path: WrittenPath::line([10 * PX, 96 * PX], [10 * PX, 96 * PX]),
+            paths: vec![WrittenPath::line([10 * PX, 96 * PX], [10 * PX, 96 * PX])],
             ..base.clone()
         };
         assert!(!base.meets(&beyond));
@@ -181,7 +204,7 @@ mod tests {
     #[test]
     fn crossing_strokes_touch() {
         let across = Written {
-            path: WrittenPath::line([-500 * PX, 50 * PX], [500 * PX, 51 * PX]),
+            paths: vec![WrittenPath::line([-500 * PX, 50 * PX], [500 * PX, 51 * PX])],
             ..stroke(0, 1)
         };
         assert!(stroke(10, 1).meets(&across));
@@ -194,16 +217,40 @@ mod tests {
             is_on,
         });
         let arch = Written {
-            path: WrittenPath::new(points.into(), false),
+            paths: vec![WrittenPath::new(points.into(), false)],
             ..stroke(0, 2)
         };
         let dot = |x: i64, y: i64| Written {
-            path: WrittenPath::line([x * PX, y * PX], [x * PX, y * PX]),
+            paths: vec![WrittenPath::line([x * PX, y * PX], [x * PX, y * PX])],
             ..stroke(0, 2)
         };
         // The top of the curve is at (50, 50).
         let found =
             [(50, 53), (50, 54), (50, 70), (50, 10), (20, 26)].map(|(x, y)| arch.meets(&dot(x, y)));
         assert_eq!(found, [true, false, false, false, true]);
+    }
+
+    #[test]
+    fn an_area_touches_what_lies_in_it_and_not_what_lies_in_its_hole() {
+        let square = |low: i64, high: i64| {
+            let corners = [[low, low], [high, low], [high, high], [low, high]];
+            let mut points = corners.map(|p| PathPoint::on(p.map(|px| px * PX)));
+            if low > 0 {
+                points.reverse();
+            }
+            WrittenPath::new(points.into(), true)
+        };
+        let area = |paths| Written {
+            paths,
+            width: 0,
+            ..stroke(0, 2)
+        };
+        let dot = Written {
+            paths: vec![WrittenPath::line([50 * PX; 2], [50 * PX; 2])],
+            ..stroke(0, 2)
+        };
+        let [whole, holed] = [vec![square(0, 100)], vec![square(0, 100), square(20, 80)]].map(area);
+        assert_eq!([&whole, &holed].map(|a| a.meets(&dot)), [true, false]);
+        assert!(dot.meets(&whole) && whole.meets(&holed));
     }
 }

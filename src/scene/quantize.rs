@@ -1,13 +1,13 @@
-//! Rounds strokes to what the SVG can hold: a fixed number of decimals, and 8-bit colour and opacity.
+//! Rounds marks to what the SVG can hold: a fixed number of decimals, and 8-bit colour and opacity.
 //!
-//! [`Written`] is a stroke in exactly these integers. Quantising, writing and reading all go through it, so
+//! [`Written`] is a mark in exactly these integers. Quantising, writing and reading all go through it, so
 //! reading a written file gives the quantised scene to the bit.
 
 use serde::{Deserialize, Serialize};
 
 use super::grid::{Grid, UNITS_PER_PX};
-use super::written_path::WrittenPath;
-use super::{PathPoint, Rgb, Scene, Stage, Stroke};
+use super::written_path::{WrittenPath, WrittenPoint};
+use super::{Area, Mark, Path, PathPoint, Rgb, Scene, Stage, Stroke};
 
 /// Narrowest stroke, px. Rasterisers of the Skia family draw a width of 1 px or less as a hairline of lower
 /// opacity, with the wrong ink on diagonals. The excess over 1 px keeps rounding from reaching 1 px.
@@ -27,23 +27,24 @@ pub struct Quantized {
     pub dropped: Dropped,
 }
 
-/// Number of strokes that are not written, by reason, and of points.
+/// Number of marks that are not written, by reason, and of points.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Dropped {
-    /// Strokes with NaN or infinite parameters.
+    /// Marks with NaN or infinite parameters.
     pub non_finite: usize,
-    /// Strokes without width, with an opacity that rounds to 0, or that a fit found to change no pixel.
+    /// Strokes without width, areas without an inside, and marks with an opacity that rounds to 0, or that a fit found to
+    /// change no pixel.
     pub invisible: usize,
-    /// Strokes with a bounding box off the page, or with a coordinate beyond the limit of the file.
+    /// Marks with a bounding box off the page, or with a coordinate beyond the limit of the file.
     pub off_page: usize,
-    /// Points of strokes that are written: those that coincide with their neighbours once they are rounded, or that
+    /// Points of marks that are written: those that coincide with their neighbours once they are rounded, or that
     /// others imply.
     #[serde(default)]
     pub points: usize,
 }
 
 impl Dropped {
-    /// The sum of all strokes.
+    /// The sum of all marks.
     pub fn total(self) -> usize {
         self.non_finite + self.invisible + self.off_page
     }
@@ -57,7 +58,7 @@ impl Dropped {
     }
 }
 
-/// Why a stroke cannot be written.
+/// Why a mark cannot be written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Unwritable {
     NonFinite,
@@ -70,9 +71,9 @@ impl Scene {
     ///
     /// Coordinates and widths are rounded, widths kept at [`MIN_WIDTH`] or more; colours and
     /// opacities become multiples of 1/255; a path shorter than the precision becomes a dot; a closed path that its pen
-    /// fills becomes an open one that ends where it starts. Off-points are
+    /// fills becomes an open one that ends where it starts; rings without an inside go. Off-points are
     /// rounded so that the file also holds the on-points that they imply.
-    /// [`Dropped`] counts what is left out. Stages without strokes are left out as well.
+    /// [`Dropped`] counts what is left out. Stages without marks are left out as well.
     pub fn quantized(&self, precision: u8) -> Quantized {
         let mut quantized = Quantized {
             scene: Self {
@@ -85,42 +86,42 @@ impl Scene {
             dropped: Dropped::default(),
         };
         for (origin, stage) in self.stages.iter().enumerate() {
-            let strokes = self.written(stage, precision, &mut quantized.dropped);
-            if !strokes.is_empty() {
-                let strokes = strokes.iter().map(Written::stroke).collect();
-                quantized.scene.stages.push(Stage { strokes });
+            let marks = self.written(stage, precision, &mut quantized.dropped);
+            if !marks.is_empty() {
+                let stage = marks.iter().map(Written::mark).collect();
+                quantized.scene.stages.push(stage);
                 quantized.origins.push(origin);
             }
         }
         quantized
     }
 
-    /// The stroke as the file of this scene with `precision` decimals has it; `None` if it is not written.
-    pub(crate) fn quantized_stroke(&self, stroke: &Stroke, precision: u8) -> Option<Stroke> {
-        let written = Written::new(stroke, self, precision).ok()?;
-        Some(written.stroke())
+    /// The mark as the file of this scene with `precision` decimals has it; `None` if it is not written.
+    pub(crate) fn quantized_mark(&self, mark: &Mark, precision: u8) -> Option<Mark> {
+        let written = Written::new(mark, self, precision).ok()?;
+        Some(written.mark())
     }
 
-    /// The strokes of `stage` that can be written; the others are counted.
+    /// The marks of `stage` that can be written; the others are counted.
     fn written(&self, stage: &Stage, precision: u8, dropped: &mut Dropped) -> Vec<Written> {
-        let written = |stroke: &Stroke| {
-            let written = Written::new(stroke, self, precision);
+        let written = |mark: &Mark| {
+            let written = Written::new(mark, self, precision);
             let written = written.map_err(|reason| dropped.count(reason)).ok()?;
             // A curve that turns back sharply gets points, as it is written as two lines.
-            let (before, after) = (stroke.path.points().len(), written.path.points().len());
+            let (before, after) = (mark.points(), written.points().count());
             dropped.points += before.saturating_sub(after);
             Some(written)
         };
-        stage.strokes.iter().filter_map(written).collect()
+        stage.marks.iter().filter_map(written).collect()
     }
 }
 
-/// A stroke as the integers of its SVG element.
+/// A mark as the integers of its SVG element.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Written {
-    /// The centre line.
-    pub(crate) path: WrittenPath,
-    /// Width in units of 1/[`UNITS_PER_PX`] px.
+    /// The centre line of a stroke, or the rings of an area; at least one.
+    pub(crate) paths: Vec<WrittenPath>,
+    /// Width of a stroke in units of 1/[`UNITS_PER_PX`] px; 0 for an area.
     pub(crate) width: i64,
     /// 8-bit red, green and blue.
     pub(crate) color: [u8; 3],
@@ -129,10 +130,10 @@ pub(crate) struct Written {
 }
 
 impl Written {
-    /// The stroke rounded to `precision` decimals, or the reason why it would be invisible on the page of
+    /// The mark rounded to `precision` decimals, or the reason why it would be invisible on the page of
     /// `scene`.
-    pub(crate) fn new(stroke: &Stroke, scene: &Scene, precision: u8) -> Result<Self, Unwritable> {
-        let written = Self::anywhere(stroke, precision)?;
+    pub(crate) fn new(mark: &Mark, scene: &Scene, precision: u8) -> Result<Self, Unwritable> {
+        let written = Self::anywhere(mark, precision)?;
         if written.touches(scene.width, scene.height) {
             Ok(written)
         } else {
@@ -140,51 +141,93 @@ impl Written {
         }
     }
 
-    /// The stroke rounded to `precision` decimals, whatever its place.
-    pub(crate) fn anywhere(stroke: &Stroke, precision: u8) -> Result<Self, Unwritable> {
-        check(stroke)?;
+    /// The mark rounded to `precision` decimals, whatever its place.
+    pub(crate) fn anywhere(mark: &Mark, precision: u8) -> Result<Self, Unwritable> {
+        check(mark)?;
         let grid = Grid::new(precision);
-        let width = grid
-            .units(2.0 * f64::from(stroke.radius))
-            .max(grid.units_above(MIN_WIDTH));
+        let (paths, width) = match mark {
+            Mark::Stroke(stroke) => {
+                let width = grid
+                    .units(2.0 * f64::from(stroke.radius))
+                    .max(grid.units_above(MIN_WIDTH));
+                let path = WrittenPath::rounded(&stroke.path, &grid).opened_if_filled(width);
+                (vec![path], width)
+            }
+            Mark::Area(area) => (rings(&area.rings, &grid), 0),
+        };
+        if paths.is_empty() {
+            return Err(Unwritable::Invisible);
+        }
         Ok(Self {
-            path: WrittenPath::rounded(&stroke.path, &grid).opened_if_filled(width),
+            paths,
             width,
-            color: stroke.color.map(quantum),
-            opacity: quantum(stroke.opacity),
+            color: mark.color().map(quantum),
+            opacity: quantum(mark.opacity()),
         })
+    }
+
+    /// True if the mark is an area.
+    pub(crate) fn is_area(&self) -> bool {
+        self.width == 0
+    }
+
+    /// The points of all paths.
+    pub(crate) fn points(&self) -> impl Iterator<Item = &WrittenPoint> {
+        self.paths.iter().flat_map(WrittenPath::points)
+    }
+
+    /// The segments of polylines at most `tolerance` px away from the paths.
+    pub(crate) fn segments(&self, tolerance: f64) -> Vec<[[i64; 2]; 2]> {
+        let paths = self.paths.iter();
+        paths.flat_map(|path| path.segments(tolerance)).collect()
     }
 
     /// True if the bounding box reaches into a page of this size.
     fn touches(&self, width: u32, height: u32) -> bool {
         let reach = self.width / 2;
         [width, height].iter().enumerate().all(|(axis, &side)| {
-            let along = || self.path.points().iter().map(|p| p.at[axis]);
+            let along = || self.points().map(|p| p.at[axis]);
             let far_end = along().max().unwrap_or(0) + reach;
             let near_end = along().min().unwrap_or(0) - reach;
             far_end > 0 && near_end < i64::from(side) * UNITS_PER_PX
         })
     }
 
-    /// The rounded stroke.
-    pub(crate) fn stroke(&self) -> Stroke {
-        Stroke {
-            path: self.path.path(),
-            radius: (self.width as f64 / (2 * UNITS_PER_PX) as f64) as f32,
-            color: color(self.color),
-            opacity: f32::from(self.opacity) / 255.0,
+    /// The rounded mark.
+    pub(crate) fn mark(&self) -> Mark {
+        let (color, opacity) = (color(self.color), f32::from(self.opacity) / 255.0);
+        match self.paths.as_slice() {
+            [path] if !self.is_area() => Mark::Stroke(Stroke {
+                path: path.path(),
+                radius: (self.width as f64 / (2 * UNITS_PER_PX) as f64) as f32,
+                color,
+                opacity,
+            }),
+            rings => Mark::Area(Area {
+                rings: rings.iter().map(WrittenPath::path).collect(),
+                color,
+                opacity,
+            }),
         }
     }
 }
 
-/// Refuses strokes that are invisible at any precision.
-fn check(stroke: &Stroke) -> Result<(), Unwritable> {
+/// The rounded rings, without those that have no inside.
+fn rings(rings: &[Path], grid: &Grid) -> Vec<WrittenPath> {
+    let rounded = rings.iter().map(|ring| WrittenPath::rounded(ring, grid));
+    rounded.filter(WrittenPath::encloses).collect()
+}
+
+/// Refuses marks that are invisible at any precision.
+fn check(mark: &Mark) -> Result<(), Unwritable> {
     let far = |p: &PathPoint| p.at.x.abs() > MAX_COORDINATE || p.at.y.abs() > MAX_COORDINATE;
-    if !stroke.is_finite() {
+    let radius = mark.radius();
+    let is_thin = mark.as_stroke().is_some() && radius <= 0.0;
+    if !mark.is_finite() {
         Err(Unwritable::NonFinite)
-    } else if stroke.radius <= 0.0 || quantum(stroke.opacity) == 0 {
+    } else if is_thin || quantum(mark.opacity()) == 0 {
         Err(Unwritable::Invisible)
-    } else if stroke.radius > MAX_COORDINATE || stroke.path.points().iter().any(far) {
+    } else if radius > MAX_COORDINATE || mark.paths().iter().flat_map(Path::points).any(far) {
         Err(Unwritable::OffPage)
     } else {
         Ok(())
@@ -226,7 +269,7 @@ mod tests {
 
     fn scene(strokes: Vec<Stroke>) -> Scene {
         Scene {
-            stages: vec![Stage { strokes }],
+            stages: vec![Stage::from_iter(strokes)],
             ..Scene::empty(20, 10, None)
         }
     }
@@ -330,7 +373,7 @@ mod tests {
             vec![away.clone()],
             vec![away, seen.clone(), seen],
         ]
-        .map(|strokes| Stage { strokes })
+        .map(Stage::from_iter)
         .to_vec();
         let scene = Scene {
             stages,
@@ -341,7 +384,7 @@ mod tests {
             .scene
             .stages
             .iter()
-            .map(|s| s.strokes.len())
+            .map(|s| s.marks.len())
             .collect();
         assert_eq!((sizes, quantized.origins), (vec![1, 2], vec![1, 3]));
     }

@@ -18,7 +18,7 @@ impl Place for [i64; 2] {
     }
 }
 
-/// The path of a written stroke, in canonical form.
+/// The path of a written mark, in canonical form.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct WrittenPath {
     points: Vec<WrittenPoint>,
@@ -158,6 +158,19 @@ impl WrittenPath {
         }
         segments.retain(|[a, b]| a != b);
         segments
+    }
+
+    /// True if the path is closed and its points are not all in one line.
+    pub(super) fn encloses(&self) -> bool {
+        let [Some(a), Some(b)] = [self.points.first(), self.points.get(1)] else {
+            return false;
+        };
+        let along = [b.at[0] - a.at[0], b.at[1] - a.at[1]];
+        let side = |p: &WrittenPoint| {
+            let away = [p.at[0] - a.at[0], p.at[1] - a.at[1]].map(i128::from);
+            i128::from(along[0]) * away[1] - i128::from(along[1]) * away[0]
+        };
+        self.closed && self.points.iter().any(|p| side(p) != 0)
     }
 
     /// True if pieces meet, so that the shape of joins matters.

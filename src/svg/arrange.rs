@@ -8,7 +8,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::dialect::Unit;
 use super::options::{Form, Group, Order, WriteOptions};
-use super::{path, tour};
+use super::path::{self, Kind};
+use super::tour;
 use crate::scene::{Scene, Stage, Written, WrittenPath, overlaps};
 
 /// Strokes of a layer, and their common colour if layers are by colour.
@@ -23,9 +24,9 @@ pub(super) struct Layer {
 /// The layers of the file, none of them empty.
 pub(super) fn layers(scene: &Scene, options: &WriteOptions) -> Vec<Layer> {
     let written = |stage: &Stage| -> Vec<_> {
-        let strokes = stage.strokes.iter();
-        strokes
-            .filter_map(|stroke| Written::new(stroke, scene, options.precision).ok())
+        let marks = stage.marks.iter();
+        marks
+            .filter_map(|mark| Written::new(mark, scene, options.precision).ok())
             .collect()
     };
     let stages = scene.stages.iter().map(written);
@@ -74,9 +75,7 @@ fn with_little_travel(strokes: Vec<Written>, form: Form) -> Vec<Written> {
 /// The scene in the order and the layers of its file: what [`read`](super::read) returns for the text that
 /// [`write`](super::write()) wrote, unless it wrote outlines, which cannot be read.
 pub fn arrange(scene: &Scene, options: &WriteOptions) -> Scene {
-    let stage = |layer: &Layer| Stage {
-        strokes: layer.strokes.iter().map(Written::stroke).collect(),
-    };
+    let stage = |layer: &Layer| layer.strokes.iter().map(Written::mark).collect();
     let quantized = scene.quantized(options.precision).scene;
     Scene {
         stages: layers(&quantized, options).iter().map(stage).collect(),
@@ -84,14 +83,19 @@ pub fn arrange(scene: &Scene, options: &WriteOptions) -> Scene {
     }
 }
 
-/// Starts a stroke at the end that makes its path shorter.
-fn orient(stroke: &mut Written, unit: Unit) {
-    let length = |path: &WrittenPath| path::data([path], unit).len();
-    let mut reversed = stroke.path.reversed();
-    // A reversed path may have fewer points than its other direction had, so that this is asked until it settles.
-    while length(&reversed) < length(&stroke.path) {
-        stroke.path = reversed;
-        reversed = stroke.path.reversed();
+/// Starts a stroke at the end that makes its path shorter. Rings keep their sense, which makes holes.
+fn orient(mark: &mut Written, unit: Unit) {
+    if mark.is_area() {
+        return;
+    }
+    for path in &mut mark.paths {
+        let length = |path: &WrittenPath| path::data([path], Kind::Line, unit).len();
+        let mut reversed = path.reversed();
+        // A reversed path may have fewer points than its other direction had, so that this is asked until it settles.
+        while length(&reversed) < length(path) {
+            *path = reversed;
+            reversed = path.reversed();
+        }
     }
 }
 
@@ -247,7 +251,7 @@ mod tests {
 
     fn stroke(x: i64, color: u8, width: i64) -> Written {
         Written {
-            path: WrittenPath::line([x * PX, 10 * PX], [x * PX, 90 * PX]),
+            paths: vec![WrittenPath::line([x * PX, 10 * PX], [x * PX, 90 * PX])],
             width: width * PX,
             color: [color; 3],
             opacity: 255,

@@ -1,11 +1,12 @@
-//! Elements of the SVG: groups of strokes in one element, and attributes that neighbours share.
+//! Elements of the SVG: strokes of one element, areas, and attributes that neighbours share.
 
 use std::collections::BTreeMap;
 
 use super::arrange::style_of;
 use super::dialect::{self, Unit};
 use super::options::Form;
-use super::{outline, path};
+use super::outline;
+use super::path::{self, Kind};
 use crate::scene::Written;
 
 /// Appends the elements of `strokes`, in the smallest form with numbers in `unit`.
@@ -56,7 +57,9 @@ fn width_text(width: i64, unit: Unit) -> String {
 fn usual_width(strokes: &[Written]) -> Option<i64> {
     let mut counts = BTreeMap::<i64, usize>::new();
     for element in split(strokes) {
-        *counts.entry(element[0].width).or_default() += 1;
+        if !element[0].is_area() {
+            *counts.entry(element[0].width).or_default() += 1;
+        }
     }
     let (width, count) = counts.into_iter().max_by_key(|&(_, count)| count)?;
     (count > 1).then_some(width)
@@ -81,10 +84,12 @@ fn joins(strokes: &[Written], next: &Written) -> bool {
     let is_alike = strokes
         .last()
         .is_some_and(|last| style_of(last) == style_of(next));
-    is_alike && (next.opacity == u8::MAX || !strokes.iter().any(|stroke| stroke.meets(next)))
+    is_alike
+        && !next.is_area()
+        && (next.opacity == u8::MAX || !strokes.iter().any(|stroke| stroke.meets(next)))
 }
 
-/// An attribute that the strokes of a path have in common.
+/// An attribute that the marks of an element have in common.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Attribute {
     Color,
@@ -96,16 +101,19 @@ impl Attribute {
     const ALL: [Self; 3] = [Self::Color, Self::Width, Self::Opacity];
 
     /// The attribute as text after a space; nothing if it equals the default.
-    fn text(self, stroke: &Written, style: Style) -> String {
+    fn text(self, mark: &Written, style: Style) -> String {
+        let paint = if mark.is_area() { "fill" } else { "stroke" };
         match self {
             Self::Color if style == Style::Full => {
-                format!(" stroke=\"{}\"", dialect::hex(stroke.color))
+                format!(" {paint}=\"{}\"", dialect::hex(mark.color))
             }
-            Self::Color => format!(" stroke=\"{}\"", dialect::short_hex(stroke.color)),
-            Self::Width if style.layer_width() == Some(stroke.width) => String::new(),
-            Self::Width => width_text(stroke.width, style.unit()),
-            Self::Opacity if stroke.opacity == u8::MAX => String::new(),
-            Self::Opacity => format!(" stroke-opacity=\"{}\"", dialect::opacity(stroke.opacity)),
+            Self::Color => format!(" {paint}=\"{}\"", dialect::short_hex(mark.color)),
+            Self::Width if mark.is_area() || style.layer_width() == Some(mark.width) => {
+                String::new()
+            }
+            Self::Width => width_text(mark.width, style.unit()),
+            Self::Opacity if mark.opacity == u8::MAX => String::new(),
+            Self::Opacity => format!(" {paint}-opacity=\"{}\"", dialect::opacity(mark.opacity)),
         }
     }
 }
@@ -137,7 +145,15 @@ impl Style {
 
 /// Appends the path of `strokes` with the attributes that are not `shared`.
 fn push_path(out: &mut String, strokes: &[Written], shared: &[Attribute], style: Style) {
-    let d = path::data(strokes.iter().map(|stroke| &stroke.path), style.unit());
+    let kind = match strokes {
+        [area] if area.is_area() => Kind::Ring,
+        _ => Kind::Line,
+    };
+    let d = path::data(
+        strokes.iter().flat_map(|mark| &mark.paths),
+        kind,
+        style.unit(),
+    );
     *out += &format!("<path d=\"{d}\"");
     let own = Attribute::ALL.iter().filter(|a| !shared.contains(a));
     for attribute in own {

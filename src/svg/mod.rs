@@ -91,7 +91,7 @@ pub use lint::{Finding, Severity, lint};
 pub use options::{Form, Group, Length, Order, WriteOptions};
 pub use read::read;
 pub use travel::{LayerTravel, Travel, travel};
-pub use write::{layers, stroke_bytes, write};
+pub use write::{layers, mark_bytes, write};
 
 #[cfg(test)]
 mod tests;

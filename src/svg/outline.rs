@@ -1,16 +1,22 @@
-//! The outline of a stroke: two lines and two arcs, or a circle.
+//! The outline of a mark: of a stroke two lines and two arcs, or a circle.
 
 use super::dialect::{self, Unit};
+use super::path::{self, Kind};
 use crate::math;
 use crate::scene::{UNITS_PER_PX, Written};
 
 /// Largest distance of segments from their curve, px: less than any rasteriser shows.
 const TOLERANCE: f64 = 0.02;
 
-/// Appends the outline of `stroke` as an element of its own.
+/// Appends the outline of a mark as an element of its own: that of an area is its rings.
 pub(super) fn push(out: &mut String, stroke: &Written) {
-    match stroke.path.points() {
-        [centre] => push_circle(out, centre.at, stroke.width),
+    match stroke.paths.as_slice() {
+        rings if stroke.is_area() => {
+            *out += &format!("<path d=\"{}\"", path::data(rings, Kind::Ring, Unit::PX));
+        }
+        [path] if path.points().len() == 1 => {
+            push_circle(out, path.points()[0].at, stroke.width);
+        }
         _ => push_capsules(out, stroke),
     }
     *out += &format!(" fill=\"{}\"", dialect::hex(stroke.color));
@@ -24,7 +30,7 @@ pub(super) fn push(out: &mut String, stroke: &Written) {
 /// stroke bends or crosses itself as well.
 fn push_capsules(out: &mut String, stroke: &Written) {
     out.push_str("<path d=\"");
-    for [a, b] in stroke.path.segments(TOLERANCE) {
+    for [a, b] in stroke.segments(TOLERANCE) {
         push_capsule(out, a, b, stroke.width);
     }
     out.push('"');
@@ -96,7 +102,7 @@ mod tests {
     fn written(points: &[[i64; 2]], opacity: u8) -> String {
         let point = |p: &[i64; 2]| PathPoint::on(p.map(|px| px * UNITS_PER_PX));
         let stroke = Written {
-            path: WrittenPath::new(points.iter().map(point).collect(), false),
+            paths: vec![WrittenPath::new(points.iter().map(point).collect(), false)],
             width: 3 * UNITS_PER_PX,
             color: [255, 102, 0],
             opacity,

@@ -1,4 +1,4 @@
-//! The attribute `d` of a path, which holds one stroke or several of one style.
+//! The attribute `d` of a path, which holds one stroke, several of one style, or the rings of an area.
 
 use super::dialect::{MAX_UNITS, Unit};
 use crate::scene::{PathPoint, Piece, UNITS_PER_PX, WrittenPath, WrittenPoint};
@@ -9,10 +9,25 @@ const DOT: i64 = UNITS_PER_PX / 100;
 /// A place in units of 1/[`UNITS_PER_PX`](crate::scene::UNITS_PER_PX) px.
 type Place = [i64; 2];
 
-/// The `d` of strokes with these centre lines. The places of each step are absolute or relative, whichever is shorter.
-pub(super) fn data<'a>(paths: impl IntoIterator<Item = &'a WrittenPath>, unit: Unit) -> String {
+/// A kind of paths.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Centre lines of strokes.
+    Line,
+    /// Rings of an area, all closed. Horizontal and vertical lines have letters of their own, which among centre lines make
+    /// dots.
+    Ring,
+}
+
+/// The `d` of these paths. The places of each step are absolute or relative, whichever is shorter.
+pub(super) fn data<'a>(
+    paths: impl IntoIterator<Item = &'a WrittenPath>,
+    kind: Kind,
+    unit: Unit,
+) -> String {
     let mut writer = Writer {
         out: String::new(),
+        kind,
         unit,
         at: None,
         letter: None,
@@ -23,6 +38,7 @@ pub(super) fn data<'a>(paths: impl IntoIterator<Item = &'a WrittenPath>, unit: U
 
 struct Writer {
     out: String,
+    kind: Kind,
     unit: Unit,
     /// Where the last step ended, if a relative one may follow.
     at: Option<Place>,
@@ -43,7 +59,7 @@ impl Writer {
             match piece {
                 // The command that closes the path draws this line.
                 Piece::Line(_) if path.is_closed() && pieces.peek().is_none() => {}
-                Piece::Line([_, to]) => self.push_step('L', &[to]),
+                Piece::Line([from, to]) => self.push_step(self.line_letter(from, to), &[to]),
                 Piece::Curve([from, knee, to])
                     if control.map(|c| mirrored(c, from)) == Some(knee) =>
                 {
@@ -62,6 +78,15 @@ impl Writer {
         }
     }
 
+    /// The letter of a line.
+    fn line_letter(&self, from: Place, to: Place) -> char {
+        match self.kind {
+            Kind::Ring if from[1] == to[1] => 'H',
+            Kind::Ring if from[0] == to[0] => 'V',
+            _ => 'L',
+        }
+    }
+
     fn push_dot(&mut self, path: &WrittenPath) {
         for point in path.points() {
             self.push_step('M', &[point.at]);
@@ -75,10 +100,10 @@ impl Writer {
     /// Appends a step to the last of these places in its shortest form. It does without a letter where the letter of
     /// the last step serves, and that is no longer.
     fn push_step(&mut self, letter: char, places: &[Place]) {
-        let from_page = self.lettered(letter, &self.numbers([0, 0], places));
+        let from_page = self.lettered(letter, &self.numbers(letter, [0, 0], places));
         let from_here = self.at.map(|at| {
-            let letter = letter.to_ascii_lowercase();
-            self.lettered(letter, &self.numbers(at, places))
+            let numbers = self.numbers(letter, at, places);
+            self.lettered(letter.to_ascii_lowercase(), &numbers)
         });
         let steps = [Some(from_page), from_here].into_iter().flatten();
         let shortest =
@@ -89,14 +114,16 @@ impl Writer {
         }
     }
 
-    /// The numbers of some places as seen from `origin`. A minus sign needs no separator.
-    fn numbers(&self, origin: Place, places: &[Place]) -> String {
+    /// The numbers of some places as seen from `origin`, as far as the `letter` takes them. A minus sign needs no separator.
+    fn numbers(&self, letter: char, origin: Place, places: &[Place]) -> String {
+        let axes = match letter {
+            'H' => 0..1,
+            'V' => 1..2,
+            _ => 0..2,
+        };
         let mut text = String::new();
-        for [x, y] in places
-            .iter()
-            .map(|to| [to[0] - origin[0], to[1] - origin[1]])
-        {
-            for units in [x, y] {
+        for place in places {
+            for units in axes.clone().map(|axis| place[axis] - origin[axis]) {
                 if units >= 0 && !text.is_empty() {
                     text.push(' ');
                 }
@@ -122,9 +149,9 @@ fn mirrored(point: Place, center: Place) -> Place {
     [0, 1].map(|axis| 2 * center[axis] - point[axis])
 }
 
-/// The centre lines of a `d`, or `None` if it is not part of the dialect.
-pub(super) fn parse(d: &str, unit: Unit) -> Option<Vec<WrittenPath>> {
-    let mut parser = Parser::default();
+/// The paths of a `d`, or `None` if it is not part of the dialect.
+pub(super) fn parse(d: &str, kind: Kind, unit: Unit) -> Option<Vec<WrittenPath>> {
+    let mut parser = Parser::new(kind);
     let mut rest = d;
     while let Some(letter) = rest.chars().next() {
         let tail = &rest[letter.len_utf8()..];
@@ -137,8 +164,8 @@ pub(super) fn parse(d: &str, unit: Unit) -> Option<Vec<WrittenPath>> {
 }
 
 /// Reads one step after the other.
-#[derive(Default)]
 struct Parser {
+    kind: Kind,
     paths: Vec<WrittenPath>,
     /// The points of the stroke that has begun.
     points: Vec<WrittenPoint>,
@@ -149,11 +176,26 @@ struct Parser {
 }
 
 impl Parser {
+    fn new(kind: Kind) -> Self {
+        Self {
+            kind,
+            paths: Vec::new(),
+            points: Vec::new(),
+            at: None,
+            control: None,
+        }
+    }
+
     /// Takes the step that a letter and the text after it describe; `None` if they describe none.
     fn step(&mut self, letter: char, text: &str, unit: Unit) -> Option<()> {
-        match letter {
-            'h' => return self.dot(unit.parse(text)?),
-            'z' | 'Z' => return text.is_empty().then(|| self.close())?,
+        match (letter, self.kind) {
+            ('h', Kind::Line) => return self.dot(unit.parse(text)?),
+            ('h' | 'v' | 'H' | 'V', Kind::Ring) => {
+                return numbers(text, unit)?
+                    .into_iter()
+                    .try_for_each(|along| self.straight(letter, along));
+            }
+            ('z' | 'Z', _) => return text.is_empty().then(|| self.close())?,
             _ => {}
         }
         let pairs = pairs(text, unit)?;
@@ -196,6 +238,19 @@ impl Parser {
         }
     }
 
+    /// A horizontal or vertical line.
+    fn straight(&mut self, letter: char, along: i64) -> Option<()> {
+        let mut to = self.at?;
+        let axis = usize::from(matches!(letter, 'v' | 'V'));
+        let origin = if letter.is_ascii_lowercase() {
+            to[axis]
+        } else {
+            0
+        };
+        to[axis] = origin + along;
+        self.extend(None, within(to)?)
+    }
+
     /// Draws a line or, with a control point, a curve.
     fn extend(&mut self, control: Option<Place>, to: Place) -> Option<()> {
         if self.points.is_empty() {
@@ -229,6 +284,7 @@ impl Parser {
     fn end(&mut self) -> Option<()> {
         match self.points.len() {
             0 => {}
+            _ if self.kind == Kind::Ring => return None,
             1 => return None,
             _ => self.push(false),
         }
@@ -248,8 +304,15 @@ fn within(place: Place) -> Option<Place> {
     is_near.then_some(place)
 }
 
-/// Pairs of numbers, each separated from the last by a space or by its minus sign.
+/// Pairs of numbers.
 fn pairs(text: &str, unit: Unit) -> Option<Vec<Place>> {
+    let numbers = numbers(text, unit)?;
+    let (pairs, others) = numbers.as_chunks();
+    others.is_empty().then(|| pairs.to_vec())
+}
+
+/// Numbers, each separated from the last by a space or by its minus sign.
+fn numbers(text: &str, unit: Unit) -> Option<Vec<i64>> {
     let mut numbers = Vec::new();
     for part in text.split(' ') {
         let mut rest = part;
@@ -260,8 +323,7 @@ fn pairs(text: &str, unit: Unit) -> Option<Vec<Place>> {
         }
         numbers.push(unit.parse(rest)?);
     }
-    let (pairs, others) = numbers.as_chunks();
-    others.is_empty().then(|| pairs.to_vec())
+    Some(numbers)
 }
 
 #[cfg(test)]
@@ -288,8 +350,12 @@ mod tests {
 
     /// Writes, and checks that reading gives the same.
     fn written(paths: &[WrittenPath]) -> String {
-        let d = data(paths, Unit::PX);
-        assert_eq!(parse(&d, Unit::PX).as_deref(), Some(paths), "{d}");
+        let d = data(paths, Kind::Line, Unit::PX);
+        assert_eq!(
+            parse(&d, Kind::Line, Unit::PX).as_deref(),
+            Some(paths),
+            "{d}"
+        );
         d
     }
 
@@ -307,9 +373,9 @@ mod tests {
         for (precision, expected) in [(1, "M50 60h0.1"), (2, "M500 600h1"), (3, "M5000 6000h10")] {
             let unit = Unit::decimal(precision);
             let dot = line(&[(5, 6)]);
-            let d = data([&dot], unit);
+            let d = data([&dot], Kind::Line, unit);
             assert_eq!(d, expected);
-            assert_eq!(parse(&d, unit).unwrap(), [dot]);
+            assert_eq!(parse(&d, Kind::Line, unit).unwrap(), [dot]);
         }
     }
 
@@ -379,7 +445,14 @@ mod tests {
             ("M1 2L9 2L5 8L1 2Z", "M1 2L9 2 5 8z"),
             ("M1 5Q3 1 4 5Q5 9 9 9", "M1 5Q3 1 4 5T9 9"),
         ] {
-            assert_eq!(data(&parse(d, Unit::PX).unwrap(), Unit::PX), expected);
+            assert_eq!(
+                data(
+                    &parse(d, Kind::Line, Unit::PX).unwrap(),
+                    Kind::Line,
+                    Unit::PX
+                ),
+                expected
+            );
         }
     }
 
@@ -425,7 +498,45 @@ mod tests {
             "M1 2Q2000000000 1-2000000000 1T0 0",
         ];
         for d in refused {
-            assert_eq!(parse(d, Unit::PX), None, "{d}");
+            assert_eq!(parse(d, Kind::Line, Unit::PX), None, "{d}");
+        }
+    }
+
+    #[test]
+    fn rings_have_letters_for_horizontal_and_vertical_lines() {
+        let square = path(
+            &[
+                (100, 100, true),
+                (140, 100, true),
+                (140, 130, true),
+                (100, 130, true),
+            ],
+            true,
+        );
+        let hole = path(
+            &[(110, 110, true), (110, 120, true), (130, 120, false)],
+            true,
+        );
+        let rings = [square, hole];
+        let d = data(&rings, Kind::Ring, Unit::PX);
+        assert_eq!(d, "M100 100h40v30h-40zm10 10v10q20 0 0-10z");
+        assert_eq!(parse(&d, Kind::Ring, Unit::PX).as_deref(), Some(&rings[..]));
+        assert_eq!(parse(&d, Kind::Line, Unit::PX), None);
+        assert_eq!(
+            parse("M1 2H9 12V8z", Kind::Ring, Unit::PX),
+            Some(vec![path(
+                &[(1, 2, true), (9, 2, true), (12, 2, true), (12, 8, true)],
+                true
+            )])
+        );
+        for open in [
+            "M1 2h0.01",
+            "M1 2L3 4 5 9",
+            "M1 2h4v4M1 1h3v3z",
+            "M1 2h4,5z",
+            "h4v4z",
+        ] {
+            assert_eq!(parse(open, Kind::Ring, Unit::PX), None, "{open}");
         }
     }
 }

@@ -9,9 +9,9 @@ use quick_xml::reader::NsReader;
 
 use super::dialect::{self, Unit};
 use super::options::Length;
-use super::path;
+use super::path::{self, Kind};
 use crate::error::{Error, ErrorKind, Result};
-use crate::scene::{MAX_POINTS, Rgb, Scene, Stage, Stroke, Written, WrittenPath, color};
+use crate::scene::{MAX_POINTS, Mark, Rgb, Scene, Stage, Written, WrittenPath, color};
 
 /// Reads text that [`write`](super::write()) wrote, in any form except outlines.
 ///
@@ -130,8 +130,14 @@ impl<'a> Parser<'a> {
         if !ids.iter().any(|id| group.find("id") == Some(id)) {
             group.expect("id", &ids[0])?;
         }
-        group.expect("fill", "none")?;
-        group.expect("stroke-linecap", "round")?;
+        // A layer of areas alone needs no style.
+        let has_strokes = ["fill", "stroke-linecap", "stroke-linejoin", "stroke-width"]
+            .iter()
+            .any(|key| group.find(key).is_some());
+        if has_strokes {
+            group.expect("fill", "none")?;
+            group.expect("stroke-linecap", "round")?;
+        }
         let has_join = group.find("stroke-linejoin").is_some();
         if has_join {
             group.expect("stroke-linejoin", "round")?;
@@ -141,22 +147,22 @@ impl<'a> Parser<'a> {
         let unit = unit.unwrap_or(Unit::PX);
         let style = Style {
             layer_width: group.either("stroke-width", None, |text| width(text, unit))?,
-            ..Style::new(unit, has_join)
+            ..Style::new(unit, has_strokes, has_join)
         };
-        self.strokes(&style, &mut stage)?;
+        self.marks(&style, &mut stage)?;
         Ok(stage)
     }
 
-    /// Adds the strokes up to the end of a group.
-    fn strokes(&mut self, style: &Style, stage: &mut Stage) -> Parsed<()> {
+    /// Adds the marks up to the end of a group.
+    fn marks(&mut self, style: &Style, stage: &mut Stage) -> Parsed<()> {
         loop {
             match self.next()? {
                 Tag::Open(e) if e.name == "path" => {
-                    stage.strokes.extend(style.of(&e, &["d"])?.strokes(&e)?);
+                    stage.marks.extend(style.of(&e, &["d"])?.marks(&e)?);
                     self.close(&e)?;
                 }
                 // Each group must set an attribute that is not set yet, which bounds their depth.
-                Tag::Open(e) if e.name == "g" => self.strokes(&style.of(&e, &[])?, stage)?,
+                Tag::Open(e) if e.name == "g" => self.marks(&style.of(&e, &[])?, stage)?,
                 Tag::Open(e) if e.name == "title" => self.close(&e)?,
                 Tag::Open(e) => return Err(unexpected(&e)),
                 Tag::Close => return Ok(()),
@@ -314,12 +320,16 @@ fn background(rect: &Element, width: u32, height: u32) -> Parsed<Rgb> {
     rect.parsed("fill", dialect::channels).map(color)
 }
 
-/// The attributes that groups set for the strokes in them.
+/// The attributes that groups set for the marks in them.
 #[derive(Debug, Clone)]
 struct Style {
     color: Option<[u8; 3]>,
     width: Option<i64>,
     opacity: Option<u8>,
+    fill: Option<[u8; 3]>,
+    fill_opacity: Option<u8>,
+    /// True if the layer says how strokes are drawn.
+    has_strokes: bool,
     /// The default width.
     layer_width: Option<i64>,
     /// The unit of their numbers.
@@ -333,11 +343,14 @@ fn width(text: &str, unit: Unit) -> Option<i64> {
 }
 
 impl Style {
-    fn new(unit: Unit, has_join: bool) -> Self {
+    fn new(unit: Unit, has_strokes: bool, has_join: bool) -> Self {
         Self {
             color: None,
             width: None,
             opacity: None,
+            fill: None,
+            fill_opacity: None,
+            has_strokes,
             layer_width: None,
             unit,
             has_join,
@@ -350,6 +363,8 @@ impl Style {
             ("stroke", self.color.is_none()),
             ("stroke-width", self.width.is_none()),
             ("stroke-opacity", self.opacity.is_none()),
+            ("fill", self.fill.is_none()),
+            ("fill-opacity", self.fill_opacity.is_none()),
         ];
         let free: Vec<_> = free
             .iter()
@@ -364,42 +379,75 @@ impl Style {
             color: element.either("stroke", self.color, dialect::channels)?,
             width: element.either("stroke-width", self.width, |text| width(text, self.unit))?,
             opacity: element.either("stroke-opacity", self.opacity, dialect::opacity_quantum)?,
+            fill: element.either("fill", self.fill, dialect::channels)?,
+            fill_opacity: element.either(
+                "fill-opacity",
+                self.fill_opacity,
+                dialect::opacity_quantum,
+            )?,
             ..*self
         })
     }
 
-    /// The strokes of a path with this style.
-    fn strokes(&self, path: &Element) -> Parsed<Vec<Stroke>> {
-        let paths = path.parsed("d", |d| path::parse(d, self.unit))?;
+    /// The strokes of a path with this style, or the area.
+    fn marks(&self, path: &Element) -> Parsed<Vec<Mark>> {
+        let has_stroke = self.color.is_some() || self.width.is_some() || self.opacity.is_some();
+        match self.fill {
+            Some(_) if has_stroke => Err("<path> has both a fill and a stroke: make it two".into()),
+            Some(color) => self.area(path, color).map(|area| vec![area]),
+            None => self.strokes(path),
+        }
+    }
+
+    fn area(&self, path: &Element, color: [u8; 3]) -> Parsed<Mark> {
+        let paths = path.parsed("d", |d| path::parse(d, Kind::Ring, self.unit))?;
+        check_counts(&paths, "ring")?;
+        let written = Written {
+            paths,
+            width: 0,
+            color,
+            opacity: self.fill_opacity.unwrap_or(u8::MAX),
+        };
+        Ok(written.mark())
+    }
+
+    fn strokes(&self, path: &Element) -> Parsed<Vec<Mark>> {
+        let paths = path.parsed("d", |d| path::parse(d, Kind::Line, self.unit))?;
+        let missing = |key: &str| format!("<path> has no {key}");
+        let width = self.width.or(self.layer_width);
+        let width = width.ok_or_else(|| missing("stroke-width"))?;
+        let color = self.color.ok_or_else(|| missing("stroke"))?;
+        if !self.has_strokes {
+            return Err("<path> is a stroke, but its layer has no stroke-linecap=\"round\"".into());
+        }
         if !self.has_join && paths.iter().any(WrittenPath::has_joins) {
             return Err(
                 "<path> has a corner, but its layer has no stroke-linejoin=\"round\"".into(),
             );
         }
-        if let Some(count) = paths
-            .iter()
-            .map(|p| p.points().len())
-            .find(|&n| n > MAX_POINTS)
-        {
-            return Err(format!(
-                "<path> has a stroke of {count} points: split it, so that each part has at most {MAX_POINTS}"
-            ));
-        }
-        let missing = |key: &str| format!("<path> has no {key}");
-        let width = self.width.or(self.layer_width);
-        let width = width.ok_or_else(|| missing("stroke-width"))?;
-        let color = self.color.ok_or_else(|| missing("stroke"))?;
+        check_counts(&paths, "stroke")?;
         let opacity = self.opacity.unwrap_or(u8::MAX);
         let stroke = |path| {
             Written {
-                path,
+                paths: vec![path],
                 width,
                 color,
                 opacity,
             }
-            .stroke()
+            .mark()
         };
         Ok(paths.into_iter().map(stroke).collect())
+    }
+}
+
+/// Refuses paths of too many points.
+fn check_counts(paths: &[WrittenPath], kind: &str) -> Parsed<()> {
+    let counts = paths.iter().map(|p| p.points().len());
+    match counts.max().filter(|&count| count > MAX_POINTS) {
+        Some(count) => Err(format!(
+            "<path> has a {kind} of {count} points: split it, so that each part has at most {MAX_POINTS}"
+        )),
+        None => Ok(()),
     }
 }
 

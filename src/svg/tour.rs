@@ -31,12 +31,12 @@ pub(super) fn shortened(strokes: &[Written], from: Option<Spot>) -> Vec<Written>
 
 /// Where a pen is when it has drawn these strokes.
 pub(super) fn end(strokes: &[Written]) -> Option<Spot> {
-    strokes.last().map(|stroke| ends(&stroke.path)[1])
+    strokes.last().map(|stroke| ends_of(stroke)[1])
 }
 
 /// Travel between strokes in this order, px.
 pub(super) fn between(strokes: &[Written]) -> f64 {
-    let ends: Vec<_> = strokes.iter().map(|stroke| ends(&stroke.path)).collect();
+    let ends: Vec<_> = strokes.iter().map(ends_of).collect();
     ends.windows(2).map(|w| dist(w[0][1], w[1][0])).sum()
 }
 
@@ -50,6 +50,11 @@ pub(super) fn spot(units: [i64; 2]) -> Spot {
 pub(super) fn dist([ax, ay]: Spot, [bx, by]: Spot) -> f64 {
     let (dx, dy) = (bx - ax, by - ay);
     (dx * dx + dy * dy).sqrt()
+}
+
+/// Where a pen is set down and lifted to draw the first path of a mark, which all others follow.
+fn ends_of(mark: &Written) -> [Spot; 2] {
+    mark.paths.first().map_or([[0.0; 2]; 2], ends)
 }
 
 /// Where a pen is set down and lifted to draw the path as it is written.
@@ -92,8 +97,11 @@ struct Visit {
 }
 
 impl Visit {
-    /// All ways to draw a stroke.
-    fn all(stroke: usize, path: &WrittenPath) -> Vec<Self> {
+    /// All ways to draw a mark: an area begins with its first ring.
+    fn all(stroke: usize, mark: &Written) -> Vec<Self> {
+        let Some(path) = mark.paths.first() else {
+            return Vec::new();
+        };
         let forward = Self {
             stroke,
             start: 0,
@@ -130,24 +138,23 @@ impl Visit {
 
     /// The stroke, drawn in this way.
     fn drawn(&self, stroke: &Written) -> Written {
-        let path = &stroke.path;
-        let path = match self {
-            Self { start: 0, .. } if path.is_closed() => path.clone(),
-            Self { start, .. } if path.is_closed() => beginning_at(path, *start),
-            Self { is_reversed, .. } if *is_reversed => path.reversed(),
-            _ => path.clone(),
-        };
-        Written {
-            path,
-            ..stroke.clone()
+        let mut drawn = stroke.clone();
+        if let Some(path) = drawn.paths.first_mut() {
+            *path = match self {
+                Self { start: 0, .. } if path.is_closed() => path.clone(),
+                Self { start, .. } if path.is_closed() => beginning_at(path, *start),
+                Self { is_reversed, .. } if *is_reversed => path.reversed(),
+                _ => path.clone(),
+            };
         }
+        drawn
     }
 }
 
 /// Draws next what begins nearest, among the strokes that may be drawn.
 fn nearest_first(strokes: &[Written], precedence: &Precedence, from: Option<Spot>) -> Vec<Visit> {
     let of_strokes = strokes.iter().enumerate();
-    let ways: Vec<Vec<Visit>> = of_strokes.map(|(i, s)| Visit::all(i, &s.path)).collect();
+    let ways: Vec<Vec<Visit>> = of_strokes.map(|(i, s)| Visit::all(i, s)).collect();
     let begins: Vec<Spot> = ways.iter().flatten().map(|visit| visit.ends[0]).collect();
     let mut ready = Nearby::over(&begins);
     let mut below = precedence.counts();

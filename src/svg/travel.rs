@@ -72,9 +72,9 @@ fn layer_travel(before: &Layer, after: &Layer) -> LayerTravel {
 /// Largest distance of chords from the curve whose length they give, px.
 const CHORD: f64 = 1e-3;
 
-/// Length of the centre line of a stroke, px.
+/// Length of the paths of a mark, px.
 fn drawn(stroke: &Written) -> f64 {
-    let segments = stroke.path.segments(CHORD);
+    let segments = stroke.segments(CHORD);
     segments
         .iter()
         .map(|&[a, b]| tour::dist(tour::spot(a), tour::spot(b)))

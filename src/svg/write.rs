@@ -6,7 +6,7 @@ use super::arrange::{self, Layer};
 use super::dialect::{self, Unit};
 use super::element;
 use super::options::{Form, Order, WriteOptions};
-use crate::scene::{Scene, Stroke, Written, quantum};
+use crate::scene::{Mark, Scene, Written, WrittenPath, quantum};
 
 /// The scene as SVG text: rounded by [`Scene::quantized`], without the strokes that this drops, and in the order
 /// given by [`arrange`](super::arrange()).
@@ -27,11 +27,11 @@ pub fn layers(scene: &Scene, options: &WriteOptions, first: usize) -> String {
     out
 }
 
-/// Bytes that the stroke takes in a file; 0 if it would be dropped at any place. In the smallest form this
-/// depends on its neighbours; the width then counts as shared, and the colour as the stroke's own.
-pub fn stroke_bytes(stroke: &Stroke, options: &WriteOptions) -> usize {
-    Written::anywhere(stroke, options.precision).map_or(0, |stroke| {
-        element::bytes(&stroke, options.form, options.unit())
+/// Bytes that the mark takes in a file; 0 if it would be dropped at any place. In the smallest form this
+/// depends on its neighbours; the width then counts as shared, and the colour as the mark's own.
+pub fn mark_bytes(mark: &Mark, options: &WriteOptions) -> usize {
+    Written::anywhere(mark, options.precision).map_or(0, |mark| {
+        element::bytes(&mark, options.form, options.unit())
     })
 }
 
@@ -71,8 +71,6 @@ fn shortest(number: usize, layer: &Layer, options: &WriteOptions) -> String {
 
 fn text(number: usize, layer: &Layer, options: &WriteOptions, unit: Unit) -> String {
     let form = options.form;
-    let count = layer.strokes.len();
-    let plural = if count == 1 { "" } else { "s" };
     // Plotter software reads the leading digits of a label as the layer number, so `#102030` would become layer 102030.
     let count_first = match options.order {
         Order::Travel => format!("{number} "),
@@ -99,9 +97,10 @@ fn text(number: usize, layer: &Layer, options: &WriteOptions, unit: Unit) -> Str
     };
     let mut out = format!(
         "<g id=\"{id}\" inkscape:groupmode=\"layer\" inkscape:label=\"{label}\"{}{transform}{}>\n\
-         <title>{label}: {count} stroke{plural}</title>\n",
+         <title>{label}: {}</title>\n",
         style_attributes(layer, form),
-        element::layer_width(&layer.strokes, form, unit)
+        element::layer_width(&layer.strokes, form, unit),
+        counts(layer),
     );
     element::push(&mut out, &layer.strokes, form, unit);
     if !out.ends_with('\n') {
@@ -110,11 +109,27 @@ fn text(number: usize, layer: &Layer, options: &WriteOptions, unit: Unit) -> Str
     out + "</g>\n"
 }
 
-/// The attributes of a layer that turn its paths into strokes.
+/// The numbers of areas and strokes of a layer in words.
+fn counts(layer: &Layer) -> String {
+    let areas = layer.strokes.iter().filter(|mark| mark.is_area()).count();
+    let count = |count: usize, name: &str| match count {
+        1 => format!("1 {name}"),
+        count => format!("{count} {name}s"),
+    };
+    match (areas, layer.strokes.len() - areas) {
+        (0, strokes) => count(strokes, "stroke"),
+        (areas, 0) => count(areas, "area"),
+        (areas, strokes) => format!("{}, {}", count(areas, "area"), count(strokes, "stroke")),
+    }
+}
+
+/// The attributes of a layer that turn its paths without a fill into strokes.
 fn style_attributes(layer: &Layer, form: Form) -> &'static str {
-    if form == Form::Outlines {
+    let mut strokes = layer.strokes.iter().filter(|mark| !mark.is_area());
+    let mut paths = strokes.clone().flat_map(|stroke| &stroke.paths);
+    if form == Form::Outlines || strokes.next().is_none() {
         ""
-    } else if layer.strokes.iter().any(|stroke| stroke.path.has_joins()) {
+    } else if paths.any(WrittenPath::has_joins) {
         " fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\""
     } else {
         " fill=\"none\" stroke-linecap=\"round\""

@@ -5,8 +5,8 @@ use crate::fit::drawing::Drawing;
 use crate::fit::recipe::Points;
 use crate::math;
 use crate::render::{Params, StrokeRef, Strokes};
-use crate::scene::Stroke;
-use crate::svg::{WriteOptions, stroke_bytes};
+use crate::scene::Mark;
+use crate::svg::{WriteOptions, mark_bytes};
 
 /// The price of strokes and points, as squared error summed over pixels and channels.
 ///
@@ -109,17 +109,17 @@ impl Price {
         self.stake(self.of_strokes * self.of_bytes(self.bytes_of(stroke)))
     }
 
-    /// The least gain of `stroke` to be added.
-    pub(in crate::fit) fn least_gain(&self, stroke: &Stroke) -> f32 {
+    /// The least gain of `mark` to be added.
+    pub(in crate::fit) fn least_gain(&self, mark: &Mark) -> f32 {
         if self.per_byte == 0.0 {
             return 0.0;
         }
-        self.entry(self.of_strokes * self.of_bytes(stroke_bytes(stroke, &self.file)))
+        self.entry(self.of_strokes * self.of_bytes(mark_bytes(mark, &self.file)))
     }
 
     /// The least gain of a capsule to be added.
     pub(in crate::fit) fn least_gain_of_capsule(&self, capsule: &Params) -> f32 {
-        self.least_gain(&Strokes::from_iter([capsule]).get(0).to_stroke())
+        self.least_gain(&Strokes::from_iter([capsule]).get(0).to_mark())
     }
 
     /// The least gains of a point to be added and to stay.
@@ -130,7 +130,7 @@ impl Price {
 
     /// Bytes of a stroke.
     pub(in crate::fit) fn bytes_of(&self, stroke: StrokeRef<'_>) -> usize {
-        stroke_bytes(&stroke.to_stroke(), &self.file)
+        mark_bytes(&stroke.to_mark(), &self.file)
     }
 
     /// Bytes that one more point adds to a typical stroke.

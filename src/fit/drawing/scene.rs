@@ -3,14 +3,14 @@
 use super::Drawing;
 use crate::image::Image;
 use crate::render::{Backdrop, Canvas, Strokes};
-use crate::scene::{Scene, Stage, Stroke};
+use crate::scene::{Mark, Scene, Stage};
 
 impl Drawing {
     /// Adds the strokes of `scene`, in px of the picture, to an empty drawing.
     pub(in crate::fit) fn load(&mut self, scene: &Scene) {
         let halvings = self.surface().halvings();
         for (index, stage) in scene.stages.iter().enumerate() {
-            let mut strokes = reduced(&stage.strokes, halvings);
+            let mut strokes = reduced(&stage.marks, halvings);
             self.free_mut().append(&mut strokes);
             self.stage_of.resize(self.len(), index);
         }
@@ -18,7 +18,7 @@ impl Drawing {
 
     /// Our render of `scene` on each surface.
     pub(in crate::fit) fn soft(&mut self, scene: &Scene) -> Vec<Image> {
-        let strokes: Strokes = scene.strokes().collect();
+        let strokes: Strokes = scene.marks().collect();
         let mut canvas = self.surface().canvas.clone();
         let mut images = Vec::new();
         for surface in &self.surfaces {
@@ -41,7 +41,7 @@ impl Drawing {
         let halvings = self.surface().halvings();
         let mut mses = Vec::new();
         for stage in &scene.stages {
-            let strokes = reduced(&stage.strokes, halvings);
+            let strokes = reduced(&stage.marks, halvings);
             std::mem::swap(&mut below, &mut canvases);
             for (below, canvas) in below.iter().zip(&mut canvases) {
                 let backdrop = Backdrop::Canvas(below);
@@ -64,7 +64,7 @@ impl Drawing {
             if scene.stages.len() <= stage {
                 scene.stages.resize(stage + 1, Stage::default());
             }
-            scene.stages[stage].strokes.push(stroke.to_stroke());
+            scene.stages[stage].marks.push(stroke.to_mark());
         }
         scene
     }
@@ -76,8 +76,8 @@ pub(super) fn enlarge(strokes: &mut Strokes, doublings: usize) {
 }
 
 /// The strokes at a resolution `2^halvings` times as coarse.
-pub(super) fn reduced(strokes: &[Stroke], halvings: usize) -> Strokes {
-    let mut strokes: Strokes = strokes.iter().collect();
+pub(super) fn reduced(marks: &[Mark], halvings: usize) -> Strokes {
+    let mut strokes: Strokes = marks.iter().collect();
     scale(&mut strokes, 1.0 / (1_u32 << halvings) as f32);
     strokes
 }

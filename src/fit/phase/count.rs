@@ -32,7 +32,7 @@ pub(in crate::fit) fn try_base(session: &mut Session<'_>) -> Result<Outcome> {
     let file = session.writer.render(&session.drawing)?;
     let Some(stop) = budget::met(&session.config.budget, strokes, &file) else {
         let allows = |stroke| session.config.allows(stroke);
-        let is_allowed = file.rounded.scene.strokes().all(allows);
+        let is_allowed = file.rounded.scene.marks().all(allows);
         if is_allowed && budget::compares_files(session.config, &session.recipe) {
             session.set_best(file);
         }

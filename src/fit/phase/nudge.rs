@@ -28,7 +28,7 @@ use crate::metrics::psnr_db;
 use crate::rasters::{Footprint, PerRasterizer, Rasterizer, Rasters, Selection};
 use crate::render::Strokes;
 use crate::rng;
-use crate::scene::{Scene, Stroke};
+use crate::scene::{Mark, Scene};
 use crate::threads::PerWorker;
 use fragments::{Change, Fragments, Response, changes};
 
@@ -144,7 +144,7 @@ struct Nudger<'a> {
     homes: Strokes,
     strokes: Strokes,
     /// The strokes as the file has them; `None` for one that is not written.
-    written: Vec<Option<Stroke>>,
+    written: Vec<Option<Mark>>,
     /// Pixels of each stroke whose coverage may change.
     fringes: Vec<Vec<u32>>,
     /// Sets of strokes whose fringes have no pixel in common.
@@ -157,7 +157,7 @@ struct Nudger<'a> {
 struct Nudge {
     id: usize,
     points: Vec<[f32; 2]>,
-    written: Stroke,
+    written: Mark,
     changes: Vec<Change>,
 }
 
@@ -170,12 +170,12 @@ impl<'a> Nudger<'a> {
         let size = [picture.width(), picture.height()];
         let scratch = PerWorker::new(|| Rasters::new(size));
         let strokes = drawing.free().clone();
-        let written: Vec<Option<Stroke>> = strokes
+        let written: Vec<Option<Mark>> = strokes
             .iter()
-            .map(|stroke| scene.quantized_stroke(&stroke.to_stroke(), precision))
+            .map(|stroke| scene.quantized_mark(&stroke.to_mark(), precision))
             .collect();
-        let drawn = |stroke: &Option<Stroke>| match stroke {
-            Some(stroke) => scratch.with(|scratch| drawn(stroke, nudging.reach_px, scratch)),
+        let drawn = |mark: &Option<Mark>| match mark {
+            Some(mark) => scratch.with(|scratch| drawn(mark, nudging.reach_px, scratch)),
             None => Default::default(),
         };
         let (footprints, fringes): (Vec<PerRasterizer<Footprint>>, Vec<Vec<u32>>) =
@@ -244,11 +244,10 @@ impl<'a> Nudger<'a> {
     }
 
     /// Stroke `id` with these points, as the file would have it.
-    fn written_at(&self, id: usize, points: &[[f32; 2]]) -> Option<Stroke> {
+    fn written_at(&self, id: usize, points: &[[f32; 2]]) -> Option<Mark> {
         let mut stroke = self.strokes.get(id);
         stroke.points = points;
-        self.scene
-            .quantized_stroke(&stroke.to_stroke(), self.precision)
+        self.scene.quantized_mark(&stroke.to_mark(), self.precision)
     }
 
     /// A place to try for stroke `id`: near its present one, and within reach of its first one.
@@ -287,17 +286,20 @@ impl<'a> Nudger<'a> {
     }
 }
 
-/// Footprints of `stroke`, and the pixels whose coverage may change once it is moved within `reach` px.
-fn drawn(
-    stroke: &Stroke,
-    reach: f32,
-    scratch: &mut Rasters,
-) -> (PerRasterizer<Footprint>, Vec<u32>) {
+/// Footprints of a mark, and the pixels whose coverage may change once it is moved within `reach` px. Areas are not moved:
+/// each trial would draw all of their pixels.
+fn drawn(mark: &Mark, reach: f32, scratch: &mut Rasters) -> (PerRasterizer<Footprint>, Vec<u32>) {
+    let Some(stroke) = mark.as_stroke() else {
+        let footprint =
+            |rasterizer, selection: &mut Selection<'_>| selection.footprint(rasterizer, mark);
+        let footprints = scratch.on(&[], |s| Rasterizer::ALL.map(|r| footprint(r, s)));
+        return (footprints, Vec::new());
+    };
     let beyond = reach * SQRT_2 + FRINGE;
     let wide = scratch.swept(stroke, beyond);
     let narrow = scratch.swept(stroke, -beyond);
     let footprints = scratch.on(wide.pixels(), |selection| {
-        Rasterizer::ALL.map(|rasterizer| selection.footprint(rasterizer, stroke))
+        Rasterizer::ALL.map(|rasterizer| selection.footprint(rasterizer, mark))
     });
     let mut inside = narrow
         .iter()
@@ -340,7 +342,7 @@ impl<'a> Trial<'a> {
     /// the change, added up in the order of the rasterisers, is not below `least`.
     fn judge(
         &self,
-        tried: &Stroke,
+        tried: &Mark,
         least: f32,
         selection: &mut Selection<'_>,
     ) -> Option<(f32, PerRasterizer<Footprint>)> {

@@ -14,7 +14,7 @@ use crate::fit::run::history::OpenStage;
 use crate::fit::run::session::Session;
 use crate::metrics::psnr_db;
 use crate::render::{Canvas, Strokes};
-use crate::scene::Stroke;
+use crate::scene::Mark;
 use crate::trace::{Traced, Tracing, trace};
 
 /// Adds strokes along the lines of the residual, on top of all others.
@@ -47,14 +47,14 @@ pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> 
         session.plan_rest();
         return Ok(Outcome::Over);
     }
-    let strokes = most_gaining(traced, count);
+    let marks = most_gaining(traced, count);
     // They lie on top of all others, which are frozen.
     let began = session.timer.elapsed();
     session.progress.enter(index);
     session.drawing.sharpen(0.0);
     session.drawing.freeze();
     let before = (session.drawing.len(), psnr_db(session.drawing.mse()));
-    session.drawing.extend_by(&strokes, index);
+    session.drawing.extend_by(&marks, index);
     session.drawing.counters.traced_until = index + 1;
     session.history.stage = Some(OpenStage {
         planned: PlannedStage {
@@ -88,17 +88,18 @@ fn lines(drawing: &mut Drawing, config: &Config, tracing: Tracing, price: Price)
     let most = config.points.unwrap_or(usize::MAX);
     traced.retain(|t| {
         let strokes = Strokes::from_iter([&t.stroke]);
-        written_points(strokes.get(0)) <= most && t.gain > price.least_gain(&t.stroke)
+        let mark = t.stroke.clone().into();
+        written_points(strokes.get(0)) <= most && t.gain > price.least_gain(&mark)
     });
     traced
 }
 
 /// The strokes of the `count` largest gains, in the order that they have.
-fn most_gaining(traced: Vec<Traced>, count: usize) -> Vec<Stroke> {
+fn most_gaining(traced: Vec<Traced>, count: usize) -> Vec<Mark> {
     let mut order: Vec<usize> = (0..traced.len()).collect();
     order.sort_by(|&i, &k| traced[k].gain.total_cmp(&traced[i].gain).then(i.cmp(&k)));
     let mut keep = vec![false; traced.len()];
     order.iter().take(count).for_each(|&i| keep[i] = true);
     let kept = traced.into_iter().zip(keep).filter(|(_, keep)| *keep);
-    kept.map(|(traced, _)| traced.stroke).collect()
+    kept.map(|(traced, _)| traced.stroke.into()).collect()
 }

@@ -74,7 +74,7 @@ fn records(session: &mut Session<'_>, rounded: &Quantized) -> Vec<StageRecord> {
     let record = |((number, &origin), (stage, mse)): ((_, _), (&Stage, _))| {
         Some(StageRecord {
             index: number + 1,
-            strokes: stage.strokes.len(),
+            strokes: stage.marks.len(),
             layer_psnr_db: psnr_db(mse),
             ..*session.history.records.get(origin)?
         })

@@ -1,4 +1,4 @@
-//! The contour of a stroke, as Skia's stroker draws it: lines and parabolas.
+//! The contour of a mark: its rings, or the outline of a stroke, as Skia's stroker draws it: lines and parabolas.
 //!
 //! tiny-skia's port of that stroker, by which resvg strokes, does not give this contour: it makes two parabolas or more of
 //! each arc, where Skia is content with one up to a radius of 4 px. With it the model agrees with Chromium to 1.5 to 9 dB
@@ -9,7 +9,7 @@ use super::part::Part;
 use super::pieces::{directions, pieces};
 use super::side::Side;
 use crate::math::{Point, Vector};
-use crate::scene::{Piece, Stroke};
+use crate::scene::{Mark, Path, Piece, Stroke};
 
 /// A closed contour, traced with its inside on the right, or several.
 #[derive(Debug)]
@@ -22,8 +22,29 @@ pub(super) struct Contour {
 }
 
 impl Contour {
-    /// The contour of `stroke`.
-    pub(super) fn of(stroke: &Stroke) -> Self {
+    /// The contour of a mark.
+    pub(super) fn of(mark: &Mark) -> Self {
+        match mark {
+            Mark::Stroke(stroke) => Self::of_stroke(stroke),
+            Mark::Area(area) => Self::of_rings(&area.rings),
+        }
+    }
+
+    fn of_rings(rings: &[Path]) -> Self {
+        let part = |piece| match piece {
+            Piece::Line(points) => Part::Line(points),
+            Piece::Curve(points) => Part::Parabola(points),
+        };
+        let pieces = rings.iter().flat_map(Path::pieces);
+        let parts: Vec<Part> = pieces.map(part).collect();
+        Self {
+            bounds: bounds(&parts),
+            parts,
+            is_convex: false,
+        }
+    }
+
+    fn of_stroke(stroke: &Stroke) -> Self {
         let (pieces, is_closed) = (pieces(&stroke.path), stroke.path.is_closed());
         let parts = match (pieces.first(), stroke.path.points().first()) {
             (Some(first), _) => {
@@ -162,14 +183,14 @@ const SLIGHT_BEND: f32 = 1.0 / 4096.0;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Path, PathPoint};
+    use crate::scene::PathPoint;
 
     fn contour(points: &[([f32; 2], bool)], is_closed: bool) -> Contour {
         let point = |&(at, is_on): &([f32; 2], bool)| PathPoint {
             at: at.into(),
             is_on,
         };
-        Contour::of(&Stroke {
+        Contour::of_stroke(&Stroke {
             path: Path::new(points.iter().map(point).collect(), is_closed).unwrap(),
             radius: 2.0,
             color: [0.0; 3],

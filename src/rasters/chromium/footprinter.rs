@@ -5,7 +5,7 @@ use super::contour::Contour;
 use super::outline::Outline;
 use super::window::Window;
 use crate::rasters::footprint::Footprint;
-use crate::scene::Stroke;
+use crate::scene::Mark;
 
 /// Tells of single strokes how much of each pixel a browser covers with them; keeps its memory from call to call.
 pub(in crate::rasters) struct Footprinter {
@@ -27,9 +27,9 @@ impl Footprinter {
         }
     }
 
-    /// The pixels that `stroke` covers.
-    pub(in crate::rasters) fn footprint(&mut self, stroke: &Stroke) -> Footprint {
-        let contour = Contour::of(stroke);
+    /// The pixels that `mark` covers.
+    pub(in crate::rasters) fn footprint(&mut self, mark: &Mark) -> Footprint {
+        let contour = Contour::of(mark);
         let [width, _] = self.size;
         let mut pixels = Vec::new();
         for (window, accumulator) in &mut self.windows {
@@ -65,7 +65,7 @@ mod tests {
     use super::super::draw;
     use super::*;
     use crate::image::Image;
-    use crate::scene::{Path, PathPoint};
+    use crate::scene::{Path, PathPoint, Stroke};
 
     #[test]
     fn footprints_are_what_is_drawn_in_white_on_black() {
@@ -91,6 +91,7 @@ mod tests {
                 opacity: 1.0,
             };
             let page = Image::filled(width, height, [0.0; 3]).unwrap();
+            let stroke = Mark::Stroke(stroke);
             let drawn = draw([&stroke].into_iter(), &[page]).remove(0).to_rgb8();
             let drawn = (0..).zip(drawn.into_iter().step_by(3));
             assert_eq!(footprinter.footprint(&stroke), drawn.collect());

@@ -1,9 +1,9 @@
-//! A model of Chromium, which draws strokes as version 156 was seen to draw them on the CPU.
+//! A model of Chromium, which draws marks as version 156 was seen to draw them on the CPU.
 //!
 //! The rules were found from Chromium's pictures of single strokes and of stacks of them, and follow Skia's stroker and
 //! its rasteriser with analytic antialiasing:
 //!
-//! - A stroke becomes a `contour`: both sides (`side`) of its `pieces`, arcs on the outside of bends, and caps. Sides of curves are
+//! - An area is its own `contour`. A stroke becomes one: both sides (`side`) of its `pieces`, arcs on the outside of bends, and caps. Sides of curves are
 //!   parabolas up to 1/4 px away, arcs are parabolas up to 1/4 px outside.
 //! - The page is drawn in tiles, and each clips contours to its `window`.
 //! - The `outline` within a window is made of lines: a parabola becomes a few chords. The y of every end of a chord or
@@ -25,7 +25,7 @@
 //! let path = Path::line([3.0, 2.5].into(), [9.0, 2.5].into());
 //! let stroke = Stroke { path, radius: 1.0, color: [0.0; 3], opacity: 0.5 };
 //! let page = Image::filled(12, 5, [1.0; 3])?;
-//! let picture = chromium::draw([&stroke].into_iter(), &[page]).remove(0);
+//! let picture = chromium::draw([&stroke.into()].into_iter(), &[page]).remove(0);
 //! assert_eq!(picture.to_rgb8()[3 * (2 * 12 + 6)], 127);
 //! # Ok::<(), strokefit::Error>(())
 //! ```
@@ -49,14 +49,14 @@ use outline::Outline;
 use window::Window;
 
 use crate::image::Image;
-use crate::scene::{Stroke, quantum};
+use crate::scene::{Mark, quantum};
 
-/// The strokes, back to front, on each of the `pages`, which are opaque and of one size.
-pub fn draw<'a>(strokes: impl Iterator<Item = &'a Stroke>, pages: &[Image]) -> Vec<Image> {
+/// The marks, back to front, on each of the `pages`, which are opaque and of one size.
+pub fn draw<'a>(marks: impl Iterator<Item = &'a Mark>, pages: &[Image]) -> Vec<Image> {
     let Some((width, height)) = pages.first().map(|page| (page.width(), page.height())) else {
         return Vec::new();
     };
-    let shapes: Vec<Shape> = strokes.map(Shape::of).collect();
+    let shapes: Vec<Shape> = marks.map(Shape::of).collect();
     let mut pictures: Vec<Vec<u8>> = pages.iter().map(Image::to_rgb8).collect();
     // Tiles are independent, as in Chromium, and put back in order since they overlap.
     let windows = Window::all(width, height);
@@ -96,17 +96,17 @@ fn draw_window(shapes: &[Shape], window: Window, mut pictures: Vec<Vec<u8>>) -> 
     pictures
 }
 
-/// A stroke that is ready to be drawn.
+/// A mark that is ready to be drawn.
 struct Shape {
     contour: Contour,
     paint: Paint,
 }
 
 impl Shape {
-    fn of(stroke: &Stroke) -> Self {
+    fn of(mark: &Mark) -> Self {
         Self {
-            contour: Contour::of(stroke),
-            paint: Paint::of(stroke),
+            contour: Contour::of(mark),
+            paint: Paint::of(mark),
         }
     }
 }
@@ -119,7 +119,7 @@ fn image(rgb: &[u8], width: usize, height: usize) -> Image {
     Image::from_planes(width, height, planes)
 }
 
-/// Colour and opacity of a stroke, 0 to 255.
+/// Colour and opacity of a mark, 0 to 255.
 struct Paint {
     /// The colour times the opacity.
     color: [u32; 3],
@@ -127,10 +127,10 @@ struct Paint {
 }
 
 impl Paint {
-    fn of(stroke: &Stroke) -> Self {
+    fn of(mark: &Mark) -> Self {
         let level = |v| u32::from(quantum(v));
-        let opacity = level(stroke.opacity);
-        let color = stroke.color.map(|c| (level(c) * opacity + 127) / 255);
+        let opacity = level(mark.opacity());
+        let color = mark.color().map(|c| (level(c) * opacity + 127) / 255);
         Self { color, opacity }
     }
 
@@ -156,7 +156,7 @@ fn product(a: u32, b: u32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Path;
+    use crate::scene::{Path, Stroke};
 
     fn pixel(backdrop: u8, color: u8, opacity: f32) -> u8 {
         let level = |v: u8| [f32::from(v) / 255.0; 3];
@@ -167,7 +167,7 @@ mod tests {
             opacity,
         };
         let page = Image::filled(8, 8, level(backdrop)).unwrap();
-        draw([&stroke].into_iter(), &[page])[0].to_rgb8()[3 * (4 * 8 + 4)]
+        draw([&stroke.into()].into_iter(), &[page])[0].to_rgb8()[3 * (4 * 8 + 4)]
     }
 
     #[test]
@@ -195,7 +195,7 @@ mod tests {
             opacity: 1.0,
         };
         let pages = [[0.0; 3], [1.0; 3]].map(|color| Image::filled(4, 4, color).unwrap());
-        let drawn = draw([&stroke].into_iter(), &pages).into_iter();
+        let drawn = draw([&stroke.into()].into_iter(), &pages).into_iter();
         let [black, white] = [
             drawn.clone().next().unwrap().to_rgb8(),
             drawn.last().unwrap().to_rgb8(),

@@ -13,7 +13,7 @@ use crate::fit::renderers::Renderings;
 use crate::fit::run::session::Session;
 use crate::image::Image;
 use crate::rasters::{Footprint, PerRasterizer, Rasterizer, Selection};
-use crate::scene::{Rgb, Stroke};
+use crate::scene::{Mark, Rgb};
 
 /// Most surfaces of a drawing.
 const SURFACES: usize = 2;
@@ -70,7 +70,7 @@ impl Fragments {
         session: &Session<'_>,
         file: &RenderedFile,
         seen: &Renderings,
-        written: &[Option<Stroke>],
+        written: &[Option<Mark>],
         footprints: &[PerRasterizer<Footprint>],
     ) -> Self {
         let surfaces = session.drawing.surfaces.iter();
@@ -104,9 +104,9 @@ impl Fragments {
         let composed = fragments.pictures.last_mut().into_iter().flatten();
         for (colors, list) in composed.zip(&fragments.lists) {
             for fragment in list {
-                if let Some(stroke) = &written[fragment.stroke as usize] {
+                if let Some(mark) = &written[fragment.stroke as usize] {
                     let [.., level] = fragment.levels;
-                    blend(colors, share(level) * stroke.opacity, stroke.color);
+                    blend(colors, share(level) * mark.opacity(), mark.color());
                 }
             }
         }
@@ -160,7 +160,7 @@ impl Fragments {
     pub(super) fn responses(
         &self,
         id: usize,
-        strokes: &[Option<Stroke>],
+        strokes: &[Option<Mark>],
         pixels: &[u32],
     ) -> Vec<PerRasterizer<Response>> {
         let Some(stroke) = &strokes[id] else {
@@ -179,7 +179,7 @@ impl Fragments {
     }
 
     /// Views of stroke `id` in a pixel.
-    fn sights(&self, id: usize, strokes: &[Option<Stroke>], pixel: usize) -> PerRasterizer<Sight> {
+    fn sights(&self, id: usize, strokes: &[Option<Mark>], pixel: usize) -> PerRasterizer<Sight> {
         let mut sights = [Sight {
             level: 0,
             through: 1.0,
@@ -191,9 +191,9 @@ impl Fragments {
             };
             let order = (fragment.stroke as usize).cmp(&id);
             for (sight, &level) in sights.iter_mut().zip(&fragment.levels) {
-                let m = share(level) * other.opacity;
+                let m = share(level) * other.opacity();
                 match order {
-                    Ordering::Less => blend(&mut sight.behind, m, other.color),
+                    Ordering::Less => blend(&mut sight.behind, m, other.color()),
                     Ordering::Equal => sight.level = level,
                     Ordering::Greater => sight.through *= 1.0 - m,
                 }
@@ -262,9 +262,9 @@ pub(super) fn changes(
 }
 
 impl Response {
-    /// That to a `stroke` as it is seen, of a pixel with these colours in picture and target, on so many surfaces.
+    /// That to a `mark` as it is seen, of a pixel with these colours in picture and target, on so many surfaces.
     fn of(
-        stroke: &Stroke,
+        mark: &Mark,
         &Sight {
             level,
             through,
@@ -277,10 +277,11 @@ impl Response {
             level,
             ..Self::default()
         };
-        let factor = through * stroke.opacity;
+        let color = mark.color();
+        let factor = through * mark.opacity();
         for surface in 0..surfaces {
             for channel in 0..3 {
-                let whole = factor * (stroke.color[channel] - behind[surface][channel]);
+                let whole = factor * (color[channel] - behind[surface][channel]);
                 let present = picture[surface][channel] - target[surface][channel];
                 let without = present - share(level) * whole;
                 response.whole[surface][channel] = whole;
@@ -367,7 +368,7 @@ mod tests {
     /// The pictures of strokes that cover these footprints.
     fn composed(
         backdrops: &[Colors],
-        strokes: &[Option<Stroke>],
+        strokes: &[Option<Mark>],
         footprints: &[PerRasterizer<Footprint>],
     ) -> PerRasterizer<Vec<Colors>> {
         std::array::from_fn(|i| {
@@ -382,7 +383,7 @@ mod tests {
         })
     }
 
-    fn collected(footprints: &[PerRasterizer<Footprint>], strokes: &[Option<Stroke>]) -> Fragments {
+    fn collected(footprints: &[PerRasterizer<Footprint>], strokes: &[Option<Mark>]) -> Fragments {
         let colors = |key: u64| {
             let color = |i: usize| [0, 1, 2].map(|c| draw(key, 3 * i + c));
             (0..PIXELS).map(|i| [color(i), color(i + PIXELS)]).collect()

@@ -177,7 +177,7 @@ impl Order {
         // Which strokes meet does not depend on the decimals.
         let written = strokes.iter().enumerate();
         let written = written
-            .filter_map(|(i, stroke)| Some((i, Written::anywhere(&stroke.to_stroke(), 2).ok()?)));
+            .filter_map(|(i, stroke)| Some((i, Written::anywhere(&stroke.to_mark(), 2).ok()?)));
         let (ids, written): (Vec<usize>, Vec<Written>) = written.unzip();
         let mut pairs = overlaps(&written, |_, _| true);
         pairs.sort_unstable();

@@ -67,7 +67,7 @@ fn order(drawing: &mut Drawing, coloring: Recoloring, precision: u8) -> Vec<Colo
     let shown = preferences(drawing, 0.0, coloring.min_shown);
     let strokes = drawing.free().iter().zip(&shown);
     let written = |(stroke, shown): (StrokeRef<'_>, &PreferredColor)| {
-        let written = Written::anywhere(&stroke.to_stroke(), precision).ok()?;
+        let written = Written::anywhere(&stroke.to_mark(), precision).ok()?;
         Some((written, shown.weight))
     };
     stacked(
