@@ -67,9 +67,7 @@ pub(crate) fn draw(picture: &Image) -> strokefit::Result<Scene> {
     };
     let mut strokes: Strokes = (0..STROKES as u64).map(|i| random(i, picture)).collect();
     descend(&mut strokes, &loss, picture)?;
-    let stage = Stage {
-        strokes: strokes.iter().map(|stroke| stroke.to_stroke()).collect(),
-    };
+    let stage = Stage::from_iter(strokes.iter().map(|stroke| stroke.to_mark()));
     let (width, height) = (picture.width() as u32, picture.height() as u32);
     Ok(Scene {
         stages: vec![stage],

@@ -363,9 +363,7 @@ mod tests {
         let page = Scene::empty(40, 20, Some([0.2, 0.4, 0.6]));
         svg::write(
             &Scene {
-                stages: vec![Stage {
-                    strokes: vec![dot, line],
-                }],
+                stages: vec![Stage::from_iter([dot, line])],
                 ..page
             },
             &WriteOptions::default(),

@@ -10,7 +10,7 @@ use strokefit::coverage::Coverage;
 use strokefit::fit::{Objective, Simd};
 use strokefit::loss::Loss;
 use strokefit::render::{Backdrop, Canvas, Gradients, Renderer, Softness, Strokes};
-use strokefit::scene::{Path, PathPoint, Quantized, Scene, Stage, Stroke};
+use strokefit::scene::{Path, PathPoint, Quantized, Scene, Stroke};
 use strokefit::verify::{self, Size};
 use strokefit::{image::Image, svg};
 
@@ -74,8 +74,8 @@ impl Source<'_> {
         let background = self.byte().is_multiple_of(2).then_some(background);
         let mut scene = Scene::empty(width.into(), height.into(), background);
         for _ in 0..self.byte() % 3 {
-            let strokes = (0..self.byte() % 8).map(|_| self.stroke()).collect();
-            scene.stages.push(Stage { strokes });
+            let stage = (0..self.byte() % 8).map(|_| self.stroke()).collect();
+            scene.stages.push(stage);
         }
         scene
     }
@@ -145,7 +145,7 @@ thread_local! {
 
 /// The canvas and the gradients of `scene`, if all of them are finite.
 fn draw(scene: &Scene, softness: Softness) -> Option<()> {
-    let strokes: Strokes = scene.strokes().collect();
+    let strokes: Strokes = scene.marks().collect();
     let background = scene.background.unwrap_or([1.0; 3]);
     let target = Image::filled(scene.width as usize, scene.height as usize, [0.5; 3]).ok()?;
     let target = Canvas::from_image(&target);

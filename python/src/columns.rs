@@ -4,7 +4,7 @@ use numpy::{Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyRea
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use strokefit::math::Point;
-use strokefit::scene::{Path, PathPoint, Scene};
+use strokefit::scene::{Mark, Path, PathPoint, Scene};
 
 use crate::failure::Failure;
 
@@ -33,7 +33,10 @@ pub(crate) fn of<'py>(py: Python<'py>, scene: &Scene) -> PyResult<Columns<'py>> 
     let widths = scene.strokes().map(|stroke| 2.0 * stroke.radius);
     let opacities = scene.strokes().map(|stroke| stroke.opacity);
     let layers = scene.stages.iter().zip(0..);
-    let layers = layers.flat_map(|(stage, layer)| stage.strokes.iter().map(move |_| layer));
+    let layers = layers.flat_map(|(stage, layer)| {
+        let strokes = stage.marks.iter().filter_map(Mark::as_stroke);
+        strokes.map(move |_| layer)
+    });
     Ok((
         places(py, points().map(|point| point.at))?,
         column(py, points().map(|point| point.is_on)),

@@ -256,9 +256,7 @@ fn fits(criterion: &mut Criterion) {
 fn scene(image: &Image) -> Scene {
     let grid = Canvas::from_image(image).grid();
     let strokes = random::strokes(grid, STROKES, &MEDIUM);
-    let stage = Stage {
-        strokes: strokes.iter().map(|stroke| stroke.to_stroke()).collect(),
-    };
+    let stage = Stage::from_iter(strokes.iter().map(|stroke| stroke.to_mark()));
     Scene {
         stages: vec![stage],
         ..Scene::empty(grid.width as u32, grid.height as u32, Some(BACKDROP))

@@ -113,8 +113,8 @@ pub enum Colors {
 impl Colors {
     /// True if all colours of `scene` are allowed.
     pub(super) fn allow(&self, scene: &Scene) -> bool {
-        let strokes = scene.strokes().map(|stroke| stroke.color);
-        let used: BTreeSet<_> = strokes
+        let colors = scene.marks().map(Mark::color);
+        let used: BTreeSet<_> = colors
             .chain(scene.background)
             .map(|c| c.map(quantum))
             .collect();

@@ -99,7 +99,7 @@ mod tests {
 
     /// The farthest that a place of the page within the stroke's discs is from their edge, of places that are not covered.
     fn deepest_hole(stroke: &Stroke, side: usize) -> f32 {
-        let covered: HashSet<u32> = footprint(stroke, side, side)
+        let covered: HashSet<u32> = footprint(&stroke.clone().into(), side, side)
             .iter()
             .filter(|&(_, level)| level >= 128)
             .map(|(pixel, _)| pixel)
@@ -140,8 +140,9 @@ mod tests {
                 color: [0.0; 3],
                 opacity: 1.0,
             };
-            let written = Scene::empty(120, 120, None).quantized_stroke(&stroke, 2).unwrap();
-            prop_assert!(deepest_hole(&written, 120) < 1.5, "{written:?}");
+            let written = Scene::empty(120, 120, None).quantized_mark(&stroke.into(), 2).unwrap();
+            let written = written.as_stroke().unwrap();
+            prop_assert!(deepest_hole(written, 120) < 1.5, "{written:?}");
         }
     }
 
@@ -172,15 +173,13 @@ mod tests {
                 opacity: 1.0,
             };
             let scene = Scene {
-                stages: vec![Stage {
-                    strokes: vec![stroke.clone()],
-                }],
+                stages: vec![Stage::from_iter([stroke.clone()])],
                 ..Scene::empty(width, height, Some([0.0; 3]))
             };
             let text = svg::write(&scene, &WriteOptions::default());
             let drawn = verify::render(&text, Size::Exact { width, height }, None).unwrap();
             let drawn = (0..).zip(drawn.to_rgb8().into_iter().step_by(3));
-            let footprint = footprint(&stroke, width as usize, height as usize);
+            let footprint = footprint(&stroke.clone().into(), width as usize, height as usize);
             assert_eq!(footprint, drawn.collect(), "{:?}", stroke.path);
         }
     }

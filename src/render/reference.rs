@@ -375,14 +375,12 @@ mod tests {
         use crate::math::Point;
         use crate::scene;
         let mut scene = scene::Scene::empty(1, 1, None);
-        scene.stages.push(scene::Stage {
-            strokes: vec![scene::Stroke {
-                path: scene::Path::dot(Point::new(0.5, 0.5)),
-                radius: 5.0,
-                color: [1.0, 0.0, 0.0],
-                opacity: 0.5,
-            }],
-        });
+        scene.stages.push(scene::Stage::from_iter([scene::Stroke {
+            path: scene::Path::dot(Point::new(0.5, 0.5)),
+            radius: 5.0,
+            color: [1.0, 0.0, 0.0],
+            opacity: 0.5,
+        }]));
         let scene = Scene::from(&scene);
         assert_eq!(scene.strokes, [red(0.5)]);
         assert_eq!(scene.background, [1.0; 3]);

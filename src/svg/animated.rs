@@ -3,8 +3,8 @@
 
 use std::ops::Range;
 
-use super::{Form, WriteOptions, write};
-use crate::scene::{Scene, Stroke};
+use super::{Form, WriteOptions, dialect, write};
+use crate::scene::{Area, Mark, Scene, Stroke, quantum};
 
 /// Durations in an animated drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,10 +15,10 @@ pub struct Timing {
     pub last_ms: u32,
 }
 
-/// The scene with `precision` decimals and an element for each stroke. The strokes of each of `parts` are in
+/// The scene with `precision` decimals and an element for each mark. The marks of each of `parts` are in
 /// a group that appears at its time; the first group is visible from the start. Parts are consecutive ranges
-/// of the strokes, back to front. A stroke of several pieces, or of a curve, is drawn along its length until the next
-/// part appears. The animation repeats for ever.
+/// of the marks, back to front. Until the next part appears, a stroke of several pieces, or of a curve, is drawn along
+/// its length, and an area fades in. The animation repeats for ever.
 ///
 /// A part that crosses the end of a stage is in two groups, which appear together.
 pub fn write_animated(
@@ -41,32 +41,34 @@ pub fn write_animated(
         out: String::new(),
         open: false,
     };
-    let mut shapes = scene.strokes();
-    let mut strokes = 0;
+    let mut shapes = scene.marks().peekable();
+    let mut marks = 0;
     let mut part = 0;
     // The writer puts each element on its own line.
     for line in write(&scene, &options).lines() {
-        if !is_stroke(line) {
+        if !is_mark(line) {
             groups.close();
         } else {
-            while parts.get(part).is_some_and(|range| strokes >= range.end) {
+            while parts.get(part).is_some_and(|range| marks >= range.end) {
                 part += 1;
                 groups.close();
             }
             groups.ensure(|| clock.entrance(part));
-            strokes += 1;
-            if shapes.next().is_some_and(is_long) {
-                groups.push(&clock.along(line, part));
-                continue;
-            }
+            marks += 1;
         }
-        groups.push(line);
+        match shapes.next_if(|_| is_mark(line)) {
+            Some(Mark::Stroke(stroke)) if is_long(stroke) => {
+                groups.push(&clock.along(line, part));
+            }
+            Some(Mark::Area(area)) => groups.push(&clock.fading(line, area, part)),
+            _ => groups.push(line),
+        }
     }
     groups.out
 }
 
-/// True if a line of the writer is a stroke. All other lines are groups, their titles, the background and the shade.
-fn is_stroke(line: &str) -> bool {
+/// True if a line of the writer is a mark. All other lines are groups, their titles, the background and the shade.
+fn is_mark(line: &str) -> bool {
     !["<g", "</", "<title", "<svg", "<rect", "<linear", "<radial"]
         .iter()
         .any(|other| line.starts_with(other))
@@ -103,6 +105,18 @@ impl Clock {
         let open = element.strip_suffix("/>").unwrap_or(element);
         format!(
             "{open} pathLength=\"1\"><animate attributeName=\"stroke-dasharray\" values=\"0 1;0 1;1 0;1 0\" \
+             keyTimes=\"0;{start:.4};{end:.4};1\" dur=\"{}ms\" repeatCount=\"indefinite\"/></path>",
+            self.whole_ms
+        )
+    }
+
+    /// The `element` of an area of part `part`, with an animation that fades it in.
+    fn fading(&self, element: &str, area: &Area, part: usize) -> String {
+        let [start, end] = [part, part + 1].map(|part| self.start(part));
+        let open = element.strip_suffix("/>").unwrap_or(element);
+        let opacity = dialect::opacity(quantum(area.opacity));
+        format!(
+            "{open}><animate attributeName=\"fill-opacity\" values=\"0;0;{opacity};{opacity}\" \
              keyTimes=\"0;{start:.4};{end:.4};1\" dur=\"{}ms\" repeatCount=\"indefinite\"/></path>",
             self.whole_ms
         )
@@ -149,16 +163,17 @@ mod tests {
     use crate::scene::{Path, PathPoint, Stage};
     use crate::verify::{Size, render};
 
-    fn scene() -> Scene {
-        let stroke = |k: usize| Stroke {
+    fn stroke(k: usize) -> Stroke {
+        Stroke {
             path: Path::line([k as f32, 2.0].into(), [k as f32 + 3.0, 8.0].into()),
             radius: 1.0,
             color: [k as f32 / 7.0, 0.5, 0.2],
             opacity: 0.8,
-        };
-        let stage = |range: Range<usize>| Stage {
-            strokes: range.map(stroke).collect(),
-        };
+        }
+    }
+
+    fn scene() -> Scene {
+        let stage = |range: Range<usize>| Stage::from_iter(range.map(stroke));
         Scene {
             stages: vec![stage(0..3), stage(3..7)],
             ..Scene::empty(12, 10, Some([1.0; 3]))
@@ -188,7 +203,10 @@ mod tests {
     fn a_long_path_is_drawn_along_its_length() {
         let mut scene = scene();
         let points = [[1.0, 1.0], [9.0, 1.0], [5.0, 9.0]].map(|p| PathPoint::on(p.into()));
-        scene.stages[1].strokes[0].path = Path::new(points.into(), true).unwrap();
+        scene.stages[1].marks[0] = Mark::from(Stroke {
+            path: Path::new(points.into(), true).unwrap(),
+            ..stroke(3)
+        });
         let text = write_animated(&scene, &[0..2, 2..5, 5..6, 6..7], TIMING, 2);
         assert_eq!(text.matches("stroke-dasharray").count(), 1);
         assert!(text.contains("z\" stroke="), "{text}");

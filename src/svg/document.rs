@@ -170,9 +170,7 @@ mod tests {
             opacity: 1.0,
         };
         Scene {
-            stages: vec![Stage {
-                strokes: vec![stroke],
-            }],
+            stages: vec![Stage::from_iter([stroke])],
             ..Scene::empty(10, 10, None)
         }
     }

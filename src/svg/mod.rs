@@ -61,7 +61,7 @@
 //! let path = Path::line([1.25, 2.0].into(), [30.0, 4.0].into());
 //! let stroke = Stroke { path, radius: 1.5, color: [1.0, 0.4, 0.0], opacity: 0.5 };
 //! let page = Scene::empty(40, 10, Some([1.0; 3]));
-//! let scene = Scene { stages: vec![Stage { strokes: vec![stroke] }], ..page };
+//! let scene = Scene { stages: vec![Stage::from_iter([stroke])], ..page };
 //!
 //! let text = svg::write(&scene, &WriteOptions::default());
 //! assert!(text.contains(r##"<path d="M1.25 2L30 4" stroke="#ff6600" stroke-width="3" stroke-opacity="0.502"/>"##));

@@ -86,7 +86,7 @@ fn shade() -> impl Strategy<Value = Shade> {
 }
 
 fn scene() -> impl Strategy<Value = Scene> {
-    let stage = prop::collection::vec(stroke(), 0..8).prop_map(|strokes| Stage { strokes });
+    let stage = prop::collection::vec(stroke(), 0..8).prop_map(Stage::from_iter);
     let background = prop::option::of([0.0..=1.0_f32, 0.0..=1.0_f32, 0.0..=1.0_f32]);
     (
         1..100_u32,
@@ -135,7 +135,7 @@ fn alike() -> impl Strategy<Value = Stroke> {
 }
 
 fn scene_of_few_looks() -> impl Strategy<Value = Scene> {
-    let stage = prop::collection::vec(alike(), 0..30).prop_map(|strokes| Stage { strokes });
+    let stage = prop::collection::vec(alike(), 0..30).prop_map(Stage::from_iter);
     prop::collection::vec(stage, 0..3).prop_map(|stages| Scene {
         stages,
         ..Scene::empty(40, 40, Some([1.0; 3]))
@@ -250,11 +250,11 @@ proptest! {
     #[test]
     fn the_bytes_of_a_stroke_are_what_the_file_grows_by(stroke in stroke(), precision in 0..=6_u8) {
         let options = WriteOptions { form: Form::Plain, ..precise(precision) };
-        let page = |strokes| Scene { stages: vec![Stage { strokes }], ..Scene::empty(1_000_000, 9, None) };
+        let page = |strokes| Scene { stages: vec![Stage::from_iter(strokes)], ..Scene::empty(1_000_000, 9, None) };
         let (one, two) = (write(&page(vec![stroke.clone()]), &options), write(&page(vec![stroke.clone(); 2]), &options));
         // The title says "1 stroke" or "2 strokes".
         if one != two && !one.contains("0 strokes") {
-            prop_assert_eq!(two.len() - one.len() - 1, stroke_bytes(&stroke, &options));
+            prop_assert_eq!(two.len() - one.len() - 1, mark_bytes(&stroke.clone().into(), &options));
         }
     }
 
@@ -278,25 +278,25 @@ fn difference(a: &str, b: &str) -> Agreement {
     Agreement::between(&drawn(a), &drawn(b)).unwrap()
 }
 
-fn sample() -> Scene {
-    let line = Stroke {
+fn line() -> Stroke {
+    Stroke {
         path: Path::line(Point::new(100.25, 20.5), Point::new(97.04, 25.06)),
         radius: 1.5,
         color: [1.0, 0.4, 0.0],
         opacity: 1.0,
-    };
+    }
+}
+
+fn sample() -> Scene {
+    let line = line();
     let dot = Stroke {
         path: Path::dot(Point::new(3.0, 4.0)),
         opacity: 0.5,
         ..line.clone()
     };
     let stages = vec![
-        Stage {
-            strokes: vec![line.clone()],
-        },
-        Stage {
-            strokes: vec![dot, line],
-        },
+        Stage::from_iter([line.clone()]),
+        Stage::from_iter([dot, line]),
     ];
     Scene {
         stages,
@@ -329,10 +329,10 @@ fn a_path_of_several_points_is_one_element_with_round_joins() {
     let bent = Stroke {
         path: Path::new(corners, false).unwrap(),
         opacity: 0.2,
-        ..sample().stages[0].strokes[0].clone()
+        ..line()
     };
     let page = |strokes: Vec<Stroke>| Scene {
-        stages: vec![Stage { strokes }],
+        stages: vec![Stage::from_iter(strokes)],
         ..Scene::empty(40, 40, None)
     };
     let text = write(&page(vec![bent.clone()]), &WriteOptions::default());
@@ -368,13 +368,11 @@ fn a_stroke_of_too_many_points_is_refused() {
         let points = (0..count).map(on).collect();
         Stroke {
             path: Path::new(points, false).unwrap(),
-            ..sample().stages[0].strokes[0].clone()
+            ..line()
         }
     };
     let scene = Scene {
-        stages: vec![Stage {
-            strokes: vec![strokes(MAX_POINTS)],
-        }],
+        stages: vec![Stage::from_iter([strokes(MAX_POINTS)])],
         ..Scene::empty(40, 2000, None)
     };
     let text = write(&scene, &WriteOptions::default());
@@ -388,10 +386,8 @@ fn a_stroke_of_too_many_points_is_refused() {
 
 #[test]
 fn the_smallest_form_counts_the_last_decimal_where_that_is_shorter() {
-    let one = &sample().stages[0].strokes[0];
-    let stages = [1, 9].map(|count| Stage {
-        strokes: vec![one.clone(); count],
-    });
+    let one = line();
+    let stages = [1, 9].map(|count| Stage::from_iter(vec![one.clone(); count]));
     let scene = Scene {
         stages: stages.into(),
         ..sample()

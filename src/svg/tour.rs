@@ -199,7 +199,7 @@ mod tests {
 
     fn stroke(path: WrittenPath, color: u8) -> Written {
         Written {
-            path,
+            paths: vec![path],
             width: 2 * PX,
             color: [color; 3],
             opacity: 255,
@@ -229,7 +229,7 @@ mod tests {
         ];
         let drawn = shortened(&strokes, Some([0.0, 0.0]));
         assert_eq!(between(&drawn), 2.0);
-        let starts: Vec<_> = drawn.iter().map(|s| ends(&s.path)[0][0]).collect();
+        let starts: Vec<_> = drawn.iter().map(|s| ends_of(s)[0][0]).collect();
         assert_eq!(starts, [0.0, 11.0, 40.0]);
     }
 
@@ -239,7 +239,10 @@ mod tests {
         let line = path(&[[0, 20], [19, 20]], false);
         let drawn = shortened(&[stroke(square, 0), stroke(line, 0)], None);
         assert_eq!(between(&drawn), 1.0);
-        let closed = drawn.iter().find(|s| s.path.is_closed()).map(|s| &s.path);
+        let closed = drawn
+            .iter()
+            .flat_map(|s| &s.paths)
+            .find(|path| path.is_closed());
         assert_eq!(closed.map(|path| path.points().len()), Some(4));
     }
 

@@ -207,7 +207,7 @@ fn chromium_draws_across_its_tiles_as_it_is_foreseen() {
 
 fn drawing_of(strokes: Vec<Stroke>, [width, height]: [u32; 2]) -> String {
     let scene = Scene {
-        stages: vec![Stage { strokes }],
+        stages: vec![Stage::from_iter(strokes)],
         ..Scene::empty(width, height, Some([1.0; 3]))
     };
     svg::write(&scene, &WriteOptions::default())
@@ -226,7 +226,7 @@ fn draws_as_foreseen(
     let background = scene.background.unwrap_or([1.0; 3]);
     let [width, height] = size.map(|side| side as usize);
     let page = Image::filled(width, height, background).unwrap();
-    let foreseen = chromium::draw(scene.strokes(), &[page]).remove(0);
+    let foreseen = chromium::draw(scene.marks(), &[page]).remove(0);
     let [db, of_resvg] = [&foreseen, &resvg].map(|image| metrics::psnr(image, &drawn).unwrap());
     let line =
         format!("{name}: Chromium agrees to {of_resvg:.1} dB with resvg, {db:.1} with its model\n");
@@ -338,7 +338,7 @@ fn bent_kinds() -> Vec<(&'static str, Vec<Stroke>)> {
 /// Kinds of strokes that programs might treat apart, each a drawing of its own, 64×48 px.
 fn kinds() -> Vec<(&'static str, Scene)> {
     let of = |strokes: Vec<Stroke>| Scene {
-        stages: vec![Stage { strokes }],
+        stages: vec![Stage::from_iter(strokes)],
         ..Scene::empty(64, 48, Some([1.0, 0.9, 0.7]))
     };
     let fan = |width: f32| {

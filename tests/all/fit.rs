@@ -13,7 +13,7 @@ use strokefit::fit::{
 use strokefit::image::Image;
 use strokefit::metrics;
 use strokefit::rasters::chromium;
-use strokefit::scene::Scene;
+use strokefit::scene::{Mark, Scene};
 use strokefit::svg;
 use strokefit::verify::{self, Verdict};
 
@@ -222,7 +222,7 @@ fn strokes_share_the_pens_of_the_picture() {
     looks.sort();
     looks.dedup();
     assert_eq!(looks.len(), 2, "{looks:?}");
-    assert!(written.strokes().all(|s| s.opacity == 1.0));
+    assert!(written.marks().all(|mark| mark.opacity() == 1.0));
     assert!(written.strokes().all(|s| s.path.points().len() == 2));
     assert!(verdict(&fit, &config).fidelity.psnr_db > 38.0);
 }
@@ -253,7 +253,7 @@ fn opaque_drawings_are_opaque() {
         ..draft(60)
     };
     let fit = drawn(&ball(64, 48), &config);
-    assert!(fit.scene.strokes().all(|stroke| stroke.opacity == 1.0));
+    assert!(fit.scene.marks().all(|mark| mark.opacity() == 1.0));
     assert!(!text(&fit, &config).contains("stroke-opacity"));
 }
 
@@ -331,7 +331,7 @@ fn nudged_lines_are_drawn_better_where_they_were_drawn_worst() {
         };
         let fitter = Fitter::new(config.clone()).execution(execution);
         let fit = fitter.fit(&picture).unwrap();
-        let shown = chromium::draw(fit.scene.strokes(), std::slice::from_ref(&page)).remove(0);
+        let shown = chromium::draw(fit.scene.marks(), std::slice::from_ref(&page)).remove(0);
         let by_resvg = verdict(&fit, &config).fidelity.psnr_db;
         let by_browser = metrics::psnr(&picture, &shown).unwrap();
         (by_resvg.min(by_browser), text(&fit, &config))
@@ -443,8 +443,9 @@ fn the_drawing_can_be_seen_while_it_grows() {
     // Large strokes are fitted to a reduced picture; what is seen is in px of the whole one all the same.
     let reach = |scene: &Scene| {
         scene
-            .strokes()
-            .map(|s| s.path.ends().0.x)
+            .marks()
+            .flat_map(Mark::paths)
+            .map(|path| path.ends().0.x)
             .fold(0.0, f32::max)
     };
     assert!(reach(&seen[seen.len() / 3]) > 200.0);

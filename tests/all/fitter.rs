@@ -47,8 +47,8 @@ fn no_iterations_of_polish_are_none() {
     let off = drawn(&picture, &off);
     // Without polish, strokes that were promised but not accepted are topped up in the end.
     assert!(none.scene.len() < off.scene.len());
-    let first = off.scene.strokes().take(none.scene.len());
-    assert!(none.scene.strokes().eq(first));
+    let first = off.scene.marks().take(none.scene.len());
+    assert!(none.scene.marks().eq(first));
 }
 
 #[test]

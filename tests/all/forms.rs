@@ -8,7 +8,7 @@ use crate::support::place::Place;
 use crate::support::refusal;
 use crate::support::repository::committed;
 use strokefit::image::Image;
-use strokefit::scene::Stage;
+use strokefit::scene::{Mark, Stage};
 use strokefit::svg;
 use strokefit::verify::{self, Size};
 
@@ -57,7 +57,7 @@ impl Drawn {
     /// All colours of strokes and background.
     fn colors(&self) -> BTreeSet<String> {
         let scene = svg::read(&self.text).unwrap();
-        let strokes = scene.strokes().map(|stroke| stroke.color);
+        let strokes = scene.marks().map(Mark::color);
         let hex = |rgb: [f32; 3]| {
             let [r, g, b] = rgb.map(|c| (c * 255.0).round() as u8);
             format!("#{r:02x}{g:02x}{b:02x}")
@@ -217,12 +217,11 @@ fn a_palette_is_fitted_and_not_only_applied() {
     };
     let mut applied = svg::read(&free.text).unwrap();
     applied.background = applied.background.map(nearest);
-    for stroke in applied
-        .stages
-        .iter_mut()
-        .flat_map(|stage| &mut stage.strokes)
-    {
-        stroke.color = nearest(stroke.color);
+    for mark in applied.stages.iter_mut().flat_map(|stage| &mut stage.marks) {
+        match mark {
+            Mark::Stroke(stroke) => stroke.color = nearest(stroke.color),
+            Mark::Area(area) => area.color = nearest(area.color),
+        }
     }
     let text = svg::write(&applied, &svg::WriteOptions::default());
     let target = Image::open(sample("coffee-300")).unwrap();
@@ -242,9 +241,9 @@ fn every_colour_has_one_layer_and_the_report_says_what_that_costs() {
     let scene = svg::read(&by_color.text).unwrap();
     let one_color = |stage: &Stage| {
         stage
-            .strokes
+            .marks
             .iter()
-            .all(|s| s.color == stage.strokes[0].color)
+            .all(|mark| mark.color() == stage.marks[0].color())
     };
     assert!(scene.stages.iter().all(one_color));
     // The background is one of the six.
@@ -281,11 +280,7 @@ fn paper_stays_paper_if_the_palette_has_nothing_like_it() {
     assert!(!stderr(&output).contains("warning"));
     let text = fs::read_to_string(place.path("a.svg")).unwrap();
     let scene = svg::read(&text).unwrap();
-    assert!(
-        scene
-            .strokes()
-            .all(|stroke| stroke.color == [0.0, 0.0, 1.0])
-    );
+    assert!(scene.marks().all(|mark| mark.color() == [0.0, 0.0, 1.0]));
     assert!(scene.background.unwrap().iter().all(|&c| c > 0.9));
     assert!(verify::fidelity(&text, &picture).unwrap().psnr_db > 20.0);
     // A palette with something like it is all there is.

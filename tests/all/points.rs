@@ -34,9 +34,7 @@ fn ring() -> Image {
 
 fn drawn(stroke: Stroke) -> Image {
     let scene = Scene {
-        stages: vec![Stage {
-            strokes: vec![stroke],
-        }],
+        stages: vec![Stage::from_iter([stroke])],
         ..Scene::empty(SIDE, SIDE, Some([1.0; 3]))
     };
     let text = svg::write(&scene, &WriteOptions::default());

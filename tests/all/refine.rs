@@ -40,11 +40,7 @@ fn read(place: &Place, name: &str) -> String {
 
 fn layers(place: &Place, name: &str) -> Vec<usize> {
     let scene = svg::read(&read(place, name)).unwrap();
-    scene
-        .stages
-        .iter()
-        .map(|stage| stage.strokes.len())
-        .collect()
+    scene.stages.iter().map(|stage| stage.marks.len()).collect()
 }
 
 /// The text before and after what was put into it, which is returned.

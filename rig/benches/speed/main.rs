@@ -147,7 +147,7 @@ fn settled(
         ..Config::default()
     };
     let scene = Fitter::new(config).fit(image)?.scene;
-    let paths: Strokes = scene.strokes().collect();
+    let paths: Strokes = scene.marks().collect();
     let mut strokes = Strokes::new();
     for path in paths.iter() {
         let points = flattened(path);

@@ -219,16 +219,16 @@ mod tests {
     use super::super::contour::Contour;
     use super::super::window::Window;
     use super::*;
-    use crate::scene::{Path, Stroke};
+    use crate::scene::{Mark, Path, Stroke};
 
     /// Coverages of a stroke on 12×10 px.
     fn covered(a: [f32; 2], b: [f32; 2], radius: f32) -> Vec<Vec<u8>> {
-        let contour = Contour::of(&Stroke {
+        let contour = Contour::of(&Mark::from(Stroke {
             path: Path::line(a.into(), b.into()),
             radius,
             color: [0.0; 3],
             opacity: 1.0,
-        });
+        }));
         let mut outline = Outline::default();
         outline.follow(&contour, Window::all(12, 10)[0]);
         let mut rows = vec![vec![0; 12]; 10];

@@ -189,16 +189,16 @@ fn is_slight(side: &[Piece], i: usize) -> bool {
 mod tests {
     use super::*;
 
-    use crate::scene::{Path, Stroke};
+    use crate::scene::{Mark, Path, Stroke};
 
     fn outline(a: [f32; 2], b: [f32; 2], radius: f32) -> Outline {
         let mut outline = Outline::default();
-        let contour = Contour::of(&Stroke {
+        let contour = Contour::of(&Mark::from(Stroke {
             path: Path::line(a.into(), b.into()),
             radius,
             color: [0.0; 3],
             opacity: 1.0,
-        });
+        }));
         outline.follow(&contour, Window::all(200, 200)[0]);
         outline
     }

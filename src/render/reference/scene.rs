@@ -176,7 +176,7 @@ pub struct Scene {
 /// A missing background becomes white.
 impl From<&scene::Scene> for Scene {
     fn from(scene: &scene::Scene) -> Self {
-        let strokes: Strokes = scene.strokes().collect();
+        let strokes: Strokes = scene.marks().collect();
         Self {
             width: scene.width as usize,
             height: scene.height as usize,

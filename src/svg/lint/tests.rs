@@ -27,7 +27,7 @@ fn what_strokefit_writes_has_nothing() {
         stroke(Path::line([0.5, 1.0].into(), [0.25, 8.0].into())),
     ];
     let scene = Scene {
-        stages: vec![Stage { strokes }],
+        stages: vec![Stage::from_iter(strokes)],
         ..Scene::empty(9, 9, Some([1.0; 3]))
     };
     for form in Form::ALL {
@@ -157,14 +157,12 @@ fn the_page_should_have_the_size_of_its_view() {
 #[test]
 fn a_page_of_a_stated_width_is_as_it_was_asked_for() {
     let scene = Scene {
-        stages: vec![Stage {
-            strokes: vec![Stroke {
-                path: Path::line(Point::new(9.0, 9.0), Point::new(60.0, 30.0)),
-                radius: 0.6,
-                color: [0.5; 3],
-                opacity: 1.0,
-            }],
-        }],
+        stages: vec![Stage::from_iter([Stroke {
+            path: Path::line(Point::new(9.0, 9.0), Point::new(60.0, 30.0)),
+            radius: 0.6,
+            color: [0.5; 3],
+            opacity: 1.0,
+        }])],
         ..Scene::empty(400, 300, Some([1.0; 3]))
     };
     for (width, found) in [

@@ -229,9 +229,7 @@ fn stroke([x, y]: [f64; 2], width: f64, angle: f64) -> Stroke {
 
 /// The stroke as a file of ours says it.
 fn rounded(stroke: &Stroke) -> Stroke {
-    let stage = Stage {
-        strokes: vec![stroke.clone()],
-    };
+    let stage = Stage::from_iter([stroke.clone()]);
     let scene = Scene {
         stages: vec![stage],
         ..Scene::empty(SIDE as u32, SIDE as u32, None)

@@ -6,6 +6,7 @@ use strokefit::fit::{Budget, Config, Execution, Fit, Fitter, Preset};
 use strokefit::image::Image;
 use strokefit::metrics;
 use strokefit::rng;
+use strokefit::scene::Mark;
 use strokefit::svg::{self, WriteOptions};
 use strokefit::verify::{self, Verdict};
 
@@ -185,7 +186,7 @@ pub(super) fn sound(fit: &Fit, text: &str) -> Result<Sound> {
     let verdict = verify::verify(text, &fit.target, &fit.soft)?;
     let back = svg::read(text)?;
     let soft = fit.soft.planes().iter().flatten().all(|v| v.is_finite());
-    let strokes = fit.scene.strokes().all(|stroke| stroke.is_finite());
+    let strokes = fit.scene.marks().all(Mark::is_finite);
     let flat = flat_error(&fit.target)?;
     Ok(Sound {
         strokes: back.len(),

@@ -186,9 +186,7 @@ fn opaque_stack() -> Strokes {
 fn scene(page: &Specimen) -> Scene {
     let (width, height) = (page.width as u32, page.height as u32);
     Scene {
-        stages: vec![Stage {
-            strokes: page.strokes.iter().map(|s| s.to_stroke()).collect(),
-        }],
+        stages: vec![Stage::from_iter(page.strokes.iter().map(|s| s.to_mark()))],
         ..Scene::empty(width, height, Some(BACKGROUND))
     }
 }

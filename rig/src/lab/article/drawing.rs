@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use strokefit::math;
 use strokefit::render::{PARAMS, Params, Strokes};
 use strokefit::rng;
-use strokefit::scene::{Scene, Stage};
+use strokefit::scene::Scene;
 use strokefit::{Error, ErrorKind, Result};
 
 /// Standard deviation of `b − a`, px.
@@ -137,13 +137,9 @@ impl Capsules {
     pub fn scene(&self) -> Scene {
         let side = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
         let page = Scene::empty(side(self.width), side(self.height), Some(self.background));
-        let strokes = self
-            .strokes
-            .iter()
-            .map(|stroke| stroke.to_stroke())
-            .collect();
+        let stage = self.strokes.iter().map(|stroke| stroke.to_mark()).collect();
         Scene {
-            stages: vec![Stage { strokes }],
+            stages: vec![stage],
             ..page
         }
     }

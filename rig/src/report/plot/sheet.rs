@@ -183,7 +183,7 @@ fn wings(from: [f64; 2], tip: [f64; 2], size: f64) -> [[f64; 2]; 3] {
 #[cfg(test)]
 mod tests {
     use strokefit::animation::{Film, Legend, Step};
-    use strokefit::scene::{self, Scene, Stage, Stroke};
+    use strokefit::scene::{self, Scene, Stroke};
 
     use super::super::is_dark;
     use super::*;
@@ -265,9 +265,9 @@ mod tests {
             color: [0.4; 3],
             opacity: 0.5,
         };
-        let strokes = (0..count).map(stroke).collect();
+        let stage = (0..count).map(stroke).collect();
         Scene {
-            stages: vec![Stage { strokes }],
+            stages: vec![stage],
             ..Scene::empty(12, 9, Some([1.0; 3]))
         }
     }

@@ -343,7 +343,7 @@ mod tests {
     use super::*;
     use crate::rasters::Rasters;
     use crate::rng;
-    use crate::scene::Path;
+    use crate::scene::{Path, Stroke};
 
     const PIXELS: usize = 30;
 
@@ -356,13 +356,13 @@ mod tests {
         (0..PIXELS as u32).zip((0..PIXELS).map(level)).collect()
     }
 
-    fn stroke(key: u64) -> Stroke {
-        Stroke {
+    fn stroke(key: u64) -> Mark {
+        Mark::from(Stroke {
             path: Path::dot([0.0, 0.0].into()),
             radius: 1.0,
             color: [0, 1, 2].map(|c| draw(key, 900 + c)),
             opacity: 0.3 + 0.7 * draw(key, 990),
-        }
+        })
     }
 
     /// The pictures of strokes that cover these footprints.
@@ -375,8 +375,8 @@ mod tests {
             let mut pictures = backdrops.to_vec();
             for (stroke, footprints) in strokes.iter().flatten().zip(footprints) {
                 for (pixel, level) in footprints[i].iter() {
-                    let m = share(level) * stroke.opacity;
-                    blend(&mut pictures[pixel as usize], m, stroke.color);
+                    let m = share(level) * stroke.opacity();
+                    blend(&mut pictures[pixel as usize], m, stroke.color());
                 }
             }
             pictures
@@ -409,7 +409,7 @@ mod tests {
 
     #[test]
     fn what_a_footprint_does_to_pictures_and_errors_is_foretold() {
-        let strokes: Vec<Option<Stroke>> = (0..4).map(|key| Some(stroke(key))).collect();
+        let strokes: Vec<Option<Mark>> = (0..4).map(|key| Some(stroke(key))).collect();
         let keys = |id: u64| [10 * id + 100, 10 * id + 101, 10 * id + 102];
         let mut footprints: Vec<PerRasterizer<Footprint>> =
             (0..4).map(|id| keys(id).map(footprint)).collect();

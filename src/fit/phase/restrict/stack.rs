@@ -123,7 +123,7 @@ mod tests {
             color: [level; 3],
             opacity: 1.0,
         };
-        (Written::anywhere(&stroke, 2).unwrap(), 100.0)
+        (Written::anywhere(&stroke.into(), 2).unwrap(), 100.0)
     }
 
     #[test]
