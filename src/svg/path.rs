@@ -519,7 +519,7 @@ mod tests {
         );
         let rings = [square, hole];
         let d = data(&rings, Kind::Ring, Unit::PX);
-        assert_eq!(d, "M100 100h40v30h-40zm10 10v10q20 0 0-10z");
+        assert_eq!(d, "M100 100h40v30H100zm10 10v10q20 0 0-10z");
         assert_eq!(parse(&d, Kind::Ring, Unit::PX).as_deref(), Some(&rings[..]));
         assert_eq!(parse(&d, Kind::Line, Unit::PX), None);
         assert_eq!(
