@@ -21,6 +21,8 @@ pub struct Element {
     pub nodes: Vec<Point>,
     /// The stroke's width, px; `None` without a stroke.
     pub width_px: Option<f32>,
+    /// True if it is filled.
+    pub filled: bool,
     /// 8-bit sRGB of the stroke; `None` without one, and where it is a gradient or a pattern.
     pub color: Option<[u8; 3]>,
 }
@@ -54,6 +56,7 @@ fn of(path: &Path, scale: f32) -> Element {
     let (sx, sy) = transform.get_scale();
     let stroke = path.stroke();
     let mut element = Element {
+        filled: path.fill().is_some(),
         width_px: stroke.map(|stroke| stroke.width().get() * (sx * sy).abs().sqrt() * scale),
         color: stroke.and_then(|stroke| match stroke.paint() {
             Paint::Color(color) => Some([color.red, color.green, color.blue]),
@@ -136,11 +139,12 @@ mod tests {
     #[test]
     fn a_filled_element_has_neither_width_nor_colour_of_a_stroke() {
         let found = elements(DRAWING, 48.0).unwrap();
-        let looks: Vec<_> = found.iter().map(|e| (e.width_px, e.color)).collect();
+        let looks = found.iter().map(|e| (e.width_px, e.color, e.filled));
+        let looks: Vec<_> = looks.collect();
         let expected = [
-            (Some(2.0), Some([255, 0, 0])),
-            (None, None),
-            (Some(6.0), Some([0, 0, 255])),
+            (Some(2.0), Some([255, 0, 0]), false),
+            (None, None, true),
+            (Some(6.0), Some([0, 0, 255]), false),
         ];
         assert_eq!(looks, expected);
     }

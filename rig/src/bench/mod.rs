@@ -4,17 +4,20 @@
 //! | --- | --- |
 //! | [`pareto`] | how much error is left for how much time, memory, bytes and strokes; who else is there? |
 //! | [`stability`] | does every hard case give a valid drawing, and does `f32` stay close to `f64`? |
-//! | [`inverse`] | how much of a drawing is found again in its picture? |
+//! | [`inverse`] | how much of a drawing of strokes is found again in its picture? |
+//! | [`shapes`] | how much of any drawing is, in as few numbers as its artist needed? |
 //! | [`scaling`] | how do time and memory grow with strokes, pixels and threads? |
 //!
 //! Each returns plain records of [`report`](crate::report), which turns them into tables, plots and pages.
 //! `strokefit-rig` runs them. [`child`] runs one case in a process of its own, and [`peers`] knows who else makes
-//! drawings.
+//! drawings. [`drawings`] makes pictures of known ones.
 
 pub mod child;
+pub mod drawings;
 pub mod inverse;
 pub mod measure;
 pub mod pareto;
 pub mod peers;
 pub mod scaling;
+pub mod shapes;
 pub mod stability;

@@ -8,6 +8,7 @@ use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
+use super::drawings::Kind;
 use strokefit::engines::locate;
 use strokefit::image::Image;
 use strokefit::report::Usage;
@@ -128,7 +129,6 @@ const PYAUTOTRACE: Program = Program {
     args: &[
         "{in}",
         "{out}",
-        "--centerline",
         "--background-color",
         "#ffffff",
         "{settings}",
@@ -140,12 +140,19 @@ const PYAUTOTRACE: Program = Program {
 /// The programs that draw any picture.
 const PROGRAMS: [Program; 4] = [VTRACER, PRIMITIVE, POTRACE, INKSCAPE];
 
-/// The programs that draw lines, each at the setting for few colours; `{colors}` is how many, with the page's.
-const FOR_LINES: [(Program, &str); 4] = [
-    (PYAUTOTRACE, "--color-count {colors}"),
-    (POTRACE, "--turdsize 2"),
-    (VTRACER, "-f 4 -p 6 -g 16"),
-    (INKSCAPE, "{colors}"),
+/// The programs that draw known drawings again, each at the setting for few colours; `{colors}` is how many, with the
+/// page's. First that for lines, then that for anything else.
+const FOR_DRAWINGS: [(Program, [&str; 2]); 4] = [
+    (
+        PYAUTOTRACE,
+        [
+            "--centerline --color-count {colors}",
+            "--color-count {colors}",
+        ],
+    ),
+    (POTRACE, ["--turdsize 2"; 2]),
+    (VTRACER, ["-f 4 -p 6 -g 16"; 2]),
+    (INKSCAPE, ["{colors}"; 2]),
 ];
 
 /// The programs that are known, installed or not.
@@ -163,13 +170,13 @@ pub fn missing() -> Vec<&'static str> {
     names_of_missing(PROGRAMS.into_iter())
 }
 
-/// A peer that draws lines, at one of its settings.
-pub struct LinePeer {
+/// A peer at the setting for drawings of one kind.
+pub struct TunedPeer {
     peer: Box<dyn Peer>,
     settings: &'static str,
 }
 
-impl LinePeer {
+impl TunedPeer {
     /// Name in tables.
     pub fn name(&self) -> &str {
         self.peer.name()
@@ -185,20 +192,23 @@ impl LinePeer {
     }
 }
 
-/// The programs that draw lines and are installed.
-pub fn installed_for_lines() -> Vec<LinePeer> {
-    let here = FOR_LINES.into_iter();
+/// The programs that draw drawings of a kind again and are installed.
+pub fn installed_for(kind: Kind) -> Vec<TunedPeer> {
+    let here = FOR_DRAWINGS.into_iter();
     here.filter(|(program, _)| program.is_here())
-        .map(|(program, settings)| LinePeer {
+        .map(|(program, [for_lines, for_shapes])| TunedPeer {
             peer: Box::new(program),
-            settings,
+            settings: match kind {
+                Kind::Strokes => for_lines,
+                Kind::Shapes => for_shapes,
+            },
         })
         .collect()
 }
 
-/// Names of the programs that draw lines and are not installed, are too old, or have no display to work on.
-pub fn missing_for_lines() -> Vec<&'static str> {
-    names_of_missing(FOR_LINES.into_iter().map(|(program, _)| program))
+/// Names of those that are not installed, are too old, or have no display to work on.
+pub fn missing_for_drawings() -> Vec<&'static str> {
+    names_of_missing(FOR_DRAWINGS.into_iter().map(|(program, _)| program))
 }
 
 fn names_of_missing(programs: impl Iterator<Item = Program>) -> Vec<&'static str> {

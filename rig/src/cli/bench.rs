@@ -1,25 +1,25 @@
 //! The measurements: `pareto`, `stability`, `inverse` and `scaling`.
 
+mod inverse;
+
 use std::path::{Path, PathBuf};
 
 use crate::bench::child::{Runner, perform};
-use crate::bench::inverse::{self, Drawing, Gallery, Pictures};
 use crate::bench::pareto::{self, Effort, Sweep, Work};
-use crate::bench::peers::{installed, installed_for_lines, known, missing, missing_for_lines};
+use crate::bench::peers::{installed, known, missing};
 use crate::bench::scaling;
 use crate::bench::stability::{self, Extent};
 use crate::lab::{Notice, ResultFolder};
-use crate::report::inverse::charts;
 use anyhow::Result;
 use clap::Subcommand;
 use clap::builder::TypedValueParser;
 use strokefit::coverage::CoverageSchedule;
-use strokefit::fit::Config;
 use strokefit::report::json;
 
 use strokefit::cli::{Status, Verbosity, input, output};
 
 use super::domain;
+use inverse::Inverse;
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Benchmark {
@@ -89,16 +89,6 @@ fn effort() -> impl TypedValueParser<Value = Effort> {
 pub(super) struct Stability {
     /// Pictures to fit in addition to the hard ones
     pictures: Vec<PathBuf>,
-    #[command(flatten)]
-    extents: Extents,
-}
-
-/// Find drawings of known strokes again in pictures of them, beside other programs that are installed
-/// (pyautotrace, potrace, vtracer, Inkscape)
-#[derive(Debug, clap::Args)]
-pub(super) struct Inverse {
-    /// SVGs drawn by strokes, in addition to those that are built in
-    drawings: Vec<PathBuf>,
     #[command(flatten)]
     extents: Extents,
 }
@@ -190,47 +180,6 @@ impl Stability {
         files.text("stability.json", &json(&report)?)?;
         files.text("agreement.csv", &map.table().csv())?;
         files.picture("agreement.png", &map.picture()?)?;
-        Ok(report.failures())
-    }
-}
-
-impl Inverse {
-    fn drawings(&self) -> Result<Vec<Drawing>> {
-        let mut drawings = inverse::own();
-        for path in &self.drawings {
-            let svg = input::svg(path)?;
-            let name = path.file_stem().unwrap_or_default().to_string_lossy();
-            let name = name.into_owned();
-            drawings.push(Drawing { name, svg });
-        }
-        Ok(drawings)
-    }
-
-    fn run(&self, files: &mut ResultFolder<'_>, verbosity: Verbosity) -> Result<usize> {
-        let pictures = if self.extents.short {
-            Pictures::short()
-        } else {
-            Pictures::full()
-        };
-        let (drawings, peers) = (self.drawings()?, installed_for_lines());
-        let mut gallery = Gallery::of(&pictures.sides);
-        let config = Config::default();
-        let report = inverse::run(&drawings, &pictures, &peers, &config, &mut |outcome| {
-            say(&outcome.entry.line());
-            gallery.show(outcome)?;
-            match outcome.svg {
-                "" => Ok(()),
-                svg => files.text(&outcome.entry.svg_name(), svg),
-            }
-        })?;
-        files.text("inverse.csv", &report.table().csv())?;
-        files.text("inverse.md", &report.markdown())?;
-        files.text("inverse.json", &json(&report)?)?;
-        for (plot, svg) in charts(&report)? {
-            files.text(&format!("inverse-{plot}.svg"), &svg)?;
-        }
-        files.picture("inverse.png", &gallery.sheet()?)?;
-        say_missing(&missing_for_lines(), verbosity);
         Ok(report.failures())
     }
 }

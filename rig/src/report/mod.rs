@@ -2,12 +2,16 @@
 //!
 //! The rules of [`strokefit::report`] hold: fields may be added, none is renamed.
 
+mod damage;
 pub mod inverse;
 pub mod pareto;
 pub mod picture;
 pub mod plot;
 pub mod scaling;
+pub mod shapes;
 pub mod stability;
+mod statistics;
 mod table;
 
+pub use damage::Damage;
 pub use table::Table;

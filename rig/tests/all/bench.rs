@@ -276,6 +276,68 @@ fn drawings_are_found_again_stroke_by_stroke() {
     }
 }
 
+#[test]
+fn filled_drawings_are_found_again_beside_their_artists() {
+    let place = Place::new();
+    fs::create_dir(place.path("art")).unwrap();
+    let svg = |body: &str| {
+        format!(r##"<svg xmlns="http://www.w3.org/2000/svg" width="32" height="32">{body}</svg>"##)
+    };
+    let bars =
+        r##"<path fill="#d03020" d="M4 6h24v6H4z"/><path fill="#2060c0" d="M4 18h24v6H4z"/>"##;
+    fs::write(place.path("art/flags__bars.svg"), svg(bars)).unwrap();
+    fs::write(place.path("art/empty.svg"), svg("")).unwrap();
+    fs::write(place.path("art/notes.txt"), "no drawing").unwrap();
+    let args = [
+        "inverse",
+        "art",
+        "-o",
+        "out",
+        "--short",
+        "--sides",
+        "48",
+        "--damage",
+        "clean,noise8",
+    ];
+    let output = bench(&place, &args);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let lines = lines(&output);
+    let starts = |line: &String, start| line.starts_with(start) && line.ends_with(" px off: pass");
+    assert_eq!(lines.len(), 2, "{lines:?}");
+    assert!(starts(&lines[0], "flags__bars at 48 px: "), "{lines:?}");
+    assert!(
+        starts(&lines[1], "flags__bars at 48 px, noise 8: "),
+        "{lines:?}"
+    );
+    for name in [
+        "shapes.csv",
+        "shapes.json",
+        "shapes.md",
+        "shapes.png",
+        "shapes-elements.svg",
+        "shapes-parameters.svg",
+        "shapes-bytes.svg",
+        "shapes-db.svg",
+        "shapes-delta.svg",
+        "flags__bars-48.svg",
+        "flags__bars-48-noise8.svg",
+    ] {
+        assert!(place.path("out").join(name).exists(), "{name}");
+    }
+    assert!(
+        !place.path("out/inverse.csv").exists(),
+        "no drawing of strokes"
+    );
+    let table = fs::read_to_string(place.path("out/shapes.csv")).unwrap();
+    let row = "flags__bars,flags,48,clean,strokefit,2,";
+    assert!(table.lines().nth(1).unwrap().starts_with(row), "{table}");
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        said.contains("not measured: empty: nothing is painted"),
+        "{said}"
+    );
+}
+
 /// One that draws a centre line without a width, one that fills areas, and one that fails.
 #[cfg(unix)]
 #[test]

@@ -3,8 +3,9 @@
 use std::fmt::Write as _;
 
 use super::Outcome;
+use crate::report::Damage;
 use crate::report::inverse::{InverseEntry, OWN};
-use crate::report::plot::{Panel, Sheet};
+use crate::report::plot::{Panel, Sheet, framed};
 use strokefit::image::Image;
 use strokefit::verify::{self, Element, Size, elements};
 use strokefit::{Error, ErrorKind, Result};
@@ -46,7 +47,10 @@ impl Gallery {
     /// As [`verify::render`].
     pub fn show(&mut self, outcome: Outcome<'_>) -> Result<()> {
         let entry = outcome.entry;
-        if entry.side_px != self.side_px || entry.jpeg.is_some() || entry.failure.is_some() {
+        if entry.side_px != self.side_px
+            || entry.damage() != Damage::Clean
+            || entry.failure.is_some()
+        {
             return Ok(());
         }
         if entry.by == OWN {
@@ -54,7 +58,7 @@ impl Gallery {
         } else if let Some(row) = self.rows.last_mut() {
             let (elements, db) = (entry.found.elements, decibels(entry));
             let title = format!("{}: {elements}, {db}", entry.by);
-            row.push(Panel::new(title, framed(&drawn(outcome)?)?));
+            row.push(Panel::new(title, framed(&drawn(outcome)?, PANEL_PX)?));
         }
         Ok(())
     }
@@ -64,21 +68,7 @@ impl Gallery {
     /// # Errors
     /// [`ErrorKind::Picture`] when there is nothing to show.
     pub fn sheet(self) -> Result<Image> {
-        let widest = self.rows.iter().map(Vec::len).max().unwrap_or(1);
-        let blank = Image::filled(PANEL_PX, PANEL_PX, [1.0; 3])?;
-        let mut panels = Vec::new();
-        for mut row in self.rows {
-            // A peer that failed leaves a gap.
-            row.resize_with(widest, || Panel::new("", blank.clone()));
-            panels.append(&mut row);
-        }
-        let sheet = Sheet {
-            title: String::new(),
-            columns: (COLUMNS / widest).max(1) * widest,
-            zoom: 1,
-            panels,
-        };
-        sheet.draw()
+        Sheet::of_rows(self.rows, COLUMNS)?.draw()
     }
 }
 
@@ -93,9 +83,9 @@ fn ours(outcome: Outcome<'_>) -> Result<Vec<Panel>> {
     let apart = entry.mean_px.map(|px| format!("{px:.2} px off"));
     let apart = apart.unwrap_or_else(|| "no centre lines".into());
     Ok(vec![
-        Panel::new(name, framed(&picture)?),
-        Panel::new(numbers, framed(&drawn(outcome)?)?),
-        Panel::new(apart, framed(&lines)?),
+        Panel::new(name, framed(&picture, PANEL_PX)?),
+        Panel::new(numbers, framed(&drawn(outcome)?, PANEL_PX)?),
+        Panel::new(apart, framed(&lines, PANEL_PX)?),
     ])
 }
 
@@ -187,29 +177,6 @@ fn enlarged(picture: &Image, zoom: usize) -> Result<Image> {
         (0..width * height).map(at).collect()
     };
     Image::new(width, height, [0, 1, 2].map(plane))
-}
-
-/// In the middle of a white panel, cut to its size.
-fn framed(picture: &Image) -> Result<Image> {
-    let (width, height) = (picture.width(), picture.height());
-    let (left, top) = (
-        PANEL_PX.saturating_sub(width) / 2,
-        PANEL_PX.saturating_sub(height) / 2,
-    );
-    let plane = |c: usize| {
-        let at = |i: usize| {
-            let (x, y) = (
-                (i % PANEL_PX).checked_sub(left),
-                (i / PANEL_PX).checked_sub(top),
-            );
-            match (x.filter(|x| *x < width), y.filter(|y| *y < height)) {
-                (Some(x), Some(y)) => picture.planes()[c][y * width + x],
-                _ => 1.0,
-            }
-        };
-        (0..PANEL_PX * PANEL_PX).map(at).collect()
-    };
-    Image::new(PANEL_PX, PANEL_PX, [0, 1, 2].map(plane))
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! Drawings of known strokes, and what is found of them in their pictures.
 //!
-//! The picture of a drawing is rendered at four times its size and averaged, so that it has the drawing's true edges
-//! rather than those of the judge. Other programs that draw lines trace the same pictures, where they are installed.
+//! Other programs that draw lines trace the same pictures, where they are installed.
 
 mod distances;
 mod gallery;
@@ -11,49 +10,15 @@ use std::time::Instant;
 
 pub use gallery::Gallery;
 
-use super::peers::LinePeer;
+use super::drawings::{Drawing, Pictures, damaged, picture};
+use super::peers::TunedPeer;
+use crate::report::Damage;
 use crate::report::inverse::{Inventory, InverseEntry, InverseReport, OWN};
 use distances::Distances;
 use strokefit::fit::{Config, Fitter};
-use strokefit::image::{Image, Limits};
-use strokefit::verify::{self, Element, Size, elements};
+use strokefit::image::Image;
+use strokefit::verify::{self, Element, elements};
 use strokefit::{Error, ErrorKind, Result};
-
-/// A drawing of known strokes.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Drawing {
-    /// Name in lines of the report.
-    pub name: String,
-    /// SVG text.
-    pub svg: String,
-}
-
-/// Pictures that are made of each drawing.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Pictures {
-    /// Their longer sides, px.
-    pub sides: Vec<u16>,
-    /// The qualities of the JPEG that they go through; `None` for clean ones.
-    pub qualities: Vec<Option<u8>>,
-}
-
-impl Pictures {
-    /// From small to large, clean and as JPEG of quality 75.
-    pub fn full() -> Self {
-        Self {
-            sides: vec![48, 96, 192, 384],
-            qualities: vec![None, Some(75)],
-        }
-    }
-
-    /// Clean ones of one size.
-    pub fn short() -> Self {
-        Self {
-            sides: vec![96],
-            qualities: vec![None],
-        }
-    }
-}
 
 /// Lines that cross, loops, colours over each other, and translucent strokes.
 pub fn own() -> Vec<Drawing> {
@@ -102,16 +67,16 @@ pub struct Outcome<'a> {
 pub fn run(
     drawings: &[Drawing],
     pictures: &Pictures,
-    peers: &[LinePeer],
+    peers: &[TunedPeer],
     config: &Config,
     tell: &mut dyn FnMut(Outcome<'_>) -> Result<()>,
 ) -> Result<InverseReport> {
     let mut entries = Vec::new();
-    for &quality in &pictures.qualities {
+    for &damage in &pictures.damages {
         for &side in &pictures.sides {
             for drawing in drawings {
                 let within = |error: Error| error.within(&drawing.name);
-                let case = Case::new(drawing, side, quality).map_err(within)?;
+                let case = Case::new(drawing, side, damage).map_err(within)?;
                 let mut found = vec![case.fitted(config).map_err(within)?];
                 found.extend(peers.iter().map(|peer| case.traced(peer)));
                 for (entry, svg) in found {
@@ -132,13 +97,13 @@ pub fn run(
 struct Case<'a> {
     drawing: &'a Drawing,
     side: u16,
-    jpeg: Option<u8>,
+    damage: Damage,
     original: Vec<Element>,
     picture: Image,
 }
 
 impl<'a> Case<'a> {
-    fn new(drawing: &'a Drawing, side: u16, jpeg: Option<u8>) -> Result<Self> {
+    fn new(drawing: &'a Drawing, side: u16, damage: Damage) -> Result<Self> {
         let mut original = elements(&drawing.svg, f32::from(side))?;
         original.retain(|element| element.width_px.is_some());
         if original.is_empty() {
@@ -148,9 +113,9 @@ impl<'a> Case<'a> {
         Ok(Self {
             drawing,
             side,
-            jpeg,
+            damage,
             original,
-            picture: picture(&drawing.svg, side, jpeg)?,
+            picture: damaged(picture(&drawing.svg, side)?, damage)?,
         })
     }
 
@@ -162,7 +127,7 @@ impl<'a> Case<'a> {
         Ok((self.judged(OWN, &svg, wall_s)?, svg))
     }
 
-    fn traced(&self, peer: &LinePeer) -> (InverseEntry, String) {
+    fn traced(&self, peer: &TunedPeer) -> (InverseEntry, String) {
         let trace = || {
             let began = Instant::now();
             let traced = peer.trace(&self.picture, self.colors() + 1)?;
@@ -203,11 +168,17 @@ impl<'a> Case<'a> {
 
     /// The record of this case before anything is known of what was found.
     fn entry(&self, by: &str) -> InverseEntry {
+        let (jpeg, noise) = match self.damage {
+            Damage::Clean => (None, None),
+            Damage::Jpeg(quality) => (Some(quality), None),
+            Damage::Noise(levels) => (None, Some(levels)),
+        };
         InverseEntry {
             drawing: self.drawing.name.clone(),
             by: by.to_owned(),
             side_px: usize::from(self.side),
-            jpeg: self.jpeg,
+            jpeg,
+            noise,
             original: inventory(&self.original, &self.drawing.svg),
             ..InverseEntry::default()
         }
@@ -240,29 +211,10 @@ fn inventory(elements: &[Element], svg: &str) -> Inventory {
     }
 }
 
-/// The picture of a drawing on white, its longer side as many px.
-fn picture(svg: &str, side: u16, jpeg: Option<u8>) -> Result<Image> {
-    let own = verify::render(svg, Size::Scale(1.0), None)?;
-    let scale = f64::from(side) / own.width().max(own.height()) as f64;
-    let large = verify::render(svg, Size::Scale(4.0 * scale), Some([1.0; 3]))?;
-    let picture = large.halved().halved();
-    match jpeg {
-        None => Ok(picture),
-        Some(quality) => Image::decode(&picture.encode_jpeg(quality)?, "JPEG", Limits::default()),
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::drawings::Kind;
     use super::*;
-
-    #[test]
-    fn pictures_have_the_size_asked_for() {
-        for drawing in own() {
-            let picture = picture(&drawing.svg, 48, Some(75)).unwrap();
-            assert_eq!((picture.width(), picture.height()), (48, 48));
-        }
-    }
 
     #[test]
     fn a_drawing_without_strokes_is_refused_by_name() {
@@ -272,7 +224,7 @@ mod tests {
         };
         let error = run(
             &[drawing],
-            &Pictures::short(),
+            &Pictures::short(Kind::Strokes),
             &[],
             &Config::default(),
             &mut |_| Ok(()),

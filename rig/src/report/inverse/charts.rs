@@ -1,6 +1,7 @@
 //! Plots: elements found against elements drawn, and dB and bytes against the size of the picture.
 
 use super::{InverseEntry, InverseReport, distinct, mean, median};
+use crate::report::Damage;
 use crate::report::plot::Chart;
 use strokefit::Result;
 
@@ -43,7 +44,11 @@ pub fn charts(report: &InverseReport) -> Result<Vec<(&'static str, String)>> {
 
 /// Elements found against those drawn, in clean pictures: a mark for each case, a line through the medians.
 fn elements(made: &[&InverseEntry]) -> Chart {
-    let clean: Vec<&InverseEntry> = made.iter().copied().filter(|e| e.jpeg.is_none()).collect();
+    let clean: Vec<&InverseEntry> = made
+        .iter()
+        .copied()
+        .filter(|e| e.damage() == Damage::Clean)
+        .collect();
     let mut chart = Chart {
         title: "elements found in clean pictures".into(),
         axes: ["elements drawn".into(), "elements found".into()],
@@ -91,8 +96,7 @@ fn against_size(made: &[&InverseEntry], value: fn(&[&InverseEntry]) -> Option<f6
 }
 
 fn legend(entry: &InverseEntry) -> String {
-    let jpeg = entry.jpeg.map(|quality| format!(" JPEG {quality}"));
-    format!("{}{}", entry.by, jpeg.unwrap_or_default())
+    entry.damage().after(&entry.by)
 }
 
 /// Each once, rising.

@@ -7,7 +7,8 @@ use strokefit::report::SCHEMA;
 
 pub use charts::charts;
 
-use super::Table;
+use super::statistics::{distinct, mean, median, optional};
+use super::{Damage, Table};
 
 /// Who makes our own drawings.
 pub const OWN: &str = "strokefit";
@@ -45,6 +46,9 @@ pub struct InverseEntry {
     pub side_px: usize,
     /// The quality of the JPEG that the picture went through; `None` for a clean one.
     pub jpeg: Option<u8>,
+    /// Levels of the noise that the picture got, standard deviation; `None` without.
+    #[serde(default)]
+    pub noise: Option<u8>,
     /// The drawing.
     pub original: Inventory,
     /// Contents of the drawing that was found.
@@ -69,17 +73,24 @@ impl InverseEntry {
 
     /// The name of the SVG that was found.
     pub fn svg_name(&self) -> String {
-        let jpeg = self.jpeg.map(|quality| format!("-jpeg{quality}"));
         let by = Some(&self.by).filter(|by| *by != OWN);
-        let by = by.map(|by| format!("-{by}"));
-        let (jpeg, by) = (jpeg.unwrap_or_default(), by.unwrap_or_default());
-        format!("{}-{}{jpeg}{by}.svg", self.drawing, self.side_px)
+        let by = by.map(|by| format!("-{by}")).unwrap_or_default();
+        let damage = self.damage().suffix();
+        format!("{}-{}{damage}{by}.svg", self.drawing, self.side_px)
     }
 
-    /// The picture in words: its size and quality.
+    /// Damage of the picture.
+    pub fn damage(&self) -> Damage {
+        match (self.jpeg, self.noise) {
+            (Some(quality), _) => Damage::Jpeg(quality),
+            (None, Some(levels)) => Damage::Noise(levels),
+            (None, None) => Damage::Clean,
+        }
+    }
+
+    /// The picture in words: its size and damage.
     fn kind(&self) -> String {
-        let quality = self.jpeg.map(|quality| format!(", JPEG {quality}"));
-        format!("{} px{}", self.side_px, quality.unwrap_or_default())
+        self.damage().of(self.side_px)
     }
 
     /// The line of standard output, ending in the verdict.
@@ -230,46 +241,9 @@ fn summed_up(kind: &str, by: &str, cases: &[&InverseEntry]) -> [String; 10] {
     ]
 }
 
-/// Words in the order in which they come first.
-fn distinct(words: impl Iterator<Item = String>) -> Vec<String> {
-    let mut all = Vec::new();
-    for word in words {
-        if !all.contains(&word) {
-            all.push(word);
-        }
-    }
-    all
-}
-
-fn optional(value: Option<f64>, digits: usize) -> String {
-    value.map_or_else(String::new, |value| format!("{value:.digits$}"))
-}
-
-fn mean(values: &[f64]) -> Option<f64> {
-    let sum: f64 = values.iter().sum();
-    (!values.is_empty()).then(|| sum / values.len() as f64)
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let middle = values.len() / 2;
-    match (values.len() % 2, values.get(middle)) {
-        (1, Some(&value)) => value,
-        (0, Some(&value)) if middle > 0 => f64::midpoint(values[middle - 1], value),
-        _ => f64::NAN,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn medians_are_of_the_middle() {
-        assert_eq!(median(vec![3.0, 1.0, 2.0]), 2.0);
-        assert_eq!(median(vec![4.0, 1.0, 2.0, 3.0]), 2.5);
-        assert!(median(Vec::new()).is_nan());
-    }
 
     fn found(by: &str, side_px: usize, jpeg: Option<u8>, elements: usize) -> InverseEntry {
         let inventory = |elements| Inventory {
@@ -281,6 +255,7 @@ mod tests {
             by: by.into(),
             side_px,
             jpeg,
+            noise: None,
             original: inventory(2),
             found: inventory(elements),
             psnr_db: Some(40.0),

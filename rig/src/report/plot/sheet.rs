@@ -59,6 +59,30 @@ const MARGIN: usize = 8;
 const LINE: usize = 20;
 
 impl Sheet {
+    /// Rows of panels of one size, several beside each other while there are at most `columns` panels. A short row ends in
+    /// gaps.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Picture`] when there is no panel.
+    pub fn of_rows(rows: Vec<Vec<Panel>>, columns: usize) -> Result<Self> {
+        let widest = rows.iter().map(Vec::len).max().unwrap_or_default();
+        let Some(first) = rows.iter().flatten().next() else {
+            return Err(Error::new(ErrorKind::Picture, "a sheet needs a picture"));
+        };
+        let blank = Image::filled(first.image.width(), first.image.height(), [1.0; 3])?;
+        let mut panels = Vec::new();
+        for mut row in rows {
+            row.resize_with(widest, || Panel::new("", blank.clone()));
+            panels.append(&mut row);
+        }
+        Ok(Self {
+            title: String::new(),
+            columns: (columns / widest).max(1) * widest,
+            zoom: 1,
+            panels,
+        })
+    }
+
     /// The sheet as a picture.
     ///
     /// # Errors
@@ -144,6 +168,32 @@ pub fn captioned(image: &Image, lines: &[String], min_width: usize) -> Result<Im
         }
         Ok(())
     })
+}
+
+/// The picture in the middle of a white square, cut to its size.
+///
+/// # Errors
+/// [`ErrorKind::Picture`] when there is no memory for it.
+pub fn framed(picture: &Image, side_px: usize) -> Result<Image> {
+    let (width, height) = (picture.width(), picture.height());
+    let (left, top) = (
+        side_px.saturating_sub(width) / 2,
+        side_px.saturating_sub(height) / 2,
+    );
+    let plane = |c: usize| {
+        let at = |i: usize| {
+            let (x, y) = (
+                (i % side_px).checked_sub(left),
+                (i / side_px).checked_sub(top),
+            );
+            match (x.filter(|x| *x < width), y.filter(|y| *y < height)) {
+                (Some(x), Some(y)) => picture.planes()[c][y * width + x],
+                _ => 1.0,
+            }
+        };
+        (0..side_px * side_px).map(at).collect()
+    };
+    Image::new(side_px, side_px, [0, 1, 2].map(plane))
 }
 
 fn label(root: &Root<'_>, text: &str, (x, y): (usize, usize), size: i32) -> Drawn {

@@ -1,0 +1,306 @@
+//! Drawings of any kind by their artists, and what is found of them in their pictures.
+//!
+//! Other programs trace the same pictures, where they are installed.
+
+mod anatomy;
+mod color_difference;
+mod displacement;
+mod gallery;
+
+use std::time::Instant;
+
+pub use gallery::Gallery;
+
+use super::drawings::{Drawing, Pictures, damaged, picture};
+use super::peers::TunedPeer;
+use crate::report::Damage;
+use crate::report::inverse::OWN;
+use crate::report::shapes::{Contents, ShapesEntry, ShapesReport};
+use anatomy::Anatomy;
+use displacement::Areas;
+use strokefit::fit::{Config, Fitter};
+use strokefit::image::Image;
+use strokefit::metrics::psnr;
+use strokefit::verify::{self, Size, elements};
+use strokefit::{Error, Result};
+
+/// Longer side of the renders whose colours are compared, px.
+const LARGE_PX: f64 = 1024.0;
+
+/// Drawings that a short run takes, at most.
+const FEW: usize = 6;
+
+/// A way to draw pictures with strokefit.
+#[derive(Debug, Clone)]
+pub struct Drawer {
+    /// Name in tables and files.
+    pub name: &'static str,
+    /// Its settings.
+    pub config: Config,
+}
+
+/// All ways of ours, the default first.
+pub fn drawers() -> Vec<Drawer> {
+    vec![Drawer {
+        name: OWN,
+        config: Config::default(),
+    }]
+}
+
+/// A few of the drawings, from all over the list.
+pub fn few(drawings: Vec<Drawing>) -> Vec<Drawing> {
+    let step = drawings.len().div_ceil(FEW).max(1);
+    drawings.into_iter().step_by(step).collect()
+}
+
+/// A result as it comes.
+#[derive(Debug, Clone, Copy)]
+pub struct Outcome<'a> {
+    /// Its record.
+    pub entry: &'a ShapesEntry,
+    /// The picture that was drawn.
+    pub picture: &'a Image,
+    /// The SVG that was made of it; empty where none was.
+    pub svg: &'a str,
+}
+
+/// Draws the pictures of all drawings in each of our ways and by each of `peers`, telling each result as it comes.
+///
+/// # Errors
+/// - [`ErrorKind::Svg`](strokefit::ErrorKind::Svg) when a drawing is no SVG; the message names it.
+/// - As `tell`. A picture of which no SVG is made is a failure in the report.
+pub fn run(
+    drawings: &[Drawing],
+    pictures: &Pictures,
+    ours: &[Drawer],
+    peers: &[TunedPeer],
+    tell: &mut dyn FnMut(Outcome<'_>) -> Result<()>,
+) -> Result<ShapesReport> {
+    let mut entries = Vec::new();
+    for drawing in drawings {
+        let within = |error: Error| error.within(&drawing.name);
+        let original = Original::new(drawing).map_err(within)?;
+        for &side in &pictures.sides {
+            let truth = Truth::new(&original, side).map_err(within)?;
+            for &damage in &pictures.damages {
+                let case = Case::new(&truth, damage).map_err(within)?;
+                let found = ours.iter().map(|drawer| case.drawn(drawer));
+                for (entry, svg) in found.chain(peers.iter().map(|peer| case.traced(peer))) {
+                    tell(Outcome {
+                        entry: &entry,
+                        picture: &case.picture,
+                        svg: &svg,
+                    })?;
+                    entries.push(entry);
+                }
+            }
+        }
+    }
+    Ok(ShapesReport::new(entries))
+}
+
+/// A drawing as its artist made it.
+struct Original<'a> {
+    drawing: &'a Drawing,
+    contents: Contents,
+    /// On white.
+    large: Image,
+}
+
+impl<'a> Original<'a> {
+    fn new(drawing: &'a Drawing) -> Result<Self> {
+        let own = verify::render(&drawing.svg, Size::Scale(1.0), None)?;
+        let scale = LARGE_PX / own.width().max(own.height()) as f64;
+        Ok(Self {
+            drawing,
+            contents: contents(&drawing.svg)?,
+            large: verify::render(&drawing.svg, Size::Scale(scale), Some([1.0; 3]))?,
+        })
+    }
+}
+
+/// A drawing in a picture of one size.
+struct Truth<'a> {
+    original: &'a Original<'a>,
+    side: u16,
+    picture: Image,
+    /// Fidelity of the artist's file, dB.
+    artist_db: f64,
+    areas: Areas,
+}
+
+impl<'a> Truth<'a> {
+    fn new(original: &'a Original<'a>, side: u16) -> Result<Self> {
+        let svg = &original.drawing.svg;
+        let picture = picture(svg, side)?;
+        Ok(Self {
+            original,
+            side,
+            artist_db: decibels(svg, &picture)?,
+            areas: Areas::of(svg, picture.width(), picture.height())?,
+            picture,
+        })
+    }
+}
+
+/// One picture of a drawing.
+struct Case<'a> {
+    truth: &'a Truth<'a>,
+    damage: Damage,
+    picture: Image,
+}
+
+impl<'a> Case<'a> {
+    fn new(truth: &'a Truth<'a>, damage: Damage) -> Result<Self> {
+        Ok(Self {
+            truth,
+            damage,
+            picture: damaged(truth.picture.clone(), damage)?,
+        })
+    }
+
+    fn drawn(&self, drawer: &Drawer) -> (ShapesEntry, String) {
+        self.timed(drawer.name, || {
+            let fit = Fitter::new(drawer.config.clone()).fit(&self.picture)?;
+            Ok(fit.svg())
+        })
+    }
+
+    fn traced(&self, peer: &TunedPeer) -> (ShapesEntry, String) {
+        self.timed(peer.name(), || {
+            let colors = self.truth.areas.colors();
+            Ok(peer.trace(&self.picture, colors)?.svg)
+        })
+    }
+
+    /// The record of what `draw` makes, and its SVG; empty if it fails.
+    fn timed(&self, by: &str, draw: impl FnOnce() -> Result<String>) -> (ShapesEntry, String) {
+        let began = Instant::now();
+        let judge = |svg: String| {
+            let wall_s = began.elapsed().as_secs_f64();
+            Ok((self.judged(by, &svg, wall_s)?, svg))
+        };
+        draw().and_then(judge).unwrap_or_else(|error| {
+            let failed = ShapesEntry {
+                failure: Some(error.to_string()),
+                ..self.entry(by)
+            };
+            (failed, String::new())
+        })
+    }
+
+    /// The record of this case before anything is known of what was found.
+    fn entry(&self, by: &str) -> ShapesEntry {
+        let original = self.truth.original;
+        ShapesEntry {
+            drawing: original.drawing.name.clone(),
+            family: original.drawing.family().to_owned(),
+            by: by.to_owned(),
+            side_px: usize::from(self.truth.side),
+            damage: self.damage,
+            original: original.contents,
+            artist_db: Some(self.truth.artist_db),
+            ..ShapesEntry::default()
+        }
+    }
+
+    fn judged(&self, by: &str, svg: &str, wall_s: f64) -> Result<ShapesEntry> {
+        let large = &self.truth.original.large;
+        let drawn = verify::render(svg, exactly(large), Some([1.0; 3]))?;
+        Ok(ShapesEntry {
+            found: contents(svg)?,
+            psnr_db: Some(decibels(svg, &self.picture)?),
+            truth_db: Some(decibels(svg, &self.truth.picture)?),
+            delta_e: Some(color_difference::mean(large, &drawn)),
+            displacement_px: self.truth.areas.displacement_px(svg)?,
+            wall_s: Some(wall_s),
+            ..self.entry(by)
+        })
+    }
+}
+
+fn exactly(picture: &Image) -> Size {
+    let side = |px: usize| u32::try_from(px).unwrap_or(u32::MAX);
+    Size::Exact {
+        width: side(picture.width()),
+        height: side(picture.height()),
+    }
+}
+
+/// Fidelity of SVG text to a picture on white, dB.
+fn decibels(svg: &str, picture: &Image) -> Result<f64> {
+    psnr(picture, &verify::render_like(svg, picture, [1.0; 3])?)
+}
+
+fn contents(svg: &str) -> Result<Contents> {
+    let anatomy = Anatomy::of(svg)?;
+    let painted = elements(svg, 1.0)?;
+    let painted = &painted[usize::from(anatomy.has_page).min(painted.len())..];
+    Ok(Contents {
+        elements: painted.len(),
+        rings: painted.iter().map(|element| element.lines.len()).sum(),
+        points: painted.iter().map(|element| element.points).sum(),
+        parameters: anatomy.parameters,
+        numbers: anatomy.numbers,
+        bytes: svg.len(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DRAWING: &str = r##"<svg xmlns="http://www.w3.org/2000/svg" width="32" height="32"><rect width="32" height="32" fill="#fff"/><path fill="#d03020" d="M2 2h28v28h-28zM8 8v16h16V8z"/><circle cx="16" cy="16" r="4"/><path id="unpainted" fill="none" d="M0 0L9 9"/></svg>"##;
+
+    #[test]
+    fn painted_elements_are_counted_without_the_page() {
+        let expected = Contents {
+            elements: 2,
+            rings: 3,
+            points: 8 + 13,
+            parameters: 12 + 3 + 2,
+            numbers: (2 + 3) + (2 + 3) + 3 + 3 + 4,
+            bytes: DRAWING.len(),
+        };
+        assert_eq!(contents(DRAWING).unwrap(), expected);
+    }
+
+    #[test]
+    fn a_few_are_from_all_over_the_list() {
+        let drawing = |i: usize| Drawing {
+            name: i.to_string(),
+            svg: String::new(),
+        };
+        let names = |count: usize| -> Vec<String> {
+            let few = few((0..count).map(drawing).collect());
+            few.into_iter().map(|drawing| drawing.name).collect()
+        };
+        assert_eq!(names(2), ["0", "1"]);
+        assert_eq!(names(12), ["0", "2", "4", "6", "8", "10"]);
+        assert!(names(0).is_empty());
+    }
+
+    #[test]
+    fn a_drawing_is_judged_beside_its_artist() {
+        let drawing = Drawing {
+            name: "box__a".into(),
+            svg: DRAWING.into(),
+        };
+        let original = Original::new(&drawing).unwrap();
+        let truth = Truth::new(&original, 32).unwrap();
+        let case = Case::new(&truth, Damage::Clean).unwrap();
+        let itself = case.judged(OWN, DRAWING, 0.0).unwrap();
+        assert_eq!(itself.found, itself.original);
+        assert_eq!(itself.truth_db, itself.artist_db);
+        assert_eq!(
+            (itself.delta_e, itself.displacement_px),
+            (Some(0.0), Some(0.0))
+        );
+        let moved = DRAWING.replace("M2 2", "M2.5 2");
+        let moved = case.judged(OWN, &moved, 0.0).unwrap();
+        assert!(moved.delta_e > Some(0.1) && moved.truth_db < itself.truth_db);
+        assert!(moved.displacement_px > Some(0.1), "{moved:?}");
+        let (failed, svg) = case.timed(OWN, || Ok("no SVG".into()));
+        assert!(failed.failure.is_some() && svg.is_empty());
+    }
+}

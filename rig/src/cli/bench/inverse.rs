@@ -1,0 +1,170 @@
+//! `inverse`: known drawings, found again in their pictures.
+
+use std::path::PathBuf;
+use std::{fs, io};
+
+use crate::bench::drawings::{Drawing, Kind, Pictures};
+use crate::bench::peers::{installed_for, missing_for_drawings};
+use crate::bench::{inverse, shapes};
+use crate::lab::ResultFolder;
+use crate::report::{self, Damage};
+use anyhow::{Context, Result};
+use strokefit::cli::{Verbosity, input};
+use strokefit::fit::Config;
+use strokefit::image::Image;
+use strokefit::report::json;
+
+use super::super::domain;
+use super::{Extents, say, say_missing};
+
+/// Find known drawings again in pictures of them, beside other programs that are installed (pyautotrace, potrace,
+/// vtracer, Inkscape)
+///
+/// Of drawings of strokes alone the centre lines are compared, of all others colours and edges.
+#[derive(Debug, clap::Args)]
+pub(in crate::cli) struct Inverse {
+    /// SVGs, and folders of them [default: drawings of strokes that are built in]
+    drawings: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(super) extents: Extents,
+    /// Longer sides of the pictures, px [default: 48 to 384 of strokes, 128 to 512 of other drawings]
+    #[arg(long, value_name = "PX", value_delimiter = ',', value_parser = domain::side)]
+    sides: Vec<u16>,
+    /// Damage of the pictures: clean, jpegQUALITY, noiseLEVELS [default: clean,jpeg75; noise8 of other drawings
+    /// than of strokes, too]
+    #[arg(long, value_name = "DAMAGE", value_delimiter = ',')]
+    damage: Vec<Damage>,
+}
+
+impl Inverse {
+    /// Runs it; how many cases failed.
+    pub(super) fn run(&self, files: &mut ResultFolder<'_>, verbosity: Verbosity) -> Result<usize> {
+        let (strokes, shapes) = self.drawings(verbosity)?;
+        let mut failures = 0;
+        if !strokes.is_empty() {
+            failures += self.find_strokes(&strokes, files)?;
+        }
+        if !shapes.is_empty() {
+            failures += self.find_shapes(shapes, files)?;
+        }
+        say_missing(&missing_for_drawings(), verbosity);
+        Ok(failures)
+    }
+
+    fn find_strokes(&self, drawings: &[Drawing], files: &mut ResultFolder<'_>) -> Result<usize> {
+        let pictures = self.pictures(Kind::Strokes);
+        let peers = installed_for(Kind::Strokes);
+        let mut gallery = inverse::Gallery::of(&pictures.sides);
+        let config = Config::default();
+        let report = inverse::run(drawings, &pictures, &peers, &config, &mut |outcome| {
+            say(&outcome.entry.line());
+            gallery.show(outcome)?;
+            found(files, &outcome.entry.svg_name(), outcome.svg)
+        })?;
+        let tables = [report.table().csv(), report.markdown(), json(&report)?];
+        let charts = report::inverse::charts(&report)?;
+        publish(files, "inverse", &tables, &charts, &gallery.sheet()?)?;
+        Ok(report.failures())
+    }
+
+    fn find_shapes(&self, all: Vec<Drawing>, files: &mut ResultFolder<'_>) -> Result<usize> {
+        let drawings = if self.extents.short {
+            shapes::few(all)
+        } else {
+            all
+        };
+        let pictures = self.pictures(Kind::Shapes);
+        let (ours, peers) = (shapes::drawers(), installed_for(Kind::Shapes));
+        let mut gallery = shapes::Gallery::of(&pictures.sides);
+        let report = shapes::run(&drawings, &pictures, &ours, &peers, &mut |outcome| {
+            say(&outcome.entry.line());
+            gallery.show(outcome)?;
+            found(files, &outcome.entry.svg_name(), outcome.svg)
+        })?;
+        let tables = [report.table().csv(), report.markdown(), json(&report)?];
+        let charts = report::shapes::charts(&report)?;
+        publish(files, "shapes", &tables, &charts, &gallery.sheet()?)?;
+        Ok(report.failures())
+    }
+
+    /// The drawings of strokes, with those that are built in, and all others.
+    fn drawings(&self, verbosity: Verbosity) -> Result<(Vec<Drawing>, Vec<Drawing>)> {
+        let (mut strokes, mut shapes) = (Vec::new(), Vec::new());
+        for (path, is_listed) in self.files()? {
+            let svg = input::svg(&path)?;
+            let name = path.file_stem().unwrap_or_default().to_string_lossy();
+            let name = name.into_owned();
+            let drawing = Drawing { name, svg };
+            match drawing.kind() {
+                Ok(Kind::Strokes) => strokes.push(drawing),
+                Ok(Kind::Shapes) => shapes.push(drawing),
+                Err(error) if is_listed => verbosity.say(format_args!("not measured: {error}")),
+                Err(error) => return Err(error.into()),
+            }
+        }
+        if shapes.is_empty() || !strokes.is_empty() {
+            strokes.splice(0..0, inverse::own());
+        }
+        Ok((strokes, shapes))
+    }
+
+    /// The SVGs that are named, and those in the folders that are, in order; true for those in folders.
+    fn files(&self) -> Result<Vec<(PathBuf, bool)>> {
+        let mut files = Vec::new();
+        for path in &self.drawings {
+            if !path.is_dir() {
+                files.push((path.clone(), false));
+                continue;
+            }
+            let listed = fs::read_dir(path).and_then(Iterator::collect::<io::Result<Vec<_>>>);
+            let listed = listed.with_context(|| format!("{}: cannot be read", path.display()))?;
+            let svgs = listed.into_iter().map(|entry| entry.path());
+            let is_svg = |path: &PathBuf| path.extension().is_some_and(|e| e == "svg");
+            let mut svgs: Vec<_> = svgs.filter(is_svg).collect();
+            svgs.sort();
+            files.extend(svgs.into_iter().map(|svg| (svg, true)));
+        }
+        Ok(files)
+    }
+
+    fn pictures(&self, kind: Kind) -> Pictures {
+        let mut pictures = if self.extents.short {
+            Pictures::short(kind)
+        } else {
+            Pictures::full(kind)
+        };
+        if !self.sides.is_empty() {
+            pictures.sides.clone_from(&self.sides);
+        }
+        if !self.damage.is_empty() {
+            pictures.damages.clone_from(&self.damage);
+        }
+        pictures
+    }
+}
+
+/// Writes a drawing that was found, if there is one.
+fn found(files: &mut ResultFolder<'_>, name: &str, svg: &str) -> strokefit::Result<()> {
+    match svg {
+        "" => Ok(()),
+        svg => files.text(name, svg),
+    }
+}
+
+/// Writes the report `name`: the table, the summary, all of it, the plots and the gallery.
+fn publish(
+    files: &mut ResultFolder<'_>,
+    name: &str,
+    [csv, md, json]: &[String; 3],
+    charts: &[(&str, String)],
+    gallery: &Image,
+) -> Result<()> {
+    files.text(&format!("{name}.csv"), csv)?;
+    files.text(&format!("{name}.md"), md)?;
+    files.text(&format!("{name}.json"), json)?;
+    for (plot, svg) in charts {
+        files.text(&format!("{name}-{plot}.svg"), svg)?;
+    }
+    files.picture(&format!("{name}.png"), gallery)?;
+    Ok(())
+}

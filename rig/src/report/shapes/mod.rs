@@ -1,0 +1,307 @@
+//! Findings of `strokefit-rig inverse` about drawings of any kind: how much of a drawing is found again, in how many
+//! numbers.
+
+mod charts;
+mod summary;
+
+use serde::{Deserialize, Serialize};
+use strokefit::report::SCHEMA;
+
+pub use charts::charts;
+
+use super::inverse::OWN;
+use super::statistics::optional;
+use super::{Damage, Table};
+
+/// All cases of a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ShapesReport {
+    /// [`SCHEMA`].
+    pub schema: u32,
+    /// One per drawing, picture of it, and who drew that, in order.
+    pub entries: Vec<ShapesEntry>,
+}
+
+/// Contents of a file, without a rectangle that fills the page behind everything else.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Contents {
+    /// Painted elements, each use of one that is used again.
+    pub elements: usize,
+    /// Subpaths of these.
+    pub rings: usize,
+    /// Ends, corners and control points of these; a circle is four curves.
+    pub points: usize,
+    /// Parameters of all shapes in the text.
+    pub parameters: usize,
+    /// All numbers in the text.
+    pub numbers: usize,
+    /// Bytes of the file.
+    pub bytes: usize,
+}
+
+/// A drawing, a picture of it, and what was made of that picture.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct ShapesEntry {
+    /// The name of the drawing.
+    pub drawing: String,
+    /// The beginning of its name that it shares with others, or nothing.
+    pub family: String,
+    /// Who found it: `strokefit`, or another name.
+    pub by: String,
+    /// The longer side of the picture, px.
+    pub side_px: usize,
+    /// Damage of the picture.
+    pub damage: Damage,
+    /// The artist's file.
+    pub original: Contents,
+    /// The file that was found.
+    pub found: Contents,
+    /// Fidelity of the found file to the picture, dB.
+    pub psnr_db: Option<f64>,
+    /// Fidelity of the found file to the picture before it was damaged, dB.
+    pub truth_db: Option<f64>,
+    /// Fidelity of the artist's file to the picture before it was damaged, dB.
+    pub artist_db: Option<f64>,
+    /// Mean CIEDE2000 difference from the artist's file, both drawn at 1,024 px.
+    pub delta_e: Option<f64>,
+    /// Mean displacement of the artist's edges, px; `None` where there are none.
+    pub displacement_px: Option<f64>,
+    /// Wall time, s.
+    pub wall_s: Option<f64>,
+    /// Why nothing was made.
+    pub failure: Option<String>,
+}
+
+impl ShapesEntry {
+    /// Of what was found, a share of what the artist needed.
+    pub fn ratio(&self, of: fn(&Contents) -> usize) -> f64 {
+        of(&self.found) as f64 / of(&self.original).max(1) as f64
+    }
+
+    /// The name of the SVG that was found.
+    pub fn svg_name(&self) -> String {
+        let by = Some(&self.by).filter(|by| *by != OWN);
+        let by = by.map(|by| format!("-{}", by.replace(' ', "-")));
+        let (damage, by) = (self.damage.suffix(), by.unwrap_or_default());
+        format!("{}-{}{damage}{by}.svg", self.drawing, self.side_px)
+    }
+
+    /// The picture in words.
+    fn kind(&self) -> String {
+        self.damage.of(self.side_px)
+    }
+
+    /// Fidelity beyond that of the artist's file, dB.
+    fn beyond_artist_db(&self) -> Option<f64> {
+        let (truth, artist) = self.truth_db.zip(self.artist_db)?;
+        Some(truth - artist).filter(|db| db.is_finite())
+    }
+
+    /// The line of standard output, ending in the verdict.
+    pub fn line(&self) -> String {
+        let by = Some(&self.by).filter(|by| *by != OWN);
+        let by = by.map(|by| format!(", {by}")).unwrap_or_default();
+        let case = format!("{} at {}{by}", self.drawing, self.kind());
+        if let Some(why) = &self.failure {
+            return format!("{case}: {why}: FAIL");
+        }
+        let edges = self
+            .displacement_px
+            .map_or_else(|| "no edges".into(), |px| format!("edges {px:.3} px off"));
+        format!(
+            "{case}: {} elements of {}, {} parameters of {}, {} bytes of {}, {:.1} dB (the artist's {:.1}), \
+             ΔE00 {:.2}, {edges}: pass",
+            self.found.elements,
+            self.original.elements,
+            self.found.parameters,
+            self.original.parameters,
+            self.found.bytes,
+            self.original.bytes,
+            self.truth_db.unwrap_or(f64::NAN),
+            self.artist_db.unwrap_or(f64::NAN),
+            self.delta_e.unwrap_or(f64::NAN)
+        )
+    }
+}
+
+impl ShapesReport {
+    /// The report of these cases.
+    pub fn new(entries: Vec<ShapesEntry>) -> Self {
+        Self {
+            schema: SCHEMA,
+            entries,
+        }
+    }
+
+    /// Number of drawings that could not be made.
+    pub fn failures(&self) -> usize {
+        let failed = self.entries.iter().filter(|e| e.failure.is_some());
+        failed.count()
+    }
+
+    /// Medians of each kind of picture and of each family, and all cases.
+    pub fn markdown(&self) -> String {
+        format!(
+            "# Drawings found again\n\n{}\n## By family\n\n{}\n## All\n\n{}",
+            self.summary().markdown(),
+            self.families().markdown(),
+            self.table().markdown()
+        )
+    }
+
+    /// One row for each size and damage, and who found the drawings.
+    pub fn summary(&self) -> Table {
+        summary::by_picture(&self.made())
+    }
+
+    /// One row for each family, size and damage: what we made.
+    pub fn families(&self) -> Table {
+        summary::by_family(&self.made())
+    }
+
+    /// The cases of which something was made.
+    fn made(&self) -> Vec<&ShapesEntry> {
+        let made = self.entries.iter().filter(|e| e.failure.is_none());
+        made.collect()
+    }
+
+    /// One row per case.
+    pub fn table(&self) -> Table {
+        let mut table = Table::new(&HEAD);
+        for entry in &self.entries {
+            table.row(cells(entry));
+        }
+        table
+    }
+}
+
+const HEAD: [&str; 25] = [
+    "drawing",
+    "family",
+    "side_px",
+    "damage",
+    "by",
+    "drawn_elements",
+    "found_elements",
+    "drawn_rings",
+    "found_rings",
+    "drawn_points",
+    "found_points",
+    "drawn_parameters",
+    "found_parameters",
+    "drawn_numbers",
+    "found_numbers",
+    "drawn_bytes",
+    "found_bytes",
+    "psnr_db",
+    "truth_db",
+    "artist_db",
+    "delta_e00",
+    "displacement_px",
+    "wall_s",
+    "svg",
+    "failure",
+];
+
+fn cells(entry: &ShapesEntry) -> Vec<String> {
+    let mut cells = vec![
+        entry.drawing.clone(),
+        entry.family.clone(),
+        entry.side_px.to_string(),
+        entry.damage.to_string(),
+        entry.by.clone(),
+    ];
+    let (drawn, found) = (entry.original, entry.found);
+    let counts = [
+        [drawn.elements, found.elements],
+        [drawn.rings, found.rings],
+        [drawn.points, found.points],
+        [drawn.parameters, found.parameters],
+        [drawn.numbers, found.numbers],
+        [drawn.bytes, found.bytes],
+    ];
+    cells.extend(counts.as_flattened().iter().map(usize::to_string));
+    cells.extend([
+        optional(entry.psnr_db, 2),
+        optional(entry.truth_db, 2),
+        optional(entry.artist_db, 2),
+        optional(entry.delta_e, 3),
+        optional(entry.displacement_px, 4),
+        optional(entry.wall_s, 3),
+        entry.svg_name(),
+        entry.failure.clone().unwrap_or_default(),
+    ]);
+    cells
+}
+
+#[cfg(test)]
+pub(in crate::report) mod tests {
+    use super::*;
+
+    /// A case of an artist's two elements.
+    pub(in crate::report) fn found(by: &str, side_px: usize, elements: usize) -> ShapesEntry {
+        let contents = |elements| Contents {
+            elements,
+            rings: elements,
+            points: 4 * elements,
+            parameters: 10 * elements,
+            numbers: 20 * elements,
+            bytes: 100 * elements,
+        };
+        ShapesEntry {
+            drawing: "noto__hole".into(),
+            family: "noto".into(),
+            by: by.into(),
+            side_px,
+            original: contents(2),
+            found: contents(elements),
+            psnr_db: Some(40.0),
+            truth_db: Some(42.0),
+            artist_db: Some(39.0),
+            delta_e: Some(0.5),
+            displacement_px: Some(0.125),
+            wall_s: Some(0.2),
+            ..ShapesEntry::default()
+        }
+    }
+
+    #[test]
+    fn a_line_tells_what_was_found_beside_what_was_drawn() {
+        let line = found("potrace", 128, 6).line();
+        assert_eq!(
+            line,
+            "noto__hole at 128 px, potrace: 6 elements of 2, 60 parameters of 20, 600 bytes of 200, \
+             42.0 dB (the artist's 39.0), ΔE00 0.50, edges 0.125 px off: pass"
+        );
+        let failed = ShapesEntry {
+            failure: Some("potrace: killed".into()),
+            ..found("potrace", 128, 0)
+        };
+        assert!(failed.line().ends_with("killed: FAIL"), "{}", failed.line());
+        assert_eq!(ShapesReport::new(vec![failed]).failures(), 1);
+    }
+
+    #[test]
+    fn files_are_named_by_picture_and_finder() {
+        let noisy = ShapesEntry {
+            damage: Damage::Noise(8),
+            ..found("strokefit strokes", 128, 2)
+        };
+        let names = [found(OWN, 128, 2).svg_name(), noisy.svg_name()];
+        let expected = [
+            "noto__hole-128.svg",
+            "noto__hole-128-noise8-strokefit-strokes.svg",
+        ];
+        assert_eq!(names, expected);
+    }
+
+    #[test]
+    fn the_table_has_a_row_for_each_case_and_the_json_reads_back() {
+        let report = ShapesReport::new(vec![found(OWN, 128, 3)]);
+        let csv = report.table().csv();
+        let row = "noto__hole,noto,128,clean,strokefit,2,3,2,3,8,12,20,30,40,60,200,300,40.00,42.00,39.00,";
+        assert!(csv.lines().nth(1).unwrap().starts_with(row), "{csv}");
+        let text = serde_json::to_string(&report).unwrap();
+        assert_eq!(serde_json::from_str::<ShapesReport>(&text).unwrap(), report);
+    }
+}
