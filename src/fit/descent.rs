@@ -13,7 +13,7 @@ use super::drawing::Drawing;
 use super::recipe::{Jitter, Rates, Recipe};
 use super::time::Timer;
 use crate::optim::{Adam, Optimizer, Schedule};
-use crate::render::{Canvas, Gradients, STYLE};
+use crate::render::{Canvas, Gradients, STYLE, Strokes};
 use anneal::Annealing;
 use ties::Ties;
 
@@ -166,8 +166,13 @@ impl Descent {
         let strokes = drawing.free_mut();
         let slopes = &mut self.gradients.strokes;
         self.ties.gather(slopes);
-        self.adam
-            .step_scaled(strokes.numbers_mut(), slopes, rate, &self.scales);
+        let (adam, scales) = (&mut self.adam, &self.scales);
+        match squares(strokes, slopes) {
+            None => adam.step_scaled(strokes.numbers_mut(), slopes, rate, scales),
+            Some(squares) => {
+                adam.step_with_squares(strokes.numbers_mut(), slopes, rate, scales, &squares);
+            }
+        }
         strokes.change(|_, stroke| bounds.apply(stroke));
         if course.joint.is_some() && drawing.is_thawed() && !drawing.background_fixed {
             let rate = rate * course.rates.color;
@@ -209,14 +214,33 @@ fn adam(drawing: &Drawing, recipe: &Recipe, course: &Course) -> Adam<f32> {
     Adam::new(drawing.free().numbers().len(), params)
 }
 
+/// The squares of the derivatives, where both coordinates of an area's point share one: without that, points drift along
+/// the outline. `None` if there is no area.
+fn squares(strokes: &Strokes, slopes: &[f32]) -> Option<Vec<f32>> {
+    if !strokes.iter().any(|stroke| stroke.is_area()) {
+        return None;
+    }
+    let mut squares: Vec<f32> = slopes.iter().map(|slope| slope * slope).collect();
+    let areas = (0..strokes.len()).filter(|&i| strokes.get(i).is_area());
+    for i in areas {
+        let start = strokes.range(i).start;
+        let points = &mut squares[start..start + 2 * strokes.get(i).points.len()];
+        for point in points.as_chunks_mut::<2>().0 {
+            *point = [point[0] + point[1]; 2];
+        }
+    }
+    Some(squares)
+}
+
 /// The step size of each number of the free strokes. The geometry of large strokes moves farther, and that of traced
-/// strokes, which are about where they belong, less far.
+/// strokes, which are about where they belong, less far. Areas are where they belong, too, and keep their opacity.
 fn scales(rates: &Rates, drawing: &Drawing, recipe: &Recipe) -> Vec<f32> {
     let Rates {
         position,
         radius,
         color,
         opacity,
+        area,
         ..
     } = *rates;
     let usual = recipe.optimizer.usual_radius;
@@ -224,6 +248,12 @@ fn scales(rates: &Rates, drawing: &Drawing, recipe: &Recipe) -> Vec<f32> {
     let (strokes, traced) = (drawing.free(), drawing.traced());
     let mut scales = Vec::with_capacity(strokes.numbers().len());
     for (i, stroke) in strokes.iter().enumerate() {
+        if stroke.is_area() {
+            scales.resize(scales.len() + 2 * stroke.points.len(), area);
+            let color = color * recipe.optimizer.area_color;
+            scales.extend([0.0, color, color, color, 0.0]);
+            continue;
+        }
         let factor = (stroke.radius() / usual).sqrt().clamp(least, most);
         let pace = if i < traced { recipe.tracing.pace } else { 1.0 };
         let ends = position * factor * pace;

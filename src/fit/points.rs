@@ -67,7 +67,7 @@ pub(super) fn prune(drawing: &mut Drawing, price: Price, prunings: usize) {
         let survey = drawing.survey(LEAST);
         let strokes = drawing.free();
         let removal = |i: usize| {
-            let edit = edits::best_loss(&Terrain::new(&survey, strokes.get(i), i));
+            let edit = edits::best_loss(&survey, strokes.get(i), i);
             edit.filter(|edit| -edit.gain < to_keep)
         };
         let removals: Vec<Option<Edit>> = (0..strokes.len()).into_par_iter().map(removal).collect();
@@ -178,15 +178,17 @@ impl Options {
         if !stroke.is_finite() {
             return Self::default();
         }
-        let terrain = Terrain::new(survey, stroke, index);
         let may_grow = stroke.points.len() < limits.most;
-        let fits = |edit: &Edit| written_points(edit.of(stroke)) <= limits.most;
-        let insertion = || edits::best_insertion(&terrain, points).filter(fits);
-        let toggled = limits.toggles.then_some(&terrain);
+        let fits = |edit: &Edit| stroke.is_area() || written_points(edit.of(stroke)) <= limits.most;
+        let best = |edit: &(dyn Fn(&Terrain<'_>) -> Option<Edit> + Sync)| {
+            edits::best_of_all(survey, stroke, index, edit)
+        };
+        let insertion = || best(&|terrain| edits::best_insertion(terrain, points)).filter(fits);
+        let toggle = || best(&edits::best_toggle).filter(fits);
         // One stroke may have most of all points.
         let (removal, toggle) = rayon::join(
-            || edits::best_removal(&terrain),
-            || edits::best_toggle(toggled?).filter(fits),
+            || best(&edits::best_removal),
+            || limits.toggles.then(toggle).flatten(),
         );
         Self {
             insertion: may_grow.then(insertion).flatten(),
@@ -314,6 +316,7 @@ mod tests {
             gain,
             points: Vec::new(),
             off: Vec::new(),
+            rings: Vec::new(),
             sources: Vec::new(),
         })
     }

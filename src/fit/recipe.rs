@@ -162,6 +162,8 @@ pub struct AdamSettings {
     pub usual_radius: f32,
     /// Bounds of the factor that this gives.
     pub radius_factors: [f32; 2],
+    /// Step sizes of the colours of areas, in units of those of strokes. A guess: traced colours are right within a level.
+    pub area_color: f32,
 }
 
 /// Step sizes of the optimiser by kind of parameter, per iteration.
@@ -175,6 +177,8 @@ pub struct Rates {
     pub color: f32,
     /// Opacity.
     pub opacity: f32,
+    /// Points of areas, px.
+    pub area: f32,
     /// Factor on all rates in the last iteration, reached along half a cosine.
     pub last: f64,
 }
@@ -415,6 +419,8 @@ pub struct Settling {
     pub iterations: usize,
     /// Step sizes, in units of those of the polish. Half, twice: −0.03, +0.02 dB.
     pub rate: f32,
+    /// Step sizes of the points of areas, px, before that factor. A guess: about as far as traced strokes move.
+    pub area: f32,
     /// Additional factor on the rates of colours and opacities, as the strokes hardly move. Half, twice: −0.03, −0.03 dB.
     pub color_rate: f32,
     /// Distance that strokes move in a round, in units of the round before. How a renderer antialiases an edge depends on the

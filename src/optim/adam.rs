@@ -81,7 +81,30 @@ impl<T: Real> Adam<T> {
         }
     }
 
-    /// One step; value `i` at the learning rate `rate(i)`, after it was multiplied by `keep(i)`.
+    /// One step at the learning rate `rate · scales[i]` for value `i`, with `squares[i]` in the place of its squared
+    /// gradient. Values that move together, such as the coordinates of a point, share a square: a step then has the
+    /// direction of their gradient.
+    pub fn step_with_squares(
+        &mut self,
+        params: &mut [T],
+        gradients: &[T],
+        rate: T,
+        scales: &[T],
+        squares: &[T],
+    ) {
+        let n = scales.len().min(squares.len()).min(params.len());
+        let (scales, squares) = (&scales[..n], &squares[..n]);
+        self.update(
+            &mut params[..n],
+            gradients,
+            |i| rate * scales[i],
+            |_| T::one(),
+            |i, take, _| take * squares[i],
+        );
+    }
+
+    /// One step; value `i` at the learning rate `rate(i)`, after it was multiplied by `keep(i)`. Of the gradient `g`,
+    /// the moving average of its square takes `share(i, 1−β₂, g)`.
     #[inline]
     pub(super) fn update(
         &mut self,
@@ -89,6 +112,7 @@ impl<T: Real> Adam<T> {
         gradients: &[T],
         rate: impl Fn(usize) -> T,
         keep: impl Fn(usize) -> T,
+        share: impl Fn(usize, T, T) -> T,
     ) {
         let [keep1, keep2] = self.params.betas.map(T::of);
         let [take1, take2] = self.params.betas.map(|beta| T::of(1.0 - beta));
@@ -102,7 +126,7 @@ impl<T: Real> Adam<T> {
         for i in 0..n {
             let g = gradients[i];
             mean[i] += take1 * (g - mean[i]);
-            square[i] = keep2 * square[i] + take2 * g * g;
+            square[i] = keep2 * square[i] + share(i, take2, g);
             mean_of_one[i] = keep1 * mean_of_one[i] + take1;
             square_of_one[i] = keep2 * square_of_one[i] + take2;
             let scale = mean_of_one[i] * ((square[i] / square_of_one[i]).sqrt() + eps);
@@ -111,9 +135,15 @@ impl<T: Real> Adam<T> {
     }
 }
 
+/// The share of a squared gradient that its moving average takes.
+#[inline]
+pub(super) fn square<T: Real>(_: usize, take: T, g: T) -> T {
+    take * g * g
+}
+
 impl<T: Real> Optimizer<T> for Adam<T> {
     fn step(&mut self, params: &mut [T], gradients: &[T], rate: T) {
-        self.update(params, gradients, |_| rate, |_| T::one());
+        self.update(params, gradients, |_| rate, |_| T::one(), square);
     }
 
     fn step_scaled(&mut self, params: &mut [T], gradients: &[T], rate: T, scales: &[T]) {
@@ -124,6 +154,7 @@ impl<T: Real> Optimizer<T> for Adam<T> {
             gradients,
             |i| rate * scales[i],
             |_| T::one(),
+            square,
         );
     }
 
@@ -230,5 +261,19 @@ mod tests {
         let mut adam = Adam::new(1, AdamParams::default());
         adam.step(&mut x, &[0.0], 0.1);
         assert_eq!(x, [0.7]);
+    }
+
+    #[test]
+    fn values_that_share_a_square_move_along_their_gradient() {
+        let mut x = [0.0_f64; 2];
+        let mut adam = Adam::new(2, AdamParams::default());
+        for _ in 0..5 {
+            adam.step_with_squares(&mut x, &[3.0, 4.0], 0.1, &[1.0; 2], &[25.0; 2]);
+        }
+        assert!(
+            (x[0] * 4.0 - x[1] * 3.0).abs() < 1e-12 && x[0] < 0.0,
+            "{x:?}"
+        );
+        assert!((x[0] + 5.0 * 0.1 * 0.6).abs() < 1e-6, "{x:?}");
     }
 }

@@ -12,6 +12,7 @@
 
 use std::ops::Range;
 
+use super::adam::square;
 use super::{Adam, AdamParams, Optimizer};
 use crate::math::Real;
 
@@ -53,7 +54,8 @@ impl<T: Real> AdamW<T> {
 impl<T: Real> Optimizer<T> for AdamW<T> {
     fn step(&mut self, params: &mut [T], gradients: &[T], rate: T) {
         let keep = T::one() - rate * T::of(self.decay);
-        self.adam.update(params, gradients, |_| rate, |_| keep);
+        self.adam
+            .update(params, gradients, |_| rate, |_| keep, square);
     }
 
     fn step_scaled(&mut self, params: &mut [T], gradients: &[T], rate: T, scales: &[T]) {
@@ -61,7 +63,8 @@ impl<T: Real> Optimizer<T> for AdamW<T> {
         let (scales, decay) = (&scales[..n], T::of(self.decay));
         let rate = |i: usize| rate * scales[i];
         let keep = |i: usize| T::one() - rate(i) * decay;
-        self.adam.update(&mut params[..n], gradients, rate, keep);
+        self.adam
+            .update(&mut params[..n], gradients, rate, keep, square);
     }
 
     fn reset(&mut self, range: Range<usize>) {

@@ -83,6 +83,8 @@ pub struct StrokeMut<'a> {
     pub points: &'a mut [[f32; 2]],
     /// Radius, red, green, blue, opacity.
     pub style: &'a mut [f32; STYLE],
+    /// True if the points are rings to be filled, so that the radius has to stay 0.
+    pub is_area: bool,
 }
 
 impl<'a> StrokeRef<'a> {
@@ -268,9 +270,15 @@ impl Strokes {
     pub fn change(&mut self, mut change: impl FnMut(usize, StrokeMut<'_>)) {
         for i in 0..self.len() {
             let range = self.range(i);
+            let is_area = self.first_ring(i) < self.outlines[i].rings_end as usize;
             if let Some((points, style)) = self.numbers[range].split_last_chunk_mut() {
                 let points = points.as_chunks_mut().0;
-                change(i, StrokeMut { points, style });
+                let stroke = StrokeMut {
+                    points,
+                    style,
+                    is_area,
+                };
+                change(i, stroke);
             }
         }
     }

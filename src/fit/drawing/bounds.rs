@@ -66,7 +66,7 @@ impl Bounds {
         })
     }
 
-    /// Clamps a stroke to its domain. NaN stays; such a stroke is dropped later.
+    /// Clamps a stroke or an area to its domain. NaN stays; such a stroke is dropped later.
     pub(in crate::fit) fn apply(&self, stroke: StrokeMut<'_>) {
         let margin = self.domain.margin;
         let [width, height] = self.sides;
@@ -76,7 +76,9 @@ impl Bounds {
         }
         let [least, most] = self.radii();
         let [radius, color @ .., opacity] = stroke.style;
-        *radius = radius.clamp(least, most);
+        if !stroke.is_area {
+            *radius = radius.clamp(least, most);
+        }
         for color in color {
             *color = color.clamp(0.0, 1.0);
         }

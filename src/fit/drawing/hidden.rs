@@ -78,8 +78,15 @@ impl Drawing {
     }
 }
 
-/// About how many pixels a stroke covers.
+/// About how many pixels a stroke covers; of an area, those of its bounding box.
 fn pixels(stroke: StrokeRef<'_>) -> f32 {
+    if stroke.is_area() {
+        let side = |axis: usize| {
+            let along = || stroke.points.iter().map(|p| p[axis]);
+            along().fold(0.0, f32::max) - along().fold(f32::INFINITY, f32::min)
+        };
+        return side(0) * side(1);
+    }
     let radius = stroke.radius();
     radius * (2.0 * stroke.length() + std::f32::consts::PI * radius)
 }

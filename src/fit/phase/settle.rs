@@ -109,6 +109,7 @@ fn course(settling: Settling, rates: Rates, pace: f32) -> Course {
         of: settling.iterations,
         rates: Rates {
             position: pace * rates.position,
+            area: pace * settling.area,
             radius: pace * rates.radius,
             color: settling.color_rate * rates.color,
             opacity: settling.color_rate * rates.opacity,

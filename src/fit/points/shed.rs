@@ -4,7 +4,6 @@ use rayon::prelude::*;
 
 use super::LEAST;
 use super::edits::{self, Edit};
-use super::terrain::Terrain;
 use crate::fit::budget::price::Price;
 use crate::fit::drawing::Drawing;
 
@@ -64,7 +63,7 @@ fn offers(drawing: &mut Drawing, price: Price) -> Vec<Offer> {
         };
         let edit = stroke
             .is_finite()
-            .then(|| edits::best_loss(&Terrain::new(&survey, stroke, i)))
+            .then(|| edits::best_loss(&survey, stroke, i))
             .flatten();
         let part = edit.map(|edit| Offer {
             stroke: i,

@@ -1,4 +1,4 @@
-//! The survey around one stroke: the change of the squared error by a shift of its vertices.
+//! The survey around one path, a stroke or a ring of an area: the change of the squared error by a shift of its vertices.
 //!
 //! With the slope g and the stiffness H of each vertex, a shift δ changes the squared error by about
 //! `Σ g·δ + ½ Σ H|δ|²`. The stiffness is a bound, after Gauss and Newton, so that gains are underestimated and losses
@@ -10,10 +10,13 @@ use super::LEAST;
 use crate::math::{self, nearest_on_segment};
 use crate::render::{Piece, Pieces, StrokeRef, Survey, flattened};
 
-/// One stroke and the survey of its vertices.
+/// One path and the survey of its vertices.
 pub(super) struct Terrain<'a> {
-    /// The index of the stroke.
+    /// The index of the stroke or area.
     pub(super) index: usize,
+    /// The index of the path's first point among those of the whole area; 0 for a stroke.
+    pub(super) first_point: usize,
+    /// A stroke, or a ring of an area as one.
     pub(super) stroke: StrokeRef<'a>,
     /// Its lines and curves, in drawing order.
     pub(super) pieces: Vec<Cut>,
@@ -33,8 +36,28 @@ pub(super) struct Cut {
 }
 
 impl<'a> Terrain<'a> {
-    pub(super) fn new(survey: &'a Survey, stroke: StrokeRef<'a>, index: usize) -> Self {
-        let range = survey.firsts[index] as usize..survey.firsts[index + 1] as usize;
+    /// The terrains of a stroke, or of all rings of an area.
+    pub(super) fn all(
+        survey: &'a Survey,
+        stroke: StrokeRef<'a>,
+        index: usize,
+    ) -> impl Iterator<Item = Self> {
+        let mut first = survey.firsts[index] as usize;
+        stroke.paths().map(move |(first_point, path)| {
+            let terrain = Self::new(survey, path, (index, first_point), first);
+            // Between rings is a vertex that no segment has.
+            first += terrain.vertices.len() + 1;
+            terrain
+        })
+    }
+
+    /// The terrain of a path whose vertices begin with number `start` of the survey.
+    fn new(
+        survey: &'a Survey,
+        stroke: StrokeRef<'a>,
+        (index, first_point): (usize, usize),
+        start: usize,
+    ) -> Self {
         let mut first = 0;
         let cut = |piece: Piece| {
             let steps = piece.steps(stroke, LEAST);
@@ -45,10 +68,14 @@ impl<'a> Terrain<'a> {
                 steps,
             }
         };
+        let pieces: Vec<Cut> = Pieces::of(stroke).map(cut).collect();
+        // The polyline of a dot is a segment without a length.
+        let range = start..start + first.max(1) + 1;
         Self {
             index,
+            first_point,
             stroke,
-            pieces: Pieces::of(stroke).map(cut).collect(),
+            pieces,
             vertices: &survey.vertices[range.clone()],
             slopes: &survey.slopes[range.clone()],
             stiffness: &survey.stiffness[range],

@@ -149,6 +149,7 @@ const BALANCED: Recipe = Recipe {
             radius: 0.3,
             color: 0.02,
             opacity: 0.02,
+            area: 0.08,
             last: 0.1,
         },
         softest: 4.0,
@@ -181,6 +182,7 @@ const BALANCED: Recipe = Recipe {
         },
         usual_radius: 2.0,
         radius_factors: [0.25, 4.0],
+        area_color: 0.1,
     },
     polish: Polish {
         iterations: 1000,
@@ -192,6 +194,7 @@ const BALANCED: Recipe = Recipe {
             radius: 0.5,
             color: 0.02,
             opacity: 0.03,
+            area: 0.08,
             last: 0.06,
         },
         jitter: Jitter {
@@ -284,6 +287,7 @@ const BALANCED: Recipe = Recipe {
         least_db: 0.02,
         iterations: 20,
         rate: 0.02,
+        area: 0.6,
         color_rate: 5.0,
         next_pace: 0.1,
         browser_db: 0.4,

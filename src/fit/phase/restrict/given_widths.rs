@@ -36,6 +36,8 @@ pub(super) fn run(session: &mut Session<'_>) -> Result<()> {
 fn hand_out(drawing: &mut Drawing, radii: &[f32]) {
     let grid = WidthGrid::Given(radii);
     drawing.free_mut().change(|_, stroke| {
-        stroke.style[0] = grid.nearest(stroke.style[0]);
+        if !stroke.is_area {
+            stroke.style[0] = grid.nearest(stroke.style[0]);
+        }
     });
 }

@@ -143,12 +143,19 @@ fn share(
         members: vec![i],
         color: stroke.color(),
         color_weight,
-        radius: grid.nearest(stroke.radius()),
+        radius: match stroke.is_area() {
+            true => 0.0,
+            false => grid.nearest(stroke.radius()),
+        },
         radius_weight: outline(stroke),
     };
     let pens = strokes.iter().zip(weights).enumerate().map(pen);
-    let is_opaque = |pen: &Group| strokes.get(pen.members[0]).opacity() == 1.0;
-    let (opaque, mut others): (Vec<Group>, Vec<Group>) = pens.partition(is_opaque);
+    // Only opaque strokes may become parts of one element; an area is one by itself.
+    let may_share = |pen: &Group| {
+        let stroke = strokes.get(pen.members[0]);
+        stroke.opacity() == 1.0 && !stroke.is_area()
+    };
+    let (opaque, mut others): (Vec<Group>, Vec<Group>) = pens.partition(may_share);
     let kept = (opaque.len() as f64 * recipe.pens.share).ceil() as usize;
     let rule = Rule {
         merges: opaque.len() - kept,

@@ -83,9 +83,10 @@ fn make_opaque(drawing: &mut Drawing, recipe: &Recipe, allowance: f32) -> Ties {
     // As much ink as before, or the colour that it has on the page.
     let (bounds, page) = (drawing.bounds, drawing.background());
     drawing.free_mut().change(|i, stroke| {
+        let is_area = stroke.is_area;
         if becomes[i] {
             let [radius, color @ .., opacity] = stroke.style;
-            if *radius < sharing.thin {
+            if *radius < sharing.thin && !is_area {
                 *radius *= *opacity;
             } else if let Some(page) = page {
                 let mixed = color.iter_mut().zip(page);
@@ -107,6 +108,7 @@ fn make_opaque(drawing: &mut Drawing, recipe: &Recipe, allowance: f32) -> Ties {
 fn share_widths(drawing: &mut Drawing, recipe: &Recipe, allowance: f32) -> Ties {
     let strokes = drawing.free().iter().enumerate();
     let mut groups: Vec<Group> = strokes
+        .filter(|(_, stroke)| !stroke.is_area())
         .map(|(i, stroke)| Group {
             members: vec![i],
             color: [0.0; 3],
