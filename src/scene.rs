@@ -14,7 +14,7 @@ mod written_path;
 
 pub use grid::MAX_PRECISION;
 pub(crate) use grid::UNITS_PER_PX;
-pub use mark::{Area, Mark};
+pub use mark::{Area, Mark, Marks};
 pub(crate) use overlap::overlaps;
 pub use path::{MAX_POINTS, Path, PathPoint, Piece};
 pub use quantize::{Dropped, MIN_WIDTH, Quantized};

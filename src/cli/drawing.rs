@@ -35,6 +35,11 @@ const OPTIONS: [(&str, &str); 3] = [
     * draft: An eighth of the time, 2 to 3 dB worse
     * balanced: The default
     * best: Three to five times the time, 0.7 to 0.9 dB better
+--marks MARKS=auto
+    What the drawing is made of
+    * auto: Areas for what is filled, strokes for lines and for the rest. With --pens or --order travel, strokes
+    * strokes: Strokes alone, for plotters and embroidery
+    * areas: Areas alone, for cutters
 --progressive
     Fit each layer for the layers below it only. The drawing is good after every layer, and some dB worse in the end
 --opaque

@@ -9,8 +9,8 @@ use super::widths::Widths;
 use crate::coverage::CoverageSchedule;
 use crate::error::{Error, ErrorKind, Result};
 use crate::math;
-use crate::scene::{MAX_POINTS, MAX_PRECISION, Mark, Rgb, Scene, quantum};
-use crate::svg::{Form, WriteOptions};
+use crate::scene::{MAX_POINTS, MAX_PRECISION, Mark, Marks, Rgb, Scene, quantum};
+use crate::svg::{Form, Order, WriteOptions};
 use crate::threads::Workers;
 
 /// Configuration of a fit. Equal configurations of equal pictures give equal bytes.
@@ -26,6 +26,8 @@ pub struct Config {
     pub preset: Preset,
     /// True if each layer is polished on its own, so that the drawing looks finished after each.
     pub progressive: bool,
+    /// The kinds of marks of the drawing.
+    pub marks: Marks,
     /// Which errors count; `None` for [`ErrorWeighting::Exact`] where a fidelity is asked for, which is about exact errors, and for
     /// [`ErrorWeighting::Eye`] elsewhere.
     pub look: Option<ErrorWeighting>,
@@ -60,6 +62,7 @@ impl Default for Config {
             quality: None,
             preset: Preset::default(),
             progressive: false,
+            marks: Marks::default(),
             look: None,
             opaque: false,
             coverage: CoverageSchedule::default(),
@@ -180,6 +183,15 @@ impl Config {
         self.look.unwrap_or(usual)
     }
 
+    /// The kinds of marks that the drawing may have. Pens, and an order for a plotter, draw no areas.
+    pub(super) fn marks(&self) -> Marks {
+        let is_for_pens = self.pens.is_some() || self.file.order == Order::Travel;
+        match self.marks {
+            Marks::Auto if is_for_pens => Marks::Strokes,
+            marks => marks,
+        }
+    }
+
     /// True if strokes may have more than two points. In a file of outlines a point takes as many bytes as a stroke, so
     /// that none pays.
     pub(super) fn allows_points(&self) -> bool {
@@ -249,6 +261,11 @@ impl Config {
         }
         if time.is_some_and(|time| time.is_zero()) {
             return refuse("a time of 0 s leaves none to fit in: give more".into());
+        }
+        if self.marks == Marks::Areas && self.pens.is_some() {
+            return refuse(
+                "pens draw strokes, not areas: leave out pens, or ask for marks of strokes".into(),
+            );
         }
         self.check_colors()?;
         self.recipe().check()?;

@@ -7,10 +7,12 @@ use std::str::FromStr;
 
 use super::{Background, Colors, ErrorWeighting, Preset};
 use crate::error::{Error, ErrorKind, Result};
-use crate::scene::{color, quantum};
+use crate::scene::{Marks, color, quantum};
 use crate::words::{short, words};
 
 words!(Preset, "a preset": Draft = "draft", Balanced = "balanced", Best = "best");
+
+words!(Marks, "a kind of marks": Auto = "auto", Strokes = "strokes", Areas = "areas");
 
 words!(ErrorWeighting, "a look": Eye = "eye", Exact = "exact");
 

@@ -12,6 +12,18 @@ pub enum Mark {
     Area(Area),
 }
 
+/// The kinds of marks that a drawing may have.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Marks {
+    /// Areas for what is filled, strokes for what is drawn with a pen, and for all that is left.
+    #[default]
+    Auto,
+    /// Strokes alone, for plotters and embroidery.
+    Strokes,
+    /// Areas alone, for cutters.
+    Areas,
+}
+
 /// Closed paths, filled where they wind around a point (SVG's nonzero rule), in one colour.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Area {

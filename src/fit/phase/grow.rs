@@ -15,6 +15,7 @@ use crate::fit::run::history::OpenStage;
 use crate::fit::run::session::Session;
 use crate::math;
 use crate::metrics::psnr_db;
+use crate::scene::Marks;
 
 /// Seeds the next stage, unless the plan or a budget has ended.
 pub(in crate::fit) fn next_stage(session: &mut Session<'_>) -> Result<Outcome> {
@@ -116,6 +117,7 @@ fn seed(session: &mut Session<'_>, planned: PlannedStage) {
     session.progress.enter(planned.index);
     let (drawing, timer) = (&mut session.drawing, &mut session.timer);
     let (probing, key) = (session.recipe.probing, session.config.seed);
+    let marks = session.config.marks();
     let PlannedStage {
         index,
         count,
@@ -125,7 +127,10 @@ fn seed(session: &mut Session<'_>, planned: PlannedStage) {
         drawing.sharpen(drawing.bounds.drawable(scale));
         drawing.freeze();
         let before = (drawing.len(), psnr_db(drawing.mse()));
-        let candidates = search(drawing, count, scale, probing, key);
+        let candidates = match marks {
+            Marks::Areas => Vec::new(),
+            Marks::Auto | Marks::Strokes => search(drawing, count, scale, probing, key),
+        };
         // The best candidate is drawn last, so that none of lesser gain hides it.
         drawing.extend(candidates.iter().rev().map(|c| c.stroke), index);
         before

@@ -10,6 +10,7 @@
 use crate::fit::phase::search::search;
 use crate::fit::run::session::Session;
 use crate::render::Params;
+use crate::scene::Marks;
 use crate::seed::Candidate;
 
 /// Number of strokes that one relocation may move.
@@ -42,7 +43,10 @@ pub(in crate::fit) fn relocate(
             .map(|p| price.least_worth(p))
             .collect();
         // Candidates whose gain pays.
-        let count = wanted.max(room.min(wanted * relocation.fill));
+        let count = match config.marks() {
+            Marks::Areas => 0,
+            Marks::Auto | Marks::Strokes => wanted.max(room.min(wanted * relocation.fill)),
+        };
         let candidates = search(drawing, count, scale, recipe.probing, config.seed);
         let mut paying: Vec<Candidate> = candidates
             .into_iter()
