@@ -128,6 +128,11 @@ impl Price {
         [self.entry(price), self.stake(price)]
     }
 
+    /// The squared error that may be added to save this many bytes.
+    pub(in crate::fit) fn of_saved(&self, bytes: usize) -> f32 {
+        self.stake(self.of_bytes(bytes))
+    }
+
     /// Bytes of a stroke.
     pub(in crate::fit) fn bytes_of(&self, stroke: StrokeRef<'_>) -> usize {
         mark_bytes(&stroke.to_mark(), &self.file)

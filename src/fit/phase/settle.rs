@@ -5,6 +5,8 @@
 //! subtracts a part of that offset from the target, and descends for a few iterations. The best file is kept.
 //! [`renderers`](crate::fit::renderers) says which renderers count, and how much.
 
+mod decimals;
+
 use crate::error::Result;
 use crate::fit::budget;
 use crate::fit::descent::{Aim, Course};
@@ -72,6 +74,21 @@ fn run(session: &mut Session<'_>) -> Result<()> {
     }
     session.drawing.revert(best.memento);
     (session.file, session.renderings) = (Some(best.file), Some(best.seen));
+    drop_decimals(session)
+}
+
+/// Rounds areas where that pays, and looks at the file that this has led to.
+fn drop_decimals(session: &mut Session<'_>) -> Result<()> {
+    let Some(file) = session.file.take() else {
+        return Ok(());
+    };
+    let (scene, precision) = (&file.rounded.scene, session.config.file.precision);
+    if decimals::drop_decimals(&mut session.drawing, session.price, scene, precision) {
+        let (file, seen) = session.render_for_settling()?;
+        (session.file, session.renderings) = (Some(file), Some(seen));
+    } else {
+        session.file = Some(file);
+    }
     Ok(())
 }
 
