@@ -1,7 +1,7 @@
-//! strokefit turns a raster picture into an editable SVG made of *strokes*: paths with round caps and joins, each in
-//! one colour.
+//! strokefit turns a raster picture into an editable SVG made of *marks*: *strokes*, which are paths with round caps and
+//! joins, and *areas*, which are filled outlines, each in one colour.
 //!
-//! It puts strokes where the drawing differs most from the picture, improves them by gradient descent
+//! It traces what is flat, puts strokes where the drawing then differs most from the picture, improves all by gradient descent
 //! through a differentiable renderer, keeps those that pay, and repeats. Then it writes SVG, renders that SVG with
 //! resvg, and reports how faithful the file is.
 //!
@@ -49,11 +49,11 @@
 //! math  rng                       points, draws by counter
 //! sdf  coverage  scene  image     distances, soft edges, drawings, pictures
 //! metrics  loss  optim            measures, losses, optimisers
-//! render                          strokes → canvas, ∂L/∂canvas → ∂L/∂strokes, worth
+//! render                          marks → canvas, ∂L/∂canvas → ∂L/∂marks, worth
 //! seed                            residual → candidates, ranked by gain in closed form
-//! trace                           residual → strokes along the lines that are seen
+//! trace                           residual → areas, and strokes along the lines that are seen
 //! svg                             drawing → SVG text
-//! rasters                         stroke → the pixels that resvg, Chromium and exact renderers cover
+//! rasters                         mark → the pixels that resvg, Chromium and exact renderers cover
 //! verify                          SVG text → resvg's render of it
 //! engines                         other programs' renders of it
 //! fit                             stages, polish, restricting, settling, budgets
@@ -73,21 +73,22 @@
 //! | word | meaning |
 //! | --- | --- |
 //! | target | the picture to reproduce, with or without alpha |
+//! | mark | one element of a drawing: a stroke or an area; see [`scene::Mark`] |
 //! | stroke | all points within a radius (px) of a path, with a colour and an opacity (0..1); see [`scene`] |
-//! | path | the centre line of a stroke: *points*, open or closed; see [`scene::Path`] |
+//! | area | one or more closed paths, its *rings*, filled where they wind around a point (SVG's nonzero rule), with a colour and an opacity; see [`scene::Area`] |
+//! | path | *points*, open or closed: the centre line of a stroke, or a ring; see [`scene::Path`] |
 //! | point | of a path: *on* it, joined to the next by a line, or *off* it, where it is the control point of a curve |
 //! | capsule | the stroke of two on-points; with equal ends it is a *dot*, the stroke of one point; see `sdf` |
-//! | area | closed *rings*, filled where they wind around a point (SVG's nonzero rule), with a colour and an opacity; see `sdf`. The renderer draws and differentiates areas; nothing seeds or writes them yet |
-//! | scene | the drawing: size (px), background, and strokes from back to front, grouped in stages |
-//! | stage | strokes that are added together: seeded where the residual is largest, fitted with all earlier strokes frozen, kept if they pay |
-//! | layer | a group of the SVG, holding the strokes of one stage or of one colour |
-//! | background | the colour behind all strokes; part of the drawing and of the file; absent if the drawing is transparent |
-//! | shade | a gradient over the whole page, on the background and behind all strokes; part of the drawing and of the file; see [`scene::Shade`] |
-//! | backdrop | what strokes are composited over: a colour or a picture, such as the canvas of frozen strokes |
+//! | scene | the drawing: size (px), background, and marks from back to front, grouped in stages |
+//! | stage | marks that are added together: seeded where the residual is largest, fitted with all earlier strokes frozen, kept if they pay |
+//! | layer | a group of the SVG, holding the marks of one stage or of one colour |
+//! | background | the colour behind all marks; part of the drawing and of the file; absent if the drawing is transparent |
+//! | shade | a gradient over the whole page, on the background and behind all marks; part of the drawing and of the file; see [`scene::Shade`] |
+//! | backdrop | what marks are composited over: a colour or a picture, such as the canvas of frozen strokes |
 //! | masking | that detail of the picture hides errors from the eye |
 //! | matte | the colour that a transparent picture is flattened onto, to be looked at or measured |
 //! | base | the SVG that a fit goes on from |
-//! | canvas | the picture that strokes render to; see [`render`] |
+//! | canvas | the picture that marks render to; see [`render`] |
 //! | residual | target − canvas, per channel |
 //! | block, tile | 4×4 px and 32×32 px, the units of work of the renderer |
 //!
@@ -95,7 +96,7 @@
 //!
 //! | word | meaning |
 //! | --- | --- |
-//! | coverage | how much of a pixel a stroke covers, 0..1: a soft function of the signed distance; see [`coverage`] |
+//! | coverage | how much of a pixel a mark covers, 0..1: a soft function of the signed distance; see [`coverage`] |
 //! | softness | width of the soft edge (px); it anneals towards the hard edge |
 //! | edge | a coverage function with its softness |
 //!
@@ -104,8 +105,8 @@
 //! | word | meaning |
 //! | --- | --- |
 //! | candidate | a stroke that seeding proposes, with its best colour and opacity |
-//! | area | the pixels of one colour, antialiased ones with the nearer of the colours beside them; see `trace` |
-//! | skeleton | the pixels in the middle of an area, as a graph of nodes and edges |
+//! | region | connected pixels of one colour, antialiased ones with the nearer of the colours beside them; see `trace` |
+//! | skeleton | the pixels in the middle of a region, as a graph of nodes and edges |
 //! | line | a run of the skeleton that goes straight through crossings; tracing lays a stroke along it |
 //! | bridge | the part of a line that another one covers |
 //! | gain | squared error that a candidate would remove, in closed form |
