@@ -14,6 +14,7 @@ mod written_path;
 
 pub use grid::MAX_PRECISION;
 pub(crate) use grid::UNITS_PER_PX;
+pub(crate) use mark::counted;
 pub use mark::{Area, Mark, Marks};
 pub(crate) use overlap::overlaps;
 pub use path::{MAX_POINTS, Path, PathPoint, Piece};
@@ -97,6 +98,11 @@ impl Scene {
     /// The marks that are areas, back to front.
     pub fn areas(&self) -> impl Iterator<Item = &Area> {
         self.marks().filter_map(Mark::as_area)
+    }
+
+    /// The numbers of areas and of strokes in words: "12 areas, 30 strokes".
+    pub fn counted(&self) -> String {
+        counted(self.areas().count(), self.strokes().count())
     }
 
     /// Number of marks.

@@ -1,16 +1,19 @@
-//! The strokes of a drawing as arrays.
+//! The strokes and areas of a drawing as arrays.
+
+use std::iter;
 
 use numpy::{Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use strokefit::math::Point;
-use strokefit::scene::{Mark, Path, PathPoint, Scene};
+use strokefit::scene::{Area, Mark, Path, PathPoint, Scene, Stroke};
 
 use crate::failure::Failure;
 
 /// Points (m × 2, px), which of them are on their path (m), where each stroke's points begin (n + 1), which paths are
-/// closed (n), widths (n, px), colours (n × 3), opacities (n) and layers (n, from 0), for n strokes of m points.
-pub(crate) type Columns<'py> = (
+/// closed (n), widths (n, px), colours (n × 3), opacities (n), layers (n, from 0) and places among all marks (n, from 0),
+/// for n strokes of m points.
+pub(crate) type StrokeColumns<'py> = (
     Bound<'py, PyArray2<f32>>,
     Bound<'py, PyArray1<bool>>,
     Bound<'py, PyArray1<i64>>,
@@ -18,38 +21,91 @@ pub(crate) type Columns<'py> = (
     Bound<'py, PyArray1<f32>>,
     Bound<'py, PyArray2<f32>>,
     Bound<'py, PyArray1<f32>>,
+    Bound<'py, PyArray1<i64>>,
+    Bound<'py, PyArray1<i64>>,
+);
+
+/// Points (m × 2, px), which of them are on their ring (m), where each ring's points begin (k + 1), where each area's rings
+/// begin (n + 1), colours (n × 3), opacities (n), layers (n, from 0) and places among all marks (n, from 0), for n areas of
+/// k rings of m points.
+pub(crate) type AreaColumns<'py> = (
+    Bound<'py, PyArray2<f32>>,
+    Bound<'py, PyArray1<bool>>,
+    Bound<'py, PyArray1<i64>>,
+    Bound<'py, PyArray1<i64>>,
+    Bound<'py, PyArray2<f32>>,
+    Bound<'py, PyArray1<f32>>,
+    Bound<'py, PyArray1<i64>>,
     Bound<'py, PyArray1<i64>>,
 );
 
 /// The strokes of `scene`, back to front.
-pub(crate) fn of<'py>(py: Python<'py>, scene: &Scene) -> PyResult<Columns<'py>> {
-    let points = || scene.strokes().flat_map(|stroke| stroke.path.points());
-    let ends = scene.strokes().scan(0, |end, stroke| {
-        *end += stroke.path.points().len() as i64;
-        Some(*end)
-    });
-    let starts: Vec<i64> = std::iter::once(0).chain(ends).collect();
-    let closed = scene.strokes().map(|stroke| stroke.path.is_closed());
-    let widths = scene.strokes().map(|stroke| 2.0 * stroke.radius);
-    let opacities = scene.strokes().map(|stroke| stroke.opacity);
-    let layers = scene.stages.iter().zip(0..);
-    let layers = layers.flat_map(|(stage, layer)| {
-        let strokes = stage.marks.iter().filter_map(Mark::as_stroke);
-        strokes.map(move |_| layer)
-    });
+pub(crate) fn strokes<'py>(py: Python<'py>, scene: &Scene) -> PyResult<StrokeColumns<'py>> {
+    let (strokes, layers, order) = placed(scene, Mark::as_stroke);
+    let strokes = || strokes.iter().copied();
+    let points = || strokes().flat_map(|stroke| stroke.path.points());
     Ok((
         places(py, points().map(|point| point.at))?,
         column(py, points().map(|point| point.is_on)),
-        PyArray1::from_vec(py, starts),
-        column(py, closed),
-        column(py, widths),
-        rows(py, scene.strokes().map(|stroke| stroke.color))?,
-        column(py, opacities),
-        column(py, layers),
+        starts(
+            py,
+            strokes().map(|stroke: &Stroke| stroke.path.points().len()),
+        ),
+        column(py, strokes().map(|stroke| stroke.path.is_closed())),
+        column(py, strokes().map(|stroke| 2.0 * stroke.radius)),
+        rows(py, strokes().map(|stroke| stroke.color))?,
+        column(py, strokes().map(|stroke| stroke.opacity)),
+        PyArray1::from_vec(py, layers),
+        PyArray1::from_vec(py, order),
     ))
 }
 
-/// The centre line of one stroke as the corners of a polyline that is at most `tolerance` px away from it.
+/// The areas of `scene`, back to front.
+pub(crate) fn areas<'py>(py: Python<'py>, scene: &Scene) -> PyResult<AreaColumns<'py>> {
+    let (areas, layers, order) = placed(scene, Mark::as_area);
+    let areas = || areas.iter().copied();
+    let rings = || areas().flat_map(|area: &Area| &area.rings);
+    let points = || rings().flat_map(Path::points);
+    Ok((
+        places(py, points().map(|point| point.at))?,
+        column(py, points().map(|point| point.is_on)),
+        starts(py, rings().map(|ring| ring.points().len())),
+        starts(py, areas().map(|area| area.rings.len())),
+        rows(py, areas().map(|area| area.color))?,
+        column(py, areas().map(|area| area.opacity)),
+        PyArray1::from_vec(py, layers),
+        PyArray1::from_vec(py, order),
+    ))
+}
+
+/// Marks of one kind, with their layers and their places among all marks, both from 0.
+fn placed<'a, M>(
+    scene: &'a Scene,
+    kind: impl Fn(&'a Mark) -> Option<M>,
+) -> (Vec<M>, Vec<i64>, Vec<i64>) {
+    let layers = scene.stages.iter().zip(0..);
+    let all = layers.flat_map(|(stage, layer)| stage.marks.iter().map(move |mark| (mark, layer)));
+    let (mut marks, mut of_layers, mut order) = (Vec::new(), Vec::new(), Vec::new());
+    for ((mark, layer), place) in all.zip(0..) {
+        if let Some(mark) = kind(mark) {
+            marks.push(mark);
+            of_layers.push(layer);
+            order.push(place);
+        }
+    }
+    (marks, of_layers, order)
+}
+
+/// Where each of some runs begins, and where the last one ends.
+fn starts(py: Python<'_>, lengths: impl Iterator<Item = usize>) -> Bound<'_, PyArray1<i64>> {
+    let ends = lengths.scan(0, |end, length| {
+        *end += length as i64;
+        Some(*end)
+    });
+    PyArray1::from_vec(py, iter::once(0).chain(ends).collect())
+}
+
+/// The centre line of a stroke, or a ring of an area, as the corners of a polyline that is at most `tolerance` px away from it.
 pub(crate) fn flattened<'py>(
     points: &PyReadonlyArray2<'py, f32>,
     on_path: &PyReadonlyArray1<'py, bool>,

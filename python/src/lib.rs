@@ -25,13 +25,13 @@ use strokefit::report;
 use strokefit::verify::{self, Size};
 
 use aside::aside;
-use columns::Columns;
+use columns::{AreaColumns, StrokeColumns};
 use failure::Failure;
 use job::{BaseText, Job};
 use picture::Picture;
 
-/// A drawing as Python takes it: the SVG, the report as JSON, and the strokes.
-type Drawn<'py> = (String, String, Columns<'py>);
+/// A drawing as Python takes it: the SVG, the report as JSON, the strokes and the areas.
+type Drawn<'py> = (String, String, StrokeColumns<'py>, AreaColumns<'py>);
 
 /// Ends fits from other threads: give one as `cancel`, and call its method `cancel()`.
 ///
@@ -82,11 +82,12 @@ fn draw<'py>(
     if let Some(progress) = progress.filter(|_| fit.stop != Stop::Interrupted) {
         progress.call1((1.0, fit.scene.len(), judged.soft.psnr_db))?;
     }
-    let columns = columns::of(py, &fit.scene)?;
-    Ok((judged.svg, report, columns))
+    let strokes = columns::strokes(py, &fit.scene)?;
+    let areas = columns::areas(py, &fit.scene)?;
+    Ok((judged.svg, report, strokes, areas))
 }
 
-/// The centre line of a stroke as a polyline, n × 2, at most `tolerance` px away from it.
+/// The centre line of a stroke, or a ring of an area, as a polyline, n × 2, at most `tolerance` px away from it.
 #[pyfunction]
 fn flatten<'py>(
     points: PyReadonlyArray2<'py, f32>,

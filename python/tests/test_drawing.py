@@ -74,9 +74,9 @@ def bent() -> strokefit.Drawing:
 def test_strokes_are_those_of_the_file(drawing: strokefit.Drawing, bent: strokefit.Drawing) -> None:
     for some in (drawing, bent):
         elements = re.findall("<path[^>]*>", some.svg)
-        assert len(some.strokes) == some.report["strokes"] == len(elements)
-        assert len(some.strokes.points) == some.report["points"]
-        for stroke, element in zip(some.strokes, elements):
+        assert len(some.strokes) + len(some.areas) == some.report["strokes"] == len(elements)
+        assert len(some.strokes.points) + len(some.areas.points) == some.report["points"]
+        for stroke, element in zip(some.strokes, (elements[i] for i in some.strokes.order)):
             attributes = dict(re.findall(r'(\S+)="([^"]*)"', element))
             expected, closed = pieces_of_data(attributes["d"])
             pieces = pieces_of_stroke(stroke)
@@ -179,11 +179,60 @@ def test_strokes_are_a_sequence_with_columns(drawing: strokefit.Drawing) -> None
     assert [s.width for s in strokes] == strokes.widths.tolist()
     assert strokes[-1].opacity == strokes[n - 1].opacity == strokes[-2:][1].opacity
     assert (np.diff(strokes.layers) >= 0).all()
-    assert strokes.layers.max() + 1 == len(drawing.report["stages"])
+    assert max(strokes.layers.max(), *drawing.areas.layers, 0) + 1 == len(drawing.report["stages"])
     with pytest.raises(IndexError):
         strokes[n]
     with pytest.raises(ValueError, match="read-only"):
         strokes[0].points[0] = 1
+
+
+@pytest.fixture(scope="module")
+def filled() -> strokefit.Drawing:
+    """A frame, a line and a drop, back to front, as a drawing has them."""
+    svg = """<svg xmlns="http://www.w3.org/2000/svg" width="56" height="40" viewBox="0 0 56 40">
+<rect width="56" height="40" fill="#ffffff"/>
+<g id="stage-1" fill="none" stroke-linecap="round">
+<path d="M4 4h30v30H4zm8 8v14h14V12z" fill="#204060"/>
+<path d="M36 36L50 24" stroke="#108040" stroke-width="3"/>
+</g>
+<g id="stage-2">
+<path d="M40 4h10Q50 20 40 20z" fill="#a03010"/>
+</g>
+</svg>"""
+    return strokefit.refine(svg, strokefit.render(svg, background="#ffffff"), strokes=3, preset="draft")
+
+
+def test_areas_have_rings_and_a_place_among_strokes(filled: strokefit.Drawing) -> None:
+    frame, drop = filled.areas
+    assert [len(ring) for ring in frame.rings] == [4, 4] and [len(ring) for ring in drop.rings] == [4]
+    assert drop.on_path[0].tolist() == [True, True, False, True]
+    assert filled.areas.order.tolist() == [0, 2] and filled.strokes.order.tolist() == [1]
+    assert filled.areas.layers.tolist() == [0, 1] and filled.strokes.layers.tolist() == [0]
+    assert frame.opacity == 1 and frame.color == pytest.approx((0x20 / 255, 0x40 / 255, 0x60 / 255), abs=0.02)
+    assert [filled.report[count] for count in ("strokes", "areas")] == [3, 2]
+    assert filled.report["points"] == len(filled.strokes.points) + len(filled.areas.points)
+    assert "2 areas, 1 strokes" in repr(filled) and repr(filled.areas) == "<2 areas>"
+    with pytest.raises(ValueError, match="read-only"):
+        frame.rings[0][0] = 1
+
+
+def test_flattened_rings_are_polygons(filled: strokefit.Drawing) -> None:
+    outer, inner = filled.areas[0].flattened()
+    assert abs(signed_area(outer)) == pytest.approx(900, abs=9)
+    assert signed_area(outer) * signed_area(inner) < 0
+    (drop,) = filled.areas[-1].flattened(0.01)
+    assert (drop[0] == drop[-1]).all() and len(drop) > 5
+
+
+def signed_area(polygon: np.ndarray) -> float:
+    (x, y), (next_x, next_y) = polygon[:-1].T, polygon[1:].T
+    return float((x * next_y - next_x * y).sum() / 2)
+
+
+def test_areas_survive_pickling(filled: strokefit.Drawing) -> None:
+    areas = pickle.loads(pickle.dumps(filled)).areas
+    assert (areas.points == filled.areas.points).all() and areas[1][2:] == filled.areas[1][2:]
+    assert (areas.ring_starts == filled.areas.ring_starts).all()
 
 
 def test_renders_have_the_size_and_channels_asked_for(drawing: strokefit.Drawing) -> None:

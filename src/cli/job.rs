@@ -157,9 +157,9 @@ impl Job<'_> {
     /// Outcome in a line.
     pub(super) fn summary(&self, drawn: &Drawn) -> String {
         format!(
-            "{}: {} strokes, {} bytes, {:.2} s, fidelity {:.2} dB, agreement {:.2} dB",
+            "{}: {}, {} bytes, {:.2} s, fidelity {:.2} dB, agreement {:.2} dB",
             output::name(&self.output),
-            drawn.judged.fit.scene.len(),
+            drawn.judged.fit.scene.counted(),
             drawn.judged.svg.len(),
             drawn.wall.as_secs_f64(),
             drawn.judged.verdict.fidelity.psnr_db,

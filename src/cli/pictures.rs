@@ -140,7 +140,7 @@ impl<'a> Pictures<'a> {
                 }
                 (format, None) if format.moves() => {
                     return Err(misuse(format!(
-                        "{}: the SVG is not made of strokes only, so it cannot be drawn stroke by stroke: leave this output out",
+                        "{}: the SVG is not made of strokes and areas only, so it cannot be drawn one by one: leave this output out",
                         path.display()
                     )));
                 }

@@ -106,8 +106,8 @@ fn tell_full(options: &Options, before: usize, verbosity: Verbosity) {
 fn tell(base: &Base, verbosity: Verbosity) {
     if !base.scene.is_empty() {
         verbosity.say(format_args!(
-            "continuing from {} strokes in {} layers",
-            base.scene.len(),
+            "continuing from {} in {} layers",
+            base.scene.counted(),
             base.scene.stages.len()
         ));
     }

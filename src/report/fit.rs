@@ -18,11 +18,14 @@ pub struct FitReport {
     pub schema: u32,
     /// The picture.
     pub input: Input,
-    /// Strokes in the drawing.
+    /// Strokes and areas in the drawing.
     pub strokes: usize,
+    /// Areas among them.
+    #[serde(default)]
+    pub areas: usize,
     /// Points of all their paths together.
     pub points: usize,
-    /// Strokes that were dropped because they became non-finite or could not be seen.
+    /// Strokes and areas that were dropped because they became non-finite or could not be seen.
     pub dropped: usize,
     /// Number of them for each reason.
     pub dropped_for: Dropped,
@@ -32,7 +35,7 @@ pub struct FitReport {
     pub svg_bytes: usize,
     /// Its length when compressed by gzip.
     pub svg_gzip_bytes: usize,
-    /// Its length, head and layers included, per stroke; `null` without strokes.
+    /// Its length, head and layers included, per stroke or area; `null` where there is none.
     pub bytes_per_stroke: Option<f64>,
     /// Wall time from the start of the command to the verdict, s.
     pub wall_s: f64,
@@ -73,7 +76,7 @@ pub struct FitReport {
 pub struct BaseEntry {
     /// As it was named; `-` for standard input.
     pub path: String,
-    /// Strokes that were taken up.
+    /// Strokes and areas that were taken up.
     pub strokes: usize,
     /// Elements that were passed through as they are.
     pub elements: usize,
@@ -84,7 +87,7 @@ pub struct BaseEntry {
 pub struct StageEntry {
     /// Index of the layer, from 1.
     pub index: usize,
-    /// Strokes of the stage in the drawing.
+    /// Strokes and areas of the stage in the drawing.
     pub strokes: usize,
     /// Iterations of the optimiser.
     pub iterations: usize,
@@ -174,6 +177,7 @@ impl FitReport {
             schema: SCHEMA,
             input: Input::new(run.input, &fit.target),
             strokes,
+            areas: fit.scene.areas().count(),
             points: fit.scene.points(),
             dropped: fit.dropped.total(),
             dropped_for: fit.dropped,
@@ -238,6 +242,7 @@ mod tests {
                 remarks: Vec::new(),
             },
             strokes: 9,
+            areas: 2,
             points: 20,
             dropped: 1,
             dropped_for: Dropped {
@@ -290,6 +295,7 @@ mod tests {
             "schema": 1,
             "input": {"path": "a.png", "width": 4, "height": 3},
             "strokes": 9,
+            "areas": 2,
             "points": 20,
             "dropped": 1,
             "dropped_for": {"non_finite": 0, "invisible": 0, "off_page": 1, "points": 5},
@@ -314,6 +320,14 @@ mod tests {
             "base": {"path": "b.svg", "strokes": 4, "elements": 0},
         });
         assert_eq!(serde_json::to_value(report()).unwrap(), expected);
+    }
+
+    #[test]
+    fn a_report_from_before_areas_has_none() {
+        let mut json = serde_json::to_value(report()).unwrap();
+        json.as_object_mut().unwrap().remove("areas");
+        let read: FitReport = serde_json::from_value(json).unwrap();
+        assert_eq!(read.areas, 0);
     }
 
     #[test]

@@ -116,6 +116,19 @@ impl Mark {
     }
 }
 
+/// Numbers of areas and strokes in words: "12 areas, 30 strokes". Areas go without saying where there are none.
+pub(crate) fn counted(areas: usize, strokes: usize) -> String {
+    let count = |count: usize, name: &str| match count {
+        1 => format!("1 {name}"),
+        count => format!("{count} {name}s"),
+    };
+    match (areas, strokes) {
+        (0, strokes) => count(strokes, "stroke"),
+        (areas, 0) => count(areas, "area"),
+        (areas, strokes) => format!("{}, {}", count(areas, "area"), count(strokes, "stroke")),
+    }
+}
+
 impl From<Stroke> for Mark {
     fn from(stroke: Stroke) -> Self {
         Self::Stroke(stroke)

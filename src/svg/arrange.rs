@@ -246,6 +246,7 @@ fn above(strokes: &[Written]) -> Vec<Vec<usize>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::PathPoint;
 
     const PX: i64 = crate::scene::UNITS_PER_PX;
 
@@ -271,6 +272,57 @@ mod tests {
             stroke(70, 4, 2),
         ];
         assert_eq!(by_width(&strokes), [2, 0, 3, 1]);
+    }
+
+    /// A square whose sides are this far `away` from (x, 50); with a `hole`, a frame 4 px wide.
+    fn square(x: i64, away: i64, hole: bool, color: u8) -> Written {
+        let ring = |away: i64| {
+            let [left, right] = [x - away, x + away];
+            let [top, bottom] = [50 - away, 50 + away];
+            [[left, top], [right, top], [right, bottom], [left, bottom]]
+                .map(|p| PathPoint::on(p.map(|px| px * PX)))
+        };
+        let mut inner = ring(away - 4).to_vec();
+        inner.reverse();
+        let rings = [Some(ring(away).to_vec()), hole.then_some(inner)];
+        Written {
+            paths: rings
+                .into_iter()
+                .flatten()
+                .map(|points| WrittenPath::new(points, true))
+                .collect(),
+            width: 0,
+            color: [color; 3],
+            opacity: 255,
+        }
+    }
+
+    #[test]
+    fn an_area_goes_past_what_it_does_not_cover_and_nothing_else() {
+        let by_color = |marks: &[Written]| order(marks, |s| s.color, |_| ());
+        // A line in the middle of the page, and the square around it or the frame.
+        let line = || stroke(50, 2, 2);
+        assert_eq!(
+            by_color(&[square(50, 48, false, 1), line(), square(50, 20, false, 1)]),
+            [0, 1, 2]
+        );
+        assert_eq!(
+            by_color(&[square(90, 30, false, 1), line(), square(90, 20, false, 1)]),
+            [0, 2, 1]
+        );
+        let inside = square(50, 10, false, 2);
+        assert_eq!(
+            by_color(&[
+                square(50, 40, true, 1),
+                inside.clone(),
+                square(50, 40, true, 1)
+            ]),
+            [0, 2, 1]
+        );
+        assert_eq!(
+            by_color(&[square(50, 40, false, 1), inside, square(50, 40, false, 1)]),
+            [0, 1, 2]
+        );
     }
 
     #[test]

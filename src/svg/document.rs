@@ -1,7 +1,7 @@
 //! Adds layers to any SVG: its text stays byte for byte, and the layers go before the end of its root element.
 //!
 //! The layers are in a group of their own. The group declares its namespaces, undoes the `viewBox` by a
-//! `transform`, and resets the properties that strokes would inherit; so a prefix, another unit or a
+//! `transform`, and resets the properties that marks would inherit; so a prefix, another unit or a
 //! stroke opacity on the root does not affect them. The attribute `data-strokefit` holds the size of the
 //! picture and marks the group, so that it can be found again. A drawing by strokefit needs no such group.
 
@@ -10,22 +10,25 @@ mod outline;
 pub use outline::page_width;
 
 use super::dialect::{INKSCAPE_NAMESPACE, SVG_NAMESPACE};
-use super::{WriteOptions, layers, read};
+use super::{Form, WriteOptions, layers, read};
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::Scene;
 use outline::{MARK, Outline};
 
-/// Properties that strokes inherit and do not set themselves. As a style they override rules for groups in
+/// Properties that marks inherit and do not set themselves. As a style they override rules for groups in
 /// the document's style sheets.
 const RESET: &str = "stroke-opacity:1;stroke-dasharray:none;marker:none;paint-order:normal;\
                      shape-rendering:auto;visibility:visible";
+
+/// More of them, which only what is filled inherits.
+const RESET_FILL: &str = ";fill-opacity:1;fill-rule:nonzero;stroke:none";
 
 /// Maps px of a picture to the coordinates of a root element: `[a b c d e f]` of an SVG matrix.
 pub type Placement = [f64; 6];
 
 const IDENTITY: Placement = [1.0, 0.0, 0.0, 1.0, 0.0, 0.0];
 
-/// An SVG to which strokes are added.
+/// An SVG to which marks are added.
 #[derive(Debug, Clone)]
 pub struct Document {
     text: String,
@@ -77,7 +80,7 @@ impl Document {
         self.outline.references
     }
 
-    /// The document without the strokes that strokefit added, and these strokes, in px of their picture. `None`
+    /// The document without the marks that strokefit added, and these marks, in px of their picture. `None`
     /// if there are none, if they were changed, or if something lies above them.
     pub(crate) fn split(&self) -> Option<(Self, Scene)> {
         let group = self.outline.group.as_ref()?;
@@ -107,20 +110,23 @@ impl Document {
             "<g fill=\"none\" stroke-linecap=\"round\"><path id=\"{probe}\" d=\"M0 0L8 8\" \
              stroke=\"#010203\" stroke-width=\"2\"/></g>\n"
         );
-        self.with(&layer, [1, 1])
+        self.with(&layer, [1, 1], "")
     }
 
     /// The document with the stages of `scene`, in px of the picture, as layers on top. It is unchanged if the
-    /// scene has no stroke. The numbers of layers continue those of the document.
+    /// scene has no mark. The numbers of layers continue those of the document.
     pub fn with_layers(&self, scene: &Scene, options: &WriteOptions) -> String {
         if scene.is_empty() {
             return self.text.clone();
         }
         let layers = layers(scene, options, self.outline.stages + 1);
-        self.with(&layers, [scene.width, scene.height])
+        let has_fill = options.form == Form::Outlines || scene.areas().next().is_some();
+        let fill = if has_fill { RESET_FILL } else { "" };
+        self.with(&layers, [scene.width, scene.height], fill)
     }
 
-    fn with(&self, layers: &str, [width, height]: [u32; 2]) -> String {
+    /// The document with `layers` of a picture of this size, which also need the properties `reset`.
+    fn with(&self, layers: &str, [width, height]: [u32; 2], reset: &str) -> String {
         let (head, tail) = self.text.split_at(self.outline.end);
         if self.is_ours && self.placement == IDENTITY {
             return format!("{head}{layers}{tail}");
@@ -132,7 +138,7 @@ impl Document {
         format!(
             "{head}<g xmlns=\"{SVG_NAMESPACE}\" xmlns:inkscape=\"{INKSCAPE_NAMESPACE}\" \
              id=\"{}\" inkscape:groupmode=\"layer\" inkscape:label=\"strokefit\" \
-             {MARK}=\"{width} {height}\"{transform} style=\"{RESET}\">\n{layers}</g>\n{tail}",
+             {MARK}=\"{width} {height}\"{transform} style=\"{RESET}{reset}\">\n{layers}</g>\n{tail}",
             self.group
         )
     }
@@ -154,7 +160,8 @@ fn unused(text: &str, name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Path, Stage, Stroke};
+    use crate::scene::{Area, Path, PathPoint, Stage, Stroke};
+    use crate::verify::{self, Size};
 
     const SVG: &str = "xmlns=\"http://www.w3.org/2000/svg\"";
 
@@ -222,6 +229,47 @@ mod tests {
         let drawn = page.with_layers(&two, &WriteOptions::default());
         let (below, strokes) = document(&drawn).split().unwrap();
         assert_eq!((below.text(), strokes), (text.as_str(), two));
+    }
+
+    /// A frame: an area with a hole, as long as both rings turn in their ways and the rule is nonzero.
+    fn frame() -> Area {
+        let ring = |corners: [[f32; 2]; 4]| {
+            let points = corners.map(|p| PathPoint::on(p.into()));
+            Path::new(points.into(), true).unwrap()
+        };
+        let outer = ring([[1.0, 1.0], [9.0, 1.0], [9.0, 9.0], [1.0, 9.0]]);
+        let inner = ring([[3.0, 3.0], [3.0, 7.0], [7.0, 7.0], [7.0, 3.0]]);
+        let twice = ring([[1.0, 1.0], [5.0, 1.0], [5.0, 3.0], [1.0, 3.0]]);
+        Area {
+            rings: vec![outer, inner, twice],
+            color: [0.2, 0.4, 0.6],
+            opacity: 1.0,
+        }
+    }
+
+    #[test]
+    fn what_a_document_says_of_fills_and_strokes_does_not_change_marks() {
+        let text = format!(
+            "<svg {SVG} viewBox=\"0 0 10 10\" fill-rule=\"evenodd\" fill-opacity=\"0.3\" \
+             stroke=\"#0f0\" stroke-width=\"3\"></svg>"
+        );
+        let bare = format!("<svg {SVG} viewBox=\"0 0 10 10\"></svg>");
+        let mut scene = scene();
+        scene.stages[0].marks.push(frame().into());
+        let drawn = |form, text: &str| {
+            let options = WriteOptions {
+                form,
+                ..WriteOptions::default()
+            };
+            let text = document(text).with_layers(&scene, &options);
+            verify::render(&text, Size::Scale(4.0), Some([1.0; 3])).unwrap()
+        };
+        for form in Form::ALL {
+            assert!(drawn(form, &text) == drawn(form, &bare), "{form:?}");
+        }
+        let laid = document(&text).with_layers(&scene, &WriteOptions::default());
+        let (below, marks) = document(&laid).split().unwrap();
+        assert_eq!((below.text(), marks), (text.as_str(), scene));
     }
 
     #[test]

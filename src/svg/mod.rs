@@ -13,6 +13,7 @@
 //! <path d="M1.5 2L30.25 4" stroke="#rrggbb" stroke-width="2.5"/>      a capsule
 //! <path d="M1.5 2h0.01" stroke="#rrggbb" stroke-width="8" stroke-opacity="0.502"/>   a dot
 //! <path d="M1 2L3 4 9 8Q12 9 12 6T15 3z" stroke="#rrggbb" stroke-width="2.5"/>   a closed path of lines and curves
+//! <path d="M20 20h9v5q-3 4-9 0zm2 1v2h3V21z" fill="#rrggbb"/>         an area of two rings, the second a hole
 //! </g>
 //! </svg>
 //! ```
@@ -21,15 +22,18 @@
 //!   unless the page has a [`Length`] as its width.
 //! - The shade is a `linearGradient` from `x1 y1` to `x2 y2` or a `radialGradient`, in px to the hundredth, with offsets to the
 //!   thousandth. It is never in the unit of a layer, and has as many decimals with any precision.
-//! - Each `M` begins a stroke, `L` draws lines, `Q` and `T` quadratic curves, and `z` closes a path. The numbers of a
-//!   step are absolute or, after a small letter, relative, whichever is shorter. A step has no letter of its own if the
-//!   last one serves and nothing gets longer, but never after `M`.
+//! - A path with a `fill` is an area, and all its rings are closed; any other path is a stroke. None is both.
+//! - Each `M` begins a stroke or a ring, `L` draws lines, `Q` and `T` quadratic curves, and `z` closes a path. In areas,
+//!   and only there, `H` and `V` draw horizontal and vertical lines. The numbers of a step are absolute or, after a small
+//!   letter, relative, whichever is shorter. A step has no letter of its own if the last one serves and nothing gets
+//!   longer, but never after `M`.
 //! - `T` draws a curve whose control point mirrors the last one. So a run of off-points takes one pair of numbers for
 //!   each, and one more at its end: the on-points that they imply are in the file, and off-points are rounded so
 //!   that these are exact.
 //! - A curve that turns back within 0.02 px is written as two lines, because Cairo leaves a half of it out.
-//! - The layer has `stroke-linejoin="round"` if a stroke in it has a join.
-//! - In the smallest form, neighbours of equal colour, width and opacity are one path, `M1 2L3 4M7 8l1 2`,
+//! - The layer has `stroke-linejoin="round"` if a stroke in it has a join, and none of these attributes if it has only
+//!   areas.
+//! - In the smallest form, neighbouring strokes of equal colour, width and opacity are one path, `M1 2L3 4M7 8l1 2`,
 //!   if they are opaque or do not touch. A `<g>` holds the attributes that neighbours share, and the layer
 //!   holds the most common `stroke-width`. Colours may be `#rgb`. Where that is shorter, numbers count units of
 //!   the last decimal, and the layer has `transform="scale(0.1)"`. Before, [`arrange()`] reorders strokes
@@ -38,16 +42,16 @@
 //!   reversed; [`fn@travel`] says how far a pen moves. Labels of layers by colour then begin with their number, `1 #rrggbb`.
 //! - Layers by colour have ids `color-1`, `color-2`, ….
 //! - A dot is a segment of length 0.01, because many programs drop a segment of length 0 although the
-//!   specification draws it. `h` marks a dot and nothing else. The 0.01 is independent of the
+//!   specification draws it. Among strokes, `h` marks a dot and nothing else. The 0.01 is independent of the
 //!   precision: it is too short to be seen, and no precision rounds it to 0.
-//! - `stroke-opacity` is k/255 with 3 decimals, enough to recover k. It is omitted at 1.
+//! - `stroke-opacity` or `fill-opacity` is k/255 with 3 decimals, enough to recover k. It is omitted at 1.
 //! - Numbers are decimals without exponent; `0.5`, never `.5`.
 //! - There are no dates and no random names: equal scenes give equal bytes.
 //!
-//! [`Form::Outlines`] writes filled outlines: two lines and two arcs for each segment, and circles. They are for
-//! other programs; [`read`] refuses them.
+//! [`Form::Outlines`] writes filled outlines of strokes: two lines and two arcs for each segment, and circles. They are for
+//! other programs; [`read`] refuses them. Areas stay as they are.
 //!
-//! A path with any other step (`C`, `S`, `A`, `H`, `V`, a `T` after a line) is not of this dialect, and neither is one of
+//! A path with any other step (`C`, `S`, `A`, a `T` after a line) is not of this dialect, and neither is one of
 //! more than [`MAX_POINTS`](crate::scene::MAX_POINTS) points: [`read`] refuses the file, and a [`Document`] keeps it as
 //! it is, below new strokes. Reading leaves out points without effect: points that coincide, and on-points
 //! exactly halfway between two off-points.

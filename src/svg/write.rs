@@ -6,7 +6,7 @@ use super::arrange::{self, Layer};
 use super::dialect::{self, Unit};
 use super::element;
 use super::options::{Form, Order, WriteOptions};
-use crate::scene::{Mark, Scene, Written, WrittenPath, quantum};
+use crate::scene::{Mark, Scene, Written, WrittenPath, counted, quantum};
 
 /// The scene as SVG text: rounded by [`Scene::quantized`], without the strokes that this drops, and in the order
 /// given by [`arrange`](super::arrange()).
@@ -112,15 +112,7 @@ fn text(number: usize, layer: &Layer, options: &WriteOptions, unit: Unit) -> Str
 /// The numbers of areas and strokes of a layer in words.
 fn counts(layer: &Layer) -> String {
     let areas = layer.strokes.iter().filter(|mark| mark.is_area()).count();
-    let count = |count: usize, name: &str| match count {
-        1 => format!("1 {name}"),
-        count => format!("{count} {name}s"),
-    };
-    match (areas, layer.strokes.len() - areas) {
-        (0, strokes) => count(strokes, "stroke"),
-        (areas, 0) => count(areas, "area"),
-        (areas, strokes) => format!("{}, {}", count(areas, "area"), count(strokes, "stroke")),
-    }
+    counted(areas, layer.strokes.len() - areas)
 }
 
 /// The attributes of a layer that turn its paths without a fill into strokes.

@@ -1,4 +1,4 @@
-"""Turns raster pictures into editable SVGs made of strokes.
+"""Turns raster pictures into editable SVGs made of strokes and areas.
 
 >>> import numpy as np
 >>> import strokefit
@@ -18,6 +18,7 @@ px of the picture, with pixel centres at +0.5. The command line is `python -m st
 from importlib.metadata import version as _version
 
 from ._api import fit, judge, refine, render
+from ._areas import Area, Areas
 from ._batch import Estimate, Progress, Summary, batch, estimate_batch
 from ._drawing import Drawing
 from ._native import CancelToken
@@ -30,6 +31,8 @@ __version__ = _version("strokefit")
 
 __all__ = [
     "Agreement",
+    "Area",
+    "Areas",
     "CancelToken",
     "Drawing",
     "Estimate",

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional, TypeVar, Union, cast
 
 from . import _native
+from ._areas import Areas
 from ._drawing import Drawing
 from ._picture import Picture, native
 from ._strokes import Strokes
@@ -247,8 +248,8 @@ def _drawing(
     **options: object,
 ) -> Drawing:
     options["palette"] = _palette(palette)
-    svg, report, columns = _native.draw(native(picture), base, options, progress, cancel)
-    return Drawing(svg, cast("Report", json.loads(report)), Strokes(columns))
+    svg, report, strokes, areas = _native.draw(native(picture), base, options, progress, cancel)
+    return Drawing(svg, cast("Report", json.loads(report)), Strokes(strokes), Areas(areas))
 
 
 def _svg(svg: Svg) -> tuple[str, str]:

@@ -12,17 +12,18 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from ._areas import Areas
     from ._report import Report
     from ._strokes import Strokes
 
 
 class Drawing:
-    """A drawing: its SVG, its strokes, and how it came to be.
+    """A drawing: its SVG, its strokes and areas, and how it came to be.
 
     Two drawings are equal if their SVGs are. A notebook shows a drawing as the last value of a cell.
     """
 
-    __slots__ = ("report", "strokes", "svg")
+    __slots__ = ("areas", "report", "strokes", "svg")
 
     #: The file, as text.
     svg: str
@@ -30,11 +31,14 @@ class Drawing:
     report: Report
     #: The strokes, back to front. On an SVG by another program, only those that were laid on it.
     strokes: Strokes
+    #: The areas, likewise. `strokes.order` and `areas.order` say which lies above which.
+    areas: Areas
 
-    def __init__(self, svg: str, report: Report, strokes: Strokes) -> None:
+    def __init__(self, svg: str, report: Report, strokes: Strokes, areas: Areas) -> None:
         self.svg = svg
         self.report = report
         self.strokes = strokes
+        self.areas = areas
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
         """Writes the SVG to `path`: the same bytes on every platform."""
@@ -56,7 +60,8 @@ class Drawing:
     def __repr__(self) -> str:
         size, psnr_db = self.report["input"], self.report["fidelity"]["psnr_db"]
         fidelity = "exact" if psnr_db is None else f"{psnr_db:.2f} dB"
+        areas = f"{len(self.areas)} areas, " if self.areas else ""
         return (
-            f"<Drawing {size['width']}×{size['height']} px, {len(self.strokes)} strokes, "
+            f"<Drawing {size['width']}×{size['height']} px, {areas}{len(self.strokes)} strokes, "
             f"{self.report['svg_bytes']} bytes, {fidelity}>"
         )

@@ -6,7 +6,7 @@ from typing import Optional, Union, final
 import numpy as np
 from numpy.typing import NDArray
 
-_Columns = tuple[
+_StrokeColumns = tuple[
     NDArray[np.float32],
     NDArray[np.bool_],
     NDArray[np.int64],
@@ -14,6 +14,18 @@ _Columns = tuple[
     NDArray[np.float32],
     NDArray[np.float32],
     NDArray[np.float32],
+    NDArray[np.int64],
+    NDArray[np.int64],
+]
+
+_AreaColumns = tuple[
+    NDArray[np.float32],
+    NDArray[np.bool_],
+    NDArray[np.int64],
+    NDArray[np.int64],
+    NDArray[np.float32],
+    NDArray[np.float32],
+    NDArray[np.int64],
     NDArray[np.int64],
 ]
 
@@ -32,7 +44,7 @@ def draw(
     options: Mapping[str, object],
     progress: Optional[Callable[[float, int, float], object]],
     cancel: Optional[CancelToken],
-) -> tuple[str, str, _Columns]: ...
+) -> tuple[str, str, _StrokeColumns, _AreaColumns]: ...
 def flatten(
     points: NDArray[np.float32], on_path: NDArray[np.bool_], closed: bool, tolerance: float
 ) -> NDArray[np.float32]: ...

@@ -136,10 +136,13 @@ class Report(_Restricted):
     #: Version of this layout.
     schema: int
     input: Input
+    #: Strokes and areas.
     strokes: int
-    #: Of all strokes together.
+    #: Areas among them.
+    areas: int
+    #: Of all of them together.
     points: int
-    #: Strokes that were dropped.
+    #: Strokes and areas that were dropped.
     dropped: int
     dropped_for: Dropped
     stages: list[StageEntry]

@@ -12,7 +12,7 @@ from . import _native
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from ._native import _Columns
+    from ._native import _StrokeColumns
 
 
 class Stroke(NamedTuple):
@@ -80,12 +80,14 @@ class Strokes(Sequence[Stroke]):
     opacities: NDArray[np.float32]
     #: The layer of each stroke, from 0.
     layers: NDArray[np.int64]
+    #: The place of each stroke among all strokes and areas, from 0 at the back.
+    order: NDArray[np.int64]
 
-    def __init__(self, columns: _Columns) -> None:
+    def __init__(self, columns: _StrokeColumns) -> None:
         for column in columns:
             column.flags.writeable = False
         self.points, self.on_path, self.starts, self.closed = columns[:4]
-        self.widths, self.colors, self.opacities, self.layers = columns[4:]
+        self.widths, self.colors, self.opacities, self.layers, self.order = columns[4:]
 
     def __len__(self) -> int:
         return len(self.widths)
@@ -115,7 +117,7 @@ class Strokes(Sequence[Stroke]):
     def __repr__(self) -> str:
         return f"<{len(self)} strokes>"
 
-    def __reduce__(self) -> tuple[type[Strokes], tuple[_Columns]]:
+    def __reduce__(self) -> tuple[type[Strokes], tuple[_StrokeColumns]]:
         paths = (self.points, self.on_path, self.starts, self.closed)
-        looks = (self.widths, self.colors, self.opacities, self.layers)
-        return Strokes, ((*paths, *looks),)
+        styles = (self.widths, self.colors, self.opacities, self.layers, self.order)
+        return Strokes, ((*paths, *styles),)

@@ -1,0 +1,216 @@
+//! Strategies for scenes of all kinds, and for scenes whose marks often look alike.
+
+use proptest::prelude::*;
+
+use crate::math::{self, Point};
+use crate::scene::{
+    Area, Axis, MAX_STOPS, Mark, Path, PathPoint, Scene, Shade, ShadeStop, Stage, Stroke,
+};
+use crate::svg::{Form, Group, WriteOptions};
+
+fn point() -> impl Strategy<Value = Point> {
+    let coordinate = prop_oneof![-20.0..120.0_f32, 0.0..0.02_f32, Just(50.0), -1e6..1e6_f32];
+    (coordinate.clone(), coordinate).prop_map(|(x, y)| Point::new(x, y))
+}
+
+fn shape() -> impl Strategy<Value = Path> {
+    prop_oneof![
+        point().prop_map(Path::dot),
+        (point(), point()).prop_map(|(a, b)| Path::line(a, b)),
+        path(point()),
+        path(close_point()),
+    ]
+}
+
+/// Places among which many coincide, or lie halfway between others, once they are rounded.
+fn close_point() -> impl Strategy<Value = Point> {
+    let coordinate = || prop_oneof![(0..5_u8).prop_map(f32::from), 0.0..4.0_f32];
+    (coordinate(), coordinate()).prop_map(|(x, y)| Point::new(x, y))
+}
+
+/// Paths of all kinds of points, open and closed.
+fn path(point: impl Strategy<Value = Point>) -> impl Strategy<Value = Path> {
+    let points = prop::collection::vec((point, any::<bool>()), 1..9);
+    (points, any::<bool>()).prop_map(|(points, closed)| {
+        let point = |(at, is_on)| PathPoint { at, is_on };
+        let mut points: Vec<_> = points.into_iter().map(point).collect();
+        // An open path starts and ends on the path.
+        let last = points.len() - 1;
+        points[0].is_on |= !closed || last == 0;
+        points[last].is_on |= !closed;
+        Path::new(points, closed).unwrap()
+    })
+}
+
+pub(super) fn stroke() -> impl Strategy<Value = Stroke> {
+    let unit = || {
+        prop_oneof![
+            0.0..=1.0_f32,
+            Just(0.0),
+            Just(1.0),
+            -0.5..1.5_f32,
+            Just(f32::NAN)
+        ]
+    };
+    let radius = prop_oneof![0.0..20.0_f32, Just(0.5), 0.0..0.01_f32];
+    (shape(), radius, unit(), unit(), unit(), unit()).prop_map(
+        |(path, radius, r, g, b, opacity)| Stroke {
+            path,
+            radius,
+            color: [r, g, b],
+            opacity,
+        },
+    )
+}
+
+/// Closed paths; few of them are simple, and many enclose nothing once they are rounded.
+fn ring() -> impl Strategy<Value = Path> {
+    let points = |point: BoxedStrategy<Point>| prop::collection::vec((point, any::<bool>()), 1..9);
+    let free = prop_oneof![points(point().boxed()), points(close_point().boxed())];
+    let free = free.prop_map(|points| closed(points.into_iter()));
+    prop_oneof![1 => free, 2 => round_ring()]
+}
+
+/// A ring around a place, in either sense, from a speck to more than the page.
+fn round_ring() -> impl Strategy<Value = Path> {
+    let radius = prop_oneof![1.0..60.0_f32, 0.001..0.1_f32];
+    let points = prop::collection::vec((0.3..1.0_f32, any::<bool>()), 3..9);
+    (point(), radius, any::<bool>(), points).prop_map(|(center, radius, turns_left, points)| {
+        let step = std::f32::consts::TAU / points.len() as f32;
+        let step = if turns_left { -step } else { step };
+        closed(points.iter().enumerate().map(|(i, &(share, is_on))| {
+            let (sin, cos) = math::sin_cos(i as f32 * step);
+            let away = radius * share;
+            (
+                Point::new(center.x + away * cos, center.y + away * sin),
+                is_on,
+            )
+        }))
+    })
+}
+
+/// The closed path of these points; one point alone is on it.
+fn closed(points: impl Iterator<Item = (Point, bool)>) -> Path {
+    let mut points: Vec<_> = points.map(|(at, is_on)| PathPoint { at, is_on }).collect();
+    points[0].is_on |= points.len() == 1;
+    Path::new(points, true).unwrap()
+}
+
+fn area() -> impl Strategy<Value = Area> {
+    let unit = || prop_oneof![0.0..=1.0_f32, Just(0.0), Just(1.0), Just(f32::NAN)];
+    let rings = prop::collection::vec(ring(), 1..4);
+    (rings, [unit(), unit(), unit()], unit()).prop_map(|(rings, color, opacity)| Area {
+        rings,
+        color,
+        opacity,
+    })
+}
+
+/// A stroke or, seldom, an area.
+pub(super) fn mark() -> impl Strategy<Value = Mark> {
+    prop_oneof![2 => stroke().prop_map(Mark::from), 1 => area().prop_map(Mark::from)]
+}
+
+fn shade() -> impl Strategy<Value = Shade> {
+    let linear = (point(), point()).prop_map(|(from, to)| Axis::Linear { from, to });
+    let radial =
+        (point(), 1.0..300.0_f32).prop_map(|(center, radius)| Axis::Radial { center, radius });
+    let unit = || prop_oneof![0.0..=1.0_f32, Just(0.0), Just(1.0)];
+    let stop = (unit(), [unit(), unit(), unit()], unit());
+    let stop = stop.prop_map(|(offset, color, opacity)| ShadeStop {
+        offset,
+        color,
+        opacity,
+    });
+    let stops = prop::collection::vec(stop, 2..=MAX_STOPS).prop_map(|mut stops| {
+        stops.sort_by(|a, b| a.offset.total_cmp(&b.offset));
+        stops
+    });
+    let whole = (prop_oneof![linear, radial], stops);
+    whole.prop_filter_map("a short axis", |(axis, stops)| {
+        Shade::new(axis, &stops).ok()
+    })
+}
+
+pub(super) fn scene() -> impl Strategy<Value = Scene> {
+    let stage = prop::collection::vec(mark(), 0..8).prop_map(Stage::from_iter);
+    let background = prop::option::of([0.0..=1.0_f32, 0.0..=1.0_f32, 0.0..=1.0_f32]);
+    (
+        1..100_u32,
+        1..100_u32,
+        background,
+        prop::option::of(shade()),
+        prop::collection::vec(stage, 0..4),
+    )
+        .prop_map(|(width, height, background, shade, stages)| Scene {
+            width,
+            height,
+            page: None,
+            background,
+            shade,
+            stages,
+        })
+}
+
+/// A stroke of few styles between few places, so that neighbours often share a style or an end.
+fn alike() -> impl Strategy<Value = Stroke> {
+    let place =
+        || (0..5_u8, 0..5_u8).prop_map(|(x, y)| Point::from([x, y].map(|i| 9.5 * f32::from(i))));
+    let look = (0..2_u8, 0..2_u8, 0..3_u8);
+    let line = (place(), place()).prop_map(|(a, b)| Path::line(a, b));
+    let path = prop_oneof![3 => line, 1 => path(place())];
+    (path, look).prop_map(|(path, (color, width, opacity))| Stroke {
+        path,
+        radius: 1.0 + f32::from(width),
+        color: [f32::from(color), 0.2, 0.6],
+        opacity: if opacity == 0 { 0.5 } else { 1.0 },
+    })
+}
+
+/// An area of few styles around few places, sometimes with a hole or a second part.
+fn area_alike() -> impl Strategy<Value = Area> {
+    let place = (0..5_u8, 0..5_u8).prop_map(|(x, y)| [x, y].map(|i| 9.5 * f32::from(i)));
+    let ring = (place, 1..4_u8, any::<bool>(), any::<bool>()).prop_map(
+        |([x, y], size, is_round, turns_left)| {
+            let away = 4.0 * f32::from(size);
+            let mut corners = [[-away, -away], [away, -away], [away, away], [-away, away]];
+            if turns_left {
+                corners.reverse();
+            }
+            closed(
+                corners
+                    .into_iter()
+                    .map(|[dx, dy]| (Point::new(x + dx, y + dy), !is_round)),
+            )
+        },
+    );
+    let style = (0..2_u8, 0..3_u8);
+    (prop::collection::vec(ring, 1..4), style).prop_map(|(rings, (color, opacity))| Area {
+        rings,
+        color: [f32::from(color), 0.2, 0.6],
+        opacity: if opacity == 0 { 0.5 } else { 1.0 },
+    })
+}
+
+pub(super) fn scene_of_few_styles() -> impl Strategy<Value = Scene> {
+    let mark =
+        prop_oneof![3 => alike().prop_map(Mark::from), 1 => area_alike().prop_map(Mark::from)];
+    let stage = prop::collection::vec(mark, 0..30).prop_map(Stage::from_iter);
+    prop::collection::vec(stage, 0..3).prop_map(|stages| Scene {
+        stages,
+        ..Scene::empty(40, 40, Some([1.0; 3]))
+    })
+}
+
+pub(super) fn options() -> impl Strategy<Value = WriteOptions> {
+    let form = prop::sample::select(vec![Form::Plain, Form::Smallest]);
+    let group = prop::sample::select(vec![Group::Stage, Group::Color]);
+    let width = prop::option::of(Just("120.5mm".parse().unwrap()));
+    (0..=6_u8, form, group, width).prop_map(|(precision, form, group, width)| WriteOptions {
+        precision,
+        form,
+        group,
+        width,
+        ..WriteOptions::default()
+    })
+}
