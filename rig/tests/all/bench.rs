@@ -303,12 +303,16 @@ fn filled_drawings_are_found_again_beside_their_artists() {
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     let lines = lines(&output);
     let starts = |line: &String, start| line.starts_with(start) && line.ends_with(" px off: pass");
-    assert_eq!(lines.len(), 2, "{lines:?}");
-    assert!(starts(&lines[0], "flags__bars at 48 px: "), "{lines:?}");
-    assert!(
-        starts(&lines[1], "flags__bars at 48 px, noise 8: "),
-        "{lines:?}"
-    );
+    let expected = [
+        "flags__bars at 48 px: ",
+        "flags__bars at 48 px, strokefit strokes: ",
+        "flags__bars at 48 px, noise 8: ",
+        "flags__bars at 48 px, noise 8, strokefit strokes: ",
+    ];
+    assert_eq!(lines.len(), expected.len(), "{lines:?}");
+    for (line, start) in lines.iter().zip(expected) {
+        assert!(starts(line, start), "{line}");
+    }
     for name in [
         "shapes.csv",
         "shapes.json",
@@ -320,7 +324,7 @@ fn filled_drawings_are_found_again_beside_their_artists() {
         "shapes-db.svg",
         "shapes-delta.svg",
         "flags__bars-48.svg",
-        "flags__bars-48-noise8.svg",
+        "flags__bars-48-noise8-strokefit-strokes.svg",
     ] {
         assert!(place.path("out").join(name).exists(), "{name}");
     }

@@ -21,6 +21,7 @@ use displacement::Areas;
 use strokefit::fit::{Config, Fitter};
 use strokefit::image::Image;
 use strokefit::metrics::psnr;
+use strokefit::scene::Marks;
 use strokefit::verify::{self, Size, elements};
 use strokefit::{Error, Result};
 
@@ -41,10 +42,20 @@ pub struct Drawer {
 
 /// All ways of ours, the default first.
 pub fn drawers() -> Vec<Drawer> {
-    vec![Drawer {
-        name: OWN,
-        config: Config::default(),
-    }]
+    let strokes = Config {
+        marks: Marks::Strokes,
+        ..Config::default()
+    };
+    vec![
+        Drawer {
+            name: OWN,
+            config: Config::default(),
+        },
+        Drawer {
+            name: "strokefit strokes",
+            config: strokes,
+        },
+    ]
 }
 
 /// A few of the drawings, from all over the list.
