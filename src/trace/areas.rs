@@ -221,7 +221,7 @@ impl Pixels<'_> {
     }
 
     /// The pixels at most `reach` columns and rows away from `i`.
-    fn around(&self, i: usize, reach: usize) -> impl Iterator<Item = usize> + '_ {
+    pub(super) fn around(&self, i: usize, reach: usize) -> impl Iterator<Item = usize> + '_ {
         let (x, y) = (i % self.width, i / self.width);
         let rows = y.saturating_sub(reach)..(y + reach + 1).min(self.height);
         let columns = x.saturating_sub(reach)..(x + reach + 1).min(self.width);

@@ -40,7 +40,7 @@ impl Gain {
 }
 
 /// The pixels that a stroke touches, and those 1 px around it, with their coverage.
-fn coverage(path: &Path, radius: f32, pixels: &Pixels<'_>) -> Vec<(usize, f32)> {
+pub(super) fn coverage(path: &Path, radius: f32, pixels: &Pixels<'_>) -> Vec<(usize, f32)> {
     let mut line: Vec<[f32; 2]> = path.flattened(0.1).iter().map(|p| [p.x, p.y]).collect();
     if let [dot] = line[..] {
         line.push(dot);

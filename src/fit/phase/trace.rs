@@ -14,7 +14,7 @@ use crate::fit::run::history::OpenStage;
 use crate::fit::run::session::Session;
 use crate::metrics::psnr_db;
 use crate::render::{Canvas, Strokes};
-use crate::scene::Mark;
+use crate::scene::{Mark, Marks, Stroke};
 use crate::trace::{Traced, Tracing, trace};
 
 /// Adds strokes along the lines of the residual, on top of all others.
@@ -84,13 +84,16 @@ fn lines(drawing: &mut Drawing, config: &Config, tracing: Tracing, price: Price)
     };
     let surfaces = drawing.surfaces.iter().zip(&canvases);
     let residuals: Vec<_> = surfaces.map(|(s, canvas)| s.residual_of(canvas)).collect();
-    let mut traced = trace(&residuals, tracing);
-    let most = config.points.unwrap_or(usize::MAX);
-    traced.retain(|t| {
-        let strokes = Strokes::from_iter([&t.stroke]);
-        let mark = t.stroke.clone().into();
-        written_points(strokes.get(0)) <= most && t.gain > price.least_gain(&mark)
+    let mut traced = trace(&residuals, tracing, Marks::Strokes, |mark| {
+        price.least_gain(mark)
     });
+    let most = config.points.unwrap_or(usize::MAX);
+    let has_room = |stroke: &Stroke| {
+        let strokes = Strokes::from_iter([stroke]);
+        written_points(strokes.get(0)) <= most
+    };
+    traced
+        .retain(|t| t.mark.as_stroke().is_none_or(has_room) && t.gain > price.least_gain(&t.mark));
     traced
 }
 
@@ -101,5 +104,5 @@ fn most_gaining(traced: Vec<Traced>, count: usize) -> Vec<Mark> {
     let mut keep = vec![false; traced.len()];
     order.iter().take(count).for_each(|&i| keep[i] = true);
     let kept = traced.into_iter().zip(keep).filter(|(_, keep)| *keep);
-    kept.map(|(traced, _)| traced.stroke.into()).collect()
+    kept.map(|(traced, _)| traced.mark).collect()
 }

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::optim::AdamParams;
 use crate::seed::Probing;
-use crate::trace::{AreaColors, Bridges, LineJoins, Splines, Tracing};
+use crate::trace::{AreaColors, Bridges, Fills, LineJoins, Splines, Tracing};
 
 impl Recipe {
     /// The recipe of a preset.
@@ -135,6 +135,7 @@ const BALANCED: Recipe = Recipe {
             corner_reach: 0.9,
             tolerance: [0.35, 0.03],
         },
+        fills: Fills::MEASURED,
     },
     stages: Stages {
         count: 8,

@@ -1,0 +1,238 @@
+//! The choice between strokes and areas.
+//!
+//! Strokes and regions that share pixels make a group. A group is drawn by its strokes if they have the outlines of its
+//! regions and cost no more; or else by areas.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use super::Traced;
+use super::areas::Pixels;
+use super::even::Shape;
+use super::fill::{Fill, Flat};
+use super::gain::coverage;
+use super::strokes::TracedStroke;
+use crate::scene::{Mark, Stroke};
+
+/// Strokes and regions that share pixels.
+#[derive(Debug, Default)]
+struct Group {
+    strokes: Vec<usize>,
+    regions: Vec<u32>,
+}
+
+/// Traced strokes have points that do not pay, so they may cost so many times as much as areas. A guess.
+const MOST_PRICE: f32 = 4.0;
+
+/// The regions under a stroke, with the pixels of each that it covers.
+type Votes = BTreeMap<u32, f32>;
+
+/// The marks that draw a picture, in painting order.
+pub(super) fn chosen(
+    flat: &Flat<'_>,
+    fills: Vec<Fill>,
+    strokes: Vec<TracedStroke>,
+    pixels: &Pixels<'_>,
+    price: &(impl Fn(&Mark) -> f32 + Sync),
+) -> Vec<Traced> {
+    let votes: Vec<Votes> = strokes
+        .par_iter()
+        .map(|traced| votes(&traced.stroke, flat, pixels))
+        .collect();
+    let groups = groups(&votes, flat.region_count());
+    let wins = |group: &Group| stroked(group, flat, &fills, &strokes, pixels, price);
+    let won: Vec<bool> = groups.par_iter().map(wins).collect();
+    // The regions that strokes draw need no area.
+    let mut is_stroked = vec![false; flat.region_count()];
+    let mut places: Vec<Option<(usize, f32)>> = vec![None; strokes.len()];
+    for (group, _) in groups.iter().zip(&won).filter(|(_, won)| **won) {
+        group
+            .regions
+            .iter()
+            .for_each(|&r| is_stroked[r as usize] = true);
+        for &i in &group.strokes {
+            let rank = rank(&strokes[i], &votes[i], flat, pixels);
+            places[i] = Some((rank, strokes[i].gain));
+        }
+    }
+    let grouped = votes.iter().map(|votes| !votes.is_empty());
+    let orphans: Vec<usize> = grouped
+        .enumerate()
+        .filter(|(_, g)| !g)
+        .map(|(i, _)| i)
+        .collect();
+    for i in orphans {
+        let gain = flat.gain_on_top(
+            strokes[i].stroke.color,
+            &coverage_of(&strokes[i].stroke, pixels),
+        );
+        if gain > price(&strokes[i].stroke.clone().into()) {
+            places[i] = Some((usize::MAX, gain));
+        }
+    }
+    let areas = flat.areas(fills, &is_stroked);
+    // Strokes keep their order among each other, as far as areas lie not between.
+    let mut found: Vec<(usize, Traced)> = Vec::new();
+    for (traced, place) in strokes.into_iter().zip(places) {
+        let Some((rank, gain)) = place else {
+            continue;
+        };
+        let mark = traced.stroke.into();
+        let place = areas.iter().filter(|area| area.rank < rank).count();
+        found.push((2 * place, Traced { mark, gain }));
+    }
+    for (place, area) in areas.into_iter().enumerate() {
+        let mark = area.area.into();
+        let gain = area.gain;
+        found.push((2 * place + 1, Traced { mark, gain }));
+    }
+    found.sort_by_key(|(place, _)| *place);
+    found.into_iter().map(|(_, traced)| traced).collect()
+}
+
+fn coverage_of(stroke: &Stroke, pixels: &Pixels<'_>) -> Vec<(usize, f32)> {
+    coverage(&stroke.path, stroke.radius, pixels)
+}
+
+/// The place of a stroke in the stack: that of its regions, or below what it goes on beneath.
+fn rank(traced: &TracedStroke, votes: &Votes, flat: &Flat<'_>, pixels: &Pixels<'_>) -> usize {
+    let own = votes.keys().filter_map(|&region| flat.rank(region));
+    let line = traced.stroke.path.flattened(0.1);
+    let crossed = line.windows(2).flat_map(|ends| {
+        let [a, b] = [[ends[0].x, ends[0].y], [ends[1].x, ends[1].y]];
+        let steps = crate::math::distance(a, b).ceil() as usize;
+        (0..steps).map(move |step| {
+            let share = step as f32 / steps as f32;
+            [0, 1].map(|k| a[k] + share * (b[k] - a[k]))
+        })
+    });
+    let crossed = crossed.filter(|_| traced.is_covered);
+    let crossed = crossed.filter_map(|p| flat.rank(flat.region(pixels.at(p)?)));
+    own.chain(crossed).min().unwrap_or_default()
+}
+
+/// The regions of about the stroke's colour that it covers a good part of, or that are a good part of it.
+fn votes(stroke: &Stroke, flat: &Flat<'_>, pixels: &Pixels<'_>) -> Votes {
+    const GOOD: f32 = 0.2;
+    let mut votes = Votes::new();
+    let mut all = 0.0;
+    for (i, share) in coverage_of(stroke, pixels) {
+        if let Some(region) = flat.region_like(i, stroke.color) {
+            *votes.entry(region).or_default() += share;
+        }
+        all += share;
+    }
+    votes.retain(|region, share| *share > GOOD * all || *share > GOOD * flat.size(*region));
+    votes
+}
+
+/// The groups of strokes and regions.
+fn groups(votes: &[Votes], regions: usize) -> Vec<Group> {
+    // The group of each region is named by one of its regions.
+    let mut names: Vec<usize> = (0..regions).collect();
+    fn name(names: &[usize], mut at: usize) -> usize {
+        while names[at] != at {
+            at = names[at];
+        }
+        at
+    }
+    for votes in votes {
+        let mut regions = votes.keys().map(|&region| region as usize);
+        let Some(first) = regions.next() else {
+            continue;
+        };
+        for other in regions {
+            let (a, b) = (name(&names, first), name(&names, other));
+            names[a.max(b)] = a.min(b);
+        }
+    }
+    let mut groups: BTreeMap<usize, Group> = BTreeMap::new();
+    for (i, votes) in votes.iter().enumerate() {
+        if let Some(&region) = votes.keys().next() {
+            let group = groups.entry(name(&names, region as usize)).or_default();
+            group.strokes.push(i);
+            group.regions.extend(votes.keys());
+        }
+    }
+    let mut groups: Vec<Group> = groups.into_values().collect();
+    for group in &mut groups {
+        group.regions.sort_unstable();
+        group.regions.dedup();
+    }
+    groups
+}
+
+/// True if the strokes of a group draw its regions, for less than areas cost.
+fn stroked(
+    group: &Group,
+    flat: &Flat<'_>,
+    fills: &[Fill],
+    strokes: &[TracedStroke],
+    pixels: &Pixels<'_>,
+    price: &(impl Fn(&Mark) -> f32 + Sync),
+) -> bool {
+    let strokes: Vec<&Stroke> = group.strokes.iter().map(|&i| &strokes[i].stroke).collect();
+    let of_strokes: f32 = strokes
+        .iter()
+        .map(|&stroke| price(&stroke.clone().into()))
+        .sum();
+    let own = |fill: &&Fill| group.regions.contains(&fill.region);
+    let areas = fills.iter().filter(own).map(|fill| flat.area(fill).into());
+    let of_areas: f32 = areas.map(|area| price(&area)).sum();
+    if of_strokes > MOST_PRICE * of_areas {
+        return false;
+    }
+    let members = flat.members(&group.regions);
+    let shape = Shape {
+        inside: |p| flat.share_at(p, &members),
+        region: |p| pixels.at(p).map(|i| flat.region(i)),
+    };
+    strokes.iter().all(|stroke| shape.is_even(stroke))
+        && is_covered(&strokes, flat, &members, group, pixels)
+}
+
+/// True if strokes cover a group of regions and nothing else that is seen, give or take a part of a pixel.
+fn is_covered(
+    strokes: &[&Stroke],
+    flat: &Flat<'_>,
+    members: &[bool],
+    group: &Group,
+    pixels: &Pixels<'_>,
+) -> bool {
+    const SLACK: [f32; 2] = [0.75, 0.1];
+    let covered = |side: f32| {
+        let mut covered: BTreeMap<usize, f32> = BTreeMap::new();
+        for stroke in strokes {
+            let slack = side * (SLACK[0] + SLACK[1] * stroke.radius);
+            let radius = (stroke.radius + slack).max(0.3);
+            for (i, share) in coverage(&stroke.path, radius, pixels) {
+                let most = covered.entry(i).or_default();
+                *most = most.max(share);
+            }
+        }
+        covered
+    };
+    let size: f32 = group.regions.iter().map(|&region| flat.size(region)).sum();
+    let wide = covered(1.0);
+    let inner = group
+        .regions
+        .iter()
+        .flat_map(|&region| flat.pixels_of(region));
+    let missed: f32 = inner
+        .map(|i| flat.share(i, members) * (1.0 - wide.get(&i).copied().unwrap_or_default()))
+        .sum();
+    let rank = group
+        .regions
+        .iter()
+        .filter_map(|&region| flat.rank(region))
+        .min();
+    // What lies on top hides it.
+    let is_seen = |i: usize| flat.rank(flat.region(i)) <= rank;
+    let narrow = covered(-1.0).into_iter();
+    let beyond: f32 = narrow
+        .filter(|&(i, _)| is_seen(i))
+        .map(|(i, share)| share * (1.0 - flat.share(i, members)))
+        .sum();
+    missed <= 0.1 * size + 1.0 && beyond <= 0.03 * size + 1.0
+}

@@ -1,0 +1,173 @@
+//! The colours of flat places, and which pixels have one of them.
+//!
+//! A place is flat where the pixels beside it are alike. Flat pixels are counted by bins of some levels; the fullest
+//! bins become colours, apart from each other and from the canvas. Thin things have no flat pixels: their colours are
+//! found where neither a colour nor a mixture of two explains the pixels.
+
+use rayon::prelude::*;
+
+use super::super::areas::{Pixel, Pixels};
+use super::super::recipe::Fills;
+
+/// The label of the canvas, whose colour depends on the pixel.
+pub(super) const CANVAS: u16 = 0;
+/// The label of a pixel that is no colour alone.
+pub(super) const NONE: u16 = u16::MAX;
+/// One level of 8 bits.
+pub(super) const LEVEL: f32 = 1.0 / 255.0;
+
+/// The colours of a picture. Label 0 is the canvas, label k the colour k − 1.
+pub(super) struct Colors<'a> {
+    pub(super) pixels: &'a Pixels<'a>,
+    pub(super) list: Vec<Pixel>,
+}
+
+impl Colors<'_> {
+    /// The colour of a label at pixel `i`.
+    pub(super) fn at(&self, label: u16, i: usize) -> Pixel {
+        match label {
+            CANVAS => self.pixels.canvas.at(i),
+            _ => self.list[usize::from(label) - 1],
+        }
+    }
+
+    /// The nearest label of a pixel, and how far it is.
+    fn nearest(&self, i: usize) -> (u16, f32) {
+        let target = self.pixels.target.at(i);
+        let mut best = (CANVAS, away(&target, &self.pixels.canvas.at(i)));
+        for (k, color) in self.list.iter().enumerate() {
+            let distance = away(&target, color);
+            if distance < best.1 {
+                best = (k as u16 + 1, distance);
+            }
+        }
+        best
+    }
+}
+
+/// The largest difference of a channel.
+pub(super) fn away(a: &Pixel, b: &Pixel) -> f32 {
+    let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+    differences.fold(0.0, f32::max)
+}
+
+/// The colours of flat places, and the label of each pixel that has one by itself.
+pub(super) fn flat_colors<'a>(pixels: &'a Pixels<'a>, fills: &Fills) -> (Colors<'a>, Vec<u16>) {
+    let flat = flat_pixels(pixels, fills.flat * LEVEL);
+    let list = clusters(pixels, &flat, fills);
+    let colors = Colors { pixels, list };
+    let labels = labels(&colors, &flat, fills);
+    (colors, labels)
+}
+
+/// True for each pixel whose 3×3 neighbours are within a range of `tolerance`.
+fn flat_pixels(pixels: &Pixels<'_>, tolerance: f32) -> Vec<bool> {
+    let (width, height) = (pixels.width, pixels.height);
+    let mut flat = vec![true; width * height];
+    let rows = flat.par_chunks_exact_mut(width).enumerate();
+    rows.for_each(|(y, row)| {
+        let around = y.saturating_sub(1)..(y + 2).min(height);
+        let mut columns = vec![[0.0_f32; 2]; width];
+        for plane in &pixels.target.0 {
+            columns.fill([f32::INFINITY, f32::NEG_INFINITY]);
+            for y in around.clone() {
+                let values = &plane[y * width..(y + 1) * width];
+                for ([low, high], value) in columns.iter_mut().zip(values) {
+                    (*low, *high) = (low.min(*value), high.max(*value));
+                }
+            }
+            for (x, flat) in row.iter_mut().enumerate() {
+                let near = &columns[x.saturating_sub(1)..(x + 2).min(width)];
+                let low = near.iter().fold(f32::INFINITY, |low, c| low.min(c[0]));
+                let high = near
+                    .iter()
+                    .fold(f32::NEG_INFINITY, |high, c| high.max(c[1]));
+                *flat &= high - low <= tolerance;
+            }
+        }
+    });
+    flat
+}
+
+/// Pixels of one bin: their number and sum.
+struct Bin {
+    key: u64,
+    count: f32,
+    sum: Pixel,
+}
+
+/// The colours of the flat pixels that are not those of the canvas, the most frequent first.
+fn clusters(pixels: &Pixels<'_>, flat: &[bool], fills: &Fills) -> Vec<Pixel> {
+    const LEVELS_PER_BIN: f32 = 4.0;
+    let mut bins: Vec<Bin> = Vec::new();
+    for i in (0..flat.len()).filter(|&i| flat[i]) {
+        let pixel = pixels.target.at(i);
+        if away(&pixel, &pixels.canvas.at(i)) <= fills.apart * LEVEL {
+            continue;
+        }
+        let bin = |v: &f32| (v.clamp(0.0, 1.0) * (255.0 / LEVELS_PER_BIN)) as u64;
+        let key = pixel.iter().fold(0, |key, v| (key << 8) | bin(v));
+        // Runs of one bin are one entry.
+        match bins.last_mut().filter(|last| last.key == key) {
+            Some(last) => last.add(1.0, &pixel),
+            None => bins.push(Bin {
+                key,
+                count: 1.0,
+                sum: pixel,
+            }),
+        }
+    }
+    bins.sort_by_key(|bin| bin.key);
+    bins.dedup_by(|next, kept| {
+        let is_same = next.key == kept.key;
+        if is_same {
+            kept.add(next.count, &next.sum);
+        }
+        is_same
+    });
+    bins.sort_by(|a, b| b.count.total_cmp(&a.count).then(a.key.cmp(&b.key)));
+    let mut colors: Vec<Pixel> = Vec::new();
+    for bin in bins
+        .iter()
+        .take_while(|bin| bin.count >= fills.least_area as f32)
+    {
+        let mean = bin.sum.map(|sum| sum / bin.count);
+        let is_new = |color: &Pixel| away(color, &mean) > fills.apart * LEVEL;
+        if colors.len() < fills.most_colors && colors.iter().all(is_new) {
+            colors.push(mean);
+        }
+    }
+    colors
+}
+
+impl Bin {
+    fn add(&mut self, count: f32, sum: &Pixel) {
+        self.count += count;
+        let channels = self.sum.iter_mut().zip(sum);
+        channels.for_each(|(all, more)| *all += more);
+    }
+}
+
+/// The label of each pixel that is flat, or exactly of a colour. Beside another label it has to be nearer.
+fn labels(colors: &Colors<'_>, flat: &[bool], fills: &Fills) -> Vec<u16> {
+    let pixels = colors.pixels;
+    let all = (0..flat.len()).into_par_iter();
+    let alone = all.clone().map(|i| {
+        let (label, distance) = colors.nearest(i);
+        let reach = match (flat[i], label) {
+            (true, _) => fills.apart + 3.0,
+            (false, CANVAS) => fills.exact,
+            (false, _) => 1.0,
+        };
+        let is_own = distance <= reach * LEVEL;
+        (if is_own { label } else { NONE }, distance)
+    });
+    let alone: Vec<(u16, f32)> = alone.collect();
+    let label = |i: usize| {
+        let (label, distance) = alone[i];
+        let is_exact = distance <= fills.exact * LEVEL;
+        let is_inner = || pixels.around(i, 1).all(|k| alone[k].0 == label);
+        if is_exact || is_inner() { label } else { NONE }
+    };
+    all.map(label).collect()
+}

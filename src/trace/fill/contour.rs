@@ -1,0 +1,146 @@
+//! Contours: the closed lines along which a field is ½, by marching squares.
+
+/// A place, px.
+pub(super) type Place = [f32; 2];
+
+/// A field on a frame of pixels that is 0 along the frame's border.
+pub(super) struct Field {
+    /// Column and row of the first pixel in the picture.
+    pub(super) origin: [i32; 2],
+    pub(super) width: usize,
+    pub(super) values: Vec<f32>,
+}
+
+impl Field {
+    /// The contours. Going along one, what is inside lies to the left, seen with y pointing down.
+    pub(super) fn contours(&self) -> Vec<Vec<Place>> {
+        let next = self.links();
+        let mut seen = vec![false; next.len()];
+        let mut rings = Vec::new();
+        for start in 0..next.len() {
+            if next[start] == NOWHERE || seen[start] {
+                continue;
+            }
+            let mut ring = Vec::new();
+            let mut at = start;
+            while !seen[at] {
+                seen[at] = true;
+                ring.push(self.crossing(at));
+                at = next[at] as usize;
+            }
+            rings.push(ring);
+        }
+        rings
+    }
+
+    /// For each edge of the grid of pixel centres that a contour enters a cell through, the edge that it leaves it by.
+    ///
+    /// Edge 2·i goes from pixel i to the right, edge 2·i + 1 down.
+    fn links(&self) -> Vec<u32> {
+        let w = self.width;
+        let mut next = vec![NOWHERE; 2 * self.values.len()];
+        let is_inside = |i: usize| self.values[i] >= 0.5;
+        for row in 0..(self.values.len() / w).saturating_sub(1) {
+            for i in row * w..(row + 1) * w - 1 {
+                let corners = [i, i + 1, i + w + 1, i + w].map(is_inside);
+                let case = corners
+                    .iter()
+                    .rev()
+                    .fold(0, |case, &c| 2 * case + u8::from(c));
+                let (top, right, bottom, left) = (2 * i, 2 * i + 3, 2 * (i + w), 2 * i + 1);
+                let mut link = |from: usize, to: usize| next[from] = to as u32;
+                // Corners are 1 (this pixel), 2 (right), 4 (below right), 8 (below).
+                match case {
+                    1 => link(left, top),
+                    2 => link(top, right),
+                    3 => link(left, right),
+                    4 => link(right, bottom),
+                    6 => link(top, bottom),
+                    7 => link(left, bottom),
+                    8 => link(bottom, left),
+                    9 => link(bottom, top),
+                    11 => link(bottom, right),
+                    12 => link(right, left),
+                    13 => link(right, top),
+                    14 => link(top, left),
+                    5 if self.is_full(i) => {
+                        link(left, bottom);
+                        link(right, top);
+                    }
+                    5 => {
+                        link(left, top);
+                        link(right, bottom);
+                    }
+                    10 if self.is_full(i) => {
+                        link(top, left);
+                        link(bottom, right);
+                    }
+                    10 => {
+                        link(top, right);
+                        link(bottom, left);
+                    }
+                    _ => {}
+                }
+            }
+        }
+        next
+    }
+
+    /// True if the middle of the cell below and right of pixel `i` is inside.
+    fn is_full(&self, i: usize) -> bool {
+        let w = self.width;
+        let sum: f32 = [i, i + 1, i + w, i + w + 1]
+            .map(|k| self.values[k])
+            .iter()
+            .sum();
+        sum > 2.0
+    }
+
+    /// The place on an edge where the field is ½.
+    fn crossing(&self, edge: usize) -> Place {
+        let i = edge / 2;
+        let [step, dx, dy] = match edge % 2 {
+            0 => [1, 1, 0],
+            _ => [self.width, 0, 1],
+        };
+        let (a, b) = (self.values[i], self.values[i + step]);
+        let share = (0.5 - a) / (b - a);
+        let [x, y] = [i % self.width, i / self.width];
+        let at =
+            |origin: i32, at: usize, d: usize| origin as f32 + at as f32 + 0.5 + share * d as f32;
+        [at(self.origin[0], x, dx), at(self.origin[1], y, dy)]
+    }
+}
+
+const NOWHERE: u32 = u32::MAX;
+
+/// Twice the area within a ring, px²; negative if it runs the other way.
+pub(super) fn twice_area(ring: &[Place]) -> f32 {
+    let next = ring.iter().cycle().skip(1);
+    let pairs = ring.iter().zip(next);
+    pairs.map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum()
+}
+
+/// Places evenly along a ring, about `step` px apart.
+pub(super) fn resampled(ring: &[Place], step: f32) -> Vec<Place> {
+    let length = |a: Place, b: Place| crate::math::distance(a, b);
+    let next = |k: usize| ring[(k + 1) % ring.len()];
+    let all: f32 = (0..ring.len()).map(|k| length(ring[k], next(k))).sum();
+    let count = ((all / step).round() as usize).max(8);
+    let step = all / count as f32;
+    let mut out = Vec::with_capacity(count);
+    let mut done = 0.0;
+    for k in 0..ring.len() {
+        let (a, b) = (ring[k], next(k));
+        let long = length(a, b);
+        while out.len() < count && out.len() as f32 * step <= done + long {
+            let share = (out.len() as f32 * step - done) / long.max(f32::MIN_POSITIVE);
+            out.push([0, 1].map(|axis| a[axis] + share * (b[axis] - a[axis])));
+        }
+        done += long;
+    }
+    while out.len() < count {
+        out.push(ring[0]);
+    }
+    out
+}

@@ -1,0 +1,360 @@
+//! Filled shapes of flat art.
+//!
+//! ```text
+//! colors     the colours of flat places
+//! mixtures   all other pixels as mixtures of the two colours beside them
+//! regions    the connected pixels of one colour
+//! stack      larger shapes lie below and go on beneath what lies on top
+//! contour    the line along which a shape covers half of a pixel
+//! corners    where that turns
+//! outline    its corners and the splines between them, as few points as are near enough
+//! compound   shapes of one colour with nothing between them are one
+//! ```
+
+mod colors;
+mod compound;
+mod contour;
+mod corners;
+mod hull;
+mod mixtures;
+mod outline;
+mod regions;
+mod span;
+mod stack;
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use super::areas::{self, Pixel, Pixels, distance2};
+use super::recipe::Fills;
+use crate::scene::{Area, Path, Rgb};
+use colors::{CANVAS, LEVEL, NONE};
+pub(super) use compound::Fill;
+use contour::{Field, Place};
+use mixtures::Mixture;
+use regions::{Region, Regions};
+use stack::{Layer, Stack};
+
+/// A filled shape, what it gains, and its place in the stack.
+#[derive(Debug, Clone)]
+pub(super) struct Filled {
+    pub(super) area: Area,
+    pub(super) gain: f32,
+    pub(super) rank: usize,
+}
+
+/// A picture as a stack of regions.
+pub(super) struct Flat<'a> {
+    pixels: &'a Pixels<'a>,
+    mattes: usize,
+    regions: Regions,
+    neighbours: Vec<BTreeMap<u32, u32>>,
+    stack: Stack,
+}
+
+impl<'a> Flat<'a> {
+    /// The stack of a picture, if it is one of few colours.
+    pub(super) fn of(pixels: &'a Pixels<'a>, mattes: usize, fills: &Fills) -> Option<Self> {
+        let (mut colors, mut labels) = colors::flat_colors(pixels, fills);
+        let flat = labels.iter().filter(|label| **label != NONE).count();
+        if (flat as f32) < fills.least_shares[0] * labels.len() as f32 {
+            return None;
+        }
+        let mixtures = mixtures::mixtures(&mut colors, &mut labels, fills);
+        if explained(pixels, &mixtures, fills) < fills.least_shares[1] {
+            return None;
+        }
+        let regions = Regions::of(&colors, mixtures, fills);
+        let neighbours = regions.neighbours();
+        // What is translucent is left to strokes.
+        let is_drawn =
+            |region: &Region| region.label == CANVAS || mattes == 1 || is_opaque(&region.color);
+        let drawn: Vec<bool> = regions.list.iter().map(is_drawn).collect();
+        let stack = Stack::of(&regions, &neighbours, &drawn, fills);
+        Some(Self {
+            pixels,
+            mattes,
+            regions,
+            neighbours,
+            stack,
+        })
+    }
+
+    /// The shapes of the stack, from back to front.
+    pub(super) fn fills(&self, fills: &Fills) -> Vec<Fill> {
+        let gains = self.gains();
+        let layers = self.stack.layers.par_iter();
+        layers
+            .filter_map(|layer| self.fill(layer, &gains, fills))
+            .collect()
+    }
+
+    /// The areas of shapes, those of one colour joined, from back to front. Those of `left_out` regions are not drawn.
+    pub(super) fn areas(&self, fills: Vec<Fill>, left_out: &[bool]) -> Vec<Filled> {
+        let fills = fills
+            .into_iter()
+            .filter(|fill| !left_out[fill.region as usize]);
+        let joined = compound::joined(fills.collect(), &self.neighbours);
+        let filled = joined.into_iter().map(|fill| Filled {
+            area: self.area(&fill),
+            gain: fill.gain / self.mattes as f32,
+            rank: fill.rank,
+        });
+        filled.collect()
+    }
+
+    /// The area of a shape.
+    pub(super) fn area(&self, fill: &Fill) -> Area {
+        Area {
+            rings: fill.rings.clone(),
+            color: areas::color(&fill.color, self.mattes).map(|c| c.clamp(0.0, 1.0)),
+            opacity: 1.0,
+        }
+    }
+
+    /// The shape of a layer.
+    fn fill(&self, layer: &Layer, gains: &[f32], fills: &Fills) -> Option<Fill> {
+        let regions = &self.regions;
+        let mut covered = vec![false; regions.list.len()];
+        layer
+            .covers
+            .iter()
+            .for_each(|&r| covered[r as usize] = true);
+        let above = self
+            .stack
+            .ranks
+            .iter()
+            .map(|rank| rank.is_some_and(|rank| rank > layer.rank));
+        let free: Vec<bool> = above
+            .zip(&covered)
+            .map(|(above, &own)| above || own)
+            .collect();
+        let field = self.field(layer, &covered);
+        let depth =
+            |at: Place, outward: Place| self.depth(at, outward, &free, fills.outlines.hidden);
+        let least = 0.6 * fills.least_area as f32;
+        let contours = field.contours();
+        let rings = contours
+            .iter()
+            .filter(|ring| contour::twice_area(ring).abs() > 2.0 * least);
+        let rings: Vec<Path> = rings
+            .filter_map(|contour| outline::ring(contour, &fills.outlines, depth))
+            .collect();
+        let region = &regions.list[layer.region as usize];
+        (!rings.is_empty()).then(|| Fill {
+            rings,
+            color: region.color,
+            region: layer.region,
+            size: region.members.len() as f32,
+            gain: gains[layer.region as usize],
+            rank: layer.rank,
+            covers: layer.covers.clone(),
+        })
+    }
+
+    /// How much of each pixel a layer covers. At the picture's border it goes on for two pixels.
+    fn field(&self, layer: &Layer, covered: &[bool]) -> Field {
+        let (width, height) = (self.regions.width, self.regions.height);
+        let members = layer
+            .covers
+            .iter()
+            .flat_map(|&r| &self.regions.list[r as usize].members);
+        let mut low = [width, height];
+        let mut high = [0, 0];
+        for &i in members {
+            let at = [i as usize % width, i as usize / width];
+            low = [0, 1].map(|k| low[k].min(at[k]));
+            high = [0, 1].map(|k| high[k].max(at[k] + 1));
+        }
+        let size = [width, height].map(|v| v as i32);
+        let margin = |at: i32, border: i32| if at == border { 3 } else { 2 };
+        let low = low.map(|v| v as i32).map(|v| v - margin(v, 0));
+        let high = [0, 1].map(|k| high[k] as i32 + margin(high[k] as i32, size[k]));
+        let value = |x: i32, y: i32| {
+            let is_near = |v: i32, size: i32| (-2..size + 2).contains(&v);
+            let is_edge = x == low[0] || y == low[1] || x == high[0] - 1 || y == high[1] - 1;
+            if is_edge || !is_near(x, size[0]) || !is_near(y, size[1]) {
+                return 0.0;
+            }
+            let [x, y] = [x.clamp(0, size[0] - 1), y.clamp(0, size[1] - 1)];
+            self.regions
+                .share_of(y as usize * width + x as usize, covered)
+        };
+        let rows = (low[1]..high[1]).flat_map(|y| (low[0]..high[0]).map(move |x| [x, y]));
+        Field {
+            origin: low,
+            width: (high[0] - low[0]) as usize,
+            values: rows.map(|[x, y]| value(x, y)).collect(),
+        }
+    }
+
+    /// How far an outline may lie beyond a place: as far as all that it would cover is `free`, as that lies on top.
+    fn depth(&self, at: Place, outward: Place, free: &[bool], most: f32) -> f32 {
+        const STEP: f32 = 0.5;
+        let size = [self.regions.width, self.regions.height].map(|v| v as f32);
+        let is_outside = |p: Place| (0..2).any(|k| p[k] < 0.3 || p[k] > size[k] - 0.3);
+        let mut reached = 0.0;
+        while reached + STEP <= most {
+            let further = reached + STEP;
+            let p = [0, 1].map(|k| at[k] + further * outward[k]);
+            if self.share_at(p, free) <= 0.9 {
+                break;
+            }
+            reached = further;
+        }
+        let depth: f32 = reached - 1.0;
+        // Beyond the border nothing is seen.
+        depth.max(if is_outside(at) { 2.0 } else { 0.0 })
+    }
+
+    /// The share of `is_member` at a place between pixels; 1 outside of the picture.
+    pub(super) fn share_at(&self, p: Place, is_member: &[bool]) -> f32 {
+        let (width, height) = (self.regions.width, self.regions.height);
+        let [x, y] = [p[0] - 0.5, p[1] - 0.5];
+        if x < -0.5 || y < -0.5 || x > width as f32 - 0.5 || y > height as f32 - 0.5 {
+            return 1.0;
+        }
+        let at = |x: f32, y: f32| {
+            let column = (x.max(0.0) as usize).min(width - 1);
+            let row = (y.max(0.0) as usize).min(height - 1);
+            self.regions.share_of(row * width + column, is_member)
+        };
+        let [left, top] = [x.floor(), y.floor()];
+        let [u, v] = [x - left, y - top];
+        let row = |y: f32| at(left, y) * (1.0 - u) + at(left + 1.0, y) * u;
+        row(top) * (1.0 - v) + row(top + 1.0) * v
+    }
+
+    pub(super) fn region_count(&self) -> usize {
+        self.regions.list.len()
+    }
+
+    /// The region of pixel `i`.
+    pub(super) fn region(&self, i: usize) -> u32 {
+        self.regions.of[i]
+    }
+
+    /// The region of pixel `i`, if it has about this colour and is not the canvas.
+    pub(super) fn region_like(&self, i: usize, color: Rgb) -> Option<u32> {
+        const LIKE: f32 = 0.12;
+        let region = self.regions.of[i];
+        let Region {
+            label, color: own, ..
+        } = &self.regions.list[region as usize];
+        let own = areas::color(own, self.mattes);
+        let is_like = (0..3).all(|k| (own[k] - color[k]).abs() < LIKE);
+        (*label != CANVAS && is_like).then_some(region)
+    }
+
+    /// The pixels of a region.
+    pub(super) fn pixels_of(&self, region: u32) -> impl Iterator<Item = usize> + '_ {
+        self.regions.list[region as usize]
+            .members
+            .iter()
+            .map(|&i| i as usize)
+    }
+
+    /// The number of pixels of a region.
+    pub(super) fn size(&self, region: u32) -> f32 {
+        self.regions.list[region as usize].members.len() as f32
+    }
+
+    /// The place of a region in the stack.
+    pub(super) fn rank(&self, region: u32) -> Option<usize> {
+        self.stack.ranks[region as usize]
+    }
+
+    /// True for each of some regions.
+    pub(super) fn members(&self, regions: &[u32]) -> Vec<bool> {
+        let mut members = vec![false; self.regions.list.len()];
+        regions
+            .iter()
+            .for_each(|&region| members[region as usize] = true);
+        members
+    }
+
+    /// The share of pixel `i` that belongs to `members`.
+    pub(super) fn share(&self, i: usize, members: &[bool]) -> f32 {
+        self.regions.share_of(i, members)
+    }
+
+    /// The squared error that something of a colour removes on top of all regions, where it covers some shares of
+    /// pixels.
+    pub(super) fn gain_on_top(&self, color: Rgb, coverage: &[(usize, f32)]) -> f32 {
+        let gain = coverage.iter().map(|&(i, covered)| {
+            let target = self.pixels.target.at(i);
+            let seen = self.seen(i);
+            let drawn: Pixel = std::array::from_fn(|k| match k < 3 * self.mattes {
+                true => seen[k] + covered * (color[k % 3] - seen[k]),
+                false => 0.0,
+            });
+            let weight = self.pixels.weights.map_or(1.0, |weights| weights[i]);
+            weight * (distance2(&target, &seen) - distance2(&target, &drawn))
+        });
+        gain.sum::<f32>() / self.mattes as f32
+    }
+
+    /// Pixel `i` as its regions show it.
+    fn seen(&self, i: usize) -> Pixel {
+        let [own, second] = [self.regions.of[i], self.regions.second[i]].map(|r| self.shown(r, i));
+        let share = self.regions.share[i];
+        std::array::from_fn(|k| own[k] + share * (second[k] - own[k]))
+    }
+
+    /// The colour of a region at pixel `i`.
+    fn shown(&self, region: u32, i: usize) -> Pixel {
+        match &self.regions.list[region as usize] {
+            Region { label: CANVAS, .. } => self.pixels.canvas.at(i),
+            Region { color, .. } => *color,
+        }
+    }
+
+    /// The squared error that each region spares: without it, what is next below it would be seen.
+    fn gains(&self) -> Vec<f32> {
+        let regions = &self.regions;
+        let below = compound::below(&self.stack.layers, regions.list.len());
+        let mut gains = vec![0.0; regions.list.len()];
+        for i in 0..regions.of.len() {
+            let (own, second, share) = (regions.of[i], regions.second[i], regions.share[i]);
+            let seen = |region: u32| self.shown(region, i);
+            let behind = |region: u32| match below[region as usize] {
+                Some(lower) => seen(lower),
+                None => self.pixels.canvas.at(i),
+            };
+            let target = self.pixels.target.at(i);
+            let error = |a: Pixel, b: Pixel| {
+                let mixed = std::array::from_fn(|k| a[k] + share * (b[k] - a[k]));
+                distance2(&target, &mixed)
+            };
+            let weight = self.pixels.weights.map_or(1.0, |weights| weights[i]);
+            let drawn = error(seen(own), seen(second));
+            gains[own as usize] += weight * (error(behind(own), seen(second)) - drawn);
+            if share > 0.0 {
+                gains[second as usize] += weight * (error(seen(own), behind(second)) - drawn);
+            }
+        }
+        gains
+    }
+}
+
+/// The share of the squared residual that lies in pixels that colours or their mixtures explain.
+fn explained(pixels: &Pixels<'_>, mixtures: &[Mixture], fills: &Fills) -> f32 {
+    // Half of what begins to be a colour of its own.
+    let limit = 0.5 * fills.unexplained * LEVEL;
+    let (mut all, mut known) = (0.0, 0.0);
+    for (i, mixture) in mixtures.iter().enumerate() {
+        let residual = distance2(&pixels.target.at(i), &pixels.canvas.at(i));
+        all += residual;
+        if mixture.error < limit * limit {
+            known += residual;
+        }
+    }
+    known / all.max(f32::MIN_POSITIVE)
+}
+
+/// True if a colour on a black and a white matte is opaque.
+fn is_opaque(color: &Pixel) -> bool {
+    let shines = (0..3).map(|k| color[k + 3] - color[k]);
+    shines.sum::<f32>() < 3.0 * 5.0 * LEVEL
+}

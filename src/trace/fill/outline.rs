@@ -1,0 +1,264 @@
+//! Outlines: a contour as a ring of few on- and off-points.
+//!
+//! A contour is cut at its corners. Between two of them the cheapest chain of spans within the tolerance is found by
+//! dynamic programme; its spans end at corners of a polygon close to the contour. Hidden edges may lie farther out.
+
+use super::super::recipe::Outlines;
+use super::contour::{Place, resampled};
+use super::corners::{Corner, corners};
+use super::span::{MOST, Sample, Span, fit};
+use crate::math::{self, Point};
+use crate::scene::{Path, PathPoint};
+
+/// The ring along a contour. `depth` tells how far, at most, it may lie beyond a place in a direction, as it is hidden
+/// there.
+pub(super) fn ring(
+    contour: &[Place],
+    outlines: &Outlines,
+    depth: impl Fn(Place, Place) -> f32,
+) -> Option<Path> {
+    let places = resampled(contour, outlines.step);
+    let count = places.len();
+    let (turns, corners) = corners(&places, outlines.step, outlines);
+    let outward = |i: usize| {
+        let [a, b] = [places[(i + count - 2) % count], places[(i + 2) % count]];
+        let length = math::distance(a, b).max(f32::MIN_POSITIVE);
+        [-(b[1] - a[1]) / length, (b[0] - a[0]) / length]
+    };
+    let outward: Vec<Place> = (0..count).map(outward).collect();
+    let depths: Vec<f32> = (0..count).map(|i| depth(places[i], outward[i])).collect();
+    let (samples, cuts) = samples(&places, &outward, &depths, corners, &turns, outlines);
+    let mut points = Vec::new();
+    for (k, &from) in cuts.iter().enumerate() {
+        let to = cuts[(k + 1) % cuts.len()];
+        let length = if to > from {
+            to - from
+        } else {
+            to + count - from
+        };
+        let run: Vec<usize> = (0..=length).map(|d| (from + d) % count).collect();
+        let hidden: Vec<bool> = run.iter().map(|&i| depths[i] > HIDDEN).collect();
+        let run: Vec<Sample> = run.iter().map(|&i| samples[i]).collect();
+        chain(&run, &hidden, outlines, &mut points);
+    }
+    square(&mut points);
+    let points: Vec<PathPoint> = points
+        .into_iter()
+        .map(|(at, is_on)| PathPoint {
+            at: Point::new(at[0], at[1]),
+            is_on,
+        })
+        .collect();
+    (points.len() > 2).then(|| Path::of_points(points, true))
+}
+
+/// Depth from which on an edge is hidden, px.
+const HIDDEN: f32 = 0.05;
+/// Farthest that a hidden edge may be inside, px.
+const INSIDE: f32 = 0.35;
+
+/// The samples of a contour with what is allowed of each, and where it is cut.
+fn samples(
+    places: &[Place],
+    outward: &[Place],
+    depths: &[f32],
+    corners: Vec<Corner>,
+    turns: &[f32],
+    outlines: &Outlines,
+) -> (Vec<Sample>, Vec<usize>) {
+    let count = places.len();
+    let sample = |i: usize| {
+        let (at, out, depth) = (places[i], outward[i], depths[i]);
+        if depth <= HIDDEN {
+            return Sample {
+                at,
+                outward: out,
+                tolerance: [outlines.tolerance; 2],
+                weight: 1.0,
+            };
+        }
+        let shift = (0.5 * depth).min(1.0);
+        Sample {
+            at: [0, 1].map(|k| at[k] + shift * out[k]),
+            outward: out,
+            tolerance: [INSIDE, depth.max(outlines.tolerance)],
+            weight: 0.05,
+        }
+    };
+    let mut samples: Vec<Sample> = (0..count).map(sample).collect();
+    let seen: Vec<Corner> = corners
+        .into_iter()
+        .filter(|corner| depths[corner.index] <= HIDDEN)
+        .collect();
+    let mut cuts: Vec<usize> = seen.iter().map(|corner| corner.index).collect();
+    for corner in &seen {
+        samples[corner.index].at = corner.at;
+        // Pixels have rounded what is beside it.
+        for d in [1, 2] {
+            for i in [corner.index + count - d, corner.index + d].map(|i| i % count) {
+                if !cuts.contains(&i) {
+                    samples[i].weight *= 0.1;
+                    samples[i].tolerance = samples[i].tolerance.map(|t| t.max(0.9));
+                }
+            }
+        }
+    }
+    if cuts.is_empty() {
+        let sharpest = (0..count).min_by(|&a, &b| turns[a].total_cmp(&turns[b]));
+        cuts.extend(sharpest);
+    }
+    (samples, cuts)
+}
+
+/// The cheapest chain that ends at a candidate: its points, the candidate that its last span starts at, and that span.
+#[derive(Clone, Copy)]
+struct Best {
+    cost: usize,
+    from: usize,
+    span: Span,
+}
+
+/// Appends the points of a run, its last one left out.
+fn chain(run: &[Sample], hidden: &[bool], outlines: &Outlines, points: &mut Vec<(Place, bool)>) {
+    let candidates = candidates(run, hidden, outlines);
+    let unreached = Best {
+        cost: usize::MAX,
+        from: 0,
+        span: Span::default(),
+    };
+    let mut best = vec![unreached; candidates.len()];
+    best[0].cost = 0;
+    for a in 0..candidates.len() - 1 {
+        if best[a].cost < usize::MAX {
+            extend(run, &candidates, a, &mut best, outlines);
+        }
+    }
+    // Backwards from the end.
+    let mut spans = Vec::new();
+    let mut at = candidates.len() - 1;
+    while at > 0 {
+        spans.push((best[at].from, best[at].span));
+        at = best[at].from;
+    }
+    for (from, span) in spans.into_iter().rev() {
+        points.push((run[candidates[from]].at, true));
+        points.extend(span.off[..span.count].iter().map(|&at| (at, false)));
+    }
+}
+
+/// Tries all spans that start at candidate `a`.
+fn extend(run: &[Sample], candidates: &[usize], a: usize, best: &mut [Best], outlines: &Outlines) {
+    // A longer span needs as many off-points as a shorter one, or more.
+    let mut least = 0;
+    let mut failed = 0;
+    for b in a + 1..candidates.len() {
+        let samples = thinned(&run[candidates[a]..=candidates[b]]);
+        let most = outlines
+            .most_off
+            .min(MOST)
+            .min(samples.len().saturating_sub(2));
+        let found = (least..=most)
+            .take_while(|count| best[a].cost + 1 + count < best[b].cost)
+            .find_map(|count| {
+                let (span, worst) = fit(&samples, count);
+                (worst <= 1.0).then_some(span)
+            });
+        let is_cheaper = best[a].cost + 1 + least < best[b].cost;
+        match found {
+            Some(span) => {
+                least = span.count.saturating_sub(1);
+                best[b] = Best {
+                    cost: best[a].cost + 1 + span.count,
+                    from: a,
+                    span,
+                };
+                failed = 0;
+            }
+            // The next candidate can always be reached.
+            None if b == a + 1 && best[b].cost == usize::MAX => {
+                best[b] = Best {
+                    cost: best[a].cost + 1,
+                    from: a,
+                    span: Span::default(),
+                };
+            }
+            None if is_cheaper => failed += 1,
+            None => {}
+        }
+        if failed == 3 {
+            return;
+        }
+    }
+}
+
+/// At most some forty of the samples, with both ends.
+fn thinned(run: &[Sample]) -> Vec<Sample> {
+    let stride = run.len().div_ceil(40);
+    let last = run.len() - 1;
+    let inner = (0..last).step_by(stride).map(|i| run[i]);
+    inner.chain([run[last]]).collect()
+}
+
+/// The samples at which spans may end: corners of a polygon near to the run, places where it becomes hidden, and one
+/// in the middle of long gaps.
+fn candidates(run: &[Sample], hidden: &[bool], outlines: &Outlines) -> Vec<usize> {
+    let mut found = vec![];
+    for tolerance in [1.0, 2.0, 4.0] {
+        found = polygon(run, tolerance * outlines.candidates);
+        if found.len() <= 40 {
+            break;
+        }
+    }
+    let gaps = found.windows(2).filter(|w| w[1] - w[0] > 14);
+    let middles: Vec<usize> = gaps.map(|w| (w[0] + w[1]) / 2).collect();
+    let changes = hidden.windows(2).enumerate();
+    let changes = changes.filter(|(_, w)| w[0] != w[1]).map(|(i, _)| i);
+    found.extend(middles.into_iter().chain(changes));
+    found.sort_unstable();
+    found.dedup();
+    found
+}
+
+/// The indices of the corners of a polygon that is within `tolerance` of the run, after Ramer, Douglas and Peucker.
+fn polygon(run: &[Sample], tolerance: f32) -> Vec<usize> {
+    let last = run.len() - 1;
+    let mut kept = vec![0, last];
+    let mut stack = vec![(0, last)];
+    while let Some((a, b)) = stack.pop() {
+        let ends = [run[a].at, run[b].at];
+        let away2 = |i: usize| math::nearest_on_segment(run[i].at, ends).1;
+        let far = (a + 1..b)
+            .map(|i| (away2(i), i))
+            .max_by(|p, q| p.0.total_cmp(&q.0));
+        if let Some((_, i)) = far.filter(|far| far.0 > tolerance * tolerance) {
+            kept.push(i);
+            stack.extend([(a, i), (i, b)]);
+        }
+    }
+    kept.sort_unstable();
+    kept
+}
+
+/// Makes lines that are nearly level or upright exactly so.
+fn square(points: &mut [(Place, bool)]) {
+    const SLANT: f32 = 0.3;
+    let count = points.len();
+    for i in 0..count {
+        let k = (i + 1) % count;
+        let ([a, is_on], [b, is_also_on]) = (
+            [points[i].0, [f32::from(points[i].1); 2]],
+            [points[k].0, [f32::from(points[k].1); 2]],
+        );
+        if is_on[0] + is_also_on[0] < 2.0 {
+            continue;
+        }
+        for axis in [0, 1] {
+            let (across, along) = ((a[axis] - b[axis]).abs(), (a[1 - axis] - b[1 - axis]).abs());
+            if across < SLANT && along > 4.0 * across + 1.0 {
+                let middle = 0.5 * (a[axis] + b[axis]);
+                points[i].0[axis] = middle;
+                points[k].0[axis] = middle;
+            }
+        }
+    }
+}

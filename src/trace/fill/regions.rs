@@ -1,0 +1,301 @@
+//! Regions: the connected pixels of one label, and the share of each pixel that belongs to the region beside it.
+
+use std::collections::BTreeMap;
+
+use super::super::areas::{Pixel, distance2};
+use super::super::recipe::Fills;
+use super::colors::{CANVAS, Colors, LEVEL, away};
+use super::mixtures::{Mixture, best_mixture};
+
+/// A region.
+#[derive(Debug, Clone)]
+pub(super) struct Region {
+    pub(super) label: u16,
+    /// Its pixels, row by row.
+    pub(super) members: Vec<u32>,
+    /// The median of its pixels of one colour.
+    pub(super) color: Pixel,
+}
+
+/// The regions of a picture.
+pub(super) struct Regions {
+    pub(super) width: usize,
+    pub(super) height: usize,
+    /// The region of each pixel.
+    pub(super) of: Vec<u32>,
+    /// The region that the smaller share of each pixel belongs to.
+    pub(super) second: Vec<u32>,
+    /// That share, 0 to ½.
+    pub(super) share: Vec<f32>,
+    pub(super) list: Vec<Region>,
+}
+
+impl Regions {
+    /// The regions of pixels as mixtures. What is too small, or only edges, becomes part of what is beside it.
+    pub(super) fn of(colors: &Colors<'_>, mut mixtures: Vec<Mixture>, fills: &Fills) -> Self {
+        let (mut of, mut members) = connected(colors, &mixtures);
+        if dissolve(colors, &of, &members, &mut mixtures) {
+            (of, members) = connected(colors, &mixtures);
+        }
+        for _ in 0..6 {
+            let is_small = |pixels: &Vec<u32>| is_small(colors, &mixtures, pixels, fills);
+            let small: Vec<bool> = members.iter().map(is_small).collect();
+            if small.iter().all(|small| *small) || !small.contains(&true) {
+                break;
+            }
+            absorb(colors, &of, &members, &small, &mut mixtures);
+            (of, members) = connected(colors, &mixtures);
+        }
+        let (second, share) = seconds(colors, &mixtures, &of);
+        let region = |pixels: Vec<u32>| {
+            let label = mixtures[pixels[0] as usize].own;
+            let color = color(colors, &share, &pixels, label);
+            Region {
+                label,
+                color,
+                members: pixels,
+            }
+        };
+        let list = members.into_iter().map(region).collect();
+        Self {
+            width: colors.pixels.width,
+            height: colors.pixels.height,
+            of,
+            second,
+            share,
+            list,
+        }
+    }
+
+    /// The share of pixel `i` that belongs to regions with `is_member`.
+    pub(super) fn share_of(&self, i: usize, is_member: &[bool]) -> f32 {
+        let share = |region: u32, share: f32| match is_member[region as usize] {
+            true => share,
+            false => 0.0,
+        };
+        share(self.of[i], 1.0 - self.share[i]) + share(self.second[i], self.share[i])
+    }
+
+    /// The number of pairs of pixels in which regions touch, for each region its neighbours.
+    pub(super) fn neighbours(&self) -> Vec<BTreeMap<u32, u32>> {
+        let mut found: Vec<BTreeMap<u32, u32>> = vec![BTreeMap::new(); self.list.len()];
+        let mut touch = |a: u32, b: u32| {
+            if a != b {
+                *found[a as usize].entry(b).or_default() += 1;
+                *found[b as usize].entry(a).or_default() += 1;
+            }
+        };
+        for (i, &region) in self.of.iter().enumerate() {
+            if (i + 1) % self.width != 0 {
+                touch(region, self.of[i + 1]);
+            }
+            if let Some(&below) = self.of.get(i + self.width) {
+                touch(region, below);
+            }
+        }
+        found
+    }
+}
+
+/// The region of each pixel, and the pixels of each region, 4-connected.
+fn connected(colors: &Colors<'_>, mixtures: &[Mixture]) -> (Vec<u32>, Vec<Vec<u32>>) {
+    let width = colors.pixels.width;
+    let mut of = vec![u32::MAX; mixtures.len()];
+    let mut members = Vec::new();
+    for start in 0..mixtures.len() {
+        if of[start] != u32::MAX {
+            continue;
+        }
+        let (label, region) = (mixtures[start].own, members.len() as u32);
+        let mut pixels = vec![start as u32];
+        of[start] = region;
+        let mut next = 0;
+        while let Some(&i) = pixels.get(next) {
+            next += 1;
+            for k in beside(i as usize, width, mixtures.len()) {
+                if of[k] == u32::MAX && mixtures[k].own == label {
+                    of[k] = region;
+                    pixels.push(k as u32);
+                }
+            }
+        }
+        pixels.sort_unstable();
+        members.push(pixels);
+    }
+    (of, members)
+}
+
+/// The pixels to the left and right, above and below.
+pub(super) fn beside(i: usize, width: usize, count: usize) -> impl Iterator<Item = usize> {
+    let x = i % width;
+    let left = (x > 0).then(|| i - 1);
+    let right = (x + 1 < width).then_some(i + 1);
+    let above = i.checked_sub(width);
+    let below = Some(i + width).filter(|&k| k < count);
+    [left, right, above, below].into_iter().flatten()
+}
+
+/// Makes mixtures of thin regions whose pixels lie between the colours on either side. Returns whether there were such.
+fn dissolve(
+    colors: &Colors<'_>,
+    of: &[u32],
+    members: &[Vec<u32>],
+    mixtures: &mut [Mixture],
+) -> bool {
+    let mut found = Vec::new();
+    for (region, pixels) in members.iter().enumerate() {
+        let label = mixtures[pixels[0] as usize].own;
+        if label == CANVAS || !is_thin(colors, of, region as u32, pixels) {
+            continue;
+        }
+        // What tapers off is beside both colours only at its end.
+        let all = match pixels.len() {
+            ..SHORT => pixels.as_slice(),
+            _ => &[],
+        };
+        let mixed = pixels.iter().map(|&i| {
+            let near = labels_without(colors, mixtures, label, all, i as usize);
+            best_mixture(colors, &near, i as usize)
+        });
+        let mixed: Vec<Mixture> = mixed.collect();
+        let is_edge = |m: &&Mixture| m.error < EDGE * EDGE && m.share > 0.04;
+        let edges = mixed.iter().filter(is_edge).count();
+        if edges * 5 > pixels.len() * 4 {
+            found.extend(pixels.iter().copied().zip(mixed));
+        }
+    }
+    let is_found = !found.is_empty();
+    for (i, mixture) in found {
+        mixtures[i as usize] = mixture;
+    }
+    is_found
+}
+
+/// Root of the squared error below which a mixture explains a pixel of a thin region. A guess.
+const EDGE: f32 = 8.0 * LEVEL;
+
+/// True if a region is about a pixel thick: few of its pixels are corners of squares of four.
+fn is_thin(colors: &Colors<'_>, of: &[u32], region: u32, pixels: &[u32]) -> bool {
+    let width = colors.pixels.width;
+    let is_own = |i: usize| of.get(i) == Some(&region);
+    let is_corner = |&&i: &&u32| {
+        let i = i as usize;
+        (i + 1) % width != 0 && is_own(i + 1) && is_own(i + width) && is_own(i + width + 1)
+    };
+    let corners = pixels.iter().filter(is_corner).count();
+    2 * corners <= pixels.len()
+}
+
+/// A thin region of fewer pixels may be a mixture of colours that are beside any of them. A guess.
+const SHORT: usize = 16;
+
+/// The labels other than `label` around pixel `i` and around `more` pixels. Beyond the picture's border lies the canvas.
+fn labels_without(
+    colors: &Colors<'_>,
+    mixtures: &[Mixture],
+    label: u16,
+    more: &[u32],
+    i: usize,
+) -> Vec<u16> {
+    let pixels = colors.pixels;
+    let mut near = Vec::new();
+    let (x, y) = (i % pixels.width, i / pixels.width);
+    if x == 0 || y == 0 || x + 1 == pixels.width || y + 1 == pixels.height {
+        near.push(CANVAS);
+    }
+    let places = more.iter().map(|&i| i as usize).chain([i]);
+    for k in places.flat_map(|i| pixels.around(i, 2)) {
+        let Mixture { own, share, .. } = mixtures[k];
+        if own != label && share < 0.1 && !near.contains(&own) {
+            near.push(own);
+        }
+    }
+    near
+}
+
+/// True if a region has few pixels, or hardly any of its colour.
+fn is_small(colors: &Colors<'_>, mixtures: &[Mixture], pixels: &[u32], fills: &Fills) -> bool {
+    let area = pixels.len();
+    if area >= 60 {
+        return false;
+    }
+    let is_pure = |&&i: &&u32| {
+        let i = i as usize;
+        let color = colors.at(mixtures[i].own, i);
+        away(&colors.pixels.target.at(i), &color) < 14.0 * LEVEL
+    };
+    let pure = pixels.iter().filter(is_pure).count();
+    area < fills.least_area || (area < 12 && pure == 0) || pure * 8 < area
+}
+
+/// Gives the pixels of small regions to the regions beside them that are nearest in colour.
+fn absorb(
+    colors: &Colors<'_>,
+    of: &[u32],
+    members: &[Vec<u32>],
+    small: &[bool],
+    mixtures: &mut [Mixture],
+) {
+    let is_small = |i: usize| small[of[i] as usize];
+    let pixels = members.iter().zip(small).filter(|(_, small)| **small);
+    let pixels = pixels.flat_map(|(pixels, _)| pixels).map(|&i| i as usize);
+    let labels: Vec<(usize, u16)> = pixels
+        .filter_map(|i| {
+            let target = colors.pixels.target.at(i);
+            let near = |reach| colors.pixels.around(i, reach).filter(|&k| !is_small(k));
+            let reach = [2, 4]
+                .into_iter()
+                .find(|&reach| near(reach).next().is_some())?;
+            let error = |label: u16| distance2(&target, &colors.at(label, i));
+            let labels = near(reach).map(|k| mixtures[k].own);
+            let nearest = labels.min_by(|&a, &b| error(a).total_cmp(&error(b)))?;
+            Some((i, nearest))
+        })
+        .collect();
+    for (i, label) in labels {
+        mixtures[i] = Mixture::pure(label);
+    }
+}
+
+/// The region that the smaller share of each pixel belongs to, and that share.
+fn seconds(colors: &Colors<'_>, mixtures: &[Mixture], of: &[u32]) -> (Vec<u32>, Vec<f32>) {
+    let width = colors.pixels.width;
+    let second = |i: usize| {
+        let Mixture {
+            own, other, share, ..
+        } = mixtures[i];
+        if share <= 0.0 || own == other {
+            return (of[i], 0.0);
+        }
+        let away2 = |k: usize| {
+            let dx = (k % width).abs_diff(i % width);
+            let dy = (k / width).abs_diff(i / width);
+            dx * dx + dy * dy
+        };
+        let near = colors.pixels.around(i, 2);
+        let near = near.filter(|&k| mixtures[k].own == other);
+        match near.min_by_key(|&k| away2(k)) {
+            Some(k) => (of[k], share),
+            None => (of[i], 0.0),
+        }
+    };
+    (0..mixtures.len()).map(second).unzip()
+}
+
+/// The median of the pixels of a region that are no mixtures.
+fn color(colors: &Colors<'_>, share: &[f32], pixels: &[u32], label: u16) -> Pixel {
+    let pure = pixels.iter().filter(|&&i| share[i as usize] == 0.0).count();
+    if label == CANVAS || pure < 9 {
+        return colors.at(label, pixels[0] as usize);
+    }
+    let pure = pixels.iter().filter(|&&i| share[i as usize] == 0.0);
+    let sample = pure.step_by(pixels.len().div_ceil(4096));
+    let sample: Vec<Pixel> = sample
+        .map(|&i| colors.pixels.target.at(i as usize))
+        .collect();
+    std::array::from_fn(|k| {
+        let mut values: Vec<f32> = sample.iter().map(|p| p[k]).collect();
+        let middle = values.len() / 2;
+        *values.select_nth_unstable_by(middle, f32::total_cmp).1
+    })
+}

@@ -1,0 +1,175 @@
+//! The stack: which regions lie on top of which, and how far those below go on beneath them.
+//!
+//! A shape with a larger convex hull lies below. It takes in the regions that it encloses, and those that lie on it
+//! and hardly touch anything farther below; its outline runs around all of them, so that paths go straight on beneath
+//! what lies on top. What shows the canvas is no shape: it stays a hole.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::super::recipe::Fills;
+use super::colors::CANVAS;
+use super::hull::hull_area;
+use super::regions::Regions;
+
+/// A shape of the stack.
+#[derive(Debug, Clone)]
+pub(super) struct Layer {
+    /// The region that it shows.
+    pub(super) region: u32,
+    /// The regions that it covers, its own among them.
+    pub(super) covers: Vec<u32>,
+    /// Its place in the stack, from back to front.
+    pub(super) rank: usize,
+}
+
+/// The stack of some regions.
+pub(super) struct Stack {
+    /// From back to front.
+    pub(super) layers: Vec<Layer>,
+    /// The rank of each region; `None` if it shows what is behind all.
+    pub(super) ranks: Vec<Option<usize>>,
+}
+
+type Neighbours = [BTreeMap<u32, u32>];
+
+impl Stack {
+    /// The stack of regions. Those that are not `drawn` show what is behind.
+    pub(super) fn of(
+        regions: &Regions,
+        neighbours: &Neighbours,
+        drawn: &[bool],
+        fills: &Fills,
+    ) -> Self {
+        let enclosed = enclosed(regions, neighbours);
+        let holes = holes(regions, &enclosed, drawn);
+        let shows = |r: usize| drawn[r] && !holes[r];
+        let mut order: Vec<u32> = (0..regions.list.len() as u32)
+            .filter(|&r| shows(r as usize))
+            .collect();
+        let size = |r: u32| hull_area(&regions.list[r as usize].members, regions.width);
+        let sizes: BTreeMap<u32, f64> = order.iter().map(|&r| (r, size(r))).collect();
+        order.sort_by(|a, b| sizes[b].total_cmp(&sizes[a]).then(a.cmp(b)));
+        let mut ranks = vec![None; regions.list.len()];
+        for (rank, &region) in order.iter().enumerate() {
+            ranks[region as usize] = Some(rank);
+        }
+        let layers = order.iter().enumerate();
+        let layers = layers.map(|(rank, &region)| {
+            let inner = &enclosed[region as usize];
+            Layer {
+                region,
+                covers: covered(region, rank, inner, neighbours, &ranks, fills),
+                rank,
+            }
+        });
+        Self {
+            layers: layers.collect(),
+            ranks,
+        }
+    }
+}
+
+/// The regions that each region encloses: no way leads from them to the picture's border past it.
+fn enclosed(regions: &Regions, neighbours: &Neighbours) -> Vec<Vec<u32>> {
+    let (width, height) = (regions.width, regions.height);
+    let rows = (0..width).flat_map(|x| [x, (height - 1) * width + x]);
+    let columns = (0..height).flat_map(|y| [y * width, y * width + width - 1]);
+    let border: BTreeSet<u32> = rows.chain(columns).map(|i| regions.of[i]).collect();
+    let count = regions.list.len();
+    let inner = |by: usize| {
+        // What encloses something is beside at least one thing that is enclosed.
+        if neighbours[by].len() < 2 && border.contains(&(by as u32)) && count > 1 {
+            let only = neighbours[by].keys().next().copied();
+            if only.is_none_or(|only| border.contains(&only)) {
+                return Vec::new();
+            }
+        }
+        let mut seen = vec![false; count];
+        seen[by] = true;
+        let mut stack: Vec<u32> = border.iter().copied().filter(|&r| r != by as u32).collect();
+        stack.iter().for_each(|&r| seen[r as usize] = true);
+        while let Some(region) = stack.pop() {
+            for &next in neighbours[region as usize].keys() {
+                if !seen[next as usize] {
+                    seen[next as usize] = true;
+                    stack.push(next);
+                }
+            }
+        }
+        (0..count as u32).filter(|&r| !seen[r as usize]).collect()
+    };
+    (0..count).map(inner).collect()
+}
+
+/// True for each region that shows the canvas through all that encloses it: at most one shape that is not open there
+/// already. Within several shapes, a place like the canvas is a shape on top of them.
+fn holes(regions: &Regions, enclosed: &[Vec<u32>], drawn: &[bool]) -> Vec<bool> {
+    let count = regions.list.len();
+    let is_canvas = |r: usize| regions.list[r].label == CANVAS;
+    let mut around: Vec<Vec<usize>> = vec![Vec::new(); count];
+    for (by, inner) in enclosed.iter().enumerate() {
+        inner.iter().for_each(|&r| around[r as usize].push(by));
+    }
+    // From the outside to the inside.
+    let mut order: Vec<usize> = (0..count).filter(|&r| is_canvas(r)).collect();
+    order.sort_by_key(|&r| (around[r].len(), r));
+    let mut holes = vec![false; count];
+    for r in order {
+        let outer: Vec<usize> = around[r].iter().copied().filter(|&by| holes[by]).collect();
+        let is_open = |by: usize| outer.iter().any(|&hole| around[hole].contains(&by));
+        let closed = around[r]
+            .iter()
+            .filter(|&&by| drawn[by] && !is_canvas(by) && !is_open(by));
+        holes[r] = closed.count() < 2;
+    }
+    holes
+}
+
+/// The regions that the shape of `region` covers.
+fn covered(
+    region: u32,
+    rank: usize,
+    enclosed: &[u32],
+    neighbours: &Neighbours,
+    ranks: &[Option<usize>],
+    fills: &Fills,
+) -> Vec<u32> {
+    let is_above = |r: u32| ranks[r as usize].is_some_and(|other| other > rank);
+    let is_below = |r: u32| ranks[r as usize].is_none_or(|other| other < rank);
+    let mut inside: BTreeSet<u32> = enclosed.iter().copied().filter(|&r| is_above(r)).collect();
+    inside.insert(region);
+    for _ in 0..4 {
+        let beside = inside.iter().flat_map(|&r| neighbours[r as usize].keys());
+        let beside: BTreeSet<u32> = beside.copied().filter(|&r| is_above(r)).collect();
+        let more: Vec<u32> = beside
+            .difference(&inside)
+            .copied()
+            .filter(|&r| {
+                let touched = &neighbours[r as usize];
+                let all: u32 = touched.values().sum();
+                let below = touched.iter().filter(|(q, _)| is_below(**q));
+                let below: u32 = below.map(|(_, count)| count).sum();
+                below as f32 <= fills.exposed * all as f32
+            })
+            .collect();
+        if more.is_empty() {
+            break;
+        }
+        inside.extend(more);
+    }
+    connected_to(region, &inside, neighbours)
+}
+
+/// The regions of `inside` that are connected with `region` there.
+fn connected_to(region: u32, inside: &BTreeSet<u32>, neighbours: &Neighbours) -> Vec<u32> {
+    let mut found = BTreeSet::from([region]);
+    let mut stack = vec![region];
+    while let Some(r) = stack.pop() {
+        for &next in neighbours[r as usize].keys() {
+            if inside.contains(&next) && found.insert(next) {
+                stack.push(next);
+            }
+        }
+    }
+    found.into_iter().collect()
+}

@@ -1,0 +1,123 @@
+//! Strokes along the lines of a picture.
+
+use rayon::prelude::*;
+
+use super::areas::{self, Areas, Label, Pixel, Pixels};
+use super::bridges::{self, Colored};
+use super::gain::Gain;
+use super::lines::{self, Line};
+use super::recipe::Tracing;
+use super::shape::{self, Shape};
+use super::skeleton::Graph;
+use super::spline;
+use crate::scene::{Path, Stroke};
+
+/// A traced stroke, and what it gains alone.
+#[derive(Debug, Clone)]
+pub(super) struct TracedStroke {
+    pub(super) stroke: Stroke,
+    pub(super) gain: f32,
+    /// True if it goes on below others.
+    pub(super) is_covered: bool,
+}
+
+/// The strokes along the lines of some areas, in painting order.
+pub(super) fn strokes(
+    pixels: &Pixels<'_>,
+    areas: &Areas,
+    mattes: usize,
+    tracing: &Tracing,
+) -> Vec<TracedStroke> {
+    // Connected shapes, and the lines in the middle of each.
+    let keys: Vec<Option<u8>> = areas
+        .labels
+        .iter()
+        .map(|label| match label {
+            Label::Color(color) => Some(*color),
+            _ => None,
+        })
+        .collect();
+    let shapes = shape::shapes(&keys, pixels.width, tracing.least_area);
+    let colored = |(color, shape): &(u8, Shape)| {
+        let mut lines = lines::lines(Graph::of(shape, tracing.growth), tracing.lines);
+        widen(&mut lines, area(shape, *color, areas, pixels));
+        let colored = |line: Line| Colored {
+            line,
+            color: *color,
+            is_covered: false,
+        };
+        lines.into_iter().map(colored).collect::<Vec<_>>()
+    };
+    let lines: Vec<Colored> = shapes.par_iter().flat_map_iter(colored).collect();
+    // Lines that others cover become one before they are drawn, since their halves would be two strokes for ever.
+    let lines = bridges::bridged(lines, areas, pixels, tracing.bridges);
+    // Strokes along those lines, if they explain what is there.
+    let traced = |line: &Colored| stroke(line, areas, pixels, mattes, tracing);
+    let mut strokes: Vec<TracedStroke> = lines.par_iter().filter_map(traced).collect();
+    // Lines that go on below others are drawn before them, and wide strokes before narrow ones.
+    strokes.sort_by(|a, b| {
+        let radius = |traced: &TracedStroke| traced.stroke.radius;
+        (b.is_covered.cmp(&a.is_covered)).then(radius(b).total_cmp(&radius(a)))
+    });
+    strokes
+}
+
+/// The area of a shape, px², to which antialiased pixels add as much as is covered of them.
+fn area(shape: &Shape, color: u8, areas: &Areas, pixels: &Pixels<'_>) -> f32 {
+    let Some(color) = areas.colors.get(usize::from(color)) else {
+        return 0.0;
+    };
+    let around = shape.with_border();
+    let places = around.filter_map(|[x, y]| {
+        let (x, y) = (usize::try_from(x).ok()?, usize::try_from(y).ok()?);
+        (x < pixels.width && y < pixels.height).then_some(y * pixels.width + x)
+    });
+    places.map(|i| pixels.coverage(i, color)).sum()
+}
+
+/// Scales the radii of the lines of a shape so that they cover its `area`. The distances that they come from are whole
+/// pixels.
+fn widen(lines: &mut [Line], area: f32) {
+    let covered: f32 = lines.iter().map(Line::area).sum();
+    let factor = (area / covered.max(f32::MIN_POSITIVE)).clamp(0.5, 2.0);
+    for spot in lines.iter_mut().flat_map(|line| &mut line.spots) {
+        spot.radius *= factor;
+    }
+}
+
+/// The stroke along a line, if it explains what lies under it.
+fn stroke(
+    Colored {
+        line,
+        color,
+        is_covered,
+    }: &Colored,
+    areas: &Areas,
+    pixels: &Pixels<'_>,
+    mattes: usize,
+    tracing: &Tracing,
+) -> Option<TracedStroke> {
+    let radius = median(line.spots.iter().map(|spot| spot.radius))?;
+    let path: Path = spline::path(line, radius, tracing.splines);
+    let pixel: &Pixel = areas.colors.get(usize::from(*color))?;
+    let gain = Gain::of(&path, radius, *color, pixel, areas, pixels);
+    let is_explained = gain.removed > tracing.explained * gain.under;
+    let stroke = Stroke {
+        path,
+        radius,
+        color: areas::color(pixel, mattes).map(|c| c.clamp(0.0, 1.0)),
+        opacity: 1.0,
+    };
+    let gain = gain.removed / mattes as f32;
+    is_explained.then_some(TracedStroke {
+        stroke,
+        gain,
+        is_covered: *is_covered,
+    })
+}
+
+fn median(values: impl Iterator<Item = f32>) -> Option<f32> {
+    let mut values: Vec<f32> = values.collect();
+    let middle = values.len() / 2;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f32::total_cmp).1)
+}
