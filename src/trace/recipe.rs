@@ -99,7 +99,7 @@ impl Fills {
             tolerance: 0.3,
             candidates: 0.22,
             most_off: 8,
-            hidden: 8.0,
+            hidden: 32.0,
         },
     };
 }

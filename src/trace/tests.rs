@@ -170,7 +170,9 @@ fn what_lies_below_goes_straight_on() {
     );
     assert_eq!(found.len(), 2);
     assert!(found[0].color[2] > found[0].color[0]);
-    assert_eq!(found[0].rings[0].points().len(), 4, "{:?}", found[0]);
+    let ring = &found[0].rings[0];
+    assert!(ring.points().len() <= 5, "{ring:?}");
+    assert!((size(ring).abs() - 50.0 * 76.0).abs() < 20.0, "{ring:?}");
 }
 
 #[test]

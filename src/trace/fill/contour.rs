@@ -1,5 +1,7 @@
 //! Contours: the closed lines along which a field is ½, by marching squares.
 
+use crate::math::distance;
+
 /// A place, px.
 pub(super) type Place = [f32; 2];
 
@@ -31,6 +33,38 @@ impl Field {
             rings.push(ring);
         }
         rings
+    }
+
+    /// How far outwards of a place on a contour the edge of the shape is, px, if nothing else is near.
+    ///
+    /// Between pixel centres the field is no straight ramp, so that a contour is up to 0.09 px off. But the integral of
+    /// the field across an edge is exact.
+    pub(super) fn edge(&self, at: Place, outward: Place) -> f32 {
+        const REACH: f32 = 1.5;
+        const STEPS: u8 = 12;
+        let step = 2.0 * REACH / f32::from(STEPS);
+        let value = |t: f32| self.at([0, 1].map(|k| at[k] + t * outward[k]));
+        if value(-REACH) < 0.95 || value(REACH) > 0.05 {
+            return 0.0;
+        }
+        let middles = (0..STEPS).map(|i| -REACH + (f32::from(i) + 0.5) * step);
+        let covered: f32 = middles.map(value).sum::<f32>() * step;
+        (covered - REACH).clamp(-0.3, 0.3)
+    }
+
+    /// The field between pixel centres.
+    fn at(&self, p: Place) -> f32 {
+        let [x, y] = [0, 1].map(|k| p[k] - 0.5 - self.origin[k] as f32);
+        let height = self.values.len() / self.width;
+        let value = |column: f32, row: f32| {
+            let column = (column.max(0.0) as usize).min(self.width - 1);
+            let row = (row.max(0.0) as usize).min(height - 1);
+            self.values[row * self.width + column]
+        };
+        let [left, top] = [x.floor(), y.floor()];
+        let [u, v] = [x - left, y - top];
+        let row = |y: f32| value(left, y) * (1.0 - u) + value(left + 1.0, y) * u;
+        row(top) * (1.0 - v) + row(top + 1.0) * v
     }
 
     /// For each edge of the grid of pixel centres that a contour enters a cell through, the edge that it leaves it by.
@@ -123,24 +157,25 @@ pub(super) fn twice_area(ring: &[Place]) -> f32 {
 
 /// Places evenly along a ring, about `step` px apart.
 pub(super) fn resampled(ring: &[Place], step: f32) -> Vec<Place> {
-    let length = |a: Place, b: Place| crate::math::distance(a, b);
-    let next = |k: usize| ring[(k + 1) % ring.len()];
-    let all: f32 = (0..ring.len()).map(|k| length(ring[k], next(k))).sum();
+    let next = ring.iter().cycle().skip(1);
+    let sides: Vec<(Place, Place, f32)> = ring
+        .iter()
+        .zip(next)
+        .map(|(&a, &b)| (a, b, distance(a, b)))
+        .collect();
+    let all: f32 = sides.iter().map(|side| side.2).sum();
     let count = ((all / step).round() as usize).max(8);
     let step = all / count as f32;
     let mut out = Vec::with_capacity(count);
     let mut done = 0.0;
-    for k in 0..ring.len() {
-        let (a, b) = (ring[k], next(k));
-        let long = length(a, b);
-        while out.len() < count && out.len() as f32 * step <= done + long {
-            let share = (out.len() as f32 * step - done) / long.max(f32::MIN_POSITIVE);
+    for (a, b, length) in sides {
+        while out.len() < count && out.len() as f32 * step <= done + length {
+            let share = (out.len() as f32 * step - done) / length.max(f32::MIN_POSITIVE);
             out.push([0, 1].map(|axis| a[axis] + share * (b[axis] - a[axis])));
         }
-        done += long;
+        done += length;
     }
-    while out.len() < count {
-        out.push(ring[0]);
-    }
+    // Rounding may leave the last one out.
+    out.resize(count, ring[0]);
     out
 }

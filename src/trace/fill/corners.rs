@@ -3,6 +3,7 @@
 
 use super::super::recipe::Outlines;
 use super::contour::Place;
+use crate::math::{self, distance};
 
 /// A corner.
 #[derive(Debug, Clone, Copy)]
@@ -38,7 +39,7 @@ pub(super) fn corners(ring: &[Place], step: f32, outlines: &Outlines) -> (Vec<f3
     // The sharpest one of its neighbours, the first of equals.
     let is_corner = |&i: &usize| {
         turns[i] < outlines.corner
-            && is_pointed(ring[i], &sides[i], turns[i])
+            && is_pointed(ring, i, &sides[i], turns[i])
             && (1..=reach).all(|d| {
                 turns[(i + count * 2 - d) % count] > turns[i] && turns[(i + d) % count] >= turns[i]
             })
@@ -51,12 +52,14 @@ pub(super) fn corners(ring: &[Place], step: f32, outlines: &Outlines) -> (Vec<f3
     (turns, corners)
 }
 
-/// True if the sides of a corner meet no farther from its sample than pixels take off a corner. Those of a tight curve
+/// True if the sides of a corner meet no farther from it than pixels take off a corner. Those of a tight curve
 /// meet farther away.
-fn is_pointed(sample: Place, sides: &[Line; 2], turn: f32) -> bool {
-    let angle = 2.0 * crate::math::atan(((1.0 - turn) / (1.0 + turn).max(1e-6)).max(0.0).sqrt());
+fn is_pointed(ring: &[Place], i: usize, sides: &[Line; 2], turn: f32) -> bool {
+    let angle = 2.0 * math::atan(((1.0 - turn) / (1.0 + turn).max(1e-6)).max(0.0).sqrt());
     let lost = 0.42 * angle + 1.1 * (angle - 1.6).max(0.0);
-    crossing(sides).is_none_or(|at| crate::math::distance(at, sample) < lost)
+    let count = ring.len();
+    let near = (0..5).map(|d| ring[(i + count + d - 2) % count]);
+    crossing(sides).is_none_or(|at| near.into_iter().any(|p| distance(at, p) < lost))
 }
 
 /// Where two lines cross, unless they are nearly parallel.
@@ -100,7 +103,7 @@ fn meeting(sample: Place, sides: &[Line; 2]) -> Place {
     let Some(at) = crossing(sides) else {
         return sample;
     };
-    let away = crate::math::distance(at, sample);
+    let away = distance(at, sample);
     // The sharper a corner, the more of it is lost.
     let [[_, u], [_, v]] = sides;
     let is_sharp = u[0] * v[0] + u[1] * v[1] < -0.32;

@@ -33,6 +33,7 @@ use colors::{CANVAS, LEVEL, NONE};
 pub(super) use compound::Fill;
 use contour::{Field, Place};
 use mixtures::Mixture;
+use outline::Surroundings;
 use regions::{Region, Regions};
 use stack::{Layer, Stack};
 
@@ -131,15 +132,18 @@ impl<'a> Flat<'a> {
             .map(|(above, &own)| above || own)
             .collect();
         let field = self.field(layer, &covered);
-        let depth =
-            |at: Place, outward: Place| self.depth(at, outward, &free, fills.outlines.hidden);
+        let around = Surroundings {
+            page: [regions.width, regions.height].map(|v| v as f32),
+            field: &field,
+            depth: |at, outward| self.depth(at, outward, &free, fills.outlines.hidden),
+        };
         let least = 0.6 * fills.least_area as f32;
         let contours = field.contours();
         let rings = contours
             .iter()
             .filter(|ring| contour::twice_area(ring).abs() > 2.0 * least);
         let rings: Vec<Path> = rings
-            .filter_map(|contour| outline::ring(contour, &fills.outlines, depth))
+            .filter_map(|contour| outline::ring(contour, &fills.outlines, &around))
             .collect();
         let region = &regions.list[layer.region as usize];
         (!rings.is_empty()).then(|| Fill {
@@ -192,8 +196,6 @@ impl<'a> Flat<'a> {
     /// How far an outline may lie beyond a place: as far as all that it would cover is `free`, as that lies on top.
     fn depth(&self, at: Place, outward: Place, free: &[bool], most: f32) -> f32 {
         const STEP: f32 = 0.5;
-        let size = [self.regions.width, self.regions.height].map(|v| v as f32);
-        let is_outside = |p: Place| (0..2).any(|k| p[k] < 0.3 || p[k] > size[k] - 0.3);
         let mut reached = 0.0;
         while reached + STEP <= most {
             let further = reached + STEP;
@@ -203,9 +205,7 @@ impl<'a> Flat<'a> {
             }
             reached = further;
         }
-        let depth: f32 = reached - 1.0;
-        // Beyond the border nothing is seen.
-        depth.max(if is_outside(at) { 2.0 } else { 0.0 })
+        (reached - 1.0).max(0.0)
     }
 
     /// The share of `is_member` at a place between pixels; 1 outside of the picture.

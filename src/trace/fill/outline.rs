@@ -4,43 +4,56 @@
 //! dynamic programme; its spans end at corners of a polygon close to the contour. Hidden edges may lie farther out.
 
 use super::super::recipe::Outlines;
-use super::contour::{Place, resampled};
+use super::contour::{Field, Place, resampled};
 use super::corners::{Corner, corners};
 use super::span::{MOST, Sample, Span, fit};
 use crate::math::{self, Point};
 use crate::scene::{Path, PathPoint};
 
-/// The ring along a contour. `depth` tells how far, at most, it may lie beyond a place in a direction, as it is hidden
-/// there.
-pub(super) fn ring(
+/// What an outline has to know of the shape that it is around.
+pub(super) struct Surroundings<'a, D> {
+    /// The size of the picture, px.
+    pub(super) page: [f32; 2],
+    /// How much of each pixel the shape covers.
+    pub(super) field: &'a Field,
+    /// How far, at most, the outline may lie beyond a place in a direction, as it is hidden there.
+    pub(super) depth: D,
+}
+
+/// The ring along a contour.
+pub(super) fn ring<D: Fn(Place, Place) -> f32>(
     contour: &[Place],
     outlines: &Outlines,
-    depth: impl Fn(Place, Place) -> f32,
+    around: &Surroundings<'_, D>,
 ) -> Option<Path> {
-    let places = resampled(contour, outlines.step);
+    let mut places = resampled(contour, outlines.step);
     let count = places.len();
-    let (turns, corners) = corners(&places, outlines.step, outlines);
     let outward = |i: usize| {
         let [a, b] = [places[(i + count - 2) % count], places[(i + 2) % count]];
         let length = math::distance(a, b).max(f32::MIN_POSITIVE);
         [-(b[1] - a[1]) / length, (b[0] - a[0]) / length]
     };
     let outward: Vec<Place> = (0..count).map(outward).collect();
-    let depths: Vec<f32> = (0..count).map(|i| depth(places[i], outward[i])).collect();
-    let (samples, cuts) = samples(&places, &outward, &depths, corners, &turns, outlines);
-    let mut points = Vec::new();
-    for (k, &from) in cuts.iter().enumerate() {
-        let to = cuts[(k + 1) % cuts.len()];
-        let length = if to > from {
-            to - from
-        } else {
-            to + count - from
-        };
-        let run: Vec<usize> = (0..=length).map(|d| (from + d) % count).collect();
-        let hidden: Vec<bool> = run.iter().map(|&i| depths[i] > HIDDEN).collect();
-        let run: Vec<Sample> = run.iter().map(|&i| samples[i]).collect();
-        chain(&run, &hidden, outlines, &mut points);
+    for (place, out) in places.iter_mut().zip(&outward) {
+        let shift = around.field.edge(*place, *out);
+        *place = [0, 1].map(|k| place[k] + shift * out[k]);
     }
+    let (turns, corners) = corners(&places, outlines.step, outlines);
+    let depths = places.iter().zip(&outward);
+    let depths: Vec<f32> = depths.map(|(&at, &out)| (around.depth)(at, out)).collect();
+    let (samples, corners) = samples(&places, &outward, &depths, corners, outlines);
+    let outline = Outline {
+        samples,
+        hidden: depths.iter().map(|depth| *depth > HIDDEN).collect(),
+        corners,
+        outlines,
+    };
+    let is_outside = |p: &Place| (0..2).any(|k| p[k] < 0.0 || p[k] > around.page[k]);
+    let outside: Vec<bool> = places.iter().map(is_outside).collect();
+    let mut points = match outside.contains(&true) {
+        true => outline.cut_off(&outside, around.page),
+        false => outline.whole(&turns),
+    };
     square(&mut points);
     let points: Vec<PathPoint> = points
         .into_iter()
@@ -52,23 +65,165 @@ pub(super) fn ring(
     (points.len() > 2).then(|| Path::of_points(points, true))
 }
 
+/// The samples around a shape.
+struct Outline<'a> {
+    samples: Vec<Sample>,
+    hidden: Vec<bool>,
+    /// The indices of corners.
+    corners: Vec<usize>,
+    outlines: &'a Outlines,
+}
+
+type Points = Vec<(Place, bool)>;
+
+impl Outline<'_> {
+    /// The points of an outline within the page.
+    fn whole(&self, turns: &[f32]) -> Points {
+        let count = self.samples.len();
+        let mut cuts = self.corners.clone();
+        if cuts.is_empty() {
+            let sharpest = (0..count).min_by(|&a, &b| turns[a].total_cmp(&turns[b]));
+            cuts.extend(sharpest);
+        }
+        let mut points = Vec::new();
+        for (k, &from) in cuts.iter().enumerate() {
+            let to = cuts[(k + 1) % cuts.len()];
+            let length = if to > from {
+                to - from
+            } else {
+                to + count - from
+            };
+            let run: Vec<usize> = (0..=length).map(|d| (from + d) % count).collect();
+            self.append(&run, [None; 2], &mut points);
+        }
+        points
+    }
+
+    /// The points of an outline that the page cuts off. Beyond the page it goes by the page's corners.
+    fn cut_off(&self, outside: &[bool], page: [f32; 2]) -> Points {
+        let count = outside.len();
+        let first = (0..count).find(|&i| outside[i] && !outside[(i + 1) % count]);
+        let Some(first) = first else {
+            let all: Vec<usize> = (0..count).collect();
+            return self.page_corners(&all, page);
+        };
+        let order: Vec<usize> = (1..=count).map(|d| (first + d) % count).collect();
+        let mut points = Vec::new();
+        for run in order.chunk_by(|&a, &b| outside[a] == outside[b]) {
+            if outside[run[0]] {
+                points.extend(self.page_corners(run, page));
+                continue;
+            }
+            // Cuts at the corners; the ends go on beyond the page.
+            let last = run.len() - 1;
+            let inner = (1..last).filter(|&k| self.corners.contains(&run[k]));
+            let cuts: Vec<usize> = [0].into_iter().chain(inner).chain([last]).collect();
+            let at = |k: usize| self.samples[run[k.min(last)]].at;
+            let start = beyond(at(0), at(8), page);
+            let end = beyond(at(last), at(last.saturating_sub(8)), page);
+            for pair in cuts.windows(2) {
+                let ends = [
+                    (pair[0] == 0).then_some(start),
+                    (pair[1] == last).then_some(end),
+                ];
+                self.append(&run[pair[0]..=pair[1]], ends, &mut points);
+            }
+            points.push((end, true));
+        }
+        points
+    }
+
+    /// Appends the points along a run of samples, its last one left out. Its ends may go on to other places.
+    fn append(&self, run: &[usize], ends: [Option<Place>; 2], points: &mut Points) {
+        let end = |sample: usize, at: Option<Place>| {
+            at.map(|at| Sample {
+                at,
+                ..self.samples[sample]
+            })
+        };
+        let (first, last) = (run[0], run[run.len() - 1]);
+        let [start, end] = [end(first, ends[0]), end(last, ends[1])];
+        let hidden = [start.map(|_| first), end.map(|_| last)];
+        let along = hidden[0]
+            .into_iter()
+            .chain(run.iter().copied())
+            .chain(hidden[1]);
+        let hidden: Vec<bool> = along.map(|i| self.hidden[i]).collect();
+        let inner = run.iter().map(|&i| self.samples[i]);
+        let samples: Vec<Sample> = start.into_iter().chain(inner).chain(end).collect();
+        chain(&samples, &hidden, self.outlines, points);
+    }
+
+    /// The corners of the page that samples outside of it go around.
+    fn page_corners(&self, run: &[usize], page: [f32; 2]) -> Points {
+        let corner = |i: &usize| {
+            let at = self.samples[*i].at;
+            let side = |k: usize| match at[k] {
+                v if v < 0.0 => Some(-BEYOND),
+                v if v > page[k] => Some(page[k] + BEYOND),
+                _ => None,
+            };
+            Some(([side(0)?, side(1)?], true))
+        };
+        let mut corners: Points = run.iter().filter_map(corner).collect();
+        corners.dedup();
+        corners
+    }
+}
+
+/// How far outlines go beyond the page, px.
+const BEYOND: f32 = 2.0;
+
+/// The place beyond the page to which the way from `before` to `at` leads, which is close to the page's border.
+fn beyond(at: Place, before: Place, page: [f32; 2]) -> Place {
+    let length = math::distance(before, at).max(f32::MIN_POSITIVE);
+    let way = [0, 1].map(|k| (at[k] - before[k]) / length);
+    // The border that is nearest is the one that it crosses.
+    let to = |k: usize| at[k].min(page[k] - at[k]);
+    let axis = usize::from(to(1) < to(0));
+    let far = (BEYOND / way[axis].abs().max(0.3)).min(3.0 * BEYOND);
+    let mut place = [0, 1].map(|k| at[k] + far * way[k]);
+    place[axis] = if at[axis] < 0.5 * page[axis] {
+        place[axis].min(-0.5 * BEYOND)
+    } else {
+        place[axis].max(page[axis] + 0.5 * BEYOND)
+    };
+    place
+}
+
 /// Depth from which on an edge is hidden, px.
 const HIDDEN: f32 = 0.05;
 /// Farthest that a hidden edge may be inside, px.
 const INSIDE: f32 = 0.35;
 
-/// The samples of a contour with what is allowed of each, and where it is cut.
+/// Length of an edge, px, before it is hidden, along which it may lie outside as far.
+const ENDING: f32 = 1.5;
+
+/// The samples of a contour with what is allowed of each, and the indices of its corners.
 fn samples(
     places: &[Place],
     outward: &[Place],
     depths: &[f32],
     corners: Vec<Corner>,
-    turns: &[f32],
     outlines: &Outlines,
 ) -> (Vec<Sample>, Vec<usize>) {
     let count = places.len();
+    // Where an edge begins to be hidden, the contour turns along what hides it.
+    let reach = (ENDING / outlines.step).ceil() as usize;
+    let is_ending = |i: usize| {
+        let near = (0..=2 * reach).map(|d| depths[(i + count * 2 + d - reach) % count]);
+        depths[i] <= HIDDEN && near.fold(0.0, f32::max) > HIDDEN
+    };
     let sample = |i: usize| {
         let (at, out, depth) = (places[i], outward[i], depths[i]);
+        if is_ending(i) {
+            return Sample {
+                at,
+                outward: out,
+                tolerance: [INSIDE, ENDING],
+                weight: 0.1,
+            };
+        }
         if depth <= HIDDEN {
             return Sample {
                 at,
@@ -88,9 +243,9 @@ fn samples(
     let mut samples: Vec<Sample> = (0..count).map(sample).collect();
     let seen: Vec<Corner> = corners
         .into_iter()
-        .filter(|corner| depths[corner.index] <= HIDDEN)
+        .filter(|corner| depths[corner.index] <= HIDDEN && !is_ending(corner.index))
         .collect();
-    let mut cuts: Vec<usize> = seen.iter().map(|corner| corner.index).collect();
+    let cuts: Vec<usize> = seen.iter().map(|corner| corner.index).collect();
     for corner in &seen {
         samples[corner.index].at = corner.at;
         // Pixels have rounded what is beside it.
@@ -102,10 +257,6 @@ fn samples(
                 }
             }
         }
-    }
-    if cuts.is_empty() {
-        let sharpest = (0..count).min_by(|&a, &b| turns[a].total_cmp(&turns[b]));
-        cuts.extend(sharpest);
     }
     (samples, cuts)
 }
@@ -245,15 +396,12 @@ fn square(points: &mut [(Place, bool)]) {
     let count = points.len();
     for i in 0..count {
         let k = (i + 1) % count;
-        let ([a, is_on], [b, is_also_on]) = (
-            [points[i].0, [f32::from(points[i].1); 2]],
-            [points[k].0, [f32::from(points[k].1); 2]],
-        );
-        if is_on[0] + is_also_on[0] < 2.0 {
+        let ((a, true), (b, true)) = (points[i], points[k]) else {
             continue;
-        }
+        };
         for axis in [0, 1] {
-            let (across, along) = ((a[axis] - b[axis]).abs(), (a[1 - axis] - b[1 - axis]).abs());
+            let across = (a[axis] - b[axis]).abs();
+            let along = (a[1 - axis] - b[1 - axis]).abs();
             if across < SLANT && along > 4.0 * across + 1.0 {
                 let middle = 0.5 * (a[axis] + b[axis]);
                 points[i].0[axis] = middle;

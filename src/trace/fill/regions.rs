@@ -86,7 +86,7 @@ impl Regions {
             }
         };
         for (i, &region) in self.of.iter().enumerate() {
-            if (i + 1) % self.width != 0 {
+            if !(i + 1).is_multiple_of(self.width) {
                 touch(region, self.of[i + 1]);
             }
             if let Some(&below) = self.of.get(i + self.width) {
@@ -180,7 +180,10 @@ fn is_thin(colors: &Colors<'_>, of: &[u32], region: u32, pixels: &[u32]) -> bool
     let is_own = |i: usize| of.get(i) == Some(&region);
     let is_corner = |&&i: &&u32| {
         let i = i as usize;
-        (i + 1) % width != 0 && is_own(i + 1) && is_own(i + width) && is_own(i + width + 1)
+        !(i + 1).is_multiple_of(width)
+            && is_own(i + 1)
+            && is_own(i + width)
+            && is_own(i + width + 1)
     };
     let corners = pixels.iter().filter(is_corner).count();
     2 * corners <= pixels.len()
