@@ -12,7 +12,7 @@ type Place = [f32; 2];
 pub(super) struct Shape<I, R> {
     /// The share of the shape at a place, 0 to 1.
     pub(super) inside: I,
-    /// What is seen at a place.
+    /// The region that is seen at a place.
     pub(super) region: R,
 }
 

@@ -35,7 +35,7 @@ impl Field {
         rings
     }
 
-    /// How far outwards of a place on a contour the edge of the shape is, px, if nothing else is near.
+    /// Distance of the edge of the shape outwards from a place on a contour, px, if nothing else is near.
     ///
     /// Between pixel centres the field is no straight ramp, so that a contour is up to 0.09 px off. But the integral of
     /// the field across an edge is exact.

@@ -157,7 +157,7 @@ impl<'a> Flat<'a> {
         })
     }
 
-    /// How much of each pixel a layer covers. At the picture's border it goes on for two pixels.
+    /// The share of each pixel that a layer covers. At the picture's border it goes on for two pixels.
     fn field(&self, layer: &Layer, covered: &[bool]) -> Field {
         let (width, height) = (self.regions.width, self.regions.height);
         let members = layer
@@ -193,7 +193,7 @@ impl<'a> Flat<'a> {
         }
     }
 
-    /// How far an outline may lie beyond a place: as far as all that it would cover is `free`, as that lies on top.
+    /// Farthest that an outline may lie beyond a place: as far as all that it would cover is `free`, as that lies on top.
     fn depth(&self, at: Place, outward: Place, free: &[bool], most: f32) -> f32 {
         const STEP: f32 = 0.5;
         let mut reached = 0.0;

@@ -10,13 +10,13 @@ use super::span::{MOST, Sample, Span, fit};
 use crate::math::{self, Point};
 use crate::scene::{Path, PathPoint};
 
-/// What an outline has to know of the shape that it is around.
+/// The shape that an outline is around, and what hides it.
 pub(super) struct Surroundings<'a, D> {
     /// The size of the picture, px.
     pub(super) page: [f32; 2],
-    /// How much of each pixel the shape covers.
+    /// Share of each pixel that the shape covers.
     pub(super) field: &'a Field,
-    /// How far, at most, the outline may lie beyond a place in a direction, as it is hidden there.
+    /// Farthest that the outline may lie beyond a place in a direction, as it is hidden there, px.
     pub(super) depth: D,
 }
 
@@ -171,7 +171,7 @@ impl Outline<'_> {
     }
 }
 
-/// How far outlines go beyond the page, px.
+/// Distance that outlines go beyond the page, px.
 const BEYOND: f32 = 2.0;
 
 /// The place beyond the page to which the way from `before` to `at` leads, which is close to the page's border.

@@ -58,7 +58,7 @@ pub(super) fn fit(samples: &[Sample], count: usize) -> (Span, f32) {
 /// Times that the places along a span are found again. A guess.
 const ROUNDS: usize = 4;
 
-/// How far the place of an outline is from a sample, in units of its tolerance.
+/// Distance of a place of an outline from a sample, in units of its tolerance.
 fn violation(sample: &Sample, at: Place) -> f32 {
     let [x, y] = [at[0] - sample.at[0], at[1] - sample.at[1]];
     let is_outside = x * sample.outward[0] + y * sample.outward[1] >= 0.0;
