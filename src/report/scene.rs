@@ -94,7 +94,7 @@ fn css(color: Rgb) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Stage, Stroke};
+    use crate::scene::{Area, Stage, Stroke};
 
     #[test]
     fn a_page_reads_points_radius_colour_opacity_and_kinds() {
@@ -111,6 +111,29 @@ mod tests {
         };
         let json = serde_json::to_string(&SceneRecord::from(&scene)).unwrap();
         let expected = r##"{"width":8,"height":6,"background":"#ffffff","stages":[[[[1.5,2.0,3.0,4.0],0.75,"#ff8000",0.25,"oo"]]]}"##;
+        assert_eq!(json, expected);
+    }
+
+    #[test]
+    fn a_page_reads_the_rings_of_an_area_one_after_the_other() {
+        let ring = |points: &[([f32; 2], bool)]| {
+            let point = |&(at, is_on): &([f32; 2], bool)| PathPoint {
+                at: at.into(),
+                is_on,
+            };
+            Path::new(points.iter().map(point).collect(), true).unwrap()
+        };
+        let area = Area {
+            rings: vec![
+                ring(&[([0.0, 0.0], true), ([8.0, 0.0], true), ([4.0, 6.0], true)]),
+                ring(&[([3.0, 1.0], true), ([4.0, 5.0], false)]),
+            ],
+            color: [0.0, 0.5, 1.0],
+            opacity: 1.0,
+        };
+        let json = serde_json::to_string(&MarkRecord::from(&Mark::from(area))).unwrap();
+        let expected =
+            r##"[[0.0,0.0,8.0,0.0,4.0,6.0,3.0,1.0,4.0,5.0],0.0,"#0080ff",1.0,"ooozocz"]"##;
         assert_eq!(json, expected);
     }
 

@@ -1,4 +1,4 @@
-// strokefit: turns a picture into an editable SVG of strokes. A fit runs on the thread that calls it, and holds it until
+// strokefit: turns a picture into an editable SVG of strokes and areas. A fit runs on the thread that calls it, and holds it until
 // it is over: in a page, call it from a worker.
 
 /** What to draw. The names are those of the command line's options. */
@@ -56,9 +56,10 @@ export interface Options {
 
 /**
  * Points x, y, x, y, … and radius, px; colour `#rrggbb`; opacity, 0 to 1; kinds of the points, `o` on the path and `c` for
- * a control point, and then `z` if the path is closed.
+ * a control point, and then `z` if the path is closed. An area has the radius 0, and its rings one after the other, each
+ * with its `z`; it is filled by the nonzero rule.
  */
-export type Stroke = [points: number[], radius: number, color: string, opacity: number, kinds: string];
+export type Mark = [points: number[], radius: number, color: string, opacity: number, kinds: string];
 
 /** A drawing as canvases draw it. */
 export interface Scene {
@@ -67,8 +68,8 @@ export interface Scene {
   height: number;
   /** `#rrggbb`; null if the drawing is transparent. */
   background: string | null;
-  /** Strokes back to front, stage by stage. */
-  stages: Stroke[][];
+  /** Strokes and areas, back to front, stage by stage. */
+  stages: Mark[][];
 }
 
 /** The state of a fit after an iteration. */
@@ -81,6 +82,7 @@ export interface Progress {
   stages: number;
   /** Whether strokes are being polished. */
   polishing: boolean;
+  /** Strokes and areas. */
   strokes: number;
   /** Fidelity so far, dB. */
   psnrDb: number;
@@ -91,7 +93,10 @@ export interface Progress {
 /** What the command line writes with `--report`; docs/command-line.md describes all fields. */
 export interface Report {
   schema: number;
+  /** Strokes and areas. */
   strokes: number;
+  /** Areas among them. */
+  areas: number;
   svg_bytes: number;
   svg_gzip_bytes: number;
   wall_s: number;
@@ -106,7 +111,7 @@ export interface Drawing {
   /** Text of the file. */
   svg: string;
   report: Report;
-  /** On a base that is no drawing by strokefit: only the strokes on top. */
+  /** On a base that is no drawing by strokefit: only the strokes and areas on top. */
   scene: Scene;
 }
 

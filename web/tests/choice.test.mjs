@@ -4,10 +4,14 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 
-import { drawn, mostLike, withoutStrokes } from "../../src/view/page/choice.js";
+import { drawn, mostLike, withoutMarks } from "../../src/view/page/choice.js";
+import { counted, covers, markAt } from "../../src/view/page/picture.js";
 
 const line = (x, color = "#102030", radius = 2) => [[x, 0, x, 40], radius, color, 1, "oo"];
-const numbered = (...strokes) => strokes.map((stroke, k) => ({ stroke, number: k + 1, stage: 1 }));
+const numbered = (...marks) => marks.map((mark, k) => ({ mark, number: k + 1, stage: 1 }));
+// A frame of two rings, and a drop of a line and a curve.
+const frame = [[0, 0, 20, 0, 20, 20, 0, 20, 5, 5, 5, 15, 15, 15, 15, 5], 0, "#204060", 1, "oooozooooz"];
+const drop = [[30, 0, 50, 0, 40, 30], 0, "#a03010", 0.5, "oocz"];
 
 test("a stroke is found again under another number", () => {
   const before = numbered(line(10), line(50), line(90));
@@ -26,29 +30,56 @@ test("of equal strokes the one of the same number is the same", () => {
   assert.equal(mostLike(strokes, strokes[1]).number, 2);
 });
 
+test("an area is not mistaken for a stroke", () => {
+  const closed = [frame[0], 0.3, frame[2], 1, frame[4]];
+  assert.equal(mostLike(numbered(closed, frame), numbered(frame)[0]).number, 2);
+  assert.equal(mostLike(numbered(closed), numbered(frame)[0]), undefined);
+});
+
+test("an area is hit where it is filled, and its topmost mark is found", () => {
+  const hits = [[2, 10], [10, 10], [25, 10]].map(([x, y]) => covers(frame, x, y));
+  assert.deepEqual(hits, [true, false, false]);
+  // A curve: its top is at y = 15.
+  assert.deepEqual([[40, 14], [40, 16], [31, 10]].map(([x, y]) => covers(drop, x, y)), [true, false, false]);
+  const twice = [[0, 0, 9, 0, 9, 9, 0, 9, 3, 3, 6, 3, 6, 6, 3, 6], 0, "#000000", 1, "oooozooooz"];
+  assert.ok(covers(twice, 4, 4), "what is wound around twice is filled");
+  assert.equal(markAt(numbered(frame, line(2)), 2, 10).number, 2);
+  assert.equal(markAt(numbered(frame, line(2)), 19, 10).number, 1);
+  assert.equal(markAt(numbered(frame, line(2)), 10, 10), undefined);
+});
+
+test("marks are counted in words", () => {
+  const lists = [[], [line(1)], [frame], [line(1), line(2), frame, drop]];
+  assert.deepEqual(lists.map(counted), ["0 strokes", "1 stroke", "1 area", "2 areas, 2 strokes"]);
+});
+
 test("a file loses the strokes that are not kept and nothing else", () => {
   const text = readFileSync(new URL("../../docs/pictures/coffee-quality-20.svg", import.meta.url), "utf8");
   const count = text.split("<path ").length - 1;
   const kept = Array.from({ length: count }, (_, k) => k !== 1 && k !== count - 1);
-  const part = withoutStrokes(text, kept);
+  const part = withoutMarks(text, kept);
   assert.equal(part.split("<path ").length - 1, count - 2);
   assert.equal(part.split("\n").length, text.split("\n").length - 2);
-  assert.equal(withoutStrokes(text, kept.map(() => true)), text);
-  assert.equal(withoutStrokes(text, kept.slice(1)), null);
+  assert.equal(withoutMarks(text, kept.map(() => true)), text);
+  assert.equal(withoutMarks(text, kept.slice(1)), null);
 });
 
 test("paths of every kind are written as SVG", () => {
-  const strokes = [
+  const marks = [
     [[10, 20], 2, "#102030", 1, "o"],
     [[0, 0, 10, 5, 20, 0], 1.5, "#ffffff", 0.5, "oco"],
     [[0, 0, 10, 0, 10, 10], 1, "#000000", 1, "oooz"],
-  ].map((stroke) => ({ stroke, stage: 1 }));
-  const text = drawn({ width: 30, height: 20, background: "#eeeeee", strokes });
+    frame,
+    drop,
+  ].map((mark) => ({ mark, stage: 1 }));
+  const text = drawn({ width: 30, height: 20, background: "#eeeeee", marks });
   for (const part of [
     '<rect width="30" height="20" fill="#eeeeee"/>',
     'd="M10 20h0.01" stroke="#102030" stroke-width="4"/>',
     'd="M0 0Q10 5 20 0" stroke="#ffffff" stroke-width="3" stroke-opacity="0.5"/>',
     'd="M0 0L10 0L10 10L0 0Z"',
+    '<path d="M0 0L20 0L20 20L0 20L0 0ZM5 5L5 15L15 15L15 5L5 5Z" fill="#204060"/>',
+    '<path d="M30 0L50 0Q40 30 30 0Z" fill="#a03010" fill-opacity="0.5"/>',
   ]) {
     assert.ok(text.includes(part), `${part} is not in ${text}`);
   }

@@ -1,6 +1,7 @@
-// Strokes on canvases. A stroke is [points, radius, colour, opacity, kinds]; points are x, y, x, y, … in px of
-// the picture, back to front as in the SVG. Kinds has a letter for each point, "o" on the path and "c" for the control
-// point of a curve, and then "z" if the path is closed.
+// Marks on canvases: strokes, and areas, which are filled by the nonzero rule. A mark is [points, radius, colour, opacity,
+// kinds], back to front as in the SVG; points are x, y, x, y, … in px of the picture, and the radius of an area is 0. Kinds
+// has a letter for each point, "o" on the path and "c" for the control point of a curve, and then "z" if the path is
+// closed, and so after the points of each ring of an area.
 
 // Longest side, px, at which drawing and target are compared: more takes time that a fit could use.
 const MAX_COMPARED = 1024;
@@ -21,38 +22,62 @@ function gradient(context, { axis, stops }) {
   return fill;
 }
 
-export function drawStrokes(context, strokes) {
+export function drawMarks(context, marks) {
   context.lineCap = context.lineJoin = "round";
-  for (const stroke of strokes) {
-    const [, radius, color, opacity] = stroke;
+  for (const mark of marks) {
+    const [, radius, color, opacity] = mark;
     context.globalAlpha = opacity;
-    context.strokeStyle = color;
+    context.strokeStyle = context.fillStyle = color;
     context.lineWidth = 2 * radius;
-    trace(context, stroke);
-    context.stroke();
+    trace(context, mark);
+    if (isArea(mark)) context.fill();
+    else context.stroke();
   }
   context.globalAlpha = 1;
 }
 
-function trace(context, stroke) {
-  const { start, pieces, closed } = walk(stroke);
-  context.beginPath();
-  context.moveTo(...start);
-  for (const piece of pieces) {
-    const places = piece.flat();
-    if (piece.length > 1) context.quadraticCurveTo(...places);
-    else context.lineTo(...places);
-  }
-  // Canvases draw no line of length 0: a dot is a short one, as in the file.
-  if (pieces.length === 0) context.lineTo(start[0] + 0.01, start[1]);
-  if (closed) context.closePath();
+export const isArea = ([, radius]) => radius === 0;
+
+// The numbers of areas and strokes among marks, in words.
+export function counted(marks) {
+  const areas = marks.filter(isArea).length, strokes = marks.length - areas;
+  const count = (number, name) => `${number} ${name}${number === 1 ? "" : "s"}`;
+  const words = [areas && count(areas, "area"), (strokes || !areas) && count(strokes, "stroke")];
+  return words.filter(Boolean).join(", ");
 }
 
-// A path as its start and its pieces, each an end, or a control point and an end. Halfway between two control points
-// lies an end that the file of the drawing implies.
-export function walk([points, , , , kinds]) {
+function trace(context, mark) {
+  context.beginPath();
+  for (const { start, pieces, closed } of walks(mark)) {
+    context.moveTo(...start);
+    for (const piece of pieces) {
+      const places = piece.flat();
+      if (piece.length > 1) context.quadraticCurveTo(...places);
+      else context.lineTo(...places);
+    }
+    // Canvases draw no line of length 0: a dot is a short one, as in the file.
+    if (pieces.length === 0) context.lineTo(start[0] + 0.01, start[1]);
+    if (closed) context.closePath();
+  }
+}
+
+// The paths of a mark, each as its places and their kinds.
+export function paths([points, , , , kinds]) {
+  let first = 0;
+  return kinds.match(/[oc]+z?/g).map((own) => {
+    const count = own.replace("z", "").length;
+    const places = Array.from({ length: count }, (_, k) => [points[2 * (first + k)], points[2 * (first + k) + 1]]);
+    first += count;
+    return { places, kinds: own };
+  });
+}
+
+// The paths of a mark, each as its start and its pieces: an end, or a control point and an end.
+export const walks = (mark) => paths(mark).map(walk);
+
+// Halfway between two control points lies an end that the file of the drawing implies.
+function walk({ places, kinds }) {
   const closed = kinds.endsWith("z"), middle = (a, b) => [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
-  const places = points.flatMap((x, k) => (k % 2 ? [] : [[x, points[k + 1]]]));
   const isOn = places.map((_, k) => kinds[k] === "o");
   const first = Math.max(0, isOn.indexOf(true));
   const start = isOn[first] ? places[first] : middle(places.at(-1), places[0]);
@@ -69,65 +94,84 @@ export function walk([points, , , , kinds]) {
   return { start, pieces, closed };
 }
 
-// A ring around a stroke that shows on any colour; what is inside stays as it is. `px` is a CSS px.
-export function drawRing(context, stroke, px) {
+// A ring around a mark that shows on any colour; what is inside stays as it is. `px` is a CSS px.
+export function drawRing(context, mark, px) {
   const layer = new OffscreenCanvas(context.canvas.width, context.canvas.height).getContext("2d");
   layer.setTransform(context.getTransform());
   layer.lineCap = layer.lineJoin = "round";
-  for (const [color, width] of [["#000", 6], ["#ff0", 4], [null, 0]]) {
-    layer.globalCompositeOperation = color ? "source-over" : "destination-out";
-    layer.strokeStyle = color ?? "#000";
-    layer.lineWidth = 2 * stroke[1] + width * px;
-    trace(layer, stroke);
+  trace(layer, mark);
+  for (const [color, width] of [["#000", 6], ["#ff0", 4]]) {
+    layer.strokeStyle = color;
+    layer.lineWidth = 2 * mark[1] + width * px;
     layer.stroke();
   }
+  layer.globalCompositeOperation = "destination-out";
+  layer.lineWidth = 2 * mark[1];
+  if (isArea(mark)) layer.fill();
+  else layer.stroke();
   context.save();
   context.resetTransform();
   context.drawImage(layer.canvas, 0, 0);
   context.restore();
 }
 
-// The points of a stroke that is more than a capsule: squares on the path, circles where control points are.
-export function drawPoints(context, [points, , , , kinds], px) {
-  const count = points.length / 2, closed = kinds.endsWith("z");
-  if (count < 3 && !kinds.includes("c")) return;
+// The points of a mark that is more than a capsule: squares on its paths, circles where control points are.
+export function drawPoints(context, mark, px) {
+  for (const path of paths(mark)) drawPathPoints(context, path, px);
+}
+
+function drawPathPoints(context, { places, kinds }, px) {
+  if (places.length < 3 && !kinds.includes("c")) return;
   context.lineWidth = px;
   context.strokeStyle = "#06c";
   context.setLineDash([3 * px, 3 * px]);
   context.beginPath();
-  for (let k = 0; k < count; k++) context.lineTo(points[2 * k], points[2 * k + 1]);
-  if (closed) context.closePath();
+  for (const place of places) context.lineTo(...place);
+  if (kinds.endsWith("z")) context.closePath();
   context.stroke();
   context.setLineDash([]);
-  for (let k = 0; k < count; k++) {
-    const [x, y, side] = [points[2 * k], points[2 * k + 1], 7 * px];
+  places.forEach(([x, y], k) => {
+    const side = 7 * px;
     context.beginPath();
     if (kinds[k] === "o") context.rect(x - side / 2, y - side / 2, side, side);
     else context.arc(x, y, side / 2, 0, 2 * Math.PI);
     context.fillStyle = kinds[k] === "o" ? "#fff" : "#9cf";
     context.fill();
     context.stroke();
-  }
+  });
 }
 
-// The topmost of numbered strokes at (x, y), or undefined.
-export function strokeAt(numbered, x, y) {
-  return numbered.findLast(({ stroke }) => distance(stroke, x, y) <= stroke[1]);
+// The topmost of numbered marks at (x, y), or undefined.
+export function markAt(numbered, x, y) {
+  return numbered.findLast(({ mark }) => covers(mark, x, y));
+}
+
+// True if a mark is there: a stroke within its radius, an area where its rings wind around the place.
+export function covers(mark, x, y) {
+  const lines = walks(mark).map(polyline);
+  if (isArea(mark)) return lines.reduce((sum, line) => sum + winding(line, x, y), 0) !== 0;
+  const [line] = lines;
+  const gaps = line.slice(1).map((to, k) => gap(line[k], to, x, y));
+  return Math.min(Math.hypot(x - line[0][0], y - line[0][1]), ...gaps) <= mark[1];
+}
+
+// How often a closed polyline goes around (x, y).
+function winding(line, x, y) {
+  return line.slice(1).reduce((sum, [bx, by], k) => {
+    const [ax, ay] = line[k];
+    const side = (bx - ax) * (y - ay) - (by - ay) * (x - ax);
+    if (ay <= y && by > y && side > 0) return sum + 1;
+    return ay > y && by <= y && side < 0 ? sum - 1 : sum;
+  }, 0);
 }
 
 // Chords of a curve, as far as a pointer can tell.
 const CHORDS = 16;
 
-function distance(stroke, x, y) {
-  const { start, pieces } = walk(stroke);
-  let [from, least] = [start, Math.hypot(x - start[0], y - start[1])];
-  for (const piece of pieces) {
-    for (const to of chords(from, piece)) {
-      least = Math.min(least, gap(from, to, x, y));
-      from = to;
-    }
-  }
-  return least;
+function polyline({ start, pieces }) {
+  const line = [start];
+  for (const piece of pieces) line.push(...chords(line.at(-1), piece));
+  return line;
 }
 
 function chords([ax, ay], piece) {
@@ -147,7 +191,7 @@ function gap([ax, ay], [bx, by], x, y) {
   return Math.hypot(x - ax - h * dx, y - ay - h * dy);
 }
 
-// Left, top, right, bottom of a stroke.
+// Left, top, right, bottom of a mark.
 export function bounds([points, radius]) {
   const xs = points.filter((_, k) => k % 2 === 0), ys = points.filter((_, k) => k % 2 === 1);
   return [Math.min(...xs) - radius, Math.min(...ys) - radius, Math.max(...xs) + radius, Math.max(...ys) + radius];
@@ -182,8 +226,8 @@ export class Comparison {
     drawPage(this.context, scene);
   }
 
-  add(strokes) {
-    drawStrokes(this.context, strokes);
+  add(marks) {
+    drawMarks(this.context, marks);
   }
 
   // PSNR of what is drawn, dB.

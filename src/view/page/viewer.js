@@ -1,4 +1,4 @@
-// A drawing while it grows and after: target, drawing and residual, layers, strokes, curves. What is looked at is in the
+// A drawing while it grows and after: target, drawing and residual, layers, strokes and areas, curves. What is looked at is in the
 // address after #, so that it can be kept.
 //
 // Where drawings come from is not the business of this file: page.js asks a server for them, and the page of web/ fits them
@@ -16,10 +16,10 @@
 // and `listen` with what is done when somebody wants something: { stop(), add(strokes) }.
 
 import { drawChart } from "./chart.js";
-import { drawn, mostLike, withoutStrokes } from "./choice.js";
-import { Comparison, bounds, drawPage, drawPoints, drawRing, drawStrokes, strokeAt } from "./picture.js";
+import { drawn, mostLike, withoutMarks } from "./choice.js";
+import { Comparison, bounds, counted, drawMarks, drawPage, drawPoints, drawRing, isArea, markAt, paths } from "./picture.js";
 
-// Number of times that the finished drawing is measured on the way from no stroke to all.
+// Number of times that the finished drawing is measured on the way from no mark to all.
 const MEASURED = 60;
 
 const element = (id) => document.getElementById(id);
@@ -29,19 +29,19 @@ const PICTURES = ["drawing", "target", "residual"];
 
 let state = { curve: [] };
 let scene = null;
-// All strokes as { stroke, number, stage }, numbers and stages from 1.
-let strokes = [];
+// All marks, strokes and areas, as { mark, number, stage }, numbers and stages from 1.
+let marks = [];
 let comparison = null;
 let measured = [];
 // Part of the picture that is seen: px of the picture per CSS px is 1 / zoom.
 let view = { zoom: 0, x: 0, y: 0 };
 let hidden = new Set();
-// Number of strokes from the back that are shown; all when it is Infinity, also of a growing drawing.
+// Number of marks from the back that are shown; all when it is Infinity, also of a growing drawing.
 let shown = Infinity;
 let selected = null;
 // The picture that is large.
 let large = "drawing";
-// Strokes by their numbers: those not shown, the only one shown, and those that are gone.
+// Marks by their numbers: those not shown, the only one shown, and those that are gone.
 let [veiled, alone, gone] = [new Set(), null, new Set()];
 // The share of the drawing, from the left, that shows the target instead.
 let compared = 0;
@@ -60,7 +60,7 @@ function readAddress() {
 
 function writeAddress() {
   const say = new URLSearchParams();
-  if (shown < strokes.length) say.set("shown", shown);
+  if (shown < marks.length) say.set("shown", shown);
   if (selected) say.set("stroke", selected);
   for (const [key, numbers] of Object.entries({ hidden, veiled, gone })) {
     if (numbers.size) say.set(key, [...numbers].join());
@@ -76,7 +76,7 @@ export function show(next) {
   const replaced = another && state.picture !== undefined;
   const finishedNow = next.finished && (another || !state.finished);
   state = next;
-  if (another) [scene, comparison, strokes, measured] = [null, null, [], []];
+  if (another) [scene, comparison, marks, measured] = [null, null, [], []];
   if (replaced) [selected, alone, veiled, gone] = [null, null, new Set(), new Set()];
   if (state.scene) takeScene(state.scene);
   showState();
@@ -86,19 +86,19 @@ export function show(next) {
 }
 
 function takeScene(next) {
-  const before = strokes;
+  const before = marks;
   scene = next;
   let number = 0;
-  strokes = scene.stages.flatMap((list, k) => list.map((stroke) => ({ stroke, number: ++number, stage: k + 1 })));
+  marks = scene.stages.flatMap((list, k) => list.map((mark) => ({ mark, number: ++number, stage: k + 1 })));
   if (before.length) follow(before);
   element("panels").style.setProperty("--aspect", scene.width / scene.height);
   if (state.target && !comparison) comparison = new Comparison(state.target, scene.width, scene.height);
   showControls();
 }
 
-// In another drawing strokes have other numbers: what was said of one holds for the one that is most like it.
+// In another drawing marks have other numbers: what was said of one holds for the one that is most like it.
 function follow(before) {
-  const now = (number) => mostLike(strokes, before[number - 1])?.number ?? null;
+  const now = (number) => mostLike(marks, before[number - 1])?.number ?? null;
   const all = (numbers) => new Set([...numbers].map(now).filter(Boolean));
   [selected, alone] = [selected && now(selected), alone && now(alone)];
   [veiled, gone] = [all(veiled), all(gone)];
@@ -132,7 +132,7 @@ function phase() {
 }
 
 function underway() {
-  if (state.finished) return `${strokes.length} strokes, ${state.svg_bytes} bytes`;
+  if (state.finished) return `${counted(marks.map(({ mark }) => mark))}, ${state.svg_bytes} bytes`;
   if (!state.last) return "starting";
   const known = state.stages ? ` of ${state.stages}` : "";
   const place = state.settling ? "settling" : state.polishing ? "polish" : `stage ${state.stage}${known}`;
@@ -142,14 +142,14 @@ function underway() {
   return `${place}, ${count} strokes${fidelity}, ${time_s.toFixed(1)} s`;
 }
 
-// dB of the finished drawing as strokes are added, by the browser's renderer.
+// dB of the finished drawing as marks are added, by the browser's renderer.
 function measure() {
   comparison.clear(scene);
   measured = [[0, comparison.psnr()]];
-  const step = Math.max(1, Math.ceil(strokes.length / MEASURED));
-  for (let k = 0; k < strokes.length; k += step) {
-    const part = strokes.slice(k, k + step);
-    comparison.add(part.map(({ stroke }) => stroke));
+  const step = Math.max(1, Math.ceil(marks.length / MEASURED));
+  for (let k = 0; k < marks.length; k += step) {
+    const part = marks.slice(k, k + step);
+    comparison.add(part.map(({ mark }) => mark));
     measured.push([k + part.length, comparison.psnr()]);
   }
   redraw();
@@ -158,7 +158,7 @@ function measure() {
 // Controls.
 
 function showControls() {
-  const total = strokes.length;
+  const total = marks.length;
   element("shown").max = element("stroke").max = total;
   element("stage").max = scene.stages.length;
   const boxes = element("layers");
@@ -182,11 +182,11 @@ function layerBox(stage) {
 function showLayer(label, stage, list) {
   const [box, text] = label.children;
   box.checked = !hidden.has(stage);
-  text.textContent = ` ${stage}: ${list.length} stroke${list.length === 1 ? "" : "s"}`;
+  text.textContent = ` ${stage}: ${counted(list)}`;
 }
 
 function showSelected() {
-  const found = strokes[selected - 1];
+  const found = marks[selected - 1];
   for (const id of ["zoom", "hide", "alone", "delete"]) element(id).disabled = !found;
   const says = (id, pressed) => element(id).setAttribute("aria-pressed", pressed);
   says("hide", Boolean(found) && veiled.has(selected));
@@ -198,21 +198,15 @@ function showSelected() {
   element("numbers").replaceChildren(...(found ? describe(found) : []));
 }
 
-// Number of points of a stroke that are told.
+// Number of points of a mark that are told.
 const TOLD_POINTS = 24;
 
-function describe({ stroke: [points, radius, color, opacity, kinds], number, stage }) {
-  const round = (value) => Number(value.toFixed(2));
-  const count = points.length / 2;
-  // Control points are in parentheses.
-  const pairs = Array.from({ length: Math.min(count, TOLD_POINTS) }, (_, k) => {
-    const pair = `${round(points[2 * k])}, ${round(points[2 * k + 1])}`;
-    return kinds[k] === "o" ? pair : `(${pair})`;
-  });
-  if (count > TOLD_POINTS) pairs.push(`${count - TOLD_POINTS} more`);
-  if (kinds.endsWith("z")) pairs.push("start");
-  const rows = [["number", `${number} of ${strokes.length}, stage ${stage}`], ["points", pairs.join("  →  ")]];
-  rows.push(["width", `${round(2 * radius)} px`], ["colour", color], ["opacity", opacity.toFixed(3)]);
+function describe({ mark, number, stage }) {
+  const [, radius, color, opacity] = mark;
+  const rows = [["number", `${number} of ${marks.length}, stage ${stage}`]];
+  rows.push(...paths(mark).map((path) => [isArea(mark) ? "ring" : "points", told(path)]));
+  if (!isArea(mark)) rows.push(["width", `${round(2 * radius)} px`]);
+  rows.push(["colour", color], ["opacity", opacity.toFixed(3)]);
   return rows.flatMap(([name, value]) => {
     const term = document.createElement("dt"), text = document.createElement("dd");
     term.textContent = name;
@@ -226,19 +220,31 @@ function describe({ stroke: [points, radius, color, opacity, kinds], number, sta
   });
 }
 
+const round = (value) => Number(value.toFixed(2));
+
+// The points of a path. Control points are in parentheses.
+function told({ places, kinds }) {
+  const pairs = places.slice(0, TOLD_POINTS).map(([x, y], k) => {
+    const pair = `${round(x)}, ${round(y)}`;
+    return kinds[k] === "o" ? pair : `(${pair})`;
+  });
+  if (places.length > TOLD_POINTS) pairs.push(`${places.length - TOLD_POINTS} more`);
+  if (kinds.endsWith("z")) pairs.push("start");
+  return pairs.join("  →  ");
+}
+
 // Pictures.
 
 function redraw() {
   if (!scene) return;
-  const visible = strokes.filter(isShown);
-  const list = visible.map(({ stroke }) => stroke);
-  const found = strokes[selected - 1];
+  const list = marks.filter(isShown).map(({ mark }) => mark);
+  const found = marks[selected - 1];
   paint(drawing, (context, px) => {
     drawPage(context, scene);
-    drawStrokes(context, list);
+    drawMarks(context, list);
     if (found) {
-      drawRing(context, found.stroke, px);
-      drawPoints(context, found.stroke, px);
+      drawRing(context, found.mark, px);
+      drawPoints(context, found.mark, px);
     }
     if (state.target) drawCompared(context, px);
   });
@@ -250,7 +256,7 @@ function redraw() {
     comparison.subtract();
     paint(residual, (context) => context.drawImage(comparison.residual, 0, 0, scene.width, scene.height));
   }
-  showSliders(visible.length);
+  showSliders(list);
   showSelected();
   writeAddress();
 }
@@ -261,15 +267,15 @@ function isShown({ number, stage }) {
 }
 
 function showSliders(visible) {
-  const total = strokes.length, count = Math.min(shown, total);
-  const begun = strokes[count - 1]?.stage ?? 0;
+  const total = marks.length, count = Math.min(shown, total);
+  const begun = marks[count - 1]?.stage ?? 0;
   element("shown").value = count;
   element("shown-count").value = `${count} of ${total}`;
   element("stage").value = begun;
   element("stage-count").value = `${begun} of ${scene.stages.length}`;
-  element("shown-label").textContent = `${visible} stroke${visible === 1 ? "" : "s"}`;
+  element("shown-label").textContent = counted(visible);
   [...element("layers").children].forEach((label, k) => (label.firstChild.checked = !hidden.has(k + 1)));
-  const here = measured.find(([strokes]) => strokes >= count);
+  const here = measured.find(([number]) => number >= count);
   if (state.finished) drawChart(element("over-strokes"), measured, here ? [here] : []);
 }
 
@@ -330,8 +336,8 @@ function zoomAt(event) {
   redraw();
 }
 
-function zoomTo({ stroke }) {
-  const [left, top, right, bottom] = bounds(stroke);
+function zoomTo({ mark }) {
+  const [left, top, right, bottom] = bounds(mark);
   const whole = element(largest());
   const [width, height] = [whole.clientWidth, whole.clientHeight];
   const zoom = Math.min(40, width / (right - left) / 2, height / (bottom - top) / 2);
@@ -359,7 +365,7 @@ function moveDrag(event) {
 
 function endDrag(event) {
   if (drag && !drag.moved) {
-    selected = strokeAt(strokes.filter(isShown), ...place(event))?.number ?? null;
+    selected = markAt(marks.filter(isShown), ...place(event))?.number ?? null;
     redraw();
   }
   drag = null;
@@ -379,10 +385,10 @@ function on(id, event, action) {
   });
 }
 
-on("shown", "input", ({ value }) => (shown = Number(value) < strokes.length ? Number(value) : Infinity));
+on("shown", "input", ({ value }) => (shown = Number(value) < marks.length ? Number(value) : Infinity));
 on("stage", "input", ({ value }) => {
   const count = scene.stages.slice(0, Number(value)).flat().length;
-  shown = count < strokes.length ? count : Infinity;
+  shown = count < marks.length ? count : Infinity;
 });
 on("compare", "input", ({ value }) => (compared = Number(value) / 100));
 on("stroke", "input", ({ value }) => (selected = Number(value) || null));
@@ -399,7 +405,7 @@ on("restore", "click", () => {
   if (alone) alone = null;
   else [veiled, gone] = [new Set(), new Set()];
 });
-element("zoom").addEventListener("click", () => zoomTo(strokes[selected - 1]));
+element("zoom").addEventListener("click", () => zoomTo(marks[selected - 1]));
 
 // Which picture is large.
 
@@ -429,12 +435,12 @@ addEventListener("keydown", (event) => {
 // The file without what is not shown.
 
 element("download").addEventListener("click", async (event) => {
-  const kept = strokes.map(isShown);
+  const kept = marks.map(isShown);
   if (kept.every(Boolean)) return;
   event.preventDefault();
   const link = element("download");
   const text = await (await fetch(link.href)).text();
-  const part = withoutStrokes(text, kept) ?? drawn({ ...scene, strokes: strokes.filter(isShown) });
+  const part = withoutMarks(text, kept) ?? drawn({ ...scene, marks: marks.filter(isShown) });
   const saved = document.createElement("a");
   saved.href = URL.createObjectURL(new Blob([part], { type: "image/svg+xml" }));
   saved.download = link.download || "drawing.svg";
