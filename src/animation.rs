@@ -1,4 +1,4 @@
-//! Replays a finished drawing stroke by stroke: frames, animations, and SVG that draws itself.
+//! Replays a finished drawing mark by mark: frames, animations, and SVG that draws itself.
 //!
 //! ```
 //! use strokefit::animation::{self, Film, Legend, Step};
@@ -32,7 +32,7 @@ use crate::svg::{self, Timing};
 use crate::{
     image::{Animation, AnimationFormat},
     metrics,
-    scene::{Mark, Rgb},
+    scene::{Mark, Rgb, counted},
     svg::{Form, WriteOptions},
     verify::{Painting, Size},
 };
@@ -47,8 +47,11 @@ const FRAME_MS: [u32; 2] = [30, 800];
 const LAST_MS: u32 = 2500;
 
 #[cfg(feature = "animation")]
-/// Smallest width of a frame with a legend, px: some 25 letters.
+/// Smallest width of a frame with a legend, px: some 30 letters.
 const LEGEND: usize = 210;
+#[cfg(feature = "animation")]
+/// Likewise for a drawing with areas, whose number comes first: some 42 letters.
+const LEGEND_OF_AREAS: usize = 290;
 
 #[cfg(feature = "animation")]
 const WHITE: Rgb = [1.0; 3];
@@ -58,7 +61,7 @@ const WHITE: Rgb = [1.0; 3];
 pub enum Step {
     /// A stage.
     Stage,
-    /// This many strokes.
+    /// This many strokes and areas.
     Strokes(usize),
 }
 
@@ -81,26 +84,28 @@ impl FromStr for Step {
 pub enum Legend<'a> {
     /// Nothing.
     None,
-    /// The number of strokes.
+    /// The number of strokes and areas.
     Strokes,
-    /// The number of strokes, and their PSNR against this picture, dB.
+    /// The number of strokes and areas, and their PSNR against this picture, dB.
     Fidelity(&'a Image),
 }
 
 #[cfg(feature = "animation")]
 impl Legend<'_> {
-    fn lay(&self, frame: Image, strokes: usize) -> Result<Image> {
+    /// The `frame` with its legend, where it shows the first `count` marks of `scene`.
+    fn lay(&self, frame: Image, scene: &Scene, count: usize) -> Result<Image> {
+        let areas = scene.marks().take(count).filter_map(Mark::as_area).count();
+        let counted = counted(areas, count - areas);
         let text = match self {
             Self::None => return Ok(frame),
-            Self::Strokes => format!("{strokes} strokes"),
+            Self::Strokes => counted,
             Self::Fidelity(target) => {
-                format!(
-                    "{strokes} strokes, {:.1} dB",
-                    metrics::psnr(target, &frame)?
-                )
+                format!("{counted}, {:.1} dB", metrics::psnr(target, &frame)?)
             }
         };
-        caption::captioned(&frame, &text, LEGEND)
+        let has_areas = scene.areas().next().is_some();
+        let width = if has_areas { LEGEND_OF_AREAS } else { LEGEND };
+        caption::captioned(&frame, &text, width)
     }
 }
 
@@ -116,7 +121,7 @@ pub struct Film<'a> {
 }
 
 impl Film<'_> {
-    /// The strokes that each frame adds, back to front. A scene without strokes has one empty frame.
+    /// The strokes and areas that each frame adds, back to front. A scene without any has one empty frame.
     pub fn parts(&self, scene: &Scene) -> Vec<Range<usize>> {
         let total = scene.len();
         let usual = Step::Strokes(total.div_ceil(USUAL_FRAMES));
@@ -152,7 +157,7 @@ impl Film<'_> {
             if part.start > 0 {
                 painting.add(&text)?;
             }
-            self.legend.lay(painting.image()?, part.end)
+            self.legend.lay(painting.image()?, scene, part.end)
         })
     }
 
@@ -188,7 +193,7 @@ fn timing(frames: usize) -> Timing {
     }
 }
 
-/// The number of strokes after each stage that has any.
+/// The number of marks after each stage that has any.
 fn stage_ends(scene: &Scene) -> Vec<usize> {
     let counts = scene.stages.iter().map(|stage| stage.marks.len());
     let ends = counts.filter(|&count| count > 0).scan(0, |end, count| {
@@ -225,7 +230,7 @@ fn precision(scene: &Scene) -> u8 {
 #[cfg(all(test, feature = "animation"))]
 mod tests {
     use super::*;
-    use crate::scene::{Path, Stroke};
+    use crate::scene::{Area, Path, PathPoint, Stroke};
     use crate::verify;
 
     fn scene(stages: &[usize]) -> Scene {
@@ -307,6 +312,32 @@ mod tests {
         assert_eq!(frames.len(), 1);
         let [r, g, b] = frames[0].as_ref().unwrap().planes();
         assert!(r[0] < g[0] && b[0] < r[0]);
+    }
+
+    #[test]
+    fn a_drawing_of_areas_plays_and_says_how_many_there_are() {
+        let corners = [[2.0, 2.0], [30.0, 4.0], [16.0, 22.0]].map(|p| PathPoint::on(p.into()));
+        let area = Area {
+            rings: vec![Path::new(corners.into(), true).unwrap()],
+            color: [0.2, 0.4, 0.8],
+            opacity: 0.7,
+        };
+        let mut scene = scene(&[2]);
+        let below = [Mark::from(area.clone()), Mark::from(area)];
+        scene.stages[0].marks.splice(1..1, below);
+        let scene = scene.quantized(2).scene;
+        let text = svg::write(&scene, &WriteOptions::default());
+        let whole = verify::render(&text, Size::Scale(1.0), Some(WHITE)).unwrap();
+        let each = film(Some(Step::Strokes(1)));
+        let frames: Vec<_> = each.frames(&scene).map(Result::unwrap).collect();
+        assert_eq!(frames.len(), 4);
+        assert!(frames[0] != frames[1] && frames[1] != frames[2] && frames[3] == whole);
+        let alone = verify::render(&each.svg(&scene), Size::Scale(1.0), Some(WHITE)).unwrap();
+        assert!(alone == whole);
+        let legend = Legend::Strokes;
+        let film = Film { legend, ..each };
+        let with = film.frames(&scene).map(Result::unwrap);
+        assert!(with.map(|frame| frame.width()).eq([LEGEND_OF_AREAS; 4]));
     }
 
     #[test]

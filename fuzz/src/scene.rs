@@ -10,7 +10,7 @@ use strokefit::coverage::Coverage;
 use strokefit::fit::{Objective, Simd};
 use strokefit::loss::Loss;
 use strokefit::render::{Backdrop, Canvas, Gradients, Renderer, Softness, Strokes};
-use strokefit::scene::{Path, PathPoint, Quantized, Scene, Stroke};
+use strokefit::scene::{Area, Mark, Path, PathPoint, Quantized, Scene, Stroke};
 use strokefit::verify::{self, Size};
 use strokefit::{image::Image, svg};
 
@@ -41,20 +41,36 @@ impl Source<'_> {
         }
     }
 
-    fn stroke(&mut self) -> Stroke {
+    fn mark(&mut self) -> Mark {
         let [ax, ay, bx, by, radius, red, green, blue, opacity] = [(); 9].map(|()| self.float());
         let (a, b) = ([ax, ay].into(), [bx, by].into());
-        Stroke {
-            path: match self.byte() % 8 {
-                0 | 1 => Path::dot(a),
-                2 => self.path([PathPoint::on(a), PathPoint::on(b)], false),
-                3 => self.path([PathPoint::on(a), PathPoint::off(b)], true),
-                _ => Path::line(a, b),
-            },
+        let color = [red, green, blue];
+        let path = match self.byte() % 8 {
+            0 | 1 => Path::dot(a),
+            2 => self.path([PathPoint::on(a), PathPoint::on(b)], false),
+            3 => self.path([PathPoint::on(a), PathPoint::off(b)], true),
+            4 => {
+                let rings = self.rings([PathPoint::on(a), PathPoint::off(b)]);
+                return Mark::Area(Area {
+                    rings,
+                    color,
+                    opacity,
+                });
+            }
+            _ => Path::line(a, b),
+        };
+        Mark::Stroke(Stroke {
+            path,
             radius,
-            color: [red, green, blue],
+            color,
             opacity,
-        }
+        })
+    }
+
+    /// One ring to three, which begin and end with these points.
+    fn rings(&mut self, ends: [PathPoint; 2]) -> Vec<Path> {
+        let count = 1 + self.byte() % 3;
+        (0..count).map(|_| self.path(ends, true)).collect()
     }
 
     /// A path with up to seven more points between these two, on or off it.
@@ -74,7 +90,7 @@ impl Source<'_> {
         let background = self.byte().is_multiple_of(2).then_some(background);
         let mut scene = Scene::empty(width.into(), height.into(), background);
         for _ in 0..self.byte() % 3 {
-            let stage = (0..self.byte() % 8).map(|_| self.stroke()).collect();
+            let stage = (0..self.byte() % 8).map(|_| self.mark()).collect();
             scene.stages.push(stage);
         }
         scene

@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::image::{Image, Limits};
 
 /// The letters that captions are made of, in the order of their picture.
-const LETTERS: &str = "0123456789.,strokedBinf";
+const LETTERS: &str = "0123456789.,strokedBinfa";
 
 /// Hack Regular at 13 px, black on white, side by side. `rig/` has the font, and a test that draws them again.
 const PICTURE: &[u8] = include_bytes!("letters.png");

@@ -216,6 +216,23 @@ mod tests {
     }
 
     #[test]
+    fn an_area_fades_in_with_its_part() {
+        let mut scene = scene();
+        let corners = [[1.0, 1.0], [9.0, 1.0], [5.0, 9.0]].map(|p| PathPoint::on(p.into()));
+        scene.stages[1].marks[0] = Mark::from(Area {
+            rings: vec![Path::new(corners.into(), true).unwrap()],
+            color: [0.2, 0.4, 0.6],
+            opacity: 0.5,
+        });
+        let text = write_animated(&scene, &[0..2, 2..5, 5..6, 6..7], TIMING, 2);
+        let fade = "<animate attributeName=\"fill-opacity\" values=\"0;0;0.502;0.502\" \
+                    keyTimes=\"0;0.1000;0.2000;1\"";
+        assert_eq!(text.matches(fade).count(), 1, "{text}");
+        let draw = |text: &str| render(text, Size::Scale(3.0), None).unwrap();
+        assert!(draw(&text) == draw(&write(&scene, &WriteOptions::default())));
+    }
+
+    #[test]
     fn programs_without_animation_show_the_finished_drawing() {
         let options = WriteOptions::default();
         let draw = |text: &str| render(text, Size::Scale(3.0), None).unwrap();

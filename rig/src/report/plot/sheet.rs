@@ -273,7 +273,7 @@ mod tests {
     /// The letters of the captions of animations, 8 px each.
     #[test]
     fn letters_of_captions_are_those_of_the_font() {
-        let letters = "0123456789.,strokedBinf";
+        let letters = "0123456789.,strokedBinfa";
         let blank = Image::filled(8 * letters.len(), LINE, [1.0; 3]).unwrap();
         let drawn = draw(blank, |root| {
             for (i, letter) in letters.char_indices() {
@@ -300,7 +300,7 @@ mod tests {
             };
             let frame = film.frames(&scene).last().unwrap().unwrap();
             let picture = frame.cropped(12, 9).unwrap();
-            let expected = captioned(&picture, &[format!("{count} strokes")], frame.width());
+            let expected = captioned(&picture, &[scene.counted()], frame.width());
             // Where letters touch, one rounds down what the other rounds to the nearest.
             let (drawn, expected) = (frame.to_rgb8(), expected.unwrap().to_rgb8());
             let mut levels = drawn.iter().zip(&expected);
