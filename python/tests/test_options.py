@@ -13,7 +13,7 @@ import strokefit
 
 
 def test_budgets_are_kept(waves: np.ndarray) -> None:
-    assert 0 < len(strokefit.fit(waves, strokes=12).strokes) <= 12
+    assert 0 < strokefit.fit(waves, strokes=12).report["strokes"] <= 12
     assert strokefit.fit(waves, psnr=26).report["fidelity"]["psnr_db"] >= 26
     assert len(strokefit.fit(waves, bytes=2000).svg) <= 2000
     # A picture of which no machine draws all within the time: small ones reach their cap of strokes first.
@@ -47,6 +47,15 @@ def test_looks_are_kept(waves: np.ndarray) -> None:
     assert strokefit.fit(waves, polish=False, **few) != strokefit.fit(waves, **few)
     assert strokefit.fit(waves, seed=2**64 - 1, **few) != strokefit.fit(waves, **few)
     assert strokefit.fit(waves, progressive=True, **few) != strokefit.fit(waves, **few)
+
+
+def test_marks_are_kept(waves: np.ndarray) -> None:
+    lines = strokefit.fit(waves, strokes=12, preset="draft", marks="strokes")
+    assert len(lines.strokes) > 0 and len(lines.areas) == 0
+    filled = strokefit.fit(waves, strokes=12, preset="draft", marks="areas")
+    assert len(filled.strokes) == 0
+    with pytest.raises(ValueError, match="'dots' is not a kind of marks"):
+        strokefit.fit(waves, marks="dots")
 
 
 def test_threads_change_nothing(waves: np.ndarray) -> None:

@@ -16,6 +16,9 @@ export interface Options {
   quality?: number;
   /** How much time to spend for a better drawing. `balanced` if it is left out. */
   preset?: "draft" | "balanced" | "best";
+  /** What the drawing is made of: areas for what is filled and strokes for lines and for the rest (`auto`), or one of them
+   * alone. `auto` if it is left out. */
+  marks?: "auto" | "strokes" | "areas";
   /** A good drawing after every layer, at some dB less in the end. */
   progressive?: boolean;
   /** Which errors count: those that people see, or all alike, for a tenth of a dB more; if it is left out, `exact` with `psnr`, and `eye` without. */

@@ -63,6 +63,7 @@ def fit(
     time: Optional[float] = None,
     quality: Optional[float] = None,
     preset: str = "balanced",
+    marks: str = "auto",
     look: Optional[str] = None,
     opaque: bool = False,
     coverage: str = "smoothstep",
@@ -84,7 +85,7 @@ def fit(
     progress: Optional[Progress] = None,
     cancel: Optional[_native.CancelToken] = None,
 ) -> Drawing:
-    """Draws a picture with strokes.
+    """Draws a picture with strokes and areas.
 
     Equal pictures and options give equal bytes, those of `strokefit fit`, for any number of threads.
 
@@ -102,6 +103,8 @@ def fit(
         quality: 0 to 60; higher keeps more. A stroke is kept while every byte it costs removes at least the squared
             error that one pixel has at so many dB. 30 unless there is a budget of strokes, psnr or bytes.
         preset: `draft`, `balanced` or `best`: how much time to spend.
+        marks: What the drawing is made of: `auto` (areas for what is filled, strokes for lines and for the rest), `strokes` or
+            `areas`.
         look: Which errors count: those that people see (`eye`), or all alike (`exact`), for a tenth of a dB more; `None` is
             `exact` with `psnr`, and `eye` without.
         opaque: Use opaque strokes only.
@@ -161,6 +164,7 @@ def refine(
     time: Optional[float] = None,
     quality: Optional[float] = None,
     preset: str = "balanced",
+    marks: str = "auto",
     look: Optional[str] = None,
     opaque: bool = False,
     coverage: str = "smoothstep",
@@ -181,10 +185,10 @@ def refine(
     progress: Optional[Progress] = None,
     cancel: Optional[_native.CancelToken] = None,
 ) -> Drawing:
-    """Adds strokes to an SVG to bring it closer to a picture.
+    """Adds strokes and areas to an SVG to bring it closer to a picture.
 
-    The strokes of a drawing by strokefit are fitted further, together with new ones; any other SVG stays byte for byte,
-    and strokes are laid on it. Budgets count the whole file, and the background is that of the base.
+    Those of a drawing by strokefit are fitted further, together with new ones; any other SVG stays byte for byte,
+    and strokes and areas are laid on it. Budgets count the whole file, and the background is that of the base.
 
     Args:
         base: A `Drawing`, the text of an SVG (it contains `<`), or the path of one.
