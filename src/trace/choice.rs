@@ -3,7 +3,7 @@
 //! Strokes and regions that share pixels make a group. A group is drawn by its strokes if they have the outlines of its
 //! regions and cost no more; or else by areas.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
@@ -13,6 +13,7 @@ use super::even::Shape;
 use super::fill::{Fill, Flat};
 use super::gain::coverage;
 use super::strokes::TracedStroke;
+use crate::math::distance;
 use crate::scene::{Mark, Stroke};
 
 /// Strokes and regions that share pixels.
@@ -32,7 +33,7 @@ type Votes = BTreeMap<u32, f32>;
 pub(super) fn chosen(
     flat: &Flat<'_>,
     fills: Vec<Fill>,
-    strokes: Vec<TracedStroke>,
+    mut strokes: Vec<TracedStroke>,
     pixels: &Pixels<'_>,
     price: &(impl Fn(&Mark) -> f32 + Sync),
 ) -> Vec<Traced> {
@@ -42,18 +43,30 @@ pub(super) fn chosen(
         .collect();
     let groups = groups(&votes, flat.region_count());
     let wins = |group: &Group| stroked(group, flat, &fills, &strokes, pixels, price);
-    let won: Vec<bool> = groups.par_iter().map(wins).collect();
+    let radii: Vec<Option<Vec<f32>>> = groups.par_iter().map(wins).collect();
+    let won = radii.iter().map(Option::is_some).collect();
+    let won = unjoined(won, &groups, flat, &fills, &strokes);
     // The regions that strokes draw need no area.
     let mut is_stroked = vec![false; flat.region_count()];
     let mut places: Vec<Option<(usize, f32)>> = vec![None; strokes.len()];
-    for (group, _) in groups.iter().zip(&won).filter(|(_, won)| **won) {
-        group
-            .regions
-            .iter()
-            .for_each(|&r| is_stroked[r as usize] = true);
-        for &i in &group.strokes {
+    let gains: BTreeMap<u32, f32> = fills.iter().map(|fill| (fill.region, fill.gain)).collect();
+    let drawn = groups.iter().zip(radii).zip(&won).filter(|(_, won)| **won);
+    for ((group, radii), _) in drawn {
+        let regions = group.regions.iter();
+        regions.for_each(|&region| is_stroked[region as usize] = true);
+        for (&i, radius) in group.strokes.iter().zip(radii.into_iter().flatten()) {
             let rank = rank(&strokes[i], &votes[i], flat, pixels);
-            places[i] = Some((rank, strokes[i].gain));
+            // On top of an area it gains what its regions do.
+            let worth = votes[i].iter().map(|(region, votes)| {
+                let gain = gains.get(region).copied().unwrap_or_default();
+                gain * (votes / flat.size(*region)).min(1.0) / flat.mattes as f32
+            });
+            places[i] = Some((rank, worth.sum::<f32>().max(strokes[i].gain)));
+            // A width that was taken for that on the canvas.
+            let own = &mut strokes[i].stroke.radius;
+            if (*own - radius).abs() > WRONG {
+                *own = radius;
+            }
         }
     }
     let grouped = votes.iter().map(|votes| !votes.is_empty());
@@ -101,7 +114,7 @@ fn rank(traced: &TracedStroke, votes: &Votes, flat: &Flat<'_>, pixels: &Pixels<'
     let line = traced.stroke.path.flattened(0.1);
     let crossed = line.windows(2).flat_map(|ends| {
         let [a, b] = [[ends[0].x, ends[0].y], [ends[1].x, ends[1].y]];
-        let steps = crate::math::distance(a, b).ceil() as usize;
+        let steps = distance(a, b).ceil() as usize;
         (0..steps).map(move |step| {
             let share = step as f32 / steps as f32;
             [0, 1].map(|k| a[k] + share * (b[k] - a[k]))
@@ -163,7 +176,53 @@ fn groups(votes: &[Votes], regions: usize) -> Vec<Group> {
     groups
 }
 
-/// True if the strokes of a group draw its regions, for less than areas cost.
+/// Groups that strokes draw, short ones beside areas of their colour left out: those join the areas and are no marks.
+fn unjoined(
+    mut won: Vec<bool>,
+    groups: &[Group],
+    flat: &Flat<'_>,
+    fills: &[Fill],
+    strokes: &[TracedStroke],
+) -> Vec<bool> {
+    let mut is_stroked = vec![false; flat.region_count()];
+    for (group, _) in groups.iter().zip(&won).filter(|(_, won)| **won) {
+        let regions = group.regions.iter();
+        regions.for_each(|&region| is_stroked[region as usize] = true);
+    }
+    let areas = fills
+        .iter()
+        .filter(|fill| !is_stroked[fill.region as usize]);
+    let labels: BTreeSet<u16> = areas.map(|fill| flat.label(fill.region)).collect();
+    let is_short = |group: &Group| {
+        let lengths = group.strokes.iter().map(|&i| length(&strokes[i].stroke));
+        lengths.sum::<f32>() < SHORT * group.strokes.len() as f32
+    };
+    for (group, won) in groups.iter().zip(&mut won) {
+        let is_alone = group
+            .regions
+            .iter()
+            .all(|&r| !labels.contains(&flat.label(r)));
+        *won &= is_alone || !is_short(group);
+    }
+    won
+}
+
+/// Length of a stroke's middle, in units of its radius.
+fn length(stroke: &Stroke) -> f32 {
+    let line = stroke.path.flattened(0.1);
+    let sides = line
+        .windows(2)
+        .map(|w| distance([w[0].x, w[0].y], [w[1].x, w[1].y]));
+    sides.sum::<f32>() / stroke.radius
+}
+
+/// Strokes of fewer radii are short. A guess.
+const SHORT: f32 = 16.0;
+
+/// A radius is replaced by one that is farther away than this, px. A guess.
+const WRONG: f32 = 0.5;
+
+/// The radii of the strokes of a group, if they draw its regions and areas cost as much.
 fn stroked(
     group: &Group,
     flat: &Flat<'_>,
@@ -171,7 +230,7 @@ fn stroked(
     strokes: &[TracedStroke],
     pixels: &Pixels<'_>,
     price: &(impl Fn(&Mark) -> f32 + Sync),
-) -> bool {
+) -> Option<Vec<f32>> {
     let strokes: Vec<&Stroke> = group.strokes.iter().map(|&i| &strokes[i].stroke).collect();
     let of_strokes: f32 = strokes
         .iter()
@@ -181,15 +240,16 @@ fn stroked(
     let areas = fills.iter().filter(own).map(|fill| flat.area(fill).into());
     let of_areas: f32 = areas.map(|area| price(&area)).sum();
     if of_strokes > MOST_PRICE * of_areas {
-        return false;
+        return None;
     }
     let members = flat.members(&group.regions);
     let shape = Shape {
         inside: |p| flat.share_at(p, &members),
         region: |p| pixels.at(p).map(|i| flat.region(i)),
     };
-    strokes.iter().all(|stroke| shape.is_even(stroke))
-        && is_covered(&strokes, flat, &members, group, pixels)
+    let radii = strokes.iter().map(|stroke| shape.even_radius(stroke));
+    let radii: Vec<f32> = radii.collect::<Option<_>>()?;
+    is_covered(&strokes, flat, &members, group, pixels).then_some(radii)
 }
 
 /// True if strokes cover a group of regions and nothing else that is seen, give or take a part of a pixel.

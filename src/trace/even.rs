@@ -22,29 +22,29 @@ const ODD: [f32; 2] = [0.3, 0.12];
 const MOST_ODD: f32 = 0.15;
 
 impl<I: Fn(Place) -> f32, R: Fn(Place) -> Option<u32>> Shape<I, R> {
-    /// True if the shape is what the stroke draws.
-    pub(super) fn is_even(&self, stroke: &Stroke) -> bool {
+    /// Half the width of the shape, px, if the stroke draws it.
+    pub(super) fn even_radius(&self, stroke: &Stroke) -> Option<f32> {
         let line = stroke.path.flattened(0.1);
         let line: Vec<Place> = line.iter().map(|p| [p.x, p.y]).collect();
         let places = smoothed(along(&line, 1.0), 0.5 * stroke.radius);
         let reach = 1.7 * stroke.radius + 2.0;
         if places.len() < 3 || (places.len() as f32) < 0.7 * stroke.radius {
             let middle = places[places.len() / 2].0;
-            return self.is_disc(middle, reach);
+            return self.disc_radius(middle, reach);
         }
         let widths = places
             .iter()
             .filter_map(|&(at, way)| self.radius(at, way, reach));
         let widths: Vec<f32> = widths.collect();
         let Some(radius) = median(&widths) else {
-            return true;
+            return Some(stroke.radius);
         };
         let odd = widths
             .iter()
             .filter(|width| is_odd(**width, radius))
             .count();
         if odd as f32 > MOST_ODD * widths.len() as f32 {
-            return false;
+            return None;
         }
         let ends = match stroke.path.is_closed() {
             true => Vec::new(),
@@ -53,9 +53,11 @@ impl<I: Fn(Place) -> f32, R: Fn(Place) -> Option<u32>> Shape<I, R> {
                 vec![(first.0, first.1.map(|v| -v)), last]
             }
         };
-        ends.into_iter()
+        let is_round = ends
+            .into_iter()
             .all(|(at, way)| self.is_round_end(at, way, radius))
-            && self.has_round_joins(&line, stroke.path.is_closed(), radius)
+            && self.has_round_joins(&line, stroke.path.is_closed(), radius);
+        is_round.then_some(radius)
     }
 
     /// The distance in a direction at which the shape ends.
@@ -84,7 +86,8 @@ impl<I: Fn(Place) -> f32, R: Fn(Place) -> Option<u32>> Shape<I, R> {
         Some(0.5 * (a? + b?))
     }
 
-    fn is_disc(&self, middle: Place, reach: f32) -> bool {
+    /// The radius of a disc around a place.
+    fn disc_radius(&self, middle: Place, reach: f32) -> Option<f32> {
         const DIAGONAL: f32 = std::f32::consts::FRAC_1_SQRT_2;
         let across = |way: Place| {
             let [a, b] = [way, way.map(|v| -v)].map(|way| self.ray(middle, way, reach));
@@ -92,10 +95,10 @@ impl<I: Fn(Place) -> f32, R: Fn(Place) -> Option<u32>> Shape<I, R> {
         };
         let ways = [[1.0, 0.0], [0.0, 1.0], [DIAGONAL; 2], [DIAGONAL, -DIAGONAL]];
         let radii: Option<Vec<f32>> = ways.into_iter().map(across).collect();
-        radii.is_some_and(|radii| {
-            let middle = 0.25 * radii.iter().sum::<f32>();
-            radii.iter().all(|&radius| !is_odd(radius, middle))
-        })
+        let radii = radii?;
+        let middle = 0.25 * radii.iter().sum::<f32>();
+        let is_round = radii.iter().all(|&radius| !is_odd(radius, middle));
+        is_round.then_some(middle)
     }
 
     /// True if the shape is round where a stroke ends, or goes on there beneath or along something else.

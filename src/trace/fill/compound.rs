@@ -16,7 +16,8 @@ pub(in crate::trace) struct Fill {
     pub(super) color: Pixel,
     /// The pixels that show it.
     pub(super) size: f32,
-    pub(super) gain: f32,
+    /// Squared error that it removes, summed over all mattes.
+    pub(in crate::trace) gain: f32,
     pub(super) rank: usize,
     /// The regions that it covers.
     pub(super) covers: Vec<u32>,

@@ -48,7 +48,7 @@ pub(super) struct Filled {
 /// A picture as a stack of regions.
 pub(super) struct Flat<'a> {
     pixels: &'a Pixels<'a>,
-    mattes: usize,
+    pub(super) mattes: usize,
     regions: Regions,
     neighbours: Vec<BTreeMap<u32, u32>>,
     stack: Stack,
@@ -258,6 +258,11 @@ impl<'a> Flat<'a> {
     /// The number of pixels of a region.
     pub(super) fn size(&self, region: u32) -> f32 {
         self.regions.list[region as usize].members.len() as f32
+    }
+
+    /// The label of a region.
+    pub(super) fn label(&self, region: u32) -> u16 {
+        self.regions.list[region as usize].label
     }
 
     /// The place of a region in the stack.

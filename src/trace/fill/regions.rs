@@ -155,11 +155,17 @@ fn dissolve(
         };
         let mixed = pixels.iter().map(|&i| {
             let near = labels_without(colors, mixtures, label, all, i as usize);
-            best_mixture(colors, &near, i as usize)
+            let mixture = best_mixture(colors, &near, i as usize);
+            (mixture, near.len())
         });
-        let mixed: Vec<Mixture> = mixed.collect();
-        let is_edge = |m: &&Mixture| m.error < EDGE * EDGE && m.share > 0.04;
-        let edges = mixed.iter().filter(is_edge).count();
+        let mixed: Vec<(Mixture, usize)> = mixed.collect();
+        let is_edge = |&(&i, (m, labels)): &(&u32, &(Mixture, usize))| {
+            m.error < EDGE * EDGE
+                && m.share > 0.04
+                && is_between(colors, mixtures, i as usize, m).unwrap_or(*labels < 3)
+        };
+        let edges = pixels.iter().zip(&mixed).filter(is_edge).count();
+        let mixed = mixed.into_iter().map(|(mixture, _)| mixture);
         if edges * 5 > pixels.len() * 4 {
             found.extend(pixels.iter().copied().zip(mixed));
         }
@@ -189,6 +195,39 @@ fn is_thin(colors: &Colors<'_>, of: &[u32], region: u32, pixels: &[u32]) -> bool
     2 * corners <= pixels.len()
 }
 
+/// True if the two colours of a mixture are on opposite sides of pixel `i`; `None` if one of them is not near.
+fn is_between(
+    colors: &Colors<'_>,
+    mixtures: &[Mixture],
+    i: usize,
+    mixture: &Mixture,
+) -> Option<bool> {
+    if is_border(colors, i) {
+        return None;
+    }
+    let width = colors.pixels.width;
+    let mut sums = [[0_isize; 3]; 2];
+    for k in colors.pixels.around(i, 2) {
+        for (sum, label) in sums.iter_mut().zip([mixture.own, mixture.other]) {
+            if mixtures[k].own == label && mixtures[k].share < 0.1 {
+                let away = |a: usize, b: usize| a as isize - b as isize;
+                sum[0] += away(k % width, i % width);
+                sum[1] += away(k / width, i / width);
+                sum[2] += 1;
+            }
+        }
+    }
+    let [a, b] = sums;
+    (a[2] > 0 && b[2] > 0).then(|| a[0] * b[0] + a[1] * b[1] < 0)
+}
+
+/// True if pixel `i` is one of the picture's border.
+fn is_border(colors: &Colors<'_>, i: usize) -> bool {
+    let (width, height) = (colors.pixels.width, colors.pixels.height);
+    let (x, y) = (i % width, i / width);
+    x == 0 || y == 0 || x + 1 == width || y + 1 == height
+}
+
 /// A thin region of fewer pixels may be a mixture of colours that are beside any of them. A guess.
 const SHORT: usize = 16;
 
@@ -202,8 +241,7 @@ fn labels_without(
 ) -> Vec<u16> {
     let pixels = colors.pixels;
     let mut near = Vec::new();
-    let (x, y) = (i % pixels.width, i / pixels.width);
-    if x == 0 || y == 0 || x + 1 == pixels.width || y + 1 == pixels.height {
+    if is_border(colors, i) {
         near.push(CANVAS);
     }
     let places = more.iter().map(|&i| i as usize).chain([i]);
