@@ -159,10 +159,15 @@ fn dissolve(
             (mixture, near.len())
         });
         let mixed: Vec<(Mixture, usize)> = mixed.collect();
+        // At the picture's border the canvas may lie beyond it.
+        let is_open =
+            |i, m: &Mixture| is_border(colors, i) && (m.own == CANVAS || m.other == CANVAS);
         let is_edge = |&(&i, (m, labels)): &(&u32, &(Mixture, usize))| {
             m.error < EDGE * EDGE
                 && m.share > 0.04
-                && is_between(colors, mixtures, i as usize, m).unwrap_or(*labels < 3)
+                && (*labels < 3
+                    || is_open(i as usize, m)
+                    || is_between(colors, mixtures, i as usize, m))
         };
         let edges = pixels.iter().zip(&mixed).filter(is_edge).count();
         let mixed = mixed.into_iter().map(|(mixture, _)| mixture);
@@ -195,30 +200,21 @@ fn is_thin(colors: &Colors<'_>, of: &[u32], region: u32, pixels: &[u32]) -> bool
     2 * corners <= pixels.len()
 }
 
-/// True if the two colours of a mixture are on opposite sides of pixel `i`; `None` if one of them is not near.
-fn is_between(
-    colors: &Colors<'_>,
-    mixtures: &[Mixture],
-    i: usize,
-    mixture: &Mixture,
-) -> Option<bool> {
-    if is_border(colors, i) {
-        return None;
-    }
+/// True if the two colours of a mixture are on opposite sides of pixel `i`.
+fn is_between(colors: &Colors<'_>, mixtures: &[Mixture], i: usize, mixture: &Mixture) -> bool {
     let width = colors.pixels.width;
-    let mut sums = [[0_isize; 3]; 2];
+    let mut sums = [[0_isize; 2]; 2];
     for k in colors.pixels.around(i, 2) {
         for (sum, label) in sums.iter_mut().zip([mixture.own, mixture.other]) {
             if mixtures[k].own == label && mixtures[k].share < 0.1 {
                 let away = |a: usize, b: usize| a as isize - b as isize;
                 sum[0] += away(k % width, i % width);
                 sum[1] += away(k / width, i / width);
-                sum[2] += 1;
             }
         }
     }
     let [a, b] = sums;
-    (a[2] > 0 && b[2] > 0).then(|| a[0] * b[0] + a[1] * b[1] < 0)
+    a[0] * b[0] + a[1] * b[1] < 0
 }
 
 /// True if pixel `i` is one of the picture's border.
