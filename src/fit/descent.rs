@@ -217,7 +217,7 @@ fn adam(drawing: &Drawing, recipe: &Recipe, course: &Course) -> Adam<f32> {
 /// The squares of the derivatives, where both coordinates of an area's point share one: without that, points drift along
 /// the outline. `None` if there is no area.
 fn squares(strokes: &Strokes, slopes: &[f32]) -> Option<Vec<f32>> {
-    if !strokes.iter().any(|stroke| stroke.is_area()) {
+    if !strokes.has_areas() {
         return None;
     }
     let mut squares: Vec<f32> = slopes.iter().map(|slope| slope * slope).collect();

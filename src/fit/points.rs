@@ -10,6 +10,7 @@ mod edits;
 mod joins;
 mod shed;
 mod terrain;
+mod verify;
 
 use rayon::prelude::*;
 
@@ -23,6 +24,7 @@ use crate::render::{StrokeRef, Strokes, Survey};
 use edits::Edit;
 pub(super) use shed::shed;
 use terrain::Terrain;
+use verify::verify;
 
 /// Least segments of a line or a curve in a survey.
 const LEAST: usize = 4;
@@ -63,22 +65,29 @@ pub(super) fn rearrange(session: &mut Session<'_>, done: f32) -> Vec<Option<usiz
 /// little error as was foreseen. Each stroke loses at most one point at a time.
 pub(super) fn prune(drawing: &mut Drawing, price: Price, prunings: usize) {
     for _ in 0..prunings {
-        let [_, to_keep] = price.in_drawing(drawing).of_point();
+        let price = price.in_drawing(drawing);
+        let [of_strokes, of_areas] = [false, true].map(|of_area| price.of_point(of_area)[1]);
+        let to_keep = |of_area: bool| if of_area { of_areas } else { of_strokes };
         let survey = drawing.survey(LEAST);
-        let strokes = drawing.free();
-        let removal = |i: usize| {
-            let edit = edits::best_loss(&survey, strokes.get(i), i);
-            edit.filter(|edit| -edit.gain < to_keep)
+        let terrains = Terrain::all(&survey, drawing.free());
+        let removal = |terrain: &Terrain<'_>| {
+            let edit = edits::best_loss(terrain);
+            edit.filter(|edit| -edit.gain < to_keep(terrain.is_ring))
         };
-        let removals: Vec<Option<Edit>> = (0..strokes.len()).into_par_iter().map(removal).collect();
-        let count = removals.iter().flatten().count();
-        if count == 0 {
+        let mut removals: Vec<Option<Edit>> = terrains.par_iter().map(removal).collect();
+        drop(terrains);
+        verify(drawing, &mut removals, of_areas);
+        let removed = removals.iter().flatten();
+        let allowed: f64 = removed
+            .map(|edit| f64::from(to_keep(edit.is_of_ring)))
+            .sum();
+        if removals.iter().all(Option::is_none) {
             return;
         }
         let (before, error) = (drawing.memento(), drawing.mse());
         drawing.edit(&removals);
         let added = (drawing.mse() - error) * (3 * drawing.pixels()) as f64;
-        if added > f64::from(to_keep) * count as f64 {
+        if added > allowed {
             drawing.revert(before);
             return;
         }
@@ -105,13 +114,28 @@ fn edit(session: &mut Session<'_>, spare: f32) -> Vec<Option<usize>> {
     let room = room(session);
     let drawing = &mut session.drawing;
     let limits = Limits::of(session.config, drawing.pixels());
-    let prices = session.price.in_drawing(drawing).of_point();
-    let prices = prices.map(|least| least.max(spare * share / points.gain));
+    let price = session.price.in_drawing(drawing);
+    let least = |of_area: bool| {
+        let prices = price.of_point(of_area);
+        prices.map(|least| least.max(spare * share / points.gain))
+    };
+    let prices = [false, true].map(least);
     let survey = drawing.survey(LEAST);
-    let strokes = drawing.free();
-    let options = |i: usize| Options::new(&survey, strokes.get(i), i, limits, &points);
-    let options: Vec<Options> = (0..strokes.len()).into_par_iter().map(options).collect();
-    let chosen = choose(options, room, prices, &points);
+    let terrains = Terrain::all(&survey, drawing.free());
+    let options = |terrain: &Terrain<'_>| {
+        let [of_strokes, of_areas] = prices;
+        let prices = if terrain.is_ring {
+            of_areas
+        } else {
+            of_strokes
+        };
+        Options::new(terrain, limits, &points).at(prices)
+    };
+    let options: Vec<Options> = terrains.par_iter().map(options).collect();
+    drop(terrains);
+    let mut chosen = choose(options, room, &points);
+    let [_, [_, to_keep]] = prices;
+    verify(drawing, &mut chosen, to_keep);
     drawing.edit(&chosen)
 }
 
@@ -159,42 +183,42 @@ impl Limits {
     }
 }
 
-/// The best edit of each kind of one stroke.
+/// The best edit of each kind of one path.
 #[derive(Debug, Default)]
 struct Options {
     insertion: Option<Edit>,
     removal: Option<Edit>,
     toggle: Option<Edit>,
+    /// What a point has to gain to be added, and to stay.
+    prices: [f32; 2],
 }
 
 impl Options {
-    fn new(
-        survey: &Survey,
-        stroke: StrokeRef<'_>,
-        index: usize,
-        limits: Limits,
-        points: &Points,
-    ) -> Self {
+    fn new(terrain: &Terrain<'_>, limits: Limits, points: &Points) -> Self {
+        let stroke = terrain.stroke;
         if !stroke.is_finite() {
             return Self::default();
         }
         let may_grow = stroke.points.len() < limits.most;
-        let fits = |edit: &Edit| stroke.is_area() || written_points(edit.of(stroke)) <= limits.most;
-        let best = |edit: &(dyn Fn(&Terrain<'_>) -> Option<Edit> + Sync)| {
-            edits::best_of_all(survey, stroke, index, edit)
-        };
-        let insertion = || best(&|terrain| edits::best_insertion(terrain, points)).filter(fits);
-        let toggle = || best(&edits::best_toggle).filter(fits);
+        let fits = |edit: &Edit| terrain.is_ring || written_points(edit.of(stroke)) <= limits.most;
+        let insertion = || edits::best_insertion(terrain, points).filter(fits);
+        let toggled = limits.toggles.then_some(terrain);
         // One stroke may have most of all points.
         let (removal, toggle) = rayon::join(
-            || best(&edits::best_removal),
-            || limits.toggles.then(toggle).flatten(),
+            || edits::best_removal(terrain),
+            || edits::best_toggle(toggled?).filter(fits),
         );
         Self {
             insertion: may_grow.then(insertion).flatten(),
             removal,
             toggle,
+            prices: [0.0; 2],
         }
+    }
+
+    /// These options at these prices.
+    fn at(self, prices: [f32; 2]) -> Self {
+        Self { prices, ..self }
     }
 }
 
@@ -210,30 +234,26 @@ pub(super) fn written_points(stroke: StrokeRef<'_>) -> usize {
     stroke.points.len() + implied.count()
 }
 
-/// At most one edit of each stroke. A point has to gain as much `to_add` it and `to_keep` it, and at most `room` points
-/// may be added.
-fn choose(
-    mut options: Vec<Options>,
-    room: usize,
-    [to_add, to_keep]: [f32; 2],
-    points: &Points,
-) -> Vec<Option<Edit>> {
+/// At most one edit of each path. At most `room` points may be added.
+fn choose(mut options: Vec<Options>, room: usize, points: &Points) -> Vec<Option<Edit>> {
     let count = options.len();
     let mut chosen: Vec<Option<Edit>> = (0..count).map(|_| None).collect();
     // Points that are not worth their price go, and corners change where that alone gains something.
     for (chosen, options) in chosen.iter_mut().zip(&mut options) {
+        let [_, to_keep] = options.prices;
         let leaving = options.removal.take_if(|edit| -edit.gain < to_keep);
         *chosen = leaving.or_else(|| options.toggle.take_if(|edit| edit.gain > to_keep * 0.1));
     }
     let wanted = (points.share * count as f32).ceil() as usize;
     let mut coming = sorted(&mut options, |o| {
+        let [to_add, _] = o.prices;
         o.insertion.take_if(|edit| edit.gain > to_add)
     });
-    coming.retain(|edit| chosen[edit.stroke].is_none());
+    coming.retain(|edit| chosen[edit.path].is_none());
     let mut coming = coming.into_iter();
     for edit in coming.by_ref().take(wanted.min(room)) {
-        let stroke = edit.stroke;
-        chosen[stroke] = Some(edit);
+        let path = edit.path;
+        chosen[path] = Some(edit);
     }
     if room < wanted {
         let leaving = sorted(&mut options, |o| o.removal.take());
@@ -246,7 +266,7 @@ fn choose(
 /// The edits that `take` takes, the most gaining first.
 fn sorted(options: &mut [Options], take: impl Fn(&mut Options) -> Option<Edit>) -> Vec<Edit> {
     let mut edits: Vec<Edit> = options.iter_mut().filter_map(take).collect();
-    edits.sort_by(|a, b| b.gain.total_cmp(&a.gain).then(a.stroke.cmp(&b.stroke)));
+    edits.sort_by(|a, b| b.gain.total_cmp(&a.gain).then(a.path.cmp(&b.path)));
     edits
 }
 
@@ -262,7 +282,7 @@ fn swap(
         if new.gain + old.gain <= 0.0 {
             return;
         }
-        let (i, k) = (new.stroke, old.stroke);
+        let (i, k) = (new.path, old.path);
         if i != k && chosen[i].is_none() && chosen[k].is_none() {
             (chosen[i], chosen[k]) = (Some(new), Some(old));
         }
@@ -281,23 +301,36 @@ impl Drawing {
         survey
     }
 
-    /// Applies the edits, at most one for each free stroke.
+    /// Applies the edits, at most one for each path of the free strokes.
     fn edit(&mut self, edits: &[Option<Edit>]) -> Vec<Option<usize>> {
         let strokes = self.free();
         let mut edited = Strokes::new();
         let mut sources = Vec::with_capacity(strokes.numbers().len());
+        let mut edits = edits.iter();
         for (i, stroke) in strokes.iter().enumerate() {
             let range = strokes.range(i);
-            let Some(edit) = &edits[i] else {
-                edited.push(stroke);
-                sources.extend(range.map(Some));
-                continue;
-            };
-            edited.push(edit.of(stroke));
-            for source in &edit.sources {
-                let at = source.map(|k| range.start + 2 * k);
-                sources.extend([at, at.map(|at| at + 1)]);
+            let (mut points, mut off, mut rings) = (Vec::new(), Vec::new(), Vec::new());
+            for ((first, path), edit) in stroke.paths().zip(&mut edits) {
+                let place = |k: usize| range.start + 2 * (first + k);
+                let from: Vec<Option<usize>> = match edit {
+                    Some(edit) => edit.sources.clone(),
+                    None => (0..path.points.len()).map(Some).collect(),
+                };
+                let path = edit.as_ref().map_or(path, |edit| edit.of(path));
+                points.extend(path.points);
+                off.extend(path.off);
+                rings.push(points.len() as u32);
+                for source in from {
+                    let at = source.map(place);
+                    sources.extend([at, at.map(|at| at + 1)]);
+                }
             }
+            edited.push(StrokeRef {
+                points: &points,
+                off: &off,
+                rings: if stroke.is_area() { &rings } else { &[] },
+                ..stroke
+            });
             let style = range.start + 2 * stroke.points.len()..range.end;
             sources.extend(style.map(Some));
         }
@@ -310,13 +343,13 @@ impl Drawing {
 mod tests {
     use super::*;
 
-    fn edit(stroke: usize, gain: f32) -> Option<Edit> {
+    fn edit(path: usize, gain: f32) -> Option<Edit> {
         Some(Edit {
-            stroke,
+            path,
+            is_of_ring: false,
             gain,
             points: Vec::new(),
             off: Vec::new(),
-            rings: Vec::new(),
             sources: Vec::new(),
         })
     }
@@ -328,6 +361,7 @@ mod tests {
             insertion: edit(i, new),
             removal: edit(i, old),
             toggle: None,
+            prices: [price; 2],
         });
         let points = crate::fit::Recipe::of(crate::fit::Preset::Balanced).points;
         let points = Points {
@@ -335,7 +369,7 @@ mod tests {
             swapped: 1.0,
             ..points
         };
-        let chosen = choose(options.collect(), room, [price; 2], &points);
+        let chosen = choose(options.collect(), room, &points);
         let gain = |edit: Option<Edit>| edit.map(|edit| edit.gain);
         chosen.into_iter().map(gain).collect()
     }

@@ -195,6 +195,8 @@ pub struct Polish {
     /// Most iterations where points are sparse, in units of `iterations`. 2.5 instead of 1: eight photographs at 8,000 bytes +0.13 dB, nine
     /// other pictures at 5,000 bytes +0.34, at 1.8 of the time; 3: +0.02 and −0.02. Drafts stay short.
     pub sparse_share: f32,
+    /// Iterations of a drawing with areas, in units of those that it would have without. A guess: a hundred were enough for areas alone.
+    pub area_share: f32,
     /// Share of the iterations that keep the resolution of the last stage; the rest are at full resolution. Five photographs
     /// of 768×512 px at 1,024 strokes: 0.6, 0.8 instead of 0.7: +0.02, −0.12 dB at 1.08, 0.93 of the time, and
     /// SSIMULACRA2 −1.0, −0.2. Drafts have too few iterations for that.
@@ -256,6 +258,8 @@ pub struct Relocation {
     /// Share of the polish after which nothing is relocated, so that new strokes have time to be fitted. 0.8, 0.95:
     /// 0.00 dB.
     pub until: f32,
+    /// Share of the polish before which nothing is relocated if the drawing has areas. A guess.
+    pub after_areas: f32,
     /// A relocation that has free places to fill asks for up to this many times as many candidates as it may move
     /// strokes. Half, twice: 0.00 dB.
     pub fill: usize,
@@ -301,6 +305,9 @@ pub struct Points {
     pub at_a_time: usize,
     /// The quality that sets the price of points where a fidelity is asked for, dB beyond that fidelity. A guess.
     pub beyond_db: f64,
+    /// The price of the bytes of areas, in units of that of strokes' bytes. Errors of areas lie along edges, where people see
+    /// them. A quarter: 41 drawings of 256 px have 43 dB; NOTE
+    pub area_price: f32,
     /// The price of a stroke's bytes there, in units of that of a point's: as many strokes come as it takes, but none that
     /// draws nothing. A guess.
     pub stroke_price: f32,
@@ -512,6 +519,9 @@ pub struct BackgroundChoice {
     /// The most common colour becomes the background if at least this share of the pixels has it; otherwise the mean
     /// colour does.
     pub prevailing_share: f64,
+    /// Share of the pixels along the border from which on their most common colour is the background. A guess: three of
+    /// eleven logos on white had the logo's colour as paper.
+    pub border_share: f64,
     /// Share of the pixels in translucent areas that opaque strokes may miss. Beyond it, the picture is flattened onto
     /// white for them.
     pub translucent_share: f64,
@@ -626,6 +636,18 @@ impl Rates {
     pub(super) fn without_radius(self) -> Self {
         Self {
             radius: 0.0,
+            ..self
+        }
+    }
+}
+
+impl Polish {
+    /// The polish of a drawing with areas. They were traced, so that they need few iterations; and edges that are softer
+    /// than in the end would only move them away.
+    pub(super) fn for_areas(self) -> Self {
+        Self {
+            iterations: (self.iterations as f32 * self.area_share) as usize,
+            softness: 1.0,
             ..self
         }
     }

@@ -211,6 +211,11 @@ impl Strokes {
         self.outlines.is_empty()
     }
 
+    /// True if one of them is an area.
+    pub fn has_areas(&self) -> bool {
+        !self.rings.is_empty()
+    }
+
     /// Number of points, of all strokes together.
     pub fn points(&self) -> usize {
         self.off.len()

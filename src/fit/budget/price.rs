@@ -22,6 +22,8 @@ pub(in crate::fit) struct Price {
     errors: Option<[f64; 2]>,
     /// The price of a stroke's bytes, in units of that of a point's.
     of_strokes: f32,
+    /// The price of the bytes of areas and of their points, in units of that of others.
+    of_areas: f32,
     file: WriteOptions,
 }
 
@@ -35,6 +37,7 @@ impl Price {
             wanted_mse,
             errors: None,
             of_strokes: 1.0,
+            of_areas: 1.0,
             file,
         }
     }
@@ -43,7 +46,7 @@ impl Price {
     /// strokes of not too many points, as the recipe for `points` says.
     pub(in crate::fit) fn of(config: &Config, points: &Points, pixels: usize) -> Self {
         let wanted_db = config.budget.psnr_db.map(|db| db + points.beyond_db);
-        match config.quality_for(pixels) {
+        let price = match config.quality_for(pixels) {
             // A large picture has a lower price for each pixel, but people see as well what is wrong with it.
             Some(quality) => Self {
                 wanted_mse: mse(config.quality.unwrap_or(DEFAULT_QUALITY)),
@@ -53,6 +56,10 @@ impl Price {
                 of_strokes: points.stroke_price,
                 ..Self::new(wanted_db, config.file)
             },
+        };
+        Self {
+            of_areas: points.area_price,
+            ..price
         }
     }
 
@@ -106,7 +113,8 @@ impl Price {
         if self.per_byte == 0.0 {
             return 0.0;
         }
-        self.stake(self.of_strokes * self.of_bytes(self.bytes_of(stroke)))
+        let factor = self.factor(stroke.is_area());
+        self.stake(factor * self.of_strokes * self.of_bytes(self.bytes_of(stroke)))
     }
 
     /// The least gain of `mark` to be added.
@@ -114,7 +122,8 @@ impl Price {
         if self.per_byte == 0.0 {
             return 0.0;
         }
-        self.entry(self.of_strokes * self.of_bytes(mark_bytes(mark, &self.file)))
+        let factor = self.factor(mark.as_area().is_some());
+        self.entry(factor * self.of_strokes * self.of_bytes(mark_bytes(mark, &self.file)))
     }
 
     /// The least gain of a capsule to be added.
@@ -122,15 +131,19 @@ impl Price {
         self.least_gain(&Strokes::from_iter([capsule]).get(0).to_mark())
     }
 
-    /// The least gains of a point to be added and to stay.
-    pub(in crate::fit) fn of_point(&self) -> [f32; 2] {
-        let price = self.of_bytes(self.point_bytes());
+    /// The least gains of a point of a stroke, or of an area, to be added and to stay.
+    pub(in crate::fit) fn of_point(&self, of_area: bool) -> [f32; 2] {
+        let price = self.factor(of_area) * self.of_bytes(self.point_bytes());
         [self.entry(price), self.stake(price)]
     }
 
-    /// The squared error that may be added to save this many bytes.
+    /// The squared error that may be added to save this many bytes of areas.
     pub(in crate::fit) fn of_saved(&self, bytes: usize) -> f32 {
-        self.stake(self.of_bytes(bytes))
+        self.stake(self.of_areas * self.of_bytes(bytes))
+    }
+
+    fn factor(&self, of_area: bool) -> f32 {
+        if of_area { self.of_areas } else { 1.0 }
     }
 
     /// Bytes of a stroke.

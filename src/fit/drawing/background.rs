@@ -36,34 +36,51 @@ pub(in crate::fit) fn choose(
     choice: &BackgroundChoice,
 ) -> (Rgb, bool) {
     match background {
-        Background::Auto => (prevailing_color(target, choice), false),
+        Background::Auto => {
+            let color = border_color(target, choice);
+            (
+                color.unwrap_or_else(|| prevailing_color(target, choice)),
+                false,
+            )
+        }
         Background::None => ([1.0; 3], true),
         Background::Color(color) => (color, true),
     }
 }
 
-/// The most common colour if its share is large enough, otherwise the mean colour.
-fn prevailing_color(image: &Image, choice: &BackgroundChoice) -> Rgb {
-    let pixels = image.width() * image.height();
+/// The most common colour of the pixels along the border, if that is the colour of enough of them: paper reaches the
+/// border, and what is drawn on it may cover more than half of it.
+fn border_color(image: &Image, choice: &BackgroundChoice) -> Option<Rgb> {
+    let (width, height) = (image.width(), image.height());
+    let rows = (0..height).flat_map(|y| [y * width, y * width + width - 1]);
+    let columns = (0..width).flat_map(|x| [x, (height - 1) * width + x]);
     let levels = image.to_rgb8();
     let (colors, _) = levels.as_chunks::<3>();
-    let mut colors: Vec<u32> = colors
-        .iter()
-        .map(|&[r, g, b]| u32::from_be_bytes([0, r, g, b]))
-        .collect();
+    let border = rows.chain(columns).map(|i| colors[i]);
+    common_color(border, choice.border_share)
+}
+
+/// The most common colour if its share is large enough, otherwise the mean colour.
+fn prevailing_color(image: &Image, choice: &BackgroundChoice) -> Rgb {
+    let levels = image.to_rgb8();
+    let (colors, _) = levels.as_chunks::<3>();
+    common_color(colors.iter().copied(), choice.prevailing_share).unwrap_or_else(|| {
+        [0, 1, 2].map(|c| {
+            let sum: f64 = image.planes()[c].iter().map(|&v| f64::from(v)).sum();
+            (sum / colors.len() as f64) as f32
+        })
+    })
+}
+
+/// The most common colour, if at least this share of the pixels has it.
+fn common_color(pixels: impl Iterator<Item = [u8; 3]>, least_share: f64) -> Option<Rgb> {
+    let mut colors: Vec<[u8; 3]> = pixels.collect();
     colors.sort_unstable();
     let runs = colors.chunk_by(|a, b| a == b);
     let most = runs.max_by_key(|run| run.len()).unwrap_or_default();
-    match most {
-        [color, ..] if most.len() as f64 >= choice.prevailing_share * pixels as f64 => {
-            let [_, rgb @ ..] = color.to_be_bytes();
-            rgb.map(|v| f32::from(v) / 255.0)
-        }
-        _ => [0, 1, 2].map(|c| {
-            let sum: f64 = image.planes()[c].iter().map(|&v| f64::from(v)).sum();
-            (sum / pixels as f64) as f32
-        }),
-    }
+    let is_common = most.len() as f64 >= least_share * colors.len() as f64;
+    let color = most.first().filter(|_| is_common)?;
+    Some(color.map(|v| f32::from(v) / 255.0))
 }
 
 /// Share of the pixels that are translucent and have only translucent neighbours. This leaves out the antialiased edges

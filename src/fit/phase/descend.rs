@@ -70,6 +70,10 @@ fn rearrange(session: &mut Session<'_>, descent: &mut Descent, step: usize, done
         let sources = points::rearrange(session, done);
         descent.follow(&sources, &session.drawing, &session.recipe);
     }
+    // Strokes would patch the edges of areas that are still to come to their places.
+    if done < relocation.after_areas && session.drawing.free().has_areas() {
+        return;
+    }
     // Relocation comes last, because it fills the places that joined strokes have left.
     let wanted = relocation::wanted(session);
     if session.timer.affordable(wanted) == wanted {

@@ -40,6 +40,9 @@ pub(in crate::fit) fn polish(session: &mut Session<'_>, purpose: Purpose) -> Res
         };
         polish.iterations = (polish.iterations as f64 * share) as usize;
     }
+    if session.drawing.free().has_areas() {
+        polish = polish.for_areas();
+    }
     run(session, limit, polish)
 }
 

@@ -14,7 +14,7 @@ use crate::fit::run::history::OpenStage;
 use crate::fit::run::session::Session;
 use crate::metrics::psnr_db;
 use crate::render::{Canvas, Strokes};
-use crate::scene::{Mark, Marks, Stroke};
+use crate::scene::{Mark, Stroke};
 use crate::trace::{Traced, Tracing, trace};
 
 /// Adds strokes along the lines of the residual, on top of all others.
@@ -84,7 +84,7 @@ fn lines(drawing: &mut Drawing, config: &Config, tracing: Tracing, price: Price)
     };
     let surfaces = drawing.surfaces.iter().zip(&canvases);
     let residuals: Vec<_> = surfaces.map(|(s, canvas)| s.residual_of(canvas)).collect();
-    let mut traced = trace(&residuals, tracing, Marks::Strokes, |mark| {
+    let mut traced = trace(&residuals, tracing, config.marks(), |mark| {
         price.least_gain(mark)
     });
     let most = config.points.unwrap_or(usize::MAX);

@@ -4,19 +4,19 @@ use std::ops::Range;
 
 use super::terrain::{Cut, Terrain};
 use crate::fit::recipe::Points;
-use crate::render::{Knot, Piece, StrokeRef, Survey};
+use crate::render::{Knot, Piece, StrokeRef};
 
-/// A change of one stroke's points.
+/// A change of the points of one path.
 #[derive(Debug, Clone)]
 pub(super) struct Edit {
-    /// The index of the stroke.
-    pub(super) stroke: usize,
+    /// The index of the path among all of the drawing.
+    pub(super) path: usize,
+    /// True if the path is a ring of an area.
+    pub(super) is_of_ring: bool,
     /// Squared error that it removes; below 0 if it adds some.
     pub(super) gain: f32,
     pub(super) points: Vec<[f32; 2]>,
     pub(super) off: Vec<bool>,
-    /// The rings of an area, as ends of their points.
-    pub(super) rings: Vec<u32>,
     /// The former index of each point, `None` for a new one.
     pub(super) sources: Vec<Option<usize>>,
 }
@@ -25,11 +25,11 @@ impl Edit {
     /// No change yet.
     fn of_none(terrain: &Terrain<'_>) -> Self {
         Self {
-            stroke: terrain.index,
+            path: terrain.path,
+            is_of_ring: terrain.is_ring,
             gain: 0.0,
             points: terrain.stroke.points.to_vec(),
             off: terrain.stroke.off.to_vec(),
-            rings: Vec::new(),
             sources: (0..terrain.stroke.points.len()).map(Some).collect(),
         }
     }
@@ -39,36 +39,8 @@ impl Edit {
         StrokeRef {
             points: &self.points,
             off: &self.off,
-            rings: &self.rings,
             ..stroke
         }
-    }
-
-    /// This edit of a ring of `area`, which begins at point `first`, as one of the area; one of a stroke stays as it is.
-    pub(super) fn within(mut self, area: StrokeRef<'_>, first: usize) -> Self {
-        let Some(ring) = area.rings.iter().position(|&end| end as usize > first) else {
-            return self;
-        };
-        let end = area.rings[ring] as usize;
-        let grown = self.points.len() as i64 - (end - first) as i64;
-        let rings = area.rings.iter().enumerate();
-        self.rings = rings
-            .map(|(i, &end)| match i >= ring {
-                true => (i64::from(end) + grown) as u32,
-                false => end,
-            })
-            .collect();
-        let around =
-            |all: &[[f32; 2]], part: Vec<[f32; 2]>| [&all[..first], &part, &all[end..]].concat();
-        self.points = around(area.points, self.points);
-        self.off = [&area.off[..first], &self.off, &area.off[end..]].concat();
-        let own = self.sources.iter().map(|source| source.map(|k| first + k));
-        let before = (0..first).map(Some);
-        self.sources = before
-            .chain(own)
-            .chain((end..area.points.len()).map(Some))
-            .collect();
-        self
     }
 
     /// Takes all changes back.
@@ -149,33 +121,13 @@ pub(super) fn best_removal(terrain: &Terrain<'_>) -> Option<Edit> {
     best_change(terrain, 0..count, |edit, k| edit.remove(k))
 }
 
-/// Removal of the point of a stroke or an area whose loss costs least, where an end may move.
-pub(super) fn best_loss(survey: &Survey, stroke: StrokeRef<'_>, index: usize) -> Option<Edit> {
-    best_of_all(survey, stroke, index, |terrain| {
-        let losses = [best_removal(terrain), best_retraction(terrain)];
-        best(losses.into_iter().flatten())
-    })
-}
-
-/// The most gaining `edit` of a stroke, or of the rings of an area.
-pub(super) fn best_of_all(
-    survey: &Survey,
-    stroke: StrokeRef<'_>,
-    index: usize,
-    edit: impl Fn(&Terrain<'_>) -> Option<Edit>,
-) -> Option<Edit> {
-    let edits = Terrain::all(survey, stroke, index).filter_map(|terrain| {
-        let edit = edit(&terrain)?;
-        Some((terrain.first_point, edit))
-    });
-    let best = edits.reduce(|best, other| {
-        if other.1.gain > best.1.gain {
-            other
-        } else {
-            best
-        }
-    });
-    best.map(|(first, edit)| edit.within(stroke, first))
+/// Removal of the point whose loss costs least, where an end may move.
+pub(super) fn best_loss(terrain: &Terrain<'_>) -> Option<Edit> {
+    best(
+        [best_removal(terrain), best_retraction(terrain)]
+            .into_iter()
+            .flatten(),
+    )
 }
 
 /// Removal of the control point beside an end whose loss costs least. A curve that turns back there ends where it

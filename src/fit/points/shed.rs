@@ -4,6 +4,8 @@ use rayon::prelude::*;
 
 use super::LEAST;
 use super::edits::{self, Edit};
+use super::terrain::Terrain;
+use super::verify::verify;
 use crate::fit::budget::price::Price;
 use crate::fit::drawing::Drawing;
 
@@ -51,8 +53,27 @@ fn offers(drawing: &mut Drawing, price: Price) -> Vec<Offer> {
     let survey = drawing.survey(LEAST);
     let worth = drawing.judge().worth;
     let strokes = drawing.free();
+    let terrains = Terrain::all(&survey, strokes);
+    let edit = |terrain: &Terrain<'_>| {
+        let is_finite = terrain.stroke.is_finite();
+        is_finite.then(|| edits::best_loss(terrain))?
+    };
+    let mut edits: Vec<Option<Edit>> = terrains.par_iter().map(edit).collect();
+    let marks: Vec<usize> = terrains.iter().map(|terrain| terrain.mark).collect();
+    drop(terrains);
+    let [_, to_keep] = price.of_point(true);
+    verify(drawing, &mut edits, to_keep);
+    let strokes = drawing.free();
+    // Of the rings of an area, the one whose point costs least.
+    let mut cheapest: Vec<Option<Edit>> = vec![None; strokes.len()];
+    for (edit, mark) in edits.into_iter().zip(marks) {
+        let is_cheaper = |edit: &Edit| cheapest[mark].as_ref().is_none_or(|c| edit.gain > c.gain);
+        if edit.as_ref().is_some_and(is_cheaper) {
+            cheapest[mark] = edit;
+        }
+    }
     // A stroke offers the part that is worth least for its bytes: a point, or all of it.
-    let offer = |i: usize| {
+    let offer = |(i, edit): (usize, Option<Edit>)| {
         let stroke = strokes.get(i);
         let bytes = price.bytes_of(stroke).max(1);
         let whole = Offer {
@@ -61,10 +82,6 @@ fn offers(drawing: &mut Drawing, price: Price) -> Vec<Offer> {
             bytes,
             loss_per_byte: worth[i].max(0.0) / bytes as f32,
         };
-        let edit = stroke
-            .is_finite()
-            .then(|| edits::best_loss(&survey, stroke, i))
-            .flatten();
         let part = edit.map(|edit| Offer {
             stroke: i,
             bytes: point_bytes,
@@ -76,7 +93,7 @@ fn offers(drawing: &mut Drawing, price: Price) -> Vec<Offer> {
             _ => whole,
         }
     };
-    let mut offers: Vec<Offer> = (0..strokes.len()).into_par_iter().map(offer).collect();
+    let mut offers: Vec<Offer> = cheapest.into_iter().enumerate().map(offer).collect();
     let order = |a: &Offer, b: &Offer| {
         let by_loss = a.loss_per_byte.total_cmp(&b.loss_per_byte);
         by_loss.then(a.stroke.cmp(&b.stroke))
@@ -88,11 +105,15 @@ fn offers(drawing: &mut Drawing, price: Price) -> Vec<Offer> {
 /// Applies the offers. Returns the former index of each number of the free strokes.
 fn take(drawing: &mut Drawing, offers: Vec<Offer>) -> Vec<Option<usize>> {
     let count = drawing.free().len();
-    let mut edits: Vec<Option<Edit>> = (0..count).map(|_| None).collect();
+    let paths = drawing.free().iter().map(|stroke| stroke.paths().count());
+    let mut edits: Vec<Option<Edit>> = vec![None; paths.sum()];
     let mut keep = vec![true; count];
     for offer in offers {
         keep[offer.stroke] = offer.edit.is_some();
-        edits[offer.stroke] = offer.edit;
+        if let Some(edit) = offer.edit {
+            let path = edit.path;
+            edits[path] = Some(edit);
+        }
     }
     let edited = drawing.edit(&edits);
     let strokes = drawing.free();

@@ -6,16 +6,20 @@
 
 use std::ops::Range;
 
+use rayon::prelude::*;
+
 use super::LEAST;
 use crate::math::{self, nearest_on_segment};
-use crate::render::{Piece, Pieces, StrokeRef, Survey, flattened};
+use crate::render::{Piece, Pieces, StrokeRef, Strokes, Survey, flattened};
 
 /// One path and the survey of its vertices.
 pub(super) struct Terrain<'a> {
-    /// The index of the stroke or area.
-    pub(super) index: usize,
-    /// The index of the path's first point among those of the whole area; 0 for a stroke.
-    pub(super) first_point: usize,
+    /// The index among all paths of the drawing.
+    pub(super) path: usize,
+    /// The index of the stroke or area that it belongs to.
+    pub(super) mark: usize,
+    /// True if it is a ring of an area.
+    pub(super) is_ring: bool,
     /// A stroke, or a ring of an area as one.
     pub(super) stroke: StrokeRef<'a>,
     /// Its lines and curves, in drawing order.
@@ -36,28 +40,28 @@ pub(super) struct Cut {
 }
 
 impl<'a> Terrain<'a> {
-    /// The terrains of a stroke, or of all rings of an area.
-    pub(super) fn all(
-        survey: &'a Survey,
-        stroke: StrokeRef<'a>,
-        index: usize,
-    ) -> impl Iterator<Item = Self> {
-        let mut first = survey.firsts[index] as usize;
-        stroke.paths().map(move |(first_point, path)| {
-            let terrain = Self::new(survey, path, (index, first_point), first);
-            // Between rings is a vertex that no segment has.
-            first += terrain.vertices.len() + 1;
-            terrain
-        })
+    /// The terrains of all paths: of each stroke, and of each ring of an area.
+    pub(super) fn all(survey: &'a Survey, strokes: &'a Strokes) -> Vec<Self> {
+        let of_mark = |mark: usize| {
+            let stroke = strokes.get(mark);
+            let mut first = survey.firsts[mark] as usize;
+            stroke.paths().map(move |(_, path)| {
+                let mut terrain = Self::new(survey, path, mark, first);
+                terrain.is_ring = stroke.is_area();
+                // Between rings is a vertex that no segment has.
+                first += terrain.vertices.len() + 1;
+                terrain
+            })
+        };
+        let marks = (0..strokes.len()).into_par_iter();
+        let mut terrains: Vec<Self> = marks.flat_map_iter(of_mark).collect();
+        let places = terrains.iter_mut().enumerate();
+        places.for_each(|(path, terrain)| terrain.path = path);
+        terrains
     }
 
     /// The terrain of a path whose vertices begin with number `start` of the survey.
-    fn new(
-        survey: &'a Survey,
-        stroke: StrokeRef<'a>,
-        (index, first_point): (usize, usize),
-        start: usize,
-    ) -> Self {
+    fn new(survey: &'a Survey, stroke: StrokeRef<'a>, mark: usize, start: usize) -> Self {
         let mut first = 0;
         let cut = |piece: Piece| {
             let steps = piece.steps(stroke, LEAST);
@@ -72,8 +76,9 @@ impl<'a> Terrain<'a> {
         // The polyline of a dot is a segment without a length.
         let range = start..start + first.max(1) + 1;
         Self {
-            index,
-            first_point,
+            path: 0,
+            mark,
+            is_ring: false,
             stroke,
             pieces,
             vertices: &survey.vertices[range.clone()],

@@ -189,6 +189,7 @@ const BALANCED: Recipe = Recipe {
         iterations: 1000,
         sparse: 160.0,
         sparse_share: 2.5,
+        area_share: 0.4,
         coarse_share: 0.7,
         rates: Rates {
             position: 2.5,
@@ -217,6 +218,7 @@ const BALANCED: Recipe = Recipe {
         scale: 0.5,
         gain: 4.0,
         until: 0.9,
+        after_areas: 0.5,
         fill: 2,
     },
     points: Points {
@@ -237,6 +239,7 @@ const BALANCED: Recipe = Recipe {
         prunings: 30,
         at_a_time: 4,
         beyond_db: 6.0,
+        area_price: 0.25,
         stroke_price: 0.1,
         joins: Joins {
             reach: 8.0,
@@ -325,6 +328,7 @@ const BALANCED: Recipe = Recipe {
     },
     background: BackgroundChoice {
         prevailing_share: 0.25,
+        border_share: 0.4,
         translucent_share: 0.005,
         translucent: [0.03, 0.97],
         shade: ShadeChoice {
