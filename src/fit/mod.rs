@@ -68,6 +68,7 @@ pub use widths::Widths;
 use crate::clock::Instant;
 use crate::error::Result;
 use crate::image::Image;
+use budget::price::Price;
 use budget::{reduction, rivals};
 use order::{Outcome, Phase};
 use phase::{count, grow, nudge, polish, restrict, settle, trace};
@@ -96,8 +97,21 @@ impl Fitter<'_> {
         for rival in rivals {
             best = Some(rival.draw(picture, since, competes)?.or_better(best));
         }
-        let drawn = self.draw(picture, since, competes)?;
+        let by_strokes = self.by_strokes_alone();
+        let competes = competes || by_strokes.is_some();
+        let price = Price::of(
+            &self.config,
+            &self.config.recipe().points,
+            picture.width() * picture.height(),
+        );
+        let mut drawn = self.draw(picture, since, competes)?;
         let stop = drawn.fit.stop;
+        if let Some(rival) = by_strokes
+            && stop != Stop::Interrupted
+            && drawn.has_doubtful_areas()
+        {
+            drawn = drawn.or_cheaper(rival.draw(picture, since, true)?, price);
+        }
         let mut fit = drawn.or_better(best).fit;
         // Whoever stopped the fit is told so, whichever drawing is the better one.
         if stop == Stop::Interrupted {
@@ -127,14 +141,26 @@ impl Fitter<'_> {
             Some(_) => Vec::new(),
             None => rivals::of(&self.config, picture),
         };
-        let fitter = |config| Fitter {
+        configs
+            .into_iter()
+            .map(|config| self.rival(config))
+            .collect()
+    }
+
+    /// The fit by strokes alone of what this one draws by areas, too.
+    fn by_strokes_alone(&self) -> Option<Fitter<'static>> {
+        let config = rivals::by_strokes_alone(&self.config)?;
+        self.base.is_none().then(|| self.rival(config))
+    }
+
+    fn rival(&self, config: Config) -> Fitter<'static> {
+        Fitter {
             execution: self.execution,
             focus: self.focus.clone(),
             page: self.page,
             token: self.token.clone(),
             ..Fitter::new(config)
-        };
-        configs.into_iter().map(fitter).collect()
+        }
     }
 
     /// Draws `picture` once, by a configuration that was checked. A drawing that `competes` with others has a file to be

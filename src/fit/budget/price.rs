@@ -68,6 +68,14 @@ impl Price {
         self.per_byte
     }
 
+    /// The squared error of a file of `pixels` pixels and mean squared error `mse`, as far as it counts, and the price of its
+    /// `bytes`; `None` if bytes are free.
+    pub(in crate::fit) fn cost(&self, mse: f64, pixels: usize, bytes: usize) -> Option<f64> {
+        let values = 3.0 * pixels as f64;
+        let error = counted(mse * values, self.wanted_mse * values);
+        (self.per_byte > 0.0).then(|| error + f64::from(self.of_bytes(bytes)))
+    }
+
     /// The price in `drawing` as it is.
     pub(in crate::fit) fn in_drawing(self, drawing: &mut Drawing) -> Self {
         // Free bytes are free in every drawing, so none need be rendered.

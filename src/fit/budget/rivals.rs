@@ -3,11 +3,15 @@
 //! Each of a few strokes has many good places, and chance decides which one it finds; that moves the fidelity by some dB. So a
 //! fit of few strokes also draws as the shorter presets would, in a fraction of its time, and keeps the best drawing. A longer preset is
 //! therefore never worse than a shorter one.
+//!
+//! Areas, too, have a rival: where many of them draw what has no flat colours, such as gradients, or draw it badly, strokes
+//! alone may be better.
 
 use crate::fit::budget;
 use crate::fit::config::{Budget, Config};
 use crate::fit::recipe::Preset;
 use crate::image::Image;
+use crate::scene::Marks;
 
 /// The configurations of the drawings that a drawing of `picture` by `config` competes with.
 pub(in crate::fit) fn of(config: &Config, picture: &Image) -> Vec<Config> {
@@ -40,6 +44,15 @@ pub(in crate::fit) fn of(config: &Config, picture: &Image) -> Vec<Config> {
         rivals.push(with(Preset::Balanced, config.seed.wrapping_add(1)));
     }
     rivals
+}
+
+/// The configuration of the drawing by strokes alone that one with areas may have to compete with.
+pub(in crate::fit) fn by_strokes_alone(config: &Config) -> Option<Config> {
+    let may_compete = config.marks() == Marks::Auto && config.budget.time.is_none();
+    may_compete.then(|| Config {
+        marks: Marks::Strokes,
+        ..config.clone()
+    })
 }
 
 #[cfg(test)]

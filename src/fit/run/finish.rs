@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::fit::budget;
+use crate::fit::budget::price::Price;
 use crate::fit::config::Budget;
 use crate::fit::drawing::Drawing;
 use crate::fit::drawing::surface;
@@ -27,6 +28,34 @@ impl Drawn {
             files.is_some_and(|(new, old)| budget::is_better(&self.budget, new, old))
         };
         other.filter(is_better).unwrap_or(self)
+    }
+}
+
+/// A drawing with areas that has at most so many marks, and is at least as faithful, dB, is not compared with strokes
+/// alone. Both are guesses.
+const FEW: usize = 30;
+const FAITHFUL_DB: f64 = 38.0;
+
+impl Drawn {
+    /// True if the drawing has areas that strokes alone may be better than.
+    pub(in crate::fit) fn has_doubtful_areas(&self) -> bool {
+        let scene = &self.fit.scene;
+        let db = self.file.as_ref().map_or(0.0, |file| psnr_db(file.mse));
+        scene.areas().next().is_some() && (scene.len() > FEW || db < FAITHFUL_DB)
+    }
+
+    /// The other one if its file costs less: squared error and bytes at their `price`, or by the budget if bytes have none.
+    pub(in crate::fit) fn or_cheaper(self, other: Self, price: Price) -> Self {
+        let pixels = self.fit.target.width() * self.fit.target.height();
+        let cost = |drawn: &Self| {
+            let file = drawn.file.as_ref()?;
+            price.cost(file.mse, pixels, file.bytes)
+        };
+        match cost(&self).zip(cost(&other)) {
+            Some((own, others)) if others < own => other,
+            Some(_) => self,
+            None => self.or_better(Some(other)),
+        }
     }
 }
 
