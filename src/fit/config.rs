@@ -10,7 +10,7 @@ use crate::coverage::CoverageSchedule;
 use crate::error::{Error, ErrorKind, Result};
 use crate::math;
 use crate::scene::{MAX_POINTS, MAX_PRECISION, Mark, Marks, Rgb, Scene, quantum};
-use crate::svg::{Form, Order, WriteOptions};
+use crate::svg::{Form, WriteOptions};
 use crate::threads::Workers;
 
 /// Configuration of a fit. Equal configurations of equal pictures give equal bytes.
@@ -183,11 +183,10 @@ impl Config {
         self.look.unwrap_or(usual)
     }
 
-    /// The kinds of marks that the drawing may have. Pens, and an order for a plotter, draw no areas.
+    /// The kinds of marks that the drawing may have. Pens draw no areas.
     pub(super) fn marks(&self) -> Marks {
-        let is_for_pens = self.pens.is_some() || self.file.order == Order::Travel;
         match self.marks {
-            Marks::Auto if is_for_pens => Marks::Strokes,
+            Marks::Auto if self.pens.is_some() => Marks::Strokes,
             marks => marks,
         }
     }

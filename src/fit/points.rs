@@ -29,6 +29,9 @@ use verify::verify;
 /// Least segments of a line or a curve in a survey.
 const LEAST: usize = 4;
 
+/// Most trials of edits at a time. A guess: each renders the drawing.
+const TRIALS: usize = 12;
+
 /// Changes the points of the free strokes where that pays, when a share `done` of the polish is over. Returns the former index of each
 /// number of the free strokes,
 /// `None` for a new one.
@@ -76,7 +79,8 @@ pub(super) fn prune(drawing: &mut Drawing, price: Price, prunings: usize) {
         };
         let mut removals: Vec<Option<Edit>> = terrains.par_iter().map(removal).collect();
         drop(terrains);
-        verify(drawing, &mut removals, of_areas);
+        verify(drawing, &mut removals, of_areas, TRIALS);
+        removals.iter_mut().for_each(|edit| refuse(edit, of_areas));
         let removed = removals.iter().flatten();
         let allowed: f64 = removed
             .map(|edit| f64::from(to_keep(edit.is_of_ring)))
@@ -92,6 +96,11 @@ pub(super) fn prune(drawing: &mut Drawing, price: Price, prunings: usize) {
             return;
         }
     }
+}
+
+/// Takes back an edit of a ring that turned out to cost more than a point has to gain `to_keep` it.
+fn refuse(edit: &mut Option<Edit>, to_keep: f32) {
+    edit.take_if(|edit| edit.is_of_ring && -edit.gain > to_keep);
 }
 
 /// The worth that a `share` of the strokes is below: what a stroke is worth that could be spared, where a budget binds. It
@@ -135,7 +144,8 @@ fn edit(session: &mut Session<'_>, spare: f32) -> Vec<Option<usize>> {
     drop(terrains);
     let mut chosen = choose(options, room, &points);
     let [_, [_, to_keep]] = prices;
-    verify(drawing, &mut chosen, to_keep);
+    verify(drawing, &mut chosen, to_keep, TRIALS);
+    chosen.iter_mut().for_each(|edit| refuse(edit, to_keep));
     drawing.edit(&chosen)
 }
 
@@ -189,7 +199,7 @@ struct Options {
     insertion: Option<Edit>,
     removal: Option<Edit>,
     toggle: Option<Edit>,
-    /// What a point has to gain to be added, and to stay.
+    /// The least gains of a point to be added, and to stay.
     prices: [f32; 2],
 }
 

@@ -8,6 +8,7 @@ use crate::support::fits::{drawn, sample};
 use strokefit::ErrorKind;
 use strokefit::fit::{CancelToken, Checkpoint, Config, Fitter, Preset, Progress, Recipe, Stop};
 use strokefit::image::Image;
+use strokefit::scene::Marks;
 use strokefit::svg::{self, Form, WriteOptions};
 
 fn with_recipe(change: impl Fn(&mut Recipe)) -> Config {
@@ -36,12 +37,14 @@ fn stages_that_shrink_are_refused_rather_than_never_end() {
 #[test]
 fn no_iterations_of_polish_are_none() {
     let picture = sample("noto-rocket");
-    let none = drawn(
-        &picture,
-        &with_recipe(|recipe| recipe.polish.iterations = 0),
-    );
+    let none = Config {
+        marks: Marks::Strokes,
+        ..with_recipe(|recipe| recipe.polish.iterations = 0)
+    };
+    let none = drawn(&picture, &none);
     let off = Config {
         polish: false,
+        marks: Marks::Strokes,
         ..with_recipe(|_| ())
     };
     let off = drawn(&picture, &off);

@@ -76,6 +76,14 @@ impl Price {
         (self.per_byte > 0.0).then(|| error + f64::from(self.of_bytes(bytes)))
     }
 
+    /// The price with bytes of areas as dear as others, to choose between areas and strokes.
+    pub(in crate::fit) fn of_bytes_alone(self) -> Self {
+        Self {
+            of_areas: 1.0,
+            ..self
+        }
+    }
+
     /// The price in `drawing` as it is.
     pub(in crate::fit) fn in_drawing(self, drawing: &mut Drawing) -> Self {
         // Free bytes are free in every drawing, so none need be rendered.

@@ -84,8 +84,9 @@ fn lines(drawing: &mut Drawing, config: &Config, tracing: Tracing, price: Price)
     };
     let surfaces = drawing.surfaces.iter().zip(&canvases);
     let residuals: Vec<_> = surfaces.map(|(s, canvas)| s.residual_of(canvas)).collect();
+    let by_bytes = price.of_bytes_alone();
     let mut traced = trace(&residuals, tracing, config.marks(), |mark| {
-        price.least_gain(mark)
+        by_bytes.least_gain(mark)
     });
     let most = config.points.unwrap_or(usize::MAX);
     let has_room = |stroke: &Stroke| {

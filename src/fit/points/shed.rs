@@ -9,6 +9,9 @@ use super::verify::verify;
 use crate::fit::budget::price::Price;
 use crate::fit::drawing::Drawing;
 
+/// Most trials of losses of points at a time, so that no whole area goes in the place of a point. A guess.
+const TRIALS: usize = 64;
+
 /// A part that a stroke can spare, with its worth.
 struct Offer {
     stroke: usize,
@@ -62,7 +65,7 @@ fn offers(drawing: &mut Drawing, price: Price) -> Vec<Offer> {
     let marks: Vec<usize> = terrains.iter().map(|terrain| terrain.mark).collect();
     drop(terrains);
     let [_, to_keep] = price.of_point(true);
-    verify(drawing, &mut edits, to_keep);
+    verify(drawing, &mut edits, to_keep, TRIALS);
     let strokes = drawing.free();
     // Of the rings of an area, the one whose point costs least.
     let mut cheapest: Vec<Option<Edit>> = vec![None; strokes.len()];

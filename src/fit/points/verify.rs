@@ -10,19 +10,21 @@ use crate::fit::drawing::Drawing;
 /// So many times the error that was foreseen may be added. A guess: descent will lessen it.
 const TOLERANCE: f64 = 2.0;
 
-/// Most trials at a time. A guess: each renders the drawing.
-const TRIALS: usize = 12;
-
-/// Takes back those of the `edits` of areas that add more than foreseen, and more than the least gain of a point
-/// `to_keep` it.
-pub(super) fn verify(drawing: &mut Drawing, edits: &mut [Option<Edit>], to_keep: f32) {
+/// Gives those of the `edits` of areas that add more than foreseen, and more than the least gain of a point `to_keep` it, the
+/// gain that they have in truth, and takes back those that are in doubt after so many `trials`.
+pub(super) fn verify(
+    drawing: &mut Drawing,
+    edits: &mut [Option<Edit>],
+    to_keep: f32,
+    trials: usize,
+) {
     let of_rings = edits.iter().flatten().filter(|edit| edit.is_of_ring);
     let mut groups: Vec<Vec<usize>> = vec![of_rings.map(|edit| edit.path).collect()];
     let values = (3 * drawing.pixels()) as f64;
-    let mut trials = 0;
+    let mut done = 0;
     while let Some(group) = groups.pop().filter(|group| !group.is_empty()) {
-        trials += 1;
-        if trials > TRIALS {
+        done += 1;
+        if done > trials {
             group.iter().for_each(|&path| edits[path] = None);
             continue;
         }
@@ -39,7 +41,11 @@ pub(super) fn verify(drawing: &mut Drawing, edits: &mut [Option<Edit>], to_keep:
             continue;
         }
         match group.as_slice() {
-            [only] => edits[*only] = None,
+            [only] => {
+                if let Some(edit) = &mut edits[*only] {
+                    edit.gain = -added as f32;
+                }
+            }
             _ => {
                 let (some, others) = group.split_at(group.len() / 2);
                 groups.extend([some.to_vec(), others.to_vec()]);
