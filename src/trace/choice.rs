@@ -37,6 +37,7 @@ pub(super) fn chosen(
     pixels: &Pixels<'_>,
     price: &(impl Fn(&Mark) -> f32 + Sync),
 ) -> Vec<Traced> {
+    let traced = strokes.clone();
     let votes: Vec<Votes> = strokes
         .par_iter()
         .map(|traced| votes(&traced.stroke, flat, pixels))
@@ -85,6 +86,10 @@ pub(super) fn chosen(
         }
     }
     let areas = flat.areas(fills, &is_stroked);
+    // A drawing of lines is one of strokes as they were traced.
+    if areas.is_empty() {
+        return traced.into_iter().map(Traced::from).collect();
+    }
     // Strokes keep their order among each other, as far as areas lie not between.
     let mut found: Vec<(usize, Traced)> = Vec::new();
     for (traced, place) in strokes.into_iter().zip(places) {
@@ -260,7 +265,8 @@ fn is_covered(
     group: &Group,
     pixels: &Pixels<'_>,
 ) -> bool {
-    const SLACK: [f32; 2] = [0.75, 0.1];
+    // Traced lines are up to a pixel off their places.
+    const SLACK: [f32; 2] = [1.0, 0.1];
     let covered = |side: f32| {
         let mut covered: BTreeMap<usize, f32> = BTreeMap::new();
         for stroke in strokes {

@@ -18,6 +18,8 @@ pub(super) struct Shape<I, R> {
 
 /// Farthest that a ray's length may be from the radius: px, and in units of the radius. Guesses.
 const ODD: [f32; 2] = [0.3, 0.12];
+/// Below this radius, px, a picture hardly tells round ends from square ones. A guess.
+const THIN: f32 = 3.0;
 /// Share of the places along a stroke that may be odd: thinning and crossings distort some. A guess.
 const MOST_ODD: f32 = 0.15;
 
@@ -43,8 +45,16 @@ impl<I: Fn(Place) -> f32, R: Fn(Place) -> Option<u32>> Shape<I, R> {
             .iter()
             .filter(|width| is_odd(**width, radius))
             .count();
-        if odd as f32 > MOST_ODD * widths.len() as f32 {
+        let most = if radius < THIN {
+            2.0 * MOST_ODD
+        } else {
+            MOST_ODD
+        };
+        if odd as f32 > most * widths.len() as f32 {
             return None;
+        }
+        if radius < THIN {
+            return Some(radius);
         }
         let ends = match stroke.path.is_closed() {
             true => Vec::new(),

@@ -78,11 +78,16 @@ pub fn trace(
         let fills = flat.fills(&tracing.fills);
         return choice::chosen(&flat, fills, strokes, &pixels, &price);
     }
-    let traced = |TracedStroke { stroke, gain, .. }| Traced {
-        mark: stroke.into(),
-        gain,
-    };
-    strokes.into_iter().map(traced).collect()
+    strokes.into_iter().map(Traced::from).collect()
+}
+
+impl From<TracedStroke> for Traced {
+    fn from(TracedStroke { stroke, gain, .. }: TracedStroke) -> Self {
+        Self {
+            mark: stroke.into(),
+            gain,
+        }
+    }
 }
 
 impl<'a> Pixels<'a> {
