@@ -19,7 +19,7 @@ pub(super) struct Shape<I, R> {
 /// Farthest that a ray's length may be from the radius: px, and in units of the radius. Guesses.
 const ODD: [f32; 2] = [0.3, 0.12];
 /// Below this radius, px, a picture hardly tells round ends from square ones. A guess.
-const THIN: f32 = 3.0;
+const THIN: f32 = 3.9;
 /// Share of the places along a stroke that may be odd: thinning and crossings distort some. A guess.
 const MOST_ODD: f32 = 0.15;
 

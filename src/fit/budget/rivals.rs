@@ -39,6 +39,8 @@ pub(in crate::fit) fn of(config: &Config, picture: &Image) -> Vec<Config> {
         Preset::Best => &[Preset::Draft, Preset::Balanced],
     };
     let mut rivals: Vec<Config> = shorter.iter().map(|&p| with(p, config.seed)).collect();
+    let by_strokes: Vec<Config> = rivals.iter().filter_map(by_strokes_alone).collect();
+    rivals.extend(by_strokes);
     // Bytes decide which strokes stay, which is chance as well.
     if bytes.is_some() && config.preset != Preset::Draft {
         rivals.push(with(Preset::Balanced, config.seed.wrapping_add(1)));
@@ -83,8 +85,10 @@ mod tests {
     fn few_strokes_compete_with_those_of_shorter_fits() {
         let of = |preset| presets(&of_strokes(20, preset));
         assert_eq!(of(Preset::Draft), []);
-        assert_eq!(of(Preset::Balanced), [Preset::Draft]);
-        assert_eq!(of(Preset::Best), [Preset::Draft, Preset::Balanced]);
+        // Each by strokes alone, too.
+        assert_eq!(of(Preset::Balanced), [Preset::Draft; 2]);
+        let shorter = [Preset::Draft, Preset::Balanced];
+        assert_eq!(of(Preset::Best), [shorter, shorter].concat());
     }
 
     #[test]

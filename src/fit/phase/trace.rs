@@ -40,7 +40,14 @@ pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> 
     };
     // As many strokes as there is room and time for; without any, stages go on with what is left.
     let index = session.history.records.len();
-    let room = session.limit.saturating_sub(session.drawing.len());
+    // Bytes plan for strokes, of which an area may take the place of many; what is too much is shed.
+    let is_by_bytes = session.config.budget.bytes.is_some()
+        && session.config.budget.strokes.is_none()
+        && traced.iter().any(|traced| traced.mark.as_area().is_some());
+    let room = match is_by_bytes {
+        true => traced.len(),
+        false => session.limit.saturating_sub(session.drawing.len()),
+    };
     let count = session.timer.affordable(traced.len().min(room));
     if count == 0 {
         session.history.stage = None;
