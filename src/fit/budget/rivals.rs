@@ -44,6 +44,11 @@ pub(in crate::fit) fn of(config: &Config, picture: &Image) -> Vec<Config> {
     // Bytes decide which strokes stay, which is chance as well.
     if bytes.is_some() && config.preset != Preset::Draft {
         rivals.push(with(Preset::Balanced, config.seed.wrapping_add(1)));
+        // What pays may take fewer bytes than there are; and a drawing of areas is short.
+        rivals.push(Config {
+            budget: Budget::default(),
+            ..config.clone()
+        });
     }
     rivals
 }
