@@ -306,7 +306,7 @@ pub struct Points {
     /// The quality that sets the price of points where a fidelity is asked for, dB beyond that fidelity. A guess.
     pub beyond_db: f64,
     /// The price of the bytes of areas, in units of that of strokes' bytes. Errors of areas lie along edges, where people see
-    /// them. A quarter: 41 drawings of 256 px have 43 dB; NOTE
+    /// them. A quarter instead of 0.35: 41 drawings of filled shapes, +0.1 dB for 1 % more bytes.
     pub area_price: f32,
     /// The price of a stroke's bytes there, in units of that of a point's: as many strokes come as it takes, but none that
     /// draws nothing. A guess.
