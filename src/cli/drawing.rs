@@ -37,7 +37,7 @@ const OPTIONS: [(&str, &str); 3] = [
     * best: Three to five times the time, 0.7 to 0.9 dB better
 --marks MARKS=auto
     What the drawing is made of
-    * auto: Areas for what is filled, strokes for lines and for the rest. With --pens, strokes
+    * auto: Areas for what is filled, strokes for lines and for the rest. With --pens or --bytes, strokes
     * strokes: Strokes alone, for plotters and embroidery
     * areas: Areas alone, for cutters
 --progressive

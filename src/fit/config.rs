@@ -183,10 +183,11 @@ impl Config {
         self.look.unwrap_or(usual)
     }
 
-    /// The kinds of marks that the drawing may have. Pens draw no areas.
+    /// The kinds of marks that the drawing may have. Pens draw no areas, and a limit on bytes is met by strokes alone: areas
+    /// are hard to shorten.
     pub(super) fn marks(&self) -> Marks {
         match self.marks {
-            Marks::Auto if self.pens.is_some() => Marks::Strokes,
+            Marks::Auto if self.pens.is_some() || self.budget.bytes.is_some() => Marks::Strokes,
             marks => marks,
         }
     }
