@@ -24,6 +24,13 @@ pub(crate) fn distance(a: [f32; 2], b: [f32; 2]) -> f32 {
     (x * x + y * y).sqrt()
 }
 
+/// The median of some values, the upper one of two; `None` of none.
+pub(crate) fn median(values: impl Iterator<Item = f32>) -> Option<f32> {
+    let mut values: Vec<f32> = values.collect();
+    let middle = values.len() / 2;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f32::total_cmp).1)
+}
+
 /// The place from `a` to `b` that is nearest to `p`, and the square of its distance.
 pub(crate) fn nearest_on_segment(p: [f32; 2], [a, b]: [[f32; 2]; 2]) -> ([f32; 2], f32) {
     let axis = [b[0] - a[0], b[1] - a[1]];

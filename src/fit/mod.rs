@@ -20,6 +20,7 @@
 //! | `descent` | gradient descent and its annealing |
 //! | `points` | points of strokes that come, go, join |
 //! | `file`, `renderers` | the written file, as resvg and Chromium render it |
+//! | `halves` | search by halves |
 //! | `run`, `time` | a fit under way: session, history, checkpoint, progress, finish; its clock and its forecast |
 
 mod base;
@@ -29,6 +30,7 @@ mod descent;
 mod drawing;
 mod file;
 mod fitter;
+mod halves;
 mod options;
 mod order;
 mod phase;

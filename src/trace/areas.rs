@@ -240,6 +240,11 @@ fn is_between(a: &Pixel, b: &Pixel, pixel: &Pixel) -> bool {
     (0.08..0.92).contains(&share) && distance2(a, pixel) - share * along < 0.02 * length2
 }
 
+/// The mixture of two pixels that has this share of `b`.
+pub(super) fn mix(a: &Pixel, b: &Pixel, share: f32) -> Pixel {
+    std::array::from_fn(|k| a[k] + share * (b[k] - a[k]))
+}
+
 pub(super) fn distance2(a: &Pixel, b: &Pixel) -> f32 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
 }

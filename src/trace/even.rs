@@ -3,7 +3,7 @@
 //! Rays from the stroke's middle meet the outline of the shape. They are as long as the radius all along a stroke with
 //! round ends and joins; they are not where the width varies, at square ends and at mitred corners.
 
-use crate::math::distance;
+use crate::math::{distance, median};
 use crate::scene::Stroke;
 
 type Place = [f32; 2];
@@ -38,7 +38,7 @@ impl<I: Fn(Place) -> f32, R: Fn(Place) -> Option<u32>> Shape<I, R> {
             .iter()
             .filter_map(|&(at, way)| self.radius(at, way, reach));
         let widths: Vec<f32> = widths.collect();
-        let Some(radius) = median(&widths) else {
+        let Some(radius) = median(widths.iter().copied()) else {
             return Some(stroke.radius);
         };
         let odd = widths
@@ -210,10 +210,4 @@ fn smoothed(places: Vec<(Place, Place)>, reach: f32) -> Vec<(Place, Place)> {
         (at, if is_turned_back { way } else { direction(a, b) })
     };
     (0..places.len()).map(at).collect()
-}
-
-fn median(values: &[f32]) -> Option<f32> {
-    let mut values = values.to_vec();
-    let middle = values.len() / 2;
-    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f32::total_cmp).1)
 }

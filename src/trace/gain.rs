@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::areas::{Areas, Label, Pixel, Pixels, distance2};
+use super::areas::{Areas, Label, Pixel, Pixels, distance2, mix};
 use crate::math::nearest_on_segment;
 use crate::scene::Path;
 
@@ -29,7 +29,7 @@ impl Gain {
             let (target, canvas) = (pixels.target.at(i), pixels.canvas.at(i));
             if !matches!(areas.labels[i], Label::Color(k) if k != own) {
                 let before = distance2(&target, &canvas);
-                let drawn = std::array::from_fn(|k| canvas[k] + coverage * (color[k] - canvas[k]));
+                let drawn = mix(&canvas, color, coverage);
                 let weight = pixels.weights.map_or(1.0, |weights| weights[i]);
                 gain.under += weight * before;
                 gain.removed += weight * (before - distance2(&target, &drawn));

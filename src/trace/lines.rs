@@ -6,7 +6,7 @@
 
 use super::recipe::LineJoins;
 use super::skeleton::{Edge, Graph, Spot};
-use crate::math::distance;
+use crate::math::{distance, median};
 
 /// A run of a skeleton from end to end.
 #[derive(Debug, Clone)]
@@ -18,9 +18,9 @@ pub(super) struct Line {
 impl Line {
     /// Drops the hooks that thinning leaves at slanted ends, where the line is much thinner than elsewhere.
     fn trim(&mut self, [thin_share, longest]: [f32; 2]) {
-        let mut radii: Vec<f32> = self.spots.iter().map(|spot| spot.radius).collect();
-        let middle = radii.len() / 2;
-        let usual = *radii.select_nth_unstable_by(middle, f32::total_cmp).1;
+        let Some(usual) = median(self.spots.iter().map(|spot| spot.radius)) else {
+            return;
+        };
         let hook = |spots: &mut dyn Iterator<Item = &Spot>| {
             let is_thin = |spot: &&Spot| spot.radius < thin_share * usual;
             let thin = spots.take_while(is_thin).count();

@@ -10,6 +10,7 @@ use super::recipe::Tracing;
 use super::shape::{self, Shape};
 use super::skeleton::Graph;
 use super::spline;
+use crate::math::median;
 use crate::scene::{Path, Stroke};
 
 /// A traced stroke, and what it gains alone.
@@ -114,10 +115,4 @@ fn stroke(
         gain,
         is_covered: *is_covered,
     })
-}
-
-fn median(values: impl Iterator<Item = f32>) -> Option<f32> {
-    let mut values: Vec<f32> = values.collect();
-    let middle = values.len() / 2;
-    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f32::total_cmp).1)
 }

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, NamedTuple, Union, overload
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from . import _native
+from ._columns import Columns
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -45,7 +45,7 @@ class Area(NamedTuple):
         return [_native.flatten(points, on_path, True, tolerance) for points, on_path in rings]
 
 
-class Areas(Sequence[Area]):
+class Areas(Columns[Area]):
     """The areas of a drawing, back to front.
 
     Each area is an `Area`. The columns hold all of them at once, as read-only arrays:
@@ -59,6 +59,8 @@ class Areas(Sequence[Area]):
     >>> len(areas), len(areas[0].rings), areas.points.shape
     (1, 1, (4, 2))
     """
+
+    _noun = "areas"
 
     #: Points of all rings, m × 2, px.
     points: NDArray[np.float32]
@@ -78,22 +80,14 @@ class Areas(Sequence[Area]):
     order: NDArray[np.int64]
 
     def __init__(self, columns: _AreaColumns) -> None:
-        for column in columns:
-            column.flags.writeable = False
+        self._freeze(columns)
         self.points, self.on_path, self.ring_starts, self.starts = columns[:4]
         self.colors, self.opacities, self.layers, self.order = columns[4:]
 
     def __len__(self) -> int:
         return len(self.opacities)
 
-    @overload
-    def __getitem__(self, index: int) -> Area: ...
-    @overload
-    def __getitem__(self, index: slice) -> list[Area]: ...
-    def __getitem__(self, index: Union[int, slice]) -> Union[Area, list[Area]]:
-        if isinstance(index, slice):
-            return [self[i] for i in range(*index.indices(len(self)))]
-        i = range(len(self))[index]
+    def _item(self, i: int) -> Area:
         red, green, blue = self.colors[i].tolist()
         ends = self.ring_starts[self.starts[i] : self.starts[i + 1] + 1].tolist()
         own = [slice(start, end) for start, end in zip(ends, ends[1:])]
@@ -103,12 +97,6 @@ class Areas(Sequence[Area]):
             color=(red, green, blue),
             opacity=float(self.opacities[i]),
         )
-
-    def __iter__(self) -> Iterator[Area]:
-        return (self[i] for i in range(len(self)))
-
-    def __repr__(self) -> str:
-        return f"<{len(self)} areas>"
 
     def __reduce__(self) -> tuple[type[Areas], tuple[_AreaColumns]]:
         rings = (self.points, self.on_path, self.ring_starts, self.starts)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, NamedTuple, Union, overload
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from . import _native
+from ._columns import Columns
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -49,7 +49,7 @@ class Stroke(NamedTuple):
         return _native.flatten(self.points, self.on_path, self.closed, tolerance)
 
 
-class Strokes(Sequence[Stroke]):
+class Strokes(Columns[Stroke]):
     """The strokes of a drawing, back to front.
 
     Each stroke is a `Stroke`. The columns hold all of them at once, as read-only arrays:
@@ -63,6 +63,8 @@ class Strokes(Sequence[Stroke]):
     >>> strokes.points[strokes.starts[0]:strokes.starts[1]].shape == strokes[0].points.shape
     True
     """
+
+    _noun = "strokes"
 
     #: Points of all strokes, m × 2, px.
     points: NDArray[np.float32]
@@ -84,22 +86,14 @@ class Strokes(Sequence[Stroke]):
     order: NDArray[np.int64]
 
     def __init__(self, columns: _StrokeColumns) -> None:
-        for column in columns:
-            column.flags.writeable = False
+        self._freeze(columns)
         self.points, self.on_path, self.starts, self.closed = columns[:4]
         self.widths, self.colors, self.opacities, self.layers, self.order = columns[4:]
 
     def __len__(self) -> int:
         return len(self.widths)
 
-    @overload
-    def __getitem__(self, index: int) -> Stroke: ...
-    @overload
-    def __getitem__(self, index: slice) -> list[Stroke]: ...
-    def __getitem__(self, index: Union[int, slice]) -> Union[Stroke, list[Stroke]]:
-        if isinstance(index, slice):
-            return [self[i] for i in range(*index.indices(len(self)))]
-        i = range(len(self))[index]
+    def _item(self, i: int) -> Stroke:
         red, green, blue = self.colors[i].tolist()
         own = slice(self.starts[i], self.starts[i + 1])
         return Stroke(
@@ -110,12 +104,6 @@ class Strokes(Sequence[Stroke]):
             color=(red, green, blue),
             opacity=float(self.opacities[i]),
         )
-
-    def __iter__(self) -> Iterator[Stroke]:
-        return (self[i] for i in range(len(self)))
-
-    def __repr__(self) -> str:
-        return f"<{len(self)} strokes>"
 
     def __reduce__(self) -> tuple[type[Strokes], tuple[_StrokeColumns]]:
         paths = (self.points, self.on_path, self.starts, self.closed)

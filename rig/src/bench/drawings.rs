@@ -53,6 +53,32 @@ impl Drawing {
     }
 }
 
+/// The side that is nearest to `px`; `px` itself if there is none.
+pub(super) fn side_nearest(sides: &[u16], px: usize) -> usize {
+    let sides = sides.iter().map(|&side| usize::from(side));
+    sides.min_by_key(|side| side.abs_diff(px)).unwrap_or(px)
+}
+
+/// A result as it comes, with its record.
+#[derive(Debug)]
+pub struct Outcome<'a, Entry> {
+    /// Its record.
+    pub entry: &'a Entry,
+    /// The picture that was drawn.
+    pub picture: &'a Image,
+    /// The SVG that was made of it; empty where none was.
+    pub svg: &'a str,
+}
+
+// Derived ones would ask the record to be copied.
+impl<Entry> Clone for Outcome<'_, Entry> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<Entry> Copy for Outcome<'_, Entry> {}
+
 /// Pictures that are made of each drawing.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Pictures {

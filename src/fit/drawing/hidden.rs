@@ -2,6 +2,7 @@
 //! cover. A palette makes many of them, and they are in the way of whoever edits the file.
 
 use crate::fit::drawing::Drawing;
+use crate::fit::halves::by_halves;
 use crate::image::Image;
 use crate::render::{Gradients, StrokeRef};
 
@@ -20,21 +21,18 @@ impl Drawing {
         }
         let before = self.pictures();
         let mut keep = vec![true; self.free().len()];
-        let mut groups = vec![suspects];
-        for _ in 0..MAX_RENDERS {
-            let Some(group) = groups.pop() else {
-                break;
-            };
-            group.iter().for_each(|&i| keep[i] = false);
-            if self.change_without(&keep, &before) > UNSEEN {
-                // Of two strokes that each hide the other, one may go.
-                group.iter().for_each(|&i| keep[i] = true);
-                if group.len() > 1 {
-                    let (some, others) = group.split_at(group.len() / 2);
-                    groups.extend([some.to_vec(), others.to_vec()]);
-                }
+        let mut renders = 0;
+        // Of two strokes that each hide the other, one may go.
+        by_halves(suspects, |group| {
+            renders += 1;
+            if renders > MAX_RENDERS {
+                return true;
             }
-        }
+            group.iter().for_each(|&i| keep[i] = false);
+            let is_unseen = self.change_without(&keep, &before) <= UNSEEN;
+            group.iter().for_each(|&i| keep[i] = !is_unseen);
+            is_unseen
+        });
         self.counters.hidden += keep.iter().filter(|keep| !**keep).count();
         self.retain_free(&keep);
     }

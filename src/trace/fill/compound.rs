@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::super::areas::Pixel;
+use super::super::areas::{Pixel, mix};
 use super::colors::{LEVEL, away};
 use super::stack::Layer;
 use crate::scene::Path;
@@ -64,8 +64,7 @@ impl Fill {
     fn join(&mut self, more: Self) {
         let all = self.size + more.size;
         let share = more.size / all.max(f32::MIN_POSITIVE);
-        self.color =
-            std::array::from_fn(|k| self.color[k] + share * (more.color[k] - self.color[k]));
+        self.color = mix(&self.color, &more.color, share);
         self.size = all;
         self.gain += more.gain;
         self.rings.extend(more.rings);

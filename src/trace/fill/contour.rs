@@ -5,6 +5,20 @@ use crate::math::distance;
 /// A place, px.
 pub(super) type Place = [f32; 2];
 
+/// The value at a place, by those of the four pixels around it: bilinear, and even beyond the outermost pixels. `at` is in
+/// pixels from the centre of the first one, of which there are `[width, height]`.
+pub(super) fn between(at: Place, [width, height]: [usize; 2], value: impl Fn(usize) -> f32) -> f32 {
+    let pixel = |x: f32, y: f32| {
+        let column = (x.max(0.0) as usize).min(width - 1);
+        let row = (y.max(0.0) as usize).min(height - 1);
+        value(row * width + column)
+    };
+    let [left, top] = at.map(f32::floor);
+    let [u, v] = [at[0] - left, at[1] - top];
+    let row = |y: f32| pixel(left, y) * (1.0 - u) + pixel(left + 1.0, y) * u;
+    row(top) * (1.0 - v) + row(top + 1.0) * v
+}
+
 /// A field on a frame of pixels that is 0 along the frame's border.
 pub(super) struct Field {
     /// Column and row of the first pixel in the picture.
@@ -54,17 +68,9 @@ impl Field {
 
     /// The field between pixel centres.
     fn at(&self, p: Place) -> f32 {
-        let [x, y] = [0, 1].map(|k| p[k] - 0.5 - self.origin[k] as f32);
+        let at = [0, 1].map(|k| p[k] - 0.5 - self.origin[k] as f32);
         let height = self.values.len() / self.width;
-        let value = |column: f32, row: f32| {
-            let column = (column.max(0.0) as usize).min(self.width - 1);
-            let row = (row.max(0.0) as usize).min(height - 1);
-            self.values[row * self.width + column]
-        };
-        let [left, top] = [x.floor(), y.floor()];
-        let [u, v] = [x - left, y - top];
-        let row = |y: f32| value(left, y) * (1.0 - u) + value(left + 1.0, y) * u;
-        row(top) * (1.0 - v) + row(top + 1.0) * v
+        between(at, [self.width, height], |i| self.values[i])
     }
 
     /// For each edge of the grid of pixel centres that a contour enters a cell through, the edge that it leaves it by.

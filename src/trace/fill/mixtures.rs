@@ -2,9 +2,10 @@
 
 use rayon::prelude::*;
 
-use super::super::areas::{Pixel, Pixels, distance2};
+use super::super::areas::{Pixel, Pixels, distance2, mix};
 use super::super::recipe::Fills;
 use super::colors::{Colors, LEVEL, NONE, away};
+use crate::math::median;
 
 /// A pixel as two colours side by side.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -113,25 +114,20 @@ fn thin_color(colors: &Colors<'_>, mixtures: &[Mixture], bad: &[usize]) -> Optio
         .iter()
         .filter(|p| away(p, &color) < NEAR * LEVEL)
         .collect();
-    let median = match near.len() {
+    let usual = match near.len() {
         ..3 => color,
-        _ => std::array::from_fn(|k| median(near.iter().map(|p| p[k]).collect())),
+        _ => std::array::from_fn(|k| median(near.iter().map(|p| p[k])).unwrap_or(color[k])),
     };
     let distance = |color: &Pixel| {
         let all = colors.list.iter().map(|c| away(c, color));
         all.fold(f32::INFINITY, f32::min)
     };
     let is_room = colors.list.len() + 2 < usize::from(NONE);
-    if is_room && distance(&median) > NEAR * LEVEL {
-        Some(median)
+    if is_room && distance(&usual) > NEAR * LEVEL {
+        Some(usual)
     } else {
         (is_room && distance(&color) > 0.75 * NEAR * LEVEL).then_some(color)
     }
-}
-
-fn median(mut values: Vec<f32>) -> f32 {
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f32::total_cmp).1
 }
 
 /// Pixel `i` as a mixture of the labels around it.
@@ -209,6 +205,5 @@ fn mixed(pixel: &Pixel, a: &Pixel, b: &Pixel) -> (f32, f32) {
         length2 += (b[k] - a[k]) * (b[k] - a[k]);
     }
     let share = (along / length2).clamp(0.0, 1.0);
-    let mix = std::array::from_fn(|k| a[k] + share * (b[k] - a[k]));
-    (share, distance2(pixel, &mix))
+    (share, distance2(pixel, &mix(a, b, share)))
 }

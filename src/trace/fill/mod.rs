@@ -26,12 +26,12 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::areas::{self, Pixel, Pixels, distance2};
+use super::areas::{self, Pixel, Pixels, distance2, mix};
 use super::recipe::Fills;
 use crate::scene::{Area, Path, Rgb};
 use colors::{CANVAS, LEVEL, NONE};
 pub(super) use compound::Fill;
-use contour::{Field, Place};
+use contour::{Field, Place, between};
 use mixtures::Mixture;
 use outline::Surroundings;
 use regions::{Region, Regions};
@@ -211,19 +211,12 @@ impl<'a> Flat<'a> {
     /// The share of `is_member` at a place between pixels; 1 outside of the picture.
     pub(super) fn share_at(&self, p: Place, is_member: &[bool]) -> f32 {
         let (width, height) = (self.regions.width, self.regions.height);
-        let [x, y] = [p[0] - 0.5, p[1] - 0.5];
-        if x < -0.5 || y < -0.5 || x > width as f32 - 0.5 || y > height as f32 - 0.5 {
+        let at = [p[0] - 0.5, p[1] - 0.5];
+        if at[0] < -0.5 || at[1] < -0.5 || at[0] > width as f32 - 0.5 || at[1] > height as f32 - 0.5
+        {
             return 1.0;
         }
-        let at = |x: f32, y: f32| {
-            let column = (x.max(0.0) as usize).min(width - 1);
-            let row = (y.max(0.0) as usize).min(height - 1);
-            self.regions.share_of(row * width + column, is_member)
-        };
-        let [left, top] = [x.floor(), y.floor()];
-        let [u, v] = [x - left, y - top];
-        let row = |y: f32| at(left, y) * (1.0 - u) + at(left + 1.0, y) * u;
-        row(top) * (1.0 - v) + row(top + 1.0) * v
+        between(at, [width, height], |i| self.regions.share_of(i, is_member))
     }
 
     pub(super) fn region_count(&self) -> usize {
@@ -303,8 +296,7 @@ impl<'a> Flat<'a> {
     /// Pixel `i` as its regions show it.
     fn seen(&self, i: usize) -> Pixel {
         let [own, second] = [self.regions.of[i], self.regions.second[i]].map(|r| self.shown(r, i));
-        let share = self.regions.share[i];
-        std::array::from_fn(|k| own[k] + share * (second[k] - own[k]))
+        mix(&own, &second, self.regions.share[i])
     }
 
     /// The colour of a region at pixel `i`.
@@ -328,10 +320,7 @@ impl<'a> Flat<'a> {
                 None => self.pixels.canvas.at(i),
             };
             let target = self.pixels.target.at(i);
-            let error = |a: Pixel, b: Pixel| {
-                let mixed = std::array::from_fn(|k| a[k] + share * (b[k] - a[k]));
-                distance2(&target, &mixed)
-            };
+            let error = |a: Pixel, b: Pixel| distance2(&target, &mix(&a, &b, share));
             let weight = self.pixels.weights.map_or(1.0, |weights| weights[i]);
             let drawn = error(seen(own), seen(second));
             gains[own as usize] += weight * (error(behind(own), seen(second)) - drawn);

@@ -6,6 +6,7 @@ use super::super::areas::{Pixel, distance2};
 use super::super::recipe::Fills;
 use super::colors::{CANVAS, Colors, LEVEL, away};
 use super::mixtures::{Mixture, best_mixture};
+use crate::math::median;
 
 /// A region.
 #[derive(Debug, Clone)]
@@ -330,9 +331,5 @@ fn color(colors: &Colors<'_>, share: &[f32], pixels: &[u32], label: u16) -> Pixe
     let sample: Vec<Pixel> = sample
         .map(|&i| colors.pixels.target.at(i as usize))
         .collect();
-    std::array::from_fn(|k| {
-        let mut values: Vec<f32> = sample.iter().map(|p| p[k]).collect();
-        let middle = values.len() / 2;
-        *values.select_nth_unstable_by(middle, f32::total_cmp).1
-    })
+    std::array::from_fn(|k| median(sample.iter().map(|p| p[k])).unwrap_or_default())
 }

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::Outcome;
+use crate::bench::drawings::side_nearest;
 use crate::report::Damage;
 use crate::report::inverse::{InverseEntry, OWN};
 use crate::report::plot::{Panel, Sheet, framed};
@@ -33,10 +34,8 @@ pub struct Gallery {
 impl Gallery {
     /// A gallery of what is found in pictures of the size nearest to that of a panel.
     pub fn of(sides: &[u16]) -> Self {
-        let from_panel = |side: &usize| side.abs_diff(PANEL_PX);
-        let sides = sides.iter().map(|&side| usize::from(side));
         Self {
-            side_px: sides.min_by_key(from_panel).unwrap_or(PANEL_PX),
+            side_px: side_nearest(sides, PANEL_PX),
             rows: Vec::new(),
         }
     }

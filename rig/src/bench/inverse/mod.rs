@@ -10,7 +10,7 @@ use std::time::Instant;
 
 pub use gallery::Gallery;
 
-use super::drawings::{Drawing, Pictures, damaged, picture};
+use super::drawings::{self, Drawing, Pictures, damaged, picture};
 use super::peers::TunedPeer;
 use crate::report::Damage;
 use crate::report::inverse::{Inventory, InverseEntry, InverseReport, OWN};
@@ -49,15 +49,7 @@ pub fn own() -> Vec<Drawing> {
 }
 
 /// A result as it comes.
-#[derive(Debug, Clone, Copy)]
-pub struct Outcome<'a> {
-    /// Its record.
-    pub entry: &'a InverseEntry,
-    /// The picture of the drawing.
-    pub picture: &'a Image,
-    /// The SVG that was made of it; empty where none was.
-    pub svg: &'a str,
-}
+pub type Outcome<'a> = drawings::Outcome<'a, InverseEntry>;
 
 /// Fits the pictures of all drawings and has `peers` trace them, telling each result as it comes.
 ///

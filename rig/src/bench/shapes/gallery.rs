@@ -1,6 +1,7 @@
 //! A sheet of pictures, what was found in them, and the errors.
 
 use super::Outcome;
+use crate::bench::drawings::side_nearest;
 use crate::report::Damage;
 use crate::report::inverse::OWN;
 use crate::report::picture::{self, heat};
@@ -29,11 +30,8 @@ pub struct Gallery {
 impl Gallery {
     /// A gallery of what is found in pictures of the size nearest to that of a panel.
     pub fn of(sides: &[u16]) -> Self {
-        let sides = sides.iter().map(|&side| usize::from(side));
         Self {
-            side_px: sides
-                .min_by_key(|side| side.abs_diff(PANEL_PX))
-                .unwrap_or(PANEL_PX),
+            side_px: side_nearest(sides, PANEL_PX),
             rows: Vec::new(),
         }
     }

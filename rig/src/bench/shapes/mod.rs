@@ -11,7 +11,7 @@ use std::time::Instant;
 
 pub use gallery::Gallery;
 
-use super::drawings::{Drawing, Pictures, damaged, picture};
+use super::drawings::{self, Drawing, Pictures, damaged, picture};
 use super::peers::TunedPeer;
 use crate::report::Damage;
 use crate::report::inverse::OWN;
@@ -65,15 +65,7 @@ pub fn few(drawings: Vec<Drawing>) -> Vec<Drawing> {
 }
 
 /// A result as it comes.
-#[derive(Debug, Clone, Copy)]
-pub struct Outcome<'a> {
-    /// Its record.
-    pub entry: &'a ShapesEntry,
-    /// The picture that was drawn.
-    pub picture: &'a Image,
-    /// The SVG that was made of it; empty where none was.
-    pub svg: &'a str,
-}
+pub type Outcome<'a> = drawings::Outcome<'a, ShapesEntry>;
 
 /// Draws the pictures of all drawings in each of our ways and by each of `peers`, telling each result as it comes.
 ///

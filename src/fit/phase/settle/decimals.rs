@@ -5,6 +5,7 @@
 
 use crate::fit::budget::price::Price;
 use crate::fit::drawing::Drawing;
+use crate::fit::halves::by_halves;
 use crate::render::{StrokeRef, Strokes};
 use crate::scene::{Area, Mark, Scene};
 
@@ -19,7 +20,7 @@ pub(super) fn drop_decimals(
     scene: &Scene,
     precision: u8,
 ) -> bool {
-    if precision <= COARSE || price.per_byte() == 0.0 {
+    if precision <= COARSE || price.per_byte() == 0.0 || !drawing.free().has_areas() {
         return false;
     }
     let price = price.in_drawing(drawing);
@@ -28,32 +29,26 @@ pub(super) fn drop_decimals(
         .iter()
         .map(|area| rounded(area, scene))
         .collect();
-    let mut left: Vec<Vec<usize>> = vec![
-        (0..rounded.len())
-            .filter(|&i| rounded[i].is_some())
-            .collect(),
-    ];
-    let mut has_changed = false;
-    while let Some(group) = left.pop().filter(|group| !group.is_empty()) {
-        let (before, error) = (drawing.memento(), drawing.mse());
+    let of_areas = (0..rounded.len()).filter(|&i| rounded[i].is_some());
+    let (mut error, mut has_changed) = (drawing.mse(), false);
+    by_halves(of_areas.collect(), |group| {
         let bytes = |drawing: &Drawing| -> usize {
             let of = |&i: &usize| price.bytes_of(drawing.free().get(i));
             group.iter().map(of).sum()
         };
-        let bytes_before = bytes(drawing);
-        put(drawing, &group, &rounded);
+        let (before, bytes_before) = (drawing.free().clone(), bytes(drawing));
+        put(drawing, group, &rounded);
         let saved = bytes_before.saturating_sub(bytes(drawing));
-        let added = (drawing.mse() - error) * (3 * drawing.pixels()) as f64;
-        if added <= f64::from(price.of_saved(saved)) && saved > 0 {
-            has_changed = true;
-            continue;
+        let now = drawing.mse();
+        let added = (now - error) * (3 * drawing.pixels()) as f64;
+        let pays = added <= f64::from(price.of_saved(saved)) && saved > 0;
+        if pays {
+            (error, has_changed) = (now, true);
+        } else {
+            *drawing.free_mut() = before;
         }
-        drawing.revert(before);
-        if group.len() > 1 {
-            let (some, others) = group.split_at(group.len() / 2);
-            left.extend([some.to_vec(), others.to_vec()]);
-        }
-    }
+        pays
+    });
     has_changed
 }
 
