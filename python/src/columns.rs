@@ -39,6 +39,49 @@ pub(crate) type AreaColumns<'py> = (
     Bound<'py, PyArray1<i64>>,
 );
 
+/// Points (m × 2, px), where each mark's points begin (n + 1), widths (n, px), colours (n × 3), opacities (n), which points are
+/// on their path (m), which paths are closed (n), which marks are areas (n), and the points at which a further ring of an
+/// area begins, for n marks of m points.
+pub(crate) type MarkColumns<'py> = (
+    Bound<'py, PyArray2<f32>>,
+    Bound<'py, PyArray1<i64>>,
+    Bound<'py, PyArray1<f32>>,
+    Bound<'py, PyArray2<f32>>,
+    Bound<'py, PyArray1<f32>>,
+    Bound<'py, PyArray1<bool>>,
+    Bound<'py, PyArray1<bool>>,
+    Bound<'py, PyArray1<bool>>,
+    Bound<'py, PyArray1<i64>>,
+);
+
+/// The marks of `scene`, back to front.
+pub(crate) fn marks<'py>(py: Python<'py>, scene: &Scene) -> PyResult<MarkColumns<'py>> {
+    let points = || scene.marks().flat_map(Mark::paths).flat_map(Path::points);
+    let (mut rings, mut end) = (Vec::new(), 0);
+    for mark in scene.marks() {
+        for (k, path) in mark.paths().iter().enumerate() {
+            rings.extend((k > 0).then_some(end));
+            end += path.points().len() as i64;
+        }
+    }
+    Ok((
+        places(py, points().map(|point| point.at))?,
+        starts(py, scene.marks().map(Mark::points)),
+        column(py, scene.marks().map(|mark| 2.0 * mark.radius())),
+        rows(py, scene.marks().map(Mark::color))?,
+        column(py, scene.marks().map(Mark::opacity)),
+        column(py, points().map(|point| point.is_on)),
+        column(
+            py,
+            scene
+                .marks()
+                .map(|mark| mark.paths().iter().all(Path::is_closed)),
+        ),
+        column(py, scene.marks().map(|mark| mark.as_area().is_some())),
+        PyArray1::from_vec(py, rings),
+    ))
+}
+
 /// The strokes of `scene`, back to front.
 pub(crate) fn strokes<'py>(py: Python<'py>, scene: &Scene) -> PyResult<StrokeColumns<'py>> {
     let (strokes, layers, order) = placed(scene, Mark::as_stroke);
@@ -141,11 +184,11 @@ fn column<T: Element>(py: Python<'_>, values: impl Iterator<Item = T>) -> Bound<
 }
 
 /// One row of `N` values each.
-fn rows<const N: usize>(
+pub(crate) fn rows<T: Element, const N: usize>(
     py: Python<'_>,
-    rows: impl Iterator<Item = [f32; N]>,
-) -> PyResult<Bound<'_, PyArray2<f32>>> {
-    let values: Vec<f32> = rows.flatten().collect();
+    rows: impl IntoIterator<Item = [T; N]>,
+) -> PyResult<Bound<'_, PyArray2<T>>> {
+    let values: Vec<T> = rows.into_iter().flatten().collect();
     let count = values.len() / N;
     PyArray1::from_vec(py, values).reshape([count, N])
 }

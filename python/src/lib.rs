@@ -7,8 +7,12 @@ mod aside;
 mod columns;
 mod failure;
 mod job;
+mod marks;
 mod options;
 mod picture;
+mod reference;
+mod renderer;
+mod scene;
 
 use std::ffi::OsString;
 use std::panic;
@@ -28,7 +32,10 @@ use aside::aside;
 use columns::{AreaColumns, StrokeColumns};
 use failure::Failure;
 use job::{BaseText, Job};
+use marks::{PackedMarks, PackedMarks64};
 use picture::Picture;
+use renderer::{Edge, Renderer};
+use scene::Page;
 
 /// A drawing as Python takes it: the SVG, the report as JSON, the strokes and the areas.
 type Drawn<'py> = (String, String, StrokeColumns<'py>, AreaColumns<'py>);
@@ -158,9 +165,19 @@ fn main(py: Python<'_>, args: Vec<OsString>) -> u8 {
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     verify::silence_panics();
     module.add_class::<CancelToken>()?;
+    module.add_class::<Edge>()?;
+    module.add_class::<Page>()?;
+    module.add_class::<PackedMarks>()?;
+    module.add_class::<PackedMarks64>()?;
+    module.add_class::<Renderer>()?;
     module.add_function(wrap_pyfunction!(draw, module)?)?;
     module.add_function(wrap_pyfunction!(flatten, module)?)?;
     module.add_function(wrap_pyfunction!(render, module)?)?;
     module.add_function(wrap_pyfunction!(judge, module)?)?;
+    module.add_function(wrap_pyfunction!(reference::reference_render, module)?)?;
+    module.add_function(wrap_pyfunction!(reference::reference_backward, module)?)?;
+    module.add_function(wrap_pyfunction!(reference::reference_worth, module)?)?;
+    module.add_function(wrap_pyfunction!(scene::read, module)?)?;
+    module.add_function(wrap_pyfunction!(scene::write, module)?)?;
     module.add_function(wrap_pyfunction!(main, module)?)
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
 import re
 import subprocess
@@ -11,7 +12,8 @@ from pathlib import Path
 import pytest
 from conftest import ROOT
 
-PAGES = ["docs/batch.md", "docs/python.md", "README.md", "python/README.md"]
+PAGES = ["docs/batch.md", "docs/gradients.md", "docs/python.md", "README.md", "python/README.md"]
+HAS_TORCH = importlib.util.find_spec("torch") is not None
 
 
 def examples() -> list[object]:
@@ -19,8 +21,15 @@ def examples() -> list[object]:
     for page in PAGES:
         blocks = re.findall(r"^```python\n(.*?)^```", (ROOT / page).read_text(encoding="utf-8"), re.M | re.S)
         assert blocks, f"{page} has no example"
-        found += [pytest.param(block, id=f"{page}:{i}") for i, block in enumerate(blocks, 1)]
+        found += [example(block, f"{page}:{i}") for i, block in enumerate(blocks, 1)]
     return found
+
+
+def example(code: str, name: str) -> object:
+    """An example; one with PyTorch is for where that is installed."""
+    if "import torch" not in code:
+        return pytest.param(code, id=name)
+    return pytest.param(code, id=f"{name}-torch", marks=pytest.mark.skipif(not HAS_TORCH, reason="PyTorch is not installed"))
 
 
 @pytest.mark.parametrize("code", examples())

@@ -47,6 +47,17 @@ pub(super) fn uniform_tile(color: [f32; 3]) -> TileRgb {
     [color.map(Lanes::splat); BLOCKS]
 }
 
+/// Pixels side by side in one block of a tile.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Run {
+    /// The block, of those of its tile.
+    pub block: usize,
+    /// Their lanes in the block.
+    pub lanes: std::ops::Range<usize>,
+    /// The place of the first of them among all pixels of the picture, which are counted row by row.
+    pub first: usize,
+}
+
 /// The tiles of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Grid {
@@ -95,6 +106,22 @@ impl Grid {
         (0..width).step_by(BLOCK).map(move |x| {
             let (tile, block, lane) = grid.locate(x, y);
             (tile, block, lane..lane + BLOCK.min(width - x), x)
+        })
+    }
+
+    /// The pixels of tile `tile` that are on the picture, row by row.
+    pub fn runs(&self, tile: usize) -> impl Iterator<Item = Run> + use<> {
+        let (grid, (x0, y0)) = (*self, self.origin(tile));
+        let x1 = grid.width.min(x0 + TILE);
+        (y0..grid.height.min(y0 + TILE)).flat_map(move |y| {
+            (x0..x1).step_by(BLOCK).map(move |x| {
+                let (_, block, lane) = grid.locate(x, y);
+                Run {
+                    block,
+                    lanes: lane..lane + BLOCK.min(x1 - x),
+                    first: y * grid.width + x,
+                }
+            })
         })
     }
 
@@ -147,6 +174,26 @@ impl Canvas {
             }
         }
         Self { grid, tiles }
+    }
+
+    /// The picture whose pixels, counted row by row, have the colours `color` gives; the padding is 0.
+    pub fn from_fn(grid: Grid, color: impl Fn(usize) -> [f32; 3]) -> Self {
+        let mut canvas = Self::flat(grid, [0.0; 3]);
+        for (tile, pixels) in canvas.tiles.iter_mut().enumerate() {
+            for Run {
+                block,
+                lanes,
+                first,
+            } in grid.runs(tile)
+            {
+                for (lane, pixel) in lanes.zip(first..) {
+                    for (channel, value) in pixels[block].iter_mut().zip(color(pixel)) {
+                        channel.0[lane] = value;
+                    }
+                }
+            }
+        }
+        canvas
     }
 
     /// The colours of `image`, its alpha ignored; the padding is 0.
@@ -255,4 +302,35 @@ pub(super) fn edge_weights(grid: &Grid, tile: usize) -> Option<Box<TileWeights>>
         }
     }
     Some(weights)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_visit_every_pixel_once() {
+        for (width, height) in [(1, 1), (32, 32), (33, 5), (70, 67)] {
+            let grid = Grid::new(width, height);
+            let number = |i: usize| [i as f32, 0.5, 1.0];
+            let canvas = Canvas::from_fn(grid, number);
+            let mut seen = vec![0; width * height];
+            for tile in 0..grid.len() {
+                for Run {
+                    block,
+                    lanes,
+                    first,
+                } in grid.runs(tile)
+                {
+                    for (lane, i) in lanes.zip(first..) {
+                        seen[i] += 1;
+                        let values = canvas.tiles()[tile][block].map(|channel| channel.0[lane]);
+                        assert_eq!(values, number(i));
+                        assert_eq!(canvas.pixel(i % width, i / width), number(i));
+                    }
+                }
+            }
+            assert_eq!(seen, vec![1; width * height]);
+        }
+    }
 }

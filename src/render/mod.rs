@@ -80,7 +80,7 @@ use rayon::prelude::*;
 
 pub use gradients::{Gradients, Survey};
 pub(crate) use grid::multiply;
-pub use grid::{BlockRgb, Canvas, Grid, Lanes, TILE, TileRgb};
+pub use grid::{BlockRgb, Canvas, Grid, Lanes, Run, TILE, TileRgb};
 pub use strokes::{
     AX, AY, BX, BY, OPACITY, PARAMS, Params, RADIUS, RED, STYLE, StrokeMut, StrokeRef, Strokes,
 };

@@ -21,9 +21,12 @@ from ._api import fit, judge, refine, render
 from ._areas import Area, Areas
 from ._batch import Estimate, Progress, Summary, batch, estimate_batch
 from ._drawing import Drawing
+from ._marks import Gradients, Marks
 from ._native import CancelToken
 from ._picture import Picture
+from ._renderer import Reference, Renderer
 from ._report import Agreement, Fidelity, Report
+from ._scene import Scene
 from ._strokes import Stroke, Strokes
 
 #: Version of the package, and of the program in it.
@@ -37,9 +40,14 @@ __all__ = [
     "Drawing",
     "Estimate",
     "Fidelity",
+    "Gradients",
+    "Marks",
     "Picture",
     "Progress",
+    "Reference",
+    "Renderer",
     "Report",
+    "Scene",
     "Stroke",
     "Strokes",
     "Summary",

@@ -15,6 +15,7 @@ from . import _native
 from ._areas import Areas
 from ._drawing import Drawing
 from ._picture import Picture, native
+from ._scene import Scene
 from ._strokes import Strokes
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
     from ._report import Fidelity, Report
 
-Svg = Union[str, "os.PathLike[str]", Drawing]
+Svg = Union[str, "os.PathLike[str]", Drawing, Scene]
 Palette = Union[str, "os.PathLike[str]", Iterable[str]]
 Progress = Callable[[float, int, float], object]
 _Function = TypeVar("_Function", bound=Callable[..., Any])
@@ -191,7 +192,7 @@ def refine(
     and strokes and areas are laid on it. Budgets count the whole file, and the background is that of the base.
 
     Args:
-        base: A `Drawing`, the text of an SVG (it contains `<`), or the path of one.
+        base: A `Drawing`, a `Scene`, the text of an SVG (it contains `<`), or the path of one.
         picture: As for `fit`, in the proportions of the base.
         freeze_base: Whether the strokes of the base stay as they are.
 
@@ -214,7 +215,7 @@ def render(svg: Svg, scale: float = 1.0, background: str = "none") -> NDArray[np
     """An SVG as resvg renders it, 0..255, sRGB-encoded.
 
     Args:
-        svg: A `Drawing`, the text of an SVG (it contains `<`), or the path of one.
+        svg: A `Drawing`, a `Scene`, the text of an SVG (it contains `<`), or the path of one.
         scale: Pixels per unit of the SVG.
         background: `#rrggbb` gives height × width × 3 on that colour; `none` height × width × 4, with straight alpha.
 
@@ -232,7 +233,7 @@ def judge(svg: Svg, picture: Picture) -> Fidelity:
     """How faithful an SVG is to a picture, as resvg renders it: what `strokefit check` says of resvg.
 
     Args:
-        svg: A `Drawing`, the text of an SVG (it contains `<`), or the path of one, in the picture's proportions.
+        svg: A `Drawing`, a `Scene`, the text of an SVG (it contains `<`), or the path of one, in the picture's proportions.
         picture: As for `fit`.
 
     >>> import numpy as np, strokefit
@@ -260,6 +261,8 @@ def _svg(svg: Svg) -> tuple[str, str]:
     """The text and its name."""
     if isinstance(svg, Drawing):
         return svg.svg, "the drawing"
+    if isinstance(svg, Scene):
+        return svg.to_svg(), "the scene"
     if isinstance(svg, str) and "<" in svg:
         return svg, "the SVG"
     path = Path(svg)

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from ._areas import Areas
     from ._report import Report
+    from ._scene import Scene
     from ._strokes import Strokes
 
 
@@ -39,6 +40,17 @@ class Drawing:
         self.report = report
         self.strokes = strokes
         self.areas = areas
+
+    @property
+    def scene(self) -> Scene:
+        """The file as a scene, whose arrays can be changed: `Scene.read(drawing)`.
+
+        Raises:
+            ValueError: The drawing is laid on an SVG by another program, or has the form `outlines`.
+        """
+        from ._scene import Scene
+
+        return Scene.read(self)
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
         """Writes the SVG to `path`: the same bytes on every platform."""

@@ -1,0 +1,121 @@
+//! Drawings between SVG and arrays.
+
+use numpy::{PyArray1, PyArray3, PyArrayMethods};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use strokefit::fit::Base;
+use strokefit::scene::{Mark, Rgb, Scene, Stage};
+use strokefit::svg::{self, Length};
+
+use crate::columns::{self, MarkColumns};
+use crate::failure::Failure;
+use crate::marks::PackedMarks;
+use crate::options;
+
+/// All of a drawing but its marks: its size, background and shade, and the size that its file says.
+#[pyclass(frozen, module = "strokefit._native")]
+#[derive(Clone)]
+pub(crate) struct Page {
+    scene: Scene,
+    width: Option<Length>,
+}
+
+#[pymethods]
+impl Page {
+    #[new]
+    fn new(width: u32, height: u32, background: Option<Rgb>) -> Self {
+        Self {
+            scene: Scene::empty(width, height, background),
+            width: None,
+        }
+    }
+
+    /// This page on another background, without its shade.
+    fn on(&self, background: Option<Rgb>) -> Self {
+        let mut page = self.clone();
+        page.scene.background = background;
+        page.scene.shade = None;
+        page
+    }
+
+    /// Width and height, px.
+    #[getter]
+    fn size(&self) -> (u32, u32) {
+        (self.scene.width, self.scene.height)
+    }
+
+    #[getter]
+    fn background(&self) -> Option<Rgb> {
+        self.scene.background
+    }
+
+    /// The gradient on the background, or on `behind` where there is none, height × width × 3.
+    fn shade<'py>(
+        &self,
+        py: Python<'py>,
+        behind: Rgb,
+    ) -> PyResult<Option<Bound<'py, PyArray3<f32>>>> {
+        let Some(shade) = &self.scene.shade else {
+            return Ok(None);
+        };
+        let [width, height] = [self.scene.width, self.scene.height].map(|side| side as usize);
+        let behind = self.scene.background.unwrap_or(behind);
+        let planes = shade.planes(width, height, behind);
+        let samples = (0..width * height).flat_map(|i| [0, 1, 2].map(|channel| planes[channel][i]));
+        let samples = PyArray1::from_vec(py, samples.collect());
+        Ok(Some(samples.reshape([height, width, 3])?))
+    }
+}
+
+/// The page, the marks and the layers of a drawing.
+#[pyfunction]
+pub(crate) fn read<'py>(
+    py: Python<'py>,
+    text: &str,
+    name: &str,
+) -> PyResult<(Page, MarkColumns<'py>, Bound<'py, PyArray1<i64>>)> {
+    let mut scene = svg::read(text).map_err(|error| Failure::Library(error.within(name)))?;
+    let columns = columns::marks(py, &scene)?;
+    let layers = scene.stages.iter().zip(0..);
+    let layers = layers.flat_map(|(stage, layer)| stage.marks.iter().map(move |_| layer));
+    let layers = PyArray1::from_iter(py, layers.collect::<Vec<i64>>());
+    scene.stages.clear();
+    let width = svg::page_width(text);
+    Ok((Page { scene, width }, columns, layers))
+}
+
+/// The SVG of marks, of which each has a layer.
+#[pyfunction]
+pub(crate) fn write(
+    py: Python<'_>,
+    page: &Bound<'_, Page>,
+    marks: &Bound<'_, PackedMarks>,
+    layers: Vec<i64>,
+    options: &Bound<'_, PyDict>,
+) -> PyResult<String> {
+    let options = options::read(options)?.config.file;
+    let page = page.get();
+    let base = Base {
+        document: None,
+        scene: Scene::empty(page.scene.width, page.scene.height, None),
+        width: page.width,
+    };
+    let marks: Vec<Mark> = marks.get().marks().collect();
+    if marks.len() != layers.len() || !layers.is_sorted() {
+        return Err(PyValueError::new_err(
+            "layers: give one number for each mark, none smaller than that before it",
+        ));
+    }
+    Ok(py.detach(|| {
+        let mut scene = page.scene.clone();
+        let stages = marks.into_iter().zip(&layers).collect::<Vec<_>>();
+        for of_layer in stages.chunk_by(|(_, a), (_, b)| a == b) {
+            let marks = of_layer.iter().map(|(mark, _)| mark.clone());
+            scene.stages.push(Stage {
+                marks: marks.collect(),
+            });
+        }
+        Base::write(Some(&base), &scene, &options)
+    }))
+}
