@@ -92,7 +92,8 @@ def render(
 
     Tensors of float32 are rendered by `strokefit.Renderer`, those of float64 by the slow `strokefit.Reference`. The work is
     done on the CPU: tensors of other devices are copied there, and the picture is copied back. `torch.compile` leaves its
-    graph for this call.
+    graph for this call. PyTorch's own threads wait busily, in the way of the renderer's: call `torch.set_num_threads(1)`, or
+    set `OMP_WAIT_POLICY=passive` before Python starts.
 
     Raises:
         TypeError: A tensor is no tensor, or of another type.
