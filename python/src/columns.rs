@@ -184,11 +184,11 @@ fn column<T: Element>(py: Python<'_>, values: impl Iterator<Item = T>) -> Bound<
 }
 
 /// One row of `N` values each.
-pub(crate) fn rows<T: Element, const N: usize>(
+fn rows<const N: usize>(
     py: Python<'_>,
-    rows: impl IntoIterator<Item = [T; N]>,
-) -> PyResult<Bound<'_, PyArray2<T>>> {
-    let values: Vec<T> = rows.into_iter().flatten().collect();
+    rows: impl Iterator<Item = [f32; N]>,
+) -> PyResult<Bound<'_, PyArray2<f32>>> {
+    let values: Vec<f32> = rows.flatten().collect();
     let count = values.len() / N;
     PyArray1::from_vec(py, values).reshape([count, N])
 }

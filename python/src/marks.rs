@@ -1,7 +1,12 @@
 //! Marks as arrays: flat columns with offsets, which are checked once and packed for the renderers.
 
-use numpy::ndarray::ArrayView1;
-use numpy::{Element, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
+use std::borrow::Cow;
+
+use numpy::ndarray::Dimension;
+use numpy::{
+    Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray, PyReadonlyArray1,
+    PyReadonlyArray2,
+};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use strokefit::math::{Point, Real};
@@ -9,7 +14,6 @@ use strokefit::render::reference;
 use strokefit::render::{STYLE, StrokeRef, Strokes};
 use strokefit::scene::{MAX_POINTS, Mark, Path, PathPoint};
 
-use crate::columns::rows;
 use crate::failure::Failure;
 
 /// Points (m × 2, px), where each mark's points begin (n + 1), widths (n, px), colours (n × 3), opacities (n), which points
@@ -88,34 +92,75 @@ impl PackedMarks {
         self.0.iter().map(|stroke| stroke.to_mark())
     }
 
-    /// The derivatives `numbers`, which are in the order of [`Strokes::numbers`], as arrays.
-    pub(crate) fn unpack<'py>(
-        &self,
-        py: Python<'py>,
-        numbers: &[f32],
-    ) -> PyResult<MarkGradients<'py, f32>> {
+    /// The derivatives `numbers`, which are in the order of [`Strokes::numbers`], by kind.
+    pub(crate) fn unpack(&self, numbers: &[f32]) -> Derivatives<f32> {
         let each = (0..self.0.len()).map(|i| &numbers[self.0.range(i)]);
         let split = each.filter_map(|own| own.split_last_chunk());
-        unpacked(
-            py,
-            split.map(|(points, style)| (points.as_chunks().0, *style)),
-        )
+        let split = split.map(|(points, style)| (points.as_chunks().0, *style));
+        Derivatives::of(self.0.points(), self.0.len(), split)
     }
 }
 
 impl PackedMarks64 {
-    /// The derivatives of the `strokes` as arrays.
-    pub(crate) fn unpack<'py>(
-        py: Python<'py>,
-        strokes: &[reference::Stroke],
-    ) -> PyResult<MarkGradients<'py, f64>> {
+    /// The derivatives of the `strokes` by kind.
+    pub(crate) fn unpack(strokes: &[reference::Stroke]) -> Derivatives<f64> {
+        let points = strokes.iter().map(|stroke| stroke.points.len()).sum();
         let each = strokes.iter().map(|stroke| {
             let [red, green, blue] = stroke.color;
             let style = [stroke.radius, red, green, blue, stroke.opacity];
             (stroke.points.as_slice(), style)
         });
-        unpacked(py, each)
+        Derivatives::of(points, strokes.len(), each)
     }
+}
+
+/// Derivatives by kind. That by a width is half of that by its radius.
+pub(crate) struct Derivatives<T> {
+    points: Vec<[T; 2]>,
+    widths: Vec<T>,
+    colors: Vec<[T; 3]>,
+    opacities: Vec<T>,
+}
+
+impl<T: Element + Real> Derivatives<T> {
+    fn of<'a>(
+        points: usize,
+        marks: usize,
+        each: impl Iterator<Item = (&'a [[T; 2]], [T; STYLE])>,
+    ) -> Self {
+        let mut all = Self {
+            points: Vec::with_capacity(points),
+            widths: Vec::with_capacity(marks),
+            colors: Vec::with_capacity(marks),
+            opacities: Vec::with_capacity(marks),
+        };
+        for (own, [radius, red, green, blue, opacity]) in each {
+            all.points.extend_from_slice(own);
+            all.widths.push(radius * T::of(0.5));
+            all.colors.push([red, green, blue]);
+            all.opacities.push(opacity);
+        }
+        all
+    }
+
+    /// The derivatives as arrays, which take them over.
+    pub(crate) fn arrays(self, py: Python<'_>) -> PyResult<MarkGradients<'_, T>> {
+        Ok((
+            table(py, self.points)?,
+            PyArray1::from_vec(py, self.widths),
+            table(py, self.colors)?,
+            PyArray1::from_vec(py, self.opacities),
+        ))
+    }
+}
+
+/// One row of `N` values each, which are not copied.
+fn table<T: Element, const N: usize>(
+    py: Python<'_>,
+    rows: Vec<[T; N]>,
+) -> PyResult<Bound<'_, PyArray2<T>>> {
+    let count = rows.len();
+    PyArray1::from_vec(py, rows.into_flattened()).reshape([count, N])
 }
 
 /// One mark of the arrays.
@@ -135,53 +180,59 @@ fn each<T: Element + Real>(
     mut push: impl FnMut(Row<'_, T>),
 ) -> PyResult<()> {
     let (points, starts, widths, colors, opacities, on_path, closed, filled, rings) = arrays;
-    finite("points", points.as_array().iter())?;
-    finite("widths", widths.as_array().iter())?;
-    finite("colors", colors.as_array().iter())?;
-    within_one(opacities)?;
-    let (points, starts) = (points.as_array(), starts.as_array());
-    let (widths, colors, opacities) = (widths.as_array(), colors.as_array(), opacities.as_array());
-    check_starts(&starts.to_vec(), points.nrows())?;
-    let rings = rings
-        .as_ref()
-        .map_or_else(Vec::new, |rings| rings.as_array().to_vec());
-    let mut further = Further::new(&rings);
+    let (points, colors) = (contiguous(points), contiguous(colors));
+    let [widths, opacities] = [widths, opacities].map(contiguous);
+    let [starts, rings] =
+        [Some(starts), rings.as_ref()].map(|all| all.map(contiguous).unwrap_or_default());
     let [on_path, closed, filled] =
-        [on_path, closed, filled].map(|flags| flags.as_ref().map(|flags| flags.as_array()));
-    let is = |flags: &Option<ArrayView1<'_, bool>>, i: usize, missing: bool| {
-        flags.as_ref().map_or(missing, |flags| flags[i])
-    };
-    let (mut places, mut off, mut ends) = (Vec::new(), Vec::new(), Vec::new());
-    for i in 0..widths.len() {
+        [on_path, closed, filled].map(|flags| flags.as_ref().map(contiguous));
+    finite("points", &points)?;
+    finite("widths", &widths)?;
+    finite("colors", &colors)?;
+    within_one(&opacities)?;
+    let (points, colors) = (points.as_chunks().0, colors.as_chunks().0);
+    check_starts(&starts, points.len())?;
+    let is =
+        |flags: &Option<Cow<'_, [bool]>>, i: usize| flags.as_ref().is_some_and(|flags| flags[i]);
+    let mut further = Further::new(&rings);
+    let (mut off, mut ends) = (Vec::new(), Vec::new());
+    for (i, &[red, green, blue]) in colors.iter().enumerate() {
         let own = starts[i] as usize..starts[i + 1] as usize;
-        places.clear();
-        places.extend(own.clone().map(|k| [points[[k, 0]], points[[k, 1]]]));
         off.clear();
-        off.extend(own.clone().map(|k| !is(&on_path, k, true)));
+        match &on_path {
+            Some(on_path) => off.extend(on_path[own.clone()].iter().map(|is_on| !is_on)),
+            None => off.resize(own.len(), false),
+        }
+        let is_area = is(&filled, i);
         ends.clear();
-        let is_area = is(&filled, i, false);
         further.ends(own.clone(), is_area, i, &mut ends)?;
+        let radius = if is_area {
+            T::zero()
+        } else {
+            widths[i] * T::of(0.5)
+        };
         let row = Row {
-            points: &places,
+            points: &points[own],
             off: &off,
-            closed: is_area || is(&closed, i, false),
+            closed: is_area || is(&closed, i),
             rings: &ends,
-            style: [
-                if is_area {
-                    T::zero()
-                } else {
-                    widths[i] * T::of(0.5)
-                },
-                colors[[i, 0]],
-                colors[[i, 1]],
-                colors[[i, 2]],
-                opacities[i],
-            ],
+            style: [radius, red, green, blue, opacities[i]],
         };
         check_path(&row, i)?;
         push(row);
     }
     further.check()
+}
+
+/// The values of an array in a row, which are copied if they lie otherwise.
+fn contiguous<'a, T: Element + Copy, D: Dimension>(
+    array: &'a PyReadonlyArray<'_, T, D>,
+) -> Cow<'a, [T]> {
+    // In the order of the axes: NumPy also calls columns contiguous that lie one after the other.
+    match array.as_array().to_slice() {
+        Some(values) => Cow::Borrowed(values),
+        None => array.as_array().iter().copied().collect(),
+    }
 }
 
 /// The points at which further rings begin, mark by mark.
@@ -282,22 +333,28 @@ fn check_path<T: Real>(row: &Row<'_, T>, i: usize) -> PyResult<()> {
 }
 
 /// Refuses what is not finite.
-fn finite<'a, T: Real>(name: &str, values: impl Iterator<Item = &'a T>) -> PyResult<()> {
-    match values
-        .enumerate()
-        .find(|(_, value)| !value.to_f64().is_finite())
+fn finite<T: Real>(name: &str, values: &[T]) -> PyResult<()> {
+    let is_finite = |value: &T| value.to_f64().is_finite();
+    // All of them are looked at, and nothing is branched on, so that it takes vectors.
+    if values
+        .iter()
+        .fold(true, |all, value| all & is_finite(value))
     {
-        Some((i, value)) => refuse(format!(
-            "{name} holds {value} (value {i} of all): give finite numbers"
-        )),
-        None => Ok(()),
+        return Ok(());
     }
+    let found = values
+        .iter()
+        .enumerate()
+        .find(|(_, value)| !is_finite(value));
+    found.map_or(Ok(()), |(i, value)| {
+        refuse(format!(
+            "{name} holds {value} (value {i} of all): give finite numbers"
+        ))
+    })
 }
 
-fn within_one<T: Element + Real>(opacities: &PyReadonlyArray1<'_, T>) -> PyResult<()> {
-    let opacities = opacities.as_array();
-    let all = 0.0..=1.0;
-    let outside = |(_, value): &(usize, &T)| !all.contains(&value.to_f64());
+fn within_one<T: Real>(opacities: &[T]) -> PyResult<()> {
+    let outside = |(_, value): &(usize, &T)| !(0.0..=1.0).contains(&value.to_f64());
     match opacities.iter().enumerate().find(outside) {
         Some((i, value)) => refuse(format!(
             "opacities[{i}] is {value}: give 0 to 1, and clamp them after each step of a descent"
@@ -308,25 +365,4 @@ fn within_one<T: Element + Real>(opacities: &PyReadonlyArray1<'_, T>) -> PyResul
 
 fn refuse<T>(message: String) -> PyResult<T> {
     Err(PyValueError::new_err(message))
-}
-
-/// Points and styles of derivatives as arrays. The derivative by a width is half of that by its radius.
-fn unpacked<'py, 'a, T: Element + Real>(
-    py: Python<'py>,
-    each: impl Iterator<Item = (&'a [[T; 2]], [T; STYLE])>,
-) -> PyResult<MarkGradients<'py, T>> {
-    let (mut points, mut widths, mut colors, mut opacities) =
-        (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    for (own, [radius, red, green, blue, opacity]) in each {
-        points.extend_from_slice(own);
-        widths.push(radius * T::of(0.5));
-        colors.push([red, green, blue]);
-        opacities.push(opacity);
-    }
-    Ok((
-        rows(py, points)?,
-        PyArray1::from_vec(py, widths),
-        rows(py, colors)?,
-        PyArray1::from_vec(py, opacities),
-    ))
 }

@@ -59,7 +59,7 @@ pub(crate) fn reference_backward<'py>(
         }
         Behind::Nothing => None,
     };
-    Ok((PackedMarks64::unpack(py, &strokes)?, by_background))
+    Ok((PackedMarks64::unpack(&strokes).arrays(py)?, by_background))
 }
 
 /// For each mark, by how much the sum of squares of `error` = canvas − target grows when the mark is left out.

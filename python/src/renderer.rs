@@ -1,10 +1,11 @@
 //! The renderer: marks to a canvas, and `∂L/∂canvas` to the derivatives by all that was drawn.
 
+use std::ops::Range;
 use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use numpy::{Element, PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray3};
+use numpy::{Element, PyArray1, PyArrayMethods, PyReadonlyArray3, PyReadwriteArray3};
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -12,7 +13,8 @@ use rayon::prelude::*;
 use strokefit::coverage::Coverage;
 use strokefit::fit::Execution;
 use strokefit::render::{
-    self, Backdrop, Canvas, CanvasLoss, Gradients, Grid, Run, Softness, Strokes, TILE, TileRgb,
+    self, Backdrop, BlockRgb, Canvas, CanvasLoss, Gradients, Grid, Run, Softness, Strokes, TILE,
+    TileRgb,
 };
 use strokefit::threads::Workers;
 
@@ -106,24 +108,19 @@ impl Renderer {
         })
     }
 
-    /// The canvas, height × width × 3 with a background, else × 4.
+    /// Writes the canvas to `out`: height × width × 3 with a background, else × 4, and C-contiguous.
     fn render<'py>(
         &self,
         py: Python<'py>,
         marks: &Bound<'py, PackedMarks>,
         edge: &Bound<'py, Edge>,
         background: Option<Background<'py, f32>>,
-    ) -> PyResult<Bound<'py, PyArray3<f32>>> {
-        let (strokes, softness, grid) = (&marks.get().0, edge.get().softness(), self.grid);
-        let channels = if background.is_some() { 3 } else { 4 };
-        let shape = [grid.height, grid.width, channels];
+        mut out: PyReadwriteArray3<'py, f32>,
+    ) -> PyResult<()> {
+        let (strokes, softness) = (&marks.get().0, edge.get().softness());
         let behind = background.as_ref().map(Behind::of).transpose()?;
-        let samples = self.with(py, |passes| {
-            let mut samples = vec![0.0; grid.height * grid.width * channels];
-            passes.draw(strokes, softness, behind, &mut samples);
-            samples
-        })?;
-        PyArray1::from_vec(py, samples).reshape(shape)
+        let samples = out.as_slice_mut()?;
+        self.with(py, |passes| passes.draw(strokes, softness, behind, samples))
     }
 
     /// The derivatives by the marks and the background of a loss with the derivatives `d_canvas`.
@@ -135,36 +132,32 @@ impl Renderer {
         background: Option<Background<'py, f32>>,
         d_canvas: PyReadonlyArray3<'py, f32>,
     ) -> PyResult<AllGradients<'py>> {
-        let (strokes, softness, grid) = (&marks.get().0, edge.get().softness(), self.grid);
+        let (marks, softness, grid) = (marks.get(), edge.get().softness(), self.grid);
+        let strokes = &marks.0;
         let behind = background.as_ref().map(Behind::of).transpose()?;
         let d_canvas = d_canvas.as_slice()?;
-        let (numbers, by_background) = self
-            .with(py, |passes| {
-                if !passes.differentiate(strokes, softness, behind, d_canvas) {
-                    return None;
-                }
-                let by_background = match behind {
-                    Some(Behind::Picture(_)) => Some(passes.through(strokes, softness, d_canvas)),
-                    _ => None,
-                };
-                Some((std::mem::take(&mut passes.gradients), by_background))
-            })?
-            .ok_or_else(|| not_finite("d_canvas"))?;
-        let by_marks = marks.get().unpack(py, &numbers.strokes)?;
-        let by_background = match (by_background, behind) {
-            (Some(picture), _) => {
-                let shape = [grid.height, grid.width, 3];
-                Some(
-                    PyArray1::from_vec(py, picture)
-                        .reshape(shape)?
-                        .into_py_any(py)?,
-                )
+        let derivatives = self.with(py, |passes| {
+            if !passes.differentiate(strokes, softness, behind, d_canvas) {
+                return None;
             }
-            (None, Some(_)) => Some(PyArray1::from_slice(py, &numbers.backdrop).into_py_any(py)?),
-            (None, None) => None,
+            let by_background = match behind {
+                Some(Behind::Picture(_)) => passes.through(strokes, softness, d_canvas),
+                Some(Behind::Color(_)) => passes.gradients.backdrop.to_vec(),
+                None => Vec::new(),
+            };
+            Some((marks.unpack(&passes.gradients.strokes), by_background))
+        })?;
+        let (by_marks, by_background) = derivatives.ok_or_else(|| not_finite("d_canvas"))?;
+        let by_background = PyArray1::from_vec(py, by_background);
+        let by_background = match behind {
+            Some(Behind::Picture(_)) => {
+                let picture = by_background.reshape([grid.height, grid.width, 3])?;
+                Some(picture.into_py_any(py)?)
+            }
+            Some(Behind::Color(_)) => Some(by_background.into_py_any(py)?),
+            None => None,
         };
-        self.with(py, |passes| passes.gradients = numbers)?;
-        Ok((by_marks, by_background))
+        Ok((by_marks.arrays(py)?, by_background))
     }
 
     /// For each mark, by how much the sum of squares of `error` = canvas − target grows when the mark is left out.
@@ -282,21 +275,23 @@ impl Passes {
             let white = on_white.get_or_insert_with(|| canvas.clone());
             renderer.forward(strokes, softness, BLACK, canvas);
             renderer.forward(strokes, softness, WHITE, white);
-            return write(grid, samples, |tile, block, lane| {
-                let [red, green, blue] = canvas.tiles()[tile][block].map(|values| values.0[lane]);
-                [
-                    red,
-                    green,
-                    blue,
-                    1.0 - (white.tiles()[tile][block][0].0[lane] - red),
-                ]
+            return write(grid, samples, |tile, block, lanes, out| {
+                let black = runs(&canvas.tiles()[tile][block], lanes.clone());
+                let white = &white.tiles()[tile][block][0].0[lanes];
+                let pixels = black.zip(white);
+                for (out, ([red, green, blue], on_white)) in out.iter_mut().zip(pixels) {
+                    *out = [red, green, blue, 1.0 - (on_white - red)];
+                }
             });
         };
         behind.with(grid, |backdrop| {
             renderer.forward(strokes, softness, backdrop, canvas)
         });
-        write(grid, samples, |tile, block, lane| {
-            canvas.tiles()[tile][block].map(|values| values.0[lane])
+        write(grid, samples, |tile, block, lanes, out| {
+            let pixels = runs(&canvas.tiles()[tile][block], lanes);
+            out.iter_mut()
+                .zip(pixels)
+                .for_each(|(out, pixel)| *out = pixel);
         });
     }
 
@@ -357,6 +352,13 @@ impl Passes {
     }
 }
 
+/// The colours of some lanes of a block.
+fn runs(block: &BlockRgb, lanes: Range<usize>) -> impl Iterator<Item = [f32; 3]> {
+    let [red, green, blue] = block.each_ref().map(|channel| &channel.0[lanes.clone()]);
+    let pixels = red.iter().zip(green).zip(blue);
+    pixels.map(|((&red, &green), &blue)| [red, green, blue])
+}
+
 /// A loss of which the derivatives are given, `N` for each pixel, of which `take` makes three.
 struct Given<'a, const N: usize, F> {
     grid: Grid,
@@ -396,23 +398,24 @@ impl<const N: usize, F: Fn(&[f32; N]) -> [f32; 3] + Sync> CanvasLoss for Given<'
                 .iter_mut()
                 .for_each(|lanes| lanes.0.fill(0.0));
         }
-        // 0 times a number is 0, and NaN if the number is not finite.
-        let mut zeros = [0.0; 3];
-        for Run {
-            block,
-            lanes,
-            first,
-        } in self.grid.runs(tile)
-        {
-            for (lane, pixel) in lanes.zip(&self.pixels[first..]) {
+        // 0 times a number is 0, and NaN if the number is not finite. Sums side by side, so that none waits for the last.
+        let mut zeros = [[0.0; 3]; 4];
+        self.grid.runs(tile).for_each(|run| {
+            let [red, green, blue] = &mut gradient[run.block];
+            let red = &mut red.0[run.lanes.clone()];
+            let green = &mut green.0[run.lanes.clone()];
+            let blue = &mut blue.0[run.lanes];
+            let lanes = red.iter_mut().zip(green).zip(blue).zip(&mut zeros);
+            let pixels = self.pixels[run.first..].iter().zip(lanes);
+            for (pixel, (((red, green), blue), zeros)) in pixels {
                 let values = (self.take)(pixel);
-                for channel in 0..3 {
-                    gradient[block][channel].0[lane] = values[channel];
-                    zeros[channel] += 0.0 * values[channel];
+                [*red, *green, *blue] = values;
+                for (zero, value) in zeros.iter_mut().zip(values) {
+                    *zero += 0.0 * value;
                 }
             }
-        }
-        if zeros != [0.0; 3] {
+        });
+        if zeros != [[0.0; 3]; 4] {
             self.is_finite.store(false, Ordering::Relaxed);
         }
         if let Some(error) = error {
@@ -422,27 +425,25 @@ impl<const N: usize, F: Fn(&[f32; N]) -> [f32; 3] + Sync> CanvasLoss for Given<'
     }
 }
 
-/// Writes `N` samples for each pixel, row by row.
+/// Writes `N` samples for each pixel, row by row. `run` writes those of some lanes of a block of a tile.
 fn write<const N: usize>(
     grid: Grid,
     samples: &mut [f32],
-    pixel: impl Fn(usize, usize, usize) -> [f32; N] + Sync,
+    run: impl Fn(usize, usize, Range<usize>, &mut [[f32; N]]) + Sync,
 ) {
     let band = TILE * grid.width;
     let bands = samples.as_chunks_mut().0.par_chunks_mut(band);
-    bands.enumerate().for_each(|(row, pixels)| {
+    bands.enumerate().for_each(|(row, out)| {
         for tile in row * grid.columns..(row + 1) * grid.columns {
-            for Run {
-                block,
-                lanes,
-                first,
-            } in grid.runs(tile)
-            {
-                let run = &mut pixels[first - row * band..];
-                for (lane, out) in lanes.zip(run) {
-                    *out = pixel(tile, block, lane);
-                }
-            }
+            grid.runs(tile).for_each(
+                |Run {
+                     block,
+                     lanes,
+                     first,
+                 }| {
+                    run(tile, block, lanes, &mut out[first - row * band..]);
+                },
+            );
         }
     });
 }

@@ -98,8 +98,12 @@ class Page:
 class Renderer:
     def __new__(cls, width: int, height: int, threads: Optional[int]) -> Renderer: ...
     def render(
-        self, marks: PackedMarks, edge: Edge, background: Union[_Color, NDArray[np.float32], None]
-    ) -> NDArray[np.float32]: ...
+        self,
+        marks: PackedMarks,
+        edge: Edge,
+        background: Union[_Color, NDArray[np.float32], None],
+        out: NDArray[np.float32],
+    ) -> None: ...
     def backward(
         self,
         marks: PackedMarks,

@@ -190,7 +190,9 @@ class Renderer(_Renders):
         return _native.PackedMarks(marks)
 
     def _render(self, packed: Any, behind: Any, edge: _native.Edge) -> NDArray[Any]:
-        return self._native.render(packed, edge, behind)
+        canvas = np.empty((self.height, self.width, 4 if behind is None else 3), np.float32)
+        self._native.render(packed, edge, behind, canvas)
+        return canvas
 
     def _backward(self, packed: Any, behind: Any, edge: _native.Edge, d_canvas: NDArray[Any]) -> _AllGradients:
         return self._native.backward(packed, edge, behind, np.ascontiguousarray(d_canvas))
