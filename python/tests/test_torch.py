@@ -159,8 +159,31 @@ def test_a_compiled_function_leaves_its_graph_for_it() -> None:
         assert torch.allclose(got, expected)
 
 
+class Elsewhere:
+    """As much of a tensor on another device as is used to copy it."""
+
+    device = torch.device("cuda", 0)
+
+    def detach(self) -> Elsewhere:
+        return self
+
+    def cpu(self) -> Any:
+        return torch.ones(3)
+
+
+def test_copies_from_another_device_are_said_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    module = pytest.importorskip("strokefit.torch")
+    monkeypatch.setattr(module, "_told_of_devices", False)
+    with pytest.warns(UserWarning, match="strokefit renders on the CPU: tensors on cuda:0 are copied"):
+        module._array(Elsewhere())
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert module._array(Elsewhere()).tolist() == [1, 1, 1]
+
+
 @pytest.mark.skipif(not torch.cuda.is_available(), reason="there is no CUDA device")
-def test_tensors_of_another_device_are_copied_and_this_is_said_once() -> None:
+def test_tensors_on_a_gpu_come_back_there(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pytest.importorskip("strokefit.torch"), "_told_of_devices", False)
     marked = small(torch.float32)
     there = [tensor.detach().cuda().requires_grad_() for tensor in marked]
     with pytest.warns(UserWarning, match="strokefit renders on the CPU: tensors on cuda:0 are copied"):
