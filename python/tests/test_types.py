@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 from pathlib import Path
-from typing import TYPE_CHECKING, Optional
+from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +34,12 @@ def test_results_have_the_types_that_are_declared(tmp_path: Path) -> None:
         assert_type(drawing.strokes.widths, NDArray[np.float32])
         assert_type(drawing.to_numpy(2), NDArray[np.uint8])
         assert_type(strokefit.judge(drawing, picture), strokefit.Fidelity)
+        assert_type(drawing.scene, strokefit.Scene)
+        assert_type(drawing.scene.to_svg(), str)
+        assert_type(drawing.scene.marks.starts, NDArray[np.int64])
+        renderer = strokefit.Renderer(24, 16, softness=1.0)
+        assert_type(renderer.render(drawing.scene.marks, drawing.scene.background), NDArray[Any])
+        assert_type(renderer.backward(np.zeros((16, 24, 3), np.float32)), strokefit.Gradients)
     assert isinstance(drawing.strokes[0].width, float)
     assert isinstance(drawing.report["fidelity"]["ssim"], float)
 
