@@ -105,8 +105,8 @@ def main(folder: Path) -> None:
     for path in sorted(folder.glob("*.json"), key=lambda path: path.stat().st_mtime):
         case = Case(path)
         jobs = [case.numpy(), case.torch(False), case.torch(True)]
-        # In turns, so that other load slows all alike.
-        rounds = [[times_ms(job, 1)[0] for job in jobs] for _ in range(ROUNDS)]
+        # In turns, so that other load slows all alike; each of them some times in a row, as in a descent.
+        rounds = [[min(times_ms(job, 10)) for job in jobs] for _ in range(ROUNDS // 4)]
         array, tensor, loss = (min(column) for column in zip(*rounds))
         print(
             f"{path.stem:18} {case.rust_ms:6.3f} {case.fused_ms:6.3f} {array:7.3f}  {tensor:7.3f}  {loss:11.3f} "
