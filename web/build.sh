@@ -36,7 +36,7 @@ page() {
     mkdir -p web/dist/strokefit
     cp web/page/* "$shared"/{page.css,viewer.js,chart.js,choice.js,picture.js} web/dist
     sed -i -e "/<!-- viewer.html -->/{r $shared/viewer.html" -e 'd}' web/dist/index.html
-    cp web/pkg/{api.js,browser.js,wasm.js,wasm_bg.wasm} web/dist/strokefit
+    cp web/pkg/{api.js,browser.js,gradients.js,wasm.js,wasm_bg.wasm} web/dist/strokefit
     cp samples/coffee-300.png web/dist/sample.png
     headers >web/dist/_headers
     keep_offline

@@ -1,6 +1,9 @@
 // What the package offers, over what the WebAssembly exports; strokefit.d.ts describes it.
 
-import load, { Target, __wbg_reset_state, animate as animateText, fit as fitTarget, lastPanic } from "./wasm.js";
+import { Renderer, checkedSize } from "./gradients.js";
+import load, {
+  Renderer as NativeRenderer, Target, __wbg_reset_state, animate as animateText, fit as fitTarget, lastPanic,
+} from "./wasm.js";
 
 // The functions of the package. `locate` says what to load: an address, bytes, or a module that is compiled already.
 export function connect(locate) {
@@ -21,7 +24,13 @@ export function connect(locate) {
     await init();
     return guarded(() => animateText(svg));
   };
-  return { init, fit, fitPng, animate };
+  const renderer = async (width, height, { softness = 1.2, coverage = "smoothstep" } = {}) => {
+    checkedSize(width, height, softness);
+    await init();
+    const native = guarded(() => new NativeRenderer(width, height, coverage, softness));
+    return new Renderer(native, width, height, guarded);
+  };
+  return { init, fit, fitPng, animate, renderer };
 }
 
 function draw(read, options = {}, onProgress) {

@@ -140,5 +140,60 @@ export function fitPng(png: Uint8Array | ArrayBuffer, options?: Options, onProgr
 /** An SVG that draws itself, from the text of a drawing by strokefit. */
 export function animate(svg: string): Promise<string>;
 
+/** Numbers in a row. */
+export type Numbers = readonly number[] | Float32Array | Float64Array | Int32Array | Uint32Array;
+
+/** Strokes and areas as flat arrays, back to front: n marks of m points. */
+export interface Marks {
+  /** x, y of each point, px: 2m numbers. */
+  points: Numbers;
+  /** n + 1 numbers: mark i has the points from `starts[i]` to `starts[i + 1]`, the last not included. */
+  starts: Numbers;
+  /** n widths, px. That of an area has no effect. */
+  widths: Numbers;
+  /** Red, green and blue of each mark, 0 to 1: 3n numbers. */
+  colors: Numbers;
+  /** n, 0 to 1. */
+  opacities: Numbers;
+  /** m: whether a point is on its path, and no control point. All are, if it is left out. */
+  onPath?: readonly boolean[] | Uint8Array;
+  /** n: whether the last point is joined to the first. None is, if it is left out. */
+  closed?: readonly boolean[] | Uint8Array;
+  /** n: whether the mark is an area. None is, if it is left out. */
+  filled?: readonly boolean[] | Uint8Array;
+  /** The points, after the first of an area, at which another of its rings begins. */
+  rings?: Numbers;
+}
+
+/** Derivatives of a loss, each in the order of what it is the derivative by. */
+export interface Gradients {
+  points: Float32Array;
+  widths: Float32Array;
+  colors: Float32Array;
+  opacities: Float32Array;
+  /** By red, green and blue of the background. */
+  background: Float32Array;
+}
+
+/** Renders marks, and differentiates losses of the picture by all that was drawn. */
+export interface Renderer {
+  readonly width: number;
+  readonly height: number;
+  /** The picture: red, green and blue of each pixel, row by row. The background is white if it is left out. */
+  render(marks: Marks, background?: Numbers): Float32Array;
+  /** The derivatives by all that was drawn last, from the derivatives by the picture. These count to a ten-millionth of the largest. */
+  backward(dCanvas: Numbers): Gradients;
+  /** Gives its memory back. */
+  free(): void;
+}
+
+/** A renderer for pictures of `width` × `height` px, for losses of one's own. `softness` is the width of the soft edge, 1.2 px if it
+ * is left out; `coverage` is `smoothstep`, `sigmoid`, `tanh`, `atan`, `atan:K` or `raw`. */
+export function renderer(
+  width: number,
+  height: number,
+  options?: { softness?: number; coverage?: string },
+): Promise<Renderer>;
+
 /** Loads the WebAssembly, which else the first call does: from another place, or a module that is compiled already. */
 export function init(source?: URL | string | WebAssembly.Module): Promise<void>;

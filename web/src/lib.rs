@@ -4,6 +4,7 @@
 
 mod observed;
 mod options;
+mod renderer;
 mod target;
 
 use std::cell::RefCell;
@@ -20,6 +21,7 @@ use observed::{Observed, scene_json};
 
 pub use observed::Watcher;
 pub use options::Options;
+pub use renderer::Renderer;
 pub use target::Target;
 
 /// A finished drawing.

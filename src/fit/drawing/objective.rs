@@ -3,7 +3,10 @@
 use rayon::prelude::*;
 
 use crate::loss::Loss;
-use crate::render::{Canvas, CanvasLoss, Lanes, TILE, TileRgb, multiply};
+use crate::render::{
+    Backdrop, Canvas, CanvasLoss, Gradients, Lanes, Renderer, Softness, Strokes, TILE, TileRgb,
+    multiply,
+};
 
 /// The mean of `loss` over width·height·3 values against `target`.
 #[derive(Debug, Clone, Copy)]
@@ -76,6 +79,19 @@ impl<'a> Objective<'a> {
             error_weights: None,
             scale: 1.0 / (grid.width * grid.height * 3) as f32,
         }
+    }
+
+    /// [`Renderer::backward`] for this objective, which is compiled here alone: another crate would have the kernels twice.
+    #[doc(hidden)]
+    pub fn backward(
+        &self,
+        renderer: &mut Renderer,
+        strokes: &Strokes,
+        softness: Softness,
+        backdrop: Backdrop<'_>,
+        gradients: &mut Gradients,
+    ) {
+        renderer.backward(strokes, softness, backdrop, self, gradients);
     }
 
     /// The squared error against `target`, whose `moments` may be known.
