@@ -49,6 +49,7 @@
 //! math  rng                       points, draws by counter
 //! sdf  coverage  scene  image     distances, soft edges, drawings, pictures
 //! metrics  loss  optim            measures, losses, optimisers
+//! damage                          picture → the picture that is meant
 //! render                          marks → canvas, ∂L/∂canvas → ∂L/∂marks, worth
 //! seed                            residual → candidates, ranked by gain in closed form
 //! trace                           residual → areas, and strokes along the lines that are seen
@@ -179,6 +180,7 @@ pub mod cli;
 #[doc(hidden)]
 pub mod clock;
 pub mod coverage;
+pub mod damage;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod engines;

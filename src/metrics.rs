@@ -3,9 +3,12 @@
 //! All measures are over 8-bit RGB, as a viewer shows it: both pictures are first flattened onto a white matte and
 //! rounded. Errors are in channel values 0..1, averaged over pixels and channels.
 
+mod details;
+mod fineness;
 mod patch;
 mod similarity;
 mod ssimulacra2;
+mod window;
 
 use std::borrow::Cow;
 
@@ -16,6 +19,9 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::image::{Image, level};
 use crate::math;
 use crate::scene::Rgb;
+pub(crate) use details::Details;
+pub(crate) use fineness::fine_share;
+pub(crate) use window::average;
 
 const WHITE: Rgb = [1.0; 3];
 const CHANNELS: usize = 3;
@@ -39,6 +45,10 @@ pub struct Quality {
     pub l1: f64,
     /// Fidelity as people see it, 100 for equal pictures; see [`fn@ssimulacra2`].
     pub ssimulacra2: f64,
+    /// Share of small things, such as letters, dots and thin lines, that have at least half of their contrast; `None` if the
+    /// reference has none of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub details_kept: Option<f64>,
 }
 
 impl Quality {
@@ -57,6 +67,7 @@ impl Quality {
             mse,
             l1: sums.l1(),
             ssimulacra2: ssimulacra2::score(&a, &b, reference.width()),
+            details_kept: Details::of(reference).kept(picture),
         })
     }
 }
@@ -360,6 +371,7 @@ mod tests {
         assert_eq!(
             quality,
             Quality {
+                details_kept: None,
                 psnr_db: f64::INFINITY,
                 ssim: 1.0,
                 mse: 0.0,
@@ -381,6 +393,7 @@ mod tests {
     #[test]
     fn infinity_is_null_in_json_and_comes_back() {
         let quality = Quality {
+            details_kept: None,
             psnr_db: f64::INFINITY,
             ssim: 1.0,
             mse: 0.0,

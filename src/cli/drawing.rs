@@ -42,6 +42,8 @@ const OPTIONS: [(&str, &str); 3] = [
     * areas: Areas alone, for cutters
 --progressive
     Fit each layer for the layers below it only. The drawing is good after every layer, and some dB worse in the end
+--literal
+    Draw noise, traces of JPEG and other damage of the picture as they are
 --opaque
     Use opaque strokes only. They are easier to edit and cost some dB
 --look LOOK
@@ -98,7 +100,8 @@ const OPTIONS: [(&str, &str); 3] = [
 ];
 
 /// The switches, with the option that each sets and its value.
-const SWITCHES: [(&str, &str, Value<'_>); 4] = [
+const SWITCHES: [(&str, &str, Value<'_>); 5] = [
+    ("literal", "literal", Value::Switch(true)),
     ("progressive", "progressive", Value::Switch(true)),
     ("opaque", "opaque", Value::Switch(true)),
     ("no-polish", "polish", Value::Switch(false)),

@@ -62,6 +62,12 @@ impl Job<'_> {
         self.foretell(&picture, verbosity);
         let bar = FitBar::new(verbosity.quiet, heading);
         let fit = self.watched(&picture, start, events, bar, verbosity, draw)?;
+        if let Some(damage) = fit.damage {
+            let name = input::name(self.input);
+            verbosity.say(format_args!(
+                "{name}: left out, as damage: {damage} (--literal draws it)"
+            ));
+        }
         tell_dropped(fit.dropped, verbosity);
         tell_reduced(&fit.scene, input::name(self.input), verbosity);
         let judged = Judged::new(fit)?;
@@ -71,7 +77,10 @@ impl Job<'_> {
             wall: start.elapsed(),
         };
         let record = FitReport {
-            input,
+            input: Input {
+                damage: drawn.judged.fit.damage,
+                ..input
+            },
             ..self.record(&drawn)
         };
         if let Some((_, output)) = &outputs.report {

@@ -28,6 +28,8 @@ pub struct Config {
     pub progressive: bool,
     /// The kinds of marks of the drawing.
     pub marks: Marks,
+    /// True if damage of the picture, such as noise, is drawn as it is.
+    pub literal: bool,
     /// Which errors count; `None` for [`ErrorWeighting::Exact`] where a fidelity is asked for, which is about exact errors, and for
     /// [`ErrorWeighting::Eye`] elsewhere.
     pub look: Option<ErrorWeighting>,
@@ -63,6 +65,7 @@ impl Default for Config {
             preset: Preset::default(),
             progressive: false,
             marks: Marks::default(),
+            literal: false,
             look: None,
             opaque: false,
             coverage: CoverageSchedule::default(),

@@ -42,6 +42,8 @@ pub struct Fitter<'a> {
     pub(super) grace: Duration,
     /// Size of the picture, px, if a reduced one is drawn.
     pub(super) page: Option<[u32; 2]>,
+    /// How far the picture may be from what it means, RMS in levels of 8 bits.
+    pub(super) doubt: f32,
 }
 
 impl<'a> Fitter<'a> {
@@ -58,6 +60,7 @@ impl<'a> Fitter<'a> {
             since: None,
             grace: Duration::ZERO,
             page: None,
+            doubt: 0.0,
         }
     }
 

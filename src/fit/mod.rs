@@ -57,9 +57,9 @@ pub use drawing::objective::Objective;
 pub use fitter::Fitter;
 pub use options::{MAX_THREADS, OPTIONS, Options, Refusal, Value};
 pub use recipe::{
-    AdamSettings, BackgroundChoice, Correction, Domain, EdgeShape, Joins, Masking, Nudging, Pens,
-    Points, Polish, Preset, Rates, Recipe, Recoloring, Reduction, Relocation, Rounds,
-    SCREEN_PIXELS, Settling, ShadeChoice, Sharing, Stages, TimeShares,
+    AdamSettings, BackgroundChoice, Correction, Domain, Doubts, EdgeShape, Joins, Masking, Nudging,
+    Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Reduction, Relocation, Rounds,
+    SCREEN_PIXELS, Settling, ShadeChoice, Sharing, SmallThings, Stages, TimeShares,
 };
 pub use result::{Fit, StageRecord, Stop};
 pub use run::checkpoint::Checkpoint;
@@ -68,6 +68,7 @@ pub use simd::Simd;
 pub use widths::Widths;
 
 use crate::clock::Instant;
+use crate::damage::{self, Meant};
 use crate::error::Result;
 use crate::image::Image;
 use budget::price::Price;
@@ -91,6 +92,32 @@ impl Fitter<'_> {
     pub fn fit(mut self, picture: &Image) -> Result<Fit> {
         let since = self.since.unwrap_or_else(Instant::now);
         self.prepare(picture)?;
+        let meant = self.meant(picture)?;
+        let mut fit = self.fit_meant(
+            meant.as_ref().map_or(picture, |meant| &meant.picture),
+            since,
+        )?;
+        if let Some(meant) = meant {
+            // The drawing is judged by the picture that was given.
+            fit.target = picture.reduced(fit.target.width(), fit.target.height());
+            fit.damage = Some(meant.damage);
+        }
+        Ok(fit)
+    }
+
+    /// The picture that `picture` is meant to be, if that is another and damage is not to be drawn. A fidelity is asked for of
+    /// all that is in a picture.
+    fn meant(&mut self, picture: &Image) -> Result<Option<Meant>> {
+        if self.config.literal || self.config.budget.psnr_db.is_some() {
+            return Ok(None);
+        }
+        let meant = damage::meant(picture)?;
+        self.doubt = meant.as_ref().map_or(0.0, |meant| meant.damage.doubt());
+        Ok(meant)
+    }
+
+    /// Draws the picture that is meant.
+    fn fit_meant(mut self, picture: &Image, since: Instant) -> Result<Fit> {
         let reduced = self.reduce(picture);
         let picture = reduced.as_ref().unwrap_or(picture);
         let rivals = self.rivals(picture);
@@ -103,7 +130,7 @@ impl Fitter<'_> {
         let competes = competes || by_strokes.is_some();
         let price = Price::of(
             &self.config,
-            &self.config.recipe().points,
+            &self.recipe(),
             picture.width() * picture.height(),
         );
         let mut drawn = self.draw(picture, since, competes)?;
@@ -160,14 +187,21 @@ impl Fitter<'_> {
             execution: self.execution,
             focus: self.focus.clone(),
             page: self.page,
+            doubt: self.doubt,
             token: self.token.clone(),
             ..Fitter::new(config)
         }
     }
 
+    /// The recipe for the picture, which may be in doubt.
+    fn recipe(&self) -> Recipe {
+        self.config.recipe().in_doubt(self.doubt)
+    }
+
     /// Draws `picture` once, by a configuration that was checked. A drawing that `competes` with others has a file to be
     /// compared by.
-    fn draw(self, picture: &Image, since: Instant, competes: bool) -> Result<Drawn> {
+    fn draw(mut self, picture: &Image, since: Instant, competes: bool) -> Result<Drawn> {
+        self.config.recipe = Some(self.recipe());
         let (config, base, focus, page) = (&self.config, self.base.as_ref(), self.focus, self.page);
         let level = self.execution.simd.require()?;
         let mut nobody = ();

@@ -10,7 +10,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::scene::{MAX_POINTS, MAX_PRECISION};
 
 /// The names of all options, for a message.
-pub const OPTIONS: &str = "strokes, psnr, bytes, time, quality, preset, marks, progressive, look, opaque, coverage, points, stages, polish, \
+pub const OPTIONS: &str = "strokes, psnr, bytes, time, quality, preset, marks, progressive, literal, look, opaque, coverage, points, stages, polish, \
     background, seed, colors, palette, pens, form, group, order, precision, width, threads, simd";
 
 /// Most worker threads: more than any machine has cores only waste memory.
@@ -72,6 +72,7 @@ impl Options {
             "preset" => config.preset = value.word()?,
             "progressive" => config.progressive = value.switch()?,
             "marks" => config.marks = value.word()?,
+            "literal" => config.literal = value.switch()?,
             "look" => config.look = Some(value.word()?),
             "opaque" => config.opaque = value.switch()?,
             "coverage" => config.coverage = value.word()?,

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::base::Base;
 use super::drawing::focus::Focus;
+use crate::damage::Damage;
 use crate::image::Image;
 use crate::scene::{Dropped, Scene};
 use crate::svg::WriteOptions;
@@ -23,6 +24,8 @@ pub struct Fit {
     pub file: WriteOptions,
     /// The target: the picture with its alpha, or flattened onto the background.
     pub target: Image,
+    /// What the picture has been through, if that was recognised: the drawing is then of the picture that is meant.
+    pub damage: Option<Damage>,
     /// Our own render of `scene` with the edge of a finished drawing; with alpha if the drawing has no
     /// background and the picture has alpha.
     pub soft: Image,

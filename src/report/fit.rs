@@ -175,7 +175,10 @@ impl FitReport {
         let strokes = fit.scene.len();
         Self {
             schema: SCHEMA,
-            input: Input::new(run.input, &fit.target),
+            input: Input {
+                damage: fit.damage,
+                ..Input::new(run.input, &fit.target)
+            },
             strokes,
             areas: fit.scene.areas().count(),
             points: fit.scene.points(),
@@ -219,6 +222,7 @@ mod tests {
 
     fn report() -> FitReport {
         let quality = Quality {
+            details_kept: None,
             psnr_db: f64::INFINITY,
             ssim: 1.0,
             mse: 0.0,
@@ -236,6 +240,7 @@ mod tests {
         FitReport {
             schema: SCHEMA,
             input: Input {
+                damage: None,
                 path: "a.png".into(),
                 width: 4,
                 height: 3,

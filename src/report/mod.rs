@@ -17,6 +17,7 @@ mod usage;
 
 use serde::{Deserialize, Serialize};
 
+use crate::damage::Damage;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::{Image, Remark};
 
@@ -32,7 +33,7 @@ pub use usage::Usage;
 pub const SCHEMA: u32 = 1;
 
 /// A picture that was read.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Input {
     /// As it was named; `-` for standard input.
     pub path: String,
@@ -43,6 +44,9 @@ pub struct Input {
     /// Changes and omissions in reading it, in words.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub remarks: Vec<String>,
+    /// What it has been through, if its drawing leaves that out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub damage: Option<Damage>,
 }
 
 impl Input {
@@ -53,6 +57,7 @@ impl Input {
             width: image.width(),
             height: image.height(),
             remarks: Vec::new(),
+            damage: None,
         }
     }
 

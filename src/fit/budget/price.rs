@@ -2,7 +2,7 @@
 
 use crate::fit::config::{Config, DEFAULT_QUALITY};
 use crate::fit::drawing::Drawing;
-use crate::fit::recipe::Points;
+use crate::fit::recipe::Recipe;
 use crate::math;
 use crate::render::{Params, StrokeRef, Strokes};
 use crate::scene::Mark;
@@ -43,14 +43,20 @@ impl Price {
     }
 
     /// The price of what `config` draws of a picture of `pixels` pixels: that of its quality, or of a fidelity, to be met by few
-    /// strokes of not too many points, as the recipe for `points` says.
-    pub(in crate::fit) fn of(config: &Config, points: &Points, pixels: usize) -> Self {
+    /// strokes of not too many points, as the recipe says. Damage takes from the quality, unless the user has set that.
+    pub(in crate::fit) fn of(config: &Config, recipe: &Recipe, pixels: usize) -> Self {
+        let points = &recipe.points;
+        let lost_db = if config.quality.is_none() {
+            recipe.doubts.lost_db
+        } else {
+            0.0
+        };
         let wanted_db = config.budget.psnr_db.map(|db| db + points.beyond_db);
         let price = match config.quality_for(pixels) {
             // A large picture has a lower price for each pixel, but people see as well what is wrong with it.
             Some(quality) => Self {
-                wanted_mse: mse(config.quality.unwrap_or(DEFAULT_QUALITY)),
-                ..Self::new(Some(quality), config.file)
+                wanted_mse: mse(config.quality.unwrap_or(DEFAULT_QUALITY) - lost_db),
+                ..Self::new(Some(quality - lost_db), config.file)
             },
             None => Self {
                 of_strokes: points.stroke_price,

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use crate::fit::config::{Budget, Config};
 use crate::fit::recipe::Reduction;
 use crate::image::Image;
-use crate::metrics::psnr_db;
+use crate::metrics::{self, psnr_db};
 
 /// Width and height to which `picture` is reduced before it is drawn by `config`; `None` if all of its pixels count.
 pub(in crate::fit) fn size(picture: &Image, config: &Config) -> Option<[usize; 2]> {
@@ -18,9 +18,13 @@ pub(in crate::fit) fn size(picture: &Image, config: &Config) -> Option<[usize; 2
     let counted = counted(config, &recipe);
     let enough = counted.max(recipe.enough_pixels);
     // Pens given in px are those of the picture.
-    if config.pens.is_some()
-        || all as f64 <= enough as f64 * recipe.least_factor * recipe.least_factor
-    {
+    if config.pens.is_some() {
+        return None;
+    }
+    if is_soft(picture, config, &recipe) && all / 4 >= counted {
+        return Some([picture.width().div_ceil(2), picture.height().div_ceil(2)]);
+    }
+    if all as f64 <= enough as f64 * recipe.least_factor * recipe.least_factor {
         return None;
     }
     let mut factor = 1.0;
@@ -68,6 +72,16 @@ fn shows_no_more(loss_db: f64, picture: &Image, config: &Config, recipe: &Reduct
     let is_for_screen = config.budget.psnr_db.is_none() && config.quality.is_none();
     let is_photograph = || flat_share(picture, recipe.one_color) < recipe.flat_share;
     is_for_screen && (loss_db >= recipe.nearly_same_db || is_photograph())
+}
+
+/// True if a picture of few pixels is soft, as one that was enlarged is, so that its half has all of its detail.
+fn is_soft(picture: &Image, config: &Config, recipe: &Reduction) -> bool {
+    let is_small = pixels(picture) / 4 < recipe.least_pixels;
+    let least = picture.width().min(picture.height());
+    is_small
+        && config.budget.psnr_db.is_none()
+        && least >= recipe.least_soft_side
+        && metrics::fine_share(picture).is_some_and(|share| share < recipe.soft)
 }
 
 /// The mean squared error of `half`, enlarged linearly, against `picture`.

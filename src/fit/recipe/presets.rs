@@ -1,9 +1,10 @@
 //! The numbers of the presets.
 
 use super::{
-    AdamSettings, BackgroundChoice, Correction, Dense, Domain, EdgeShape, Jitter, Joins, Masking,
-    Nudging, Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Reduction, Relocation,
-    Rounds, SCREEN_PIXELS, Settling, ShadeChoice, Sharing, Stages, TimeShares,
+    AdamSettings, BackgroundChoice, Correction, Dense, Domain, Doubts, EdgeShape, Jitter, Joins,
+    Masking, Nudging, Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Reduction,
+    Relocation, Rounds, SCREEN_PIXELS, Settling, ShadeChoice, Sharing, SmallThings, Stages,
+    TimeShares,
 };
 use crate::optim::AdamParams;
 use crate::seed::Probing;
@@ -281,6 +282,11 @@ const BALANCED: Recipe = Recipe {
         off_page: 0.1,
         thin: 1.0,
     },
+    details: SmallThings {
+        gain: 2.0,
+        contrast: 0.375,
+        most: 3.0,
+    },
     masking: Masking {
         window: 6,
         contrast: 0.04,
@@ -353,9 +359,18 @@ const BALANCED: Recipe = Recipe {
         nearly_same_db: 36.0,
         flat_share: 0.6,
         one_color: 4.0 / 255.0,
+        soft: 0.12,
+        least_soft_side: 200,
         least_factor: 1.4,
     },
     rivals: 64,
+    doubts: Doubts {
+        double: 2.5,
+        lost_db: 0.0,
+        apart: 2.0,
+        flat: 2.0,
+        exact: 1.0,
+    },
     time: TimeShares {
         stroke_px: 160.0,
         browser: 0.25,

@@ -80,6 +80,7 @@ pub(in crate::fit) fn finish(mut session: Session<'_>, compared: bool) -> Result
         stop: session.cut_by().unwrap_or(session.history.stop),
         stacking_db: session.history.stacking_db,
         target: session.target,
+        damage: None,
         stages,
         dropped: Dropped {
             non_finite: rounded.dropped.non_finite + session.drawing.counters.lost,

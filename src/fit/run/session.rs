@@ -14,6 +14,7 @@ use crate::fit::config::{Background, Colors, Config, ErrorWeighting};
 use crate::fit::descent::anneal::Annealing;
 use crate::fit::descent::{Course, Descent};
 use crate::fit::drawing::bounds::Bounds;
+use crate::fit::drawing::detail;
 use crate::fit::drawing::focus::Focus;
 use crate::fit::drawing::masking;
 use crate::fit::drawing::shading;
@@ -160,7 +161,7 @@ impl<'a> Session<'a> {
             target,
             annealing,
             limit: budget::max_strokes(config, limit, base, pixels),
-            price: Price::of(config, &recipe.points, pixels),
+            price: Price::of(config, &recipe, pixels),
             writer: Writer::of(config, base, page),
             drawing,
             history: History::new(
@@ -428,7 +429,7 @@ fn choose_background(
         && config.pens.is_none()
         && !(config.opaque && picture.alpha().is_some());
     let pixels = picture.width() * picture.height();
-    let price = Price::of(config, &recipe.points, pixels);
+    let price = Price::of(config, recipe, pixels);
     let choose = || shading::choose(picture, &recipe.background.shade, price.per_byte());
     let shade = may_be.then(choose).flatten();
     let background = match shade {
@@ -448,7 +449,8 @@ fn weights(
     match config.look() {
         ErrorWeighting::Exact => focus.cloned(),
         ErrorWeighting::Eye => {
-            let seen = masking::weights(target, recipe.masking);
+            let masked = masking::weights(target, recipe.masking);
+            let seen = masked.times(&detail::weights(target, recipe.details));
             Some(
                 focus
                     .into_iter()

@@ -219,6 +219,7 @@ pub(super) fn drawing(
         seed: Some(0),
         strokes: Some(100),
         fidelity: Some(Quality {
+            details_kept: None,
             psnr_db,
             ssim: 0.9,
             mse: strokefit::math::powf(10.0, -psnr_db / 10.0),

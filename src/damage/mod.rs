@@ -1,0 +1,185 @@
+//! Damage of pictures: what a picture has been through, and the picture that is meant.
+//!
+//! ```text
+//! labels     the colours of a picture that has few
+//! stairs     smooth borders, of which stairs are left for want of antialiasing
+//! dither     colours that are mixed pixel by pixel
+//! noise      how far pixels are from flat places, far from edges and beside them
+//! shrink     the picture without what noise explains
+//! chroma     colours that were kept at half the resolution, along the edges of luma
+//! clip       tones that noise was cut off from, at black and white
+//! light      uneven light on paper
+//! ```
+
+mod chroma;
+mod clip;
+mod cosine;
+mod dither;
+mod labels;
+mod light;
+mod noise;
+mod planes;
+mod recipe;
+mod shrink;
+mod stairs;
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::Result;
+use crate::image::Image;
+use labels::Labels;
+use noise::Noise;
+use planes::Planes;
+use recipe::{Dithering, Light, Noises, Restoration, Stairs};
+
+/// The picture that a damaged one is meant to be, and what has happened to it.
+#[derive(Debug, Clone)]
+pub struct Meant {
+    /// The picture without the damage.
+    pub picture: Image,
+    /// The damage.
+    pub damage: Damage,
+}
+
+/// What a picture has been through.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Damage {
+    /// True if its borders have stairs for want of antialiasing.
+    pub stairs: bool,
+    /// Share of its pixels in which colours are mixed from those of a palette.
+    pub dithering: f32,
+    /// RMS of noise far from edges, levels of luma of 8 bits.
+    pub noise: f32,
+    /// RMS of noise beside edges, as compression leaves it, levels of luma of 8 bits.
+    pub ringing: f32,
+    /// True if colours were kept at half the resolution.
+    pub halved_chroma: bool,
+    /// True if it is a page in uneven light.
+    pub uneven_light: bool,
+}
+
+impl Damage {
+    /// How far the picture that is meant may be from the truth, RMS in levels of 8 bits: noise goes, but for a part.
+    pub fn doubt(&self) -> f32 {
+        self.ringing.max(self.noise / 2.0)
+    }
+}
+
+impl fmt::Display for Damage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let share = 100.0 * self.dithering;
+        let parts = [
+            (self.stairs, "stairs for want of antialiasing".to_owned()),
+            (share > 0.0, format!("dithering on {share:.0} % of it")),
+            (
+                self.noise > 0.0,
+                format!("noise of {:.1} levels", self.noise),
+            ),
+            (
+                self.ringing > 0.0,
+                format!(
+                    "traces of compression of {:.1} levels beside edges",
+                    self.ringing
+                ),
+            ),
+            (
+                self.halved_chroma,
+                "colours at half the resolution".to_owned(),
+            ),
+            (self.uneven_light, "uneven light".to_owned()),
+        ];
+        let parts: Vec<String> = parts
+            .into_iter()
+            .filter(|(is, _)| *is)
+            .map(|(_, part)| part)
+            .collect();
+        f.write_str(&parts.join(", "))
+    }
+}
+
+/// The picture that `picture` is meant to be; `None` if it is not damaged, as far as can be told. A picture with alpha is taken as
+/// it is.
+///
+/// # Errors
+/// None in practice: a restored picture has the size of the given one and finite values.
+pub fn meant(picture: &Image) -> Result<Option<Meant>> {
+    if picture.alpha().is_some() {
+        return Ok(None);
+    }
+    if let Some(labels) = Labels::of(picture, Labels::MOST) {
+        return of_few_colors(picture, &labels);
+    }
+    let planes = Planes::of(picture);
+    match noise::measure(&planes, &Noises::MEASURED) {
+        Some(noise) => without_noise(picture, planes, &noise).map(Some),
+        None => Ok(None),
+    }
+}
+
+/// The picture that one of few colours is meant to be.
+fn of_few_colors(picture: &Image, labels: &Labels) -> Result<Option<Meant>> {
+    if let Some((picture, dithering)) = dither::mixed(picture, labels, &Dithering::MEASURED)? {
+        let damage = Damage {
+            dithering,
+            ..Damage::default()
+        };
+        return Ok(Some(Meant { picture, damage }));
+    }
+    let smoothed = stairs::smoothed(labels, &Stairs::MEASURED)?;
+    let damage = Damage {
+        stairs: true,
+        ..Damage::default()
+    };
+    Ok(smoothed.map(|picture| Meant { picture, damage }))
+}
+
+/// A picture without noise and, on paper, without shadows.
+fn without_noise(picture: &Image, mut planes: Planes, noise: &Noise) -> Result<Meant> {
+    let halved_chroma = chroma::is_halved(&planes);
+    shrunk(&mut planes, noise);
+    if halved_chroma {
+        let chromas = chroma::along_luma(&planes);
+        planes.planes[1..]
+            .iter_mut()
+            .zip(chromas)
+            .for_each(|(plane, chroma)| *plane = chroma);
+    }
+    let channels = clip::unclipped(picture, planes.image()?);
+    let mut picture = Image::new(planes.width, planes.height, channels)?;
+    // Only photographs of pages have both grain and shadows; a gradient is drawn.
+    let mut planes = Planes::of(&picture);
+    let uneven_light = noise.most() > 0.0 && light::evened(&mut planes, &Light::MEASURED);
+    if uneven_light {
+        picture = planes.image()?;
+    }
+    let damage = Damage {
+        noise: noise.most(),
+        ringing: noise.near,
+        halved_chroma,
+        uneven_light,
+        ..Damage::default()
+    };
+    Ok(Meant { picture, damage })
+}
+
+/// Leaves out what noise explains.
+fn shrunk(planes: &mut Planes, noise: &Noise) {
+    let recipe = Restoration::MEASURED;
+    let pixels = planes.width * planes.height;
+    let step = [1, 8]
+        .iter()
+        .filter(|larger| pixels > *larger * recipe.all_blocks)
+        .fold(1, |step, _| 2 * step);
+    let least = |luma: f32, range: f32| {
+        let far = recipe.far * noise.at(luma);
+        // A block without an edge may overlap one of JPEG that has one.
+        if range >= recipe.edge_range || far == 0.0 {
+            far.max(recipe.near * noise.near)
+        } else {
+            far
+        }
+    };
+    planes.planes = shrink::shrink(&planes.planes, planes.width, step, &least);
+}

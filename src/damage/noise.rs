@@ -1,0 +1,212 @@
+//! Noise: how far pixels are from the plane through their neighbours, in places that would be flat without it.
+
+use rayon::prelude::*;
+
+use super::cosine::SIDE;
+use super::planes::Planes;
+use super::recipe::Noises;
+
+/// Half the side of the window whose noise is measured, px.
+const HALF: usize = 2;
+
+/// Half the side of the window that may hold an edge, px: nine such windows cover it.
+const REACH: usize = 6;
+
+/// Ranges of luma whose noise is measured apart.
+const TONES: usize = 16;
+
+/// Noise of a picture, RMS in levels of luma.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Noise {
+    /// Far from edges, in each of 16 ranges of luma.
+    pub(super) far: [f32; TONES],
+    /// Beside edges.
+    pub(super) near: f32,
+}
+
+impl Noise {
+    /// The noise at a luma, levels, far from edges.
+    pub(super) fn at(&self, luma: f32) -> f32 {
+        let place = (luma * TONES as f32 / 256.0 - 0.5).clamp(0.0, (TONES - 1) as f32);
+        let first = (place as usize).min(TONES - 2);
+        let share = place - first as f32;
+        self.far[first] + share * (self.far[first + 1] - self.far[first])
+    }
+
+    /// The largest noise far from edges.
+    pub(super) fn most(&self) -> f32 {
+        self.far.iter().copied().fold(0.0, f32::max)
+    }
+}
+
+/// The window around a pixel.
+struct Site {
+    luma: f32,
+    /// RMS distance from the plane through the pixels of the window.
+    deviation: f32,
+    /// True if there is nothing but noise around.
+    is_far: bool,
+    /// True if the window is flat, and its block of JPEG has an edge.
+    is_near: bool,
+}
+
+/// The noise of a picture, if there is some; `None` as well where texture cannot be told from it.
+///
+/// White noise has about the same deviation everywhere; texture has not. Where flat places are clean but those beside
+/// edges are not, it is what compression or sharpening leaves there.
+pub(super) fn measure(planes: &Planes, recipe: &Noises) -> Option<Noise> {
+    let sites = sites(planes, recipe);
+    let count = sites.len();
+    let far = |site: &&Site| site.is_far;
+    let share = sites.iter().filter(far).count() as f32 / count as f32;
+    if share < recipe.least_far {
+        return None;
+    }
+    let far = sorted(sites.iter().filter(far));
+    let near = sorted(sites.iter().filter(|site| site.is_near));
+    let is_measured = near.len() as f32 > recipe.least_near * count as f32;
+    let beside = |share| {
+        if is_measured {
+            quantile(&near, share)
+        } else {
+            0.0
+        }
+    };
+    let (tones, ratio) = tones(&sites, recipe);
+    if (recipe.least..recipe.most).contains(&quantile(&far, 0.5)) && ratio <= recipe.most_uneven {
+        return Some(Noise {
+            far: filled(tones),
+            near: beside(0.5) / recipe.near_in_noise,
+        });
+    }
+    let is_clean = quantile(&far, 0.75) <= recipe.clean;
+    (is_clean && beside(0.3) >= recipe.least_beside).then(|| Noise {
+        far: [0.0; TONES],
+        near: beside(0.5),
+    })
+}
+
+/// The sites of a picture.
+fn sites(planes: &Planes, recipe: &Noises) -> Vec<Site> {
+    let (width, height) = (planes.width, planes.height);
+    if width <= 2 * REACH || height <= 2 * REACH {
+        return Vec::new();
+    }
+    let step = (width * height).div_ceil(recipe.most_sites).isqrt().max(1);
+    let rows: Vec<usize> = (REACH..height - REACH).step_by(step).collect();
+    let of_row = |&y: &usize| {
+        let columns = (REACH..width - REACH).step_by(step);
+        columns
+            .map(|x| site(planes, [x, y], recipe))
+            .collect::<Vec<_>>()
+    };
+    let sites: Vec<Vec<Site>> = rows.par_iter().map(of_row).collect();
+    sites.into_iter().flatten().collect()
+}
+
+/// The site at a pixel.
+fn site(planes: &Planes, [x, y]: [usize; 2], recipe: &Noises) -> Site {
+    let (luma, width) = (&planes.planes[0], planes.width);
+    let rows = |[x, y]: [usize; 2], side: usize| {
+        (y..y + side).map(move |row| &luma[row * width + x..row * width + x + side])
+    };
+    let window = |[x, y]: [usize; 2]| rows([x - HALF, y - HALF], 2 * HALF + 1);
+    let step = REACH - HALF;
+    let around = [y - step, y, y + step]
+        .into_iter()
+        .flat_map(|y| [x - step, x, x + step].map(|x| mean(window([x, y]))));
+    let block = [x, y].map(|at| at / SIDE * SIDE);
+    // A window within a block of JPEG.
+    let is_within = [x, y]
+        .iter()
+        .all(|at| (HALF..SIDE - HALF).contains(&(at % SIDE)));
+    let is_whole = block[0] + SIDE <= width && block[1] + SIDE <= planes.height;
+    let is_flat = || range(window([x, y]).flatten().copied()) <= recipe.near_range;
+    let has_edge = || range(rows(block, SIDE).flatten().copied()) >= recipe.edge_range;
+    Site {
+        luma: luma[y * width + x],
+        deviation: deviation(window([x, y])),
+        is_far: range(around) <= recipe.far_range,
+        is_near: is_within && is_whole && is_flat() && has_edge(),
+    }
+}
+
+/// The mean of the values of a window.
+fn mean<'a>(rows: impl Iterator<Item = &'a [f32]>) -> f32 {
+    rows.flatten().sum::<f32>() / (2 * HALF + 1).pow(2) as f32
+}
+
+/// The difference of the largest value and the least.
+fn range(values: impl Iterator<Item = f32>) -> f32 {
+    let [low, high] = values.fold([f32::MAX, f32::MIN], |[low, high], v| {
+        [low.min(v), high.max(v)]
+    });
+    high - low
+}
+
+/// RMS distance of the values of a window from the plane through them.
+fn deviation<'a>(rows: impl Iterator<Item = &'a [f32]>) -> f32 {
+    let side = 2 * HALF + 1;
+    let count = (side * side) as f32;
+    // The sum of the squares of all places, across or down.
+    let spread = (side * (1..=HALF).map(|k| 2 * k * k).sum::<usize>()) as f32;
+    let [mut sum, mut squares, mut across, mut down] = [0.0; 4];
+    let mut first = None;
+    for (y, row) in rows.enumerate() {
+        for (x, value) in row.iter().enumerate() {
+            // Relative to one of them, so that nothing is lost to rounding.
+            let value = value - *first.get_or_insert(*value);
+            sum += value;
+            squares += value * value;
+            across += (x as f32 - HALF as f32) * value;
+            down += (y as f32 - HALF as f32) * value;
+        }
+    }
+    let rest = squares - sum * sum / count - (across * across + down * down) / spread;
+    (rest.max(0.0) / (count - 3.0)).sqrt()
+}
+
+/// The noise of each tone that has enough far sites, and how uneven it is: the mean ratio of its upper to its lower quartile.
+fn tones(sites: &[Site], recipe: &Noises) -> ([Option<f32>; TONES], f32) {
+    let mut noises = [None; TONES];
+    let [mut ratios, mut counts] = [0.0; 2];
+    for (tone, noise) in noises.iter_mut().enumerate() {
+        let is_of_tone =
+            |site: &&Site| site.is_far && (site.luma as usize * TONES / 256).min(TONES - 1) == tone;
+        let values = sorted(sites.iter().filter(is_of_tone));
+        let count = values.len() as f32;
+        if count > recipe.least_tone * sites.len() as f32 {
+            let ratio = quantile(&values, 0.75) / quantile(&values, 0.25).max(0.1);
+            ratios += count * ratio;
+            counts += count;
+            *noise = Some(quantile(&values, 0.5)).filter(|_| ratio <= recipe.most_uneven);
+        }
+    }
+    (noises, ratios / counts.max(1.0))
+}
+
+/// The noise of all tones: one that was not measured has that of the nearest one that was, the darker of two.
+fn filled(tones: [Option<f32>; TONES]) -> [f32; TONES] {
+    std::array::from_fn(|tone| {
+        let measured = (0..TONES).filter_map(|k| Some((k.abs_diff(tone), tones[k]?)));
+        measured
+            .min_by_key(|(away, _)| *away)
+            .map_or(0.0, |(_, noise)| noise)
+    })
+}
+
+/// The deviations of sites, in order.
+fn sorted<'a>(sites: impl Iterator<Item = &'a Site>) -> Vec<f32> {
+    let mut values: Vec<f32> = sites.map(|site| site.deviation).collect();
+    values.sort_unstable_by(f32::total_cmp);
+    values
+}
+
+/// The value below which a share of sorted values lies; 0 of none.
+fn quantile(values: &[f32], share: f32) -> f32 {
+    let at = (share * values.len() as f32) as usize;
+    values
+        .get(at.min(values.len().saturating_sub(1)))
+        .copied()
+        .unwrap_or(0.0)
+}

@@ -1,0 +1,50 @@
+//! A picture as luma and two chromas.
+
+use crate::error::Result;
+use crate::image::Image;
+
+/// Luma and two chromas (BT.601, as JPEG has them), in levels of 8 bits: luma 0 to 255, chromas −128 to 127.
+#[derive(Clone)]
+pub(super) struct Planes {
+    pub(super) width: usize,
+    pub(super) height: usize,
+    pub(super) planes: [Vec<f32>; 3],
+}
+
+impl Planes {
+    /// The planes of a picture; its alpha is left out.
+    pub(super) fn of(picture: &Image) -> Self {
+        let [red, green, blue] = picture.planes();
+        let plane = |weights: [f32; 3]| {
+            let rgb = red.iter().zip(green).zip(blue);
+            rgb.map(|((r, g), b)| 255.0 * (weights[0] * r + weights[1] * g + weights[2] * b))
+                .collect()
+        };
+        Self {
+            width: picture.width(),
+            height: picture.height(),
+            planes: [
+                plane([0.299, 0.587, 0.114]),
+                plane([-0.168_736, -0.331_264, 0.5]),
+                plane([0.5, -0.418_688, -0.081_312]),
+            ],
+        }
+    }
+
+    /// The picture of these planes.
+    pub(super) fn image(&self) -> Result<Image> {
+        let [luma, blue, red] = &self.planes;
+        let plane = |of_blue: f32, of_red: f32| {
+            let values = luma.iter().zip(blue).zip(red);
+            values
+                .map(|((y, b), r)| ((y + of_blue * b + of_red * r) / 255.0).clamp(0.0, 1.0))
+                .collect()
+        };
+        let planes = [
+            plane(0.0, 1.402),
+            plane(-0.344_136, -0.714_136),
+            plane(1.772, 0.0),
+        ];
+        Image::new(self.width, self.height, planes)
+    }
+}

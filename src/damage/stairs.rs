@@ -1,0 +1,218 @@
+//! Stairs of pictures without antialiasing, made smooth.
+//!
+//! The border between two colours runs from cell to cell, a cell having its corners in the centres of four pixels. Its node
+//! in each cell is free to move there, so that no pixel's centre comes to lie on its other side. Nodes move to the middle of their
+//! neighbours until the border is as smooth as that allows: constrained elastic surface nets, Gibson (1998).
+
+use rayon::prelude::*;
+
+use super::labels::Labels;
+use super::recipe::Stairs;
+use crate::error::Result;
+use crate::image::Image;
+
+/// Samples of a pixel across and down.
+const SAMPLES: usize = 4;
+
+/// The ways to the cells above, right, below and left.
+const SIDES: [[f32; 2]; 4] = [[0.0, -1.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]];
+
+/// The picture with smooth borders in the place of stairs; `None` if it has none, or its stairs are meant.
+pub(super) fn smoothed(labels: &Labels, recipe: &Stairs) -> Result<Option<Image>> {
+    let side = labels.width.max(labels.height);
+    if side < recipe.least_side || labels.colors.len() > recipe.most_colors {
+        return Ok(None);
+    }
+    let [borders, lonely] = labels.borders();
+    let is_antialiased = lonely as f32 >= recipe.most_lonely * borders as f32;
+    if is_antialiased || !labels.has_corners() || labels.common_run() >= recipe.least_square {
+        return Ok(None);
+    }
+    let nodes = labels.nodes(recipe);
+    labels.drawn(&nodes).map(Some)
+}
+
+impl Labels {
+    /// True if a border turns.
+    fn has_corners(&self) -> bool {
+        let turns = |cell: usize| {
+            let crossed = crossed(&self.corners(cell));
+            crossed.contains(&true) && (crossed[0] != crossed[2] || crossed[1] != crossed[3])
+        };
+        let [columns, rows] = self.cells();
+        (0..columns * rows).any(turns)
+    }
+
+    /// The greatest common divisor of the lengths of all runs of one colour, px, those at the picture's borders left out.
+    fn common_run(&self) -> usize {
+        let row = |y: usize| self.of[y * self.width..(y + 1) * self.width].to_vec();
+        let column = |x: usize| {
+            (0..self.height)
+                .map(|y| self.of[y * self.width + x])
+                .collect()
+        };
+        let lines = (0..self.height).map(row).chain((0..self.width).map(column));
+        lines.fold(0, |common, line: Vec<u16>| {
+            let runs: Vec<usize> = line.chunk_by(|a, b| a == b).map(<[u16]>::len).collect();
+            let inner = runs
+                .get(1..runs.len().saturating_sub(1))
+                .unwrap_or_default();
+            inner
+                .iter()
+                .fold(common, |common, run| divisor(common, *run))
+        })
+    }
+
+    /// The number of cells in a row, and that of rows.
+    fn cells(&self) -> [usize; 2] {
+        [self.width + 1, self.height + 1]
+    }
+
+    /// The labels of the corners of a cell, clockwise from the upper left one.
+    fn corners(&self, cell: usize) -> [u16; 4] {
+        let columns = self.cells()[0];
+        let (x, y) = ((cell % columns) as isize, (cell / columns) as isize);
+        [[-1, -1], [0, -1], [0, 0], [-1, 0]].map(|[dx, dy]| self.at(x + dx, y + dy))
+    }
+
+    /// The node of each cell, relative to its middle, px.
+    fn nodes(&self, recipe: &Stairs) -> Vec<[f32; 2]> {
+        let [columns, rows] = self.cells();
+        let mut nodes = vec![[0.0_f32; 2]; columns * rows];
+        let borders: Vec<(usize, [bool; 4])> = (0..nodes.len())
+            .map(|cell| (cell, crossed(&self.corners(cell))))
+            .filter(|(_, crossed)| crossed.contains(&true))
+            .collect();
+        let beside = |cell: usize| {
+            let row = columns as isize;
+            [-row, 1, row, -1].map(|step| {
+                cell.checked_add_signed(step)
+                    .filter(|c| *c < columns * rows)
+            })
+        };
+        for _ in 0..recipe.rounds {
+            let moved: Vec<[f32; 2]> = borders
+                .par_iter()
+                .map(|(cell, crossed)| {
+                    let mut sum = [0.0_f32; 2];
+                    let mut count = 0.0;
+                    for (k, other) in beside(*cell).into_iter().enumerate() {
+                        if let (true, Some(other)) = (crossed[k], other) {
+                            (0..2)
+                                .for_each(|axis| sum[axis] += SIDES[k][axis] + nodes[other][axis]);
+                            count += 1.0;
+                        }
+                    }
+                    // An end at the picture's border stays there.
+                    if count < 2.0 {
+                        return nodes[*cell];
+                    }
+                    // Halfway, or else neighbours would swap places for ever.
+                    let halfway = |k: usize| (sum[k] / count + nodes[*cell][k]) / 2.0;
+                    [0, 1].map(|k| halfway(k).clamp(-recipe.reach, recipe.reach))
+                })
+                .collect();
+            borders
+                .iter()
+                .zip(moved)
+                .for_each(|((cell, _), node)| nodes[*cell] = node);
+        }
+        nodes
+    }
+
+    /// The picture, each pixel the mean of samples.
+    fn drawn(&self, nodes: &[[f32; 2]]) -> Result<Image> {
+        let rows: Vec<usize> = (0..self.height).collect();
+        let of_row = |&y: &usize| {
+            (0..self.width)
+                .map(|x| self.pixel(x, y, nodes))
+                .collect::<Vec<_>>()
+        };
+        let rows: Vec<Vec<[f32; 3]>> = rows.par_iter().map(of_row).collect();
+        let plane = |k: usize| rows.iter().flatten().map(|color| color[k]).collect();
+        Image::new(self.width, self.height, [plane(0), plane(1), plane(2)])
+    }
+
+    /// The colour of a pixel.
+    fn pixel(&self, x: usize, y: usize, nodes: &[[f32; 2]]) -> [f32; 3] {
+        let columns = self.cells()[0];
+        let cells = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[dx, dy]| (y + dy) * columns + x + dx);
+        let own = self.of[y * self.width + x];
+        if cells.iter().all(|cell| self.corners(*cell) == [own; 4]) {
+            return self.colors[usize::from(own)];
+        }
+        let mut sum = [0.0; 3];
+        for j in 0..SAMPLES {
+            for i in 0..SAMPLES {
+                // Relative to the middle of the pixel, and of the cell that the sample lies in.
+                let [u, v] = [i, j].map(|k| (k as f32 + 0.5) / SAMPLES as f32 - 0.5);
+                let cell = cells[usize::from(u > 0.0) + 2 * usize::from(v > 0.0)];
+                let [u, v] = [u, v].map(|w| if w > 0.0 { w - 0.5 } else { w + 0.5 });
+                let color = self.colors[usize::from(self.label([u, v], cell, nodes))];
+                sum.iter_mut()
+                    .zip(color)
+                    .for_each(|(sum, value)| *sum += value);
+            }
+        }
+        sum.map(|v| v / (SAMPLES * SAMPLES) as f32)
+    }
+
+    /// The label at a place of a cell, relative to its middle.
+    fn label(&self, place: [f32; 2], cell: usize, nodes: &[[f32; 2]]) -> u16 {
+        let corners = self.corners(cell);
+        let crossed = crossed(&corners);
+        let columns = self.cells()[0] as isize;
+        let node = nodes[cell];
+        let ends = [-columns, 1, columns, -1].map(|step| {
+            let other = cell
+                .checked_add_signed(step)
+                .and_then(|other| nodes.get(other));
+            other.copied().unwrap_or([0.0; 2])
+        });
+        // Clockwise from one border to the next one, all corners have one label.
+        for from in (0..4).filter(|&side| crossed[side]) {
+            let next = (1..=4).map(|k| (from + k) % 4).find(|&side| crossed[side]);
+            let to = next.unwrap_or(from);
+            let [start, end] = [from, to].map(|side| crossing(node, ends[side], side));
+            if is_between(place, node, start, end) {
+                return corners[(from + 1) % 4];
+            }
+        }
+        corners[0]
+    }
+}
+
+/// The place where the border from a cell's node to that of the cell beside it leaves the cell, through the side above, right,
+/// below or left. Each node is relative to the middle of its cell.
+fn crossing(node: [f32; 2], other: [f32; 2], side: usize) -> [f32; 2] {
+    let axis = usize::from(side.is_multiple_of(2));
+    let towards = if side == 1 || side == 2 { 0.5 } else { -0.5 };
+    let share = (towards - node[axis]) / (2.0 * towards + other[axis] - node[axis]);
+    let along = 1 - axis;
+    let mut place = [towards; 2];
+    place[along] = node[along] + share * (other[along] - node[along]);
+    place
+}
+
+/// True for each side of a cell, above, right, below, left, if the labels at its ends differ.
+fn crossed(corners: &[u16; 4]) -> [bool; 4] {
+    [[0, 1], [1, 2], [2, 3], [3, 0]].map(|[a, b]| corners[a] != corners[b])
+}
+
+/// True if a place lies in the sector at `node` that goes clockwise, y being down, from one place to another.
+fn is_between(place: [f32; 2], node: [f32; 2], from: [f32; 2], to: [f32; 2]) -> bool {
+    let side = |a: [f32; 2], b: [f32; 2]| {
+        (a[0] - node[0]) * (b[1] - node[1]) - (a[1] - node[1]) * (b[0] - node[0])
+    };
+    let (after, before) = (side(from, place) >= 0.0, side(place, to) > 0.0);
+    if side(from, to) >= 0.0 {
+        after && before
+    } else {
+        after || before
+    }
+}
+
+/// The greatest common divisor of two numbers; of 0 and another the other.
+fn divisor(a: usize, b: usize) -> usize {
+    if b == 0 { a } else { divisor(b, a % b) }
+}
