@@ -2,7 +2,6 @@
 
 pub(super) mod background;
 pub(super) mod bounds;
-pub(super) mod detail;
 pub(super) mod focus;
 pub(super) mod hidden;
 pub(super) mod masking;

@@ -86,8 +86,9 @@ pub struct SmallThings {
     /// By how much an error counts more in and beside a small thing of full contrast. 1, 2, 4: the label "Main Street" of a map
     /// has a correlation of 0.94, 0.965, 0.977 in 6.5, 6.8, 7.2 kB; 0.90 in 6.1 kB without.
     pub gain: f32,
-    /// Contrast, 0..1, below which an error counts the more the fainter the thing is, up to so many times. Guesses.
+    /// Contrast, 0..1, below which an error counts the more the fainter the thing is. A guess.
     pub contrast: f32,
+    /// By how much it counts more at most. A guess.
     pub most: f32,
 }
 
@@ -99,11 +100,12 @@ pub struct Doubts {
     pub double: f32,
     /// By how much the quality is lowered, dB.
     pub lost_db: f64,
-    /// By how much colours of areas may lie farther apart, and flat and exact pixels farther from them: per level of doubt. Without
-    /// them these drawings have 1.06 and 1.04 times the numbers in the median, and 1.87 and 1.40 instead of 1.40 and 1.19 times
-    /// in the mean.
+    /// By how much the colours of areas lie farther apart, levels per level of doubt. Without this and the next two these drawings
+    /// have 1.87 and 1.40 instead of 1.40 and 1.19 times the numbers in the mean.
     pub apart: f32,
+    /// By how much the range of flat pixels is larger.
     pub flat: f32,
+    /// By how much a pixel of a colour may be farther from it beside another one.
     pub exact: f32,
 }
 

@@ -14,7 +14,6 @@ use crate::fit::config::{Background, Colors, Config, ErrorWeighting};
 use crate::fit::descent::anneal::Annealing;
 use crate::fit::descent::{Course, Descent};
 use crate::fit::drawing::bounds::Bounds;
-use crate::fit::drawing::detail;
 use crate::fit::drawing::focus::Focus;
 use crate::fit::drawing::masking;
 use crate::fit::drawing::shading;
@@ -449,8 +448,7 @@ fn weights(
     match config.look() {
         ErrorWeighting::Exact => focus.cloned(),
         ErrorWeighting::Eye => {
-            let masked = masking::weights(target, recipe.masking);
-            let seen = masked.times(&detail::weights(target, recipe.details));
+            let seen = masking::weights(target, recipe.masking, recipe.details);
             Some(
                 focus
                     .into_iter()
