@@ -108,8 +108,9 @@ pub fn meant(picture: &Image) -> Result<Option<Meant>> {
     if picture.alpha().is_some() {
         return Ok(None);
     }
-    if let Some(labels) = Labels::of(picture, Labels::MOST) {
-        return of_few_colors(picture, &labels);
+    let labels = Labels::of(picture, Labels::MOST);
+    if let Some(meant) = labels.map_or(Ok(None), |labels| of_few_colors(picture, &labels))? {
+        return Ok(Some(meant));
     }
     let planes = Planes::of(picture);
     match noise::measure(&planes, &Noises::MEASURED) {

@@ -62,7 +62,7 @@ pub struct Recipe {
     pub sharing: Sharing,
     /// Visibility of errors.
     pub masking: Masking,
-    /// Errors that destroy small things.
+    /// Small things that a drawing has lost.
     pub details: SmallThings,
     /// The last steps, against renders of the written file.
     pub settling: Settling,
@@ -80,16 +80,13 @@ pub struct Recipe {
     pub doubts: Doubts,
 }
 
-/// Errors that destroy small things.
+/// A second drawing, where the first one has lost small things.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SmallThings {
-    /// By how much an error counts more in and beside a small thing of full contrast. 1, 2, 4: the label "Main Street" of a map
-    /// has a correlation of 0.94, 0.965, 0.977 in 6.5, 6.8, 7.2 kB; 0.90 in 6.1 kB without.
+    /// By how much an error counts more where they were lost.
     pub gain: f32,
-    /// Contrast, 0..1, below which an error counts the more the fainter the thing is. A guess.
-    pub contrast: f32,
-    /// By how much it counts more at most. A guess.
-    pub most: f32,
+    /// Share of them that may be lost. A guess.
+    pub least: f64,
 }
 
 /// What is lost to damage of a picture.

@@ -7,18 +7,16 @@
 //! w = c / (c + σ)
 //! ```
 //!
-//! up to a ceiling of σ, since an outline has as large a σ as texture and hides less. A letter, a dot or a thin line takes few
-//! pixels, and so little squared error, but it is there or it is not: in and beside such *details*, where nothing around hides them,
-//! errors count more. Weights are in units of the mean of w over
+//! up to a ceiling of σ, since an outline has as large a σ as texture and hides less. Weights are in units of the mean of w over
 //! all pixels, each weighted by its σ². The errors that remain in a drawing are roughly as large as the detail around them, so
 //! the price of a byte keeps its meaning.
 
 use rayon::prelude::*;
 
 use crate::fit::drawing::focus::Focus;
-use crate::fit::recipe::{Masking, SmallThings};
+use crate::fit::recipe::Masking;
 use crate::image::Image;
-use crate::metrics::{Details, average};
+use crate::metrics::average;
 use crate::scene::Rgb;
 
 /// Matte of transparent pictures.
@@ -27,8 +25,8 @@ const WHITE: Rgb = [1.0; 3];
 /// Shares of red, green and blue in the luma (ITU-R BT.601).
 const LUMA: [f64; 3] = [0.299, 0.587, 0.114];
 
-/// Weight of an error at each pixel of `picture`, in units of the mean over all that it shows.
-pub(in crate::fit) fn weights(picture: &Image, masking: Masking, small: SmallThings) -> Focus {
+/// Weight of an error at each pixel of `picture`, in units of the mean over its detail.
+pub(in crate::fit) fn weights(picture: &Image, masking: Masking) -> Focus {
     let size = [picture.width(), picture.height()];
     let mut means = luma(picture);
     let mut variances: Vec<f64> = means.par_iter().map(|v| v * v).collect();
@@ -41,22 +39,13 @@ pub(in crate::fit) fn weights(picture: &Image, masking: Masking, small: SmallThi
         *square = (*square - mean * mean).clamp(0.0, ceiling);
     };
     variances.par_iter_mut().zip(&means).for_each(of_square);
-    let details = Details::of(picture).weights(small.gain, small.contrast, small.most);
-    let masked = |variance: f64| masking.contrast / (masking.contrast + variance.sqrt());
-    let weight = |(variance, detail): (&f64, &f32)| masked(*variance) * f64::from(*detail);
-    let all: f64 = variances.iter().sum();
-    let seen = variances
-        .iter()
-        .zip(&details)
-        .map(|(v, detail)| v * weight((v, detail)));
-    // In a picture of one colour all errors count alike.
-    let unit = if all > 0.0 {
-        seen.sum::<f64>() / all
-    } else {
-        1.0
-    };
-    let weights = variances.par_iter().zip(&details);
-    Focus::of_weights(size, weights.map(|of| (weight(of) / unit) as f32).collect())
+    let weight = |variance: f64| masking.contrast / (masking.contrast + variance.sqrt());
+    let detail: f64 = variances.iter().sum();
+    let seen: f64 = variances.iter().map(|&v| v * weight(v)).sum();
+    // A picture of one colour has no detail, and all its errors count alike.
+    let unit = if detail > 0.0 { seen / detail } else { 1.0 };
+    let weights = variances.par_iter().map(|&v| (weight(v) / unit) as f32);
+    Focus::of_weights(size, weights.collect())
 }
 
 /// The luma of each pixel, on white.
@@ -82,12 +71,6 @@ mod tests {
         ceiling: 0.2,
     };
 
-    const SMALL: SmallThings = SmallThings {
-        gain: 0.0,
-        contrast: 0.4,
-        most: 3.0,
-    };
-
     fn grey(width: usize, values: Vec<f32>) -> Image {
         let height = values.len() / width;
         Image::new(width, height, [values.clone(), values.clone(), values]).unwrap()
@@ -100,7 +83,7 @@ mod tests {
             if x < 12 { 0.5 } else { ((x + y) % 2) as f32 }
         };
         let picture = grey(24, (0..24 * 8).map(value).collect());
-        let focus = weights(&picture, MASKING, SMALL);
+        let focus = weights(&picture, MASKING);
         let [weights, ..] = focus.weights().level(0).planes();
         // The checks deviate by a half, which is above the ceiling: 0.04 / 0.24 of what counts in the smooth half.
         let (smooth, detailed) = (weights[2], weights[20]);
@@ -144,7 +127,7 @@ mod tests {
 
     #[test]
     fn all_errors_count_alike_in_one_colour() {
-        let focus = weights(&grey(6, vec![0.3; 36]), MASKING, SMALL);
+        let focus = weights(&grey(6, vec![0.3; 36]), MASKING);
         assert!(
             focus.weights().level(0).planes()[0]
                 .iter()

@@ -283,9 +283,8 @@ const BALANCED: Recipe = Recipe {
         thin: 1.0,
     },
     details: SmallThings {
-        gain: 2.0,
-        contrast: 0.375,
-        most: 3.0,
+        gain: 6.0,
+        least: 0.02,
     },
     masking: Masking {
         window: 6,

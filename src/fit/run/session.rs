@@ -448,7 +448,7 @@ fn weights(
     match config.look() {
         ErrorWeighting::Exact => focus.cloned(),
         ErrorWeighting::Eye => {
-            let seen = masking::weights(target, recipe.masking, recipe.details);
+            let seen = masking::weights(target, recipe.masking);
             Some(
                 focus
                     .into_iter()
