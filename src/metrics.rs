@@ -45,7 +45,7 @@ pub struct Quality {
     pub l1: f64,
     /// Fidelity as people see it, 100 for equal pictures; see [`fn@ssimulacra2`].
     pub ssimulacra2: f64,
-    /// Share of small things, such as letters, dots and thin lines, in and beside which errors are below half of their contrast;
+    /// Share of small things, such as letters, dots and thin lines, in and beside which errors are below a third of their contrast;
     /// `None` if the reference has none of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub details_kept: Option<f64>,

@@ -283,8 +283,8 @@ const BALANCED: Recipe = Recipe {
         thin: 1.0,
     },
     details: SmallThings {
-        gain: 6.0,
-        least: 0.02,
+        gain: 14.0,
+        least: 0.1,
     },
     masking: Masking {
         window: 6,
