@@ -74,6 +74,9 @@
 //! | word | meaning |
 //! | --- | --- |
 //! | target | the picture to reproduce, with or without alpha |
+//! | damage | what a picture has been through and nobody meant, such as noise; see [`damage`] |
+//! | doubt | how far the picture that is meant may be from the truth, RMS in levels of 8 bits |
+//! | details | letters, dots, thin lines: small things that nothing around hides |
 //! | mark | one element of a drawing: a stroke or an area; see [`scene::Mark`] |
 //! | stroke | all points within a radius (px) of a path, with a colour and an opacity (0..1); see [`scene`] |
 //! | area | one or more closed paths, its *rings*, filled where they wind around a point (SVG's nonzero rule), with a colour and an opacity; see [`scene::Area`] |

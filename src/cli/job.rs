@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::Result;
+use strokefit::damage::Damage;
 use strokefit::fit::{self, DEFAULT_STROKES, Fit, Observer, PIXELS_PER_STROKE, Progress, Stop};
 use strokefit::image::Image;
 use strokefit::metrics::{Agreement, psnr_db};
@@ -184,7 +185,9 @@ impl Job<'_> {
         let target = &drawn.judged.fit.target;
         let most = DEFAULT_STROKES.min(target.width() * target.height() / PIXELS_PER_STROKE);
         let is_full = is_open && 10 * strokes >= 9 * most;
-        if is_full && drawn.judged.verdict.fidelity.psnr_db < NOISE_DB {
+        let is_noise = is_full && drawn.judged.verdict.fidelity.psnr_db < NOISE_DB;
+        let is_dithered = |damage: Damage| damage.dithering > 0.0;
+        if is_noise || drawn.judged.fit.damage.is_some_and(is_dithered) {
             verbosity.say(format_args!(
                 "{}: the picture is of dots or noise finer than strokes: blur it, or give the picture before it was dithered",
                 output::name(&self.output)
@@ -202,7 +205,8 @@ impl Job<'_> {
     fn tell_poor(&self, drawn: &Drawn) {
         let reached = drawn.judged.verdict.fidelity.psnr_db;
         let flat = one_color_db(&drawn.judged.fit.target);
-        if reached + POOR_DB < flat {
+        // A drawing without damage may be unlike a picture with it.
+        if drawn.judged.fit.damage.is_none() && reached + POOR_DB < flat {
             complain(format_args!(
                 "{}: warning: a page of one colour would be more like the picture ({flat:.1} dB) than this drawing ({reached:.1} dB): \
                  give other colours or more of them, or another --background",

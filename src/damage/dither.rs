@@ -16,7 +16,13 @@ pub(super) fn mixed(
     recipe: &Dithering,
 ) -> Result<Option<(Image, f32)>> {
     let (width, height) = (labels.width, labels.height);
-    let is_mixed = |i: usize| is_mixed(labels, (i % width) as isize, (i / width) as isize);
+    let is_mixed = |i: usize| {
+        is_mixed(
+            labels,
+            [i % width, i / width].map(|v| v as isize),
+            recipe.least,
+        )
+    };
     let lonely = (0..width * height)
         .into_par_iter()
         .map(|i| f64::from(u8::from(is_mixed(i))));
@@ -40,19 +46,21 @@ pub(super) fn mixed(
     Ok(Some((Image::new(width, height, planes)?, share)))
 }
 
-/// True if a pixel is unlike three of the pixels beside it or all, and brighter or darker than all of those. One that is
-/// antialiased lies between them.
-fn is_mixed(labels: &Labels, x: isize, y: isize) -> bool {
+/// True if a pixel is far brighter than three of the pixels beside it or all, and darker than none, or the other way round. One that
+/// is antialiased lies between them.
+fn is_mixed(labels: &Labels, [x, y]: [isize; 2], least: f32) -> bool {
     let luma = |x, y| {
         labels.colors[usize::from(labels.at(x, y))]
             .iter()
             .sum::<f32>()
+            / 3.0
     };
     let own = luma(x, y);
-    let beside = [[1, 0], [-1, 0], [0, 1], [0, -1]].map(|[dx, dy]| luma(x + dx, y + dy));
-    let brighter = beside.iter().filter(|other| **other > own).count();
-    let darker = beside.iter().filter(|other| **other < own).count();
-    brighter.max(darker) >= 3 && brighter.min(darker) == 0
+    let beside = [[1, 0], [-1, 0], [0, 1], [0, -1]].map(|[dx, dy]| luma(x + dx, y + dy) - own);
+    [1.0, -1.0].iter().any(|sign| {
+        let far = beside.iter().filter(|away| *sign * **away > least).count();
+        far >= 3 && beside.iter().all(|away| sign * away >= 0.0)
+    })
 }
 
 /// A plane under a Gaussian of this standard deviation, px; at the borders it goes on as it ends.

@@ -32,7 +32,7 @@ use crate::image::Image;
 use labels::Labels;
 use noise::Noise;
 use planes::Planes;
-use recipe::{Dithering, Light, Noises, Restoration, Stairs};
+use recipe::{Dithering, FlatArt, Light, Noises, Restoration, Stairs};
 
 /// The picture that a damaged one is meant to be, and what has happened to it.
 #[derive(Debug, Clone)]
@@ -113,10 +113,8 @@ pub fn meant(picture: &Image) -> Result<Option<Meant>> {
         return Ok(Some(meant));
     }
     let planes = Planes::of(picture);
-    match noise::measure(&planes, &Noises::MEASURED) {
-        Some(noise) => without_noise(picture, planes, &noise).map(Some),
-        None => Ok(None),
-    }
+    let noise = noise::measure(&planes, &Noises::MEASURED);
+    noise.map_or(Ok(None), |noise| without_noise(picture, planes, &noise))
 }
 
 /// The picture that one of few colours is meant to be.
@@ -136,8 +134,8 @@ fn of_few_colors(picture: &Image, labels: &Labels) -> Result<Option<Meant>> {
     Ok(smoothed.map(|picture| Meant { picture, damage }))
 }
 
-/// A picture without noise and, on paper, without shadows.
-fn without_noise(picture: &Image, mut planes: Planes, noise: &Noise) -> Result<Meant> {
+/// A picture without noise and, on paper, without shadows; `None` of a photograph, whose texture is as fine as noise.
+fn without_noise(picture: &Image, mut planes: Planes, noise: &Noise) -> Result<Option<Meant>> {
     let halved_chroma = chroma::is_halved(&planes);
     shrunk(&mut planes, noise);
     if halved_chroma {
@@ -152,6 +150,9 @@ fn without_noise(picture: &Image, mut planes: Planes, noise: &Noise) -> Result<M
     // Only photographs of pages have both grain and shadows; a gradient is drawn.
     let mut planes = Planes::of(&picture);
     let uneven_light = noise.most() > 0.0 && light::evened(&mut planes, &Light::MEASURED);
+    if !is_flat_art(&planes, &FlatArt::MEASURED) {
+        return Ok(None);
+    }
     if uneven_light {
         picture = planes.image()?;
     }
@@ -162,7 +163,18 @@ fn without_noise(picture: &Image, mut planes: Planes, noise: &Noise) -> Result<M
         uneven_light,
         ..Damage::default()
     };
-    Ok(Meant { picture, damage })
+    Ok(Some(Meant { picture, damage }))
+}
+
+/// True if most pixels have one of a few tones.
+fn is_flat_art(planes: &Planes, recipe: &FlatArt) -> bool {
+    let mut tones = [0_usize; 64];
+    for value in &planes.planes[0] {
+        tones[(*value / 4.0).clamp(0.0, 63.0) as usize] += 1;
+    }
+    tones.sort_unstable_by(|a, b| b.cmp(a));
+    let most: usize = tones.iter().take(recipe.tones).sum();
+    most as f32 >= recipe.least_share * planes.planes[0].len() as f32
 }
 
 /// Leaves out what noise explains.

@@ -48,6 +48,22 @@ impl Noises {
     };
 }
 
+/// Flat art: most of its pixels have few tones.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct FlatArt {
+    /// So many tones of four levels. A guess.
+    pub(super) tones: usize,
+    /// The least share of the pixels that have them.
+    pub(super) least_share: f32,
+}
+
+impl FlatArt {
+    pub(super) const MEASURED: Self = Self {
+        tones: 8,
+        least_share: 0.5,
+    };
+}
+
 /// Restoration.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Restoration {
@@ -102,6 +118,8 @@ impl Stairs {
 /// Search for dithering.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Dithering {
+    /// Least difference, 0..1, of a lonely pixel from those beside it: JPEG leaves less.
+    pub(super) least: f32,
     /// Half the side of the window in which lonely pixels are counted, px.
     pub(super) around: usize,
     /// Share of lonely pixels of a dithered window: random ones of two colours have 0.3, lines 1 px wide none.
@@ -114,6 +132,7 @@ pub(super) struct Dithering {
 
 impl Dithering {
     pub(super) const MEASURED: Self = Self {
+        least: 0.15,
         around: 4,
         dense: 0.2,
         least_share: 0.15,

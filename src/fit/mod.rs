@@ -59,7 +59,7 @@ pub use options::{MAX_THREADS, OPTIONS, Options, Refusal, Value};
 pub use recipe::{
     AdamSettings, BackgroundChoice, Correction, Domain, Doubts, EdgeShape, Joins, Masking, Nudging,
     Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Reduction, Relocation, Rounds,
-    SCREEN_PIXELS, Settling, ShadeChoice, Sharing, SmallThings, Stages, TimeShares,
+    SCREEN_PIXELS, Settling, ShadeChoice, Sharing, Stages, TimeShares,
 };
 pub use result::{Fit, StageRecord, Stop};
 pub use run::checkpoint::Checkpoint;
@@ -71,7 +71,6 @@ use crate::clock::Instant;
 use crate::damage::{self, Meant};
 use crate::error::Result;
 use crate::image::Image;
-use crate::scene::{Marks, Scene};
 use budget::price::Price;
 use budget::{reduction, rivals};
 use order::{Outcome, Phase};
@@ -129,7 +128,6 @@ impl Fitter<'_> {
         }
         let by_strokes = self.by_strokes_alone();
         let competes = competes || by_strokes.is_some();
-        let again = self.again();
         let price = Price::of(
             &self.config,
             &self.recipe(),
@@ -142,15 +140,6 @@ impl Fitter<'_> {
             && drawn.has_doubtful_areas()
         {
             drawn = drawn.or_cheaper(rival.draw(picture, since, true)?, price);
-        }
-        if let Some((again, small)) = again
-            && stop != Stop::Interrupted
-            && let Some(lost) = drawn.lost_details(&small)
-        {
-            drawn = again
-                .on_focus(lost, &drawn.fit.scene)
-                .draw(picture, since, competes)?;
-            drawn.fit.focus = None;
         }
         let mut fit = drawn.or_better(best).fit;
         // Whoever stopped the fit is told so, whichever drawing is the better one.
@@ -191,23 +180,6 @@ impl Fitter<'_> {
     fn by_strokes_alone(&self) -> Option<Fitter<'static>> {
         let config = rivals::by_strokes_alone(&self.config)?;
         self.base.is_none().then(|| self.rival(config))
-    }
-
-    /// The fit once more, for a drawing that loses small things, and what that is. Who gives a budget, or says where errors count, has
-    /// said what is to be kept.
-    fn again(&self) -> Option<(Fitter<'static>, SmallThings)> {
-        let is_free = self.config.is_open() && self.config.budget.time.is_none();
-        let is_asked_for = is_free && self.base.is_none() && self.focus.is_none();
-        let sees = self.config.look() == ErrorWeighting::Eye;
-        (is_asked_for && sees).then(|| (self.rival(self.config.clone()), self.recipe().details))
-    }
-
-    /// This fit with errors that count as `focus` says, by strokes alone if `scene` is.
-    fn on_focus(mut self, focus: Focus, scene: &Scene) -> Self {
-        if scene.areas().next().is_none() {
-            self.config.marks = Marks::Strokes;
-        }
-        self.focus(focus)
     }
 
     fn rival(&self, config: Config) -> Fitter<'static> {

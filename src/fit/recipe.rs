@@ -62,8 +62,6 @@ pub struct Recipe {
     pub sharing: Sharing,
     /// Visibility of errors.
     pub masking: Masking,
-    /// Small things that a drawing has lost.
-    pub details: SmallThings,
     /// The last steps, against renders of the written file.
     pub settling: Settling,
     /// Correction of the number of strokes to meet a fidelity.
@@ -78,16 +76,6 @@ pub struct Recipe {
     pub time: TimeShares,
     /// What is lost to damage of the picture.
     pub doubts: Doubts,
-}
-
-/// A second drawing, where the first one has lost small things.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SmallThings {
-    /// By how much an error counts more where they were lost.
-    pub gain: f32,
-    /// Share of them that may be lost within about a word. Illegible labels of a map and a flowchart lose 0.15 to 0.28, legible ones
-    /// 0.03; drawings of lines lose 0.
-    pub least: f64,
 }
 
 /// What is lost to damage of a picture.

@@ -31,18 +31,10 @@ const LEAST_ISOLATION: f32 = 0.4;
 /// illegible one 7 %.
 const WRONG: f32 = 0.35;
 
-/// Half the side of the window of about a word, px, and the least share of details in it that is compared.
-const WORD: usize = 7;
-const FEW: f64 = 0.02;
-
-/// Distance to lost details up to which errors count more, px.
-const NEAR: usize = 10;
-
 const WHITE: Rgb = [1.0; 3];
 
 /// The details of a picture.
 pub(crate) struct Details {
-    width: usize,
     /// The picture on white.
     planes: [Vec<f32>; 3],
     /// Of each pixel in or beside a detail its isolation, 1 for what stands alone and 0 for texture, and the largest contrast around.
@@ -72,7 +64,6 @@ impl Details {
         let strongest = extremes(&contrasts, width, REACH, f32::max);
         let near = isolations.into_iter().zip(strongest);
         Self {
-            width,
             planes,
             near: near
                 .map(|(isolation, contrast)| [isolation, contrast])
@@ -86,35 +77,6 @@ impl Details {
         let all = sum(&mut self.near.iter().map(|[isolation, _]| *isolation));
         let lost = sum(&mut self.losses(drawn).into_iter());
         (all > 0.0).then(|| 1.0 - lost / all)
-    }
-
-    /// By how much an error at each pixel counts more near details that `drawn`, a picture of the same size, has lost: `gain` near
-    /// places where it has lost a share of `least` or more; `None` if there are none.
-    pub(crate) fn lost(&self, drawn: &Image, gain: f32, least: f64) -> Option<Vec<f32>> {
-        let losses = self.losses(drawn);
-        let local = |values: &mut dyn Iterator<Item = f32>| {
-            let mut means: Vec<f64> = values.map(f64::from).collect();
-            average(&mut means, self.width, WORD);
-            means
-        };
-        let all = local(&mut self.near.iter().map(|[isolation, _]| *isolation));
-        let lost = local(&mut losses.iter().copied());
-        let shares = lost.iter().zip(&all);
-        let is_lost = |((loss, (lost, all)), [isolation, _]): ((&f32, (&f64, &f64)), &[f32; 2])| {
-            let is_word = *loss > 0.0 && *lost > least * all.max(FEW);
-            if is_word { *isolation } else { 0.0 }
-        };
-        let words: Vec<f32> = losses
-            .iter()
-            .zip(shares)
-            .zip(&self.near)
-            .map(is_lost)
-            .collect();
-        if words.iter().all(|word| *word == 0.0) {
-            return None;
-        }
-        let near = extremes(&words, self.width, NEAR, f32::max);
-        Some(near.iter().map(|weight| 1.0 + gain * weight).collect())
     }
 
     /// The isolation of each pixel in or beside a detail that is lost: `drawn` is wrong there by more than a part of the contrast.
@@ -234,19 +196,5 @@ mod tests {
     fn texture_is_no_detail() {
         let checks = picture(|x, y| (x / 2 + y / 2) % 2 == 0);
         assert_eq!(Details::of(&checks).kept(&picture(|_, _| false)), None);
-    }
-
-    #[test]
-    fn errors_count_more_near_what_is_lost() {
-        let line = |x: usize, _: usize| (40..42).contains(&x);
-        let half = |x: usize, y: usize| line(x, y) && y < 48;
-        let details = Details::of(&picture(line));
-        assert_eq!(details.lost(&picture(line), 6.0, 0.1), None);
-        let weights = details.lost(&picture(half), 6.0, 0.1).unwrap();
-        let at = |x: usize, y: usize| weights[y * 96 + x];
-        assert_eq!(
-            [at(41, 80), at(50, 80), at(60, 80), at(41, 20)],
-            [7.0, 7.0, 1.0, 1.0]
-        );
     }
 }

@@ -43,6 +43,7 @@ mod support {
 // The library.
 mod alpha;
 mod concurrency;
+mod damage;
 mod dependencies;
 mod examples;
 mod fit;

@@ -21,6 +21,8 @@ export interface Options {
   marks?: "auto" | "strokes" | "areas";
   /** A good drawing after every layer, at some dB less in the end. */
   progressive?: boolean;
+  /** Draw noise, traces of JPEG and other damage of the picture as they are. */
+  literal?: boolean;
   /** Which errors count: those that people see, or all alike, for a tenth of a dB more; if it is left out, `exact` with `psnr`, and `eye` without. */
   look?: "eye" | "exact";
   /** Opaque strokes only. */
@@ -105,7 +107,7 @@ export interface Report {
   wall_s: number;
   stop: "strokes" | "psnr" | "bytes" | "time" | "converged" | "interrupted";
   /** The SVG as rendered by resvg against the picture; `psnr_db` is null where they are equal, `ssimulacra2` then 100. */
-  fidelity: { psnr_db: number | null; ssim: number; mse: number; l1: number; ssimulacra2: number };
+  fidelity: { psnr_db: number | null; ssim: number; mse: number; l1: number; ssimulacra2: number; details_kept?: number };
   [field: string]: unknown;
 }
 

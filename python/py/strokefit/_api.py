@@ -65,6 +65,7 @@ def fit(
     quality: Optional[float] = None,
     preset: str = "balanced",
     marks: str = "auto",
+    literal: bool = False,
     look: Optional[str] = None,
     opaque: bool = False,
     coverage: str = "smoothstep",
@@ -106,6 +107,7 @@ def fit(
         preset: `draft`, `balanced` or `best`: how much time to spend.
         marks: What the drawing is made of: `auto` (areas for what is filled, strokes for lines and for the rest), `strokes` or
             `areas`.
+        literal: Draw noise, traces of JPEG and other damage of the picture as they are.
         look: Which errors count: those that people see (`eye`), or all alike (`exact`), for a tenth of a dB more; `None` is
             `exact` with `psnr`, and `eye` without.
         opaque: Use opaque strokes only.
@@ -166,6 +168,7 @@ def refine(
     quality: Optional[float] = None,
     preset: str = "balanced",
     marks: str = "auto",
+    literal: bool = False,
     look: Optional[str] = None,
     opaque: bool = False,
     coverage: str = "smoothstep",

@@ -8,7 +8,26 @@ from __future__ import annotations
 from typing import Optional, TypedDict
 
 
+class Damage(TypedDict):
+    """What a picture has been through, which its drawing leaves out."""
+
+    #: True if its borders have stairs for want of antialiasing.
+    stairs: bool
+    #: Share of its pixels in which colours are mixed from those of a palette.
+    dithering: float
+    #: RMS of noise far from edges, levels of luma of 8 bits.
+    noise: float
+    #: RMS of noise beside edges, as compression leaves it, levels of luma of 8 bits.
+    ringing: float
+    #: True if colours were kept at half the resolution.
+    halved_chroma: bool
+    #: True if it is a page in uneven light.
+    uneven_light: bool
+
+
 class _Remarked(TypedDict, total=False):
+    #: What it has been through, if the drawing leaves that out.
+    damage: Damage
     #: What reading the picture has changed or left out, in words; left out if nothing.
     remarks: list[str]
 
@@ -49,7 +68,13 @@ class StageEntry(TypedDict):
     layer_psnr_db: Optional[float]
 
 
-class Fidelity(TypedDict):
+class _Detailed(TypedDict, total=False):
+    #: Share of small things, such as letters, dots and thin lines, in and beside which errors are below a third of their
+    #: contrast; left out if the picture has none.
+    details_kept: float
+
+
+class Fidelity(_Detailed):
     """A picture against another, over 8-bit RGB on white."""
 
     #: Peak signal-to-noise ratio; `None` for equal pictures.

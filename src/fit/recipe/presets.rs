@@ -3,8 +3,7 @@
 use super::{
     AdamSettings, BackgroundChoice, Correction, Dense, Domain, Doubts, EdgeShape, Jitter, Joins,
     Masking, Nudging, Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Reduction,
-    Relocation, Rounds, SCREEN_PIXELS, Settling, ShadeChoice, Sharing, SmallThings, Stages,
-    TimeShares,
+    Relocation, Rounds, SCREEN_PIXELS, Settling, ShadeChoice, Sharing, Stages, TimeShares,
 };
 use crate::optim::AdamParams;
 use crate::seed::Probing;
@@ -281,10 +280,6 @@ const BALANCED: Recipe = Recipe {
         nearly_opaque: 0.8,
         off_page: 0.1,
         thin: 1.0,
-    },
-    details: SmallThings {
-        gain: 14.0,
-        least: 0.1,
     },
     masking: Masking {
         window: 6,

@@ -5,14 +5,12 @@ use crate::fit::budget;
 use crate::fit::budget::price::Price;
 use crate::fit::config::Budget;
 use crate::fit::drawing::Drawing;
-use crate::fit::drawing::focus::Focus;
 use crate::fit::drawing::surface;
 use crate::fit::file::RenderedFile;
-use crate::fit::recipe::SmallThings;
 use crate::fit::result::{Fit, StageRecord};
 use crate::fit::run::session::Session;
 use crate::image::Image;
-use crate::metrics::{Details, psnr_db};
+use crate::metrics::psnr_db;
 use crate::scene::{Dropped, Quantized, Scene, Stage};
 
 /// A finished drawing, and its file if that was looked at.
@@ -44,13 +42,6 @@ impl Drawn {
         let scene = &self.fit.scene;
         let db = self.file.as_ref().map_or(0.0, |file| psnr_db(file.mse));
         scene.areas().next().is_some() && (scene.len() > FEW || db < FAITHFUL_DB)
-    }
-
-    /// How much more errors count where small things were lost, if many were.
-    pub(in crate::fit) fn lost_details(&self, small: &SmallThings) -> Option<Focus> {
-        let Fit { target, soft, .. } = &self.fit;
-        let lost = Details::of(target).lost(soft, small.gain, small.least)?;
-        Some(Focus::of_weights([target.width(), target.height()], lost))
     }
 
     /// The other one if its file costs less: squared error and bytes at their `price`, or by the budget if bytes have none.

@@ -124,6 +124,6 @@ def _fit_options(group: Any) -> None:
         group.add_argument(f"--{name}", type=float, metavar=unit)
     for name, words in (("preset", "PRESET"), ("marks", "MARKS"), ("look", "LOOK"), ("coverage", "EDGE"), ("background", "COLOR"), ("palette", "LIST|FILE"), ("pens", "WIDTHS"), ("form", "FORM"), ("group", "BY"), ("order", "ORDER"), ("width", "LENGTH")):
         group.add_argument(f"--{name}", metavar=words)
-    for name in ("opaque", "progressive"):
+    for name in ("literal", "opaque", "progressive"):
         group.add_argument(f"--{name}", action="store_true")
     group.add_argument("--no-polish", dest="polish", action="store_false")

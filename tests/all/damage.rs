@@ -1,0 +1,225 @@
+//! Damage is recognised and not drawn; what is clean is drawn as it is.
+
+use std::path::Path;
+
+use strokefit::damage::{self, Damage};
+use strokefit::fit::{Background, Budget, Colors, Config, Fit, Fitter};
+use strokefit::image::Image;
+use strokefit::metrics::Quality;
+use strokefit::verify::{Size, render};
+
+fn picture(name: &str) -> Image {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folders = ["samples", "tests/data/pictures"];
+    let mut files = folders
+        .map(|folder| root.join(folder).join(name))
+        .into_iter();
+    Image::open(files.find(|path| path.exists()).unwrap()).unwrap()
+}
+
+fn drawn(picture: &Image, config: Config) -> Fit {
+    Fitter::new(config).fit(picture).unwrap()
+}
+
+/// The file against another picture than the one that was drawn, dB.
+fn psnr_db(fit: &Fit, truth: &Image) -> f64 {
+    let file = render(&fit.svg(), Size::Scale(1.0), None).unwrap();
+    Quality::between(truth, &file).unwrap().psnr_db
+}
+
+/// `clean` with normal noise of an RMS of `levels`, cut off at black and white.
+fn noisy(clean: &Image, levels: f32) -> Image {
+    let width = clean.width();
+    let noise = |i: usize| {
+        // The sum of twelve uniform numbers, from a counter.
+        let mix = |k: u64| {
+            let z = (i as u64 * 12 + k + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            ((z ^ (z >> 31)) >> 40) as f32 / (1_u64 << 24) as f32
+        };
+        levels / 255.0 * ((0..12).map(mix).sum::<f32>() - 6.0)
+    };
+    Image::from_fn(width, clean.height(), 3, |x, y, c| {
+        let i = y * width + x;
+        (clean.planes()[c][i] + noise(3 * i + c)).clamp(0.0, 1.0)
+    })
+    .unwrap()
+}
+
+/// Discs and bars of flat colours on white, antialiased.
+fn flat_art() -> Image {
+    let shapes: [([f32; 3], [f32; 3]); 3] = [
+        ([40.0, 44.0, 24.0], [0.8, 0.2, 0.2]),
+        ([88.0, 60.0, 26.0], [0.2, 0.5, 0.8]),
+        ([60.0, 90.0, 18.0], [0.95, 0.75, 0.2]),
+    ];
+    Image::from_fn(128, 128, 3, |x, y, c| {
+        shapes
+            .iter()
+            .fold(1.0_f32, |below, ([cx, cy, radius], color)| {
+                let [dx, dy] = [x as f32 + 0.5 - cx, y as f32 + 0.5 - cy];
+                let share = (radius - (dx * dx + dy * dy).sqrt() + 0.5).clamp(0.0, 1.0);
+                below + share * (color[c] - below)
+            })
+    })
+    .unwrap()
+}
+
+#[test]
+fn clean_pictures_have_no_damage() {
+    let names = [
+        "noto-smile-240.png",
+        "bicycle.png",
+        "chelsea-cat.png",
+        "coffee-300.png",
+        "tango-globe-256.png",
+    ];
+    for name in names {
+        let found = damage::meant(&picture(name).flattened([1.0; 3])).unwrap();
+        assert_eq!(found.map(|meant| meant.damage), None, "{name}");
+    }
+    assert!(damage::meant(&flat_art()).unwrap().is_none());
+}
+
+#[test]
+fn noise_is_not_drawn() {
+    let clean = flat_art();
+    let noisy = noisy(&clean, 8.0);
+    let (of_clean, of_noisy) = (
+        drawn(&clean, Config::default()),
+        drawn(&noisy, Config::default()),
+    );
+    let noise = of_noisy.damage.unwrap().noise;
+    assert!((3.0..8.0).contains(&noise), "{noise}");
+    assert_eq!(of_noisy.scene.len(), of_clean.scene.len());
+    // The noisy picture itself has 31 dB.
+    let db = psnr_db(&of_noisy, &clean);
+    assert!(db > 38.0, "{db}");
+    assert_eq!(
+        of_noisy.scene.background, of_clean.scene.background,
+        "paper is white again"
+    );
+}
+
+#[test]
+fn literally_damage_is_drawn() {
+    let noisy = noisy(&flat_art(), 8.0);
+    let literal = Config {
+        literal: true,
+        ..Config::default()
+    };
+    let psnr = Config {
+        budget: Budget {
+            psnr_db: Some(28.0),
+            ..Budget::default()
+        },
+        ..Config::default()
+    };
+    for config in [literal, psnr] {
+        assert_eq!(drawn(&noisy, config).damage, None);
+    }
+}
+
+#[test]
+fn traces_of_jpeg_are_not_drawn() {
+    let fit = drawn(&picture("logo_q30.jpg"), Config::default());
+    let db = psnr_db(&fit, &picture("logo.png"));
+    assert!(fit.damage.unwrap().ringing > 1.0);
+    assert!(fit.scene.len() <= 25, "{} marks", fit.scene.len());
+    assert!(db >= 32.5, "{db}");
+}
+
+#[test]
+fn stairs_of_one_bit_become_smooth() {
+    let fit = drawn(&picture("bilevel2.png"), Config::default());
+    assert!(fit.damage.unwrap().stairs);
+    assert!(fit.scene.len() <= 12, "{} marks", fit.scene.len());
+    let is_white = |color: [f32; 3]| color.iter().all(|v| *v > 0.998);
+    assert!(!fit.scene.marks().any(|mark| is_white(mark.color())));
+    let db = psnr_db(&fit, &picture("smooth2.png"));
+    assert!(db >= 34.0, "{db}");
+}
+
+#[test]
+fn squares_on_a_grid_are_meant() {
+    let sprite = Image::from_fn(96, 96, 1, |x, y, _| {
+        f32::from(u8::from((x / 8 + y / 8) % 3 == 0 || x / 8 == 4))
+    });
+    assert!(damage::meant(&sprite.unwrap()).unwrap().is_none());
+}
+
+#[test]
+fn ink_on_a_photographed_page_is_ink() {
+    let config = Config {
+        colors: Colors::Palette(vec![[0x20, 0x2a, 0x6e]]),
+        background: Background::None,
+        opaque: true,
+        ..Config::default()
+    };
+    let fit = drawn(&picture("signature_photo.jpg"), config);
+    let truth = picture("signature_truth.png");
+    let file = render(&fit.svg(), Size::Scale(1.0), None).unwrap();
+    let inked = file.alpha().unwrap().iter().map(|alpha| *alpha > 0.5);
+    let [mut both, mut either, mut paper, mut stained] = [0.0; 4];
+    for (is_inked, truth) in inked.zip(&truth.planes()[0]) {
+        let is_ink = *truth < 0.5;
+        both += f64::from(u8::from(is_inked && is_ink));
+        either += f64::from(u8::from(is_inked || is_ink));
+        paper += f64::from(u8::from(!is_ink));
+        stained += f64::from(u8::from(is_inked && !is_ink));
+    }
+    assert!(fit.damage.unwrap().uneven_light);
+    assert!(fit.scene.len() <= 40, "{} marks", fit.scene.len());
+    assert!(both / either >= 0.8, "IoU {}", both / either);
+    assert!(
+        stained / paper <= 0.01,
+        "{} of the paper is inked",
+        stained / paper
+    );
+}
+
+#[test]
+fn what_was_enlarged_is_drawn_as_it_was() {
+    let clean = flat_art();
+    let (width, height) = (2 * clean.width(), 2 * clean.height());
+    // Linear enlargement.
+    let enlarged = Image::from_fn(width, height, 3, |x, y, c| {
+        let beside = |at: usize, size: usize| {
+            let other = if at % 2 == 0 {
+                (at / 2).saturating_sub(1)
+            } else {
+                at / 2 + 1
+            };
+            [at / 2, other.min(size - 1)]
+        };
+        let ([x, left], [y, above]) = (beside(x, clean.width()), beside(y, clean.height()));
+        let at = |x: usize, y: usize| clean.planes()[c][y * clean.width() + x];
+        let row = |y: usize| 0.75 * at(x, y) + 0.25 * at(left, y);
+        0.75 * row(y) + 0.25 * row(above)
+    })
+    .unwrap();
+    let (small, large) = (
+        drawn(&clean, Config::default()),
+        drawn(&enlarged, Config::default()),
+    );
+    assert!(
+        large.scene.len() <= small.scene.len() + 1,
+        "{} marks",
+        large.scene.len()
+    );
+    assert_eq!(large.scene.page, Some([width as u32, height as u32]));
+}
+
+#[test]
+fn damage_is_told_in_words() {
+    let damage = Damage {
+        noise: 5.25,
+        halved_chroma: true,
+        ..Damage::default()
+    };
+    assert_eq!(
+        damage.to_string(),
+        "noise of 5.2 levels, colours at half the resolution"
+    );
+}
