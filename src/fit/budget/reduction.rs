@@ -76,7 +76,8 @@ fn shows_no_more(loss_db: f64, picture: &Image, config: &Config, recipe: &Reduct
 
 /// True if a picture of few pixels is soft, as one that was enlarged is, so that its half has all of its detail.
 fn is_soft(picture: &Image, config: &Config, recipe: &Reduction) -> bool {
-    let is_small = pixels(picture) / 4 < recipe.least_pixels;
+    // A larger one is reduced to the pixels of a screen, and no further.
+    let is_small = pixels(picture) <= recipe.enough_pixels;
     let least = picture.width().min(picture.height());
     is_small
         && config.budget.psnr_db.is_none()
