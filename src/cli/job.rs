@@ -205,8 +205,13 @@ impl Job<'_> {
     fn tell_poor(&self, drawn: &Drawn) {
         let reached = drawn.judged.verdict.fidelity.psnr_db;
         let flat = one_color_db(&drawn.judged.fit.target);
-        // A drawing without damage may be unlike a picture with it.
-        if drawn.judged.fit.damage.is_none() && reached + POOR_DB < flat {
+        // A page without its shadows is unlike the photograph.
+        let is_lit = drawn
+            .judged
+            .fit
+            .damage
+            .is_some_and(|damage| damage.uneven_light);
+        if !is_lit && reached + POOR_DB < flat {
             complain(format_args!(
                 "{}: warning: a page of one colour would be more like the picture ({flat:.1} dB) than this drawing ({reached:.1} dB): \
                  give other colours or more of them, or another --background",

@@ -14,6 +14,9 @@ impl Labels {
     /// Most colours of a picture of few: those of a GIF.
     pub(super) const MOST: usize = 256;
 
+    /// Smaller pictures of few colours, px, are pixel art. A guess.
+    pub(super) const LEAST_SIDE: usize = 48;
+
     /// The labels of a picture of at most so many colours.
     pub(super) fn of(picture: &Image, most: usize) -> Option<Self> {
         let [red, green, blue] = picture.planes();
@@ -52,7 +55,7 @@ impl Labels {
         self.of[within(y, self.height) * self.width + within(x, self.width)]
     }
 
-    /// How many of the four pixels beside a place have another colour.
+    /// The number of the four pixels beside a place that have another colour.
     pub(super) fn others(&self, x: isize, y: isize) -> usize {
         let beside = [[1, 0], [-1, 0], [0, 1], [0, -1]];
         let is_other = |[dx, dy]: &[isize; 2]| self.at(x + dx, y + dy) != self.at(x, y);

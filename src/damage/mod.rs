@@ -43,7 +43,7 @@ pub struct Meant {
     pub damage: Damage,
 }
 
-/// What a picture has been through.
+/// The damage of a picture.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Damage {
     /// True if its borders have stairs for want of antialiasing.
@@ -61,7 +61,8 @@ pub struct Damage {
 }
 
 impl Damage {
-    /// How far the picture that is meant may be from the truth, RMS in levels of 8 bits: noise goes, but for a part.
+    /// The distance of the picture that is meant from the truth, as far as can be told, RMS in levels of 8 bits: noise goes, but for a
+    /// part.
     pub fn doubt(&self) -> f32 {
         self.ringing.max(self.noise / 2.0)
     }
@@ -119,6 +120,9 @@ pub fn meant(picture: &Image) -> Result<Option<Meant>> {
 
 /// The picture that one of few colours is meant to be.
 fn of_few_colors(picture: &Image, labels: &Labels) -> Result<Option<Meant>> {
+    if labels.width.max(labels.height) < Labels::LEAST_SIDE {
+        return Ok(None);
+    }
     if let Some((picture, dithering)) = dither::mixed(picture, labels, &Dithering::MEASURED)? {
         let damage = Damage {
             dithering,

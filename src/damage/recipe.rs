@@ -90,8 +90,6 @@ impl Restoration {
 /// Search for stairs, and their smoothing.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Stairs {
-    /// Smaller pictures, px, are pixel art. A guess.
-    pub(super) least_side: usize,
     /// Most colours of a picture without antialiasing. A guess.
     pub(super) most_colors: usize,
     /// Largest share of the pixels at borders that are unlike three of those beside them: antialiased and dithered ones are.
@@ -106,7 +104,6 @@ pub(super) struct Stairs {
 
 impl Stairs {
     pub(super) const MEASURED: Self = Self {
-        least_side: 48,
         most_colors: 32,
         most_lonely: 0.1,
         least_square: 2,

@@ -19,8 +19,7 @@ const SIDES: [[f32; 2]; 4] = [[0.0, -1.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]];
 
 /// The picture with smooth borders in the place of stairs; `None` if it has none, or its stairs are meant.
 pub(super) fn smoothed(labels: &Labels, recipe: &Stairs) -> Result<Option<Image>> {
-    let side = labels.width.max(labels.height);
-    if side < recipe.least_side || labels.colors.len() > recipe.most_colors {
+    if labels.colors.len() > recipe.most_colors {
         return Ok(None);
     }
     let [borders, lonely] = labels.borders();

@@ -74,11 +74,11 @@ pub struct Recipe {
     pub rivals: usize,
     /// Division of a time limit.
     pub time: TimeShares,
-    /// What is lost to damage of the picture.
+    /// Losses to damage of the picture.
     pub doubts: Doubts,
 }
 
-/// What is lost to damage of a picture.
+/// Losses to damage of a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Doubts {
     /// Doubt, levels, at which a byte has to remove twice the squared error. 2.5: JPEG 75 and noise of 8 levels cost 3 dB of

@@ -24,7 +24,7 @@ pub struct Fit {
     pub file: WriteOptions,
     /// The target: the picture with its alpha, or flattened onto the background.
     pub target: Image,
-    /// What the picture has been through, if that was recognised: the drawing is then of the picture that is meant.
+    /// Damage of the picture, if some was recognised: the drawing is then of the picture that is meant.
     pub damage: Option<Damage>,
     /// Our own render of `scene` with the edge of a finished drawing; with alpha if the drawing has no
     /// background and the picture has alpha.

@@ -44,7 +44,7 @@ pub struct Input {
     /// Changes and omissions in reading it, in words.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub remarks: Vec<String>,
-    /// What it has been through, if its drawing leaves that out.
+    /// Damage that its drawing leaves out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damage: Option<Damage>,
 }
