@@ -81,11 +81,11 @@ fn details(values: &[f32], width: usize) -> [f64; 2] {
         let fine = row
             .iter()
             .enumerate()
-            .map(|(x, value)| f64::from(value - half.at(x, y)).powi(2));
+            .map(|(x, value)| math::powi(f64::from(value - half.at(x, y)), 2));
         let all = row
             .iter()
             .zip(row.iter().skip(8))
-            .map(|(a, b)| f64::from(a - b).powi(2));
+            .map(|(a, b)| math::powi(f64::from(a - b), 2));
         [fine.sum::<f64>(), all.sum::<f64>()]
     };
     let rows: Vec<[f64; 2]> = values.par_chunks(width).enumerate().map(of_row).collect();

@@ -3,6 +3,7 @@
 //! Noise on white paper can only darken it, so that the mean is darker than the paper; likewise on black.
 
 use crate::image::Image;
+use crate::math;
 
 /// Share of the pixels about an end of the range that are at that end, if noise was cut off there.
 const LEAST_CUT: f32 = 0.25;
@@ -59,7 +60,7 @@ fn cut_noise(pixels: impl Iterator<Item = [f32; 2]>) -> Option<f32> {
     for [restored, noisy] in pixels.filter(|[restored, _]| *restored < ABOUT) {
         count += 1.0;
         at_end += f64::from(u8::from(noisy < 0.5));
-        squares += f64::from(noisy - restored).powi(2);
+        squares += math::powi(f64::from(noisy - restored), 2);
     }
     let rms = (squares / count.max(1.0)).sqrt() as f32 / LEFT;
     (count > 0.0 && at_end > f64::from(LEAST_CUT) * count && rms > 1.0).then_some(rms)

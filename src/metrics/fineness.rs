@@ -2,6 +2,7 @@
 
 use super::average;
 use crate::image::Image;
+use crate::math;
 
 /// Half the side of the window that detail is in, px.
 const REACH: usize = 4;
@@ -33,8 +34,8 @@ pub(crate) fn fine_share(picture: &Image) -> Option<f64> {
     average(&mut means, width, REACH);
     let [mut fine, mut all] = [0.0; 2];
     for (i, (value, mean)) in plane.iter().zip(means).enumerate() {
-        fine += f64::from(value - enlarged(i)).powi(2);
-        all += (f64::from(*value) - mean).powi(2);
+        fine += math::powi(f64::from(value - enlarged(i)), 2);
+        all += math::powi(f64::from(*value) - mean, 2);
     }
     // A hundredth of the pixels at an edge of full contrast.
     (all > 1e-4 * plane.len() as f64).then(|| fine / all)

@@ -186,7 +186,7 @@ fn what_was_enlarged_is_drawn_as_it_was() {
     // Linear enlargement.
     let enlarged = Image::from_fn(width, height, 3, |x, y, c| {
         let beside = |at: usize, size: usize| {
-            let other = if at % 2 == 0 {
+            let other = if at.is_multiple_of(2) {
                 (at / 2).saturating_sub(1)
             } else {
                 at / 2 + 1
