@@ -42,7 +42,7 @@ pub struct Fitter<'a> {
     pub(super) grace: Duration,
     /// Size of the picture, px, if a reduced one is drawn.
     pub(super) page: Option<[u32; 2]>,
-    /// How far the picture may be from what it means, RMS in levels of 8 bits.
+    /// Distance of the picture from what it means, as far as can be told, RMS in levels of 8 bits.
     pub(super) doubt: f32,
 }
 
