@@ -111,14 +111,15 @@ impl Fitter<'_> {
         if self.config.literal || self.config.budget.psnr_db.is_some() {
             return Ok(None);
         }
-        let meant = damage::meant(picture)?;
+        let meant = self.execution.install(|| damage::meant(picture))??;
         self.doubt = meant.as_ref().map_or(0.0, |meant| meant.damage.doubt());
         Ok(meant)
     }
 
     /// Draws the picture that is meant.
     fn fit_meant(mut self, picture: &Image, since: Instant) -> Result<Fit> {
-        let reduced = self.reduce(picture);
+        let pool = self.execution.pool()?;
+        let reduced = pool.install(|| self.reduce(picture));
         let picture = reduced.as_ref().unwrap_or(picture);
         let rivals = self.rivals(picture);
         let competes = !rivals.is_empty();
