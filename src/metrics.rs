@@ -5,6 +5,7 @@
 
 mod details;
 mod fineness;
+mod half;
 mod patch;
 mod similarity;
 mod ssimulacra2;
@@ -21,6 +22,7 @@ use crate::math;
 use crate::scene::Rgb;
 pub(crate) use details::Details;
 pub(crate) use fineness::fine_share;
+pub(crate) use half::Half;
 pub(crate) use window::average;
 
 const WHITE: Rgb = [1.0; 3];

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::planes::Planes;
 use crate::math;
+use crate::metrics::Half;
 
 /// Half the side of the window, in px of the half.
 const REACH: isize = 2;
@@ -17,49 +18,6 @@ const ALIKE: f32 = 6.0;
 /// Largest ratio of chroma's fine detail to luma's in a picture with chroma at half the resolution. Others have 0.9 to 1.05,
 /// JPEG of flat art 0.3 to 0.75.
 const HALVED: f64 = 0.8;
-
-/// A plane at half the size, each pixel the mean of 2×2.
-struct Half {
-    width: usize,
-    height: usize,
-    values: Vec<f32>,
-}
-
-impl Half {
-    fn of(values: &[f32], width: usize) -> Self {
-        let rows: Vec<&[f32]> = values.chunks(width).collect();
-        let pairs = rows.chunks(2).map(|pair| (pair[0], pair[pair.len() - 1]));
-        let mean = |(top, bottom): (&[f32], &[f32])| {
-            let quads = top.chunks(2).zip(bottom.chunks(2));
-            let sum = |pair: &[f32]| pair[0] + pair[pair.len() - 1];
-            quads
-                .map(|(a, b)| (sum(a) + sum(b)) / 4.0)
-                .collect::<Vec<_>>()
-        };
-        Self {
-            width: width.div_ceil(2),
-            height: rows.len().div_ceil(2),
-            values: pairs.flat_map(mean).collect(),
-        }
-    }
-
-    /// The value at a place of the whole, between the pixels of the half.
-    fn at(&self, x: usize, y: usize) -> f32 {
-        let beside = |at: usize, size: usize| {
-            let own = at / 2;
-            let other = if at.is_multiple_of(2) {
-                own.saturating_sub(1)
-            } else {
-                own + 1
-            };
-            (own, other.min(size - 1))
-        };
-        let ((x, left), (y, above)) = (beside(x, self.width), beside(y, self.height));
-        let at = |x: usize, y: usize| self.values[y * self.width + x];
-        let row = |y: usize| 0.75 * at(x, y) + 0.25 * at(left, y);
-        0.75 * row(y) + 0.25 * row(above)
-    }
-}
 
 /// True if chroma has far less fine detail than luma.
 pub(super) fn is_halved(planes: &Planes) -> bool {
@@ -96,6 +54,7 @@ fn details(values: &[f32], width: usize) -> [f64; 2] {
 /// Chromas that follow the edges of luma.
 pub(super) fn along_luma(planes: &Planes) -> [Vec<f32>; 2] {
     let [luma, chromas @ ..] = planes.planes.each_ref();
+    // Luma at the resolution of the chromas tells which of their pixels lie on the same side of an edge.
     let guide = Half::of(luma, planes.width);
     let halves = chromas.map(|chroma| Half::of(chroma, planes.width));
     let alike: Vec<f32> = (0..=255)

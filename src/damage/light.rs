@@ -24,6 +24,7 @@ pub(super) fn evened(planes: &mut Planes, recipe: &Light) -> bool {
     let [low, high] = light.iter().fold([f32::MAX, f32::MIN], |[low, high], v| {
         [low.min(*v), high.max(*v)]
     });
+    // A page is mostly paper that follows the field, bright, in light that is not even.
     let luma = &planes.planes[0];
     let is_paper = |(value, light): (&f32, &f32)| (value / light - 1.0).abs() < recipe.near;
     let paper = luma
@@ -54,6 +55,7 @@ impl Field {
     fn of(planes: &Planes, recipe: &Light) -> Option<Self> {
         let mut cells = cells(planes, recipe);
         let mut field = Self::fitted(&cells)?;
+        // Ink darkens cells, so that those far below the field are left out and it is fitted anew.
         for _ in 0..recipe.rounds {
             let is_near =
                 |(place, value): &([f32; 2], f32)| *value > (1.0 - recipe.near) * field.at(*place);

@@ -149,6 +149,7 @@ fn without_noise(picture: &Image, mut planes: Planes, noise: &Noise) -> Result<O
             .zip(chromas)
             .for_each(|(plane, chroma)| *plane = chroma);
     }
+    // Tones are mended last: the mean of what is left of noise is known only without it.
     let channels = clip::unclipped(picture, planes.image()?);
     let mut picture = Image::new(planes.width, planes.height, channels)?;
     // Only photographs of pages have both grain and shadows; a gradient is drawn.
@@ -185,6 +186,7 @@ fn is_flat_art(planes: &Planes, recipe: &FlatArt) -> bool {
 fn shrunk(planes: &mut Planes, noise: &Noise) {
     let recipe = Restoration::MEASURED;
     let pixels = planes.width * planes.height;
+    // Fewer blocks hold each pixel of a large picture, for time.
     let step = [1, 8]
         .iter()
         .filter(|larger| pixels > *larger * recipe.all_blocks)

@@ -62,6 +62,7 @@ pub(super) fn measure(planes: &Planes, recipe: &Noises) -> Option<Noise> {
     if share < recipe.least_far {
         return None;
     }
+    // What is measured far from edges, and in blocks with an edge.
     let far = sorted(sites.iter().filter(far));
     let near = sorted(sites.iter().filter(|site| site.is_near));
     let is_measured = near.len() as f32 > recipe.least_near * count as f32;
@@ -72,6 +73,7 @@ pub(super) fn measure(planes: &Planes, recipe: &Noises) -> Option<Noise> {
             0.0
         }
     };
+    // The same noise everywhere: grain, of which edges have some more.
     let (tones, ratio) = tones(&sites, recipe);
     if (recipe.least..recipe.most).contains(&quantile(&far, 0.5)) && ratio <= recipe.most_uneven {
         return Some(Noise {
@@ -79,6 +81,7 @@ pub(super) fn measure(planes: &Planes, recipe: &Noises) -> Option<Noise> {
             near: beside(0.5) / recipe.near_in_noise,
         });
     }
+    // Noise beside edges alone: compression.
     let is_clean = quantile(&far, 0.75) <= recipe.clean;
     (is_clean && beside(0.3) >= recipe.least_beside).then(|| Noise {
         far: [0.0; TONES],

@@ -9,7 +9,7 @@ use super::cosine::{Block, Cosines, SIDE};
 /// Rows that are worked on together.
 const BAND: usize = 64;
 
-/// Luma and chromas, rows of `width`, without noise. Coefficients below `least` of a block's mean luma and range of luma are noise.
+/// Luma and chromas, rows of `width`, without noise. Coefficients below `least` of the middle of a block's luma and of its range are noise.
 /// Blocks begin at every `step` px.
 pub(super) fn shrink(
     planes: &[Vec<f32>; 3],
@@ -73,12 +73,14 @@ fn mirrored(start: isize, size: usize) -> [usize; SIDE] {
 
 /// A block without coefficients below `least`, and its weight: the fewer coefficients are left, the less noise is.
 fn kept(cosines: &Cosines, block: &Block, least: f32) -> (Block, f32) {
+    // Most blocks of flat art need no transform.
     let first = block[0][0];
     if block.iter().flatten().all(|value| *value == first) {
         return (*block, 1.0);
     }
     let mut coefficients = cosines.forward(block);
     let mean = coefficients[0][0];
+    // Noise is spread over all coefficients, and what is drawn gathers in a few. The mean stays.
     let mut count = 1;
     for value in coefficients.iter_mut().flatten().skip(1) {
         if value.abs() < least {

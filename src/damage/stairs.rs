@@ -77,6 +77,7 @@ impl Labels {
     /// The node of each cell, relative to its middle, px.
     fn nodes(&self, recipe: &Stairs) -> Vec<[f32; 2]> {
         let [columns, rows] = self.cells();
+        // Cells that a border runs through.
         let mut nodes = vec![[0.0_f32; 2]; columns * rows];
         let borders: Vec<(usize, [bool; 4])> = (0..nodes.len())
             .map(|cell| (cell, crossed(&self.corners(cell))))
@@ -89,6 +90,7 @@ impl Labels {
                     .filter(|c| *c < columns * rows)
             })
         };
+        // Each node goes towards the middle of those that the border leads to.
         for _ in 0..recipe.rounds {
             let moved: Vec<[f32; 2]> = borders
                 .par_iter()

@@ -25,7 +25,7 @@ const TEXTURE: [f32; 2] = [0.2, 0.45];
 
 /// Least mean isolation of the small things of a picture that has details. Photographs have 0.01 to 0.26, a comic and text 0.55
 /// and 0.63, maps and charts 0.9 and more.
-const LEAST_ISOLATION: f32 = 0.4;
+const LEAST_ISOLATION: f64 = 0.4;
 
 /// Error, in units of the contrast around, of a detail that is lost. Of a legible label 0 to 2 % of the pixels have more, of an
 /// illegible one 7 %.
@@ -47,6 +47,7 @@ impl Details {
         let width = picture.width();
         let planes = picture.on(WHITE).into_owned().into_planes();
         let contrasts = contrasts(&planes, width);
+        // The share of small things around each pixel, and from that how far it stands alone.
         let is_thing = |contrast: &f32| f64::from(u8::from(*contrast > LEAST));
         let mut shares: Vec<f64> = contrasts.iter().map(is_thing).collect();
         average(&mut shares, width, AROUND);
@@ -56,8 +57,10 @@ impl Details {
             if *contrast > LEAST { isolation } else { 0.0 }
         };
         let mut isolations: Vec<f32> = contrasts.iter().zip(&shares).map(isolation).collect();
-        let things = contrasts.iter().map(|contrast| is_thing(contrast) as f32);
-        if isolations.iter().sum::<f32>() < LEAST_ISOLATION * things.sum::<f32>() {
+        // What has hardly a detail that stands alone is texture.
+        let things: f64 = contrasts.iter().map(is_thing).sum();
+        let isolated: f64 = isolations.iter().map(|v| f64::from(*v)).sum();
+        if isolated < LEAST_ISOLATION * things {
             isolations.fill(0.0);
         }
         let isolations = extremes(&isolations, width, 1, f32::max);

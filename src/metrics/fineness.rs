@@ -1,6 +1,6 @@
 //! Fineness: how much of a picture's detail is finer than two pixels.
 
-use super::average;
+use super::{Half, average};
 use crate::image::Image;
 use crate::math;
 
@@ -12,29 +12,12 @@ const REACH: usize = 4;
 pub(crate) fn fine_share(picture: &Image) -> Option<f64> {
     let width = picture.width();
     let [_, plane, _] = picture.planes();
-    let half = picture.reduced(width.div_ceil(2), picture.height().div_ceil(2));
-    let [_, small, _] = half.planes();
-    let enlarged = |i: usize| {
-        let beside = |at: usize, size: usize| {
-            let own = (at / 2).min(size - 1);
-            let other = if at.is_multiple_of(2) {
-                own.saturating_sub(1)
-            } else {
-                own + 1
-            };
-            [own, other.min(size - 1)]
-        };
-        let [x, left] = beside(i % width, half.width());
-        let [y, above] = beside(i / width, half.height());
-        let row =
-            |y: usize| 0.75 * small[y * half.width() + x] + 0.25 * small[y * half.width() + left];
-        0.75 * row(y) + 0.25 * row(above)
-    };
+    let half = Half::of(plane, width);
     let mut means: Vec<f64> = plane.iter().map(|v| f64::from(*v)).collect();
     average(&mut means, width, REACH);
     let [mut fine, mut all] = [0.0; 2];
     for (i, (value, mean)) in plane.iter().zip(means).enumerate() {
-        fine += math::powi(f64::from(value - enlarged(i)), 2);
+        fine += math::powi(f64::from(value - half.at(i % width, i / width)), 2);
         all += math::powi(f64::from(*value) - mean, 2);
     }
     // A hundredth of the pixels at an edge of full contrast.
