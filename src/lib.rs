@@ -38,7 +38,7 @@
 //! | --- | --- | --- |
 //! | `formats` | pictures other than PNG, colour profiles, and pictures embedded in the SVG of a base | yes |
 //! | `animation` | frames and GIF, WebP or PNG files in the module `animation`; needs `formats` | yes |
-//! | `cli` | the program and what it alone uses: `engines` and `view`; needs the others | yes |
+//! | `cli` | the program and what it alone uses: `engines`, [`machine`] and `view`; needs the others | yes |
 //!
 //! # The pipeline
 //!
@@ -53,12 +53,14 @@
 //! render                          marks → canvas, ∂L/∂canvas → ∂L/∂marks, worth
 //! seed                            residual → candidates, ranked by gain in closed form
 //! trace                           residual → areas, and strokes along the lines that are seen
+//! outline                         stroke → the rings around it
 //! svg                             drawing → SVG text
 //! rasters                         mark → the pixels that resvg, Chromium and exact renderers cover
 //! verify                          SVG text → resvg's render of it
 //! engines                         other programs' renders of it
 //! fit                             stages, polish, restricting, settling, budgets
 //! report                          plain records
+//! machine                         drawing → cut-outs, hatching, PDF, DXF
 //! animation  view                 frames of a drawing, a live page
 //! cli                             the command line
 //! ```
@@ -191,9 +193,12 @@ mod error;
 pub mod fit;
 pub mod image;
 pub mod loss;
+#[cfg(feature = "cli")]
+pub mod machine;
 pub mod math;
 pub mod metrics;
 pub mod optim;
+mod outline;
 #[doc(hidden)]
 pub mod rasters;
 pub mod render;

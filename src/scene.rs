@@ -24,6 +24,8 @@ pub use shade::{Axis, MAX_STOPS, Shade, ShadeStop};
 pub(crate) use shade::{WrittenAxis, WrittenStop};
 pub(crate) use written_path::{WrittenPath, WrittenPoint};
 
+use crate::math::Point;
+
 /// An sRGB-encoded colour, 0..1 per channel.
 pub type Rgb = [f32; 3];
 
@@ -83,6 +85,18 @@ impl Scene {
             shade: None,
             stages: Vec::new(),
         }
+    }
+
+    /// The scene with all points on the page: those beyond its border are on the border. Curves stay within their points.
+    #[must_use]
+    pub fn confined(mut self) -> Self {
+        let [width, height] = [self.width, self.height].map(|side| side as f32);
+        let held = |p: Point| Point::new(p.x.clamp(0.0, width), p.y.clamp(0.0, height));
+        for stage in &mut self.stages {
+            let marks = std::mem::take(&mut stage.marks).into_iter();
+            stage.marks = marks.map(|mark| mark.map(held)).collect();
+        }
+        self
     }
 
     /// All marks, back to front.

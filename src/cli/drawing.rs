@@ -6,6 +6,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, Value
 use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, ArgMatches, Command, FromArgMatches, value_parser};
 use strokefit::fit::{Config, MAX_STROKES, Options, Value};
+use strokefit::machine::Hatch;
 
 use super::palette;
 
@@ -93,7 +94,13 @@ const OPTIONS: [(&str, &str); 3] = [
     * fitted: The order that they were fitted in
     * travel: With short ways between them, for a plotter; the picture stays the same
 --outline
-    Write filled outlines instead of strokes, for programs that ignore strokes
+    Write filled outlines instead of strokes, one for each, for programs that ignore strokes
+--cutout
+    Write what is seen of each colour as one path, for cutters: areas do not overlap, share their borders, and end at the
+    page. All is opaque; the background is one of the areas unless it is none
+--hatch DISTANCE[:ANGLE]
+    Fill areas with lines for a plotter, so far apart, such as 0.5mm, at an angle, 45 degrees if none is given. The lines are as wide as the
+    thinnest of the --pens, or as they are far apart
 --width LENGTH
     Width of the page in mm, cm, in, pt or px, such as 120mm [default: one px per pixel of the picture]",
     ),
@@ -116,6 +123,10 @@ pub(super) struct Drawing {
     counts_new: bool,
     /// The picture of weights.
     pub(super) focus: Option<PathBuf>,
+    /// True if areas are cut out.
+    pub(super) cutout: bool,
+    /// Lines that fill areas, if they do.
+    pub(super) hatch: Option<Hatch>,
 }
 
 impl Drawing {
@@ -167,6 +178,13 @@ impl FromArgMatches for Drawing {
             .get_one("strokes")
             .is_some_and(|text: &String| text.starts_with('+'));
         self.focus = matches.get_one("focus").cloned();
+        self.cutout = matches.get_flag("cutout");
+        self.hatch = matches.get_one("hatch").copied();
+        let config = &mut self.options.config;
+        config.hatched |= self.hatch.is_some();
+        if self.cutout || self.hatch.is_some() {
+            (config.confined, config.opaque) = (true, true);
+        }
         Ok(())
     }
 }
@@ -183,6 +201,8 @@ fn related(arg: Arg) -> Arg {
     match arg.get_id().as_str() {
         "progressive" => arg.conflicts_with("no-polish"),
         "outline" => arg.conflicts_with("form"),
+        "cutout" => arg.conflicts_with_all(["outline", "hatch", "form"]),
+        "hatch" => arg.conflicts_with("outline").allow_hyphen_values(true),
         "palette" => arg.conflicts_with("colors"),
         "colors" => arg.alias("colours"),
         "pens" | "width" => arg.allow_hyphen_values(true),
@@ -224,6 +244,7 @@ fn parser(name: &'static str, words: &[(&'static str, &'static str)]) -> ValuePa
         }),
         "palette" => ValueParser::new(move |text: &str| checked(&palette::read(text)?)),
         "focus" => value_parser!(PathBuf),
+        "hatch" => ValueParser::new(|text: &str| text.parse::<Hatch>()),
         _ if words.is_empty() => ValueParser::new(checked),
         _ => {
             let values = words.iter().map(|(word, help)| {

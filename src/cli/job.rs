@@ -71,12 +71,19 @@ impl Job<'_> {
         }
         tell_dropped(fit.dropped, verbosity);
         tell_reduced(&fit.scene, input::name(self.input), verbosity);
-        let judged = Judged::new(fit)?;
-        outputs.svg.1.write(judged.svg.as_bytes())?;
-        let drawn = Drawn {
-            judged,
-            wall: start.elapsed(),
+        let mut drawn = Drawn {
+            judged: Judged::new(fit)?,
+            wall: Duration::ZERO,
         };
+        let product = self.options.product(&drawn.judged)?;
+        let subject = Subject {
+            scene: product.scene.as_deref(),
+            text: &product.text,
+            target: Some(&drawn.judged.fit.target),
+            scale: 1.0,
+        };
+        outputs.svg.1.write(&subject.drawing(&self.output)?)?;
+        drawn.wall = start.elapsed();
         let record = FitReport {
             input: Input {
                 damage: drawn.judged.fit.damage,
@@ -87,12 +94,8 @@ impl Job<'_> {
         if let Some((_, output)) = &outputs.report {
             output.write(report::json(&record)?.as_bytes())?;
         }
-        outputs.pictures.write(&Subject {
-            scene: drawn.judged.whole(),
-            text: &drawn.judged.svg,
-            target: Some(&drawn.judged.fit.target),
-            scale: 1.0,
-        })?;
+        outputs.pictures.write(&subject)?;
+        drop(product);
         events.tell(&Event::Done(Box::new(record)));
         self.forget(&drawn)?;
         Interrupt::rest();

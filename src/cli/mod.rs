@@ -20,6 +20,7 @@ mod options;
 pub mod output;
 mod palette;
 mod pictures;
+mod product;
 mod progress;
 mod refine;
 mod refusal;

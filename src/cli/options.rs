@@ -6,11 +6,13 @@ use std::time::Duration;
 use anyhow::Result;
 use strokefit::fit::{Checkpoint, Colors, Config, Execution, Fit, Fitter, Focus, Observer, Preset};
 use strokefit::image::{Image, Limits};
+use strokefit::report::Judged;
 use strokefit::svg::WriteOptions;
 
 use super::drawing::{self, Drawing};
 use super::interrupt::GRACE;
 use super::pictures::FilmOptions;
+use super::product::Product;
 use super::{complain, domain, input};
 
 /// Weight of an error where the mask of `--focus` is black. Without any, ends of strokes are left there as they come: a cat
@@ -87,6 +89,11 @@ impl Options {
         ];
         let given = options.into_iter().filter(|(_, given)| *given);
         given.map(|(name, _)| name).collect()
+    }
+
+    /// The drawing as its files hold it: cut out, hatched or outlined if that was asked for.
+    pub(super) fn product<'a>(&self, judged: &'a Judged) -> Result<Product<'a>> {
+        Product::of(judged, &self.drawing)
     }
 
     pub(super) fn limits(&self) -> Limits {

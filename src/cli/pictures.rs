@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 use strokefit::animation::{Film, Legend, Step};
 use strokefit::image::{AnimationFormat, Image};
+use strokefit::machine::{self, Sheet};
 use strokefit::scene::Scene;
+use strokefit::svg;
 use strokefit::verify::{self, Size};
 
 use super::misuse;
@@ -16,7 +18,7 @@ const NUMBER: &str = "{n}";
 
 /// Endings of formats that one might expect, and that are not written.
 const NOT_WRITTEN: [&str; 9] = [
-    "jpg", "jpeg", "bmp", "tif", "tiff", "avif", "pdf", "eps", "svgz",
+    "jpg", "jpeg", "bmp", "tif", "tiff", "avif", "eps", "ps", "svgz",
 ];
 
 /// Options of a film of a drawing.
@@ -36,6 +38,10 @@ pub(super) struct FilmOptions {
 pub(super) enum Format {
     /// The drawing.
     Svg,
+    /// The drawing for print.
+    Pdf,
+    /// The drawing for cutters and CAD.
+    Dxf,
     /// A PNG of the drawing.
     Picture,
     /// The drawing as it draws itself.
@@ -59,24 +65,54 @@ impl Format {
             "webp" => Self::Animation(AnimationFormat::Webp),
             "svg" if name.ends_with(".animated.svg") => Self::AnimatedSvg,
             "svg" => Self::Svg,
+            "pdf" => Self::Pdf,
+            "dxf" => Self::Dxf,
             _ => return None,
         })
     }
 
     fn moves(self) -> bool {
+        !self.is_drawing() && self != Self::Picture
+    }
+
+    /// True if the file holds the drawing itself, and not pictures of it.
+    fn is_drawing(self) -> bool {
+        matches!(self, Self::Svg | Self::Pdf | Self::Dxf)
+    }
+
+    /// True if the file holds the marks one by one, so that these have to be known.
+    fn needs_marks(self) -> bool {
         !matches!(self, Self::Svg | Self::Picture)
     }
 }
 
 /// A drawing and what is known of it.
 pub(super) struct Subject<'a> {
-    /// Needed for what moves.
+    /// Needed for what moves, PDF and DXF.
     pub(super) scene: Option<&'a Scene>,
     pub(super) text: &'a str,
     /// Picture that the drawing is to look like.
     pub(super) target: Option<&'a Image>,
     /// Pixels per px of the drawing.
     pub(super) scale: f64,
+}
+
+impl Subject<'_> {
+    /// The bytes of the drawing as a file of this name.
+    pub(super) fn drawing(&self, path: &Path) -> Result<Vec<u8>> {
+        let format = Format::of(path).filter(|format| format.needs_marks());
+        let Some(format) = format else {
+            return Ok(self.text.as_bytes().to_vec());
+        };
+        let sheet = Sheet {
+            scene: self.scene.ok_or_else(|| unknown_marks(path))?,
+            width: svg::page_width(self.text),
+        };
+        Ok(match format {
+            Format::Dxf => machine::dxf(&sheet).into_bytes(),
+            _ => machine::pdf(&sheet),
+        })
+    }
 }
 
 /// Pictures and animations, known to be writable.
@@ -117,9 +153,13 @@ impl<'a> Pictures<'a> {
         Ok(())
     }
 
-    /// True if any of the files needs the strokes.
-    pub(super) fn moves(&self) -> bool {
+    fn moves(&self) -> bool {
         self.files.iter().any(|(format, ..)| format.moves())
+    }
+
+    /// True if any of the files needs the marks.
+    pub(super) fn needs_marks(&self) -> bool {
+        self.files.iter().any(|(format, ..)| format.needs_marks())
     }
 
     /// Every file that is written.
@@ -138,12 +178,8 @@ impl<'a> Pictures<'a> {
                 (Format::Animation(format), Some(scene)) => {
                     output.write(&self.film(subject).encode(scene, *format)?)?;
                 }
-                (format, None) if format.moves() => {
-                    return Err(misuse(format!(
-                        "{}: the SVG is not made of strokes and areas only, so it cannot be drawn one by one: leave this output out",
-                        path.display()
-                    )));
-                }
+                (format, _) if format.is_drawing() => output.write(&subject.drawing(path)?)?,
+                (format, None) if format.moves() => return Err(unknown_marks(path)),
                 _ => {
                     let picture = verify::render(subject.text, Size::Scale(subject.scale), None)?;
                     output.write(&picture.encode_png()?)?;
@@ -178,7 +214,15 @@ impl<'a> Pictures<'a> {
     }
 }
 
-/// The SVG among the outputs of a fit, and the others.
+/// The error of a file of marks of a drawing that has others.
+fn unknown_marks(path: &Path) -> anyhow::Error {
+    misuse(format!(
+        "{}: the SVG is not made of strokes and areas only, so they cannot be written one by one: leave this output out",
+        path.display()
+    ))
+}
+
+/// The SVG among the outputs of a fit, or without one the first PDF or DXF, and the others.
 pub(super) fn split(paths: &[PathBuf]) -> Result<(&Path, Vec<&Path>)> {
     paths.iter().try_for_each(|path| expect_written(path))?;
     let is_svg = |path: &Path| matches!(Format::of(path), None | Some(Format::Svg));
@@ -188,7 +232,14 @@ pub(super) fn split(paths: &[PathBuf]) -> Result<(&Path, Vec<&Path>)> {
         .partition(|path| is_svg(path));
     match svgs.as_slice() {
         [svg] => Ok((svg, others)),
-        [] => Err(misuse("no output is an SVG: add one, such as -o out.svg")),
+        [] => {
+            let is_drawing = |path: &&&Path| Format::of(path).is_some_and(Format::is_drawing);
+            let drawing = others.iter().find(is_drawing).copied().ok_or_else(|| {
+                misuse("no output is an SVG, a PDF or a DXF: add one, such as -o out.svg")
+            })?;
+            let rest = others.into_iter().filter(|path| *path != drawing);
+            Ok((drawing, rest.collect()))
+        }
         [_, second, ..] => Err(misuse(format!(
             "{}: is a second SVG: give one SVG, and any number of pictures and animations",
             second.display()
@@ -203,7 +254,7 @@ fn expect_written(path: &Path) -> Result<()> {
         return Ok(());
     };
     Err(misuse(format!(
-        "{}: strokefit does not write .{other} files: use .svg, .png, .gif, .webp or .apng",
+        "{}: strokefit does not write .{other} files: use .svg, .pdf, .dxf, .png, .gif, .webp or .apng",
         path.display()
     )))
 }

@@ -60,7 +60,10 @@ pub(super) fn run(args: &Args) -> Result<Status> {
 }
 
 fn write(pictures: &Pictures<'_>, text: &str, scale: f64) -> Result<()> {
-    let scene = pictures.moves().then(|| svg::read(text)).transpose()?;
+    let scene = pictures
+        .needs_marks()
+        .then(|| svg::read(text))
+        .transpose()?;
     pictures.write(&Subject {
         scene: scene.as_ref(),
         text,

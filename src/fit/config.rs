@@ -10,7 +10,7 @@ use crate::coverage::CoverageSchedule;
 use crate::error::{Error, ErrorKind, Result};
 use crate::math;
 use crate::scene::{MAX_POINTS, MAX_PRECISION, Mark, Marks, Rgb, Scene, quantum};
-use crate::svg::{Form, WriteOptions};
+use crate::svg::{Form, Order, WriteOptions};
 use crate::threads::Workers;
 
 /// Configuration of a fit. Equal configurations of equal pictures give equal bytes.
@@ -47,6 +47,11 @@ pub struct Config {
     pub colors: Colors,
     /// The widths that strokes may have; any if `None`.
     pub pens: Option<Widths>,
+    /// True if a plotter or a cutter reads the file, and no path may run off the page. So it is, too, if there are
+    /// pens or a length of the page, or the file is of outlines or in an order of little travel.
+    pub confined: bool,
+    /// True if pens fill areas by hatching, so that a drawing for pens may have areas.
+    pub hatched: bool,
     /// Options of the file. The fit takes its bytes and its render into account.
     pub file: WriteOptions,
     /// The colour behind all strokes.
@@ -74,6 +79,8 @@ impl Default for Config {
             polish: true,
             colors: Colors::default(),
             pens: None,
+            confined: false,
+            hatched: false,
             file: WriteOptions::default(),
             background: Background::Auto,
             seed: 0,
@@ -190,16 +197,31 @@ impl Config {
     /// are hard to shorten.
     pub(super) fn marks(&self) -> Marks {
         match self.marks {
-            Marks::Auto if self.pens.is_some() || self.budget.bytes.is_some() => Marks::Strokes,
+            Marks::Auto if self.pens_draw_lines() || self.budget.bytes.is_some() => Marks::Strokes,
             marks => marks,
         }
     }
 
-    /// True if strokes may have more than two points. In a file of outlines a point takes as many bytes as a stroke, so
-    /// that none pays.
+    /// True if there are pens, and nothing is filled with them.
+    fn pens_draw_lines(&self) -> bool {
+        self.pens.is_some() && !self.hatched
+    }
+
+    /// True if no path may run off the page.
+    pub(super) fn is_confined(&self) -> bool {
+        let WriteOptions {
+            form, order, width, ..
+        } = self.file;
+        self.confined
+            || self.pens.is_some()
+            || width.is_some()
+            || form == Form::Outlines
+            || order == Order::Travel
+    }
+
+    /// True if strokes may have more than two points.
     pub(super) fn allows_points(&self) -> bool {
-        let pays = self.file.form != Form::Outlines;
-        self.points.map_or(pays, |most| most > 2)
+        self.points.is_none_or(|most| most > 2)
     }
 
     /// True if a mark is as opaque, and a stroke has as few points, as all have to be.
@@ -265,7 +287,7 @@ impl Config {
         if time.is_some_and(|time| time.is_zero()) {
             return refuse("a time of 0 s leaves none to fit in: give more".into());
         }
-        if self.marks == Marks::Areas && self.pens.is_some() {
+        if self.marks == Marks::Areas && self.pens_draw_lines() {
             return refuse(
                 "pens draw strokes, not areas: leave out pens, or ask for marks of strokes".into(),
             );

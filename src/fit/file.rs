@@ -21,6 +21,8 @@ pub(super) struct Writer<'a> {
     options: WriteOptions,
     /// Size of the picture, px, if the drawing is of a reduced one.
     page: Option<[u32; 2]>,
+    /// True if no path may run off the page.
+    is_confined: bool,
 }
 
 /// A drawing as it is written to a file, and resvg's render of that.
@@ -46,6 +48,7 @@ impl<'a> Writer<'a> {
             has_background,
             options: config.file,
             page: base.map_or(page, |base| base.scene.page),
+            is_confined: config.is_confined(),
         }
     }
 
@@ -54,6 +57,11 @@ impl<'a> Writer<'a> {
         let scene = Scene {
             page: self.page,
             ..drawing.scene(self.has_background)
+        };
+        let scene = if self.is_confined {
+            scene.confined()
+        } else {
+            scene
         };
         scene.quantized(self.options.precision)
     }

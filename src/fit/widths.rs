@@ -26,7 +26,10 @@ impl Widths {
     pub const MAX: usize = 64;
 
     /// The radii of the pens, px of the picture, on a page of this width; the thinnest comes first.
-    pub(super) fn radii(&self, page: Option<Length>, picture: &Image) -> Result<Vec<f32>> {
+    ///
+    /// # Errors
+    /// [`ErrorKind::Config`] when a pen is too thin or too wide for the picture, or the page has no width.
+    pub fn radii(&self, page: Option<Length>, picture: &Image) -> Result<Vec<f32>> {
         let radius = |width: &Width| width.px(page, picture).map(|px| (px / 2.0) as f32);
         let mut radii: Vec<f32> = self.0.iter().map(radius).collect::<Result<_>>()?;
         radii.sort_by(f32::total_cmp);

@@ -2,15 +2,11 @@
 
 use std::ops::Range;
 
-use resvg::tiny_skia::{
-    FillRule, LineCap, LineJoin, Mask as Raster, Path, PathBuilder, Rect, Stroke as Pen, Transform,
-};
+use resvg::tiny_skia::{FillRule, Mask as Raster, PathBuilder, Rect, Transform};
 
 use super::footprint::Footprint;
-use crate::scene::{self, Mark, Piece, Stroke};
-
-/// The length of the segment that a dot is written as, px.
-const DOT: f32 = 0.01;
+use crate::outline;
+use crate::scene::Mark;
 
 /// The pixels of a picture of `width`×`height` px that `mark`, which is as its file has it, covers.
 pub(super) fn footprint(mark: &Mark, width: usize, height: usize) -> Footprint {
@@ -19,10 +15,12 @@ pub(super) fn footprint(mark: &Mark, width: usize, height: usize) -> Footprint {
 
 fn covered(mark: &Mark, size: [usize; 2]) -> Option<Footprint> {
     let outline = match mark {
-        Mark::Stroke(stroke) => stroked(stroke)?,
+        Mark::Stroke(stroke) => outline::stroked(stroke, 1.0)?,
         Mark::Area(area) => {
             let mut rings = PathBuilder::new();
-            area.rings.iter().for_each(|ring| push(&mut rings, ring));
+            area.rings
+                .iter()
+                .for_each(|ring| outline::push(&mut rings, ring, 1.0));
             rings.finish()?
         }
     };
@@ -38,19 +36,6 @@ fn covered(mark: &Mark, size: [usize; 2]) -> Option<Footprint> {
     Some(covered.collect())
 }
 
-/// The outline of a stroke.
-fn stroked(stroke: &Stroke) -> Option<Path> {
-    let pen = Pen {
-        width: 2.0 * stroke.radius,
-        line_cap: LineCap::Round,
-        line_join: LineJoin::Round,
-        ..Pen::default()
-    };
-    let mut line = PathBuilder::new();
-    push(&mut line, &stroke.path);
-    line.finish()?.stroke(&pen, 1.0)
-}
-
 /// The columns and rows of a picture of `size` that a box touches.
 fn touched(bounds: Rect, size: [usize; 2]) -> [Range<usize>; 2] {
     let sides = [
@@ -64,26 +49,6 @@ fn touched(bounds: Rect, size: [usize; 2]) -> [Range<usize>; 2] {
     })
 }
 
-/// Appends a path as resvg reads it from the file.
-fn push(line: &mut PathBuilder, path: &scene::Path) {
-    for (i, piece) in path.pieces().enumerate() {
-        if i == 0 {
-            line.move_to(piece.start().x, piece.start().y);
-        }
-        match piece {
-            Piece::Line([_, b]) => line.line_to(b.x, b.y),
-            Piece::Curve([_, c, b]) => line.quad_to(c.x, c.y, b.x, b.y),
-        }
-    }
-    if let [dot] = path.points() {
-        line.move_to(dot.at.x, dot.at.y);
-        line.line_to(dot.at.x + DOT, dot.at.y);
-    }
-    if path.is_closed() {
-        line.close();
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::collections::HashSet;
@@ -92,7 +57,7 @@ mod tests {
 
     use super::*;
     use crate::math::{self, Point};
-    use crate::scene::{self, PathPoint, Scene, Stage};
+    use crate::scene::{self, PathPoint, Scene, Stage, Stroke};
     use crate::sdf::Capsule;
     use crate::svg::{self, WriteOptions};
     use crate::verify::{self, Size};

@@ -1,7 +1,9 @@
-//! The length of a file. The one door of `flate2`.
+//! The length of a file, and compression. The one door of `flate2`.
 
 use std::io::Write;
 
+#[cfg(feature = "cli")]
+use flate2::write::ZlibEncoder;
 use flate2::{Compression, write::GzEncoder};
 
 /// Bytes of `text` after gzip at its highest level, as a web server may send it.
@@ -10,6 +12,15 @@ pub fn gzip_bytes(text: &str) -> usize {
     // Writing to memory cannot fail.
     let _ = gzip.write_all(text.as_bytes());
     gzip.finish().map_or(0, |bytes| bytes.len())
+}
+
+/// The bytes compressed as zlib does at its highest level.
+#[cfg(feature = "cli")]
+pub(crate) fn deflated(bytes: &[u8]) -> Vec<u8> {
+    let mut zlib = ZlibEncoder::new(Vec::new(), Compression::best());
+    // Writing to memory cannot fail.
+    let _ = zlib.write_all(bytes);
+    zlib.finish().unwrap_or_default()
 }
 
 /// Bytes of a file, head and layers included, per stroke; `None` without strokes.

@@ -48,8 +48,8 @@
 //! - Numbers are decimals without exponent; `0.5`, never `.5`.
 //! - There are no dates and no random names: equal scenes give equal bytes.
 //!
-//! [`Form::Outlines`] writes filled outlines of strokes: two lines and two arcs for each segment, and circles. They are for
-//! other programs; [`read`] refuses them. Areas stay as they are.
+//! [`Form::Outlines`] writes the filled outline of each stroke: a circle, two lines and two arcs, or an area. [`read`] takes
+//! it for an area, and refuses circles and arcs. Areas stay as they are.
 //!
 //! A path with any other step (`C`, `S`, `A`, a `T` after a line) is not of this dialect, and neither is one of
 //! more than [`MAX_POINTS`](crate::scene::MAX_POINTS) points: [`read`] refuses the file, and a [`Document`] keeps it as

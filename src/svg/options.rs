@@ -162,7 +162,7 @@ impl Length {
     }
 
     /// In px of 1/96 inch.
-    pub(crate) fn px(self) -> f64 {
+    pub fn px(self) -> f64 {
         let per_unit = UNITS.iter().find(|(unit, _)| *unit == self.unit);
         self.value as f64 / UNITS_PER_PX as f64 * per_unit.map_or(1.0, |&(_, px)| px)
     }

@@ -1,39 +1,53 @@
-//! The outline of a mark: of a stroke two lines and two arcs, or a circle.
+//! The outline of a mark, which is one element: of a dot a circle, of a straight stroke two lines and two arcs, of any other
+//! stroke the rings around it.
 
 use super::dialect::{self, Unit};
 use super::path::{self, Kind};
 use crate::math;
-use crate::scene::{UNITS_PER_PX, Written};
+use crate::outline;
+use crate::scene::{Mark, Piece, UNITS_PER_PX, Written, WrittenPath};
 
-/// Largest distance of segments from their curve, px: less than any rasteriser shows.
-const TOLERANCE: f64 = 0.02;
+/// Decimals of outlines: where both sides of a stroke are rounded, a tenth of a px shows in its width.
+const LEAST_PRECISION: u8 = 2;
 
 /// Appends the outline of a mark as an element of its own: that of an area is its rings.
-pub(super) fn push(out: &mut String, stroke: &Written) {
-    match stroke.paths.as_slice() {
-        rings if stroke.is_area() => {
-            *out += &format!("<path d=\"{}\"", path::data(rings, Kind::Ring, Unit::PX));
-        }
-        [path] if path.points().len() == 1 => {
-            push_circle(out, path.points()[0].at, stroke.width);
-        }
-        _ => push_capsules(out, stroke),
+pub(super) fn push(out: &mut String, mark: &Written) {
+    match (mark.paths.as_slice(), straight(mark)) {
+        (rings, _) if mark.is_area() => push_rings(out, rings),
+        ([dot], _) if dot.points().len() == 1 => push_circle(out, dot.points()[0].at, mark.width),
+        (_, Some([a, b])) => push_capsule(out, a, b, mark.width),
+        _ => push_rings(out, &rings(mark)),
     }
-    *out += &format!(" fill=\"{}\"", dialect::hex(stroke.color));
-    if stroke.opacity < u8::MAX {
-        *out += &format!(" fill-opacity=\"{}\"", dialect::opacity(stroke.opacity));
+    *out += &format!(" fill=\"{}\"", dialect::hex(mark.color));
+    if mark.opacity < u8::MAX {
+        *out += &format!(" fill-opacity=\"{}\"", dialect::opacity(mark.opacity));
     }
     out.push_str("/>\n");
 }
 
-/// The outlines of all segments. They turn the same way, so that the rule `nonzero` fills each place once, where the
-/// stroke bends or crosses itself as well.
-fn push_capsules(out: &mut String, stroke: &Written) {
-    out.push_str("<path d=\"");
-    for [a, b] in stroke.segments(TOLERANCE) {
-        push_capsule(out, a, b, stroke.width);
+/// The ends of a stroke that is one line.
+fn straight(mark: &Written) -> Option<[[i64; 2]; 2]> {
+    let [path] = mark.paths.as_slice() else {
+        return None;
+    };
+    let mut pieces = path.pieces();
+    match (pieces.next(), pieces.next()) {
+        (Some(Piece::Line(ends)), None) => Some(ends),
+        _ => None,
     }
-    out.push('"');
+}
+
+/// The rings around a stroke.
+fn rings(stroke: &Written) -> Vec<WrittenPath> {
+    let around = match stroke.mark() {
+        Mark::Stroke(stroke) => outline::area(&stroke).into(),
+        area => area,
+    };
+    Written::anywhere(&around, LEAST_PRECISION).map_or_else(|_| Vec::new(), |area| area.paths)
+}
+
+fn push_rings(out: &mut String, rings: &[WrittenPath]) {
+    *out += &format!("<path d=\"{}\"", path::data(rings, Kind::Ring, Unit::PX));
 }
 
 fn push_circle(out: &mut String, [x, y]: [i64; 2], width: i64) {
@@ -56,7 +70,7 @@ fn push_capsule(out: &mut String, a: [i64; 2], b: [i64; 2], width: i64) {
     let arc = |step| format!("a{r} {r} 0 0 1{}", pair(step, true));
     let back = |step: [i64; 2]| step.map(|units| -units);
     *out += &format!(
-        "M{}l{}{}l{}{}z",
+        "<path d=\"M{}l{}{}l{}{}z\"",
         pair(start, false),
         pair(side, false),
         arc(chord),

@@ -3,7 +3,7 @@
 //! A checkpoint holds the whole state of a fit, all numbers to the last bit. Its head has the version of the format, a
 //! fingerprint of picture and configuration, and a checksum. It is written under another name and then renamed, so that
 //! a complete file exists at any moment. The times at which it is written do not influence the drawing. Only this module
-//! uses `postcard`.
+//! uses `cbor4ii`.
 
 use std::fs::{self, File};
 use std::io::{self, Write};
@@ -22,7 +22,7 @@ use crate::fit::recipe::Recipe;
 use crate::image::Image;
 
 /// The first bytes of every checkpoint; the number counts the released layouts.
-const MAGIC: &[u8; 24] = b"strokefit checkpoint 03\n";
+const MAGIC: &[u8; 24] = b"strokefit checkpoint 04\n";
 /// Length of the head, bytes: magic, fingerprint and checksum.
 const HEAD: usize = MAGIC.len() + 8 + 8;
 
@@ -96,7 +96,7 @@ impl Checkpoint {
         };
         let payload = self.payload(&bytes, fingerprint)?;
         let state =
-            postcard::from_bytes(payload).map_err(|cause| self.damaged().caused_by(cause))?;
+            cbor4ii::serde::from_slice(payload).map_err(|cause| self.damaged().caused_by(cause))?;
         Ok(Some(state))
     }
 
@@ -153,7 +153,8 @@ impl Checkpoint {
             let message = format!("cannot be written ({cause}): name another file");
             self.refusal(ErrorKind::Io, &message)
         };
-        let payload = postcard::to_stdvec(state).map_err(|e| unwritable(&e).caused_by(e))?;
+        let payload =
+            cbor4ii::serde::to_vec(Vec::new(), state).map_err(|e| unwritable(&e).caused_by(e))?;
         let checksum = hash(payload.iter().copied());
         let head = [
             MAGIC,

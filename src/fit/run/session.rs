@@ -21,7 +21,7 @@ use crate::fit::drawing::surface::{Prepared, Surface};
 use crate::fit::drawing::{Drawing, Memento};
 use crate::fit::file::{RenderedFile, Writer};
 use crate::fit::order::Phase;
-use crate::fit::recipe::{Rates, Recipe};
+use crate::fit::recipe::{Domain, Rates, Recipe};
 use crate::fit::renderers::{self, Renderings};
 use crate::fit::result::Stop;
 use crate::fit::run::checkpoint::{self, Checkpoint};
@@ -142,7 +142,14 @@ impl<'a> Session<'a> {
             edge: recipe.edge,
         };
         let resolution = (surfaces[0].grid(), surfaces[0].halvings());
-        let bounds = Bounds::new(resolution, recipe.domain, config.opaque, &radii);
+        let domain = match config.is_confined() {
+            true => Domain {
+                margin: 0.0,
+                ..recipe.domain
+            },
+            false => recipe.domain,
+        };
+        let bounds = Bounds::new(resolution, domain, config.opaque, &radii);
         let edge = annealing.last();
         let mut drawing = Drawing::new(surfaces, (background_fixed, shade), bounds, edge, level);
         let records = base.map_or_else(Vec::new, |base| history::load(&mut drawing, base));

@@ -1,0 +1,163 @@
+//! Hatching: areas filled with lines of a pen.
+
+use super::regions::{self, Region};
+use crate::error::{Error, ErrorKind, Result};
+use crate::math::{self, Point};
+use crate::scene::{Mark, Path, Scene, Stage, Stroke, color, quantum};
+use crate::svg::Length;
+
+/// Farthest that the chords of a border are from its curves, px.
+const TOLERANCE: f32 = 0.02;
+
+/// Lines that fill areas.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hatch {
+    /// Distance of the lines.
+    pub spacing: Length,
+    /// Their direction, degrees counterclockwise from horizontal.
+    pub degrees: f64,
+}
+
+impl std::str::FromStr for Hatch {
+    type Err = Error;
+
+    /// A length, and an angle after a colon: `0.5mm` or `0.5mm:45`.
+    fn from_str(text: &str) -> Result<Self> {
+        let (spacing, degrees) = text.split_once(':').unwrap_or((text, "45"));
+        let refused = || {
+            let message = format!(
+                "'{text}' is not a hatching: give the distance of its lines, and their angle if it is not 45°, such as 0.5mm or 0.5mm:30"
+            );
+            Error::new(ErrorKind::Config, message)
+        };
+        let degrees: f64 = degrees.parse().map_err(|_| refused())?;
+        let spacing = Length::parse(spacing).ok_or_else(refused)?;
+        (degrees.abs() <= 360.0)
+            .then_some(Self { spacing, degrees })
+            .ok_or_else(refused)
+    }
+}
+
+/// The scene with what is seen of its areas filled with lines `spacing` px apart, of a `pen` that is so many px wide:
+/// one along their borders, and straight ones at an angle. Strokes stay, and lie on top. The background is paper, which
+/// stays bare; so does an area of its colour.
+///
+/// # Errors
+/// As [`cut_out`](super::cut_out).
+pub fn hatched(scene: &Scene, spacing: f32, pen: f32, degrees: f64) -> Result<Scene> {
+    let paper = scene.background.map(|c| c.map(quantum));
+    let mut stages = Vec::new();
+    for region in areas(scene)? {
+        if Some(region.color) != paper {
+            let lines = filled(&region, spacing, pen, degrees)?;
+            stages.push(Stage::from_iter(lines));
+        }
+    }
+    let strokes = scene.strokes().cloned();
+    stages.push(Stage::from_iter(strokes));
+    stages.retain(|stage| !stage.marks.is_empty());
+    Ok(Scene {
+        stages,
+        shade: None,
+        ..*scene
+    })
+}
+
+/// What is seen of the areas beneath areas and strokes, by colour.
+fn areas(scene: &Scene) -> Result<Vec<Region>> {
+    // Strokes hide what is below, and are of no colour themselves: they get one that no area has.
+    let mut taken: Vec<[u8; 3]> = scene.areas().map(|area| area.color.map(quantum)).collect();
+    taken.extend(scene.background.map(|c| c.map(quantum)));
+    let free = (0..=u8::MAX).map(|level| [level, 0, 255 - level]);
+    let free = free.into_iter().find(|c| !taken.contains(c));
+    let free = free.unwrap_or_default();
+    let hidden = |mark: &Mark| match mark {
+        Mark::Stroke(stroke) => Mark::Stroke(Stroke {
+            color: color(free),
+            ..stroke.clone()
+        }),
+        Mark::Area(_) => mark.clone(),
+    };
+    let stage = |stage: &Stage| stage.marks.iter().map(hidden).collect();
+    let marked = Scene {
+        stages: scene.stages.iter().map(stage).collect(),
+        background: scene.background,
+        shade: None,
+        ..*scene
+    };
+    let mut regions = regions::regions(&marked)?;
+    regions.retain(|region| region.color != free);
+    Ok(regions)
+}
+
+/// The lines that fill a region.
+fn filled(region: &Region, spacing: f32, pen: f32, degrees: f64) -> Result<Vec<Stroke>> {
+    let stroke = |path| Stroke {
+        path,
+        radius: pen / 2.0,
+        color: color(region.color),
+        opacity: 1.0,
+    };
+    let inner = regions::inset(&region.rings, pen / 2.0)?;
+    let lines = lines(&inner, spacing, degrees);
+    let borders = inner.iter().cloned();
+    Ok(borders.chain(lines).map(stroke).collect())
+}
+
+/// Straight lines at an angle within rings.
+fn lines(rings: &[Path], spacing: f32, degrees: f64) -> Vec<Path> {
+    let (sin, cos) = math::sin_cos(-degrees.to_radians());
+    let (sin, cos) = (sin as f32, cos as f32);
+    let turned = |p: Point| [p.x * cos + p.y * sin, p.y * cos - p.x * sin];
+    let back = |[u, v]: [f32; 2]| Point::new(u * cos - v * sin, u * sin + v * cos);
+    let sides: Vec<[[f32; 2]; 2]> = rings
+        .iter()
+        .flat_map(|ring| {
+            let corners = ring.flattened(TOLERANCE);
+            let next = corners.iter().cycle().skip(1);
+            let sides = corners.iter().zip(next);
+            sides
+                .map(|(a, b)| [turned(*a), turned(*b)])
+                .collect::<Vec<_>>()
+        })
+        .collect();
+    let ends = || sides.iter().flatten().map(|p| p[1]);
+    let (low, high) = (
+        ends().fold(f32::INFINITY, f32::min),
+        ends().fold(f32::NEG_INFINITY, f32::max),
+    );
+    let mut found = Vec::new();
+    // The lines of all areas are multiples of the distance, so that those of neighbours meet.
+    let (first, last) = ((low / spacing).ceil(), (high / spacing).floor());
+    let rows = if first <= last {
+        (last - first) as usize + 1
+    } else {
+        0
+    };
+    for row in 0..rows {
+        let v = (first + row as f32) * spacing;
+        let mut cuts = cuts(&sides, v);
+        cuts.sort_by(f32::total_cmp);
+        let pairs = cuts.as_chunks::<2>().0.iter();
+        let mut lines: Vec<_> = pairs
+            .filter(|[from, to]| to - from > TOLERANCE)
+            .map(|&[from, to]| match row % 2 {
+                0 => Path::line(back([from, v]), back([to, v])),
+                // Every other row goes back, so that the pen travels less.
+                _ => Path::line(back([to, v]), back([from, v])),
+            })
+            .collect();
+        if row % 2 == 1 {
+            lines.reverse();
+        }
+        found.extend(lines);
+    }
+    found
+}
+
+/// Where sides cross the row at `v`.
+fn cuts(sides: &[[[f32; 2]; 2]], v: f32) -> Vec<f32> {
+    let crossing = |[a, b]: &&[[f32; 2]; 2]| (a[1] <= v) != (b[1] <= v);
+    let at = |[a, b]: &[[f32; 2]; 2]| a[0] + (v - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
+    sides.iter().filter(crossing).map(at).collect()
+}

@@ -1,0 +1,42 @@
+//! Drawings for machines and print: cut-outs and hatching, which are drawings again, and files in PDF and DXF.
+//!
+//! ```text
+//! bezier    paths of the two kinds, ours and kurbo's
+//! regions   marks → what is seen of them, by colour
+//! cutout    areas that do not overlap
+//! hatch     areas → pen lines
+//! sheet     a drawing on a page with a size
+//! pdf, dxf  sheet → bytes of a file
+//! ```
+
+mod bezier;
+mod cutout;
+mod dxf;
+mod hatch;
+mod pdf;
+mod regions;
+mod sheet;
+
+pub use cutout::cut_out;
+pub use dxf::dxf;
+pub use hatch::{Hatch, hatched};
+pub use pdf::pdf;
+pub use sheet::Sheet;
+
+use crate::outline;
+use crate::scene::{Mark, Scene, Stage};
+
+/// The scene with the outline of each stroke in its place.
+pub fn outlined(scene: &Scene) -> Scene {
+    let around = |mark: &Mark| match mark {
+        Mark::Stroke(stroke) => outline::area(stroke).into(),
+        Mark::Area(_) => mark.clone(),
+    };
+    let stage = |stage: &Stage| stage.marks.iter().map(around).collect();
+    Scene {
+        stages: scene.stages.iter().map(stage).collect(),
+        background: scene.background,
+        shade: scene.shade.clone(),
+        ..*scene
+    }
+}

@@ -1,0 +1,181 @@
+//! What is seen of marks that lie on each other: for each colour, the places where it is on top.
+//!
+//! One sweep over the outlines of all marks finds the pieces of the plane and, for each, how often every outline winds
+//! around it. The regions of all colours are made of the same pieces, so that they share their borders.
+
+use std::collections::BTreeMap;
+use std::ops::{Add, AddAssign};
+use std::panic::{self, AssertUnwindSafe};
+
+use kurbo::{BezPath, Shape};
+use linesweeper::topology::{Topology, WindingNumber};
+
+use super::bezier;
+use crate::error::{Error, ErrorKind, Result};
+use crate::outline;
+use crate::scene::{Mark, Path, Scene, quantum};
+
+/// Farthest that borders may be moved where outlines touch, px. Files hold a hundredth.
+const NEAR: f64 = 1e-4;
+
+/// Smaller pieces are traces of rounding, px².
+const SMALLEST: f64 = 2e-3;
+
+/// What is seen of a colour.
+#[derive(Debug, Clone)]
+pub(super) struct Region {
+    pub(super) color: [u8; 3],
+    /// Rings that do not cross, holes the other way round.
+    pub(super) rings: Vec<Path>,
+}
+
+/// The regions on the page of the colours of a scene's marks, in the order in which colours first come. The background
+/// is the lowest mark.
+///
+/// # Errors
+/// [`ErrorKind::Config`] when a mark is translucent, since then two colours are seen at a place;
+/// [`ErrorKind::Svg`] when the sweep fails.
+pub(super) fn regions(scene: &Scene) -> Result<Vec<Region>> {
+    let marks = outlines(scene)?;
+    let mut colors: Vec<[u8; 3]> = Vec::new();
+    for (color, _) in &marks {
+        if !colors.contains(color) {
+            colors.push(*color);
+        }
+    }
+    swept(|| seen(&page(scene), &marks, &colors))
+}
+
+/// The parts of a region that are farther than `reach` px from its border.
+pub(super) fn inset(rings: &[Path], reach: f32) -> Result<Vec<Path>> {
+    let mut inner = BezPath::new();
+    rings.iter().for_each(|ring| bezier::push(&mut inner, ring));
+    let mut border = BezPath::new();
+    for ring in rings {
+        let stroke = crate::scene::Stroke {
+            path: ring.clone(),
+            radius: reach,
+            color: [0.0; 3],
+            opacity: 1.0,
+        };
+        let around = outline::area(&stroke).rings;
+        around
+            .iter()
+            .for_each(|ring| bezier::push(&mut border, ring));
+    }
+    let marks = [([0; 3], inner), ([1; 3], border)];
+    let page = marks[0].1.bounding_box().inflate(1.0, 1.0).to_path(NEAR);
+    let mut regions = swept(|| seen(&page, &marks, &[[0; 3]]))?;
+    Ok(regions.pop().map_or_else(Vec::new, |region| region.rings))
+}
+
+/// The outline of the page.
+fn page(scene: &Scene) -> BezPath {
+    kurbo::Rect::new(0.0, 0.0, scene.width.into(), scene.height.into()).to_path(NEAR)
+}
+
+/// The outlines of all marks with their colours, back to front.
+fn outlines(scene: &Scene) -> Result<Vec<([u8; 3], BezPath)>> {
+    let background = scene.background.map(|c| (c.map(quantum), page(scene)));
+    let outline = |mark: &Mark| {
+        if quantum(mark.opacity()) < u8::MAX {
+            let message = "translucent marks show two colours at a place, which cannot be cut out: draw with --opaque";
+            return Err(Error::new(ErrorKind::Config, message));
+        }
+        let mut path = BezPath::new();
+        let mut push = |rings: &[Path]| rings.iter().for_each(|ring| bezier::push(&mut path, ring));
+        match mark {
+            Mark::Stroke(stroke) => push(&outline::area(stroke).rings),
+            Mark::Area(area) => push(&area.rings),
+        }
+        Ok((mark.color().map(quantum), path))
+    };
+    let marks = scene.marks().map(outline);
+    background.map(Ok).into_iter().chain(marks).collect()
+}
+
+/// What the sweep finds. It may panic: that is an error like any other.
+fn swept(sweep: impl FnOnce() -> Option<Vec<Region>>) -> Result<Vec<Region>> {
+    let found = panic::catch_unwind(AssertUnwindSafe(sweep)).ok().flatten();
+    let message = "the outlines cannot be told apart: draw with fewer marks, or another --seed";
+    found.ok_or_else(|| Error::new(ErrorKind::Svg, message))
+}
+
+/// The regions of these colours.
+fn seen(page: &BezPath, marks: &[([u8; 3], BezPath)], colors: &[[u8; 3]]) -> Option<Vec<Region>> {
+    let tagged = marks.iter().zip(1..).map(|((_, path), mark)| (path, mark));
+    let tagged = tagged.chain([(page, PAGE)]);
+    let topology = Topology::<Windings>::from_paths(tagged, NEAR).ok()?;
+    let region = |color: &[u8; 3]| {
+        let is_seen = |windings: &Windings| {
+            let top = windings.top().and_then(|mark| marks.get(mark as usize - 1));
+            windings.is_on_page() && top.is_some_and(|(own, _)| own == color)
+        };
+        let contours = topology.contours(is_seen);
+        let large = contours
+            .contours()
+            .filter(|contour| contour.path.area().abs() > SMALLEST);
+        Region {
+            color: *color,
+            rings: large
+                .filter_map(|contour| bezier::ring(&contour.path))
+                .collect(),
+        }
+    };
+    Some(colors.iter().map(region).collect())
+}
+
+/// The tag of the page's outline; marks have higher ones.
+const PAGE: u32 = 0;
+
+/// How often the outlines wind around a place: those that do, by their tags.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+struct Windings(BTreeMap<u32, i32>);
+
+impl Windings {
+    fn is_on_page(&self) -> bool {
+        self.0.contains_key(&PAGE)
+    }
+
+    /// The tag of the mark on top.
+    fn top(&self) -> Option<u32> {
+        let (&tag, _) = self.0.last_key_value()?;
+        (tag > PAGE).then_some(tag)
+    }
+}
+
+impl AddAssign for Windings {
+    fn add_assign(&mut self, other: Self) {
+        for (tag, turns) in other.0 {
+            *self.0.entry(tag).or_default() += turns;
+        }
+        self.0.retain(|_, turns| *turns != 0);
+    }
+}
+
+impl Add for Windings {
+    type Output = Self;
+
+    fn add(mut self, other: Self) -> Self {
+        self += other;
+        self
+    }
+}
+
+impl WindingNumber for Windings {
+    type Tag = u32;
+
+    fn single(tag: u32, positive: bool) -> Self {
+        Self([(tag, if positive { 1 } else { -1 })].into())
+    }
+
+    fn of_tag(&self, tag: u32) -> Self {
+        Self(
+            self.0
+                .get_key_value(&tag)
+                .map(|(k, v)| (*k, *v))
+                .into_iter()
+                .collect(),
+        )
+    }
+}
