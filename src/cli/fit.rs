@@ -32,7 +32,7 @@ pub(super) struct Args {
     /// Pictures: PNG, JPEG, WebP, GIF (first frame), BMP, TIFF and some more. - means standard input
     #[arg(required = true, value_name = "INPUT")]
     inputs: Vec<PathBuf>,
-    /// SVG to write. - means standard output, {stem} the picture's name without folder and extension. Repeat
+    /// SVG to write, or PDF or DXF. - means standard output, {stem} the picture's name without folder and extension. Repeat
     /// -o for more files: .png for a render, .gif, .webp or .apng for an animation, .animated.svg for an
     /// SVG that draws itself; for single frames see Animation. Without -o, an SVG that comes last among the inputs is the output
     #[arg(short, long, value_name = "OUT.svg")]

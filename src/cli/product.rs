@@ -11,10 +11,10 @@ use strokefit::svg::{self, Form, Length, WriteOptions};
 use super::drawing::Drawing;
 use super::misuse;
 
-/// Decimals of cut-outs: corners where three areas meet are rounded, and a gap of a hundredth of a px along a page would show.
+/// Decimals of cut-outs. Rounded corners on the border of another area leave slivers, in whose width the border's length counts.
 const CUTOUT_PRECISION: u8 = 4;
 
-/// What is written.
+/// A drawing to be written.
 pub(super) struct Product<'a> {
     /// The marks; `None` if they lie on another SVG and are only a part of the drawing.
     pub(super) scene: Option<Cow<'a, Scene>>,
@@ -22,74 +22,86 @@ pub(super) struct Product<'a> {
     pub(super) text: Cow<'a, str>,
 }
 
+/// What is made of a drawing.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Made {
+    /// True if areas are cut out.
+    pub(super) cutout: bool,
+    /// Lines that fill areas, if they do.
+    pub(super) hatch: Option<Hatch>,
+    /// Width of the pen that draws them, px of the picture; without one, it is their distance.
+    pub(super) pen: Option<f32>,
+}
+
 impl<'a> Product<'a> {
-    /// The drawing, made into what was asked for.
+    /// The drawing of a fit, made into what was asked for.
     pub(super) fn of(judged: &'a Judged, asked: &Drawing) -> Result<Self> {
-        let whole = judged.whole();
-        let made = match (asked.hatch, whole) {
-            (None, _) if !asked.cutout => None,
-            (_, None) => {
-                return Err(misuse(
-                    "the SVG is not made of strokes and areas only: leave out --cutout and --hatch",
-                ));
-            }
-            (Some(hatch), Some(scene)) => Some(hatched(scene, hatch, judged, asked)?),
-            (None, Some(scene)) => Some(machine::cut_out(scene)?),
+        let page = svg::page_width(&judged.svg);
+        let pens = asked.options.config.pens.as_ref();
+        let radii = pens
+            .map(|pens| pens.radii(page, &judged.fit.target))
+            .transpose()?;
+        let made = Made {
+            cutout: asked.cutout,
+            hatch: asked.hatch,
+            pen: radii.and_then(|radii| Some(2.0 * radii.first()?)),
         };
-        let Some(scene) = made else {
-            let outlines = |scene: &'a Scene| match judged.fit.file.form {
+        let file = WriteOptions {
+            width: page,
+            ..judged.fit.file
+        };
+        if !asked.cutout && asked.hatch.is_none() {
+            let outlines = |scene: &'a Scene| match file.form {
                 Form::Outlines => Cow::Owned(machine::outlined(scene)),
                 _ => Cow::Borrowed(scene),
             };
             return Ok(Self {
-                scene: whole.map(outlines),
+                scene: judged.whole().map(outlines),
                 text: Cow::Borrowed(&judged.svg),
             });
+        }
+        let whole = judged.whole().ok_or_else(|| {
+            misuse("the SVG is not made of strokes and areas only: leave out --cutout and --hatch")
+        })?;
+        made.product(whole, &file)
+    }
+}
+
+impl Made {
+    /// What is made of a scene, in a file with these options.
+    pub(super) fn product(&self, scene: &Scene, file: &WriteOptions) -> Result<Product<'static>> {
+        let (made, precision) = match self.hatch {
+            Some(hatch) => (self.hatched(scene, hatch, file)?, file.precision),
+            None if self.cutout => (
+                machine::cut_out(scene)?,
+                file.precision.max(CUTOUT_PRECISION),
+            ),
+            None => (machine::outlined(scene), file.precision),
         };
-        let file = judged.fit.file;
-        let precision = match asked.cutout {
-            true => file.precision.max(CUTOUT_PRECISION),
-            false => file.precision,
+        let text = match self.hatch.is_some() || self.cutout {
+            true => svg::write(&made, &WriteOptions { precision, ..*file }),
+            // Straight outlines and dots have elements of their own.
+            false => svg::write(scene, file),
         };
-        let options = WriteOptions {
-            precision,
-            width: svg::page_width(&judged.svg),
-            ..file
-        };
-        Ok(Self {
-            text: Cow::Owned(svg::write(&scene, &options)),
-            scene: Some(Cow::Owned(scene)),
+        Ok(Product {
+            scene: Some(Cow::Owned(made)),
+            text: Cow::Owned(text),
         })
     }
-}
 
-/// The drawing with its areas filled by lines.
-fn hatched(scene: &Scene, hatch: Hatch, judged: &Judged, asked: &Drawing) -> Result<Scene> {
-    let page = svg::page_width(&judged.svg);
-    let sides = scene.page.unwrap_or([scene.width, scene.height]);
-    let page_px = page.map_or(f64::from(sides[0]), Length::px);
-    let spacing = hatch.spacing.px() / page_px * f64::from(scene.width);
-    if spacing < MIN_WIDTH {
-        return Err(misuse(format!(
-            "the hatching of {} is {spacing:.2} px of the picture apart, and a stroke {MIN_WIDTH} px or more wide: \
-             enlarge the picture, or give a larger distance",
-            hatch.spacing
-        )));
+    /// The drawing with its areas filled by lines.
+    fn hatched(&self, scene: &Scene, hatch: Hatch, file: &WriteOptions) -> Result<Scene> {
+        let sides = scene.page.unwrap_or([scene.width, scene.height]);
+        let page_px = file.width.map_or(f64::from(sides[0]), Length::px);
+        let spacing = hatch.spacing.px() / page_px * f64::from(scene.width);
+        if spacing < MIN_WIDTH {
+            return Err(misuse(format!(
+                "the lines of --hatch are {spacing:.2} px of the picture apart, and a stroke is {MIN_WIDTH} px or more wide: \
+                 enlarge the picture, or give a larger distance"
+            )));
+        }
+        let spacing = spacing as f32;
+        let pen = self.pen.unwrap_or(spacing);
+        Ok(machine::hatched(scene, spacing, pen, hatch.degrees)?)
     }
-    let pen = match &asked.options.config.pens {
-        Some(pens) => thinnest(pens.radii(page, &judged.fit.target)?),
-        None => None,
-    };
-    let spacing = spacing as f32;
-    Ok(machine::hatched(
-        scene,
-        spacing,
-        pen.unwrap_or(spacing),
-        hatch.degrees,
-    )?)
-}
-
-/// The width of the thinnest pen of these radii.
-fn thinnest(radii: Vec<f32>) -> Option<f32> {
-    radii.first().map(|radius| 2.0 * radius)
 }

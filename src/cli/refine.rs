@@ -34,7 +34,7 @@ pub(super) struct Args {
     base: PathBuf,
     /// Picture: PNG, JPEG, WebP, GIF (first frame), BMP, TIFF and some more. - means standard input
     input: PathBuf,
-    /// SVG to write. - means standard output. Repeat -o for more files: .png for a render, .gif, .webp or
+    /// SVG to write, or PDF or DXF. - means standard output. Repeat -o for more files: .png for a render, .gif, .webp or
     /// .apng for an animation, .animated.svg for an SVG that draws itself; for single frames see Animation
     #[arg(short, long, value_name = "OUT.svg", required = true)]
     output: Vec<PathBuf>,

@@ -1,36 +1,85 @@
 //! `strokefit render`: an SVG as resvg draws it, at once or stroke by stroke.
 
+use std::borrow::Cow;
 use std::path::PathBuf;
 
 use anyhow::Result;
-use strokefit::svg;
+use strokefit::machine::Hatch;
+use strokefit::svg::{self, Form, WriteOptions};
 
 use super::pictures::{FilmOptions, Format, Pictures, Subject};
+use super::product::{Made, Product};
 use super::{Status, domain, input, misuse};
 
-/// Render an SVG to a PNG or an animation, as resvg draws it
+/// Render an SVG to a PNG or an animation, as resvg draws it, or convert it to PDF or DXF
 ///
-/// Any SVG will do. Files and addresses that it refers to are not read. No fonts are loaded, so text
+/// Any SVG will do for a PNG. Files and addresses that it refers to are not read. No fonts are loaded, so text
 /// is drawn only if it was converted to paths. Without a background, the PNG is transparent.
 ///
 /// A file that strokefit wrote can be drawn stroke by stroke: an output named .gif, .webp or .apng is
-/// an animation, and an output named .animated.svg draws itself. For single frames see Animation.
+/// an animation, and an output named .animated.svg draws itself. For single frames see Animation. It
+/// can also be a PDF, for print, or a DXF, for cutters and CAD.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   strokefit render photo.svg -o photo.png
   strokefit render photo.svg -o thumbnail.png --scale 0.25
+  strokefit render logo.svg -o logo.pdf -o logo.dxf
   strokefit render photo.svg -o photo.gif --frames stage --legend")]
 pub(super) struct Args {
     /// SVG file. - means standard input
     file: PathBuf,
-    /// PNG or animation to write. - means standard output. Repeat -o for more files
+    /// PNG, PDF, DXF or animation to write. - means standard output. Repeat -o for more files
     #[arg(short, long, value_name = "OUT.png", required = true)]
     output: Vec<PathBuf>,
     /// Pixels per unit of the SVG
     #[arg(long, value_name = "X", default_value = "1", value_parser = domain::scale, allow_negative_numbers = true)]
     scale: f64,
     #[command(flatten)]
+    machine: Machine,
+    #[command(flatten)]
     film: FilmOptions,
+}
+
+/// What a drawing becomes before it is written.
+#[derive(Debug, clap::Args)]
+#[command(
+    next_help_heading = "Machines (for a file that strokefit wrote; the output may be an SVG)"
+)]
+struct Machine {
+    /// Write filled outlines instead of strokes, one for each
+    #[arg(long, conflicts_with_all = ["cutout", "hatch"])]
+    outline: bool,
+    /// Write what is seen of each colour as one path, for cutters
+    #[arg(long, conflicts_with = "hatch")]
+    cutout: bool,
+    /// Fill areas with lines for a plotter, so far apart, such as 0.5mm, at an angle [default: 45]
+    #[arg(long, value_name = "DISTANCE[:ANGLE]")]
+    hatch: Option<Hatch>,
+}
+
+impl Machine {
+    fn is_asked(&self) -> bool {
+        self.outline || self.cutout || self.hatch.is_some()
+    }
+
+    /// The drawing of a file, made into what was asked for.
+    fn product(&self, text: &str) -> Result<Product<'static>> {
+        let file = WriteOptions {
+            form: if self.outline {
+                Form::Outlines
+            } else {
+                Form::Plain
+            },
+            width: svg::page_width(text),
+            ..WriteOptions::default()
+        };
+        let made = Made {
+            cutout: self.cutout,
+            hatch: self.hatch,
+            pen: None,
+        };
+        made.product(&svg::read(text)?, &file)
+    }
 }
 
 pub(super) fn run(args: &Args) -> Result<Status> {
@@ -43,13 +92,14 @@ pub(super) fn run(args: &Args) -> Result<Status> {
         )));
     }
     let is_svg = |path: &&PathBuf| Format::of(path) == Some(Format::Svg);
-    if let Some(path) = args.output.iter().find(is_svg) {
+    let svg = args.output.iter().find(is_svg);
+    if let Some(path) = svg.filter(|_| !args.machine.is_asked()) {
         return Err(misuse(format!(
-            "{}: render writes pictures and animations, not SVG: name another output",
+            "{}: render writes an SVG only with --cutout, --hatch or --outline: name another output",
             path.display()
         )));
     }
-    write(&pictures, &text, args.scale).map_err(|error| {
+    write(&pictures, &text, args).map_err(|error| {
         // The file is to blame for errors of the library.
         match error.downcast::<strokefit::Error>() {
             Ok(error) => error.within(input::name(&args.file)).into(),
@@ -59,15 +109,24 @@ pub(super) fn run(args: &Args) -> Result<Status> {
     Ok(Status::Done)
 }
 
-fn write(pictures: &Pictures<'_>, text: &str, scale: f64) -> Result<()> {
-    let scene = pictures
-        .needs_marks()
-        .then(|| svg::read(text))
-        .transpose()?;
+fn write(pictures: &Pictures<'_>, text: &str, args: &Args) -> Result<()> {
+    let product = match args.machine.is_asked() {
+        true => args.machine.product(text)?,
+        false => {
+            let scene = pictures
+                .needs_marks()
+                .then(|| svg::read(text))
+                .transpose()?;
+            Product {
+                scene: scene.map(Cow::Owned),
+                text: text.into(),
+            }
+        }
+    };
     pictures.write(&Subject {
-        scene: scene.as_ref(),
-        text,
+        scene: product.scene.as_deref(),
+        text: &product.text,
         target: None,
-        scale,
+        scale: args.scale,
     })
 }

@@ -18,10 +18,11 @@ pub fn cut_out(scene: &Scene) -> Result<Scene> {
         opacity: 1.0,
     });
     let areas = areas.filter(|area| !area.rings.is_empty());
-    Ok(Scene {
+    let cut = Scene {
         background: None,
         shade: None,
         stages: areas.map(|area| Stage::from_iter([area])).collect(),
         ..*scene
-    })
+    };
+    Ok(cut.confined())
 }

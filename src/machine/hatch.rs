@@ -90,18 +90,37 @@ fn areas(scene: &Scene) -> Result<Vec<Region>> {
     Ok(regions)
 }
 
+/// Distances of the pen from the border, in units of its radius. What the pen does not reach at one of them, because that is
+/// thinner than the pen, is drawn at the next. The steps are a guess.
+const DISTANCES: [f32; 5] = [1.0, 0.7, 0.45, 0.25, 0.1];
+
+/// Smaller pieces that the pen does not reach are left out, in units of its width squared. They lie in corners. A guess.
+const SMALLEST: f64 = 0.4;
+
 /// The lines that fill a region.
 fn filled(region: &Region, spacing: f32, pen: f32, degrees: f64) -> Result<Vec<Stroke>> {
+    let radius = pen / 2.0;
+    let mut paths = Vec::new();
+    let mut rest = region.rings.clone();
+    for (step, distance) in DISTANCES.into_iter().enumerate() {
+        let inner = regions::inset(&rest, distance * radius)?;
+        paths.extend(inner.iter().cloned());
+        if step == 0 {
+            paths.extend(lines(&inner, spacing, degrees));
+        }
+        rest = regions::around(&rest, &inner, radius)?;
+        rest.retain(|ring| regions::enclosed(ring) > SMALLEST * f64::from(pen * pen));
+        if rest.is_empty() {
+            break;
+        }
+    }
     let stroke = |path| Stroke {
         path,
-        radius: pen / 2.0,
+        radius,
         color: color(region.color),
         opacity: 1.0,
     };
-    let inner = regions::inset(&region.rings, pen / 2.0)?;
-    let lines = lines(&inner, spacing, degrees);
-    let borders = inner.iter().cloned();
-    Ok(borders.chain(lines).map(stroke).collect())
+    Ok(paths.into_iter().map(stroke).collect())
 }
 
 /// Straight lines at an angle within rings.

@@ -13,7 +13,7 @@ use linesweeper::topology::{Topology, WindingNumber};
 use super::bezier;
 use crate::error::{Error, ErrorKind, Result};
 use crate::outline;
-use crate::scene::{Mark, Path, Scene, quantum};
+use crate::scene::{Mark, Path, Scene, Stroke, quantum};
 
 /// Farthest that borders may be moved where outlines touch, px. Files hold a hundredth.
 const NEAR: f64 = 1e-4;
@@ -48,25 +48,45 @@ pub(super) fn regions(scene: &Scene) -> Result<Vec<Region>> {
 
 /// The parts of a region that are farther than `reach` px from its border.
 pub(super) fn inset(rings: &[Path], reach: f32) -> Result<Vec<Path>> {
-    let mut inner = BezPath::new();
-    rings.iter().for_each(|ring| bezier::push(&mut inner, ring));
-    let mut border = BezPath::new();
-    for ring in rings {
-        let stroke = crate::scene::Stroke {
-            path: ring.clone(),
-            radius: reach,
-            color: [0.0; 3],
-            opacity: 1.0,
-        };
-        let around = outline::area(&stroke).rings;
-        around
-            .iter()
-            .for_each(|ring| bezier::push(&mut border, ring));
-    }
-    let marks = [([0; 3], inner), ([1; 3], border)];
-    let page = marks[0].1.bounding_box().inflate(1.0, 1.0).to_path(NEAR);
+    without(rings, &[band(rings, reach)])
+}
+
+/// The parts of a region that are farther than `reach` px from an `inner` one.
+pub(super) fn around(rings: &[Path], inner: &[Path], reach: f32) -> Result<Vec<Path>> {
+    without(rings, &[band(inner, reach), bezier(inner)])
+}
+
+/// All places within `reach` px of the rings.
+fn band(rings: &[Path], reach: f32) -> BezPath {
+    let stroke = |ring: &Path| Stroke {
+        path: ring.clone(),
+        radius: reach,
+        color: [0.0; 3],
+        opacity: 1.0,
+    };
+    let outlines = rings.iter().map(|ring| outline::area(&stroke(ring)).rings);
+    bezier(&outlines.flatten().collect::<Vec<_>>())
+}
+
+fn bezier(rings: &[Path]) -> BezPath {
+    let mut path = BezPath::new();
+    rings.iter().for_each(|ring| bezier::push(&mut path, ring));
+    path
+}
+
+/// The parts of a region that are in none of the others.
+fn without(rings: &[Path], others: &[BezPath]) -> Result<Vec<Path>> {
+    let region = bezier(rings);
+    let page = region.bounding_box().inflate(1.0, 1.0).to_path(NEAR);
+    let others = others.iter().map(|other| ([1; 3], other.clone()));
+    let marks: Vec<_> = [([0; 3], region)].into_iter().chain(others).collect();
     let mut regions = swept(|| seen(&page, &marks, &[[0; 3]]))?;
     Ok(regions.pop().map_or_else(Vec::new, |region| region.rings))
+}
+
+/// The area that a ring encloses, px².
+pub(super) fn enclosed(ring: &Path) -> f64 {
+    bezier(std::slice::from_ref(ring)).area().abs()
 }
 
 /// The outline of the page.
@@ -82,12 +102,10 @@ fn outlines(scene: &Scene) -> Result<Vec<([u8; 3], BezPath)>> {
             let message = "translucent marks show two colours at a place, which cannot be cut out: draw with --opaque";
             return Err(Error::new(ErrorKind::Config, message));
         }
-        let mut path = BezPath::new();
-        let mut push = |rings: &[Path]| rings.iter().for_each(|ring| bezier::push(&mut path, ring));
-        match mark {
-            Mark::Stroke(stroke) => push(&outline::area(stroke).rings),
-            Mark::Area(area) => push(&area.rings),
-        }
+        let path = match mark {
+            Mark::Stroke(stroke) => bezier(&outline::area(stroke).rings),
+            Mark::Area(area) => bezier(&area.rings),
+        };
         Ok((mark.color().map(quantum), path))
     };
     let marks = scene.marks().map(outline);

@@ -84,6 +84,8 @@ mod help;
 mod hostile;
 #[cfg(all(feature = "cli", target_os = "linux"))]
 mod interrupt;
+#[cfg(feature = "cli")]
+mod machine;
 #[cfg(all(feature = "cli", target_os = "linux"))]
 mod outputs;
 #[cfg(feature = "cli")]
