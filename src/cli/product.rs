@@ -22,7 +22,7 @@ pub(super) struct Product<'a> {
     pub(super) text: Cow<'a, str>,
 }
 
-/// What is made of a drawing.
+/// Choice of what is made of a drawing.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Made {
     /// True if areas are cut out.
@@ -68,7 +68,7 @@ impl<'a> Product<'a> {
 }
 
 impl Made {
-    /// What is made of a scene, in a file with these options.
+    /// The drawing that is made of a scene, in a file with these options.
     pub(super) fn product(&self, scene: &Scene, file: &WriteOptions) -> Result<Product<'static>> {
         let (made, precision) = match self.hatch {
             Some(hatch) => (self.hatched(scene, hatch, file)?, file.precision),

@@ -40,7 +40,7 @@ pub(super) struct Args {
     film: FilmOptions,
 }
 
-/// What a drawing becomes before it is written.
+/// Choice of what a drawing becomes before it is written.
 #[derive(Debug, clap::Args)]
 #[command(
     next_help_heading = "Machines (for a file that strokefit wrote; the output may be an SVG)"

@@ -4,7 +4,7 @@ use super::regions;
 use crate::error::Result;
 use crate::scene::{Area, Scene, Stage, color};
 
-/// What is seen of the scene as one area per colour, each with all its parts. The background is one of them, if there is
+/// The visible parts of the scene as one area per colour. The background is one of them, if there is
 /// one; so the scene has none.
 ///
 /// # Errors

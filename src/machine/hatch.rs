@@ -63,7 +63,7 @@ pub fn hatched(scene: &Scene, spacing: f32, pen: f32, degrees: f64) -> Result<Sc
     })
 }
 
-/// What is seen of the areas beneath areas and strokes, by colour.
+/// The visible parts of the areas, which areas and strokes on top hide, by colour.
 fn areas(scene: &Scene) -> Result<Vec<Region>> {
     // Strokes hide what is below, and are of no colour themselves: they get one that no area has.
     let mut taken: Vec<[u8; 3]> = scene.areas().map(|area| area.color.map(quantum)).collect();

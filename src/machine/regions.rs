@@ -1,4 +1,4 @@
-//! What is seen of marks that lie on each other: for each colour, the places where it is on top.
+//! Regions: of marks that lie on each other, for each colour the places where it is on top.
 //!
 //! One sweep over the outlines of all marks finds the pieces of the plane and, for each, how often every outline winds
 //! around it. The regions of all colours are made of the same pieces, so that they share their borders.
@@ -21,7 +21,7 @@ const NEAR: f64 = 1e-4;
 /// Smaller pieces are traces of rounding, px².
 const SMALLEST: f64 = 2e-3;
 
-/// What is seen of a colour.
+/// The places where a colour is seen.
 #[derive(Debug, Clone)]
 pub(super) struct Region {
     pub(super) color: [u8; 3],
@@ -112,7 +112,7 @@ fn outlines(scene: &Scene) -> Result<Vec<([u8; 3], BezPath)>> {
     background.map(Ok).into_iter().chain(marks).collect()
 }
 
-/// What the sweep finds. It may panic: that is an error like any other.
+/// The result of a sweep. A panic in it is an error like any other.
 fn swept(sweep: impl FnOnce() -> Option<Vec<Region>>) -> Result<Vec<Region>> {
     let found = panic::catch_unwind(AssertUnwindSafe(sweep)).ok().flatten();
     let message = "the outlines cannot be told apart: draw with fewer marks, or another --seed";
@@ -146,7 +146,7 @@ fn seen(page: &BezPath, marks: &[([u8; 3], BezPath)], colors: &[[u8; 3]]) -> Opt
 /// The tag of the page's outline; marks have higher ones.
 const PAGE: u32 = 0;
 
-/// How often the outlines wind around a place: those that do, by their tags.
+/// Numbers of times that outlines wind around a place: those that do, by their tags.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 struct Windings(BTreeMap<u32, i32>);
 
