@@ -95,8 +95,7 @@ impl Checkpoint {
             }
         };
         let payload = self.payload(&bytes, fingerprint)?;
-        let state =
-            cbor4ii::serde::from_slice(payload).map_err(|cause| self.damaged().caused_by(cause))?;
+        let state = coding::decoded(payload).map_err(|cause| self.damaged().caused_by(cause))?;
         Ok(Some(state))
     }
 
@@ -153,8 +152,7 @@ impl Checkpoint {
             let message = format!("cannot be written ({cause}): name another file");
             self.refusal(ErrorKind::Io, &message)
         };
-        let payload =
-            cbor4ii::serde::to_vec(Vec::new(), state).map_err(|e| unwritable(&e).caused_by(e))?;
+        let payload = coding::encoded(state).map_err(|e| unwritable(&e).caused_by(e))?;
         let checksum = hash(payload.iter().copied());
         let head = [
             MAGIC,
@@ -163,6 +161,36 @@ impl Checkpoint {
         ]
         .concat();
         replace(&self.path, &[&head, &payload]).map_err(|e| unwritable(&e).caused_by(e))
+    }
+}
+
+/// States as bytes, in CBOR.
+#[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
+mod coding {
+    use std::io;
+
+    use serde::{Serialize, de::DeserializeOwned};
+
+    pub(super) fn encoded(state: &impl Serialize) -> io::Result<Vec<u8>> {
+        cbor4ii::serde::to_vec(Vec::new(), state).map_err(io::Error::other)
+    }
+
+    pub(super) fn decoded<T: DeserializeOwned>(bytes: &[u8]) -> io::Result<T> {
+        cbor4ii::serde::from_slice(bytes).map_err(io::Error::other)
+    }
+}
+
+/// A web page has no files, and need not download what would write them.
+#[cfg(all(target_family = "wasm", target_os = "unknown"))]
+mod coding {
+    use std::io;
+
+    pub(super) fn encoded<T>(_: &T) -> io::Result<Vec<u8>> {
+        Err(io::ErrorKind::Unsupported.into())
+    }
+
+    pub(super) fn decoded<T>(_: &[u8]) -> io::Result<T> {
+        Err(io::ErrorKind::Unsupported.into())
     }
 }
 
