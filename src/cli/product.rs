@@ -6,7 +6,7 @@ use anyhow::Result;
 use strokefit::machine::{self, Hatch};
 use strokefit::report::Judged;
 use strokefit::scene::{MIN_WIDTH, Scene};
-use strokefit::svg::{self, Form, Length, WriteOptions};
+use strokefit::svg::{self, Form, Group, Length, WriteOptions};
 
 use super::drawing::Drawing;
 use super::misuse;
@@ -70,18 +70,22 @@ impl<'a> Product<'a> {
 impl Made {
     /// The drawing that is made of a scene, in a file with these options.
     pub(super) fn product(&self, scene: &Scene, file: &WriteOptions) -> Result<Product<'static>> {
-        let (made, precision) = match self.hatch {
-            Some(hatch) => (self.hatched(scene, hatch, file)?, file.precision),
-            None if self.cutout => (
-                machine::cut_out(scene)?,
-                file.precision.max(CUTOUT_PRECISION),
-            ),
-            None => (machine::outlined(scene), file.precision),
-        };
-        let text = match self.hatch.is_some() || self.cutout {
-            true => svg::write(&made, &WriteOptions { precision, ..*file }),
+        let (made, text) = if let Some(hatch) = self.hatch {
+            let made = self.hatched(scene, hatch, file)?;
+            let text = svg::write(&made, file);
+            (made, text)
+        } else if self.cutout {
+            let made = machine::cut_out(scene)?;
+            let options = WriteOptions {
+                precision: file.precision.max(CUTOUT_PRECISION),
+                group: Group::Color,
+                ..*file
+            };
+            let text = svg::write(&made, &options);
+            (made, text)
+        } else {
             // Straight outlines and dots have elements of their own.
-            false => svg::write(scene, file),
+            (machine::outlined(scene), svg::write(scene, file))
         };
         Ok(Product {
             scene: Some(Cow::Owned(made)),

@@ -1,9 +1,9 @@
 //! Hatching: areas filled with lines of a pen.
 
-use super::regions::{self, Region};
+use super::visible;
 use crate::error::{Error, ErrorKind, Result};
 use crate::math::{self, Point};
-use crate::scene::{Mark, Path, Scene, Stage, Stroke, color, quantum};
+use crate::scene::{Area, Mark, Path, Scene, Stage, Stroke, color, quantum};
 use crate::svg::Length;
 
 /// Farthest that the chords of a border are from its curves, px.
@@ -47,9 +47,9 @@ impl std::str::FromStr for Hatch {
 pub fn hatched(scene: &Scene, spacing: f32, pen: f32, degrees: f64) -> Result<Scene> {
     let paper = scene.background.map(|c| c.map(quantum));
     let mut stages = Vec::new();
-    for region in areas(scene)? {
-        if Some(region.color) != paper {
-            let lines = filled(&region, spacing, pen, degrees)?;
+    for area in areas(scene)? {
+        if Some(area.color.map(quantum)) != paper {
+            let lines = filled(&area, spacing, pen, degrees)?;
             stages.push(Stage::from_iter(lines));
         }
     }
@@ -64,7 +64,7 @@ pub fn hatched(scene: &Scene, spacing: f32, pen: f32, degrees: f64) -> Result<Sc
 }
 
 /// The visible parts of the areas, which areas and strokes on top hide, by colour.
-fn areas(scene: &Scene) -> Result<Vec<Region>> {
+fn areas(scene: &Scene) -> Result<Vec<Area>> {
     // Strokes hide what is below, and are of no colour themselves: they get one that no area has.
     let mut taken: Vec<[u8; 3]> = scene.areas().map(|area| area.color.map(quantum)).collect();
     taken.extend(scene.background.map(|c| c.map(quantum)));
@@ -85,9 +85,9 @@ fn areas(scene: &Scene) -> Result<Vec<Region>> {
         shade: None,
         ..*scene
     };
-    let mut regions = regions::regions(&marked)?;
-    regions.retain(|region| region.color != free);
-    Ok(regions)
+    let mut areas = visible::areas(&marked)?;
+    areas.retain(|area| area.color.map(quantum) != free);
+    Ok(areas)
 }
 
 /// Distances of the pen from the border, in units of its radius. What the pen does not reach at one of them, because that is
@@ -97,19 +97,19 @@ const DISTANCES: [f32; 5] = [1.0, 0.7, 0.45, 0.25, 0.1];
 /// Smaller pieces that the pen does not reach are left out, in units of its width squared. They lie in corners. A guess.
 const SMALLEST: f64 = 0.4;
 
-/// The lines that fill a region.
-fn filled(region: &Region, spacing: f32, pen: f32, degrees: f64) -> Result<Vec<Stroke>> {
+/// The lines that fill an area.
+fn filled(area: &Area, spacing: f32, pen: f32, degrees: f64) -> Result<Vec<Stroke>> {
     let radius = pen / 2.0;
     let mut paths = Vec::new();
-    let mut rest = region.rings.clone();
+    let mut rest = area.rings.clone();
     for (step, distance) in DISTANCES.into_iter().enumerate() {
-        let inner = regions::inset(&rest, distance * radius)?;
+        let inner = visible::inset(&rest, distance * radius)?;
         paths.extend(inner.iter().cloned());
         if step == 0 {
             paths.extend(lines(&inner, spacing, degrees));
         }
-        rest = regions::around(&rest, &inner, radius)?;
-        rest.retain(|ring| regions::enclosed(ring) > SMALLEST * f64::from(pen * pen));
+        rest = visible::around(&rest, &inner, radius)?;
+        rest.retain(|ring| visible::enclosed(ring) > SMALLEST * f64::from(pen * pen));
         if rest.is_empty() {
             break;
         }
@@ -117,7 +117,7 @@ fn filled(region: &Region, spacing: f32, pen: f32, degrees: f64) -> Result<Vec<S
     let stroke = |path| Stroke {
         path,
         radius,
-        color: color(region.color),
+        color: area.color,
         opacity: 1.0,
     };
     Ok(paths.into_iter().map(stroke).collect())

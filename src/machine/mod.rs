@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! bezier    paths of the two kinds, ours and kurbo's
-//! regions   marks → what is seen of them, by colour
+//! visible   marks → the places where each colour is seen
 //! cutout    areas that do not overlap
 //! hatch     areas → pen lines
 //! sheet     a drawing on a page with a size
@@ -14,8 +14,8 @@ mod cutout;
 mod dxf;
 mod hatch;
 mod pdf;
-mod regions;
 mod sheet;
+mod visible;
 
 pub use cutout::cut_out;
 pub use dxf::dxf;

@@ -1,7 +1,7 @@
-//! Regions: of marks that lie on each other, for each colour the places where it is on top.
+//! Visible parts of marks that lie on each other: for each colour, the places where it is on top.
 //!
 //! One sweep over the outlines of all marks finds the pieces of the plane and, for each, how often every outline winds
-//! around it. The regions of all colours are made of the same pieces, so that they share their borders.
+//! around it. The parts of all colours are made of the same pieces, so that they share their borders.
 
 use std::collections::BTreeMap;
 use std::ops::{Add, AddAssign};
@@ -13,7 +13,7 @@ use linesweeper::topology::{Topology, WindingNumber};
 use super::bezier;
 use crate::error::{Error, ErrorKind, Result};
 use crate::outline;
-use crate::scene::{Mark, Path, Scene, Stroke, quantum};
+use crate::scene::{Area, Mark, Path, Scene, Stroke, color, quantum};
 
 /// Farthest that borders may be moved where outlines touch, px. Files hold a hundredth.
 const NEAR: f64 = 1e-4;
@@ -21,21 +21,14 @@ const NEAR: f64 = 1e-4;
 /// Smaller pieces are traces of rounding, px².
 const SMALLEST: f64 = 2e-3;
 
-/// The places where a colour is seen.
-#[derive(Debug, Clone)]
-pub(super) struct Region {
-    pub(super) color: [u8; 3],
-    /// Rings that do not cross, holes the other way round.
-    pub(super) rings: Vec<Path>,
-}
-
-/// The regions on the page of the colours of a scene's marks, in the order in which colours first come. The background
+/// The visible parts of a scene's marks on its page as an area for each colour, in the order in which colours first come. Their
+/// rings do not cross, and holes go the other way round. An area without rings is of a colour that is hidden. The background
 /// is the lowest mark.
 ///
 /// # Errors
 /// [`ErrorKind::Config`] when a mark is translucent, since then two colours are seen at a place;
 /// [`ErrorKind::Svg`] when the sweep fails.
-pub(super) fn regions(scene: &Scene) -> Result<Vec<Region>> {
+pub(super) fn areas(scene: &Scene) -> Result<Vec<Area>> {
     let marks = outlines(scene)?;
     let mut colors: Vec<[u8; 3]> = Vec::new();
     for (color, _) in &marks {
@@ -46,12 +39,12 @@ pub(super) fn regions(scene: &Scene) -> Result<Vec<Region>> {
     swept(|| seen(&page(scene), &marks, &colors))
 }
 
-/// The parts of a region that are farther than `reach` px from its border.
+/// The parts within some rings that are farther than `reach` px from these.
 pub(super) fn inset(rings: &[Path], reach: f32) -> Result<Vec<Path>> {
     without(rings, &[band(rings, reach)])
 }
 
-/// The parts of a region that are farther than `reach` px from an `inner` one.
+/// The parts within some rings that are farther than `reach` px from all within `inner` ones.
 pub(super) fn around(rings: &[Path], inner: &[Path], reach: f32) -> Result<Vec<Path>> {
     without(rings, &[band(inner, reach), bezier(inner)])
 }
@@ -74,14 +67,14 @@ fn bezier(rings: &[Path]) -> BezPath {
     path
 }
 
-/// The parts of a region that are in none of the others.
+/// The parts within some rings that are within none of the others.
 fn without(rings: &[Path], others: &[BezPath]) -> Result<Vec<Path>> {
-    let region = bezier(rings);
-    let page = region.bounding_box().inflate(1.0, 1.0).to_path(NEAR);
+    let own = bezier(rings);
+    let page = own.bounding_box().inflate(1.0, 1.0).to_path(NEAR);
     let others = others.iter().map(|other| ([1; 3], other.clone()));
-    let marks: Vec<_> = [([0; 3], region)].into_iter().chain(others).collect();
-    let mut regions = swept(|| seen(&page, &marks, &[[0; 3]]))?;
-    Ok(regions.pop().map_or_else(Vec::new, |region| region.rings))
+    let marks: Vec<_> = [([0; 3], own)].into_iter().chain(others).collect();
+    let mut parts = swept(|| seen(&page, &marks, &[[0; 3]]))?;
+    Ok(parts.pop().map_or_else(Vec::new, |area| area.rings))
 }
 
 /// The area that a ring encloses, px².
@@ -113,34 +106,35 @@ fn outlines(scene: &Scene) -> Result<Vec<([u8; 3], BezPath)>> {
 }
 
 /// The result of a sweep. A panic in it is an error like any other.
-fn swept(sweep: impl FnOnce() -> Option<Vec<Region>>) -> Result<Vec<Region>> {
+fn swept(sweep: impl FnOnce() -> Option<Vec<Area>>) -> Result<Vec<Area>> {
     let found = panic::catch_unwind(AssertUnwindSafe(sweep)).ok().flatten();
     let message = "the outlines cannot be told apart: draw with fewer marks, or another --seed";
     found.ok_or_else(|| Error::new(ErrorKind::Svg, message))
 }
 
-/// The regions of these colours.
-fn seen(page: &BezPath, marks: &[([u8; 3], BezPath)], colors: &[[u8; 3]]) -> Option<Vec<Region>> {
+/// The visible parts of these colours.
+fn seen(page: &BezPath, marks: &[([u8; 3], BezPath)], colors: &[[u8; 3]]) -> Option<Vec<Area>> {
     let tagged = marks.iter().zip(1..).map(|((_, path), mark)| (path, mark));
     let tagged = tagged.chain([(page, PAGE)]);
     let topology = Topology::<Windings>::from_paths(tagged, NEAR).ok()?;
-    let region = |color: &[u8; 3]| {
+    let area = |own: &[u8; 3]| {
         let is_seen = |windings: &Windings| {
             let top = windings.top().and_then(|mark| marks.get(mark as usize - 1));
-            windings.is_on_page() && top.is_some_and(|(own, _)| own == color)
+            windings.is_on_page() && top.is_some_and(|(color, _)| color == own)
         };
         let contours = topology.contours(is_seen);
         let large = contours
             .contours()
             .filter(|contour| contour.path.area().abs() > SMALLEST);
-        Region {
-            color: *color,
+        Area {
+            opacity: 1.0,
+            color: color(*own),
             rings: large
                 .filter_map(|contour| bezier::ring(&contour.path))
                 .collect(),
         }
     };
-    Some(colors.iter().map(region).collect())
+    Some(colors.iter().map(area).collect())
 }
 
 /// The tag of the page's outline; marks have higher ones.
