@@ -321,6 +321,7 @@ mod tests {
             rings: vec![Path::new(corners.into(), true).unwrap()],
             color: [0.2, 0.4, 0.8],
             opacity: 0.7,
+            shade: None,
         };
         let mut scene = scene(&[2]);
         let below = [Mark::from(area.clone()), Mark::from(area)];

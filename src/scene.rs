@@ -19,7 +19,7 @@ pub use mark::{Area, Mark, Marks};
 pub(crate) use overlap::overlaps;
 pub use path::{MAX_POINTS, Path, PathPoint, Piece};
 pub use quantize::{Dropped, MIN_WIDTH, Quantized};
-pub(crate) use quantize::{Written, color, quantum};
+pub(crate) use quantize::{Written, WrittenShade, color, quantum};
 pub use shade::{Axis, MAX_STOPS, Shade, ShadeStop};
 pub(crate) use shade::{WrittenAxis, WrittenStop};
 pub(crate) use written_path::{WrittenPath, WrittenPoint};

@@ -55,6 +55,7 @@ impl Source<'_> {
                     rings,
                     color,
                     opacity,
+                    shade: None,
                 });
             }
             _ => Path::line(a, b),

@@ -23,6 +23,9 @@
 //! An area has the same segments without a radius, and each pixel a side of them: `d = ±|q|`, and `∂d/∂a`, `∂d/∂b` with the
 //! sign of the side ([`winding`]). Blocks inside that no segment is near are its hard core.
 //!
+//! An area with a gradient has another colour and opacity at each pixel, which both passes work out anew ([`Ink`]); no loss is
+//! derived by them.
+//!
 //! Degenerate cases: a zero-length capsule is a disc; on the centre line `u` tends to 0 with the guard instead of being undefined.
 
 // Lanes are never passed through closures of `array::map`: those are compiled on their own, without the
@@ -42,13 +45,14 @@ use std::ops::Range;
 use fearless_simd::{Level, dispatch, f32x16, prelude::*};
 
 pub(super) use lanes::{load, members, store, total};
-pub(super) use segment::{Segment, length};
+pub(super) use segment::{PIXELS, Segment, length};
 pub(super) use sums::{Extras, Mattes, Nothing, Stiffnesses, Sums, Worths};
 pub(super) use touching::{Listed, list_segments};
 
 use super::CanvasLoss;
 use super::edge::{Edge, Reach, SoftEdge};
 use super::grid::{BLOCKS, BlockSet, Lanes, TileRgb, TileWeights, uniform_tile};
+use super::paint::Ink;
 use super::polylines::Polylines;
 use super::strokes::STYLE;
 use front::{Shape, Transmittance};
@@ -168,6 +172,18 @@ impl TileJob<'_> {
         self.polylines.areas[self.listed[slot].stroke as usize]
     }
 
+    /// The colour and the opacity of a listed stroke.
+    #[inline(always)]
+    fn brush<S: Simd>(&self, simd: S, slot: usize) -> Brush<'_, S> {
+        let style = self.style(slot);
+        Brush {
+            rgb: splat_rgb(simd, style),
+            opacity: f32x16::splat(simd, style[STYLE - 1].max(FAINTEST)),
+            ink: self.polylines.ink(self.listed[slot].stroke as usize),
+            origin: self.origin,
+        }
+    }
+
     /// All vertices of a listed stroke, px.
     fn vertices(&self, slot: usize) -> &[[f32; 2]] {
         let stroke = self.listed[slot].stroke as usize;
@@ -184,6 +200,30 @@ impl TileJob<'_> {
             vertices: &self.polylines.vertices,
             listed: &self.segments[range],
             origin: self.origin,
+        }
+    }
+}
+
+/// The colour and the opacity of a stroke.
+struct Brush<'a, S: Simd> {
+    rgb: [f32x16<S>; 3],
+    opacity: f32x16<S>,
+    /// The gradient that takes the place of the colour.
+    ink: Option<&'a Ink>,
+    /// The tile's top left corner, px.
+    origin: [f32; 2],
+}
+
+impl<S: Simd> Brush<'_, S> {
+    /// Colour and opacity at the pixels of a block.
+    #[inline(always)]
+    fn at(&self, simd: S, block: usize) -> ([f32x16<S>; 3], f32x16<S>) {
+        match self.ink {
+            None => (self.rgb, self.opacity),
+            Some(ink) => {
+                let [red, green, blue, opacity] = ink.at(simd, block, self.origin);
+                ([red, green, blue], self.opacity * opacity)
+            }
         }
     }
 }
@@ -270,12 +310,10 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
         // Make room for what pass 2 needs. The two cursors walk over it in the order in which the blocks are visited: shared
         // ones, those of each segment alone, the core.
         visits.push(visit);
-        let rgb = splat_rgb(simd, style);
-        let opacity = f32x16::splat(simd, style[STYLE - 1].max(FAINTEST));
+        let brush = job.brush(simd, slot);
         let shape = Shape {
             edge,
             radius,
-            opacity,
             outside: job.reach.outside,
         };
         let mut through = kept_transmittance.push(visit.edge | visit.core).iter_mut();
@@ -288,7 +326,8 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
             for (block, ((nearest, kept), through)) in members(visit.shared).zip(kept) {
                 *nearest = union.nearest(block);
                 let sides = windings.sides(is_area, block);
-                let alpha = shape.cover(simd, union.distance2(simd, block), sides, kept);
+                let (rgb, opacity) = brush.at(simd, block);
+                let alpha = shape.cover(simd, opacity, union.distance2(simd, block), sides, kept);
                 *through = transmittances[block].through;
                 if transmittances[block].add(simd, alpha, &rgb, &mut color[block]) {
                     live &= !(1 << block);
@@ -306,7 +345,8 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
             for (block, (kept, through)) in members(alone).zip(kept) {
                 let distance2 = segment.at_pixels(simd, block).distance2();
                 let sides = windings.sides(is_area, block);
-                let alpha = shape.cover(simd, distance2, sides, kept);
+                let (rgb, opacity) = brush.at(simd, block);
+                let alpha = shape.cover(simd, opacity, distance2, sides, kept);
                 *through = transmittances[block].through;
                 if transmittances[block].add(simd, alpha, &rgb, &mut color[block]) {
                     live &= !(1 << block);
@@ -315,6 +355,7 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
         }
         // σ is 1 and σ' is 0 here: no distance to evaluate, and nothing but `T` to keep for pass 2.
         for (block, through) in members(visit.core).zip(through) {
+            let (rgb, opacity) = brush.at(simd, block);
             *through = transmittances[block].through;
             if transmittances[block].add(simd, opacity, &rgb, &mut color[block]) {
                 live &= !(1 << block);
@@ -381,7 +422,7 @@ fn back_to_front<S: Simd, X: Extras>(
         let range = job.range(slot);
         let segments = job.segments(slot, range.clone());
         let near = &near[range];
-        let rgb = splat_rgb(simd, style);
+        let brush = job.brush(simd, slot);
         let mut stroke = Looks::new(simd);
         let first = sums.segments.len() as u32;
         // Take back what pass 1 kept: the cursors walk in its order.
@@ -391,6 +432,7 @@ fn back_to_front<S: Simd, X: Extras>(
         // Near joints, blend the stroke once, since it has one coverage. Which segment a pixel pulls at is sorted out below.
         for (block, (kept, t)) in members(visit.shared).zip(of_shared.iter_mut().zip(&mut through))
         {
+            let (rgb, _) = brush.at(simd, block);
             let (pull, stiffness) = stroke.blend_edge::<X>(simd, kept, t, &rgb, grounds.at(block));
             // Values that the segments need, in the place of values that nothing needs any more.
             store(pull, &mut kept.slope);
@@ -413,6 +455,7 @@ fn back_to_front<S: Simd, X: Extras>(
             let mut shifts = Shifts::new(simd);
             let kept = (&mut alone).zip(&mut through);
             for (block, (kept, t)) in members(near & visit.edge & !visit.shared).zip(kept) {
+                let (rgb, _) = brush.at(simd, block);
                 let (pull, stiffness) =
                     stroke.blend_edge::<X>(simd, kept, t, &rgb, grounds.at(block));
                 let nearest = segment.at_pixels(simd, block);
@@ -430,16 +473,20 @@ fn back_to_front<S: Simd, X: Extras>(
                 sums.stiffness.push(shifts.stiffness());
             }
         }
-        let opacity = f32x16::splat(simd, style[STYLE - 1].max(FAINTEST));
         // In the core, coverage does not change with the shape: only colour, opacity and worth have a part in it.
         for (block, t) in members(visit.core).zip(through) {
+            let (rgb, opacity) = brush.at(simd, block);
             stroke.blend::<X>(simd, opacity, load(simd, t), &rgb, grounds.at(block));
         }
         // The sum over `m = o·σ` becomes the derivative by the opacity when divided by it, hence the least opacity.
         sums.strokes.push(OfStroke {
             id: job.listed[slot].stroke,
             first,
-            style: stroke.style(style[STYLE - 1].max(FAINTEST), job.is_area(slot)),
+            style: stroke.style(
+                style[STYLE - 1].max(FAINTEST),
+                job.is_area(slot),
+                brush.ink.is_some(),
+            ),
             worth: if X::WORTH { stroke.worth() } else { 0.0 },
         });
     }

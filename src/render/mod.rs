@@ -65,6 +65,7 @@ mod frame;
 mod gradients;
 mod grid;
 mod kernel;
+mod paint;
 mod polylines;
 #[doc(hidden)]
 pub mod probe;
@@ -81,6 +82,7 @@ use rayon::prelude::*;
 pub use gradients::{Gradients, Survey};
 pub(crate) use grid::multiply;
 pub use grid::{BlockRgb, Canvas, Grid, Lanes, Run, TILE, TileRgb};
+pub use paint::Paint;
 pub use strokes::{
     AX, AY, BX, BY, OPACITY, PARAMS, Params, RADIUS, RED, STYLE, StrokeMut, StrokeRef, Strokes,
 };

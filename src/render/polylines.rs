@@ -11,6 +11,7 @@ use crate::math::Vector;
 use crate::sdf;
 
 use super::gradients::add;
+use super::paint::Ink;
 use super::strokes::{STYLE, StrokeRef, Strokes};
 
 /// The vertex between the rings of an area: no segment that has it is drawn.
@@ -31,6 +32,8 @@ pub(super) struct Polylines {
     pub(super) styles: Vec<[f32; STYLE]>,
     /// For each stroke, true if it is an area.
     pub(super) areas: Vec<bool>,
+    /// The gradients of some strokes, each with the index of its stroke.
+    inks: Vec<(usize, Ink)>,
     /// The smallest and the largest x and y of the vertices of each stroke, px.
     pub(super) boxes: Vec<[[f32; 2]; 2]>,
     /// Number of segments of each curve, curve by curve.
@@ -63,6 +66,10 @@ impl Polylines {
             let firsts = part.first_curves.iter().map(after(self.curves.len()));
             self.first_curves.extend(firsts);
             self.curves.extend(&part.curves);
+            let before = self.styles.len();
+            let inks = part.inks.iter();
+            self.inks
+                .extend(inks.map(|(i, ink)| (before + i, ink.clone())));
             self.vertices.extend(&part.vertices);
             self.styles.extend(&part.styles);
             self.areas.extend(&part.areas);
@@ -77,6 +84,7 @@ impl Polylines {
         self.firsts.clear();
         self.styles.clear();
         self.areas.clear();
+        self.inks.clear();
         self.boxes.clear();
         self.curves.clear();
         self.first_curves.clear();
@@ -92,6 +100,9 @@ impl Polylines {
         } else {
             [f32::NAN; STYLE]
         });
+        if let Some(paint) = stroke.paint {
+            self.inks.push((self.areas.len(), Ink::of(paint)));
+        }
         self.areas.push(stroke.is_area());
         self.first_curves.push(self.curves.len() as u32);
         // A path of lines is its own polyline.
@@ -111,6 +122,16 @@ impl Polylines {
             }
         }
         self.boxes.push([low, high]);
+    }
+
+    /// The gradient of stroke `i`, if it has one.
+    #[inline(always)]
+    pub(super) fn ink(&self, i: usize) -> Option<&Ink> {
+        if self.inks.is_empty() {
+            return None;
+        }
+        let at = self.inks.binary_search_by_key(&i, |(stroke, _)| *stroke);
+        at.ok().map(|at| &self.inks[at].1)
     }
 
     /// Adds the derivatives by the vertices of stroke `i` to those by its points.
@@ -383,6 +404,7 @@ mod tests {
                     off: &off,
                     closed,
                     rings: &[],
+                    paint: None,
                     style: &[1.0, 1.0, 1.0, 1.0, [0.2, 0.6, 1.0][kinds as usize % 3]],
                 });
             }
@@ -463,6 +485,7 @@ mod tests {
                 off: &[false, true, false],
                 closed: false,
                 rings: &[],
+                paint: None,
                 style: &[1.0, 1.0, 1.0, 1.0, opacity],
             };
             let mut curves = Vec::new();

@@ -94,8 +94,9 @@ impl Reference {
             .map(|p| {
                 let strokes = scene.strokes.iter().zip(&shapes);
                 strokes.fold(scene.background, |behind, (stroke, shape)| {
-                    let m = stroke.opacity * self.covered(shape, p).0;
-                    over(behind, stroke.color, m)
+                    let (color, share) = stroke.ink(p);
+                    let m = stroke.opacity * share * self.covered(shape, p).0;
+                    over(behind, color, m)
                 })
             })
             .collect()
@@ -142,9 +143,8 @@ impl Reference {
             shapes.iter().map(|s| vec![0.0; s.means.len()]).collect();
         for p in self.samples(scene) {
             for (i, layer) in self.layers(scene, &shapes, p).iter().enumerate() {
-                let stroke = &scene.strokes[i];
-                let reach = reach(stroke, layer);
-                let by_distance = layer.transmittance * stroke.opacity * layer.slope;
+                let reach = layer.reach();
+                let by_distance = layer.transmittance * scene.strokes[i].opacity * layer.slope;
                 let k = 2.0 * by_distance * by_distance * dot(reach, reach);
                 // The derivatives by both ends are u·(1−h) and u·h, so their lengths are the shares.
                 for (vertex, by) in shapes[i].by_vertices(p, 0.0) {
@@ -164,8 +164,7 @@ impl Reference {
             for (i, layer) in self.layers(scene, &shapes, p).iter().enumerate() {
                 for channel in 0..3 {
                     let e = canvas[k][channel] - target[k][channel];
-                    let reach = scene.strokes[i].color[channel] - layer.behind[channel];
-                    let delta = -layer.transmittance * layer.m * reach;
+                    let delta = -layer.transmittance * layer.m * layer.reach()[channel];
                     changes[i] += 2.0 * e * delta + delta * delta;
                 }
             }
@@ -213,15 +212,18 @@ impl Reference {
         let mut layers = Vec::with_capacity(scene.strokes.len());
         for (stroke, shape) in scene.strokes.iter().zip(shapes) {
             let (coverage, slope) = self.covered(shape, p);
+            let (color, share) = stroke.ink(p);
+            let (coverage, slope) = (share * coverage, share * slope);
             let m = stroke.opacity * coverage;
             layers.push(Layer {
+                color,
                 coverage,
                 slope,
                 m,
                 behind,
                 transmittance: 1.0,
             });
-            behind = over(behind, stroke.color, m);
+            behind = over(behind, color, m);
         }
         let mut transmittance = 1.0;
         for layer in layers.iter_mut().rev() {
@@ -240,6 +242,8 @@ pub fn squared_error(canvas: &[Rgb], target: &[Rgb]) -> f64 {
 
 /// One stroke at one sample point.
 struct Layer {
+    color: Rgb,
+    /// Coverage, times the opacity of the gradient.
     coverage: f64,
     /// Derivative of the coverage by the distance.
     slope: f64,
@@ -258,19 +262,23 @@ fn flattened(scene: &Scene) -> Vec<Shape> {
 
 /// Adds what one pixel with `∂L/∂canvas = g` has to say about the look of `stroke`; returns `∂L/∂d` there.
 fn accumulate(sum: &mut Stroke, stroke: &Stroke, layer: &Layer, g: Rgb) -> f64 {
-    let d_m = layer.transmittance * dot(g, reach(stroke, layer));
+    let d_m = layer.transmittance * dot(g, layer.reach());
     let d_distance = d_m * stroke.opacity * layer.slope;
     if stroke.rings.is_empty() {
         sum.radius += d_distance;
     }
-    add(&mut sum.color, layer.transmittance * layer.m, g);
+    if stroke.paint.is_none() {
+        add(&mut sum.color, layer.transmittance * layer.m, g);
+    }
     sum.opacity += d_m * layer.coverage;
     d_distance
 }
 
-/// `c − B`.
-fn reach(stroke: &Stroke, layer: &Layer) -> Rgb {
-    std::array::from_fn(|k| stroke.color[k] - layer.behind[k])
+impl Layer {
+    /// `c − B`.
+    fn reach(&self) -> Rgb {
+        std::array::from_fn(|k| self.color[k] - self.behind[k])
+    }
 }
 
 fn over(behind: Rgb, color: Rgb, m: f64) -> Rgb {
@@ -312,6 +320,7 @@ mod tests {
             radius: 5.0,
             color: RED,
             opacity,
+            paint: None,
         }
     }
 

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::paint::Paint;
 use crate::math::{self, Point};
 use crate::scene::{Area, Mark, Path, PathPoint, Rgb, Stroke};
 
@@ -48,6 +49,8 @@ pub struct Strokes {
     off: Vec<bool>,
     /// The rings of all areas: each by the index behind its last point, among those of its area.
     rings: Vec<u32>,
+    /// The gradients of the areas that have one.
+    paints: Vec<Paint>,
     outlines: Vec<Outline>,
 }
 
@@ -58,6 +61,8 @@ struct Outline {
     end: u32,
     /// The index after its last ring, among those of all areas.
     rings_end: u32,
+    /// The index after its paint, or after the last one before it.
+    paints_end: u32,
     closed: bool,
 }
 
@@ -74,6 +79,8 @@ pub struct StrokeRef<'a> {
     pub rings: &'a [u32],
     /// Radius, red, green, blue, opacity. The radius of an area is 0.
     pub style: &'a [f32; STYLE],
+    /// The gradient that an area is filled with instead of its colour.
+    pub paint: Option<&'a Paint>,
 }
 
 /// One of [`Strokes`], to be changed.
@@ -85,6 +92,8 @@ pub struct StrokeMut<'a> {
     pub style: &'a mut [f32; STYLE],
     /// True if the points are rings to be filled, so that the radius has to stay 0.
     pub is_area: bool,
+    /// The gradient that an area is filled with instead of its colour.
+    pub paint: Option<&'a mut Paint>,
 }
 
 impl<'a> StrokeRef<'a> {
@@ -164,6 +173,7 @@ impl<'a> StrokeRef<'a> {
             rings: self.paths().map(|(_, ring)| ring.to_path()).collect(),
             color: self.color(),
             opacity: self.opacity(),
+            shade: self.paint.map(|paint| paint.shade.clone()),
         };
         area.into()
     }
@@ -243,6 +253,12 @@ impl Strokes {
             .map_or(0, |before| self.outlines[before].rings_end as usize)
     }
 
+    /// The index of the paint of stroke `i`, or of the next one.
+    fn first_paint(&self, i: usize) -> usize {
+        i.checked_sub(1)
+            .map_or(0, |before| self.outlines[before].paints_end as usize)
+    }
+
     /// Where the numbers of stroke `i` are.
     pub fn range(&self, i: usize) -> std::ops::Range<usize> {
         let start = 2 * self.first_point(i) + STYLE * i;
@@ -257,6 +273,7 @@ impl Strokes {
         let Outline {
             end,
             rings_end,
+            paints_end,
             closed,
         } = self.outlines[i];
         let (points, style) = self.numbers[self.range(i)]
@@ -268,6 +285,7 @@ impl Strokes {
             closed,
             rings: &self.rings[self.first_ring(i)..rings_end as usize],
             style,
+            paint: self.paints[self.first_paint(i)..paints_end as usize].first(),
         }
     }
 
@@ -276,12 +294,14 @@ impl Strokes {
         for i in 0..self.len() {
             let range = self.range(i);
             let is_area = self.first_ring(i) < self.outlines[i].rings_end as usize;
+            let paint = self.first_paint(i)..self.outlines[i].paints_end as usize;
             if let Some((points, style)) = self.numbers[range].split_last_chunk_mut() {
                 let points = points.as_chunks_mut().0;
                 let stroke = StrokeMut {
                     points,
                     style,
                     is_area,
+                    paint: self.paints[paint].first_mut(),
                 };
                 change(i, stroke);
             }
@@ -307,9 +327,11 @@ impl Strokes {
         self.numbers.extend(stroke.style);
         self.off.extend(stroke.off);
         self.rings.extend(stroke.rings);
+        self.paints.extend(stroke.paint.cloned());
         self.outlines.push(Outline {
             end: self.off.len() as u32,
             rings_end: self.rings.len() as u32,
+            paints_end: self.paints.len() as u32,
             closed: stroke.closed,
         });
     }
@@ -323,6 +345,7 @@ impl Strokes {
                 closed: false,
                 rings: &[],
                 style,
+                paint: None,
             });
         }
     }
@@ -330,7 +353,7 @@ impl Strokes {
     /// Adds a stroke of a scene on top.
     pub fn push_stroke(&mut self, stroke: &Stroke) {
         let style = (stroke.radius, stroke.color, stroke.opacity);
-        self.push_paths(std::slice::from_ref(&stroke.path), &[], style);
+        self.push_paths(std::slice::from_ref(&stroke.path), &[], style, None);
     }
 
     /// Adds a stroke or an area of a scene on top.
@@ -343,7 +366,9 @@ impl Strokes {
                     Some(*end)
                 });
                 let ends: Vec<u32> = ends.collect();
-                self.push_paths(&area.rings, &ends, (0.0, area.color, area.opacity));
+                let paint = area.shade.clone().map(|shade| Paint { shade, scale: 1.0 });
+                let style = (0.0, area.color, area.opacity);
+                self.push_paths(&area.rings, &ends, style, paint.as_ref());
             }
         }
     }
@@ -353,6 +378,7 @@ impl Strokes {
         paths: &[Path],
         rings: &[u32],
         (radius, [red, green, blue], opacity): (f32, Rgb, f32),
+        paint: Option<&Paint>,
     ) {
         let points = || paths.iter().flat_map(Path::points);
         let places: Vec<[f32; 2]> = points().map(|p| [p.at.x, p.at.y]).collect();
@@ -363,19 +389,23 @@ impl Strokes {
             closed: paths.first().is_some_and(Path::is_closed),
             rings,
             style: &[radius, red, green, blue, opacity],
+            paint,
         });
     }
 
     /// Adds all of `others` on top, and leaves none there.
     pub fn append(&mut self, others: &mut Self) {
         let (points, rings) = (self.off.len() as u32, self.rings.len() as u32);
+        let paints = self.paints.len() as u32;
         self.numbers.append(&mut others.numbers);
         self.off.append(&mut others.off);
         self.rings.append(&mut others.rings);
+        self.paints.append(&mut others.paints);
         let outlines = others.outlines.drain(..);
         self.outlines.extend(outlines.map(|outline| Outline {
             end: outline.end + points,
             rings_end: outline.rings_end + rings,
+            paints_end: outline.paints_end + paints,
             ..outline
         }));
     }
@@ -385,15 +415,18 @@ impl Strokes {
     pub fn split_off(&mut self, at: usize) -> Self {
         let at = at.min(self.len());
         let (first, first_ring) = (self.first_point(at), self.first_ring(at));
+        let first_paint = self.first_paint(at);
         let outlines = self.outlines.split_off(at).into_iter();
         Self {
             numbers: self.numbers.split_off(2 * first + STYLE * at),
             off: self.off.split_off(first),
             rings: self.rings.split_off(first_ring),
+            paints: self.paints.split_off(first_paint),
             outlines: outlines
                 .map(|outline| Outline {
                     end: outline.end - first as u32,
                     rings_end: outline.rings_end - first_ring as u32,
+                    paints_end: outline.paints_end - first_paint as u32,
                     ..outline
                 })
                 .collect(),

@@ -130,6 +130,7 @@ mod tests {
             ],
             color: [0.0, 0.5, 1.0],
             opacity: 1.0,
+            shade: None,
         };
         let json = serde_json::to_string(&MarkRecord::from(&Mark::from(area))).unwrap();
         let expected =

@@ -1,6 +1,6 @@
 //! Marks: what a scene is made of.
 
-use super::{Path, Rgb, Stroke};
+use super::{Path, Rgb, Shade, Stroke};
 use crate::math::Point;
 
 /// One element of a drawing.
@@ -24,15 +24,17 @@ pub enum Marks {
     Areas,
 }
 
-/// Closed paths, filled where they wind around a point (SVG's nonzero rule), in one colour.
+/// Closed paths, filled where they wind around a point (SVG's nonzero rule), in one colour or a gradient.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Area {
     /// The outlines, px: at least one, each closed, on pixel centres at +0.5.
     pub rings: Vec<Path>,
-    /// sRGB-encoded colour, 0..1.
+    /// sRGB-encoded colour, 0..1; of an area with a shade the mean of that.
     pub color: Rgb,
     /// 0 (invisible) to 1 (opaque).
     pub opacity: f32,
+    /// The gradient that it is filled with instead of its colour.
+    pub shade: Option<Shade>,
 }
 
 impl Mark {
@@ -73,6 +75,11 @@ impl Mark {
         self.paths().iter().map(|path| path.points().len()).sum()
     }
 
+    /// The gradient of an area that has one.
+    pub fn shade(&self) -> Option<&Shade> {
+        self.as_area()?.shade.as_ref()
+    }
+
     /// The stroke, unless the mark is an area.
     pub fn as_stroke(&self) -> Option<&Stroke> {
         match self {
@@ -89,7 +96,7 @@ impl Mark {
         }
     }
 
-    /// This mark with `f` applied to every point.
+    /// This mark with `f`, which keeps shapes, applied to every point.
     #[must_use]
     pub fn map(self, f: impl Fn(Point) -> Point) -> Self {
         match self {
@@ -99,6 +106,7 @@ impl Mark {
             }),
             Self::Area(area) => Self::Area(Area {
                 rings: area.rings.into_iter().map(|ring| ring.map(&f)).collect(),
+                shade: area.shade.map(|shade| shade.map(&f)),
                 ..area
             }),
         }

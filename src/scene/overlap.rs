@@ -186,6 +186,7 @@ mod tests {
             width: width * PX,
             color: [0; 3],
             opacity: 255,
+            shade: None,
         }
     }
 

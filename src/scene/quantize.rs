@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::grid::{Grid, UNITS_PER_PX};
 use super::written_path::{WrittenPath, WrittenPoint};
-use super::{Area, Mark, Path, PathPoint, Rgb, Scene, Stage, Stroke};
+use super::{Area, Mark, Path, PathPoint, Rgb, Scene, Shade, Stage, Stroke};
 
 /// Narrowest stroke, px. Rasterisers of the Skia family draw a width of 1 px or less as a hairline of lower
 /// opacity, with the wrong ink on diagonals. The excess over 1 px keeps rounding from reaching 1 px.
@@ -127,6 +127,25 @@ pub(crate) struct Written {
     pub(crate) color: [u8; 3],
     /// Opacity in 1/255, never 0.
     pub(crate) opacity: u8,
+    /// The gradient of an area that has one; its colour then is the mean of that.
+    pub(crate) shade: Option<WrittenShade>,
+}
+
+/// A gradient of an area, and the name that it has in its file.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct WrittenShade {
+    pub(crate) shade: Shade,
+    /// The numbers of its layer and of the shade in it, from 1; 0 if it has no place in a file yet.
+    pub(crate) place: [usize; 2],
+}
+
+impl From<Shade> for WrittenShade {
+    fn from(shade: Shade) -> Self {
+        Self {
+            shade,
+            place: [0; 2],
+        }
+    }
 }
 
 impl Written {
@@ -158,11 +177,13 @@ impl Written {
         if paths.is_empty() {
             return Err(Unwritable::Invisible);
         }
+        let shade = mark.shade();
         Ok(Self {
             paths,
             width,
-            color: mark.color().map(quantum),
+            color: shade.map_or_else(|| mark.color().map(quantum), Shade::mean),
             opacity: quantum(mark.opacity()),
+            shade: shade.cloned().map(WrittenShade::from),
         })
     }
 
@@ -207,6 +228,7 @@ impl Written {
                 rings: rings.iter().map(WrittenPath::path).collect(),
                 color,
                 opacity,
+                shade: self.shade.as_ref().map(|named| named.shade.clone()),
             }),
         }
     }

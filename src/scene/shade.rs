@@ -1,11 +1,13 @@
-//! The shade: a gradient over the whole background, behind all strokes.
+//! The shade: a gradient over the whole background, behind all marks, or over an area.
 //!
 //! A shade holds exactly what its SVG elements hold: hundredths of a px, thousandths of its axis, 8-bit colours
 //! and opacities. So it is rounded once, where it is made, and reading gives back what was written.
 
+use serde::{Deserialize, Serialize};
+
 use super::{Rgb, UNITS_PER_PX, quantum};
 use crate::error::{Error, ErrorKind, Result};
-use crate::math::{self, Point};
+use crate::math::{self, Point, Vector};
 
 /// Most stops of a shade.
 pub const MAX_STOPS: usize = 16;
@@ -17,9 +19,9 @@ const MIN_LENGTH: f64 = 100.0;
 /// Largest absolute value of a coordinate, px.
 const MAX_COORDINATE: f32 = 1e6;
 
-/// A gradient over the whole page. Colour and opacity change linearly from stop to stop; before the first stop and
-/// beyond the last they stay.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// A gradient over the whole page or an area. Colour and opacity change linearly from stop to stop; before the first stop
+/// and beyond the last they stay.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Shade {
     pub(crate) axis: WrittenAxis,
     pub(crate) stops: Vec<WrittenStop>,
@@ -56,14 +58,14 @@ pub struct ShadeStop {
 }
 
 /// An [`Axis`] in units of 1/[`UNITS_PER_PX`] px: x1, y1, x2, y2 or the centre and the radius.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) enum WrittenAxis {
     Linear([i64; 4]),
     Radial([i64; 3]),
 }
 
 /// A [`ShadeStop`]: thousandths of the axis, 8-bit channels and opacity.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) struct WrittenStop {
     pub(crate) offset: u16,
     pub(crate) color: [u8; 3],
@@ -151,6 +153,48 @@ impl Shade {
             color: stop.color.map(|level| f32::from(level) / 255.0),
             opacity: f32::from(stop.opacity) / 255.0,
         })
+    }
+
+    /// The shade on an axis with `f`, which keeps shapes, applied to its points.
+    #[must_use]
+    pub fn map(&self, f: impl Fn(Point) -> Point) -> Self {
+        let axis = match self.axis() {
+            Axis::Linear { from, to } => Axis::Linear {
+                from: f(from),
+                to: f(to),
+            },
+            Axis::Radial { center, radius } => {
+                let rim = f(center + Vector::new(radius, 0.0));
+                let center = f(center);
+                let away = rim - center;
+                Axis::Radial {
+                    center,
+                    radius: math::hypot(away.x, away.y),
+                }
+            }
+        };
+        let stops: Vec<ShadeStop> = self.stops().collect();
+        // An axis of less than a px stays as it was: no file holds it.
+        Self::new(axis, &stops).unwrap_or_else(|_| self.clone())
+    }
+
+    /// The mean colour over the axis, of 8-bit channels.
+    pub(crate) fn mean(&self) -> [u8; 3] {
+        let mut sums = [0; 3];
+        let mut add = |thousandths: u64, stop: &WrittenStop| {
+            let channels = sums.iter_mut().zip(stop.color);
+            channels.for_each(|(sum, level)| *sum += thousandths * u64::from(level));
+        };
+        let ends = [self.stops.first(), self.stops.last()];
+        if let [Some(first), Some(last)] = ends {
+            add(2 * u64::from(first.offset), first);
+            add(2000 - 2 * u64::from(last.offset), last);
+        }
+        for pair in self.stops.windows(2) {
+            let width = u64::from(pair[1].offset - pair[0].offset);
+            pair.iter().for_each(|stop| add(width, stop));
+        }
+        sums.map(|sum: u64| ((sum + 1000) / 2000) as u8)
     }
 
     /// True if all of it is opaque.
@@ -274,6 +318,31 @@ mod tests {
         assert_eq!(red[4 * 10 + 1], red[10 + 4]);
         assert_eq!(red[0], 0.0);
         assert!((red[5 * 10 + 7] - (1.0 - 6.5_f32.sqrt() / 5.0)).abs() < 1e-5);
+    }
+
+    #[test]
+    fn the_mean_is_that_of_the_colours_over_the_axis() {
+        let mean = |stops: &[ShadeStop]| Shade::new(across(8.0), stops).unwrap().mean();
+        let (black, white) = (stop(0.0, 0.0, 1.0), stop(1.0, 1.0, 1.0));
+        assert_eq!(mean(&[black, white]), [128; 3]);
+        assert_eq!(mean(&[stop(0.5, 0.0, 1.0), white]), [64; 3]);
+        assert_eq!(mean(&[black, stop(0.25, 1.0, 1.0)]), [223; 3]);
+    }
+
+    #[test]
+    fn an_axis_moves_and_grows_with_its_points() {
+        let grown = |p: Point| Point::new(2.0 * p.x + 1.0, 2.0 * p.y);
+        let stops = [stop(0.0, 0.0, 1.0), stop(1.0, 1.0, 1.0)];
+        let circle = Axis::Radial {
+            center: Point::new(3.0, 4.0),
+            radius: 5.0,
+        };
+        let mapped = Shade::new(circle, &stops).unwrap().map(grown).axis();
+        let expected = Axis::Radial {
+            center: Point::new(7.0, 8.0),
+            radius: 10.0,
+        };
+        assert_eq!(mapped, expected);
     }
 
     #[test]

@@ -223,6 +223,7 @@ mod tests {
             rings: vec![Path::new(corners.into(), true).unwrap()],
             color: [0.2, 0.4, 0.6],
             opacity: 0.5,
+            shade: None,
         });
         let text = write_animated(&scene, &[0..2, 2..5, 5..6, 6..7], TIMING, 2);
         let fade = "<animate attributeName=\"fill-opacity\" values=\"0;0;0.502;0.502\" \

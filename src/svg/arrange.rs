@@ -237,7 +237,9 @@ fn begin<'a, R, K: Ord>(
 /// For each stroke, the later ones that must stay above it.
 fn above(strokes: &[Written]) -> Vec<Vec<usize>> {
     let mut above = vec![Vec::new(); strokes.len()];
-    for [lower, upper] in overlaps(strokes, |a, b| a.color != b.color) {
+    let may_not_swap =
+        |a: &Written, b: &Written| a.color != b.color || a.shade.is_some() || b.shade.is_some();
+    for [lower, upper] in overlaps(strokes, may_not_swap) {
         above[lower].push(upper);
     }
     above
@@ -256,6 +258,7 @@ mod tests {
             width: width * PX,
             color: [color; 3],
             opacity: 255,
+            shade: None,
         }
     }
 
@@ -294,6 +297,7 @@ mod tests {
             width: 0,
             color: [color; 3],
             opacity: 255,
+            shade: None,
         }
     }
 

@@ -244,6 +244,7 @@ mod tests {
             rings: vec![outer, inner, twice],
             color: [0.2, 0.4, 0.6],
             opacity: 1.0,
+            shade: None,
         }
     }
 

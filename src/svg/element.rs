@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::arrange::style_of;
 use super::dialect::{self, Unit};
+use super::gradient;
 use super::options::Form;
 use super::outline;
 use super::path::{self, Kind};
@@ -104,6 +105,9 @@ impl Attribute {
     fn text(self, mark: &Written, style: Style) -> String {
         let paint = if mark.is_area() { "fill" } else { "stroke" };
         match self {
+            Self::Color if let Some(shade) = &mark.shade => {
+                format!(" {paint}=\"url(#{})\"", gradient::id(shade))
+            }
             Self::Color if style == Style::Full => {
                 format!(" {paint}=\"{}\"", dialect::hex(mark.color))
             }
@@ -143,12 +147,19 @@ impl Style {
     }
 }
 
-/// Appends the path of `strokes` with the attributes that are not `shared`.
+/// Appends the path of `strokes` with the attributes that are not `shared`, behind its gradient if it has one.
 fn push_path(out: &mut String, strokes: &[Written], shared: &[Attribute], style: Style) {
     let kind = match strokes {
         [area] if area.is_area() => Kind::Ring,
         _ => Kind::Line,
     };
+    if let Some(named) = strokes.first().and_then(|mark| mark.shade.as_ref()) {
+        gradient::push(out, &named.shade, &gradient::id(named));
+        // In full, each element has a line of its own.
+        if style == Style::Full {
+            out.push('\n');
+        }
+    }
     let d = path::data(
         strokes.iter().flat_map(|mark| &mark.paths),
         kind,

@@ -78,6 +78,7 @@ mod arrange;
 mod dialect;
 mod document;
 mod element;
+mod gradient;
 mod lint;
 mod options;
 mod outline;

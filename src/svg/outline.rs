@@ -2,6 +2,7 @@
 //! stroke the rings around it.
 
 use super::dialect::{self, Unit};
+use super::gradient;
 use super::path::{self, Kind};
 use crate::math;
 use crate::outline;
@@ -12,13 +13,20 @@ const LEAST_PRECISION: u8 = 2;
 
 /// Appends the outline of a mark as an element of its own: that of an area is its rings.
 pub(super) fn push(out: &mut String, mark: &Written) {
+    if let Some(named) = &mark.shade {
+        gradient::push(out, &named.shade, &gradient::id(named));
+        out.push('\n');
+    }
     match (mark.paths.as_slice(), straight(mark)) {
         (rings, _) if mark.is_area() => push_rings(out, rings),
         ([dot], _) if dot.points().len() == 1 => push_circle(out, dot.points()[0].at, mark.width),
         (_, Some([a, b])) => push_capsule(out, a, b, mark.width),
         _ => push_rings(out, &rings(mark)),
     }
-    *out += &format!(" fill=\"{}\"", dialect::hex(mark.color));
+    *out += &match &mark.shade {
+        Some(shade) => format!(" fill=\"url(#{})\"", gradient::id(shade)),
+        None => format!(" fill=\"{}\"", dialect::hex(mark.color)),
+    };
     if mark.opacity < u8::MAX {
         *out += &format!(" fill-opacity=\"{}\"", dialect::opacity(mark.opacity));
     }
@@ -120,6 +128,7 @@ mod tests {
             width: 3 * UNITS_PER_PX,
             color: [255, 102, 0],
             opacity,
+            shade: None,
         };
         let mut out = String::new();
         push(&mut out, &stroke);

@@ -11,7 +11,9 @@ use super::dialect::{self, Unit};
 use super::options::Length;
 use super::path::{self, Kind};
 use crate::error::{Error, ErrorKind, Result};
-use crate::scene::{MAX_POINTS, Mark, Rgb, Scene, Stage, Written, WrittenPath, color};
+use crate::scene::{
+    MAX_POINTS, Mark, Rgb, Scene, Shade, Stage, Written, WrittenPath, WrittenShade, color,
+};
 
 /// Reads text that [`write`](super::write()) wrote, in any form except outlines.
 ///
@@ -160,6 +162,9 @@ impl<'a> Parser<'a> {
                 Tag::Open(e) if e.name == "path" => {
                     stage.marks.extend(style.of(&e, &["d"])?.marks(&e)?);
                     self.close(&e)?;
+                }
+                Tag::Open(e) if shade::begins_with(&e) => {
+                    stage.marks.push(self.shaded_area(&e, style)?);
                 }
                 // Each group must set an attribute that is not set yet, which bounds their depth.
                 Tag::Open(e) if e.name == "g" => self.marks(&style.of(&e, &[])?, stage)?,
@@ -391,15 +396,25 @@ impl Style {
 
     /// The strokes of a path with this style, or the area.
     fn marks(&self, path: &Element) -> Parsed<Vec<Mark>> {
-        let has_stroke = self.color.is_some() || self.width.is_some() || self.opacity.is_some();
         match self.fill {
-            Some(_) if has_stroke => Err("<path> has both a fill and a stroke: make it two".into()),
-            Some(color) => self.area(path, color).map(|area| vec![area]),
+            Some(_) if self.has_stroke() => {
+                Err("<path> has both a fill and a stroke: make it two".into())
+            }
+            Some(color) => self.area(path, color, None).map(|area| vec![area]),
             None => self.strokes(path),
         }
     }
 
-    fn area(&self, path: &Element, color: [u8; 3]) -> Parsed<Mark> {
+    /// True if marks have a colour or a width already.
+    fn is_painted(&self) -> bool {
+        self.fill.is_some() || self.has_stroke()
+    }
+
+    fn has_stroke(&self) -> bool {
+        self.color.is_some() || self.width.is_some() || self.opacity.is_some()
+    }
+
+    fn area(&self, path: &Element, color: [u8; 3], shade: Option<Shade>) -> Parsed<Mark> {
         let paths = path.parsed("d", |d| path::parse(d, Kind::Ring, self.unit))?;
         check_counts(&paths, "ring")?;
         let written = Written {
@@ -407,6 +422,7 @@ impl Style {
             width: 0,
             color,
             opacity: self.fill_opacity.unwrap_or(u8::MAX),
+            shade: shade.map(WrittenShade::from),
         };
         Ok(written.mark())
     }
@@ -433,6 +449,7 @@ impl Style {
                 width,
                 color,
                 opacity,
+                shade: None,
             }
             .mark()
         };

@@ -203,6 +203,7 @@ mod tests {
             width: 2 * PX,
             color: [color; 3],
             opacity: 255,
+            shade: None,
         }
     }
 

@@ -1,10 +1,9 @@
 //! Writes a scene as SVG text.
 
-mod shade;
-
 use super::arrange::{self, Layer};
 use super::dialect::{self, Unit};
 use super::element;
+use super::gradient;
 use super::options::{Form, Order, WriteOptions};
 use crate::scene::{Mark, Scene, Written, WrittenPath, counted, quantum};
 
@@ -21,8 +20,13 @@ pub fn write(scene: &Scene, options: &WriteOptions) -> String {
 /// document must declare `xmlns:inkscape` around them.
 pub fn layers(scene: &Scene, options: &WriteOptions, first: usize) -> String {
     let mut out = String::new();
-    for (index, layer) in arrange::layers(scene, options).iter().enumerate() {
-        out.push_str(&shortest(first + index, layer, options));
+    for (index, mut layer) in arrange::layers(scene, options).into_iter().enumerate() {
+        let number = first + index;
+        let shades = layer.strokes.iter_mut().filter_map(|m| m.shade.as_mut());
+        for (k, shade) in shades.enumerate() {
+            shade.place = [number, k + 1];
+        }
+        out.push_str(&shortest(number, &layer, options));
     }
     out
 }
@@ -52,7 +56,9 @@ fn head(scene: &Scene, options: &WriteOptions) -> String {
         out += &format!("<rect width=\"{width}\" height=\"{height}\" fill=\"{fill}\"/>\n");
     }
     if let Some(shade) = &scene.shade {
-        out += &shade::elements(shade, width, height);
+        gradient::push(&mut out, shade, dialect::SHADE_ID);
+        let id = dialect::SHADE_ID;
+        out += &format!("\n<rect width=\"{width}\" height=\"{height}\" fill=\"url(#{id})\"/>\n");
     }
     out
 }
@@ -61,7 +67,9 @@ fn head(scene: &Scene, options: &WriteOptions) -> String {
 fn shortest(number: usize, layer: &Layer, options: &WriteOptions) -> String {
     let text = |unit| text(number, layer, options, unit);
     let in_px = text(Unit::PX);
-    if options.unit() == Unit::PX {
+    // The axis of a gradient is in px.
+    let has_shades = layer.strokes.iter().any(|mark| mark.shade.is_some());
+    if options.unit() == Unit::PX || has_shades {
         return in_px;
     }
     Some(text(options.unit()))

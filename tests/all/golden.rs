@@ -78,6 +78,7 @@ impl Params {
                 radius: self.r[i],
                 color: self.c[i],
                 opacity: 1.0,
+                paint: None,
             })
             .collect()
     }

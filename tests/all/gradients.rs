@@ -1,12 +1,12 @@
 //! The reference renderer against itself: gradients are central differences, and leaving a stroke
 //! out is what its removal does. On random scenes, and on the degenerate ones that a fit runs into.
 
-use crate::support::areas::areas;
+use crate::support::areas::{areas, paints};
 use crate::support::paths::paths;
 use strokefit::coverage::Coverage;
 use strokefit::loss::Loss;
 use strokefit::render::reference::{Reference, Rgb, Scene, Stroke};
-use strokefit::render::{PARAMS, STYLE};
+use strokefit::render::{PARAMS, Paint, STYLE};
 use strokefit::{rng, scene};
 
 /// The step of a central difference, and the error that it is good for.
@@ -42,6 +42,7 @@ fn stroke(seed: u64, i: u64, size: f64) -> Stroke {
         radius: 0.2 + 2.0 * value(4),
         color: [value(5), value(6), value(7)],
         opacity: 0.1 + 0.8 * value(8),
+        paint: None,
     }
 }
 
@@ -97,6 +98,16 @@ fn of_areas() -> Vec<(String, Scene)> {
     areas.map(case).collect()
 }
 
+/// An area with a gradient of every kind, with ordinary strokes around.
+fn of_paints() -> Vec<(String, Scene)> {
+    let (_, mut plain) = of_areas().swap_remove(0);
+    let case = |(name, paint): (&str, Paint)| {
+        plain.strokes[1].paint = Some(paint);
+        (name.to_owned(), plain.clone())
+    };
+    paints().into_iter().map(case).collect()
+}
+
 fn around(kind: Stroke) -> Scene {
     scene(vec![stroke(5, 1, 8.0), kind, stroke(5, 2, 8.0)])
 }
@@ -147,6 +158,7 @@ fn all() -> impl Iterator<Item = (String, Scene)> {
         .chain(degenerate())
         .chain(of_paths())
         .chain(of_areas())
+        .chain(of_paints())
 }
 
 fn target(scene: &Scene) -> Vec<Rgb> {

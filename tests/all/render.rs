@@ -3,7 +3,7 @@
 
 use proptest::prelude::*;
 
-use crate::support::areas::{Rings, areas};
+use crate::support::areas::{Rings, areas, paints};
 use crate::support::paths::paths;
 use strokefit::coverage::Coverage;
 use strokefit::fit::{Objective, Simd};
@@ -12,7 +12,8 @@ use strokefit::loss::Loss;
 use strokefit::math::Point;
 use strokefit::render::reference::{self, Reference};
 use strokefit::render::{
-    Backdrop, Canvas, Gradients, Grid, Params, Renderer, Softness, StrokeRef, Strokes, Survey,
+    Backdrop, Canvas, Gradients, Grid, Paint, Params, Renderer, Softness, StrokeRef, Strokes,
+    Survey,
 };
 use strokefit::rng::draw;
 use strokefit::scene::{Path, PathPoint, Stroke};
@@ -147,15 +148,49 @@ fn along_paths() -> Vec<Case> {
 }
 
 /// An area of these rings on top.
-fn push_area(strokes: &mut Strokes, rings: &Rings, color: [f32; 3], opacity: f32) {
+fn push_area(
+    strokes: &mut Strokes,
+    rings: &Rings,
+    color: [f32; 3],
+    opacity: f32,
+    paint: Option<&Paint>,
+) {
     let [red, green, blue] = color;
     strokes.push(StrokeRef {
         points: &rings.points,
         off: &rings.off,
         closed: true,
         rings: &rings.ends,
+        paint,
         style: &[0.0, red, green, blue, opacity],
     });
+}
+
+/// An area with a gradient of every kind between two ordinary strokes, in a picture of two tiles by two.
+fn of_paints() -> Vec<Case> {
+    let (width, height) = (40, 36);
+    let others = random(7, width, height, 2).strokes;
+    let rings = areas(width as f32, height as f32).swap_remove(0);
+    let case = |(k, (name, paint)): (usize, (&str, Paint))| {
+        let mut strokes = Strokes::new();
+        strokes.push(others.get(0));
+        push_area(
+            &mut strokes,
+            &rings,
+            [0.9, 0.2, 0.1],
+            [0.6, 1.0][k % 2],
+            Some(&paint),
+        );
+        strokes.push(others.get(1));
+        Case {
+            name: name.into(),
+            width,
+            height,
+            strokes,
+            tolerance: GRADIENT_TOLERANCE,
+        }
+    };
+    paints().into_iter().enumerate().map(case).collect()
 }
 
 /// An area of every kind between two ordinary strokes, in a picture of two tiles by two.
@@ -166,7 +201,13 @@ fn of_areas() -> Vec<Case> {
     let case = |(k, rings): (usize, Rings)| {
         let mut strokes = Strokes::new();
         strokes.push(others.get(0));
-        push_area(&mut strokes, &rings, [0.9, 0.2, 0.1], [0.6, 1.0][k % 2]);
+        push_area(
+            &mut strokes,
+            &rings,
+            [0.9, 0.2, 0.1],
+            [0.6, 1.0][k % 2],
+            None,
+        );
         strokes.push(others.get(1));
         Case {
             name: rings.name,
@@ -201,7 +242,7 @@ fn random_areas(seed: u64, width: usize, height: usize, count: usize) -> Case {
             }
             rings.ends.push(rings.points.len() as u32);
         }
-        push_area(&mut strokes, &rings, other.color(), other.opacity());
+        push_area(&mut strokes, &rings, other.color(), other.opacity(), None);
     }
     Case {
         name: format!("random areas {count} on {width}×{height}"),
@@ -315,6 +356,7 @@ fn cases() -> Vec<Case> {
     cases.push(random(99, 70, 66, 200));
     cases.extend(along_paths());
     cases.extend(of_areas());
+    cases.extend(of_paints());
     cases.push(along_borders());
     cases.push(long(1.0, 0.5));
     cases.push(long(9.0, 0.6));
@@ -489,7 +531,7 @@ fn an_area_of_65_535_points_is_the_oracles() {
         strokes: Strokes::new(),
         tolerance: GRADIENT_TOLERANCE,
     };
-    push_area(&mut case.strokes, &rings, [0.9, 0.2, 0.1], 0.8);
+    push_area(&mut case.strokes, &rings, [0.9, 0.2, 0.1], 0.8, None);
     let softness = Softness {
         coverage: Coverage::Smoothstep,
         width: 1.0,

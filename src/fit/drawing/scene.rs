@@ -88,5 +88,8 @@ fn scale(strokes: &mut Strokes, factor: f32) {
         let [radius, ..] = stroke.style;
         let lengths = stroke.points.as_flattened_mut().iter_mut();
         lengths.chain([radius]).for_each(|length| *length *= factor);
+        if let Some(paint) = stroke.paint {
+            paint.scale *= factor;
+        }
     });
 }

@@ -200,6 +200,7 @@ fn push_joined(
         off: &off,
         closed: false,
         rings: &[],
+        paint: None,
         style: &style,
     });
     sources.extend(

@@ -56,22 +56,22 @@ impl Transmittance {
 }
 
 /// One stroke in pass 1.
-pub(super) struct Shape<S: Simd, E> {
+pub(super) struct Shape<E> {
     pub(super) edge: E,
     /// px; without a meaning for an area.
     pub(super) radius: f32,
-    pub(super) opacity: f32x16<S>,
     /// Distance from an area's outline, px, beyond which its coverage is 1 inside, as it is 0 outside.
     pub(super) outside: f32,
 }
 
-impl<S: Simd, E: SoftEdge> Shape<S, E> {
+impl<E: SoftEdge> Shape<E> {
     /// `m` in a block on the soft edge, from the squared distances of its pixels, and for an area the `sides` that they are
     /// on; writes what is kept of it to `kept`.
     #[inline(always)]
-    pub(super) fn cover(
+    pub(super) fn cover<S: Simd>(
         &self,
         simd: S,
+        opacity: f32x16<S>,
         distance2: f32x16<S>,
         sides: Option<&Lanes>,
         kept: &mut EdgeBlock,
@@ -89,9 +89,9 @@ impl<S: Simd, E: SoftEdge> Shape<S, E> {
             // Pass 2 has the derivatives of −|q| by the segment, which is the distance outside alone.
             derivative = -load(simd, sides) * derivative;
         }
-        let alpha = self.opacity * value;
+        let alpha = opacity * value;
         store(alpha, &mut kept.alpha);
-        store(self.opacity * derivative, &mut kept.slope);
+        store(opacity * derivative, &mut kept.slope);
         // Pass 2 would have to take the root again.
         store(1.0 / length, &mut kept.inverse);
         alpha

@@ -244,14 +244,17 @@ impl<S: Simd> Looks<S> {
         (pull, 2.0 * (seen * seen) * contrast2)
     }
 
-    /// `∂L` of the style of a stroke of this opacity. An area has no radius to be changed.
+    /// `∂L` of the style of a stroke of this opacity. An area has no radius to be changed, and one with a gradient no
+    /// colour.
     #[inline(always)]
-    pub(super) fn style(&self, opacity: f32, is_area: bool) -> [f32; STYLE] {
+    pub(super) fn style(&self, opacity: f32, is_area: bool, has_ink: bool) -> [f32; STYLE] {
+        let [red, green, blue] = self.color;
+        let [red, green, blue] = [total(red), total(green), total(blue)];
         [
             if is_area { 0.0 } else { total(self.radius) },
-            total(self.color[0]),
-            total(self.color[1]),
-            total(self.color[2]),
+            if has_ink { 0.0 } else { red },
+            if has_ink { 0.0 } else { green },
+            if has_ink { 0.0 } else { blue },
             total(self.opacity) / opacity,
         ]
     }

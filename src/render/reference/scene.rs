@@ -6,6 +6,7 @@ use crate::math::{Point2, Vector2};
 use crate::scene;
 use crate::sdf::{Area, Flattened, Mean, Path, Polyline};
 
+use super::super::paint::Paint;
 use super::super::strokes::{PARAMS, STYLE, StrokeRef, Strokes, flatness};
 
 /// A colour: three values, 0..1 in any sensible scene.
@@ -28,6 +29,8 @@ pub struct Stroke {
     pub color: Rgb,
     /// 0..1.
     pub opacity: f64,
+    /// The gradient that an area is filled with instead of its colour, by which nothing is derived.
+    pub paint: Option<Paint>,
 }
 
 impl Stroke {
@@ -41,7 +44,17 @@ impl Stroke {
             radius,
             color: [red, green, blue],
             opacity,
+            paint: None,
         }
+    }
+
+    /// The colour at `p`, and the opacity of the gradient there.
+    pub(super) fn ink(&self, p: Point2<f64>) -> (Rgb, f64) {
+        let Some(paint) = &self.paint else {
+            return (self.color, 1.0);
+        };
+        let (color, opacity) = paint.at([p.x as f32, p.y as f32]);
+        (color.map(f64::from), f64::from(opacity))
     }
 
     /// The numbers of the stroke, in the order of [`Strokes`]: x and y of its points, then radius, red, green, blue, opacity.
@@ -196,6 +209,7 @@ impl From<StrokeRef<'_>> for Stroke {
             radius: f64::from(stroke.radius()),
             color: stroke.color().map(f64::from),
             opacity: f64::from(stroke.opacity()),
+            paint: stroke.paint.cloned(),
         }
     }
 }

@@ -1,8 +1,8 @@
-//! Reads a shade: a gradient, and the rectangle that it fills.
+//! Reads a shade: a gradient, and the rectangle or the area that it fills.
 
 use super::super::dialect::{self, SHADE_ID, Unit};
-use super::{Element, Parsed, Parser, Tag, sides, unexpected};
-use crate::scene::{MAX_STOPS, Shade, WrittenAxis, WrittenStop};
+use super::{Element, Parsed, Parser, Style, Tag, sides, unexpected};
+use crate::scene::{MAX_STOPS, Mark, Shade, WrittenAxis, WrittenStop};
 
 /// True if the element begins a shade.
 pub(super) fn begins_with(element: &Element) -> bool {
@@ -10,8 +10,38 @@ pub(super) fn begins_with(element: &Element) -> bool {
 }
 
 impl Parser<'_> {
-    /// The shade that begins with the open element `gradient`, up to the end of the rectangle that it fills.
+    /// The shade of the page that begins with the open element `gradient`, up to the end of the rectangle that it fills.
     pub(super) fn shade(&mut self, gradient: &Element, width: u32, height: u32) -> Parsed<Shade> {
+        gradient.expect("id", SHADE_ID)?;
+        let shade = self.gradient(gradient)?;
+        let rect = self.filled("rect")?;
+        sides(&rect, width, height)?;
+        rect.expect("fill", &format!("url(#{SHADE_ID})"))?;
+        self.close(&rect)?;
+        Ok(shade)
+    }
+
+    /// The area that begins with the open element `gradient`, up to the end of its path.
+    pub(super) fn shaded_area(&mut self, gradient: &Element, style: &Style) -> Parsed<Mark> {
+        let id = gradient.get("id")?;
+        let fill = format!("url(#{id})");
+        let shade = self.gradient(gradient)?;
+        let mut path = self.filled("path")?;
+        path.expect("fill", &fill)?;
+        path.attributes.retain(|(key, _)| key != "fill");
+        let style = style.of(&path, &["d"])?;
+        if style.is_painted() {
+            return Err(
+                "<path> has a gradient and another colour: give a file that strokefit wrote".into(),
+            );
+        }
+        let area = style.area(&path, shade.mean(), Some(shade))?;
+        self.close(&path)?;
+        Ok(area)
+    }
+
+    /// The gradient that begins with this open element.
+    fn gradient(&mut self, gradient: &Element) -> Parsed<Shade> {
         let axis = axis(gradient)?;
         let mut stops = Vec::new();
         loop {
@@ -27,23 +57,24 @@ impl Parser<'_> {
                 }
             }
         }
-        let Tag::Open(rect) = self.next()? else {
-            return Err("no <rect> follows the gradient: give a file that strokefit wrote".into());
-        };
-        if rect.name != "rect" {
-            return Err(unexpected(&rect));
-        }
-        sides(&rect, width, height)?;
-        rect.expect("fill", &format!("url(#{SHADE_ID})"))?;
-        self.close(&rect)?;
         Shade::written(axis, stops).ok_or_else(|| {
             "the gradient is shorter than a px, or has less than two stops or stops out of order".into()
         })
     }
+
+    /// The element of this name that has to follow a gradient.
+    fn filled(&mut self, name: &str) -> Parsed<Element> {
+        match self.next()? {
+            Tag::Open(e) if e.name == name => Ok(e),
+            Tag::Open(e) => Err(unexpected(&e)),
+            Tag::Close | Tag::End => Err(format!(
+                "no <{name}> follows the gradient: give a file that strokefit wrote"
+            )),
+        }
+    }
 }
 
 fn axis(gradient: &Element) -> Parsed<WrittenAxis> {
-    gradient.expect("id", SHADE_ID)?;
     gradient.expect("gradientUnits", "userSpaceOnUse")?;
     let numbers = |names: &[&str]| -> Parsed<Vec<i64>> {
         gradient.only(&[&["id", "gradientUnits"], names].concat())?;

@@ -99,10 +99,13 @@ fn closed(points: impl Iterator<Item = (Point, bool)>) -> Path {
 fn area() -> impl Strategy<Value = Area> {
     let unit = || prop_oneof![0.0..=1.0_f32, Just(0.0), Just(1.0), Just(f32::NAN)];
     let rings = prop::collection::vec(ring(), 1..4);
-    (rings, [unit(), unit(), unit()], unit()).prop_map(|(rings, color, opacity)| Area {
+    let shade = prop::option::weighted(0.3, shade());
+    let area = (rings, [unit(), unit(), unit()], unit(), shade);
+    area.prop_map(|(rings, color, opacity, shade)| Area {
         rings,
         color,
         opacity,
+        shade,
     })
 }
 
@@ -189,6 +192,7 @@ fn area_alike() -> impl Strategy<Value = Area> {
         rings,
         color: [f32::from(color), 0.2, 0.6],
         opacity: if opacity == 0 { 0.5 } else { 1.0 },
+        shade: None,
     })
 }
 

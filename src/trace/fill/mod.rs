@@ -111,6 +111,7 @@ impl<'a> Flat<'a> {
             rings: fill.rings.clone(),
             color: areas::color(&fill.color, self.mattes).map(|c| c.clamp(0.0, 1.0)),
             opacity: 1.0,
+            shade: None,
         }
     }
 

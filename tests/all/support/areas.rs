@@ -1,4 +1,8 @@
-//! Areas of every kind, each with one kind of trouble.
+//! Areas of every kind, each with one kind of trouble, and gradients for them.
+
+use strokefit::math::Point;
+use strokefit::render::Paint;
+use strokefit::scene::{Axis, Shade, ShadeStop};
 
 /// The points of an area.
 #[derive(Clone)]
@@ -8,6 +12,45 @@ pub(crate) struct Rings {
     pub(crate) off: Vec<bool>,
     /// The index behind the last point of each ring.
     pub(crate) ends: Vec<u32>,
+}
+
+/// Gradients for areas of a picture of about 40 px.
+pub(crate) fn paints() -> Vec<(&'static str, Paint)> {
+    let linear = |scale: f32| Axis::Linear {
+        from: Point::new(3.0 / scale, 7.5 / scale),
+        to: Point::new(31.0 / scale, 19.0 / scale),
+    };
+    let radial = Axis::Radial {
+        center: Point::new(17.3, 12.8),
+        radius: 21.5,
+    };
+    let stop = |offset, color, opacity| ShadeStop {
+        offset,
+        color,
+        opacity,
+    };
+    let (red, blue) = ([0.9, 0.2, 0.1], [0.1, 0.3, 0.8]);
+    let two = [stop(0.0, red, 1.0), stop(1.0, blue, 1.0)];
+    let steps = [
+        stop(0.1, red, 0.2),
+        stop(0.4, blue, 1.0),
+        stop(0.4, red, 0.7),
+        stop(0.9, blue, 0.0),
+    ];
+    let paint = |axis, stops: &[ShadeStop], scale| Paint {
+        shade: Shade::new(axis, stops).unwrap(),
+        scale,
+    };
+    vec![
+        ("a slanted line", paint(linear(1.0), &two, 1.0)),
+        (
+            "a line of a picture twice as large",
+            paint(linear(0.5), &two, 0.5),
+        ),
+        ("a line of four stops", paint(linear(1.0), &steps, 1.0)),
+        ("a circle", paint(radial, &two, 1.0)),
+        ("a glow", paint(radial, &steps[2..], 1.0)),
+    ]
 }
 
 /// The areas; they lie in and around a picture of `width`×`height` px.
