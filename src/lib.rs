@@ -50,6 +50,7 @@
 //! sdf  coverage  scene  image     distances, soft edges, drawings, pictures
 //! metrics  loss  optim            measures, losses, optimisers
 //! damage                          picture → the picture that is meant
+//! shading                         smooth blocks of a picture → the gradient that they are of
 //! render                          marks → canvas, ∂L/∂canvas → ∂L/∂marks, worth
 //! seed                            residual → candidates, ranked by gain in closed form
 //! trace                           residual → areas, and strokes along the lines that are seen
@@ -210,6 +211,7 @@ pub mod scene;
 pub mod sdf;
 #[doc(hidden)]
 pub mod seed;
+mod shading;
 pub mod svg;
 #[doc(hidden)]
 pub mod threads;

@@ -59,7 +59,7 @@ pub use options::{MAX_THREADS, OPTIONS, Options, Refusal, Value};
 pub use recipe::{
     AdamSettings, BackgroundChoice, Correction, Domain, Doubts, EdgeShape, Joins, Masking, Nudging,
     Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Reduction, Relocation, Rounds,
-    SCREEN_PIXELS, Settling, ShadeChoice, Sharing, Stages, TimeShares,
+    SCREEN_PIXELS, Settling, ShadeChoice, ShadeFit, Sharing, Stages, TimeShares,
 };
 pub use result::{Fit, StageRecord, Stop};
 pub use run::checkpoint::Checkpoint;

@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::math;
 use crate::optim::AdamParams;
 use crate::seed::Probing;
+pub use crate::shading::ShadeFit;
 use crate::trace::Tracing;
 
 /// Pixels of a picture that a screen shows well at once, 768×512: the default quality is for so many.
@@ -570,29 +571,17 @@ pub struct BackgroundChoice {
     pub shade: ShadeChoice,
 }
 
-/// When a gradient becomes the page, and how it is fitted. All of it is a guess.
+/// When a gradient becomes the page. All of it is a guess.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShadeChoice {
     /// Blocks along the longer side of the picture, whose means are fitted.
     pub blocks: usize,
-    /// A block is met by a gradient if no channel is farther from it than this.
-    pub near: f32,
     /// The least share of the blocks that a gradient has to meet.
     pub least_share: f32,
     /// Share of the blocks that it has to meet beyond those of the best single colour.
     pub least_gain: f32,
-    /// Below this share nothing is refined any further.
-    pub hopeless_share: f32,
-    /// Most stops.
-    pub stops: usize,
-    /// Number of times that a shade is fitted to the blocks that the last one has met.
-    pub rounds: usize,
-    /// A line that is level or upright may be worse than the best one by this factor.
-    pub level: f32,
-    /// One more stop has to remove this share of the squared error.
-    pub stop_share: f64,
-    /// Pull on stops that nothing tells about, towards the others.
-    pub ridge: f64,
+    /// How it is fitted.
+    pub fit: ShadeFit,
 }
 
 /// To which pixels a picture is reduced before it is drawn; `docs/accuracy.md` has what was measured.

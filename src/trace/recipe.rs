@@ -1,5 +1,7 @@
 //! The tuned numbers of tracing. `docs/lines.md` has the pictures that they were tried on.
 
+use crate::shading::ShadeFit;
+
 /// The tuned numbers of tracing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tracing {
@@ -59,6 +61,35 @@ pub struct Fills {
     pub exposed: f32,
     /// Outlines.
     pub outlines: Outlines,
+    /// Gradients.
+    pub shades: Shades,
+}
+
+/// Search for the gradients of filled shapes. All of it is a guess, in levels of 8 bits where nothing else is said.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shades {
+    /// Most gradients of a picture; 0 if it may have none.
+    pub most: usize,
+    /// Largest second difference of smooth pixels: that of rounding is 2.
+    pub bend: f32,
+    /// Steepest step from pixel to pixel of one gradient.
+    pub steepest: f32,
+    /// Fewest pixels of a gradient.
+    pub least_pixels: usize,
+    /// Least range of its values.
+    pub least_range: f32,
+    /// Blocks along the longer side of a part, whose means are fitted.
+    pub blocks: usize,
+    /// The share of the blocks that a gradient has to meet, and by how much more than a single colour.
+    pub least_share: f32,
+    /// See `least_share`.
+    pub least_gain: f32,
+    /// A colour with this share of a part is taken away from it if no gradient is found.
+    pub flat_share: f32,
+    /// Most times that colours are taken away.
+    pub rounds: usize,
+    /// The fit of one.
+    pub fit: ShadeFit,
 }
 
 /// Outlines of filled shapes.
@@ -100,6 +131,27 @@ impl Fills {
             candidates: 0.22,
             most_off: 8,
             hidden: 32.0,
+        },
+        shades: Shades {
+            most: 64,
+            bend: 3.0,
+            steepest: 14.0,
+            least_pixels: 40,
+            least_range: 12.0,
+            blocks: 40,
+            least_share: 0.9,
+            least_gain: 0.25,
+            flat_share: 0.25,
+            rounds: 4,
+            fit: ShadeFit {
+                near: 3.0 / 255.0,
+                hopeless_share: 0.3,
+                stops: 5,
+                rounds: 4,
+                level: 1.1,
+                stop_share: 0.15,
+                ridge: 1e-4,
+            },
         },
     };
 }

@@ -3,7 +3,7 @@
 use super::{
     AdamSettings, BackgroundChoice, Correction, Dense, Domain, Doubts, EdgeShape, Jitter, Joins,
     Masking, Nudging, Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Reduction,
-    Relocation, Rounds, SCREEN_PIXELS, Settling, ShadeChoice, Sharing, Stages, TimeShares,
+    Relocation, Rounds, SCREEN_PIXELS, Settling, ShadeChoice, ShadeFit, Sharing, Stages, TimeShares,
 };
 use crate::optim::AdamParams;
 use crate::seed::Probing;
@@ -333,15 +333,17 @@ const BALANCED: Recipe = Recipe {
         translucent: [0.03, 0.97],
         shade: ShadeChoice {
             blocks: 64,
-            near: 3.0 / 255.0,
             least_share: 0.5,
             least_gain: 0.25,
-            hopeless_share: 0.2,
-            stops: 8,
-            rounds: 4,
-            level: 1.1,
-            stop_share: 0.1,
-            ridge: 1e-4,
+            fit: ShadeFit {
+                near: 3.0 / 255.0,
+                hopeless_share: 0.2,
+                stops: 8,
+                rounds: 4,
+                level: 1.1,
+                stop_share: 0.1,
+                ridge: 1e-4,
+            },
         },
     },
     reduction: Reduction {

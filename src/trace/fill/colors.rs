@@ -8,18 +8,24 @@ use rayon::prelude::*;
 
 use super::super::areas::{Pixel, Pixels};
 use super::super::recipe::Fills;
+use super::shades::{self, Shaded};
+use crate::scene::Shade;
 
 /// The label of the canvas, whose colour depends on the pixel.
 pub(super) const CANVAS: u16 = 0;
+/// The label of the first shade.
+pub(super) const SHADES: u16 = 1 << 15;
 /// The label of a pixel that is no colour alone.
 pub(super) const NONE: u16 = u16::MAX;
 /// One level of 8 bits.
 pub(super) const LEVEL: f32 = 1.0 / 255.0;
 
-/// The colours of a picture. Label 0 is the canvas, label k the colour k − 1.
+/// The colours of a picture. Label 0 is the canvas, label k the colour k − 1, and labels from [`SHADES`] on are shades.
 pub(super) struct Colors<'a> {
     pub(super) pixels: &'a Pixels<'a>,
     pub(super) list: Vec<Pixel>,
+    shades: Vec<Shade>,
+    mattes: usize,
 }
 
 impl Colors<'_> {
@@ -27,11 +33,20 @@ impl Colors<'_> {
     pub(super) fn at(&self, label: u16, i: usize) -> Pixel {
         match label {
             CANVAS => self.pixels.canvas.at(i),
+            SHADES.. => match self.shade(label) {
+                Some(shade) => shades::shown(shade, self.pixels, i, self.mattes),
+                None => self.pixels.canvas.at(i),
+            },
             _ => self.list[usize::from(label) - 1],
         }
     }
 
-    /// The nearest label of a pixel, and how far it is.
+    /// The shade of a label.
+    pub(super) fn shade(&self, label: u16) -> Option<&Shade> {
+        self.shades.get(usize::from(label.checked_sub(SHADES)?))
+    }
+
+    /// The nearest label of a pixel but those of shades, and how far it is.
     fn nearest(&self, i: usize) -> (u16, f32) {
         let target = self.pixels.target.at(i);
         let mut best = (CANVAS, away(&target, &self.pixels.canvas.at(i)));
@@ -51,12 +66,30 @@ pub(super) fn away(a: &Pixel, b: &Pixel) -> f32 {
     differences.fold(0.0, f32::max)
 }
 
-/// The colours of flat places, and the label of each pixel that has one by itself.
-pub(super) fn flat_colors<'a>(pixels: &'a Pixels<'a>, fills: &Fills) -> (Colors<'a>, Vec<u16>) {
-    let flat = flat_pixels(pixels, fills.flat * LEVEL);
+/// The colours of flat places, and the label of each pixel that has a colour or a shade by itself.
+pub(super) fn flat_colors<'a>(
+    pixels: &'a Pixels<'a>,
+    shaded: Shaded,
+    mattes: usize,
+    fills: &Fills,
+) -> (Colors<'a>, Vec<u16>) {
+    let mut flat = flat_pixels(pixels, fills.flat * LEVEL);
+    for (i, flat) in flat.iter_mut().enumerate() {
+        *flat &= shaded.at(i).is_none();
+    }
     let list = clusters(pixels, &flat, fills);
-    let colors = Colors { pixels, list };
-    let labels = labels(&colors, &flat, fills);
+    let colors = Colors {
+        pixels,
+        list,
+        shades: shaded.list.clone(),
+        mattes,
+    };
+    let mut labels = labels(&colors, &flat, fills);
+    for (i, label) in labels.iter_mut().enumerate() {
+        if let Some(shade) = shaded.at(i) {
+            *label = SHADES + shade;
+        }
+    }
     (colors, labels)
 }
 

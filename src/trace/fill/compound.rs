@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::super::areas::{Pixel, mix};
 use super::colors::{LEVEL, away};
 use super::stack::Layer;
-use crate::scene::Path;
+use crate::scene::{Path, Shade};
 
 /// A shape to be painted.
 #[derive(Debug, Clone)]
@@ -14,6 +14,7 @@ pub(in crate::trace) struct Fill {
     pub(in crate::trace) region: u32,
     pub(super) rings: Vec<Path>,
     pub(super) color: Pixel,
+    pub(super) shade: Option<Shade>,
     /// The pixels that show it.
     pub(super) size: f32,
     /// Squared error that it removes, summed over all mattes.
@@ -35,7 +36,7 @@ pub(super) fn joined(fills: Vec<Fill>, neighbours: &[BTreeMap<u32, u32>]) -> Vec
             let (Some(a), Some(b)) = (&fills[lower], &fills[upper]) else {
                 continue;
             };
-            if away(&a.color, &b.color) > ALIKE * LEVEL {
+            if a.shade != b.shade || away(&a.color, &b.color) > ALIKE * LEVEL {
                 continue;
             }
             // One of them moves to the other, past everything between that it does not touch.

@@ -1,6 +1,7 @@
 //! Filled shapes of flat art.
 //!
 //! ```text
+//! shades     the gradients of smooth places
 //! colors     the colours of flat places
 //! mixtures   all other pixels as mixtures of the two colours beside them
 //! regions    the connected pixels of one colour
@@ -19,6 +20,7 @@ mod hull;
 mod mixtures;
 mod outline;
 mod regions;
+mod shades;
 mod span;
 mod stack;
 
@@ -35,6 +37,7 @@ use contour::{Field, Place, between};
 use mixtures::Mixture;
 use outline::Surroundings;
 use regions::{Region, Regions};
+use shades::Shaded;
 use stack::{Layer, Stack};
 
 /// A filled shape, what it gains, and its place in the stack.
@@ -57,7 +60,8 @@ pub(super) struct Flat<'a> {
 impl<'a> Flat<'a> {
     /// The stack of a picture, if it is one of few colours.
     pub(super) fn of(pixels: &'a Pixels<'a>, mattes: usize, fills: &Fills) -> Option<Self> {
-        let (mut colors, mut labels) = colors::flat_colors(pixels, fills);
+        let shaded = Shaded::of(pixels, mattes, &fills.shades);
+        let (mut colors, mut labels) = colors::flat_colors(pixels, shaded, mattes, fills);
         let flat = labels.iter().filter(|label| **label != NONE).count();
         if (flat as f32) < fills.least_shares[0] * labels.len() as f32 {
             return None;
@@ -68,9 +72,11 @@ impl<'a> Flat<'a> {
         }
         let regions = Regions::of(&colors, mixtures, fills);
         let neighbours = regions.neighbours();
-        // What is translucent is left to strokes.
-        let is_drawn =
-            |region: &Region| region.label == CANVAS || mattes == 1 || is_opaque(&region.color);
+        // What is translucent and of one colour is left to strokes.
+        let is_drawn = |region: &Region| {
+            let is_whole = mattes == 1 || region.shade.is_some() || is_opaque(&region.color);
+            region.label == CANVAS || is_whole
+        };
         let drawn: Vec<bool> = regions.list.iter().map(is_drawn).collect();
         let stack = Stack::of(&regions, &neighbours, &drawn, fills);
         Some(Self {
@@ -111,7 +117,7 @@ impl<'a> Flat<'a> {
             rings: fill.rings.clone(),
             color: areas::color(&fill.color, self.mattes).map(|c| c.clamp(0.0, 1.0)),
             opacity: 1.0,
-            shade: None,
+            shade: fill.shade.clone(),
         }
     }
 
@@ -150,6 +156,7 @@ impl<'a> Flat<'a> {
         (!rings.is_empty()).then(|| Fill {
             rings,
             color: region.color,
+            shade: region.shade.clone(),
             region: layer.region,
             size: region.members.len() as f32,
             gain: gains[layer.region as usize],
@@ -234,11 +241,14 @@ impl<'a> Flat<'a> {
         const LIKE: f32 = 0.12;
         let region = self.regions.of[i];
         let Region {
-            label, color: own, ..
+            label,
+            color: own,
+            shade,
+            ..
         } = &self.regions.list[region as usize];
         let own = areas::color(own, self.mattes);
         let is_like = (0..3).all(|k| (own[k] - color[k]).abs() < LIKE);
-        (*label != CANVAS && is_like).then_some(region)
+        (*label != CANVAS && shade.is_none() && is_like).then_some(region)
     }
 
     /// The pixels of a region.
@@ -304,6 +314,9 @@ impl<'a> Flat<'a> {
     fn shown(&self, region: u32, i: usize) -> Pixel {
         match &self.regions.list[region as usize] {
             Region { label: CANVAS, .. } => self.pixels.canvas.at(i),
+            Region {
+                shade: Some(shade), ..
+            } => shades::shown(shade, self.pixels, i, self.mattes),
             Region { color, .. } => *color,
         }
     }

@@ -7,6 +7,7 @@ use super::super::recipe::Fills;
 use super::colors::{CANVAS, Colors, LEVEL, away};
 use super::mixtures::{Mixture, best_mixture};
 use crate::math::median;
+use crate::scene::Shade;
 
 /// A region.
 #[derive(Debug, Clone)]
@@ -16,6 +17,8 @@ pub(super) struct Region {
     pub(super) members: Vec<u32>,
     /// The median of its pixels of one colour.
     pub(super) color: Pixel,
+    /// The gradient that takes the place of the colour.
+    pub(super) shade: Option<Shade>,
 }
 
 /// The regions of a picture.
@@ -54,6 +57,7 @@ impl Regions {
             Region {
                 label,
                 color,
+                shade: colors.shade(label).cloned(),
                 members: pixels,
             }
         };

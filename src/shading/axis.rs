@@ -2,7 +2,7 @@
 
 use std::f32::consts::FRAC_PI_2;
 
-use super::Blocks;
+use super::{Blocks, ShadeFit};
 use crate::math::{self, Point, Vector};
 use crate::scene::Axis;
 
@@ -16,21 +16,21 @@ pub(super) enum Kind {
 /// Blocks whose values are compared because their offsets are similar: so many groups.
 const GROUPS: usize = 64;
 /// The axis of this kind along which the blocks are most alike across. `None` if nothing changes, or the centre would be
-/// far away. A line that is level or upright may be worse by the factor `level`.
-pub(super) fn of(blocks: &Blocks, kind: Kind, level: f32) -> Option<Axis> {
+/// far away.
+pub(super) fn of(blocks: &Blocks, kind: Kind, fit: &ShadeFit) -> Option<Axis> {
     match kind {
         Kind::Linear => {
-            let angle = direction(blocks)?;
+            let angle = direction(blocks, fit.near)?;
             let cost = |angle: f32| spread(blocks, line(blocks, angle));
             // A degree, down to a hundredth of one.
             let [angle] = search([angle], 0.02, 0.0002, |[angle]| cost(angle));
             // An axis that is meant to be level or upright is exactly so.
             let straight = (angle / FRAC_PI_2).round() * FRAC_PI_2;
-            let is_straight = cost(straight) <= level * cost(angle);
+            let is_straight = cost(straight) <= fit.level * cost(angle);
             Some(line(blocks, if is_straight { straight } else { angle }))
         }
         Kind::Radial => {
-            let center = center(blocks)?;
+            let center = center(blocks, fit.near)?;
             let step = blocks.size[0].max(blocks.size[1]) / 50.0;
             let [x, y] = search([center.x, center.y], step, 0.05, |[x, y]| {
                 spread(blocks, circle(blocks, Point::new(x, y)))
@@ -41,8 +41,8 @@ pub(super) fn of(blocks: &Blocks, kind: Kind, level: f32) -> Option<Axis> {
 }
 
 /// The angle along which values change most: of the largest eigenvector of Σ g gᵀ over all gradients g.
-fn direction(blocks: &Blocks) -> Option<f32> {
-    let [xx, xy, yy] = tensor(blocks, |_, [x, y]| [x * x, x * y, y * y]);
+fn direction(blocks: &Blocks, near: f32) -> Option<f32> {
+    let [xx, xy, yy] = tensor(blocks, near, |_, [x, y]| [x * x, x * y, y * y]);
     let is_flat = xx + yy <= 0.0;
     // Half the angle whose tangent is 2·xy / (xx − yy), in any quadrant.
     let (sine, cosine) = (2.0 * xy, xx - yy);
@@ -59,9 +59,9 @@ fn direction(blocks: &Blocks) -> Option<f32> {
 }
 
 /// The point that the gradients g at p point to or away from: the least squares of g⊥·(p − c) over all of them.
-fn center(blocks: &Blocks) -> Option<Point> {
-    let [xx, xy, yy] = tensor(blocks, |_, [x, y]| [y * y, -x * y, x * x]);
-    let [bx, by, _] = tensor(blocks, |p, [x, y]| {
+fn center(blocks: &Blocks, near: f32) -> Option<Point> {
+    let [xx, xy, yy] = tensor(blocks, near, |_, [x, y]| [y * y, -x * y, x * x]);
+    let [bx, by, _] = tensor(blocks, near, |p, [x, y]| {
         let along = p.x * y - p.y * x;
         [y * along, -x * along, 0.0]
     });
@@ -74,15 +74,16 @@ fn center(blocks: &Blocks) -> Option<Point> {
         (yy * bx - xy * by) / determinant,
         (xx * by - xy * bx) / determinant,
     ];
-    let [width, height] = blocks.size;
-    let is_near = (x - width / 2.0).abs() < 2.0 * width && (y - height / 2.0).abs() < 2.0 * height;
+    let [[left, top], [width, height]] = [blocks.low, blocks.size];
+    let [right, down] = [x - left - width / 2.0, y - top - height / 2.0];
+    let is_near = right.abs() < 2.0 * width && down.abs() < 2.0 * height;
     is_near.then(|| Point::new(x, y))
 }
 
 /// The sum over blocks and channels of what `term` makes of the place and the gradient. Steep gradients are edges of
 /// things, and do not count.
-fn tensor(blocks: &Blocks, term: impl Fn(Point, [f32; 2]) -> [f32; 3]) -> [f32; 3] {
-    let steepest = 4.0 * blocks.near;
+fn tensor(blocks: &Blocks, near: f32, term: impl Fn(Point, [f32; 2]) -> [f32; 3]) -> [f32; 3] {
+    let steepest = 4.0 * near;
     let mut sums = [0.0; 3];
     for (place, slopes) in blocks.slopes() {
         let size = |[x, y]: &[f32; 2]| math::hypot(*x, *y);
@@ -99,12 +100,12 @@ fn tensor(blocks: &Blocks, term: impl Fn(Point, [f32; 2]) -> [f32; 3]) -> [f32; 
     sums
 }
 
-/// The line in this direction, in radians, from one end of the page to the other.
+/// The line in this direction, in radians, from one end of the part to the other.
 fn line(blocks: &Blocks, angle: f32) -> Axis {
     let (sine, cosine) = math::sin_cos(angle);
     let along = Vector::new(cosine, sine);
-    let [width, height] = blocks.size;
-    let middle = Point::new(width / 2.0, height / 2.0);
+    let [[left, top], [width, height]] = [blocks.low, blocks.size];
+    let middle = Point::new(left + width / 2.0, top + height / 2.0);
     let unit = Axis::Linear {
         from: middle,
         to: middle + along,
@@ -116,7 +117,7 @@ fn line(blocks: &Blocks, angle: f32) -> Axis {
     }
 }
 
-/// The radius from `center` to the farthest corner of the page.
+/// The radius from `center` to the farthest corner of the part.
 fn circle(blocks: &Blocks, center: Point) -> Axis {
     let unit = Axis::Radial {
         center,

@@ -1,7 +1,6 @@
 //! The stops of a shade along a given axis.
 
-use super::Blocks;
-use crate::fit::recipe::ShadeChoice;
+use super::{Blocks, ShadeFit};
 use crate::math::Point;
 use crate::scene::{Axis, Shade, ShadeStop};
 
@@ -12,11 +11,11 @@ const GROUPS: usize = 256;
 /// Squared error per block that is the rounding of the picture to 8 bit: nothing is gained below.
 const ROUNDING: f64 = 4.0 / 12.0 / (255.0 * 255.0);
 /// The shade along `axis`.
-pub(super) fn of(blocks: &Blocks, axis: Axis, choice: &ShadeChoice) -> Option<Shade> {
-    let profile = Profile::of(blocks, axis, choice.ridge);
+pub(super) fn of(blocks: &Blocks, axis: Axis, fit: &ShadeFit) -> Option<Shade> {
+    let profile = Profile::of(blocks, axis, fit.ridge);
     let mut offsets = vec![0.0, 1.0];
     let mut error = profile.error(&offsets);
-    while offsets.len() < choice.stops {
+    while offsets.len() < fit.stops {
         let places = (1..PLACES).map(|i| i as f64 / PLACES as f64);
         let with = |place: f64| {
             let mut more = offsets.clone();
@@ -32,7 +31,7 @@ pub(super) fn of(blocks: &Blocks, axis: Axis, choice: &ShadeChoice) -> Option<Sh
             break;
         };
         let (moved, found) = profile.moved(with(place));
-        if error - found < choice.stop_share * error || error < ROUNDING * profile.count {
+        if error - found < fit.stop_share * error || error < ROUNDING * profile.count {
             break;
         }
         (offsets, error) = (moved, found);
@@ -99,7 +98,7 @@ struct Profile {
     groups: Vec<Group>,
     /// All blocks.
     count: f64,
-    /// See [`ShadeChoice`].
+    /// See [`ShadeFit`].
     ridge: f64,
 }
 

@@ -1,0 +1,166 @@
+//! Shades: the gradient that a picture, or a part of it, is of.
+//!
+//! Two axes are tried, a line and a radius, on the means of some thousand blocks. Level lines of a shade run across the line, or
+//! around the centre. So the colours' gradients point along the line, or through the centre, which tells both in closed form. A
+//! pattern search then makes the blocks at equal offsets as equal as possible. Last come the stops: the best colours for given
+//! offsets are a linear least-squares problem, and offsets are added as long as they remove a share of the error. All of this is
+//! repeated on the blocks that the last shade has met, so that things in front of the shade do not bend it.
+
+mod axis;
+mod profile;
+
+use crate::math::Point;
+use crate::scene::{Axis, Shade};
+
+/// Fit of a gradient. All of it is a guess.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShadeFit {
+    /// A block is met by a gradient if no channel is farther from it than this.
+    pub near: f32,
+    /// Below this share of the blocks nothing is refined any further.
+    pub hopeless_share: f32,
+    /// Most stops.
+    pub stops: usize,
+    /// Number of times that a shade is fitted to the blocks that the last one has met.
+    pub rounds: usize,
+    /// A line that is level or upright may be worse than the best one by this factor.
+    pub level: f32,
+    /// One more stop has to remove this share of the squared error.
+    pub stop_share: f64,
+    /// Pull on stops that nothing tells about, towards the others.
+    pub ridge: f64,
+}
+
+/// Premultiplied colour, and opacity.
+pub(crate) type Value = [f32; 4];
+
+/// The mean of a square of the picture.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Block {
+    pub(crate) center: Point,
+    pub(crate) value: Value,
+    /// 1, or 0 for a block that does not take part.
+    pub(crate) weight: f32,
+}
+
+/// The means of squares of a part of the picture, row by row.
+pub(crate) struct Blocks {
+    pub(crate) columns: usize,
+    pub(crate) all: Vec<Block>,
+    /// The corner of the part with the least coordinates, and its size, px.
+    pub(crate) low: [f32; 2],
+    pub(crate) size: [f32; 2],
+}
+
+/// Likeness of blocks to a shade.
+pub(crate) struct Met {
+    /// The share of the blocks that it has met, of those that take part.
+    pub(crate) share: f32,
+    /// Squared error, each value as large as that of a block that just fails, at most.
+    pub(crate) error: f32,
+}
+
+impl Blocks {
+    /// The linear or radial shade that meets most blocks, if the blocks seem to lie along one.
+    pub(crate) fn best_shade(&self, fit: &ShadeFit) -> Option<(Shade, Met)> {
+        let candidates = [axis::Kind::Linear, axis::Kind::Radial];
+        let candidates = candidates.map(|kind| self.shade(kind, fit));
+        let met = |shade: Shade| {
+            let met = self.met(fit.near, |block| premultiplied(&shade, block.center));
+            (shade, met)
+        };
+        let candidates = candidates.into_iter().flatten().map(met);
+        candidates.max_by(|(_, a), (_, b)| a.share.total_cmp(&b.share))
+    }
+
+    /// The shade of this kind, if there is an axis and the blocks seem to lie along it.
+    fn shade(&self, kind: axis::Kind, fit: &ShadeFit) -> Option<Shade> {
+        let mut blocks = Self {
+            all: self.all.clone(),
+            ..*self
+        };
+        let mut found = None;
+        for _ in 0..fit.rounds {
+            let axis = axis::of(&blocks, kind, fit)?;
+            let shade = profile::of(&blocks, axis, fit)?;
+            let met = self.met(fit.near, |block| premultiplied(&shade, block.center));
+            if met.share < fit.hopeless_share {
+                return None;
+            }
+            for block in &mut blocks.all {
+                let meets = is_near(fit.near, block, premultiplied(&shade, block.center));
+                block.weight = if meets { 1.0 } else { 0.0 };
+            }
+            found = Some(shade);
+        }
+        found
+    }
+
+    /// Likeness of the blocks to a value by place, where values `near` each other are alike.
+    pub(crate) fn met(&self, near: f32, value: impl Fn(&Block) -> Value) -> Met {
+        let mut met = Met {
+            share: 0.0,
+            error: 0.0,
+        };
+        let count = self.all.iter().filter(|block| block.weight > 0.0).count() as f32;
+        for block in self.all.iter().filter(|block| block.weight > 0.0) {
+            let value = value(block);
+            if is_near(near, block, value) {
+                met.share += 1.0 / count;
+            }
+            let most = near * near;
+            let errors = block
+                .value
+                .iter()
+                .zip(value)
+                .map(|(a, b)| (a - b) * (a - b));
+            met.error += errors.map(|error| error.min(most)).sum::<f32>();
+        }
+        met
+    }
+
+    /// The colours' gradients at each block that takes part with its neighbours, per px: by x and by y, for each channel.
+    fn slopes(&self) -> impl Iterator<Item = (Point, [[f32; 2]; 4])> {
+        let (columns, rows) = (self.columns, self.all.len() / self.columns);
+        let inner = (1..rows.saturating_sub(1))
+            .flat_map(move |y| (1..columns.saturating_sub(1)).map(move |x| y * columns + x));
+        inner.filter_map(|i| {
+            let near = [i - 1, i + 1, i - self.columns, i + self.columns];
+            let [left, right, above, below] = near.map(|i| self.all[i]);
+            let weights = [left, right, above, below, self.all[i]].map(|block| block.weight);
+            if weights.contains(&0.0) {
+                return None;
+            }
+            let slope = |c: usize| {
+                [
+                    (right.value[c] - left.value[c]) / (right.center.x - left.center.x),
+                    (below.value[c] - above.value[c]) / (below.center.y - above.center.y),
+                ]
+            };
+            Some((self.all[i].center, [0, 1, 2, 3].map(slope)))
+        })
+    }
+
+    /// The largest offset of the part along `axis`, and the smallest.
+    fn extent(&self, axis: Axis) -> [f32; 2] {
+        let [left, top] = self.low;
+        let [right, bottom] = [0, 1].map(|k| self.low[k] + self.size[k]);
+        let corners = [[left, top], [right, top], [left, bottom], [right, bottom]];
+        let offsets = corners.map(|[x, y]| axis.offset(Point::new(x, y)));
+        [
+            offsets.iter().copied().fold(f32::INFINITY, f32::min),
+            offsets.iter().copied().fold(f32::NEG_INFINITY, f32::max),
+        ]
+    }
+}
+
+fn is_near(near: f32, block: &Block, value: Value) -> bool {
+    let apart = block.value.iter().zip(value).map(|(a, b)| (a - b).abs());
+    apart.fold(0.0, f32::max) <= near
+}
+
+/// Premultiplied colour and opacity of a shade at a place.
+pub(crate) fn premultiplied(shade: &Shade, at: Point) -> Value {
+    let ([r, g, b], opacity) = shade.at(at);
+    [r * opacity, g * opacity, b * opacity, opacity]
+}

@@ -1,0 +1,267 @@
+//! The gradients of smooth places.
+//!
+//! A place is smooth where values go on as they come: its second differences are those of rounding. A connected smooth part
+//! becomes a shade if one gradient meets nearly all of it, and no single colour does so nearly as well. Where one colour has a
+//! good part, as a page around a glow, that colour is taken away, and what is left is looked at again.
+
+use rayon::prelude::*;
+
+use super::super::areas::{Pixel, Pixels};
+use super::super::recipe::Shades;
+use super::colors::{LEVEL, away};
+use super::regions::beside;
+use crate::math::Point;
+use crate::scene::Shade;
+use crate::shading::{Block, Blocks, Value, premultiplied};
+
+/// A pixel of no shade.
+const NONE: u16 = u16::MAX;
+
+/// The shades of a picture.
+pub(super) struct Shaded {
+    pub(super) list: Vec<Shade>,
+    /// The shade of each pixel, by its index.
+    of: Vec<u16>,
+}
+
+/// What a smooth part is.
+enum Found {
+    /// The shade of this index.
+    Shade(u16),
+    /// This colour, and something else.
+    Color(Pixel),
+    Nothing,
+}
+
+impl Shaded {
+    /// The shades of the smooth parts of a picture on so many mattes.
+    pub(super) fn of(pixels: &Pixels<'_>, mattes: usize, numbers: &Shades) -> Self {
+        let mut shaded = Self {
+            list: Vec::new(),
+            of: vec![NONE; pixels.width * pixels.height],
+        };
+        if numbers.most == 0 {
+            return shaded;
+        }
+        let mut open = smooth_pixels(pixels, numbers);
+        for _ in 0..numbers.rounds {
+            let mut is_over = true;
+            for part in parts(pixels, &open, numbers) {
+                let mut gone: Vec<usize> = part.clone();
+                match shaded.judge(pixels, &part, mattes, numbers) {
+                    Found::Shade(index) => shaded.take(pixels, &part, mattes, index, numbers),
+                    Found::Color(color) => {
+                        let is_of = |&i: &usize| away(&pixels.target.at(i), &color) < FLAT;
+                        gone.retain(is_of);
+                        is_over = false;
+                    }
+                    Found::Nothing => {}
+                }
+                gone.into_iter().for_each(|i| open[i] = false);
+            }
+            if is_over {
+                break;
+            }
+        }
+        shaded
+    }
+
+    /// The index of the shade of pixel `i`.
+    pub(super) fn at(&self, i: usize) -> Option<u16> {
+        Some(self.of[i]).filter(|&shade| shade != NONE)
+    }
+
+    /// Tells what a part is: a known shade goes on, or it has one of its own.
+    fn judge(
+        &mut self,
+        pixels: &Pixels<'_>,
+        part: &[usize],
+        mattes: usize,
+        numbers: &Shades,
+    ) -> Found {
+        let blocks = blocks(pixels, part, mattes, numbers.blocks);
+        let near = numbers.fit.near;
+        let share = |shade: &Shade| {
+            let met = blocks.met(near + LEVEL, |block| premultiplied(shade, block.center));
+            met.share
+        };
+        let known = self.list.iter();
+        let known = known.map(share).position(|share| share >= numbers.least_share);
+        if let Some(index) = known {
+            return Found::Shade(index as u16);
+        }
+        let (color, count) = usual(pixels, part);
+        let flat = value(&color, mattes);
+        let alone = blocks.met(near, |_| flat).share;
+        let found = blocks.best_shade(&numbers.fit).filter(|(_, met)| {
+            met.share >= numbers.least_share && met.share >= alone + numbers.least_gain
+        });
+        match found {
+            Some((shade, _)) if self.list.len() < numbers.most => {
+                self.list.push(shade);
+                Found::Shade(self.list.len() as u16 - 1)
+            }
+            _ if count as f32 > numbers.flat_share * part.len() as f32 => Found::Color(color),
+            _ => Found::Nothing,
+        }
+    }
+
+    /// Gives the pixels of a part that a shade meets to it.
+    fn take(
+        &mut self,
+        pixels: &Pixels<'_>,
+        part: &[usize],
+        mattes: usize,
+        index: u16,
+        numbers: &Shades,
+    ) {
+        let shade = &self.list[usize::from(index)];
+        for &i in part {
+            let seen = shown(shade, pixels, i, mattes);
+            if away(&pixels.target.at(i), &seen) <= numbers.fit.near + LEVEL {
+                self.of[i] = index;
+            }
+        }
+    }
+}
+
+/// A shade at pixel `i`, on each matte.
+pub(super) fn shown(shade: &Shade, pixels: &Pixels<'_>, i: usize, mattes: usize) -> Pixel {
+    let (x, y) = (i % pixels.width, i / pixels.width);
+    let center = Point::new(x as f32 + 0.5, y as f32 + 0.5);
+    let [red, green, blue, opacity] = premultiplied(shade, center);
+    // The mattes are black and white, or the page is opaque.
+    let through = if mattes > 1 { 1.0 - opacity } else { 0.0 };
+    let mut pixel = [red, green, blue, 0.0, 0.0, 0.0];
+    if mattes > 1 {
+        [pixel[3], pixel[4], pixel[5]] = [red, green, blue].map(|v| v + through);
+    }
+    pixel
+}
+
+/// Premultiplied colour and opacity of a pixel on black and white, or on a page.
+fn value(pixel: &Pixel, mattes: usize) -> Value {
+    let opacity = match mattes {
+        1 => 1.0,
+        _ => 1.0 - (0..3).map(|k| pixel[k + 3] - pixel[k]).sum::<f32>() / 3.0,
+    };
+    [pixel[0], pixel[1], pixel[2], opacity]
+}
+
+/// Pixels that differ by less are of one colour: rounding.
+const FLAT: f32 = 1.5 * LEVEL;
+
+/// True for each pixel whose neighbours on opposite sides have it about in their middle.
+fn smooth_pixels(pixels: &Pixels<'_>, numbers: &Shades) -> Vec<bool> {
+    let (width, height) = (pixels.width, pixels.height);
+    let bend = numbers.bend * LEVEL;
+    let mut smooth = vec![true; width * height];
+    let rows = smooth.par_chunks_exact_mut(width).enumerate();
+    rows.for_each(|(y, row)| {
+        for plane in &pixels.target.0 {
+            for (x, smooth) in row.iter_mut().enumerate() {
+                let i = y * width + x;
+                let is_inner = [x > 0 && x + 1 < width, y > 0 && y + 1 < height];
+                let steps = [1, width, width + 1, width - 1];
+                let is_there = [
+                    is_inner[0],
+                    is_inner[1],
+                    is_inner[0] && is_inner[1],
+                    is_inner[0] && is_inner[1],
+                ];
+                let bends = |(step, is_there): (usize, bool)| {
+                    is_there && (plane[i - step] + plane[i + step] - 2.0 * plane[i]).abs() > bend
+                };
+                *smooth &= !steps.into_iter().zip(is_there).any(bends);
+            }
+        }
+    });
+    smooth
+}
+
+/// The connected parts of the open pixels that are large and not of one colour, the largest first.
+fn parts(pixels: &Pixels<'_>, open: &[bool], numbers: &Shades) -> Vec<Vec<usize>> {
+    let steepest = numbers.steepest * LEVEL;
+    let mut is_seen: Vec<bool> = open.iter().map(|open| !open).collect();
+    let mut parts = Vec::new();
+    for start in 0..open.len() {
+        if is_seen[start] {
+            continue;
+        }
+        is_seen[start] = true;
+        let (mut part, mut next) = (vec![start], 0);
+        let (mut low, mut high) = (pixels.target.at(start), pixels.target.at(start));
+        while let Some(&i) = part.get(next) {
+            next += 1;
+            let own = pixels.target.at(i);
+            for k in 0..own.len() {
+                low[k] = low[k].min(own[k]);
+                high[k] = high[k].max(own[k]);
+            }
+            for k in beside(i, pixels.width, open.len()) {
+                if !is_seen[k] && away(&pixels.target.at(k), &own) <= steepest {
+                    is_seen[k] = true;
+                    part.push(k);
+                }
+            }
+        }
+        let is_large = part.len() >= numbers.least_pixels;
+        if is_large && away(&low, &high) >= numbers.least_range * LEVEL {
+            parts.push(part);
+        }
+    }
+    parts.sort_by_key(|part| std::cmp::Reverse(part.len()));
+    parts.truncate(numbers.most);
+    parts
+}
+
+/// The means of blocks of a part, at most so many along its longer side.
+fn blocks(pixels: &Pixels<'_>, part: &[usize], mattes: usize, most: usize) -> Blocks {
+    let place = |i: usize| [i % pixels.width, i / pixels.width];
+    let (mut low, mut high) = ([usize::MAX; 2], [0; 2]);
+    for at in part.iter().map(|&i| place(i)) {
+        low = [0, 1].map(|k| low[k].min(at[k]));
+        high = [0, 1].map(|k| high[k].max(at[k] + 1));
+    }
+    let size = [0, 1].map(|k| high[k] - low[k]);
+    let side = size[0].max(size[1]).div_ceil(most).max(1);
+    let [columns, rows] = size.map(|v| v.div_ceil(side));
+    let mut sums = vec![([0.0_f32; 4], 0.0_f32); columns * rows];
+    for &i in part {
+        let [x, y] = [0, 1].map(|k| (place(i)[k] - low[k]) / side);
+        let (sum, count) = &mut sums[y * columns + x];
+        let own = value(&pixels.target.at(i), mattes);
+        sum.iter_mut().zip(own).for_each(|(sum, v)| *sum += v);
+        *count += 1.0;
+    }
+    let block = |(k, (sum, count)): (usize, ([f32; 4], f32))| {
+        let corner = [k % columns, k / columns];
+        let center = [0, 1].map(|axis| {
+            low[axis] as f32 + (corner[axis] as f32 + 0.5) * side as f32
+        });
+        Block {
+            center: center.into(),
+            value: sum.map(|sum| sum / count.max(1.0)),
+            weight: if 2.0 * count >= (side * side) as f32 { 1.0 } else { 0.0 },
+        }
+    };
+    Blocks {
+        columns,
+        all: sums.into_iter().enumerate().map(block).collect(),
+        low: low.map(|v| v as f32),
+        size: size.map(|v| v as f32),
+    }
+}
+
+/// The colour that most pixels of a part have, and how many are of it.
+fn usual(pixels: &Pixels<'_>, part: &[usize]) -> (Pixel, usize) {
+    let key = |i: usize| pixels.target.at(i).map(|v| (v * 255.0).round() as i16);
+    let sample = part.iter().step_by(part.len().div_ceil(4096));
+    let mut keys: Vec<[i16; 6]> = sample.map(|&i| key(i)).collect();
+    keys.sort_unstable();
+    let most = keys.chunk_by(|a, b| a == b).max_by_key(|run| run.len());
+    let color = most.and_then(|run| run.first()).copied().unwrap_or_default();
+    let color = color.map(|level| f32::from(level) * LEVEL);
+    let is_of = |&&i: &&usize| away(&pixels.target.at(i), &color) < FLAT;
+    (color, part.iter().filter(is_of).count())
+}
