@@ -37,9 +37,7 @@ use crate::scene::{Mark, Marks};
 use crate::seed::Residual;
 use areas::{Areas, Pixels, Planes};
 use fill::Flat;
-pub use recipe::{
-    AreaColors, Bridges, Fills, LineJoins, Outlines, Shades, Splines, Tracing,
-};
+pub use recipe::{AreaColors, Bridges, Fills, LineJoins, Outlines, Shades, Splines, Tracing};
 use strokes::TracedStroke;
 
 /// A traced mark and what it gains.

@@ -145,8 +145,8 @@ impl Fills {
             rounds: 4,
             fit: ShadeFit {
                 near: 3.0 / 255.0,
-                hopeless_share: 0.3,
-                stops: 5,
+                hopeless_share: 0.1,
+                stops: 6,
                 rounds: 4,
                 level: 1.1,
                 stop_share: 0.15,

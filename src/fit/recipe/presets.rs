@@ -3,7 +3,8 @@
 use super::{
     AdamSettings, BackgroundChoice, Correction, Dense, Domain, Doubts, EdgeShape, Jitter, Joins,
     Masking, Nudging, Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Reduction,
-    Relocation, Rounds, SCREEN_PIXELS, Settling, ShadeChoice, ShadeFit, Sharing, Stages, TimeShares,
+    Relocation, Rounds, SCREEN_PIXELS, Settling, ShadeChoice, ShadeFit, Sharing, Stages,
+    TimeShares,
 };
 use crate::optim::AdamParams;
 use crate::seed::Probing;

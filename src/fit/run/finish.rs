@@ -45,13 +45,19 @@ impl Drawn {
     }
 
     /// The other one if its file costs less: squared error and bytes at their `price`, or by the budget if bytes have none.
+    /// A drawing that is as faithful with no more marks stays, as its editor would have it.
     pub(in crate::fit) fn or_cheaper(self, other: Self, price: Price) -> Self {
         let pixels = self.fit.target.width() * self.fit.target.height();
         let cost = |drawn: &Self| {
             let file = drawn.file.as_ref()?;
             price.cost(file.mse, pixels, file.bytes)
         };
+        let is_better = |a: &Self, b: &Self| {
+            let files = a.file.as_ref().zip(b.file.as_ref());
+            files.is_some_and(|(a, b)| a.mse <= b.mse) && a.fit.scene.len() <= b.fit.scene.len()
+        };
         match cost(&self).zip(cost(&other)) {
+            _ if is_better(&self, &other) => self,
             Some((own, others)) if others < own => other,
             Some(_) => self,
             None => self.or_better(Some(other)),

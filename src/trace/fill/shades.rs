@@ -86,7 +86,9 @@ impl Shaded {
             met.share
         };
         let known = self.list.iter();
-        let known = known.map(share).position(|share| share >= numbers.least_share);
+        let known = known
+            .map(share)
+            .position(|share| share >= numbers.least_share);
         if let Some(index) = known {
             return Found::Shade(index as u16);
         }
@@ -236,13 +238,16 @@ fn blocks(pixels: &Pixels<'_>, part: &[usize], mattes: usize, most: usize) -> Bl
     }
     let block = |(k, (sum, count)): (usize, ([f32; 4], f32))| {
         let corner = [k % columns, k / columns];
-        let center = [0, 1].map(|axis| {
-            low[axis] as f32 + (corner[axis] as f32 + 0.5) * side as f32
-        });
+        let center =
+            [0, 1].map(|axis| low[axis] as f32 + (corner[axis] as f32 + 0.5) * side as f32);
         Block {
             center: center.into(),
             value: sum.map(|sum| sum / count.max(1.0)),
-            weight: if 2.0 * count >= (side * side) as f32 { 1.0 } else { 0.0 },
+            weight: if 2.0 * count >= (side * side) as f32 {
+                1.0
+            } else {
+                0.0
+            },
         }
     };
     Blocks {
@@ -260,7 +265,10 @@ fn usual(pixels: &Pixels<'_>, part: &[usize]) -> (Pixel, usize) {
     let mut keys: Vec<[i16; 6]> = sample.map(|&i| key(i)).collect();
     keys.sort_unstable();
     let most = keys.chunk_by(|a, b| a == b).max_by_key(|run| run.len());
-    let color = most.and_then(|run| run.first()).copied().unwrap_or_default();
+    let color = most
+        .and_then(|run| run.first())
+        .copied()
+        .unwrap_or_default();
     let color = color.map(|level| f32::from(level) * LEVEL);
     let is_of = |&&i: &&usize| away(&pixels.target.at(i), &color) < FLAT;
     (color, part.iter().filter(is_of).count())
