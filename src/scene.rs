@@ -13,13 +13,13 @@ mod shade;
 mod written_path;
 
 pub use grid::MAX_PRECISION;
-pub(crate) use grid::UNITS_PER_PX;
+pub(crate) use grid::{UNITS_PER_PX, color, quantum};
 pub(crate) use mark::counted;
 pub use mark::{Area, Mark, Marks};
 pub(crate) use overlap::overlaps;
 pub use path::{MAX_POINTS, Path, PathPoint, Piece};
 pub use quantize::{Dropped, MIN_WIDTH, Quantized};
-pub(crate) use quantize::{Written, WrittenShade, color, quantum};
+pub(crate) use quantize::{Written, WrittenShade};
 pub use shade::{Axis, MAX_STOPS, Shade, ShadeStop};
 pub(crate) use shade::{WrittenAxis, WrittenStop};
 pub(crate) use written_path::{WrittenPath, WrittenPoint};

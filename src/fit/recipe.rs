@@ -580,7 +580,7 @@ pub struct ShadeChoice {
     pub least_share: f32,
     /// Share of the blocks that it has to meet beyond those of the best single colour.
     pub least_gain: f32,
-    /// How it is fitted.
+    /// The fit of one.
     pub fit: ShadeFit,
 }
 

@@ -32,6 +32,7 @@
 // instruction set of their caller.
 
 mod front;
+mod ink;
 mod lanes;
 mod segment;
 mod stack;
@@ -45,7 +46,7 @@ use std::ops::Range;
 use fearless_simd::{Level, dispatch, f32x16, prelude::*};
 
 pub(super) use lanes::{load, members, store, total};
-pub(super) use segment::{PIXELS, Segment, length};
+pub(super) use segment::{Segment, length};
 pub(super) use sums::{Extras, Mattes, Nothing, Stiffnesses, Sums, Worths};
 pub(super) use touching::{Listed, list_segments};
 
@@ -56,6 +57,7 @@ use super::paint::Ink;
 use super::polylines::Polylines;
 use super::strokes::STYLE;
 use front::{Shape, Transmittance};
+use ink::ink_at;
 use stack::Stack;
 use sums::{EdgeBlock, Grounds, Looks, Matte, OfSegment, OfStroke, Shifts};
 use union::{Kept, Segments, Union, shared};
@@ -221,7 +223,7 @@ impl<S: Simd> Brush<'_, S> {
         match self.ink {
             None => (self.rgb, self.opacity),
             Some(ink) => {
-                let [red, green, blue, opacity] = ink.at(simd, block, self.origin);
+                let [red, green, blue, opacity] = ink_at(simd, ink, block, self.origin);
                 ([red, green, blue], self.opacity * opacity)
             }
         }

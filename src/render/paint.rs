@@ -1,10 +1,7 @@
 //! Paints: the gradient of an area as the renderer and the optimiser see it.
 
-use fearless_simd::{f32x16, prelude::*};
 use serde::{Deserialize, Serialize};
 
-use super::grid::{BLOCK, Lanes, TILE_BLOCKS};
-use super::kernel::{PIXELS, load};
 use crate::math::Point;
 use crate::scene::{Axis, Rgb, Shade, ShadeStop};
 
@@ -27,15 +24,15 @@ impl Paint {
 /// A paint, ready to be evaluated at the pixels of a block.
 #[derive(Debug, Clone)]
 pub(super) struct Ink {
-    axis: InkAxis,
+    pub(super) axis: InkAxis,
     /// Colour and opacity before the first ramp.
-    first: [f32; 4],
-    ramps: Vec<Ramp>,
+    pub(super) first: [f32; 4],
+    pub(super) ramps: Vec<Ramp>,
 }
 
 /// The offset of a pixel.
 #[derive(Debug, Clone, Copy)]
-enum InkAxis {
+pub(super) enum InkAxis {
     /// The offset at the origin, and its change per px in x and in y.
     Linear { start: f32, slope: [f32; 2] },
     /// The centre, px, and the offset at 1 px from it.
@@ -44,12 +41,12 @@ enum InkAxis {
 
 /// The change between two stops.
 #[derive(Debug, Clone, Copy)]
-struct Ramp {
+pub(super) struct Ramp {
     /// Offset of the first one, and 1 over the distance to the second.
-    from: f32,
-    per_offset: f32,
+    pub(super) from: f32,
+    pub(super) per_offset: f32,
     /// Change of colour and opacity.
-    change: [f32; 4],
+    pub(super) change: [f32; 4],
 }
 
 impl Ink {
@@ -89,34 +86,5 @@ impl Ink {
             first: stops.first().map_or([0.0; 4], value),
             ramps: stops.windows(2).map(ramp).collect(),
         }
-    }
-
-    /// Red, green, blue and opacity at the pixels of a block of the tile at `origin`.
-    #[inline(always)]
-    pub(super) fn at<S: Simd>(&self, simd: S, block: usize, origin: [f32; 2]) -> [f32x16<S>; 4] {
-        let left = origin[0] + (block % TILE_BLOCKS * BLOCK) as f32;
-        let top = origin[1] + (block / TILE_BLOCKS * BLOCK) as f32;
-        let [x, y]: &[Lanes; 2] = &PIXELS;
-        let (x, y) = (load(simd, x) + left, load(simd, y) + top);
-        let offset = match self.axis {
-            InkAxis::Linear { start, slope } => x * slope[0] + y * slope[1] + start,
-            InkAxis::Radial { center, slope } => {
-                let (x, y) = (x - center[0], y - center[1]);
-                (x * x + y * y).sqrt() * slope
-            }
-        };
-        let mut value = [
-            f32x16::splat(simd, self.first[0]),
-            f32x16::splat(simd, self.first[1]),
-            f32x16::splat(simd, self.first[2]),
-            f32x16::splat(simd, self.first[3]),
-        ];
-        for ramp in &self.ramps {
-            let part = ((offset - ramp.from) * ramp.per_offset).max(0.0).min(1.0);
-            for (value, change) in value.iter_mut().zip(ramp.change) {
-                *value += part * change;
-            }
-        }
-        value
     }
 }

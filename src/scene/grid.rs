@@ -1,4 +1,6 @@
-//! The numbers that a file can hold: decimals of a px, as whole units.
+//! The numbers that a file can hold: decimals of a px, as whole units, and channels of 8 bits.
+
+use super::Rgb;
 
 /// Most decimals of a coordinate or width.
 pub const MAX_PRECISION: u8 = 6;
@@ -43,4 +45,14 @@ impl Grid {
     pub(super) fn units_above(&self, px: f64) -> i64 {
         (px * self.per_px as f64).ceil() as i64 * (UNITS_PER_PX / self.per_px)
     }
+}
+
+/// The nearest of 0..=255 to a value of 0..1.
+pub(crate) fn quantum(value: f32) -> u8 {
+    (value * 255.0 + 0.5) as u8
+}
+
+/// The colour of 8-bit channels.
+pub(crate) fn color(channels: [u8; 3]) -> Rgb {
+    channels.map(|c| f32::from(c) / 255.0)
 }

@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::grid::{Grid, UNITS_PER_PX};
+use super::grid::{Grid, UNITS_PER_PX, color, quantum};
 use super::written_path::{WrittenPath, WrittenPoint};
 use super::{Area, Mark, Path, PathPoint, Rgb, Scene, Shade, Stage, Stroke};
 
@@ -254,16 +254,6 @@ fn check(mark: &Mark) -> Result<(), Unwritable> {
     } else {
         Ok(())
     }
-}
-
-/// The nearest of 0..=255 to a value of 0..1.
-pub(crate) fn quantum(value: f32) -> u8 {
-    (value * 255.0 + 0.5) as u8
-}
-
-/// The colour of 8-bit channels.
-pub(crate) fn color(channels: [u8; 3]) -> Rgb {
-    channels.map(|c| f32::from(c) / 255.0)
 }
 
 fn quantized_color(rgb: Rgb) -> Rgb {

@@ -14,6 +14,9 @@ use crate::scene::Rgb;
 /// A pixel on one or two mattes: the colour on the first one, and that on the second one or zeros.
 pub(super) type Pixel = [f32; 6];
 
+/// One level of 8 bits.
+pub(super) const LEVEL: f32 = 1.0 / 255.0;
+
 /// The pixels of target and canvas.
 pub(super) struct Pixels<'a> {
     pub(super) width: usize,
@@ -255,4 +258,20 @@ pub(super) fn color(pixel: &Pixel, mattes: usize) -> Rgb {
         1 => pixel[k],
         _ => 0.5 * (pixel[k] + pixel[k + 3]),
     })
+}
+
+/// The largest difference of a channel.
+pub(super) fn away(a: &Pixel, b: &Pixel) -> f32 {
+    let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+    differences.fold(0.0, f32::max)
+}
+
+/// The pixels to the left and right, above and below.
+pub(super) fn beside(i: usize, width: usize, count: usize) -> impl Iterator<Item = usize> {
+    let x = i % width;
+    let left = (x > 0).then(|| i - 1);
+    let right = (x + 1 < width).then_some(i + 1);
+    let above = i.checked_sub(width);
+    let below = Some(i + width).filter(|&k| k < count);
+    [left, right, above, below].into_iter().flatten()
 }

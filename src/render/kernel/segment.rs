@@ -19,7 +19,7 @@ pub(super) const BLOCK_RADIUS: f32 = 2.121_5;
 pub(super) const ROWS: usize = BLOCKS / LANES;
 
 /// x and y of the pixel centres of a block, px.
-pub(in crate::render) const PIXELS: [Lanes; 2] = lattice(BLOCK, 1.0);
+pub(super) const PIXELS: [Lanes; 2] = lattice(BLOCK, 1.0);
 /// x and y of the centres of a tile's first 16 blocks, px.
 const CENTERS: [Lanes; 2] = lattice(TILE_BLOCKS, BLOCK as f32);
 

@@ -6,7 +6,7 @@
 
 use rayon::prelude::*;
 
-use super::super::areas::{Pixel, Pixels};
+use super::super::areas::{LEVEL, Pixel, Pixels, away};
 use super::super::recipe::Fills;
 use super::shades::{self, Shaded};
 use crate::scene::Shade;
@@ -17,9 +17,6 @@ pub(super) const CANVAS: u16 = 0;
 pub(super) const SHADES: u16 = 1 << 15;
 /// The label of a pixel that is no colour alone.
 pub(super) const NONE: u16 = u16::MAX;
-/// One level of 8 bits.
-pub(super) const LEVEL: f32 = 1.0 / 255.0;
-
 /// The colours of a picture. Label 0 is the canvas, label k the colour k − 1, and labels from [`SHADES`] on are shades.
 pub(super) struct Colors<'a> {
     pub(super) pixels: &'a Pixels<'a>,
@@ -58,12 +55,6 @@ impl Colors<'_> {
         }
         best
     }
-}
-
-/// The largest difference of a channel.
-pub(super) fn away(a: &Pixel, b: &Pixel) -> f32 {
-    let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs());
-    differences.fold(0.0, f32::max)
 }
 
 /// The colours of flat places, and the label of each pixel that has a colour or a shade by itself.

@@ -2,8 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::super::areas::{Pixel, mix};
-use super::colors::{LEVEL, away};
+use super::super::areas::{LEVEL, Pixel, away, mix};
 use super::stack::Layer;
 use crate::scene::{Path, Shade};
 

@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::super::areas::{Pixel, Pixels, distance2, mix};
+use super::super::areas::{LEVEL, Pixel, Pixels, away, distance2, mix};
 use super::super::recipe::Fills;
-use super::colors::{Colors, LEVEL, NONE, away};
+use super::colors::{Colors, NONE};
 use crate::math::median;
 
 /// A pixel as two colours side by side.

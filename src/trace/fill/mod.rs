@@ -28,10 +28,10 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::areas::{self, Pixel, Pixels, distance2, mix};
+use super::areas::{self, LEVEL, Pixel, Pixels, distance2, mix};
 use super::recipe::Fills;
 use crate::scene::{Area, Path, Rgb};
-use colors::{CANVAS, LEVEL, NONE};
+use colors::{CANVAS, NONE};
 pub(super) use compound::Fill;
 use contour::{Field, Place, between};
 use mixtures::Mixture;

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::super::areas::{Pixel, distance2};
+use super::super::areas::{LEVEL, Pixel, away, beside, distance2};
 use super::super::recipe::Fills;
-use super::colors::{CANVAS, Colors, LEVEL, away};
+use super::colors::{CANVAS, Colors};
 use super::mixtures::{Mixture, best_mixture};
 use crate::math::median;
 use crate::scene::Shade;
@@ -128,16 +128,6 @@ fn connected(colors: &Colors<'_>, mixtures: &[Mixture]) -> (Vec<u32>, Vec<Vec<u3
         members.push(pixels);
     }
     (of, members)
-}
-
-/// The pixels to the left and right, above and below.
-pub(super) fn beside(i: usize, width: usize, count: usize) -> impl Iterator<Item = usize> {
-    let x = i % width;
-    let left = (x > 0).then(|| i - 1);
-    let right = (x + 1 < width).then_some(i + 1);
-    let above = i.checked_sub(width);
-    let below = Some(i + width).filter(|&k| k < count);
-    [left, right, above, below].into_iter().flatten()
 }
 
 /// Makes mixtures of thin regions whose pixels lie between the colours on either side. Returns whether there were such.

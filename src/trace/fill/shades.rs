@@ -6,10 +6,8 @@
 
 use rayon::prelude::*;
 
-use super::super::areas::{Pixel, Pixels};
+use super::super::areas::{LEVEL, Pixel, Pixels, away, beside};
 use super::super::recipe::Shades;
-use super::colors::{LEVEL, away};
-use super::regions::beside;
 use crate::math::Point;
 use crate::scene::Shade;
 use crate::shading::{Block, Blocks, Value, premultiplied};
@@ -24,7 +22,7 @@ pub(super) struct Shaded {
     of: Vec<u16>,
 }
 
-/// What a smooth part is.
+/// Meaning of a smooth part.
 enum Found {
     /// The shade of this index.
     Shade(u16),

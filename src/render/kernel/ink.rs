@@ -1,0 +1,42 @@
+//! The gradient of an area in one block.
+
+use fearless_simd::{f32x16, prelude::*};
+
+use super::super::grid::{BLOCK, Lanes, TILE_BLOCKS};
+use super::super::paint::{Ink, InkAxis};
+use super::lanes::load;
+use super::segment::PIXELS;
+
+/// Red, green, blue and opacity of `ink` at the pixels of a block of the tile at `origin`.
+#[inline(always)]
+pub(super) fn ink_at<S: Simd>(
+    simd: S,
+    ink: &Ink,
+    block: usize,
+    origin: [f32; 2],
+) -> [f32x16<S>; 4] {
+    let left = origin[0] + (block % TILE_BLOCKS * BLOCK) as f32;
+    let top = origin[1] + (block / TILE_BLOCKS * BLOCK) as f32;
+    let [x, y]: &[Lanes; 2] = &PIXELS;
+    let (x, y) = (load(simd, x) + left, load(simd, y) + top);
+    let offset = match ink.axis {
+        InkAxis::Linear { start, slope } => x * slope[0] + y * slope[1] + start,
+        InkAxis::Radial { center, slope } => {
+            let (x, y) = (x - center[0], y - center[1]);
+            (x * x + y * y).sqrt() * slope
+        }
+    };
+    let mut value = [
+        f32x16::splat(simd, ink.first[0]),
+        f32x16::splat(simd, ink.first[1]),
+        f32x16::splat(simd, ink.first[2]),
+        f32x16::splat(simd, ink.first[3]),
+    ];
+    for ramp in &ink.ramps {
+        let part = ((offset - ramp.from) * ramp.per_offset).max(0.0).min(1.0);
+        for (value, change) in value.iter_mut().zip(ramp.change) {
+            *value += part * change;
+        }
+    }
+    value
+}
