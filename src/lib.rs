@@ -1,5 +1,5 @@
 //! strokefit turns a raster picture into an editable SVG made of *marks*: *strokes*, which are paths with round caps and
-//! joins, and *areas*, which are filled outlines, each in one colour.
+//! joins, in one colour, and *areas*, which are outlines filled with a colour or a gradient.
 //!
 //! It traces what is flat, puts strokes where the drawing then differs most from the picture, improves all by gradient descent
 //! through a differentiable renderer, keeps those that pay, and repeats. Then it writes SVG, renders that SVG with
@@ -82,7 +82,7 @@
 //! | details | letters, dots, thin lines: small things that nothing around hides |
 //! | mark | one element of a drawing: a stroke or an area; see [`scene::Mark`] |
 //! | stroke | all points within a radius (px) of a path, with a colour and an opacity (0..1); see [`scene`] |
-//! | area | one or more closed paths, its *rings*, filled where they wind around a point (SVG's nonzero rule), with a colour and an opacity; see [`scene::Area`] |
+//! | area | one or more closed paths, its *rings*, filled where they wind around a point (SVG's nonzero rule), with a colour or a shade and an opacity; see [`scene::Area`] |
 //! | path | *points*, open or closed: the centre line of a stroke, or a ring; see [`scene::Path`] |
 //! | point | of a path: *on* it, joined to the next by a line, or *off* it, where it is the control point of a curve |
 //! | capsule | the stroke of two on-points; with equal ends it is a *dot*, the stroke of one point; see `sdf` |
@@ -90,7 +90,8 @@
 //! | stage | marks that are added together: seeded where the residual is largest, fitted with all earlier strokes frozen, kept if they pay |
 //! | layer | a group of the SVG, holding the marks of one stage or of one colour |
 //! | background | the colour behind all marks; part of the drawing and of the file; absent if the drawing is transparent |
-//! | shade | a gradient over the whole page, on the background and behind all marks; part of the drawing and of the file; see [`scene::Shade`] |
+//! | shade | a gradient, of an area or over the whole page, on the background and behind all marks; part of the drawing and of the file; see [`scene::Shade`] |
+//! | paint | the shade of an area as the renderer sees it; see [`render::Paint`] |
 //! | backdrop | what marks are composited over: a colour or a picture, such as the canvas of frozen strokes |
 //! | masking | that detail of the picture hides errors from the eye |
 //! | matte | the colour that a transparent picture is flattened onto, to be looked at or measured |

@@ -81,6 +81,7 @@ impl PackedMarks64 {
                 radius,
                 color: [red, green, blue],
                 opacity,
+                paint: None,
             });
         })?;
         Ok(Self(strokes))

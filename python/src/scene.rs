@@ -1,7 +1,9 @@
 //! Drawings between SVG and arrays.
 
+use std::ffi::CString;
+
 use numpy::{PyArray1, PyArray3, PyArrayMethods};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use strokefit::fit::Base;
@@ -77,6 +79,14 @@ pub(crate) fn read<'py>(
 ) -> PyResult<(Page, MarkColumns<'py>, Bound<'py, PyArray1<i64>>)> {
     let mut scene = svg::read(text).map_err(|error| Failure::Library(error.within(name)))?;
     let columns = columns::marks(py, &scene)?;
+    let shaded = scene.areas().filter(|area| area.shade.is_some()).count();
+    if shaded > 0 {
+        let message = format!(
+            "{shaded} of the areas of {name} have a gradient, which marks in arrays do not: they have its mean colour instead"
+        );
+        let category = py.get_type::<PyUserWarning>();
+        PyErr::warn(py, &category, &CString::new(message)?, 2)?;
+    }
     let layers = scene.stages.iter().zip(0..);
     let layers = layers.flat_map(|(stage, layer)| stage.marks.iter().map(move |_| layer));
     let layers = PyArray1::from_iter(py, layers.collect::<Vec<i64>>());

@@ -9,7 +9,7 @@ use super::widths::Widths;
 use crate::coverage::CoverageSchedule;
 use crate::error::{Error, ErrorKind, Result};
 use crate::math;
-use crate::scene::{MAX_POINTS, MAX_PRECISION, Mark, Marks, Rgb, Scene, quantum};
+use crate::scene::{MAX_POINTS, MAX_PRECISION, Mark, Marks, Rgb, Scene, Shade, quantum};
 use crate::svg::{Form, Order, WriteOptions};
 use crate::threads::Workers;
 
@@ -131,8 +131,11 @@ impl Colors {
             .chain(scene.background)
             .map(|c| c.map(quantum))
             .collect();
+        // A gradient has many colours.
+        let is_plain = scene.marks().all(|mark| mark.shade().is_none());
         match self {
             Self::Free => true,
+            _ if !is_plain => false,
             Self::AtMost(most) => used.len() <= *most,
             Self::Palette(palette) => used.iter().all(|color| palette.contains(color)),
         }
@@ -229,7 +232,8 @@ impl Config {
         let points = mark
             .as_stroke()
             .map_or(0, |stroke| stroke.path.points().len());
-        self.points.is_none_or(|most| points <= most) && (!self.opaque || mark.opacity() >= 1.0)
+        let is_opaque = mark.opacity() >= 1.0 && mark.shade().is_none_or(Shade::is_opaque);
+        self.points.is_none_or(|most| points <= most) && (!self.opaque || is_opaque)
     }
 
     /// The quality that sets the price of a stroke in a drawing of `pixels` pixels, unless strokes are free.

@@ -316,6 +316,13 @@ impl Strokes {
         numbers.zip(points).for_each(|(number, &at)| *number = at);
     }
 
+    /// Gives areas their colours in the place of gradients.
+    pub fn flatten_paints(&mut self) {
+        self.paints.clear();
+        let outlines = self.outlines.iter_mut();
+        outlines.for_each(|outline| outline.paints_end = 0);
+    }
+
     /// The strokes, back to front.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = StrokeRef<'_>> {
         (0..self.len()).map(|i| self.get(i))

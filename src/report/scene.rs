@@ -22,9 +22,16 @@ pub struct SceneRecord {
 
 /// In JSON a list of five: the points x, y, x, y, … and the radius, px, 0 for an area; the colour `#rrggbb`; the opacity,
 /// 0..1; the kinds of the points, `o` on the path and `c` for a control point, with `z` after the points of a closed path,
-/// and so after those of each ring of an area.
+/// and so after those of each ring of an area. An area with a gradient has that as a sixth.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct MarkRecord(pub Vec<f32>, pub f32, pub String, pub f32, pub String);
+pub struct MarkRecord(
+    pub Vec<f32>,
+    pub f32,
+    pub String,
+    pub f32,
+    pub String,
+    #[serde(skip_serializing_if = "Option::is_none")] pub Option<ShadeRecord>,
+);
 
 impl From<&Scene> for SceneRecord {
     fn from(scene: &Scene) -> Self {
@@ -75,6 +82,7 @@ impl From<&Mark> for MarkRecord {
             css(mark.color()),
             mark.opacity(),
             mark.paths().iter().map(kinds).collect(),
+            mark.shade().map(ShadeRecord::from),
         )
     }
 }
@@ -132,10 +140,24 @@ mod tests {
             opacity: 1.0,
             shade: None,
         };
-        let json = serde_json::to_string(&MarkRecord::from(&Mark::from(area))).unwrap();
+        let json =
+            |area: Area| serde_json::to_string(&MarkRecord::from(&Mark::from(area))).unwrap();
         let expected =
             r##"[[0.0,0.0,8.0,0.0,4.0,6.0,3.0,1.0,4.0,5.0],0.0,"#0080ff",1.0,"ooozocz"]"##;
-        assert_eq!(json, expected);
+        assert_eq!(json(area.clone()), expected);
+        let axis = Axis::Linear {
+            from: [0.0, 0.0].into(),
+            to: [8.0, 0.0].into(),
+        };
+        let stop = |offset| ShadeStop {
+            offset,
+            color: [offset; 3],
+            opacity: 1.0,
+        };
+        let shade = Shade::new(axis, &[stop(0.0), stop(1.0)]).ok();
+        let shade_json = r#"{"axis":[0.0,0.0,8.0,0.0],"stops":[[0.0,"rgb(0 0 0 / 1)"],[1.0,"rgb(255 255 255 / 1)"]]}"#;
+        let with_shade = expected.replace("z\"]", &format!("z\",{shade_json}]"));
+        assert_eq!(json(Area { shade, ..area }), with_shade);
     }
 
     #[test]

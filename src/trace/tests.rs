@@ -7,6 +7,7 @@ use crate::scene::{Area, Path, Rgb, Stroke};
 use crate::seed::Pyramid;
 use crate::verify::{self, Size};
 
+const BLACK: Rgb = [0.0; 3];
 const WHITE: Rgb = [1.0; 3];
 
 /// An SVG of 96×96 px.
@@ -227,6 +228,93 @@ fn shapes_on_a_transparent_page_are_areas() {
             .zip(wanted)
             .all(|(a, b)| (a - b).abs() < 0.01)
     );
+}
+
+/// A gradient from red to blue: an axis in the words of SVG.
+fn gradient(axis: &str) -> String {
+    let kind = if axis.contains("x1") {
+        "linear"
+    } else {
+        "radial"
+    };
+    format!(
+        r##"<{kind}Gradient id="g" gradientUnits="userSpaceOnUse" {axis}><stop offset="0" stop-color="#e03020"/><stop offset="1" stop-color="#2040e0"/></{kind}Gradient>"##
+    )
+}
+
+#[test]
+fn smooth_shapes_have_the_gradients_that_they_were_drawn_with() {
+    let shapes = [
+        r##"x1="20" y1="20" x2="70" y2="60""##,
+        r##"cx="40" cy="50" r="42""##,
+    ];
+    for axis in shapes {
+        let gradient = gradient(axis);
+        let found = areas(&format!(
+            r##"{gradient}<path d="M20 15H70V80H20Z" fill="url(#g)"/><circle cx="45" cy="45" r="9" fill="#f0d020"/>"##
+        ));
+        let [below, Area { shade: None, .. }] = &found[..] else {
+            panic!("{axis}: {found:?}");
+        };
+        assert_eq!(below.rings.len(), 1, "it goes on below the disc");
+        let shade = below.shade.as_ref().unwrap();
+        for [x, y] in [[25.0, 20.0], [65.0, 20.0], [30.0, 75.0], [60.0, 70.0]] {
+            let seen = picture(
+                &format!(r##"{gradient}<path d="M0 0H96V96H0Z" fill="url(#g)"/>"##),
+                WHITE,
+            );
+            let at = y as usize * seen.width() + x as usize;
+            let (color, opacity) = shade.at(Point::new(x + 0.5, y + 0.5));
+            let apart = (0..3).map(|c| (color[c] - seen.planes()[c][at]).abs());
+            assert_eq!(opacity, 1.0);
+            assert!(
+                apart.fold(0.0, f32::max) < 3.0 / 255.0,
+                "{axis} at {x}, {y}: {color:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_glow_on_a_transparent_page_fades_away() {
+    let content = r##"<radialGradient id="g" gradientUnits="userSpaceOnUse" cx="48" cy="48" r="36"><stop offset="0" stop-color="#2040e0"/><stop offset="1" stop-color="#2040e0" stop-opacity="0"/></radialGradient><circle cx="48" cy="48" r="36" fill="url(#g)"/>"##;
+    let found = traced_on(
+        &[
+            (picture(content, BLACK), BLACK),
+            (picture(content, WHITE), WHITE),
+        ],
+        Marks::Areas,
+    );
+    let [Traced { mark, .. }] = &found[..] else {
+        panic!("{found:?}");
+    };
+    let shade = mark.shade().unwrap();
+    for (x, expected) in [(48.0, 1.0), (66.0, 0.5), (81.0, 1.0 / 12.0)] {
+        let (_, opacity) = shade.at(Point::new(x, 48.0));
+        assert!((opacity - expected).abs() < 0.03, "{opacity} at {x}");
+    }
+}
+
+#[test]
+fn flat_shapes_and_steps_have_no_gradient() {
+    let steps: String = (0..9)
+        .map(|k| {
+            format!(
+                r##"<path d="M{} 10h9v70h-9z" fill="#20{:02x}e0"/>"##,
+                8 + 9 * k,
+                20 * k
+            )
+        })
+        .collect();
+    for content in [
+        steps.as_str(),
+        r##"<circle cx="48" cy="48" r="30" fill="#204080"/>"##,
+    ] {
+        assert!(
+            areas(content).iter().all(|area| area.shade.is_none()),
+            "{content}"
+        );
+    }
 }
 
 #[test]

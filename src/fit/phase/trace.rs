@@ -4,7 +4,7 @@ use super::grow;
 use crate::error::Result;
 use crate::fit::budget::plan::PlannedStage;
 use crate::fit::budget::price::Price;
-use crate::fit::config::Config;
+use crate::fit::config::{Colors, Config};
 use crate::fit::drawing::Drawing;
 use crate::fit::drawing::surface::Surface;
 use crate::fit::order::{Outcome, Purpose};
@@ -77,7 +77,17 @@ pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> 
 }
 
 /// The traced strokes that are worth their price, in painting order.
-fn lines(drawing: &mut Drawing, config: &Config, tracing: Tracing, price: Price) -> Vec<Traced> {
+fn lines(
+    drawing: &mut Drawing,
+    config: &Config,
+    mut tracing: Tracing,
+    price: Price,
+) -> Vec<Traced> {
+    // A gradient has many colours, and on a transparent page many opacities.
+    let is_see_through = drawing.surfaces.len() > 1;
+    if config.colors != Colors::Free || config.opaque && is_see_through {
+        tracing.fills.shades.most = 0;
+    }
     let canvases: Vec<Canvas> = if drawing.len() == 0 {
         drawing
             .surfaces

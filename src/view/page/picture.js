@@ -1,12 +1,12 @@
 // Marks on canvases: strokes, and areas, which are filled by the nonzero rule. A mark is [points, radius, colour, opacity,
 // kinds], back to front as in the SVG; points are x, y, x, y, … in px of the picture, and the radius of an area is 0. Kinds
 // has a letter for each point, "o" on the path and "c" for the control point of a curve, and then "z" if the path is
-// closed, and so after the points of each ring of an area.
+// closed, and so after the points of each ring of an area. An area with a gradient has that as a sixth.
 
 // Longest side, px, at which drawing and target are compared: more takes time that a fit could use.
 const MAX_COMPARED = 1024;
 
-// The background and the shade, if there are any.
+// The background and its gradient, if there are any.
 export function drawPage(context, { width, height, background, shade }) {
   const fills = [background, shade && gradient(context, shade)].filter(Boolean);
   for (const fill of fills) {
@@ -25,9 +25,9 @@ function gradient(context, { axis, stops }) {
 export function drawMarks(context, marks) {
   context.lineCap = context.lineJoin = "round";
   for (const mark of marks) {
-    const [, radius, color, opacity] = mark;
+    const [, radius, color, opacity, , shade] = mark;
     context.globalAlpha = opacity;
-    context.strokeStyle = context.fillStyle = color;
+    context.strokeStyle = context.fillStyle = shade ? gradient(context, shade) : color;
     context.lineWidth = 2 * radius;
     trace(context, mark);
     if (isArea(mark)) context.fill();

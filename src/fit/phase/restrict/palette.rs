@@ -59,6 +59,7 @@ fn palette(
     if *colors == Colors::Free {
         return None;
     }
+    drawing.free_mut().flatten_paints();
     let mut preferences = preferences(drawing, 0.0, coloring.min_shown);
     if !has_background {
         preferences.truncate(drawing.len());
