@@ -89,6 +89,7 @@ const OPTIONS: [(&str, &str); 3] = [
     What one layer of the SVG holds
     * stage: The strokes of one stage
     * color: Strokes of one colour. With --colors or --palette each colour has one layer
+    * object: A thing: an area with what lies on it, or touching strokes of one colour. Marks have names
 --order ORDER=fitted
     In which order the strokes of a layer come
     * fitted: The order that they were fitted in

@@ -81,6 +81,24 @@ impl Written {
     }
 }
 
+impl Written {
+    /// True if it is an area that nearly all of `other` lies in.
+    pub(crate) fn encloses(&self, other: &Self) -> bool {
+        if !self.is_area() {
+            return false;
+        }
+        let own = segments(self);
+        let places: Vec<[f64; 2]> = segments(other).iter().map(|[a, _]| *a).collect();
+        let inside = places.iter().filter(|&&p| is_inside(p, &own)).count();
+        10 * inside >= 9 * places.len()
+    }
+
+    /// From where to where the points lie along each axis, in units.
+    pub(crate) fn bounds(&self) -> [[i64; 2]; 2] {
+        bounds(self)
+    }
+}
+
 /// Distance between paths of these widths up to which the marks may share a pixel, in units.
 fn reach(a: i64, b: i64) -> i64 {
     (a + b) / 2 + APART

@@ -7,19 +7,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::dialect::Unit;
+use super::layer::{Layer, LayerKind};
+use super::objects;
 use super::options::{Form, Group, Order, WriteOptions};
 use super::path::{self, Kind};
 use super::tour;
 use crate::scene::{Scene, Stage, Written, WrittenPath, overlaps};
-
-/// Strokes of a layer, and their common colour if layers are by colour.
-#[derive(Debug, Clone)]
-pub(super) struct Layer {
-    pub(super) strokes: Vec<Written>,
-    pub(super) color: Option<[u8; 3]>,
-    /// Number of layers below that have the same colour.
-    pub(super) repeats: usize,
-}
 
 /// The layers of the file, none of them empty.
 pub(super) fn layers(scene: &Scene, options: &WriteOptions) -> Vec<Layer> {
@@ -35,11 +28,14 @@ pub(super) fn layers(scene: &Scene, options: &WriteOptions) -> Vec<Layer> {
         Group::Stage => stages
             .map(|strokes| Layer {
                 strokes,
-                color: None,
-                repeats: 0,
+                kind: LayerKind::Stage,
             })
             .collect(),
         Group::Color => by_color(stages.flatten().collect()),
+        Group::Object => {
+            let marks: Vec<Written> = stages.flatten().collect();
+            objects::by_object(&marks, [scene.width, scene.height])
+        }
     };
     if options.form == Form::Smallest {
         for layer in &mut layers {
@@ -119,12 +115,11 @@ fn by_color(strokes: Vec<Written>) -> Vec<Layer> {
     let mut seen: BTreeMap<[u8; 3], usize> = BTreeMap::new();
     let mut layers = Vec::new();
     for run in runs(&best) {
-        let color = run.first().map(|stroke| stroke.color);
-        let count = seen.entry(color.unwrap_or_default()).or_default();
+        let color = run.first().map_or([0; 3], |stroke| stroke.color);
+        let count = seen.entry(color).or_default();
         layers.push(Layer {
             strokes: run.to_vec(),
-            color,
-            repeats: *count,
+            kind: LayerKind::Color(color, *count),
         });
         *count += 1;
     }

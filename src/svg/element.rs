@@ -5,17 +5,29 @@ use std::collections::BTreeMap;
 use super::arrange::style_of;
 use super::dialect::{self, Unit};
 use super::gradient;
+use super::names;
 use super::options::Form;
 use super::outline;
 use super::path::{self, Kind};
 use crate::scene::Written;
 
-/// Appends the elements of `strokes`, in the smallest form with numbers in `unit`.
-pub(super) fn push(out: &mut String, strokes: &[Written], form: Form, unit: Unit) {
+/// Appends the elements of `strokes`, in the smallest form with numbers in `unit`. In the plain form they have names if a
+/// layer is given by its number.
+pub(super) fn push(
+    out: &mut String,
+    strokes: &[Written],
+    form: Form,
+    unit: Unit,
+    layer: Option<usize>,
+) {
     match form {
         Form::Plain => {
-            for stroke in strokes {
-                push_path(out, std::slice::from_ref(stroke), &[], Style::Full);
+            for (i, stroke) in strokes.iter().enumerate() {
+                let name =
+                    |layer: usize| format!(" id=\"{}-{layer}-{}\"", names::of_mark(stroke), i + 1);
+                let style = Style::Full;
+                let id = layer.map_or_else(String::new, name);
+                push_path(out, std::slice::from_ref(stroke), &id, &[], style);
                 out.push('\n');
             }
         }
@@ -35,9 +47,9 @@ pub(super) fn bytes(stroke: &Written, form: Form, unit: Unit) -> usize {
     match form {
         Form::Smallest => {
             let style = Style::Short { width: None, unit };
-            push_path(&mut out, alone, &[Attribute::Width], style);
+            push_path(&mut out, alone, "", &[Attribute::Width], style);
         }
-        form => push(&mut out, alone, form, unit),
+        form => push(&mut out, alone, form, unit, None),
     }
     out.len()
 }
@@ -147,8 +159,9 @@ impl Style {
     }
 }
 
-/// Appends the path of `strokes` with the attributes that are not `shared`, behind its gradient if it has one.
-fn push_path(out: &mut String, strokes: &[Written], shared: &[Attribute], style: Style) {
+/// Appends the path of `strokes` with the attribute `id` and those that are not `shared`, behind its gradient if it has
+/// one.
+fn push_path(out: &mut String, strokes: &[Written], id: &str, shared: &[Attribute], style: Style) {
     let kind = match strokes {
         [area] if area.is_area() => Kind::Ring,
         _ => Kind::Line,
@@ -165,7 +178,7 @@ fn push_path(out: &mut String, strokes: &[Written], shared: &[Attribute], style:
         kind,
         style.unit(),
     );
-    *out += &format!("<path d=\"{d}\"");
+    *out += &format!("<path{id} d=\"{d}\"");
     let own = Attribute::ALL.iter().filter(|a| !shared.contains(a));
     for attribute in own {
         *out += &strokes
@@ -183,7 +196,7 @@ fn push_runs(out: &mut String, elements: &[&[Written]], shared: &[Attribute], st
     let mut rest = elements;
     while let Some((first, others)) = rest.split_first() {
         let Some((attribute, length)) = best_run(rest, shared, style) else {
-            push_path(out, first, shared, style);
+            push_path(out, first, "", shared, style);
             rest = others;
             continue;
         };

@@ -69,6 +69,8 @@ pub enum Group {
     /// Strokes of one colour that can be drawn one after the other. A colour has several layers if its strokes lie
     /// below another colour in one place and above it in another.
     Color,
+    /// A thing: an area with what lies on it, or marks of one colour that touch. Marks of the plain form have names.
+    Object,
 }
 
 /// In which order the strokes of a layer come.
@@ -118,7 +120,7 @@ impl FromStr for Form {
     }
 }
 
-words!(Group, "a grouping": Stage = "stage", Color = "color");
+words!(Group, "a grouping": Stage = "stage", Color = "color", Object = "object");
 
 words!(Order, "an order": Fitted = "fitted", Travel = "travel");
 

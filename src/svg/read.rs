@@ -128,7 +128,7 @@ impl<'a> Parser<'a> {
             "stroke-width",
             "transform",
         ])?;
-        let ids = ["stage", "color"].map(|kind| format!("{kind}-{number}"));
+        let ids = ["stage", "color", "object"].map(|kind| format!("{kind}-{number}"));
         if !ids.iter().any(|id| group.find("id") == Some(id)) {
             group.expect("id", &ids[0])?;
         }
@@ -160,7 +160,7 @@ impl<'a> Parser<'a> {
         loop {
             match self.next()? {
                 Tag::Open(e) if e.name == "path" => {
-                    stage.marks.extend(style.of(&e, &["d"])?.marks(&e)?);
+                    stage.marks.extend(style.of(&e, &["d", "id"])?.marks(&e)?);
                     self.close(&e)?;
                 }
                 Tag::Open(e) if shade::begins_with(&e) => {

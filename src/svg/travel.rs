@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::arrange::{self, Layer};
+use super::arrange;
+use super::layer::Layer;
 use super::options::{Order, WriteOptions};
 use super::tour;
 use crate::scene::{Scene, Written};

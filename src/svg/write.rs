@@ -1,9 +1,11 @@
 //! Writes a scene as SVG text.
 
-use super::arrange::{self, Layer};
+use super::arrange;
 use super::dialect::{self, Unit};
 use super::element;
 use super::gradient;
+use super::layer::{Layer, LayerKind};
+use super::names;
 use super::options::{Form, Order, WriteOptions};
 use crate::scene::{Mark, Scene, Written, WrittenPath, counted, quantum};
 
@@ -84,21 +86,20 @@ fn text(number: usize, layer: &Layer, options: &WriteOptions, unit: Unit) -> Str
         Order::Travel => format!("{number} "),
         Order::Fitted => String::new(),
     };
-    let (id, label) = match layer.color {
-        Some(color) if layer.repeats > 0 => (
-            format!("color-{number}"),
-            format!(
-                "{count_first}{} ({})",
-                dialect::hex(color),
-                layer.repeats + 1
-            ),
+    let (kind, label) = match layer.kind {
+        LayerKind::Color(color, 0) => ("color", format!("{count_first}{}", dialect::hex(color))),
+        LayerKind::Color(color, repeats) => {
+            let label = format!("{count_first}{} ({})", dialect::hex(color), repeats + 1);
+            ("color", label)
+        }
+        LayerKind::Object(Some(color)) => (
+            "object",
+            format!("{count_first}Thing {number}, {}", names::of_color(color)),
         ),
-        Some(color) => (
-            format!("color-{number}"),
-            format!("{count_first}{}", dialect::hex(color)),
-        ),
-        None => (format!("stage-{number}"), format!("Stage {number}")),
+        LayerKind::Object(None) => ("object", format!("{count_first}Marks {number}")),
+        LayerKind::Stage => ("stage", format!("Stage {number}")),
     };
+    let id = format!("{kind}-{number}");
     let transform = match unit {
         Unit::PX => String::new(),
         _ => format!(" transform=\"{}\"", unit.transform()),
@@ -110,7 +111,8 @@ fn text(number: usize, layer: &Layer, options: &WriteOptions, unit: Unit) -> Str
         element::layer_width(&layer.strokes, form, unit),
         counts(layer),
     );
-    element::push(&mut out, &layer.strokes, form, unit);
+    let named = matches!(layer.kind, LayerKind::Object(_)).then_some(number);
+    element::push(&mut out, &layer.strokes, form, unit, named);
     if !out.ends_with('\n') {
         out.push('\n');
     }

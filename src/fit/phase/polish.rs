@@ -96,7 +96,7 @@ impl Shares {
         };
         let stack = match config.file.group {
             Group::Color => palette,
-            Group::Stage => 0.0,
+            Group::Stage | Group::Object => 0.0,
         };
         let pens = match config.file.form {
             Form::Smallest => recipe.pens.rounds.iterations,

@@ -29,7 +29,7 @@ impl Parser<'_> {
         let mut path = self.filled("path")?;
         path.expect("fill", &fill)?;
         path.attributes.retain(|(key, _)| key != "fill");
-        let style = style.of(&path, &["d"])?;
+        let style = style.of(&path, &["d", "id"])?;
         if style.is_painted() {
             return Err(
                 "<path> has a gradient and another colour: give a file that strokefit wrote".into(),

@@ -1,0 +1,166 @@
+//! Layers of things: an area with what lies on it, as a face with its eyes, and marks of one colour that touch.
+
+use super::layer::{Layer, LayerKind};
+use crate::scene::{UNITS_PER_PX, Written, overlaps};
+
+/// An area that has this share of the page's sides is the page, and nobody's thing. A guess.
+const PAGE: f64 = 0.9;
+
+/// The marks of a thing, the first one of which may be the area that the others lie on.
+#[derive(Debug, Default)]
+struct Thing {
+    marks: Vec<usize>,
+}
+
+/// Layers of things on a page of this size, px. Marks between them that belong to nothing share a layer.
+///
+/// A mark belongs to the topmost thing that it meets, if that is an area which encloses it or has a mark of its colour that it
+/// touches. So it changes places with no mark that it meets, and the picture stays as it is.
+pub(super) fn by_object(marks: &[Written], page: [u32; 2]) -> Vec<Layer> {
+    let mut below = vec![Vec::new(); marks.len()];
+    for [lower, upper] in overlaps(marks, |_, _| true) {
+        below[upper].push(lower);
+    }
+    let mut things: Vec<Thing> = Vec::new();
+    let mut thing_of: Vec<usize> = Vec::with_capacity(marks.len());
+    for (i, mark) in marks.iter().enumerate() {
+        let topmost = below[i].iter().map(|&k| thing_of[k]).max();
+        let belongs = topmost.filter(|&thing| {
+            let own = &things[thing].marks;
+            let root = &marks[own[0]];
+            let touches = |k: &&usize| thing_of[**k] == thing && is_alike(&marks[**k], mark);
+            !is_page(root, page) && (root.encloses(mark) || below[i].iter().any(|k| touches(&k)))
+        });
+        let thing = belongs.unwrap_or_else(|| {
+            things.push(Thing::default());
+            things.len() - 1
+        });
+        things[thing].marks.push(i);
+        thing_of.push(thing);
+    }
+    layers(&things, marks)
+}
+
+fn layers(things: &[Thing], marks: &[Written]) -> Vec<Layer> {
+    let is_alone = |thing: &Thing| thing.marks.len() == 1;
+    let runs = things.chunk_by(|a, b| is_alone(a) && is_alone(b));
+    let layer = |things: &[Thing]| {
+        let own = things.iter().flat_map(|thing| &thing.marks);
+        let strokes: Vec<Written> = own.map(|&i| marks[i].clone()).collect();
+        let color = strokes.first().map(|mark| mark.color);
+        let is_thing = !things.iter().any(is_alone);
+        Layer {
+            strokes,
+            kind: LayerKind::Object(color.filter(|_| is_thing)),
+        }
+    };
+    runs.map(layer).collect()
+}
+
+/// True if two marks have one colour and are both strokes or both areas.
+fn is_alike(a: &Written, b: &Written) -> bool {
+    a.color == b.color && a.is_area() == b.is_area()
+}
+
+/// True if a mark is as large as the page.
+fn is_page(mark: &Written, page: [u32; 2]) -> bool {
+    let bounds = mark.bounds();
+    (0..2).all(|axis| {
+        let [low, high] = bounds[axis];
+        let side = i64::from(page[axis]) * UNITS_PER_PX;
+        (high.min(side) - low.max(0)) as f64 >= PAGE * side as f64
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Point;
+    use crate::scene::{Area, Mark, Path, PathPoint, Scene, Stage, Stroke};
+
+    const PAGE: u32 = 100;
+
+    fn square(x: f32, away: f32, grey: f32) -> Mark {
+        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+        let points = corners
+            .map(|[dx, dy]: [f32; 2]| PathPoint::on(Point::new(x + away * dx, 50.0 + away * dy)));
+        let area = Area {
+            rings: vec![Path::new(points.into(), true).unwrap()],
+            color: [grey; 3],
+            opacity: 1.0,
+            shade: None,
+        };
+        area.into()
+    }
+
+    fn line(from: [f32; 2], to: [f32; 2], grey: f32) -> Mark {
+        let stroke = Stroke {
+            path: Path::line(from.into(), to.into()),
+            radius: 1.0,
+            color: [grey; 3],
+            opacity: 1.0,
+        };
+        stroke.into()
+    }
+
+    /// The colours of the marks of each layer in tenths, and whether it is a thing.
+    fn layers(marks: &[Mark]) -> Vec<(Vec<u32>, bool)> {
+        let scene = Scene {
+            stages: vec![Stage::from_iter(marks.to_vec())],
+            ..Scene::empty(PAGE, PAGE, None)
+        };
+        let written = marks
+            .iter()
+            .map(|mark| Written::new(mark, &scene, 2).unwrap());
+        let written: Vec<Written> = written.collect();
+        let tenths = |mark: &Written| u32::from(mark.color[0]) * 10 / 255;
+        let layer = |layer: Layer| {
+            let is_thing = layer.kind != LayerKind::Object(None);
+            (layer.strokes.iter().map(tenths).collect(), is_thing)
+        };
+        let layers = by_object(&written, [PAGE; 2]);
+        layers.into_iter().map(layer).collect()
+    }
+
+    #[test]
+    fn a_face_has_its_eyes_though_another_face_came_between() {
+        let marks = [
+            square(25.0, 20.0, 0.1),
+            square(75.0, 20.0, 0.5),
+            square(20.0, 3.0, 0.2),
+            square(80.0, 3.0, 0.6),
+            square(30.0, 3.0, 0.3),
+        ];
+        assert_eq!(layers(&marks), [(vec![1, 2, 3], true), (vec![5, 6], true)]);
+    }
+
+    #[test]
+    fn what_lies_on_two_things_belongs_to_neither() {
+        let marks = [
+            square(25.0, 20.0, 0.1),
+            square(70.0, 20.0, 0.5),
+            line([30.0, 50.0], [60.0, 50.0], 0.9),
+        ];
+        assert_eq!(layers(&marks), [(vec![1, 5, 9], false)]);
+    }
+
+    #[test]
+    fn strokes_of_one_colour_that_touch_are_a_thing() {
+        let marks = [
+            line([10.0, 10.0], [30.0, 10.0], 0.1),
+            line([70.0, 10.0], [90.0, 10.0], 0.1),
+            line([30.0, 10.0], [30.0, 40.0], 0.1),
+        ];
+        assert_eq!(layers(&marks), [(vec![1, 1], true), (vec![1], false)]);
+    }
+
+    #[test]
+    fn the_page_is_nobodys_thing() {
+        let marks = [
+            square(50.0, 50.0, 0.1),
+            square(25.0, 10.0, 0.5),
+            square(25.0, 3.0, 0.6),
+        ];
+        assert_eq!(layers(&marks), [(vec![1], false), (vec![5, 6], true)]);
+    }
+}
