@@ -127,24 +127,56 @@ fn circle(blocks: &Blocks, center: Point) -> Axis {
     Axis::Radial { center, radius }
 }
 
-/// Spread of blocks of similar offsets: the sum of squared differences from the mean of their group.
+/// Spread of blocks of similar offsets: the sum of squared differences from the line that is nearest to their group. Differences
+/// from the mean alone would be those along the axis where groups are wide.
 fn spread(blocks: &Blocks, axis: Axis) -> f32 {
-    let mut groups = [(0.0_f32, [0.0_f32; 4], 0.0_f32); GROUPS];
+    let mut groups = [Group::default(); GROUPS];
     for block in blocks.all.iter().filter(|block| block.weight > 0.0) {
-        let offset = axis.offset(block.center).clamp(0.0, 1.0);
-        let group = (offset * GROUPS as f32) as usize;
-        let (count, sums, squares) = &mut groups[group.min(GROUPS - 1)];
-        *count += 1.0;
-        for (sum, value) in sums.iter_mut().zip(block.value) {
-            *sum += value;
-            *squares += value * value;
+        let offset = axis.offset(block.center).clamp(0.0, 1.0) * GROUPS as f32;
+        let group = &mut groups[(offset as usize).min(GROUPS - 1)];
+        group.add(offset.fract(), block.value);
+    }
+    groups.iter().map(Group::spread).sum()
+}
+
+/// Sums over a group of blocks, `x` being their offsets in it.
+#[derive(Clone, Copy, Default)]
+struct Group {
+    count: f32,
+    x: f32,
+    x2: f32,
+    values: [f32; 4],
+    products: [f32; 4],
+    squares: f32,
+}
+
+impl Group {
+    fn add(&mut self, x: f32, values: [f32; 4]) {
+        self.count += 1.0;
+        self.x += x;
+        self.x2 += x * x;
+        for (c, value) in values.into_iter().enumerate() {
+            self.values[c] += value;
+            self.products[c] += x * value;
+            self.squares += value * value;
         }
     }
-    let spread = |(count, sums, squares): &(f32, [f32; 4], f32)| {
-        let means = sums.iter().map(|sum| sum * sum).sum::<f32>() / count.max(1.0);
-        squares - means
-    };
-    groups.iter().map(spread).sum()
+
+    /// The sum of squared differences from the nearest line.
+    fn spread(&self) -> f32 {
+        let count = self.count.max(1.0);
+        let along = self.x2 - self.x * self.x / count;
+        let explained = |(sum, product): (&f32, &f32)| {
+            let across = product - self.x * sum / count;
+            let trend = match along > 1e-4 * count {
+                true => across * across / along,
+                false => 0.0,
+            };
+            sum * sum / count + trend
+        };
+        let explained = self.values.iter().zip(&self.products).map(explained);
+        self.squares - explained.sum::<f32>()
+    }
 }
 
 /// A place near `start` where `cost` is least, by steps along each number in turn that are halved where none is an

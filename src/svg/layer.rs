@@ -9,7 +9,7 @@ pub(super) struct Layer {
     pub(super) kind: LayerKind,
 }
 
-/// What the marks of a layer have in common.
+/// Reason for marks to share a layer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum LayerKind {
     /// They were added together.

@@ -64,6 +64,7 @@ mod tests {
     use super::*;
     use crate::fit::{Budget, Config, ErrorWeighting, Fitter, Preset};
     use crate::metrics;
+    use crate::scene::Marks;
 
     const MASKING: Masking = Masking {
         window: 2,
@@ -113,6 +114,7 @@ mod tests {
                 },
                 preset: Preset::Draft,
                 look: Some(look),
+                marks: Marks::Strokes,
                 ..Config::default()
             };
             let fit = Fitter::new(config).fit(&picture).unwrap();
