@@ -81,7 +81,7 @@ impl Blocks {
         };
         let mut found = None;
         for _ in 0..fit.rounds {
-            let axis = axis::of(&blocks, kind, fit)?;
+            let axis = blocks.seen(axis::of(&blocks, kind, fit)?);
             let shade = profile::of(&blocks, axis, fit)?;
             let met = self.met(fit.near, |block| premultiplied(&shade, block.center));
             if met.share < fit.hopeless_share {
@@ -139,6 +139,30 @@ impl Blocks {
             };
             Some((self.all[i].center, [0, 1, 2, 3].map(slope)))
         })
+    }
+
+    /// The axis without ends that no block which takes part is near: nothing tells of the colours there.
+    fn seen(&self, axis: Axis) -> Axis {
+        // About a block.
+        const NEAR: f32 = 0.03;
+        let taking_part = self.all.iter().filter(|block| block.weight > 0.0);
+        let (mut first, mut last) = (1.0_f32, 0.0_f32);
+        for offset in taking_part.map(|block| axis.offset(block.center).clamp(0.0, 1.0)) {
+            (first, last) = (first.min(offset), last.max(offset));
+        }
+        let first = if first > NEAR { first } else { 0.0 };
+        let last = if last < 1.0 - NEAR { last } else { 1.0 };
+        match axis {
+            Axis::Linear { from, to } if last > first => Axis::Linear {
+                from: from + (to - from) * first,
+                to: from + (to - from) * last,
+            },
+            Axis::Radial { center, radius } if last > 0.0 => Axis::Radial {
+                center,
+                radius: radius * last,
+            },
+            axis => axis,
+        }
     }
 
     /// The largest offset of the part along `axis`, and the smallest.

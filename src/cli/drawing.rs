@@ -90,6 +90,7 @@ const OPTIONS: [(&str, &str); 3] = [
     * stage: The strokes of one stage
     * color: Strokes of one colour. With --colors or --palette each colour has one layer
     * object: A thing: an area with what lies on it, or touching strokes of one colour. Marks have names
+      and keep the order that they were fitted in
 --order ORDER=fitted
     In which order the strokes of a layer come
     * fitted: The order that they were fitted in

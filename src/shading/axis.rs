@@ -26,7 +26,7 @@ pub(super) fn of(blocks: &Blocks, kind: Kind, fit: &ShadeFit) -> Option<Axis> {
             let [angle] = search([angle], 0.02, 0.0002, |[angle]| cost(angle));
             // An axis that is meant to be level or upright is exactly so.
             let straight = (angle / FRAC_PI_2).round() * FRAC_PI_2;
-            let is_straight = cost(straight) <= fit.level * cost(angle);
+            let is_straight = cost(straight) <= f64::from(fit.level) * cost(angle);
             Some(line(blocks, if is_straight { straight } else { angle }))
         }
         Kind::Radial => {
@@ -129,12 +129,12 @@ fn circle(blocks: &Blocks, center: Point) -> Axis {
 
 /// Spread of blocks of similar offsets: the sum of squared differences from the line that is nearest to their group. Differences
 /// from the mean alone would be those along the axis where groups are wide.
-fn spread(blocks: &Blocks, axis: Axis) -> f32 {
+fn spread(blocks: &Blocks, axis: Axis) -> f64 {
     let mut groups = [Group::default(); GROUPS];
     for block in blocks.all.iter().filter(|block| block.weight > 0.0) {
         let offset = axis.offset(block.center).clamp(0.0, 1.0) * GROUPS as f32;
         let group = &mut groups[(offset as usize).min(GROUPS - 1)];
-        group.add(offset.fract(), block.value);
+        group.add(f64::from(offset.fract()), block.value.map(f64::from));
     }
     groups.iter().map(Group::spread).sum()
 }
@@ -142,16 +142,16 @@ fn spread(blocks: &Blocks, axis: Axis) -> f32 {
 /// Sums over a group of blocks, `x` being their offsets in it.
 #[derive(Clone, Copy, Default)]
 struct Group {
-    count: f32,
-    x: f32,
-    x2: f32,
-    values: [f32; 4],
-    products: [f32; 4],
-    squares: f32,
+    count: f64,
+    x: f64,
+    x2: f64,
+    values: [f64; 4],
+    products: [f64; 4],
+    squares: f64,
 }
 
 impl Group {
-    fn add(&mut self, x: f32, values: [f32; 4]) {
+    fn add(&mut self, x: f64, values: [f64; 4]) {
         self.count += 1.0;
         self.x += x;
         self.x2 += x * x;
@@ -163,10 +163,10 @@ impl Group {
     }
 
     /// The sum of squared differences from the nearest line.
-    fn spread(&self) -> f32 {
+    fn spread(&self) -> f64 {
         let count = self.count.max(1.0);
         let along = self.x2 - self.x * self.x / count;
-        let explained = |(sum, product): (&f32, &f32)| {
+        let explained = |(sum, product): (&f64, &f64)| {
             let across = product - self.x * sum / count;
             let trend = match along > 1e-4 * count {
                 true => across * across / along,
@@ -175,7 +175,7 @@ impl Group {
             sum * sum / count + trend
         };
         let explained = self.values.iter().zip(&self.products).map(explained);
-        self.squares - explained.sum::<f32>()
+        self.squares - explained.sum::<f64>()
     }
 }
 
@@ -185,7 +185,7 @@ fn search<const N: usize>(
     start: [f32; N],
     mut step: f32,
     finest: f32,
-    cost: impl Fn([f32; N]) -> f32,
+    cost: impl Fn([f32; N]) -> f64,
 ) -> [f32; N] {
     let (mut best, mut least) = (start, cost(start));
     while step >= finest {

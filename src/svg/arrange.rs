@@ -37,6 +37,10 @@ pub(super) fn layers(scene: &Scene, options: &WriteOptions) -> Vec<Layer> {
             objects::by_object(&marks, [scene.width, scene.height])
         }
     };
+    // Things are told by the order of their marks.
+    if options.group == Group::Object {
+        return layers;
+    }
     if options.form == Form::Smallest {
         for layer in &mut layers {
             let strokes = layer.strokes.iter_mut();

@@ -69,7 +69,8 @@ pub enum Group {
     /// Strokes of one colour that can be drawn one after the other. A colour has several layers if its strokes lie
     /// below another colour in one place and above it in another.
     Color,
-    /// A thing: an area with what lies on it, or marks of one colour that touch. Marks of the plain form have names.
+    /// A thing: an area with what lies on it, or marks of one colour that touch. Marks of the plain form have names, and they
+    /// keep the order that they were fitted in.
     Object,
 }
 
@@ -225,7 +226,7 @@ mod tests {
         assert!(error.contains("one element per stroke"), "{error}");
         let error = "".parse::<Group>().unwrap_err().to_string();
         assert!(
-            error.contains("''") && error.contains("stage or color"),
+            error.contains("''") && error.contains("color or object"),
             "{error}"
         );
         let error = "short".parse::<Order>().unwrap_err().to_string();
