@@ -21,6 +21,7 @@ pub(crate) fn area(stroke: &Stroke) -> Area {
         rings: stroked(stroke, SCALE).map_or_else(Vec::new, |path| rings(&path, SCALE)),
         color: stroke.color,
         opacity: stroke.opacity,
+        shade: None,
     }
 }
 

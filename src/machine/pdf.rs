@@ -19,14 +19,18 @@ pub fn pdf(sheet: &Sheet<'_>) -> Vec<u8> {
     let layers: Vec<usize> = (1..=scene.stages.len())
         .map(|number| file.add(&format!("<</Type/OCG/Name(Layer {number})>>")))
         .collect();
-    let shade = scene
-        .shade
-        .as_ref()
-        .map(|shade| shade::add(&mut file, shade, scene));
+    // The page's shade comes first, and then those of areas in their order.
+    let [mut shadings, mut masks] = [const { String::new() }; 2];
+    let shades = scene.marks().filter_map(Mark::shade);
+    for (number, shade) in scene.shade.iter().chain(shades).enumerate() {
+        let [shading, mask] = shade::add(&mut file, shade, number, scene);
+        shadings += &shading;
+        masks += &mask;
+    }
     let content = file.stream("", content(sheet).as_bytes());
-    let [shading, mask] = shade.unwrap_or_default();
     let (states, layers_named) = (states(scene), names(&layers));
-    let resources = format!("/ExtGState<<{states}{mask}>>/Properties<<{layers_named}>>{shading}");
+    let resources =
+        format!("/ExtGState<<{states}{masks}>>/Properties<<{layers_named}>>/Shading<<{shadings}>>");
     let [width, height] =
         [scene.width, scene.height].map(|side| number(f64::from(side) * sheet.pt()));
     file.set(
@@ -89,19 +93,23 @@ fn content(sheet: &Sheet<'_>) -> String {
             scene.height
         );
     }
+    let mut shades = 0..;
     if scene.shade.is_some() {
-        out += shade::OPERATORS;
+        let _ = writeln!(out, "q {} Q", shade::operators(shades.next().unwrap_or(0)));
     }
     for (stage, number) in scene.stages.iter().zip(1..) {
         let _ = writeln!(out, "/OC/L{number} BDC");
-        stage.marks.iter().for_each(|mark| push(&mut out, mark));
+        for mark in &stage.marks {
+            let shade = mark.shade().and_then(|_| shades.next());
+            push(&mut out, mark, shade);
+        }
         out += "EMC\n";
     }
     out
 }
 
-/// Appends the operators of a mark.
-fn push(out: &mut String, mark: &Mark) {
+/// Appends the operators of a mark, which has the shade of this number.
+fn push(out: &mut String, mark: &Mark, shade: Option<usize>) {
     let _ = write!(
         out,
         "/O{} gs {} ",
@@ -116,8 +124,14 @@ fn push(out: &mut String, mark: &Mark) {
         }
         Mark::Area(area) => {
             *out += "rg\n";
+            *out += if shade.is_some() { "q " } else { "" };
             area.rings.iter().for_each(|ring| push_path(out, ring));
-            *out += "f\n";
+            match shade {
+                Some(shade) => {
+                    let _ = writeln!(out, "W n {} Q", shade::operators(shade));
+                }
+                None => *out += "f\n",
+            }
         }
     }
 }

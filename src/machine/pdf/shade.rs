@@ -4,14 +4,16 @@ use super::file::File;
 use super::{channels, number};
 use crate::scene::{Scene, Shade, UNITS_PER_PX, WrittenAxis, WrittenStop};
 
-/// Operators that draw the shade, whose resources have these names.
-pub(super) const OPERATORS: &str = "q /Mask gs /Shade sh Q\n";
+/// Operators that draw the shade of this number on all that is not clipped away.
+pub(super) fn operators(number: usize) -> String {
+    format!("/Mask{number} gs /Shade{number} sh")
+}
 
 /// Length of a sudden change of colour, as a share of the axis.
 const STEP: f64 = 1e-4;
 
-/// Adds the shade's objects, and returns its shading and its mask as the page's resources name them.
-pub(super) fn add(file: &mut File, shade: &Shade, scene: &Scene) -> [String; 2] {
+/// Adds the objects of the shade of this number, and returns its shading and its mask as the page's resources name them.
+pub(super) fn add(file: &mut File, shade: &Shade, number_of: usize, scene: &Scene) -> [String; 2] {
     let colors = shading(shade, "DeviceRGB", |stop| channels(stop.color));
     let opacities = shading(shade, "DeviceGray", |stop| {
         number(f64::from(stop.opacity) / 255.0)
@@ -23,8 +25,8 @@ pub(super) fn add(file: &mut File, shade: &Shade, scene: &Scene) -> [String; 2] 
     );
     let group = file.stream(&form, b"/Mask sh");
     [
-        format!("/Shading<</Shade {colors}>>"),
-        format!("/Mask<</SMask<</S/Luminosity/G {group} 0 R>>>>"),
+        format!("/Shade{number_of} {colors}"),
+        format!("/Mask{number_of}<</SMask<</S/Luminosity/G {group} 0 R>>>>"),
     ]
 }
 
