@@ -128,6 +128,7 @@ fn seen(page: &BezPath, marks: &[([u8; 3], BezPath)], colors: &[[u8; 3]]) -> Opt
             .filter(|contour| contour.path.area().abs() > SMALLEST);
         Area {
             opacity: 1.0,
+            shade: None,
             color: color(*own),
             rings: large
                 .filter_map(|contour| bezier::ring(&contour.path))
