@@ -33,13 +33,20 @@ package() {
 page() {
     local shared=src/view/page
     rm -rf web/dist
-    mkdir -p web/dist/strokefit
-    cp web/page/* "$shared"/{page.css,viewer.js,chart.js,choice.js,picture.js} web/dist
+    mkdir -p web/dist/{strokefit,examples}
+    cp web/page/* "$shared"/{page.css,viewer.js,chart.js,choice.js,describe.js,edits.js,lens.js,palette.js,picture.js,swatches.js} web/dist
     sed -i -e "/<!-- viewer.html -->/{r $shared/viewer.html" -e 'd}' web/dist/index.html
     cp web/pkg/{api.js,browser.js,gradients.js,wasm.js,wasm_bg.wasm} web/dist/strokefit
-    cp samples/coffee-300.png web/dist/sample.png
+    examples
     headers >web/dist/_headers
     keep_offline
+}
+
+# Pictures, and what the program draws of them without options.
+examples() {
+    cp samples/{coffee-300.png,noto-hibiscus.png,bicycle.png,starry-night.jpg} web/dist/examples
+    cp docs/pictures/{noto-hibiscus,bicycle,starry-night}.svg web/dist/examples
+    cp docs/pictures/coffee-quality-30.svg web/dist/examples/coffee-300.svg
 }
 
 # The policy of the page as headers, for hosts that read such a file. The page has it in itself, too.

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use anyhow::Result;
 use strokefit::fit::{Checkpoint, Colors, Config, Execution, Fit, Fitter, Focus, Observer, Preset};
-use strokefit::image::{Image, Limits};
+use strokefit::image::Limits;
 use strokefit::report::Judged;
 use strokefit::svg::WriteOptions;
 
@@ -14,10 +14,6 @@ use super::interrupt::GRACE;
 use super::pictures::FilmOptions;
 use super::product::Product;
 use super::{complain, domain, input};
-
-/// Weight of an error where the mask of `--focus` is black. Without any, ends of strokes are left there as they come: a cat
-/// of 400 strokes has 32.7 dB inside and 15.3 outside, with this weight 32.8 and 25.2, with 0.02 32.2 and 28.0.
-const FLOOR: f32 = 0.002;
 
 /// The options of a command that draws.
 #[derive(Debug, clap::Args)]
@@ -146,10 +142,7 @@ impl Options {
     /// Reads the mask.
     fn focus(&self, path: &Path) -> Result<Focus> {
         let (mask, _) = input::picture_within(path, self.limits())?;
-        let within = |error: strokefit::Error| error.within(input::name(path));
-        // Refuses a mask that is black everywhere.
-        Focus::new(&mask).map_err(within)?;
-        Ok(Focus::new(&lifted(mask)?).map_err(within)?)
+        Ok(Focus::lifted(&mask).map_err(|error| error.within(input::name(path)))?)
     }
 
     pub(super) fn execution(&self) -> Execution {
@@ -158,19 +151,6 @@ impl Options {
             simd: self.how.simd.simd,
         }
     }
-}
-
-/// The mask with its black lifted to the floor.
-fn lifted(mask: Image) -> Result<Image> {
-    let mask = mask.flattened([0.0; 3]);
-    let (width, height) = (mask.width(), mask.height());
-    let lift = |plane: Vec<f32>| {
-        plane
-            .into_iter()
-            .map(|v| FLOOR + (1.0 - FLOOR) * v)
-            .collect()
-    };
-    Ok(Image::new(width, height, mask.into_planes().map(lift))?)
 }
 
 /// Settings of the run that one option sets.

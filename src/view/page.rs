@@ -16,7 +16,12 @@ pub(super) fn file(name: &str) -> Option<Response> {
         "viewer.js" => ("text/javascript", include_str!("page/viewer.js")),
         "chart.js" => ("text/javascript", include_str!("page/chart.js")),
         "choice.js" => ("text/javascript", include_str!("page/choice.js")),
+        "describe.js" => ("text/javascript", include_str!("page/describe.js")),
+        "edits.js" => ("text/javascript", include_str!("page/edits.js")),
+        "lens.js" => ("text/javascript", include_str!("page/lens.js")),
+        "palette.js" => ("text/javascript", include_str!("page/palette.js")),
         "picture.js" => ("text/javascript", include_str!("page/picture.js")),
+        "swatches.js" => ("text/javascript", include_str!("page/swatches.js")),
         _ => return None,
     };
     Some(Response::of(kind, text.as_bytes()))

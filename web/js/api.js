@@ -33,9 +33,10 @@ export function connect(locate) {
   return { init, fit, fitPng, animate, renderer };
 }
 
-function draw(read, options = {}, onProgress) {
+function draw(read, { focus, ...options } = {}, onProgress) {
   return guarded(() => {
-    const drawing = fitTarget(read(), JSON.stringify(words(options)), onProgress && watcher(onProgress));
+    const mask = focus && Target.fromPixels(bytes(focus.pixels), focus.width, focus.height);
+    const drawing = fitTarget(read(), mask, JSON.stringify(words(options)), onProgress && watcher(onProgress));
     const { svg, report, scene } = drawing;
     drawing.free();
     return { svg, report: JSON.parse(report), scene: JSON.parse(scene) };

@@ -53,6 +53,8 @@ export interface Options {
   precision?: number;
   /** Width of the page, such as `120mm`. */
   width?: string;
+  /** A mask of the picture's size, with samples as `fit` takes them: errors count most where it is white. */
+  focus?: { pixels: Uint8Array | Uint8ClampedArray; width: number; height: number };
   /** The text of an SVG to go on from: limits count all of it. Strokes of a drawing by strokefit are fitted further. */
   base?: string;
   /** Whether the strokes of the base stay as they are. */

@@ -1,5 +1,7 @@
 // Fits in workers, one after the other: a fit begins with a fresh one, so that nothing of the last is left.
 
+import { worker } from "./workers.js";
+
 // Compiled once, for all workers.
 let compiled = null;
 
@@ -59,19 +61,14 @@ export function stop() {
   if (current) URL.revokeObjectURL(current.running);
 }
 
-function cancel() {
+export function cancel() {
   stop();
   current?.worker?.terminate();
   current = null;
 }
 
-// A worker from a blob has the content security policy of the page; one from a file would have none of its own.
 function work(module) {
-  const code = `import ${JSON.stringify(new URL("worker.js", import.meta.url).href)};`;
-  const address = URL.createObjectURL(new Blob([code], { type: "text/javascript" }));
-  const worker = new Worker(address, { type: "module" });
-  // It has been read when the first message comes.
-  worker.addEventListener("message", () => URL.revokeObjectURL(address), { once: true });
-  worker.postMessage({ module });
-  return worker;
+  const started = worker("worker.js");
+  started.postMessage({ module });
+  return started;
 }

@@ -12,7 +12,7 @@ use std::panic;
 
 use strokefit::animation::{Film, Legend};
 use strokefit::clock::Instant;
-use strokefit::fit::{Base, Fitter};
+use strokefit::fit::{Base, Fitter, Focus};
 use strokefit::report::{self, FitReport, Judged, Run, Usage};
 use strokefit::svg;
 use wasm_bindgen::prelude::*;
@@ -54,15 +54,21 @@ pub fn last_panic() -> Option<String> {
     PANIC.take()
 }
 
-/// Draws `target`. `options` is read by [`Options::read`]; `watcher` is told of every iteration.
+/// Draws `target`. `options` is read by [`Options::read`]; `watcher` is told of every iteration. Errors count most where the
+/// mask `focus` is white.
 ///
 /// # Errors
 /// An `Error` where the library has one; what the watcher threw, as it is.
 #[wasm_bindgen]
-pub fn fit(target: Target, options: &str, watcher: Option<Watcher>) -> Result<Drawing, JsValue> {
+pub fn fit(
+    target: Target,
+    focus: Option<Target>,
+    options: &str,
+    watcher: Option<Watcher>,
+) -> Result<Drawing, JsValue> {
     let start = Instant::now();
     let mut observed = Observed::new(watcher);
-    let drawn = draw(&target, options, start, &mut observed);
+    let drawn = draw(&target, focus.as_ref(), options, start, &mut observed);
     match observed.thrown() {
         Some(thrown) => Err(thrown),
         None => drawn.map_err(|e| JsError::from(e).into()),
@@ -71,6 +77,7 @@ pub fn fit(target: Target, options: &str, watcher: Option<Watcher>) -> Result<Dr
 
 fn draw(
     target: &Target,
+    focus: Option<&Target>,
     options: &str,
     start: Instant,
     observed: &mut Observed,
@@ -88,6 +95,10 @@ fn draw(
     let fitter = Fitter::new(config.clone()).since(start).observer(observed);
     let fitter = match base {
         Some(base) => fitter.on(base),
+        None => fitter,
+    };
+    let fitter = match focus {
+        Some(mask) => fitter.focus(Focus::lifted(mask.image())?),
         None => fitter,
     };
     let judged = Judged::new(fitter.fit(picture)?)?;

@@ -60,7 +60,7 @@ describe("the page", { skip: !program }, () => {
       await page.until(`innerWidth === ${width}`);
       const [wide, panels] = await page.value("[document.documentElement.scrollWidth, document.querySelectorAll('canvas').length]");
       assert.ok(wide <= width, `${wide} px`);
-      assert.equal(panels, 5);
+      assert.equal(panels, 6);
       if (shots) {
         mkdirSync(shots, { recursive: true });
         writeFileSync(join(shots, `page-${width}.png`), await page.screenshot());
@@ -119,7 +119,7 @@ describe("the page", { skip: !program }, () => {
   });
 
   it("makes large pictures smaller, and says what it cannot read", async () => {
-    await page.value("document.getElementById('side').value = 500");
+    await page.value(set("side", 500));
     await page.choose(picture("coffee-550x220.png"));
     await page.until(`${READY} && document.title.includes('550')`);
     assert.match(readFileSync(await page.download("download"), "utf8"), /viewBox="0 0 500 200"/);
@@ -148,7 +148,7 @@ describe("the page", { skip: !program }, () => {
     await server.close();
     await page.go(`${server.address}?again`);
     await page.value(`${set("strokes", 50)}; ${set("preset", "draft")}`);
-    await page.value("document.getElementById('sample').click()");
+    await page.value("document.querySelector('[data-picture=\"coffee-300.png\"] button').click()");
     await page.until(READY);
     assert.equal(await page.value(COUNT), 50);
   });

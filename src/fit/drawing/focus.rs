@@ -14,6 +14,10 @@ use crate::seed::Pyramid;
 
 const BLACK: Rgb = [0.0; 3];
 
+/// Weight of an error where a lifted mask is black. Without any, ends of strokes are left there as they come: a cat
+/// of 400 strokes has 32.7 dB inside and 15.3 outside, with this weight 32.8 and 25.2, with 0.02 32.2 and 28.0.
+const FLOOR: f32 = 0.002;
+
 /// Weight of an error at each pixel, 0 to 1.
 #[derive(Debug, Clone)]
 pub struct Focus {
@@ -39,6 +43,21 @@ impl Focus {
             return Err(Error::new(ErrorKind::Picture, message));
         }
         Ok(Self::of_weights([mask.width(), mask.height()], weights))
+    }
+
+    /// The weights in `mask` as in [`Self::new`], but a small one where it is black.
+    ///
+    /// # Errors
+    /// As those of [`Self::new`].
+    pub fn lifted(mask: &Image) -> Result<Self> {
+        Self::new(mask)?;
+        let mask = mask.clone().flattened(BLACK);
+        let (width, height) = (mask.width(), mask.height());
+        let lift = |plane: Vec<f32>| {
+            let lifted = plane.into_iter().map(|v| FLOOR + (1.0 - FLOOR) * v);
+            lifted.collect()
+        };
+        Self::new(&Image::new(width, height, mask.into_planes().map(lift))?)
     }
 
     /// The weights of the pixels, row by row.

@@ -15,8 +15,9 @@ export function drawChart(canvas, points, marks = []) {
   const [low, high] = extent(points.map(([, y]) => y));
   const atX = (x) => MARGIN.left + ((x - left) / (right - left)) * (width - MARGIN.left - MARGIN.right);
   const atY = (y) => height - MARGIN.bottom - ((y - low) / (high - low)) * (height - MARGIN.top - MARGIN.bottom);
+  context.fillStyle = getComputedStyle(canvas).color;
   drawAxes(context, { width, height, left, right, low, high, atX, atY });
-  context.strokeStyle = "#06c";
+  context.strokeStyle = getComputedStyle(canvas).color;
   context.lineWidth = 1.5;
   context.beginPath();
   for (const [x, y] of points) context.lineTo(atX(x), atY(y));
@@ -31,8 +32,7 @@ export function drawChart(canvas, points, marks = []) {
 
 function drawAxes(context, { width, height, left, right, low, high, atX, atY }) {
   context.font = "11px system-ui, sans-serif";
-  context.fillStyle = "#555";
-  context.strokeStyle = "#eee";
+  context.strokeStyle = "#8884";
   context.beginPath();
   context.textAlign = "right";
   for (const y of ticks(low, high, 4)) {

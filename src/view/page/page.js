@@ -50,6 +50,7 @@ function end() {
 
 const post = (wish) => fetch(wish, { method: "POST" });
 
+element("inside").open = true;
 listen({ stop: () => post("stop"), add: (strokes) => post(`more?strokes=${strokes}`) });
 element("done").addEventListener("click", () => post("done").then(end));
 ask();

@@ -16,59 +16,90 @@
 // and `listen` with what is done when somebody wants something: { stop(), add(strokes) }.
 
 import { drawChart } from "./chart.js";
-import { drawn, mostLike, withoutMarks } from "./choice.js";
-import { Comparison, bounds, counted, drawMarks, drawPage, drawPoints, drawRing, isArea, markAt, paths } from "./picture.js";
+import { mostLike } from "./choice.js";
+import { describe } from "./describe.js";
+import { Edits, edited, repaintedScene } from "./edits.js";
+import { Lens } from "./lens.js";
+import { groups } from "./palette.js";
+import { Comparison, bounds, counted, drawMarks, drawPage, drawPoints, drawRing, markAt } from "./picture.js";
+import { listenToSwatches, showSwatches } from "./swatches.js";
 
 // Number of times that the finished drawing is measured on the way from no mark to all.
 const MEASURED = 60;
 
 const element = (id) => document.getElementById(id);
-const [target, drawing, residual] = ["target", "drawing", "residual"].map(element);
+const [target, drawing, residual, overlay] = ["target", "drawing", "residual", "overlay"].map(element);
 // As the keys and Space go through them.
 const PICTURES = ["drawing", "target", "residual"];
 
 let state = { curve: [] };
+// The drawing as it was fitted, and as it is painted.
+let fitted = null;
 let scene = null;
-// All marks, strokes and areas, as { mark, number, stage }, numbers and stages from 1.
+// All marks, strokes and areas, as { mark, number, stage, box }, numbers and stages from 1.
 let marks = [];
 let comparison = null;
+// dB over marks, and the number of the last measurement.
 let measured = [];
-// Part of the picture that is seen: px of the picture per CSS px is 1 / zoom.
-let view = { zoom: 0, x: 0, y: 0 };
+let measuring = 0;
 let hidden = new Set();
 // Number of marks from the back that are shown; all when it is Infinity, also of a growing drawing.
 let shown = Infinity;
+// True for each mark of a draft, which has fewer than were fitted; null for all.
+let draft = null;
 let selected = null;
+// The mark under the pointer.
+let hovered = null;
 // The picture that is large.
 let large = "drawing";
-// Marks by their numbers: those not shown, the only one shown, and those that are gone.
-let [veiled, alone, gone] = [new Set(), null, new Set()];
+// The number of the only mark that is shown.
+let alone = null;
+// What is changed: marks that are hidden or deleted, colours.
+let edits = new Edits();
 // The share of the drawing, from the left, that shows the target instead.
 let compared = 0;
+// What else is painted over the drawing, and what drags do in place of moving it.
+let veil = null;
+let brush = null;
+
+const lens = new Lens([target, drawing, residual], {
+  size: () => scene,
+  large: () => element(largest()),
+  redraw: () => soon(),
+  point: (x, y) => {
+    selected = markAt(near(x, y), x, y)?.number ?? null;
+    redraw();
+  },
+  hover: (place) => hover(place),
+  brush: () => brush,
+});
 
 function readAddress() {
   const wanted = new URLSearchParams(location.hash.slice(1));
   shown = wanted.has("shown") ? Number(wanted.get("shown")) : Infinity;
   selected = Number(wanted.get("stroke")) || null;
   const numbers = (key) => new Set((wanted.get(key) ?? "").split(",").filter(Boolean).map(Number));
-  [hidden, veiled, gone] = ["hidden", "veiled", "gone"].map(numbers);
+  hidden = numbers("hidden");
+  const [veiled, gone] = ["veiled", "gone"].map(numbers);
+  edits.now = { ...edits.now, veiled, gone };
   alone = Number(wanted.get("alone")) || null;
   large = PICTURES.includes(wanted.get("large")) ? wanted.get("large") : "drawing";
   const [x, y, zoom] = (wanted.get("view") ?? "").split(",").map(Number);
-  view = zoom > 0 ? { x, y, zoom } : { x: 0, y: 0, zoom: 0 };
+  lens.view = zoom > 0 ? { x, y, zoom } : { x: 0, y: 0, zoom: 0 };
 }
 
 function writeAddress() {
   const say = new URLSearchParams();
   if (shown < marks.length) say.set("shown", shown);
   if (selected) say.set("stroke", selected);
+  const { veiled, gone } = edits.now, { view } = lens;
   for (const [key, numbers] of Object.entries({ hidden, veiled, gone })) {
     if (numbers.size) say.set(key, [...numbers].join());
   }
   if (alone) say.set("alone", alone);
   if (large !== "drawing") say.set("large", large);
   if (view.zoom) say.set("view", [view.x, view.y, view.zoom].map((v) => Number(v.toFixed(2))).join());
-  history.replaceState(null, "", say.size ? `#${say}` : location.pathname);
+  history.replaceState(null, "", say.size ? `#${say}` : location.pathname + location.search);
 }
 
 export function show(next) {
@@ -76,32 +107,75 @@ export function show(next) {
   const replaced = another && state.picture !== undefined;
   const finishedNow = next.finished && (another || !state.finished);
   state = next;
-  if (another) [scene, comparison, marks, measured] = [null, null, [], []];
-  if (replaced) [selected, alone, veiled, gone] = [null, null, new Set(), new Set()];
+  if (another) [fitted, scene, comparison, marks, measured, draft] = [null, null, null, [], [], null];
+  if (replaced) [selected, alone, edits, shown] = [null, null, new Edits(), Infinity];
+  if (replaced) lens.whole();
   if (state.scene) takeScene(state.scene);
   showState();
   if (state.scene || finishedNow) redraw();
-  if (finishedNow && comparison) measure();
+  if (state.scene && state.finished) showPalette();
+  if (finishedNow) measure();
   document.body.dataset.ready = state.finished;
 }
 
 function takeScene(next) {
   const before = marks;
-  scene = next;
-  let number = 0;
-  marks = scene.stages.flatMap((list, k) => list.map((mark) => ({ mark, number: ++number, stage: k + 1 })));
+  [fitted, draft, hovered] = [next, null, null];
+  edits.adopt(fitted);
+  paintScene();
   if (before.length) follow(before);
   element("panels").style.setProperty("--aspect", scene.width / scene.height);
   if (state.target && !comparison) comparison = new Comparison(state.target, scene.width, scene.height);
   showControls();
 }
 
+function paintScene() {
+  scene = repaintedScene(fitted, edits.now);
+  let number = 0;
+  marks = scene.stages.flatMap((list, k) => list.map((mark) => ({ mark, number: ++number, stage: k + 1, box: bounds(mark) })));
+}
+
 // In another drawing marks have other numbers: what was said of one holds for the one that is most like it.
 function follow(before) {
   const now = (number) => mostLike(marks, before[number - 1])?.number ?? null;
-  const all = (numbers) => new Set([...numbers].map(now).filter(Boolean));
+  const all = (numbers) => (numbers.size ? new Set([...numbers].map(now).filter(Boolean)) : numbers);
   [selected, alone] = [selected && now(selected), alone && now(alone)];
-  [veiled, gone] = [all(veiled), all(gone)];
+  edits.renumber(all);
+}
+
+function change(part) {
+  edits.change(part);
+  showEdited();
+}
+
+function showEdited() {
+  paintScene();
+  showPalette();
+  measured = [];
+  measure();
+  redraw();
+}
+
+function showPalette() {
+  const paper = scene.shade ? null : scene.background;
+  const left = scene.stages.map(() => []);
+  for (const { mark, stage, number } of marks) if (!edits.now.gone.has(number)) left[stage - 1].push(mark);
+  showSwatches(groups({ ...scene, stages: left }), paper);
+}
+
+// Marks that may be at a place.
+function near(x, y) {
+  return marks.filter((each) => {
+    const [left, top, right, bottom] = each.box;
+    return x >= left && x <= right && y >= top && y <= bottom && isShown(each);
+  });
+}
+
+function hover(place) {
+  const next = place && !brush ? (markAt(near(...place), ...place)?.number ?? null) : null;
+  if (next === hovered) return;
+  hovered = next;
+  drawOverlay();
 }
 
 // Numbers and curves.
@@ -114,12 +188,13 @@ function showState() {
   element("stop").hidden = state.finished || state.done === null;
   element("more").hidden = !state.grows;
   element("download").hidden = !scene;
-  for (const id of ["target-panel", "residual-panel", "compare", "compare-label"]) element(id).hidden = !state.target;
+  for (const id of ["target-panel", "residual-panel", "compare"]) element(id).hidden = !state.target;
+  element("pictures").hidden = !state.target;
   element("panels").classList.toggle("single", !state.target);
   const shownLarge = state.target ? large : "drawing";
   for (const name of PICTURES) {
     element(`${name}-panel`).classList.toggle("large", name === shownLarge);
-    element(`${name}-panel`).querySelector("button").setAttribute("aria-pressed", name === shownLarge);
+    document.querySelector(`[data-large=${name}]`).setAttribute("aria-pressed", name === shownLarge);
   }
   element("stroke-chart").hidden = !state.target || !state.finished;
   element("time-chart").hidden = state.curve.length === 0;
@@ -142,16 +217,23 @@ function underway() {
   return `${place}, ${count} strokes${fidelity}, ${time_s.toFixed(1)} s`;
 }
 
-// dB of the finished drawing as marks are added, by the browser's renderer.
-function measure() {
-  comparison.clear(scene);
-  measured = [[0, comparison.psnr()]];
-  const step = Math.max(1, Math.ceil(marks.length / MEASURED));
-  for (let k = 0; k < marks.length; k += step) {
-    const part = marks.slice(k, k + step);
-    comparison.add(part.map(({ mark }) => mark));
-    measured.push([k + part.length, comparison.psnr()]);
+// dB of the finished drawing as marks are added, by the browser's renderer: in steps, between which the page answers.
+async function measure() {
+  const own = ++measuring;
+  if (!comparison || !state.finished || !element("inside").open) return;
+  const [list, found] = [marks, []];
+  const other = new Comparison(state.target, scene.width, scene.height);
+  other.clear(scene);
+  found.push([0, other.psnr()]);
+  const step = Math.max(1, Math.ceil(list.length / MEASURED));
+  for (let k = 0; k < list.length; k += step) {
+    const part = list.slice(k, k + step);
+    other.add(part.map(({ mark }) => mark));
+    found.push([k + part.length, other.psnr()]);
+    await new Promise((done) => setTimeout(done));
+    if (own !== measuring) return;
   }
+  measured = found;
   redraw();
 }
 
@@ -186,8 +268,12 @@ function showLayer(label, stage, list) {
 }
 
 function showSelected() {
-  const found = marks[selected - 1];
+  const found = marks[selected - 1], { veiled, gone } = edits.now;
   for (const id of ["zoom", "hide", "alone", "delete"]) element(id).disabled = !found;
+  element("choices").hidden = !found;
+  element("mark-hint").hidden = Boolean(found);
+  element("undo").disabled = edits.past.length === 0;
+  element("redo").disabled = edits.future.length === 0;
   const says = (id, pressed) => element(id).setAttribute("aria-pressed", pressed);
   says("hide", Boolean(found) && veiled.has(selected));
   says("alone", alone !== null && alone === selected);
@@ -195,75 +281,71 @@ function showSelected() {
   element("restore").hidden = away === 0;
   element("restore").textContent = alone ? "show all" : `bring back ${away}`;
   if (document.activeElement !== element("stroke")) element("stroke").value = found ? selected : "";
-  element("numbers").replaceChildren(...(found ? describe(found) : []));
-}
-
-// Number of points of a mark that are told.
-const TOLD_POINTS = 24;
-
-function describe({ mark, number, stage }) {
-  const [, radius, color, opacity] = mark;
-  const rows = [["number", `${number} of ${marks.length}, stage ${stage}`]];
-  rows.push(...paths(mark).map((path) => [isArea(mark) ? "ring" : "points", told(path)]));
-  if (!isArea(mark)) rows.push(["width", `${round(2 * radius)} px`]);
-  rows.push(["colour", color], ["opacity", opacity.toFixed(3)]);
-  return rows.flatMap(([name, value]) => {
-    const term = document.createElement("dt"), text = document.createElement("dd");
-    term.textContent = name;
-    if (name === "colour") {
-      const swatch = text.appendChild(document.createElement("span"));
-      swatch.className = "swatch";
-      swatch.style.background = color;
-    }
-    text.append(value);
-    return [term, text];
-  });
-}
-
-const round = (value) => Number(value.toFixed(2));
-
-// The points of a path. Control points are in parentheses.
-function told({ places, kinds }) {
-  const pairs = places.slice(0, TOLD_POINTS).map(([x, y], k) => {
-    const pair = `${round(x)}, ${round(y)}`;
-    return kinds[k] === "o" ? pair : `(${pair})`;
-  });
-  if (places.length > TOLD_POINTS) pairs.push(`${places.length - TOLD_POINTS} more`);
-  if (kinds.endsWith("z")) pairs.push("start");
-  return pairs.join("  →  ");
+  element("numbers").replaceChildren(...(found ? describe(found, marks.length) : []));
 }
 
 // Pictures.
 
+// Draws with the next frame, so that fast pointers do not wait.
+let waiting = false;
+function soon() {
+  if (waiting) return;
+  waiting = true;
+  requestAnimationFrame(() => {
+    waiting = false;
+    redraw();
+  });
+}
+
 function redraw() {
   if (!scene) return;
   const list = marks.filter(isShown).map(({ mark }) => mark);
-  const found = marks[selected - 1];
-  paint(drawing, (context, px) => {
+  paint(drawing, (context) => {
     drawPage(context, scene);
     drawMarks(context, list);
-    if (found) {
-      drawRing(context, found.mark, px);
-      drawPoints(context, found.mark, px);
-    }
-    if (state.target) drawCompared(context, px);
+    if (state.target) drawCompared(context);
   });
-  if (comparison) {
-    paint(target, (context) => context.drawImage(state.target, 0, 0, scene.width, scene.height));
-    comparison.clear(scene);
-    comparison.add(list);
-    element("shown-db").textContent = `${comparison.psnr().toFixed(2)} dB as drawn here`;
-    comparison.subtract();
-    paint(residual, (context) => context.drawImage(comparison.residual, 0, 0, scene.width, scene.height));
-  }
+  drawOverlay();
+  if (comparison) compare(list);
   showSliders(list);
   showSelected();
   writeAddress();
 }
 
+function compare(list) {
+  if (target.clientWidth) paint(target, (context) => context.drawImage(state.target, 0, 0, scene.width, scene.height));
+  comparison.clear(scene);
+  comparison.add(list);
+  element("shown-db").textContent = `${comparison.psnr().toFixed(2)} dB as drawn here`;
+  if (!residual.clientWidth) return;
+  comparison.subtract();
+  paint(residual, (context) => context.drawImage(comparison.residual, 0, 0, scene.width, scene.height));
+}
+
+// What lies over the drawing: the mark under the pointer, the one that is selected, and a line between picture and drawing.
+export function drawOverlay() {
+  if (!scene || !drawing.clientWidth) return;
+  const found = marks[selected - 1], under = marks[hovered - 1];
+  paint(overlay, (context, px) => {
+    if (veil) veil(context, px);
+    if (under && under !== found) drawRing(context, under.mark, px / 2);
+    if (found) {
+      drawRing(context, found.mark, px);
+      drawPoints(context, found.mark, px);
+    }
+    if (!state.target || compared === 0 || compared === 1) return;
+    const end = lens.view.x + compared * drawing.clientWidth * px;
+    for (const [color, width] of [["#0008", 4], ["#fff", 2]]) {
+      context.fillStyle = color;
+      context.fillRect(end - (width / 2) * px, lens.view.y, width * px, drawing.clientHeight * px);
+    }
+  });
+}
+
 function isShown({ number, stage }) {
   if (alone) return number === alone;
-  return number <= shown && !hidden.has(stage) && !veiled.has(number) && !gone.has(number);
+  const { veiled, gone } = edits.now;
+  return number <= shown && (draft?.[number - 1] ?? true) && !hidden.has(stage) && !veiled.has(number) && !gone.has(number);
 }
 
 function showSliders(visible) {
@@ -279,21 +361,17 @@ function showSliders(visible) {
   if (state.finished) drawChart(element("over-strokes"), measured, here ? [here] : []);
 }
 
-// Lays the target over the left of what is seen, up to a line.
-function drawCompared(context, px) {
+// Lays the target over the left of what is seen.
+function drawCompared(context) {
   if (compared === 0) return;
-  const end = view.x + compared * drawing.clientWidth * px;
+  const { x, y } = lens.view, zoom = lens.zoomOf(drawing);
   context.save();
   context.beginPath();
-  context.rect(view.x, view.y, end - view.x, drawing.clientHeight * px);
+  context.rect(x, y, (compared * drawing.clientWidth) / zoom, drawing.clientHeight / zoom);
   context.clip();
   context.clearRect(0, 0, scene.width, scene.height);
   context.drawImage(state.target, 0, 0, scene.width, scene.height);
   context.restore();
-  for (const [color, width] of [["#fff", 3], ["#000", 1]]) {
-    context.fillStyle = color;
-    context.fillRect(end - (width / 2) * px, view.y, width * px, drawing.clientHeight * px);
-  }
 }
 
 // Lets `draw` draw in px of the picture; it is told how many of them are one CSS px.
@@ -303,80 +381,15 @@ function paint(canvas, draw) {
   canvas.width = Math.round(width * ratio);
   canvas.height = Math.round((width * ratio * scene.height) / scene.width);
   const context = canvas.getContext("2d");
-  const zoom = zoomOf(canvas);
+  const zoom = lens.zoomOf(canvas), { view } = lens;
   context.setTransform(zoom * ratio, 0, 0, zoom * ratio, -view.x * zoom * ratio, -view.y * zoom * ratio);
   context.imageSmoothingEnabled = zoom < 3;
   draw(context, 1 / zoom);
 }
 
-// Mouse and buttons.
-
-// CSS px of a canvas per px of the picture. The address has the zoom of the large one; all show the same part.
-function zoomOf(canvas) {
-  const whole = canvas.clientWidth / scene.width;
-  return view.zoom ? (view.zoom * canvas.clientWidth) / element(largest()).clientWidth : whole;
-}
+// Buttons and keys.
 
 const largest = () => (state.target ? large : "drawing");
-
-function place(event) {
-  const zoom = zoomOf(event.target);
-  return [view.x + event.offsetX / zoom, view.y + event.offsetY / zoom];
-}
-
-function zoomAt(event) {
-  event.preventDefault();
-  if (!scene) return;
-  const [x, y] = place(event);
-  const canvas = event.target, whole = element(largest());
-  const least = whole.clientWidth / scene.width;
-  const zoom = Math.max(least, Math.min(100, zoomOf(whole) * 1.0015 ** -event.deltaY));
-  const own = (zoom * canvas.clientWidth) / whole.clientWidth;
-  view = zoom > least ? { zoom, x: x - event.offsetX / own, y: y - event.offsetY / own } : { zoom: 0, x: 0, y: 0 };
-  redraw();
-}
-
-function zoomTo({ mark }) {
-  const [left, top, right, bottom] = bounds(mark);
-  const whole = element(largest());
-  const [width, height] = [whole.clientWidth, whole.clientHeight];
-  const zoom = Math.min(40, width / (right - left) / 2, height / (bottom - top) / 2);
-  view = { zoom, x: (left + right) / 2 - width / zoom / 2, y: (top + bottom) / 2 - height / zoom / 2 };
-  redraw();
-}
-
-let drag = null;
-
-function startDrag(event) {
-  if (!scene) return;
-  drag = { from: place(event), moved: false };
-  event.target.setPointerCapture(event.pointerId);
-}
-
-function moveDrag(event) {
-  if (!drag) return;
-  const [x, y] = place(event);
-  const [dx, dy] = [drag.from[0] - x, drag.from[1] - y];
-  drag.moved ||= Math.hypot(dx, dy) * zoomOf(event.target) > 3;
-  if (!drag.moved) return;
-  view = { zoom: zoomOf(element(largest())), x: view.x + dx, y: view.y + dy };
-  redraw();
-}
-
-function endDrag(event) {
-  if (drag && !drag.moved) {
-    selected = markAt(marks.filter(isShown), ...place(event))?.number ?? null;
-    redraw();
-  }
-  drag = null;
-}
-
-for (const canvas of [target, drawing, residual]) {
-  canvas.addEventListener("wheel", zoomAt, { passive: false });
-  canvas.addEventListener("pointerdown", startDrag);
-  canvas.addEventListener("pointermove", moveDrag);
-  canvas.addEventListener("pointerup", endDrag);
-}
 
 function on(id, event, action) {
   element(id).addEventListener(event, () => {
@@ -394,18 +407,51 @@ on("compare", "input", ({ value }) => (compared = Number(value) / 100));
 on("stroke", "input", ({ value }) => (selected = Number(value) || null));
 on("all", "click", () => hidden.clear());
 on("none", "click", () => scene?.stages.forEach((_, k) => hidden.add(k + 1)));
-on("reset", "click", () => (view = { zoom: 0, x: 0, y: 0 }));
-on("hide", "click", () => veiled.delete(selected) || veiled.add(selected));
+element("reset").addEventListener("click", () => lens.whole());
+element("zoom-in").addEventListener("click", () => lens.zoomBy(1.5));
+element("zoom-out").addEventListener("click", () => lens.zoomBy(1 / 1.5));
 on("alone", "click", () => (alone = alone === selected ? null : selected));
-on("delete", "click", () => {
-  gone.add(selected);
-  [selected, alone] = [null, null];
-});
 on("restore", "click", () => {
   if (alone) alone = null;
-  else [veiled, gone] = [new Set(), new Set()];
+  else change({ veiled: new Set(), gone: new Set() });
 });
-element("zoom").addEventListener("click", () => zoomTo(marks[selected - 1]));
+element("zoom").addEventListener("click", () => lens.zoomTo(marks[selected - 1].box));
+const wishes = { hide, delete: remove, undo: () => travel("undo"), redo: () => travel("redo") };
+for (const [id, wish] of Object.entries(wishes)) element(id).addEventListener("click", wish);
+
+function hide() {
+  if (!selected) return;
+  const veiled = new Set(edits.now.veiled);
+  if (!veiled.delete(selected)) veiled.add(selected);
+  change({ veiled });
+}
+
+function remove() {
+  if (!selected) return;
+  const gone = new Set([...edits.now.gone, selected]);
+  [selected, alone, hovered] = [null, null, null];
+  change({ gone });
+}
+
+function travel(way) {
+  if (!scene) return;
+  edits[way]();
+  showEdited();
+}
+
+listenToSwatches({
+  repaint(pairs) {
+    edits.repaint(pairs);
+    const background = pairs.find(([from]) => !scene.shade && from === scene.background)?.[1];
+    if (background) edits.now = { ...edits.now, background };
+    showEdited();
+  },
+  drop(members, withPaper) {
+    const gone = new Set(edits.now.gone);
+    for (const { mark, number } of marks) if (members.includes(mark[2])) gone.add(number);
+    change({ gone, ...(withPaper && { background: null }) });
+  },
+});
 
 // Which picture is large.
 
@@ -414,7 +460,7 @@ function enlarge(name) {
   const before = element(largest()).clientWidth;
   large = name;
   showState();
-  if (view.zoom) view.zoom *= element(largest()).clientWidth / before;
+  if (lens.view.zoom && before) lens.view.zoom *= element(largest()).clientWidth / before;
   redraw();
 }
 
@@ -423,30 +469,64 @@ for (const button of document.querySelectorAll("[data-large]")) {
 }
 
 addEventListener("keydown", (event) => {
-  if (event.ctrlKey || event.metaKey || event.altKey || !scene || !state.target) return;
-  if (event.target.matches("input, select, button, a, textarea")) return;
-  const next = PICTURES[(PICTURES.indexOf(large) + 1) % PICTURES.length];
-  const name = event.key === " " ? next : PICTURES.find((name) => name[0] === event.key.toLowerCase());
-  if (!name) return;
-  event.preventDefault();
-  enlarge(name);
+  if (!scene || event.altKey || event.target.matches("input:not([type=range]), select, textarea")) return;
+  if (event.ctrlKey || event.metaKey) {
+    if (event.key.toLowerCase() !== "z") return;
+    event.preventDefault();
+    return travel(event.shiftKey ? "redo" : "undo");
+  }
+  if (event.target.matches("input, a, summary") || (event.key === " " && event.target.matches("button"))) return;
+  if (answer(event.key)) event.preventDefault();
 });
 
-// The file without what is not shown.
+// Does what a key stands for; returns whether it stands for something.
+function answer(key) {
+  const next = PICTURES[(PICTURES.indexOf(large) + 1) % PICTURES.length];
+  const name = key === " " ? next : PICTURES.find((name) => name[0] === key.toLowerCase());
+  if (name && state.target) enlarge(name);
+  else if (key === "h") hide();
+  else if (key === "Delete" || key === "Backspace") remove();
+  else if (key === "Escape") [selected] = [null, redraw()];
+  else return lens.key(key);
+  return true;
+}
+
+// The file as it is shown.
+
+const isWhole = () => marks.every(isShown) && edits.now.colors.length === 0 && edits.now.background === undefined;
+
+// The text of a file of the drawing, with what is changed.
+export function asShown(text) {
+  return isWhole() ? text : edited(text, marks.map(isShown), edits.now, scene);
+}
 
 element("download").addEventListener("click", async (event) => {
-  const kept = marks.map(isShown);
-  if (kept.every(Boolean)) return;
+  if (isWhole()) return;
   event.preventDefault();
   const link = element("download");
   const text = await (await fetch(link.href)).text();
-  const part = withoutMarks(text, kept) ?? drawn({ ...scene, marks: marks.filter(isShown) });
   const saved = document.createElement("a");
-  saved.href = URL.createObjectURL(new Blob([part], { type: "image/svg+xml" }));
+  saved.href = URL.createObjectURL(new Blob([asShown(text)], { type: "image/svg+xml" }));
   saved.download = link.download || "drawing.svg";
   saved.click();
   setTimeout(() => URL.revokeObjectURL(saved.href), 10_000);
 });
+
+// Shows some marks of the drawing only, true for each that is; null for all.
+export function showDraft(kept) {
+  draft = kept;
+  redraw();
+}
+
+// Lets drags go to `next(x, y, begins)`, px of the picture, and paints `over(context)` over the drawing; null ends it.
+export function paintOver(next, over) {
+  [brush, veil] = [next, over];
+  drawing.style.touchAction = brush ? "none" : "";
+  drawOverlay();
+}
+
+// dB of what is shown, as the browser draws it; NaN without a picture.
+export const shownDb = () => parseFloat(element("shown-db").textContent);
 
 export function listen({ stop, add }) {
   element("stop").addEventListener("click", stop);
@@ -456,10 +536,16 @@ export function listen({ stop, add }) {
   });
 }
 
-addEventListener("resize", () => {
+function showAgain() {
   if (!scene) return;
   showState();
   redraw();
+}
+
+addEventListener("resize", showAgain);
+element("inside").addEventListener("toggle", () => {
+  showAgain();
+  measure();
 });
 addEventListener("hashchange", () => {
   readAddress();

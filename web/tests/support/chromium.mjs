@@ -161,6 +161,22 @@ export class Page {
     return join(this.browser.folder, await saved);
   }
 
+  // Presses a key; `text` is what it writes.
+  async press(key, { ctrl = false, shift = false, text = undefined } = {}) {
+    const modifiers = (ctrl ? 2 : 0) + (shift ? 8 : 0);
+    await this.send("Input.dispatchKeyEvent", { type: "keyDown", key, code: key, modifiers, text });
+    await this.send("Input.dispatchKeyEvent", { type: "keyUp", key, code: key, modifiers });
+  }
+
+  // Drags the mouse through places; one alone is a click.
+  async mouse(...places) {
+    const at = (type, [x, y], buttons) => this.send("Input.dispatchMouseEvent", { type, x, y, button: "left", buttons, clickCount: 1 });
+    await at("mouseMoved", places[0], 0);
+    await at("mousePressed", places[0], 1);
+    for (const place of places.slice(1)) await at("mouseMoved", place, 1);
+    await at("mouseReleased", places.at(-1), 0);
+  }
+
   async screenshot() {
     const { data } = await this.send("Page.captureScreenshot", { format: "png", captureBeyondViewport: true });
     return Buffer.from(data, "base64");

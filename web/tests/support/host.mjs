@@ -12,6 +12,8 @@ const KINDS = {
   ".js": "text/javascript",
   ".wasm": "application/wasm",
   ".png": "image/png",
+  ".jpg": "image/jpeg",
+  ".svg": "image/svg+xml",
 };
 
 export async function host() {
