@@ -85,6 +85,7 @@ function redraw() {
   drawn.options = options();
   const before = drawn.focus ? undefined : kept.get(JSON.stringify(drawn.options));
   state = { ...state, finished: false, curve: [], last: null, done: 0, keeps: true };
+  document.body.dataset.ready = false;
   if (before) {
     fitting.cancel();
     return hear(before);
@@ -108,6 +109,7 @@ function begin({ picture, title, target }) {
   state = { ...fresh, picture, title, target, polishing: false, last: null, curve: [], scene: null };
   for (const id of ["download", "animation"]) offer(id, null);
   element("summary").value = "drawing";
+  document.body.dataset.ready = false;
   present();
 }
 
@@ -133,7 +135,16 @@ function finish(message, drawing, animation) {
   if (kept.size > KEPT) kept.delete(kept.keys().next().value);
   offer("download", svg, ".svg");
   offer("animation", animation, ".animated.svg");
+  element("report").textContent = reported(report);
   weigh(drawing, drawn.image, drawn.options.quality);
+}
+
+// What the expert's panel says of a drawing.
+function reported({ strokes, areas, svg_bytes, svg_gzip_bytes, wall_s, stop, fidelity: { psnr_db, ssim, ssimulacra2 } }) {
+  const whole = (value) => value.toLocaleString("en");
+  const alike = psnr_db === null ? "no error" : `${psnr_db.toFixed(2)} dB`;
+  return `${whole(strokes - areas)} strokes and ${whole(areas)} areas; ${alike}, SSIM ${ssim.toFixed(3)}, SSIMULACRA2 ${ssimulacra2.toFixed(1)}; ` +
+    `${whole(svg_bytes)} bytes, ${whole(svg_gzip_bytes)} after gzip; ${wall_s.toFixed(1)} s, ended by: ${stop}.`;
 }
 
 function thinned(curve) {

@@ -38,6 +38,22 @@ describe("draws what the program draws", { concurrency: cpus().length }, () => {
   }
 });
 
+it("a mask says where errors count, as for the program", async () => {
+  const pixels = Uint8Array.from({ length: 256 * 256 }, (_, i) => (i % 256 < 128 ? 255 : 0));
+  const options = { strokes: 60, preset: "draft" };
+  const { svg } = await fitPng(sample("noto-gem.png"), { ...options, focus: { pixels, width: 256, height: 256 } });
+  const drawn = inFolder((folder) => {
+    const mask = join(folder, "mask.pgm");
+    writeFileSync(mask, Buffer.concat([Buffer.from("P5\n256 256\n255\n"), pixels]));
+    return native(join(root, "samples/noto-gem.png"), ["--strokes", "60", "--preset", "draft", "--focus", mask]);
+  });
+  assert.ok(svg === drawn);
+  assert.ok(svg !== (await fitPng(sample("noto-gem.png"), options)).svg);
+  const black = { pixels: new Uint8Array(4), width: 2, height: 2 };
+  await assert.rejects(fitPng(sample("noto-gem.png"), { focus: black }), /the mask is black everywhere/);
+  await assert.rejects(fitPng(sample("noto-gem.png"), { focus: { ...black, pixels: pixels.slice(0, 4) } }), /the mask of 2×2 px is none for a picture of 256×256/);
+});
+
 // A dark bar on white, opaque.
 const [width, height] = [48, 24];
 const isBar = (i) => i % width >= 8 && i % width < 40 && Math.floor(i / width) >= 10 && Math.floor(i / width) < 14;

@@ -112,7 +112,7 @@ describe("the page in use", { skip: !program }, () => {
     assert.ok((await file()) === native(picture("noto-hibiscus.png"), ["--quality", "20"]));
     const fitted = await page.value(get("summary", "value"));
     // The way back takes no fit.
-    await page.value(`${slide(14)}`);
+    await page.value(slide(14));
     await page.until(`${READY} && document.querySelector('[name=quality]').value === '14'`);
     await page.value(slide(20));
     await page.until(`document.querySelector('[name=quality]').value === '20' && ${get("summary", "value")} === '${fitted}'`);
