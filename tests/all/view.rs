@@ -147,7 +147,13 @@ fn the_page_needs_nothing_from_elsewhere() {
         "page.js",
         "viewer.js",
         "chart.js",
+        "choice.js",
+        "describe.js",
+        "edits.js",
+        "lens.js",
+        "palette.js",
         "picture.js",
+        "swatches.js",
     ] {
         let (status, body) = program.get(name);
         assert_eq!(status, 200, "{name}");

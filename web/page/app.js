@@ -109,6 +109,7 @@ function begin({ picture, title, target }) {
   state = { ...fresh, picture, title, target, polishing: false, last: null, curve: [], scene: null };
   for (const id of ["download", "animation"]) offer(id, null);
   element("summary").value = "drawing";
+  element("take").hidden = true;
   document.body.dataset.ready = false;
   present();
 }
@@ -133,6 +134,7 @@ function finish(message, drawing, animation) {
   Object.assign(state, { finished: true, scene, svg_bytes: report.svg_bytes, grows: drawn.options.form !== "outlines" });
   if (!drawn.focus) kept.set(JSON.stringify(drawn.options), message);
   if (kept.size > KEPT) kept.delete(kept.keys().next().value);
+  element("take").hidden = false;
   offer("download", svg, ".svg");
   offer("animation", animation, ".animated.svg");
   element("report").textContent = reported(report);
@@ -178,7 +180,6 @@ function present() {
   due ??= setTimeout(() => {
     const start = performance.now();
     show({ ...state });
-    element("download").hidden = !element("download").href;
     state.scene = null;
     const rest = state.finished ? 0 : REST * (performance.now() - start);
     setTimeout(() => {

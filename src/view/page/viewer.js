@@ -187,7 +187,7 @@ function showState() {
   element("progress").hidden = state.done === null;
   element("stop").hidden = state.finished || state.done === null;
   element("more").hidden = !state.grows;
-  element("download").hidden = !scene;
+  element("download").hidden = !scene || !element("download").href;
   for (const id of ["target-panel", "residual-panel", "compare"]) element(id).hidden = !state.target;
   element("pictures").hidden = !state.target;
   element("panels").classList.toggle("single", !state.target);
