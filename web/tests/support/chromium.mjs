@@ -7,7 +7,7 @@ import { delimiter, join } from "node:path";
 
 const PROGRAMS = ["chromium-headless-shell", "chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 // Longest wait for what a page is to do, ms; the machine may be busy.
-const PATIENCE = 120_000;
+const PATIENCE = 300_000;
 
 export function locate() {
   const folders = (process.env.PATH ?? "").split(delimiter);
