@@ -91,7 +91,8 @@ fn page(scene: &Scene) -> BezPath {
 fn outlines(scene: &Scene) -> Result<Vec<([u8; 3], BezPath)>> {
     let background = scene.background.map(|c| (c.map(quantum), page(scene)));
     let outline = |mark: &Mark| {
-        if quantum(mark.opacity()) < u8::MAX {
+        let is_see_through = mark.shade().is_some_and(|shade| !shade.is_opaque());
+        if quantum(mark.opacity()) < u8::MAX || is_see_through {
             let message = "translucent marks show two colours at a place, which cannot be cut out: draw with --opaque";
             return Err(Error::new(ErrorKind::Config, message));
         }

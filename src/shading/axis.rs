@@ -2,7 +2,7 @@
 
 use std::f32::consts::FRAC_PI_2;
 
-use super::{Blocks, ShadeFit};
+use super::{Block, Blocks, ShadeFit};
 use crate::math::{self, Point, Vector};
 use crate::scene::Axis;
 
@@ -127,56 +127,45 @@ fn circle(blocks: &Blocks, center: Point) -> Axis {
     Axis::Radial { center, radius }
 }
 
-/// Spread of blocks of similar offsets: the sum of squared differences from the line that is nearest to their group. Differences
-/// from the mean alone would be those along the axis where groups are wide.
+/// Spread of blocks of similar offsets: the sum of squared differences from the polyline through the means of groups. Differences
+/// from the means themselves would be those along the axis where groups are wide.
 fn spread(blocks: &Blocks, axis: Axis) -> f64 {
-    let mut groups = [Group::default(); GROUPS];
-    for block in blocks.all.iter().filter(|block| block.weight > 0.0) {
-        let offset = axis.offset(block.center).clamp(0.0, 1.0) * GROUPS as f32;
-        let group = &mut groups[(offset as usize).min(GROUPS - 1)];
-        group.add(f64::from(offset.fract()), block.value.map(f64::from));
+    let taking_part = || blocks.all.iter().filter(|block| block.weight > 0.0);
+    let offset = |block: &Block| f64::from(axis.offset(block.center).clamp(0.0, 1.0));
+    // Each group has a knot at its mean offset.
+    let mut sums = [[0.0; 6]; GROUPS];
+    for block in taking_part() {
+        let at = offset(block);
+        let [r, g, b, a] = block.value.map(f64::from);
+        let sum = &mut sums[((at * GROUPS as f64) as usize).min(GROUPS - 1)];
+        let terms = [1.0, at, r, g, b, a];
+        sum.iter_mut()
+            .zip(terms)
+            .for_each(|(sum, term)| *sum += term);
     }
-    groups.iter().map(Group::spread).sum()
-}
-
-/// Sums over a group of blocks, `x` being their offsets in it.
-#[derive(Clone, Copy, Default)]
-struct Group {
-    count: f64,
-    x: f64,
-    x2: f64,
-    values: [f64; 4],
-    products: [f64; 4],
-    squares: f64,
-}
-
-impl Group {
-    fn add(&mut self, x: f64, values: [f64; 4]) {
-        self.count += 1.0;
-        self.x += x;
-        self.x2 += x * x;
-        for (c, value) in values.into_iter().enumerate() {
-            self.values[c] += value;
-            self.products[c] += x * value;
-            self.squares += value * value;
-        }
-    }
-
-    /// The sum of squared differences from the nearest line.
-    fn spread(&self) -> f64 {
-        let count = self.count.max(1.0);
-        let along = self.x2 - self.x * self.x / count;
-        let explained = |(sum, product): (&f64, &f64)| {
-            let across = product - self.x * sum / count;
-            let trend = match along > 1e-4 * count {
-                true => across * across / along,
-                false => 0.0,
-            };
-            sum * sum / count + trend
+    let filled = sums.iter().filter(|sum| sum[0] > 0.0);
+    let knots: Vec<[f64; 5]> = filled
+        .map(|&[count, at, r, g, b, a]| [at, r, g, b, a].map(|sum| sum / count))
+        .collect();
+    let apart = |block: &Block| {
+        let at = offset(block);
+        let after = knots.partition_point(|knot| knot[0] <= at);
+        let last = knots.len().saturating_sub(1);
+        let [from, to] = [after.saturating_sub(1), after.min(last)].map(|k| knots[k]);
+        let width = to[0] - from[0];
+        let part = if width > 0.0 {
+            (at - from[0]) / width
+        } else {
+            0.0
         };
-        let explained = self.values.iter().zip(&self.products).map(explained);
-        self.squares - explained.sum::<f64>()
-    }
+        let channel = |c: usize| {
+            let seen = from[c + 1] + part * (to[c + 1] - from[c + 1]);
+            let apart = f64::from(block.value[c]) - seen;
+            apart * apart
+        };
+        (0..4).map(channel).sum::<f64>()
+    };
+    taking_part().map(apart).sum()
 }
 
 /// A place near `start` where `cost` is least, by steps along each number in turn that are halved where none is an

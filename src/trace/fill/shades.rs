@@ -106,7 +106,8 @@ impl Shaded {
         }
     }
 
-    /// Gives the pixels of a part that a shade meets to it.
+    /// Gives the pixels of a part that a shade meets to it, and those around that it meets as well: where a gradient ends
+    /// within a shape, the rest is not smooth there.
     fn take(
         &mut self,
         pixels: &Pixels<'_>,
@@ -116,10 +117,20 @@ impl Shaded {
         numbers: &Shades,
     ) {
         let shade = &self.list[usize::from(index)];
-        for &i in part {
+        let is_met = |i: usize| {
             let seen = shown(shade, pixels, i, mattes);
-            if away(&pixels.target.at(i), &seen) <= numbers.fit.near + LEVEL {
-                self.of[i] = index;
+            away(&pixels.target.at(i), &seen) <= numbers.fit.near + LEVEL
+        };
+        let mut taken: Vec<usize> = part.iter().copied().filter(|&i| is_met(i)).collect();
+        taken.iter().for_each(|&i| self.of[i] = index);
+        let mut next = 0;
+        while let Some(&i) = taken.get(next) {
+            next += 1;
+            for k in beside(i, pixels.width, self.of.len()) {
+                if self.of[k] == NONE && is_met(k) {
+                    self.of[k] = index;
+                    taken.push(k);
+                }
             }
         }
     }
