@@ -3,7 +3,9 @@
 use std::fmt;
 use std::str::FromStr;
 
-use fearless_simd::{Fallback, Level};
+#[cfg(not(target_family = "wasm"))]
+use fearless_simd::Fallback;
+use fearless_simd::Level;
 
 use crate::error::{Error, ErrorKind, Result};
 
@@ -25,7 +27,7 @@ pub enum Simd {
     Neon,
     /// The 128-bit vectors of WebAssembly, in a build with that feature.
     Simd128,
-    /// No vectors.
+    /// No vectors; not in WebAssembly.
     Scalar,
 }
 
@@ -46,6 +48,7 @@ impl Simd {
         let best = Level::new();
         match self {
             Self::Auto => Some(best),
+            #[cfg(not(target_family = "wasm"))]
             Self::Scalar => Some(Level::Fallback(Fallback::new())),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             Self::Avx512 => best.as_avx512().map(Level::Avx512),
