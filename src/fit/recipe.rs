@@ -580,6 +580,8 @@ pub struct ShadeChoice {
     pub least_share: f32,
     /// Share of the blocks that it has to meet beyond those of the best single colour.
     pub least_gain: f32,
+    /// Largest change of a page per px: a larger one is the edge of a thing.
+    pub steepest: f32,
     /// The fit of one.
     pub fit: ShadeFit,
 }

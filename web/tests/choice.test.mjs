@@ -84,3 +84,15 @@ test("paths of every kind are written as SVG", () => {
     assert.ok(text.includes(part), `${part} is not in ${text}`);
   }
 });
+
+test("an area keeps its gradient, and takes it away", () => {
+  const shade = { axis: [0, 0, 20, 0], stops: [[0, "rgb(32 64 96 / 1)"], [0.5, "rgb(255 0 9 / 0.5)"]] };
+  const marks = [{ mark: [...frame, shade], stage: 1 }, { mark: drop, stage: 1 }];
+  const text = drawn({ width: 60, height: 40, marks });
+  assert.match(text, /<linearGradient id="shade-1-1" gradientUnits="userSpaceOnUse" x1="0" y1="0" x2="20" y2="0">/);
+  assert.match(text, /<stop offset="0.5" stop-color="#ff0009" stop-opacity="0.5"\/>/);
+  assert.match(text, /fill="url\(#shade-1-1\)"/);
+  const layer = text.replace('<g id="stage-1"', '<g id="stage-1" inkscape:groupmode="layer"');
+  assert.ok(!withoutMarks(layer, [false, true]).includes("radient"));
+  assert.ok(withoutMarks(layer, [true, false]).includes('<linearGradient id="shade-1-1"'));
+});

@@ -3,7 +3,7 @@
 use crate::fit::recipe::ShadeChoice;
 use crate::image::Image;
 use crate::math::Point;
-use crate::scene::{Scene, Shade};
+use crate::scene::{Axis, Scene, Shade, ShadeStop};
 use crate::shading::{Block, Blocks, Value};
 use crate::svg::{self, WriteOptions};
 
@@ -17,6 +17,9 @@ pub(in crate::fit) fn choose(
     let (blocks, area) = blocks(picture, choice);
     let flat = flat(&blocks);
     let (shade, met) = blocks.best_shade(&choice.fit)?;
+    if has_edge(&shade, choice.steepest) {
+        return None;
+    }
     let alone = blocks.met(choice.fit.near, |_| flat);
     let gain = (alone.error - met.error) * area;
     let page = Scene::empty(picture.width() as u32, picture.height() as u32, None);
@@ -24,6 +27,24 @@ pub(in crate::fit) fn choose(
         && met.share >= alone.share + choice.least_gain
         && gain >= price_per_byte * bytes(&page, &shade) as f32;
     is_worth_it.then_some(shade)
+}
+
+/// True if the shade changes by more than this per px somewhere: there is the edge of a thing, which is none of the page.
+fn has_edge(shade: &Shade, steepest: f32) -> bool {
+    let length = match shade.axis() {
+        Axis::Linear { from, to } => (to - from).norm(),
+        Axis::Radial { radius, .. } => radius,
+    };
+    let stops: Vec<ShadeStop> = shade.stops().collect();
+    stops.windows(2).any(|ends| {
+        let px = 1.0 + length * (ends[1].offset - ends[0].offset);
+        let value = |stop: &ShadeStop, c: usize| match c {
+            3 => stop.opacity,
+            c => stop.color[c] * stop.opacity,
+        };
+        let changes = (0..4).map(|c| (value(&ends[1], c) - value(&ends[0], c)).abs());
+        changes.fold(0.0, f32::max) > steepest * px
+    })
 }
 
 /// Bytes that `shade` adds to the file of `page`.
@@ -85,7 +106,6 @@ mod tests {
     use super::*;
     use crate::fit::recipe::{Preset, Recipe};
     use crate::math;
-    use crate::scene::Axis;
 
     const WIDTH: usize = 120;
     const HEIGHT: usize = 80;
@@ -163,6 +183,18 @@ mod tests {
         let clear = picture(|x, _| ramp(x));
         let shade = shade(&sign).unwrap();
         assert!(error(&clear, &shade) < 1.5, "{shade:?}");
+    }
+
+    #[test]
+    fn a_disc_in_a_glow_is_none_of_the_page() {
+        let disc = picture(|x, y| {
+            let away = math::hypot(x - 60.0, y - 40.0);
+            match away < 12.0 {
+                true => [0.9, 0.2, 0.1, 1.0],
+                false => [0.2, 0.3, 1.0 - away / 100.0, 1.0],
+            }
+        });
+        assert_eq!(shade(&disc), None);
     }
 
     #[test]

@@ -336,6 +336,7 @@ const BALANCED: Recipe = Recipe {
             blocks: 64,
             least_share: 0.5,
             least_gain: 0.25,
+            steepest: 14.0 / 255.0,
             fit: ShadeFit {
                 near: 3.0 / 255.0,
                 hopeless_share: 0.2,

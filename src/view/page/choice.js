@@ -42,7 +42,9 @@ export function withoutMarks(text, kept) {
     else if (inside && line.startsWith("<path ")) places.push(k);
   });
   if (places.length !== kept.length) return null;
-  const dropped = new Set(places.filter((_, i) => !kept[i]));
+  // A gradient stands before the area that it is of.
+  const isGradient = (k) => /^<(linear|radial)Gradient /.test(lines[k]);
+  const dropped = new Set(places.filter((_, i) => !kept[i]).flatMap((k) => (isGradient(k - 1) ? [k - 1, k] : [k])));
   return lines.filter((_, k) => !dropped.has(k)).join("\n");
 }
 
@@ -54,17 +56,30 @@ export function drawn({ width, height, background, marks }) {
   for (const stage of new Set(marks.map(({ stage }) => stage))) {
     const own = marks.filter((mark) => mark.stage === stage);
     parts.push(`<g id="stage-${stage}" fill="none" stroke-linecap="round" stroke-linejoin="round">`);
-    parts.push(...own.map(({ mark }) => element(mark)), "</g>");
+    parts.push(...own.map(({ mark }, k) => element(mark, `shade-${stage}-${k + 1}`)), "</g>");
   }
   return [...parts, "</svg>", ""].join("\n");
 }
 
-function element(mark) {
-  const [, radius, color, opacity] = mark;
+function element(mark, id) {
+  const [, radius, color, opacity, , shade] = mark;
   const paint = isArea(mark) ? "fill" : "stroke";
   const width = isArea(mark) ? "" : ` stroke-width="${short(2 * radius)}"`;
   const clear = opacity < 1 ? ` ${paint}-opacity="${Number(opacity.toFixed(3))}"` : "";
-  return `<path d="${walks(mark).map(data).join("")}" ${paint}="${color}"${width}${clear}/>`;
+  const path = (fill) => `<path d="${walks(mark).map(data).join("")}" ${paint}="${fill}"${width}${clear}/>`;
+  return shade ? `${gradient(shade, id)}\n${path(`url(#${id})`)}` : path(color);
+}
+
+// The element of a gradient, whose colours are "rgb(r g b / a)".
+function gradient({ axis, stops }, id) {
+  const [kind, names] = axis.length === 4 ? ["linear", ["x1", "y1", "x2", "y2"]] : ["radial", ["cx", "cy", "r"]];
+  const numbers = names.map((name, k) => `${name}="${short(axis[k])}"`).join(" ");
+  const stop = ([offset, color]) => {
+    const [red, green, blue, opacity] = color.match(/[\d.]+/g).map(Number);
+    const hex = [red, green, blue].map((v) => v.toString(16).padStart(2, "0")).join("");
+    return `<stop offset="${Number(offset.toFixed(3))}" stop-color="#${hex}" stop-opacity="${Number(opacity.toFixed(3))}"/>`;
+  };
+  return `<${kind}Gradient id="${id}" gradientUnits="userSpaceOnUse" ${numbers}>${stops.map(stop).join("")}</${kind}Gradient>`;
 }
 
 const short = (value) => Number(value.toFixed(2));

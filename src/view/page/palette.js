@@ -57,12 +57,15 @@ function weighed(scene) {
   const [width, height] = [scene.width, scene.height].map((side) => Math.max(1, Math.round(side * scale)));
   const context = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true });
   const marks = scene.stages.flat();
-  const colors = [...new Set([...(scene.background ? [scene.background] : []), ...marks.map(([, , color]) => color)])];
+  const colors = [...new Set([...(scene.background ? [scene.background] : []), ...marks.filter((mark) => !mark[5]).map(([, , color]) => color)])];
   context.scale(scale, scale);
   // Each mark is painted in the number of its colour. Edges are mixtures, which count for some other colour: it is about.
-  const number = new Map(colors.map((color, k) => [color, hex([k & 255, (k >> 8) & 255, (k >> 16) & 255])]));
+  // A gradient has no colour to be changed: a number of none.
+  const counted = (k) => hex([k & 255, (k >> 8) & 255, (k >> 16) & 255]);
+  const number = new Map(colors.map((color, k) => [color, counted(k)]));
+  const numbered = ([points, radius, color, , kinds, shade]) => [points, radius, shade ? counted(colors.length) : number.get(color), 1, kinds];
   drawPage(context, { ...scene, shade: undefined, background: scene.background && number.get(scene.background) });
-  drawMarks(context, marks.filter(([, , , opacity]) => opacity > 0.5).map(([points, radius, color, , kinds]) => [points, radius, number.get(color), 1, kinds]));
+  drawMarks(context, marks.filter(([, , , opacity]) => opacity > 0.5).map(numbered));
   const weights = new Map(colors.map((color) => [color, 0.01]));
   const { data } = context.getImageData(0, 0, width, height);
   for (let i = 0; i < data.length; i += 4) {
