@@ -140,13 +140,6 @@ proptest! {
 
     #[test]
     fn what_we_write_draws_alike_everywhere(scene in scene(), options in options()) {
-        // A shade is a gradient, of which the lint warns.
-        let mut scene = Scene { shade: None, ..scene };
-        for mark in scene.stages.iter_mut().flat_map(|stage| &mut stage.marks) {
-            if let Mark::Area(area) = mark {
-                area.shade = None;
-            }
-        }
         prop_assert_eq!(lint(&write(&scene, &options)), []);
     }
 

@@ -76,6 +76,11 @@ fn each_rule_finds_its_case_and_nothing_else() {
         ),
         ("<rect width=\"5\" height=\"5\" x=\".5\"/>", "leading-dot"),
         ("<filter/>", "feature"),
+        ("<linearGradient id=\"g\"/>", "feature"),
+        (
+            "<radialGradient id=\"g\" gradientUnits=\"userSpaceOnUse\" cx=\"2\" cy=\"2\" r=\"3\" fx=\"1\"/>",
+            "feature",
+        ),
         ("<image href=\"data:image/png;base64,\"/>", "feature"),
         ("<text>url</text>", "text"),
         ("<style>path{fill:red}</style>", "style-sheet"),

@@ -245,7 +245,7 @@ impl<'a, 'b> Walk<'a, 'b> {
     }
 
     fn look_at_kind(&mut self, element: &Element) {
-        if let Some(rule) = kind(&element.name) {
+        if let Some(rule) = kind(element) {
             let found = format!("<{}>", short(&element.name));
             self.findings.add_each(rule, self.line, found);
         }
@@ -314,16 +314,24 @@ fn value_rule(key: &str, value: &str) -> Option<&'static Rule> {
 }
 
 /// The rule that an element breaks by its presence.
-fn kind(name: &str) -> Option<&'static Rule> {
-    match name {
+fn kind(element: &Element) -> Option<&'static Rule> {
+    match element.name.as_str() {
         "script" => Some(&rules::SCRIPT),
         "style" => Some(&rules::STYLE_SHEET),
         "text" => Some(&rules::TEXT),
-        "tspan" | "textPath" => None,
-        _ if PLAIN.contains(&name) => None,
-        _ if SHAPES.contains(&name) => Some(&rules::DIALECT),
+        "tspan" | "textPath" | "stop" => None,
+        "linearGradient" | "radialGradient" if is_plain_gradient(element) => None,
+        name if PLAIN.contains(&name) => None,
+        name if SHAPES.contains(&name) => Some(&rules::DIALECT),
         _ => Some(&rules::FEATURE),
     }
+}
+
+/// True if a gradient is of the kind that all programs draw alike: in px, and without a transform, a focus or a heir.
+fn is_plain_gradient(gradient: &Element) -> bool {
+    const ATTRIBUTES: [&str; 8] = ["id", "gradientUnits", "x1", "y1", "x2", "y2", "cx", "cy"];
+    let is_plain = |(key, _): (&str, &str)| key == "r" || ATTRIBUTES.contains(&key);
+    gradient.get("gradientUnits") == Some("userSpaceOnUse") && gradient.attributes().all(is_plain)
 }
 
 /// True if a value is a colour with alpha.
