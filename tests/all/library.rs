@@ -145,7 +145,7 @@ fn a_word_that_is_none_is_refused_with_those_that_are() {
         ),
         ("#ff".parse::<Colors>().map(|_| ()), "#rrggbb"),
         ("tiny".parse::<Form>().map(|_| ()), "smallest"),
-        ("hue".parse::<Group>().map(|_| ()), "stage or color"),
+        ("hue".parse::<Group>().map(|_| ()), "stage, color or object"),
         ("12".parse::<Length>().map(|_| ()), "mm, cm, in, pt or px"),
     ];
     for ((refusal, remedy), word) in refusals
