@@ -9,10 +9,17 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from drawings import areas, strokes
+from numpy.typing import NDArray
 
 import strokefit
 
 CAT = ROOT / "samples/chelsea-cat.png"
+# Strokes and areas, without a gradient.
+HOUSE = ROOT / "samples/filled/fluent-emoji-flat__house-with-garden.svg"
+
+
+def house() -> NDArray[np.uint8]:
+    return strokefit.render(HOUSE.read_text(), background="#ffffff")
 
 
 @pytest.mark.parametrize(
@@ -26,7 +33,7 @@ CAT = ROOT / "samples/chelsea-cat.png"
     ],
 )
 def test_a_drawing_becomes_arrays_and_the_same_bytes(options: dict[str, object]) -> None:
-    drawing = strokefit.fit(ROOT / "samples/noto-gem.png", preset="draft", **options)
+    drawing = strokefit.fit(house(), preset="draft", **options)
     names = ("form", "group", "order", "precision")
     written = {name: value for name, value in options.items() if name in names}
     scene = drawing.scene
@@ -35,7 +42,7 @@ def test_a_drawing_becomes_arrays_and_the_same_bytes(options: dict[str, object])
 
 
 def test_a_scene_has_the_strokes_and_areas_of_its_drawing() -> None:
-    drawing = strokefit.fit(ROOT / "samples/noto-gem.png", strokes=100, preset="draft")
+    drawing = strokefit.fit(house(), strokes=100, preset="draft")
     scene, marks = drawing.scene, drawing.scene.marks
     assert len(drawing.strokes) and len(drawing.areas)
     placed = np.argsort(np.concatenate([drawing.strokes.order, drawing.areas.order]))
@@ -45,6 +52,13 @@ def test_a_scene_has_the_strokes_and_areas_of_its_drawing() -> None:
     assert marks.filled.sum() == len(drawing.areas)
     assert len(marks.rings) == sum(len(area.rings) - 1 for area in drawing.areas)
     assert (scene.width, scene.height) == (drawing.report["input"]["width"], drawing.report["input"]["height"])
+
+
+def test_gradients_that_arrays_do_not_have_are_told() -> None:
+    drawing = strokefit.fit(ROOT / "samples/noto-gem.png", strokes=100, preset="draft")
+    with pytest.warns(UserWarning, match="areas of the drawing have a gradient"):
+        scene = drawing.scene
+    assert len(scene.marks.widths) == len(drawing.strokes) + len(drawing.areas)
 
 
 def test_the_command_line_writes_the_same(program: list[str], tmp_path: Path) -> None:
