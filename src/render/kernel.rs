@@ -23,7 +23,7 @@
 //! An area has the same segments without a radius, and each pixel a side of them: `d = ±|q|`, and `∂d/∂a`, `∂d/∂b` with the
 //! sign of the side ([`winding`]). Blocks inside that no segment is near are its hard core.
 //!
-//! An area with a gradient has another colour and opacity at each pixel, which both passes work out anew ([`Ink`]); no loss is
+//! An area with a gradient has another colour and opacity at each pixel, which both passes work out anew ([`ink`]); no loss is
 //! derived by them.
 //!
 //! Degenerate cases: a zero-length capsule is a disc; on the centre line `u` tends to 0 with the guard instead of being undefined.
@@ -53,11 +53,10 @@ pub(super) use touching::{Listed, list_segments};
 use super::CanvasLoss;
 use super::edge::{Edge, Reach, SoftEdge};
 use super::grid::{BLOCKS, BlockSet, Lanes, TileRgb, TileWeights, uniform_tile};
-use super::paint::Ink;
 use super::polylines::Polylines;
 use super::strokes::STYLE;
 use front::{Shape, Transmittance};
-use ink::ink_at;
+use ink::InkTile;
 use stack::Stack;
 use sums::{EdgeBlock, Grounds, Looks, Matte, OfSegment, OfStroke, Shifts};
 use union::{Kept, Segments, Union, shared};
@@ -107,6 +106,8 @@ pub(super) struct Scratch {
     near: Vec<BlockSet>,
     union: Union,
     windings: Windings,
+    /// The gradient of the stroke that is visited.
+    inks: InkTile,
 }
 
 impl Scratch {
@@ -125,6 +126,7 @@ impl Scratch {
             near: Vec::new(),
             union: Union::new(),
             windings: Windings::new(),
+            inks: [[Lanes::splat(0.0); 4]; BLOCKS],
         })
     }
 
@@ -174,15 +176,24 @@ impl TileJob<'_> {
         self.polylines.areas[self.listed[slot].stroke as usize]
     }
 
-    /// The colour and the opacity of a listed stroke.
+    /// The colour and the opacity of a listed stroke in these blocks. Those of a gradient are put into `inks`.
     #[inline(always)]
-    fn brush<S: Simd>(&self, simd: S, slot: usize) -> Brush<'_, S> {
+    fn brush<'a, S: Simd>(
+        &self,
+        simd: S,
+        slot: usize,
+        blocks: BlockSet,
+        inks: &'a mut InkTile,
+    ) -> Brush<'a, S> {
         let style = self.style(slot);
+        let ink = self.polylines.ink(self.listed[slot].stroke as usize);
+        if let Some(ink) = ink {
+            ink::fill(simd.level(), ink, blocks, self.origin, inks);
+        }
         Brush {
             rgb: splat_rgb(simd, style),
             opacity: f32x16::splat(simd, style[STYLE - 1].max(FAINTEST)),
-            ink: self.polylines.ink(self.listed[slot].stroke as usize),
-            origin: self.origin,
+            inks: ink.is_some().then_some(&*inks),
         }
     }
 
@@ -210,21 +221,20 @@ impl TileJob<'_> {
 struct Brush<'a, S: Simd> {
     rgb: [f32x16<S>; 3],
     opacity: f32x16<S>,
-    /// The gradient that takes the place of the colour.
-    ink: Option<&'a Ink>,
-    /// The tile's top left corner, px.
-    origin: [f32; 2],
+    /// Those of a gradient instead.
+    inks: Option<&'a InkTile>,
 }
 
 impl<S: Simd> Brush<'_, S> {
     /// Colour and opacity at the pixels of a block.
     #[inline(always)]
     fn at(&self, simd: S, block: usize) -> ([f32x16<S>; 3], f32x16<S>) {
-        match self.ink {
+        match self.inks {
             None => (self.rgb, self.opacity),
-            Some(ink) => {
-                let [red, green, blue, opacity] = ink_at(simd, ink, block, self.origin);
-                ([red, green, blue], self.opacity * opacity)
+            Some(inks) => {
+                let [red, green, blue, opacity] = &inks[block];
+                let rgb = [load(simd, red), load(simd, green), load(simd, blue)];
+                (rgb, self.opacity * load(simd, opacity))
             }
         }
     }
@@ -263,6 +273,7 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
         near,
         union,
         windings,
+        inks,
         ..
     } = scratch;
     // Start with nothing drawn and all blocks in view.
@@ -312,7 +323,7 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
         // Make room for what pass 2 needs. The two cursors walk over it in the order in which the blocks are visited: shared
         // ones, those of each segment alone, the core.
         visits.push(visit);
-        let brush = job.brush(simd, slot);
+        let brush = job.brush(simd, slot, visit.edge | visit.core, inks);
         let shape = Shape {
             edge,
             radius,
@@ -400,6 +411,7 @@ fn back_to_front<S: Simd, X: Extras>(
         kept_nearest,
         near,
         mattes,
+        inks,
         ..
     } = scratch;
     // Behind the rearmost stroke is the backdrop.
@@ -424,7 +436,7 @@ fn back_to_front<S: Simd, X: Extras>(
         let range = job.range(slot);
         let segments = job.segments(slot, range.clone());
         let near = &near[range];
-        let brush = job.brush(simd, slot);
+        let brush = job.brush(simd, slot, visit.edge | visit.core, inks);
         let mut stroke = Looks::new(simd);
         let first = sums.segments.len() as u32;
         // Take back what pass 1 kept: the cursors walk in its order.
@@ -487,7 +499,7 @@ fn back_to_front<S: Simd, X: Extras>(
             style: stroke.style(
                 style[STYLE - 1].max(FAINTEST),
                 job.is_area(slot),
-                brush.ink.is_some(),
+                brush.inks.is_some(),
             ),
             worth: if X::WORTH { stroke.worth() } else { 0.0 },
         });

@@ -1,20 +1,31 @@
 //! The gradient of an area in one block.
 
-use fearless_simd::{f32x16, prelude::*};
+use fearless_simd::{Level, dispatch, f32x16, prelude::*};
 
-use super::super::grid::{BLOCK, Lanes, TILE_BLOCKS};
+use super::super::grid::{BLOCK, BLOCKS, BlockSet, Lanes, TILE_BLOCKS};
 use super::super::paint::{Ink, InkAxis};
-use super::lanes::load;
+use super::lanes::{load, members, store};
 use super::segment::PIXELS;
+
+/// Red, green, blue and opacity of an ink at the pixels of each block of a tile.
+pub(super) type InkTile = [[Lanes; 4]; BLOCKS];
+
+/// Evaluates `ink` at some blocks of the tile at `origin`. A function of its own, since passes of the compiler take far longer
+/// for a larger kernel.
+#[inline(never)]
+pub(super) fn fill(level: Level, ink: &Ink, blocks: BlockSet, origin: [f32; 2], out: &mut InkTile) {
+    dispatch!(level, simd => {
+        for block in members(blocks) {
+            for (value, lanes) in ink_at(simd, ink, block, origin).into_iter().zip(&mut out[block]) {
+                store(value, lanes);
+            }
+        }
+    });
+}
 
 /// Red, green, blue and opacity of `ink` at the pixels of a block of the tile at `origin`.
 #[inline(always)]
-pub(super) fn ink_at<S: Simd>(
-    simd: S,
-    ink: &Ink,
-    block: usize,
-    origin: [f32; 2],
-) -> [f32x16<S>; 4] {
+fn ink_at<S: Simd>(simd: S, ink: &Ink, block: usize, origin: [f32; 2]) -> [f32x16<S>; 4] {
     let left = origin[0] + (block % TILE_BLOCKS * BLOCK) as f32;
     let top = origin[1] + (block / TILE_BLOCKS * BLOCK) as f32;
     let [x, y]: &[Lanes; 2] = &PIXELS;
