@@ -96,7 +96,7 @@ impl Mark {
         }
     }
 
-    /// This mark with `f`, which keeps shapes, applied to every point.
+    /// This mark with `f` applied to every point. A gradient stays where it is.
     #[must_use]
     pub fn map(self, f: impl Fn(Point) -> Point) -> Self {
         match self {
@@ -106,7 +106,6 @@ impl Mark {
             }),
             Self::Area(area) => Self::Area(Area {
                 rings: area.rings.into_iter().map(|ring| ring.map(&f)).collect(),
-                shade: area.shade.map(|shade| shade.map(&f)),
                 ..area
             }),
         }
@@ -146,5 +145,43 @@ impl From<Stroke> for Mark {
 impl From<Area> for Mark {
     fn from(area: Area) -> Self {
         Self::Area(area)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Axis, PathPoint, Scene, ShadeStop, Stage};
+
+    #[test]
+    fn points_are_held_on_the_page_and_a_gradient_stays() {
+        let stop = |offset| ShadeStop {
+            offset,
+            color: [offset; 3],
+            opacity: 1.0,
+        };
+        // Its axis ends beyond the page, as that of a shape which the border cuts off.
+        let axis = Axis::Linear {
+            from: [-5.0, 2.0].into(),
+            to: [30.0, 2.0].into(),
+        };
+        let shade = Shade::new(axis, &[stop(0.0), stop(1.0)]).unwrap();
+        let corners = [[-3.0, 1.0], [25.0, 1.0], [8.0, 7.0]];
+        let points = corners.map(|at| PathPoint::on(at.into()));
+        let area = Area {
+            rings: vec![Path::new(points.into(), true).unwrap()],
+            color: [0.5; 3],
+            opacity: 1.0,
+            shade: Some(shade.clone()),
+        };
+        let scene = Scene {
+            stages: vec![Stage::from_iter([area])],
+            ..Scene::empty(20, 10, None)
+        };
+        let confined = scene.confined();
+        let area = confined.areas().next().unwrap();
+        let xs: Vec<f32> = area.rings[0].points().iter().map(|p| p.at.x).collect();
+        assert_eq!(xs, [0.0, 20.0, 8.0]);
+        assert_eq!(area.shade, Some(shade));
     }
 }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Rgb, UNITS_PER_PX, quantum};
 use crate::error::{Error, ErrorKind, Result};
-use crate::math::{self, Point, Vector};
+use crate::math::{self, Point};
 
 /// Most stops of a shade.
 pub const MAX_STOPS: usize = 16;
@@ -153,29 +153,6 @@ impl Shade {
             color: stop.color.map(|level| f32::from(level) / 255.0),
             opacity: f32::from(stop.opacity) / 255.0,
         })
-    }
-
-    /// The shade on an axis with `f`, which keeps shapes, applied to its points.
-    #[must_use]
-    pub fn map(&self, f: impl Fn(Point) -> Point) -> Self {
-        let axis = match self.axis() {
-            Axis::Linear { from, to } => Axis::Linear {
-                from: f(from),
-                to: f(to),
-            },
-            Axis::Radial { center, radius } => {
-                let rim = f(center + Vector::new(radius, 0.0));
-                let center = f(center);
-                let away = rim - center;
-                Axis::Radial {
-                    center,
-                    radius: math::hypot(away.x, away.y),
-                }
-            }
-        };
-        let stops: Vec<ShadeStop> = self.stops().collect();
-        // An axis of less than a px stays as it was: no file holds it.
-        Self::new(axis, &stops).unwrap_or_else(|_| self.clone())
     }
 
     /// The mean colour over the axis, of 8-bit channels.
@@ -327,22 +304,6 @@ mod tests {
         assert_eq!(mean(&[black, white]), [128; 3]);
         assert_eq!(mean(&[stop(0.5, 0.0, 1.0), white]), [64; 3]);
         assert_eq!(mean(&[black, stop(0.25, 1.0, 1.0)]), [223; 3]);
-    }
-
-    #[test]
-    fn an_axis_moves_and_grows_with_its_points() {
-        let grown = |p: Point| Point::new(2.0 * p.x + 1.0, 2.0 * p.y);
-        let stops = [stop(0.0, 0.0, 1.0), stop(1.0, 1.0, 1.0)];
-        let circle = Axis::Radial {
-            center: Point::new(3.0, 4.0),
-            radius: 5.0,
-        };
-        let mapped = Shade::new(circle, &stops).unwrap().map(grown).axis();
-        let expected = Axis::Radial {
-            center: Point::new(7.0, 8.0),
-            radius: 10.0,
-        };
-        assert_eq!(mapped, expected);
     }
 
     #[test]
