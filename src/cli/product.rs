@@ -3,10 +3,10 @@
 use std::borrow::Cow;
 
 use anyhow::Result;
-use strokefit::machine::{self, Hatch};
+use strokefit::machine::{self, Hatch, Sheet};
 use strokefit::report::Judged;
 use strokefit::scene::{MIN_WIDTH, Scene};
-use strokefit::svg::{self, Form, Group, Length, WriteOptions};
+use strokefit::svg::{self, Form, Group, WriteOptions};
 
 use super::drawing::Drawing;
 use super::misuse;
@@ -95,9 +95,11 @@ impl Made {
 
     /// The drawing with its areas filled by lines.
     fn hatched(&self, scene: &Scene, hatch: Hatch, file: &WriteOptions) -> Result<Scene> {
-        let sides = scene.page.unwrap_or([scene.width, scene.height]);
-        let page_px = file.width.map_or(f64::from(sides[0]), Length::px);
-        let spacing = hatch.spacing.px() / page_px * f64::from(scene.width);
+        let sheet = Sheet {
+            scene,
+            width: file.width,
+        };
+        let spacing = hatch.spacing.px() / sheet.px();
         if spacing < MIN_WIDTH {
             return Err(misuse(format!(
                 "the lines of --hatch are {spacing:.2} px of the picture apart, and a stroke is {MIN_WIDTH} px or more wide: \

@@ -6,6 +6,7 @@
 mod arcs;
 mod file;
 
+use super::colors::distinct;
 use super::sheet::Sheet;
 use crate::scene::{Path, Piece, quantum};
 use arcs::Vertex;
@@ -16,23 +17,13 @@ const TOLERANCE: f64 = 0.01;
 
 /// The text of a DXF of the drawing.
 pub fn dxf(sheet: &Sheet<'_>) -> String {
-    let mut colors: Vec<[u8; 3]> = Vec::new();
-    for mark in sheet.scene.marks() {
-        let color = mark.color().map(quantum);
-        if !colors.contains(&color) {
-            colors.push(color);
-        }
-    }
+    let colors = distinct(sheet.scene.marks().map(|mark| mark.color().map(quantum)));
     let page = [sheet.scene.width, sheet.scene.height].map(|side| f64::from(side) * sheet.mm());
     let mut file = File::new(page, &colors);
     for mark in sheet.scene.marks() {
+        let layer = file::layer(mark.color().map(quantum));
         for path in mark.paths() {
-            push(
-                &mut file,
-                &file::layer(mark.color().map(quantum)),
-                path,
-                sheet,
-            );
+            push(&mut file, &layer, path, sheet);
         }
     }
     file.finish()

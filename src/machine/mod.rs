@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! bezier    paths of the two kinds, ours and kurbo's
+//! colors    the colours that there are
 //! visible   marks → the places where each colour is seen
 //! cutout    areas that do not overlap
 //! hatch     areas → pen lines
@@ -10,6 +11,7 @@
 //! ```
 
 mod bezier;
+mod colors;
 mod cutout;
 mod dxf;
 mod hatch;

@@ -28,7 +28,7 @@ impl Sheet<'_> {
     }
 
     /// Px of 1/96 inch of a px of the drawing.
-    fn px(&self) -> f64 {
+    pub fn px(&self) -> f64 {
         let shown = self.scene.page.map(|[width, _]| f64::from(width));
         let own = f64::from(self.scene.width);
         self.width.map(Length::px).or(shown).unwrap_or(own) / own

@@ -11,6 +11,7 @@ use kurbo::{BezPath, Shape};
 use linesweeper::topology::{Topology, WindingNumber};
 
 use super::bezier;
+use super::colors::distinct;
 use crate::error::{Error, ErrorKind, Result};
 use crate::outline;
 use crate::scene::{Area, Mark, Path, Scene, Stroke, color, quantum};
@@ -30,12 +31,7 @@ const SMALLEST: f64 = 2e-3;
 /// [`ErrorKind::Svg`] when the sweep fails.
 pub(super) fn areas(scene: &Scene) -> Result<Vec<Area>> {
     let marks = outlines(scene)?;
-    let mut colors: Vec<[u8; 3]> = Vec::new();
-    for (color, _) in &marks {
-        if !colors.contains(color) {
-            colors.push(*color);
-        }
-    }
+    let colors = distinct(marks.iter().map(|(color, _)| *color));
     swept(|| seen(&page(scene), &marks, &colors))
 }
 
