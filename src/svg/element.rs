@@ -117,8 +117,8 @@ impl Attribute {
     fn text(self, mark: &Written, style: Style) -> String {
         let paint = if mark.is_area() { "fill" } else { "stroke" };
         match self {
-            Self::Color if let Some(shade) = &mark.shade => {
-                format!(" {paint}=\"url(#{})\"", gradient::id(shade))
+            Self::Color if let Some(gradient) = gradient::paint(mark) => {
+                format!(" {paint}=\"{gradient}\"")
             }
             Self::Color if style == Style::Full => {
                 format!(" {paint}=\"{}\"", dialect::hex(mark.color))
@@ -166,12 +166,10 @@ fn push_path(out: &mut String, strokes: &[Written], id: &str, shared: &[Attribut
         [area] if area.is_area() => Kind::Ring,
         _ => Kind::Line,
     };
-    if let Some(named) = strokes.first().and_then(|mark| mark.shade.as_ref()) {
-        gradient::push(out, &named.shade, &gradient::id(named));
-        // In full, each element has a line of its own.
-        if style == Style::Full {
-            out.push('\n');
-        }
+    // In full, each element has a line of its own.
+    let end = if style == Style::Full { "\n" } else { "" };
+    for mark in strokes {
+        gradient::push_of(out, mark, end);
     }
     let d = path::data(
         strokes.iter().flat_map(|mark| &mark.paths),

@@ -1,10 +1,24 @@
 //! Writes the gradient of a shade.
 
 use super::dialect::{self, Unit};
-use crate::scene::{Shade, WrittenAxis, WrittenShade, WrittenStop};
+use crate::scene::{Shade, Written, WrittenAxis, WrittenShade, WrittenStop};
+
+/// Appends the gradient of a mark that has one, and then `end`.
+pub(super) fn push_of(out: &mut String, mark: &Written, end: &str) {
+    if let Some(named) = &mark.shade {
+        push(out, &named.shade, &id(named));
+        *out += end;
+    }
+}
+
+/// The paint of a mark that has a gradient, as attributes name it.
+pub(super) fn paint(mark: &Written) -> Option<String> {
+    let named = mark.shade.as_ref()?;
+    Some(format!("url(#{})", id(named)))
+}
 
 /// The name of the gradient of an area: unique, as layers have different numbers.
-pub(super) fn id(shade: &WrittenShade) -> String {
+fn id(shade: &WrittenShade) -> String {
     let [layer, number] = shade.place;
     format!("{}-{layer}-{number}", dialect::SHADE_ID)
 }

@@ -6,17 +6,15 @@ use crate::scene::{UNITS_PER_PX, Written, overlaps};
 /// An area that has this share of the page's sides is the page, and nobody's thing. A guess.
 const PAGE: f64 = 0.9;
 
-/// The marks of a thing, the first one of which may be the area that the others lie on.
-#[derive(Debug, Default)]
-struct Thing {
-    marks: Vec<usize>,
-}
+/// The marks of a thing, by their numbers. The first one may be the area that the others lie on.
+type Thing = Vec<usize>;
 
 /// Layers of things on a page of this size, px. Marks between them that belong to nothing share a layer.
 ///
 /// A mark belongs to the topmost thing that it meets, if that is an area which encloses it or has a mark of its colour that it
 /// touches. So it changes places with no mark that it meets, and the picture stays as it is.
 pub(super) fn by_object(marks: &[Written], page: [u32; 2]) -> Vec<Layer> {
+    // The lower marks that each one meets: it may go below none of them.
     let mut below = vec![Vec::new(); marks.len()];
     for [lower, upper] in overlaps(marks, |_, _| true) {
         below[upper].push(lower);
@@ -24,28 +22,28 @@ pub(super) fn by_object(marks: &[Written], page: [u32; 2]) -> Vec<Layer> {
     let mut things: Vec<Thing> = Vec::new();
     let mut thing_of: Vec<usize> = Vec::with_capacity(marks.len());
     for (i, mark) in marks.iter().enumerate() {
+        // Past the topmost thing that it meets it would change the picture.
         let topmost = below[i].iter().map(|&k| thing_of[k]).max();
         let belongs = topmost.filter(|&thing| {
-            let own = &things[thing].marks;
-            let root = &marks[own[0]];
+            let root = &marks[things[thing][0]];
             let touches = |k: &&usize| thing_of[**k] == thing && is_alike(&marks[**k], mark);
             !is_page(root, page) && (root.encloses(mark) || below[i].iter().any(|k| touches(&k)))
         });
         let thing = belongs.unwrap_or_else(|| {
-            things.push(Thing::default());
+            things.push(Thing::new());
             things.len() - 1
         });
-        things[thing].marks.push(i);
+        things[thing].push(i);
         thing_of.push(thing);
     }
     layers(&things, marks)
 }
 
 fn layers(things: &[Thing], marks: &[Written]) -> Vec<Layer> {
-    let is_alone = |thing: &Thing| thing.marks.len() == 1;
+    let is_alone = |thing: &Thing| thing.len() == 1;
     let runs = things.chunk_by(|a, b| is_alone(a) && is_alone(b));
     let layer = |things: &[Thing]| {
-        let own = things.iter().flat_map(|thing| &thing.marks);
+        let own = things.iter().flatten();
         let strokes: Vec<Written> = own.map(|&i| marks[i].clone()).collect();
         let color = strokes.first().map(|mark| mark.color);
         let is_thing = !things.iter().any(is_alone);

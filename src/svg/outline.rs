@@ -13,20 +13,15 @@ const LEAST_PRECISION: u8 = 2;
 
 /// Appends the outline of a mark as an element of its own: that of an area is its rings.
 pub(super) fn push(out: &mut String, mark: &Written) {
-    if let Some(named) = &mark.shade {
-        gradient::push(out, &named.shade, &gradient::id(named));
-        out.push('\n');
-    }
+    gradient::push_of(out, mark, "\n");
     match (mark.paths.as_slice(), straight(mark)) {
         (rings, _) if mark.is_area() => push_rings(out, rings),
         ([dot], _) if dot.points().len() == 1 => push_circle(out, dot.points()[0].at, mark.width),
         (_, Some([a, b])) => push_capsule(out, a, b, mark.width),
         _ => push_rings(out, &rings(mark)),
     }
-    *out += &match &mark.shade {
-        Some(shade) => format!(" fill=\"url(#{})\"", gradient::id(shade)),
-        None => format!(" fill=\"{}\"", dialect::hex(mark.color)),
-    };
+    let paint = gradient::paint(mark).unwrap_or_else(|| dialect::hex(mark.color));
+    *out += &format!(" fill=\"{paint}\"");
     if mark.opacity < u8::MAX {
         *out += &format!(" fill-opacity=\"{}\"", dialect::opacity(mark.opacity));
     }
