@@ -44,18 +44,18 @@ impl Shaded {
         let mut open = smooth_pixels(pixels, numbers);
         for _ in 0..numbers.rounds {
             let mut is_over = true;
-            for part in parts(pixels, &open, numbers) {
-                let mut gone: Vec<usize> = part.clone();
+            for mut part in parts(pixels, &open, numbers) {
                 match shaded.judge(pixels, &part, mattes, numbers) {
                     Found::Shade(index) => shaded.take(pixels, &part, mattes, index, numbers),
                     Found::Color(color) => {
                         let is_of = |&i: &usize| away(&pixels.target.at(i), &color) < FLAT;
-                        gone.retain(is_of);
+                        part.retain(is_of);
                         is_over = false;
                     }
                     Found::Nothing => {}
                 }
-                gone.into_iter().for_each(|i| open[i] = false);
+                // What is known is not looked at again.
+                part.into_iter().for_each(|i| open[i] = false);
             }
             if is_over {
                 break;
@@ -83,6 +83,7 @@ impl Shaded {
             let met = blocks.met(near + LEVEL, |block| premultiplied(shade, block.center));
             met.share
         };
+        // A shade that things in front have cut in parts is one.
         let known = self.list.iter();
         let known = known
             .map(share)
@@ -90,6 +91,7 @@ impl Shaded {
         if let Some(index) = known {
             return Found::Shade(index as u16);
         }
+        // A gradient has to explain more than the usual colour does: a page with a few ramps is none.
         let (color, count) = usual(pixels, part);
         let flat = value(&color, mattes);
         let alone = blocks.met(near, |_| flat).share;
@@ -216,6 +218,7 @@ fn parts(pixels: &Pixels<'_>, open: &[bool], numbers: &Shades) -> Vec<Vec<usize>
                 }
             }
         }
+        // Flat parts are colours, and small ones tell no axis.
         let is_large = part.len() >= numbers.least_pixels;
         if is_large && away(&low, &high) >= numbers.least_range * LEVEL {
             parts.push(part);
@@ -237,6 +240,7 @@ fn blocks(pixels: &Pixels<'_>, part: &[usize], mattes: usize, most: usize) -> Bl
     let size = [0, 1].map(|k| high[k] - low[k]);
     let side = size[0].max(size[1]).div_ceil(most).max(1);
     let [columns, rows] = size.map(|v| v.div_ceil(side));
+    // Sums over the pixels of the part in each block, and their number.
     let mut sums = vec![([0.0_f32; 4], 0.0_f32); columns * rows];
     for &i in part {
         let [x, y] = [0, 1].map(|k| (place(i)[k] - low[k]) / side);
