@@ -166,58 +166,41 @@ fn push_area(
     });
 }
 
-/// An area with a gradient of every kind between two ordinary strokes, in a picture of two tiles by two.
-fn of_paints() -> Vec<Case> {
-    let (width, height) = (40, 36);
-    let others = random(7, width, height, 2).strokes;
-    let rings = areas(width as f32, height as f32).swap_remove(0);
-    let case = |(k, (name, paint)): (usize, (&str, Paint))| {
+/// Areas, each with a name and perhaps a gradient, between two ordinary strokes in a picture of two tiles by two.
+fn between_strokes(areas: impl Iterator<Item = (String, Rings, Option<Paint>)>) -> Vec<Case> {
+    let others = random(7, WIDTH, HEIGHT, 2).strokes;
+    let case = |(k, (name, rings, paint)): (usize, (String, Rings, Option<Paint>))| {
         let mut strokes = Strokes::new();
         strokes.push(others.get(0));
-        push_area(
-            &mut strokes,
-            &rings,
-            [0.9, 0.2, 0.1],
-            [0.6, 1.0][k % 2],
-            Some(&paint),
-        );
+        let (color, opacity) = ([0.9, 0.2, 0.1], [0.6, 1.0][k % 2]);
+        push_area(&mut strokes, &rings, color, opacity, paint.as_ref());
         strokes.push(others.get(1));
         Case {
-            name: name.into(),
-            width,
-            height,
-            strokes,
-            tolerance: GRADIENT_TOLERANCE,
-        }
-    };
-    paints().into_iter().enumerate().map(case).collect()
-}
-
-/// An area of every kind between two ordinary strokes, in a picture of two tiles by two.
-fn of_areas() -> Vec<Case> {
-    let (width, height) = (40, 36);
-    let others = random(7, width, height, 2).strokes;
-    let areas = areas(width as f32, height as f32).into_iter();
-    let case = |(k, rings): (usize, Rings)| {
-        let mut strokes = Strokes::new();
-        strokes.push(others.get(0));
-        push_area(
-            &mut strokes,
-            &rings,
-            [0.9, 0.2, 0.1],
-            [0.6, 1.0][k % 2],
-            None,
-        );
-        strokes.push(others.get(1));
-        Case {
-            name: rings.name,
-            width,
-            height,
+            name,
+            width: WIDTH,
+            height: HEIGHT,
             strokes,
             tolerance: GRADIENT_TOLERANCE,
         }
     };
     areas.enumerate().map(case).collect()
+}
+
+/// Two tiles by two.
+const WIDTH: usize = 40;
+const HEIGHT: usize = 36;
+
+/// An area with a gradient of every kind.
+fn of_paints() -> Vec<Case> {
+    let rings = areas(WIDTH as f32, HEIGHT as f32).swap_remove(0);
+    let painted = paints().into_iter();
+    between_strokes(painted.map(|(name, paint)| (name.into(), rings.clone(), Some(paint))))
+}
+
+/// An area of every kind.
+fn of_areas() -> Vec<Case> {
+    let areas = areas(WIDTH as f32, HEIGHT as f32).into_iter();
+    between_strokes(areas.map(|rings| (rings.name.clone(), rings, None)))
 }
 
 /// Areas of one to three random rings among random strokes.

@@ -5,16 +5,11 @@ import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, describe, it } from "node:test";
 
-import { Chromium, locate } from "./support/chromium.mjs";
+import { Chromium, locateFor } from "./support/chromium.mjs";
 import { host } from "./support/host.mjs";
-import { native, root, skipped } from "./support/program.mjs";
+import { native, root } from "./support/program.mjs";
 
-const program = locate();
-if (!program) {
-  const engines = process.env.STROKEFIT_ENGINES?.split(",") ?? [];
-  if (engines.includes("chromium")) throw new Error("chromium is required but not installed");
-  skipped("web/tests/page.test.mjs", "chromium is not installed: apt-get install chromium");
-}
+const program = locateFor("web/tests/page.test.mjs");
 
 const READY = "document.body.dataset.ready === 'true'";
 const MESSAGE = "document.getElementById('message').textContent";

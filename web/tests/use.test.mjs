@@ -5,11 +5,11 @@ import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, describe, it } from "node:test";
 
-import { Chromium, locate } from "./support/chromium.mjs";
+import { Chromium, locateFor } from "./support/chromium.mjs";
 import { host } from "./support/host.mjs";
 import { native, root } from "./support/program.mjs";
 
-const program = locate();
+const program = locateFor("web/tests/use.test.mjs");
 const READY = "document.body.dataset.ready === 'true'";
 const COUNT = "parseInt(document.getElementById('shown-label').textContent)";
 const get = (id, what = "textContent") => `document.getElementById('${id}').${what}`;

@@ -5,11 +5,23 @@ import { existsSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { delimiter, join } from "node:path";
 
+import { skipped } from "./program.mjs";
+
 const PROGRAMS = ["chromium-headless-shell", "chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 // Longest wait for what a page is to do, ms; the machine may be busy.
 const PATIENCE = 300_000;
 
-export function locate() {
+// The browser; null, with a note, where the tests in `file` cannot run.
+export function locateFor(file) {
+  const program = locate();
+  if (program) return program;
+  const engines = process.env.STROKEFIT_ENGINES?.split(",") ?? [];
+  if (engines.includes("chromium")) throw new Error("chromium is required but not installed");
+  skipped(file, "chromium is not installed: apt-get install chromium");
+  return null;
+}
+
+function locate() {
   const folders = (process.env.PATH ?? "").split(delimiter);
   return PROGRAMS.flatMap((name) => folders.map((folder) => join(folder, name))).find(existsSync) ?? null;
 }
