@@ -510,9 +510,15 @@ fn back_to_front<S: Simd, X: Extras>(
 /// Pass 1. Leaves the canvas in [`Scratch::canvas`].
 pub(super) fn draw(level: Level, job: &TileJob<'_>, scratch: &mut Scratch) {
     match job.edge {
-        Edge::Smoothstep(edge) => dispatch!(level, simd => front_to_back(simd, edge, job, scratch)),
-        Edge::Tailed(edge) => dispatch!(level, simd => front_to_back(simd, edge, job, scratch)),
+        Edge::Smoothstep(edge) => draw_with(level, edge, job, scratch),
+        Edge::Tailed(edge) => draw_with(level, edge, job, scratch),
     }
+}
+
+// Not inlined, as LLVM's time grows with the square of a function's length.
+#[inline(never)]
+fn draw_with<E: SoftEdge>(level: Level, edge: E, job: &TileJob<'_>, scratch: &mut Scratch) {
+    dispatch!(level, simd => front_to_back(simd, edge, job, scratch));
 }
 
 /// After pass 1: the tile's loss, and the derivatives of it in `sums`, which are empty before.
