@@ -2,8 +2,9 @@
 
 use super::edge::{Edge, Reach};
 use super::grid::{FULL, Grid, TileRgb, TileWeights, uniform_tile};
-use super::kernel::{TileJob, TileSums};
+use super::kernel::{OfStroke, TileJob, TileSums};
 use super::polylines::Polylines;
+use super::strokes::STYLE;
 use super::{Backdrop, CanvasLoss, Softness, TileWork};
 
 /// Edges and backdrop of one call.
@@ -46,15 +47,40 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// The sums of tile `tile` if no stroke touches it, where they are known without looking at its pixels.
-    pub(super) fn uniform_sums(&self, tile: usize, loss: &impl CanvasLoss) -> Option<TileSums> {
-        let Backdrop::Color(color) = self.backdrop else {
+    /// The sums of tile `tile`, which `layers` cover as a whole, back to front, where they are known without looking at its
+    /// pixels. Adds to those of the layers.
+    pub(super) fn uniform_sums(
+        &self,
+        tile: usize,
+        loss: &impl CanvasLoss,
+        polylines: &Polylines,
+        layers: &mut [OfStroke],
+    ) -> Option<TileSums> {
+        let Backdrop::Color(mut color) = self.backdrop else {
             return None;
         };
-        let (loss, backdrop) = loss.uniform(tile, color)?;
+        // Lay one on another: the formulas of the kernel, for one pixel.
+        let mut contrasts = Vec::with_capacity(layers.len());
+        for layer in layers.iter() {
+            let [_, rgb @ .., opacity] = polylines.styles[layer.id as usize];
+            let contrast = [0, 1, 2].map(|channel: usize| rgb[channel] - color[channel]);
+            contrasts.push(contrast);
+            color = [0, 1, 2].map(|channel| color[channel] + opacity * contrast[channel]);
+        }
+        let (loss, slope) = loss.uniform(tile, color)?;
+        // Hand the derivatives by the colour of the tile back, front to back.
+        let mut through = 1.0;
+        for (layer, contrast) in layers.iter_mut().zip(contrasts).rev() {
+            let opacity = polylines.styles[layer.id as usize][STYLE - 1];
+            for channel in 0..3 {
+                layer.style[1 + channel] += through * opacity * slope[channel];
+                layer.style[STYLE - 1] += through * slope[channel] * contrast[channel];
+            }
+            through -= through * opacity;
+        }
         Some(TileSums {
             loss,
-            backdrop,
+            backdrop: slope.map(|slope| through * slope),
             ..TileSums::default()
         })
     }

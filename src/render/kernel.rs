@@ -47,7 +47,7 @@ use fearless_simd::{Level, dispatch, f32x16, prelude::*};
 
 pub(super) use lanes::{load, members, store, total};
 pub(super) use segment::{Segment, length};
-pub(super) use sums::{Extras, Mattes, Nothing, Stiffnesses, Sums, Worths};
+pub(super) use sums::{Extras, Mattes, Nothing, OfStroke, Stiffnesses, Sums, Worths};
 pub(super) use touching::{Listed, list_segments};
 
 use super::CanvasLoss;
@@ -58,7 +58,7 @@ use super::strokes::STYLE;
 use front::{Shape, Transmittance};
 use ink::InkTile;
 use stack::Stack;
-use sums::{EdgeBlock, Grounds, Looks, Matte, OfSegment, OfStroke, Shifts};
+use sums::{EdgeBlock, Grounds, Looks, Matte, OfSegment, Shifts};
 use union::{Kept, Segments, Union, shared};
 use winding::Windings;
 
@@ -197,13 +197,6 @@ impl TileJob<'_> {
         }
     }
 
-    /// All vertices of a listed stroke, px.
-    fn vertices(&self, slot: usize) -> &[[f32; 2]] {
-        let stroke = self.listed[slot].stroke as usize;
-        let [first, end] = [stroke, stroke + 1].map(|i| self.polylines.firsts[i] as usize);
-        &self.polylines.vertices[first..end]
-    }
-
     /// The segments of a listed stroke.
     #[inline(always)]
     fn segments(&self, slot: usize, range: Range<usize>) -> Segments<'_> {
@@ -306,7 +299,12 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
         };
         // The edge of an area is that of a stroke without radius, which has no core.
         if is_area {
-            let inside = windings.fill(job.vertices(slot), job.origin);
+            let listed = job.listed[slot];
+            let crossings = job.polylines.crossings.of(listed.stroke, job.origin[1]);
+            let inside = match listed.fills {
+                true => BlockSet::MAX,
+                false => windings.fill(crossings, job.origin),
+            };
             core = inside & !touched;
             touched |= inside;
         }

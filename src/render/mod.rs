@@ -60,6 +60,7 @@
 //!
 //! [`mod@reference`] is the same in naive `f64`, against which all of this is tested.
 
+mod crossings;
 mod edge;
 mod frame;
 mod gradients;
@@ -93,7 +94,9 @@ use edge::Reach;
 use frame::Frame;
 use gradients::add;
 use grid::{FULL, TileWeights, clear_padding, edge_weights};
-use kernel::{Extras, Listed, Nothing, Scratch, Stiffnesses, Sums, TileJob, TileSums, Worths};
+use kernel::{
+    Extras, Listed, Nothing, OfStroke, Scratch, Stiffnesses, Sums, TileJob, TileSums, Worths,
+};
 pub(crate) use polylines::{Knot, Piece, Pieces};
 use polylines::{Polylines, flatten};
 use shares::shares;
@@ -342,16 +345,16 @@ impl Renderer {
             .with_max_len(1)
             .for_each(|(tile, work)| {
                 work.list_segments(level, polylines, frame.origin(tile), frame.reach);
-                // An empty tile of one colour is known without looking at its pixels: most of a page of line art.
-                if work.listed.is_empty()
-                    && let Some(total) = pass.uniform(tile)
-                {
-                    work.total = total;
-                    work.sums.clear();
-                    return;
-                }
                 let mut sums = std::mem::take(&mut work.sums);
                 sums.clear();
+                // A tile of one colour is known without looking at its pixels: most of a page of line art or areas.
+                if sums.list_layers(&work.listed, polylines) {
+                    if let Some(total) = pass.uniform(tile, polylines, &mut sums.strokes) {
+                        (work.total, work.sums) = (total, sums);
+                        return;
+                    }
+                    sums.clear();
+                }
                 // The weights of errors are 0 on the padding, too.
                 let weights = work.error_weights.as_deref().or(work.weights.as_deref());
                 // Both passes run on one tile at once, while what pass 1 keeps is still in the cache.
@@ -367,7 +370,7 @@ impl Renderer {
     /// Flattens the strokes and lists for each tile those whose bounding box touches it, back to front.
     fn bin(&mut self, strokes: &Strokes, least: usize, reach: Reach) {
         // Every stroke is flattened once for all tiles.
-        self.polylines.fill(strokes, least);
+        self.polylines.fill(strokes, least, self.grid.rows);
         self.least = least;
         for work in &mut self.tiles {
             work.listed.clear();
@@ -391,7 +394,11 @@ impl Renderer {
             for row in rows {
                 for column in columns.clone() {
                     let tile = &mut self.tiles[row * self.grid.columns + column];
-                    tile.listed.push(Listed { stroke, first: 0 });
+                    tile.listed.push(Listed {
+                        stroke,
+                        first: 0,
+                        fills: false,
+                    });
                 }
             }
         }
@@ -451,8 +458,14 @@ impl TileWork {
 
 /// Work that follows pass 1 in a tile.
 trait BackwardPass: Sync {
-    /// The sums of a tile without strokes, if they are known without looking at its pixels.
-    fn uniform(&self, tile: usize) -> Option<TileSums>;
+    /// The sums of a tile that strokes cover as a whole, if they are known without looking at its pixels. Adds to those of the
+    /// `layers`.
+    fn uniform(
+        &self,
+        tile: usize,
+        polylines: &Polylines,
+        layers: &mut [OfStroke],
+    ) -> Option<TileSums>;
 
     /// The sums of the tile of `job`, which pass 1 has drawn, and those of its strokes and segments.
     fn tile(
@@ -482,8 +495,17 @@ impl<'a, L: CanvasLoss, X: Extras> Single<'a, L, X> {
 }
 
 impl<L: CanvasLoss, X: Extras> BackwardPass for Single<'_, L, X> {
-    fn uniform(&self, tile: usize) -> Option<TileSums> {
-        self.frame.uniform_sums(tile, self.loss)
+    fn uniform(
+        &self,
+        tile: usize,
+        polylines: &Polylines,
+        layers: &mut [OfStroke],
+    ) -> Option<TileSums> {
+        // Worth depends on errors, which are not known.
+        if X::WORTH && !layers.is_empty() {
+            return None;
+        }
+        self.frame.uniform_sums(tile, self.loss, polylines, layers)
     }
 
     fn tile(
@@ -504,8 +526,14 @@ struct Double<'a, L> {
 }
 
 impl<L: CanvasLoss> BackwardPass for Double<'_, L> {
-    fn uniform(&self, tile: usize) -> Option<TileSums> {
-        let [first, second] = [0, 1].map(|i| self.frames[i].uniform_sums(tile, self.losses[i]));
+    fn uniform(
+        &self,
+        tile: usize,
+        polylines: &Polylines,
+        layers: &mut [OfStroke],
+    ) -> Option<TileSums> {
+        let [first, second] =
+            [0, 1].map(|i| self.frames[i].uniform_sums(tile, self.losses[i], polylines, layers));
         let (mut sums, second) = (first?, second?);
         sums.loss += second.loss;
         add(&mut sums.backdrop, &second.backdrop);

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use crate::math::Vector;
 use crate::sdf;
 
+use super::crossings::Crossings;
 use super::gradients::add;
 use super::paint::Ink;
 use super::strokes::{STYLE, StrokeRef, Strokes};
@@ -40,13 +41,15 @@ pub(super) struct Polylines {
     curves: Vec<u32>,
     /// The first curve of each stroke in that list.
     first_curves: Vec<u32>,
+    /// The segments of areas, by rows of tiles.
+    pub(super) crossings: Crossings,
     /// Memory for the polylines of [`CHUNK`] strokes each.
     parts: Vec<Self>,
 }
 
 impl Polylines {
-    /// Flattens `strokes`. Each line and each curve becomes `least` segments or more.
-    pub(super) fn fill(&mut self, strokes: &Strokes, least: usize) {
+    /// Flattens `strokes`, on a page of so many `rows` of tiles. Each line and each curve becomes `least` segments or more.
+    pub(super) fn fill(&mut self, strokes: &Strokes, least: usize, rows: usize) {
         let count = strokes.len().div_ceil(CHUNK);
         self.parts.resize_with(count, Self::default);
         let parts = self.parts.par_iter_mut().enumerate();
@@ -77,6 +80,16 @@ impl Polylines {
         }
         self.firsts.push(self.vertices.len() as u32);
         self.parts = parts;
+        self.crossings.clear(rows);
+        for (area, _) in self
+            .areas
+            .iter()
+            .enumerate()
+            .filter(|(_, is_area)| **is_area)
+        {
+            let [first, end] = [area, area + 1].map(|i| self.firsts[i] as usize);
+            self.crossings.add(area as u32, &self.vertices[first..end]);
+        }
     }
 
     fn clear(&mut self) {
@@ -439,7 +452,7 @@ mod tests {
     #[test]
     fn vertices_hand_back_to_points_by_the_weights_of_the_distance_field() {
         let (strokes, mut polylines) = (strokes(), Polylines::default());
-        polylines.fill(&strokes, 1);
+        polylines.fill(&strokes, 1, 1);
         for (i, stroke) in strokes.iter().enumerate() {
             let count = stroke.points.len();
             let mut weights = weights(&polylines, i, stroke);
@@ -464,7 +477,7 @@ mod tests {
     #[test]
     fn vertices_are_the_weighted_means_of_points() {
         let (strokes, mut polylines) = (strokes(), Polylines::default());
-        polylines.fill(&strokes, 1);
+        polylines.fill(&strokes, 1, 1);
         for (i, stroke) in strokes.iter().enumerate() {
             let vertices = &polylines.vertices[polylines.firsts[i] as usize..];
             for (vertex, weights) in vertices.iter().zip(weights(&polylines, i, stroke)) {
@@ -500,7 +513,7 @@ mod tests {
     fn a_flattened_scene_has_the_vertices_of_its_paths() {
         let (strokes, mut polylines) = (strokes(), Polylines::default());
         for least in [1, 3] {
-            polylines.fill(&strokes, least);
+            polylines.fill(&strokes, least, 1);
             for (i, stroke) in strokes.iter().enumerate() {
                 let mut expected = Vec::new();
                 flatten(stroke, least, &mut expected, &mut Vec::new());

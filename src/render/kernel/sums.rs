@@ -3,8 +3,10 @@
 use fearless_simd::{f32x16, prelude::*};
 
 use super::super::grid::{BLOCKS, BlockRgb, Lanes, TileRgb};
+use super::super::polylines::Polylines;
 use super::super::strokes::STYLE;
 use super::lanes::{load, store, total};
+use super::touching::Listed;
 
 /// Results of pass 2 in one tile, for the strokes and segments that it visits, in drawing order.
 #[derive(Debug, Default)]
@@ -37,6 +39,28 @@ pub(in crate::render) struct OfSegment {
 }
 
 impl Sums {
+    /// Lists the strokes of a tile that each cover it as a whole, in one colour, without sums so far. Returns false if there are
+    /// others.
+    pub(in crate::render) fn list_layers(
+        &mut self,
+        listed: &[Listed],
+        polylines: &Polylines,
+    ) -> bool {
+        for &Listed { stroke, fills, .. } in listed {
+            if !fills || polylines.ink(stroke as usize).is_some() {
+                self.strokes.clear();
+                return false;
+            }
+            self.strokes.push(OfStroke {
+                id: stroke,
+                first: 0,
+                style: [0.0; STYLE],
+                worth: 0.0,
+            });
+        }
+        true
+    }
+
     pub(in crate::render) fn clear(&mut self) {
         self.strokes.clear();
         self.segments.clear();

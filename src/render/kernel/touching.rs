@@ -2,6 +2,7 @@
 
 use fearless_simd::{Level, dispatch, f32x16, prelude::*};
 
+use super::super::crossings::is_inside;
 use super::super::edge::Reach;
 use super::super::grid::{LANES, TILE};
 use super::super::polylines::Polylines;
@@ -13,6 +14,8 @@ pub(in crate::render) struct Listed {
     pub(in crate::render) stroke: u32,
     /// The index of its first segment in the tile's list; the next stroke's segments follow.
     pub(in crate::render) first: u32,
+    /// True for an area that covers the tile as a whole: the tile is inside, and no segment comes near it.
+    pub(in crate::render) fills: bool,
 }
 
 /// The segments between the vertices that a vector holds, two lanes each.
@@ -58,9 +61,15 @@ pub(in crate::render) fn list_segments(
                 });
             }
             // The list is compacted in place: strokes without a segment here drop out. An area may cover all of the tile.
-            if segments.len() > before || polylines.areas[stroke] {
+            let is_far = segments.len() == before;
+            let fills = is_far && polylines.areas[stroke] && {
+                let crossings = polylines.crossings.of(listed[slot].stroke, origin[1]);
+                is_inside(crossings, origin)
+            };
+            if fills || !is_far {
                 listed[kept] = Listed {
                     first: before as u32,
+                    fills,
                     ..listed[slot]
                 };
                 kept += 1;

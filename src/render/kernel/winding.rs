@@ -4,6 +4,7 @@
 //! crossing on, or from the start of the tile if it crosses before that. So the rings are looked at as a whole, however far
 //! from the tile they are, and neighbouring tiles agree.
 
+use super::super::crossings::Crossing;
 use super::super::grid::{BLOCK, BLOCKS, BlockSet, Lanes, TILE, TILE_BLOCKS};
 
 /// On which side each pixel of a tile is, by block: 1 inside, −1 outside.
@@ -28,13 +29,14 @@ impl Windings {
         is_area.then_some(&self.lanes[block])
     }
 
-    /// Looks at rings from the tile at `origin`, px. Returns the blocks all of whose pixels are inside.
+    /// Looks at the `crossings` of an area with the rows of the tile at `origin`, px. Returns the blocks all of whose pixels are
+    /// inside.
     // Once, and not in the kernel of every instruction set and edge: its loops unroll to a lot of code.
     #[inline(never)]
-    pub(super) fn fill(&mut self, vertices: &[[f32; 2]], origin: [f32; 2]) -> BlockSet {
+    pub(super) fn fill(&mut self, crossings: &[Crossing], origin: [f32; 2]) -> BlockSet {
         self.steps.as_flattened_mut().fill(0);
-        for segment in vertices.windows(2) {
-            self.cross([segment[0], segment[1]], origin);
+        for crossing in crossings {
+            self.cross(crossing, origin);
         }
         let mut full = BlockSet::MAX;
         for (y, steps) in self.steps.iter().enumerate() {
@@ -51,27 +53,18 @@ impl Windings {
         full
     }
 
-    /// Adds the crossings of the rows with the segment from `a` to `b`; none if an end is no number.
-    fn cross(&mut self, [a, b]: [[f32; 2]; 2], [left, top]: [f32; 2]) {
+    /// Adds a segment's crossings of the rows.
+    fn cross(&mut self, crossing: &Crossing, origin @ [left, top]: [f32; 2]) {
+        let [a, b] = crossing.ends;
         if a[0].min(b[0]) >= left + TILE as f32 {
             return;
         }
-        // One row more on both sides than is crossed, because of rounding: the comparisons below decide.
+        // One row more on both sides than is crossed, because of rounding: the comparisons decide.
         let first = (a[1].min(b[1]) - top - 1.0).max(0.0) as usize;
         let end = (a[1].max(b[1]) - top + 1.0).max(0.0) as usize;
         for row in first..end.min(TILE) {
-            let y = top + row as f32 + 0.5;
-            let sense = i32::from(b[1] <= y) - i32::from(a[1] <= y);
-            if sense == 0 {
-                continue;
-            }
-            let x = a[0] + (y - a[1]) * (b[0] - a[0]) / (b[1] - a[1]);
-            // An end is the vertex between two rings.
-            if x.is_nan() {
-                continue;
-            }
-            // The first pixel whose centre is beyond x; those behind the tile's end are of no account.
-            let column = (x - left + 0.5).max(0.0) as usize;
+            let (column, sense) = crossing.at(row, origin);
+            // Those behind the tile's end are of no account.
             if let Some(step) = self.steps[row].get_mut(column) {
                 *step += sense;
             }
