@@ -10,10 +10,11 @@ pub(super) mod ties;
 use serde::{Deserialize, Serialize};
 
 use super::drawing::Drawing;
+use super::drawing::objective::Target;
 use super::recipe::{Jitter, Rates, Recipe};
 use super::time::Timer;
 use crate::optim::{Adam, Optimizer, Schedule};
-use crate::render::{Canvas, Gradients, STYLE, Strokes};
+use crate::render::{Gradients, STYLE, Strokes};
 use anneal::Annealing;
 use ties::Ties;
 
@@ -49,7 +50,7 @@ pub(super) struct Joint {
 #[derive(Clone, Copy)]
 pub(super) struct Aim<'a> {
     /// One per surface.
-    pub(super) targets: &'a [Canvas],
+    pub(super) targets: &'a [Target],
     /// The mean squared error of the file, for the observer.
     pub(super) mse: f64,
 }

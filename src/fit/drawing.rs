@@ -18,6 +18,7 @@ use crate::scene::{Mark, Rgb, Shade};
 use bounds::Bounds;
 use focus::Focus;
 pub(super) use memento::Memento;
+use objective::Target;
 use scene::enlarge;
 use surface::Surface;
 
@@ -288,7 +289,7 @@ impl Drawing {
     pub(super) fn differentiate<const WITH_WORTH: bool>(
         &mut self,
         edge: Softness,
-        targets: Option<&[Canvas]>,
+        targets: Option<&[Target]>,
         gradients: &mut Gradients,
     ) {
         let (free, frozen) = (&self.free, self.frozen.len());
@@ -372,6 +373,17 @@ impl Drawing {
     pub(super) fn mse(&mut self) -> f64 {
         self.render();
         self.mse_of(self.surfaces.iter().map(|surface| &surface.canvas))
+    }
+
+    /// The mean squared error of the drawing, without canvases that show it: for a trial, of which no more is asked.
+    pub(super) fn mse_of_trial(&mut self) -> f64 {
+        let (free, frozen) = (&self.free, self.frozen.len());
+        let (renderer, edge) = (&mut self.renderer, self.edge);
+        let losses = self.surfaces.iter().map(|surface| {
+            let objective = surface.objective(None);
+            renderer.loss(free, edge, surface.backdrop(frozen), &objective)
+        });
+        losses.sum::<f64>() / self.surfaces.len() as f64
     }
 
     /// The mean squared error of rendered canvases, one per surface.

@@ -7,6 +7,7 @@
 use rayon::prelude::*;
 
 use super::drawing::Drawing;
+use super::drawing::objective::Target;
 use super::drawing::surface::Surface;
 use super::file::RenderedFile;
 use super::recipe::Settling;
@@ -118,7 +119,7 @@ impl Renderings {
         drawing: &Drawing,
         file: &RenderedFile,
         share: f64,
-    ) -> Vec<Canvas> {
+    ) -> Vec<Target> {
         let taken = self.settling.offset_taken;
         let shares = [1.0 - share, share].map(|share| (taken * share) as f32);
         let surfaces = drawing.surfaces.iter().enumerate();

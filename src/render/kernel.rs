@@ -130,6 +130,11 @@ impl Scratch {
         })
     }
 
+    /// The loss of the canvas that pass 1 has drawn in tile `tile`.
+    pub(super) fn judge<L: CanvasLoss>(&mut self, tile: usize, loss: &L) -> f64 {
+        loss.tile(tile, &self.color, None, &mut self.gradient)
+    }
+
     /// The canvas that pass 1 has drawn.
     pub(super) fn canvas(&self) -> &TileRgb {
         &self.color
@@ -336,9 +341,9 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
             let kept = nearest.zip(&mut edges).zip(&mut through);
             for (block, ((nearest, kept), through)) in members(visit.shared).zip(kept) {
                 *nearest = union.nearest(block);
-                let sides = windings.sides(is_area, block);
+                let inside = windings.inside(is_area, block);
                 let (rgb, opacity) = brush.at(simd, block);
-                let alpha = shape.cover(simd, opacity, union.distance2(simd, block), sides, kept);
+                let alpha = shape.cover(simd, opacity, union.distance2(simd, block), inside, kept);
                 *through = transmittances[block].through;
                 if transmittances[block].add(simd, alpha, &rgb, &mut color[block]) {
                     live &= !(1 << block);
@@ -355,9 +360,9 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
             let kept = (&mut edges).zip(&mut through);
             for (block, (kept, through)) in members(alone).zip(kept) {
                 let distance2 = segment.at_pixels(simd, block).distance2();
-                let sides = windings.sides(is_area, block);
+                let inside = windings.inside(is_area, block);
                 let (rgb, opacity) = brush.at(simd, block);
-                let alpha = shape.cover(simd, opacity, distance2, sides, kept);
+                let alpha = shape.cover(simd, opacity, distance2, inside, kept);
                 *through = transmittances[block].through;
                 if transmittances[block].add(simd, alpha, &rgb, &mut color[block]) {
                     live &= !(1 << block);

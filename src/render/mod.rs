@@ -264,6 +264,23 @@ impl Renderer {
         self.reduce(strokes, false, gradients);
     }
 
+    /// The `loss` of `strokes` on `backdrop`, with the weights of errors: what [`Self::backward`] tells of it.
+    pub fn loss<L: CanvasLoss>(
+        &mut self,
+        strokes: &Strokes,
+        softness: Softness,
+        backdrop: Backdrop<'_>,
+        loss: &L,
+    ) -> f64 {
+        let frame = Frame::new(self.grid, softness, backdrop);
+        let pass = LossAlone {
+            frame: &frame,
+            loss,
+        };
+        self.run_backward(strokes, 1, &frame, pass);
+        self.tiles.iter().map(|work| work.total.loss).sum()
+    }
+
     /// The derivatives of the sum of two `losses`, each of the canvas on one of the `backdrops`. Takes little longer than
     /// one of them, because the strokes let through the same of both backdrops.
     pub fn backward_on_mattes<L: CanvasLoss>(
@@ -516,6 +533,36 @@ impl<L: CanvasLoss, X: Extras> BackwardPass for Single<'_, L, X> {
         sums: &mut Sums,
     ) -> TileSums {
         kernel::differentiate::<L, X>(level, job, self.loss, scratch, sums)
+    }
+}
+
+/// A loss without derivatives.
+struct LossAlone<'a, L> {
+    frame: &'a Frame<'a>,
+    loss: &'a L,
+}
+
+impl<L: CanvasLoss> BackwardPass for LossAlone<'_, L> {
+    fn uniform(
+        &self,
+        tile: usize,
+        polylines: &Polylines,
+        layers: &mut [OfStroke],
+    ) -> Option<TileSums> {
+        self.frame.uniform_sums(tile, self.loss, polylines, layers)
+    }
+
+    fn tile(
+        &self,
+        _level: Level,
+        job: &TileJob<'_>,
+        scratch: &mut Scratch,
+        _sums: &mut Sums,
+    ) -> TileSums {
+        TileSums {
+            loss: scratch.judge(job.tile, self.loss),
+            ..TileSums::default()
+        }
     }
 }
 

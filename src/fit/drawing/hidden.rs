@@ -2,6 +2,7 @@
 //! cover. A palette makes many of them, and they are in the way of whoever edits the file.
 
 use crate::fit::drawing::Drawing;
+use crate::fit::drawing::objective::Target;
 use crate::fit::halves::by_halves;
 use crate::image::Image;
 use crate::render::{Gradients, StrokeRef};
@@ -40,7 +41,9 @@ impl Drawing {
     /// The free strokes that, while all others stay, change their pixels by less than can be seen, on average.
     fn suspects(&mut self) -> Vec<usize> {
         self.render();
-        let now: Vec<_> = self.surfaces.iter().map(|s| s.canvas.clone()).collect();
+        let surfaces = self.surfaces.iter();
+        let now = surfaces.map(|s| Target::new(s.canvas.clone(), s.error_weights()));
+        let now: Vec<_> = now.collect();
         let (edge, mut changes) = (self.edge(), Gradients::default());
         // Where the drawing itself is the target, a stroke is worth the squared change that it makes.
         self.differentiate::<true>(edge, Some(&now), &mut changes);

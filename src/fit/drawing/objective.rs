@@ -4,8 +4,8 @@ use rayon::prelude::*;
 
 use crate::loss::Loss;
 use crate::render::{
-    Backdrop, Canvas, CanvasLoss, Gradients, Lanes, Renderer, Softness, Strokes, TILE, TileRgb,
-    multiply,
+    Backdrop, Canvas, CanvasLoss, Gradients, Grid, Lanes, Renderer, Softness, Strokes, TILE,
+    TileRgb, multiply,
 };
 
 /// The mean of `loss` over width·height·3 values against `target`.
@@ -20,10 +20,32 @@ pub struct Objective<'a> {
     scale: f32,
 }
 
+/// A target of the squared error, multiplied by the roots of the weights of errors.
+#[derive(Debug)]
+pub(in crate::fit) struct Target {
+    canvas: Canvas,
+    moments: Moments,
+}
+
+impl Target {
+    /// The target that is `canvas`, which is multiplied by `error_weights` already.
+    pub(in crate::fit) fn new(canvas: Canvas, error_weights: Option<&Canvas>) -> Self {
+        Self {
+            moments: Moments::of(&canvas, error_weights),
+            canvas,
+        }
+    }
+
+    /// The grid of tiles.
+    pub(in crate::fit) fn grid(&self) -> Grid {
+        self.canvas.grid()
+    }
+}
+
 /// Sums over the pixels of each tile of a target, each as often as its error counts. The squared error of a tile in one
 /// colour follows from them, so that an empty part of a page costs nothing.
 #[derive(Debug)]
-pub(in crate::fit) struct Moments(Vec<TileMoments>);
+struct Moments(Vec<TileMoments>);
 
 /// Weights where all errors count alike.
 const EQUAL: Lanes = Lanes::splat(1.0);
@@ -40,7 +62,7 @@ struct TileMoments {
 
 impl Moments {
     /// The sums of `target`, which is multiplied by `error_weights` already.
-    pub(in crate::fit) fn of(target: &Canvas, error_weights: Option<&Canvas>) -> Self {
+    fn of(target: &Canvas, error_weights: Option<&Canvas>) -> Self {
         let grid = target.grid();
         let moments = |(tile, pixels): (usize, &TileRgb)| {
             let (x, y) = grid.origin(tile);
@@ -94,11 +116,11 @@ impl<'a> Objective<'a> {
         renderer.backward(strokes, softness, backdrop, self, gradients);
     }
 
-    /// The squared error against `target`, whose `moments` may be known.
-    pub(in crate::fit) fn squared(target: &'a Canvas, moments: Option<&'a Moments>) -> Self {
+    /// The squared error against `target`.
+    pub(in crate::fit) fn squared(target: &'a Target) -> Self {
         Self {
-            moments,
-            ..Self::new(Loss::L2, target)
+            moments: Some(&target.moments),
+            ..Self::new(Loss::L2, &target.canvas)
         }
     }
 
@@ -195,7 +217,6 @@ impl CanvasLoss for Objective<'_> {
 mod tests {
     use super::*;
     use crate::image::Image;
-    use crate::render::Grid;
     use crate::rng;
 
     /// A picture of 40×33 px, so that tiles are padded.
@@ -220,8 +241,8 @@ mod tests {
                 Some(roots) => random(1).multiplied(roots),
                 None => random(1),
             };
-            let moments = Moments::of(&target, roots);
-            let objective = Objective::squared(&target, Some(&moments));
+            let target = Target::new(target, roots);
+            let objective = Objective::squared(&target);
             let flat = Canvas::flat(Grid::new(40, 33), color);
             let canvas = match roots {
                 Some(roots) => flat.multiplied(roots),

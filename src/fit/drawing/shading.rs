@@ -16,11 +16,15 @@ pub(in crate::fit) fn choose(
 ) -> Option<Shade> {
     let (blocks, area) = blocks(picture, choice);
     let flat = flat(&blocks);
+    let alone = blocks.met(choice.fit.near, |_| flat);
+    // No shade is near more than all of the picture.
+    if alone.share + choice.least_gain > 1.0 {
+        return None;
+    }
     let (shade, met) = blocks.best_shade(&choice.fit)?;
     if has_edge(&shade, choice.steepest) {
         return None;
     }
-    let alone = blocks.met(choice.fit.near, |_| flat);
     let gain = (alone.error - met.error) * area;
     let page = Scene::empty(picture.width() as u32, picture.height() as u32, None);
     let is_worth_it = met.share >= choice.least_share

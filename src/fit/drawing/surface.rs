@@ -10,7 +10,7 @@ use crate::fit::base::Base;
 use crate::fit::config::Background;
 use crate::fit::drawing::background;
 use crate::fit::drawing::focus::Focus;
-use crate::fit::drawing::objective::{Moments, Objective};
+use crate::fit::drawing::objective::{Objective, Target};
 use crate::fit::recipe::Recipe;
 use crate::image::Image;
 use crate::render::{Backdrop, Canvas, Grid, Renderer, Softness, Strokes};
@@ -187,9 +187,7 @@ pub(in crate::fit) struct Surface {
     /// The roots of the weights of errors, at the current resolution; `None` where all count alike.
     error_weights: Option<Canvas>,
     /// The picture, halved, and multiplied by these roots.
-    target: Canvas,
-    /// The target's sums.
-    moments: Moments,
+    target: Target,
     /// The frozen strokes, rendered over the backdrop of all.
     frozen: Canvas,
     /// The last render of all strokes, with the final edge.
@@ -205,7 +203,7 @@ impl Surface {
     ) -> Self {
         let pyramid = Pyramid::new(target);
         let halvings = halvings(&pyramid, scale, min_scale);
-        let target = Canvas::from_image(pyramid.level(halvings));
+        let target = Target::new(Canvas::from_image(pyramid.level(halvings)), None);
         let frozen = backdrop.canvas(target.grid(), halvings);
         Self {
             matte,
@@ -214,7 +212,6 @@ impl Surface {
             min_scale,
             canvas: frozen.clone(),
             frozen,
-            moments: Moments::of(&target, None),
             focus: None,
             error_weights: None,
             target,
@@ -235,12 +232,14 @@ impl Surface {
         self.error_weights.as_ref()
     }
 
-    /// `canvas` multiplied by the roots of the weights of errors.
-    pub(in crate::fit) fn weighted(&self, canvas: Canvas) -> Canvas {
-        match &self.error_weights {
+    /// The target that is `canvas`, with the weights of errors.
+    pub(in crate::fit) fn weighted(&self, canvas: Canvas) -> Target {
+        let roots = self.error_weights.as_ref();
+        let canvas = match roots {
             Some(roots) => canvas.multiplied(roots),
             None => canvas,
-        }
+        };
+        Target::new(canvas, roots)
     }
 
     /// The grid of the canvases, at the current resolution.
@@ -285,7 +284,6 @@ impl Surface {
         self.halvings = halvings;
         self.error_weights = self.focus.as_ref().map(|focus| focus.roots(halvings));
         self.target = self.weighted(Canvas::from_image(self.pyramid.level(halvings)));
-        self.moments = Moments::of(&self.target, self.error_weights.as_ref());
         self.frozen = self.backdrop.canvas(self.target.grid(), halvings);
         self.canvas.clone_from(&self.frozen);
     }
@@ -340,13 +338,9 @@ impl Surface {
         self.objective(None).of(canvas)
     }
 
-    /// The loss against the picture, or against `target`, which is weighted already.
-    pub(in crate::fit) fn objective<'a>(&'a self, target: Option<&'a Canvas>) -> Objective<'a> {
-        let objective = match target {
-            Some(target) => Objective::squared(target, None),
-            None => Objective::squared(&self.target, Some(&self.moments)),
-        };
-        objective.weighted(self.error_weights())
+    /// The loss against the picture, or against `target`.
+    pub(in crate::fit) fn objective<'a>(&'a self, target: Option<&'a Target>) -> Objective<'a> {
+        Objective::squared(target.unwrap_or(&self.target)).weighted(self.error_weights())
     }
 
     /// The backdrop of all strokes, at full resolution.

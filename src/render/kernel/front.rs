@@ -1,6 +1,6 @@
 //! Pass 1 in one block: the coverage of a stroke there, and what the strokes so far let through.
 
-use fearless_simd::{f32x16, prelude::*};
+use fearless_simd::{f32x16, mask32x16, prelude::*};
 
 use super::super::edge::SoftEdge;
 use super::super::grid::{BlockRgb, Lanes};
@@ -65,29 +65,33 @@ pub(super) struct Shape<E> {
 }
 
 impl<E: SoftEdge> Shape<E> {
-    /// `m` in a block on the soft edge, from the squared distances of its pixels, and for an area the `sides` that they are
-    /// on; writes what is kept of it to `kept`.
+    /// `m` in a block on the soft edge, from the squared distances of its pixels, and for an area those of them that are
+    /// `inside`, one bit each; writes what is kept of it to `kept`.
     #[inline(always)]
     pub(super) fn cover<S: Simd>(
         &self,
         simd: S,
         opacity: f32x16<S>,
         distance2: f32x16<S>,
-        sides: Option<&Lanes>,
+        inside: Option<u64>,
         kept: &mut EdgeBlock,
     ) -> f32x16<S> {
         let length = length(distance2);
-        let d = match sides {
+        let side = inside.map(|inside| {
+            let inside = mask32x16::from_bitmask(simd, inside);
+            inside.select(f32x16::splat(simd, 1.0), f32x16::splat(simd, -1.0))
+        });
+        let d = match side {
             None => self.radius - length,
-            Some(sides) => load(simd, sides) * length,
+            Some(side) => side * length,
         };
         let (mut value, mut derivative) = self.edge.eval(d);
-        if let Some(sides) = sides {
+        if let Some(side) = side {
             let is_deep = d.simd_gt(self.outside);
             value = is_deep.select(f32x16::splat(simd, 1.0), value);
             derivative = is_deep.select(f32x16::splat(simd, 0.0), derivative);
             // Pass 2 has the derivatives of −|q| by the segment, which is the distance outside alone.
-            derivative = -load(simd, sides) * derivative;
+            derivative = -side * derivative;
         }
         let alpha = opacity * value;
         store(alpha, &mut kept.alpha);

@@ -5,29 +5,16 @@
 //! from the tile they are, and neighbouring tiles agree.
 
 use super::super::crossings::Crossing;
-use super::super::grid::{BLOCK, BLOCKS, BlockSet, Lanes, TILE, TILE_BLOCKS};
+use super::super::grid::{BLOCK, BlockSet, TILE, TILE_BLOCKS};
 
-/// The sides of four pixels in a row, by the bits of those that are inside.
-const SIDES: [[f32; BLOCK]; 1 << BLOCK] = {
-    let mut sides = [[-1.0; BLOCK]; 1 << BLOCK];
-    let mut bits = 0;
-    while bits < sides.len() {
-        let mut lane = 0;
-        while lane < BLOCK {
-            if bits >> lane & 1 == 1 {
-                sides[bits][lane] = 1.0;
-            }
-            lane += 1;
-        }
-        bits += 1;
-    }
-    sides
-};
+/// A row of a block, one bit a pixel.
+const ROW: u32 = (1 << BLOCK) - 1;
 
-/// On which side each pixel of a tile is, by block: 1 inside, −1 outside.
+/// On which side each pixel of a tile is.
 #[derive(Debug)]
 pub(super) struct Windings {
-    lanes: [Lanes; BLOCKS],
+    /// By row: the pixels that are inside, one bit each.
+    inside: [u32; TILE],
     /// By row: by how much the winding number grows at each pixel.
     steps: [[i32; TILE]; TILE],
     /// By row: the pixels at which it may grow.
@@ -37,16 +24,22 @@ pub(super) struct Windings {
 impl Windings {
     pub(super) fn new() -> Self {
         Self {
-            lanes: [Lanes::splat(-1.0); BLOCKS],
+            inside: [0; TILE],
             steps: [[0; TILE]; TILE],
             places: [0; TILE],
         }
     }
 
-    /// The sides of the pixels of a block of an area; a stroke has none.
+    /// The pixels of a block that are inside an area, one bit each; a stroke has no sides.
     #[inline(always)]
-    pub(super) fn sides(&self, is_area: bool, block: usize) -> Option<&Lanes> {
-        is_area.then_some(&self.lanes[block])
+    pub(super) fn inside(&self, is_area: bool, block: usize) -> Option<u64> {
+        is_area.then(|| {
+            let (row, column) = (block / TILE_BLOCKS * BLOCK, block % TILE_BLOCKS * BLOCK);
+            let rows = self.inside[row..row + BLOCK].iter().rev();
+            rows.fold(0, |bits, row| {
+                bits << BLOCK | u64::from(row >> column & ROW)
+            })
+        })
     }
 
     /// Looks at the `crossings` of an area with the rows of the tile at `origin`, px. Returns the blocks all of whose pixels are
@@ -57,15 +50,15 @@ impl Windings {
         for crossing in crossings {
             self.cross(crossing, origin);
         }
-        let mut full = BlockSet::MAX;
         for y in 0..TILE {
-            let inside = self.scan(y);
-            for column in 0..TILE_BLOCKS {
-                let block = y / BLOCK * TILE_BLOCKS + column;
-                let bits = (inside >> (BLOCK * column)) as usize % SIDES.len();
-                let lane = y % BLOCK * BLOCK;
-                self.lanes[block].0[lane..lane + BLOCK].copy_from_slice(&SIDES[bits]);
-                full &= !(BlockSet::from(bits + 1 != SIDES.len()) << block);
+            self.inside[y] = self.scan(y);
+        }
+        let mut full = 0;
+        for (y, rows) in self.inside.chunks_exact(BLOCK).enumerate() {
+            let all = rows.iter().fold(u32::MAX, |all, row| all & row);
+            for x in 0..TILE_BLOCKS {
+                let is_full = all >> (x * BLOCK) & ROW == ROW;
+                full |= BlockSet::from(is_full) << (y * TILE_BLOCKS + x);
             }
         }
         full
