@@ -122,8 +122,8 @@ impl Fitter<'_> {
         let reduced = pool.install(|| self.reduce(picture));
         let picture = reduced.as_ref().unwrap_or(picture);
         let rivals = self.rivals(picture);
-        let competes = !rivals.is_empty();
-        let mut best: Option<Drawn> = None;
+        let mut best = self.best_of_what_pays(picture, since)?;
+        let competes = !rivals.is_empty() || best.is_some();
         for rival in rivals {
             best = Some(rival.draw(picture, since, competes)?.or_better(best));
         }
@@ -175,6 +175,53 @@ impl Fitter<'_> {
             .into_iter()
             .map(|config| self.rival(config))
             .collect()
+    }
+
+    /// The best drawing of what pays that keeps the budget of strokes and bytes, of the best quality that does or of a better one and
+    /// shortened. `None` if such drawings are no rivals.
+    fn best_of_what_pays(&self, picture: &Image, since: Instant) -> Result<Option<Drawn>> {
+        let (config, budget) = (&self.config, self.config.budget);
+        if self.base.is_some() || !rivals::has_priced(config, picture) {
+            return Ok(None);
+        }
+        // The more quality, the more bytes: search by halves for the most that is allowed.
+        let (mut low, mut high) = (0.0, config.quality.unwrap_or(DEFAULT_QUALITY));
+        let mut quality = config.quality;
+        let mut best: Option<Drawn> = None;
+        let mut excessive: Option<Drawn> = None;
+        for step in 0..=rivals::HALVINGS {
+            let rival = self.rival(rivals::priced(config, quality));
+            let drawn = rival.draw(picture, since, true)?.for_budget(budget);
+            let keeps = drawn.keeps_budget();
+            let is_photograph =
+                || drawn.fit.scene.areas().next().is_none() && !rivals::is_flat(config, picture);
+            let is_only = step == 0 && (keeps || is_photograph());
+            let tried = quality.unwrap_or(high);
+            if keeps {
+                low = tried;
+                best = Some(drawn.or_better(best));
+            } else {
+                high = tried;
+                excessive = Some(drawn);
+            }
+            if is_only {
+                return Ok(best);
+            }
+            quality = Some((low + high) / 2.0);
+        }
+        if let Some(excessive) = excessive {
+            let rival = Fitter {
+                base: Some(excessive.into_base()),
+                ..self.rival(config.clone())
+            };
+            best = Some(
+                rival
+                    .draw(picture, since, true)?
+                    .without_base()
+                    .or_better(best),
+            );
+        }
+        Ok(best)
     }
 
     /// The fit by strokes alone of what this one draws by areas, too.

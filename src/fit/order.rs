@@ -1,7 +1,7 @@
 //! The order of a fit: its phases, and which follows which.
 //!
 //! ```text
-//! base ─→ polish              shorten a base of more strokes than may be; otherwise
+//! base ─→ polish              shorten a base of more strokes or bytes than may be; otherwise
 //!   ↓
 //! trace ⇄ stage               draw the lines that are seen
 //!   ↓

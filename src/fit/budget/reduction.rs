@@ -126,7 +126,7 @@ fn mse_enlarged(half: &Image, picture: &Image) -> f64 {
 }
 
 /// Share of the pixels that have the colour of the pixels to the right and below.
-fn flat_share(picture: &Image, one_color: f32) -> f64 {
+pub(super) fn flat_share(picture: &Image, one_color: f32) -> f64 {
     let width = picture.width();
     let count = pixels(picture);
     let is_flat = |&i: &usize| {

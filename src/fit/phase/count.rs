@@ -14,13 +14,18 @@ use crate::fit::run::session::Session;
 use crate::math;
 use crate::metrics::psnr_db;
 
-/// Shortens a base of more strokes than may be, and ends the fit if the base, as it is, already meets a budget. Otherwise
+/// Shortens a base of more strokes or bytes than may be, and ends the fit if the base, as it is, already meets a budget. Otherwise
 /// the base is the best file until another one is better.
 pub(in crate::fit) fn try_base(session: &mut Session<'_>) -> Result<Outcome> {
     let strokes = session.drawing.len();
     if let Some(most) = session.config.budget.strokes.filter(|&most| most < strokes) {
         keep_best(&mut session.drawing, most);
         session.history.stop = Stop::Strokes;
+        return Ok(Outcome::Removed);
+    }
+    let excess = excess(session);
+    if excess > 0 && strokes > 0 {
+        shorten(session, excess);
         return Ok(Outcome::Removed);
     }
     // A base that uses colours outside the palette, or other pens, cannot stay as it is.

@@ -1,6 +1,7 @@
 //! The end of a fit: its result, from the best file.
 
 use crate::error::Result;
+use crate::fit::base::Base;
 use crate::fit::budget;
 use crate::fit::budget::price::Price;
 use crate::fit::config::Budget;
@@ -21,6 +22,33 @@ pub(in crate::fit) struct Drawn {
 }
 
 impl Drawn {
+    /// The drawing, to be compared by another budget than it was made for.
+    pub(in crate::fit) fn for_budget(self, budget: Budget) -> Self {
+        Self { budget, ..self }
+    }
+
+    /// True if it has no more strokes and bytes than allowed.
+    pub(in crate::fit) fn keeps_budget(&self) -> bool {
+        let Budget { strokes, bytes, .. } = self.budget;
+        let is_short = |most| self.file.as_ref().is_some_and(|file| file.bytes <= most);
+        strokes.is_none_or(|most| self.fit.scene.len() <= most) && bytes.is_none_or(is_short)
+    }
+
+    /// The drawing as a base of another one.
+    pub(in crate::fit) fn into_base(self) -> Base {
+        Base {
+            document: None,
+            scene: self.fit.scene,
+            width: None,
+        }
+    }
+
+    /// The drawing as if it had been made at once.
+    pub(in crate::fit) fn without_base(mut self) -> Self {
+        self.fit.base = None;
+        self
+    }
+
     /// The other one if it serves the budget better.
     pub(in crate::fit) fn or_better(self, other: Option<Self>) -> Self {
         let is_better = |other: &Self| {
