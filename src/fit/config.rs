@@ -206,7 +206,7 @@ impl Config {
     }
 
     /// True if there are pens, and nothing is filled with them.
-    fn pens_draw_lines(&self) -> bool {
+    pub(super) fn pens_draw_lines(&self) -> bool {
         self.pens.is_some() && !self.hatched
     }
 

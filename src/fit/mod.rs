@@ -14,6 +14,7 @@
 //! | module | about |
 //! | --- | --- |
 //! | `order`, `phase` | the phases: which follows which, and a file for each |
+//! | `priced` | drawings of what pays, for a budget of strokes or bytes |
 //! | `config`, `recipe` | options, and all tuned numbers |
 //! | `budget` | limits, the price of a stroke, the plan of stages, the pixels that a drawing needs |
 //! | `drawing` | strokes in progress, on surfaces of target, backdrop and canvas; the objective; the background |
@@ -35,6 +36,7 @@ mod options;
 mod order;
 mod phase;
 mod points;
+mod priced;
 mod recipe;
 mod renderers;
 mod result;
@@ -175,53 +177,6 @@ impl Fitter<'_> {
             .into_iter()
             .map(|config| self.rival(config))
             .collect()
-    }
-
-    /// The best drawing of what pays that keeps the budget of strokes and bytes, of the best quality that does or of a better one and
-    /// shortened. `None` if such drawings are no rivals.
-    fn best_of_what_pays(&self, picture: &Image, since: Instant) -> Result<Option<Drawn>> {
-        let (config, budget) = (&self.config, self.config.budget);
-        if self.base.is_some() || !rivals::has_priced(config, picture) {
-            return Ok(None);
-        }
-        // The more quality, the more bytes: search by halves for the most that is allowed.
-        let (mut low, mut high) = (0.0, config.quality.unwrap_or(DEFAULT_QUALITY));
-        let mut quality = config.quality;
-        let mut best: Option<Drawn> = None;
-        let mut excessive: Option<Drawn> = None;
-        for step in 0..=rivals::HALVINGS {
-            let rival = self.rival(rivals::priced(config, quality));
-            let drawn = rival.draw(picture, since, true)?.for_budget(budget);
-            let keeps = drawn.keeps_budget();
-            let is_photograph =
-                || drawn.fit.scene.areas().next().is_none() && !rivals::is_flat(config, picture);
-            let is_only = step == 0 && (keeps || is_photograph());
-            let tried = quality.unwrap_or(high);
-            if keeps {
-                low = tried;
-                best = Some(drawn.or_better(best));
-            } else {
-                high = tried;
-                excessive = Some(drawn);
-            }
-            if is_only {
-                return Ok(best);
-            }
-            quality = Some((low + high) / 2.0);
-        }
-        if let Some(excessive) = excessive {
-            let rival = Fitter {
-                base: Some(excessive.into_base()),
-                ..self.rival(config.clone())
-            };
-            best = Some(
-                rival
-                    .draw(picture, since, true)?
-                    .without_base()
-                    .or_better(best),
-            );
-        }
-        Ok(best)
     }
 
     /// The fit by strokes alone of what this one draws by areas, too.

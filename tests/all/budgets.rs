@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use strokefit::fit::{Budget, Config, ErrorWeighting, Fit, Fitter, Preset, Progress, Stop};
+use strokefit::fit::{Base, Budget, Config, ErrorWeighting, Fit, Fitter, Preset, Progress, Stop};
 use strokefit::image::Image;
 use strokefit::report::Judged;
 
@@ -80,6 +80,37 @@ fn as_many_bytes_as_a_fidelity_takes_draw_as_well() {
             db(&by_db)
         );
     }
+}
+
+#[test]
+fn a_budget_that_what_pays_keeps_draws_as_well() {
+    // What pays is 9 marks of 41 dB, and 585 bytes of 39 dB.
+    let cartoon = judged("cartoon", of_strokes(10));
+    assert!(cartoon.fit.scene.len() <= 10, "{}", cartoon.fit.scene.len());
+    assert!(db(&cartoon) > 40.0, "{}", db(&cartoon));
+    let logo = judged("logo", of_bytes(605));
+    assert!(logo.svg.len() <= 605, "{}", logo.svg.len());
+    assert!(db(&logo) > 36.0, "{}", db(&logo));
+}
+
+#[test]
+fn a_drawing_is_shortened_to_the_bytes_asked_for() {
+    let picture = picture("cartoon");
+    let drawing = judged("cartoon", Budget::default());
+    let base = Base::read(drawing.svg.clone(), &picture, false).unwrap();
+    let config = Config {
+        budget: of_bytes(drawing.svg.len() - 200),
+        look: Some(ErrorWeighting::Exact),
+        ..Config::default()
+    };
+    let fit = Fitter::new(config).on(base).fit(&picture).unwrap();
+    let shorter = Judged::new(fit).unwrap();
+    assert!(
+        shorter.svg.len() + 200 <= drawing.svg.len(),
+        "{}",
+        shorter.svg.len()
+    );
+    assert!(shorter.fit.scene.len() > 3, "{}", shorter.fit.scene.len());
 }
 
 #[test]

@@ -6,9 +6,6 @@
 //!
 //! Areas, too, have a rival: where many of them draw what has no flat colours, such as gradients, or draw it badly, strokes
 //! alone may be better.
-//!
-//! And what is flat is drawn best by what pays for its bytes, which a budget of strokes or bytes does not ask: it takes what gains
-//! most, however many marks that needs to be whole. So drawings at several qualities compete, see [`has_priced`].
 
 use super::reduction::flat_share;
 use crate::fit::budget;
@@ -16,9 +13,6 @@ use crate::fit::config::{Budget, Config};
 use crate::fit::recipe::Preset;
 use crate::image::Image;
 use crate::scene::Marks;
-
-/// Halvings of the range of qualities at which what pays is drawn. A guess.
-pub(in crate::fit) const HALVINGS: usize = 4;
 
 /// The configurations of the drawings that a drawing of `picture` by `config` competes with.
 pub(in crate::fit) fn of(config: &Config, picture: &Image) -> Vec<Config> {
@@ -65,28 +59,19 @@ pub(in crate::fit) fn has_priced(config: &Config, picture: &Image) -> bool {
     } = config.budget;
     let is_counted = strokes.is_some() || bytes.is_some();
     let is_alone = psnr_db.is_some() || time.is_some() || config.recipe.is_some();
-    let by_strokes = priced(config, None).marks() == Marks::Strokes;
-    if !is_counted || is_alone || by_strokes || config.preset == Preset::Draft {
+    if !is_counted || is_alone || config.preset == Preset::Draft {
         return false;
     }
     let recipe = config.recipe();
     let planned = budget::strokes(config, &recipe, None, picture);
-    planned.is_some_and(|strokes| strokes <= recipe.rivals) || is_flat(config, picture)
+    let by_areas = config.marks != Marks::Strokes && !config.pens_draw_lines();
+    planned.is_some_and(|strokes| strokes <= recipe.rivals) || by_areas && is_flat(config, picture)
 }
 
 /// True if `picture` is flat art or a drawing of lines.
 pub(in crate::fit) fn is_flat(config: &Config, picture: &Image) -> bool {
     let reduction = config.recipe().reduction;
     flat_share(picture, reduction.one_color) >= reduction.flat_share
-}
-
-/// The configuration of a drawing of what pays at a `quality`, the usual one if `None`.
-pub(in crate::fit) fn priced(config: &Config, quality: Option<f64>) -> Config {
-    Config {
-        budget: Budget::default(),
-        quality: quality.or(config.quality),
-        ..config.clone()
-    }
 }
 
 /// The configuration of the drawing by strokes alone that one with areas may have to compete with.

@@ -34,6 +34,11 @@ impl Drawn {
         strokes.is_none_or(|most| self.fit.scene.len() <= most) && bytes.is_none_or(is_short)
     }
 
+    /// True if there are areas.
+    pub(in crate::fit) fn has_areas(&self) -> bool {
+        self.fit.scene.areas().next().is_some()
+    }
+
     /// The drawing as a base of another one.
     pub(in crate::fit) fn into_base(self) -> Base {
         Base {
@@ -69,7 +74,7 @@ impl Drawn {
     pub(in crate::fit) fn has_doubtful_areas(&self) -> bool {
         let scene = &self.fit.scene;
         let db = self.file.as_ref().map_or(0.0, |file| psnr_db(file.mse));
-        scene.areas().next().is_some() && (scene.len() > FEW || db < FAITHFUL_DB)
+        self.has_areas() && (scene.len() > FEW || db < FAITHFUL_DB)
     }
 
     /// The other one if its file costs less: squared error and bytes at their `price`, or by the budget if bytes have none.
