@@ -18,6 +18,7 @@ pub mod inverse;
 pub mod measure;
 pub mod pareto;
 pub mod peers;
+pub mod quality;
 pub mod scaling;
 pub mod shapes;
 pub mod stability;

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::bench::child::{Runner, perform};
 use crate::bench::pareto::{self, Effort, Sweep, Work};
 use crate::bench::peers::{installed, known, missing};
+use crate::bench::quality;
 use crate::bench::scaling;
 use crate::bench::stability::{self, Extent};
 use crate::lab::{Notice, ResultFolder};
@@ -98,6 +99,9 @@ pub(super) struct Stability {
 pub(super) struct Scaling {
     /// Picture, resampled to every size [default: a generated one]
     picture: Option<PathBuf>,
+    /// Measure instead how faithful drawings of these pictures are that may take 0.1 to 5 s, and those of other programs
+    #[arg(long, value_name = "PICTURE", num_args = 1.., conflicts_with_all = ["picture", "short"])]
+    quality: Vec<PathBuf>,
     #[command(flatten)]
     extents: Extents,
 }
@@ -114,7 +118,7 @@ impl Benchmark {
             Self::Pareto(pareto) => pareto.run(folder, files, verbosity),
             Self::Stability(stability) => stability.run(files),
             Self::Inverse(inverse) => inverse.run(files, verbosity),
-            Self::Scaling(scaling) => scaling.run(files),
+            Self::Scaling(scaling) => scaling.run(files, verbosity),
         }
     }
 }
@@ -193,7 +197,20 @@ fn say_missing(names: &[&str], verbosity: Verbosity) {
 }
 
 impl Scaling {
-    fn run(&self, files: &mut ResultFolder<'_>) -> Result<usize> {
+    /// How faithful drawings are that may take so long.
+    fn quality(&self, files: &mut ResultFolder<'_>, verbosity: Verbosity) -> Result<usize> {
+        let report = quality::run(&self.quality, &installed(), &mut say)?;
+        files.text("quality.csv", &report.table().csv())?;
+        files.text("quality.md", &report.table().markdown())?;
+        files.text("quality.json", &json(&report)?)?;
+        say_missing(&missing(), verbosity);
+        Ok(0)
+    }
+
+    fn run(&self, files: &mut ResultFolder<'_>, verbosity: Verbosity) -> Result<usize> {
+        if !self.quality.is_empty() {
+            return self.quality(files, verbosity);
+        }
         let runner = Runner::new(CHILD)?;
         let measure = |point: &_| runner.point(point);
         let report = scaling::run(self.extents.short, self.picture.clone(), &measure, &mut say)?;

@@ -7,6 +7,7 @@ pub mod inverse;
 pub mod pareto;
 pub mod picture;
 pub mod plot;
+pub mod quality;
 pub mod scaling;
 pub mod shapes;
 pub mod stability;
