@@ -141,6 +141,7 @@ impl Fitter<'_> {
         if let Some(rival) = by_strokes
             && stop != Stop::Interrupted
             && drawn.has_doubtful_areas()
+            && rivals::has_time_for_another(&rival.config, since.elapsed())
         {
             drawn = drawn.or_cheaper(rival.draw(picture, since, true)?, price);
         }

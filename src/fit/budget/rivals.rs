@@ -7,6 +7,8 @@
 //! Areas, too, have a rival: where many of them draw what has no flat colours, such as gradients, or draw it badly, strokes
 //! alone may be better.
 
+use std::time::Duration;
+
 use super::reduction::flat_share;
 use crate::fit::budget;
 use crate::fit::config::{Budget, Config};
@@ -76,11 +78,19 @@ pub(in crate::fit) fn is_flat(config: &Config, picture: &Image) -> bool {
 
 /// The configuration of the drawing by strokes alone that one with areas may have to compete with.
 pub(in crate::fit) fn by_strokes_alone(config: &Config) -> Option<Config> {
-    let may_compete = config.marks() == Marks::Auto && config.budget.time.is_none();
-    may_compete.then(|| Config {
+    (config.marks() == Marks::Auto).then(|| Config {
         marks: Marks::Strokes,
         ..config.clone()
     })
+}
+
+/// The share of a limited time after which a drawing by strokes alone is not begun. A guess.
+const LATEST: f64 = 0.5;
+
+/// True if there is time for a drawing by strokes alone beside that with areas, which took `elapsed`.
+pub(in crate::fit) fn has_time_for_another(config: &Config, elapsed: Duration) -> bool {
+    let limit = config.budget.time;
+    limit.is_none_or(|limit| elapsed <= limit.mul_f64(LATEST))
 }
 
 #[cfg(test)]
