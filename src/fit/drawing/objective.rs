@@ -217,7 +217,9 @@ impl CanvasLoss for Objective<'_> {
 mod tests {
     use super::*;
     use crate::image::Image;
+    use crate::math::Point;
     use crate::rng;
+    use crate::scene::{Area, Mark, Path, PathPoint};
 
     /// A picture of 40×33 px, so that tiles are padded.
     fn random(key: u64) -> Canvas {
@@ -266,6 +268,73 @@ mod tests {
                     assert!((slope[channel] - sum).abs() < 1e-4 * sum.abs().max(1e-3));
                 }
             }
+        }
+    }
+
+    /// An area with these corners, of this colour and opacity.
+    fn area(corners: &[[f32; 2]], color: [f32; 3], opacity: f32) -> Mark {
+        let place = |&[x, y]: &[f32; 2]| PathPoint::on(Point::new(x, y));
+        let ring = Path::new(corners.iter().map(place).collect(), true).unwrap();
+        Mark::Area(Area {
+            rings: vec![ring],
+            color,
+            opacity,
+            shade: None,
+        })
+    }
+
+    #[test]
+    fn tiles_that_areas_fill_are_differentiated_by_their_sums_as_by_their_pixels() {
+        // Both areas fill tiles between edges: the lower one has a notch, the upper one ends on the page.
+        let notched = [
+            [-9.0, -9.0],
+            [200.0, -9.0],
+            [200.0, 90.0],
+            [70.0, 90.0],
+            [70.0, 50.0],
+            [40.0, 110.0],
+            [-9.0, 110.0],
+        ];
+        let marks = [
+            area(&notched, [0.9, 0.2, 0.3], 0.6),
+            area(
+                &[[90.0, -5.0], [210.0, 4.0], [190.0, 120.0]],
+                [0.1, 0.5, 0.8],
+                1.0,
+            ),
+        ];
+        let strokes: Strokes = marks.iter().collect();
+        let plane = |channel: u64| {
+            (0..150 * 100)
+                .map(|i| rng::draw(0, 3, channel, i))
+                .collect()
+        };
+        let picture = Image::new(150, 100, [plane(0), plane(1), plane(2)]).unwrap();
+        let target = Target::new(Canvas::from_image(&picture), None);
+        let known = Objective::squared(&target);
+        let unknown = Objective::new(Loss::L2, &target.canvas);
+        let mut renderer = Renderer::new(target.grid(), fearless_simd::Level::new());
+        let edge = Softness {
+            coverage: crate::coverage::Coverage::Smoothstep,
+            width: 1.3,
+        };
+        let [black, white] = [[0.0; 3], [1.0; 3]].map(Backdrop::Color);
+        let mut of = |objective: &Objective<'_>| {
+            let mut each = [Gradients::default(), Gradients::default()];
+            renderer.backward(&strokes, edge, white, objective, &mut each[0]);
+            let mattes = [objective, objective];
+            renderer.backward_on_mattes(&strokes, edge, [black, white], mattes, &mut each[1]);
+            (each, renderer.loss(&strokes, edge, white, objective))
+        };
+        let ((by_sums, loss), (by_pixels, _)) = (of(&known), of(&unknown));
+        assert!((loss - by_pixels[0].loss).abs() < 1e-6 * loss, "{loss}");
+        for (sums, pixels) in by_sums.iter().zip(&by_pixels) {
+            assert!((sums.loss - pixels.loss).abs() < 1e-6 * pixels.loss);
+            let numbers = sums.strokes.iter().chain(&sums.backdrop);
+            for (a, b) in numbers.zip(pixels.strokes.iter().chain(&pixels.backdrop)) {
+                assert!((a - b).abs() < 1e-6 + 1e-4 * b.abs(), "{a} {b}");
+            }
+            assert!(sums.blocks < pixels.blocks, "{} blocks", sums.blocks);
         }
     }
 }
