@@ -130,16 +130,28 @@ impl Profile {
         }
     }
 
-    /// The best stops at these offsets. The opacity comes first: once it is fixed, premultiplied colours are linear in
-    /// the stops' colours.
+    /// The best stops at these offsets.
     fn stops(&self, offsets: &[f64]) -> Vec<ShadeStop> {
-        let opacity = self.fitted(offsets, |group| (1.0, group.value[3]));
+        self.stops_seen(offsets, &self.segments(offsets))
+    }
+
+    /// The segment between two offsets that each group is in.
+    fn segments(&self, offsets: &[f64]) -> Vec<Segment> {
+        let groups = self.groups.iter();
+        groups
+            .map(|group| Segment::of(offsets, group.offset))
+            .collect()
+    }
+
+    /// The best stops at these offsets, which the groups are between in these segments. The opacity comes first: once it is
+    /// fixed, premultiplied colours are linear in the stops' colours.
+    fn stops_seen(&self, offsets: &[f64], segments: &[Segment]) -> Vec<ShadeStop> {
+        let n = offsets.len();
+        let opacity = self.fitted(n, segments, |group, _| (1.0, group.value[3]));
         let opacity: Vec<f64> = opacity.iter().map(|v| v.clamp(0.0, 1.0)).collect();
         let channel = |c: usize| {
-            self.fitted(offsets, |group| {
-                let opacity = between(offsets, &opacity, group.offset);
-                (opacity, group.value[c])
-            })
+            let of = |group: &Group, at: Segment| (at.value(&opacity), group.value[c]);
+            self.fitted(n, segments, of)
         };
         let colors = [channel(0), channel(1), channel(2)];
         let stop = |(i, &offset): (usize, &f64)| ShadeStop {
@@ -152,20 +164,21 @@ impl Profile {
 
     /// The squared error of the best stops at these offsets.
     fn error(&self, offsets: &[f64]) -> f64 {
-        let stops = self.stops(offsets);
+        let segments = self.segments(offsets);
+        let stops = self.stops_seen(offsets, &segments);
         let plane = |of: &dyn Fn(&ShadeStop) -> f32| -> Vec<f64> {
             stops.iter().map(|stop| f64::from(of(stop))).collect()
         };
         let colors = [0, 1, 2].map(|c: usize| plane(&|stop| stop.color[c]));
         let opacity = plane(&|stop| stop.opacity);
-        let error = |group: &Group| {
-            let opacity = between(offsets, &opacity, group.offset);
-            let channel = |c: usize| opacity * between(offsets, &colors[c], group.offset);
+        let error = |(group, at): (&Group, &Segment)| {
+            let opacity = at.value(&opacity);
+            let channel = |c: usize| opacity * at.value(&colors[c]);
             let seen = [channel(0), channel(1), channel(2), opacity];
             let errors = seen.iter().zip(group.value).map(|(a, b)| (a - b) * (a - b));
             group.count * errors.sum::<f64>()
         };
-        self.groups.iter().map(error).sum()
+        self.groups.iter().zip(&segments).map(error).sum()
     }
 
     /// The offsets, each moved to where the error is least while its neighbours stay, and that error.
@@ -190,15 +203,19 @@ impl Profile {
         (offsets, least)
     }
 
-    /// Values at the offsets, linear between them, that are the least squares of `factor · value − wanted` over all blocks.
-    /// `of` tells factor and wanted value of a group.
-    fn fitted(&self, offsets: &[f64], of: impl Fn(&Group) -> (f64, f64)) -> Vec<f64> {
-        let n = offsets.len();
+    /// Values at `n` offsets, linear between them, that are the least squares of `factor · value − wanted` over all blocks.
+    /// `of` tells factor and wanted value of a group in its segment.
+    fn fitted(
+        &self,
+        n: usize,
+        segments: &[Segment],
+        of: impl Fn(&Group, Segment) -> (f64, f64),
+    ) -> Vec<f64> {
         let (mut diagonal, mut beside, mut wanted) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
         let (mut weight, mut sum) = (1e-12, 0.0);
-        for group in &self.groups {
-            let (factor, value) = of(group);
-            let (i, part) = segment(offsets, group.offset);
+        for (group, &at) in self.groups.iter().zip(segments) {
+            let (factor, value) = of(group, at);
+            let Segment { i, part } = at;
             let weights = [factor * (1.0 - part), factor * part];
             diagonal[i] += group.count * weights[0] * weights[0];
             diagonal[i + 1] += group.count * weights[1] * weights[1];
@@ -231,15 +248,29 @@ fn solved(mut diagonal: Vec<f64>, beside: &[f64], mut wanted: Vec<f64>) -> Vec<f
     wanted
 }
 
-/// The segment between two offsets that `at` is in, and the part of it before.
-fn segment(offsets: &[f64], at: f64) -> (usize, f64) {
-    let after = offsets.partition_point(|&offset| offset <= at);
-    let i = after.clamp(1, offsets.len() - 1) - 1;
-    let part = (at - offsets[i]) / (offsets[i + 1] - offsets[i]);
-    (i, part.clamp(0.0, 1.0))
+/// A place between two offsets.
+#[derive(Clone, Copy)]
+struct Segment {
+    /// Index of the offset before.
+    i: usize,
+    /// Part of the way to the next offset.
+    part: f64,
 }
 
-fn between(offsets: &[f64], values: &[f64], at: f64) -> f64 {
-    let (i, part) = segment(offsets, at);
-    values[i] + part * (values[i + 1] - values[i])
+impl Segment {
+    /// The place of `at`.
+    fn of(offsets: &[f64], at: f64) -> Self {
+        let after = offsets.partition_point(|&offset| offset <= at);
+        let i = after.clamp(1, offsets.len() - 1) - 1;
+        let part = (at - offsets[i]) / (offsets[i + 1] - offsets[i]);
+        Self {
+            i,
+            part: part.clamp(0.0, 1.0),
+        }
+    }
+
+    /// The value here of what is linear between these values at the offsets.
+    fn value(self, values: &[f64]) -> f64 {
+        values[self.i] + self.part * (values[self.i + 1] - values[self.i])
+    }
 }
