@@ -38,7 +38,7 @@
 //! | --- | --- | --- |
 //! | `formats` | pictures other than PNG, colour profiles, and pictures embedded in the SVG of a base | yes |
 //! | `animation` | frames and GIF, WebP or PNG files in the module `animation`; needs `formats` | yes |
-//! | `cli` | the program and what it alone uses: `engines`, [`machine`] and `view`; needs the others | yes |
+//! | `cli` | the program and what it alone uses: `engines`, `view`, cut-outs and hatching in [`machine`]; needs the others | yes |
 //!
 //! # The pipeline
 //!
@@ -195,7 +195,6 @@ mod error;
 pub mod fit;
 pub mod image;
 pub mod loss;
-#[cfg(feature = "cli")]
 pub mod machine;
 pub mod math;
 pub mod metrics;

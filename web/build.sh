@@ -44,8 +44,8 @@ page() {
 
 # Pictures, and what the program draws of them without options.
 examples() {
-    cp samples/{coffee-300.png,noto-hibiscus.png,bicycle.png,starry-night.jpg} web/dist/examples
-    cp docs/pictures/{noto-hibiscus,bicycle,starry-night}.svg web/dist/examples
+    cp samples/{coffee-300.png,noto-hibiscus.png,bicycle.png,crayon.jpg} web/dist/examples
+    cp docs/pictures/{noto-hibiscus,bicycle,crayon}.svg web/dist/examples
     cp docs/pictures/coffee-quality-30.svg web/dist/examples/coffee-300.svg
 }
 

@@ -10,17 +10,23 @@
 //! pdf, dxf  sheet → bytes of a file
 //! ```
 
+#[cfg(feature = "cli")]
 mod bezier;
 mod colors;
+#[cfg(feature = "cli")]
 mod cutout;
 mod dxf;
+#[cfg(feature = "cli")]
 mod hatch;
 mod pdf;
 mod sheet;
+#[cfg(feature = "cli")]
 mod visible;
 
+#[cfg(feature = "cli")]
 pub use cutout::cut_out;
 pub use dxf::dxf;
+#[cfg(feature = "cli")]
 pub use hatch::{Hatch, hatched};
 pub use pdf::pdf;
 pub use sheet::Sheet;

@@ -3,7 +3,6 @@
 mod file;
 mod shade;
 
-use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use super::sheet::Sheet;
@@ -59,7 +58,9 @@ fn list(objects: &[usize]) -> String {
 
 /// The opacities by the names that the content has for them.
 fn states(scene: &Scene) -> String {
-    let opacities: BTreeSet<u8> = scene.marks().map(|mark| quantum(mark.opacity())).collect();
+    let mut opacities: Vec<u8> = scene.marks().map(|mark| quantum(mark.opacity())).collect();
+    opacities.sort_unstable();
+    opacities.dedup();
     let state = |k: &u8| {
         let opacity = number(f64::from(*k) / 255.0);
         format!("/O{k}<</ca {opacity}/CA {opacity}>>")
@@ -178,6 +179,7 @@ fn channels(color: [u8; 3]) -> String {
 }
 
 /// A number with at most 4 decimals.
+#[inline(never)]
 fn number(value: f64) -> String {
     let text = format!("{value:.4}");
     let text = text.trim_end_matches('0').trim_end_matches('.');

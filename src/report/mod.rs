@@ -26,7 +26,6 @@ pub use event::{Event, PhaseEntry};
 pub use fit::{BaseEntry, FitReport, Run, StageEntry, stop_word};
 pub use judged::{Judged, OnFocus};
 pub use scene::{MarkRecord, SceneRecord, ShadeRecord};
-#[cfg(feature = "cli")]
 pub(crate) use size::deflated;
 pub use size::{gzip_bytes, per_stroke};
 pub use usage::Usage;

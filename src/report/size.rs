@@ -2,9 +2,8 @@
 
 use std::io::Write;
 
-#[cfg(feature = "cli")]
-use flate2::write::ZlibEncoder;
-use flate2::{Compression, write::GzEncoder};
+use flate2::Compression;
+use flate2::write::{GzEncoder, ZlibEncoder};
 
 /// Bytes of `text` after gzip at its highest level, as a web server may send it.
 pub fn gzip_bytes(text: &str) -> usize {
@@ -15,7 +14,6 @@ pub fn gzip_bytes(text: &str) -> usize {
 }
 
 /// The bytes compressed as zlib does at its highest level.
-#[cfg(feature = "cli")]
 pub(crate) fn deflated(bytes: &[u8]) -> Vec<u8> {
     let mut zlib = ZlibEncoder::new(Vec::new(), Compression::best());
     // Writing to memory cannot fail.

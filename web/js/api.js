@@ -2,7 +2,7 @@
 
 import { Renderer, checkedSize } from "./gradients.js";
 import load, {
-  Renderer as NativeRenderer, Target, __wbg_reset_state, animate as animateText, fit as fitTarget, lastPanic,
+  Renderer as NativeRenderer, Target, __wbg_reset_state, animate as animateText, dxf as dxfOf, fit as fitTarget, lastPanic, pdf as pdfOf,
 } from "./wasm.js";
 
 // The functions of the package. `locate` says what to load: an address, bytes, or a module that is compiled already.
@@ -20,17 +20,18 @@ export function connect(locate) {
     await init();
     return draw(() => Target.fromPng(bytes(png)), options, onProgress);
   };
-  const animate = async (svg) => {
+  const converts = (convert) => async (svg) => {
     await init();
-    return guarded(() => animateText(svg));
+    return guarded(() => convert(svg));
   };
+  const [animate, pdf, dxf] = [animateText, pdfOf, dxfOf].map(converts);
   const renderer = async (width, height, { softness = 1.2, coverage = "smoothstep" } = {}) => {
     checkedSize(width, height, softness);
     await init();
     const native = guarded(() => new NativeRenderer(width, height, coverage, softness));
     return new Renderer(native, width, height, guarded);
   };
-  return { init, fit, fitPng, animate, renderer };
+  return { init, fit, fitPng, animate, pdf, dxf, renderer };
 }
 
 function draw(read, { focus, ...options } = {}, onProgress) {

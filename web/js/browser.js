@@ -2,4 +2,4 @@
 
 import { connect } from "./api.js";
 
-export const { init, fit, fitPng, animate, renderer } = connect((source) => source ?? new URL("./wasm_bg.wasm", import.meta.url));
+export const { init, fit, fitPng, animate, pdf, dxf, renderer } = connect((source) => source ?? new URL("./wasm_bg.wasm", import.meta.url));

@@ -6,6 +6,6 @@ import { connect } from "./api.js";
 
 const OWN = new URL("./wasm_bg.wasm", import.meta.url);
 
-export const { init, fit, fitPng, animate, renderer } = connect((source = OWN) =>
+export const { init, fit, fitPng, animate, pdf, dxf, renderer } = connect((source = OWN) =>
   source instanceof WebAssembly.Module ? source : readFile(source),
 );

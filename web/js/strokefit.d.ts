@@ -144,6 +144,12 @@ export function fitPng(png: Uint8Array | ArrayBuffer, options?: Options, onProgr
 /** An SVG that draws itself, from the text of a drawing by strokefit. */
 export function animate(svg: string): Promise<string>;
 
+/** A PDF of a drawing by strokefit, on a page as large as its text says: curves are exact, layers those of the drawing. */
+export function pdf(svg: string): Promise<Uint8Array>;
+
+/** A DXF of a drawing by strokefit, in millimetres, with a layer for each colour: centre lines of strokes and rings of areas. */
+export function dxf(svg: string): Promise<string>;
+
 /** Numbers in a row. */
 export type Numbers = readonly number[] | Float32Array | Float64Array | Int32Array | Uint32Array;
 

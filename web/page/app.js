@@ -263,13 +263,13 @@ listenToFocus(() => [drawn.image.width, drawn.image.height], (focus) => {
   drawn.focus = focus;
   redraw();
 });
-listenToTake({ drawing: () => ({ text: asShown(drawn.svg), stem: stem(), width: drawn.image.width, height: drawn.image.height }), link });
+listenToTake({ drawing: () => ({ text: asShown(drawn.svg), stem: stem(), width: drawn.image.width, height: drawn.image.height }), link, convert: fitting.convert });
 listen({ stop: fitting.stop, add });
 
 const linked = readLink();
 if (linked) for (const radio of document.querySelectorAll("[name=kind]")) radio.checked = false;
 sayKind(linked ? null : "any");
 
-// The program is fetched before it is needed, and kept for when there is no network.
-fitting.prepare().catch((error) => say(error.message));
+// The program is fetched and compiled before it is needed, and kept for when there is no network.
+fitting.prepare().then(fitting.warm).catch((error) => say(error.message));
 navigator.serviceWorker?.register("offline.js").catch((error) => console.info(`the page is not kept: ${error.message}`));

@@ -49,13 +49,21 @@ export function save(blob, name) {
   setTimeout(() => URL.revokeObjectURL(saved.href), 10_000);
 }
 
-// Answers the buttons. `drawing` gives { text, stem, width, height } as it is shown; `link` the address that has the settings.
-export function listenToTake({ drawing, link }) {
+// Answers the buttons. `drawing` gives { text, stem, width, height } as it is shown; `link` the address that has the settings;
+// `convert` makes a file of a text and "pdf" or "dxf".
+export function listenToTake({ drawing, link, convert }) {
+  const file = (kind, type) => async () => {
+    const { text, stem } = drawing();
+    save(new Blob([await convert(text, kind)], { type }), `${stem}.${kind}`);
+    return `saved a ${kind.toUpperCase()}`;
+  };
   const ways = {
     copy: async () => copy(drawing().text, "the SVG"),
     react: async () => copy(component(drawing().text, drawing().stem), "a React component"),
     css: async () => copy(background(drawing().text), "a CSS background"),
     link: async () => copy(link(), "a link with these settings, without the picture"),
+    pdf: file("pdf", "application/pdf"),
+    dxf: file("dxf", "image/vnd.dxf"),
     png: async () => {
       const { text, stem, width, height } = drawing(), scale = Number(element("png-scale").value);
       save(await png(text, width * scale, height * scale), `${stem}.png`);

@@ -1,6 +1,7 @@
-// Fits one picture, and tells the page how it goes. The page ends this worker when it wants another picture.
+// Fits one picture, and tells the page how it goes, or writes a drawing as another kind of file. The page ends this worker when it
+// wants something else.
 
-import { animate, fit, fitPng, init } from "./strokefit/browser.js";
+import { animate, dxf, fit, fitPng, init, pdf } from "./strokefit/browser.js";
 
 // Least time between two messages, and between two drawings, ms.
 const TELL = 100;
@@ -8,13 +9,18 @@ const SHOW = 250;
 // The fit needs the processor: it goes on so many times as long as it took to copy the drawing.
 const REST = 30;
 
-// The first message has the WebAssembly, the second one a picture.
+// The first message has the WebAssembly, the second one a picture, or the text of a drawing and the kind of file that it is to be.
 let ready;
 
 onmessage = ({ data }) => {
   if (data.module) ready = init(data.module);
-  else draw(data).catch(({ message }) => postMessage({ error: message }));
+  else (data.kind ? convert(data) : draw(data)).catch(({ message }) => postMessage({ error: message }));
 };
+
+async function convert({ text, kind }) {
+  await ready;
+  postMessage({ file: await { pdf, dxf }[kind](text) });
+}
 
 async function draw({ picture: { png, pixels, width, height }, options, running }) {
   await ready;

@@ -13,7 +13,9 @@ use std::panic;
 use strokefit::animation::{Film, Legend};
 use strokefit::clock::Instant;
 use strokefit::fit::{Base, Fitter, Focus};
+use strokefit::machine::{self, Sheet};
 use strokefit::report::{self, FitReport, Judged, Run, Usage};
+use strokefit::scene::Scene;
 use strokefit::svg;
 use wasm_bindgen::prelude::*;
 
@@ -128,4 +130,31 @@ pub fn animate(text: &str) -> Result<String, JsError> {
         scale: 1.0,
     };
     Ok(film.svg(&svg::read(text)?))
+}
+
+/// A PDF of the text of a drawing by strokefit, on a page as large as the text says.
+///
+/// # Errors
+/// When the text is not such a drawing.
+#[wasm_bindgen]
+pub fn pdf(text: &str) -> Result<Vec<u8>, JsError> {
+    let scene = svg::read(text)?;
+    Ok(machine::pdf(&sheet(text, &scene)))
+}
+
+/// A DXF of the text of a drawing by strokefit, on a page as large as the text says.
+///
+/// # Errors
+/// When the text is not such a drawing.
+#[wasm_bindgen]
+pub fn dxf(text: &str) -> Result<String, JsError> {
+    let scene = svg::read(text)?;
+    Ok(machine::dxf(&sheet(text, &scene)))
+}
+
+fn sheet<'a>(text: &str, scene: &'a Scene) -> Sheet<'a> {
+    Sheet {
+        scene,
+        width: svg::page_width(text),
+    }
 }

@@ -2,14 +2,14 @@
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { readdirSync, writeFileSync } from "node:fs";
+import { readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { cpus } from "node:os";
 import { join } from "node:path";
 import { describe, it } from "node:test";
 
-import { animate, fit, fitPng } from "../pkg/node.js";
+import { animate, dxf, fit, fitPng, pdf } from "../pkg/node.js";
 import { fitElsewhere } from "./support/fit.mjs";
-import { inFolder, native, root, sample } from "./support/program.mjs";
+import { inFolder, native, root, sample, strokefit } from "./support/program.mjs";
 
 // The package takes colours for sRGB; the program converts those of a file with another profile.
 const hasProfile = (name) => sample(name).includes("iCCP");
@@ -130,6 +130,8 @@ describe("fit", () => {
       [() => fit([1, 2, 3], 1, 1), /give a Uint8Array/],
       [() => fitPng(png.subarray(0, 900)), /the picture/],
       [() => animate("<svg/>"), /./],
+      [() => pdf("<svg/>"), /./],
+      [() => dxf("<svg/>"), /./],
     ]) {
       await assert.rejects(call, words);
     }
@@ -142,6 +144,21 @@ describe("animate", () => {
     const animated = await animate(svg);
     assert.match(animated, /<animate attributeName="visibility"/);
     assert.equal(animated.match(/<path/g).length, svg.match(/<path/g).length);
+  });
+});
+
+describe("pdf and dxf", () => {
+  it("are the files that the program makes of a drawing", async () => {
+    const svg = native(join(root, "samples/noto-gem.png"), ["--preset", "draft", "--width", "80mm"]);
+    const made = inFolder((folder) => {
+      writeFileSync(join(folder, "a.svg"), svg);
+      return ["pdf", "dxf"].map((kind) => {
+        execFileSync(strokefit, ["render", "a.svg", "-q", "-o", `a.${kind}`], { cwd: folder });
+        return readFileSync(join(folder, `a.${kind}`));
+      });
+    });
+    assert.ok(made[0].equals(await pdf(svg)));
+    assert.ok(made[1].toString() === (await dxf(svg)));
   });
 });
 

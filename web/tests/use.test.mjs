@@ -231,6 +231,10 @@ describe("the page in use", { skip: !program }, () => {
     assert.equal(await page.value(shown), 400);
     const png = readFileSync(await page.download("png"));
     assert.deepEqual([png.readUInt32BE(16), png.readUInt32BE(20)], [800, 520]);
+    assert.match(readFileSync(await page.download("pdf"), "latin1"), /^%PDF-1\.5[^]*%%EOF\n$/);
+    const dxf = await page.download("dxf");
+    assert.ok(dxf.endsWith("bicycle.dxf"));
+    assert.match(readFileSync(dxf, "utf8"), /\nLWPOLYLINE\n[^]*\nEOF\n$/);
     await page.value("{ const field = document.querySelector('[name=colors]'); field.value = '4'; field.dispatchEvent(new Event('input', { bubbles: true })); }");
     await take("link", /^copied a link/);
     assert.equal(await page.value(clipboard), `${server.address}?preset=draft&colors=4`);

@@ -47,9 +47,9 @@ impl File {
         self.object("DICTIONARY", "C", "0", "AcDbDictionary");
         self.pairs(&[(281, "1"), (3, "ACAD_GROUP"), (350, "D")]);
         self.object("DICTIONARY", "D", "C", "AcDbDictionary");
-        self.pair(281, 1);
+        self.pair(281, &1);
         self.end_section();
-        self.pair(0, "EOF");
+        self.pair(0, &"EOF");
         self.text
     }
 
@@ -69,13 +69,13 @@ impl File {
     /// Lines and arcs.
     pub(super) fn polyline(&mut self, layer: &str, vertices: &[Vertex], closed: bool) {
         self.entity("LWPOLYLINE", layer, "AcDbPolyline");
-        self.pair(90, vertices.len());
-        self.pair(70, u8::from(closed));
+        self.pair(90, &vertices.len());
+        self.pair(70, &u8::from(closed));
         for vertex in vertices {
-            self.pair(10, number(vertex.at[0]));
-            self.pair(20, number(vertex.at[1]));
+            self.pair(10, &number(vertex.at[0]));
+            self.pair(20, &number(vertex.at[1]));
             if vertex.bulge != 0.0 {
-                self.pair(42, format!("{:.6}", vertex.bulge));
+                self.pair(42, &format!("{:.6}", vertex.bulge));
             }
         }
     }
@@ -83,8 +83,8 @@ impl File {
     fn header(&mut self, [width, height]: [f64; 2]) {
         self.section("HEADER");
         let variable = |file: &mut Self, name: &str, code: i32, value: &str| {
-            file.pair(9, name);
-            file.pair(code, value);
+            file.pair(9, &name);
+            file.pair(code, &value);
         };
         variable(self, "$ACADVER", 1, "AC1018");
         variable(self, "$HANDSEED", 5, "FFFFFF");
@@ -92,7 +92,7 @@ impl File {
         variable(self, "$INSUNITS", 70, "4");
         variable(self, "$MEASUREMENT", 70, "1");
         for (name, x, y) in [("$EXTMIN", 0.0, 0.0), ("$EXTMAX", width, height)] {
-            self.pair(9, name);
+            self.pair(9, &name);
             self.place(10, [x, y]);
         }
         self.end_section();
@@ -119,11 +119,11 @@ impl File {
                 "AcDbLayerTableRecord",
                 &layer(*color),
             );
-            self.pair(62, index(*color));
+            self.pair(62, &index(*color));
             // Readers of later versions take the true colour.
             let [r, g, b] = color.map(u32::from);
-            self.pair(420, r << 16 | g << 8 | b);
-            self.pair(6, "Continuous");
+            self.pair(420, &(r << 16 | g << 8 | b));
+            self.pair(6, &"Continuous");
         }
         self.end_table();
         self.table("STYLE", "3", 1);
@@ -146,26 +146,26 @@ impl File {
         self.record("APPID", "12", "9", "AcDbRegAppTableRecord", "ACAD");
         self.end_table();
         self.table("DIMSTYLE", "A", 0);
-        self.pair(100, "AcDbDimStyleTable");
+        self.pair(100, &"AcDbDimStyleTable");
         self.end_table();
         self.table("BLOCK_RECORD", "1", 2);
         for (handle, name) in [(MODEL_SPACE, "*Model_Space"), (PAPER_SPACE, "*Paper_Space")] {
             self.object("BLOCK_RECORD", handle, "1", "AcDbSymbolTableRecord");
-            self.pair(100, "AcDbBlockTableRecord");
-            self.pair(2, name);
+            self.pair(100, &"AcDbBlockTableRecord");
+            self.pair(2, &name);
         }
         self.end_table();
     }
 
     fn table(&mut self, name: &str, handle: &str, entries: usize) {
-        self.pair(0, "TABLE");
-        self.pair(2, name);
+        self.pair(0, &"TABLE");
+        self.pair(2, &name);
         self.pairs(&[(5, handle), (330, "0"), (100, "AcDbSymbolTable")]);
-        self.pair(70, entries);
+        self.pair(70, &entries);
     }
 
     fn end_table(&mut self) {
-        self.pair(0, "ENDTAB");
+        self.pair(0, &"ENDTAB");
     }
 
     /// A record of a table.
@@ -183,6 +183,7 @@ impl File {
         self.pairs(&[(8, "0"), (100, "AcDbBlockEnd")]);
     }
 
+    #[inline(never)]
     fn object(&mut self, kind: &str, handle: &str, owner: &str, class: &str) {
         self.pairs(&[(0, kind), (5, handle), (330, owner), (100, class)]);
     }
@@ -204,28 +205,33 @@ impl File {
     }
 
     fn end_section(&mut self) {
-        self.pair(0, "ENDSEC");
+        self.pair(0, &"ENDSEC");
     }
 
     /// A place of three coordinates, the first with this code.
+    #[inline(never)]
     fn place(&mut self, code: i32, [x, y]: [f64; 2]) {
-        self.pair(code, number(x));
-        self.pair(code + 10, number(y));
-        self.pair(code + 20, "0.0");
+        self.pair(code, &number(x));
+        self.pair(code + 10, &number(y));
+        self.pair(code + 20, &"0.0");
     }
 
+    #[inline(never)]
     fn pairs(&mut self, pairs: &[(i32, &str)]) {
         for (code, value) in pairs {
             self.pair(*code, value);
         }
     }
 
-    fn pair(&mut self, code: i32, value: impl Display) {
+    // A page downloads this once, and not at every pair.
+    #[inline(never)]
+    fn pair(&mut self, code: i32, value: &dyn Display) {
         let _ = writeln!(self.text, "{code}\n{value}");
     }
 }
 
 /// A length in mm.
+#[inline(never)]
 fn number(mm: f64) -> String {
     format!("{mm:.4}")
 }

@@ -14,8 +14,8 @@ const STEP: f64 = 1e-4;
 
 /// Adds the objects of the shade of this number, and returns its shading and its mask as the page's resources name them.
 pub(super) fn add(file: &mut File, shade: &Shade, number_of: usize, scene: &Scene) -> [String; 2] {
-    let colors = shading(shade, "DeviceRGB", |stop| channels(stop.color));
-    let opacities = shading(shade, "DeviceGray", |stop| {
+    let colors = shading(shade, "DeviceRGB", &|stop| channels(stop.color));
+    let opacities = shading(shade, "DeviceGray", &|stop| {
         number(f64::from(stop.opacity) / 255.0)
     });
     let form = format!(
@@ -31,7 +31,7 @@ pub(super) fn add(file: &mut File, shade: &Shade, number_of: usize, scene: &Scen
 }
 
 /// The shading with a value for each stop.
-fn shading(shade: &Shade, space: &str, value: impl Fn(&WrittenStop) -> String) -> String {
+fn shading(shade: &Shade, space: &str, value: &dyn Fn(&WrittenStop) -> String) -> String {
     let px = |units: i64| number(units as f64 / UNITS_PER_PX as f64);
     let (kind, coords) = match shade.axis {
         WrittenAxis::Linear(ends) => (2, ends.map(px).join(" ")),
@@ -47,7 +47,7 @@ fn shading(shade: &Shade, space: &str, value: impl Fn(&WrittenStop) -> String) -
 }
 
 /// The values between stops, which change linearly.
-fn function(stops: &[WrittenStop], value: impl Fn(&WrittenStop) -> String) -> String {
+fn function(stops: &[WrittenStop], value: &dyn Fn(&WrittenStop) -> String) -> String {
     let offset = |stop: &WrittenStop| f64::from(stop.offset) / 1000.0;
     let first = stops.first().map(|stop| (0.0, value(stop)));
     let last = stops.last().map(|stop| (1.0, value(stop)));

@@ -9,7 +9,7 @@ import { fileURLToPath } from "node:url";
 export const root = fileURLToPath(new URL("../../../", import.meta.url));
 
 // `STROKEFIT` names it; else it is where `cargo build --release` puts it.
-const strokefit = resolve(process.env.STROKEFIT ?? join(root, "target/release/strokefit"));
+export const strokefit = resolve(process.env.STROKEFIT ?? join(root, "target/release/strokefit"));
 if (!existsSync(strokefit)) throw new Error(`${strokefit} is missing: run cargo build --release`);
 
 export const sample = (name) => readFileSync(join(root, "samples", name));
