@@ -7,6 +7,7 @@
 import { execFileSync, spawn } from "node:child_process";
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
+import { createInterface } from "node:readline";
 
 import { Chromium, locateFor } from "../../web/tests/support/chromium.mjs";
 import { host } from "../../web/tests/support/host.mjs";
@@ -42,9 +43,10 @@ async function takeWeb() {
 }
 
 async function takeView() {
-  const drawing = join(root, "docs/pictures/coffee-quality-30.svg");
-  const program = spawn(strokefit, ["view", drawing, join(root, "samples/coffee-300.png")], { stdio: ["ignore", "ignore", "pipe"] });
-  const address = await new Promise((done) => program.stderr.on("data", (said) => done(String(said).match(/http\S+/)[0])));
+  const files = ["docs/pictures/coffee-quality-30.svg", "samples/coffee-300.png"];
+  const program = spawn(strokefit, ["view", ...files], { cwd: root, stdio: ["ignore", "ignore", "pipe"] });
+  const lines = createInterface({ input: program.stderr });
+  const address = await new Promise((done) => lines.on("line", (line) => line.includes("http://") && done(line.match(/http\S+/)[0])));
   const page = await browser.open(`${address}#stroke=401`, 1000, 880);
   await page.until(READY);
   await rest();

@@ -58,14 +58,12 @@ fn list(objects: &[usize]) -> String {
 
 /// The opacities by the names that the content has for them.
 fn states(scene: &Scene) -> String {
-    let mut opacities: Vec<u8> = scene.marks().map(|mark| quantum(mark.opacity())).collect();
-    opacities.sort_unstable();
-    opacities.dedup();
-    let state = |k: &u8| {
-        let opacity = number(f64::from(*k) / 255.0);
+    let is_used = |k: &u8| scene.marks().any(|mark| quantum(mark.opacity()) == *k);
+    let state = |k: u8| {
+        let opacity = number(f64::from(k) / 255.0);
         format!("/O{k}<</ca {opacity}/CA {opacity}>>")
     };
-    opacities.iter().map(state).collect()
+    (0..=u8::MAX).filter(is_used).map(state).collect()
 }
 
 /// The layers by the names that the content has for them.

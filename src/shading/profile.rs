@@ -15,7 +15,7 @@ pub(super) fn of(blocks: &Blocks, axis: Axis, fit: &ShadeFit) -> Option<Shade> {
     let profile = Profile::of(blocks, axis, fit.ridge);
     let mut offsets = vec![0.0, 1.0];
     let mut error = profile.error(&offsets);
-    while offsets.len() < fit.stops {
+    while offsets.len() < fit.stops && error >= ROUNDING * profile.count {
         let places = (1..PLACES).map(|i| i as f64 / PLACES as f64);
         let with = |place: f64| {
             let mut more = offsets.clone();
@@ -31,7 +31,7 @@ pub(super) fn of(blocks: &Blocks, axis: Axis, fit: &ShadeFit) -> Option<Shade> {
             break;
         };
         let (moved, found) = profile.moved(with(place));
-        if error - found < fit.stop_share * error || error < ROUNDING * profile.count {
+        if error - found < fit.stop_share * error {
             break;
         }
         (offsets, error) = (moved, found);
