@@ -10,9 +10,9 @@ const BASE: u64 = 16 << 20;
 /// Bytes per pixel for the picture, its reductions, canvases and renders, and for judging them: of a photograph. Measured: 215 to
 /// 315.
 const PER_PIXEL: u64 = 245;
-/// The same of flat art and drawings of lines, which are nudged if that pays. Measured: 270 to 520.
+/// Bytes per pixel of flat art and drawings of lines, which are nudged if that pays. Measured: 270 to 520.
 const PER_FLAT_PIXEL: u64 = 430;
-/// The same of a picture that is drawn on two mattes. Measured: 460 to 790.
+/// Bytes per pixel of a picture that is drawn on two mattes. Measured: 460 to 790.
 const PER_TRANSPARENT_PIXEL: u64 = 550;
 /// Bytes per pixel of a picture that is reduced before it is drawn. Measured: 14 for 16 megapixels.
 const PER_PIXEL_READ: u64 = 15;
