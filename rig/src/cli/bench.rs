@@ -197,7 +197,7 @@ fn say_missing(names: &[&str], verbosity: Verbosity) {
 }
 
 impl Scaling {
-    /// How faithful drawings are that may take so long.
+    /// Writes how faithful drawings are that may take so long.
     fn quality(&self, files: &mut ResultFolder<'_>, verbosity: Verbosity) -> Result<usize> {
         let report = quality::run(&self.quality, &installed(), &mut say)?;
         files.text("quality.csv", &report.table().csv())?;
