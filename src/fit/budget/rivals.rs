@@ -66,7 +66,8 @@ pub(in crate::fit) fn has_priced(config: &Config, picture: &Image) -> bool {
     }
     let recipe = config.recipe();
     let planned = budget::strokes(config, &recipe, None, picture);
-    let by_areas = config.marks != Marks::Strokes && !config.pens_draw_lines();
+    let may_trace = config.allows_points() && !config.pens_draw_lines();
+    let by_areas = may_trace && config.marks != Marks::Strokes;
     planned.is_some_and(|strokes| strokes <= recipe.rivals) || by_areas && is_flat(config, picture)
 }
 
