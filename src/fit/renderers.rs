@@ -126,7 +126,7 @@ impl Renderings {
         let corrected = surfaces.map(|(i, surface)| {
             let pictures = [&file.drawn[i], &self.chromium[i]];
             let target = corrected(surface.picture(), &self.own[i], pictures, shares);
-            surface.weighted(Canvas::from_image(&target))
+            surface.target_of(Canvas::from_image(&target))
         });
         corrected.collect()
     }

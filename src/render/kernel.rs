@@ -305,10 +305,11 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
         // The edge of an area is that of a stroke without radius, which has no core.
         if is_area {
             let listed = job.listed[slot];
-            let crossings = job.polylines.crossings.of(listed.stroke, job.origin[1]);
-            let inside = match listed.fills {
-                true => BlockSet::MAX,
-                false => windings.fill(crossings, job.origin),
+            let inside = if listed.fills {
+                BlockSet::MAX
+            } else {
+                let crossings = job.polylines.crossings.of(listed.stroke, job.origin[1]);
+                windings.fill(crossings, job.origin)
             };
             core = inside & !touched;
             touched |= inside;

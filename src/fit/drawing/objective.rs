@@ -221,14 +221,13 @@ mod tests {
     use crate::rng;
     use crate::scene::{Area, Mark, Path, PathPoint};
 
-    /// A picture of 40×33 px, so that tiles are padded.
-    fn random(key: u64) -> Canvas {
-        let plane = |channel: u64| {
-            (0..40 * 33)
-                .map(|i| rng::draw(0, key, channel, i))
-                .collect()
-        };
-        Canvas::from_image(&Image::new(40, 33, [plane(0), plane(1), plane(2)]).unwrap())
+    /// Tiles of this size are padded.
+    const SIZE: [usize; 2] = [40, 33];
+
+    /// A picture of this size, with noise.
+    fn random(key: u64, [width, height]: [usize; 2]) -> Canvas {
+        let draw = |x, y, c| rng::draw(0, key, c as u64, (y * width + x) as u64);
+        Canvas::from_image(&Image::from_fn(width, height, 3, draw).unwrap())
     }
 
     #[test]
@@ -240,8 +239,8 @@ mod tests {
         let color = [0.2, 0.5, 0.9];
         for roots in [None, Some(&roots)] {
             let target = match roots {
-                Some(roots) => random(1).multiplied(roots),
-                None => random(1),
+                Some(roots) => random(1, SIZE).multiplied(roots),
+                None => random(1, SIZE),
             };
             let target = Target::new(target, roots);
             let objective = Objective::squared(&target);
@@ -304,13 +303,7 @@ mod tests {
             ),
         ];
         let strokes: Strokes = marks.iter().collect();
-        let plane = |channel: u64| {
-            (0..150 * 100)
-                .map(|i| rng::draw(0, 3, channel, i))
-                .collect()
-        };
-        let picture = Image::new(150, 100, [plane(0), plane(1), plane(2)]).unwrap();
-        let target = Target::new(Canvas::from_image(&picture), None);
+        let target = Target::new(random(3, [150, 100]), None);
         let known = Objective::squared(&target);
         let unknown = Objective::new(Loss::L2, &target.canvas);
         let mut renderer = Renderer::new(target.grid(), fearless_simd::Level::new());

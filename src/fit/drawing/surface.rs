@@ -233,7 +233,7 @@ impl Surface {
     }
 
     /// The target that is `canvas`, with the weights of errors.
-    pub(in crate::fit) fn weighted(&self, canvas: Canvas) -> Target {
+    pub(in crate::fit) fn target_of(&self, canvas: Canvas) -> Target {
         let roots = self.error_weights.as_ref();
         let canvas = match roots {
             Some(roots) => canvas.multiplied(roots),
@@ -283,7 +283,7 @@ impl Surface {
     pub(in crate::fit) fn halve(&mut self, halvings: usize) {
         self.halvings = halvings;
         self.error_weights = self.focus.as_ref().map(|focus| focus.roots(halvings));
-        self.target = self.weighted(Canvas::from_image(self.pyramid.level(halvings)));
+        self.target = self.target_of(Canvas::from_image(self.pyramid.level(halvings)));
         self.frozen = self.backdrop.canvas(self.target.grid(), halvings);
         self.canvas.clone_from(&self.frozen);
     }
