@@ -2,7 +2,8 @@
 //!
 //! A [`Fitter`] adds strokes in stages, on a background or on a [`Base`]. Each stage seeds new strokes where
 //! the residual is largest, fits them briefly with all earlier strokes frozen, and keeps those that pay. The polish
-//! then fits all strokes jointly, and relocates those of least worth to where more is to be gained. If the file may have
+//! then fits all strokes jointly, and relocates those of least worth to where more is to be gained; small things that got lost
+//! on the way are traced again. If the file may have
 //! only a few colours or pens, the strokes are restricted to those. Settling takes the last steps against what the
 //! written file really looks like, and nudging moves points to where rasterisers draw the strokes better. Finally the
 //! fit adds or removes strokes, and fits them again, until the file is as faithful and as short as the budgets ask for.
@@ -60,8 +61,8 @@ pub use fitter::Fitter;
 pub use options::{MAX_THREADS, OPTIONS, Options, Refusal, Value};
 pub use recipe::{
     AdamSettings, BackgroundChoice, Correction, Domain, Doubts, EdgeShape, Joins, Masking, Nudging,
-    Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Reduction, Relocation, Rounds,
-    SCREEN_PIXELS, Settling, ShadeChoice, ShadeFit, Sharing, Stages, TimeShares,
+    Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Recovery, Reduction, Relocation,
+    Rounds, SCREEN_PIXELS, Settling, ShadeChoice, ShadeFit, Sharing, Stages, TimeShares,
 };
 pub use result::{Fit, StageRecord, Stop};
 pub use run::checkpoint::Checkpoint;
@@ -76,7 +77,7 @@ use crate::image::Image;
 use budget::price::Price;
 use budget::{reduction, rivals};
 use order::{Outcome, Phase};
-use phase::{count, grow, nudge, polish, restrict, settle, trace};
+use phase::{count, grow, nudge, polish, recover, restrict, settle, trace};
 use run::finish::{self, Drawn};
 use run::session::{Session, Watch};
 
@@ -245,6 +246,7 @@ fn run(session: &mut Session<'_>) -> Result<Outcome> {
             polish::polish(session, purpose)?;
             count::approach_fidelity(session)
         }
+        Phase::Recover => recover::recover(session),
         Phase::Restrict(_) => restrict::restrict(session)?,
         Phase::Settle(_) => settle::settle(session)?,
         Phase::Nudge(_) => nudge::nudge(session)?,

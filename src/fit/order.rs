@@ -9,6 +9,8 @@
 //!   ↓
 //! polish ⇄ stage              fit all strokes jointly, and double them while far from the fidelity asked for
 //!   ↓
+//! recover ─→ stage ─→ polish  draw small things that were lost on the way
+//!   ↓
 //! finish                      restrict ─→ settle ─→ nudge ─→ compare
 //!   ↓
 //! fidelity ─→ stage ─→ polish ─→ finish ─→ fidelity     until the file is as faithful as asked for
@@ -45,6 +47,8 @@ pub(super) enum Phase {
     StagePolish(Purpose),
     /// Fit all strokes jointly.
     Polish(Purpose),
+    /// Trace small things that the polish lost, if there are such.
+    Recover,
     /// Give the strokes the colours and widths that the file may have.
     Restrict(Limit),
     /// Fit the strokes to what renderers make of the file.
@@ -68,6 +72,8 @@ pub(super) enum Purpose {
     Trace,
     /// To draw a planned stage.
     Plan,
+    /// To draw small things that were lost.
+    Recover,
     /// To fill up the budget of strokes, which rejected strokes have left short.
     TopUp,
     /// To reach the fidelity asked for.
@@ -129,13 +135,19 @@ pub(super) fn next(phase: Phase, outcome: Outcome, config: &Config) -> Phase {
             Purpose::Trace => Phase::Trace,
             Purpose::Plan => Phase::Grow,
             Purpose::TopUp => FINISH,
+            Purpose::Recover if outcome == Rejected => FINISH,
+            Purpose::Recover => Phase::Polish(Purpose::Recover),
             // No further stroke helps.
             Purpose::Correct if outcome == Rejected => Phase::MeetBytes,
             Purpose::Correct => Phase::Polish(Purpose::Correct),
         },
 
         (Phase::Polish(_), Seeded(purpose)) => Phase::Stage(purpose),
+        (Phase::Polish(Purpose::Plan), _) => Phase::Recover,
         (Phase::Polish(_), _) => FINISH,
+
+        (Phase::Recover, Seeded(purpose)) => Phase::Stage(purpose),
+        (Phase::Recover, _) => FINISH,
 
         (Phase::Restrict(limit), _) => Phase::Settle(limit),
         (Phase::Settle(limit), _) => Phase::Nudge(limit),
@@ -161,7 +173,10 @@ impl Phase {
 
     /// True if it is a planned stage, and a polish of all strokes is to come.
     pub(super) fn precedes_polish(self, config: &Config) -> bool {
-        matches!(self, Self::Stage(Purpose::Trace | Purpose::Plan)) && polishes_all(config)
+        matches!(
+            self,
+            Self::Stage(Purpose::Trace | Purpose::Plan | Purpose::Recover)
+        ) && polishes_all(config)
     }
 
     /// True if a fit can go on from a state in the middle of this phase.
@@ -214,7 +229,7 @@ mod tests {
             _ => Outcome::Over,
         });
         let stage = [Phase::Grow, Phase::Stage(Purpose::Plan)];
-        let polish = [Phase::Grow, Phase::Polish(Purpose::Plan)];
+        let polish = [Phase::Grow, Phase::Polish(Purpose::Plan), Phase::Recover];
         let rest = [Phase::MeetFidelity, Phase::MeetBytes, Phase::Done];
         let expected = [&stage[..], &stage, &polish, &FINISHED, &rest];
         assert_eq!(phases, expected.concat());

@@ -5,6 +5,7 @@
 //! | `trace` | strokes are laid along the lines that are seen |
 //! | `grow` | stages are seeded, fitted on frozen strokes, and keep what pays |
 //! | `polish` | all strokes are fitted jointly, with relocation |
+//! | `recover` | small things that were lost on the way are traced again |
 //! | `restrict` | strokes get the colours and widths that the file may have |
 //! | `settle` | the last steps are taken against renders of the written file |
 //! | `nudge` | points move by a tenth of a px at most, to where rasterisers draw the strokes better |
@@ -15,6 +16,7 @@ pub(super) mod descend;
 pub(super) mod grow;
 pub(super) mod nudge;
 pub(super) mod polish;
+pub(super) mod recover;
 pub(super) mod relocation;
 pub(super) mod restrict;
 mod search;

@@ -53,6 +53,8 @@ pub struct Recipe {
     pub dense: Dense,
     /// Relocation: strokes of little worth make room for better ones during the polish.
     pub relocation: Relocation,
+    /// Recovery of small things.
+    pub recovery: Recovery,
     /// Points: strokes get and lose them during the polish.
     pub points: Points,
     /// Restriction of a drawing to a palette.
@@ -303,6 +305,20 @@ pub struct Relocation {
     /// A relocation that has free places to fill asks for up to this many times as many candidates as it may move
     /// strokes. Half, twice: 0.00 dB.
     pub fill: usize,
+}
+
+/// Recovery of small things that the polish has lost.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Recovery {
+    /// Weight of errors near them. 5, 8, 16: a label of a map correlates by 0.957, 0.970, 0.980 with the picture; borders of
+    /// 1 px take 8.8, 10.9, 13.2 kB, 75, 82, 84 % of them kept (1, 49 % in 5.6 kB).
+    pub weight: f32,
+    /// Rows and columns beside them that are traced, and weighed, too. A guess.
+    pub reach: usize,
+    /// Fewest pixels of a shape that is traced. 3, 1: 25, 41 of 41 specks of 1 to 4 px are there.
+    pub least_area: usize,
+    /// Iterations of the polish that follows, in units of those of the first one. A guess.
+    pub polish_share: f64,
 }
 
 /// Points: strokes get and lose them during the polish. After each relocation, points are chosen once.

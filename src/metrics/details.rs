@@ -82,6 +82,13 @@ impl Details {
         (all > 0.0).then(|| 1.0 - lost / all)
     }
 
+    /// True for each pixel at most `reach` rows and columns from a detail that `drawn`, a picture of the same size, has lost.
+    pub(crate) fn near_losses(&self, drawn: &Image, reach: usize) -> Vec<bool> {
+        let losses = self.losses(drawn);
+        let near = extremes(&losses, drawn.width(), reach, f32::max);
+        near.into_iter().map(|loss| loss > 0.0).collect()
+    }
+
     /// The isolation of each pixel in or beside a detail that is lost: `drawn` is wrong there by more than a part of the contrast.
     fn losses(&self, drawn: &Image) -> Vec<f32> {
         let drawn = drawn.on(WHITE);
@@ -103,9 +110,9 @@ impl Details {
 /// The largest contrast of what is darker or brighter than its surroundings, of each pixel.
 fn contrasts(planes: &[Vec<f32>; 3], width: usize) -> Vec<f32> {
     let of_plane = |plane: &Vec<f32>| {
-        let filter = |of: &[f32], pick| extremes(of, width, REACH, pick);
-        let opened = filter(&filter(plane, f32::min), f32::max);
-        let closed = filter(&filter(plane, f32::max), f32::min);
+        let least = |of: &[f32]| extremes(of, width, REACH, f32::min);
+        let most = |of: &[f32]| extremes(of, width, REACH, f32::max);
+        let (opened, closed) = (most(&least(plane)), least(&most(plane)));
         let bounds = opened.into_iter().zip(closed);
         plane
             .iter()
@@ -124,30 +131,34 @@ fn contrasts(planes: &[Vec<f32>; 3], width: usize) -> Vec<f32> {
 }
 
 /// The extreme value of the window of 2`reach` + 1 rows and columns around each pixel, as far as that is in the picture.
-fn extremes(values: &[f32], width: usize, reach: usize, pick: fn(f32, f32) -> f32) -> Vec<f32> {
+fn extremes(
+    values: &[f32],
+    width: usize,
+    reach: usize,
+    pick: impl Fn(f32, f32) -> f32 + Copy + Sync,
+) -> Vec<f32> {
     let height = values.len() / width;
-    let mut across = vec![0.0; values.len()];
-    across
-        .par_chunks_exact_mut(width)
-        .zip(values.par_chunks_exact(width))
+    let merge = |out: &mut [f32], others: &[f32]| {
+        let values = out.iter_mut().zip(others);
+        values.for_each(|(value, other)| *value = pick(*value, *other));
+    };
+    // One column, or row, of the window at a time, so that many pixels are compared at once.
+    let mut across = values.to_vec();
+    let rows = across.par_chunks_exact_mut(width);
+    rows.zip(values.par_chunks_exact(width))
         .for_each(|(out, row)| {
-            for (x, value) in out.iter_mut().enumerate() {
-                let near = &row[x.saturating_sub(reach)..(x + reach + 1).min(width)];
-                *value = near.iter().copied().fold(row[x], pick);
+            for shift in 1..(reach + 1).min(width) {
+                merge(out, &row[shift..]);
+                merge(&mut out[shift..], row);
             }
         });
-    let mut out = vec![0.0; values.len()];
-    out.par_chunks_exact_mut(width)
-        .enumerate()
-        .for_each(|(y, out)| {
-            out.copy_from_slice(&across[y * width..(y + 1) * width]);
-            for row in y.saturating_sub(reach)..(y + reach + 1).min(height) {
-                let row = &across[row * width..(row + 1) * width];
-                out.iter_mut()
-                    .zip(row)
-                    .for_each(|(value, other)| *value = pick(*value, *other));
-            }
-        });
+    let mut out = across.clone();
+    let rows = out.par_chunks_exact_mut(width).enumerate();
+    rows.for_each(|(y, out)| {
+        for other in y.saturating_sub(reach)..(y + reach + 1).min(height) {
+            merge(out, &across[other * width..(other + 1) * width]);
+        }
+    });
     out
 }
 

@@ -40,6 +40,10 @@ pub(in crate::fit) fn polish(session: &mut Session<'_>, purpose: Purpose) -> Res
         };
         polish.iterations = (polish.iterations as f64 * share) as usize;
     }
+    if purpose == Purpose::Recover {
+        let share = session.recipe.recovery.polish_share;
+        polish.iterations = (polish.iterations as f64 * share) as usize;
+    }
     if session.drawing.free().has_areas() {
         polish = polish.for_areas();
     }

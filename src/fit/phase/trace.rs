@@ -3,8 +3,7 @@
 use super::grow;
 use crate::error::Result;
 use crate::fit::budget::plan::PlannedStage;
-use crate::fit::budget::price::Price;
-use crate::fit::config::{Colors, Config};
+use crate::fit::config::Colors;
 use crate::fit::drawing::Drawing;
 use crate::fit::drawing::surface::Surface;
 use crate::fit::order::{Outcome, Purpose};
@@ -14,7 +13,7 @@ use crate::fit::run::history::OpenStage;
 use crate::fit::run::session::Session;
 use crate::metrics::psnr_db;
 use crate::render::{Canvas, Strokes};
-use crate::scene::{Mark, Stroke};
+use crate::scene::{Mark, Marks, Stroke};
 use crate::trace::{Traced, Tracing, trace};
 
 /// Adds strokes along the lines of the residual, on top of all others.
@@ -31,14 +30,62 @@ pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> 
         || grow::enough(session) == Some(Stop::Psnr);
     let traced = match is_over {
         true => Vec::new(),
-        false => lines(
-            &mut session.drawing,
-            session.config,
-            session.recipe.tracing,
-            session.price,
-        ),
+        false => {
+            let canvases = canvases(&mut session.drawing);
+            let (tracing, marks) = (session.recipe.tracing, session.config.marks());
+            paying(session, &canvases, tracing, marks)
+        }
     };
-    // As many strokes as there is room and time for; without any, stages go on with what is left.
+    if add(session, traced) {
+        return Ok(Outcome::Seeded(Purpose::Trace));
+    }
+    // Stages go on with what is left.
+    session.history.stage = None;
+    session.plan_rest();
+    Ok(Outcome::Over)
+}
+
+/// The drawing on each surface, at full resolution.
+pub(super) fn canvases(drawing: &mut Drawing) -> Vec<Canvas> {
+    if drawing.len() == 0 {
+        let surfaces = drawing.surfaces.iter();
+        return surfaces.map(Surface::full_backdrop).collect();
+    }
+    drawing.sharpen(0.0);
+    drawing.render();
+    drawing.surfaces.iter().map(|s| s.canvas.clone()).collect()
+}
+
+/// The marks traced on `canvases` that are worth their price, in painting order.
+pub(super) fn paying(
+    session: &Session<'_>,
+    canvases: &[Canvas],
+    mut tracing: Tracing,
+    marks: Marks,
+) -> Vec<Traced> {
+    let (config, price) = (session.config, session.price);
+    let surfaces = &session.drawing.surfaces;
+    // A gradient has many colours, and on a transparent page many opacities.
+    if config.colors != Colors::Free || config.opaque && surfaces.len() > 1 {
+        tracing.fills.shades.most = 0;
+    }
+    let surfaces = surfaces.iter().zip(canvases);
+    let residuals: Vec<_> = surfaces.map(|(s, canvas)| s.residual_of(canvas)).collect();
+    let by_bytes = price.of_bytes_alone();
+    let mut traced = trace(&residuals, tracing, marks, |mark| by_bytes.least_gain(mark));
+    let most = config.points.unwrap_or(usize::MAX);
+    let has_room = |stroke: &Stroke| {
+        let strokes = Strokes::from_iter([stroke]);
+        written_points(strokes.get(0)) <= most
+    };
+    traced
+        .retain(|t| t.mark.as_stroke().is_none_or(has_room) && t.gain > price.least_gain(&t.mark));
+    traced
+}
+
+/// Seeds a stage of as many of the traced marks as there is room and time for, on top of all others, which it freezes. Returns
+/// whether there are any.
+pub(super) fn add(session: &mut Session<'_>, traced: Vec<Traced>) -> bool {
     let index = session.history.records.len();
     // Bytes plan for strokes, of which an area may take the place of many; what is too much is shed.
     let is_by_bytes = session.config.budget.bytes.is_some()
@@ -50,12 +97,9 @@ pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> 
     };
     let count = session.timer.affordable(traced.len().min(room));
     if count == 0 {
-        session.history.stage = None;
-        session.plan_rest();
-        return Ok(Outcome::Over);
+        return false;
     }
     let marks = most_gaining(traced, count);
-    // They lie on top of all others, which are frozen.
     let began = session.timer.elapsed();
     session.progress.enter(index);
     session.drawing.sharpen(0.0);
@@ -73,46 +117,7 @@ pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> 
         before,
         accepted: None,
     });
-    Ok(Outcome::Seeded(Purpose::Trace))
-}
-
-/// The traced strokes that are worth their price, in painting order.
-fn lines(
-    drawing: &mut Drawing,
-    config: &Config,
-    mut tracing: Tracing,
-    price: Price,
-) -> Vec<Traced> {
-    // A gradient has many colours, and on a transparent page many opacities.
-    let is_see_through = drawing.surfaces.len() > 1;
-    if config.colors != Colors::Free || config.opaque && is_see_through {
-        tracing.fills.shades.most = 0;
-    }
-    let canvases: Vec<Canvas> = if drawing.len() == 0 {
-        drawing
-            .surfaces
-            .iter()
-            .map(Surface::full_backdrop)
-            .collect()
-    } else {
-        drawing.sharpen(0.0);
-        drawing.render();
-        drawing.surfaces.iter().map(|s| s.canvas.clone()).collect()
-    };
-    let surfaces = drawing.surfaces.iter().zip(&canvases);
-    let residuals: Vec<_> = surfaces.map(|(s, canvas)| s.residual_of(canvas)).collect();
-    let by_bytes = price.of_bytes_alone();
-    let mut traced = trace(&residuals, tracing, config.marks(), |mark| {
-        by_bytes.least_gain(mark)
-    });
-    let most = config.points.unwrap_or(usize::MAX);
-    let has_room = |stroke: &Stroke| {
-        let strokes = Strokes::from_iter([stroke]);
-        written_points(strokes.get(0)) <= most
-    };
-    traced
-        .retain(|t| t.mark.as_stroke().is_none_or(has_room) && t.gain > price.least_gain(&t.mark));
-    traced
+    true
 }
 
 /// The strokes of the `count` largest gains, in the order that they have.

@@ -21,6 +21,7 @@ impl Recipe {
             ("probing.cells", self.probing.cells),
             ("tracing.pace", self.tracing.pace),
             ("tracing.colors.near", self.tracing.colors.near),
+            ("recovery.weight", self.recovery.weight),
             ("masking.contrast", self.masking.contrast as f32),
             ("masking.ceiling", self.masking.ceiling as f32),
             ("domain.min_radius", self.domain.min_radius),
@@ -59,6 +60,7 @@ impl Recipe {
             ("stages.polished_share", self.stages.polished_share),
             ("polish.coarse_share", self.polish.coarse_share),
             ("relocation.share", self.relocation.share),
+            ("recovery.polish_share", self.recovery.polish_share as f32),
             ("relocation.until", self.relocation.until),
             ("points.from", self.points.from),
             ("points.until", self.points.until),
@@ -114,6 +116,7 @@ impl Recipe {
         let counts = [
             ("stages.count", self.stages.count),
             ("tracing.least_area", self.tracing.least_area),
+            ("recovery.least_area", self.recovery.least_area),
             ("tracing.colors.most", self.tracing.colors.most),
             ("tracing.colors.samples", self.tracing.colors.samples),
             ("masking.window", self.masking.window),

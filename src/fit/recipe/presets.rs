@@ -2,7 +2,7 @@
 
 use super::{
     AdamSettings, BackgroundChoice, Correction, Dense, Domain, Doubts, EdgeShape, Jitter, Joins,
-    Masking, Nudging, Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Reduction,
+    Masking, Nudging, Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Recovery, Reduction,
     Relocation, Rounds, SCREEN_PIXELS, Settling, ShadeChoice, ShadeFit, Sharing, Stages,
     TimeShares,
 };
@@ -221,6 +221,12 @@ const BALANCED: Recipe = Recipe {
         until: 0.9,
         after_areas: 0.5,
         fill: 2,
+    },
+    recovery: Recovery {
+        weight: 8.0,
+        reach: 4,
+        least_area: 1,
+        polish_share: 0.2,
     },
     points: Points {
         from: 0.1,

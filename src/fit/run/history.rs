@@ -18,6 +18,8 @@ pub(in crate::fit) struct History {
     pub(in crate::fit) records: Vec<StageRecord>,
     /// Layers and strokes that were traced.
     pub(in crate::fit) traced: [usize; 2],
+    /// The pixels near details that the polish lost, row by row; errors count more there since then.
+    pub(in crate::fit) lost: Vec<u32>,
     /// The current stage, or the last one.
     pub(in crate::fit) stage: Option<OpenStage>,
     /// Reason that ended the stages, and in the end the fit.
@@ -76,6 +78,7 @@ impl History {
         Self {
             records,
             traced: [0; 2],
+            lost: Vec::new(),
             stage: None,
             stop,
             corrections: Corrections {

@@ -194,6 +194,24 @@ impl<'a> Session<'a> {
         })
     }
 
+    /// Lets errors near lost details count more, for all that follows.
+    pub(in crate::fit) fn weigh_lost(&mut self) {
+        let size = [self.target.width(), self.target.height()];
+        let mut weights = vec![1.0; size[0] * size[1]];
+        for &place in &self.history.lost {
+            if let Some(weight) = weights.get_mut(place as usize) {
+                *weight = self.recipe.recovery.weight;
+            }
+        }
+        let near = Focus::of_weights(size, weights);
+        self.weights = Some(match &self.weights {
+            Some(weights) => weights.times(&near),
+            None => near,
+        });
+        self.drawing.thaw();
+        self.drawing.focus_on(self.weights.as_ref());
+    }
+
     /// Plans the stages for the strokes that are missing.
     pub(in crate::fit) fn plan_rest(&mut self) {
         let [layers, strokes] = self.history.traced;
@@ -360,8 +378,11 @@ impl<'a> Session<'a> {
                     self.drawing.restore(best);
                     self.best = Some(self.writer.render(&self.drawing)?);
                 }
-                self.drawing.restore(drawing);
                 (self.phase, self.history, self.resumed) = (phase, history, descent);
+                if !self.history.lost.is_empty() {
+                    self.weigh_lost();
+                }
+                self.drawing.restore(drawing);
                 self.progress.position = position;
                 self.plan_rest();
                 self.timer.resume(elapsed);
