@@ -69,7 +69,7 @@ impl Quality {
             mse,
             l1: sums.l1(),
             ssimulacra2: ssimulacra2::score(&a, &b, reference.width()),
-            details_kept: Details::of(reference).kept(picture),
+            details_kept: Details::of(reference, details::SEEN).kept(picture),
         })
     }
 }

@@ -96,6 +96,8 @@ pub struct Doubts {
     pub flat: f32,
     /// By how much a pixel of a colour may be farther from it beside another one.
     pub exact: f32,
+    /// By how much the contrast of what is recovered has to be larger, levels per level of doubt.
+    pub contrast: f32,
 }
 
 impl Recipe {
@@ -107,12 +109,14 @@ impl Recipe {
             apart,
             flat,
             exact,
+            contrast,
         } = &mut self.doubts;
         *lost_db = 10.0 * math::log10(1.0 + f64::from(doubt / *double));
         let fills = &mut self.tracing.fills;
         fills.flat += *flat * doubt;
         fills.apart += *apart * doubt;
         fills.exact += *exact * doubt;
+        self.recovery.contrast += *contrast * doubt / 255.0;
         self
     }
 }
@@ -313,6 +317,8 @@ pub struct Recovery {
     /// Weight of errors near them. 5, 8, 16: a label of a map correlates by 0.957, 0.970, 0.980 with the picture; borders of
     /// 1 px take 8.8, 10.9, 13.2 kB, 75, 82, 84 % of them kept (1, 49 % in 5.6 kB).
     pub weight: f32,
+    /// Least contrast of what is recovered. What people see begins here, too: see `details_kept`.
+    pub contrast: f32,
     /// Rows and columns beside them that are traced, and weighed, too. A guess.
     pub reach: usize,
     /// Fewest pixels of a shape that is traced. 3, 1: 25, 41 of 41 specks of 1 to 4 px are there.

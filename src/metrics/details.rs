@@ -17,7 +17,7 @@ const REACH: usize = 2;
 const AROUND: usize = 16;
 
 /// Least contrast of a thing that is seen.
-const LEAST: f32 = 10.0 / 255.0;
+pub(crate) const SEEN: f32 = 10.0 / 255.0;
 
 /// Share of the window that is small things: up to the first they are details, from the second on texture. Lines of text have up
 /// to 0.4. A guess.
@@ -42,19 +42,19 @@ pub(crate) struct Details {
 }
 
 impl Details {
-    /// The details of a picture, on white.
-    pub(crate) fn of(picture: &Image) -> Self {
+    /// The details of a picture, on white, that have more than a `least` contrast.
+    pub(crate) fn of(picture: &Image, least: f32) -> Self {
         let width = picture.width();
         let planes = picture.on(WHITE).into_owned().into_planes();
         let contrasts = contrasts(&planes, width);
         // The share of small things around each pixel, and from that how far it stands alone.
-        let is_thing = |contrast: &f32| f64::from(u8::from(*contrast > LEAST));
+        let is_thing = |contrast: &f32| f64::from(u8::from(*contrast > least));
         let mut shares: Vec<f64> = contrasts.iter().map(is_thing).collect();
         average(&mut shares, width, AROUND);
         let isolation = |(contrast, share): (&f32, &f64)| {
             let [few, many] = TEXTURE;
             let isolation = ((many - *share as f32) / (many - few)).clamp(0.0, 1.0);
-            if *contrast > LEAST { isolation } else { 0.0 }
+            if *contrast > least { isolation } else { 0.0 }
         };
         let mut isolations: Vec<f32> = contrasts.iter().zip(&shares).map(isolation).collect();
         // What has hardly a detail that stands alone is texture.
@@ -166,6 +166,10 @@ fn extremes(
 mod tests {
     use super::*;
 
+    fn details(picture: &Image) -> Details {
+        Details::of(picture, SEEN)
+    }
+
     /// White, with dark pixels where `is_dark` says.
     fn picture(is_dark: impl Fn(usize, usize) -> bool) -> Image {
         Image::from_fn(
@@ -183,15 +187,15 @@ mod tests {
         let wide = |x: usize, _: usize| (40..52).contains(&x);
         let blank = picture(|_, _| false);
         // The columns beside it are white, as they should be.
-        assert_eq!(Details::of(&picture(line)).kept(&blank), Some(0.5));
-        assert_eq!(Details::of(&picture(wide)).kept(&blank), None);
+        assert_eq!(details(&picture(line)).kept(&blank), Some(0.5));
+        assert_eq!(details(&picture(wide)).kept(&blank), None);
     }
 
     #[test]
     fn what_is_faint_but_there_is_kept_and_half_of_a_line_is_half() {
         let line = |x: usize, _: usize| (40..42).contains(&x);
         let half = |x: usize, y: usize| line(x, y) && y < 48;
-        let details = Details::of(&picture(line));
+        let details = details(&picture(line));
         assert_eq!(details.kept(&picture(line)), Some(1.0));
         let faint = Image::from_fn(96, 96, 1, |x, y, _| if line(x, y) { 0.55_f32 } else { 1.0 });
         assert_eq!(details.kept(&faint.unwrap()), Some(1.0));
@@ -203,13 +207,13 @@ mod tests {
     fn a_blot_is_no_letter() {
         let bars = |x: usize, y: usize| (40..52).contains(&y) && [40, 43, 46].contains(&x);
         let blot = |x: usize, y: usize| (40..52).contains(&y) && (40..47).contains(&x);
-        let kept = Details::of(&picture(bars)).kept(&picture(blot)).unwrap();
+        let kept = details(&picture(bars)).kept(&picture(blot)).unwrap();
         assert!(kept < 0.7, "{kept}");
     }
 
     #[test]
     fn texture_is_no_detail() {
         let checks = picture(|x, y| (x / 2 + y / 2) % 2 == 0);
-        assert_eq!(Details::of(&checks).kept(&picture(|_, _| false)), None);
+        assert_eq!(details(&checks).kept(&picture(|_, _| false)), None);
     }
 }

@@ -9,28 +9,40 @@ use crate::support::repository::committed;
 use crate::support::signal::send;
 use strokefit::rng;
 
-/// Options of fits of moderate length: all kinds of tasks that a fit has.
-const FITS: [&[&str]; 3] = [
-    &["--strokes", "220"],
-    &["--psnr", "27", "--preset", "draft"],
-    &[
-        "--progressive",
-        "--strokes",
-        "60",
-        "--stages",
-        "4",
-        "--bytes",
-        "4000",
-    ],
+/// A photograph of 96 px.
+const PHOTOGRAPH: &str = "samples/rocket-320.png";
+
+/// Pictures, and options of fits of moderate length: all kinds of tasks that a fit has.
+const FITS: [(&str, &[&str]); 4] = [
+    (PHOTOGRAPH, &["--strokes", "220"]),
+    (PHOTOGRAPH, &["--psnr", "27", "--preset", "draft"]),
+    (
+        PHOTOGRAPH,
+        &[
+            "--progressive",
+            "--strokes",
+            "60",
+            "--stages",
+            "4",
+            "--bytes",
+            "4000",
+        ],
+    ),
+    // Labels are lost, and traced again.
+    ("tests/data/pictures/map.png", &["--marks", "strokes"]),
 ];
 /// The state is kept about every iteration.
 const OFTEN: [&str; 2] = ["--checkpoint-every", "0.001"];
 
-/// A folder with a picture.
-fn with_picture() -> Place {
+/// A folder with a picture, the photograph at 96 px.
+fn with_picture(name: &str) -> Place {
     let place = Place::new();
-    let sample = image::open(committed("samples/rocket-320.png")).unwrap();
-    sample.thumbnail(96, 96).save(place.path("in.png")).unwrap();
+    let picture = image::open(committed(name)).unwrap();
+    let picture = match name {
+        PHOTOGRAPH => picture.thumbnail(96, 96),
+        _ => picture,
+    };
+    picture.save(place.path("in.png")).unwrap();
     place
 }
 
@@ -65,9 +77,9 @@ fn live(place: &Place, options: &[&str], life: Duration) -> Option<ExitStatus> {
 fn fifty_kills_change_no_byte() {
     let (mut kills, mut round) = (0, 0);
     while kills < 50 {
-        let options = FITS[round % FITS.len()];
+        let (picture, options) = FITS[round % FITS.len()];
         round += 1;
-        let place = with_picture();
+        let place = with_picture(picture);
         let whole = fit(&place, "whole.svg", options).output().unwrap();
         let status = whole.status.code();
         let expected = read(&place, "whole.svg").unwrap();
@@ -103,7 +115,7 @@ fn stderr(mut command: Command) -> (Option<i32>, String) {
 
 /// A checkpoint of a fit that was killed on its way.
 fn killed_fit() -> (Place, Vec<u8>) {
-    let place = with_picture();
+    let place = with_picture(PHOTOGRAPH);
     let options = ["--preset", "best", "--strokes", "400"];
     for _ in 0..100 {
         assert!(live(&place, &options, Duration::from_millis(300)).is_none());
@@ -142,7 +154,7 @@ fn foreign_and_damaged_checkpoints_are_refused_and_kept() {
 
 #[test]
 fn a_place_that_cannot_be_written_is_said_at_once() {
-    let place = with_picture();
+    let place = with_picture(PHOTOGRAPH);
     let options = [
         "--preset",
         "best",
@@ -159,7 +171,7 @@ fn a_place_that_cannot_be_written_is_said_at_once() {
 /// An interrupted fit writes what it has, and goes on later as if nothing had happened.
 #[test]
 fn an_interrupted_fit_goes_on() {
-    let place = with_picture();
+    let place = with_picture(PHOTOGRAPH);
     let options = ["--strokes", "150"];
     let whole = fit(&place, "whole.svg", &options).status().unwrap();
     assert!(whole.success());
@@ -182,7 +194,7 @@ fn an_interrupted_fit_goes_on() {
 /// A refinement that is killed on its way goes on, too.
 #[test]
 fn a_killed_refinement_goes_on() {
-    let place = with_picture();
+    let place = with_picture(PHOTOGRAPH);
     let base = ["--strokes", "100", "--preset", "draft"];
     assert!(fit(&place, "base.svg", &base).status().unwrap().success());
     let refine = |output: &str, options: &[&str]| {

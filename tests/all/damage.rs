@@ -1,21 +1,12 @@
 //! Damage is recognised and not drawn; what is clean is drawn as it is.
 
-use std::path::Path;
-
 use strokefit::damage::{self, Damage};
 use strokefit::fit::{Background, Budget, Colors, Config, Fit, Fitter};
 use strokefit::image::Image;
 use strokefit::metrics::Quality;
 use strokefit::verify::{Size, render};
 
-fn picture(name: &str) -> Image {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let folders = ["samples", "tests/data/pictures"];
-    let mut files = folders
-        .map(|folder| root.join(folder).join(name))
-        .into_iter();
-    Image::open(files.find(|path| path.exists()).unwrap()).unwrap()
-}
+use crate::support::fits::picture;
 
 fn drawn(picture: &Image, config: Config) -> Fit {
     Fitter::new(config).fit(picture).unwrap()

@@ -45,6 +45,7 @@ mod alpha;
 mod concurrency;
 mod damage;
 mod dependencies;
+mod details;
 mod examples;
 mod fit;
 mod fitter;

@@ -5,6 +5,7 @@
 //! what is small and stands alone, though: see [`Details`].
 
 use super::trace;
+use crate::fit::config::{Budget, Colors};
 use crate::fit::drawing::surface::Surface;
 use crate::fit::order::{Outcome, Purpose};
 use crate::fit::run::session::Session;
@@ -17,8 +18,12 @@ use crate::trace::Tracing;
 /// Seeds a stage of strokes along the details that the polished drawing has lost.
 pub(in crate::fit) fn recover(session: &mut Session<'_>) -> Outcome {
     let [traced, _] = session.history.traced;
+    // A limit on bytes leaves room for what gains most, a fidelity asks for all alike, and a palette draws what it can.
+    let Budget { psnr_db, bytes, .. } = session.config.budget;
     let is_over = traced == 0
-        || session.config.budget.psnr_db.is_some()
+        || psnr_db.is_some()
+        || bytes.is_some()
+        || matches!(session.config.colors, Colors::Palette(_))
         || session.progress.stopped().is_some()
         || session.cut_by().is_some();
     if is_over {
@@ -58,11 +63,11 @@ pub(in crate::fit) fn recover(session: &mut Session<'_>) -> Outcome {
 
 /// The pixels in and near lost details, on any matte.
 fn lost(session: &Session<'_>, canvases: &[Canvas]) -> Vec<bool> {
-    let drawing = &session.drawing;
+    let (drawing, recovery) = (&session.drawing, session.recipe.recovery);
     let mut lost = vec![false; drawing.pixels()];
     for (surface, canvas) in drawing.surfaces.iter().zip(canvases) {
-        let details = Details::of(surface.picture());
-        let near = details.near_losses(&canvas.to_image(), session.recipe.recovery.reach);
+        let details = Details::of(surface.picture(), recovery.contrast);
+        let near = details.near_losses(&canvas.to_image(), recovery.reach);
         lost.iter_mut()
             .zip(near)
             .for_each(|(lost, near)| *lost |= near);

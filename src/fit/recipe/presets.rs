@@ -224,6 +224,7 @@ const BALANCED: Recipe = Recipe {
     },
     recovery: Recovery {
         weight: 8.0,
+        contrast: 10.0 / 255.0,
         reach: 4,
         least_area: 1,
         polish_share: 0.2,
@@ -374,6 +375,7 @@ const BALANCED: Recipe = Recipe {
         apart: 2.0,
         flat: 2.0,
         exact: 1.0,
+        contrast: 8.0,
     },
     time: TimeShares {
         stroke_px: 160.0,
