@@ -54,6 +54,17 @@ impl Mark {
         }
     }
 
+    /// Colour and opacity at a place.
+    pub fn ink(&self, at: Point) -> (Rgb, f32) {
+        match self.shade() {
+            None => (self.color(), self.opacity()),
+            Some(shade) => {
+                let (color, opacity) = shade.at(at);
+                (color, self.opacity() * opacity)
+            }
+        }
+    }
+
     /// The centre line of a stroke, or the rings of an area.
     pub fn paths(&self) -> &[Path] {
         match self {

@@ -49,14 +49,15 @@ use outline::Outline;
 use window::Window;
 
 use crate::image::Image;
-use crate::scene::{Mark, quantum};
+use crate::math::Point;
+use crate::scene::{Mark, Rgb, quantum};
 
 /// The marks, back to front, on each of the `pages`, which are opaque and of one size.
 pub fn draw<'a>(marks: impl Iterator<Item = &'a Mark>, pages: &[Image]) -> Vec<Image> {
     let Some((width, height)) = pages.first().map(|page| (page.width(), page.height())) else {
         return Vec::new();
     };
-    let shapes: Vec<Shape> = marks.map(Shape::of).collect();
+    let shapes: Vec<Shape<'_>> = marks.map(Shape::of).collect();
     let mut pictures: Vec<Vec<u8>> = pages.iter().map(Image::to_rgb8).collect();
     // Tiles are independent, as in Chromium, and put back in order since they overlap.
     let windows = Window::all(width, height);
@@ -77,7 +78,7 @@ pub fn draw<'a>(marks: impl Iterator<Item = &'a Mark>, pages: &[Image]) -> Vec<I
 }
 
 /// Draws `shapes` on `pictures`, as far as a window of their size shows them.
-fn draw_window(shapes: &[Shape], window: Window, mut pictures: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
+fn draw_window(shapes: &[Shape<'_>], window: Window, mut pictures: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
     let [width, height] = window.size;
     let (mut outline, mut accumulator) = (Outline::default(), Accumulator::new(width, height));
     for shape in shapes
@@ -87,9 +88,9 @@ fn draw_window(shapes: &[Shape], window: Window, mut pictures: Vec<Vec<u8>>) -> 
         outline.follow(&shape.contour, window);
         accumulator.fill(&outline, |y, x, coverages| {
             for picture in &mut pictures {
-                shape
-                    .paint
-                    .lay(&mut picture[3 * (y * width + x)..], coverages);
+                let pixels = &mut picture[3 * (y * width + x)..];
+                let from = [x + window.corner[0], y + window.corner[1]];
+                shape.ink.lay(pixels, coverages, from);
             }
         });
     }
@@ -97,16 +98,16 @@ fn draw_window(shapes: &[Shape], window: Window, mut pictures: Vec<Vec<u8>>) -> 
 }
 
 /// A mark that is ready to be drawn.
-struct Shape {
+struct Shape<'a> {
     contour: Contour,
-    paint: Paint,
+    ink: Ink<'a>,
 }
 
-impl Shape {
-    fn of(mark: &Mark) -> Self {
+impl<'a> Shape<'a> {
+    fn of(mark: &'a Mark) -> Self {
         Self {
             contour: Contour::of(mark),
-            paint: Paint::of(mark),
+            ink: Ink::of(mark),
         }
     }
 }
@@ -119,31 +120,61 @@ fn image(rgb: &[u8], width: usize, height: usize) -> Image {
     Image::from_planes(width, height, planes)
 }
 
-/// Colour and opacity of a mark, 0 to 255.
-struct Paint {
+/// Ink of a mark.
+enum Ink<'a> {
+    Flat(Levels),
+    /// That of an area with a gradient, by the place.
+    Shaded(&'a Mark),
+}
+
+impl<'a> Ink<'a> {
+    fn of(mark: &'a Mark) -> Self {
+        match mark.shade() {
+            Some(_) => Self::Shaded(mark),
+            None => Self::Flat(Levels::of((mark.color(), mark.opacity()))),
+        }
+    }
+
+    /// Paints the pixels to the right of one, as far as they are covered.
+    fn lay(&self, rgb: &mut [u8], coverages: &[u8], [x, y]: [usize; 2]) {
+        let pixels = rgb.chunks_exact_mut(3).zip(coverages);
+        match self {
+            Self::Flat(levels) => {
+                pixels.for_each(|(pixel, &coverage)| levels.lay(pixel, coverage));
+            }
+            Self::Shaded(mark) => {
+                for (x, (pixel, &coverage)) in (x..).zip(pixels) {
+                    let center = Point::new(x as f32 + 0.5, y as f32 + 0.5);
+                    Levels::of(mark.ink(center)).lay(pixel, coverage);
+                }
+            }
+        }
+    }
+}
+
+/// Colour and opacity, 0 to 255.
+struct Levels {
     /// The colour times the opacity.
     color: [u32; 3],
     opacity: u32,
 }
 
-impl Paint {
-    fn of(mark: &Mark) -> Self {
+impl Levels {
+    fn of((color, opacity): (Rgb, f32)) -> Self {
         let level = |v| u32::from(quantum(v));
-        let opacity = level(mark.opacity());
-        let color = mark.color().map(|c| (level(c) * opacity + 127) / 255);
+        let opacity = level(opacity);
+        let color = color.map(|c| (level(c) * opacity + 127) / 255);
         Self { color, opacity }
     }
 
-    /// Paints pixels as far as they are covered.
-    fn lay(&self, rgb: &mut [u8], coverages: &[u8]) {
-        for (pixel, &coverage) in rgb.chunks_exact_mut(3).zip(coverages) {
-            let coverage = u32::from(coverage);
-            let rest = 255 - product(self.opacity, coverage);
-            for (value, &color) in pixel.iter_mut().zip(&self.color) {
-                // Both products are rounded down, so that a picture darkens by half a level a stroke.
-                let sum = product(color, coverage) + product(u32::from(*value), rest);
-                *value = sum.min(255) as u8;
-            }
+    /// Paints a pixel as far as it is covered.
+    fn lay(&self, pixel: &mut [u8], coverage: u8) {
+        let coverage = u32::from(coverage);
+        let rest = 255 - product(self.opacity, coverage);
+        for (value, &color) in pixel.iter_mut().zip(&self.color) {
+            // Both products are rounded down, so that a picture darkens by half a level a stroke.
+            let sum = product(color, coverage) + product(u32::from(*value), rest);
+            *value = sum.min(255) as u8;
         }
     }
 }

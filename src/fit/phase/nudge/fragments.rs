@@ -12,6 +12,7 @@ use crate::fit::file::RenderedFile;
 use crate::fit::renderers::Renderings;
 use crate::fit::run::session::Session;
 use crate::image::Image;
+use crate::math::Point;
 use crate::rasters::{Footprint, PerRasterizer, Rasterizer, Selection};
 use crate::scene::{Mark, Rgb};
 
@@ -32,6 +33,8 @@ struct Fragment {
 /// Which strokes cover each pixel.
 pub(super) struct Fragments {
     surfaces: usize,
+    /// Of the picture, px.
+    width: usize,
     /// Weight of an error at each pixel, if not everywhere alike.
     weights: Option<Vec<f32>>,
     targets: Vec<Colors>,
@@ -80,9 +83,11 @@ impl Fragments {
                 (surface.picture().clone(), backdrop)
             })
             .unzip();
+        let width = targets.first().map_or(1, Image::width);
         let (targets, backdrops) = (colors(&targets), colors(&backdrops));
         let mut fragments = Self {
             surfaces: session.drawing.surfaces.len(),
+            width,
             weights: session.focus.as_ref().map(|focus| focus.values().to_vec()),
             lists: vec![Vec::new(); targets.len()],
             pictures: [
@@ -102,11 +107,12 @@ impl Fragments {
         }
         // Nobody has drawn exact areas yet.
         let composed = fragments.pictures.last_mut().into_iter().flatten();
-        for (colors, list) in composed.zip(&fragments.lists) {
+        for (pixel, (colors, list)) in composed.zip(&fragments.lists).enumerate() {
             for fragment in list {
                 if let Some(mark) = &written[fragment.stroke as usize] {
                     let [.., level] = fragment.levels;
-                    blend(colors, share(level) * mark.opacity(), mark.color());
+                    let (color, opacity) = mark.ink(center(pixel, width));
+                    blend(colors, share(level) * opacity, color);
                 }
             }
         }
@@ -190,10 +196,11 @@ impl Fragments {
                 continue;
             };
             let order = (fragment.stroke as usize).cmp(&id);
+            let (color, opacity) = other.ink(center(pixel, self.width));
             for (sight, &level) in sights.iter_mut().zip(&fragment.levels) {
-                let m = share(level) * other.opacity();
+                let m = share(level) * opacity;
                 match order {
-                    Ordering::Less => blend(&mut sight.behind, m, other.color()),
+                    Ordering::Less => blend(&mut sight.behind, m, color),
                     Ordering::Equal => sight.level = level,
                     Ordering::Greater => sight.through *= 1.0 - m,
                 }
@@ -312,6 +319,12 @@ impl Response {
     }
 }
 
+/// The centre of a pixel of a picture of this width.
+fn center(pixel: usize, width: usize) -> Point {
+    let (x, y) = (pixel % width, pixel / width);
+    Point::new(x as f32 + 0.5, y as f32 + 0.5)
+}
+
 fn share(level: u8) -> f32 {
     f32::from(level) / 255.0
 }
@@ -391,6 +404,7 @@ mod tests {
         let backdrops: Vec<Colors> = colors(50);
         let mut fragments = Fragments {
             surfaces: SURFACES,
+            width: PIXELS,
             weights: Some((0..PIXELS).map(|i| draw(60, i)).collect()),
             targets: colors(51),
             pictures: composed(&backdrops, strokes, footprints),
