@@ -84,6 +84,7 @@
 //! | stroke | all points within a radius (px) of a path, with a colour and an opacity (0..1); see [`scene`] |
 //! | area | one or more closed paths, its *rings*, filled where they wind around a point (SVG's nonzero rule), with a colour or a shade and an opacity; see [`scene::Area`] |
 //! | path | *points*, open or closed: the centre line of a stroke, or a ring; see [`scene::Path`] |
+//! | shape | a closed path that is a circle, an ellipse or a rectangle, with an element of its own; see [`scene::Shape`] |
 //! | point | of a path: *on* it, joined to the next by a line, or *off* it, where it is the control point of a curve |
 //! | capsule | the stroke of two on-points; with equal ends it is a *dot*, the stroke of one point; see `sdf` |
 //! | scene | the drawing: size (px), background, and marks from back to front, grouped in stages |
@@ -153,6 +154,7 @@
 //! | pen | a colour and a width that many opaque strokes share; where pens are given, a width that strokes may have |
 //! | sharing | giving strokes the same widths and colours where that costs little |
 //! | tie | holds numbers of strokes equal while they are fitted |
+//! | held | of shapes, and of lines that are exactly level or upright: they stay such while their points are fitted |
 //! | seed | key of all random draws; *seeding* is the search for candidates |
 //! | grace | how long a fit that is asked to stop may take to finish its drawing |
 //! | kept background | a background that stays although a given palette has nothing like it |

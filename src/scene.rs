@@ -5,11 +5,13 @@
 
 mod filled_loop;
 mod grid;
+mod likeness;
 mod mark;
 mod overlap;
 mod path;
 mod quantize;
 mod shade;
+mod shape;
 mod written_path;
 
 pub use grid::MAX_PRECISION;
@@ -22,6 +24,8 @@ pub use quantize::{Dropped, MIN_WIDTH, Quantized};
 pub(crate) use quantize::{Written, WrittenShade};
 pub use shade::{Axis, MAX_STOPS, Shade, ShadeStop};
 pub(crate) use shade::{WrittenAxis, WrittenStop};
+pub use shape::Shape;
+pub(crate) use shape::WrittenShape;
 pub(crate) use written_path::{WrittenPath, WrittenPoint};
 
 use crate::math::Point;

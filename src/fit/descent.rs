@@ -4,6 +4,7 @@
 //! optimiser, so that a checkpoint can keep it.
 
 pub(super) mod anneal;
+pub(super) mod held;
 mod jitter;
 pub(super) mod ties;
 
@@ -16,6 +17,7 @@ use super::time::Timer;
 use crate::optim::{Adam, Optimizer, Schedule};
 use crate::render::{Gradients, STYLE, Strokes};
 use anneal::Annealing;
+use held::Held;
 use ties::Ties;
 
 /// The length, the step sizes and the edge of a descent.
@@ -73,6 +75,9 @@ pub(super) struct Descent {
     /// Numbers that stay equal.
     #[serde(skip)]
     pub(super) ties: Ties,
+    /// Shapes and lines that stay such.
+    #[serde(skip)]
+    pub(super) held: Held,
     /// Gradients of the last step.
     #[serde(skip)]
     pub(super) gradients: Gradients,
@@ -95,6 +100,7 @@ impl Descent {
             background: Adam::new(3, recipe.optimizer.background),
             scales: scales(&course.rates, drawing, recipe),
             ties: Ties::default(),
+            held: Held::default(),
             gradients: Gradients::default(),
         }
     }
@@ -167,14 +173,16 @@ impl Descent {
         let strokes = drawing.free_mut();
         let slopes = &mut self.gradients.strokes;
         self.ties.gather(slopes);
+        self.held.project(strokes, slopes);
         let (adam, scales) = (&mut self.adam, &self.scales);
-        match squares(strokes, slopes) {
+        match squares(strokes, slopes, &self.held) {
             None => adam.step_scaled(strokes.numbers_mut(), slopes, rate, scales),
             Some(squares) => {
                 adam.step_with_squares(strokes.numbers_mut(), slopes, rate, scales, &squares);
             }
         }
         strokes.change(|_, stroke| bounds.apply(stroke));
+        self.held.restore(strokes);
         if course.joint.is_some() && drawing.is_thawed() && !drawing.background_fixed {
             let rate = rate * course.rates.color;
             let (slope, background) = (&self.gradients.backdrop, &mut self.background);
@@ -216,9 +224,9 @@ fn adam(drawing: &Drawing, recipe: &Recipe, course: &Course) -> Adam<f32> {
 }
 
 /// The squares of the derivatives, where both coordinates of an area's point share one: without that, points drift along
-/// the outline. `None` if there is no area.
-fn squares(strokes: &Strokes, slopes: &[f32]) -> Option<Vec<f32>> {
-    if !strokes.has_areas() {
+/// the outline. All points of a shape share one. `None` if there is neither.
+fn squares(strokes: &Strokes, slopes: &[f32], held: &Held) -> Option<Vec<f32>> {
+    if !strokes.has_areas() && held.is_empty() {
         return None;
     }
     let mut squares: Vec<f32> = slopes.iter().map(|slope| slope * slope).collect();
@@ -230,6 +238,7 @@ fn squares(strokes: &Strokes, slopes: &[f32]) -> Option<Vec<f32>> {
             *point = [point[0] + point[1]; 2];
         }
     }
+    held.share(strokes, &mut squares);
     Some(squares)
 }
 

@@ -226,6 +226,18 @@ impl Drawing {
         self.stage_of.resize(self.len(), stage);
     }
 
+    /// The stage of each stroke, frozen ones included, counted from 0.
+    pub(super) fn stages(&self) -> &[usize] {
+        &self.stage_of
+    }
+
+    /// Replaces all marks by these, each with its stage, in px of the current resolution. None may be frozen.
+    pub(super) fn replace(&mut self, marks: impl Iterator<Item = (Mark, usize)>) {
+        let (marks, stages): (Vec<Mark>, Vec<usize>) = marks.unzip();
+        *self.free_mut() = marks.iter().collect();
+        self.stage_of = stages;
+    }
+
     /// Keeps the free strokes for which `keep` is true.
     pub(super) fn retain_free(&mut self, keep: &[bool]) {
         let frozen = self.frozen.len();
@@ -277,6 +289,17 @@ impl Drawing {
     pub(super) fn traced(&self) -> usize {
         let free = self.stage_of.get(self.frozen.len()..).unwrap_or_default();
         free.partition_point(|&stage| stage < self.counters.traced_until)
+    }
+
+    /// Number of free strokes, from the back, that may be held to forms: those that were traced. A photograph, most of whose
+    /// strokes were not, has none.
+    pub(super) fn formed(&self) -> usize {
+        let traced = self.traced();
+        if 2 * traced >= self.free.len() || self.free.has_areas() {
+            traced
+        } else {
+            0
+        }
     }
 
     /// The index of the topmost stage, from 0.

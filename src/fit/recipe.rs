@@ -63,6 +63,8 @@ pub struct Recipe {
     pub pens: Pens,
     /// Widths and colours that strokes share.
     pub sharing: Sharing,
+    /// Shapes and level lines.
+    pub forms: Forms,
     /// Visibility of errors.
     pub masking: Masking,
     /// The last steps, against renders of the written file.
@@ -460,6 +462,27 @@ pub struct Sharing {
     pub off_page: f32,
     /// A stroke of a smaller radius, px, covers few pixels in full, so that width and opacity look alike.
     pub thin: f32,
+}
+
+/// Shapes, and lines that are level or upright, where marks nearly are such.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Forms {
+    /// Iterations in which what is proposed is fitted; 0 for no forms. After 30, centres and radii of circles are within 0.005 px.
+    pub iterations: usize,
+    /// Step sizes of the points of areas and of traced strokes of the usual radius, and of radii, px. With ten times as much,
+    /// circles stay 0.1 px beside their places, and are refused.
+    pub rate: f32,
+    /// Farthest that a path is from the shape that it becomes, px.
+    pub tolerance_px: f32,
+    /// Largest difference in height, or place across, of the ends of a line that is level or upright, px.
+    pub level_px: f32,
+    /// That difference in units of the length of the line.
+    pub level_slope: f32,
+    /// Most rings of an area that some of its rings leave, to be elements of their own, and of one that all of them leave. A
+    /// QR code stays one area. A guess.
+    pub split_rings: [usize; 2],
+    /// Bytes that a form is worth to an editor, besides those that it saves. A guess.
+    pub worth_bytes: usize,
 }
 
 /// Masking: detail of the picture hides errors, with [`ErrorWeighting::Eye`](super::ErrorWeighting::Eye).

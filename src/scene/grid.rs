@@ -41,6 +41,12 @@ impl Grid {
         steps as i64 * self.step * (UNITS_PER_PX / self.per_px)
     }
 
+    /// The largest multiple of at most so many units.
+    pub(super) fn below(&self, units: i64) -> i64 {
+        let unit = self.step * (UNITS_PER_PX / self.per_px);
+        units / unit * unit
+    }
+
     /// The smallest multiple of at least `px`, in units.
     pub(super) fn units_above(&self, px: f64) -> i64 {
         (px * self.per_px as f64).ceil() as i64 * (UNITS_PER_PX / self.per_px)

@@ -201,6 +201,7 @@ mod tests {
     fn stroke(x: i64, width: i64) -> Written {
         Written {
             paths: vec![WrittenPath::line([x * PX, 10 * PX], [x * PX, 90 * PX])],
+            shape: None,
             width: width * PX,
             color: [0; 3],
             opacity: 255,
@@ -215,6 +216,7 @@ mod tests {
         assert_eq!(touches, [true, true, false]);
         let beyond = Written {
             paths: vec![WrittenPath::line([10 * PX, 96 * PX], [10 * PX, 96 * PX])],
+            shape: None,
             ..base.clone()
         };
         assert!(!base.meets(&beyond));
@@ -224,6 +226,7 @@ mod tests {
     fn crossing_strokes_touch() {
         let across = Written {
             paths: vec![WrittenPath::line([-500 * PX, 50 * PX], [500 * PX, 51 * PX])],
+            shape: None,
             ..stroke(0, 1)
         };
         assert!(stroke(10, 1).meets(&across));
@@ -237,10 +240,12 @@ mod tests {
         });
         let arch = Written {
             paths: vec![WrittenPath::new(points.into(), false)],
+            shape: None,
             ..stroke(0, 2)
         };
         let dot = |x: i64, y: i64| Written {
             paths: vec![WrittenPath::line([x * PX, y * PX], [x * PX, y * PX])],
+            shape: None,
             ..stroke(0, 2)
         };
         // The top of the curve is at (50, 50).
@@ -261,11 +266,13 @@ mod tests {
         };
         let area = |paths| Written {
             paths,
+            shape: None,
             width: 0,
             ..stroke(0, 2)
         };
         let dot = Written {
             paths: vec![WrittenPath::line([50 * PX; 2], [50 * PX; 2])],
+            shape: None,
             ..stroke(0, 2)
         };
         let [whole, holed] = [vec![square(0, 100)], vec![square(0, 100), square(20, 80)]].map(area);

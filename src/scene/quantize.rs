@@ -6,6 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::grid::{Grid, UNITS_PER_PX, color, quantum};
+use super::shape::WrittenShape;
 use super::written_path::{WrittenPath, WrittenPoint};
 use super::{Area, Mark, Path, PathPoint, Rgb, Scene, Shade, Stage, Stroke};
 
@@ -109,7 +110,9 @@ impl Scene {
             let written = written.map_err(|reason| dropped.count(reason)).ok()?;
             // A curve that turns back sharply gets points, as it is written as two lines.
             let (before, after) = (mark.points(), written.points().count());
-            dropped.points += before.saturating_sub(after);
+            if written.shape.is_none() {
+                dropped.points += before.saturating_sub(after);
+            }
             Some(written)
         };
         stage.marks.iter().filter_map(written).collect()
@@ -121,6 +124,8 @@ impl Scene {
 pub(crate) struct Written {
     /// The centre line of a stroke, or the rings of an area; at least one.
     pub(crate) paths: Vec<WrittenPath>,
+    /// The shape of the only path, if it is one.
+    pub(crate) shape: Option<WrittenShape>,
     /// Width of a stroke in units of 1/[`UNITS_PER_PX`] px; 0 for an area.
     pub(crate) width: i64,
     /// 8-bit red, green and blue.
@@ -164,22 +169,18 @@ impl Written {
     pub(crate) fn anywhere(mark: &Mark, precision: u8) -> Result<Self, Unwritable> {
         check(mark)?;
         let grid = Grid::new(precision);
-        let (paths, width) = match mark {
-            Mark::Stroke(stroke) => {
-                let width = grid
-                    .units(2.0 * f64::from(stroke.radius))
-                    .max(grid.units_above(MIN_WIDTH));
-                let path = WrittenPath::rounded(&stroke.path, &grid).opened_if_filled(width);
-                (vec![path], width)
-            }
-            Mark::Area(area) => (rings(&area.rings, &grid), 0),
-        };
+        let width = mark.as_stroke().map_or(0, |stroke| {
+            let width = grid.units(2.0 * f64::from(stroke.radius));
+            width.max(grid.units_above(MIN_WIDTH))
+        });
+        let (paths, shape) = geometry(mark, &grid, width);
         if paths.is_empty() {
             return Err(Unwritable::Invisible);
         }
         let shade = mark.shade();
         Ok(Self {
             paths,
+            shape,
             width,
             color: shade.map_or_else(|| mark.color().map(quantum), Shade::mean),
             opacity: quantum(mark.opacity()),
@@ -217,15 +218,19 @@ impl Written {
     /// The rounded mark.
     pub(crate) fn mark(&self) -> Mark {
         let (color, opacity) = (color(self.color), f32::from(self.opacity) / 255.0);
-        match self.paths.as_slice() {
-            [path] if !self.is_area() => Mark::Stroke(Stroke {
-                path: path.path(),
+        let mut paths: Vec<Path> = match self.shape {
+            Some(shape) => vec![shape.ring()],
+            None => self.paths.iter().map(WrittenPath::path).collect(),
+        };
+        match paths.pop() {
+            Some(path) if !self.is_area() => Mark::Stroke(Stroke {
+                path,
                 radius: (self.width as f64 / (2 * UNITS_PER_PX) as f64) as f32,
                 color,
                 opacity,
             }),
-            rings => Mark::Area(Area {
-                rings: rings.iter().map(WrittenPath::path).collect(),
+            last => Mark::Area(Area {
+                rings: paths.into_iter().chain(last).collect(),
                 color,
                 opacity,
                 shade: self.shade.as_ref().map(|named| named.shade.clone()),
@@ -234,10 +239,29 @@ impl Written {
     }
 }
 
-/// The rounded rings, without those that have no inside.
-fn rings(rings: &[Path], grid: &Grid) -> Vec<WrittenPath> {
-    let rounded = rings.iter().map(|ring| WrittenPath::rounded(ring, grid));
-    rounded.filter(WrittenPath::encloses).collect()
+/// The rounded paths, of an area those that have an inside; and the shape of the only one, unless a pen of this `width`
+/// fills it.
+fn geometry(mark: &Mark, grid: &Grid, width: i64) -> (Vec<WrittenPath>, Option<WrittenShape>) {
+    let rounded = mark.paths().iter();
+    let mut paths: Vec<(&Path, WrittenPath)> = rounded
+        .map(|path| (path, WrittenPath::rounded(path, grid)))
+        .collect();
+    paths.retain(|(_, rounded)| width > 0 || rounded.encloses());
+    if let [(path, rounded)] = &paths[..] {
+        // A path may become a rectangle only as it is rounded.
+        let shape = WrittenShape::rounded(path, grid);
+        let shape = shape.or_else(|| WrittenShape::rounded(&rounded.path(), grid));
+        if let Some((shape, ring)) = shape.map(|shape| (shape, shape.path()))
+            && (width == 0 || ring.clone().opened_if_filled(width).is_closed())
+        {
+            return (vec![ring], Some(shape));
+        }
+    }
+    let paths = paths.into_iter().map(|(_, rounded)| match mark {
+        Mark::Stroke(_) => rounded.opened_if_filled(width),
+        Mark::Area(_) => rounded,
+    });
+    (paths.collect(), None)
 }
 
 /// Refuses marks that are invisible at any precision.

@@ -75,7 +75,7 @@ impl WrittenPath {
         let step = if points.iter().all(|p| p.is_on) {
             1
         } else {
-            step(path, grid)
+            step(spacing(path), grid)
         };
         let coarse = grid.coarser(step);
         let mut rounded: Vec<WrittenPoint> = Vec::with_capacity(points.len());
@@ -305,13 +305,17 @@ fn cusp(piece: Piece<[i64; 2]>) -> Option<[f64; 2]> {
     (is_sharp && (is_within || is_beside_chord)).then(|| [at(0), at(1)])
 }
 
-/// The grid's step, in its multiples, on which `f32` tells neighbouring points of the path apart. Otherwise what is
-/// read could have another rounding.
-fn step(path: &Path, grid: &Grid) -> i64 {
+/// The grid's step, in its multiples, on which `f32` with this `spacing` tells neighbours apart. Otherwise what is read
+/// could have another rounding.
+pub(super) fn step(spacing: f32, grid: &Grid) -> i64 {
+    ((f64::from(spacing) * grid.per_px()).ceil() as u64).next_power_of_two() as i64
+}
+
+/// The distance of neighbouring `f32` at the path's largest coordinate.
+pub(super) fn spacing(path: &Path) -> f32 {
     let far = path.points().iter().flat_map(|p| [p.at.x, p.at.y]);
     let far = far.fold(0.0_f32, |far, px| far.max(px.abs()));
-    let spacing = f64::from(far.next_up() - far) * grid.per_px();
-    (spacing.ceil() as u64).next_power_of_two() as i64
+    far.next_up() - far
 }
 
 #[cfg(test)]

@@ -69,9 +69,24 @@ pub fn write_animated(
 
 /// True if a line of the writer is a mark. All other lines are groups, their titles, the background and the shade.
 fn is_mark(line: &str) -> bool {
-    !["<g", "</", "<title", "<svg", "<rect", "<linear", "<radial"]
-        .iter()
-        .any(|other| line.starts_with(other))
+    ![
+        "<g",
+        "</",
+        "<title",
+        "<svg",
+        "<rect width",
+        "<linear",
+        "<radial",
+    ]
+    .iter()
+    .any(|other| line.starts_with(other))
+}
+
+/// The start tag of an element, open, and its end tag.
+fn tags(element: &str) -> (&str, String) {
+    let open = element.strip_suffix("/>").unwrap_or(element);
+    let name = open.trim_start_matches('<').split(' ').next();
+    (open, format!("</{}>", name.unwrap_or_default()))
 }
 
 /// True if to see the stroke grow tells more than to see it appear.
@@ -98,14 +113,14 @@ impl Clock {
         )
     }
 
-    /// The `element` of a path of part `part`, with an animation that draws it: a single dash that grows. Only
+    /// The `element` of a stroke of part `part`, with an animation that draws it: a single dash that grows. Only
     /// the animation says so, so that other programs draw no dash.
     fn along(&self, element: &str, part: usize) -> String {
         let [start, end] = [part, part + 1].map(|part| self.start(part));
-        let open = element.strip_suffix("/>").unwrap_or(element);
+        let (open, close) = tags(element);
         format!(
             "{open} pathLength=\"1\"><animate attributeName=\"stroke-dasharray\" values=\"0 1;0 1;1 0;1 0\" \
-             keyTimes=\"0;{start:.4};{end:.4};1\" dur=\"{}ms\" repeatCount=\"indefinite\"/></path>",
+             keyTimes=\"0;{start:.4};{end:.4};1\" dur=\"{}ms\" repeatCount=\"indefinite\"/>{close}",
             self.whole_ms
         )
     }
@@ -113,11 +128,11 @@ impl Clock {
     /// The `element` of an area of part `part`, with an animation that fades it in.
     fn fading(&self, element: &str, area: &Area, part: usize) -> String {
         let [start, end] = [part, part + 1].map(|part| self.start(part));
-        let open = element.strip_suffix("/>").unwrap_or(element);
+        let (open, close) = tags(element);
         let opacity = dialect::opacity(quantum(area.opacity));
         format!(
             "{open}><animate attributeName=\"fill-opacity\" values=\"0;0;{opacity};{opacity}\" \
-             keyTimes=\"0;{start:.4};{end:.4};1\" dur=\"{}ms\" repeatCount=\"indefinite\"/></path>",
+             keyTimes=\"0;{start:.4};{end:.4};1\" dur=\"{}ms\" repeatCount=\"indefinite\"/>{close}",
             self.whole_ms
         )
     }

@@ -83,9 +83,9 @@ pub fn arrange(scene: &Scene, options: &WriteOptions) -> Scene {
     }
 }
 
-/// Starts a stroke at the end that makes its path shorter. Rings keep their sense, which makes holes.
+/// Starts a stroke at the end that makes its path shorter. Shapes stay as they are, and rings keep their sense, which makes holes.
 fn orient(mark: &mut Written, unit: Unit) {
-    if mark.is_area() {
+    if mark.is_area() || mark.shape.is_some() {
         return;
     }
     for path in &mut mark.paths {
@@ -254,6 +254,7 @@ mod tests {
     fn stroke(x: i64, color: u8, width: i64) -> Written {
         Written {
             paths: vec![WrittenPath::line([x * PX, 10 * PX], [x * PX, 90 * PX])],
+            shape: None,
             width: width * PX,
             color: [color; 3],
             opacity: 255,
@@ -293,6 +294,7 @@ mod tests {
                 .flatten()
                 .map(|points| WrittenPath::new(points, true))
                 .collect(),
+            shape: None,
             width: 0,
             color: [color; 3],
             opacity: 255,

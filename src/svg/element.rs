@@ -9,6 +9,7 @@ use super::names;
 use super::options::Form;
 use super::outline;
 use super::path::{self, Kind};
+use super::shape;
 use crate::scene::Written;
 
 /// Appends the elements of `strokes`, in the smallest form with numbers in `unit`. In the plain form they have names if a
@@ -99,6 +100,8 @@ fn joins(strokes: &[Written], next: &Written) -> bool {
         .is_some_and(|last| style_of(last) == style_of(next));
     is_alike
         && !next.is_area()
+        && next.shape.is_none()
+        && strokes.iter().all(|stroke| stroke.shape.is_none())
         && (next.opacity == u8::MAX || !strokes.iter().any(|stroke| stroke.meets(next)))
 }
 
@@ -159,24 +162,26 @@ impl Style {
     }
 }
 
-/// Appends the path of `strokes` with the attribute `id` and those that are not `shared`, behind its gradient if it has
-/// one.
+/// Appends the path of `strokes`, or the element of the only one's shape, with the attribute `id` and those that are not
+/// `shared`, behind its gradient if it has one.
 fn push_path(out: &mut String, strokes: &[Written], id: &str, shared: &[Attribute], style: Style) {
-    let kind = match strokes {
-        [area] if area.is_area() => Kind::Ring,
-        _ => Kind::Line,
-    };
+    let only = strokes.first().filter(|_| strokes.len() == 1);
     // In full, each element has a line of its own.
     let end = if style == Style::Full { "\n" } else { "" };
     for mark in strokes {
         gradient::push_of(out, mark, end);
     }
-    let d = path::data(
-        strokes.iter().flat_map(|mark| &mark.paths),
-        kind,
-        style.unit(),
-    );
-    *out += &format!("<path{id} d=\"{d}\"");
+    if let Some(shape) = only.and_then(|mark| mark.shape) {
+        shape::push(out, shape, id, style.unit());
+    } else {
+        let kind = match only {
+            Some(area) if area.is_area() => Kind::Ring,
+            _ => Kind::Line,
+        };
+        let paths = strokes.iter().flat_map(|mark| &mark.paths);
+        let d = path::data(paths, kind, style.unit());
+        *out += &format!("<path{id} d=\"{d}\"");
+    }
     let own = Attribute::ALL.iter().filter(|a| !shared.contains(a));
     for attribute in own {
         *out += &strokes

@@ -14,6 +14,7 @@
 //! <path d="M1.5 2h0.01" stroke="#rrggbb" stroke-width="8" stroke-opacity="0.502"/>   a dot
 //! <path d="M1 2L3 4 9 8Q12 9 12 6T15 3z" stroke="#rrggbb" stroke-width="2.5"/>   a closed path of lines and curves
 //! <path d="M20 20h9v5q-3 4-9 0zm2 1v2h3V21z" fill="#rrggbb"/>         an area of two rings, the second a hole
+//! <circle cx="60" cy="20" r="8.5" fill="#rrggbb"/>                    an area or a stroke of a shape
 //! </g>
 //! </svg>
 //! ```
@@ -23,6 +24,8 @@
 //! - The shade is a `linearGradient` from `x1 y1` to `x2 y2` or a `radialGradient`, in px to the hundredth, with offsets to the
 //!   thousandth. It is never in the unit of a layer, and has as many decimals with any precision.
 //! - A path with a `fill` is an area, and all its rings are closed; any other path is a stroke. None is both.
+//! - What is a [`Shape`](crate::scene::Shape) is a `<circle>`, an `<ellipse>`, or a `<rect>` whose corners are sharp or, with
+//!   `rx`, round. A line stays a path: Inkscape has no handles for a `<line>`, which takes 16 bytes more.
 //! - Each `M` begins a stroke or a ring, `L` draws lines, `Q` and `T` quadratic curves, and `z` closes a path. In areas,
 //!   and only there, `H` and `V` draw horizontal and vertical lines. The numbers of a step are absolute or, after a small
 //!   letter, relative, whichever is shorter. A step has no letter of its own if the last one serves and nothing gets
@@ -87,6 +90,7 @@ mod options;
 mod outline;
 mod path;
 mod read;
+mod shape;
 mod tour;
 mod travel;
 mod write;

@@ -1,10 +1,11 @@
 //! Names for marks and colours that a person can look for.
 
-use crate::scene::Written;
+use crate::scene::{Written, WrittenShape};
 
 /// A mark in words, such as `dark-red-area`.
 pub(super) fn of_mark(mark: &Written) -> String {
     let kind = match mark.paths.as_slice() {
+        _ if let Some(shape) = mark.shape => of_shape(shape),
         _ if mark.is_area() => "area",
         [path] if path.points().len() == 1 => "dot",
         [path] if path.is_closed() => "loop",
@@ -12,6 +13,15 @@ pub(super) fn of_mark(mark: &Written) -> String {
         _ => "curve",
     };
     format!("{}-{kind}", of_color(mark.color).replace(' ', "-"))
+}
+
+fn of_shape(shape: WrittenShape) -> &'static str {
+    match shape {
+        WrittenShape::Circle(..) => "circle",
+        WrittenShape::Ellipse(..) => "ellipse",
+        WrittenShape::Rect([low, high], _) if high[0] - low[0] == high[1] - low[1] => "square",
+        WrittenShape::Rect(..) => "rectangle",
+    }
 }
 
 /// An 8-bit colour in words, such as `dark red`.

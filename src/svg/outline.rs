@@ -4,6 +4,7 @@
 use super::dialect::{self, Unit};
 use super::gradient;
 use super::path::{self, Kind};
+use super::shape;
 use crate::math;
 use crate::outline;
 use crate::scene::{Mark, Piece, UNITS_PER_PX, Written, WrittenPath};
@@ -14,7 +15,13 @@ const LEAST_PRECISION: u8 = 2;
 /// Appends the outline of a mark as an element of its own: that of an area is its rings.
 pub(super) fn push(out: &mut String, mark: &Written) {
     gradient::push_of(out, mark, "\n");
+    let shape = mark.shape.filter(|_| mark.is_area());
     match (mark.paths.as_slice(), straight(mark)) {
+        _ if shape.is_some() => {
+            shape
+                .into_iter()
+                .for_each(|shape| shape::push(out, shape, "", Unit::PX));
+        }
         (rings, _) if mark.is_area() => push_rings(out, rings),
         ([dot], _) if dot.points().len() == 1 => push_circle(out, dot.points()[0].at, mark.width),
         (_, Some([a, b])) => push_capsule(out, a, b, mark.width),
@@ -120,6 +127,7 @@ mod tests {
         let point = |p: &[i64; 2]| PathPoint::on(p.map(|px| px * UNITS_PER_PX));
         let stroke = Written {
             paths: vec![WrittenPath::new(points.iter().map(point).collect(), false)],
+            shape: None,
             width: 3 * UNITS_PER_PX,
             color: [255, 102, 0],
             opacity,

@@ -10,9 +10,11 @@ use quick_xml::reader::NsReader;
 use super::dialect::{self, Unit};
 use super::options::Length;
 use super::path::{self, Kind};
+use super::shape;
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::{
-    MAX_POINTS, Mark, Rgb, Scene, Shade, Stage, Written, WrittenPath, WrittenShade, color,
+    MAX_POINTS, Mark, Rgb, Scene, Shade, Stage, Written, WrittenPath, WrittenShade, WrittenShape,
+    color,
 };
 
 /// Reads text that [`write`](super::write()) wrote, in any form except outlines.
@@ -159,8 +161,8 @@ impl<'a> Parser<'a> {
     fn marks(&mut self, style: &Style, stage: &mut Stage) -> Parsed<()> {
         loop {
             match self.next()? {
-                Tag::Open(e) if e.name == "path" => {
-                    stage.marks.extend(style.of(&e, &["d", "id"])?.marks(&e)?);
+                Tag::Open(e) if let Some(own) = e.places() => {
+                    stage.marks.extend(style.of(&e, &own)?.marks(&e)?);
                     self.close(&e)?;
                 }
                 Tag::Open(e) if shade::begins_with(&e) => {
@@ -230,6 +232,13 @@ impl Element {
             name: tag.local_name().as_ref().to_owned(),
             attributes,
         })
+    }
+
+    /// The attributes that say where a mark is, and its name; `None` if the element is no mark.
+    fn places(&self) -> Option<Vec<&'static str>> {
+        let path = (self.name == "path").then_some(&["d"][..]);
+        let places = path.or_else(|| shape::attributes(&self.name))?;
+        Some([places, &["id"]].concat())
     }
 
     fn get(&self, key: &str) -> Parsed<&str> {
@@ -397,9 +406,10 @@ impl Style {
     /// The strokes of a path with this style, or the area.
     fn marks(&self, path: &Element) -> Parsed<Vec<Mark>> {
         match self.fill {
-            Some(_) if self.has_stroke() => {
-                Err("<path> has both a fill and a stroke: make it two".into())
-            }
+            Some(_) if self.has_stroke() => Err(format!(
+                "<{}> has both a fill and a stroke: make it two",
+                path.name
+            )),
             Some(color) => self.area(path, color, None).map(|area| vec![area]),
             None => self.strokes(path),
         }
@@ -414,11 +424,37 @@ impl Style {
         self.color.is_some() || self.width.is_some() || self.opacity.is_some()
     }
 
+    /// The shape of an element that has one.
+    fn shape(&self, element: &Element) -> Parsed<Option<WrittenShape>> {
+        let Some(attributes) = shape::attributes(&element.name) else {
+            return Ok(None);
+        };
+        // Sharp corners need no radius.
+        let given = attributes
+            .iter()
+            .filter(|key| **key != "rx" || element.find(key).is_some());
+        let number = |key: &&str| element.parsed(key, |text| self.unit.parse(text));
+        let numbers: Vec<i64> = given.map(number).collect::<Parsed<_>>()?;
+        let shape = shape::of(&element.name, &numbers);
+        let refused = || {
+            format!(
+                "<{}> has sides or radii that the dialect has no room for",
+                element.name
+            )
+        };
+        shape.ok_or_else(refused).map(Some)
+    }
+
     fn area(&self, path: &Element, color: [u8; 3], shade: Option<Shade>) -> Parsed<Mark> {
-        let paths = path.parsed("d", |d| path::parse(d, Kind::Ring, self.unit))?;
+        let shape = self.shape(path)?;
+        let paths = match shape {
+            Some(_) => Vec::new(),
+            None => path.parsed("d", |d| path::parse(d, Kind::Ring, self.unit))?,
+        };
         check_counts(&paths, "ring")?;
         let written = Written {
             paths,
+            shape,
             width: 0,
             color,
             opacity: self.fill_opacity.unwrap_or(u8::MAX),
@@ -428,8 +464,12 @@ impl Style {
     }
 
     fn strokes(&self, path: &Element) -> Parsed<Vec<Mark>> {
-        let paths = path.parsed("d", |d| path::parse(d, Kind::Line, self.unit))?;
-        let missing = |key: &str| format!("<path> has no {key}");
+        let shape = self.shape(path)?;
+        let paths = match shape {
+            Some(shape) => vec![shape.path()],
+            None => path.parsed("d", |d| path::parse(d, Kind::Line, self.unit))?,
+        };
+        let missing = |key: &str| format!("<{}> has no {key}", path.name);
         let width = self.width.or(self.layer_width);
         let width = width.ok_or_else(|| missing("stroke-width"))?;
         let color = self.color.ok_or_else(|| missing("stroke"))?;
@@ -446,6 +486,7 @@ impl Style {
         let stroke = |path| {
             Written {
                 paths: vec![path],
+                shape,
                 width,
                 color,
                 opacity,

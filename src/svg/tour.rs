@@ -97,7 +97,7 @@ struct Visit {
 }
 
 impl Visit {
-    /// All ways to draw a mark: an area begins with its first ring.
+    /// All ways to draw a mark: an area begins with its first ring, a shape where its element says.
     fn all(stroke: usize, mark: &Written) -> Vec<Self> {
         let Some(path) = mark.paths.first() else {
             return Vec::new();
@@ -109,6 +109,9 @@ impl Visit {
             ends: ends(path),
         };
         let is_start = |point: &WrittenPoint| point.is_on || path.points().iter().all(|p| !p.is_on);
+        if mark.shape.is_some() {
+            return vec![forward];
+        }
         if path.is_closed() {
             let points = path.points().iter().enumerate();
             let starts = points.filter(|(_, point)| is_start(point));
@@ -200,6 +203,7 @@ mod tests {
     fn stroke(path: WrittenPath, color: u8) -> Written {
         Written {
             paths: vec![path],
+            shape: None,
             width: 2 * PX,
             color: [color; 3],
             opacity: 255,

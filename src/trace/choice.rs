@@ -14,7 +14,7 @@ use super::fill::{Fill, Flat};
 use super::gain::coverage;
 use super::strokes::TracedStroke;
 use crate::math::distance;
-use crate::scene::{Mark, Stroke};
+use crate::scene::{self, Area, Mark, Stroke};
 
 /// Strokes and regions that share pixels.
 #[derive(Debug, Default)]
@@ -242,9 +242,14 @@ fn stroked(
         .map(|&stroke| price(&stroke.clone().into()))
         .sum();
     let own = |fill: &&Fill| group.regions.contains(&fill.region);
-    let areas = fills.iter().filter(own).map(|fill| flat.area(fill).into());
-    let of_areas: f32 = areas.map(|area| price(&area)).sum();
-    if of_strokes > MOST_PRICE * of_areas {
+    let areas: Vec<Area> = fills
+        .iter()
+        .filter(own)
+        .map(|fill| flat.area(fill))
+        .collect();
+    let of_areas: f32 = areas.iter().map(|area| price(&area.clone().into())).sum();
+    let is_ellipse = matches!(&areas[..], [area] if is_ellipse(area));
+    if is_ellipse || of_strokes > MOST_PRICE * of_areas {
         return None;
     }
     let members = flat.members(&group.regions);
@@ -255,6 +260,21 @@ fn stroked(
     let radii = strokes.iter().map(|stroke| shape.even_radius(stroke));
     let radii: Vec<f32> = radii.collect::<Option<_>>()?;
     is_covered(&strokes, flat, &members, group, pixels).then_some(radii)
+}
+
+/// An ellipse is no stroke if its radii are above this, px. A guess.
+const STOUT: f32 = 4.0;
+
+/// Farthest that an outline is from the ellipse that it is, px; as for forms.
+const NEAR: f32 = 0.45;
+
+/// True for an ellipse that is no circle: a fat stroke is as near to it as rays tell, but not its ends.
+fn is_ellipse(area: &Area) -> bool {
+    let shape = match &area.rings[..] {
+        [ring] => scene::Shape::like(ring, NEAR),
+        _ => None,
+    };
+    matches!(shape, Some(scene::Shape::Ellipse { radii, .. }) if radii.iter().all(|&px| px > STOUT))
 }
 
 /// True if strokes cover a group of regions and nothing else that is seen, give or take a part of a pixel.

@@ -58,6 +58,7 @@ mod points;
 mod render;
 mod repeatability;
 mod shade;
+mod shapes;
 mod wording;
 
 // The program, and what the library has for it alone.

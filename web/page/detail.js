@@ -1,5 +1,6 @@
 // The slider from few marks to many: it answers with marks of the drawing that is there, and has it fitted when it rests.
 
+import { linesOfMarks } from "./choice.js";
 import { shownDb, showDraft } from "./viewer.js";
 import { count, fidelity, size } from "./words.js";
 import { worker } from "./workers.js";
@@ -68,8 +69,8 @@ function listen(started) {
 // The bytes of each mark's element, back to front.
 function bytesOf(svg, scene) {
   const marks = scene.stages.flat();
-  const lines = svg.split("\n").filter((line) => line.startsWith("<path "));
-  return lines.length === marks.length ? lines.map((line) => line.length + 1) : marks.map(() => svg.length / marks.length);
+  const lines = svg.split("\n"), places = linesOfMarks(lines);
+  return places.length === marks.length ? places.map((k) => lines[k].length + 1) : marks.map(() => svg.length / marks.length);
 }
 
 // Shows the marks that pay at a quality, of those that are there.

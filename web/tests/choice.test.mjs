@@ -62,6 +62,10 @@ test("a file loses the strokes that are not kept and nothing else", () => {
   assert.equal(part.split("\n").length, text.split("\n").length - 2);
   assert.equal(withoutMarks(text, kept.map(() => true)), text);
   assert.equal(withoutMarks(text, kept.slice(1)), null);
+  const [circle, rect] = ['<circle cx="9" cy="9" r="5" fill="#204060"/>', '<rect x="2" y="3" width="5" height="4" fill="#204060"/>'];
+  const layer = '<g id="stage-1" inkscape:groupmode="layer" inkscape:label="Stage 1">';
+  const shapes = (...marks) => [layer, "<title>Stage 1</title>", ...marks, "</g>", ""].join("\n");
+  assert.equal(withoutMarks(shapes(circle, rect), [true, false]), shapes(circle));
 });
 
 test("paths of every kind are written as SVG", () => {

@@ -17,6 +17,7 @@ use rayon::prelude::*;
 
 use crate::error::Result;
 use crate::fit::budget;
+use crate::fit::descent::held::Held;
 use crate::fit::drawing::Drawing;
 use crate::fit::file::RenderedFile;
 use crate::fit::order::Outcome;
@@ -143,6 +144,8 @@ struct Nudger<'a> {
     /// The strokes before they were nudged, and now.
     homes: Strokes,
     strokes: Strokes,
+    /// True for strokes whose points may only move together.
+    has_form: Vec<bool>,
     /// The strokes as the file has them; `None` for one that is not written.
     written: Vec<Option<Mark>>,
     /// Pixels of each stroke whose coverage may change.
@@ -182,12 +185,19 @@ impl<'a> Nudger<'a> {
             written.par_iter().map(drawn).unzip();
         let mut order: Vec<usize> = (0..strokes.len()).collect();
         order.sort_by_key(|&i| rng::bits(config.seed, DRAWS, i as u64, 0));
+        let formed = drawing.formed();
+        let has_form = strokes
+            .iter()
+            .enumerate()
+            .map(|(i, stroke)| i < formed && Held::has(stroke));
+        let has_form = has_form.collect();
         Self {
             nudging,
             seed: config.seed,
             scene,
             precision,
             homes: strokes.clone(),
+            has_form,
             strokes,
             sets: independent_sets(order, &fringes, drawing.pixels()),
             fragments: Fragments::of(session, file, seen, &written, &footprints),
@@ -257,7 +267,7 @@ impl<'a> Nudger<'a> {
         let reach = self.nudging.reach_px;
         let shift = [0, 1].map(|axis| reach * (2.0 * draw(axis) - 1.0));
         let homes = self.homes.get(id).points;
-        let one = if draw(2) < self.nudging.whole {
+        let one = if draw(2) < self.nudging.whole || self.has_form[id] {
             None
         } else {
             Some((draw(3) * homes.len() as f32) as usize)

@@ -7,10 +7,12 @@
 //! | `given_widths` | strokes take the widths of given pens |
 //! | `shared_styles` | strokes come to share colour and width at once, for the smallest form of a file |
 //! | `shared_widths` | strokes of a drawing of lines come to share widths, and colours |
+//! | `forms` | circles, rectangles and level lines become exactly such |
 //! | `merge` | the agglomeration that decides which strokes share |
 //! | `preferences` | the colour that would suit each stroke best |
 //! | `rounds` | the descent between two choices |
 
+mod forms;
 mod given_widths;
 mod merge;
 mod palette;
@@ -44,6 +46,7 @@ pub(in crate::fit) fn restrict(session: &mut Session<'_>) -> Result<Outcome> {
     if session.config.colors != Colors::Free {
         session.drawing.remove_hidden();
     }
+    forms::run(session);
     session.history.ties = share_within_bytes(session);
     Ok(Outcome::Over)
 }

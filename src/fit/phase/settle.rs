@@ -9,6 +9,7 @@ mod decimals;
 
 use crate::error::Result;
 use crate::fit::budget;
+use crate::fit::descent::held::Held;
 use crate::fit::descent::{Aim, Course};
 use crate::fit::drawing::Memento;
 use crate::fit::file::RenderedFile;
@@ -56,6 +57,7 @@ fn run(session: &mut Session<'_>) -> Result<()> {
         };
         let mut descent = session.descent(course(settling, rates, pace));
         descent.ties.clone_from(&session.history.ties);
+        descent.held = Held::of(session.drawing.free(), session.drawing.formed());
         descend(session, &mut descent, Some(aim))?;
         if session.progress.is_halted() {
             break;

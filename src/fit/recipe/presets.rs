@@ -1,9 +1,9 @@
 //! The numbers of the presets.
 
 use super::{
-    AdamSettings, BackgroundChoice, Correction, Dense, Domain, Doubts, EdgeShape, Jitter, Joins,
-    Masking, Nudging, Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Recovery, Reduction,
-    Relocation, Rounds, SCREEN_PIXELS, Settling, ShadeChoice, ShadeFit, Sharing, Stages,
+    AdamSettings, BackgroundChoice, Correction, Dense, Domain, Doubts, EdgeShape, Forms, Jitter,
+    Joins, Masking, Nudging, Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Recovery,
+    Reduction, Relocation, Rounds, SCREEN_PIXELS, Settling, ShadeChoice, ShadeFit, Sharing, Stages,
     TimeShares,
 };
 use crate::optim::AdamParams;
@@ -288,6 +288,15 @@ const BALANCED: Recipe = Recipe {
         nearly_opaque: 0.8,
         off_page: 0.1,
         thin: 1.0,
+    },
+    forms: Forms {
+        iterations: 20,
+        rate: 0.03,
+        tolerance_px: 0.45,
+        level_px: 0.25,
+        level_slope: 0.05,
+        split_rings: [12, 24],
+        worth_bytes: 30,
     },
     masking: Masking {
         window: 6,

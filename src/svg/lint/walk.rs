@@ -57,12 +57,12 @@ const NUMERIC: [&str; 24] = [
 ];
 
 /// Elements of the dialect, and elements that neither draw anything nor affect the drawing.
-const PLAIN: [&str; 9] = [
-    "circle", "defs", "desc", "g", "metadata", "path", "rect", "svg", "title",
+const PLAIN: [&str; 10] = [
+    "circle", "defs", "desc", "ellipse", "g", "metadata", "path", "rect", "svg", "title",
 ];
 
 /// Elements that all renderers draw alike.
-const SHAPES: [&str; 4] = ["ellipse", "line", "polygon", "polyline"];
+const SHAPES: [&str; 3] = ["line", "polygon", "polyline"];
 
 /// Walks through the whole text.
 pub(super) fn walk(text: &str, findings: &mut Findings) {

@@ -14,7 +14,7 @@ impl Parser<'_> {
     pub(super) fn shade(&mut self, gradient: &Element, width: u32, height: u32) -> Parsed<Shade> {
         gradient.expect("id", SHADE_ID)?;
         let shade = self.gradient(gradient)?;
-        let rect = self.filled("rect")?;
+        let rect = self.filled(|e| e.name == "rect")?;
         sides(&rect, width, height)?;
         rect.expect("fill", &format!("url(#{SHADE_ID})"))?;
         self.close(&rect)?;
@@ -26,10 +26,10 @@ impl Parser<'_> {
         let id = gradient.get("id")?;
         let fill = format!("url(#{id})");
         let shade = self.gradient(gradient)?;
-        let mut path = self.filled("path")?;
+        let mut path = self.filled(|e| e.places().is_some())?;
         path.expect("fill", &fill)?;
         path.attributes.retain(|(key, _)| key != "fill");
-        let style = style.of(&path, &["d", "id"])?;
+        let style = style.of(&path, &path.places().unwrap_or_default())?;
         if style.is_painted() {
             return Err(
                 "<path> has a gradient and another colour: give a file that strokefit wrote".into(),
@@ -62,14 +62,14 @@ impl Parser<'_> {
         })
     }
 
-    /// The element of this name that has to follow a gradient.
-    fn filled(&mut self, name: &str) -> Parsed<Element> {
+    /// The element that has to follow a gradient.
+    fn filled(&mut self, is_it: impl Fn(&Element) -> bool) -> Parsed<Element> {
         match self.next()? {
-            Tag::Open(e) if e.name == name => Ok(e),
+            Tag::Open(e) if is_it(&e) => Ok(e),
             Tag::Open(e) => Err(unexpected(&e)),
-            Tag::Close | Tag::End => Err(format!(
-                "no <{name}> follows the gradient: give a file that strokefit wrote"
-            )),
+            Tag::Close | Tag::End => {
+                Err("nothing follows the gradient: give a file that strokefit wrote".into())
+            }
         }
     }
 }

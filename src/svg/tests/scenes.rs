@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use crate::math::{self, Point};
 use crate::scene::{
-    Area, Axis, MAX_STOPS, Mark, Path, PathPoint, Scene, Shade, ShadeStop, Stage, Stroke,
+    Area, Axis, MAX_STOPS, Mark, Path, PathPoint, Scene, Shade, ShadeStop, Shape, Stage, Stroke,
 };
 use crate::svg::{Form, Group, WriteOptions};
 
@@ -19,7 +19,29 @@ fn shape() -> impl Strategy<Value = Path> {
         (point(), point()).prop_map(|(a, b)| Path::line(a, b)),
         path(point()),
         path(close_point()),
+        ring_of_shape(),
     ]
+}
+
+/// Rings of shapes, from a speck to more than the page.
+fn ring_of_shape() -> impl Strategy<Value = Path> {
+    let size = || prop_oneof![1.0..60.0_f32, 0.001..0.1_f32, Just(8.0)];
+    (point(), size(), size(), size(), 0..4_u8).prop_map(|(center, x, y, radius, kind)| {
+        let away = [x, y].into();
+        let (low, high) = (center - away, center + away);
+        let round = radius.min(0.5 * (high - low).min());
+        let rect = |radius| Shape::Rect { low, high, radius };
+        let shape = match kind {
+            0 => Shape::Circle { center, radius },
+            1 => Shape::Ellipse {
+                center,
+                radii: [x, y],
+            },
+            2 => rect(round),
+            _ => rect(0.0),
+        };
+        shape.ring()
+    })
 }
 
 /// Places among which many coincide, or lie halfway between others, once they are rounded.
@@ -68,7 +90,7 @@ fn ring() -> impl Strategy<Value = Path> {
     let points = |point: BoxedStrategy<Point>| prop::collection::vec((point, any::<bool>()), 1..9);
     let free = prop_oneof![points(point().boxed()), points(close_point().boxed())];
     let free = free.prop_map(|points| closed(points.into_iter()));
-    prop_oneof![1 => free, 2 => round_ring()]
+    prop_oneof![1 => free, 2 => round_ring(), 1 => ring_of_shape()]
 }
 
 /// A ring around a place, in either sense, from a speck to more than the page.

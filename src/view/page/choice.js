@@ -30,17 +30,23 @@ function unlike(markA, markB) {
   return Math.min(straight, turned) + Math.abs(radiusA - radiusB) + colors + (kindsA === kindsB ? 0 : 1);
 }
 
-// The text of a file without the marks that are not `kept`, back to front; null where its elements are not its marks.
-export function withoutMarks(text, kept) {
-  const lines = text.split("\n");
+// The lines of a file that are elements of its marks, back to front, by their numbers.
+export function linesOfMarks(lines) {
   // A document under the marks has elements of its own; those of layers are on lines of their own, one each.
   let inside = false;
   const places = [];
   lines.forEach((line, k) => {
     if (line.includes('inkscape:groupmode="layer"')) inside = true;
     else if (line.startsWith("</g>")) inside = false;
-    else if (inside && line.startsWith("<path ")) places.push(k);
+    else if (inside && /^<(path|circle|ellipse|rect) /.test(line)) places.push(k);
   });
+  return places;
+}
+
+// The text of a file without the marks that are not `kept`, back to front; null where its elements are not its marks.
+export function withoutMarks(text, kept) {
+  const lines = text.split("\n");
+  const places = linesOfMarks(lines);
   if (places.length !== kept.length) return null;
   // A gradient stands before the area that it is of.
   const isGradient = (k) => /^<(linear|radial)Gradient /.test(lines[k]);

@@ -1,0 +1,207 @@
+//! Forms that are held while points move: a shape stays one of its kind, and a line that is exactly level or upright stays
+//! so. A descent follows what its slopes leave of the form, and after each step the nearest such form takes the place of the
+//! points, as rounding and the optimiser's own scales move them a little off it.
+
+use crate::render::{StrokeRef, Strokes};
+use crate::scene::{Mark, Shape};
+
+/// The forms among the free strokes of a drawing.
+#[derive(Debug, Clone, Default)]
+pub(in crate::fit) struct Held {
+    /// Strokes and areas that are shapes, by their indices.
+    shapes: Vec<(usize, Shape)>,
+    /// Places, among all numbers of the free strokes, of coordinates that are equal.
+    equal: Vec<Vec<usize>>,
+}
+
+impl Held {
+    /// The forms that areas have, and the first `formed` strokes. Others are level by chance.
+    pub(in crate::fit) fn of(strokes: &Strokes, formed: usize) -> Self {
+        let mut held = Self::default();
+        let found = strokes.iter().enumerate();
+        for (i, stroke) in found.filter(|(i, stroke)| *i < formed || stroke.is_area()) {
+            match round_shape(&stroke.to_mark()) {
+                Some(shape) => held.shapes.push((i, shape)),
+                None => {
+                    let start = strokes.range(i).start;
+                    let paths = stroke.paths();
+                    let equal = paths.flat_map(|(first, path)| equal(path, start + 2 * first));
+                    held.equal.extend(equal);
+                }
+            }
+        }
+        held
+    }
+
+    /// True if a stroke has a form, so that its points may only move together.
+    pub(in crate::fit) fn has(stroke: StrokeRef<'_>) -> bool {
+        let mut paths = stroke.paths();
+        round_shape(&stroke.to_mark()).is_some()
+            || paths.any(|(_, path)| !equal(path, 0).is_empty())
+    }
+
+    /// Leaves of slopes the part that changes no form: that of centre and radius, and of all ends of a line alike.
+    pub(in crate::fit) fn project(&self, strokes: &Strokes, slopes: &mut [f32]) {
+        for (i, shape) in &self.shapes {
+            shape.project(points_of(strokes, *i, slopes));
+        }
+        for places in &self.equal {
+            level(places, slopes);
+        }
+    }
+
+    /// Gives all points of a shape the largest of their squared slopes, so that an optimiser scales them alike.
+    pub(in crate::fit) fn share(&self, strokes: &Strokes, squares: &mut [f32]) {
+        for (i, _) in &self.shapes {
+            let points = points_of(strokes, *i, squares).as_flattened_mut();
+            let most = points.iter().copied().fold(0.0, f32::max);
+            points.fill(most);
+        }
+    }
+
+    /// True if there is none.
+    pub(in crate::fit) fn is_empty(&self) -> bool {
+        self.shapes.is_empty() && self.equal.is_empty()
+    }
+
+    /// Restores the forms after their points have moved.
+    pub(in crate::fit) fn restore(&self, strokes: &mut Strokes) {
+        for (i, shape) in &self.shapes {
+            let range = places(strokes, *i);
+            shape.restore(strokes.numbers_mut()[range].as_chunks_mut().0);
+        }
+        let numbers = strokes.numbers_mut();
+        self.equal.iter().for_each(|places| level(places, numbers));
+    }
+}
+
+/// The places of the coordinates of a stroke.
+fn places(strokes: &Strokes, i: usize) -> std::ops::Range<usize> {
+    let start = strokes.range(i).start;
+    start..start + 2 * strokes.get(i).points.len()
+}
+
+/// Of `numbers` as a drawing has, those that belong to the points of a stroke.
+fn points_of<'a>(strokes: &Strokes, i: usize, numbers: &'a mut [f32]) -> &'a mut [[f32; 2]] {
+    numbers[places(strokes, i)].as_chunks_mut().0
+}
+
+/// Gives the numbers at these places their mean.
+fn level(places: &[usize], numbers: &mut [f32]) {
+    let mean = places.iter().map(|&i| numbers[i]).sum::<f32>() / places.len() as f32;
+    places.iter().for_each(|&i| numbers[i] = mean);
+}
+
+/// The shape of a mark, unless its corners are sharp: then its sides are level and upright lines.
+fn round_shape(mark: &Mark) -> Option<Shape> {
+    let [path] = mark.paths() else { return None };
+    Shape::of(path).filter(|shape| !matches!(shape, Shape::Rect { radius: 0.0, .. }))
+}
+
+/// Places of coordinates that lines of a path have in common, where those of its first point are `start` and the next.
+fn equal(path: StrokeRef<'_>, start: usize) -> Vec<Vec<usize>> {
+    let count = path.points.len();
+    let mut equal = Vec::new();
+    for axis in 0..2 {
+        let is_along = |i: usize| {
+            let next = (i + 1) % count;
+            let is_line = !path.off[i] && !path.off[next] && (path.closed || next > 0);
+            is_line && path.points[i][axis] == path.points[next][axis]
+        };
+        // A closed path may begin amid such lines.
+        let from = (0..count).find(|&i| !is_along((i + count - 1) % count));
+        let mut run = Vec::new();
+        for i in (0..count).map(|k| (from.unwrap_or(0) + k) % count) {
+            run.push(start + 2 * i + axis);
+            if !is_along(i) {
+                equal.push(std::mem::take(&mut run));
+            }
+        }
+    }
+    equal.retain(|run| run.len() > 1);
+    equal
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Area, Path, PathPoint, Stroke};
+
+    fn area(ring: Path) -> Mark {
+        Mark::from(Area {
+            rings: vec![ring],
+            color: [0.5; 3],
+            opacity: 1.0,
+            shade: None,
+        })
+    }
+
+    /// The mark after each of its numbers has moved, and its forms were restored.
+    fn moved(mark: &Mark) -> Mark {
+        let mut strokes = Strokes::from_iter([mark]);
+        let held = Held::of(&strokes, 1);
+        let numbers = strokes.numbers_mut().iter_mut().enumerate();
+        numbers.for_each(|(i, number)| *number += 0.02 * crate::math::sin(3.0 * i as f32));
+        held.restore(&mut strokes);
+        strokes.get(0).to_mark()
+    }
+
+    #[test]
+    fn shapes_stay_shapes() {
+        let (low, high) = ([10.0, 12.0].into(), [40.0, 33.0].into());
+        let center = [30.0, 31.0].into();
+        for shape in [
+            Shape::Circle {
+                center,
+                radius: 9.0,
+            },
+            Shape::Ellipse {
+                center,
+                radii: [9.0, 5.0],
+            },
+            Shape::Rect {
+                low,
+                high,
+                radius: 3.0,
+            },
+            Shape::Rect {
+                low,
+                high,
+                radius: 0.0,
+            },
+        ] {
+            let moved = moved(&area(shape.ring()));
+            let found = Shape::of(&moved.paths()[0]).unwrap();
+            assert_eq!(
+                std::mem::discriminant(&found),
+                std::mem::discriminant(&shape)
+            );
+            assert_ne!(found, shape);
+        }
+    }
+
+    #[test]
+    fn lines_stay_level_and_upright() {
+        let points = [
+            [1.0, 2.0],
+            [9.0, 2.0],
+            [20.0, 2.0],
+            [20.0, 9.0],
+            [25.0, 12.0],
+        ];
+        let path = Path::new(points.map(|p| PathPoint::on(p.into())).into(), false).unwrap();
+        let stroke = Stroke {
+            path,
+            radius: 1.0,
+            color: [0.5; 3],
+            opacity: 1.0,
+        };
+        let moved = moved(&stroke.into());
+        let [a, b, c, d, e] = moved.paths()[0].points() else {
+            panic!("{moved:?}")
+        };
+        assert_eq!([a.at.y, b.at.y], [c.at.y; 2]);
+        assert_eq!(c.at.x, d.at.x);
+        assert!(d.at.y != e.at.y && c.at.y != 2.0);
+    }
+}

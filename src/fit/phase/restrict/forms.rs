@@ -1,0 +1,358 @@
+//! Forms: what a person draws as a circle, an ellipse or a rectangle is one, and lines that are nearly level or upright are
+//! exactly so.
+//!
+//! Rings that are shapes, and alone, become areas of their own, and so do dots among areas. Of a ring that other areas
+//! hide in part, what is seen decides. A few steps of descent fit all proposals as what they are, and those stay that add less
+//! squared error than the bytes that they save are worth.
+
+use crate::fit::descent::held::Held;
+use crate::fit::descent::{Course, Descent};
+use crate::fit::drawing::Drawing;
+use crate::fit::halves::by_halves;
+use crate::fit::recipe::{Forms, Rates};
+use crate::fit::run::session::Session;
+use crate::math::Point;
+use crate::render::StrokeRef;
+use crate::scene::{Area, Mark, Path, PathPoint, Shape, Stroke};
+use crate::svg::mark_bytes;
+
+/// Makes shapes of areas and traced strokes that nearly are such, and then lines level and upright. All strokes must be free.
+pub(super) fn run(session: &mut Session<'_>) {
+    let forms = session.recipe.forms;
+    let room = session.limit.saturating_sub(session.drawing.len());
+    let shapes = shapes(session, forms, room);
+    adopt(session, forms, shapes);
+    let straight = straight(session, forms);
+    adopt(session, forms, straight);
+}
+
+/// Nearest that points of what is not a dot are, px: less than a picture tells.
+const DOT_PX: f32 = 0.1;
+
+/// Farthest that chords are from a ring that others may lie in, px.
+const FLATNESS: f32 = 0.1;
+
+/// Marks in the place of one; none if it stays as it is.
+type Proposal = Option<Vec<Mark>>;
+
+/// For each traced mark the shapes that it is, and at most `room` more marks than before.
+fn shapes(session: &Session<'_>, forms: Forms, mut room: usize) -> Vec<Proposal> {
+    let has_areas = session.drawing.free().has_areas();
+    let covers = Covers::of(&session.drawing);
+    let shaped = |i: usize, mark: Mark, room: &mut usize| {
+        let is_disc = |dot: &Stroke| has_areas && is_dot(&dot.path);
+        let marks = match mark {
+            Mark::Stroke(stroke) if is_disc(&stroke) => vec![disc(&stroke).into()],
+            Mark::Stroke(mut stroke) => {
+                stroke.path = like(&stroke.path, forms)?.ring();
+                vec![stroke.into()]
+            }
+            Mark::Area(area) => parts(area, forms, |p| covers.is_seen(i, p))?,
+        };
+        *room = room.checked_sub(marks.len() - 1)?;
+        Some(marks)
+    };
+    traced(&session.drawing, |i, mark| shaped(i, mark, &mut room))
+}
+
+/// The proposals for areas, and for strokes that were traced.
+fn traced(drawing: &Drawing, mut propose: impl FnMut(usize, Mark) -> Proposal) -> Vec<Proposal> {
+    let formed = drawing.formed();
+    let free = drawing.free().iter().enumerate();
+    let is_found = |i: usize, mark: StrokeRef<'_>| i < formed || mark.is_area();
+    free.map(|(i, mark)| is_found(i, mark).then(|| propose(i, mark.to_mark()))?)
+        .collect()
+}
+
+/// True if all points are in one place.
+fn is_dot(path: &Path) -> bool {
+    let (first, _) = path.ends();
+    path.points().iter().all(|p| (p.at - first).norm() < DOT_PX)
+}
+
+/// The area of a dot.
+fn disc(dot: &Stroke) -> Area {
+    let circle = Shape::Circle {
+        center: dot.path.ends().0,
+        radius: dot.radius,
+    };
+    Area {
+        rings: vec![circle.ring()],
+        color: dot.color,
+        opacity: dot.opacity,
+        shade: None,
+    }
+}
+
+/// The shape that a path nearly is, unless it is that already.
+fn like(path: &Path, forms: Forms) -> Option<Shape> {
+    let is_shape = !path.is_closed() || Shape::of(path).is_some();
+    Shape::like(path, forms.tolerance_px).filter(|_| !is_shape)
+}
+
+/// The opaque areas of a drawing, below which nothing is seen, and its page.
+struct Covers {
+    /// For each mark the corners of its rings, and the least and most x and y.
+    areas: Vec<Vec<(Vec<Point>, [Point; 2])>>,
+    page: Point,
+}
+
+impl Covers {
+    fn of(drawing: &Drawing) -> Self {
+        let rings = |mark: StrokeRef<'_>| match mark.to_mark() {
+            Mark::Area(area) if area.opacity == 1.0 => {
+                let corners = area.rings.iter().map(|ring| ring.flattened(FLATNESS));
+                corners.map(bounded).collect()
+            }
+            _ => Vec::new(),
+        };
+        let picture = drawing.surface().picture();
+        Self {
+            areas: drawing.free().iter().map(rings).collect(),
+            page: Point::new(picture.width() as f32, picture.height() as f32),
+        }
+    }
+
+    /// True if a place of mark `i` is on the page and not below another one.
+    fn is_seen(&self, i: usize, p: Point) -> bool {
+        let is_within = |[low, high]: [Point; 2]| low.inf(&p) == low && high.sup(&p) == high;
+        let winds = |(corners, bounds): &&(Vec<Point>, [Point; 2])| {
+            is_within(*bounds) && is_inside(p, corners)
+        };
+        let hides = |rings: &Vec<_>| rings.iter().filter(winds).count() % 2 == 1;
+        is_within([Point::origin(), self.page]) && !self.areas[i + 1..].iter().any(hides)
+    }
+}
+
+fn bounded(corners: Vec<Point>) -> (Vec<Point>, [Point; 2]) {
+    let first = corners.first().copied().unwrap_or_default();
+    let low = corners.iter().fold(first, |low, p| low.inf(p));
+    let high = corners.iter().fold(first, |high, p| high.sup(p));
+    (corners, [low, high])
+}
+
+/// The area as areas: one for each of its rings that is alone and a shape, and one of all others. An area of many rings
+/// stays one.
+fn parts(area: Area, forms: Forms, is_seen: impl Fn(Point) -> bool) -> Option<Vec<Mark>> {
+    let rings = &area.rings;
+    let is_alone = |i: usize| {
+        let others = rings.iter().enumerate().filter(|&(k, _)| k != i);
+        others
+            .into_iter()
+            .all(|(_, other)| are_apart(&rings[i], other))
+    };
+    let shaped = |(i, ring): (usize, &Path)| {
+        let is_shape = Shape::of(ring).is_some();
+        let seen = || Shape::like_seen(ring, forms.tolerance_px, &is_seen).filter(|_| !is_shape);
+        let shape = like(ring, forms).or_else(seen).filter(|_| is_alone(i))?;
+        Some(shape.ring())
+    };
+    let shapes: Vec<Option<Path>> = rings.iter().enumerate().map(shaped).collect();
+    let rest: Vec<Path> = rings
+        .iter()
+        .zip(&shapes)
+        .filter(|(_, shape)| shape.is_none())
+        .map(|(ring, _)| ring.clone())
+        .collect();
+    let most = forms.split_rings[usize::from(rest.is_empty())];
+    let is_split = rings.len() <= most;
+    if !is_split || rest.len() == rings.len() {
+        return None;
+    }
+    let rest = Some(rest).filter(|rest| !rest.is_empty());
+    let parts = shapes
+        .into_iter()
+        .flatten()
+        .map(|ring| vec![ring])
+        .chain(rest);
+    Some(
+        parts
+            .map(|rings| {
+                Area {
+                    rings,
+                    ..area.clone()
+                }
+                .into()
+            })
+            .collect(),
+    )
+}
+
+/// True if neither of two rings lies in the other one. The rings of a traced area do not cross.
+fn are_apart(a: &Path, b: &Path) -> bool {
+    let lies_in = |inner: &Path, outer: &Path| {
+        let start = inner.pieces().next().map(|piece| piece.start());
+        start.is_some_and(|p| is_inside(p, &outer.flattened(FLATNESS)))
+    };
+    !lies_in(a, b) && !lies_in(b, a)
+}
+
+/// True if a ray from `p` crosses the ring with these corners an odd number of times.
+fn is_inside(p: Point, corners: &[Point]) -> bool {
+    let crosses = |pair: &&[Point]| {
+        let (a, b) = (pair[0], pair[1]);
+        let is_passed = (a.y > p.y) != (b.y > p.y);
+        is_passed && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)
+    };
+    corners.windows(2).filter(crosses).count() % 2 == 1
+}
+
+/// For each traced mark that is no shape, its lines that are nearly level or upright exactly so.
+fn straight(session: &Session<'_>, forms: Forms) -> Vec<Proposal> {
+    let straightened = |_: usize, mark: Mark| {
+        let is_shape = matches!(mark.paths(), [path] if Shape::of(path).is_some());
+        if is_shape {
+            return None;
+        }
+        let new = match mark.clone() {
+            Mark::Stroke(mut stroke) => {
+                stroke.path = leveled(&stroke.path, forms);
+                Mark::from(stroke)
+            }
+            Mark::Area(mut area) => {
+                area.rings = area.rings.iter().map(|ring| leveled(ring, forms)).collect();
+                Mark::from(area)
+            }
+        };
+        (new != mark).then(|| vec![new])
+    };
+    traced(&session.drawing, straightened)
+}
+
+/// The path with the ends of lines that are nearly level, or upright, at their mean height, or place across.
+fn leveled(path: &Path, forms: Forms) -> Path {
+    let mut points: Vec<PathPoint> = path.points().to_vec();
+    let count = points.len();
+    for axis in 0..2 {
+        for i in 0..count {
+            let next = (i + 1) % count;
+            let [a, b] = [path.points()[i], path.points()[next]];
+            let (across, along) = (
+                (b.at[axis] - a.at[axis]).abs(),
+                (b.at[1 - axis] - a.at[1 - axis]).abs(),
+            );
+            let is_line = a.is_on && b.is_on && (path.is_closed() || next > 0);
+            if is_line && across <= forms.level_px && across <= forms.level_slope * along {
+                // The line before may have moved its end; then that place holds.
+                let mean = 0.5 * (points[i].at[axis] + points[next].at[axis]);
+                let is_chain = i > 0 && points[i].at[axis] != path.points()[i].at[axis];
+                let at = if is_chain { points[i].at[axis] } else { mean };
+                points[i].at[axis] = at;
+                points[next].at[axis] = at;
+            }
+        }
+    }
+    Path::new(points, path.is_closed()).unwrap_or_else(|_| path.clone())
+}
+
+/// Fits the proposals, and keeps those that pay.
+fn adopt(session: &mut Session<'_>, forms: Forms, mut proposals: Vec<Proposal>) {
+    if proposals.iter().all(Option::is_none) {
+        return;
+    }
+    let home = Home::of(&session.drawing);
+    let mut error = session.drawing.mse_of_trial();
+    let price = session.price.in_drawing(&mut session.drawing);
+    home.put(&mut session.drawing, &proposals, |_| true);
+    fit(session, forms, &proposals);
+    let drawing = &mut session.drawing;
+    proposals = fitted(drawing, &proposals);
+    let bytes = |mark: &Mark| mark_bytes(mark, &session.config.file);
+    let allowed = |i: usize| {
+        let after: usize = proposals[i].iter().flatten().map(bytes).sum();
+        let before = bytes(&home.marks[i].0) + forms.worth_bytes;
+        price.of_saved(before.saturating_sub(after))
+    };
+    let mut is_taken = vec![false; proposals.len()];
+    let proposed = (0..proposals.len()).filter(|&i| proposals[i].is_some());
+    by_halves(proposed.collect(), |group| {
+        let mut is_tried = is_taken.clone();
+        group.iter().for_each(|&i| is_tried[i] = true);
+        home.put(drawing, &proposals, |i| is_tried[i]);
+        let now = drawing.mse_of_trial();
+        let added = (now - error) * (3 * drawing.pixels()) as f64;
+        let pays = added <= group.iter().map(|&i| f64::from(allowed(i))).sum();
+        if pays {
+            (error, is_taken) = (now, is_tried);
+        }
+        pays
+    });
+    home.put(drawing, &proposals, |i| is_taken[i]);
+}
+
+/// The proposals as a descent has left them in the drawing.
+fn fitted(drawing: &Drawing, proposals: &[Proposal]) -> Vec<Proposal> {
+    let mut marks = drawing.free().iter().map(|mark| mark.to_mark());
+    let mut take = |proposal: &Proposal| {
+        let count = proposal.as_ref().map_or(1, Vec::len);
+        let marks: Vec<Mark> = marks.by_ref().take(count).collect();
+        proposal.is_some().then_some(marks)
+    };
+    proposals.iter().map(&mut take).collect()
+}
+
+/// All marks of a drawing, each with its stage.
+struct Home {
+    marks: Vec<(Mark, usize)>,
+}
+
+impl Home {
+    fn of(drawing: &Drawing) -> Self {
+        let marks = drawing.free().iter().map(|mark| mark.to_mark());
+        let stages = drawing.stages().iter().copied();
+        Self {
+            marks: marks.zip(stages).collect(),
+        }
+    }
+
+    /// Makes the drawing that of these marks, those that are `taken` replaced by what is proposed for them.
+    fn put(&self, drawing: &mut Drawing, proposals: &[Proposal], taken: impl Fn(usize) -> bool) {
+        let replaced = |(i, (mark, stage)): (usize, &(Mark, usize))| {
+            let marks = proposals[i].clone().filter(|_| taken(i));
+            let marks = marks.unwrap_or_else(|| vec![mark.clone()]);
+            let stage = *stage;
+            marks.into_iter().map(move |mark| (mark, stage))
+        };
+        drawing.replace(self.marks.iter().enumerate().flat_map(replaced));
+    }
+}
+
+/// Descends with what is proposed alone.
+fn fit(session: &mut Session<'_>, forms: Forms, proposals: &[Proposal]) {
+    let iterations = forms.iterations;
+    let restricted = session.restricted_rates().without_color();
+    let course = Course {
+        iterations,
+        before: 0,
+        of: iterations,
+        rates: Rates {
+            // A traced stroke moves as far as an area does.
+            position: forms.rate / session.recipe.tracing.pace,
+            radius: forms.rate.min(restricted.radius),
+            area: forms.rate,
+            opacity: 0.0,
+            ..restricted
+        },
+        pace: 1.0,
+        softness: None,
+        until: f32::INFINITY,
+        joint: None,
+    };
+    let drawing = &mut session.drawing;
+    let mut descent = Descent::new(drawing, &session.recipe, course, 0.0);
+    descent.held = Held::of(drawing.free(), drawing.formed());
+    let marks = proposals.iter().flat_map(|proposal| match proposal {
+        Some(marks) => vec![true; marks.len()],
+        None => vec![false],
+    });
+    for (i, _) in marks.enumerate().filter(|(_, moves)| !moves) {
+        drawing
+            .free()
+            .range(i)
+            .for_each(|place| descent.ties.fix(place));
+    }
+    for step in 0..iterations {
+        let done = step as f32 / iterations as f32;
+        descent.step(drawing, &session.annealing, (step, done), None);
+    }
+}

@@ -1,0 +1,161 @@
+//! Shapes and level lines: a circle, an ellipse or a rectangle in a picture comes back as one, and a level line is exactly so.
+
+use strokefit::fit::{Background, Config, Fitter};
+use strokefit::scene::{Mark, Path, Scene, Shape};
+use strokefit::svg::{self, Group, WriteOptions};
+use strokefit::verify::{self, Size};
+
+/// The file that is fitted to the picture of these elements, 160×120 px.
+fn fitted(elements: &str) -> (Scene, String) {
+    fitted_in(elements, Group::Stage)
+}
+
+fn fitted_in(elements: &str, group: Group) -> (Scene, String) {
+    let drawing = format!(
+        r##"<svg xmlns="http://www.w3.org/2000/svg" width="160" height="120"><rect width="160" height="120" fill="#fff"/>{elements}</svg>"##
+    );
+    let picture = verify::render(&drawing, Size::Scale(4.0), None).unwrap();
+    let config = Config {
+        background: Background::Color([1.0; 3]),
+        file: WriteOptions {
+            group,
+            ..WriteOptions::default()
+        },
+        ..Config::default()
+    };
+    let fit = Fitter::new(config).fit(&picture.reduced(160, 120)).unwrap();
+    let text = fit.svg();
+    (svg::read(&text).unwrap(), text)
+}
+
+/// The shapes that are elements of their own.
+fn shapes(scene: &Scene) -> Vec<Shape> {
+    let only = |mark: &Mark| match mark.paths() {
+        [path] => Shape::of(path),
+        _ => None,
+    };
+    scene.marks().filter_map(only).collect()
+}
+
+fn is_near(found: [f32; 4], expected: [f32; 4]) -> bool {
+    found
+        .iter()
+        .zip(expected)
+        .all(|(a, b)| (a - b).abs() < 0.15)
+}
+
+#[test]
+fn shapes_come_back_as_elements() {
+    let (scene, text) = fitted(
+        r##"<circle cx="32.3" cy="30.6" r="18.2" fill="#c03020"/><ellipse cx="110.4" cy="32.2" rx="30.3" ry="14.6" fill="#2060c0"/>
+        <rect x="12.3" y="65.6" width="50" height="38.5" fill="#208040"/><rect x="80.5" y="62.2" width="60.3" height="44" rx="9.5" fill="#404858"/>"##,
+    );
+    let expected = |shape: &&Shape| match **shape {
+        Shape::Circle { center: c, radius } => {
+            is_near([c.x, c.y, radius, 0.0], [32.3, 30.6, 18.2, 0.0])
+        }
+        Shape::Ellipse {
+            center: c,
+            radii: [x, y],
+        } => is_near([c.x, c.y, x, y], [110.4, 32.2, 30.3, 14.6]),
+        Shape::Rect {
+            low,
+            high,
+            radius: 0.0,
+        } => is_near([low.x, low.y, high.x, high.y], [12.3, 65.6, 62.3, 104.1]),
+        Shape::Rect { low, high, radius } => {
+            is_near([low.x, low.y, high.x, high.y], [80.5, 62.2, 140.8, 106.2])
+                && (radius - 9.5).abs() < 0.5
+        }
+    };
+    assert_eq!(shapes(&scene).iter().filter(expected).count(), 4, "{text}");
+}
+
+#[test]
+fn dots_of_one_colour_are_circles_each_and_holes_stay_holes() {
+    let (scene, text) = fitted(
+        r##"<g fill="#c03020"><circle cx="30" cy="30" r="8"/><circle cx="60" cy="30" r="8"/><circle cx="90" cy="30" r="8"/></g>
+        <path fill="#2060c0" fill-rule="evenodd" d="M20 60h110v50H20zM50 70h20v20H50z"/>"##,
+    );
+    let is_circle = |shape: &&Shape| matches!(shape, Shape::Circle { .. });
+    assert_eq!(shapes(&scene).iter().filter(is_circle).count(), 3, "{text}");
+    let holed = scene.areas().filter(|area| area.rings.len() == 2);
+    assert_eq!(holed.count(), 1, "{text}");
+}
+
+#[test]
+fn a_small_circle_is_no_rectangle() {
+    let (scene, text) = fitted(
+        r##"<rect x="20" y="20" width="120" height="80" fill="#d0a880"/><g fill="#662113"><circle cx="50.3" cy="60.4" r="3.6"/><circle cx="110.4" cy="60.4" r="3.6"/></g>"##,
+    );
+    let is_circle = |shape: &&Shape| matches!(shape, Shape::Circle { .. });
+    assert_eq!(shapes(&scene).iter().filter(is_circle).count(), 2, "{text}");
+}
+
+#[test]
+fn a_circle_of_which_a_part_is_hidden_is_one() {
+    let (scene, text) = fitted(
+        r##"<circle cx="60" cy="60" r="50" fill="#c03020"/><path d="M95 40L140 50V80L90 85z" fill="#204060"/>"##,
+    );
+    let is_found = |shape: &Shape| match *shape {
+        Shape::Circle { center: c, radius } => {
+            is_near([c.x, c.y, radius, 0.0], [60.0, 60.0, 50.0, 0.0])
+        }
+        _ => false,
+    };
+    assert!(shapes(&scene).iter().any(is_found), "{text}");
+}
+
+#[test]
+fn a_shape_with_a_gradient_is_an_element() {
+    let (scene, text) = fitted(
+        r##"<linearGradient id="a" gradientUnits="userSpaceOnUse" x1="40" y1="20" x2="40" y2="100"><stop stop-color="#f0a020"/><stop offset="1" stop-color="#a02060"/></linearGradient><circle cx="60" cy="60" r="40" fill="url(#a)"/>"##,
+    );
+    assert_eq!(shapes(&scene).len(), 1, "{text}");
+    let circle = text.lines().find(|line| line.starts_with("<circle"));
+    assert!(
+        circle.is_some_and(|line| line.contains("fill=\"url(#")),
+        "{text}"
+    );
+    assert_eq!(svg::write(&scene, &WriteOptions::default()), text);
+}
+
+#[test]
+fn a_name_says_which_shape_it_is() {
+    let (scene, text) = fitted_in(
+        r##"<rect x="10" y="10" width="90" height="100" fill="#2060c0"/><circle cx="50" cy="60" r="20" fill="#f01010"/>"##,
+        Group::Object,
+    );
+    for name in ["id=\"blue-rectangle-1-1\"", "id=\"red-circle-1-2\""] {
+        assert!(text.contains(name), "{text}");
+    }
+    assert_eq!(scene.areas().count(), 2);
+}
+
+#[test]
+fn a_ring_that_a_pen_draws_is_a_circle_with_a_stroke() {
+    let (scene, text) = fitted(
+        r##"<circle cx="80" cy="60" r="40" fill="none" stroke="#203040" stroke-width="6"/>"##,
+    );
+    let strokes: Vec<&Path> = scene.strokes().map(|stroke| &stroke.path).collect();
+    let [path] = strokes[..] else {
+        panic!("{text}")
+    };
+    assert!(
+        matches!(Shape::of(path), Some(Shape::Circle { .. })),
+        "{text}"
+    );
+    assert!(text.contains("<circle"), "{text}");
+}
+
+#[test]
+fn lines_that_are_nearly_level_are_so() {
+    let (scene, text) = fitted(
+        r##"<g fill="none" stroke="#203040" stroke-width="5" stroke-linecap="round"><path d="M20 30.2H140"/><path d="M40.3 50V110"/></g>"##,
+    );
+    let lines = scene.strokes().filter(|stroke| {
+        let (a, b) = stroke.path.ends();
+        stroke.path.points().len() == 2 && (a.x == b.x || a.y == b.y)
+    });
+    assert_eq!(lines.count(), 2, "{text}");
+}
