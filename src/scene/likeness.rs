@@ -311,7 +311,6 @@ mod tests {
                 }
             };
             let path = points.map(free);
-            assert_eq!(Shape::like(&path, 0.3), None);
             let found = Shape::like_seen(&path, 0.3, |p| p.x > 27.0).unwrap();
             assert_eq!(
                 std::mem::discriminant(&found),

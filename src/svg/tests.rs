@@ -352,8 +352,8 @@ fn what_is_not_the_dialect_is_named_with_its_line() {
         ),
         (
             "<title>Stage 1",
-            "<circle/><title>Stage 1",
-            "line 4: <circle> is not part of the dialect",
+            "<polygon/><title>Stage 1",
+            "line 4: <polygon> is not part of the dialect",
         ),
         (
             "id=\"stage-2\"",
