@@ -13,6 +13,7 @@ mod quantize;
 mod shade;
 mod shape;
 mod written_path;
+mod written_shape;
 
 pub use grid::MAX_PRECISION;
 pub(crate) use grid::{UNITS_PER_PX, color, quantum};
@@ -25,8 +26,8 @@ pub(crate) use quantize::{Written, WrittenShade};
 pub use shade::{Axis, MAX_STOPS, Shade, ShadeStop};
 pub(crate) use shade::{WrittenAxis, WrittenStop};
 pub use shape::Shape;
-pub(crate) use shape::WrittenShape;
 pub(crate) use written_path::{WrittenPath, WrittenPoint};
+pub(crate) use written_shape::WrittenShape;
 
 use crate::math::Point;
 

@@ -1,14 +1,14 @@
-//! DXF: lines and polylines with arcs in millimetres, on a layer for each colour (AutoCAD 2004).
+//! DXF: lines, circles and polylines with arcs in millimetres, on a layer for each colour (AutoCAD 2004).
 //!
-//! Strokes are their centre lines, areas are their rings, and dots are points. Quadratic curves are pairs of arcs that
-//! meet without a corner, as cutters and routers read them; the format has no compound paths and no opacity.
+//! Strokes are their centre lines, areas are their rings, circles are circles, and dots are points. Quadratic curves are
+//! pairs of arcs that meet without a corner, as cutters and routers read them; the format has no compound paths and no opacity.
 
 mod arcs;
 mod file;
 
 use super::colors::distinct;
 use super::sheet::Sheet;
-use crate::scene::{Path, Piece, quantum};
+use crate::scene::{Path, Piece, Shape, quantum};
 use arcs::Vertex;
 use file::File;
 
@@ -37,6 +37,9 @@ fn push(file: &mut File, layer: &str, path: &Path, sheet: &Sheet<'_>) {
         |p: crate::math::Point| [f64::from(p.x), height - f64::from(p.y)].map(|px| px * sheet.mm());
     if let [dot] = path.points() {
         return file.point(layer, at(dot.at));
+    }
+    if let Some(Shape::Circle { center, radius }) = Shape::of(path) {
+        return file.circle(layer, at(center), f64::from(radius) * sheet.mm());
     }
     let mut pieces = path.pieces();
     if let (Some(Piece::Line([a, b])), None) = (pieces.next(), pieces.next()) {

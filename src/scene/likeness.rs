@@ -12,6 +12,12 @@ const STEP: f32 = 0.5;
 /// round corners of every circle.
 const PER_NUMBER: f32 = 0.1;
 
+/// Narrower shapes have to be nearer by more, in inverse proportion, px: few pixels tell of a dot that it has no corners.
+const SMALL: f32 = 6.0;
+
+/// Narrowest that a shape is, in tolerances: a smaller path is near to shapes of any kind.
+const LEAST_SIDE: f32 = 4.0;
+
 /// Least share of a shape's outline that is seen where the rest may be anything. A guess.
 const LEAST_SEEN: f32 = 0.4;
 
@@ -27,8 +33,10 @@ impl Shape {
             let away = places.iter().map(away).fold(0.0, f32::max);
             // A path that goes along a part of the shape, and back, encloses less.
             let is_whole = (shape.area() - moments.area).abs() <= tolerance * moments.length;
-            let is_near = away <= tolerance && is_whole;
-            is_near.then_some((away + more * PER_NUMBER, shape))
+            let side = shape.least_side();
+            let is_near = away <= tolerance && is_whole && side >= LEAST_SIDE * tolerance;
+            let per_number = PER_NUMBER * (SMALL / side).max(1.0);
+            is_near.then_some((away + more * per_number, shape))
         });
         let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0));
         nearest.map(|(_, shape)| shape)
@@ -49,7 +57,8 @@ impl Shape {
         let seen_px = STEP * seen.len() as f32;
         let is_near = |shape: &Self| {
             let mut away = seen.iter().map(|&p| shape.distance(p).abs());
-            seen_px >= LEAST_SEEN * shape.length() && away.all(|px| px <= tolerance)
+            let is_large = shape.least_side() >= LEAST_SIDE * tolerance;
+            is_large && seen_px >= LEAST_SEEN * shape.length() && away.all(|px| px <= tolerance)
         };
         let shapes = [
             circle_through(&seen),
@@ -57,6 +66,15 @@ impl Shape {
             ellipse_through(&seen),
         ];
         shapes.into_iter().flatten().find(is_near)
+    }
+
+    /// The lesser of width and height, px.
+    fn least_side(&self) -> f32 {
+        match *self {
+            Self::Circle { radius, .. } => 2.0 * radius,
+            Self::Ellipse { radii, .. } => 2.0 * radii[0].min(radii[1]),
+            Self::Rect { low, high, .. } => (high - low).min(),
+        }
     }
 
     /// About how long the outline is, px.

@@ -6,8 +6,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::grid::{Grid, UNITS_PER_PX, color, quantum};
-use super::shape::WrittenShape;
 use super::written_path::{WrittenPath, WrittenPoint};
+use super::written_shape::WrittenShape;
 use super::{Area, Mark, Path, PathPoint, Rgb, Scene, Shade, Stage, Stroke};
 
 /// Narrowest stroke, px. Rasterisers of the Skia family draw a width of 1 px or less as a hairline of lower

@@ -306,6 +306,15 @@ fn a_pdf_has_the_gradient_and_the_opacities() {
     }
 }
 
+#[test]
+fn a_pdf_has_the_shapes() {
+    let place = with_picture("twemoji__dog");
+    let text = fitted(&place, &["-o", "a.pdf"]);
+    assert!(text.contains("<circle") && text.contains("<ellipse"));
+    let seen = as_pdf(&place);
+    assert!(seen.is_none_or(|seen| seen > 34.0), "{seen:?}");
+}
+
 /// Reads a DXF and prints how many things there are, their bounds in mm, its unit, and the errors that ezdxf finds.
 const READ_DXF: &str = r#"
 import ezdxf, ezdxf.bbox

@@ -99,4 +99,6 @@ mod refine;
 #[cfg(all(feature = "cli", unix))]
 mod rig;
 #[cfg(feature = "cli")]
+mod shape_files;
+#[cfg(feature = "cli")]
 mod view;

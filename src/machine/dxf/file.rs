@@ -66,6 +66,13 @@ impl File {
         self.place(10, at);
     }
 
+    /// A circle.
+    pub(super) fn circle(&mut self, layer: &str, center: [f64; 2], radius: f64) {
+        self.entity("CIRCLE", layer, "AcDbCircle");
+        self.place(10, center);
+        self.pair(40, &number(radius));
+    }
+
     /// Lines and arcs.
     pub(super) fn polyline(&mut self, layer: &str, vertices: &[Vertex], closed: bool) {
         self.entity("LWPOLYLINE", layer, "AcDbPolyline");

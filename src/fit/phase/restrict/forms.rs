@@ -39,6 +39,8 @@ type Proposal = Option<Vec<Mark>>;
 fn shapes(session: &Session<'_>, forms: Forms, mut room: usize) -> Vec<Proposal> {
     let has_areas = session.drawing.free().has_areas();
     let covers = Covers::of(&session.drawing);
+    // An icon in one ink is one path by its artist, too.
+    let is_whole = session.drawing.free().len() == 1;
     let shaped = |i: usize, mark: Mark, room: &mut usize| {
         let is_disc = |dot: &Stroke| has_areas && is_dot(&dot.path);
         let marks = match mark {
@@ -47,7 +49,7 @@ fn shapes(session: &Session<'_>, forms: Forms, mut room: usize) -> Vec<Proposal>
                 stroke.path = like(&stroke.path, forms)?.ring();
                 vec![stroke.into()]
             }
-            Mark::Area(area) => parts(area, forms, |p| covers.is_seen(i, p))?,
+            Mark::Area(area) => parts(area, forms, is_whole, |p| covers.is_seen(i, p))?,
         };
         *room = room.checked_sub(marks.len() - 1)?;
         Some(marks)
@@ -132,14 +134,39 @@ fn bounded(corners: Vec<Point>) -> (Vec<Point>, [Point; 2]) {
 }
 
 /// The area as areas: one for each of its rings that is alone and a shape, and one of all others. An area of many rings
-/// stays one.
-fn parts(area: Area, forms: Forms, is_seen: impl Fn(Point) -> bool) -> Option<Vec<Mark>> {
+/// stays one, and so does one that is the whole drawing, unless all of its rings are shapes.
+fn parts(
+    area: Area,
+    forms: Forms,
+    is_whole: bool,
+    is_seen: impl Fn(Point) -> bool,
+) -> Option<Vec<Mark>> {
     let rings = &area.rings;
+    let shapes = shapes_of(rings, forms, is_seen);
+    let pairs = rings.iter().zip(&shapes);
+    let rest = pairs.filter(|(_, shape)| shape.is_none());
+    let rest: Vec<Path> = rest.map(|(ring, _)| ring.clone()).collect();
+    let is_all = rest.is_empty();
+    let is_split = rings.len() <= forms.split_rings[usize::from(is_all)] && (is_all || !is_whole);
+    if !is_split || rest.len() == rings.len() {
+        return None;
+    }
+    let alone = shapes.into_iter().flatten().map(|ring| vec![ring]);
+    let parts = alone.chain(Some(rest).filter(|rest| !rest.is_empty()));
+    let part = |rings| {
+        Mark::from(Area {
+            rings,
+            ..area.clone()
+        })
+    };
+    Some(parts.map(part).collect())
+}
+
+/// For each ring of an area the ring of the shape that it is, if it is alone.
+fn shapes_of(rings: &[Path], forms: Forms, is_seen: impl Fn(Point) -> bool) -> Vec<Option<Path>> {
     let is_alone = |i: usize| {
-        let others = rings.iter().enumerate().filter(|&(k, _)| k != i);
-        others
-            .into_iter()
-            .all(|(_, other)| are_apart(&rings[i], other))
+        let mut others = rings.iter().enumerate().filter(|&(k, _)| k != i);
+        others.all(|(_, other)| are_apart(&rings[i], other))
     };
     let shaped = |(i, ring): (usize, &Path)| {
         let is_shape = Shape::of(ring).is_some();
@@ -147,35 +174,7 @@ fn parts(area: Area, forms: Forms, is_seen: impl Fn(Point) -> bool) -> Option<Ve
         let shape = like(ring, forms).or_else(seen).filter(|_| is_alone(i))?;
         Some(shape.ring())
     };
-    let shapes: Vec<Option<Path>> = rings.iter().enumerate().map(shaped).collect();
-    let rest: Vec<Path> = rings
-        .iter()
-        .zip(&shapes)
-        .filter(|(_, shape)| shape.is_none())
-        .map(|(ring, _)| ring.clone())
-        .collect();
-    let most = forms.split_rings[usize::from(rest.is_empty())];
-    let is_split = rings.len() <= most;
-    if !is_split || rest.len() == rings.len() {
-        return None;
-    }
-    let rest = Some(rest).filter(|rest| !rest.is_empty());
-    let parts = shapes
-        .into_iter()
-        .flatten()
-        .map(|ring| vec![ring])
-        .chain(rest);
-    Some(
-        parts
-            .map(|rings| {
-                Area {
-                    rings,
-                    ..area.clone()
-                }
-                .into()
-            })
-            .collect(),
-    )
+    rings.iter().enumerate().map(shaped).collect()
 }
 
 /// True if neither of two rings lies in the other one. The rings of a traced area do not cross.

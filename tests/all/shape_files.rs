@@ -1,0 +1,167 @@
+//! Shapes through the program: refined, resumed, animated, cut out, as DXF.
+
+use std::fs;
+use std::process::Stdio;
+use std::time::Duration;
+
+use crate::support::place::{Place, STROKEFIT};
+use strokefit::scene::{Mark, Scene, Shape};
+use strokefit::svg;
+use strokefit::verify::{self, Size};
+
+const SHAPES: &str = r##"<circle cx="32.3" cy="30.6" r="18.2" fill="#c03020"/><rect x="80.5" y="62.2" width="60.3" height="44" rx="9.5" fill="#404858"/>
+<circle cx="36" cy="86" r="20" fill="none" stroke="#208040" stroke-width="5"/>"##;
+
+/// A page of these elements, 160×120 px.
+fn page(elements: &str) -> String {
+    format!(
+        r##"<svg xmlns="http://www.w3.org/2000/svg" width="160" height="120"><rect width="160" height="120" fill="#fff"/>{elements}</svg>"##
+    )
+}
+
+/// A folder with the picture `a.png` of shapes.
+fn with_picture() -> Place {
+    let place = Place::new();
+    put_picture(&place, "a.png", SHAPES);
+    place
+}
+
+fn put_picture(place: &Place, name: &str, elements: &str) {
+    let picture = verify::render(&page(elements), Size::Scale(4.0), None).unwrap();
+    place.file(name, picture.reduced(160, 120).encode_png().unwrap());
+}
+
+fn read(place: &Place, name: &str) -> String {
+    fs::read_to_string(place.path(name)).unwrap()
+}
+
+/// The lines of a file that are shapes.
+fn elements(text: &str) -> Vec<&str> {
+    let is_shape = |line: &&str| line.starts_with("<circle") || line.starts_with("<rect x=");
+    text.lines().filter(is_shape).collect()
+}
+
+fn shapes(scene: &Scene) -> usize {
+    let is_shape = |mark: &&Mark| matches!(mark.paths(), [path] if Shape::of(path).is_some());
+    scene.marks().filter(is_shape).count()
+}
+
+/// Draws `a.svg`, whose marks are three shapes.
+fn fitted(place: &Place, options: &[&str]) -> String {
+    place.done(&[&["fit", "a.png", "-o", "a.svg", "-q"][..], options].concat());
+    let text = read(place, "a.svg");
+    assert_eq!(elements(&text).len(), 3, "{text}");
+    text
+}
+
+#[test]
+fn shapes_of_a_base_stay_shapes() {
+    let place = with_picture();
+    let base = fitted(&place, &[]);
+    // The circle has moved, and something is new.
+    let more = SHAPES.replace("cx=\"32.3\"", "cx=\"33.1\"");
+    let more = more + r##"<path d="M90 20L150 40L100 50z" fill="#2060c0"/>"##;
+    put_picture(&place, "b.png", &more);
+    place.done(&["refine", "a.svg", "b.png", "-o", "b.svg", "-q"]);
+    let refined = read(&place, "b.svg");
+    let scene = svg::read(&refined).unwrap();
+    assert!(shapes(&scene) >= 3 && scene.len() > 3, "{refined}");
+    let moved = scene.areas().any(|area| match Shape::of(&area.rings[0]) {
+        Some(Shape::Circle { center, .. }) => (center.x - 33.1).abs() < 0.15,
+        _ => false,
+    });
+    assert!(moved, "{refined}");
+    place.done(&[
+        "refine",
+        "a.svg",
+        "b.png",
+        "-o",
+        "c.svg",
+        "-q",
+        "--freeze-base",
+    ]);
+    let frozen = read(&place, "c.svg");
+    for element in elements(&base) {
+        assert!(frozen.contains(element), "{element}: {frozen}");
+    }
+}
+
+#[test]
+fn a_fit_of_shapes_that_is_killed_goes_on_to_the_same_bytes() {
+    let place = with_picture();
+    let whole = fitted(&place, &[]);
+    let kept = ["--checkpoint", "fit.state", "--checkpoint-every", "0.001"];
+    for life in 1.. {
+        let mut command = place.command(STROKEFIT);
+        command
+            .args(["fit", "a.png", "-o", "b.svg", "-q"])
+            .args(kept);
+        command.stdout(Stdio::null()).stderr(Stdio::null());
+        let mut child = command.spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(60 + 20 * life));
+        let has_ended = child.try_wait().unwrap().is_some();
+        child.kill().unwrap();
+        child.wait().unwrap();
+        if has_ended {
+            assert!(life > 1, "the fit was never killed");
+            break;
+        }
+    }
+    assert!(read(&place, "b.svg") == whole);
+}
+
+#[test]
+fn shapes_appear_in_an_animation() {
+    let place = with_picture();
+    fitted(&place, &["-o", "a.animated.svg", "-o", "a.apng"]);
+    let animated = read(&place, "a.animated.svg");
+    for part in [
+        "<circle cx=",
+        "attributeName=\"fill-opacity\"",
+        "attributeName=\"stroke-dasharray\"",
+        "</circle>",
+        "</rect>",
+    ] {
+        assert!(animated.contains(part), "{part}: {animated}");
+    }
+    let render = |text: &str| verify::render(text, Size::Scale(1.0), None).unwrap();
+    assert!(render(&animated) == render(&read(&place, "a.svg")));
+}
+
+#[test]
+fn circles_are_circles_in_a_dxf() {
+    let place = with_picture();
+    let options = ["--width", "160mm", "-o", "a.dxf"];
+    let text = fitted(&place, &options);
+    let dxf = read(&place, "a.dxf");
+    assert_eq!(dxf.matches("\nCIRCLE\n").count(), 2, "{dxf}");
+    assert_eq!(dxf.matches("\nLWPOLYLINE\n").count(), 1, "{dxf}");
+    // The radius of the disc, mm.
+    let radii: Vec<f64> = dxf
+        .split("\nAcDbCircle\n")
+        .skip(1)
+        .map(|circle| circle.split("\n40\n").nth(1).unwrap())
+        .map(|radius| radius.lines().next().unwrap().parse().unwrap())
+        .collect();
+    assert!(
+        radii.iter().any(|mm| (mm - 18.2).abs() < 0.15),
+        "{radii:?} {text}"
+    );
+}
+
+#[test]
+fn a_shape_is_cut_out_hatched_and_outlined_like_any_area() {
+    let place = with_picture();
+    let text = fitted(&place, &["--background", "none"]);
+    let image = |text: &str| verify::render(text, Size::Scale(1.0), Some([1.0; 3])).unwrap();
+    for (option, least) in [
+        ("--cutout", 30.0),
+        ("--outline", 30.0),
+        ("--hatch=3px", 18.0),
+    ] {
+        place.done(&["render", "a.svg", "-o", "b.svg", option]);
+        let seen =
+            strokefit::metrics::Agreement::between(&image(&read(&place, "b.svg")), &image(&text));
+        assert!(seen.unwrap().psnr_db > least, "{option}");
+    }
+}
