@@ -54,6 +54,18 @@ def test_a_scene_has_the_strokes_and_areas_of_its_drawing() -> None:
     assert (scene.width, scene.height) == (drawing.report["input"]["width"], drawing.report["input"]["height"])
 
 
+def test_a_circle_is_one_again_when_its_arrays_are_written() -> None:
+    y, x = np.mgrid[:64, :64] + 0.5
+    away = np.hypot(x - 30.3, y - 33.6) - 20.5
+    disc = (255 - 200 * np.clip(0.5 - away, 0, 1)).astype(np.uint8)
+    drawing = strokefit.fit(disc)
+    assert drawing.svg.count("<circle") == 1
+    scene = drawing.scene
+    assert scene.to_svg() == drawing.svg
+    scene.marks.points[0, 0] += 1
+    assert "<circle" not in scene.to_svg()
+
+
 def test_gradients_that_arrays_do_not_have_are_told() -> None:
     drawing = strokefit.fit(ROOT / "samples/noto-gem.png", strokes=100, preset="draft")
     with pytest.warns(UserWarning, match="areas of the drawing have a gradient"):

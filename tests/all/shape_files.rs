@@ -152,7 +152,7 @@ fn circles_are_circles_in_a_dxf() {
 #[test]
 fn a_shape_is_cut_out_hatched_and_outlined_like_any_area() {
     let place = with_picture();
-    let text = fitted(&place, &["--background", "none"]);
+    let text = fitted(&place, &["--background", "none", "--opaque"]);
     let image = |text: &str| verify::render(text, Size::Scale(1.0), Some([1.0; 3])).unwrap();
     for (option, least) in [
         ("--cutout", 30.0),

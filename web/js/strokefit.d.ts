@@ -147,7 +147,7 @@ export function animate(svg: string): Promise<string>;
 /** A PDF of a drawing by strokefit, on a page as large as its text says: curves are exact, layers those of the drawing. */
 export function pdf(svg: string): Promise<Uint8Array>;
 
-/** A DXF of a drawing by strokefit, in millimetres, with a layer for each colour: centre lines of strokes and rings of areas. */
+/** A DXF of a drawing by strokefit, in millimetres, with a layer for each colour: centre lines of strokes, rings of areas, circles. */
 export function dxf(svg: string): Promise<string>;
 
 /** Numbers in a row. */

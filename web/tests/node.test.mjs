@@ -148,6 +148,16 @@ describe("animate", () => {
 });
 
 describe("pdf and dxf", () => {
+  it("have circles of a disc, as its SVG has", async () => {
+    const pixels = Uint8Array.from({ length: 64 * 64 }, (_, i) => {
+      const away = Math.hypot((i % 64) - 29.8, Math.floor(i / 64) - 33.1) - 20.5;
+      return 255 - Math.round(200 * Math.min(Math.max(0.5 - away, 0), 1));
+    });
+    const { svg } = await fit(pixels, 64, 64);
+    assert.equal(svg.match(/<circle/g)?.length, 1, svg);
+    assert.equal((await dxf(svg)).match(/\nCIRCLE\n/g).length, 1);
+    assert.match(await animate(svg), /<circle[^]*<animate[^]*<\/circle>/);
+  });
   it("are the files that the program makes of a drawing", async () => {
     const svg = native(join(root, "samples/noto-gem.png"), ["--preset", "draft", "--width", "80mm"]);
     const made = inFolder((folder) => {
