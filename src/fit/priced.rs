@@ -85,8 +85,14 @@ impl Fitter<'_> {
 
     /// The drawing of what pays at a `quality`, the usual one if `None`, to be compared by the budget.
     fn priced(&self, quality: Option<f64>, picture: &Image, since: Instant) -> Result<Drawn> {
+        let mut recipe = self.config.recipe();
+        // Whole, a drawing is worth more than one whose shapes are elements of their own.
+        if let Some(strokes) = self.config.budget.strokes {
+            recipe.forms.most_marks = strokes;
+        }
         let rival = self.rival(Config {
             budget: Budget::default(),
+            recipe: Some(recipe),
             quality,
             ..self.config.clone()
         });

@@ -481,6 +481,8 @@ pub struct Forms {
     /// Most rings of an area that some of its rings leave, to be elements of their own, and of one that all of them leave. A
     /// QR code stays one area. A guess.
     pub split_rings: [usize; 2],
+    /// Most marks of a drawing that areas are split in.
+    pub most_marks: usize,
     /// Bytes that a form is worth to an editor, besides those that it saves. A guess.
     pub worth_bytes: usize,
 }

@@ -296,6 +296,7 @@ const BALANCED: Recipe = Recipe {
         level_px: 0.25,
         level_slope: 0.05,
         split_rings: [12, 24],
+        most_marks: usize::MAX,
         worth_bytes: 30,
     },
     masking: Masking {

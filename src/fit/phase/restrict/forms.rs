@@ -19,7 +19,8 @@ use crate::svg::mark_bytes;
 /// Makes shapes of areas and traced strokes that nearly are such, and then lines level and upright. All strokes must be free.
 pub(super) fn run(session: &mut Session<'_>) {
     let forms = session.recipe.forms;
-    let room = session.limit.saturating_sub(session.drawing.len());
+    let most = session.limit.min(forms.most_marks);
+    let room = most.saturating_sub(session.drawing.len());
     let shapes = shapes(session, forms, room);
     adopt(session, forms, shapes);
     let straight = straight(session, forms);
