@@ -167,7 +167,7 @@
 //! | word | meaning |
 //! | --- | --- |
 //! | page | the area of an SVG file, in px or in units such as mm |
-//! | form | how strokes become elements: one each, the smallest file, outlines |
+//! | form | how strokes become elements: one each, the smallest file, classes of a style sheet, outlines |
 //! | travel | how far a pen moves between strokes without drawing (px); see [`svg::travel`](fn@svg::travel) |
 //! | style | colour, width and opacity of a stroke; strokes of one style may share an element |
 //! | dialect | the part of SVG that strokefit writes, and reads as strokes |

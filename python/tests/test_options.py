@@ -39,6 +39,7 @@ def test_looks_are_kept(waves: np.ndarray) -> None:
     assert 'width="120mm"' in strokefit.fit(waves, width="120mm", **few).svg
     assert 'id="color-1"' in strokefit.fit(waves, group="color", **few).svg
     assert "stroke-width" not in strokefit.fit(waves, form="outlines", **few).svg
+    assert 'class="' in strokefit.fit(waves, form="css", **few).svg
     assert set(re.findall('stroke-width="(.*?)"', strokefit.fit(waves, pens="2,3.5", **few).svg)) <= {"2", "3.5"}
     travel = strokefit.fit(waves, order="travel", **few).report["travel"]
     assert travel["after_px"] < travel["before_px"]
@@ -96,7 +97,7 @@ def test_numpy_numbers_are_numbers(waves: np.ndarray) -> None:
         ("background", "whitish", "'whitish' is not a background: give auto, none"),
         ("colors", 0, "colors=0: give a whole number from 1 to 4096"),
         ("palette", ["rot"], "'rot' is not a colour"),
-        ("form", "tiny", "'tiny' is not a form: give plain, smallest or outlines"),
+        ("form", "tiny", "'tiny' is not a form: give plain, smallest, css or outlines"),
         ("group", "hue", "'hue' is not a grouping"),
         ("order", "random", "'random' is not an order: give fitted or travel"),
         ("pens", "0", "'0' is not a width of a pen"),

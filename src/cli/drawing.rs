@@ -84,6 +84,7 @@ const OPTIONS: [(&str, &str); 3] = [
     What one element of the SVG holds
     * plain: One stroke
     * smallest: As many strokes as possible: fewest bytes, hardest to edit
+    * css: One stroke; its colour and its width are in classes of a style sheet, the one place to change them
     * elements:
 --group GROUP=stage
     What one layer of the SVG holds

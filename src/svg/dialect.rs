@@ -17,6 +17,15 @@ pub(super) const LINEAR_AXIS: [&str; 4] = ["x1", "y1", "x2", "y2"];
 pub(super) const RADIAL: &str = "radialGradient";
 pub(super) const RADIAL_AXIS: [&str; 3] = ["cx", "cy", "r"];
 
+/// The properties that make a mark a stroke or an area.
+pub(super) const PAINT: [&str; 5] = [
+    "stroke",
+    "stroke-width",
+    "stroke-opacity",
+    "fill",
+    "fill-opacity",
+];
+
 /// Units of the axes and of the offsets of gradients: 0.01 px and 0.001.
 pub(super) const HUNDREDTH: i64 = UNITS_PER_PX / 100;
 pub(super) const THOUSANDTH: i64 = UNITS_PER_PX / 1000;

@@ -10,25 +10,48 @@ use super::options::Form;
 use super::outline;
 use super::path::{self, Kind};
 use super::shape;
+use super::sheet::Sheet;
 use crate::scene::Written;
 
-/// Appends the elements of `strokes`, in the smallest form with numbers in `unit`. In the plain form they have names if a
-/// layer is given by its number.
+/// Names of marks and classes of elements, which forms with an element for each mark have.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Names<'a> {
+    /// The number of the layer, if its marks have ids.
+    pub(super) layer: Option<usize>,
+    /// The classes that hold colours and widths, if there are any.
+    pub(super) sheet: Option<&'a Sheet>,
+}
+
+impl Names<'_> {
+    /// The attributes of the mark that is the `index`-th of its layer, and those that it needs no more.
+    fn of(&self, mark: &Written, index: usize) -> (String, &'static [Attribute]) {
+        let id = |layer: usize| format!(" id=\"{}-{layer}-{}\"", names::of_mark(mark), index + 1);
+        let id = self.layer.map_or_else(String::new, id);
+        let class = self
+            .sheet
+            .map_or_else(String::new, |sheet| sheet.class(mark));
+        let shared: &[_] = match class.as_str() {
+            "" => &[],
+            _ => &[Attribute::Color, Attribute::Width],
+        };
+        (id + &class, shared)
+    }
+}
+
+/// Appends the elements of `strokes`, in the smallest form with numbers in `unit`.
 pub(super) fn push(
     out: &mut String,
     strokes: &[Written],
     form: Form,
     unit: Unit,
-    layer: Option<usize>,
+    names: Names<'_>,
 ) {
     match form {
-        Form::Plain => {
+        Form::Plain | Form::Css => {
             for (i, stroke) in strokes.iter().enumerate() {
-                let name =
-                    |layer: usize| format!(" id=\"{}-{layer}-{}\"", names::of_mark(stroke), i + 1);
-                let style = Style::Full;
-                let id = layer.map_or_else(String::new, name);
-                push_path(out, std::slice::from_ref(stroke), &id, &[], style);
+                let (attributes, shared) = names.of(stroke, i);
+                let alone = std::slice::from_ref(stroke);
+                push_path(out, alone, &attributes, shared, Style::Full);
                 out.push('\n');
             }
         }
@@ -41,7 +64,8 @@ pub(super) fn push(
     }
 }
 
-/// Bytes of an element of one stroke. In the smallest form, its width is assumed to be shared with neighbours.
+/// Bytes of an element of one stroke. In the smallest form, its width is assumed to be shared with neighbours; classes count
+/// as the attributes in their place.
 pub(super) fn bytes(stroke: &Written, form: Form, unit: Unit) -> usize {
     let mut out = String::new();
     let alone = std::slice::from_ref(stroke);
@@ -50,7 +74,7 @@ pub(super) fn bytes(stroke: &Written, form: Form, unit: Unit) -> usize {
             let style = Style::Short { width: None, unit };
             push_path(&mut out, alone, "", &[Attribute::Width], style);
         }
-        form => push(&mut out, alone, form, unit, None),
+        form => push(&mut out, alone, form, unit, Names::default()),
     }
     out.len()
 }
@@ -162,9 +186,15 @@ impl Style {
     }
 }
 
-/// Appends the path of `strokes`, or the element of the only one's shape, with the attribute `id` and those that are not
+/// Appends the path of `strokes`, or the element of the only one's shape, with these `names` and the attributes that are not
 /// `shared`, behind its gradient if it has one.
-fn push_path(out: &mut String, strokes: &[Written], id: &str, shared: &[Attribute], style: Style) {
+fn push_path(
+    out: &mut String,
+    strokes: &[Written],
+    names: &str,
+    shared: &[Attribute],
+    style: Style,
+) {
     let only = strokes.first().filter(|_| strokes.len() == 1);
     // In full, each element has a line of its own.
     let end = if style == Style::Full { "\n" } else { "" };
@@ -172,7 +202,7 @@ fn push_path(out: &mut String, strokes: &[Written], id: &str, shared: &[Attribut
         gradient::push_of(out, mark, end);
     }
     if let Some(shape) = only.and_then(|mark| mark.shape) {
-        shape::push(out, shape, id, style.unit());
+        shape::push(out, shape, names, style.unit());
     } else {
         let kind = match only {
             Some(area) if area.is_area() => Kind::Ring,
@@ -180,7 +210,7 @@ fn push_path(out: &mut String, strokes: &[Written], id: &str, shared: &[Attribut
         };
         let paths = strokes.iter().flat_map(|mark| &mark.paths);
         let d = path::data(paths, kind, style.unit());
-        *out += &format!("<path{id} d=\"{d}\"");
+        *out += &format!("<path{names} d=\"{d}\"");
     }
     let own = Attribute::ALL.iter().filter(|a| !shared.contains(a));
     for attribute in own {

@@ -41,6 +41,9 @@
 //!   holds the most common `stroke-width`. Colours may be `#rgb`. Where that is shorter, numbers count units of
 //!   the last decimal, and the layer has `transform="scale(0.1)"`. Before, [`arrange()`] reorders strokes
 //!   that do not touch so that all this saves the most.
+//! - In the form `css`, a `<style>` comes first, with rules for single classes, `.red{fill:#rrggbb}`, `.red-line{stroke:#rrggbb}`,
+//!   `.width-1{stroke-width:2.5}` and `.background{fill:#rrggbb}`, one a line. An element has a `class` in the place of these
+//!   attributes. A reader takes the properties of an element's classes for its attributes, and none may come twice.
 //! - With an order of little travel, strokes of a layer change places where the picture stays the same, and may be
 //!   reversed; [`fn@travel`] says how far a pen moves. Labels of layers by colour then begin with their number, `1 #rrggbb`.
 //! - Layers by colour have ids `color-1`, `color-2`, ….
@@ -91,6 +94,7 @@ mod outline;
 mod path;
 mod read;
 mod shape;
+mod sheet;
 mod tour;
 mod travel;
 mod write;

@@ -28,7 +28,7 @@ impl WriteOptions {
     pub(super) fn unit(&self) -> Unit {
         match self.form {
             Form::Smallest => Unit::decimal(self.precision),
-            Form::Plain | Form::Outlines => Unit::PX,
+            Form::Plain | Form::Css | Form::Outlines => Unit::PX,
         }
     }
 }
@@ -56,6 +56,9 @@ pub enum Form {
     /// To allow this, strokes that do not touch may swap places, and a stroke may swap its ends. Numbers are
     /// whole: they count units of the last decimal.
     Smallest,
+    /// One stroke, whose colour and width are in classes of a style sheet: the one place to change them in. Layers that are laid
+    /// on another SVG are in the plain form, as its own style sheets may have the same classes.
+    Css,
     /// The filled outline of one stroke, for programs that ignore strokes. It cannot be read back.
     Outlines,
 }
@@ -88,7 +91,7 @@ pub enum Order {
 
 impl Form {
     /// Every form.
-    pub const ALL: [Self; 3] = [Self::Plain, Self::Smallest, Self::Outlines];
+    pub const ALL: [Self; 4] = [Self::Plain, Self::Smallest, Self::Css, Self::Outlines];
 }
 
 /// A form of former versions, in which each stroke had an element of its own while the plain form joined strokes.
@@ -99,6 +102,7 @@ impl fmt::Display for Form {
         f.write_str(match self {
             Self::Plain => "plain",
             Self::Smallest => "smallest",
+            Self::Css => "css",
             Self::Outlines => "outlines",
         })
     }
@@ -107,13 +111,13 @@ impl fmt::Display for Form {
 impl FromStr for Form {
     type Err = Error;
 
-    /// `plain`, `smallest` or `outlines`.
+    /// `plain`, `smallest`, `css` or `outlines`.
     fn from_str(text: &str) -> Result<Self, Error> {
         let mut forms = Self::ALL.into_iter();
         forms.find(|form| form.to_string() == text).ok_or_else(|| {
             let remedy = match text {
                 FORMER_PLAIN => "give plain, which has one element per stroke now",
-                _ => "give plain, smallest or outlines",
+                _ => "give plain, smallest, css or outlines",
             };
             let message = format!("'{text}' is not a form: {remedy}");
             Error::new(ErrorKind::Config, message)

@@ -1,6 +1,7 @@
 //! Reads SVG text of strokefit's own dialect as a scene. The reader is strict: whatever is not part of the
 //! dialect is an error, so a file never silently gives a scene that looks different from the file.
 
+mod element;
 mod shade;
 
 use quick_xml::events::{BytesStart, Event};
@@ -11,11 +12,13 @@ use super::dialect::{self, Unit};
 use super::options::Length;
 use super::path::{self, Kind};
 use super::shape;
+use super::sheet::{self, Rules};
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::{
     MAX_POINTS, Mark, Rgb, Scene, Shade, Stage, Written, WrittenPath, WrittenShade, WrittenShape,
     color,
 };
+use element::{Element, short};
 
 /// Reads text that [`write`](super::write()) wrote, in any form except outlines.
 ///
@@ -38,6 +41,8 @@ type Parsed<T> = Result<T, String>;
 struct Parser<'a> {
     text: &'a str,
     xml: NsReader<&'a [u8]>,
+    /// Those of the style sheet, once it was read.
+    rules: Rules,
 }
 
 /// An element or the end of one.
@@ -47,16 +52,12 @@ enum Tag {
     End,
 }
 
-struct Element {
-    name: String,
-    attributes: Vec<(String, String)>,
-}
-
 impl<'a> Parser<'a> {
     fn new(text: &'a str) -> Self {
         let mut xml = NsReader::from_str(text);
         xml.config_mut().expand_empty_elements = true;
-        Self { text, xml }
+        let rules = Rules::new();
+        Self { text, xml, rules }
     }
 
     /// The line of the last thing read, from 1.
@@ -94,12 +95,10 @@ impl<'a> Parser<'a> {
         };
         loop {
             match self.next()? {
-                Tag::Open(e)
-                    if e.name == "rect"
-                        && scene.background.is_none()
-                        && scene.shade.is_none()
-                        && scene.stages.is_empty() =>
-                {
+                Tag::Open(e) if e.name == "style" && is_bare(&scene) && self.rules.is_empty() => {
+                    self.rules = self.style_sheet(&e)?;
+                }
+                Tag::Open(e) if e.name == "rect" && is_bare(&scene) => {
                     scene.background = Some(background(&e, width, height)?);
                     self.close(&e)?;
                 }
@@ -119,6 +118,27 @@ impl<'a> Parser<'a> {
                 Tag::End => return Err("the file ends before </svg>: get a complete copy".into()),
             }
         }
+    }
+
+    /// The classes of a style sheet, up to its end.
+    fn style_sheet(&mut self, element: &Element) -> Parsed<Rules> {
+        element.only(&[])?;
+        let mut text = String::new();
+        loop {
+            match self.xml.read_event().map_err(|e| malformed(&e))? {
+                Event::End(_) => break,
+                Event::Text(part) => text += &part,
+                Event::CData(part) => text += &part,
+                _ => return Err("<style> has more than text: give rules for classes".into()),
+            }
+        }
+        let rules = sheet::parse(&text);
+        let mut keys = rules.iter().flat_map(Rules::values).flatten();
+        let is_known = keys.all(|(key, _)| dialect::PAINT.contains(&key.as_str()));
+        rules.filter(|_| is_known).ok_or_else(|| {
+            let allowed = dialect::PAINT.join(", ");
+            format!("<style> has a rule that is not part of the dialect that strokefit reads: give classes with {allowed}")
+        })
     }
 
     fn stage(&mut self, group: &Element, number: usize) -> Parsed<Stage> {
@@ -201,7 +221,7 @@ impl<'a> Parser<'a> {
             match event {
                 Event::Start(tag) => {
                     check_namespace(&namespace, &tag)?;
-                    return Element::new(&tag).map(Tag::Open);
+                    return Element::new(&tag, &self.rules).map(Tag::Open);
                 }
                 Event::End(_) => return Ok(Tag::Close),
                 Event::Eof => return Ok(Tag::End),
@@ -214,87 +234,6 @@ impl<'a> Parser<'a> {
                     );
                 }
             }
-        }
-    }
-}
-
-impl Element {
-    fn new(tag: &BytesStart<'_>) -> Parsed<Self> {
-        let mut attributes = Vec::new();
-        for attribute in tag.attributes() {
-            let attribute = attribute.map_err(|e| format!("not well-formed XML: {e}"))?;
-            let key = attribute.key.as_ref();
-            if key != "xmlns" && !key.contains(':') {
-                attributes.push((key.to_owned(), attribute.value.into_owned()));
-            }
-        }
-        Ok(Self {
-            name: tag.local_name().as_ref().to_owned(),
-            attributes,
-        })
-    }
-
-    /// The attributes that say where a mark is, and its name; `None` if the element is no mark.
-    fn places(&self) -> Option<Vec<&'static str>> {
-        let path = (self.name == "path").then_some(&["d"][..]);
-        let places = path.or_else(|| shape::attributes(&self.name))?;
-        Some([places, &["id"]].concat())
-    }
-
-    fn get(&self, key: &str) -> Parsed<&str> {
-        self.find(key)
-            .ok_or_else(|| format!("<{}> has no {key}", self.name))
-    }
-
-    fn find(&self, key: &str) -> Option<&str> {
-        self.attributes
-            .iter()
-            .find(|(k, _)| k == key)
-            .map(|(_, v)| v.as_str())
-    }
-
-    /// The value of the attribute, read by `parse`.
-    fn parsed<T>(&self, key: &str, parse: impl Fn(&str) -> Option<T>) -> Parsed<T> {
-        let text = self.get(key)?;
-        parse(text).ok_or_else(|| {
-            format!(
-                "<{}> has {key}=\"{}\", which is not part of the dialect that strokefit reads",
-                self.name,
-                short(text)
-            )
-        })
-    }
-
-    /// The value of the attribute, read by `parse`, or `known` if it is absent.
-    fn either<T>(
-        &self,
-        key: &str,
-        known: Option<T>,
-        parse: impl Fn(&str) -> Option<T>,
-    ) -> Parsed<Option<T>> {
-        match self.find(key) {
-            Some(_) => self.parsed(key, parse).map(Some),
-            None => Ok(known),
-        }
-    }
-
-    fn expect(&self, key: &str, value: &str) -> Parsed<()> {
-        self.parsed(key, |text| (text == value).then_some(()))
-            .map_err(|e| format!("{e} (expected \"{value}\")"))
-    }
-
-    /// Refuses attributes that would change the drawing in ways that a scene cannot represent.
-    fn only(&self, keys: &[&str]) -> Parsed<()> {
-        match self
-            .attributes
-            .iter()
-            .find(|(key, _)| !keys.contains(&key.as_str()))
-        {
-            Some((key, _)) => Err(format!(
-                "<{}> has the attribute {key}, which is not part of the dialect that strokefit reads",
-                self.name
-            )),
-            None => Ok(()),
         }
     }
 }
@@ -320,6 +259,11 @@ fn page_size(root: &Element) -> Parsed<(u32, u32, Option<[u32; 2]>)> {
         }
     }
     Ok((width, height, None))
+}
+
+/// True if nothing of the drawing has been read.
+fn is_bare(scene: &Scene) -> bool {
+    scene.background.is_none() && scene.shade.is_none() && scene.stages.is_empty()
 }
 
 /// Checks that a rectangle is the page, and has nothing else but a fill.
@@ -373,18 +317,15 @@ impl Style {
 
     /// These attributes and those of `element` combined. `element` may set only what is not set yet, and `own`.
     fn of(&self, element: &Element, own: &[&str]) -> Parsed<Self> {
-        let free = [
-            ("stroke", self.color.is_none()),
-            ("stroke-width", self.width.is_none()),
-            ("stroke-opacity", self.opacity.is_none()),
-            ("fill", self.fill.is_none()),
-            ("fill-opacity", self.fill_opacity.is_none()),
+        let is_free = [
+            self.color.is_none(),
+            self.width.is_none(),
+            self.opacity.is_none(),
+            self.fill.is_none(),
+            self.fill_opacity.is_none(),
         ];
-        let free: Vec<_> = free
-            .iter()
-            .filter(|(_, free)| *free)
-            .map(|(key, _)| *key)
-            .collect();
+        let free = dialect::PAINT.into_iter().zip(is_free);
+        let free: Vec<_> = free.filter(|(_, free)| *free).map(|(key, _)| key).collect();
         element.only(&[own, free.as_slice()].concat())?;
         if own.is_empty() && element.attributes.is_empty() {
             return Err("<g> has no attribute: remove it".into());
@@ -537,13 +478,4 @@ fn unexpected(element: &Element) -> String {
 
 fn malformed(error: &quick_xml::Error) -> String {
     format!("not well-formed XML: {error}")
-}
-
-/// The beginning of a text, for a message.
-fn short(text: &str) -> String {
-    let mut start: String = text.chars().take(40).collect();
-    if start.len() < text.len() {
-        start.push('…');
-    }
-    start
 }

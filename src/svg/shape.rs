@@ -20,10 +20,10 @@ pub(super) fn attributes(name: &str) -> Option<&'static [&'static str]> {
         .map(|(_, attributes)| attributes)
 }
 
-/// Appends the beginning of the element of `shape`, with the attribute `id`, up to its attributes of style.
-pub(super) fn push(out: &mut String, shape: WrittenShape, id: &str, unit: Unit) {
+/// Appends the beginning of the element of `shape`, with these `names`, up to its attributes of style.
+pub(super) fn push(out: &mut String, shape: WrittenShape, names: &str, unit: Unit) {
     let mut element = |name: &str, attributes: &[&str], numbers: &[i64]| {
-        *out += &format!("<{name}{id}");
+        *out += &format!("<{name}{names}");
         for (attribute, &number) in attributes.iter().zip(numbers) {
             *out += &format!(" {attribute}=\"");
             unit.push(out, number);

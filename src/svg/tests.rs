@@ -7,7 +7,7 @@ use crate::error::ErrorKind;
 use crate::math::Point;
 use crate::metrics::Agreement;
 use crate::scene::{
-    Axis, Dropped, MAX_POINTS, Mark, Path, PathPoint, Scene, Shade, ShadeStop, Stage, Stroke,
+    Area, Axis, Dropped, MAX_POINTS, Mark, Path, PathPoint, Scene, Shade, ShadeStop, Stage, Stroke,
 };
 use crate::verify;
 use scenes::{mark, options, scene, scene_of_few_styles};
@@ -482,5 +482,99 @@ fn other_gradients_are_refused() {
         let changed = text.replace(from, to);
         assert_ne!(changed, text, "{from}");
         assert!(read(&changed).is_err(), "{changed}");
+    }
+}
+
+/// A background, an area and strokes of its colour and of another red, and a line twice as wide.
+fn in_classes() -> String {
+    let line = |y: f32, color, radius| {
+        let path = Path::line([1.0, y].into(), [9.0, y].into());
+        let opacity = if y > 5.0 { 0.5 } else { 1.0 };
+        Mark::from(Stroke {
+            path,
+            radius,
+            color,
+            opacity,
+        })
+    };
+    let corners = [[2.0, 2.0], [8.0, 2.0], [5.0, 8.0]].map(|p| PathPoint::on(p.into()));
+    let area = Area {
+        rings: vec![Path::new(corners.into(), true).unwrap()],
+        color: [0.8, 0.0, 0.0],
+        opacity: 1.0,
+        shade: None,
+    };
+    let marks = [
+        area.into(),
+        line(3.0, [0.8, 0.0, 0.0], 1.0),
+        line(4.0, [1.0, 0.0, 0.0], 2.0),
+        line(8.0, [0.0, 0.0, 0.0], 1.0),
+    ];
+    let scene = Scene {
+        stages: vec![Stage::from_iter(marks)],
+        ..Scene::empty(10, 10, Some([1.0; 3]))
+    };
+    let options = WriteOptions {
+        form: Form::Css,
+        ..WriteOptions::default()
+    };
+    write(&scene, &options)
+}
+
+#[test]
+fn colours_and_widths_are_in_classes() {
+    let text = in_classes();
+    let sheet = "<style>\n.background{fill:#ffffff}\n.red-1{fill:#cc0000}\n.red-1-line{stroke:#cc0000}\n\
+                 .red-2-line{stroke:#ff0000}\n.black-line{stroke:#000000}\n.width-1{stroke-width:2}\n\
+                 .width-2{stroke-width:4}\n</style>\n<rect width=\"10\" height=\"10\" class=\"background\"/>\n";
+    assert!(text.contains(sheet), "{text}");
+    for element in [
+        "<path class=\"red-1\" d=\"M2 2h6L5 8z\"/>",
+        "<path class=\"red-1-line width-1\" d=\"M1 3L9 3\"/>",
+        "<path class=\"red-2-line width-2\" d=\"M1 4L9 4\"/>",
+        "<path class=\"black-line width-1\" d=\"M1 8L9 8\" stroke-opacity=\"0.502\"/>",
+    ] {
+        assert!(text.contains(element), "{text}");
+    }
+}
+
+#[test]
+fn a_class_that_was_recoloured_is_read_and_drawn() {
+    let text = in_classes();
+    let changed = text.replace(".red-1{fill:#cc0000}", ".red-1 { fill: #00f; }");
+    let blue = |mark: &Mark| mark.color() == [0.0, 0.0, 1.0];
+    assert_eq!(
+        read(&changed).unwrap().marks().filter(|m| blue(m)).count(),
+        1
+    );
+    let drawn = verify::render(&changed, verify::Size::Scale(1.0), None).unwrap();
+    let [red, _, blue] = drawn.planes();
+    assert_eq!((red[5 * 10 + 5], blue[6 * 10 + 5]), (1.0, 1.0));
+    assert_eq!((red[6 * 10 + 5], blue[4 * 10 + 5]), (0.0, 0.0));
+}
+
+#[test]
+fn other_style_sheets_are_refused() {
+    let text = in_classes();
+    for (from, to, expected) in [
+        (".red-1{", "path{", "<style> has a rule"),
+        (".red-1{fill", ".red-1{d", "<style> has a rule"),
+        (".red-1{fill:#cc0000}", "", "has the class red-1"),
+        ("#cc0000}", "rgb(9 9 9)}", "has fill=\"rgb(9 9 9)\""),
+        (
+            "class=\"red-1\"",
+            "class=\"red-1\" fill=\"#fff\"",
+            "has fill twice",
+        ),
+        (
+            "<style>",
+            "<style media=\"print\">",
+            "<style> has the attribute media",
+        ),
+    ] {
+        let changed = text.replacen(from, to, 1);
+        assert_ne!(changed, text, "{from}");
+        let message = refusal(&changed);
+        assert!(message.contains(expected), "{to}: {message}");
     }
 }

@@ -2,18 +2,24 @@
 
 use super::arrange;
 use super::dialect::{self, Unit};
-use super::element;
+use super::element::{self, Names};
 use super::gradient;
 use super::layer::{Layer, LayerKind};
 use super::names;
 use super::options::{Form, Order, WriteOptions};
+use super::sheet::{BACKGROUND, Sheet};
 use crate::scene::{Mark, Scene, Written, WrittenPath, counted, quantum};
 
 /// The scene as SVG text: rounded by [`Scene::quantized`], without the strokes that this drops, and in the order
 /// given by [`arrange`](super::arrange()).
 pub fn write(scene: &Scene, options: &WriteOptions) -> String {
-    let mut out = head(scene, options);
-    out.push_str(&layers(scene, options, 1));
+    let layers = arrange::layers(scene, options);
+    let sheet = (options.form == Form::Css).then(|| {
+        let background = scene.background.map(|color| color.map(quantum));
+        Sheet::of(background, layers.iter().flat_map(|layer| &layer.strokes))
+    });
+    let mut out = head(scene, options, sheet.as_ref());
+    out.push_str(&numbered(layers, options, 1, sheet.as_ref()));
     out.push_str("</svg>\n");
     out
 }
@@ -21,14 +27,24 @@ pub fn write(scene: &Scene, options: &WriteOptions) -> String {
 /// Only the layers of the scene, for a document of the scene's size. Their numbers start at `first`. The
 /// document must declare `xmlns:inkscape` around them.
 pub fn layers(scene: &Scene, options: &WriteOptions, first: usize) -> String {
+    numbered(arrange::layers(scene, options), options, first, None)
+}
+
+/// The text of layers with numbers from `first`.
+fn numbered(
+    layers: Vec<Layer>,
+    options: &WriteOptions,
+    first: usize,
+    sheet: Option<&Sheet>,
+) -> String {
     let mut out = String::new();
-    for (index, mut layer) in arrange::layers(scene, options).into_iter().enumerate() {
+    for (index, mut layer) in layers.into_iter().enumerate() {
         let number = first + index;
         let shades = layer.strokes.iter_mut().filter_map(|m| m.shade.as_mut());
         for (k, shade) in shades.enumerate() {
             shade.place = [number, k + 1];
         }
-        out.push_str(&shortest(number, &layer, options));
+        out.push_str(&shortest(number, &layer, options, sheet));
     }
     out
 }
@@ -41,7 +57,7 @@ pub fn mark_bytes(mark: &Mark, options: &WriteOptions) -> usize {
     })
 }
 
-fn head(scene: &Scene, options: &WriteOptions) -> String {
+fn head(scene: &Scene, options: &WriteOptions, sheet: Option<&Sheet>) -> String {
     let Scene { width, height, .. } = *scene;
     let (svg, inkscape) = (dialect::SVG_NAMESPACE, dialect::INKSCAPE_NAMESPACE);
     let (page_width, page_height) = match (options.width, scene.page) {
@@ -53,9 +69,15 @@ fn head(scene: &Scene, options: &WriteOptions) -> String {
         "<svg xmlns=\"{svg}\" xmlns:inkscape=\"{inkscape}\" \
          width=\"{page_width}\" height=\"{page_height}\" viewBox=\"0 0 {width} {height}\">\n"
     );
+    if let Some(sheet) = sheet {
+        out += &sheet.text();
+    }
     if let Some(color) = scene.background {
-        let fill = dialect::hex(color.map(quantum));
-        out += &format!("<rect width=\"{width}\" height=\"{height}\" fill=\"{fill}\"/>\n");
+        let paint = match sheet {
+            Some(_) => format!("class=\"{BACKGROUND}\""),
+            None => format!("fill=\"{}\"", dialect::hex(color.map(quantum))),
+        };
+        out += &format!("<rect width=\"{width}\" height=\"{height}\" {paint}/>\n");
     }
     if let Some(shade) = &scene.shade {
         gradient::push(&mut out, shade, dialect::SHADE_ID);
@@ -66,8 +88,8 @@ fn head(scene: &Scene, options: &WriteOptions) -> String {
 }
 
 /// The layer with numbers in px, or in the unit that makes them shortest, if this saves more than the attribute costs.
-fn shortest(number: usize, layer: &Layer, options: &WriteOptions) -> String {
-    let text = |unit| text(number, layer, options, unit);
+fn shortest(number: usize, layer: &Layer, options: &WriteOptions, sheet: Option<&Sheet>) -> String {
+    let text = |unit| text(number, layer, options, unit, sheet);
     let in_px = text(Unit::PX);
     // The axis of a gradient is in px.
     let has_shades = layer.strokes.iter().any(|mark| mark.shade.is_some());
@@ -79,7 +101,13 @@ fn shortest(number: usize, layer: &Layer, options: &WriteOptions) -> String {
         .unwrap_or(in_px)
 }
 
-fn text(number: usize, layer: &Layer, options: &WriteOptions, unit: Unit) -> String {
+fn text(
+    number: usize,
+    layer: &Layer,
+    options: &WriteOptions,
+    unit: Unit,
+    sheet: Option<&Sheet>,
+) -> String {
     let form = options.form;
     // Plotter software reads the leading digits of a label as the layer number, so `#102030` would become layer 102030.
     let count_first = match options.order {
@@ -111,8 +139,11 @@ fn text(number: usize, layer: &Layer, options: &WriteOptions, unit: Unit) -> Str
         element::layer_width(&layer.strokes, form, unit),
         counts(layer),
     );
-    let named = matches!(layer.kind, LayerKind::Object(_)).then_some(number);
-    element::push(&mut out, &layer.strokes, form, unit, named);
+    let names = Names {
+        layer: matches!(layer.kind, LayerKind::Object(_)).then_some(number),
+        sheet,
+    };
+    element::push(&mut out, &layer.strokes, form, unit, names);
     if !out.ends_with('\n') {
         out.push('\n');
     }

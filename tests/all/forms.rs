@@ -142,6 +142,46 @@ fn a_budget_of_bytes_buys_more_in_the_smallest_form() {
 }
 
 #[test]
+fn a_drawing_in_classes_looks_like_the_plain_one_and_is_refined() {
+    let plain = drawn("coffee-300", &["--colors", "8"]);
+    let classes = drawn("coffee-300", &["--colors", "8", "--form", "css"]);
+    assert_eq!(
+        svg::read(&classes.text).unwrap(),
+        svg::read(&plain.text).unwrap()
+    );
+    assert!(image(&classes.text) == image(&plain.text));
+    let (sheet, elements) = classes.text.split_once("</style>").unwrap();
+    assert!(!elements.contains("fill=\"#") && !elements.contains("stroke=\"#"));
+    let colors = sheet.matches("{fill:").count() + sheet.matches("{stroke:").count();
+    assert!((5..=16).contains(&colors), "{sheet}");
+    let picture = sample("coffee-300");
+    let refine = [
+        "refine",
+        "a.svg",
+        &picture,
+        "-q",
+        "--preset",
+        "draft",
+        "--strokes",
+        "170",
+    ];
+    for (options, name) in [
+        (&["--form", "css"][..], "b.svg"),
+        (&["--freeze-base"], "c.svg"),
+    ] {
+        classes
+            .place
+            .done(&[&refine[..], &["-o", name], options].concat());
+        let text = fs::read_to_string(classes.place.path(name)).unwrap();
+        assert_eq!(svg::read(&text).unwrap().len(), 170, "{name}");
+        assert_eq!(text.matches("<style>").count(), 1);
+    }
+    let check = classes.place.done(&["check", "a.svg", &picture]);
+    let said = stderr(&check) + &String::from_utf8(check.stdout).unwrap();
+    assert!(said.contains("style-classes"), "{said}");
+}
+
+#[test]
 fn outlines_look_like_the_strokes() {
     let strokes = drawn("coffee-300", &[]);
     let scene = svg::read(&strokes.text).unwrap();

@@ -14,7 +14,9 @@ export function componentName(stem) {
 // The text of an SVG as a component for React.
 export function component(text, stem) {
   const attribute = (_, before, after) => ` ${before}${after.toUpperCase()}`;
-  const jsx = lean(text).trim().replace(/ ([a-z]+)-([a-z])(?=[a-z]*=")/g, attribute).replace("<svg", "<svg {...props}");
+  const sheet = (_, rules) => `<style>{\`${rules}\`}</style>`;
+  const named = lean(text).trim().replace(/<style>([^<]*)<\/style>/, sheet).replaceAll(' class="', ' className="');
+  const jsx = named.replace(/ ([a-z]+)-([a-z])(?=[a-z]*=")/g, attribute).replace("<svg", "<svg {...props}");
   return `export function ${componentName(stem)}(props) {\n  return (\n${jsx}\n  );\n}\n`;
 }
 

@@ -119,6 +119,9 @@ test("a drawing becomes a component and a background", () => {
   assert.match(jsx, /^export function Coffee300\(props\) \{\n {2}return \(\n<svg \{\.\.\.props\} xmlns=/);
   assert.ok(jsx.includes('strokeOpacity="0.5"') && jsx.includes('strokeLinecap="round"'));
   assert.ok(!/inkscape|stroke-/.test(jsx));
+  const classes = '<svg><style>\n.red{fill:#f00}\n</style>\n<path class="red" d="M1 1h2v2z"/></svg>';
+  const styled = component(classes, "a");
+  assert.ok(styled.includes("<style>{`\n.red{fill:#f00}\n`}</style>") && styled.includes('<path className="red" d='), styled);
   const css = background(text);
   const address = css.match(/url\("data:image\/svg\+xml,([^"]*)"\)/)[1];
   assert.ok(decodeURIComponent(address).startsWith("<svg xmlns='http://www.w3.org/2000/svg' width='90'"));

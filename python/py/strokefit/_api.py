@@ -121,7 +121,8 @@ def fit(
             palette.
         pens: Only these widths of strokes: lengths such as `0.3mm,0.8mm` on a page of a `width`, or numbers in px.
         form: What one element holds: a stroke (`plain`), all strokes of one look that can be drawn together
-            (`smallest`), or the filled outline of a stroke (`outlines`).
+            (`smallest`), a stroke whose colour and width are in classes of a style sheet (`css`), or the filled outline of
+            a stroke (`outlines`).
         group: What one layer holds: `stage`, `color` or `object` (an area and what lies on it).
         order: In which order the strokes of a layer come: `fitted`, or `travel` with short ways between them.
         width: Width of the page, such as `120mm`; one px per pixel of the picture by default.

@@ -2,15 +2,19 @@
 
 use quick_xml::events::BytesStart;
 
+use crate::svg::sheet::Rules;
+
 /// An element with its attributes in order and their values unchanged.
 pub(super) struct Element {
     pub(super) name: String,
     attributes: Vec<(String, String)>,
+    /// The properties of its classes.
+    classed: Vec<(String, String)>,
 }
 
 impl Element {
     /// The element that a tag opens, or why the tag is not well-formed.
-    pub(super) fn new(tag: &BytesStart<'_>) -> Result<Self, String> {
+    pub(super) fn new(tag: &BytesStart<'_>, rules: &Rules) -> Result<Self, String> {
         let mut attributes = Vec::new();
         for attribute in tag.attributes() {
             let attribute = attribute.map_err(|e| e.to_string())?;
@@ -19,10 +23,19 @@ impl Element {
                 attribute.value.into_owned(),
             ));
         }
-        Ok(Self {
+        let mut element = Self {
             name: tag.local_name().as_ref().to_owned(),
             attributes,
-        })
+            classed: Vec::new(),
+        };
+        let classes = element.get("class").unwrap_or_default();
+        let own = classes.split_ascii_whitespace();
+        element.classed = own
+            .filter_map(|class| rules.get(class))
+            .flatten()
+            .cloned()
+            .collect();
+        Ok(element)
     }
 
     /// Names and values.
@@ -38,7 +51,7 @@ impl Element {
             .map(|(_, value)| value.trim())
     }
 
-    /// A property. As in CSS, `style="…"` overrides the attribute.
+    /// A property. As in CSS, `style="…"` overrides classes, and these override the attribute.
     pub(super) fn property(&self, key: &str) -> Option<&str> {
         let mut styled = self
             .styles()
@@ -47,11 +60,13 @@ impl Element {
         styled.next_back().or_else(|| self.get(key))
     }
 
-    /// The value in `style="…"`.
+    /// The properties of its classes and in `style="…"`.
     pub(super) fn styles(&self) -> impl DoubleEndedIterator<Item = (&str, &str)> {
         let style = self.get("style").unwrap_or_default();
-        let pairs = style.split(';').filter_map(|pair| pair.split_once(':'));
-        pairs.map(|(key, value)| {
+        let own = style.split(';').filter_map(|pair| pair.split_once(':'));
+        let classed = self.classed.iter();
+        let classed = classed.map(|(key, value)| (key.as_str(), value.as_str()));
+        classed.chain(own).map(|(key, value)| {
             (
                 key.trim(),
                 value.trim().trim_end_matches("!important").trim_end(),

@@ -1,7 +1,7 @@
 //! Finds constructs in an SVG that some programs draw differently, or not at all.
 //!
-//! The lint works on any SVG, reads only its text, and draws nothing. It sees attributes and `style="…"`. It does
-//! not evaluate style sheets, and reports a file that has a `<style>`.
+//! The lint works on any SVG, reads only its text, and draws nothing. It sees attributes, `style="…"`, and style sheets
+//! whose rules are for classes. It evaluates no others, and reports a file that has a `<style>`.
 //!
 //! ```
 //! use strokefit::svg::lint;

@@ -132,6 +132,12 @@ pub(super) const STYLE_SHEET: Rule = rule(
     "many importers ignore style sheets, and so does this lint",
     "put the properties on the elements",
 );
+pub(super) const STYLE_CLASSES: Rule = rule(
+    "style-classes",
+    Note,
+    "editors and browsers draw it alike, but many importers ignore style sheets and fill all black",
+    "nothing, unless such a program is to read the file; then put the properties on the elements",
+);
 pub(super) const DOCTYPE: Rule = rule(
     "doctype",
     Note,

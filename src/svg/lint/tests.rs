@@ -37,7 +37,11 @@ fn what_strokefit_writes_has_nothing() {
                 form,
                 ..WriteOptions::default()
             };
-            assert_eq!(lint(&write(&scene, &options)), [], "{options:?}");
+            let expected: &[&str] = match form {
+                Form::Css => &["style-classes"],
+                _ => &[],
+            };
+            assert_eq!(names(&write(&scene, &options)), expected, "{options:?}");
         }
     }
 }
@@ -84,6 +88,7 @@ fn each_rule_finds_its_case_and_nothing_else() {
         ("<image href=\"data:image/png;base64,\"/>", "feature"),
         ("<text>url</text>", "text"),
         ("<style>path{fill:red}</style>", "style-sheet"),
+        ("<style>.a{fill:red}</style>", "style-classes"),
         ("<script>1</script>", "script"),
         ("<rect width=\"5\" height=\"5\" onclick=\"x()\"/>", "script"),
         ("<style>@import 'x.css';</style>", "external-reference"),
@@ -113,12 +118,29 @@ fn each_rule_finds_its_case_and_nothing_else() {
     ] {
         let found = names(&page(body));
         assert!(found.contains(&rule.to_owned()), "{body}: {found:?}");
-        let expected = ["feature", "style-sheet", "dialect"];
+        let expected = ["feature", "style-sheet", "style-classes", "dialect"];
         let others = found
             .iter()
             .filter(|f| *f != rule && !expected.contains(&f.as_str()));
         assert_eq!(others.count(), 0, "{body}: {found:?}");
     }
+}
+
+#[test]
+fn classes_override_attributes_and_are_overridden_by_styles() {
+    let thin = |line: &str| {
+        let body =
+            format!("<style>.a{{stroke:#000;stroke-width:0.4}} .b{{stroke-width:3}}</style>{line}");
+        names(&page(&body)).contains(&"thin-stroke".to_owned())
+    };
+    assert!(thin("<path class=\"a\" d=\"M5 5h2\" stroke-width=\"3\"/>"));
+    assert!(thin("<g class=\"a\"><path d=\"M5 5h2\"/></g>"));
+    assert!(!thin(
+        "<path class=\"a\" d=\"M5 5h2\" style=\"stroke-width:3\"/>"
+    ));
+    assert!(!thin(
+        "<path class=\"b\" d=\"M5 5h2\" stroke=\"#000\" stroke-width=\"0.4\"/>"
+    ));
 }
 
 #[test]

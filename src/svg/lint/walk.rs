@@ -11,6 +11,7 @@ use super::rules::{self, Rule};
 use super::stroke::StrokeStyle;
 use super::{Findings, element};
 use crate::svg::dialect::SVG_NAMESPACE;
+use crate::svg::sheet::{self, Rules};
 
 /// Depth of elements at which readers built on libxml2 stop.
 const LIBXML2_LEVELS: usize = 256;
@@ -91,6 +92,8 @@ struct Walk<'a, 'b> {
     references: References,
     /// True if the text is a style sheet.
     in_style: bool,
+    /// Those of the style sheets so far.
+    rules: Rules,
     findings: &'b mut Findings,
 }
 
@@ -106,6 +109,7 @@ impl<'a, 'b> Walk<'a, 'b> {
             styles: Vec::new(),
             references: References::default(),
             in_style: false,
+            rules: Rules::new(),
             findings,
         }
     }
@@ -160,10 +164,21 @@ impl<'a, 'b> Walk<'a, 'b> {
     }
 
     fn characters(&mut self) {
-        if self.in_style {
-            self.references
-                .note_css(self.raw(), self.line, self.findings);
+        if !self.in_style {
+            return;
         }
+        let raw = self.raw();
+        self.references.note_css(raw, self.line, self.findings);
+        let rule = match sheet::parse(raw) {
+            Some(rules) => {
+                for (class, properties) in rules {
+                    self.rules.entry(class).or_default().extend(properties);
+                }
+                &rules::STYLE_CLASSES
+            }
+            None => &rules::STYLE_SHEET,
+        };
+        self.findings.add_each(rule, self.line, "<style>".into());
     }
 
     fn doctype(&mut self) {
@@ -181,7 +196,7 @@ impl<'a, 'b> Walk<'a, 'b> {
     }
 
     fn open(&mut self, tag: &BytesStart<'_>, is_svg: bool) -> Result<(), String> {
-        let element = Element::new(tag)?;
+        let element = Element::new(tag, &self.rules)?;
         let is_root = self.styles.is_empty();
         let style = match self.styles.last() {
             None if is_svg && element.name == "svg" => self.page(&element),
@@ -317,7 +332,8 @@ fn value_rule(key: &str, value: &str) -> Option<&'static Rule> {
 fn kind(element: &Element) -> Option<&'static Rule> {
     match element.name.as_str() {
         "script" => Some(&rules::SCRIPT),
-        "style" => Some(&rules::STYLE_SHEET),
+        // Its text is looked at.
+        "style" => None,
         "text" => Some(&rules::TEXT),
         "tspan" | "textPath" | "stop" => None,
         "linearGradient" | "radialGradient" if is_plain_gradient(element) => None,

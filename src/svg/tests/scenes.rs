@@ -229,7 +229,7 @@ pub(super) fn scene_of_few_styles() -> impl Strategy<Value = Scene> {
 }
 
 pub(super) fn options() -> impl Strategy<Value = WriteOptions> {
-    let form = prop::sample::select(vec![Form::Plain, Form::Smallest]);
+    let form = prop::sample::select(vec![Form::Plain, Form::Smallest, Form::Css]);
     let group = prop::sample::select(Group::ALL.to_vec());
     let width = prop::option::of(Just("120.5mm".parse().unwrap()));
     (0..=6_u8, form, group, width).prop_map(|(precision, form, group, width)| WriteOptions {
