@@ -161,6 +161,7 @@ fn unused(text: &str, name: &str) -> String {
 mod tests {
     use super::*;
     use crate::scene::{Area, Path, PathPoint, Stage, Stroke};
+    use crate::svg::Group;
     use crate::verify::{self, Size};
 
     const SVG: &str = "xmlns=\"http://www.w3.org/2000/svg\"";
@@ -212,12 +213,21 @@ mod tests {
 
     #[test]
     fn a_drawing_of_ours_stays_one() {
-        let own = super::super::write(&scene(), &WriteOptions::default());
-        let drawn = document(&own).with_layers(&scene(), &WriteOptions::default());
-        assert_eq!(
-            read(&drawn).unwrap().stages,
-            [scene().stages, scene().stages].concat()
-        );
+        for (group, form) in [
+            (Group::Stage, Form::Plain),
+            (Group::Color, Form::Smallest),
+            (Group::Object, Form::Css),
+        ] {
+            let options = WriteOptions {
+                group,
+                form,
+                ..WriteOptions::default()
+            };
+            let own = super::super::write(&scene(), &options);
+            let drawn = document(&own).with_layers(&scene(), &options);
+            let stages = [scene().stages, scene().stages].concat();
+            assert_eq!(read(&drawn).unwrap().stages, stages, "{drawn}");
+        }
     }
 
     #[test]

@@ -10,7 +10,7 @@ use crate::svg::dialect::{INKSCAPE_NAMESPACE, SVG_NAMESPACE};
 use crate::svg::{Length, read};
 
 /// The ids of our layers begin with this.
-const LAYERS: [&str; 2] = ["stage-", "color-"];
+const LAYERS: [&str; 3] = ["stage-", "color-", "object-"];
 
 /// The attribute of the group of layers: width and height of the picture, px.
 pub(super) const MARK: &str = "data-strokefit";
