@@ -161,12 +161,11 @@ fn lines_that_are_nearly_level_are_so() {
 }
 
 #[test]
-fn an_icon_of_one_path_stays_one_and_the_bars_of_a_chart_are_rectangles() {
+fn an_icon_of_one_path_stays_one_and_shapes_alone_are_elements() {
     let icon = r##"<path fill="#203040" d="M30 30h40v20h-40zM100 60a10 10 0 1 0 0.1 0zM20 100L60 70L80 100L50 90z"/>"##;
     let (scene, text) = fitted(icon);
     assert_eq!(scene.len(), 1, "{text}");
-    let chart =
-        r##"<path fill="#203040" d="M20 40h25v60h-25zM65 20h25v80h-25zM110 60h25v40h-25z"/>"##;
-    let (scene, text) = fitted(chart);
-    assert_eq!((scene.len(), shapes(&scene).len()), (3, 3), "{text}");
+    let alone = r##"<g fill="#203040"><ellipse cx="40" cy="60" rx="30" ry="18"/><ellipse cx="115" cy="50" rx="30" ry="18"/></g>"##;
+    let (scene, text) = fitted(alone);
+    assert_eq!((scene.len(), shapes(&scene).len()), (2, 2), "{text}");
 }
