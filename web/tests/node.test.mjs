@@ -148,12 +148,13 @@ describe("animate", () => {
 });
 
 describe("pdf and dxf", () => {
-  it("have circles of a disc, as its SVG has", async () => {
-    const pixels = Uint8Array.from({ length: 64 * 64 }, (_, i) => {
-      const away = Math.hypot((i % 64) - 29.8, Math.floor(i / 64) - 33.1) - 20.5;
-      return 255 - Math.round(200 * Math.min(Math.max(0.5 - away, 0), 1));
+  it("have circles of a disc beside a square, as its SVG has", async () => {
+    const pixels = Uint8Array.from({ length: 128 * 64 }, (_, i) => {
+      const [x, y] = [i % 128, Math.floor(i / 128)];
+      if (x >= 80 && x < 112 && y >= 16 && y < 48) return 120;
+      return 255 - Math.round(200 * Math.min(Math.max(21 - Math.hypot(x - 29.8, y - 33.1), 0), 1));
     });
-    const { svg } = await fit(pixels, 64, 64);
+    const { svg } = await fit(pixels, 128, 64);
     assert.equal(svg.match(/<circle/g)?.length, 1, svg);
     assert.equal((await dxf(svg)).match(/\nCIRCLE\n/g).length, 1);
     assert.match(await animate(svg), /<circle[^]*<animate[^]*<\/circle>/);

@@ -39,6 +39,17 @@ test("colours change in the file and nothing else", () => {
   assert.deepEqual(repaintedScene(scene, edits.now).stages.flat().map(([, , color]) => color), ["#0000ff", "#0000ff", "#0000ff"]);
 });
 
+test("colours change in classes, too", () => {
+  const sheet = "<style>\n.background{fill:#ffffff}\n.black-line{stroke:#102030}\n.red-line{stroke:#aa0000}\n</style>\n";
+  const classed = text.replace("<rect", `${sheet}<rect`).replace('fill="#ffffff"', 'class="background"')
+    .replaceAll('stroke="#102030"', 'class="black-line"').replace('stroke="#a00"', 'class="red-line"');
+  const edits = new Edits();
+  edits.repaint([["#102030", "#00ff00"]]);
+  edits.change({ background: "#123456" });
+  const repainted = edited(classed, all, edits.now, repaintedScene(scene, edits.now));
+  assert.equal(repainted, classed.replace("#102030", "#00ff00").replace("#ffffff", "#123456"));
+});
+
 test("a background goes, and comes in another colour", () => {
   const edits = new Edits();
   edits.change({ background: null });

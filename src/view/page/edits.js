@@ -94,17 +94,17 @@ export function edited(text, kept, { colors, background }, scene) {
 function repaintedText(text, colors, background) {
   if (!colors.length && background === undefined) return text;
   const start = text.indexOf("<g");
-  let head = text.slice(0, start);
+  // A style sheet has colours, too.
+  let head = painted(text.slice(0, start), colors);
   if (background === null) head = head.replace(/<rect [^>]*\/>\n?/g, "");
-  else if (background) head = head.replace(/(<rect [^>]*?fill=")[^"]*"/, `$1${background}"`);
-  else head = painted(head, colors);
+  else if (background) head = head.replace(/(<rect [^>]*?fill="|\.background\{fill:)[^"}]*/, `$1${background}`);
   return head + painted(text.slice(start), colors);
 }
 
 function painted(text, colors) {
   const next = new Map(colors);
-  return text.replace(/\b(fill|stroke)="#([0-9a-f]{3}|[0-9a-f]{6})"/g, (all, name, digits) => {
+  return text.replace(/\b((?:fill|stroke)(?:="|:))#([0-9a-f]{6}|[0-9a-f]{3})/g, (all, name, digits) => {
     const long = `#${digits.length === 3 ? [...digits].map((d) => d + d).join("") : digits}`;
-    return next.has(long) ? `${name}="${next.get(long)}"` : all;
+    return next.has(long) ? `${name}${next.get(long)}` : all;
   });
 }
