@@ -231,6 +231,16 @@ pub fn ssimulacra2_map(reference: &Image, picture: &Image) -> Result<Vec<f32>> {
     Ok(ssimulacra2::map(&a, &b, reference.width()))
 }
 
+/// Small things of `reference` that `picture` has lost, row by row: 1 in and beside one that stands alone, less among many others,
+/// and 0 where nothing is lost. [`Quality::details_kept`] is their sum.
+///
+/// # Errors
+/// [`ErrorKind::Picture`] when the sizes differ.
+pub fn details_lost(reference: &Image, picture: &Image) -> Result<Vec<f32>> {
+    let [reference, picture] = both_on_white(reference, picture)?;
+    Ok(Details::of(&reference).losses(&picture))
+}
+
 /// Interleaved RGB of both pictures as a viewer shows them on white.
 fn levels_of_both(a: &Image, b: &Image) -> Result<(Vec<u8>, Vec<u8>)> {
     let [a, b] = both_on_white(a, b)?;
@@ -408,6 +418,23 @@ mod tests {
             r#"{"psnr_db":null,"ssim":1.0,"mse":0.0,"l1":0.0,"ssimulacra2":100.0}"#
         );
         assert_eq!(serde_json::from_str::<Quality>(&json).unwrap(), quality);
+    }
+
+    #[test]
+    fn a_lost_dot_is_lost_where_it_is() {
+        let is_dot = |x: usize, y: usize| (20..22).contains(&x) && (30..32).contains(&y);
+        let value = |x, y, _| if is_dot(x, y) { 0.3_f32 } else { 1.0 };
+        let dotted = Image::from_fn(64, 64, 1, value).unwrap();
+        let blank = Image::filled(64, 64, [1.0; 3]).unwrap();
+        let lost = details_lost(&dotted, &blank).unwrap();
+        let expected = |i: usize| f32::from(u8::from(is_dot(i % 64, i / 64)));
+        assert!((0..64 * 64).all(|i| lost[i] == expected(i)));
+        assert!(
+            details_lost(&dotted, &dotted)
+                .unwrap()
+                .iter()
+                .all(|v| *v == 0.0)
+        );
     }
 
     #[test]

@@ -25,8 +25,9 @@ const RESVG: &str = "resvg";
 /// resvg is built in. Inkscape, rsvg-convert, Chromium and CairoSVG are used if they are installed.
 /// Each renders the file, whoever made it, at the picture's size on white. The render is compared over
 /// 8-bit RGB with the picture and with resvg's render: PSNR in dB (more is better), SSIM (1 is
-/// equal), SSIMULACRA2 (what people see: 90 is lossless to the eye, 70 high, 50 medium, 30 low quality), and the
-/// largest difference from resvg (0 to 255) with its place. A picture with alpha is also compared on black and on
+/// equal), SSIMULACRA2 (what people see: 90 is lossless to the eye, 70 high, 50 medium, 30 low quality), the share
+/// of details kept (letters, dots, thin lines, if the picture has some), and the largest difference from resvg (0 to 255)
+/// with its place. A picture with alpha is also compared on black and on
 /// magenta. The text of the file is searched for constructs that programs draw differently.
 ///
 /// Without a picture, the programs are compared with resvg only. With --quiet only the exit status and errors tell.
@@ -53,7 +54,8 @@ pub(super) struct Args {
     /// difference from the picture (× 4) and from resvg's render (× 16)
     #[arg(long, value_name = "DIR")]
     pictures: Option<PathBuf>,
-    /// Write a picture of where resvg's render loses SSIMULACRA2: dark where all is well, yellow where it would be 0
+    /// Write a picture of where resvg's render loses SSIMULACRA2: dark where all is well, yellow where it would be 0, and
+    /// red where a detail is lost
     #[arg(long, value_name = "OUT.png", requires = "input")]
     map: Option<PathBuf>,
     /// Time limit for each program

@@ -90,7 +90,7 @@ impl Details {
     }
 
     /// The isolation of each pixel in or beside a detail that is lost: `drawn` is wrong there by more than a part of the contrast.
-    fn losses(&self, drawn: &Image) -> Vec<f32> {
+    pub(crate) fn losses(&self, drawn: &Image) -> Vec<f32> {
         let drawn = drawn.on(WHITE);
         let error = |i: usize| {
             let channels = self.planes.iter().zip(drawn.planes());

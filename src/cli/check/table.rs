@@ -7,12 +7,13 @@ use strokefit::verify::OnMattes;
 /// One line for each program, then one for each finding of the lint.
 pub(super) fn table(record: &CheckReport) -> String {
     let mut table = format!(
-        "{:<9} {:<14} {:>7} {:>7} {:>11} {:>9}  {:<20} {:>7}\n",
+        "{:<9} {:<14} {:>7} {:>7} {:>11} {:>7} {:>9}  {:<20} {:>7}\n",
         "renderer",
         "version",
         "PSNR dB",
         "SSIM",
         "SSIMULACRA2",
+        "details",
         "to resvg",
         "largest difference",
         "seconds"
@@ -41,6 +42,8 @@ fn row(entry: &RendererEntry) -> String {
     let psnr = fidelity.map_or_else(|| "-".into(), |f| format!("{:.2}", f.psnr_db));
     let ssim = fidelity.map_or_else(|| "-".into(), |f| format!("{:.4}", f.ssim));
     let seen = fidelity.map_or_else(|| "-".into(), |f| format!("{:.2}", f.ssimulacra2));
+    let kept = fidelity.and_then(|f| f.details_kept);
+    let kept = kept.map_or_else(|| "-".into(), |share| format!("{:.1} %", 100.0 * share));
     let (agreement, largest) = match against_resvg {
         Some(other) => {
             let db = other.psnr_db.unwrap_or(f64::INFINITY);
@@ -52,7 +55,7 @@ fn row(entry: &RendererEntry) -> String {
         None => ("-".into(), "-".into()),
     };
     format!(
-        "{renderer:<9} {version:<14} {psnr:>7} {ssim:>7} {seen:>11} {agreement:>9}  {largest:<20} {wall_s:>7.2}\n"
+        "{renderer:<9} {version:<14} {psnr:>7} {ssim:>7} {seen:>11} {kept:>7} {agreement:>9}  {largest:<20} {wall_s:>7.2}\n"
     )
 }
 
