@@ -33,12 +33,15 @@ const ABOUT: f32 = 20.0;
 /// The channels of `restored` as they were before noise was cut off from them, as `noisy` shows.
 pub(super) fn unclipped(noisy: &Image, restored: Image) -> [Vec<f32>; 3] {
     let mut planes = restored.into_planes();
+    let is_opaque = |i: usize| noisy.alpha().is_none_or(|alpha| alpha[i] >= 1.0);
     for (plane, noisy) in planes.iter_mut().zip(noisy.planes()) {
         for is_white in [false, true] {
             // The distance from the end, in levels.
             let away = |value: f32| 255.0 * if is_white { 1.0 - value } else { value };
-            let Some(noise) = cut_noise(plane.iter().zip(noisy).map(|(r, n)| [away(*r), away(*n)]))
-            else {
+            let pixels = plane.iter().zip(noisy).enumerate();
+            let opaque = pixels.filter(|(i, _)| is_opaque(*i));
+            let distances = opaque.map(|(_, (restored, noisy))| [away(*restored), away(*noisy)]);
+            let Some(noise) = cut_noise(distances) else {
                 continue;
             };
             for value in plane.iter_mut() {

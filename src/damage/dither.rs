@@ -50,10 +50,8 @@ pub(super) fn mixed(
 /// is antialiased lies between them.
 fn is_mixed(labels: &Labels, [x, y]: [isize; 2], least: f32) -> bool {
     let luma = |x, y| {
-        labels.colors[usize::from(labels.at(x, y))]
-            .iter()
-            .sum::<f32>()
-            / 3.0
+        let [red, green, blue, _] = labels.colors[usize::from(labels.at(x, y))];
+        (red + green + blue) / 3.0
     };
     let own = luma(x, y);
     let beside = [[1, 0], [-1, 0], [0, 1], [0, -1]].map(|[dx, dy]| luma(x + dx, y + dy) - own);

@@ -2,11 +2,14 @@
 
 use crate::image::Image;
 
+/// Red, green, blue and alpha, 0 or 1; all are 0 where a picture is transparent.
+pub(super) type Color = [f32; 4];
+
 /// The colours of a picture of few, by pixel.
 pub(super) struct Labels {
     pub(super) width: usize,
     pub(super) height: usize,
-    pub(super) colors: Vec<[f32; 3]>,
+    pub(super) colors: Vec<Color>,
     pub(super) of: Vec<u16>,
 }
 
@@ -17,18 +20,14 @@ impl Labels {
     /// Smaller pictures of few colours, px, are pixel art. A guess.
     pub(super) const LEAST_SIDE: usize = 48;
 
-    /// The labels of a picture of at most so many colours.
+    /// The labels of a picture of at most so many colours; `None` if it has more, or a pixel is translucent.
     pub(super) fn of(picture: &Image, most: usize) -> Option<Self> {
-        let [red, green, blue] = picture.planes();
-        let mut colors: Vec<[f32; 3]> = Vec::new();
-        let mut of = Vec::with_capacity(red.len());
+        let pixels = picture.width() * picture.height();
+        let mut colors: Vec<Color> = Vec::new();
+        let mut of = Vec::with_capacity(pixels);
         let mut last = 0;
-        for color in red
-            .iter()
-            .zip(green)
-            .zip(blue)
-            .map(|((r, g), b)| [*r, *g, *b])
-        {
+        for pixel in 0..pixels {
+            let color = color(picture, pixel)?;
             if colors.get(last) != Some(&color) {
                 last = match colors.iter().position(|known| *known == color) {
                     Some(known) => known,
@@ -47,6 +46,11 @@ impl Labels {
             colors,
             of,
         })
+    }
+
+    /// True if the picture is transparent somewhere.
+    pub(super) fn is_transparent(&self) -> bool {
+        self.colors.contains(&[0.0; 4])
     }
 
     /// The label at a place; that of the border outside of the picture.
@@ -74,5 +78,15 @@ impl Labels {
             }
         }
         [borders, lonely]
+    }
+}
+
+/// The colour of a pixel; `None` of a translucent one.
+fn color(picture: &Image, pixel: usize) -> Option<Color> {
+    let [red, green, blue] = picture.planes().each_ref().map(|plane| plane[pixel]);
+    match picture.alpha().map_or(1.0, |alpha| alpha[pixel]) {
+        1.0 => Some([red, green, blue, 1.0]),
+        0.0 => Some([0.0; 4]),
+        _ => None,
     }
 }

@@ -4,6 +4,7 @@
 //! labels     the colours of a picture that has few
 //! stairs     smooth borders, of which stairs are left for want of antialiasing
 //! dither     colours that are mixed pixel by pixel
+//! grid       where the blocks of a JPEG begin
 //! noise      how far pixels are from flat places, far from edges and beside them
 //! shrink     the picture without what noise explains
 //! chroma     colours that were kept at half the resolution, along the edges of luma
@@ -15,6 +16,7 @@ mod chroma;
 mod clip;
 mod cosine;
 mod dither;
+mod grid;
 mod labels;
 mod light;
 mod noise;
@@ -100,15 +102,12 @@ impl fmt::Display for Damage {
     }
 }
 
-/// The picture that `picture` is meant to be; `None` if it is not damaged, as far as can be told. A picture with alpha is taken as
-/// it is.
+/// The picture that `picture` is meant to be; `None` if it is not damaged, as far as can be told. Alpha stays as it
+/// is, but for the stairs of one that has no shades.
 ///
 /// # Errors
 /// None in practice: a restored picture has the size of the given one and finite values.
 pub fn meant(picture: &Image) -> Result<Option<Meant>> {
-    if picture.alpha().is_some() {
-        return Ok(None);
-    }
     let labels = Labels::of(picture, Labels::MOST);
     if let Some(meant) = labels.map_or(Ok(None), |labels| of_few_colors(picture, &labels))? {
         return Ok(Some(meant));
@@ -123,7 +122,12 @@ fn of_few_colors(picture: &Image, labels: &Labels) -> Result<Option<Meant>> {
     if labels.width.max(labels.height) < Labels::LEAST_SIDE {
         return Ok(None);
     }
-    if let Some((picture, dithering)) = dither::mixed(picture, labels, &Dithering::MEASURED)? {
+    let mixed = if labels.is_transparent() {
+        None
+    } else {
+        dither::mixed(picture, labels, &Dithering::MEASURED)?
+    };
+    if let Some((picture, dithering)) = mixed {
         let damage = Damage {
             dithering,
             ..Damage::default()
@@ -152,9 +156,13 @@ fn without_noise(picture: &Image, mut planes: Planes, noise: &Noise) -> Result<O
     // Tones are mended last: the mean of what is left of noise is known only without it.
     let channels = clip::unclipped(picture, planes.image()?);
     let mut picture = Image::new(planes.width, planes.height, channels)?;
-    // Only photographs of pages have both grain and shadows; a gradient is drawn.
+    if let Some(alpha) = planes.alpha {
+        picture = picture.with_alpha(alpha)?;
+    }
+    // Only photographs of pages have both grain and shadows; a gradient is drawn. No page is transparent.
     let mut planes = Planes::of(&picture);
-    let uneven_light = noise.most() > 0.0 && light::evened(&mut planes, &Light::MEASURED);
+    let may_be_page = noise.most() > 0.0 && planes.alpha.is_none();
+    let uneven_light = may_be_page && light::evened(&mut planes, &Light::MEASURED);
     if !is_flat_art(&planes, &FlatArt::MEASURED) {
         return Ok(None);
     }
@@ -174,12 +182,13 @@ fn without_noise(picture: &Image, mut planes: Planes, noise: &Noise) -> Result<O
 /// True if most pixels have one of a few tones.
 fn is_flat_art(planes: &Planes, recipe: &FlatArt) -> bool {
     let mut tones = [0_usize; 64];
-    for value in &planes.planes[0] {
-        tones[(*value / 4.0).clamp(0.0, 63.0) as usize] += 1;
+    for (pixel, value) in planes.planes[0].iter().enumerate() {
+        tones[(*value / 4.0).clamp(0.0, 63.0) as usize] += usize::from(planes.is_opaque(pixel));
     }
     tones.sort_unstable_by(|a, b| b.cmp(a));
+    let all: usize = tones.iter().sum();
     let most: usize = tones.iter().take(recipe.tones).sum();
-    most as f32 >= recipe.least_share * planes.planes[0].len() as f32
+    most as f32 >= recipe.least_share * all as f32
 }
 
 /// Leaves out what noise explains.

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::cosine::SIDE;
+use super::grid;
 use super::planes::Planes;
 use super::recipe::Noises;
 
@@ -58,7 +59,7 @@ pub(super) fn measure(planes: &Planes, recipe: &Noises) -> Option<Noise> {
     let sites = sites(planes, recipe);
     let count = sites.len();
     let far = |site: &&Site| site.is_far;
-    let share = sites.iter().filter(far).count() as f32 / count as f32;
+    let share = sites.iter().filter(far).count() as f32 / count.max(1) as f32;
     if share < recipe.least_far {
         return None;
     }
@@ -89,7 +90,7 @@ pub(super) fn measure(planes: &Planes, recipe: &Noises) -> Option<Noise> {
     })
 }
 
-/// The sites of a picture.
+/// The sites of a picture. Nothing is measured where it is not opaque.
 fn sites(planes: &Planes, recipe: &Noises) -> Vec<Site> {
     let (width, height) = (planes.width, planes.height);
     if width <= 2 * REACH || height <= 2 * REACH {
@@ -97,18 +98,29 @@ fn sites(planes: &Planes, recipe: &Noises) -> Vec<Site> {
     }
     let step = (width * height).div_ceil(recipe.most_sites).isqrt().max(1);
     let rows: Vec<usize> = (REACH..height - REACH).step_by(step).collect();
+    let grid = grid::offset(planes);
     let of_row = |&y: &usize| {
         let columns = (REACH..width - REACH).step_by(step);
-        columns
-            .map(|x| site(planes, [x, y], recipe))
+        let opaque = columns.filter(|x| is_opaque(planes, [*x, y], HALF));
+        opaque
+            .map(|x| site(planes, [x, y], grid, recipe))
             .collect::<Vec<_>>()
     };
     let sites: Vec<Vec<Site>> = rows.par_iter().map(of_row).collect();
     sites.into_iter().flatten().collect()
 }
 
-/// The site at a pixel.
-fn site(planes: &Planes, [x, y]: [usize; 2], recipe: &Noises) -> Site {
+/// True if all pixels around one are opaque.
+fn is_opaque(planes: &Planes, [x, y]: [usize; 2], reach: usize) -> bool {
+    let row = |y: usize| y * planes.width + x - reach..=y * planes.width + x + reach;
+    planes.alpha.is_none()
+        || (y - reach..=y + reach)
+            .flat_map(row)
+            .all(|i| planes.is_opaque(i))
+}
+
+/// The site at a pixel. Blocks of JPEG begin at `grid`.
+fn site(planes: &Planes, [x, y]: [usize; 2], grid: [usize; 2], recipe: &Noises) -> Site {
     let (luma, width) = (&planes.planes[0], planes.width);
     let rows = |[x, y]: [usize; 2], side: usize| {
         (y..y + side).map(move |row| &luma[row * width + x..row * width + x + side])
@@ -118,20 +130,25 @@ fn site(planes: &Planes, [x, y]: [usize; 2], recipe: &Noises) -> Site {
     let around = [y - step, y, y + step]
         .into_iter()
         .flat_map(|y| [x - step, x, x + step].map(|x| mean(window([x, y]))));
-    let block = [x, y].map(|at| at / SIDE * SIDE);
-    // A window within a block of JPEG.
-    let is_within = [x, y]
-        .iter()
-        .all(|at| (HALF..SIDE - HALF).contains(&(at % SIDE)));
-    let is_whole = block[0] + SIDE <= width && block[1] + SIDE <= planes.height;
+    // The place in a block of JPEG.
+    let place = [(x, grid[0]), (y, grid[1])].map(|(at, start)| (at + SIDE - start) % SIDE);
+    // A window within a block.
+    let is_within = place.iter().all(|at| (HALF..SIDE - HALF).contains(at));
     let is_flat = || range(window([x, y]).flatten().copied()) <= recipe.near_range;
-    let has_edge = || range(rows(block, SIDE).flatten().copied()) >= recipe.edge_range;
+    let has_edge = |block| range(rows(block, SIDE).flatten().copied()) >= recipe.edge_range;
     Site {
         luma: luma[y * width + x],
         deviation: deviation(window([x, y])),
-        is_far: range(around) <= recipe.far_range,
-        is_near: is_within && is_whole && is_flat() && has_edge(),
+        is_far: range(around) <= recipe.far_range && is_opaque(planes, [x, y], REACH),
+        is_near: is_within && is_flat() && block(planes, [x, y], place).is_some_and(has_edge),
     }
+}
+
+/// The upper left pixel of the block in which a pixel has `place`, if the block is whole.
+fn block(planes: &Planes, [x, y]: [usize; 2], place: [usize; 2]) -> Option<[usize; 2]> {
+    let (left, top) = (x.checked_sub(place[0])?, y.checked_sub(place[1])?);
+    let is_whole = left + SIDE <= planes.width && top + SIDE <= planes.height;
+    is_whole.then_some([left, top])
 }
 
 /// The mean of the values of a window.

@@ -1,4 +1,4 @@
-//! A picture as luma and two chromas.
+//! A picture on white, as luma and two chromas.
 
 use crate::error::Result;
 use crate::image::Image;
@@ -9,12 +9,15 @@ pub(super) struct Planes {
     pub(super) width: usize,
     pub(super) height: usize,
     pub(super) planes: [Vec<f32>; 3],
+    /// The picture's alpha, if it has some.
+    pub(super) alpha: Option<Vec<f32>>,
 }
 
 impl Planes {
-    /// The planes of a picture; its alpha is left out.
+    /// The planes of a picture on white.
     pub(super) fn of(picture: &Image) -> Self {
-        let [red, green, blue] = picture.planes();
+        let on_white = picture.on([1.0; 3]);
+        let [red, green, blue] = on_white.planes();
         let plane = |weights: [f32; 3]| {
             let rgb = red.iter().zip(green).zip(blue);
             rgb.map(|((r, g), b)| 255.0 * (weights[0] * r + weights[1] * g + weights[2] * b))
@@ -28,10 +31,16 @@ impl Planes {
                 plane([-0.168_736, -0.331_264, 0.5]),
                 plane([0.5, -0.418_688, -0.081_312]),
             ],
+            alpha: picture.alpha().map(<[f32]>::to_vec),
         }
     }
 
-    /// The picture of these planes.
+    /// True if nothing shows through a pixel.
+    pub(super) fn is_opaque(&self, pixel: usize) -> bool {
+        self.alpha.as_ref().is_none_or(|alpha| alpha[pixel] >= 1.0)
+    }
+
+    /// The picture of these planes, with its alpha.
     pub(super) fn image(&self) -> Result<Image> {
         let [luma, blue, red] = &self.planes;
         let plane = |of_blue: f32, of_red: f32| {
@@ -45,6 +54,16 @@ impl Planes {
             plane(-0.344_136, -0.714_136),
             plane(1.772, 0.0),
         ];
-        Image::new(self.width, self.height, planes)
+        let Some(alpha) = &self.alpha else {
+            return Image::new(self.width, self.height, planes);
+        };
+        // Without the white that shows through.
+        let planes = planes.map(|plane: Vec<f32>| {
+            let pixels = plane.iter().zip(alpha);
+            let own =
+                pixels.map(|(v, a)| ((v - (1.0 - a)) / a.max(f32::MIN_POSITIVE)).clamp(0.0, 1.0));
+            own.collect()
+        });
+        Image::new(self.width, self.height, planes)?.with_alpha(alpha.clone())
     }
 }

@@ -6,7 +6,7 @@
 
 use rayon::prelude::*;
 
-use super::labels::Labels;
+use super::labels::{Color, Labels};
 use super::recipe::Stairs;
 use crate::error::Result;
 use crate::image::Image;
@@ -129,20 +129,21 @@ impl Labels {
                 .map(|x| self.pixel(x, y, nodes))
                 .collect::<Vec<_>>()
         };
-        let rows: Vec<Vec<[f32; 3]>> = rows.par_iter().map(of_row).collect();
+        let rows: Vec<Vec<Color>> = rows.par_iter().map(of_row).collect();
         let plane = |k: usize| rows.iter().flatten().map(|color| color[k]).collect();
-        Image::new(self.width, self.height, [plane(0), plane(1), plane(2)])
+        let picture = Image::new(self.width, self.height, [plane(0), plane(1), plane(2)])?;
+        picture.with_alpha(plane(3))
     }
 
     /// The colour of a pixel.
-    fn pixel(&self, x: usize, y: usize, nodes: &[[f32; 2]]) -> [f32; 3] {
+    fn pixel(&self, x: usize, y: usize, nodes: &[[f32; 2]]) -> Color {
         let columns = self.cells()[0];
         let cells = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[dx, dy]| (y + dy) * columns + x + dx);
         let own = self.of[y * self.width + x];
         if cells.iter().all(|cell| self.corners(*cell) == [own; 4]) {
             return self.colors[usize::from(own)];
         }
-        let mut sum = [0.0; 3];
+        let mut sum = [0.0; 4];
         for j in 0..SAMPLES {
             for i in 0..SAMPLES {
                 // Relative to the middle of the pixel, and of the cell that the sample lies in.
@@ -155,7 +156,10 @@ impl Labels {
                     .for_each(|(sum, value)| *sum += value);
             }
         }
-        sum.map(|v| v / (SAMPLES * SAMPLES) as f32)
+        // A transparent sample has no colour.
+        let [red, green, blue, alpha] = sum;
+        let own = [red, green, blue].map(|v| v / alpha.max(1.0));
+        [own[0], own[1], own[2], alpha / (SAMPLES * SAMPLES) as f32]
     }
 
     /// The label at a place of a cell, relative to its middle.

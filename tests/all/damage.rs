@@ -122,6 +122,70 @@ fn traces_of_jpeg_are_not_drawn() {
 }
 
 #[test]
+fn traces_of_a_cropped_jpeg_are_not_drawn() {
+    let (jpeg, logo) = (picture("logo_q30.jpg"), picture("logo.png"));
+    // The grid of blocks begins elsewhere, as in a screenshot of a part.
+    let cropped = |of: &Image| {
+        let (width, planes) = (of.width(), of.planes());
+        let at = |x: usize, y: usize, c: usize| planes[c][(y + 5) * width + x + 3];
+        Image::from_fn(width - 3, of.height() - 5, 3, at).unwrap()
+    };
+    let fit = drawn(&cropped(&jpeg), Config::default());
+    assert!(fit.damage.unwrap().ringing > 1.0);
+    assert!(fit.scene.len() <= 25, "{} marks", fit.scene.len());
+    let db = psnr_db(&fit, &cropped(&logo));
+    assert!(db >= 32.5, "{db}");
+}
+
+/// Flat art on transparency: its pixels outside of discs.
+fn with_alpha(picture: Image, is_binary: bool) -> Image {
+    let width = picture.width();
+    let alpha = (0..width * picture.height()).map(|i| {
+        let [x, y] = [i % width, i / width].map(|v| v as f32 - 63.5);
+        let alpha = (56.0 - x.hypot(y)).clamp(0.0, 1.0);
+        if is_binary { alpha.round() } else { alpha }
+    });
+    picture.with_alpha(alpha.collect()).unwrap()
+}
+
+#[test]
+fn noise_on_transparency_is_not_drawn() {
+    let clean = with_alpha(flat_art(), false);
+    let noisy = with_alpha(noisy(&flat_art(), 8.0), false);
+    let meant = damage::meant(&noisy).unwrap().unwrap();
+    assert!(
+        (3.0..10.0).contains(&meant.damage.noise),
+        "{:?}",
+        meant.damage
+    );
+    assert_eq!(meant.picture.alpha(), clean.alpha());
+    let db = |picture: &Image| Quality::between(&clean, picture).unwrap().psnr_db;
+    assert!(
+        db(&meant.picture) > db(&noisy) + 6.0,
+        "{} {}",
+        db(&meant.picture),
+        db(&noisy)
+    );
+    assert!(damage::meant(&clean).unwrap().is_none());
+}
+
+#[test]
+fn stairs_of_transparency_become_smooth() {
+    let grey = Image::filled(128, 128, [0.4; 3]).unwrap();
+    let smooth = with_alpha(grey.clone(), false);
+    let meant = damage::meant(&with_alpha(grey, true)).unwrap().unwrap();
+    assert!(meant.damage.stairs);
+    let pairs = meant
+        .picture
+        .alpha()
+        .unwrap()
+        .iter()
+        .zip(smooth.alpha().unwrap());
+    let largest = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    assert!(largest < 0.3, "{largest}");
+}
+
+#[test]
 fn stairs_of_one_bit_become_smooth() {
     let fit = drawn(&picture("bilevel2.png"), Config::default());
     assert!(fit.damage.unwrap().stairs);

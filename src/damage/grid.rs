@@ -1,0 +1,96 @@
+//! The grid of blocks of a JPEG, which has another place in a picture that was cropped or pasted.
+//!
+//! Ringing ends where its block ends: on one side of a border of blocks pixels differ a little from those beside them, on the
+//! other side they are equal.
+
+use rayon::prelude::*;
+
+use super::cosine::SIDE;
+use super::planes::Planes;
+
+/// Differences of luma, levels, that are ringing; smaller ones are none, larger ones are edges.
+const RINGING: std::ops::Range<f32> = 0.7..24.0;
+
+/// The grid has so many times the ends of ringing of a mean place. Of flat art as JPEG of quality 50 and 75 it has 1.9 to 3.6,
+/// without JPEG the largest has 1.8 at most.
+const DECISIVE: f32 = 1.8;
+
+/// Fewer ends in the whole picture are chance. A guess.
+const LEAST: u32 = 64;
+
+/// The column and the row, 0 to 7, at which blocks begin; 0 where none can be told.
+pub(super) fn offset(planes: &Planes) -> [usize; 2] {
+    let luma = &planes.planes[0];
+    let across = ends(luma, planes.width);
+    let down = ends(&transposed(luma, planes.width), planes.height);
+    [across, down].map(|ends| decisive(&ends))
+}
+
+/// The ends of ringing between columns, by the place of the later column in a block.
+fn ends(luma: &[f32], width: usize) -> [u32; SIDE] {
+    let rows: Vec<&[f32]> = luma.chunks_exact(width).collect();
+    let of_rows = |pair: &[&[f32]]| {
+        let mut counts = [0; SIDE];
+        let difference = |x: usize| (pair[0][x] - pair[1][x]).abs();
+        for x in 1..width {
+            let (before, after) = (difference(x - 1), difference(x));
+            let is_end = |ringing: f32, none: f32| RINGING.contains(&ringing) && none < 0.1;
+            counts[x % SIDE] += u32::from(is_end(before, after) || is_end(after, before));
+        }
+        counts
+    };
+    let sum = |a: [u32; SIDE], b: [u32; SIDE]| std::array::from_fn(|k| a[k] + b[k]);
+    rows.par_windows(2).map(of_rows).reduce(|| [0; SIDE], sum)
+}
+
+/// The place that has far more ends than others; 0 if none has.
+fn decisive(ends: &[u32; SIDE]) -> usize {
+    let most = (0..SIDE).max_by_key(|k| (ends[*k], SIDE - k)).unwrap_or(0);
+    let sum: u32 = ends.iter().sum();
+    let is_decisive = (SIDE as u32 * ends[most]) as f32 > DECISIVE * sum as f32;
+    if is_decisive && sum >= LEAST { most } else { 0 }
+}
+
+fn transposed(luma: &[f32], width: usize) -> Vec<f32> {
+    (0..width)
+        .flat_map(|x| luma.iter().skip(x).step_by(width).copied())
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::{Image, Limits};
+
+    /// Discs on white, with antialiasing.
+    fn discs() -> Image {
+        Image::from_fn(136, 136, 1, |x, y, _| {
+            let away = |at: usize| (at % 48) as f32 - 23.5;
+            let away = away(x).hypot(away(y));
+            0.2 + 0.8 * (away - 16.0).clamp(0.0, 1.0)
+        })
+        .unwrap()
+    }
+
+    fn found(picture: &Image) -> [usize; 2] {
+        offset(&Planes::of(picture))
+    }
+
+    #[test]
+    fn the_grid_of_a_cropped_jpeg_is_found() {
+        let jpeg = discs().encode_jpeg(75).unwrap();
+        let jpeg = Image::decode(&jpeg, "JPEG", Limits::default()).unwrap();
+        assert_eq!(found(&jpeg), [0, 0]);
+        // Three columns and five rows are cut off.
+        let plane = &jpeg.planes()[0];
+        let cropped = Image::from_fn(128, 128, 1, |x, y, _| plane[(y + 5) * 136 + x + 3]);
+        assert_eq!(found(&cropped.unwrap()), [5, 3]);
+    }
+
+    #[test]
+    fn a_clean_picture_has_none() {
+        assert_eq!(found(&discs()), [0, 0]);
+        let blank = Image::filled(40, 9, [1.0; 3]).unwrap();
+        assert_eq!(found(&blank), [0, 0]);
+    }
+}
