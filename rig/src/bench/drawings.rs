@@ -4,8 +4,7 @@
 //! rather than those of the judge.
 
 use crate::report::Damage;
-use strokefit::image::{Image, Limits};
-use strokefit::rng;
+use strokefit::image::Image;
 use strokefit::verify::{self, Size, elements};
 use strokefit::{Error, ErrorKind, Result};
 
@@ -123,30 +122,6 @@ pub(super) fn picture(svg: &str, side: u16) -> Result<Image> {
     Ok(large.halved().halved())
 }
 
-/// A picture after `damage`. Noise is the same in every run.
-pub(super) fn damaged(picture: Image, damage: Damage) -> Result<Image> {
-    match damage {
-        Damage::Clean => Ok(picture),
-        Damage::Jpeg(quality) => {
-            Image::decode(&picture.encode_jpeg(quality)?, "JPEG", Limits::default())
-        }
-        Damage::Noise(levels) => noisy(&picture, levels),
-    }
-}
-
-/// With Gaussian noise in each channel, in whole levels as files have them.
-fn noisy(picture: &Image, levels: u8) -> Result<Image> {
-    let planes = [0_u8, 1, 2].map(|c| {
-        let plane = picture.planes()[usize::from(c)].iter().zip(0_u64..);
-        let noisy = plane.map(|(value, i)| {
-            let noise = f32::from(levels) * rng::normal(0, 0, i, u64::from(c));
-            (255.0 * value + noise).round().clamp(0.0, 255.0) / 255.0
-        });
-        noisy.collect()
-    });
-    Image::new(picture.width(), picture.height(), planes)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -181,23 +156,7 @@ mod tests {
 
     #[test]
     fn pictures_have_the_size_asked_for() {
-        let clean = picture(&drawing(LINE).svg, 48).unwrap();
-        for damage in [Damage::Clean, Damage::Jpeg(75), Damage::Noise(8)] {
-            let picture = damaged(clean.clone(), damage).unwrap();
-            assert_eq!((picture.width(), picture.height()), (48, 48));
-        }
-    }
-
-    #[test]
-    fn noise_is_as_strong_as_asked_for_and_the_same_again() {
-        let grey = Image::filled(64, 64, [0.5; 3]).unwrap();
-        let noisy = damaged(grey.clone(), Damage::Noise(8)).unwrap();
-        assert!(noisy == damaged(grey, Damage::Noise(8)).unwrap());
-        let planes = noisy.planes();
-        assert!(planes[0] != planes[1]);
-        let apart = planes.iter().flatten().map(|v| 255.0 * v - 127.5);
-        let variance = apart.map(|d| d * d);
-        let deviation = (variance.sum::<f32>() / (3.0 * 64.0 * 64.0)).sqrt();
-        assert!((7.7..8.3).contains(&deviation), "{deviation}");
+        let picture = picture(&drawing(LINE).svg, 48).unwrap();
+        assert_eq!((picture.width(), picture.height()), (48, 48));
     }
 }

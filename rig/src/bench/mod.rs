@@ -6,6 +6,7 @@
 //! | [`stability`] | does every hard case give a valid drawing, and does `f32` stay close to `f64`? |
 //! | [`inverse`] | how much of a drawing of strokes is found again in its picture? |
 //! | [`shapes`] | how much of any drawing is, in as few numbers as its artist needed? |
+//! | [`robust`] | how much of the damage of a picture is drawn? |
 //! | [`scaling`] | how do time and memory grow with strokes, pixels and threads? |
 //!
 //! Each returns plain records of [`report`](crate::report), which turns them into tables, plots and pages.
@@ -13,12 +14,14 @@
 //! drawings. [`drawings`] makes pictures of known ones.
 
 pub mod child;
+mod damages;
 pub mod drawings;
 pub mod inverse;
 pub mod measure;
 pub mod pareto;
 pub mod peers;
 pub mod quality;
+pub mod robust;
 pub mod scaling;
 pub mod shapes;
 pub mod stability;

@@ -1,6 +1,8 @@
-//! The measurements: `pareto`, `stability`, `inverse` and `scaling`.
+//! The measurements: `pareto`, `stability`, `inverse`, `robust` and `scaling`.
 
+mod files;
 mod inverse;
+mod robust;
 
 use std::path::{Path, PathBuf};
 
@@ -21,12 +23,14 @@ use strokefit::cli::{Status, Verbosity, input, output};
 
 use super::domain;
 use inverse::Inverse;
+use robust::Robust;
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Benchmark {
     Pareto(Pareto),
     Stability(Stability),
     Inverse(Inverse),
+    Robust(Robust),
     Scaling(Scaling),
 }
 
@@ -118,6 +122,7 @@ impl Benchmark {
             Self::Pareto(pareto) => pareto.run(folder, files, verbosity),
             Self::Stability(stability) => stability.run(files),
             Self::Inverse(inverse) => inverse.run(files, verbosity),
+            Self::Robust(robust) => robust.run(files, verbosity),
             Self::Scaling(scaling) => scaling.run(files, verbosity),
         }
     }
@@ -238,6 +243,7 @@ pub(super) fn run(benchmark: &Benchmark, verbosity: Verbosity) -> Result<Status>
     let (Benchmark::Pareto(Pareto { extents, .. })
     | Benchmark::Stability(Stability { extents, .. })
     | Benchmark::Inverse(Inverse { extents, .. })
+    | Benchmark::Robust(Robust { extents, .. })
     | Benchmark::Scaling(Scaling { extents, .. })) = benchmark;
     let folder = extents.output.as_path();
     let mut tell = |event: Notice<'_>| {

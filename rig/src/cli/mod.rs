@@ -35,6 +35,7 @@ pub fn main(args: Vec<OsString>) -> u8 {
   strokefit-rig stability -o out --short
   strokefit-rig inverse icons/*.svg -o out
   strokefit-rig inverse emoji -o out --short
+  strokefit-rig robust emoji -o out --short
   strokefit-rig scaling photo.png -o out
   strokefit-rig lab circle -o out"
 )]

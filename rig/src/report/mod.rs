@@ -8,6 +8,7 @@ pub mod pareto;
 pub mod picture;
 pub mod plot;
 pub mod quality;
+pub mod robust;
 pub mod scaling;
 pub mod shapes;
 pub mod stability;

@@ -5,13 +5,13 @@ use std::process::Output;
 
 use crate::support::place::{Place, STROKEFIT};
 
-fn bench(place: &Place, args: &[&str]) -> Output {
+pub(crate) fn bench(place: &Place, args: &[&str]) -> Output {
     // Peers that happen to be installed would only take time.
     bench_beside("", place, args)
 }
 
 /// With the programs in the folders `path`.
-fn bench_beside(path: &str, place: &Place, args: &[&str]) -> Output {
+pub(crate) fn bench_beside(path: &str, place: &Place, args: &[&str]) -> Output {
     place
         .command(STROKEFIT)
         .args(args)
@@ -21,11 +21,11 @@ fn bench_beside(path: &str, place: &Place, args: &[&str]) -> Output {
 }
 
 /// The whole path of a file of the samples.
-fn sample(path: &str) -> String {
+pub(crate) fn sample(path: &str) -> String {
     format!("{}/../samples/{path}", env!("CARGO_MANIFEST_DIR"))
 }
 
-fn lines(output: &Output) -> Vec<String> {
+pub(crate) fn lines(output: &Output) -> Vec<String> {
     let text = String::from_utf8(output.stdout.clone()).unwrap();
     text.lines().map(str::to_owned).collect()
 }

@@ -21,3 +21,4 @@ mod help;
 mod imports;
 mod lab_cli;
 mod lab_tables;
+mod robust;

@@ -10,7 +10,8 @@ use std::time::Instant;
 
 pub use gallery::Gallery;
 
-use super::drawings::{self, Drawing, Pictures, damaged, picture};
+use super::damages::damaged;
+use super::drawings::{self, Drawing, Pictures, picture};
 use super::peers::TunedPeer;
 use crate::report::Damage;
 use crate::report::inverse::{Inventory, InverseEntry, InverseReport, OWN};
@@ -107,7 +108,7 @@ impl<'a> Case<'a> {
             side,
             damage,
             original,
-            picture: damaged(picture(&drawing.svg, side)?, damage)?,
+            picture: damaged(&picture(&drawing.svg, side)?, damage)?,
         })
     }
 
@@ -161,9 +162,9 @@ impl<'a> Case<'a> {
     /// The record of this case before anything is known of what was found.
     fn entry(&self, by: &str) -> InverseEntry {
         let (jpeg, noise) = match self.damage {
-            Damage::Clean => (None, None),
             Damage::Jpeg(quality) => (Some(quality), None),
             Damage::Noise(levels) => (None, Some(levels)),
+            _ => (None, None),
         };
         InverseEntry {
             drawing: self.drawing.name.clone(),
@@ -171,6 +172,7 @@ impl<'a> Case<'a> {
             side_px: usize::from(self.side),
             jpeg,
             noise,
+            damage: self.damage,
             original: inventory(&self.original, &self.drawing.svg),
             ..InverseEntry::default()
         }

@@ -80,12 +80,12 @@ impl Gallery {
 }
 
 /// As much of a title as there is room for above a panel.
-fn shortened(title: &str) -> String {
+pub(in crate::bench) fn shortened(title: &str) -> String {
     title.chars().take(PANEL_PX / 8).collect()
 }
 
 /// In a panel, smaller if need be.
-fn panel(picture: &Image) -> Result<Image> {
+pub(in crate::bench) fn panel(picture: &Image) -> Result<Image> {
     let longer = picture.width().max(picture.height());
     if longer <= PANEL_PX {
         return framed(picture, PANEL_PX);

@@ -10,8 +10,10 @@ mod gallery;
 use std::time::Instant;
 
 pub use gallery::Gallery;
+pub(super) use gallery::{panel, shortened};
 
-use super::drawings::{self, Drawing, Pictures, damaged, picture};
+use super::damages::damaged;
+use super::drawings::{self, Drawing, Pictures, picture};
 use super::peers::TunedPeer;
 use crate::report::Damage;
 use crate::report::inverse::OWN;
@@ -27,9 +29,6 @@ use strokefit::{Error, Result};
 
 /// Longer side of the renders whose colours are compared, px.
 const LARGE_PX: f64 = 1024.0;
-
-/// Drawings that a short run takes, at most.
-const FEW: usize = 6;
 
 /// A way to draw pictures with strokefit.
 #[derive(Debug, Clone)]
@@ -58,10 +57,10 @@ pub fn drawers() -> Vec<Drawer> {
     ]
 }
 
-/// A few of the drawings, from all over the list.
-pub fn few(drawings: Vec<Drawing>) -> Vec<Drawing> {
-    let step = drawings.len().div_ceil(FEW).max(1);
-    drawings.into_iter().step_by(step).collect()
+/// A few of the drawings, at most so many, from all over the list.
+pub fn few<T>(all: Vec<T>, most: usize) -> Vec<T> {
+    let step = all.len().div_ceil(most).max(1);
+    all.into_iter().step_by(step).collect()
 }
 
 /// A result as it comes.
@@ -158,7 +157,7 @@ impl<'a> Case<'a> {
         Ok(Self {
             truth,
             damage,
-            picture: damaged(truth.picture.clone(), damage)?,
+            picture: damaged(&truth.picture, damage)?,
         })
     }
 
@@ -235,7 +234,8 @@ fn decibels(svg: &str, picture: &Image) -> Result<f64> {
     psnr(picture, &verify::render_like(svg, picture, [1.0; 3])?)
 }
 
-fn contents(svg: &str) -> Result<Contents> {
+/// Contents of SVG text.
+pub(super) fn contents(svg: &str) -> Result<Contents> {
     let anatomy = Anatomy::of(svg)?;
     let painted = elements(svg, 1.0)?;
     let painted = &painted[usize::from(anatomy.has_page).min(painted.len())..];
@@ -270,17 +270,9 @@ mod tests {
 
     #[test]
     fn a_few_are_from_all_over_the_list() {
-        let drawing = |i: usize| Drawing {
-            name: i.to_string(),
-            svg: String::new(),
-        };
-        let names = |count: usize| -> Vec<String> {
-            let few = few((0..count).map(drawing).collect());
-            few.into_iter().map(|drawing| drawing.name).collect()
-        };
-        assert_eq!(names(2), ["0", "1"]);
-        assert_eq!(names(12), ["0", "2", "4", "6", "8", "10"]);
-        assert!(names(0).is_empty());
+        assert_eq!(few(vec![0, 1], 6), [0, 1]);
+        assert_eq!(few((0..12).collect(), 6), [0, 2, 4, 6, 8, 10]);
+        assert!(few(Vec::<usize>::new(), 6).is_empty());
     }
 
     #[test]

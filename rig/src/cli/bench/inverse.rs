@@ -1,21 +1,24 @@
 //! `inverse`: known drawings, found again in their pictures.
 
 use std::path::PathBuf;
-use std::{fs, io};
 
 use crate::bench::drawings::{Drawing, Kind, Pictures};
 use crate::bench::peers::{installed_for, missing_for_drawings};
 use crate::bench::{inverse, shapes};
 use crate::lab::ResultFolder;
 use crate::report::{self, Damage};
-use anyhow::{Context, Result};
+use anyhow::Result;
 use strokefit::cli::{Verbosity, input};
 use strokefit::fit::Config;
 use strokefit::image::Image;
 use strokefit::report::json;
 
 use super::super::domain;
+use super::files::{found, named, stem};
 use super::{Extents, say, say_missing};
+
+/// Drawings of shapes that a short run takes, at most.
+const FEW: usize = 6;
 
 /// Find known drawings again in pictures of them, beside other programs that are installed (pyautotrace, potrace,
 /// vtracer, Inkscape)
@@ -30,7 +33,7 @@ pub(in crate::cli) struct Inverse {
     /// Longer sides of the pictures, px [default: 48 to 384 of strokes, 128 to 512 of other drawings]
     #[arg(long, value_name = "PX", value_delimiter = ',', value_parser = domain::side)]
     sides: Vec<u16>,
-    /// Damage of the pictures: clean, jpegQUALITY, noiseLEVELS [default: clean,jpeg75; noise8 of other drawings
+    /// Damage of the pictures: clean, jpegQUALITY, noiseLEVELS, aliased, dithered, enlarged, photographed [default: clean,jpeg75; noise8 of other drawings
     /// than of strokes, too]
     #[arg(long, value_name = "DAMAGE", value_delimiter = ',')]
     damage: Vec<Damage>,
@@ -69,7 +72,7 @@ impl Inverse {
 
     fn find_shapes(&self, all: Vec<Drawing>, files: &mut ResultFolder<'_>) -> Result<usize> {
         let drawings = if self.extents.short {
-            shapes::few(all)
+            shapes::few(all, FEW)
         } else {
             all
         };
@@ -90,10 +93,9 @@ impl Inverse {
     /// The drawings of strokes, with those that are built in, and all others.
     fn drawings(&self, verbosity: Verbosity) -> Result<(Vec<Drawing>, Vec<Drawing>)> {
         let (mut strokes, mut shapes) = (Vec::new(), Vec::new());
-        for (path, is_listed) in self.files()? {
+        for (path, is_listed) in named(&self.drawings, &["svg"])? {
             let svg = input::svg(&path)?;
-            let name = path.file_stem().unwrap_or_default().to_string_lossy();
-            let name = name.into_owned();
+            let name = stem(&path);
             let drawing = Drawing { name, svg };
             match drawing.kind() {
                 Ok(Kind::Strokes) => strokes.push(drawing),
@@ -106,25 +108,6 @@ impl Inverse {
             strokes.splice(0..0, inverse::own());
         }
         Ok((strokes, shapes))
-    }
-
-    /// The SVGs that are named, and those in the folders that are, in order; true for those in folders.
-    fn files(&self) -> Result<Vec<(PathBuf, bool)>> {
-        let mut files = Vec::new();
-        for path in &self.drawings {
-            if !path.is_dir() {
-                files.push((path.clone(), false));
-                continue;
-            }
-            let listed = fs::read_dir(path).and_then(Iterator::collect::<io::Result<Vec<_>>>);
-            let listed = listed.with_context(|| format!("{}: cannot be read", path.display()))?;
-            let svgs = listed.into_iter().map(|entry| entry.path());
-            let is_svg = |path: &PathBuf| path.extension().is_some_and(|e| e == "svg");
-            let mut svgs: Vec<_> = svgs.filter(is_svg).collect();
-            svgs.sort();
-            files.extend(svgs.into_iter().map(|svg| (svg, true)));
-        }
-        Ok(files)
     }
 
     fn pictures(&self, kind: Kind) -> Pictures {
@@ -140,14 +123,6 @@ impl Inverse {
             pictures.damages.clone_from(&self.damage);
         }
         pictures
-    }
-}
-
-/// Writes a drawing that was found, if there is one.
-fn found(files: &mut ResultFolder<'_>, name: &str, svg: &str) -> strokefit::Result<()> {
-    match svg {
-        "" => Ok(()),
-        svg => files.text(name, svg),
     }
 }
 

@@ -49,6 +49,9 @@ pub struct InverseEntry {
     /// Levels of the noise that the picture got, standard deviation; `None` without.
     #[serde(default)]
     pub noise: Option<u8>,
+    /// Damage of the picture, of whatever kind.
+    #[serde(default)]
+    pub damage: Damage,
     /// The drawing.
     pub original: Inventory,
     /// Contents of the drawing that was found.
@@ -84,7 +87,7 @@ impl InverseEntry {
         match (self.jpeg, self.noise) {
             (Some(quality), _) => Damage::Jpeg(quality),
             (None, Some(levels)) => Damage::Noise(levels),
-            (None, None) => Damage::Clean,
+            (None, None) => self.damage,
         }
     }
 
@@ -256,6 +259,7 @@ mod tests {
             side_px,
             jpeg,
             noise: None,
+            damage: Damage::Clean,
             original: inventory(2),
             found: inventory(elements),
             psnr_db: Some(40.0),

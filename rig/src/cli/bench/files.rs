@@ -1,0 +1,47 @@
+//! Files that a benchmark reads and writes.
+
+use std::path::{Path, PathBuf};
+use std::{fs, io};
+
+use crate::lab::ResultFolder;
+use anyhow::{Context, Result};
+
+/// The files that are named, and those in the folders that are, in order; true for those in folders. Of a folder, files that end
+/// in one of `endings` count.
+pub(super) fn named(paths: &[PathBuf], endings: &[&str]) -> Result<Vec<(PathBuf, bool)>> {
+    let mut files = Vec::new();
+    for path in paths {
+        if !path.is_dir() {
+            files.push((path.clone(), false));
+            continue;
+        }
+        let listed = fs::read_dir(path).and_then(Iterator::collect::<io::Result<Vec<_>>>);
+        let listed = listed.with_context(|| format!("{}: cannot be read", path.display()))?;
+        let listed = listed.into_iter().map(|entry| entry.path());
+        let is_one = |path: &PathBuf| endings.iter().any(|ending| has_ending(path, ending));
+        let mut listed: Vec<_> = listed.filter(is_one).collect();
+        listed.sort();
+        files.extend(listed.into_iter().map(|path| (path, true)));
+    }
+    Ok(files)
+}
+
+/// True for a name that ends so, after a dot.
+pub(super) fn has_ending(path: &Path, ending: &str) -> bool {
+    path.extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case(ending))
+}
+
+/// A file's name without its ending.
+pub(super) fn stem(path: &Path) -> String {
+    let stem = path.file_stem().unwrap_or_default();
+    stem.to_string_lossy().into_owned()
+}
+
+/// Writes a drawing that was made, if there is one.
+pub(super) fn found(files: &mut ResultFolder<'_>, name: &str, svg: &str) -> strokefit::Result<()> {
+    match svg {
+        "" => Ok(()),
+        svg => files.text(name, svg),
+    }
+}
