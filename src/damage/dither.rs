@@ -2,12 +2,18 @@
 
 use rayon::prelude::*;
 
+use super::cosine::{Block, SIDE};
 use super::labels::Labels;
-use super::recipe::Dithering;
+use super::noise;
+use super::planes::Planes;
+use super::recipe::{Dithering, Restoration};
+use super::shrink::shrink;
 use crate::error::Result;
 use crate::image::Image;
-use crate::math;
 use crate::metrics::average;
+
+/// Distance of the mean from the truth, RMS in levels: that of 14 drawings in the palette of old browsers.
+pub(super) const DOUBT: f32 = 3.5;
 
 /// The picture with the means of the colours that are mixed, and the share of its pixels that are; `None` if that is small.
 pub(super) fn mixed(
@@ -16,16 +22,9 @@ pub(super) fn mixed(
     recipe: &Dithering,
 ) -> Result<Option<(Image, f32)>> {
     let (width, height) = (labels.width, labels.height);
-    let is_mixed = |i: usize| {
-        is_mixed(
-            labels,
-            [i % width, i / width].map(|v| v as isize),
-            recipe.least,
-        )
-    };
-    let lonely = (0..width * height)
-        .into_par_iter()
-        .map(|i| f64::from(u8::from(is_mixed(i))));
+    let place = |i: usize| [i % width, i / width].map(|v| v as isize);
+    let is_mixed = |i: usize| f64::from(u8::from(is_mixed(labels, place(i), recipe.least)));
+    let lonely = (0..width * height).into_par_iter().map(is_mixed);
     let mut shares: Vec<f64> = lonely.collect();
     average(&mut shares, width, recipe.around);
     let mixing: Vec<f32> = shares
@@ -36,58 +35,52 @@ pub(super) fn mixed(
     if share < recipe.least_share {
         return Ok(None);
     }
-    let planes = picture.planes().each_ref().map(|plane| {
-        let mean = blurred(plane, width, recipe.blur_px);
-        let pixels = plane.iter().zip(&mean).zip(&mixing);
+    let means = means(picture, &mixing, recipe)?.into_planes();
+    let blend = |(own, mean): (&Vec<f32>, Vec<f32>)| {
+        let pixels = own.iter().zip(mean).zip(&mixing);
         pixels
             .map(|((own, mean), mixing)| own + mixing * (mean - own))
             .collect()
-    });
+    };
+    let mut planes = picture.planes().iter().zip(means).map(blend);
+    let planes = std::array::from_fn(|_| planes.next().unwrap_or_default());
     Ok(Some((Image::new(width, height, planes)?, share)))
 }
 
-/// True if a pixel is far brighter than three of the pixels beside it or all, and darker than none, or the other way round. One that
-/// is antialiased lies between them.
+/// True if a pixel is, in a channel, far brighter than three of the pixels beside it or all, and darker than none, or the other way
+/// round. One that is antialiased lies between them.
 fn is_mixed(labels: &Labels, [x, y]: [isize; 2], least: f32) -> bool {
-    let luma = |x, y| {
-        let [red, green, blue, _] = labels.colors[usize::from(labels.at(x, y))];
-        (red + green + blue) / 3.0
-    };
-    let own = luma(x, y);
-    let beside = [[1, 0], [-1, 0], [0, 1], [0, -1]].map(|[dx, dy]| luma(x + dx, y + dy) - own);
-    [1.0, -1.0].iter().any(|sign| {
-        let far = beside.iter().filter(|away| *sign * **away > least).count();
-        far >= 3 && beside.iter().all(|away| sign * away >= 0.0)
+    let color = |x, y| labels.colors[usize::from(labels.at(x, y))];
+    let own = color(x, y);
+    let beside = [[1, 0], [-1, 0], [0, 1], [0, -1]].map(|[dx, dy]| color(x + dx, y + dy));
+    (0..3).any(|channel| {
+        let away = beside.map(|other| other[channel] - own[channel]);
+        [1.0, -1.0].iter().any(|sign| {
+            let far = away.iter().filter(|away| *sign * **away > least).count();
+            far >= 3 && away.iter().all(|away| sign * away >= 0.0)
+        })
     })
 }
 
-/// A plane under a Gaussian of this standard deviation, px; at the borders it goes on as it ends.
-fn blurred(plane: &[f32], width: usize, blur_px: f32) -> Vec<f32> {
-    let reach = (3.0 * blur_px) as isize;
-    let weights: Vec<f32> = (-reach..=reach)
-        .map(|k| math::exp(-(k * k) as f32 / (2.0 * blur_px * blur_px)))
-        .collect();
-    let whole: f32 = weights.iter().sum();
-    let height = plane.len() / width;
-    let at = |place: isize, size: usize| place.clamp(0, size as isize - 1) as usize;
-    let across = |i: usize| {
-        let (x, row) = ((i % width) as isize, &plane[i / width * width..]);
-        let taps = weights
-            .iter()
-            .zip(-reach..)
-            .map(|(w, k)| w * row[at(x + k, width)]);
-        taps.sum::<f32>() / whole
-    };
-    let rows: Vec<f32> = (0..plane.len()).into_par_iter().map(across).collect();
-    let down = |i: usize| {
-        let (x, y) = (i % width, (i / width) as isize);
-        let taps = weights
-            .iter()
-            .zip(-reach..)
-            .map(|(w, k)| w * rows[at(y + k, height) * width + x]);
-        taps.sum::<f32>() / whole
-    };
-    (0..plane.len()).into_par_iter().map(down).collect()
+/// The picture without what the mixture explains, where `mixing` is 1.
+fn means(picture: &Image, mixing: &[f32], recipe: &Dithering) -> Result<Image> {
+    let mut planes = Planes::of(picture);
+    let rms = noise::median_deviation(&planes, |pixel| mixing[pixel] >= 1.0);
+    let step = Restoration::MEASURED.step(mixing.len());
+    let spectrum = spectrum(recipe);
+    planes.planes = shrink(&planes.planes, planes.width, step, &spectrum, &|_, _| rms);
+    planes.image()
+}
+
+/// Least coefficients that are no mixture, in units of its RMS.
+fn spectrum(recipe: &Dithering) -> Block {
+    let last = (SIDE - 1) as f32;
+    std::array::from_fn(|v| {
+        std::array::from_fn(|u| {
+            let frequency2 = (u * u + v * v) as f32 / (last * last);
+            recipe.far + recipe.rise * frequency2
+        })
+    })
 }
 
 #[cfg(test)]
@@ -107,5 +100,21 @@ mod tests {
         assert!((at(20) - 0.5).abs() < 0.02, "{}", at(20));
         assert!(at(80).abs() < 1e-6);
         assert!((0.3..0.6).contains(&share));
+    }
+
+    #[test]
+    fn a_channel_alone_is_mixed_and_lines_are_not() {
+        let blue = |x: usize, y: usize, c: usize| match c {
+            2 if (x + 2 * y).is_multiple_of(4) => 0.6_f32,
+            _ => 0.8,
+        };
+        let lines = |x: usize, y: usize, _| f32::from(u8::from(x.is_multiple_of(6) || x == y));
+        let found = |picture: Image| {
+            let labels = Labels::of(&picture, 4).unwrap();
+            let found = mixed(&picture, &labels, &Dithering::MEASURED).unwrap();
+            found.map(|(_, share)| share)
+        };
+        assert!(found(Image::from_fn(64, 64, 3, blue).unwrap()) > Some(0.9));
+        assert_eq!(found(Image::from_fn(64, 64, 1, lines).unwrap()), None);
     }
 }

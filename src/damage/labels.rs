@@ -53,10 +53,53 @@ impl Labels {
         self.colors.contains(&[0.0; 4])
     }
 
+    /// True for each pixel of a shape of at most so many pixels of one colour, joined along their sides.
+    pub(super) fn specks(&self, most: usize) -> Vec<bool> {
+        let mut is_speck = vec![false; self.of.len()];
+        let mut is_seen = vec![false; self.of.len()];
+        for first in 0..self.of.len() {
+            if std::mem::replace(&mut is_seen[first], true) {
+                continue;
+            }
+            let mut shape = vec![first];
+            let mut next = 0;
+            while let Some(&pixel) = shape.get(next) {
+                next += 1;
+                for other in self.beside(pixel) {
+                    let is_same = self.of[other] == self.of[pixel];
+                    if is_same && !std::mem::replace(&mut is_seen[other], true) {
+                        shape.push(other);
+                    }
+                }
+            }
+            if shape.len() <= most {
+                shape.into_iter().for_each(|pixel| is_speck[pixel] = true);
+            }
+        }
+        is_speck
+    }
+
+    /// The pixels beside one.
+    fn beside(&self, pixel: usize) -> impl Iterator<Item = usize> + use<> {
+        let (x, width) = (pixel % self.width, self.width);
+        let sides = [
+            (x > 0).then(|| pixel - 1),
+            (x + 1 < width).then_some(pixel + 1),
+            pixel.checked_sub(width),
+            Some(pixel + width).filter(|below| *below < self.of.len()),
+        ];
+        sides.into_iter().flatten()
+    }
+
     /// The label at a place; that of the border outside of the picture.
     pub(super) fn at(&self, x: isize, y: isize) -> u16 {
+        self.of[self.pixel_at(x, y)]
+    }
+
+    /// The pixel at a place; the nearest one outside of the picture.
+    pub(super) fn pixel_at(&self, x: isize, y: isize) -> usize {
         let within = |at: isize, size: usize| at.clamp(0, size as isize - 1) as usize;
-        self.of[within(y, self.height) * self.width + within(x, self.width)]
+        within(y, self.height) * self.width + within(x, self.width)
     }
 
     /// The number of the four pixels beside a place that have another colour.
@@ -88,5 +131,33 @@ fn color(picture: &Image, pixel: usize) -> Option<Color> {
         1.0 => Some([red, green, blue, 1.0]),
         0.0 => Some([0.0; 4]),
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_shapes_are_specks() {
+        // A dot, and a bar of ten pixels; pixels that only touch at a corner are apart.
+        let is_dark =
+            |x: usize, y: usize| (x, y) == (2, 2) || y == 5 && x < 10 || (x, y) == (10, 6);
+        let value = |x, y, _| f32::from(u8::from(is_dark(x, y)));
+        let picture = Image::from_fn(16, 8, 1, value).unwrap();
+        let specks = Labels::of(&picture, 2).unwrap().specks(8);
+        let found: Vec<usize> = (0..16 * 8).filter(|i| specks[*i]).collect();
+        assert_eq!(found, [2 * 16 + 2, 6 * 16 + 10]);
+    }
+
+    #[test]
+    fn transparency_is_a_label_and_translucent_pixels_have_none() {
+        let grey = || Image::filled(2, 1, [0.5; 3]).unwrap();
+        let clear = grey().with_alpha(vec![1.0, 0.0]).unwrap();
+        let labels = Labels::of(&clear, 4).unwrap();
+        assert!(labels.is_transparent());
+        assert_eq!(labels.colors, [[0.5, 0.5, 0.5, 1.0], [0.0; 4]]);
+        let veiled = grey().with_alpha(vec![1.0, 0.5]).unwrap();
+        assert!(Labels::of(&veiled, 4).is_none());
     }
 }

@@ -3,10 +3,10 @@
 //! ```text
 //! labels     the colours of a picture that has few
 //! stairs     smooth borders, of which stairs are left for want of antialiasing
-//! dither     colours that are mixed pixel by pixel
 //! grid       where the blocks of a JPEG begin
 //! noise      how far pixels are from flat places, far from edges and beside them
 //! shrink     the picture without what noise explains
+//! dither     colours that are mixed pixel by pixel
 //! chroma     colours that were kept at half the resolution, along the edges of luma
 //! clip       tones that noise was cut off from, at black and white
 //! light      uneven light on paper
@@ -66,7 +66,12 @@ impl Damage {
     /// The distance of the picture that is meant from the truth, as far as can be told, RMS in levels of 8 bits: noise goes, but for a
     /// part.
     pub fn doubt(&self) -> f32 {
-        self.ringing.max(self.noise / 2.0)
+        let of_means = if self.dithering > 0.0 {
+            dither::DOUBT
+        } else {
+            0.0
+        };
+        self.ringing.max(self.noise / 2.0).max(of_means)
     }
 }
 
@@ -194,12 +199,7 @@ fn is_flat_art(planes: &Planes, recipe: &FlatArt) -> bool {
 /// Leaves out what noise explains.
 fn shrunk(planes: &mut Planes, noise: &Noise) {
     let recipe = Restoration::MEASURED;
-    let pixels = planes.width * planes.height;
-    // Fewer blocks hold each pixel of a large picture, for time.
-    let step = [1, 8]
-        .iter()
-        .filter(|larger| pixels > *larger * recipe.all_blocks)
-        .fold(1, |step, _| 2 * step);
+    let step = recipe.step(planes.width * planes.height);
     let least = |luma: f32, range: f32| {
         let far = recipe.far * noise.at(luma);
         // A block without an edge may overlap one of JPEG that has one.
@@ -209,5 +209,5 @@ fn shrunk(planes: &mut Planes, noise: &Noise) {
             far
         }
     };
-    planes.planes = shrink::shrink(&planes.planes, planes.width, step, &least);
+    planes.planes = shrink::shrink(&planes.planes, planes.width, step, &shrink::WHITE, &least);
 }

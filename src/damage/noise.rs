@@ -90,6 +90,24 @@ pub(super) fn measure(planes: &Planes, recipe: &Noises) -> Option<Noise> {
     })
 }
 
+/// The median deviation of the pixels around those that `counts`; 0 of none.
+pub(super) fn median_deviation(planes: &Planes, counts: impl Fn(usize) -> bool + Sync) -> f32 {
+    let (luma, width) = (&planes.planes[0], planes.width);
+    let rows = HALF..planes.height.saturating_sub(HALF);
+    let of_row = |y: usize| {
+        let columns = HALF..width.saturating_sub(HALF);
+        let counting = columns.filter(|x| counts(y * width + x));
+        let deviation = |x: usize| {
+            let row = |y: usize| &luma[y * width + x - HALF..=y * width + x + HALF];
+            deviation((y - HALF..=y + HALF).map(row))
+        };
+        counting.map(deviation).collect::<Vec<_>>()
+    };
+    let mut all: Vec<f32> = rows.into_par_iter().flat_map_iter(of_row).collect();
+    all.sort_unstable_by(f32::total_cmp);
+    quantile(&all, 0.5)
+}
+
 /// The sites of a picture. Nothing is measured where it is not opaque.
 fn sites(planes: &Planes, recipe: &Noises) -> Vec<Site> {
     let (width, height) = (planes.width, planes.height);

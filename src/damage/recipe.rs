@@ -85,6 +85,13 @@ impl Restoration {
         edge_range: 48.0,
         all_blocks: 600_000,
     };
+
+    /// Rows and columns from one block to the next in a picture of so many pixels: of a large one fewer blocks hold each pixel, for
+    /// time.
+    pub(super) fn step(&self, pixels: usize) -> usize {
+        let larger = [1, 8].map(|times| pixels > times * self.all_blocks);
+        larger.iter().filter(|is| **is).fold(1, |step, _| 2 * step)
+    }
 }
 
 /// Search for stairs, and their smoothing.
@@ -100,6 +107,8 @@ pub(super) struct Stairs {
     pub(super) reach: f32,
     /// Rounds of smoothing. A guess.
     pub(super) rounds: usize,
+    /// Most pixels of a speck, whose border stays: smooth ones shrink to nothing. A guess.
+    pub(super) speck: usize,
 }
 
 impl Stairs {
@@ -109,10 +118,11 @@ impl Stairs {
         least_square: 2,
         reach: 0.45,
         rounds: 60,
+        speck: 8,
     };
 }
 
-/// Search for dithering.
+/// Search for dithering, and the mean.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Dithering {
     /// Least difference, 0..1, of a lonely pixel from those beside it: JPEG leaves less.
@@ -121,10 +131,14 @@ pub(super) struct Dithering {
     pub(super) around: usize,
     /// Share of lonely pixels of a dithered window: random ones of two colours have 0.3, lines 1 px wide none.
     pub(super) dense: f32,
-    /// Least share of a dithered picture that is. A guess.
+    /// Least share of a dithered picture that is. Drawings in the palette of old browsers have 0.08 to 0.8, others of at most 256
+    /// colours, and of 1 bit, 0.
     pub(super) least_share: f32,
-    /// Standard deviation of the mean, px. A guess.
-    pub(super) blur_px: f32,
+    /// Coefficients below so many times the mixture's RMS from planes are left out: `far` of the lowest ones, and more by `rise` times
+    /// the square of the frequency, which is 1 for the highest along a side: mixtures are fine. Of 14 drawings, 0.6 and 3.2 come 37.2
+    /// dB near to the clean picture, 0.3 and 5 36.4; 3 of all frequencies 33.4, a Gaussian of 1.5 px 26.9, the mixture 25.7.
+    pub(super) far: f32,
+    pub(super) rise: f32,
 }
 
 impl Dithering {
@@ -132,8 +146,9 @@ impl Dithering {
         least: 0.15,
         around: 4,
         dense: 0.2,
-        least_share: 0.15,
-        blur_px: 1.5,
+        least_share: 0.04,
+        far: 0.6,
+        rise: 3.2,
     };
 }
 

@@ -9,12 +9,16 @@ use super::cosine::{Block, Cosines, SIDE};
 /// Rows that are worked on together.
 const BAND: usize = 64;
 
-/// Luma and chromas, rows of `width`, without noise. Coefficients below `least` of the middle of a block's luma and of its range are noise.
-/// Blocks begin at every `step` px.
+/// White noise: all coefficients have as much of it.
+pub(super) const WHITE: Block = [[1.0; SIDE]; SIDE];
+
+/// Luma and chromas, rows of `width`, without noise. Coefficients below `least` of the middle of a block's luma and of its range,
+/// times their part in the `spectrum` of the noise, are noise. Blocks begin at every `step` px.
 pub(super) fn shrink(
     planes: &[Vec<f32>; 3],
     width: usize,
     step: usize,
+    spectrum: &Block,
     least: &(impl Fn(f32, f32) -> f32 + Sync),
 ) -> [Vec<f32>; 3] {
     let height = planes[0].len() / width;
@@ -36,7 +40,7 @@ pub(super) fn shrink(
                 let [low, high] = bounds(&blocks[0]);
                 let least = least((low + high) / 2.0, high - low);
                 for (band, block) in bands.iter_mut().zip(&blocks) {
-                    band.add(&kept(&cosines, block, least), [x, y]);
+                    band.add(&kept(&cosines, block, spectrum, least), [x, y]);
                 }
             }
         }
@@ -72,7 +76,7 @@ fn mirrored(start: isize, size: usize) -> [usize; SIDE] {
 }
 
 /// A block without coefficients below `least`, and its weight: the fewer coefficients are left, the less noise is.
-fn kept(cosines: &Cosines, block: &Block, least: f32) -> (Block, f32) {
+fn kept(cosines: &Cosines, block: &Block, spectrum: &Block, least: f32) -> (Block, f32) {
     // Most blocks of flat art need no transform.
     let first = block[0][0];
     if block.iter().flatten().all(|value| *value == first) {
@@ -82,8 +86,14 @@ fn kept(cosines: &Cosines, block: &Block, least: f32) -> (Block, f32) {
     let mean = coefficients[0][0];
     // Noise is spread over all coefficients, and what is drawn gathers in a few. The mean stays.
     let mut count = 1;
-    for value in coefficients.iter_mut().flatten().skip(1) {
-        if value.abs() < least {
+    let parts = spectrum.as_flattened().iter();
+    for (value, part) in coefficients
+        .as_flattened_mut()
+        .iter_mut()
+        .zip(parts)
+        .skip(1)
+    {
+        if value.abs() < part * least {
             *value = 0.0;
         } else {
             count += 1;

@@ -69,17 +69,30 @@ impl Labels {
 
     /// The labels of the corners of a cell, clockwise from the upper left one.
     fn corners(&self, cell: usize) -> [u16; 4] {
+        self.corner_pixels(cell).map(|pixel| self.of[pixel])
+    }
+
+    /// The pixels in whose centres a cell has its corners, clockwise from the upper left one; outside of the picture those at
+    /// its border.
+    fn corner_pixels(&self, cell: usize) -> [usize; 4] {
         let columns = self.cells()[0];
         let (x, y) = ((cell % columns) as isize, (cell / columns) as isize);
-        [[-1, -1], [0, -1], [0, 0], [-1, 0]].map(|[dx, dy]| self.at(x + dx, y + dy))
+        [[-1, -1], [0, -1], [0, 0], [-1, 0]].map(|[dx, dy]| self.pixel_at(x + dx, y + dy))
     }
 
     /// The node of each cell, relative to its middle, px.
     fn nodes(&self, recipe: &Stairs) -> Vec<[f32; 2]> {
         let [columns, rows] = self.cells();
-        // Cells that a border runs through.
+        // Cells that a border runs through, other than those of specks.
         let mut nodes = vec![[0.0_f32; 2]; columns * rows];
+        let specks = self.specks(recipe.speck);
+        let is_free = |cell: &usize| {
+            self.corner_pixels(*cell)
+                .iter()
+                .all(|pixel| !specks[*pixel])
+        };
         let borders: Vec<(usize, [bool; 4])> = (0..nodes.len())
+            .filter(is_free)
             .map(|cell| (cell, crossed(&self.corners(cell))))
             .filter(|(_, crossed)| crossed.contains(&true))
             .collect();

@@ -186,6 +186,29 @@ fn stairs_of_transparency_become_smooth() {
 }
 
 #[test]
+fn specks_are_left_as_they_are() {
+    // A disc with stairs among dots of one to four pixels, on transparency.
+    let dots = |x: usize, y: usize| y % 32 == 4 && x % 16 < 1 + x / 32 && x < 128;
+    let disc = |x: usize, y: usize| (x as f32 - 64.0).hypot(y as f32 - 80.0) < 30.0;
+    let alpha: Vec<f32> = (0..128 * 128)
+        .map(|i| f32::from(u8::from(dots(i % 128, i / 128) || disc(i % 128, i / 128))))
+        .collect();
+    let picture = Image::filled(128, 128, [0.2; 3])
+        .unwrap()
+        .with_alpha(alpha.clone())
+        .unwrap();
+    let meant = damage::meant(&picture).unwrap().unwrap();
+    assert!(meant.damage.stairs);
+    let kept = meant.picture.alpha().unwrap();
+    let is_kept = |i: usize| kept[i] == alpha[i];
+    assert!(
+        (0..128 * 128)
+            .filter(|i| dots(i % 128, i / 128) && !disc(i % 128, i / 128))
+            .all(is_kept)
+    );
+}
+
+#[test]
 fn stairs_of_one_bit_become_smooth() {
     let fit = drawn(&picture("bilevel2.png"), Config::default());
     assert!(fit.damage.unwrap().stairs);

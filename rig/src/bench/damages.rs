@@ -7,8 +7,8 @@ use strokefit::Result;
 use strokefit::image::{Image, Limits};
 use strokefit::rng;
 
-/// Least share of the pixels that have a common colour. Fewer have those of antialiased edges.
-const COMMON: f64 = 0.002;
+/// Least share of the pixels that have a common colour and lie within their own.
+const COMMON: f64 = 0.001;
 
 /// Levels between the colours of the palette that browsers once had, 6 for each channel.
 const WEB_LEVELS: f32 = 51.0;
@@ -36,13 +36,22 @@ pub(super) fn damaged(picture: &Image, damage: Damage) -> Result<Image> {
     }
 }
 
-/// The colours that are common in a picture, the most common first.
+/// The colours of places of one colour, the most common first. Antialiased edges have none, however long they are.
 pub(super) fn common_colors(picture: &Image) -> Vec<[u8; 3]> {
+    let (width, height) = (picture.width(), picture.height());
+    let pixels = picture.to_rgb8();
+    let pixels = pixels.as_chunks::<3>().0;
     let mut counts: BTreeMap<[u8; 3], usize> = BTreeMap::new();
-    for color in picture.to_rgb8().as_chunks::<3>().0 {
-        *counts.entry(*color).or_default() += 1;
+    for y in 1..height.saturating_sub(1) {
+        for x in 1..width.saturating_sub(1) {
+            let color = pixels[y * width + x];
+            let row = |y: usize| &pixels[y * width + x - 1..=y * width + x + 1];
+            if (y - 1..=y + 1).flat_map(row).all(|other| *other == color) {
+                *counts.entry(color).or_default() += 1;
+            }
+        }
     }
-    let least = COMMON * (picture.width() * picture.height()) as f64;
+    let least = COMMON * pixels.len() as f64;
     let common = counts.into_iter().filter(|(_, n)| *n as f64 >= least);
     let mut common: Vec<_> = common.collect();
     common.sort_by_key(|(_, count)| usize::MAX - count);
