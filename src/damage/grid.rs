@@ -62,12 +62,15 @@ mod tests {
     use super::*;
     use crate::image::{Image, Limits};
 
-    /// Discs on white, with antialiasing.
+    /// Discs on white, with antialiasing, at places that no grid has.
     fn discs() -> Image {
+        let discs = [[37.3, 41.7, 23.4], [91.2, 88.9, 30.2], [100.0, 25.0, 14.6]];
         Image::from_fn(136, 136, 1, |x, y, _| {
-            let away = |at: usize| (at % 48) as f32 - 23.5;
-            let away = away(x).hypot(away(y));
-            0.2 + 0.8 * (away - 16.0).clamp(0.0, 1.0)
+            let outside = discs.map(|[cx, cy, radius]| {
+                let [dx, dy] = [x as f32 - cx, y as f32 - cy];
+                ((dx * dx + dy * dy).sqrt() - radius).clamp(0.0, 1.0)
+            });
+            0.2 + 0.8 * outside.iter().fold(1.0_f32, |least, v| least.min(*v))
         })
         .unwrap()
     }

@@ -141,7 +141,7 @@ fn traces_of_a_cropped_jpeg_are_not_drawn() {
 fn with_alpha(picture: Image, is_binary: bool) -> Image {
     let width = picture.width();
     let alpha = (0..width * picture.height()).map(|i| {
-        let [x, y] = [i % width, i / width].map(|v| v as f32 - 63.5);
+        let (x, y) = ((i % width) as f32 - 60.3, (i / width) as f32 - 64.8);
         let alpha = (56.0 - x.hypot(y)).clamp(0.0, 1.0);
         if is_binary { alpha.round() } else { alpha }
     });

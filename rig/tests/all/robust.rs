@@ -11,14 +11,14 @@ fn damaged_pictures_are_drawn_beside_clean_ones() {
     let zap = sample("icons/zap.svg");
     let damages = "clean,aliased,jpeg50,noise8";
     let args = [
-        "robust", &zap, "-o", "out", "--side", "64", "--damage", damages,
+        "robust", &zap, "-o", "out", "--side", "96", "--damage", damages,
     ];
     let output = bench(&place, &args);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     let lines = lines(&output);
     assert_eq!(lines.len(), 4, "{lines:?}");
     assert!(
-        lines[0].starts_with("zap at 64 px: 1 elements, "),
+        lines[0].starts_with("zap at 96 px: 1 elements, "),
         "{lines:?}"
     );
     assert!(lines[1].contains("left out stairs"), "{lines:?}");
@@ -49,7 +49,7 @@ fn a_short_run_takes_a_few_files_of_a_folder_with_all_damages() {
     let place = Place::new();
     fs::create_dir(place.path("art")).unwrap();
     for name in ["a", "b", "c", "d"] {
-        let bar = r##"<svg xmlns="http://www.w3.org/2000/svg" width="64" height="64"><path d="M8 8h40v30h-40z" fill="#2060c0"/></svg>"##;
+        let bar = r##"<svg xmlns="http://www.w3.org/2000/svg" width="96" height="96"><path d="M8 8h40v30h-40z" fill="#2060c0"/></svg>"##;
         fs::write(place.path(&format!("art/{name}.svg")), bar).unwrap();
     }
     fs::write(place.path("art/notes.txt"), "no picture").unwrap();
