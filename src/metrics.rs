@@ -238,7 +238,7 @@ pub fn ssimulacra2_map(reference: &Image, picture: &Image) -> Result<Vec<f32>> {
 /// [`ErrorKind::Picture`] when the sizes differ.
 pub fn details_lost(reference: &Image, picture: &Image) -> Result<Vec<f32>> {
     let [reference, picture] = both_on_white(reference, picture)?;
-    Ok(Details::of(&reference).losses(&picture))
+    Ok(Details::of(&reference, details::SEEN).losses(&picture))
 }
 
 /// Interleaved RGB of both pictures as a viewer shows them on white.

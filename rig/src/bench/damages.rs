@@ -10,6 +10,9 @@ use strokefit::rng;
 /// Least share of the pixels that have a common colour and lie within their own.
 const COMMON: f64 = 0.001;
 
+/// Rows and columns around an antialiased pixel in which the colours lie that it is a mixture of.
+const AROUND: usize = 2;
+
 /// Levels between the colours of the palette that browsers once had, 6 for each channel.
 const WEB_LEVELS: f32 = 51.0;
 
@@ -71,26 +74,32 @@ fn noisy(picture: &Image, levels: u8) -> Result<Image> {
     })
 }
 
-/// Without antialiasing: each pixel has the nearest of the common colours, or black or white where a picture has none.
+/// Without antialiasing: each pixel has the nearest of the common colours around it, or black or white where a picture has none.
 fn aliased(picture: &Image) -> Result<Image> {
     let mut palette = common_colors(picture);
     if palette.len() < 2 {
         palette = vec![[0; 3], [255; 3]];
     }
+    let (width, height) = (picture.width(), picture.height());
     let pixels = picture.to_rgb8();
-    let nearest = |i: usize| -> Option<[u8; 3]> {
-        let apart = |color: &[u8; 3]| -> u32 {
-            let channels = color.iter().zip(&pixels[3 * i..]);
-            channels
-                .map(|(a, b)| u32::from(a.abs_diff(*b)).pow(2))
-                .sum()
+    let pixels = pixels.as_chunks::<3>().0;
+    let nearest = |x: usize, y: usize| -> Option<[u8; 3]> {
+        let color = pixels[y * width + x];
+        let apart = |other: &[u8; 3]| -> u32 {
+            let channels = other.iter().zip(color);
+            channels.map(|(a, b)| u32::from(a.abs_diff(b)).pow(2)).sum()
         };
-        palette.iter().copied().min_by_key(apart)
+        let rows = y.saturating_sub(AROUND)..(y + AROUND + 1).min(height);
+        let columns = x.saturating_sub(AROUND)..(x + AROUND + 1).min(width);
+        let around = rows.flat_map(|y| &pixels[y * width..][columns.clone()]);
+        let common = around.copied().filter(|other| palette.contains(other));
+        let of_all = || palette.iter().copied().min_by_key(apart);
+        common.min_by_key(apart).or_else(of_all)
     };
-    let width = picture.width();
-    Image::from_fn(width, picture.height(), 3, |x, y, c| {
-        nearest(y * width + x).map_or(0, |color| color[c])
-    })
+    let nearest: Vec<[u8; 3]> = (0..width * height)
+        .map(|i| nearest(i % width, i / width).unwrap_or_default())
+        .collect();
+    Image::from_fn(width, height, 3, |x, y, c| nearest[y * width + x][c])
 }
 
 /// In the palette of old browsers, the error of each pixel handed on to those after it (Floyd and Steinberg, 1976).
@@ -147,10 +156,14 @@ fn enlarged(picture: &Image) -> Result<Image> {
 
 /// On paper, in light that falls off towards the lower right corner.
 fn in_light(picture: &Image) -> Result<Image> {
-    let side = |at: usize, size: usize| (at as f32 + 0.5) / size as f32;
+    // The square of a place, in units of the picture's side.
+    let side2 = |at: usize, size: usize| {
+        let place = (at as f32 + 0.5) / size as f32;
+        place * place
+    };
     let (width, height) = (picture.width(), picture.height());
     mapped(picture, |value, [x, y], _| {
-        let away = (side(x, width).powi(2) + side(y, height).powi(2)) / 2.0;
+        let away = (side2(x, width) + side2(y, height)) / 2.0;
         255.0 * value * PAPER * (1.0 - (1.0 - LEAST_LIGHT) * away)
     })
 }
@@ -172,7 +185,8 @@ mod tests {
     /// A grey disc on white, with antialiasing.
     fn disc() -> Image {
         Image::from_fn(65, 64, 1, |x, y, _| {
-            let away = (x as f32 - 31.5).hypot(y as f32 - 31.5);
+            let [dx, dy] = [x as f32 - 31.5, y as f32 - 31.5];
+            let away = (dx * dx + dy * dy).sqrt();
             0.4 + 0.6 * (away - 20.0).clamp(0.0, 1.0)
         })
         .unwrap()
