@@ -222,6 +222,15 @@ impl Config {
             || order == Order::Travel
     }
 
+    /// True if small things that get lost are traced again. A limit on bytes leaves room for what gains most, a fidelity asks for all
+    /// alike, and a palette draws what it can.
+    pub(super) fn recovers(&self) -> bool {
+        let Budget { psnr_db, bytes, .. } = self.budget;
+        let is_polished = self.polish && !self.progressive;
+        let is_free = psnr_db.is_none() && bytes.is_none() && is_polished;
+        is_free && !matches!(self.colors, Colors::Palette(_))
+    }
+
     /// True if strokes may have more than two points.
     pub(super) fn allows_points(&self) -> bool {
         self.points.is_none_or(|most| most > 2)

@@ -17,7 +17,9 @@ pub struct Tracing {
     /// Factor on the steps of traced strokes, which are about where they belong. 0.15, 0.25, 0.4, 1: 39 icons have 42.8,
     /// 42.8, 42.5, 40.8 dB.
     pub pace: f32,
-    /// Most times that a drawing is traced. A guess.
+    /// Most times that a drawing is traced before its polish where nothing is traced after it; otherwise once. 1, 2, 3 of the latter:
+    /// six pictures of flat art have 37.97, 38.39, 38.61 dB in 15.9, 17.1, 18.0 kB and take 1.5, 1.9, 2.0 s; a comic of 36 dB
+    /// needs 3 of the former.
     pub rounds: usize,
     /// Scale of the fit of traced strokes, px: they are about as far from where they belong. A guess.
     pub scale: f32,

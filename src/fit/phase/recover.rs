@@ -5,7 +5,6 @@
 //! what is small and stands alone, though: see [`Details`].
 
 use super::trace;
-use crate::fit::config::{Budget, Colors};
 use crate::fit::drawing::surface::Surface;
 use crate::fit::order::{Outcome, Purpose};
 use crate::fit::run::session::Session;
@@ -18,12 +17,8 @@ use crate::trace::Tracing;
 /// Seeds a stage of strokes along the details that the polished drawing has lost.
 pub(in crate::fit) fn recover(session: &mut Session<'_>) -> Outcome {
     let [traced, _] = session.history.traced;
-    // A limit on bytes leaves room for what gains most, a fidelity asks for all alike, and a palette draws what it can.
-    let Budget { psnr_db, bytes, .. } = session.config.budget;
     let is_over = traced == 0
-        || psnr_db.is_some()
-        || bytes.is_some()
-        || matches!(session.config.colors, Colors::Palette(_))
+        || !session.config.recovers()
         || session.progress.stopped().is_some()
         || session.cut_by().is_some();
     if is_over {

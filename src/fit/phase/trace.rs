@@ -18,7 +18,11 @@ use crate::trace::{Traced, Tracing, trace};
 
 /// Adds strokes along the lines of the residual, on top of all others.
 pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> {
-    // Traced until nothing pays, or the fidelity is near.
+    // Traced until nothing pays, or the fidelity is near; once if what is lost is traced later.
+    let rounds = match session.config.recovers() {
+        true => 1,
+        false => session.recipe.tracing.rounds,
+    };
     let is_rejected = session
         .history
         .stage
@@ -26,7 +30,7 @@ pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> 
     let is_over = session.progress.stopped().is_some()
         || is_rejected
         || !session.config.allows_points()
-        || session.history.traced[0] == session.recipe.tracing.rounds
+        || session.history.traced[0] == rounds
         || grow::enough(session) == Some(Stop::Psnr);
     let traced = match is_over {
         true => Vec::new(),
