@@ -247,7 +247,7 @@ fn run(session: &mut Session<'_>) -> Result<Outcome> {
             polish::polish(session, purpose)?;
             count::approach_fidelity(session)
         }
-        Phase::Recover => recover::recover(session),
+        Phase::Recover => recover::recover(session)?,
         Phase::Restrict(_) => restrict::restrict(session)?,
         Phase::Settle(_) => settle::settle(session)?,
         Phase::Nudge(_) => nudge::nudge(session)?,

@@ -15,7 +15,7 @@ use crate::math;
 use crate::optim::AdamParams;
 use crate::seed::Probing;
 pub use crate::shading::ShadeFit;
-use crate::trace::Tracing;
+use crate::trace::{AreaColors, Tracing};
 
 /// Pixels of a picture that a screen shows well at once, 768×512: the default quality is for so many.
 pub const SCREEN_PIXELS: usize = 768 * 512;
@@ -325,6 +325,8 @@ pub struct Recovery {
     pub reach: usize,
     /// Fewest pixels of a shape that is traced. 3, 1: 25, 41 of 41 specks of 1 to 4 px are there.
     pub least_area: usize,
+    /// The colours that are traced, finer ones than those of a whole picture, as many details are pale.
+    pub colors: AreaColors,
     /// Iterations of the polish that follows, in units of those of the first one. A guess.
     pub polish_share: f64,
 }

@@ -3,9 +3,12 @@
 //! A label costs few bytes beside all others, and its error is small beside that of the whole picture. So at the price of a
 //! byte, which is one for the whole picture, letters go while strokes find their places, and nothing brings them back. People see
 //! what is small and stands alone, though: see [`Details`].
+//!
+//! They are looked for in what resvg makes of the file. An area that has become too thin has no inside there, though our own
+//! edges, which are soft, show it.
 
 use super::trace;
-use crate::fit::drawing::surface::Surface;
+use crate::error::Result;
 use crate::fit::order::{Outcome, Purpose};
 use crate::fit::run::session::Session;
 use crate::image::Image;
@@ -15,34 +18,35 @@ use crate::scene::Marks;
 use crate::trace::Tracing;
 
 /// Seeds a stage of strokes along the details that the polished drawing has lost.
-pub(in crate::fit) fn recover(session: &mut Session<'_>) -> Outcome {
+pub(in crate::fit) fn recover(session: &mut Session<'_>) -> Result<Outcome> {
     let [traced, _] = session.history.traced;
     let is_over = traced == 0
         || !session.config.recovers()
         || session.progress.stopped().is_some()
         || session.cut_by().is_some();
     if is_over {
-        return Outcome::Over;
+        return Ok(Outcome::Over);
     }
     // Where are they?
-    let canvases = trace::canvases(&mut session.drawing);
-    let lost = lost(session, &canvases);
-    let count = lost.iter().filter(|&&is_lost| is_lost).count();
-    if count == 0 {
-        return Outcome::Over;
+    session.drawing.sharpen(0.0);
+    let drawn = session.render_file()?.drawn;
+    let lost = lost(session, &drawn);
+    if !lost.contains(&true) {
+        return Ok(Outcome::Over);
     }
     // Their price is one of what is seen there.
-    let places = (0u32..).zip(&lost).filter(|(_, is_lost)| **is_lost);
+    let places = (0_u32..).zip(&lost).filter(|(_, is_lost)| **is_lost);
     session.history.lost = places.map(|(place, _)| place).collect();
     session.weigh_lost();
     // Elsewhere nothing is to be traced.
-    let surfaces = session.drawing.surfaces.iter().zip(&canvases);
+    let surfaces = session.drawing.surfaces.iter().zip(drawn);
     let canvases: Vec<Canvas> = surfaces
-        .map(|(surface, canvas)| outside(surface, canvas, &lost))
+        .map(|(surface, drawn)| inside(drawn, surface.picture(), &lost))
         .collect();
     let tracing = Tracing {
         min_flat_share: 0.0,
         least_area: session.recipe.recovery.least_area,
+        colors: session.recipe.recovery.colors,
         ..session.recipe.tracing
     };
     let marks = match session.config.marks() {
@@ -50,38 +54,33 @@ pub(in crate::fit) fn recover(session: &mut Session<'_>) -> Outcome {
         Marks::Auto | Marks::Strokes => Marks::Strokes,
     };
     let traced = trace::paying(session, &canvases, tracing, marks);
-    match trace::add(session, traced) {
+    Ok(match trace::add(session, traced) {
         true => Outcome::Seeded(Purpose::Recover),
         false => Outcome::Over,
-    }
+    })
 }
 
 /// The pixels in and near lost details, on any matte.
-fn lost(session: &Session<'_>, canvases: &[Canvas]) -> Vec<bool> {
+fn lost(session: &Session<'_>, drawn: &[Image]) -> Vec<bool> {
     let (drawing, recovery) = (&session.drawing, session.recipe.recovery);
     let mut lost = vec![false; drawing.pixels()];
-    for (surface, canvas) in drawing.surfaces.iter().zip(canvases) {
+    for (surface, drawn) in drawing.surfaces.iter().zip(drawn) {
         let details = Details::of(surface.picture(), recovery.contrast);
-        let near = details.near_losses(&canvas.to_image(), recovery.reach);
-        lost.iter_mut()
-            .zip(near)
-            .for_each(|(lost, near)| *lost |= near);
+        let near = details.near_losses(drawn, recovery.reach);
+        let pixels = lost.iter_mut().zip(near);
+        pixels.for_each(|(lost, near)| *lost |= near);
     }
     lost
 }
 
-/// The canvas where details are lost, and the picture elsewhere.
-fn outside(surface: &Surface, canvas: &Canvas, lost: &[bool]) -> Canvas {
-    let picture = surface.picture();
-    let mut planes = canvas.to_image().into_planes();
-    for (plane, meant) in planes.iter_mut().zip(picture.planes()) {
+/// The picture that was `drawn` where details are lost, and the one that is meant elsewhere.
+fn inside(drawn: Image, meant: &Image, lost: &[bool]) -> Canvas {
+    let mut planes = drawn.into_planes();
+    for (plane, meant) in planes.iter_mut().zip(meant.planes()) {
         let pixels = plane.iter_mut().zip(meant).zip(lost);
         let others = pixels.filter(|(_, is_lost)| !**is_lost);
         others.for_each(|((value, meant), _)| *value = *meant);
     }
-    Canvas::from_image(&Image::from_planes(
-        picture.width(),
-        picture.height(),
-        planes,
-    ))
+    let (width, height) = (meant.width(), meant.height());
+    Canvas::from_image(&Image::from_planes(width, height, planes))
 }

@@ -227,6 +227,13 @@ const BALANCED: Recipe = Recipe {
         contrast: 10.0 / 255.0,
         reach: 4,
         least_area: 1,
+        colors: AreaColors {
+            most: 48,
+            samples: 65_536,
+            near: 0.06,
+            flat: 0.05,
+            least_share: 0.001,
+        },
         polish_share: 0.2,
     },
     points: Points {
