@@ -53,8 +53,10 @@ impl Labels {
         self.colors.contains(&[0.0; 4])
     }
 
-    /// True for each pixel of a shape of at most so many pixels of one colour, joined along their sides.
-    pub(super) fn specks(&self, most: usize) -> Vec<bool> {
+    /// True for each pixel of a shape of at most so many pixels of one colour, joined along their sides; and the share of such shapes
+    /// among all.
+    pub(super) fn specks(&self, most: usize) -> (Vec<bool>, f32) {
+        let (mut specks, mut shapes) = (0, 0);
         let mut is_speck = vec![false; self.of.len()];
         let mut is_seen = vec![false; self.of.len()];
         for first in 0..self.of.len() {
@@ -72,11 +74,13 @@ impl Labels {
                     }
                 }
             }
+            shapes += 1;
             if shape.len() <= most {
+                specks += 1;
                 shape.into_iter().for_each(|pixel| is_speck[pixel] = true);
             }
         }
-        is_speck
+        (is_speck, specks as f32 / shapes as f32)
     }
 
     /// The pixels beside one.
@@ -145,9 +149,11 @@ mod tests {
             |x: usize, y: usize| (x, y) == (2, 2) || y == 5 && x < 10 || (x, y) == (10, 6);
         let value = |x, y, _| f32::from(u8::from(is_dark(x, y)));
         let picture = Image::from_fn(16, 8, 1, value).unwrap();
-        let specks = Labels::of(&picture, 2).unwrap().specks(8);
+        let (specks, share) = Labels::of(&picture, 2).unwrap().specks(8);
         let found: Vec<usize> = (0..16 * 8).filter(|i| specks[*i]).collect();
         assert_eq!(found, [2 * 16 + 2, 6 * 16 + 10]);
+        // The page and the bar are none.
+        assert!((share - 0.5).abs() < 1e-6);
     }
 
     #[test]

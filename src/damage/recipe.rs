@@ -109,6 +109,9 @@ pub(super) struct Stairs {
     pub(super) rounds: usize,
     /// Most pixels of a speck, whose border stays: smooth ones shrink to nothing. A guess.
     pub(super) speck: usize,
+    /// Share of specks among the shapes of a transparent picture from which on its stairs are meant: the difference of two pictures. A
+    /// guess.
+    pub(super) most_specks: f32,
 }
 
 impl Stairs {
@@ -119,6 +122,7 @@ impl Stairs {
         reach: 0.45,
         rounds: 60,
         speck: 8,
+        most_specks: 0.5,
     };
 }
 

@@ -27,7 +27,11 @@ pub(super) fn smoothed(labels: &Labels, recipe: &Stairs) -> Result<Option<Image>
     if is_antialiased || !labels.has_corners() || labels.common_run() >= recipe.least_square {
         return Ok(None);
     }
-    let nodes = labels.nodes(recipe);
+    let (specks, share) = labels.specks(recipe.speck);
+    if labels.is_transparent() && share > recipe.most_specks {
+        return Ok(None);
+    }
+    let nodes = labels.nodes(&specks, recipe);
     labels.drawn(&nodes).map(Some)
 }
 
@@ -81,11 +85,10 @@ impl Labels {
     }
 
     /// The node of each cell, relative to its middle, px.
-    fn nodes(&self, recipe: &Stairs) -> Vec<[f32; 2]> {
+    fn nodes(&self, specks: &[bool], recipe: &Stairs) -> Vec<[f32; 2]> {
         let [columns, rows] = self.cells();
         // Cells that a border runs through, other than those of specks.
         let mut nodes = vec![[0.0_f32; 2]; columns * rows];
-        let specks = self.specks(recipe.speck);
         let is_free = |cell: &usize| {
             self.corner_pixels(*cell)
                 .iter()
