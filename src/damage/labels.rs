@@ -53,10 +53,10 @@ impl Labels {
         self.colors.contains(&[0.0; 4])
     }
 
-    /// True for each pixel of a shape of at most so many pixels of one colour, joined along their sides; and the share of such shapes
-    /// among all.
+    /// True for each pixel of a shape of at most so many pixels of one colour, joined along their sides; and their share of the
+    /// pixels of all shapes but the largest.
     pub(super) fn specks(&self, most: usize) -> (Vec<bool>, f32) {
-        let (mut specks, mut shapes) = (0, 0);
+        let (mut specks, mut largest) = (0, 0);
         let mut is_speck = vec![false; self.of.len()];
         let mut is_seen = vec![false; self.of.len()];
         for first in 0..self.of.len() {
@@ -74,13 +74,14 @@ impl Labels {
                     }
                 }
             }
-            shapes += 1;
+            largest = shape.len().max(largest);
             if shape.len() <= most {
-                specks += 1;
+                specks += shape.len();
                 shape.into_iter().for_each(|pixel| is_speck[pixel] = true);
             }
         }
-        (is_speck, specks as f32 / shapes as f32)
+        let others = (self.of.len() - largest).max(1);
+        (is_speck, specks as f32 / others as f32)
     }
 
     /// The pixels beside one.
@@ -152,8 +153,8 @@ mod tests {
         let (specks, share) = Labels::of(&picture, 2).unwrap().specks(8);
         let found: Vec<usize> = (0..16 * 8).filter(|i| specks[*i]).collect();
         assert_eq!(found, [2 * 16 + 2, 6 * 16 + 10]);
-        // The page and the bar are none.
-        assert!((share - 0.5).abs() < 1e-6);
+        // The bar has ten pixels.
+        assert!((share - 2.0 / 12.0).abs() < 1e-6);
     }
 
     #[test]

@@ -222,13 +222,18 @@ impl Config {
             || order == Order::Travel
     }
 
-    /// True if small things that get lost are traced again. A limit on bytes leaves room for what gains most, a fidelity asks for all
-    /// alike, and a palette draws what it can.
+    /// True if small things that get lost are traced again. A limit leaves room for what gains most, a fidelity asks for all alike, and
+    /// a palette draws what it can.
     pub(super) fn recovers(&self) -> bool {
-        let Budget { psnr_db, bytes, .. } = self.budget;
+        let Budget {
+            strokes,
+            psnr_db,
+            bytes,
+            ..
+        } = self.budget;
+        let is_free = strokes.is_none() && psnr_db.is_none() && bytes.is_none();
         let is_polished = self.polish && !self.progressive;
-        let is_free = psnr_db.is_none() && bytes.is_none() && is_polished;
-        is_free && !matches!(self.colors, Colors::Palette(_))
+        is_free && is_polished && !matches!(self.colors, Colors::Palette(_))
     }
 
     /// True if strokes may have more than two points.

@@ -21,7 +21,7 @@ use crate::trace::Tracing;
 pub(in crate::fit) fn recover(session: &mut Session<'_>) -> Result<Outcome> {
     let [traced, _] = session.history.traced;
     let is_over = traced == 0
-        || !session.config.recovers()
+        || !session.recovers()
         || session.progress.stopped().is_some()
         || session.cut_by().is_some();
     if is_over {

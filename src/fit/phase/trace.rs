@@ -19,7 +19,7 @@ use crate::trace::{Traced, Tracing, trace};
 /// Adds strokes along the lines of the residual, on top of all others.
 pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> {
     // Traced until nothing pays, or the fidelity is near; once if what is lost is traced later.
-    let rounds = match session.config.recovers() {
+    let rounds = match session.recovers() {
         true => 1,
         false => session.recipe.tracing.rounds,
     };

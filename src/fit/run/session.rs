@@ -194,6 +194,11 @@ impl<'a> Session<'a> {
         })
     }
 
+    /// True if small things that get lost are traced again. Those of a base were.
+    pub(in crate::fit) fn recovers(&self) -> bool {
+        self.base.is_none() && self.config.recovers()
+    }
+
     /// Lets errors near lost details count more, for all that follows.
     pub(in crate::fit) fn weigh_lost(&mut self) {
         let size = [self.target.width(), self.target.height()];
