@@ -60,7 +60,7 @@ fn transposed(luma: &[f32], width: usize) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::image::{Image, Limits};
+    use crate::image::Image;
 
     /// Discs on white, with antialiasing, at places that no grid has.
     fn discs() -> Image {
@@ -79,8 +79,11 @@ mod tests {
         offset(&Planes::of(picture))
     }
 
+    // JPEG is written by the program alone.
+    #[cfg(feature = "cli")]
     #[test]
     fn the_grid_of_a_cropped_jpeg_is_found() {
+        use crate::image::Limits;
         let jpeg = discs().encode_jpeg(75).unwrap();
         let jpeg = Image::decode(&jpeg, "JPEG", Limits::default()).unwrap();
         assert_eq!(found(&jpeg), [0, 0]);
