@@ -46,7 +46,7 @@ pub(in crate::fit) fn restrict(session: &mut Session<'_>) -> Result<Outcome> {
     if session.config.colors != Colors::Free {
         session.drawing.remove_hidden();
     }
-    forms::run(session);
+    forms::run(session)?;
     session.history.ties = share_within_bytes(session);
     Ok(Outcome::Over)
 }

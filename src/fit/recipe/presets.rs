@@ -305,6 +305,7 @@ const BALANCED: Recipe = Recipe {
         split_rings: [12, 24],
         most_marks: usize::MAX,
         worth_bytes: 30,
+        most_lost_db: [2.0, 34.0],
     },
     masking: Masking {
         window: 6,

@@ -5,6 +5,7 @@
 //! hide in part, what is seen decides. A few steps of descent fit all proposals as what they are, and those stay that add less
 //! squared error than the bytes that they save are worth.
 
+use crate::error::Result;
 use crate::fit::descent::held::Held;
 use crate::fit::descent::{Course, Descent};
 use crate::fit::drawing::Drawing;
@@ -12,19 +13,30 @@ use crate::fit::halves::by_halves;
 use crate::fit::recipe::{Forms, Rates};
 use crate::fit::run::session::Session;
 use crate::math::Point;
+use crate::metrics::psnr_db;
 use crate::render::StrokeRef;
 use crate::scene::{Area, Mark, Path, PathPoint, Shape, Stroke};
 use crate::svg::mark_bytes;
 
 /// Makes shapes of areas and traced strokes that nearly are such, and then lines level and upright. All strokes must be free.
-pub(super) fn run(session: &mut Session<'_>) {
+pub(super) fn run(session: &mut Session<'_>) -> Result<()> {
     let forms = session.recipe.forms;
     let most = session.limit.min(forms.most_marks);
     let room = most.saturating_sub(session.drawing.len());
     let shapes = shapes(session, forms, room);
-    adopt(session, forms, shapes);
+    if shapes.iter().any(Option::is_some) {
+        // resvg draws large circles of a pen up to a quarter of a pixel off, and paths of many points better.
+        let (before, paths) = (session.drawing.memento(), session.render_file()?);
+        adopt(session, forms, shapes);
+        let [had_db, has_db] = [paths.mse, session.render_file()?.mse].map(psnr_db);
+        let [most_lost_db, enough_db] = forms.most_lost_db;
+        if had_db - has_db > most_lost_db && has_db < enough_db {
+            session.drawing.restore(before);
+        }
+    }
     let straight = straight(session, forms);
     adopt(session, forms, straight);
+    Ok(())
 }
 
 /// Nearest that points of what is not a dot are, px: less than a picture tells.
