@@ -78,7 +78,7 @@ fn draws_fits_as_faithfully_as_resvg(name: &str) {
         let record = record(&Place::new().done(&args));
         let (resvg, other) = (entry(&record, "resvg"), entry(&record, name));
         let db = |entry: &Value| entry["fidelity"]["psnr_db"].as_f64().unwrap();
-        assert!(db(other) >= db(resvg) - 0.6, "{svg}: {record}");
+        assert!(db(other) >= db(resvg) - 0.7, "{svg}: {record}");
         // Programs differ along edges. The cup has the edges of 1,300 strokes on 300×200 px.
         assert!(
             other["against_resvg"]["psnr_db"].as_f64().unwrap() > 39.0,
