@@ -246,7 +246,10 @@ fn geometry(mark: &Mark, grid: &Grid, width: i64) -> (Vec<WrittenPath>, Option<W
     let mut paths: Vec<(&Path, WrittenPath)> = rounded
         .map(|path| (path, WrittenPath::rounded(path, grid)))
         .collect();
-    paths.retain(|(_, rounded)| width > 0 || rounded.encloses());
+    // The rounded points of a shape may enclose nothing where the shape, with rounded radii, does.
+    let is_shape =
+        |path: &Path| mark.paths().len() == 1 && WrittenShape::rounded(path, grid).is_some();
+    paths.retain(|(path, rounded)| width > 0 || rounded.encloses() || is_shape(path));
     if let [(path, rounded)] = &paths[..] {
         // A path may become a rectangle only as it is rounded.
         let shape = WrittenShape::rounded(path, grid);
