@@ -78,6 +78,24 @@ impl<Entry> Clone for Outcome<'_, Entry> {
 
 impl<Entry> Copy for Outcome<'_, Entry> {}
 
+/// Tells each of the records, and adds it to `entries`; beside each stands the SVG that was made of `picture`.
+pub(super) fn record<Entry>(
+    found: impl IntoIterator<Item = (Entry, String)>,
+    picture: &Image,
+    tell: &mut dyn FnMut(Outcome<'_, Entry>) -> Result<()>,
+    entries: &mut Vec<Entry>,
+) -> Result<()> {
+    for (entry, svg) in found {
+        tell(Outcome {
+            entry: &entry,
+            picture,
+            svg: &svg,
+        })?;
+        entries.push(entry);
+    }
+    Ok(())
+}
+
 /// Pictures that are made of each drawing.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Pictures {

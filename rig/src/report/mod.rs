@@ -2,6 +2,7 @@
 //!
 //! The rules of [`strokefit::report`] hold: fields may be added, none is renamed.
 
+pub mod cases;
 mod damage;
 pub mod inverse;
 pub mod pareto;

@@ -1,21 +1,14 @@
 //! Findings of `strokefit-rig robust`: how much a drawing grows by damage of its picture, and how near it comes to the clean one.
 
 use serde::{Deserialize, Serialize};
-use strokefit::report::SCHEMA;
 
-use super::inverse::OWN;
+use super::cases::{self, Case, Cases, OWN};
 use super::shapes::Contents;
 use super::statistics::{distinct, mean, median, optional};
 use super::{Damage, Table};
 
 /// All cases of a run.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct RobustReport {
-    /// [`SCHEMA`].
-    pub schema: u32,
-    /// One per picture, damage, and who drew it, in order.
-    pub entries: Vec<RobustEntry>,
-}
+pub type RobustReport = Cases<RobustEntry>;
 
 /// A damaged picture, and what was made of it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -47,24 +40,22 @@ pub struct RobustEntry {
 impl RobustEntry {
     /// The name of the SVG that was made.
     pub fn svg_name(&self) -> String {
-        let by = Some(&self.by).filter(|by| *by != OWN);
-        let by = by.map(|by| format!("-{}", by.replace(' ', "-")));
-        let (damage, by) = (self.damage.suffix(), by.unwrap_or_default());
+        let (damage, by) = (self.damage.suffix(), cases::suffix(&self.by));
         format!("{}{damage}{by}.svg", self.picture)
     }
 
     /// The line of standard output, ending in the verdict.
     pub fn line(&self) -> String {
-        let by = Some(&self.by).filter(|by| *by != OWN);
-        let by = by.map(|by| format!(", {by}")).unwrap_or_default();
-        let case = format!("{} at {}{by}", self.picture, self.damage.of(self.side_px));
-        if let Some(why) = &self.failure {
-            return format!("{case}: {why}: FAIL");
-        }
+        let case = (&*self.picture, &*self.damage.of(self.side_px), &*self.by);
+        cases::line(self, case, || self.words())
+    }
+
+    /// Words for what was made.
+    fn words(&self) -> String {
         let recognised = self.recognised.as_ref();
         let recognised = recognised.map(|words| format!(", left out {words}"));
         format!(
-            "{case}: {} elements, {} numbers, {} bytes, {:.1} dB of the clean picture (the input {:.1}){}, {:.2} s: pass",
+            "{} elements, {} numbers, {} bytes, {:.1} dB of the clean picture (the input {:.1}){}, {:.2} s",
             self.found.elements,
             self.found.numbers,
             self.found.bytes,
@@ -81,21 +72,13 @@ impl RobustEntry {
     }
 }
 
+impl Case for RobustEntry {
+    fn failure(&self) -> Option<&str> {
+        self.failure.as_deref()
+    }
+}
+
 impl RobustReport {
-    /// The report of these cases.
-    pub fn new(entries: Vec<RobustEntry>) -> Self {
-        Self {
-            schema: SCHEMA,
-            entries,
-        }
-    }
-
-    /// Number of drawings that could not be made.
-    pub fn failures(&self) -> usize {
-        let failed = self.entries.iter().filter(|e| e.failure.is_some());
-        failed.count()
-    }
-
     /// Growth by each damage, and all cases.
     pub fn markdown(&self) -> String {
         format!(
@@ -122,11 +105,7 @@ impl RobustReport {
             "s, median",
             "s, most",
         ]);
-        let made: Vec<_> = self
-            .entries
-            .iter()
-            .filter(|e| e.failure.is_none())
-            .collect();
+        let made = self.made();
         for damage in distinct(made.iter().map(|e| e.damage.to_string())) {
             for by in distinct(made.iter().map(|e| e.by.clone())) {
                 let cases = made.iter().copied();

@@ -11,10 +11,11 @@ use std::time::Instant;
 pub use gallery::Gallery;
 
 use super::damages::damaged;
-use super::drawings::{self, Drawing, Pictures, picture};
+use super::drawings::{self, Drawing, Pictures, picture, record};
 use super::peers::TunedPeer;
 use crate::report::Damage;
-use crate::report::inverse::{Inventory, InverseEntry, InverseReport, OWN};
+use crate::report::cases::OWN;
+use crate::report::inverse::{Inventory, InverseEntry, InverseReport};
 use distances::Distances;
 use strokefit::fit::{Config, Fitter};
 use strokefit::image::Image;
@@ -72,14 +73,7 @@ pub fn run(
                 let case = Case::new(drawing, side, damage).map_err(within)?;
                 let mut found = vec![case.fitted(config).map_err(within)?];
                 found.extend(peers.iter().map(|peer| case.traced(peer)));
-                for (entry, svg) in found {
-                    tell(Outcome {
-                        entry: &entry,
-                        picture: &case.picture,
-                        svg: &svg,
-                    })?;
-                    entries.push(entry);
-                }
+                record(found, &case.picture, tell, &mut entries)?;
             }
         }
     }

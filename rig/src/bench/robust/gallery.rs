@@ -2,7 +2,7 @@
 
 use super::super::shapes::{panel, shortened};
 use super::Outcome;
-use crate::report::inverse::OWN;
+use crate::report::cases::OWN;
 use crate::report::plot::{Panel, Sheet};
 use strokefit::Result;
 use strokefit::image::Image;

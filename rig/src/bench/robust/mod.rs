@@ -9,11 +9,11 @@ use std::time::Instant;
 pub use gallery::Gallery;
 
 use super::damages::{common_colors, damaged};
-use super::drawings;
+use super::drawings::{self, record};
 use super::peers::TunedPeer;
 use super::shapes::contents;
 use crate::report::Damage;
-use crate::report::inverse::OWN;
+use crate::report::cases::OWN;
 use crate::report::robust::{RobustEntry, RobustReport};
 use strokefit::fit::{Config, Fitter};
 use strokefit::image::Image;
@@ -68,14 +68,12 @@ pub fn run(
                 let trace = || Ok((peer.trace(&case.picture, colors)?.svg, None));
                 case.timed(peer.name(), trace)
             });
-            for (entry, svg) in std::iter::once(own).chain(traced) {
-                tell(Outcome {
-                    entry: &entry,
-                    picture: &case.picture,
-                    svg: &svg,
-                })?;
-                entries.push(entry);
-            }
+            record(
+                std::iter::once(own).chain(traced),
+                &case.picture,
+                tell,
+                &mut entries,
+            )?;
         }
     }
     Ok(RobustReport::new(entries))

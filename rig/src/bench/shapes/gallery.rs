@@ -3,7 +3,7 @@
 use super::Outcome;
 use crate::bench::drawings::side_nearest;
 use crate::report::Damage;
-use crate::report::inverse::OWN;
+use crate::report::cases::OWN;
 use crate::report::picture::{self, heat};
 use crate::report::plot::{Panel, Sheet, framed};
 use strokefit::Result;

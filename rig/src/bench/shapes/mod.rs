@@ -13,10 +13,10 @@ pub use gallery::Gallery;
 pub(super) use gallery::{panel, shortened};
 
 use super::damages::damaged;
-use super::drawings::{self, Drawing, Pictures, picture};
+use super::drawings::{self, Drawing, Pictures, picture, record};
 use super::peers::TunedPeer;
 use crate::report::Damage;
-use crate::report::inverse::OWN;
+use crate::report::cases::OWN;
 use crate::report::shapes::{Contents, ShapesEntry, ShapesReport};
 use anatomy::Anatomy;
 use displacement::Areas;
@@ -87,14 +87,12 @@ pub fn run(
             for &damage in &pictures.damages {
                 let case = Case::new(&truth, damage).map_err(within)?;
                 let found = ours.iter().map(|drawer| case.drawn(drawer));
-                for (entry, svg) in found.chain(peers.iter().map(|peer| case.traced(peer))) {
-                    tell(Outcome {
-                        entry: &entry,
-                        picture: &case.picture,
-                        svg: &svg,
-                    })?;
-                    entries.push(entry);
-                }
+                record(
+                    found.chain(peers.iter().map(|peer| case.traced(peer))),
+                    &case.picture,
+                    tell,
+                    &mut entries,
+                )?;
             }
         }
     }

@@ -10,8 +10,7 @@ use strokefit::Result;
 /// # Errors
 /// [`ErrorKind::Picture`](strokefit::ErrorKind::Picture) when one cannot be drawn.
 pub fn charts(report: &InverseReport) -> Result<Vec<(&'static str, String)>> {
-    let made = report.entries.iter().filter(|e| e.failure.is_none());
-    let made: Vec<&InverseEntry> = made.collect();
+    let made = report.made();
     let by_size = |title, axis: &str, logarithmic, value: fn(&[&InverseEntry]) -> Option<f64>| {
         let chart = against_size(&made, value);
         Chart {
@@ -109,8 +108,9 @@ fn numbers(all: impl Iterator<Item = usize>) -> Vec<usize> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Inventory, OWN};
+    use super::super::Inventory;
     use super::*;
+    use crate::report::cases::OWN;
 
     fn found(by: &str, side_px: usize, jpeg: Option<u8>, elements: usize) -> InverseEntry {
         InverseEntry {

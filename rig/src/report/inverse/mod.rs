@@ -3,24 +3,15 @@
 mod charts;
 
 use serde::{Deserialize, Serialize};
-use strokefit::report::SCHEMA;
 
 pub use charts::charts;
 
+use super::cases::{self, Case, Cases};
 use super::statistics::{distinct, mean, median, optional};
 use super::{Damage, Table};
 
-/// Who makes our own drawings.
-pub const OWN: &str = "strokefit";
-
 /// All cases of a run.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct InverseReport {
-    /// [`SCHEMA`].
-    pub schema: u32,
-    /// One per drawing, picture of it, and who drew that, in order.
-    pub entries: Vec<InverseEntry>,
-}
+pub type InverseReport = Cases<InverseEntry>;
 
 /// Contents of a drawing.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -76,9 +67,7 @@ impl InverseEntry {
 
     /// The name of the SVG that was found.
     pub fn svg_name(&self) -> String {
-        let by = Some(&self.by).filter(|by| *by != OWN);
-        let by = by.map(|by| format!("-{by}")).unwrap_or_default();
-        let damage = self.damage().suffix();
+        let (damage, by) = (self.damage().suffix(), cases::suffix(&self.by));
         format!("{}-{}{damage}{by}.svg", self.drawing, self.side_px)
     }
 
@@ -98,19 +87,19 @@ impl InverseEntry {
 
     /// The line of standard output, ending in the verdict.
     pub fn line(&self) -> String {
-        let by = Some(&self.by).filter(|by| *by != OWN);
-        let by = by.map(|by| format!(", {by}")).unwrap_or_default();
-        let case = format!("{} at {}{by}", self.drawing, self.kind());
-        if let Some(why) = &self.failure {
-            return format!("{case}: {why}: FAIL");
-        }
+        let case = (&*self.drawing, &*self.kind(), &*self.by);
+        cases::line(self, case, || self.words())
+    }
+
+    /// Words for what was made.
+    fn words(&self) -> String {
         let apart = self.mean_px.zip(self.largest_px);
         let apart = apart.map_or_else(
             || "no centre lines".into(),
             |(mean, largest)| format!("centre lines {mean:.2} px off, at most {largest:.1}"),
         );
         format!(
-            "{case}: {} elements of {}, {} points of {}, {} bytes of {}, {:.1} dB, {apart}: pass",
+            "{} elements of {}, {} points of {}, {} bytes of {}, {:.1} dB, {apart}",
             self.found.elements,
             self.original.elements,
             self.found.points,
@@ -122,21 +111,13 @@ impl InverseEntry {
     }
 }
 
+impl Case for InverseEntry {
+    fn failure(&self) -> Option<&str> {
+        self.failure.as_deref()
+    }
+}
+
 impl InverseReport {
-    /// The report of these cases.
-    pub fn new(entries: Vec<InverseEntry>) -> Self {
-        Self {
-            schema: SCHEMA,
-            entries,
-        }
-    }
-
-    /// Number of drawings that could not be made.
-    pub fn failures(&self) -> usize {
-        let failed = self.entries.iter().filter(|e| e.failure.is_some());
-        failed.count()
-    }
-
     /// Medians and means of each kind of picture, and all cases.
     pub fn markdown(&self) -> String {
         format!(
@@ -162,7 +143,7 @@ impl InverseReport {
         ]);
         for kind in distinct(self.entries.iter().map(InverseEntry::kind)) {
             for by in distinct(self.entries.iter().map(|entry| entry.by.clone())) {
-                let made = self.entries.iter().filter(|e| e.failure.is_none());
+                let made = self.made().into_iter();
                 let made = made.filter(|e| e.kind() == kind && e.by == by);
                 table.row(summed_up(&kind, &by, &made.collect::<Vec<_>>()));
             }
@@ -246,6 +227,7 @@ fn summed_up(kind: &str, by: &str, cases: &[&InverseEntry]) -> [String; 10] {
 
 #[cfg(test)]
 mod tests {
+    use super::super::cases::OWN;
     use super::*;
 
     fn found(by: &str, side_px: usize, jpeg: Option<u8>, elements: usize) -> InverseEntry {

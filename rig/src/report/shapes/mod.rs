@@ -5,22 +5,15 @@ mod charts;
 mod summary;
 
 use serde::{Deserialize, Serialize};
-use strokefit::report::SCHEMA;
 
 pub use charts::charts;
 
-use super::inverse::OWN;
+use super::cases::{self, Case, Cases};
 use super::statistics::optional;
 use super::{Damage, Table};
 
 /// All cases of a run.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ShapesReport {
-    /// [`SCHEMA`].
-    pub schema: u32,
-    /// One per drawing, picture of it, and who drew that, in order.
-    pub entries: Vec<ShapesEntry>,
-}
+pub type ShapesReport = Cases<ShapesEntry>;
 
 /// Contents of a file, without a rectangle that fills the page behind everything else.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -80,9 +73,7 @@ impl ShapesEntry {
 
     /// The name of the SVG that was found.
     pub fn svg_name(&self) -> String {
-        let by = Some(&self.by).filter(|by| *by != OWN);
-        let by = by.map(|by| format!("-{}", by.replace(' ', "-")));
-        let (damage, by) = (self.damage.suffix(), by.unwrap_or_default());
+        let (damage, by) = (self.damage.suffix(), cases::suffix(&self.by));
         format!("{}-{}{damage}{by}.svg", self.drawing, self.side_px)
     }
 
@@ -99,18 +90,18 @@ impl ShapesEntry {
 
     /// The line of standard output, ending in the verdict.
     pub fn line(&self) -> String {
-        let by = Some(&self.by).filter(|by| *by != OWN);
-        let by = by.map(|by| format!(", {by}")).unwrap_or_default();
-        let case = format!("{} at {}{by}", self.drawing, self.kind());
-        if let Some(why) = &self.failure {
-            return format!("{case}: {why}: FAIL");
-        }
+        let case = (&*self.drawing, &*self.kind(), &*self.by);
+        cases::line(self, case, || self.words())
+    }
+
+    /// Words for what was made.
+    fn words(&self) -> String {
         let edges = self
             .displacement_px
             .map_or_else(|| "no edges".into(), |px| format!("edges {px:.3} px off"));
         format!(
-            "{case}: {} elements of {}, {} parameters of {}, {} bytes of {}, {:.1} dB (the artist's {:.1}), \
-             ΔE00 {:.2}, {edges}: pass",
+            "{} elements of {}, {} parameters of {}, {} bytes of {}, {:.1} dB (the artist's {:.1}), \
+             ΔE00 {:.2}, {edges}",
             self.found.elements,
             self.original.elements,
             self.found.parameters,
@@ -124,21 +115,13 @@ impl ShapesEntry {
     }
 }
 
+impl Case for ShapesEntry {
+    fn failure(&self) -> Option<&str> {
+        self.failure.as_deref()
+    }
+}
+
 impl ShapesReport {
-    /// The report of these cases.
-    pub fn new(entries: Vec<ShapesEntry>) -> Self {
-        Self {
-            schema: SCHEMA,
-            entries,
-        }
-    }
-
-    /// Number of drawings that could not be made.
-    pub fn failures(&self) -> usize {
-        let failed = self.entries.iter().filter(|e| e.failure.is_some());
-        failed.count()
-    }
-
     /// Medians of each kind of picture and of each family, and all cases.
     pub fn markdown(&self) -> String {
         format!(
@@ -157,12 +140,6 @@ impl ShapesReport {
     /// One row for each family, size and damage: what we made.
     pub fn families(&self) -> Table {
         summary::by_family(&self.made())
-    }
-
-    /// The cases of which something was made.
-    fn made(&self) -> Vec<&ShapesEntry> {
-        let made = self.entries.iter().filter(|e| e.failure.is_none());
-        made.collect()
     }
 
     /// One row per case.
@@ -236,6 +213,7 @@ fn cells(entry: &ShapesEntry) -> Vec<String> {
 
 #[cfg(test)]
 pub(in crate::report) mod tests {
+    use super::super::cases::OWN;
     use super::*;
 
     /// A case of an artist's two elements.

@@ -1,6 +1,6 @@
 //! Medians over drawings.
 
-use super::super::inverse::OWN;
+use super::super::cases::OWN;
 use super::super::statistics::{distinct, mean, median, optional};
 use super::super::{Damage, Table};
 use super::Contents;
