@@ -3,6 +3,7 @@
 //! Coordinates are in px, with pixel centres at +0.5. Colours are sRGB-encoded, 0..1, and are composited in
 //! that encoding, as SVG renderers do.
 
+mod colors;
 mod filled_loop;
 mod grid;
 mod likeness;
@@ -15,6 +16,7 @@ mod shape;
 mod written_path;
 mod written_shape;
 
+pub(crate) use colors::distinct_colors;
 pub use grid::MAX_PRECISION;
 pub(crate) use grid::{UNITS_PER_PX, color, quantum};
 pub(crate) use mark::counted;

@@ -6,9 +6,8 @@
 mod arcs;
 mod file;
 
-use super::colors::distinct;
 use super::sheet::Sheet;
-use crate::scene::{Path, Piece, Shape, quantum};
+use crate::scene::{Path, Piece, Shape, distinct_colors, quantum};
 use arcs::Vertex;
 use file::File;
 
@@ -17,7 +16,7 @@ const TOLERANCE: f64 = 0.01;
 
 /// The text of a DXF of the drawing.
 pub fn dxf(sheet: &Sheet<'_>) -> String {
-    let colors = distinct(sheet.scene.marks().map(|mark| mark.color().map(quantum)));
+    let colors = distinct_colors(sheet.scene.marks().map(|mark| mark.color().map(quantum)));
     let page = [sheet.scene.width, sheet.scene.height].map(|side| f64::from(side) * sheet.mm());
     let mut file = File::new(page, &colors);
     for mark in sheet.scene.marks() {

@@ -2,7 +2,6 @@
 //!
 //! ```text
 //! bezier    paths of the two kinds, ours and kurbo's
-//! colors    the colours that there are
 //! visible   marks → the places where each colour is seen
 //! cutout    areas that do not overlap
 //! hatch     areas → pen lines
@@ -12,7 +11,6 @@
 
 #[cfg(feature = "cli")]
 mod bezier;
-mod colors;
 #[cfg(feature = "cli")]
 mod cutout;
 mod dxf;

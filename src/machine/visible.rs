@@ -11,10 +11,9 @@ use kurbo::{BezPath, Shape};
 use linesweeper::topology::{Topology, WindingNumber};
 
 use super::bezier;
-use super::colors::distinct;
 use crate::error::{Error, ErrorKind, Result};
 use crate::outline;
-use crate::scene::{Area, Mark, Path, Scene, Stroke, color, quantum};
+use crate::scene::{Area, Mark, Path, Scene, Stroke, color, distinct_colors, quantum};
 
 /// Farthest that borders may be moved where outlines touch, px. Files hold a hundredth.
 const NEAR: f64 = 1e-4;
@@ -31,7 +30,7 @@ const SMALLEST: f64 = 2e-3;
 /// [`ErrorKind::Svg`] when the sweep fails.
 pub(super) fn areas(scene: &Scene) -> Result<Vec<Area>> {
     let marks = outlines(scene)?;
-    let colors = distinct(marks.iter().map(|(color, _)| *color));
+    let colors = distinct_colors(marks.iter().map(|(color, _)| *color));
     swept(|| seen(&page(scene), &marks, &colors))
 }
 

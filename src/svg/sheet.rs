@@ -17,7 +17,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::dialect::{self, Unit};
 use super::names;
-use crate::scene::Written;
+use crate::scene::{Written, distinct_colors};
 
 /// The class of the page.
 pub(super) const BACKGROUND: &str = "background";
@@ -40,7 +40,7 @@ impl Sheet {
         marks: impl Iterator<Item = &'a Written>,
     ) -> Self {
         let marks: Vec<&Written> = marks.filter(|mark| mark.shade.is_none()).collect();
-        let order = distinct(marks.iter().map(|mark| mark.color));
+        let order = distinct_colors(marks.iter().map(|mark| mark.color));
         let strokes = marks.iter().filter(|mark| !mark.is_area());
         let mut widths: Vec<i64> = strokes.map(|stroke| stroke.width).collect();
         widths.sort_unstable();
@@ -104,12 +104,6 @@ impl Sheet {
         }
         rules
     }
-}
-
-/// Each colour once, where it comes first.
-fn distinct(colors: impl Iterator<Item = [u8; 3]>) -> Vec<[u8; 3]> {
-    let mut seen = BTreeSet::new();
-    colors.filter(|color| seen.insert(*color)).collect()
 }
 
 /// The colours with their names, which have numbers where several colours have one name.
