@@ -8,7 +8,7 @@
 use crate::error::Result;
 use crate::fit::descent::held::Held;
 use crate::fit::descent::{Course, Descent};
-use crate::fit::drawing::Drawing;
+use crate::fit::drawing::{Drawing, Memento};
 use crate::fit::halves::by_halves;
 use crate::fit::recipe::{Forms, Rates};
 use crate::fit::run::session::Session;
@@ -24,18 +24,28 @@ pub(super) fn run(session: &mut Session<'_>) -> Result<()> {
     let most = session.limit.min(forms.most_marks);
     let room = most.saturating_sub(session.drawing.len());
     let shapes = shapes(session, forms, room);
-    if shapes.iter().any(Option::is_some) {
-        // resvg draws large circles of a pen up to a quarter of a pixel off, and paths of many points better.
-        let (before, paths) = (session.drawing.memento(), session.render_file()?);
-        adopt(session, forms, shapes);
-        let [had_db, has_db] = [paths.mse, session.render_file()?.mse].map(psnr_db);
-        let [most_lost_db, enough_db] = forms.most_lost_db;
-        if had_db - has_db > most_lost_db && has_db < enough_db {
-            session.drawing.restore(before);
-        }
+    let paths = session.drawing.memento();
+    if adopt(session, forms, shapes) {
+        refuse_losses(session, forms, paths)?;
     }
     let straight = straight(session, forms);
     adopt(session, forms, straight);
+    Ok(())
+}
+
+/// Returns to the drawing of `paths` if the file with shapes is much less faithful: resvg draws large circles of a pen up to a
+/// quarter of a pixel off, and paths of many points better.
+fn refuse_losses(session: &mut Session<'_>, forms: Forms, paths: Memento) -> Result<()> {
+    let [most_lost_db, enough_db] = forms.most_lost_db;
+    let shaped_db = psnr_db(session.render_file()?.mse);
+    if shaped_db >= enough_db {
+        return Ok(());
+    }
+    let shaped = session.drawing.memento();
+    session.drawing.restore(paths);
+    if psnr_db(session.render_file()?.mse) - shaped_db <= most_lost_db {
+        session.drawing.restore(shaped);
+    }
     Ok(())
 }
 
@@ -257,10 +267,10 @@ fn leveled(path: &Path, forms: Forms) -> Path {
     Path::new(points, path.is_closed()).unwrap_or_else(|_| path.clone())
 }
 
-/// Fits the proposals, and keeps those that pay.
-fn adopt(session: &mut Session<'_>, forms: Forms, mut proposals: Vec<Proposal>) {
+/// Fits the proposals, and keeps those that pay. Returns whether any does.
+fn adopt(session: &mut Session<'_>, forms: Forms, mut proposals: Vec<Proposal>) -> bool {
     if proposals.iter().all(Option::is_none) {
-        return;
+        return false;
     }
     let home = Home::of(&session.drawing);
     let mut error = session.drawing.mse_of_trial();
@@ -290,6 +300,7 @@ fn adopt(session: &mut Session<'_>, forms: Forms, mut proposals: Vec<Proposal>) 
         pays
     });
     home.put(drawing, &proposals, |i| is_taken[i]);
+    is_taken.contains(&true)
 }
 
 /// The proposals as a descent has left them in the drawing.
