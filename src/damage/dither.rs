@@ -50,9 +50,14 @@ pub(super) fn mixed(
 /// True if a pixel is, in a channel, far brighter than three of the pixels beside it or all, and darker than none, or the other way
 /// round. One that is antialiased lies between them.
 fn is_mixed(labels: &Labels, [x, y]: [isize; 2], least: f32) -> bool {
-    let color = |x, y| labels.colors[usize::from(labels.at(x, y))];
-    let own = color(x, y);
-    let beside = [[1, 0], [-1, 0], [0, 1], [0, -1]].map(|[dx, dy]| color(x + dx, y + dy));
+    let label = labels.at(x, y);
+    let beside = [[1, 0], [-1, 0], [0, 1], [0, -1]].map(|[dx, dy]| labels.at(x + dx, y + dy));
+    // Most pixels of flat art are like those beside them.
+    if beside.iter().filter(|other| **other != label).count() < 3 {
+        return false;
+    }
+    let color = |label| labels.colors[usize::from(label)];
+    let (own, beside) = (color(label), beside.map(color));
     (0..3).any(|channel| {
         let away = beside.map(|other| other[channel] - own[channel]);
         [1.0, -1.0].iter().any(|sign| {

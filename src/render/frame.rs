@@ -1,8 +1,10 @@
 //! The frame of one call: the edges of its strokes, and the backdrop.
 
+use fearless_simd::Level;
+
 use super::edge::{Edge, Reach};
 use super::grid::{FULL, Grid, TileRgb, TileWeights, uniform_tile};
-use super::kernel::{OfStroke, TileJob, TileSums};
+use super::kernel::{self, Nothing, OfStroke, Scratch, Sums, TileJob, TileSums};
 use super::polylines::Polylines;
 use super::strokes::STYLE;
 use super::{Backdrop, CanvasLoss, Softness, TileWork};
@@ -82,6 +84,30 @@ impl<'a> Frame<'a> {
             loss,
             backdrop: slope.map(|slope| through * slope),
             ..TileSums::default()
+        })
+    }
+
+    /// The sums of the tile of `job`, which no stroke touches, if `loss` keeps them: as long as the backdrop stays, they do, too.
+    pub(super) fn untouched_sums<L: CanvasLoss>(
+        &self,
+        level: Level,
+        job: &TileJob<'_>,
+        loss: &L,
+        scratch: &mut Scratch,
+    ) -> Option<TileSums> {
+        let Backdrop::Canvas(_) = self.backdrop else {
+            return None;
+        };
+        let &(loss, backdrop) = loss.untouched(job.tile)?.get_or_init(|| {
+            kernel::draw(level, job, scratch);
+            let mut none = Sums::default();
+            let sums = kernel::differentiate::<L, Nothing>(level, job, loss, scratch, &mut none);
+            (sums.loss, sums.backdrop)
+        });
+        Some(TileSums {
+            loss,
+            backdrop,
+            blocks: 0,
         })
     }
 

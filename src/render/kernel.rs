@@ -161,7 +161,12 @@ pub(super) struct TileJob<'a> {
     pub(super) reach: Reach,
 }
 
-impl TileJob<'_> {
+impl<'a> TileJob<'a> {
+    /// The job on another tile of backdrop.
+    pub(super) fn on(&self, backdrop: &'a TileRgb) -> Self {
+        Self { backdrop, ..*self }
+    }
+
     /// Where the segments of a listed stroke are in the list.
     #[inline(always)]
     fn range(&self, slot: usize) -> Range<usize> {
@@ -183,13 +188,13 @@ impl TileJob<'_> {
 
     /// The colour and the opacity of a listed stroke in these blocks. Those of a gradient are put into `inks`.
     #[inline(always)]
-    fn brush<'a, S: Simd>(
+    fn brush<'b, S: Simd>(
         &self,
         simd: S,
         slot: usize,
         blocks: BlockSet,
-        inks: &'a mut InkTile,
-    ) -> Brush<'a, S> {
+        inks: &'b mut InkTile,
+    ) -> Brush<'b, S> {
         let style = self.style(slot);
         let ink = self.polylines.ink(self.listed[slot].stroke as usize);
         if let Some(ink) = ink {

@@ -76,6 +76,7 @@ mod shares;
 mod strokes;
 
 use std::marker::PhantomData;
+use std::sync::OnceLock;
 
 use fearless_simd::Level;
 use rayon::prelude::*;
@@ -118,7 +119,16 @@ pub trait CanvasLoss: Sync {
     fn uniform(&self, _tile: usize, _color: [f32; 3]) -> Option<(f64, [f32; 3])> {
         None
     }
+
+    /// The place to keep the share of tile `tile` in the loss, and its derivative by the backdrop, where no stroke touches a
+    /// backdrop that is a picture; `None` if the loss outlives that picture.
+    fn untouched(&self, _tile: usize) -> Option<&Untouched> {
+        None
+    }
 }
+
+/// What a tile of a backdrop adds to the loss, and the derivative of that, once they are known.
+pub type Untouched = OnceLock<(f64, [f32; 3])>;
 
 /// Colour or picture behind all strokes.
 #[derive(Debug, Clone, Copy)]
@@ -377,6 +387,10 @@ impl Renderer {
                 // Both passes run on one tile at once, while what pass 1 keeps is still in the cache.
                 let job = frame.job(polylines, tile, work, weights);
                 let total = scratch.with(|scratch| {
+                    let untouched = || pass.untouched(level, &job, scratch);
+                    if let Some(total) = job.listed.is_empty().then(untouched).flatten() {
+                        return total;
+                    }
                     kernel::draw(level, &job, scratch);
                     pass.tile(level, &job, scratch, &mut sums)
                 });
@@ -484,6 +498,10 @@ trait BackwardPass: Sync {
         layers: &mut [OfStroke],
     ) -> Option<TileSums>;
 
+    /// The sums of the tile of `job`, which no stroke touches, if they are kept.
+    fn untouched(&self, level: Level, job: &TileJob<'_>, scratch: &mut Scratch)
+    -> Option<TileSums>;
+
     /// The sums of the tile of `job`, which pass 1 has drawn, and those of its strokes and segments.
     fn tile(
         &self,
@@ -525,6 +543,15 @@ impl<L: CanvasLoss, X: Extras> BackwardPass for Single<'_, L, X> {
         self.frame.uniform_sums(tile, self.loss, polylines, layers)
     }
 
+    fn untouched(
+        &self,
+        level: Level,
+        job: &TileJob<'_>,
+        scratch: &mut Scratch,
+    ) -> Option<TileSums> {
+        self.frame.untouched_sums(level, job, self.loss, scratch)
+    }
+
     fn tile(
         &self,
         level: Level,
@@ -550,6 +577,15 @@ impl<L: CanvasLoss> BackwardPass for LossAlone<'_, L> {
         layers: &mut [OfStroke],
     ) -> Option<TileSums> {
         self.frame.uniform_sums(tile, self.loss, polylines, layers)
+    }
+
+    fn untouched(
+        &self,
+        level: Level,
+        job: &TileJob<'_>,
+        scratch: &mut Scratch,
+    ) -> Option<TileSums> {
+        self.frame.untouched_sums(level, job, self.loss, scratch)
     }
 
     fn tile(
@@ -581,6 +617,22 @@ impl<L: CanvasLoss> BackwardPass for Double<'_, L> {
     ) -> Option<TileSums> {
         let [first, second] =
             [0, 1].map(|i| self.frames[i].uniform_sums(tile, self.losses[i], polylines, layers));
+        let (mut sums, second) = (first?, second?);
+        sums.loss += second.loss;
+        add(&mut sums.backdrop, &second.backdrop);
+        Some(sums)
+    }
+
+    fn untouched(
+        &self,
+        level: Level,
+        job: &TileJob<'_>,
+        scratch: &mut Scratch,
+    ) -> Option<TileSums> {
+        let [first, second] = [0, 1].map(|i| {
+            let job = job.on(self.frames[i].backdrop(job.tile));
+            self.frames[i].untouched_sums(level, &job, self.losses[i], scratch)
+        });
         let (mut sums, second) = (first?, second?);
         sums.loss += second.loss;
         add(&mut sums.backdrop, &second.backdrop);

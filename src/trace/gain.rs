@@ -1,6 +1,6 @@
 //! The part of the residual that a traced stroke explains, in closed form.
 
-use std::collections::BTreeMap;
+use std::ops::Range;
 
 use super::areas::{Areas, Label, Pixel, Pixels, distance2, mix};
 use crate::math::nearest_on_segment;
@@ -45,30 +45,41 @@ pub(super) fn coverage(path: &Path, radius: f32, pixels: &Pixels<'_>) -> Vec<(us
     if let [dot] = line[..] {
         line.push(dot);
     }
-    let reach = radius + 1.5;
+    let reach = radius + FRINGE;
     // A stroke is the union of its segments' capsules, so that the deepest one counts.
-    let mut depths: BTreeMap<usize, f32> = BTreeMap::new();
+    let [columns, rows] = spans(&line, reach, pixels);
+    let mut depths = vec![f32::NEG_INFINITY; columns.len() * rows.len()];
     for ends in line.windows(2) {
-        let span = |axis: usize, size: usize| {
-            let (a, b) = (ends[0][axis], ends[1][axis]);
-            let first = (a.min(b) - reach).floor().max(0.0) as usize;
-            let last = (a.max(b) + reach).ceil().max(0.0) as usize;
-            first..last.min(size)
-        };
-        for y in span(1, pixels.height) {
-            for x in span(0, pixels.width) {
+        let [across, down] = spans(ends, reach, pixels);
+        for y in down {
+            let row = (y - rows.start) * columns.len();
+            for x in across.clone() {
                 let center = [x as f32 + 0.5, y as f32 + 0.5];
                 let (_, dist2) = nearest_on_segment(center, [ends[0], ends[1]]);
-                let depth = radius - dist2.sqrt();
-                if depth > -1.5 {
-                    let deepest = depths.entry(y * pixels.width + x).or_insert(depth);
-                    *deepest = deepest.max(depth);
-                }
+                let deepest = &mut depths[row + x - columns.start];
+                *deepest = deepest.max(radius - dist2.sqrt());
             }
         }
     }
-    let covered = depths.into_iter();
-    covered
+    let places = rows.flat_map(|y| columns.clone().map(move |x| y * pixels.width + x));
+    let touched = places.zip(depths).filter(|(_, depth)| *depth > -FRINGE);
+    touched
         .map(|(i, depth)| (i, (depth + 0.5).clamp(0.0, 1.0)))
         .collect()
+}
+
+/// Farthest from a stroke that pixels are looked at, px.
+const FRINGE: f32 = 1.5;
+
+/// The columns and rows of the pixels within `reach` px of the box around some places.
+fn spans(places: &[[f32; 2]], reach: f32, pixels: &Pixels<'_>) -> [Range<usize>; 2] {
+    let span = |axis: usize, size: usize| {
+        let along = || places.iter().map(|place| place[axis]);
+        let low = along().fold(f32::INFINITY, f32::min);
+        let high = along().fold(f32::NEG_INFINITY, f32::max);
+        let last = ((high + reach).ceil().max(0.0) as usize).min(size);
+        let first = (low - reach).floor().max(0.0) as usize;
+        first.min(last)..last
+    };
+    [span(0, pixels.width), span(1, pixels.height)]
 }

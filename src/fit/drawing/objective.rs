@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::loss::Loss;
 use crate::render::{
     Backdrop, Canvas, CanvasLoss, Gradients, Grid, Lanes, Renderer, Softness, Strokes, TILE,
-    TileRgb, multiply,
+    TileRgb, Untouched, multiply,
 };
 
 /// The mean of `loss` over width·height·3 values against `target`.
@@ -14,6 +14,7 @@ pub struct Objective<'a> {
     loss: Loss,
     target: &'a Canvas,
     moments: Option<&'a Moments>,
+    untouched: Option<&'a [Untouched]>,
     /// The roots of the weights of errors. The target is multiplied by them already.
     error_weights: Option<&'a Canvas>,
     /// 1/(width·height·3).
@@ -25,6 +26,8 @@ pub struct Objective<'a> {
 pub(in crate::fit) struct Target {
     canvas: Canvas,
     moments: Moments,
+    /// For each tile, its part of the error where nothing is drawn on the backdrop.
+    untouched: Vec<Untouched>,
 }
 
 impl Target {
@@ -32,8 +35,14 @@ impl Target {
     pub(in crate::fit) fn new(canvas: Canvas, error_weights: Option<&Canvas>) -> Self {
         Self {
             moments: Moments::of(&canvas, error_weights),
+            untouched: vec![Untouched::new(); canvas.tiles().len()],
             canvas,
         }
+    }
+
+    /// Forgets what is known of the backdrop, which has changed.
+    pub(in crate::fit) fn forget_backdrop(&mut self) {
+        self.untouched.fill(Untouched::new());
     }
 
     /// The grid of tiles.
@@ -98,6 +107,7 @@ impl<'a> Objective<'a> {
             loss,
             target,
             moments: None,
+            untouched: None,
             error_weights: None,
             scale: 1.0 / (grid.width * grid.height * 3) as f32,
         }
@@ -120,6 +130,7 @@ impl<'a> Objective<'a> {
     pub(in crate::fit) fn squared(target: &'a Target) -> Self {
         Self {
             moments: Some(&target.moments),
+            untouched: Some(&target.untouched),
             ..Self::new(Loss::L2, &target.canvas)
         }
     }
@@ -211,6 +222,10 @@ impl CanvasLoss for Objective<'_> {
         let loss = (error + squares).max(0.0) * scale;
         Some((loss, [0, 1, 2].map(|channel| slope(channel) as f32)))
     }
+
+    fn untouched(&self, tile: usize) -> Option<&Untouched> {
+        self.untouched?.get(tile)
+    }
 }
 
 #[cfg(test)]
@@ -280,6 +295,50 @@ mod tests {
             opacity,
             shade: None,
         })
+    }
+
+    #[test]
+    fn tiles_that_nothing_touches_are_judged_once_for_each_backdrop() {
+        let corners = [[5.0, 5.0], [30.0, 9.0], [12.0, 28.0]];
+        let strokes: Strokes = [area(&corners, [0.9, 0.2, 0.3], 0.6)].iter().collect();
+        let mut target = Target::new(random(3, [150, 100]), None);
+        let mut renderer = Renderer::new(target.grid(), fearless_simd::Level::new());
+        let edge = Softness {
+            coverage: crate::coverage::Coverage::Smoothstep,
+            width: 1.3,
+        };
+        for key in [4, 5] {
+            let canvases = [key, key + 9].map(|key| random(key, [150, 100]));
+            let [black, white] = canvases.each_ref().map(Backdrop::Canvas);
+            let mut of = |objective: &Objective<'_>| {
+                let mut each = [(); 2].map(|()| Gradients::default());
+                renderer.backward(&strokes, edge, black, objective, &mut each[0]);
+                renderer.backward_with_worth(&strokes, edge, black, objective, &mut each[1]);
+                let numbers = each.map(|g| (g.loss, g.backdrop, g.strokes, g.worth));
+                (numbers, renderer.loss(&strokes, edge, black, objective))
+            };
+            let expected = of(&Objective::new(Loss::L2, &target.canvas));
+            target.forget_backdrop();
+            for call in 0..2 {
+                let known = of(&Objective::squared(&target));
+                assert_eq!(known, expected, "backdrop {key}, call {call}");
+            }
+            // Two mattes, whose backdrops have targets of their own.
+            let other = Target::new(random(7, [150, 100]), None);
+            let mut of = |losses: [&Objective<'_>; 2]| {
+                let mut gradients = Gradients::default();
+                renderer.backward_on_mattes(&strokes, edge, [black, white], losses, &mut gradients);
+                (gradients.loss, gradients.strokes)
+            };
+            let unknown = [&target, &other].map(|t| Objective::new(Loss::L2, &t.canvas));
+            let (expected_loss, expected) = of(unknown.each_ref());
+            for _ in 0..2 {
+                let known = [&target, &other].map(Objective::squared);
+                let (loss, slopes) = of(known.each_ref());
+                assert_eq!(slopes, expected);
+                assert!((loss - expected_loss).abs() < 1e-6 * loss, "{loss}");
+            }
+        }
     }
 
     #[test]

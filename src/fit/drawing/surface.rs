@@ -291,6 +291,7 @@ impl Surface {
     /// Makes the canvas the backdrop of the free strokes.
     pub(in crate::fit) fn freeze(&mut self) {
         self.frozen.clone_from(&self.canvas);
+        self.target.forget_backdrop();
     }
 
     /// Makes the backdrop of all strokes the backdrop of the free ones.
@@ -298,6 +299,7 @@ impl Surface {
         if let Some(pyramid) = self.backdrop.pyramid() {
             self.frozen = Canvas::from_image(pyramid.level(self.halvings));
         }
+        self.target.forget_backdrop();
     }
 
     /// The backdrop of the free strokes if `frozen` others are frozen.

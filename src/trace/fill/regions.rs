@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::super::areas::{LEVEL, Pixel, away, beside, distance2};
+use super::super::areas::{LEVEL, Pixel, away, distance2};
 use super::super::recipe::Fills;
 use super::colors::{CANVAS, Colors};
 use super::mixtures::{Mixture, best_mixture};
@@ -102,32 +102,54 @@ impl Regions {
     }
 }
 
-/// The region of each pixel, and the pixels of each region, 4-connected.
+/// The region of each pixel, and the pixels of each region, row by row, 4-connected: two passes, after Rosenfeld and Pfaltz,
+/// "Sequential operations in digital picture processing".
 fn connected(colors: &Colors<'_>, mixtures: &[Mixture]) -> (Vec<u32>, Vec<Vec<u32>>) {
     let width = colors.pixels.width;
-    let mut of = vec![u32::MAX; mixtures.len()];
-    let mut members = Vec::new();
-    for start in 0..mixtures.len() {
-        if of[start] != u32::MAX {
-            continue;
+    // An earlier pixel of the same region, for each pixel but the first one.
+    let mut earlier: Vec<u32> = Vec::with_capacity(mixtures.len());
+    for (i, Mixture { own, .. }) in mixtures.iter().enumerate() {
+        let is_alike = |k: &usize| mixtures[*k].own == *own;
+        let left = i.checked_sub(1).filter(|_| !i.is_multiple_of(width));
+        let left = left.filter(is_alike).map(|k| earlier[k]);
+        let above = i.checked_sub(width).filter(is_alike).map(|k| earlier[k]);
+        let first = match (left, above) {
+            (Some(left), Some(above)) if left != above => join(&mut earlier, left, above),
+            (Some(first), _) | (None, Some(first)) => first,
+            (None, None) => i as u32,
+        };
+        earlier.push(first);
+    }
+    let mut of = earlier;
+    let mut members: Vec<Vec<u32>> = Vec::new();
+    for i in 0..of.len() {
+        // What is earlier has its region by now.
+        let region = match of[i] as usize {
+            first if first == i => members.len() as u32,
+            before => of[before],
+        };
+        of[i] = region;
+        if region as usize == members.len() {
+            members.push(Vec::new());
         }
-        let (label, region) = (mixtures[start].own, members.len() as u32);
-        let mut pixels = vec![start as u32];
-        of[start] = region;
-        let mut next = 0;
-        while let Some(&i) = pixels.get(next) {
-            next += 1;
-            for k in beside(i as usize, width, mixtures.len()) {
-                if of[k] == u32::MAX && mixtures[k].own == label {
-                    of[k] = region;
-                    pixels.push(k as u32);
-                }
-            }
-        }
-        pixels.sort_unstable();
-        members.push(pixels);
+        members[region as usize].push(i as u32);
     }
     (of, members)
+}
+
+/// Joins the regions of two pixels, and returns the first pixel of both.
+fn join(earlier: &mut [u32], a: u32, b: u32) -> u32 {
+    let [a, b] = [a, b].map(|pixel| {
+        let mut first = pixel as usize;
+        while earlier[first] as usize != first {
+            // Half of the way will do next time.
+            earlier[first] = earlier[earlier[first] as usize];
+            first = earlier[first] as usize;
+        }
+        first as u32
+    });
+    earlier[a.max(b) as usize] = a.min(b);
+    a.min(b)
 }
 
 /// Makes mixtures of thin regions whose pixels lie between the colours on either side. Returns whether there were such.
