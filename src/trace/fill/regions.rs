@@ -37,9 +37,10 @@ pub(super) struct Regions {
 impl Regions {
     /// The regions of pixels as mixtures. What is too small, or only edges, becomes part of what is beside it.
     pub(super) fn of(colors: &Colors<'_>, mut mixtures: Vec<Mixture>, fills: &Fills) -> Self {
-        let (mut of, mut members) = connected(colors, &mixtures);
+        let width = colors.pixels.width;
+        let (mut of, mut members) = connected(&mixtures, width);
         if dissolve(colors, &of, &members, &mut mixtures) {
-            (of, members) = connected(colors, &mixtures);
+            (of, members) = connected(&mixtures, width);
         }
         for _ in 0..6 {
             let is_small = |pixels: &Vec<u32>| is_small(colors, &mixtures, pixels, fills);
@@ -48,7 +49,7 @@ impl Regions {
                 break;
             }
             absorb(colors, &of, &members, &small, &mut mixtures);
-            (of, members) = connected(colors, &mixtures);
+            (of, members) = connected(&mixtures, width);
         }
         let (second, share) = seconds(colors, &mixtures, &of);
         let region = |pixels: Vec<u32>| {
@@ -63,7 +64,7 @@ impl Regions {
         };
         let list = members.into_iter().map(region).collect();
         Self {
-            width: colors.pixels.width,
+            width,
             height: colors.pixels.height,
             of,
             second,
@@ -104,8 +105,7 @@ impl Regions {
 
 /// The region of each pixel, and the pixels of each region, row by row, 4-connected: two passes, after Rosenfeld and Pfaltz,
 /// "Sequential operations in digital picture processing".
-fn connected(colors: &Colors<'_>, mixtures: &[Mixture]) -> (Vec<u32>, Vec<Vec<u32>>) {
-    let width = colors.pixels.width;
+fn connected(mixtures: &[Mixture], width: usize) -> (Vec<u32>, Vec<Vec<u32>>) {
     // An earlier pixel of the same region, for each pixel but the first one.
     let mut earlier: Vec<u32> = Vec::with_capacity(mixtures.len());
     for (i, Mixture { own, .. }) in mixtures.iter().enumerate() {
@@ -348,4 +348,39 @@ fn color(colors: &Colors<'_>, share: &[f32], pixels: &[u32], label: u16) -> Pixe
         .map(|&i| colors.pixels.target.at(i as usize))
         .collect();
     std::array::from_fn(|k| median(sample.iter().map(|p| p[k])).unwrap_or_default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The regions of a picture in letters, each as a letter of its own.
+    fn regions(rows: &[&str]) -> Vec<String> {
+        let labels = rows.concat();
+        let mixtures = labels.bytes().map(|b| Mixture::pure(u16::from(b)));
+        let mixtures: Vec<Mixture> = mixtures.collect();
+        let (of, members) = connected(&mixtures, rows[0].len());
+        for (region, pixels) in members.iter().enumerate() {
+            assert!(pixels.is_sorted() && pixels.iter().all(|&i| of[i as usize] == region as u32));
+        }
+        let letters: String = of
+            .iter()
+            .map(|&region| char::from(b'a' + region as u8))
+            .collect();
+        let rows = letters.as_bytes().chunks(rows[0].len());
+        rows.map(|row| String::from_utf8_lossy(row).into_owned())
+            .collect()
+    }
+
+    #[test]
+    fn what_meets_below_is_one_region() {
+        let comb = ["x.x.x.x", "x.x.xxx", "x.xxx..", "xxx..xx"];
+        assert_eq!(regions(&comb), ["abacada", "abacaaa", "abaaaee", "aaaffgg"]);
+    }
+
+    #[test]
+    fn corners_do_not_connect_and_rows_do_not_run_on() {
+        assert_eq!(regions(&["x.", ".x"]), ["ab", "cd"]);
+        assert_eq!(regions(&["..x", "x.."]), ["aab", "caa"]);
+    }
 }
