@@ -127,7 +127,7 @@ pub trait CanvasLoss: Sync {
     }
 }
 
-/// What a tile of a backdrop adds to the loss, and the derivative of that, once they are known.
+/// Share of a tile of a backdrop in the loss, and its derivative, once they are known.
 pub type Untouched = OnceLock<(f64, [f32; 3])>;
 
 /// Colour or picture behind all strokes.
