@@ -204,13 +204,18 @@ fn stage_ends(scene: &Scene) -> Vec<usize> {
 }
 
 #[cfg(feature = "animation")]
-/// Some marks of `scene` as SVG, not rounded any further; on its background and its shade if they are its first.
+/// Some marks of `scene` as SVG, not rounded any further; on its background, shade and shadows if they are its first.
 fn part_svg<'a>(scene: &Scene, is_first: bool, marks: impl Iterator<Item = &'a Mark>) -> String {
     let stage = marks.cloned().collect();
     let part = Scene {
         stages: vec![stage],
         background: scene.background.filter(|_| is_first),
         shade: scene.shade.clone().filter(|_| is_first),
+        shadows: if is_first {
+            scene.shadows.clone()
+        } else {
+            Vec::new()
+        },
         ..*scene
     };
     let exactly = WriteOptions {

@@ -4,6 +4,7 @@ mod elementary;
 mod linear;
 mod plane;
 mod real;
+mod search;
 
 pub use elementary::{
     Elementary, atan, cbrt, cos, exp, exp2, hypot, ln, log2, log10, powf, sin, sin_cos, tan, tanh,
@@ -11,6 +12,7 @@ pub use elementary::{
 pub(crate) use linear::solve_symmetric;
 pub use plane::{Point2, Vector2};
 pub use real::{Real, powi};
+pub(crate) use search::search;
 
 /// A point of the picture plane in px; x to the right, y down, pixel centres at +0.5.
 pub type Point = Point2<f32>;

@@ -12,6 +12,7 @@ mod overlap;
 mod path;
 mod quantize;
 mod shade;
+mod shadow;
 mod shape;
 mod written_path;
 mod written_shape;
@@ -27,6 +28,7 @@ pub use quantize::{Dropped, MIN_WIDTH, Quantized};
 pub(crate) use quantize::{Written, WrittenShade};
 pub use shade::{Axis, MAX_STOPS, Shade, ShadeStop};
 pub(crate) use shade::{WrittenAxis, WrittenStop};
+pub use shadow::Shadow;
 pub use shape::Shape;
 pub(crate) use written_path::{WrittenPath, WrittenPoint};
 pub(crate) use written_shape::WrittenShape;
@@ -77,6 +79,8 @@ pub struct Scene {
     pub background: Option<Rgb>,
     /// A gradient on the background, behind all marks, if there is one.
     pub shade: Option<Shade>,
+    /// Shadows and glows on both, back to front, behind all marks.
+    pub shadows: Vec<Shadow>,
     /// Back to front.
     pub stages: Vec<Stage>,
 }
@@ -90,6 +94,7 @@ impl Scene {
             page: None,
             background,
             shade: None,
+            shadows: Vec::new(),
             stages: Vec::new(),
         }
     }

@@ -3,20 +3,23 @@
 pub(super) mod background;
 pub(super) mod bounds;
 pub(super) mod focus;
+pub(super) mod ground;
 pub(super) mod hidden;
 pub(super) mod masking;
 mod memento;
 pub(super) mod objective;
 mod scene;
-pub(super) mod shading;
+mod shading;
+mod shadows;
 pub(super) mod surface;
 
 use fearless_simd::Level;
 
 use crate::render::{Canvas, CanvasLoss, Gradients, Params, Renderer, Softness, Strokes, Survey};
-use crate::scene::{Mark, Rgb, Shade};
+use crate::scene::{Mark, Rgb};
 use bounds::Bounds;
 use focus::Focus;
+use ground::Ground;
 pub(super) use memento::Memento;
 use objective::Target;
 use scene::enlarge;
@@ -32,8 +35,8 @@ pub(super) struct Drawing {
     pub(super) level: Level,
     /// True if the background keeps its colour.
     pub(super) background_fixed: bool,
-    /// The gradient on the background.
-    pub(super) shade: Option<Shade>,
+    /// What lies on the background and behind all strokes.
+    pub(super) ground: Ground,
     /// The strokes that are kept as they are, back to front, and on top of them those that are fitted.
     frozen: Strokes,
     free: Strokes,
@@ -64,7 +67,7 @@ impl Drawing {
     /// An empty drawing on one or more `surfaces`.
     pub(super) fn new(
         surfaces: Vec<Surface>,
-        (background_fixed, shade): (bool, Option<Shade>),
+        (background_fixed, ground): (bool, Ground),
         bounds: Bounds,
         edge: Softness,
         level: Level,
@@ -74,7 +77,7 @@ impl Drawing {
             surfaces,
             level,
             background_fixed,
-            shade,
+            ground,
             frozen: Strokes::new(),
             free: Strokes::new(),
             stage_of: Vec::new(),

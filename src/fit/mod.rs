@@ -62,8 +62,8 @@ pub use options::{MAX_THREADS, OPTIONS, Options, Refusal, Value};
 pub use recipe::{
     AdamSettings, BackgroundChoice, Correction, Domain, Doubts, EdgeShape, Forms, Joins, Masking,
     Nudging, Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Recovery, Reduction,
-    Relocation, Rounds, SCREEN_PIXELS, Settling, ShadeChoice, ShadeFit, Sharing, Stages,
-    TimeShares,
+    Relocation, Rounds, SCREEN_PIXELS, Settling, ShadeChoice, ShadeFit, ShadowChoice, Sharing,
+    Stages, TimeShares,
 };
 pub use result::{Fit, StageRecord, Stop};
 pub use run::checkpoint::Checkpoint;

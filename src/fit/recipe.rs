@@ -7,6 +7,7 @@
 //! fit can run with. A checkpoint is bound to its recipe, so that no fit mixes two tunings.
 
 mod check;
+mod ground;
 mod presets;
 
 use serde::{Deserialize, Serialize};
@@ -14,8 +15,8 @@ use serde::{Deserialize, Serialize};
 use crate::math;
 use crate::optim::AdamParams;
 use crate::seed::Probing;
-pub use crate::shading::ShadeFit;
 use crate::trace::{AreaColors, Tracing};
+pub use ground::{BackgroundChoice, ShadeChoice, ShadeFit, ShadowChoice};
 
 /// Pixels of a picture that a screen shows well at once, 768×512: the default quality is for so many.
 pub const SCREEN_PIXELS: usize = 768 * 512;
@@ -603,39 +604,6 @@ pub struct Correction {
     pub approach_share: f64,
     /// Iterations of polish after a correction, in units of those of the first polish.
     pub polish_share: f64,
-}
-
-/// Choice of the background.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BackgroundChoice {
-    /// The most common colour becomes the background if at least this share of the pixels has it; otherwise the mean
-    /// colour does.
-    pub prevailing_share: f64,
-    /// Share of the pixels along the border from which on their most common colour is the background. A guess: three of
-    /// eleven logos on white had the logo's colour as paper.
-    pub border_share: f64,
-    /// Share of the pixels in translucent areas that opaque strokes may miss. Beyond it, the picture is flattened onto
-    /// white for them.
-    pub translucent_share: f64,
-    /// Pixels with alpha between these are translucent.
-    pub translucent: [f32; 2],
-    /// When a gradient becomes the page.
-    pub shade: ShadeChoice,
-}
-
-/// When a gradient becomes the page. All of it is a guess.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ShadeChoice {
-    /// Blocks along the longer side of the picture, whose means are fitted.
-    pub blocks: usize,
-    /// The least share of the blocks that a gradient has to meet.
-    pub least_share: f32,
-    /// Share of the blocks that it has to meet beyond those of the best single colour.
-    pub least_gain: f32,
-    /// Largest change of a page per px: a larger one is the edge of a thing.
-    pub steepest: f32,
-    /// The fit of one.
-    pub fit: ShadeFit,
 }
 
 /// To which pixels a picture is reduced before it is drawn; `docs/accuracy.md` has what was measured.

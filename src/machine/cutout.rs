@@ -16,6 +16,7 @@ pub fn cut_out(scene: &Scene) -> Result<Scene> {
     let cut = Scene {
         background: None,
         shade: None,
+        shadows: Vec::new(),
         stages: areas.map(|area| Stage::from_iter([area])).collect(),
         ..*scene
     };

@@ -59,6 +59,7 @@ pub fn hatched(scene: &Scene, spacing: f32, pen: f32, degrees: f64) -> Result<Sc
     Ok(Scene {
         stages,
         shade: None,
+        shadows: Vec::new(),
         ..*scene
     })
 }
@@ -83,6 +84,7 @@ fn areas(scene: &Scene) -> Result<Vec<Area>> {
         stages: scene.stages.iter().map(stage).collect(),
         background: scene.background,
         shade: None,
+        shadows: Vec::new(),
         ..*scene
     };
     let mut areas = visible::areas(&marked)?;

@@ -43,6 +43,7 @@ pub fn outlined(scene: &Scene) -> Scene {
         stages: scene.stages.iter().map(stage).collect(),
         background: scene.background,
         shade: scene.shade.clone(),
+        shadows: scene.shadows.clone(),
         ..*scene
     }
 }

@@ -65,6 +65,7 @@ mod edge;
 mod frame;
 mod gradients;
 mod grid;
+mod ground;
 mod kernel;
 mod paint;
 mod polylines;
@@ -84,6 +85,7 @@ use rayon::prelude::*;
 pub use gradients::{Gradients, Survey};
 pub(crate) use grid::multiply;
 pub use grid::{BlockRgb, Canvas, Grid, Lanes, Run, TILE, TileRgb};
+pub use ground::{Plane, blurred, filled, ground};
 pub use paint::Paint;
 pub use strokes::{
     AX, AY, BX, BY, OPACITY, PARAMS, Params, RADIUS, RED, STYLE, StrokeMut, StrokeRef, Strokes,

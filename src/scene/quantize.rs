@@ -80,6 +80,7 @@ impl Scene {
             scene: Self {
                 background: self.background.map(quantized_color),
                 shade: self.shade.clone(),
+                shadows: self.shadows.clone(),
                 stages: Vec::new(),
                 ..*self
             },

@@ -23,7 +23,7 @@ pub(super) fn of(blocks: &Blocks, kind: Kind, fit: &ShadeFit) -> Option<Axis> {
             let angle = direction(blocks, fit.near)?;
             let cost = |angle: f32| spread(blocks, line(blocks, angle));
             // A degree, down to a hundredth of one.
-            let [angle] = search([angle], 0.02, 0.0002, |[angle]| cost(angle));
+            let [angle] = math::search([angle], 0.02, 0.0002, |[angle]| cost(angle));
             // An axis that is meant to be level or upright is exactly so.
             let straight = (angle / FRAC_PI_2).round() * FRAC_PI_2;
             let is_straight = cost(straight) <= f64::from(fit.level) * cost(angle);
@@ -32,7 +32,7 @@ pub(super) fn of(blocks: &Blocks, kind: Kind, fit: &ShadeFit) -> Option<Axis> {
         Kind::Radial => {
             let center = center(blocks, fit.near)?;
             let step = blocks.size[0].max(blocks.size[1]) / 50.0;
-            let [x, y] = search([center.x, center.y], step, 0.05, |[x, y]| {
+            let [x, y] = math::search([center.x, center.y], step, 0.05, |[x, y]| {
                 spread(blocks, circle(blocks, Point::new(x, y)))
             });
             Some(circle(blocks, Point::new(x, y)))
@@ -166,30 +166,4 @@ fn spread(blocks: &Blocks, axis: Axis) -> f64 {
         (0..4).map(channel).sum::<f64>()
     };
     taking_part().map(apart).sum()
-}
-
-/// A place near `start` where `cost` is least, by steps along each number in turn that are halved where none is an
-/// improvement.
-fn search<const N: usize>(
-    start: [f32; N],
-    mut step: f32,
-    finest: f32,
-    cost: impl Fn([f32; N]) -> f64,
-) -> [f32; N] {
-    let (mut best, mut least) = (start, cost(start));
-    while step >= finest {
-        let mut improved = false;
-        for (i, sign) in (0..N).flat_map(|i| [(i, 1.0), (i, -1.0)]) {
-            let mut moved = best;
-            moved[i] += sign * step;
-            let found = cost(moved);
-            if found < least {
-                (best, least, improved) = (moved, found, true);
-            }
-        }
-        if !improved {
-            step /= 2.0;
-        }
-    }
-    best
 }

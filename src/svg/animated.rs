@@ -67,7 +67,7 @@ pub fn write_animated(
     groups.out
 }
 
-/// True if a line of the writer is a mark. All other lines are groups, their titles, the background and the shade.
+/// True if a line of the writer is a mark. All other lines are groups, their titles, the background, the shade and shadows.
 fn is_mark(line: &str) -> bool {
     ![
         "<g",
@@ -77,6 +77,7 @@ fn is_mark(line: &str) -> bool {
         "<rect width",
         "<linear",
         "<radial",
+        "<filter",
     ]
     .iter()
     .any(|other| line.starts_with(other))

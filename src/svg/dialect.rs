@@ -8,6 +8,17 @@ pub(crate) const SVG_NAMESPACE: &str = "http://www.w3.org/2000/svg";
 /// The namespace that makes a group a layer in Inkscape.
 pub(super) const INKSCAPE_NAMESPACE: &str = "http://www.inkscape.org/namespaces/inkscape";
 
+/// The beginnings of the ids of shadows and of their filters, which their numbers follow.
+pub(super) const SHADOW_ID: &str = "shadow";
+pub(super) const BLUR_ID: &str = "blur";
+/// The attributes of a filter, besides its id, and those with its place.
+pub(super) const FILTER: [(&str, &str); 2] = [
+    ("filterUnits", "userSpaceOnUse"),
+    ("color-interpolation-filters", "sRGB"),
+];
+pub(super) const FILTER_PLACE: [&str; 4] = ["x", "y", "width", "height"];
+/// The element of a filter that blurs, and its standard deviation.
+pub(super) const GAUSSIAN: (&str, &str) = ("feGaussianBlur", "stdDeviation");
 /// The id of the shade's gradient.
 pub(super) const SHADE_ID: &str = "shade";
 

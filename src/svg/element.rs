@@ -64,6 +64,11 @@ pub(super) fn push(
     }
 }
 
+/// Appends the element of one mark in full, with these `names`.
+pub(super) fn push_alone(out: &mut String, mark: &Written, names: &str) {
+    push_path(out, std::slice::from_ref(mark), names, &[], Style::Full);
+}
+
 /// Bytes of an element of one stroke. In the smallest form, its width is assumed to be shared with neighbours; classes count
 /// as the attributes in their place.
 pub(super) fn bytes(stroke: &Written, form: Form, unit: Unit) -> usize {

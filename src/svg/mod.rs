@@ -8,6 +8,7 @@
 //! <radialGradient id="shade" gradientUnits="userSpaceOnUse" cx="9" cy="9" r="8.5"><stop offset="0" stop-color="#rrggbb"/>
 //! <stop offset="1" stop-color="#rrggbb" stop-opacity="0"/></radialGradient>              the shade, if any, on one line
 //! <rect width="W" height="H" fill="url(#shade)"/>
+//! <filter id="blur-1" …><feGaussianBlur stdDeviation="6"/></filter><path id="shadow-1" filter="url(#blur-1)" d="…" fill="#rrggbb"/>
 //! <g id="stage-1" inkscape:groupmode="layer" inkscape:label="Stage 1" fill="none" stroke-linecap="round">
 //! <title>Stage 1: 2 strokes</title>
 //! <path d="M1.5 2L30.25 4" stroke="#rrggbb" stroke-width="2.5"/>      a capsule
@@ -23,6 +24,8 @@
 //!   unless the page has a [`Length`] as its width.
 //! - The shade is a `linearGradient` from `x1 y1` to `x2 y2` or a `radialGradient`, in px to the hundredth, with offsets to the
 //!   thousandth. It is never in the unit of a layer, and has as many decimals with any precision.
+//! - Shadows, areas with a blur, lie on the shade and below all layers, each on one line with its filter. Their numbers are in
+//!   px, too, to the tenth, and those of the blur to the hundredth.
 //! - A path with a `fill` is an area, and all its rings are closed; any other path is a stroke. None is both.
 //! - What is a [`Shape`](crate::scene::Shape) is a `<circle>`, an `<ellipse>`, or a `<rect>` whose corners are sharp or, with
 //!   `rx`, round. A line stays a path: Inkscape has no handles for a `<line>`, which takes 16 bytes more.
@@ -93,6 +96,7 @@ mod options;
 mod outline;
 mod path;
 mod read;
+mod shadow;
 mod shape;
 mod sheet;
 mod tour;

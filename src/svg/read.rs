@@ -3,6 +3,7 @@
 
 mod element;
 mod shade;
+mod shadow;
 
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::name::{Namespace, ResolveResult};
@@ -105,9 +106,14 @@ impl<'a> Parser<'a> {
                 Tag::Open(e)
                     if shade::begins_with(&e)
                         && scene.shade.is_none()
+                        && scene.shadows.is_empty()
                         && scene.stages.is_empty() =>
                 {
                     scene.shade = Some(self.shade(&e, width, height)?);
+                }
+                Tag::Open(e) if shadow::begins_with(&e) && scene.stages.is_empty() => {
+                    let number = scene.shadows.len() + 1;
+                    scene.shadows.push(self.shadow(&e, number)?);
                 }
                 Tag::Open(e) if e.name == "g" => {
                     let number = scene.stages.len() + 1;
@@ -263,7 +269,8 @@ fn page_size(root: &Element) -> Parsed<(u32, u32, Option<[u32; 2]>)> {
 
 /// True if nothing of the drawing has been read.
 fn is_bare(scene: &Scene) -> bool {
-    scene.background.is_none() && scene.shade.is_none() && scene.stages.is_empty()
+    let has_ground = scene.background.is_some() || scene.shade.is_some();
+    !has_ground && scene.shadows.is_empty() && scene.stages.is_empty()
 }
 
 /// Checks that a rectangle is the page, and has nothing else but a fill.

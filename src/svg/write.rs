@@ -7,6 +7,7 @@ use super::gradient;
 use super::layer::{Layer, LayerKind};
 use super::names;
 use super::options::{Form, Order, WriteOptions};
+use super::shadow;
 use super::sheet::{BACKGROUND, Sheet};
 use crate::scene::{Mark, Scene, Written, WrittenPath, counted, quantum};
 
@@ -83,6 +84,9 @@ fn head(scene: &Scene, options: &WriteOptions, sheet: Option<&Sheet>) -> String 
         gradient::push(&mut out, shade, dialect::SHADE_ID);
         let id = dialect::SHADE_ID;
         out += &format!("\n<rect width=\"{width}\" height=\"{height}\" fill=\"url(#{id})\"/>\n");
+    }
+    for (shadow, number) in scene.shadows.iter().zip(1..) {
+        shadow::push(&mut out, shadow, number);
     }
     out
 }

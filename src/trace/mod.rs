@@ -33,7 +33,7 @@ mod strokes;
 use std::borrow::Cow;
 
 use crate::image::Image;
-use crate::scene::{Mark, Marks};
+use crate::scene::{Mark, Marks, Path};
 use crate::seed::Residual;
 use areas::{Areas, Pixels, Planes};
 use fill::Flat;
@@ -48,6 +48,11 @@ pub struct Traced {
     /// Squared error that the mark removes, summed over pixels and channels: a stroke alone, an area on top of what it
     /// lies on.
     pub gain: f32,
+}
+
+/// The rings around what covers at least half of a pixel; `shares` are those of all pixels of a page, row by row.
+pub fn rings(shares: &[f32], width: usize, outlines: &Outlines) -> Vec<Path> {
+    fill::rings(shares, width, outlines)
 }
 
 /// Traces full-size pictures on their canvases, which have one size. The marks are in painting order. `price` is the

@@ -56,8 +56,9 @@ impl Drawing {
     pub(in crate::fit) fn scene(&self, has_background: bool) -> Scene {
         let picture = self.surface().picture();
         let background = self.background().filter(|_| has_background);
-        let mut scene = Scene::empty(picture.width() as u32, picture.height() as u32, background);
-        scene.shade.clone_from(&self.shade);
+        let mut scene = self
+            .ground
+            .scene(picture.width(), picture.height(), background);
         let mut strokes = self.all();
         enlarge(&mut strokes, self.surface().halvings());
         for (stroke, &stage) in strokes.iter().zip(&self.stage_of) {

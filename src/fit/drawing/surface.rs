@@ -10,11 +10,12 @@ use crate::fit::base::Base;
 use crate::fit::config::Background;
 use crate::fit::drawing::background;
 use crate::fit::drawing::focus::Focus;
+use crate::fit::drawing::ground::Ground;
 use crate::fit::drawing::objective::{Objective, Target};
 use crate::fit::recipe::Recipe;
 use crate::image::Image;
-use crate::render::{Backdrop, Canvas, Grid, Renderer, Softness, Strokes};
-use crate::scene::{Rgb, Scene, Shade};
+use crate::render::{self, Backdrop, Canvas, Grid, Renderer, Softness, Strokes};
+use crate::scene::{Rgb, Scene};
 use crate::seed::{Pyramid, Residual};
 use crate::verify;
 
@@ -29,16 +30,16 @@ pub(in crate::fit) struct Prepared {
     pub(in crate::fit) surfaces: Vec<Surface>,
     /// True if the background keeps its colour.
     pub(in crate::fit) background_fixed: bool,
-    /// The gradient on the background.
-    pub(in crate::fit) shade: Option<Shade>,
+    /// What lies on the background and behind all marks.
+    pub(in crate::fit) ground: Ground,
 }
 
 impl Prepared {
-    /// The surfaces for a drawing of `picture` on `base`, or on a `background` and a `shade`, whose first strokes have a
+    /// The surfaces for a drawing of `picture` on `base`, or on a `background` and a `ground`, whose first strokes have a
     /// scale of `scale` px.
     pub(in crate::fit) fn new(
         picture: &Image,
-        (background, shade): (Background, Option<Shade>),
+        (background, ground): (Background, Ground),
         base: Option<&Base>,
         recipe: &Recipe,
         scale: f32,
@@ -51,19 +52,19 @@ impl Prepared {
             document, scene, ..
         }) = base
         else {
-            return Self::on_page(picture, background, shade, recipe, sizes);
+            return Self::on_page(picture, background, ground, recipe, sizes);
         };
         if let Some(document) = document {
             return Self::on_document(picture, document.text(), sizes);
         }
         let background = scene.background.map_or(Background::None, Background::Color);
-        Self::on_page(picture, background, scene.shade.clone(), recipe, sizes)
+        Self::on_page(picture, background, Ground::of(scene), recipe, sizes)
     }
 
     fn on_page(
         picture: &Image,
         background: Background,
-        shade: Option<Shade>,
+        ground: Ground,
         recipe: &Recipe,
         sizes: Sizes,
     ) -> Result<Self> {
@@ -76,16 +77,16 @@ impl Prepared {
         let surface = |&matte: &Rgb| {
             let color = if mattes.len() == 1 { color } else { matte };
             let target = target.flattened(matte);
-            let backdrop = match &shade {
-                Some(shade) => AnyBackdrop::shaded(&target, shade, color, background)?,
-                None => AnyBackdrop::Color(color),
+            let backdrop = match ground.is_empty() {
+                false => AnyBackdrop::ground(&target, &ground, color, background)?,
+                true => AnyBackdrop::Color(color),
             };
             Ok(Surface::new(target, matte, backdrop, sizes))
         };
         Ok(Self {
             surfaces: mattes.iter().map(surface).collect::<Result<_>>()?,
-            background_fixed: is_fixed || mattes.len() > 1 || shade.is_some(),
-            shade,
+            background_fixed: is_fixed || mattes.len() > 1 || !ground.is_empty(),
+            ground,
             target,
         })
     }
@@ -106,7 +107,7 @@ impl Prepared {
             target: picture.clone(),
             surfaces: mattes.iter().map(surface).collect::<Result<_>>()?,
             background_fixed: true,
-            shade: None,
+            ground: Ground::default(),
         })
     }
 }
@@ -133,36 +134,37 @@ enum AnyBackdrop {
     Color(Rgb),
     /// The render of a base's document.
     Document(Pyramid),
-    /// The render of a shade on the background of this colour or, if there is none, on the matte.
-    Shade(Option<Rgb>, Pyramid),
+    /// The ground on the background of this colour or, if there is none, on the matte.
+    Ground(Option<Rgb>, Pyramid),
 }
 
 impl AnyBackdrop {
-    /// A page of the size of `target`, with a shade on `color`, which is that of `background` if it has one.
-    fn shaded(target: &Image, shade: &Shade, color: Rgb, background: Background) -> Result<Self> {
+    /// A page of the size of `target`, with a ground on `color`, which is that of `background` if it has one.
+    fn ground(target: &Image, ground: &Ground, color: Rgb, background: Background) -> Result<Self> {
         let (width, height) = (target.width(), target.height());
-        let page = Image::new(width, height, shade.planes(width, height, color))?;
+        let scene = ground.scene(width, height, None);
+        let page = Image::new(width, height, render::ground(&scene, color))?;
         let has_color = matches!(background, Background::Color(_));
-        Ok(Self::Shade(has_color.then_some(color), Pyramid::new(page)))
+        Ok(Self::Ground(has_color.then_some(color), Pyramid::new(page)))
     }
 
     fn pyramid(&self) -> Option<&Pyramid> {
         match self {
             Self::Color(_) => None,
-            Self::Document(pyramid) | Self::Shade(_, pyramid) => Some(pyramid),
+            Self::Document(pyramid) | Self::Ground(_, pyramid) => Some(pyramid),
         }
     }
 
     fn canvas(&self, grid: Grid, halvings: usize) -> Canvas {
         match self {
             Self::Color(color) => Canvas::flat(grid, *color),
-            Self::Document(pyramid) | Self::Shade(_, pyramid) => {
+            Self::Document(pyramid) | Self::Ground(_, pyramid) => {
                 Canvas::from_image(pyramid.level(halvings))
             }
         }
     }
 
-    /// The backdrop of the free strokes: the canvas `below` if it holds `frozen` strokes, a document or a shade.
+    /// The backdrop of the free strokes: the canvas `below` if it holds `frozen` strokes, a document or a ground.
     fn backdrop<'a>(&self, below: &'a Canvas, frozen: usize) -> Backdrop<'a> {
         match self {
             Self::Color(color) if frozen == 0 => Backdrop::Color(*color),
@@ -261,7 +263,7 @@ impl Surface {
     pub(in crate::fit) fn color(&self) -> Option<Rgb> {
         match self.backdrop {
             AnyBackdrop::Color(color) => Some(color),
-            AnyBackdrop::Shade(color, _) => color,
+            AnyBackdrop::Ground(color, _) => color,
             AnyBackdrop::Document(_) => None,
         }
     }
@@ -270,7 +272,7 @@ impl Surface {
     pub(in crate::fit) fn color_mut(&mut self) -> Option<&mut Rgb> {
         match &mut self.backdrop {
             AnyBackdrop::Color(color) => Some(color),
-            AnyBackdrop::Document(_) | AnyBackdrop::Shade(..) => None,
+            AnyBackdrop::Document(_) | AnyBackdrop::Ground(..) => None,
         }
     }
 
@@ -309,8 +311,8 @@ impl Surface {
 
     /// The backdrop of the strokes of `scene`, in a drawing without frozen strokes.
     pub(in crate::fit) fn backdrop_of(&self, scene: &Scene) -> Backdrop<'_> {
-        match (scene.background, &scene.shade) {
-            (Some(color), None) => Backdrop::Color(color),
+        match scene.background {
+            Some(color) if Ground::of(scene).is_empty() => Backdrop::Color(color),
             _ => self.backdrop(0),
         }
     }

@@ -15,8 +15,8 @@ use crate::fit::descent::anneal::Annealing;
 use crate::fit::descent::{Course, Descent};
 use crate::fit::drawing::bounds::Bounds;
 use crate::fit::drawing::focus::Focus;
+use crate::fit::drawing::ground::Ground;
 use crate::fit::drawing::masking;
-use crate::fit::drawing::shading;
 use crate::fit::drawing::surface::{Prepared, Surface};
 use crate::fit::drawing::{Drawing, Memento};
 use crate::fit::file::{RenderedFile, Writer};
@@ -31,7 +31,6 @@ use crate::fit::time::Forecast;
 use crate::fit::time::Timer;
 use crate::image::Image;
 use crate::metrics::psnr_db;
-use crate::scene::Shade;
 use crate::svg::Form;
 
 /// A fit under way: first the fields that are fixed, then those that change.
@@ -125,7 +124,7 @@ impl<'a> Session<'a> {
             target,
             mut surfaces,
             background_fixed,
-            shade,
+            ground,
         } = Prepared::new(
             picture,
             choose_background(picture, config, base, &recipe),
@@ -151,7 +150,7 @@ impl<'a> Session<'a> {
         };
         let bounds = Bounds::new(resolution, domain, config.opaque, &radii);
         let edge = annealing.last();
-        let mut drawing = Drawing::new(surfaces, (background_fixed, shade), bounds, edge, level);
+        let mut drawing = Drawing::new(surfaces, (background_fixed, ground), bounds, edge, level);
         let records = base.map_or_else(Vec::new, |base| history::load(&mut drawing, base));
         // Limit on time, and amount of work.
         let limit_s = config.budget.time;
@@ -446,15 +445,14 @@ impl<'a> Session<'a> {
     }
 }
 
-/// The background and the shade of a new drawing. A shade, with `auto`, replaces the background. It has any colours and
-/// opacities, so that a drawing of few colours or of given pens has none, and neither has one of opaque strokes that is
+/// The background and the ground of a new drawing. A ground, with `auto`, has any colours and opacities, so that a drawing of few colours or of given pens has none, and neither has one of opaque strokes that is
 /// transparent.
 fn choose_background(
     picture: &Image,
     config: &Config,
     base: Option<&Base>,
     recipe: &Recipe,
-) -> (Background, Option<Shade>) {
+) -> (Background, Ground) {
     let may_be = base.is_none()
         && config.background == Background::Auto
         && config.colors == Colors::Free
@@ -462,13 +460,10 @@ fn choose_background(
         && !(config.opaque && picture.alpha().is_some());
     let pixels = picture.width() * picture.height();
     let price = Price::of(config, recipe, pixels);
-    let choose = || shading::choose(picture, &recipe.background.shade, price.per_byte());
-    let shade = may_be.then(choose).flatten();
-    let background = match shade {
-        Some(_) => Background::None,
-        None => config.background,
-    };
-    (background, shade)
+    match may_be {
+        true => Ground::choose(picture, &recipe.background, price.per_byte()),
+        false => (config.background, Ground::default()),
+    }
 }
 
 /// Weight of an error at each pixel while strokes are fitted: as `focus` says, and as it is seen.

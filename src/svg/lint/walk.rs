@@ -10,7 +10,7 @@ use super::reference::References;
 use super::rules::{self, Rule};
 use super::stroke::StrokeStyle;
 use super::{Findings, element};
-use crate::svg::dialect::SVG_NAMESPACE;
+use crate::svg::dialect::{self, SVG_NAMESPACE};
 use crate::svg::sheet::{self, Rules};
 
 /// Depth of elements at which readers built on libxml2 stop.
@@ -337,6 +337,8 @@ fn kind(element: &Element) -> Option<&'static Rule> {
         "text" => Some(&rules::TEXT),
         "tspan" | "textPath" | "stop" => None,
         "linearGradient" | "radialGradient" if is_plain_gradient(element) => None,
+        "filter" if is_plain_filter(element) => None,
+        "feGaussianBlur" if element.attributes().all(|(key, _)| key == "stdDeviation") => None,
         name if PLAIN.contains(&name) => None,
         name if SHAPES.contains(&name) => Some(&rules::DIALECT),
         _ => Some(&rules::FEATURE),
@@ -348,6 +350,17 @@ fn is_plain_gradient(gradient: &Element) -> bool {
     const ATTRIBUTES: [&str; 8] = ["id", "gradientUnits", "x1", "y1", "x2", "y2", "cx", "cy"];
     let is_plain = |(key, _): (&str, &str)| key == "r" || ATTRIBUTES.contains(&key);
     gradient.get("gradientUnits") == Some("userSpaceOnUse") && gradient.attributes().all(is_plain)
+}
+
+/// True if a filter is of the kind that all programs draw alike: on a part of the page in px, and in the colours of the page.
+fn is_plain_filter(filter: &Element) -> bool {
+    let known = dialect::FILTER
+        .iter()
+        .all(|(key, value)| filter.get(key) == Some(*value));
+    let names = dialect::FILTER.map(|(key, _)| key);
+    let is_plain =
+        |key: &str| key == "id" || names.contains(&key) || dialect::FILTER_PLACE.contains(&key);
+    known && filter.attributes().all(|(key, _)| is_plain(key))
 }
 
 /// True if a value is a colour with alpha.

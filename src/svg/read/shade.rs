@@ -62,14 +62,14 @@ impl Parser<'_> {
         })
     }
 
-    /// The element that has to follow a gradient.
-    fn filled(&mut self, is_it: impl Fn(&Element) -> bool) -> Parsed<Element> {
+    /// The element that has to follow a gradient or a filter.
+    pub(super) fn filled(&mut self, is_it: impl Fn(&Element) -> bool) -> Parsed<Element> {
         match self.next()? {
             Tag::Open(e) if is_it(&e) => Ok(e),
             Tag::Open(e) => Err(unexpected(&e)),
-            Tag::Close | Tag::End => {
-                Err("nothing follows the gradient: give a file that strokefit wrote".into())
-            }
+            Tag::Close | Tag::End => Err(
+                "nothing follows a gradient or a filter: give a file that strokefit wrote".into(),
+            ),
         }
     }
 }

@@ -29,7 +29,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use super::areas::{self, LEVEL, Pixel, Pixels, distance2, mix};
-use super::recipe::Fills;
+use super::recipe::{Fills, Outlines};
 use crate::scene::{Area, Path, Rgb};
 use colors::{CANVAS, NONE};
 pub(super) use compound::Fill;
@@ -365,4 +365,33 @@ fn explained(pixels: &Pixels<'_>, mixtures: &[Mixture], fills: &Fills) -> f32 {
 fn is_opaque(color: &Pixel) -> bool {
     let shines = (0..3).map(|k| color[k + 3] - color[k]);
     shines.sum::<f32>() < 3.0 * 5.0 * LEVEL
+}
+
+/// The rings around what covers at least half of a pixel; `shares` are those of all pixels of a page, row by row.
+pub(super) fn rings(shares: &[f32], width: usize, outlines: &Outlines) -> Vec<Path> {
+    let height = shares.len() / width;
+    let framed = width + 2;
+    let mut values = vec![0.0; framed * (height + 2)];
+    for (row, shares) in values
+        .chunks_exact_mut(framed)
+        .skip(1)
+        .zip(shares.chunks_exact(width))
+    {
+        row[1..=width].copy_from_slice(shares);
+    }
+    let field = Field {
+        origin: [-1; 2],
+        width: framed,
+        values,
+    };
+    let around = Surroundings {
+        page: [width, height].map(|side| side as f32),
+        field: &field,
+        depth: |_, _| 0.0,
+    };
+    let contours = field.contours();
+    let rings = contours.iter();
+    rings
+        .filter_map(|contour| outline::ring(contour, outlines, &around))
+        .collect()
 }

@@ -1,0 +1,274 @@
+//! The shares of a colour that lies softly on the page, and what they surround.
+
+use crate::fit::recipe::ShadowChoice;
+use crate::image::Image;
+use crate::scene::Rgb;
+
+/// Premultiplied colour and opacity.
+type Value = [f32; 4];
+
+/// The soft part of a picture.
+pub(super) struct Shares {
+    pub(super) width: usize,
+    /// The colour that the page is mixed with.
+    pub(super) color: Rgb,
+    /// The squared difference between that colour and the page, summed over red, green and blue and a black and a white page.
+    pub(super) contrast2: f32,
+    /// For each pixel the share of the colour, where it is seen.
+    pub(super) seen: Vec<Option<f32>>,
+    /// The share of each pixel that belongs to what casts the shadow.
+    pub(super) caster: Vec<f32>,
+}
+
+/// What a pixel shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Page,
+    /// Connected with the page, and never with a step.
+    Soft,
+    Other,
+}
+
+impl Shares {
+    /// The shares of a picture on a page of this colour, or on none, if there are enough of them around something.
+    pub(super) fn of(picture: &Image, page: Option<Rgb>, choice: &ShadowChoice) -> Option<Self> {
+        let page = page.map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
+        let values = Values::of(picture);
+        let mut kinds = kinds(&values, page, choice);
+        let soft = kinds.iter().filter(|kind| **kind == Kind::Soft).count();
+        if (soft as f32) < choice.least_share * kinds.len() as f32 {
+            return None;
+        }
+        let ink = ink(&values, &kinds, page, choice)?;
+        let along = |i: usize| share(values.at(i), page, ink);
+        for i in 0..kinds.len() {
+            if kinds[i] == Kind::Soft && along(i).1 > choice.near {
+                kinds[i] = Kind::Other;
+            }
+        }
+        let seen = |(i, kind): (usize, &Kind)| match kind {
+            Kind::Page => Some(0.0),
+            Kind::Soft => Some(along(i).0),
+            Kind::Other => None,
+        };
+        let caster = caster(&values, &kinds, choice);
+        let is_cast = caster.iter().any(|&share| share > 0.0);
+        let apart = |c: usize| (ink[c] - page[c]) * (ink[c] - page[c]);
+        let contrast2 = (0..4).map(apart).sum();
+        is_cast.then(|| Self {
+            width: values.width,
+            color: [ink[0], ink[1], ink[2]],
+            contrast2,
+            seen: kinds.iter().enumerate().map(seen).collect(),
+            caster,
+        })
+    }
+}
+
+/// The premultiplied values of a picture.
+struct Values<'a> {
+    picture: &'a Image,
+    width: usize,
+}
+
+impl<'a> Values<'a> {
+    fn of(picture: &'a Image) -> Self {
+        Self {
+            picture,
+            width: picture.width(),
+        }
+    }
+
+    fn len(&self) -> usize {
+        self.width * self.picture.height()
+    }
+
+    fn at(&self, i: usize) -> Value {
+        let alpha = self.picture.alpha().map_or(1.0, |alpha| alpha[i]);
+        let [r, g, b] = self
+            .picture
+            .planes()
+            .each_ref()
+            .map(|plane| alpha * plane[i]);
+        [r, g, b, alpha]
+    }
+
+    /// True for a pixel whose neighbours on opposite sides have it about in their middle.
+    fn is_smooth(&self, i: usize, bend: f32) -> bool {
+        let (w, height) = (self.width, self.picture.height());
+        let (x, y) = (i % w, i / w);
+        let is_inner = [x > 0 && x + 1 < w, y > 0 && y + 1 < height];
+        let own = self.at(i);
+        [1, w].into_iter().zip(is_inner).all(|(step, is_inner)| {
+            !is_inner || {
+                let [before, after] = [self.at(i - step), self.at(i + step)];
+                (0..4).all(|c| (before[c] + after[c] - 2.0 * own[c]).abs() <= bend)
+            }
+        })
+    }
+}
+
+/// The largest difference of two values.
+fn away(a: Value, b: Value) -> f32 {
+    (0..4).map(|c| (a[c] - b[c]).abs()).fold(0.0, f32::max)
+}
+
+/// Floods the picture from its page through what is smooth.
+fn kinds(values: &Values<'_>, page: Value, choice: &ShadowChoice) -> Vec<Kind> {
+    let kind = |i: usize| match away(values.at(i), page) <= choice.page {
+        true => Kind::Page,
+        false => Kind::Other,
+    };
+    let mut kinds: Vec<Kind> = (0..values.len()).map(kind).collect();
+    let mut open: Vec<usize> = (0..kinds.len())
+        .filter(|&i| kinds[i] == Kind::Page)
+        .collect();
+    while let Some(i) = open.pop() {
+        for k in beside(i, values.width, kinds.len()) {
+            if kinds[k] == Kind::Other && values.is_smooth(k, choice.bend) {
+                kinds[k] = Kind::Soft;
+                open.push(k);
+            }
+        }
+    }
+    kinds
+}
+
+/// The pixels left and right of, above and below a pixel.
+fn beside(i: usize, width: usize, count: usize) -> impl Iterator<Item = usize> {
+    let x = i % width;
+    let left = (x > 0).then(|| i - 1);
+    let right = (x + 1 < width).then_some(i + 1);
+    let above = i.checked_sub(width);
+    let below = Some(i + width).filter(|&k| k < count);
+    [left, right, above, below].into_iter().flatten()
+}
+
+/// The colour that the soft pixels mix the page with: as far from the page as a colour can be.
+fn ink(values: &Values<'_>, kinds: &[Kind], page: Value, choice: &ShadowChoice) -> Option<Value> {
+    let is_soft = |i: &usize| kinds[*i] == Kind::Soft;
+    let mut ink = None;
+    for _ in 0..choice.rounds {
+        let is_near =
+            |i: &usize| ink.is_none_or(|ink| share(values.at(*i), page, ink).1 <= choice.near);
+        let soft = (0..kinds.len()).filter(is_soft).filter(is_near);
+        let differences = soft.map(|i| {
+            let value = values.at(i);
+            [0, 1, 2, 3].map(|c: usize| value[c] - page[c])
+        });
+        ink = Some(farthest(page, direction(differences)?)?);
+    }
+    ink
+}
+
+/// The direction that differences have on the whole: they are summed by their size, those of the other side turned around.
+fn direction(differences: impl Iterator<Item = Value>) -> Option<Value> {
+    let differences: Vec<Value> = differences.collect();
+    let mut axis = [0.0_f32; 4];
+    for _ in 0..2 {
+        let mut sum = [0.0_f64; 4];
+        for difference in &differences {
+            let along: f32 = (0..4).map(|c| difference[c] * axis[c]).sum();
+            let size = (0..4)
+                .map(|c| difference[c] * difference[c])
+                .sum::<f32>()
+                .sqrt();
+            let sign = if along < 0.0 { -size } else { size };
+            (0..4).for_each(|c| sum[c] += f64::from(sign * difference[c]));
+        }
+        let length = sum.iter().map(|v| v * v).sum::<f64>().sqrt();
+        if length <= 0.0 {
+            return None;
+        }
+        axis = sum.map(|v| (v / length) as f32);
+    }
+    Some(axis)
+}
+
+/// The value farthest from the page in a direction that a colour can have: an opaque one, where there is no page.
+fn farthest(page: Value, direction: Value) -> Option<Value> {
+    let most = |c: usize| match direction[c] {
+        d if d > 1e-4 => (1.0 - page[c]) / d,
+        d if d < -1e-4 => -page[c] / d,
+        _ => f32::INFINITY,
+    };
+    let most = match page[3] > 0.0 {
+        true => (0..3).map(most).fold(f32::INFINITY, f32::min),
+        false => most(3),
+    };
+    let ink = [0, 1, 2, 3].map(|c| (page[c] + most * direction[c]).clamp(0.0, 1.0));
+    (most.is_finite() && most > 0.0).then_some(ink)
+}
+
+/// The share of `ink` on the page that a value shows, and how far it is from their mixture.
+fn share(value: Value, page: Value, ink: Value) -> (f32, f32) {
+    let (mut along, mut whole) = (0.0, 0.0);
+    for c in 0..4 {
+        let full = ink[c] - page[c];
+        along += (value[c] - page[c]) * full;
+        whole += full * full;
+    }
+    let share = along / whole.max(f32::MIN_POSITIVE);
+    let mixed = [0, 1, 2, 3].map(|c| page[c] + share * (ink[c] - page[c]));
+    (share, away(value, mixed))
+}
+
+/// The shares of the pixels of what is neither page nor soft, and surrounded by what is soft for the most part.
+fn caster(values: &Values<'_>, kinds: &[Kind], choice: &ShadowChoice) -> Vec<f32> {
+    let (width, count) = (values.width, kinds.len());
+    let mut is_cast = vec![false; count];
+    let mut is_seen: Vec<bool> = kinds.iter().map(|kind| *kind != Kind::Other).collect();
+    for start in 0..count {
+        if is_seen[start] {
+            continue;
+        }
+        is_seen[start] = true;
+        let (mut part, mut next) = (vec![start], 0);
+        let [mut soft, mut all] = [0, 0];
+        while let Some(&i) = part.get(next) {
+            next += 1;
+            for k in beside(i, width, count) {
+                all += usize::from(kinds[k] != Kind::Other);
+                soft += usize::from(kinds[k] == Kind::Soft);
+                if !is_seen[k] {
+                    is_seen[k] = true;
+                    part.push(k);
+                }
+            }
+        }
+        if part.len() >= choice.least_pixels && soft as f32 > choice.surrounded * all as f32 {
+            part.into_iter().for_each(|i| is_cast[i] = true);
+        }
+    }
+    // The step to an edge makes the soft pixel before it look like one of the caster.
+    let trimmed = eroded(&is_cast, width);
+    let inner = eroded(&trimmed, width);
+    let share = |i: usize| match (trimmed[i], inner[i]) {
+        (false, _) => 0.0,
+        (_, true) => 1.0,
+        _ => covered(values, &trimmed, &inner, i),
+    };
+    (0..count).map(share).collect()
+}
+
+/// The pixels of which all four neighbours are among them.
+fn eroded(mask: &[bool], width: usize) -> Vec<bool> {
+    let is_inner = |i: usize| mask[i] && beside(i, width, mask.len()).all(|k| mask[k]);
+    (0..mask.len()).map(is_inner).collect()
+}
+
+/// How much of a pixel on the edge is covered: by its place between the colours outside and inside.
+fn covered(values: &Values<'_>, trimmed: &[bool], inner: &[bool], i: usize) -> f32 {
+    let (mut sum, mut number) = (0.0, 0.0);
+    for outside in beside(i, values.width, inner.len()).filter(|&k| !trimmed[k]) {
+        let inside = (2 * i).checked_sub(outside);
+        let Some(inside) = inside.filter(|&k| inner.get(k) == Some(&true)) else {
+            continue;
+        };
+        let [outside, own, inside] = [outside, i, inside].map(|k| values.at(k));
+        let whole = away(inside, outside).max(f32::MIN_POSITIVE);
+        sum += (away(own, outside) / whole).min(1.0);
+        number += 1.0;
+    }
+    if number > 0.0 { sum / number } else { 0.5 }
+}

@@ -1,0 +1,27 @@
+//! Search for the least value of a function of a few numbers.
+
+/// A place near `start` where `cost` is least, by steps along each number in turn that are halved where none is an
+/// improvement.
+pub(crate) fn search<const N: usize>(
+    start: [f32; N],
+    mut step: f32,
+    finest: f32,
+    cost: impl Fn([f32; N]) -> f64,
+) -> [f32; N] {
+    let (mut best, mut least) = (start, cost(start));
+    while step >= finest {
+        let mut improved = false;
+        for (i, sign) in (0..N).flat_map(|i| [(i, 1.0), (i, -1.0)]) {
+            let mut moved = best;
+            moved[i] += sign * step;
+            let found = cost(moved);
+            if found < least {
+                (best, least, improved) = (moved, found, true);
+            }
+        }
+        if !improved {
+            step /= 2.0;
+        }
+    }
+    best
+}

@@ -1,0 +1,116 @@
+//! The ground of a scene: all that lies behind its marks, as pixels.
+
+mod blur;
+mod fill;
+
+pub use blur::{Plane, blurred};
+pub use fill::filled;
+
+use crate::math::Vector;
+use crate::scene::{Rgb, Scene, Shadow};
+
+/// The shade and the shadows of `scene` on its background or, where it has none, on `behind`: three planes, row by row.
+pub fn ground(scene: &Scene, behind: Rgb) -> [Vec<f32>; 3] {
+    let [width, height] = [scene.width, scene.height].map(|side| side as usize);
+    let behind = scene.background.unwrap_or(behind);
+    let mut planes = match &scene.shade {
+        Some(shade) => shade.planes(width, height, behind),
+        None => behind.map(|level| vec![level; width * height]),
+    };
+    for shadow in &scene.shadows {
+        let coverage = coverage(shadow, width, height);
+        let area = shadow.area();
+        for (plane, color) in planes.iter_mut().zip(area.color) {
+            let mix = |(seen, &covered): (&mut f32, &f32)| {
+                *seen += area.opacity * covered * (color - *seen)
+            };
+            plane.iter_mut().zip(&coverage).for_each(mix);
+        }
+    }
+    planes
+}
+
+/// How much of each pixel of a page a shadow covers, 0 to 1, without its opacity, row by row.
+fn coverage(shadow: &Shadow, width: usize, height: usize) -> Vec<f32> {
+    let [low, high] = shadow.extent();
+    // What lies beyond the page is blurred into it, as far as a blur reaches.
+    let reach = (4.0 * shadow.blur()).ceil() as i64;
+    let page = [width, height].map(|side| side as i64);
+    let origin = low.map(|at| at.max(-reach));
+    let end = [0, 1].map(|axis: usize| high[axis].min(page[axis] + reach));
+    let size = [0, 1].map(|axis| (end[axis] - origin[axis]).max(0) as usize);
+    let shift = Vector::new(-(origin[0] as f32), -(origin[1] as f32));
+    let rings = shadow
+        .area()
+        .rings
+        .iter()
+        .map(|ring| ring.clone().map(|p| p + shift));
+    let sharp = filled(rings, size);
+    let soft = blurred(sharp, shadow.blur());
+    let mut covered = vec![0.0; width * height];
+    for (y, row) in soft.values.chunks_exact(soft.width.max(1)).enumerate() {
+        let y = y as i64 + origin[1];
+        let first = origin[0].clamp(0, width as i64);
+        let last = end[0].clamp(0, width as i64);
+        if (0..height as i64).contains(&y) && first < last {
+            let own = (first - origin[0]) as usize..(last - origin[0]) as usize;
+            let at = y as usize * width;
+            covered[at + first as usize..at + last as usize].copy_from_slice(&row[own]);
+        }
+    }
+    covered
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Area, Shape};
+    use crate::svg::{self, WriteOptions};
+    use crate::verify;
+
+    fn shadow(blur: f32) -> Shadow {
+        let shape = Shape::Rect {
+            low: [20.0, 14.5].into(),
+            high: [90.0, 61.0].into(),
+            radius: 12.0,
+        };
+        let area = Area {
+            rings: vec![shape.ring()],
+            color: [0.1, 0.2, 0.3],
+            opacity: 0.6,
+            shade: None,
+        };
+        Shadow::new(area, blur).unwrap()
+    }
+
+    #[test]
+    fn the_ground_is_what_resvg_draws_of_its_file() {
+        for blur in [0.7, 1.6, 2.5, 6.0, 9.3] {
+            let scene = Scene {
+                shadows: vec![shadow(blur)],
+                ..Scene::empty(110, 80, Some([0.9, 0.8, 0.7]))
+            };
+            let planes = ground(&scene, [1.0; 3]);
+            let text = svg::write(&scene, &WriteOptions::default());
+            let size = verify::Size::Exact {
+                width: 110,
+                height: 80,
+            };
+            let seen = verify::render(&text, size, None).unwrap();
+            let pairs = planes.iter().flatten().zip(seen.planes().iter().flatten());
+            let apart = pairs
+                .map(|(a, b)| 255.0 * (a - b).abs())
+                .fold(0.0, f32::max);
+            assert!(apart < 3.0, "{blur}: {apart} levels");
+        }
+    }
+
+    #[test]
+    fn a_shadow_beyond_the_page_is_blurred_into_it() {
+        let whole = coverage(&shadow(6.0), 110, 80);
+        let part = coverage(&shadow(6.0), 50, 80);
+        for y in 0..80 {
+            assert_eq!(whole[y * 110..y * 110 + 50], part[y * 50..y * 50 + 50]);
+        }
+    }
+}

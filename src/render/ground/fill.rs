@@ -1,0 +1,83 @@
+//! Exact coverage of filled rings: each side adds the area to its right.
+
+use super::Plane;
+use crate::math::Point;
+use crate::scene::Path;
+
+/// Farthest that chords are from curves, px.
+const FLATNESS: f32 = 0.02;
+
+/// How much of each pixel the rings fill, where they wind in one direction and holes in the other. Rings are in px from the
+/// plane's corner.
+pub fn filled(rings: impl Iterator<Item = Path>, [width, height]: [usize; 2]) -> Plane {
+    // Sums over a row of what its pixels hold give the covered share; a column more takes what the last one hands on.
+    let stride = width + 2;
+    let mut turns = vec![0.0_f64; stride * height];
+    for ring in rings {
+        let corners = ring.flattened(FLATNESS);
+        for side in corners.windows(2) {
+            add(&mut turns, stride, side[0], side[1]);
+        }
+    }
+    let row = |row: &[f64]| {
+        let mut sum = 0.0;
+        let shares = row[..width].iter().map(|turn| {
+            sum += turn;
+            sum.abs().min(1.0) as f32
+        });
+        shares.collect::<Vec<f32>>()
+    };
+    Plane {
+        width,
+        values: turns.chunks_exact(stride).flat_map(row).collect(),
+    }
+}
+
+/// Adds the side from `a` to `b`, row by row.
+fn add(turns: &mut [f64], stride: usize, a: Point, b: Point) {
+    let (sign, top, bottom) = if a.y <= b.y {
+        (1.0, a, b)
+    } else {
+        (-1.0, b, a)
+    };
+    let [x0, y0, x1, y1] = [top.x, top.y, bottom.x, bottom.y].map(f64::from);
+    if y1 <= y0 {
+        return;
+    }
+    let slope = (x1 - x0) / (y1 - y0);
+    let rows = turns.len() / stride;
+    let (first, last) = (
+        y0.max(0.0) as usize,
+        (y1.ceil().max(0.0) as usize).min(rows),
+    );
+    for row in first..last {
+        let (from, to) = (y0.max(row as f64), y1.min(row as f64 + 1.0));
+        let across = [from, to].map(|y| x0 + (y - y0) * slope);
+        let row = &mut turns[row * stride..(row + 1) * stride];
+        add_in_row(row, sign * (to - from), across);
+    }
+}
+
+/// Adds a side of this signed `height` within a row, between two places across.
+fn add_in_row(row: &mut [f64], height: f64, across: [f64; 2]) {
+    let most = (row.len() - 2) as f64;
+    let [left, right] =
+        [across[0].min(across[1]), across[0].max(across[1])].map(|x| x.clamp(0.0, most));
+    let (first, last) = (left.floor(), right.ceil().max(left.floor() + 1.0));
+    let width = right - left;
+    // Integral of the share of the side that lies to the left of x, for x from the left border of a pixel to the right one.
+    let covered = |x: f64| match width > 0.0 {
+        true => {
+            let share = ((x - left) / width).clamp(0.0, 1.0);
+            0.5 * share * share * width + (x - right).max(0.0)
+        }
+        false => (x - left).max(0.0),
+    };
+    let mut before = 0.0;
+    for k in first as usize..last as usize {
+        let share = covered(k as f64 + 1.0) - covered(k as f64);
+        row[k] += height * (share - before);
+        before = share;
+    }
+    row[last as usize] += height * (1.0 - before);
+}
