@@ -8,9 +8,11 @@
 
 mod axis;
 mod profile;
+mod stack;
 
 use crate::math::Point;
 use crate::scene::{Axis, Shade};
+pub(crate) use stack::stacked;
 
 /// Fit of a gradient. All of it is a guess.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -7,6 +7,7 @@ use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use strokefit::fit::Base;
+use strokefit::render;
 use strokefit::scene::{Mark, Rgb, Scene, Stage};
 use strokefit::svg::{self, Length};
 
@@ -15,7 +16,7 @@ use crate::failure::Failure;
 use crate::marks::PackedMarks;
 use crate::options;
 
-/// All of a drawing but its marks: its size, background and shade, and the size that its file says.
+/// All of a drawing but its marks: its size, background, shade and shadows, and the size that its file says.
 #[pyclass(frozen, module = "strokefit._native")]
 #[derive(Clone)]
 pub(crate) struct Page {
@@ -33,11 +34,12 @@ impl Page {
         }
     }
 
-    /// This page on another background, without its shade.
+    /// This page on another background, without its shade and shadows.
     fn on(&self, background: Option<Rgb>) -> Self {
         let mut page = self.clone();
         page.scene.background = background;
         page.scene.shade = None;
+        page.scene.shadows.clear();
         page
     }
 
@@ -52,18 +54,17 @@ impl Page {
         self.scene.background
     }
 
-    /// The gradient on the background, or on `behind` where there is none, height × width × 3.
-    fn shade<'py>(
+    /// The gradient and the shadows on the background, or on `behind` where there is none, height × width × 3.
+    fn ground<'py>(
         &self,
         py: Python<'py>,
         behind: Rgb,
     ) -> PyResult<Option<Bound<'py, PyArray3<f32>>>> {
-        let Some(shade) = &self.scene.shade else {
+        if self.scene.shade.is_none() && self.scene.shadows.is_empty() {
             return Ok(None);
-        };
+        }
         let [width, height] = [self.scene.width, self.scene.height].map(|side| side as usize);
-        let behind = self.scene.background.unwrap_or(behind);
-        let planes = shade.planes(width, height, behind);
+        let planes = render::ground(&self.scene, behind);
         let samples = (0..width * height).flat_map(|i| [0, 1, 2].map(|channel| planes[channel][i]));
         let samples = PyArray1::from_vec(py, samples.collect());
         Ok(Some(samples.reshape([height, width, 3])?))

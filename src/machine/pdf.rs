@@ -2,6 +2,7 @@
 
 mod file;
 mod shade;
+mod shadow;
 
 use std::fmt::Write;
 
@@ -25,6 +26,10 @@ pub fn pdf(sheet: &Sheet<'_>) -> Vec<u8> {
         let [shading, mask] = shade::add(&mut file, shade, number, scene);
         shadings += &shading;
         masks += &mask;
+    }
+    let size = [scene.width, scene.height];
+    for (number, shadow) in scene.shadows.iter().enumerate() {
+        masks += &shadow::add(&mut file, shadow, number, size);
     }
     let content = file.stream("", content(sheet).as_bytes());
     let (states, layers_named) = (states(scene), names(&layers));
@@ -95,6 +100,10 @@ fn content(sheet: &Sheet<'_>) -> String {
     let mut shades = 0..;
     if scene.shade.is_some() {
         let _ = writeln!(out, "q {} Q", shade::operators(shades.next().unwrap_or(0)));
+    }
+    for (number, shadow) in scene.shadows.iter().enumerate() {
+        let size = [scene.width, scene.height];
+        let _ = writeln!(out, "q {} Q", shadow::operators(shadow, number, size));
     }
     for (stage, number) in scene.stages.iter().zip(1..) {
         let _ = writeln!(out, "/OC/L{number} BDC");

@@ -31,7 +31,7 @@ pub fn ground(scene: &Scene, behind: Rgb) -> [Vec<f32>; 3] {
 }
 
 /// How much of each pixel of a page a shadow covers, 0 to 1, without its opacity, row by row.
-fn coverage(shadow: &Shadow, width: usize, height: usize) -> Vec<f32> {
+pub fn coverage(shadow: &Shadow, width: usize, height: usize) -> Vec<f32> {
     let [low, high] = shadow.extent();
     // What lies beyond the page is blurred into it, as far as a blur reaches.
     let reach = (4.0 * shadow.blur()).ceil() as i64;

@@ -85,7 +85,7 @@ use rayon::prelude::*;
 pub use gradients::{Gradients, Survey};
 pub(crate) use grid::multiply;
 pub use grid::{BlockRgb, Canvas, Grid, Lanes, Run, TILE, TileRgb};
-pub use ground::{Plane, blurred, filled, ground};
+pub use ground::{Plane, blurred, coverage, filled, ground};
 pub use paint::Paint;
 pub use strokes::{
     AX, AY, BX, BY, OPACITY, PARAMS, Params, RADIUS, RED, STYLE, StrokeMut, StrokeRef, Strokes,

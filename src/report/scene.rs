@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::scene::{Axis, Mark, Path, PathPoint, Rgb, Scene, Shade, ShadeStop};
+use crate::scene::{Axis, Mark, Path, PathPoint, Rgb, Scene, Shade, ShadeStop, Shadow};
 
 /// A scene in numbers and colours that a page can hand to a canvas.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -16,6 +16,10 @@ pub struct SceneRecord {
     /// The gradient on it; left out if there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shade: Option<ShadeRecord>,
+    /// The shadows on both, back to front, each as the area that it is a blur of, and the standard deviation of that, px; left out
+    /// if there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub shadows: Vec<(MarkRecord, f32)>,
     /// Marks back to front, stage by stage.
     pub stages: Vec<Vec<MarkRecord>>,
 }
@@ -41,6 +45,7 @@ impl From<&Scene> for SceneRecord {
             height: scene.height,
             background: scene.background.map(css),
             shade: scene.shade.as_ref().map(ShadeRecord::from),
+            shadows: scene.shadows.iter().map(shadow).collect(),
             stages: stages
                 .map(|stage| stage.marks.iter().map(MarkRecord::from).collect())
                 .collect(),
@@ -85,6 +90,11 @@ impl From<&Mark> for MarkRecord {
             mark.shade().map(ShadeRecord::from),
         )
     }
+}
+
+fn shadow(shadow: &Shadow) -> (MarkRecord, f32) {
+    let area = Mark::Area(shadow.area().clone());
+    (MarkRecord::from(&area), shadow.blur())
 }
 
 fn kinds(path: &Path) -> String {

@@ -101,7 +101,7 @@ fn tensor(blocks: &Blocks, near: f32, term: impl Fn(Point, [f32; 2]) -> [f32; 3]
 }
 
 /// The line in this direction, in radians, from one end of the part to the other.
-fn line(blocks: &Blocks, angle: f32) -> Axis {
+pub(super) fn line(blocks: &Blocks, angle: f32) -> Axis {
     let (sine, cosine) = math::sin_cos(angle);
     let along = Vector::new(cosine, sine);
     let [[left, top], [width, height]] = [blocks.low, blocks.size];

@@ -245,7 +245,7 @@ fn stroked(
     let areas: Vec<Area> = fills
         .iter()
         .filter(own)
-        .map(|fill| flat.area(fill))
+        .flat_map(|fill| flat.areas_of(fill))
         .collect();
     let of_areas: f32 = areas.iter().map(|area| price(&area.clone().into())).sum();
     let is_ellipse = matches!(&areas[..], [area] if is_ellipse(area));

@@ -86,6 +86,10 @@ pub struct Shades {
     pub least_share: f32,
     /// See `least_share`.
     pub least_gain: f32,
+    /// Most gradients on top of each other.
+    pub most_stacked: usize,
+    /// Fewest pixels of a part that may have several.
+    pub least_stacked: usize,
     /// A colour with this share of a part is taken away from it if no gradient is found.
     pub flat_share: f32,
     /// Most times that colours are taken away.
@@ -143,6 +147,8 @@ impl Fills {
             blocks: 40,
             least_share: 0.9,
             least_gain: 0.25,
+            most_stacked: 3,
+            least_stacked: 2000,
             flat_share: 0.25,
             rounds: 4,
             fit: ShadeFit {

@@ -98,8 +98,8 @@ class Scene:
     @property
     def background(self) -> Union[tuple[float, float, float], NDArray[np.float32], None]:
         """The background for a renderer: a colour, height × width × 3 where it is a gradient, or None."""
-        shade = self._page.shade((1.0, 1.0, 1.0))
-        return self._page.background if shade is None else shade
+        ground = self._page.ground((1.0, 1.0, 1.0))
+        return self._page.background if ground is None else ground
 
     def with_background(self, background: Optional[Sequence[float]]) -> Scene:
         """The scene, its marks shared, on another colour, or on none."""

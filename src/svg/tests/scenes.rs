@@ -4,7 +4,8 @@ use proptest::prelude::*;
 
 use crate::math::{self, Point};
 use crate::scene::{
-    Area, Axis, MAX_STOPS, Mark, Path, PathPoint, Scene, Shade, ShadeStop, Shape, Stage, Stroke,
+    Area, Axis, MAX_STOPS, Mark, Path, PathPoint, Scene, Shade, ShadeStop, Shadow, Shape, Stage,
+    Stroke,
 };
 use crate::svg::{Form, Group, WriteOptions};
 
@@ -165,16 +166,31 @@ pub(super) fn scene() -> impl Strategy<Value = Scene> {
         1..100_u32,
         background,
         prop::option::of(shade()),
+        prop::collection::vec(shadow(), 0..3),
         prop::collection::vec(stage, 0..4),
     )
-        .prop_map(|(width, height, background, shade, stages)| Scene {
-            width,
-            height,
-            page: None,
-            background,
-            shade,
-            stages,
-        })
+        .prop_map(
+            |(width, height, background, shade, shadows, stages)| Scene {
+                width,
+                height,
+                page: None,
+                background,
+                shade,
+                shadows: shadows.into_iter().flatten().collect(),
+                stages,
+            },
+        )
+}
+
+/// A shadow, unless nothing of it is left.
+fn shadow() -> impl Strategy<Value = Option<Shadow>> {
+    (area(), 0.5..60.0_f32).prop_map(|(area, blur)| {
+        let area = Area {
+            shade: None,
+            ..area
+        };
+        Shadow::new(area, blur).ok()
+    })
 }
 
 /// A stroke of few styles between few places, so that neighbours often share a style or an end.

@@ -21,7 +21,7 @@ pub(super) const NONE: u16 = u16::MAX;
 pub(super) struct Colors<'a> {
     pub(super) pixels: &'a Pixels<'a>,
     pub(super) list: Vec<Pixel>,
-    shades: Vec<Shade>,
+    shades: Vec<Vec<Shade>>,
     mattes: usize,
 }
 
@@ -30,17 +30,19 @@ impl Colors<'_> {
     pub(super) fn at(&self, label: u16, i: usize) -> Pixel {
         match label {
             CANVAS => self.pixels.canvas.at(i),
-            SHADES.. => match self.shade(label) {
-                Some(shade) => shades::shown(shade, self.pixels, i, self.mattes),
-                None => self.pixels.canvas.at(i),
+            SHADES.. => match self.shades(label) {
+                [] => self.pixels.canvas.at(i),
+                shades => shades::shown(shades, self.pixels, i, self.mattes),
             },
             _ => self.list[usize::from(label) - 1],
         }
     }
 
-    /// The shade of a label.
-    pub(super) fn shade(&self, label: u16) -> Option<&Shade> {
-        self.shades.get(usize::from(label.checked_sub(SHADES)?))
+    /// The shades of a label, back to front; none if it is that of a colour.
+    pub(super) fn shades(&self, label: u16) -> &[Shade] {
+        let index = label.checked_sub(SHADES);
+        let shades = index.and_then(|index| self.shades.get(usize::from(index)));
+        shades.map_or(&[], Vec::as_slice)
     }
 
     /// The nearest label of a pixel but those of shades, and how far it is.

@@ -13,7 +13,8 @@ pub(in crate::trace) struct Fill {
     pub(in crate::trace) region: u32,
     pub(super) rings: Vec<Path>,
     pub(super) color: Pixel,
-    pub(super) shade: Option<Shade>,
+    /// Its gradients, back to front.
+    pub(super) shades: Vec<Shade>,
     /// The pixels that show it.
     pub(super) size: f32,
     /// Squared error that it removes, summed over all mattes.
@@ -35,7 +36,7 @@ pub(super) fn joined(fills: Vec<Fill>, neighbours: &[BTreeMap<u32, u32>]) -> Vec
             let (Some(a), Some(b)) = (&fills[lower], &fills[upper]) else {
                 continue;
             };
-            if a.shade != b.shade || away(&a.color, &b.color) > ALIKE * LEVEL {
+            if a.shades != b.shades || away(&a.color, &b.color) > ALIKE * LEVEL {
                 continue;
             }
             // One of them moves to the other, past everything between that it does not touch.

@@ -74,7 +74,7 @@ impl<'a> Flat<'a> {
         let neighbours = regions.neighbours();
         // What is translucent and of one colour is left to strokes.
         let is_drawn = |region: &Region| {
-            let is_whole = mattes == 1 || region.shade.is_some() || is_opaque(&region.color);
+            let is_whole = mattes == 1 || !region.shades.is_empty() || is_opaque(&region.color);
             region.label == CANVAS || is_whole
         };
         let drawn: Vec<bool> = regions.list.iter().map(is_drawn).collect();
@@ -103,22 +103,28 @@ impl<'a> Flat<'a> {
             .into_iter()
             .filter(|fill| !left_out[fill.region as usize]);
         let joined = compound::joined(fills.collect(), &self.neighbours);
-        let filled = joined.into_iter().map(|fill| Filled {
-            area: self.area(&fill),
-            gain: fill.gain / self.mattes as f32,
-            rank: fill.rank,
+        let filled = joined.iter().flat_map(|fill| {
+            self.areas_of(fill).map(|area| Filled {
+                area,
+                gain: fill.gain / self.mattes as f32,
+                rank: fill.rank,
+            })
         });
         filled.collect()
     }
 
-    /// The area of a shape.
-    pub(super) fn area(&self, fill: &Fill) -> Area {
-        Area {
-            rings: fill.rings.clone(),
-            color: areas::color(&fill.color, self.mattes).map(|c| c.clamp(0.0, 1.0)),
+    /// The areas of a shape, back to front: one, or one for each of its gradients.
+    pub(super) fn areas_of(&self, fill: &Fill) -> impl Iterator<Item = Area> {
+        let color = areas::color(&fill.color, self.mattes).map(|c| c.clamp(0.0, 1.0));
+        let plain = fill.shades.is_empty().then_some(None);
+        let shades: Vec<_> = fill.shades.iter().cloned().map(Some).collect();
+        let rings = fill.rings.clone();
+        plain.into_iter().chain(shades).map(move |shade| Area {
+            rings: rings.clone(),
+            color,
             opacity: 1.0,
-            shade: fill.shade.clone(),
-        }
+            shade,
+        })
     }
 
     /// The shape of a layer.
@@ -156,7 +162,7 @@ impl<'a> Flat<'a> {
         (!rings.is_empty()).then(|| Fill {
             rings,
             color: region.color,
-            shade: region.shade.clone(),
+            shades: region.shades.clone(),
             region: layer.region,
             size: region.members.len() as f32,
             gain: gains[layer.region as usize],
@@ -243,12 +249,12 @@ impl<'a> Flat<'a> {
         let Region {
             label,
             color: own,
-            shade,
+            shades,
             ..
         } = &self.regions.list[region as usize];
         let own = areas::color(own, self.mattes);
         let is_like = (0..3).all(|k| (own[k] - color[k]).abs() < LIKE);
-        (*label != CANVAS && shade.is_none() && is_like).then_some(region)
+        (*label != CANVAS && shades.is_empty() && is_like).then_some(region)
     }
 
     /// The pixels of a region.
@@ -314,10 +320,8 @@ impl<'a> Flat<'a> {
     fn shown(&self, region: u32, i: usize) -> Pixel {
         match &self.regions.list[region as usize] {
             Region { label: CANVAS, .. } => self.pixels.canvas.at(i),
-            Region {
-                shade: Some(shade), ..
-            } => shades::shown(shade, self.pixels, i, self.mattes),
-            Region { color, .. } => *color,
+            Region { color, shades, .. } if shades.is_empty() => *color,
+            Region { shades, .. } => shades::shown(shades, self.pixels, i, self.mattes),
         }
     }
 

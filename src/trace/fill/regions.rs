@@ -17,8 +17,8 @@ pub(super) struct Region {
     pub(super) members: Vec<u32>,
     /// The median of its pixels of one colour.
     pub(super) color: Pixel,
-    /// The gradient that takes the place of the colour.
-    pub(super) shade: Option<Shade>,
+    /// The gradients on top of each other that take the place of the colour, back to front.
+    pub(super) shades: Vec<Shade>,
 }
 
 /// The regions of a picture.
@@ -58,7 +58,7 @@ impl Regions {
             Region {
                 label,
                 color,
-                shade: colors.shade(label).cloned(),
+                shades: colors.shades(label).to_vec(),
                 members: pixels,
             }
         };

@@ -10,14 +10,15 @@ use super::super::areas::{LEVEL, Pixel, Pixels, away, beside};
 use super::super::recipe::Shades;
 use crate::math::Point;
 use crate::scene::Shade;
-use crate::shading::{Block, Blocks, Value, premultiplied};
+use crate::shading::{Block, Blocks, Value, stacked};
 
 /// A pixel of no shade.
 const NONE: u16 = u16::MAX;
 
 /// The shades of a picture.
 pub(super) struct Shaded {
-    pub(super) list: Vec<Shade>,
+    /// Each as gradients on top of each other, back to front.
+    pub(super) list: Vec<Vec<Shade>>,
     /// The shade of each pixel, by its index.
     of: Vec<u16>,
 }
@@ -79,8 +80,8 @@ impl Shaded {
     ) -> Found {
         let blocks = blocks(pixels, part, mattes, numbers.blocks);
         let near = numbers.fit.near;
-        let share = |shade: &Shade| {
-            let met = blocks.met(near + LEVEL, |block| premultiplied(shade, block.center));
+        let share = |shades: &Vec<Shade>| {
+            let met = blocks.met(near + LEVEL, |block| stacked(shades, block.center));
             met.share
         };
         // A shade that things in front have cut in parts is one.
@@ -95,12 +96,19 @@ impl Shaded {
         let (color, count) = usual(pixels, part);
         let flat = value(&color, mattes);
         let alone = blocks.met(near, |_| flat).share;
-        let found = blocks.best_shade(&numbers.fit).filter(|(_, met)| {
+        // A small part is hardly several.
+        let most = if part.len() < numbers.least_stacked {
+            1
+        } else {
+            numbers.most_stacked
+        };
+        let found = blocks.best_shades(&numbers.fit, numbers.least_share, most);
+        let found = found.filter(|(_, met)| {
             met.share >= numbers.least_share && met.share >= alone + numbers.least_gain
         });
         match found {
-            Some((shade, _)) if self.list.len() < numbers.most => {
-                self.list.push(shade);
+            Some((shades, _)) if self.list.len() < numbers.most => {
+                self.list.push(shades);
                 Found::Shade(self.list.len() as u16 - 1)
             }
             _ if count as f32 > numbers.flat_share * part.len() as f32 => Found::Color(color),
@@ -118,9 +126,9 @@ impl Shaded {
         index: u16,
         numbers: &Shades,
     ) {
-        let shade = &self.list[usize::from(index)];
+        let shades = &self.list[usize::from(index)];
         let is_met = |i: usize| {
-            let seen = shown(shade, pixels, i, mattes);
+            let seen = shown(shades, pixels, i, mattes);
             away(&pixels.target.at(i), &seen) <= numbers.fit.near + LEVEL
         };
         let mut taken: Vec<usize> = part.iter().copied().filter(|&i| is_met(i)).collect();
@@ -138,11 +146,11 @@ impl Shaded {
     }
 }
 
-/// A shade at pixel `i`, on each matte.
-pub(super) fn shown(shade: &Shade, pixels: &Pixels<'_>, i: usize, mattes: usize) -> Pixel {
+/// Shades on top of each other at pixel `i`, on each matte.
+pub(super) fn shown(shades: &[Shade], pixels: &Pixels<'_>, i: usize, mattes: usize) -> Pixel {
     let (x, y) = (i % pixels.width, i / pixels.width);
     let center = Point::new(x as f32 + 0.5, y as f32 + 0.5);
-    let [red, green, blue, opacity] = premultiplied(shade, center);
+    let [red, green, blue, opacity] = stacked(shades, center);
     // The mattes are black and white, or the page is opaque.
     let through = if mattes > 1 { 1.0 - opacity } else { 0.0 };
     let mut pixel = [red, green, blue, 0.0, 0.0, 0.0];

@@ -55,10 +55,12 @@ export function withoutMarks(text, kept) {
 }
 
 // The file of a scene's marks as { mark, stage }, an element each.
-export function drawn({ width, height, background, marks }) {
+export function drawn({ width, height, background, shade, shadows = [], marks }) {
   const size = `width="${width}" height="${height}"`;
   const parts = [`<svg xmlns="http://www.w3.org/2000/svg" ${size} viewBox="0 0 ${width} ${height}">`];
   if (background) parts.push(`<rect ${size} fill="${background}"/>`);
+  if (shade) parts.push(`${gradient(shade, "shade")}\n<rect ${size} fill="url(#shade)"/>`);
+  shadows.forEach((shadow, k) => parts.push(blurred(shadow, k + 1)));
   for (const stage of new Set(marks.map(({ stage }) => stage))) {
     const own = marks.filter((mark) => mark.stage === stage);
     parts.push(`<g id="stage-${stage}" fill="none" stroke-linecap="round" stroke-linejoin="round">`);
@@ -74,6 +76,18 @@ function element(mark, id) {
   const clear = opacity < 1 ? ` ${paint}-opacity="${Number(opacity.toFixed(3))}"` : "";
   const path = (fill) => `<path d="${walks(mark).map(data).join("")}" ${paint}="${fill}"${width}${clear}/>`;
   return shade ? `${gradient(shade, id)}\n${path(`url(#${id})`)}` : path(color);
+}
+
+// The elements of a shadow, whose filter reaches as far as its blur.
+function blurred([mark, blur], number) {
+  const places = mark[0], reach = 3 * blur;
+  const ends = [0, 1].map((axis) => places.filter((_, k) => k % 2 === axis));
+  const low = ends.map((along) => Math.floor(Math.min(...along) - reach));
+  const high = ends.map((along) => Math.ceil(Math.max(...along) + reach));
+  const place = `x="${low[0]}" y="${low[1]}" width="${high[0] - low[0]}" height="${high[1] - low[1]}"`;
+  const kind = 'filterUnits="userSpaceOnUse" color-interpolation-filters="sRGB"';
+  const filter = `<filter id="blur-${number}" ${kind} ${place}><feGaussianBlur stdDeviation="${short(blur)}"/></filter>`;
+  return filter + element(mark).replace("<path", `<path id="shadow-${number}" filter="url(#blur-${number})"`);
 }
 
 // The element of a gradient, whose colours are "rgb(r g b / a)".

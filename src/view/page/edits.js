@@ -75,7 +75,7 @@ export function repaintedScene(scene, { colors, background }) {
   const next = new Map(colors);
   const painted = (color) => next.get(color) ?? color;
   const stages = scene.stages.map((list) => list.map(([points, radius, color, ...rest]) => [points, radius, painted(color), ...rest]));
-  const paper = background === undefined ? { background: scene.background && painted(scene.background) } : { background, shade: undefined };
+  const paper = background === undefined ? { background: scene.background && painted(scene.background) } : { background, shade: undefined, shadows: undefined };
   return { ...scene, ...paper, stages };
 }
 
@@ -96,7 +96,7 @@ function repaintedText(text, colors, background) {
   const start = text.indexOf("<g");
   // A style sheet has colours, too.
   let head = painted(text.slice(0, start), colors);
-  if (background === null) head = head.replace(/<rect [^>]*\/>\n?/g, "");
+  if (background === null) head = head.replace(/<(?:rect|filter) .*\n?/g, "");
   else if (background) head = head.replace(/(<rect [^>]*?fill="|\.background\{fill:)[^"}]*/, `$1${background}`);
   return head + painted(text.slice(start), colors);
 }

@@ -6,13 +6,26 @@
 // Longest side, px, at which drawing and target are compared: more takes time that a fit could use.
 const MAX_COMPARED = 1024;
 
-// The background and its gradient, if there are any.
-export function drawPage(context, { width, height, background, shade }) {
+// The background, its gradient and shadows, if there are any.
+export function drawPage(context, { width, height, background, shade, shadows = [] }) {
   const fills = [background, shade && gradient(context, shade)].filter(Boolean);
   for (const fill of fills) {
     context.fillStyle = fill;
     context.fillRect(0, 0, width, height);
   }
+  for (const shadow of shadows) drawShadow(context, shadow);
+}
+
+// A blur of an area. Filters of canvases are not in all browsers, but shadows are: the area itself is drawn beyond the canvas.
+function drawShadow(context, [mark, blur]) {
+  const { a: scale } = context.getTransform(), beyond = 4 * context.canvas.width;
+  const [, , color, opacity] = mark;
+  context.save();
+  Object.assign(context, { shadowColor: color, shadowBlur: 2 * blur * scale, shadowOffsetX: beyond, globalAlpha: opacity, fillStyle: color });
+  context.translate(-beyond / scale, 0);
+  trace(context, mark);
+  context.fill();
+  context.restore();
 }
 
 function gradient(context, { axis, stops }) {

@@ -1,0 +1,278 @@
+//! Gradients on top of each other: what is no shade by itself, as a glow on a sky, may be two.
+//!
+//! A shade on top changes a value `v` below to `(1 − a)·v + p`, with its opacity `a` and its premultiplied colour `p`. Along a
+//! given axis both are linear between knots, so that the best ones are a linear least-squares problem. Places of the axis are
+//! searched for the least error. Then the lower shade is fitted again to what it must have been below the upper one, and so on.
+
+use super::{Block, Blocks, Met, ShadeFit, Value, axis, premultiplied, profile};
+use crate::math::{self, Point};
+use crate::scene::{Axis, Shade};
+
+/// Knots of the profile of a shade on top.
+const KNOTS: usize = 9;
+/// Pull on the numbers of knots towards nothing, as a share of all weights.
+const RIDGE: f64 = 1e-4;
+/// Places along each side of a part, and lengths of an axis in units of the part's longer side, that a search starts from.
+const STARTS: usize = 4;
+const LENGTHS: [f32; 2] = [0.25, 0.7];
+/// Angles that a line starts from, radians.
+const ANGLES: [f32; 4] = [0.0, 0.785, 1.571, 2.356];
+/// Number of times that each shade is fitted anew.
+const ROUNDS: usize = 3;
+/// Of what lies below a higher opacity, nothing is known.
+const HIDING: f32 = 0.8;
+
+impl Blocks {
+    /// Shades on top of each other, back to front, that meet at least this `share` of the blocks; at most `most` of them.
+    pub(crate) fn best_shades(
+        &self,
+        fit: &ShadeFit,
+        share: f32,
+        most: usize,
+    ) -> Option<(Vec<Shade>, Met)> {
+        let (shade, met) = self.best_shade(fit)?;
+        let mut found = (vec![shade], met);
+        while found.1.share < share && found.0.len() < most {
+            let stack = self.stacked(&found.0, fit)?;
+            let met = self.met(fit.near, |block| stacked(&stack, block.center));
+            if met.share <= found.1.share {
+                break;
+            }
+            found = (stack, met);
+        }
+        Some(found)
+    }
+
+    /// The shades with one more on top, all fitted to each other.
+    fn stacked(&self, below: &[Shade], fit: &ShadeFit) -> Option<Vec<Shade>> {
+        let mut stack = below.to_vec();
+        let mut from = self.starts();
+        let mut best: Option<(f32, Vec<Shade>)> = None;
+        for _ in 0..ROUNDS {
+            stack.truncate(below.len());
+            let top = self.on_top(&stack, &from, fit)?;
+            from = vec![top.axis()];
+            stack.push(top);
+            self.refit(&mut stack, fit);
+            let met = self.met(fit.near, |block| stacked(&stack, block.center));
+            if best.as_ref().is_none_or(|(share, _)| met.share > *share) {
+                best = Some((met.share, stack.clone()));
+            }
+        }
+        best.map(|(_, stack)| stack)
+    }
+
+    /// Fits all shades but the last one to what they must be below the others.
+    fn refit(&self, stack: &mut [Shade], fit: &ShadeFit) {
+        for k in 0..stack.len() - 1 {
+            let unmixed = |block: &Block| {
+                let above = stacked(&stack[k + 1..], block.center);
+                let below = stacked(&stack[..k], block.center);
+                let through = 1.0 - above[3];
+                let own = |c: usize| (block.value[c] - above[c]) / through;
+                let is_seen = through > 1.0 - HIDING && block.weight > 0.0;
+                // Only the lowest one is fitted by itself.
+                let is_alone = below[3] <= 0.0;
+                Block {
+                    value: if is_seen {
+                        [0, 1, 2, 3].map(own)
+                    } else {
+                        block.value
+                    },
+                    weight: if is_seen && is_alone { 1.0 } else { 0.0 },
+                    ..*block
+                }
+            };
+            let blocks = Self {
+                all: self.all.iter().map(unmixed).collect(),
+                ..*self
+            };
+            if let Some((shade, _)) = blocks.best_shade(fit) {
+                stack[k] = shade;
+            }
+        }
+    }
+
+    /// Axes that a search for a shade on top starts from: circles all over the part, and lines.
+    fn starts(&self) -> Vec<Axis> {
+        let side = self.size[0].max(self.size[1]);
+        let place = |i: usize| {
+            [0, 1].map(|k| {
+                let step = [i % STARTS, i / STARTS][k] as f32 + 0.5;
+                self.low[k] + self.size[k] * step / STARTS as f32
+            })
+        };
+        let places = (0..STARTS * STARTS).map(place);
+        let circles = places.flat_map(|center| {
+            LENGTHS.map(|length| Axis::Radial {
+                center: center.into(),
+                radius: length * side,
+            })
+        });
+        let lines = ANGLES
+            .into_iter()
+            .flat_map(|angle| [angle, angle + std::f32::consts::PI]);
+        let lines = lines.map(|angle| axis::line(self, angle));
+        circles.chain(lines).collect()
+    }
+
+    /// The shade that brings what these shades show nearest to the blocks, along the best axis near one of `from`.
+    fn on_top(&self, below: &[Shade], from: &[Axis], fit: &ShadeFit) -> Option<Shade> {
+        let seen: Vec<Value> = self
+            .all
+            .iter()
+            .map(|block| stacked(below, block.center))
+            .collect();
+        let cost = |axis: Axis| {
+            self.layer(axis, &seen, fit.near)
+                .map_or(f64::INFINITY, |layer| layer.error)
+        };
+        let starts = from.iter().map(|&axis| (cost(axis), axis));
+        let (_, start) = starts.min_by(|(a, _), (b, _)| a.total_cmp(b))?;
+        let step = self.size[0].max(self.size[1]) / 25.0;
+        let numbers = math::search(numbers(start), step, step / 100.0, |numbers| {
+            cost(moved(start, numbers))
+        });
+        let axis = moved(start, numbers);
+        let layer = self.layer(axis, &seen, fit.near)?;
+        let blocks = Self {
+            all: self
+                .all
+                .iter()
+                .map(|block| Block {
+                    value: layer.at(axis, block.center),
+                    ..*block
+                })
+                .collect(),
+            ..*self
+        };
+        profile::of(&blocks, axis, fit)
+    }
+
+    /// The best layer along an axis on top of what is `seen`, where differences far beyond `near` count little.
+    fn layer(&self, axis: Axis, seen: &[Value], near: f32) -> Option<Layer> {
+        let is_short = match axis {
+            Axis::Linear { from, to } => (to - from).norm() < 2.0,
+            Axis::Radial { radius, .. } => radius < 2.0,
+        };
+        if is_short {
+            return None;
+        }
+        const N: usize = 4 * KNOTS;
+        let (mut columns, mut right) = (vec![vec![0.0; N]; N], vec![0.0; N]);
+        let taking_part = || {
+            self.all
+                .iter()
+                .zip(seen)
+                .filter(|(block, _)| block.weight > 0.0)
+        };
+        let mut weights = 0.0;
+        for (block, seen) in taking_part() {
+            weights += 1.0;
+            let ends = knots(axis, block.center);
+            for channel in 0..4 {
+                let wanted = f64::from(block.value[channel] - seen[channel]);
+                // The change by the layer's own value in this channel, and by its opacity.
+                let terms = match channel {
+                    3 => [(3, 1.0 - f64::from(seen[3])), (3, 0.0)],
+                    _ => [(channel, 1.0), (3, -f64::from(seen[channel]))],
+                };
+                let of = |(knot, share): (usize, f64), (c, factor): (usize, f64)| {
+                    (4 * knot + c, share * factor)
+                };
+                let [first, last] = ends;
+                let entries = [
+                    of(first, terms[0]),
+                    of(first, terms[1]),
+                    of(last, terms[0]),
+                    of(last, terms[1]),
+                ];
+                for (i, a) in entries {
+                    right[i] += a * wanted;
+                    entries
+                        .iter()
+                        .filter(|(k, _)| *k >= i)
+                        .for_each(|(k, b)| columns[i][*k] += a * b);
+                }
+            }
+        }
+        for (i, column) in columns.iter_mut().enumerate() {
+            column[i] += RIDGE * weights / KNOTS as f64;
+        }
+        let [found] = math::solve_symmetric(columns, [right])?;
+        let knots = std::array::from_fn(|k| {
+            let opacity = found[4 * k + 3].clamp(0.0, 1.0);
+            let value = |c: usize| found[4 * k + c].clamp(0.0, opacity) as f32;
+            [value(0), value(1), value(2), opacity as f32]
+        });
+        let mut layer = Layer { knots, error: 0.0 };
+        let most = f64::from(4.0 * near);
+        for (block, seen) in taking_part() {
+            let shown = over(layer.at(axis, block.center), *seen);
+            let errors = (0..4).map(|c| f64::from(shown[c] - block.value[c]).abs().min(most));
+            layer.error += errors.map(|error| error * error).sum::<f64>();
+        }
+        Some(layer)
+    }
+}
+
+/// Premultiplied values along an axis, at even offsets, and the squared error that they leave.
+struct Layer {
+    knots: [Value; KNOTS],
+    error: f64,
+}
+
+impl Layer {
+    fn at(&self, axis: Axis, at: Point) -> Value {
+        let mut value = [0.0; 4];
+        for (knot, share) in knots(axis, at) {
+            for (sum, v) in value.iter_mut().zip(self.knots[knot]) {
+                *sum += share as f32 * v;
+            }
+        }
+        value
+    }
+}
+
+/// The two knots that a place lies between, with their shares.
+fn knots(axis: Axis, at: Point) -> [(usize, f64); 2] {
+    let along = f64::from(axis.offset(at).clamp(0.0, 1.0)) * (KNOTS - 1) as f64;
+    let first = (along as usize).min(KNOTS - 2);
+    let share = along - first as f64;
+    [(first, 1.0 - share), (first + 1, share)]
+}
+
+/// The numbers of an axis that a search changes.
+fn numbers(axis: Axis) -> [f32; 4] {
+    match axis {
+        Axis::Linear { from, to } => [from.x, from.y, to.x, to.y],
+        Axis::Radial { center, radius } => [center.x, center.y, radius, 0.0],
+    }
+}
+
+/// The axis of the kind of `axis` with these numbers.
+fn moved(axis: Axis, numbers: [f32; 4]) -> Axis {
+    let [a, b, c, d] = numbers;
+    match axis {
+        Axis::Linear { .. } => Axis::Linear {
+            from: Point::new(a, b),
+            to: Point::new(c, d),
+        },
+        Axis::Radial { .. } => Axis::Radial {
+            center: Point::new(a, b),
+            radius: c.abs(),
+        },
+    }
+}
+
+/// A premultiplied value on another.
+fn over(upper: Value, lower: Value) -> Value {
+    [0, 1, 2, 3].map(|c| upper[c] + (1.0 - upper[3]) * lower[c])
+}
+
+/// The premultiplied value of shades on each other, given back to front.
+pub(crate) fn stacked(shades: &[Shade], at: Point) -> Value {
+    shades.iter().fold([0.0; 4], |below, shade| {
+        over(premultiplied(shade, at), below)
+    })
+}
