@@ -65,8 +65,14 @@ pub(crate) struct Met {
 impl Blocks {
     /// The linear or radial shade that meets most blocks, if the blocks seem to lie along one.
     pub(crate) fn best_shade(&self, fit: &ShadeFit) -> Option<(Shade, Met)> {
+        self.best_of(fit, &vec![1.0; fit.rounds])
+    }
+
+    /// As [`Self::best_shade`], fitted so many times, each time to the blocks that the last shade has met within this factor of
+    /// what is near.
+    fn best_of(&self, fit: &ShadeFit, factors: &[f32]) -> Option<(Shade, Met)> {
         let candidates = [axis::Kind::Linear, axis::Kind::Radial];
-        let candidates = candidates.map(|kind| self.shade(kind, fit));
+        let candidates = candidates.map(|kind| self.shade(kind, fit, factors));
         let met = |shade: Shade| {
             let met = self.met(fit.near, |block| premultiplied(&shade, block.center));
             (shade, met)
@@ -76,22 +82,23 @@ impl Blocks {
     }
 
     /// The shade of this kind, if there is an axis and the blocks seem to lie along it.
-    fn shade(&self, kind: axis::Kind, fit: &ShadeFit) -> Option<Shade> {
+    fn shade(&self, kind: axis::Kind, fit: &ShadeFit, factors: &[f32]) -> Option<Shade> {
         let mut blocks = Self {
             all: self.all.clone(),
             ..*self
         };
         let mut found = None;
-        for _ in 0..fit.rounds {
+        for factor in factors {
+            let near = factor * fit.near;
             let axis = blocks.seen(axis::of(&blocks, kind, fit)?);
             let shade = profile::of(&blocks, axis, fit)?;
-            let met = self.met(fit.near, |block| premultiplied(&shade, block.center));
+            let met = self.met(near, |block| premultiplied(&shade, block.center));
             if met.share < fit.hopeless_share {
                 return None;
             }
-            for block in &mut blocks.all {
-                let meets = is_near(fit.near, block, premultiplied(&shade, block.center));
-                block.weight = if meets { 1.0 } else { 0.0 };
+            for (block, own) in blocks.all.iter_mut().zip(&self.all) {
+                let meets = is_near(near, block, premultiplied(&shade, block.center));
+                block.weight = if meets { own.weight } else { 0.0 };
             }
             found = Some(shade);
         }

@@ -18,7 +18,11 @@ const LENGTHS: [f32; 2] = [0.25, 0.7];
 /// Angles that a line starts from, radians.
 const ANGLES: [f32; 4] = [0.0, 0.785, 1.571, 2.356];
 /// Number of times that each shade is fitted anew.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 4;
+/// What is near the lowest shade while it is fitted, in units of what is near at last: what lies on it goes bit by bit.
+const FACTORS: [f32; 6] = [16.0, 8.0, 4.0, 2.0, 1.0, 1.0];
+/// Radii of circles around what a stack does not explain, in units of its spread.
+const SPREADS: [f32; 4] = [1.2, 2.0, 3.0, 4.5];
 /// Of what lies below a higher opacity, nothing is known.
 const HIDING: f32 = 0.8;
 
@@ -30,7 +34,15 @@ impl Blocks {
         share: f32,
         most: usize,
     ) -> Option<(Vec<Shade>, Met)> {
-        let (shade, met) = self.best_shade(fit)?;
+        let mut lowest = self.best_shade(fit);
+        if most > 1 && lowest.as_ref().is_none_or(|(_, met)| met.share < share) {
+            let robust = self.best_of(fit, &FACTORS);
+            lowest = lowest
+                .into_iter()
+                .chain(robust)
+                .max_by(|(_, a), (_, b)| a.share.total_cmp(&b.share));
+        }
+        let (shade, met) = lowest?;
         let mut found = (vec![shade], met);
         while found.1.share < share && found.0.len() < most {
             let stack = self.stacked(&found.0, fit)?;
@@ -46,7 +58,7 @@ impl Blocks {
     /// The shades with one more on top, all fitted to each other.
     fn stacked(&self, below: &[Shade], fit: &ShadeFit) -> Option<Vec<Shade>> {
         let mut stack = below.to_vec();
-        let mut from = self.starts();
+        let mut from = self.starts(below, fit);
         let mut best: Option<(f32, Vec<Shade>)> = None;
         for _ in 0..ROUNDS {
             stack.truncate(below.len());
@@ -93,8 +105,9 @@ impl Blocks {
         }
     }
 
-    /// Axes that a search for a shade on top starts from: circles all over the part, and lines.
-    fn starts(&self) -> Vec<Axis> {
+    /// Axes that a search for a shade on top starts from: circles around what these shades do not explain and all over the
+    /// part, and lines.
+    fn starts(&self, below: &[Shade], fit: &ShadeFit) -> Vec<Axis> {
         let side = self.size[0].max(self.size[1]);
         let place = |i: usize| {
             [0, 1].map(|k| {
@@ -113,7 +126,36 @@ impl Blocks {
             .into_iter()
             .flat_map(|angle| [angle, angle + std::f32::consts::PI]);
         let lines = lines.map(|angle| axis::line(self, angle));
-        circles.chain(lines).collect()
+        let around = self.unexplained(below, fit.near).into_iter();
+        let around = around.flat_map(|(center, spread)| {
+            SPREADS.map(|spreads| Axis::Radial {
+                center,
+                radius: spreads * spread,
+            })
+        });
+        around.chain(circles).chain(lines).collect()
+    }
+
+    /// The middle of what these shades do not explain, and its spread, px.
+    fn unexplained(&self, below: &[Shade], near: f32) -> Option<(Point, f32)> {
+        let missing = |block: &Block| {
+            let seen = stacked(below, block.center);
+            let apart = block.value.iter().zip(seen).map(|(a, b)| (a - b).abs());
+            let beyond = (apart.fold(0.0, f32::max) - near).max(0.0);
+            block.weight * beyond * beyond
+        };
+        let weights: Vec<f32> = self.all.iter().map(missing).collect();
+        let mean = |of: &dyn Fn(&Block) -> f32| {
+            let sum = self
+                .all
+                .iter()
+                .zip(&weights)
+                .map(|(block, weight)| weight * of(block));
+            sum.sum::<f32>() / weights.iter().sum::<f32>()
+        };
+        let center = Point::new(mean(&|block| block.center.x), mean(&|block| block.center.y));
+        let spread = mean(&|block| (block.center - center).norm_squared()).sqrt();
+        (spread > 0.0).then_some((center, spread))
     }
 
     /// The shade that brings what these shades show nearest to the blocks, along the best axis near one of `from`.
@@ -275,4 +317,65 @@ pub(crate) fn stacked(shades: &[Shade], at: Point) -> Value {
     shades.iter().fold([0.0; 4], |below, shade| {
         over(premultiplied(shade, at), below)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::recipe::{Preset, Recipe};
+
+    const SIDE: usize = 40;
+
+    /// Blocks of 8 px of an opaque picture.
+    fn blocks(value: impl Fn(Point) -> [f32; 3]) -> Blocks {
+        let block = |i: usize| {
+            let center = Point::new((i % SIDE) as f32 * 8.0 + 4.0, (i / SIDE) as f32 * 8.0 + 4.0);
+            let [r, g, b] = value(center).map(|v| (v * 255.0).round() / 255.0);
+            Block {
+                center,
+                value: [r, g, b, 1.0],
+                weight: 1.0,
+            }
+        };
+        let size = 8.0 * SIDE as f32;
+        Blocks {
+            columns: SIDE,
+            all: (0..SIDE * SIDE).map(block).collect(),
+            low: [0.0; 2],
+            size: [size; 2],
+        }
+    }
+
+    #[test]
+    fn a_glow_on_a_sky_is_a_shade_on_a_shade() {
+        let sun = Point::new(230.0, 90.0);
+        let sky = |p: Point| {
+            let t = p.y / 320.0;
+            let glow = 0.9 * (1.0 - (p - sun).norm() / 80.0).max(0.0);
+            let below = [0.15 + 0.7 * t, 0.5 + 0.4 * t, 0.75 + 0.2 * t];
+            [0, 1, 2].map(|c| below[c] + glow * ([1.0, 0.95, 0.7][c] - below[c]))
+        };
+        let blocks = blocks(sky);
+        let fit = Recipe::of(Preset::Balanced).tracing.fills.shades.fit;
+        let (alone, met) = blocks.best_shades(&fit, 0.95, 1).unwrap();
+        assert!(alone.len() == 1 && met.share < 0.95, "{met:?}");
+        let (shades, met) = blocks.best_shades(&fit, 0.95, 3).unwrap();
+        assert!(shades.len() == 2 && met.share >= 0.95, "{met:?}");
+        let Axis::Radial { center, radius } = shades[1].axis() else {
+            panic!("{shades:?}");
+        };
+        assert!(
+            (center - sun).norm() < 3.0 && (radius - 80.0).abs() < 12.0,
+            "{shades:?}"
+        );
+        assert!(shades[0].is_opaque(), "{shades:?}");
+    }
+
+    #[test]
+    fn a_ramp_needs_no_second_shade() {
+        let blocks = blocks(|p| [p.x / 320.0, 0.5, 0.2]);
+        let fit = Recipe::of(Preset::Balanced).tracing.fills.shades.fit;
+        let (shades, _) = blocks.best_shades(&fit, 0.95, 3).unwrap();
+        assert_eq!(shades.len(), 1);
+    }
 }
