@@ -55,6 +55,7 @@ pub(crate) struct Blocks {
 }
 
 /// Likeness of blocks to a shade.
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Met {
     /// The share of the blocks that it has met, of those that take part.
     pub(crate) share: f32,

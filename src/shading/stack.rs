@@ -322,7 +322,7 @@ pub(crate) fn stacked(shades: &[Shade], at: Point) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::recipe::{Preset, Recipe};
+    use crate::fit::{Preset, Recipe};
 
     const SIDE: usize = 40;
 

@@ -99,6 +99,7 @@ mod refine;
 #[cfg(all(feature = "cli", unix))]
 mod rig;
 #[cfg(feature = "cli")]
+mod shadows;
 mod shape_files;
 #[cfg(feature = "cli")]
 mod view;

@@ -1,0 +1,106 @@
+//! Soft shadows and glows: each is a blurred shape on the page, and kept.
+
+use crate::support::drafts::draft;
+use crate::support::fits::{drawn, sample};
+use strokefit::fit::{Background, Base, Colors, Config, Fitter};
+use strokefit::image::Image;
+use strokefit::metrics::Quality;
+use strokefit::scene::{Scene, Shape};
+use strokefit::svg;
+use strokefit::verify::{self, Size};
+
+/// The blur of a dark shape, and what casts it.
+const CARD: &str = r##"<rect x="30" y="34" width="110" height="60" rx="9" fill="#102040" fill-opacity="0.45" filter="url(#f)"/>
+<rect x="30" y="28" width="110" height="60" rx="9" fill="#fdfdfd"/><circle cx="60" cy="58" r="14" fill="#e05020"/>"##;
+const STAR: &str = r##"<path d="M86 18L100 56 140 58 108 82 120 122 86 98 52 122 64 82 30 58 70 56z" fill="#30c0ff" filter="url(#f)"/>
+<path d="M86 18L100 56 140 58 108 82 120 122 86 98 52 122 64 82 30 58 70 56z" fill="#fff6d0"/>"##;
+
+/// A picture of 170×130 px of these elements on a page of a colour, or on none, as resvg draws it.
+fn picture(page: Option<&str>, blur: f32, elements: &str) -> Image {
+    let page = page.map_or_else(String::new, |color| {
+        format!(r##"<rect width="170" height="130" fill="{color}"/>"##)
+    });
+    let text = format!(
+        r##"<svg xmlns="http://www.w3.org/2000/svg" width="170" height="130"><filter id="f" x="-50%" y="-50%" width="200%" height="200%" color-interpolation-filters="sRGB"><feGaussianBlur stdDeviation="{blur}"/></filter>{page}{elements}</svg>"##
+    );
+    let size = Size::Scale(1.0);
+    let matte = |level: f32| verify::render(&text, size, Some([level; 3])).unwrap();
+    if !page.is_empty() {
+        return matte(1.0);
+    }
+    verify::render(&text, size, None).unwrap()
+}
+
+fn judged(picture: &Image, config: &Config) -> (Scene, Quality) {
+    let fit = drawn(picture, config);
+    let verdict = verify::verify(&fit.svg(), &fit.target, &fit.soft).unwrap();
+    assert!(verdict.agreement.psnr_db > 38.0, "{verdict:?}");
+    assert_eq!(svg::read(&fit.svg()).unwrap(), fit.scene);
+    assert_eq!(svg::lint(&fit.svg()), []);
+    (fit.scene, verdict.fidelity)
+}
+
+#[test]
+fn a_card_casts_the_shadow_that_was_drawn() {
+    let card = picture(Some("#e8ecf2"), 6.0, CARD);
+    let (scene, fidelity) = judged(&card, &Config::default());
+    let [shadow] = &scene.shadows[..] else {
+        panic!("{:?}", scene.shadows);
+    };
+    assert!((shadow.blur() - 6.0).abs() < 0.8, "{shadow:?}");
+    let Some(Shape::Rect { low, high, .. }) = Shape::of(&shadow.area().rings[0]) else {
+        panic!("{shadow:?}");
+    };
+    let sides = [low.x - 30.0, low.y - 34.0, high.x - 140.0, high.y - 94.0];
+    assert!(sides.iter().all(|off| off.abs() < 1.5), "{shadow:?}");
+    assert!(scene.len() <= 4 && fidelity.psnr_db > 46.0, "{fidelity:?}");
+}
+
+#[test]
+fn a_glow_around_a_star_is_a_blur_of_it_on_a_page_and_on_none() {
+    for page in [Some("#101428"), None] {
+        let star = picture(page, 7.0, STAR);
+        let (scene, fidelity) = judged(&star, &Config::default());
+        assert!(!scene.shadows.is_empty(), "{page:?}");
+        assert!(
+            scene.len() <= 3 && fidelity.psnr_db > 42.0,
+            "{page:?} {fidelity:?}"
+        );
+    }
+}
+
+#[test]
+fn a_refined_drawing_keeps_its_shadow() {
+    let card = picture(Some("#e8ecf2"), 5.0, CARD);
+    let first = drawn(&card, &Config::default());
+    assert_eq!(first.scene.shadows.len(), 1);
+    let base = Base::read(first.svg(), &card, false).unwrap();
+    let second = Fitter::new(draft(20)).on(base).fit(&card).unwrap();
+    assert_eq!(second.scene.shadows, first.scene.shadows);
+}
+
+#[test]
+fn a_background_or_colours_that_are_given_leave_no_shadow() {
+    let card = picture(Some("#e8ecf2"), 5.0, CARD);
+    let shadows = |config: Config| drawn(&card, &config).scene.shadows.len();
+    let background = Background::Color([1.0; 3]);
+    assert_eq!(
+        shadows(Config {
+            background,
+            ..draft(9)
+        }),
+        0
+    );
+    let colors = Colors::AtMost(4);
+    assert_eq!(shadows(Config { colors, ..draft(9) }), 0);
+}
+
+#[test]
+fn what_is_flat_or_a_gradient_has_no_shadow() {
+    for name in ["glow-300", "fade-400", "noto-smile-240", "text-360"] {
+        assert!(
+            drawn(&sample(name), &draft(9)).scene.shadows.is_empty(),
+            "{name}"
+        );
+    }
+}
