@@ -101,7 +101,9 @@ mod tests {
             let apart = pairs
                 .map(|(a, b)| 255.0 * (a - b).abs())
                 .fold(0.0, f32::max);
-            assert!(apart < 3.0, "{blur}: {apart} levels");
+            // Below 2 px resvg filters recursively, by an approximation.
+            let most = if blur < 2.0 { 10.0 } else { 3.0 };
+            assert!(apart < most, "{blur}: {apart} levels");
         }
     }
 

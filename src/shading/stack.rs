@@ -12,6 +12,8 @@ use crate::scene::{Axis, Shade};
 const KNOTS: usize = 9;
 /// Pull on the numbers of knots towards nothing, as a share of all weights.
 const RIDGE: f64 = 1e-4;
+/// Nothing below is darker than this, or brighter than 1 less this.
+const DARKEST: f64 = 0.004;
 /// Places along each side of a part, and lengths of an axis in units of the part's longer side, that a search starts from.
 const STARTS: usize = 4;
 const LENGTHS: [f32; 2] = [0.25, 0.7];
@@ -208,10 +210,15 @@ impl Blocks {
                 .zip(seen)
                 .filter(|(block, _)| block.weight > 0.0)
         };
+        let (mut below, mut counts) = ([[0.0; 3]; KNOTS], [0.0; KNOTS]);
         let mut weights = 0.0;
         for (block, seen) in taking_part() {
             weights += 1.0;
             let ends = knots(axis, block.center);
+            for (knot, share) in ends {
+                counts[knot] += share;
+                (0..3).for_each(|c| below[knot][c] += share * f64::from(seen[c]));
+            }
             for channel in 0..4 {
                 let wanted = f64::from(block.value[channel] - seen[channel]);
                 // The change by the layer's own value in this channel, and by its opacity.
@@ -242,9 +249,19 @@ impl Blocks {
             column[i] += RIDGE * weights / KNOTS as f64;
         }
         let [found] = math::solve_symmetric(columns, [right])?;
+        // Where something opaque shows, any opacity and the colour that goes with it show it alike. The one that is found may
+        // need a colour that is none; the least one that does not takes its place.
         let knots = std::array::from_fn(|k| {
-            let opacity = found[4 * k + 3].clamp(0.0, 1.0);
-            let value = |c: usize| found[4 * k + c].clamp(0.0, opacity) as f32;
+            let behind =
+                |c: usize| (below[k][c] / counts[k].max(RIDGE)).clamp(DARKEST, 1.0 - DARKEST);
+            let change = [0, 1, 2].map(|c| found[4 * k + c] - found[4 * k + 3] * behind(c));
+            let least = |c: usize| (change[c] / (1.0 - behind(c))).max(-change[c] / behind(c));
+            let opacity = [0, 1, 2]
+                .map(least)
+                .into_iter()
+                .fold(found[4 * k + 3], f64::max);
+            let opacity = opacity.clamp(0.0, 1.0);
+            let value = |c: usize| (change[c] + opacity * behind(c)).clamp(0.0, opacity) as f32;
             [value(0), value(1), value(2), opacity as f32]
         });
         let mut layer = Layer { knots, error: 0.0 };
