@@ -97,9 +97,9 @@ impl Blocks {
             if met.share < fit.hopeless_share {
                 return None;
             }
-            for (block, own) in blocks.all.iter_mut().zip(&self.all) {
+            for block in &mut blocks.all {
                 let meets = is_near(near, block, premultiplied(&shade, block.center));
-                block.weight = if meets { own.weight } else { 0.0 };
+                block.weight = if meets { 1.0 } else { 0.0 };
             }
             found = Some(shade);
         }

@@ -35,7 +35,7 @@ pub(super) struct Drawing {
     pub(super) level: Level,
     /// True if the background keeps its colour.
     pub(super) background_fixed: bool,
-    /// What lies on the background and behind all strokes.
+    /// The gradient and the shadows on the background and behind all strokes.
     pub(super) ground: Ground,
     /// The strokes that are kept as they are, back to front, and on top of them those that are fitted.
     frozen: Strokes,

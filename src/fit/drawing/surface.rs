@@ -30,7 +30,7 @@ pub(in crate::fit) struct Prepared {
     pub(in crate::fit) surfaces: Vec<Surface>,
     /// True if the background keeps its colour.
     pub(in crate::fit) background_fixed: bool,
-    /// What lies on the background and behind all marks.
+    /// The gradient and the shadows on the background, behind all marks.
     pub(in crate::fit) ground: Ground,
 }
 

@@ -1,4 +1,4 @@
-//! What lies behind all marks: the tuned numbers of its choice.
+//! The ground: tuned numbers of the choice of what lies behind all marks.
 
 pub use crate::shading::ShadeFit;
 use crate::trace::Outlines;
@@ -89,6 +89,6 @@ pub struct ShadowChoice {
     pub gradient_share: f32,
     /// The fit of that gradient.
     pub fit: ShadeFit,
-    /// How outlines are traced.
+    /// Numbers of the tracing of outlines.
     pub outlines: Outlines,
 }

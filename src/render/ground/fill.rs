@@ -7,7 +7,7 @@ use crate::scene::Path;
 /// Farthest that chords are from curves, px.
 const FLATNESS: f32 = 0.02;
 
-/// How much of each pixel the rings fill, where they wind in one direction and holes in the other. Rings are in px from the
+/// The share of each pixel that the rings fill, where they wind in one direction and holes in the other. Rings are in px from the
 /// plane's corner.
 pub fn filled(rings: impl Iterator<Item = Path>, [width, height]: [usize; 2]) -> Plane {
     // Sums over a row of what its pixels hold give the covered share; a column more takes what the last one hands on.

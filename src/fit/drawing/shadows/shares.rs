@@ -20,7 +20,7 @@ pub(super) struct Shares {
     pub(super) caster: Vec<f32>,
 }
 
-/// What a pixel shows.
+/// A kind of pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Page,
@@ -257,7 +257,7 @@ fn eroded(mask: &[bool], width: usize) -> Vec<bool> {
     (0..mask.len()).map(is_inner).collect()
 }
 
-/// How much of a pixel on the edge is covered: by its place between the colours outside and inside.
+/// The covered share of a pixel on the edge: by its place between the colours outside and inside.
 fn covered(values: &Values<'_>, trimmed: &[bool], inner: &[bool], i: usize) -> f32 {
     let (mut sum, mut number) = (0.0, 0.0);
     for outside in beside(i, values.width, inner.len()).filter(|&k| !trimmed[k]) {
