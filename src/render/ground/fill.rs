@@ -74,9 +74,10 @@ fn add_in_row(row: &mut [f64], height: f64, across: [f64; 2]) {
         false => (x - left).max(0.0),
     };
     let mut before = 0.0;
-    for k in first as usize..last as usize {
+    let pixels = row.iter_mut().enumerate().skip(first as usize);
+    for (k, turn) in pixels.take((last - first) as usize) {
         let share = covered(k as f64 + 1.0) - covered(k as f64);
-        row[k] += height * (share - before);
+        *turn += height * (share - before);
         before = share;
     }
     row[last as usize] += height * (1.0 - before);

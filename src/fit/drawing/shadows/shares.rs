@@ -41,9 +41,9 @@ impl Shares {
         }
         let ink = ink(&values, &kinds, page, choice)?;
         let along = |i: usize| share(values.at(i), page, ink);
-        for i in 0..kinds.len() {
-            if kinds[i] == Kind::Soft && along(i).1 > choice.near {
-                kinds[i] = Kind::Other;
+        for (i, kind) in kinds.iter_mut().enumerate() {
+            if *kind == Kind::Soft && along(i).1 > choice.near {
+                *kind = Kind::Other;
             }
         }
         let seen = |(i, kind): (usize, &Kind)| match kind {
