@@ -98,8 +98,8 @@ mod progress;
 mod refine;
 #[cfg(all(feature = "cli", unix))]
 mod rig;
-#[cfg(feature = "cli")]
 mod shadows;
+#[cfg(feature = "cli")]
 mod shape_files;
 #[cfg(feature = "cli")]
 mod view;
