@@ -352,6 +352,16 @@ fn check_plane(plane: &[f32], pixels: usize) -> Result<()> {
     }
 }
 
+/// The pixels to the left and right of pixel `i`, above and below, in a picture of `count` pixels, row by row.
+pub(crate) fn beside(i: usize, width: usize, count: usize) -> impl Iterator<Item = usize> {
+    let x = i % width;
+    let left = (x > 0).then(|| i - 1);
+    let right = (x + 1 < width).then_some(i + 1);
+    let above = i.checked_sub(width);
+    let below = Some(i + width).filter(|&k| k < count);
+    [left, right, above, below].into_iter().flatten()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

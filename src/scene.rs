@@ -111,6 +111,11 @@ impl Scene {
         self
     }
 
+    /// True if a gradient or shadows lie on the background, behind all marks.
+    pub fn has_ground(&self) -> bool {
+        self.shade.is_some() || !self.shadows.is_empty()
+    }
+
     /// All marks, back to front.
     pub fn marks(&self) -> impl Iterator<Item = &Mark> {
         self.stages.iter().flat_map(|stage| &stage.marks)

@@ -64,6 +64,35 @@ pub(crate) struct Met {
 }
 
 impl Blocks {
+    /// The blocks of a page, at most `most` along its longer side, which `value` tells from their pixels, counted row by row, and
+    /// the side of one, px. Those without a value do not take part.
+    pub(crate) fn of_page(
+        [width, height]: [usize; 2],
+        most: usize,
+        value: impl Fn(&[usize]) -> Option<Value>,
+    ) -> (Self, usize) {
+        let side = width.max(height).div_ceil(most).max(1);
+        let [columns, rows] = [width, height].map(|pixels| pixels.div_ceil(side));
+        let block = |k: usize| {
+            let [x, y] = [k % columns * side, k / columns * side];
+            let [right, below] = [(x + side).min(width), (y + side).min(height)];
+            let pixels = (y..below).flat_map(|y| (x..right).map(move |x| y * width + x));
+            let value = value(&pixels.collect::<Vec<_>>());
+            Block {
+                center: Point::new((x + right) as f32 / 2.0, (y + below) as f32 / 2.0),
+                value: value.unwrap_or_default(),
+                weight: if value.is_some() { 1.0 } else { 0.0 },
+            }
+        };
+        let blocks = Self {
+            columns,
+            all: (0..columns * rows).map(block).collect(),
+            low: [0.0; 2],
+            size: [width as f32, height as f32],
+        };
+        (blocks, side)
+    }
+
     /// The linear or radial shade that meets most blocks, if the blocks seem to lie along one.
     pub(crate) fn best_shade(&self, fit: &ShadeFit) -> Option<(Shade, Met)> {
         self.best_of(fit, &vec![1.0; fit.rounds])

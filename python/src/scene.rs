@@ -60,7 +60,7 @@ impl Page {
         py: Python<'py>,
         behind: Rgb,
     ) -> PyResult<Option<Bound<'py, PyArray3<f32>>>> {
-        if self.scene.shade.is_none() && self.scene.shadows.is_empty() {
+        if !self.scene.has_ground() {
             return Ok(None);
         }
         let [width, height] = [self.scene.width, self.scene.height].map(|side| side as usize);

@@ -617,12 +617,7 @@ impl<L: CanvasLoss> BackwardPass for Double<'_, L> {
         polylines: &Polylines,
         layers: &mut [OfStroke],
     ) -> Option<TileSums> {
-        let [first, second] =
-            [0, 1].map(|i| self.frames[i].uniform_sums(tile, self.losses[i], polylines, layers));
-        let (mut sums, second) = (first?, second?);
-        sums.loss += second.loss;
-        add(&mut sums.backdrop, &second.backdrop);
-        Some(sums)
+        summed([0, 1].map(|i| self.frames[i].uniform_sums(tile, self.losses[i], polylines, layers)))
     }
 
     fn untouched(
@@ -631,14 +626,10 @@ impl<L: CanvasLoss> BackwardPass for Double<'_, L> {
         job: &TileJob<'_>,
         scratch: &mut Scratch,
     ) -> Option<TileSums> {
-        let [first, second] = [0, 1].map(|i| {
+        summed([0, 1].map(|i| {
             let job = job.on(self.frames[i].backdrop(job.tile));
             self.frames[i].untouched_sums(level, &job, self.losses[i], scratch)
-        });
-        let (mut sums, second) = (first?, second?);
-        sums.loss += second.loss;
-        add(&mut sums.backdrop, &second.backdrop);
-        Some(sums)
+        }))
     }
 
     fn tile(
@@ -652,6 +643,14 @@ impl<L: CanvasLoss> BackwardPass for Double<'_, L> {
         let losses = self.losses;
         kernel::differentiate_on_mattes(level, job, other, losses, scratch, sums)
     }
+}
+
+/// The sums on two backdrops together, if both are known. Blocks are those of the first.
+fn summed([first, second]: [Option<TileSums>; 2]) -> Option<TileSums> {
+    let (mut sums, second) = (first?, second?);
+    sums.loss += second.loss;
+    add(&mut sums.backdrop, &second.backdrop);
+    Some(sums)
 }
 
 /// The vertices of the polyline that replaces a stroke, px. That of a dot has two vertices in one place, and that of a

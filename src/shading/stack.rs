@@ -76,34 +76,29 @@ impl Blocks {
         best.map(|(_, stack)| stack)
     }
 
-    /// Fits all shades but the last one to what they must be below the others.
+    /// Fits the lowest shade to what it must be below the others.
     fn refit(&self, stack: &mut [Shade], fit: &ShadeFit) {
-        for k in 0..stack.len() - 1 {
-            let unmixed = |block: &Block| {
-                let above = stacked(&stack[k + 1..], block.center);
-                let below = stacked(&stack[..k], block.center);
-                let through = 1.0 - above[3];
-                let own = |c: usize| (block.value[c] - above[c]) / through;
-                let is_seen = through > 1.0 - HIDING && block.weight > 0.0;
-                // Only the lowest one is fitted by itself.
-                let is_alone = below[3] <= 0.0;
-                Block {
-                    value: if is_seen {
-                        [0, 1, 2, 3].map(own)
-                    } else {
-                        block.value
-                    },
-                    weight: if is_seen && is_alone { 1.0 } else { 0.0 },
+        let Some((lowest, others)) = stack.split_first_mut() else {
+            return;
+        };
+        let unmixed = |block: &Block| {
+            let above = stacked(others, block.center);
+            let through = 1.0 - above[3];
+            if through <= 1.0 - HIDING || block.weight == 0.0 {
+                return Block {
+                    weight: 0.0,
                     ..*block
-                }
-            };
-            let blocks = Self {
-                all: self.all.iter().map(unmixed).collect(),
-                ..*self
-            };
-            if let Some((shade, _)) = blocks.best_shade(fit) {
-                stack[k] = shade;
+                };
             }
+            let value = [0, 1, 2, 3].map(|c| (block.value[c] - above[c]) / through);
+            Block { value, ..*block }
+        };
+        let blocks = Self {
+            all: self.all.iter().map(unmixed).collect(),
+            ..*self
+        };
+        if let Some((shade, _)) = blocks.best_shade(fit) {
+            *lowest = shade;
         }
     }
 
@@ -171,6 +166,7 @@ impl Blocks {
             self.layer(axis, &seen, fit.near)
                 .map_or(f64::INFINITY, |layer| layer.error)
         };
+        // The best start, and the best axis near it.
         let starts = from.iter().map(|&axis| (cost(axis), axis));
         let (_, start) = starts.min_by(|(a, _), (b, _)| a.total_cmp(b))?;
         let step = self.size[0].max(self.size[1]) / 25.0;
@@ -178,6 +174,7 @@ impl Blocks {
             cost(moved(start, numbers))
         });
         let axis = moved(start, numbers);
+        // The layer's profile as a gradient of few stops.
         let layer = self.layer(axis, &seen, fit.near)?;
         let blocks = Self {
             all: self
@@ -245,6 +242,7 @@ impl Blocks {
                 }
             }
         }
+        // Knots that nothing tells about stay clear.
         for (i, column) in columns.iter_mut().enumerate() {
             column[i] += RIDGE * weights / KNOTS as f64;
         }

@@ -104,10 +104,7 @@ impl<'a> Parser<'a> {
                     self.close(&e)?;
                 }
                 Tag::Open(e)
-                    if shade::begins_with(&e)
-                        && scene.shade.is_none()
-                        && scene.shadows.is_empty()
-                        && scene.stages.is_empty() =>
+                    if shade::begins_with(&e) && !scene.has_ground() && scene.stages.is_empty() =>
                 {
                     scene.shade = Some(self.shade(&e, width, height)?);
                 }
@@ -269,8 +266,7 @@ fn page_size(root: &Element) -> Parsed<(u32, u32, Option<[u32; 2]>)> {
 
 /// True if nothing of the drawing has been read.
 fn is_bare(scene: &Scene) -> bool {
-    let has_ground = scene.background.is_some() || scene.shade.is_some();
-    !has_ground && scene.shadows.is_empty() && scene.stages.is_empty()
+    scene.background.is_none() && !scene.has_ground() && scene.stages.is_empty()
 }
 
 /// Checks that a rectangle is the page, and has nothing else but a fill.

@@ -265,13 +265,3 @@ pub(super) fn away(a: &Pixel, b: &Pixel) -> f32 {
     let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs());
     differences.fold(0.0, f32::max)
 }
-
-/// The pixels to the left and right, above and below.
-pub(super) fn beside(i: usize, width: usize, count: usize) -> impl Iterator<Item = usize> {
-    let x = i % width;
-    let left = (x > 0).then(|| i - 1);
-    let right = (x + 1 < width).then_some(i + 1);
-    let above = i.checked_sub(width);
-    let below = Some(i + width).filter(|&k| k < count);
-    [left, right, above, below].into_iter().flatten()
-}

@@ -37,23 +37,27 @@ pub(in crate::fit) fn choose(
 ) -> (Rgb, bool) {
     match background {
         Background::Auto => {
-            let paper = paper(target, choice);
-            (
-                paper.unwrap_or_else(|| prevailing_color(target, choice)),
-                false,
-            )
+            let levels = target.to_rgb8();
+            let (colors, _) = levels.as_chunks();
+            let paper = border_color(colors, target.width(), choice);
+            let color = paper.unwrap_or_else(|| prevailing_color(target, colors, choice));
+            (color, false)
         }
         Background::None => ([1.0; 3], true),
         Background::Color(color) => (color, true),
     }
 }
 
+/// The colour of the paper that is seen along the border of an opaque picture, if there is one.
+pub(super) fn paper(picture: &Image, choice: &BackgroundChoice) -> Option<Rgb> {
+    let levels = picture.to_rgb8();
+    let (colors, _) = levels.as_chunks();
+    border_color(colors, picture.width(), choice)
+}
+
 /// The most common colour of the pixels along the border, if that is the colour of enough of them: paper reaches the
 /// border, and what is drawn on it may cover more than half of it.
-pub(super) fn paper(target: &Image, choice: &BackgroundChoice) -> Option<Rgb> {
-    let levels = target.to_rgb8();
-    let (colors, _) = levels.as_chunks();
-    let width = target.width();
+fn border_color(colors: &[[u8; 3]], width: usize, choice: &BackgroundChoice) -> Option<Rgb> {
     let height = colors.len() / width;
     let rows = (0..height).flat_map(|y| [y * width, y * width + width - 1]);
     let columns = (0..width).flat_map(|x| [x, (height - 1) * width + x]);
@@ -62,9 +66,7 @@ pub(super) fn paper(target: &Image, choice: &BackgroundChoice) -> Option<Rgb> {
 }
 
 /// The most common colour if its share is large enough, otherwise the mean colour.
-fn prevailing_color(image: &Image, choice: &BackgroundChoice) -> Rgb {
-    let levels = image.to_rgb8();
-    let (colors, _) = levels.as_chunks();
+fn prevailing_color(image: &Image, colors: &[[u8; 3]], choice: &BackgroundChoice) -> Rgb {
     common_color(colors.iter().copied(), choice.prevailing_share).unwrap_or_else(|| {
         [0, 1, 2].map(|c| {
             let sum: f64 = image.planes()[c].iter().map(|&v| f64::from(v)).sum();

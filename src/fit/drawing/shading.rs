@@ -2,7 +2,6 @@
 
 use crate::fit::recipe::ShadeChoice;
 use crate::image::Image;
-use crate::math::Point;
 use crate::scene::{Axis, Scene, Shade, ShadeStop};
 use crate::shading::{Block, Blocks, Value};
 use crate::svg::{self, WriteOptions};
@@ -63,35 +62,18 @@ fn bytes(page: &Scene, shade: &Shade) -> usize {
 
 /// The means of the picture's blocks, and the pixels of one.
 fn blocks(picture: &Image, choice: &ShadeChoice) -> (Blocks, f32) {
-    let (width, height) = (picture.width(), picture.height());
-    let side = width.max(height).div_ceil(choice.blocks).max(1);
-    let [columns, rows] = [width.div_ceil(side), height.div_ceil(side)];
-    let block = |i: usize| {
-        let [x, y] = [i % columns * side, i / columns * side];
-        let [right, below] = [(x + side).min(width), (y + side).min(height)];
-        let pixels = (y..below).flat_map(|y| (x..right).map(move |x| y * width + x));
+    let size = [picture.width(), picture.height()];
+    let (blocks, side) = Blocks::of_page(size, choice.blocks, |pixels| {
         let mut sum = [0.0; 4];
-        let mut count = 0.0;
-        for pixel in pixels {
+        for &pixel in pixels {
             let alpha = picture.alpha().map_or(1.0, |alpha| alpha[pixel]);
             for (sum, plane) in sum.iter_mut().zip(picture.planes()) {
                 *sum += alpha * plane[pixel];
             }
             sum[3] += alpha;
-            count += 1.0;
         }
-        Block {
-            center: Point::new((x + right) as f32 / 2.0, (y + below) as f32 / 2.0),
-            value: sum.map(|sum: f32| sum / count),
-            weight: 1.0,
-        }
-    };
-    let blocks = Blocks {
-        columns,
-        all: (0..columns * rows).map(block).collect(),
-        low: [0.0; 2],
-        size: [width as f32, height as f32],
-    };
+        Some(sum.map(|sum: f32| sum / pixels.len() as f32))
+    });
     (blocks, (side * side) as f32)
 }
 

@@ -9,10 +9,9 @@ mod shares;
 
 use crate::fit::recipe::ShadowChoice;
 use crate::image::Image;
-use crate::math::{Point, Vector};
-use crate::render::{self, Plane};
+use crate::math::Vector;
 use crate::scene::{Area, Path, Rgb, Shadow, Shape};
-use crate::shading::{Block, Blocks};
+use crate::shading::Blocks;
 use crate::trace::{self, Outlines};
 use caster::{Cast, Search};
 use shares::Shares;
@@ -34,12 +33,14 @@ fn found(
     choice: &ShadowChoice,
     price_per_byte: f32,
 ) -> Option<Vec<Shadow>> {
+    // What is soft, unless a gradient does, and the outline of what casts it.
     let shares = Shares::of(picture, page, choice)?;
     if is_gradient(&shares, choice) {
         return None;
     }
     let rings = rings(&shares, choice, 0.0);
     let mut search = Search::of(&shares, &rings, choice)?;
+    // The blurs of that outline, if they explain it and pay.
     let all = search.error();
     let casts = casts(&mut search, choice);
     let gain = (all - search.error()) * shares.contrast2;
@@ -91,41 +92,21 @@ fn rings(shares: &Shares, choice: &ShadowChoice, tolerance: f32) -> Vec<Path> {
         candidates: 0.75 * tolerance,
         ..choice.outlines
     };
-    let caster = Plane {
-        width: shares.width,
-        values: shares.caster.clone(),
-    };
-    let smooth = render::blurred(caster, choice.outline_blur);
-    let rings = trace::rings(&smooth.values, shares.width, &outlines);
+    let rings = trace::rings(&shares.caster.values, shares.width, &outlines);
     let shape = |ring: Path| Shape::like(&ring, choice.shape).map_or(ring, |shape| shape.ring());
     rings.into_iter().map(shape).collect()
 }
 
 /// True if the soft pixels lie along one gradient: a glow that is no blur.
 fn is_gradient(shares: &Shares, choice: &ShadowChoice) -> bool {
-    let (width, height) = (shares.width, shares.seen.len() / shares.width);
-    let side = width.max(height).div_ceil(choice.gradient_blocks).max(1);
-    let [columns, rows] = [width, height].map(|pixels| pixels.div_ceil(side));
-    let block = |k: usize| {
-        let [x, y] = [k % columns * side, k / columns * side];
-        let center = Point::new(x as f32 + side as f32 / 2.0, y as f32 + side as f32 / 2.0);
-        let [right, below] = [(x + side).min(width), (y + side).min(height)];
-        let pixels = (y..below).flat_map(|y| (x..right).map(move |x| y * width + x));
-        let soft = pixels.map(|i| shares.seen[i].filter(|share| *share > 0.0));
-        let soft: Option<Vec<f32>> = soft.collect();
-        let share = soft.map(|soft| soft.iter().sum::<f32>() / soft.len() as f32);
-        Block {
-            center,
-            value: [share.unwrap_or(0.0); 4],
-            weight: if share.is_some() { 1.0 } else { 0.0 },
-        }
-    };
-    let blocks = Blocks {
-        columns,
-        all: (0..columns * rows).map(block).collect(),
-        low: [0.0; 2],
-        size: [width as f32, height as f32],
-    };
+    let size = [shares.width, shares.seen.len() / shares.width];
+    let (blocks, _) = Blocks::of_page(size, choice.gradient_blocks, |pixels| {
+        let soft = pixels
+            .iter()
+            .map(|&i| shares.seen[i].filter(|share| *share > 0.0));
+        let sum: Option<f32> = soft.sum();
+        sum.map(|sum| [sum / pixels.len() as f32; 4])
+    });
     let found = blocks.best_shade(&choice.fit);
     found.is_some_and(|(_, met)| met.share >= choice.gradient_share)
 }

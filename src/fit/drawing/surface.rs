@@ -312,7 +312,7 @@ impl Surface {
     /// The backdrop of the strokes of `scene`, in a drawing without frozen strokes.
     pub(in crate::fit) fn backdrop_of(&self, scene: &Scene) -> Backdrop<'_> {
         match scene.background {
-            Some(color) if Ground::of(scene).is_empty() => Backdrop::Color(color),
+            Some(color) if !scene.has_ground() => Backdrop::Color(color),
             _ => self.backdrop(0),
         }
     }

@@ -6,8 +6,9 @@
 
 use rayon::prelude::*;
 
-use super::super::areas::{LEVEL, Pixel, Pixels, away, beside};
+use super::super::areas::{LEVEL, Pixel, Pixels, away};
 use super::super::recipe::Shades;
+use crate::image::beside;
 use crate::math::Point;
 use crate::scene::Shade;
 use crate::shading::{Block, Blocks, Value, stacked};

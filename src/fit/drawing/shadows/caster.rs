@@ -33,6 +33,7 @@ impl<'a> Search<'a> {
         let side = width.max(height).div_ceil(choice.blocks).max(1);
         let columns = width.div_ceil(side);
         let count = columns * height.div_ceil(side);
+        // A block counts where nothing covers any of its pixels.
         let mut sums = vec![(0.0_f32, 0.0_f32, 0_usize, true); count];
         for (i, (seen, caster)) in shares.seen.iter().zip(&caster.values).enumerate() {
             let block = i / width / side * columns + i % width / side;

@@ -1,7 +1,8 @@
 //! The shares of a colour that lies softly on the page, and what they surround.
 
 use crate::fit::recipe::ShadowChoice;
-use crate::image::Image;
+use crate::image::{Image, beside};
+use crate::render::{self, Plane};
 use crate::scene::Rgb;
 
 /// Premultiplied colour and opacity.
@@ -16,8 +17,8 @@ pub(super) struct Shares {
     pub(super) contrast2: f32,
     /// For each pixel the share of the colour, where it is seen.
     pub(super) seen: Vec<Option<f32>>,
-    /// The share of each pixel that belongs to what casts the shadow.
-    pub(super) caster: Vec<f32>,
+    /// The share of each pixel that belongs to what casts the shadow, blurred a little, because pixels have stairs.
+    pub(super) caster: Plane,
 }
 
 /// A kind of pixels.
@@ -33,12 +34,14 @@ impl Shares {
     /// The shares of a picture on a page of this colour, or on none, if there are enough of them around something.
     pub(super) fn of(picture: &Image, page: Option<Rgb>, choice: &ShadowChoice) -> Option<Self> {
         let page = page.map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
-        let values = Values::of(picture);
+        // What is page, and what is soft beside it.
+        let values = Values(picture);
         let mut kinds = kinds(&values, page, choice);
         let soft = kinds.iter().filter(|kind| **kind == Kind::Soft).count();
         if (soft as f32) < choice.least_share * kinds.len() as f32 {
             return None;
         }
+        // The one colour that it mixes the page with; what is of another is not soft.
         let ink = ink(&values, &kinds, page, choice)?;
         let along = |i: usize| share(values.at(i), page, ink);
         for (i, kind) in kinds.iter_mut().enumerate() {
@@ -46,56 +49,50 @@ impl Shares {
                 *kind = Kind::Other;
             }
         }
+        // The rest, where soft pixels surround it.
         let seen = |(i, kind): (usize, &Kind)| match kind {
             Kind::Page => Some(0.0),
             Kind::Soft => Some(along(i).0),
             Kind::Other => None,
         };
-        let caster = caster(&values, &kinds, choice);
-        let is_cast = caster.iter().any(|&share| share > 0.0);
+        let caster = Plane {
+            width: values.width(),
+            values: caster(&values, &kinds, choice),
+        };
+        let is_cast = caster.values.iter().any(|&share| share > 0.0);
         let apart = |c: usize| (ink[c] - page[c]) * (ink[c] - page[c]);
         let contrast2 = (0..4).map(apart).sum();
         is_cast.then(|| Self {
-            width: values.width,
+            width: values.width(),
             color: [ink[0], ink[1], ink[2]],
             contrast2,
             seen: kinds.iter().enumerate().map(seen).collect(),
-            caster,
+            caster: render::blurred(caster, choice.outline_blur),
         })
     }
 }
 
 /// The premultiplied values of a picture.
-struct Values<'a> {
-    picture: &'a Image,
-    width: usize,
-}
+struct Values<'a>(&'a Image);
 
-impl<'a> Values<'a> {
-    fn of(picture: &'a Image) -> Self {
-        Self {
-            picture,
-            width: picture.width(),
-        }
+impl Values<'_> {
+    fn width(&self) -> usize {
+        self.0.width()
     }
 
     fn len(&self) -> usize {
-        self.width * self.picture.height()
+        self.0.width() * self.0.height()
     }
 
     fn at(&self, i: usize) -> Value {
-        let alpha = self.picture.alpha().map_or(1.0, |alpha| alpha[i]);
-        let [r, g, b] = self
-            .picture
-            .planes()
-            .each_ref()
-            .map(|plane| alpha * plane[i]);
+        let alpha = self.0.alpha().map_or(1.0, |alpha| alpha[i]);
+        let [r, g, b] = self.0.planes().each_ref().map(|plane| alpha * plane[i]);
         [r, g, b, alpha]
     }
 
     /// True for a pixel whose neighbours on opposite sides have it about in their middle.
     fn is_smooth(&self, i: usize, bend: f32) -> bool {
-        let (w, height) = (self.width, self.picture.height());
+        let (w, height) = (self.0.width(), self.0.height());
         let (x, y) = (i % w, i / w);
         let is_inner = [x > 0 && x + 1 < w, y > 0 && y + 1 < height];
         let own = self.at(i);
@@ -124,7 +121,7 @@ fn kinds(values: &Values<'_>, page: Value, choice: &ShadowChoice) -> Vec<Kind> {
         .filter(|&i| kinds[i] == Kind::Page)
         .collect();
     while let Some(i) = open.pop() {
-        for k in beside(i, values.width, kinds.len()) {
+        for k in beside(i, values.width(), kinds.len()) {
             if kinds[k] == Kind::Other && values.is_smooth(k, choice.bend) {
                 kinds[k] = Kind::Soft;
                 open.push(k);
@@ -132,16 +129,6 @@ fn kinds(values: &Values<'_>, page: Value, choice: &ShadowChoice) -> Vec<Kind> {
         }
     }
     kinds
-}
-
-/// The pixels left and right of, above and below a pixel.
-fn beside(i: usize, width: usize, count: usize) -> impl Iterator<Item = usize> {
-    let x = i % width;
-    let left = (x > 0).then(|| i - 1);
-    let right = (x + 1 < width).then_some(i + 1);
-    let above = i.checked_sub(width);
-    let below = Some(i + width).filter(|&k| k < count);
-    [left, right, above, below].into_iter().flatten()
 }
 
 /// The colour that the soft pixels mix the page with: as far from the page as a colour can be.
@@ -215,9 +202,10 @@ fn share(value: Value, page: Value, ink: Value) -> (f32, f32) {
 
 /// The shares of the pixels of what is neither page nor soft, and surrounded by what is soft for the most part.
 fn caster(values: &Values<'_>, kinds: &[Kind], choice: &ShadowChoice) -> Vec<f32> {
-    let (width, count) = (values.width, kinds.len());
+    let (width, count) = (values.width(), kinds.len());
     let mut is_cast = vec![false; count];
     let mut is_seen: Vec<bool> = kinds.iter().map(|kind| *kind != Kind::Other).collect();
+    // Each connected part, with the number of its borders, and of those to what is soft.
     for start in 0..count {
         if is_seen[start] {
             continue;
@@ -260,7 +248,7 @@ fn eroded(mask: &[bool], width: usize) -> Vec<bool> {
 /// The covered share of a pixel on the edge: by its place between the colours outside and inside.
 fn covered(values: &Values<'_>, trimmed: &[bool], inner: &[bool], i: usize) -> f32 {
     let (mut sum, mut number) = (0.0, 0.0);
-    for outside in beside(i, values.width, inner.len()).filter(|&k| !trimmed[k]) {
+    for outside in beside(i, values.width(), inner.len()).filter(|&k| !trimmed[k]) {
         let inside = (2 * i).checked_sub(outside);
         let Some(inside) = inside.filter(|&k| inner.get(k) == Some(&true)) else {
             continue;
