@@ -180,11 +180,22 @@ impl<'a> Tracker<'a> {
     }
 
     /// Counts an iteration of `strokes` strokes, when a share `time_used` of a limited time is used. At least `rest`
-    /// strokes × iterations are to come: where gains decide how many strokes there are, the plan was a guess.
-    pub(in crate::fit) fn advance(&mut self, strokes: usize, rest: usize, time_used: f32) {
+    /// strokes × iterations are to come, or about that if it `is_known`: where gains decide how many strokes there are, the plan
+    /// was a guess.
+    pub(in crate::fit) fn advance(
+        &mut self,
+        strokes: usize,
+        rest: usize,
+        is_known: bool,
+        time_used: f32,
+    ) {
         let position = &mut self.position;
         position.done += strokes as f64;
-        self.planned = self.planned.max(position.done + rest as f64);
+        let least = position.done + rest as f64;
+        self.planned = match is_known {
+            true => least,
+            false => self.planned.max(least),
+        };
         let done = (position.done / self.planned).max(f64::from(time_used));
         position.fraction = done.clamp(position.fraction, 1.0);
     }

@@ -20,7 +20,7 @@ use crate::fit::drawing::masking;
 use crate::fit::drawing::surface::{Prepared, Surface};
 use crate::fit::drawing::{Drawing, Memento};
 use crate::fit::file::{RenderedFile, Writer};
-use crate::fit::order::Phase;
+use crate::fit::order::{Phase, Purpose};
 use crate::fit::recipe::{Domain, Rates, Recipe};
 use crate::fit::renderers::{self, Renderings};
 use crate::fit::result::Stop;
@@ -242,12 +242,21 @@ impl<'a> Session<'a> {
     pub(in crate::fit) fn advance(&mut self, left: usize, mse: f64) -> bool {
         self.timer.step(self.drawing.len());
         let strokes = self.drawing.free().len();
-        let polish = match self.phase.precedes_polish(self.config) {
-            true => self.drawing.len() * self.recipe.polish.iterations,
-            false => 0,
+        let all = (self.drawing.len() * self.recipe.polish.iterations) as f64;
+        let recovery = match self.recovers() {
+            true => self.recipe.recovery.polish_share,
+            false => 0.0,
         };
-        let rest = strokes * left + polish;
-        self.progress.advance(strokes, rest, self.timer.used());
+        let polishes = match self.phase {
+            Phase::Polish(Purpose::Plan) => recovery,
+            phase if phase.precedes_polish(self.config) => 1.0 + recovery,
+            _ => 0.0,
+        };
+        let rest = strokes * left + (polishes * all) as usize;
+        // Of a drawing that was traced hardly more is to come.
+        let is_known = self.drawing.counters.traced_until > 0;
+        self.progress
+            .advance(strokes, rest, is_known, self.timer.used());
         if self.timer.is_over() {
             self.progress.stop(Stop::Time);
         }
