@@ -103,9 +103,9 @@ impl<'a> Phases<'a> {
         })
     }
 
-    /// Notes how far the fit has come.
+    /// Notes how far the fit has come. Trials have no events.
     pub(super) fn watch(&mut self, progress: &Progress<'_>) {
-        if self.events.to.is_none() {
+        if self.events.to.is_none() || progress.is_trial {
             return;
         }
         if !self.goes_on(progress) {

@@ -49,10 +49,14 @@ fn caption(progress: &Progress<'_>, rate: f64) -> String {
 /// The part of the fit that is under way; how many stages there will be is not always planned.
 pub(super) fn place(progress: &Progress<'_>) -> String {
     let Progress { stage, stages, .. } = *progress;
-    match stages {
+    let part = match stages {
         _ if progress.settling => "settling".into(),
         _ if progress.polishing => "polish".into(),
         0 => format!("stage {stage}"),
         _ => format!("stage {stage} of {stages}"),
+    };
+    match progress.is_trial {
+        true => format!("trial, {part}"),
+        false => part,
     }
 }

@@ -89,7 +89,8 @@ impl<'a> Fitter<'a> {
         }
     }
 
-    /// Sets the observer, which is told of progress and may stop the fit.
+    /// Sets the observer, which is told of progress and may stop the fit. It sees drawings that compete with each other, too:
+    /// [`Progress::is_trial`](super::Progress::is_trial) tells them apart.
     #[must_use]
     pub fn observer(self, observer: &'a mut (dyn Observer + Send)) -> Self {
         Self {

@@ -81,6 +81,7 @@ use order::{Outcome, Phase};
 use phase::{count, grow, nudge, polish, recover, restrict, settle, trace};
 use run::finish::{self, Drawn};
 use run::session::{Session, Watch};
+use run::trials::Trials;
 
 impl Fitter<'_> {
     /// Draws `picture`.
@@ -125,11 +126,18 @@ impl Fitter<'_> {
         let pool = self.execution.pool()?;
         let reduced = pool.install(|| self.reduce(picture));
         let picture = reduced.as_ref().unwrap_or(picture);
+        let mut nobody = ();
+        let observer = self.observer.take().unwrap_or(&mut nobody);
         let rivals = self.rivals(picture);
-        let mut best = self.best_of_what_pays(picture, since)?;
+        let priced = self.most_of_what_pays(picture);
+        let mut trials = Trials::new(observer, priced + rivals.len());
+        let mut best = self.best_of_what_pays(picture, since, &mut trials)?;
         let competes = !rivals.is_empty() || best.is_some();
         for rival in rivals {
-            best = Some(rival.draw(picture, since, competes)?.or_better(best));
+            if !trials.are_stopped() {
+                let drawn = rival.draw(picture, since, trials.next(), competes)?;
+                best = Some(drawn.or_better(best));
+            }
         }
         let by_strokes = self.by_strokes_alone();
         let competes = competes || by_strokes.is_some();
@@ -138,14 +146,15 @@ impl Fitter<'_> {
             &self.recipe(),
             picture.width() * picture.height(),
         );
-        let mut drawn = self.draw(picture, since, competes)?;
+        let mut drawn = self.draw(picture, since, trials.last(), competes)?;
         let stop = drawn.fit.stop;
         if let Some(rival) = by_strokes
             && stop != Stop::Interrupted
             && drawn.has_doubtful_areas()
             && rivals::has_time_for_another(&rival.config, since.elapsed())
         {
-            drawn = drawn.or_cheaper(rival.draw(picture, since, true)?, price);
+            let rival = rival.draw(picture, since, trials.next(), true)?;
+            drawn = drawn.or_cheaper(rival, price);
         }
         let mut fit = drawn.or_better(best).fit;
         // Whoever stopped the fit is told so, whichever drawing is the better one.
@@ -206,12 +215,16 @@ impl Fitter<'_> {
 
     /// Draws `picture` once, by a configuration that was checked. A drawing that `competes` with others has a file to be
     /// compared by.
-    fn draw(mut self, picture: &Image, since: Instant, competes: bool) -> Result<Drawn> {
+    fn draw(
+        mut self,
+        picture: &Image,
+        since: Instant,
+        observer: &mut (dyn Observer + Send),
+        competes: bool,
+    ) -> Result<Drawn> {
         self.config.recipe = Some(self.recipe());
         let (config, base, focus, page) = (&self.config, self.base.as_ref(), self.focus, self.page);
         let level = self.execution.simd.require()?;
-        let mut nobody = ();
-        let observer = self.observer.unwrap_or(&mut nobody);
         let (token, checkpoint, grace) = (self.token, self.checkpoint, self.grace);
         self.execution.pool()?.install(|| {
             let watch = Watch {

@@ -8,6 +8,7 @@ use super::budget::rivals;
 use super::config::{Budget, Config, DEFAULT_QUALITY};
 use super::fitter::Fitter;
 use super::run::finish::Drawn;
+use super::run::trials::Trials;
 use crate::clock::Instant;
 use crate::error::Result;
 use crate::image::Image;
@@ -42,13 +43,23 @@ impl Search {
 }
 
 impl Fitter<'_> {
+    /// Number of drawings of what pays that `picture` has, at most.
+    pub(super) fn most_of_what_pays(&self, picture: &Image) -> usize {
+        match self.base.is_none() && rivals::has_priced(&self.config, picture) {
+            // The usual quality, those of the search, and the shortened one.
+            true => HALVINGS + 2,
+            false => 0,
+        }
+    }
+
     /// The best drawing of `picture` of what pays that keeps the budget, of those with rivals.
     pub(super) fn best_of_what_pays(
         &self,
         picture: &Image,
         since: Instant,
+        trials: &mut Trials<'_>,
     ) -> Result<Option<Drawn>> {
-        if self.base.is_some() || !rivals::has_priced(&self.config, picture) {
+        if self.most_of_what_pays(picture) == 0 {
             return Ok(None);
         }
         let usual = self.config.quality;
@@ -58,11 +69,15 @@ impl Fitter<'_> {
             best: None,
             excessive: None,
         };
-        let drawn = self.priced(usual, picture, since)?;
-        let is_flat = drawn.has_areas() || rivals::is_flat(&self.config, picture);
+        let drawn = self.priced(usual, picture, since, trials)?;
+        // A photograph of a dark sky has much of one colour, too, but needs many strokes for the rest. Of a few, each counts.
+        let most = self.config.recipe().rivals;
+        let allowed = self.config.budget.strokes.unwrap_or(usize::MAX);
+        let is_short = drawn.strokes().min(allowed) <= most;
+        let is_flat = drawn.has_areas() || is_short && rivals::is_flat(&self.config, picture);
         search.take(drawn, search.high);
         // A photograph is drawn as well by what gains most.
-        if !is_flat {
+        if !is_flat || trials.are_stopped() {
             return Ok(search.best);
         }
         if search.best.is_some() {
@@ -70,7 +85,11 @@ impl Fitter<'_> {
         }
         for _ in 0..HALVINGS {
             let quality = (search.low + search.high) / 2.0;
-            search.take(self.priced(Some(quality), picture, since)?, quality);
+            let drawn = self.priced(Some(quality), picture, since, trials)?;
+            search.take(drawn, quality);
+            if trials.are_stopped() {
+                return Ok(search.best);
+            }
         }
         let Some(excessive) = search.excessive else {
             return Ok(search.best);
@@ -79,12 +98,20 @@ impl Fitter<'_> {
             base: Some(excessive.into_base()),
             ..self.rival(self.config.clone())
         };
-        let shortened = rival.draw(picture, since, true)?.without_base();
+        let shortened = rival
+            .draw(picture, since, trials.next(), true)?
+            .without_base();
         Ok(Some(shortened.or_better(search.best)))
     }
 
     /// The drawing of what pays at a `quality`, the usual one if `None`, to be compared by the budget.
-    fn priced(&self, quality: Option<f64>, picture: &Image, since: Instant) -> Result<Drawn> {
+    fn priced(
+        &self,
+        quality: Option<f64>,
+        picture: &Image,
+        since: Instant,
+        trials: &mut Trials<'_>,
+    ) -> Result<Drawn> {
         let mut recipe = self.config.recipe();
         // Whole, a drawing is worth more than one whose shapes are elements of their own.
         if let Some(strokes) = self.config.budget.strokes {
@@ -96,7 +123,7 @@ impl Fitter<'_> {
             quality,
             ..self.config.clone()
         });
-        let drawn = rival.draw(picture, since, true)?;
+        let drawn = rival.draw(picture, since, trials.next(), true)?;
         Ok(drawn.for_budget(self.config.budget))
     }
 }

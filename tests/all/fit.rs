@@ -391,6 +391,45 @@ fn an_observer_sees_progress_and_may_stop() {
 
 /// Stopped in the first iterations of a large stage, whose strokes are as they were seeded.
 #[test]
+fn an_observer_sees_drawings_that_compete_and_may_stop_those() {
+    let picture = sample("noto-gem").flattened([1.0; 3]);
+    let config = Config {
+        budget: Budget {
+            strokes: Some(40),
+            ..Budget::default()
+        },
+        ..Config::default()
+    };
+    let (mut done, mut trials, mut last) = (0.0, 0, 0);
+    let mut watch = |progress: &Progress<'_>| {
+        assert!(progress.done >= done, "{} after {done}", progress.done);
+        done = progress.done;
+        trials += usize::from(progress.is_trial);
+        last += usize::from(!progress.is_trial);
+        ControlFlow::Continue(())
+    };
+    let fit = Fitter::new(config.clone()).observer(&mut watch);
+    assert_ne!(fit.fit(&picture).unwrap().stop, Stop::Interrupted);
+    assert!(trials > last && last > 0, "{trials} {last}");
+
+    // No other one is tried then, and the last one ends as it begins.
+    let mut told = 0;
+    let mut stop = |progress: &Progress<'_>| {
+        told += 1;
+        assert!(progress.is_trial || told > 20);
+        match told < 20 {
+            true => ControlFlow::Continue(()),
+            // Once is enough.
+            false if told == 20 => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    };
+    let fit = Fitter::new(config).observer(&mut stop).fit(&picture);
+    assert_eq!(fit.unwrap().stop, Stop::Interrupted);
+    assert!(told <= 22, "told {told} times");
+}
+
+#[test]
 fn a_fit_that_may_finish_after_it_was_stopped_is_better_for_it() {
     let picture = sample("coffee-300");
     let stopped = |grace: Duration| {

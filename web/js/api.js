@@ -51,8 +51,8 @@ function words({ colors, ...options }) {
 
 // What the WebAssembly calls after each iteration; it goes on unless `onProgress` returns false.
 function watcher(onProgress) {
-  return (done, stage, stages, polishing, strokes, psnrDb, scene) => {
-    const progress = { done, stage, stages, polishing, strokes, psnrDb, scene: () => JSON.parse(scene()) };
+  return (done, stage, stages, polishing, strokes, psnrDb, isTrial, scene) => {
+    const progress = { done, stage, stages, polishing, strokes, psnrDb, isTrial, scene: () => JSON.parse(scene()) };
     return onProgress(progress) !== false;
   };
 }

@@ -93,6 +93,8 @@ export interface Progress {
   strokes: number;
   /** Fidelity so far, dB. */
   psnrDb: number;
+  /** True if the drawing is a trial: a fit may make several, one after the other, and keep the best one. */
+  isTrial: boolean;
   /** The drawing so far; only to be called before `onProgress` returns. It takes time: do not call it at every iteration. */
   scene(): Scene;
 }

@@ -29,6 +29,7 @@ extern "C" {
         polishing: bool,
         strokes: usize,
         psnr_db: f64,
+        is_trial: bool,
         scene: &dyn Fn() -> String,
     ) -> Result<bool, JsValue>;
 }
@@ -85,6 +86,7 @@ fn tell(watcher: &Watcher, progress: &Progress<'_>) -> Result<bool, JsValue> {
         progress.polishing,
         progress.strokes,
         progress.psnr_db,
+        progress.is_trial,
         &|| scene_json(&progress.scene()),
     )
 }

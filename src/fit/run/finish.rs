@@ -39,6 +39,11 @@ impl Drawn {
         self.fit.scene.areas().next().is_some()
     }
 
+    /// Number of its marks.
+    pub(in crate::fit) fn strokes(&self) -> usize {
+        self.fit.scene.len()
+    }
+
     /// The drawing as a base of another one.
     pub(in crate::fit) fn into_base(self) -> Base {
         Base {

@@ -29,7 +29,9 @@ pub struct Progress<'a> {
     pub strokes: usize,
     /// Fidelity of the soft render to the target, dB.
     pub psnr_db: f64,
-    drawing: &'a Drawing,
+    /// True if the drawing is a trial: the fit makes several, one after the other, and keeps the best one.
+    pub is_trial: bool,
+    pub(in crate::fit) drawing: &'a Drawing,
 }
 
 impl Progress<'_> {
@@ -213,6 +215,7 @@ impl<'a> Tracker<'a> {
             settling: self.settling,
             strokes: drawing.len(),
             psnr_db: psnr_db(mse),
+            is_trial: false,
             drawing,
         };
         self.asked |= self.observer.observe(&progress).is_break() || self.token.is_cancelled();
