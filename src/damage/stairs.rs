@@ -23,8 +23,10 @@ pub(super) fn smoothed(labels: &Labels, recipe: &Stairs) -> Result<Option<Image>
         return Ok(None);
     }
     let [borders, lonely] = labels.borders();
-    let is_antialiased = lonely as f32 >= recipe.most_lonely * borders as f32;
-    if is_antialiased || !labels.has_corners() || labels.common_run() >= recipe.least_square {
+    // Level and upright lines have no stairs to tell by, however long their borders are.
+    let is_antialiased =
+        lonely as f32 >= recipe.most_lonely * borders as f32 || lonely >= labels.steps();
+    if is_antialiased || labels.common_run() >= recipe.least_square {
         return Ok(None);
     }
     let (specks, share) = labels.specks(recipe.speck);
@@ -36,14 +38,24 @@ pub(super) fn smoothed(labels: &Labels, recipe: &Stairs) -> Result<Option<Image>
 }
 
 impl Labels {
-    /// True if a border turns.
-    fn has_corners(&self) -> bool {
-        let turns = |cell: usize| {
-            let crossed = crossed(&self.corners(cell));
-            crossed.contains(&true) && (crossed[0] != crossed[2] || crossed[1] != crossed[3])
-        };
+    /// The number of places where a border turns to one side, and a pixel farther on to the other one.
+    fn steps(&self) -> usize {
         let [columns, rows] = self.cells();
-        (0..columns * rows).any(turns)
+        // The sides through which a border that turns in a cell leaves it: above or below, and right or left.
+        let turn = |cell: usize| {
+            let [above, right, below, left] = crossed(&self.corners(cell));
+            (above != below && right != left).then_some([above, right])
+        };
+        let step = |cell: usize| {
+            let (x, y) = (cell % columns, cell / columns);
+            let [above, right] = turn(cell)?;
+            // The border goes on, and on the way that it had.
+            let is_step = |next: usize| turn(next) == Some([!above, !right]);
+            let on = right && x + 1 < columns && is_step(cell + 1);
+            let down = !above && y + 1 < rows && is_step(cell + columns);
+            Some(usize::from(on) + usize::from(down))
+        };
+        (0..columns * rows).filter_map(step).sum()
     }
 
     /// The greatest common divisor of the lengths of all runs of one colour, px, those at the picture's borders left out.
