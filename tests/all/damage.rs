@@ -300,3 +300,16 @@ fn damage_is_told_in_words() {
         "noise of 5.2 levels, colours at half the resolution"
     );
 }
+
+#[test]
+fn level_and_upright_lines_have_no_stairs() {
+    // A grid of lines of two pixels, whose crossings were rounded.
+    let dark = |i: usize| (i % 200 + 4) % 16 < 2 || (i / 200 + 4) % 16 < 2;
+    let plane: Vec<f32> = (0..200 * 160).map(|i| f32::from(!dark(i))).collect();
+    let picture = Image::new(200, 160, [plane.clone(), plane.clone(), plane]).unwrap();
+    assert!(damage::meant(&picture).unwrap().is_none());
+    let fit = drawn(&picture, Config::default());
+    assert!(fit.scene.len() < 40, "{} marks", fit.scene.len());
+    let db = psnr_db(&fit, &picture);
+    assert!(db >= 35.0, "{db}");
+}
