@@ -28,9 +28,11 @@ pub(crate) struct Patience {
 
 impl Observer for Patience {
     fn observe(&mut self, progress: &Progress<'_>) -> ControlFlow<()> {
+        // The best drawing of several is kept: this is one that the last one has to beat.
         if progress.is_trial {
-            // The best drawing of several is kept: this is one that the last one has to beat.
-        } else if !progress.polishing {
+            return ControlFlow::Continue(());
+        }
+        if !progress.polishing {
             if progress.stage > self.stage {
                 self.stage = progress.stage;
                 // The drawing itself is at hand, to be shown or saved.

@@ -131,7 +131,10 @@ impl Fitter<'_> {
         let rivals = self.rivals(picture);
         let priced = self.most_of_what_pays(picture);
         let mut trials = Trials::new(observer, priced + rivals.len());
-        let mut best = self.best_of_what_pays(picture, since, &mut trials)?;
+        let mut best = match priced {
+            0 => None,
+            _ => self.best_of_what_pays(picture, since, &mut trials)?,
+        };
         let competes = !rivals.is_empty() || best.is_some();
         for rival in rivals {
             if !trials.are_stopped() {

@@ -59,9 +59,6 @@ impl Fitter<'_> {
         since: Instant,
         trials: &mut Trials<'_>,
     ) -> Result<Option<Drawn>> {
-        if self.most_of_what_pays(picture) == 0 {
-            return Ok(None);
-        }
         let usual = self.config.quality;
         let mut search = Search {
             low: 0.0,

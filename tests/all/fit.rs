@@ -389,7 +389,6 @@ fn an_observer_sees_progress_and_may_stop() {
     );
 }
 
-/// Stopped in the first iterations of a large stage, whose strokes are as they were seeded.
 #[test]
 fn an_observer_sees_drawings_that_compete_and_may_stop_those() {
     let picture = sample("noto-gem").flattened([1.0; 3]);
@@ -417,10 +416,9 @@ fn an_observer_sees_drawings_that_compete_and_may_stop_those() {
     let mut stop = |progress: &Progress<'_>| {
         told += 1;
         assert!(progress.is_trial || told > 20);
-        match told < 20 {
-            true => ControlFlow::Continue(()),
-            // Once is enough.
-            false if told == 20 => ControlFlow::Break(()),
+        // Once is enough.
+        match told == 20 {
+            true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
         }
     };
@@ -429,6 +427,7 @@ fn an_observer_sees_drawings_that_compete_and_may_stop_those() {
     assert!(told <= 22, "told {told} times");
 }
 
+/// Stopped in the first iterations of a large stage, whose strokes are as they were seeded.
 #[test]
 fn a_fit_that_may_finish_after_it_was_stopped_is_better_for_it() {
     let picture = sample("coffee-300");
