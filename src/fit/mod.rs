@@ -130,7 +130,8 @@ impl Fitter<'_> {
         let observer = self.observer.take().unwrap_or(&mut nobody);
         let rivals = self.rivals(picture);
         let priced = self.most_of_what_pays(picture);
-        let mut trials = Trials::new(observer, priced + rivals.len());
+        let (token, has_grace) = (self.token.clone(), !self.grace.is_zero());
+        let mut trials = Trials::new(observer, token, has_grace, priced + rivals.len());
         let mut best = match priced {
             0 => None,
             _ => self.best_of_what_pays(picture, since, &mut trials)?,
@@ -141,6 +142,11 @@ impl Fitter<'_> {
                 let drawn = rival.draw(picture, since, trials.next(), competes)?;
                 best = Some(drawn.or_better(best));
             }
+        }
+        if trials.are_halted()
+            && let Some(best) = best
+        {
+            return Ok(best.interrupted());
         }
         let by_strokes = self.by_strokes_alone();
         let competes = competes || by_strokes.is_some();
@@ -159,12 +165,12 @@ impl Fitter<'_> {
             let rival = rival.draw(picture, since, trials.next(), true)?;
             drawn = drawn.or_cheaper(rival, price);
         }
-        let mut fit = drawn.or_better(best).fit;
+        let drawn = drawn.or_better(best);
         // Whoever stopped the fit is told so, whichever drawing is the better one.
-        if stop == Stop::Interrupted {
-            fit.stop = stop;
-        }
-        Ok(fit)
+        Ok(match stop {
+            Stop::Interrupted => drawn.interrupted(),
+            _ => drawn.fit,
+        })
     }
 
     /// The picture reduced to the pixels that its drawing needs, if these are fewer, or to those that its base was drawn of.

@@ -8,7 +8,8 @@ use crate::support::drafts::draft;
 use crate::support::fits::{drawn, sample};
 use strokefit::coverage::CoverageSchedule;
 use strokefit::fit::{
-    Background, Budget, Config, Execution, Fit, Fitter, Preset, Progress, Rates, Recipe, Simd, Stop,
+    Background, Budget, CancelToken, Config, Execution, Fit, Fitter, Preset, Progress, Rates,
+    Recipe, Simd, Stop,
 };
 use strokefit::image::Image;
 use strokefit::metrics;
@@ -411,20 +412,26 @@ fn an_observer_sees_drawings_that_compete_and_may_stop_those() {
     assert_ne!(fit.fit(&picture).unwrap().stop, Stop::Interrupted);
     assert!(trials > last && last > 0, "{trials} {last}");
 
-    // No other one is tried then, and the last one ends as it begins.
-    let mut told = 0;
-    let mut stop = |progress: &Progress<'_>| {
-        told += 1;
-        assert!(progress.is_trial || told > 20);
-        // Once is enough.
-        match told == 20 {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        }
-    };
-    let fit = Fitter::new(config).observer(&mut stop).fit(&picture);
-    assert_eq!(fit.unwrap().stop, Stop::Interrupted);
-    assert!(told <= 22, "told {told} times");
+    // Said once, no other one is begun then, by whatever way it was said.
+    for by_token in [false, true] {
+        let (mut told, token) = (0, CancelToken::default());
+        let mut stop = |progress: &Progress<'_>| {
+            told += 1;
+            assert!(progress.is_trial);
+            match (told == 20, by_token) {
+                (true, false) => return ControlFlow::Break(()),
+                (true, true) => token.cancel(),
+                (false, _) => {}
+            }
+            ControlFlow::Continue(())
+        };
+        let fit = Fitter::new(config.clone())
+            .observer(&mut stop)
+            .cancelled_by(token.clone())
+            .fit(&picture)
+            .unwrap();
+        assert_eq!((fit.stop, told), (Stop::Interrupted, 20));
+    }
 }
 
 /// Stopped in the first iterations of a large stage, whose strokes are as they were seeded.

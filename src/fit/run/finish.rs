@@ -8,7 +8,7 @@ use crate::fit::config::Budget;
 use crate::fit::drawing::Drawing;
 use crate::fit::drawing::surface;
 use crate::fit::file::RenderedFile;
-use crate::fit::result::{Fit, StageRecord};
+use crate::fit::result::{Fit, StageRecord, Stop};
 use crate::fit::run::session::Session;
 use crate::image::Image;
 use crate::metrics::psnr_db;
@@ -57,6 +57,14 @@ impl Drawn {
     pub(in crate::fit) fn without_base(mut self) -> Self {
         self.fit.base = None;
         self
+    }
+
+    /// The result of a fit that was stopped.
+    pub(in crate::fit) fn interrupted(self) -> Fit {
+        Fit {
+            stop: Stop::Interrupted,
+            ..self.fit
+        }
     }
 
     /// The other one if it serves the budget better.

@@ -2,24 +2,35 @@
 
 use std::ops::{ControlFlow, Range};
 
-use super::progress::{Observer, Progress};
+use super::progress::{CancelToken, Observer, Progress};
 
 /// Passes the progress of the drawings of a fit on to its observer, and remembers whether that has stopped them.
 pub(in crate::fit) struct Trials<'a> {
     observer: &'a mut (dyn Observer + Send),
+    token: CancelToken,
+    /// True if the last drawing may be finished after a stop, and is told of.
+    has_grace: bool,
     /// Drawings before the last one that are still to come, at most.
     left: usize,
     /// The part of all work that the current drawing is, 0..1.
     part: Range<f64>,
     is_trial: bool,
+    /// True if the observer has stopped a drawing.
     stopped: bool,
 }
 
 impl<'a> Trials<'a> {
     /// At most `trials` drawings are tried before the last one.
-    pub(in crate::fit) fn new(observer: &'a mut (dyn Observer + Send), trials: usize) -> Self {
+    pub(in crate::fit) fn new(
+        observer: &'a mut (dyn Observer + Send),
+        token: CancelToken,
+        has_grace: bool,
+        trials: usize,
+    ) -> Self {
         Self {
             observer,
+            token,
+            has_grace,
             left: trials,
             part: 0.0..0.0,
             is_trial: false,
@@ -44,14 +55,23 @@ impl<'a> Trials<'a> {
         self
     }
 
-    /// True if the observer has stopped a drawing: no other one is to begin.
+    /// True if the observer or the token has stopped a drawing: no further one is to be tried.
     pub(in crate::fit) fn are_stopped(&self) -> bool {
-        self.stopped
+        self.stopped || self.token.is_cancelled()
+    }
+
+    /// True if the last drawing is not to be begun either.
+    pub(in crate::fit) fn are_halted(&self) -> bool {
+        self.are_stopped() && !self.has_grace
     }
 }
 
 impl Observer for Trials<'_> {
     fn observe(&mut self, progress: &Progress<'_>) -> ControlFlow<()> {
+        // Whoever has said stop is not asked again.
+        if self.stopped && !self.has_grace {
+            return ControlFlow::Break(());
+        }
         let Range { start, end } = self.part;
         let answer = self.observer.observe(&Progress {
             done: start + (end - start) * progress.done,
