@@ -1,4 +1,4 @@
-//! Uneven light on paper: a smooth field, by which a photographed page is divided.
+//! Uneven light on paper, and its spots: a smooth field, by which a scanned or photographed page is divided.
 
 use super::planes::Planes;
 use super::recipe::Light;
@@ -7,7 +7,12 @@ use crate::math;
 /// Numbers of a quadratic field.
 const TERMS: usize = 6;
 
-/// Divides a page by the light on it, so that its paper has one colour; false if the picture is no page, or its light is even.
+/// Luma of white.
+const WHITE: f32 = 255.0;
+
+/// Divides a page by the light on it and clears the spots of its paper, so that this has one colour, which is white if it is nearly
+/// white; false if the picture is no
+/// page, or its paper is even.
 pub(super) fn evened(planes: &mut Planes, recipe: &Light) -> bool {
     let Some(field) = Field::of(planes, recipe) else {
         return false;
@@ -24,27 +29,87 @@ pub(super) fn evened(planes: &mut Planes, recipe: &Light) -> bool {
     let [low, high] = light.iter().fold([f32::MAX, f32::MIN], |[low, high], v| {
         [low.min(*v), high.max(*v)]
     });
-    // A page is mostly paper that follows the field, bright, in light that is not even.
+    // A page is mostly paper that follows the field, and bright.
     let luma = &planes.planes[0];
-    let is_paper = |(value, light): (&f32, &f32)| (value / light - 1.0).abs() < recipe.near;
-    let paper = luma
-        .iter()
-        .zip(&light)
-        .filter(|(v, l)| is_paper((v, l)))
-        .count() as f32;
-    if low < recipe.least_luma
-        || high - low < recipe.least_range
-        || paper < recipe.least_paper * light.len() as f32
-    {
+    let is_paper = |i: usize| (luma[i] / light[i] - 1.0).abs() < recipe.near;
+    let paper: Vec<usize> = (0..light.len()).filter(|&i| is_paper(i)).collect();
+    if low < recipe.least_luma || (paper.len() as f32) < recipe.least_paper * light.len() as f32 {
         return false;
     }
-    for plane in &mut planes.planes {
+    let mut even = planes.clone();
+    for plane in &mut even.planes {
         plane
             .iter_mut()
             .zip(&light)
             .for_each(|(value, light)| *value *= high / light);
     }
-    true
+    let tones = [0, 1, 2].map(|c| Tone::of(&even.planes[c], &paper));
+    let has_spots = recipe.spots.contains(&tones[0].spread);
+    if has_spots {
+        clear(&mut even, &tones, recipe.cleared);
+    }
+    if tones[0].middle >= recipe.white_luma
+        && tones[1..]
+            .iter()
+            .all(|tone| tone.middle.abs() <= recipe.white_chroma)
+    {
+        whiten(&mut even, &tones);
+    }
+    let is_uneven = has_spots || high - low >= recipe.least_range;
+    if is_uneven {
+        *planes = even;
+    }
+    is_uneven
+}
+
+/// Paper in one plane.
+struct Tone {
+    middle: f32,
+    /// RMS of its spots, as far as the nearer half of them tells.
+    spread: f32,
+}
+
+impl Tone {
+    fn of(plane: &[f32], paper: &[usize]) -> Self {
+        let median = |mut values: Vec<f32>| {
+            let middle = values.len() / 2;
+            *values.select_nth_unstable_by(middle, f32::total_cmp).1
+        };
+        let middle = median(paper.iter().map(|&i| plane[i]).collect());
+        let away = median(paper.iter().map(|&i| (plane[i] - middle).abs()).collect());
+        Self {
+            middle,
+            spread: 1.48 * away,
+        }
+    }
+}
+
+/// Gives what differs from the paper by less than `most` times the spread the colour of the paper. What differs by twice that keeps
+/// its own, and between them colours go over into each other, so that no edge is new.
+fn clear(planes: &mut Planes, paper: &[Tone; 3], most: f32) {
+    const LEAST_SPREAD: f32 = 0.5;
+    for i in 0..planes.planes[0].len() {
+        let away = |(plane, tone): (&Vec<f32>, &Tone)| {
+            (plane[i] - tone.middle).abs() / (most * tone.spread.max(LEAST_SPREAD))
+        };
+        let away = planes.planes.iter().zip(paper).map(away);
+        let kept = (away.fold(0.0, f32::max) - 1.0).clamp(0.0, 1.0);
+        for (plane, tone) in planes.planes.iter_mut().zip(paper) {
+            plane[i] = tone.middle + kept * (plane[i] - tone.middle);
+        }
+    }
+}
+
+/// Makes the paper white, and as much lighter and less tinted what is on it.
+fn whiten(planes: &mut Planes, paper: &[Tone; 3]) {
+    let [luma, chromas @ ..] = &mut planes.planes;
+    for (i, luma) in luma.iter_mut().enumerate() {
+        let share = *luma / paper[0].middle;
+        for (chroma, tone) in chromas.iter_mut().zip(&paper[1..]) {
+            chroma[i] = (chroma[i] - share * tone.middle) * WHITE / paper[0].middle;
+        }
+        *luma = share * WHITE;
+    }
 }
 
 /// A quadratic of the place, in units of the picture's sides.

@@ -9,7 +9,7 @@
 //! dither     colours that are mixed pixel by pixel
 //! chroma     colours that were kept at half the resolution, along the edges of luma
 //! clip       tones that noise was cut off from, at black and white
-//! light      uneven light on paper
+//! light      uneven light on paper, and its spots
 //! ```
 
 mod chroma;
@@ -58,7 +58,7 @@ pub struct Damage {
     pub ringing: f32,
     /// True if colours were kept at half the resolution.
     pub halved_chroma: bool,
-    /// True if it is a page in uneven light.
+    /// True if it is a page in uneven light, or of spotted paper.
     pub uneven_light: bool,
 }
 
@@ -96,7 +96,7 @@ impl fmt::Display for Damage {
                 self.halved_chroma,
                 "colours at half the resolution".to_owned(),
             ),
-            (self.uneven_light, "uneven light".to_owned()),
+            (self.uneven_light, "uneven paper".to_owned()),
         ];
         let parts: Vec<String> = parts
             .into_iter()
@@ -147,7 +147,7 @@ fn of_few_colors(picture: &Image, labels: &Labels) -> Result<Option<Meant>> {
     Ok(smoothed.map(|picture| Meant { picture, damage }))
 }
 
-/// A picture without noise and, on paper, without shadows; `None` of a photograph, whose texture is as fine as noise.
+/// A picture without noise and, on paper, without shadows and spots; `None` of a photograph, whose texture is as fine as noise.
 fn without_noise(picture: &Image, mut planes: Planes, noise: &Noise) -> Result<Option<Meant>> {
     let halved_chroma = chroma::is_halved(&planes);
     shrunk(&mut planes, noise);
@@ -164,7 +164,7 @@ fn without_noise(picture: &Image, mut planes: Planes, noise: &Noise) -> Result<O
     if let Some(alpha) = planes.alpha {
         picture = picture.with_alpha(alpha)?;
     }
-    // Only photographs of pages have both grain and shadows; a gradient is drawn. No page is transparent.
+    // Only scans and photographs of pages have both grain and shadows or spots; a gradient is drawn. No page is transparent.
     let mut planes = Planes::of(&picture);
     let may_be_page = noise.most() > 0.0 && planes.alpha.is_none();
     let uneven_light = may_be_page && light::evened(&mut planes, &Light::MEASURED);

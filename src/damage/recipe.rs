@@ -1,6 +1,8 @@
 //! The tuned numbers of the search for damage, all of them in levels of 8 bits where no other unit is named. They are
 //! measured on 80 drawings of flat art and icons, on 27 photographs and drawings (`rig robust`).
 
+use std::ops::Range;
+
 /// Search for noise.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Noises {
@@ -156,8 +158,8 @@ impl Dithering {
     };
 }
 
-/// Search for uneven light on paper. All of it is a guess.
-#[derive(Debug, Clone, Copy)]
+/// Search for uneven light on paper, and for its spots. All of it is a guess.
+#[derive(Debug, Clone)]
 pub(super) struct Light {
     /// Cells along the shorter side.
     pub(super) cells: usize,
@@ -170,6 +172,13 @@ pub(super) struct Light {
     /// Least luma of paper, and least range of its luma.
     pub(super) least_luma: f32,
     pub(super) least_range: f32,
+    /// RMS of the luma of spots. Even paper has less, and what has more is no paper.
+    pub(super) spots: Range<f32>,
+    /// Spots are cleared that differ from the paper by less than so many times their RMS.
+    pub(super) cleared: f32,
+    /// Least luma, and most chroma, of paper that is white.
+    pub(super) white_luma: f32,
+    pub(super) white_chroma: f32,
 }
 
 impl Light {
@@ -180,5 +189,9 @@ impl Light {
         least_paper: 0.7,
         least_luma: 90.0,
         least_range: 12.0,
+        spots: 1.0..6.0,
+        cleared: 3.0,
+        white_luma: 200.0,
+        white_chroma: 12.0,
     };
 }

@@ -21,7 +21,7 @@ class Damage(TypedDict):
     ringing: float
     #: True if colours were kept at half the resolution.
     halved_chroma: bool
-    #: True if it is a page in uneven light.
+    #: True if it is a page in uneven light, or of spotted paper.
     uneven_light: bool
 
 
