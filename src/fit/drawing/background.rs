@@ -61,8 +61,27 @@ fn border_color(colors: &[[u8; 3]], width: usize, choice: &BackgroundChoice) -> 
     let height = colors.len() / width;
     let rows = (0..height).flat_map(|y| [y * width, y * width + width - 1]);
     let columns = (0..width).flat_map(|x| [x, (height - 1) * width + x]);
-    let border = rows.chain(columns).map(|i| colors[i]);
-    common_color(border, choice.border_share)
+    let border = || rows.clone().chain(columns.clone()).map(|i| colors[i]);
+    common_color(border(), choice.border_share)
+        .or_else(|| spotted_color(border().collect(), choice))
+}
+
+/// The middle of the colours near the most common one, if enough of the pixels have those: paper that was scanned has spots.
+fn spotted_color(mut pixels: Vec<[u8; 3]>, choice: &BackgroundChoice) -> Option<Rgb> {
+    let all = pixels.len();
+    let most = most_common(&mut pixels)?[0];
+    let is_near = |color: &[u8; 3]| {
+        let channels = color.iter().zip(most);
+        channels.fold(0, |far, (a, b)| far.max(a.abs_diff(b))) <= choice.spots
+    };
+    pixels.retain(is_near);
+    let middle = |c: usize| {
+        let mut values: Vec<u8> = pixels.iter().map(|color| color[c]).collect();
+        let middle = values.len() / 2;
+        f32::from(*values.select_nth_unstable(middle).1) / 255.0
+    };
+    let is_paper = pixels.len() as f64 >= choice.spotted_share * all as f64;
+    is_paper.then(|| [0, 1, 2].map(middle))
 }
 
 /// The most common colour if its share is large enough, otherwise the mean colour.
@@ -78,12 +97,17 @@ fn prevailing_color(image: &Image, colors: &[[u8; 3]], choice: &BackgroundChoice
 /// The most common colour, if at least this share of the pixels has it.
 fn common_color(pixels: impl Iterator<Item = [u8; 3]>, least_share: f64) -> Option<Rgb> {
     let mut colors: Vec<[u8; 3]> = pixels.collect();
+    let all = colors.len();
+    let most = most_common(&mut colors)?;
+    let is_common = most.len() as f64 >= least_share * all as f64;
+    is_common.then(|| most[0].map(|v| f32::from(v) / 255.0))
+}
+
+/// The pixels of the most common colour; `None` of no pixels.
+fn most_common(colors: &mut [[u8; 3]]) -> Option<&[[u8; 3]]> {
     colors.sort_unstable();
     let runs = colors.chunk_by(|a, b| a == b);
-    let most = runs.max_by_key(|run| run.len()).unwrap_or_default();
-    let is_common = most.len() as f64 >= least_share * colors.len() as f64;
-    let color = most.first().filter(|_| is_common)?;
-    Some(color.map(|v| f32::from(v) / 255.0))
+    runs.max_by_key(|run| run.len())
 }
 
 /// Share of the pixels that are translucent and have only translucent neighbours. This leaves out the antialiased edges
@@ -122,6 +146,32 @@ mod tests {
         Image::filled(side, side, [0.4; 3])
             .and_then(|grey| grey.with_alpha((0..side * side).map(inside).collect()))
             .unwrap()
+    }
+
+    #[test]
+    fn paper_with_spots_is_the_page() {
+        let choice = Recipe::of(Preset::Balanced).background;
+        let page = |spots: usize| {
+            let of = |x: usize, y: usize| match (x, y) {
+                (8..32, 8..32) => 20,
+                _ => 236 + (x * 7 + y * 11) % spots,
+            };
+            Image::from_fn(40, 40, 3, |x, y, _| of(x, y) as f32 / 255.0).unwrap()
+        };
+        let (color, is_fixed) = choose(Background::Auto, &page(9), &choice);
+        assert!(!is_fixed);
+        assert!(
+            color.iter().all(|v| (v * 255.0 - 240.0).abs() < 1.5),
+            "{color:?}"
+        );
+        // Its colours are too many for one: their mean, with what is drawn on it, is the background.
+        let (color, _) = choose(Background::Auto, &striped(), &choice);
+        assert!((color[0] - 0.5).abs() < 0.1, "{color:?}");
+    }
+
+    /// Every value as often as any other one.
+    fn striped() -> Image {
+        Image::from_fn(40, 40, 3, |x, y, _| ((x + y) % 40) as f32 / 39.0).unwrap()
     }
 
     #[test]

@@ -12,6 +12,10 @@ pub struct BackgroundChoice {
     /// Share of the pixels along the border from which on their most common colour is the background. A guess: three of
     /// eleven logos on white had the logo's colour as paper.
     pub border_share: f64,
+    /// Share of the border that has about one colour, from which on it is spotted paper of that colour. A guess.
+    pub spotted_share: f64,
+    /// Farthest that the spots of paper are from its colour, levels of 8 bits. A guess.
+    pub spots: u8,
     /// Share of the pixels in translucent areas that opaque strokes may miss. Beyond it, the picture is flattened onto
     /// white for them.
     pub translucent_share: f64,

@@ -355,6 +355,8 @@ const BALANCED: Recipe = Recipe {
     background: BackgroundChoice {
         prevailing_share: 0.25,
         border_share: 0.4,
+        spotted_share: 0.6,
+        spots: 10,
         translucent_share: 0.005,
         translucent: [0.03, 0.97],
         shade: ShadeChoice {
