@@ -66,7 +66,7 @@ fn border_color(colors: &[[u8; 3]], width: usize, choice: &BackgroundChoice) -> 
         .or_else(|| spotted_color(border().collect(), choice))
 }
 
-/// The middle of the colours near the most common one, if enough of the pixels have those: paper that was scanned has spots.
+/// The mean of the colours near the most common one, if enough of the pixels have those: paper that was scanned has spots.
 fn spotted_color(mut pixels: Vec<[u8; 3]>, choice: &BackgroundChoice) -> Option<Rgb> {
     let all = pixels.len();
     let most = most_common(&mut pixels)?[0];
@@ -75,13 +75,12 @@ fn spotted_color(mut pixels: Vec<[u8; 3]>, choice: &BackgroundChoice) -> Option<
         channels.fold(0, |far, (a, b)| far.max(a.abs_diff(b))) <= choice.spots
     };
     pixels.retain(is_near);
-    let middle = |c: usize| {
-        let mut values: Vec<u8> = pixels.iter().map(|color| color[c]).collect();
-        let middle = values.len() / 2;
-        f32::from(*values.select_nth_unstable(middle).1) / 255.0
+    let mean = |c: usize| {
+        let sum: f32 = pixels.iter().map(|color| f32::from(color[c])).sum();
+        sum / (255.0 * pixels.len() as f32)
     };
     let is_paper = pixels.len() as f64 >= choice.spotted_share * all as f64;
-    is_paper.then(|| [0, 1, 2].map(middle))
+    is_paper.then(|| [0, 1, 2].map(mean))
 }
 
 /// The most common colour if its share is large enough, otherwise the mean colour.
