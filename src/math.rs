@@ -26,6 +26,12 @@ pub(crate) fn distance(a: [f32; 2], b: [f32; 2]) -> f32 {
     (x * x + y * y).sqrt()
 }
 
+/// The unit vector from one place to another.
+pub(crate) fn direction(from: [f32; 2], to: [f32; 2]) -> [f32; 2] {
+    let length = distance(from, to).max(f32::MIN_POSITIVE);
+    [0, 1].map(|k| (to[k] - from[k]) / length)
+}
+
 /// The median of some values, the upper one of two; `None` of none.
 pub(crate) fn median(values: impl Iterator<Item = f32>) -> Option<f32> {
     let mut values: Vec<f32> = values.collect();

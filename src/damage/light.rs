@@ -2,7 +2,7 @@
 
 use super::planes::Planes;
 use super::recipe::Light;
-use crate::math;
+use crate::math::{self, median};
 
 /// Numbers of a quadratic field.
 const TERMS: usize = 6;
@@ -10,56 +10,77 @@ const TERMS: usize = 6;
 /// Luma of white.
 const WHITE: f32 = 255.0;
 
-/// Divides a page by the light on it and clears the spots of its paper, so that this has one colour, which is white if it is nearly
-/// white; false if the picture is no
-/// page, or its paper is even.
+/// Divides a page by the light on it and clears the spots of its paper, so that this has one colour, white if it is nearly white;
+/// false if the picture is no page, or its paper is even.
 pub(super) fn evened(planes: &mut Planes, recipe: &Light) -> bool {
-    let Some(field) = Field::of(planes, recipe) else {
+    let Some(page) = Page::of(planes, recipe) else {
         return false;
     };
-    let (width, height) = (planes.width, planes.height);
-    let light: Vec<f32> = (0..width * height)
-        .map(|i| {
-            field.at([
-                (i % width) as f32 / width as f32,
-                (i / width) as f32 / height as f32,
-            ])
-        })
-        .collect();
-    let [low, high] = light.iter().fold([f32::MAX, f32::MIN], |[low, high], v| {
-        [low.min(*v), high.max(*v)]
-    });
-    // A page is mostly paper that follows the field, and bright.
-    let luma = &planes.planes[0];
-    let is_paper = |i: usize| (luma[i] / light[i] - 1.0).abs() < recipe.near;
-    let paper: Vec<usize> = (0..light.len()).filter(|&i| is_paper(i)).collect();
-    if low < recipe.least_luma || (paper.len() as f32) < recipe.least_paper * light.len() as f32 {
+    let [low, high] = page.range;
+    let tones = [0, 1, 2].map(|c| page.tone(&planes.planes[c]));
+    let has_spots = recipe.spots.contains(&tones[0].spread);
+    if !has_spots && high - low < recipe.least_range {
         return false;
     }
-    let mut even = planes.clone();
-    for plane in &mut even.planes {
-        plane
-            .iter_mut()
-            .zip(&light)
-            .for_each(|(value, light)| *value *= high / light);
+    for plane in &mut planes.planes {
+        let pixels = plane.iter_mut().zip(&page.light);
+        pixels.for_each(|(value, light)| *value *= high / light);
     }
-    let tones = [0, 1, 2].map(|c| Tone::of(&even.planes[c], &paper));
-    let has_spots = recipe.spots.contains(&tones[0].spread);
     if has_spots {
-        clear(&mut even, &tones, recipe.cleared);
+        clear(planes, &tones, recipe.cleared);
     }
-    if tones[0].middle >= recipe.white_luma
-        && tones[1..]
-            .iter()
-            .all(|tone| tone.middle.abs() <= recipe.white_chroma)
-    {
-        whiten(&mut even, &tones);
+    let [luma, chromas @ ..] = tones.each_ref().map(|tone| tone.middle);
+    let is_tinted = chromas.iter().any(|c| c.abs() > recipe.white_chroma);
+    if luma >= recipe.white_luma && !is_tinted {
+        whiten(planes, &tones);
     }
-    let is_uneven = has_spots || high - low >= recipe.least_range;
-    if is_uneven {
-        *planes = even;
+    true
+}
+
+/// A picture that is mostly paper, which follows a smooth field of light and is bright.
+struct Page {
+    /// Luma of the light at each pixel.
+    light: Vec<f32>,
+    /// The least and the largest luma of the light.
+    range: [f32; 2],
+    /// The pixels that are paper.
+    paper: Vec<usize>,
+}
+
+impl Page {
+    fn of(planes: &Planes, recipe: &Light) -> Option<Self> {
+        let field = Field::of(planes, recipe)?;
+        let (width, height) = (planes.width, planes.height);
+        let place = |i: usize| {
+            let (x, y) = (i % width, i / width);
+            [x as f32 / width as f32, y as f32 / height as f32]
+        };
+        let light: Vec<f32> = (0..width * height).map(|i| field.at(place(i))).collect();
+        let wider = |[low, high]: [f32; 2], v: &f32| [low.min(*v), high.max(*v)];
+        let range = light.iter().fold([f32::MAX, f32::MIN], wider);
+        let luma = &planes.planes[0];
+        let is_paper = |i: &usize| (luma[*i] / light[*i] - 1.0).abs() < recipe.near;
+        let paper: Vec<usize> = (0..light.len()).filter(is_paper).collect();
+        let is_page = range[0] >= recipe.least_luma
+            && paper.len() as f32 >= recipe.least_paper * light.len() as f32;
+        is_page.then_some(Self {
+            light,
+            range,
+            paper,
+        })
     }
-    is_uneven
+
+    /// The paper in one plane of the page, divided by the light.
+    fn tone(&self, plane: &[f32]) -> Tone {
+        let even = |&i: &usize| plane[i] * (self.range[1] / self.light[i]);
+        let values = || self.paper.iter().map(even);
+        let middle = median(values()).unwrap_or_default();
+        let away = median(values().map(|v| (v - middle).abs())).unwrap_or_default();
+        Tone {
+            middle,
+            spread: 1.48 * away,
+        }
+    }
 }
 
 /// Paper in one plane.
@@ -67,21 +88,6 @@ struct Tone {
     middle: f32,
     /// RMS of its spots, as far as the nearer half of them tells.
     spread: f32,
-}
-
-impl Tone {
-    fn of(plane: &[f32], paper: &[usize]) -> Self {
-        let median = |mut values: Vec<f32>| {
-            let middle = values.len() / 2;
-            *values.select_nth_unstable_by(middle, f32::total_cmp).1
-        };
-        let middle = median(paper.iter().map(|&i| plane[i]).collect());
-        let away = median(paper.iter().map(|&i| (plane[i] - middle).abs()).collect());
-        Self {
-            middle,
-            spread: 1.48 * away,
-        }
-    }
 }
 
 /// Gives what differs from the paper by less than `most` times the spread the colour of the paper. What differs by twice that keeps

@@ -3,7 +3,7 @@
 //! Rays from the stroke's middle meet the outline of the shape. They are as long as the radius all along a stroke with
 //! round ends and joins; they are not where the width varies, at square ends and at mitred corners.
 
-use crate::math::{distance, median};
+use crate::math::{direction, distance, median};
 use crate::scene::Stroke;
 
 type Place = [f32; 2];
@@ -165,11 +165,6 @@ impl<I: Fn(Place) -> f32, R: Fn(Place) -> Option<u32>> Shape<I, R> {
 
 fn is_odd(width: f32, radius: f32) -> bool {
     (width - radius).abs() > ODD[0] + ODD[1] * radius
-}
-
-fn direction(from: Place, to: Place) -> Place {
-    let length = distance(from, to).max(f32::MIN_POSITIVE);
-    [0, 1].map(|k| (to[k] - from[k]) / length)
 }
 
 /// Places along a polyline about `step` px apart, with the direction there.

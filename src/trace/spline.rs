@@ -7,7 +7,7 @@ use std::ops::RangeInclusive;
 
 use super::lines::Line;
 use super::recipe::Splines;
-use crate::math::{self, Point, nearest_on_segment};
+use crate::math::{self, Point, direction, nearest_on_segment};
 use crate::scene::{Path, PathPoint};
 
 /// Distance between the places of a resampled line, px.
@@ -67,11 +67,6 @@ fn off(place: Place) -> PathPoint {
 
 fn distance(a: Place, b: Place) -> f32 {
     math::hypot(f64::from(a[0] - b[0]), f64::from(a[1] - b[1])) as f32
-}
-
-fn direction(a: Place, b: Place) -> Place {
-    let length = distance(a, b).max(f32::MIN_POSITIVE);
-    [0, 1].map(|k| (b[k] - a[k]) / length)
 }
 
 /// Places evenly along a polyline, with its ends.
@@ -234,14 +229,11 @@ fn even(count: usize, closed: bool) -> Vec<f32> {
 fn by_bends(places: &[Place], closed: bool) -> Vec<f32> {
     let count = places.len();
     let turn = |i: usize| {
-        let neighbour = |steps: isize| {
-            let k = i as isize + steps;
-            match closed {
-                true => k.rem_euclid(count as isize) as usize,
-                false => k.clamp(0, count as isize - 1) as usize,
-            }
+        let beside = match closed {
+            true => [(i + count - BEND) % count, (i + BEND) % count],
+            false => [i.saturating_sub(BEND), (i + BEND).min(count - 1)],
         };
-        let [a, b] = [neighbour(-BEND), neighbour(BEND)].map(|k| places[k]);
+        let [a, b] = beside.map(|k| places[k]);
         let (u, v) = (direction(a, places[i]), direction(places[i], b));
         // About the angle between both.
         math::powf(distance(u, v), 0.75)
@@ -261,7 +253,7 @@ fn by_bends(places: &[Place], closed: bool) -> Vec<f32> {
 }
 
 /// Places to either side over which a bend is measured.
-const BEND: isize = 8;
+const BEND: usize = 8;
 
 /// Share of the control points that lie evenly along a line, and not where it bends. A guess.
 const EVEN: f32 = 0.3;
@@ -394,8 +386,8 @@ fn flattened(run: &[Place], shares: &[f32], controls: &[Place], closed: bool) ->
         }
         place
     };
-    let ends = if closed { Some(1.0) } else { None };
-    let shares: Vec<f32> = shares.iter().copied().chain(ends).collect();
+    let end = closed.then_some(1.0);
+    let shares: Vec<f32> = shares.iter().copied().chain(end).collect();
     let halves = shares.windows(2).flat_map(|w| [w[0], 0.5 * (w[0] + w[1])]);
     halves.chain(shares.last().copied()).map(place).collect()
 }

@@ -258,7 +258,7 @@ fn ink_on_a_photographed_page_is_ink() {
 
 #[test]
 fn spots_of_scanned_paper_are_no_content() {
-    // Blots a third of the page wide, in light that falls off by a tenth.
+    // Blots a third of the page wide, in light that falls off by 4 %.
     let blot = |x: usize, y: usize| {
         let [x, y] = [x, y].map(|at| at as f32 / 12.0);
         x.sin() * (0.8 * y + 0.5 * x.cos()).sin()

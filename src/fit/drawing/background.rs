@@ -61,9 +61,9 @@ fn border_color(colors: &[[u8; 3]], width: usize, choice: &BackgroundChoice) -> 
     let height = colors.len() / width;
     let rows = (0..height).flat_map(|y| [y * width, y * width + width - 1]);
     let columns = (0..width).flat_map(|x| [x, (height - 1) * width + x]);
-    let border = || rows.clone().chain(columns.clone()).map(|i| colors[i]);
-    common_color(border(), choice.border_share)
-        .or_else(|| spotted_color(border().collect(), choice))
+    let border: Vec<[u8; 3]> = rows.chain(columns).map(|i| colors[i]).collect();
+    common_color(border.iter().copied(), choice.border_share)
+        .or_else(|| spotted_color(border, choice))
 }
 
 /// The mean of the colours near the most common one, if enough of the pixels have those: paper that was scanned has spots.
@@ -150,27 +150,21 @@ mod tests {
     #[test]
     fn paper_with_spots_is_the_page() {
         let choice = Recipe::of(Preset::Balanced).background;
-        let page = |spots: usize| {
-            let of = |x: usize, y: usize| match (x, y) {
-                (8..32, 8..32) => 20,
-                _ => 236 + (x * 7 + y * 11) % spots,
-            };
-            Image::from_fn(40, 40, 3, |x, y, _| of(x, y) as f32 / 255.0).unwrap()
+        let of = |x: usize, y: usize| match (x, y) {
+            (8..32, 8..32) => 20,
+            _ => 236 + (x * 7 + y * 11) % 9,
         };
-        let (color, is_fixed) = choose(Background::Auto, &page(9), &choice);
+        let page = Image::from_fn(40, 40, 3, |x, y, _| of(x, y) as f32 / 255.0).unwrap();
+        let (color, is_fixed) = choose(Background::Auto, &page, &choice);
         assert!(!is_fixed);
         assert!(
             color.iter().all(|v| (v * 255.0 - 240.0).abs() < 1.5),
             "{color:?}"
         );
-        // Its colours are too many for one: their mean, with what is drawn on it, is the background.
-        let (color, _) = choose(Background::Auto, &striped(), &choice);
+        // Where every tone is as common as any other one there is no paper, and the background is their mean.
+        let striped = Image::from_fn(40, 40, 3, |x, y, _| ((x + y) % 40) as f32 / 39.0).unwrap();
+        let (color, _) = choose(Background::Auto, &striped, &choice);
         assert!((color[0] - 0.5).abs() < 0.1, "{color:?}");
-    }
-
-    /// Every value as often as any other one.
-    fn striped() -> Image {
-        Image::from_fn(40, 40, 3, |x, y, _| ((x + y) % 40) as f32 / 39.0).unwrap()
     }
 
     #[test]
