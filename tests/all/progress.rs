@@ -49,7 +49,10 @@ fn several_pictures_are_counted() {
     let place = Place::new();
     place.picture("a.png", 300, 200);
     place.picture("b.png", 300, 200);
-    let seen = on_a_terminal(&place, "fit a.png b.png -o {stem}.svg --strokes 200");
+    let seen = on_a_terminal(
+        &place,
+        "fit a.png b.png -o {stem}.svg --strokes 200 --preset draft",
+    );
     assert!(
         seen.contains("1 of 2 ") && seen.contains("2 of 2 "),
         "{seen}"
