@@ -16,8 +16,9 @@ compile() {
     # A build of the standard library itself, as web/README.md describes it, needs none that is installed.
     [ -n "${CARGO_UNSTABLE_BUILD_STD:-}" ] || [ -d "$(rustc --print target-libdir --target "$target")" ] ||
         rustup target add "$target"
-    # The renderer is written for vectors, and every browser has had them since 2023.
-    CARGO_ENCODED_RUSTFLAGS="-Ctarget-feature=+simd128" \
+    # The renderer is written for vectors, and every browser has had them since 2023. What is not hot is inlined less than
+    # usual (225): a page downloads all of it.
+    CARGO_ENCODED_RUSTFLAGS=$'-Ctarget-feature=+simd128\x1f-Cllvm-args=-inline-threshold=100' \
         cargo build --profile web --locked --package strokefit-web --lib --target "$target"
 }
 

@@ -60,8 +60,8 @@ pub use drawing::objective::Objective;
 pub use fitter::Fitter;
 pub use options::{MAX_THREADS, OPTIONS, Options, Refusal, Value};
 pub use recipe::{
-    AdamSettings, BackgroundChoice, Correction, Domain, Doubts, EdgeShape, Forms, Joins, Masking,
-    Nudging, Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Recovery, Reduction,
+    AdamSettings, BackgroundChoice, Correction, Domain, Doubts, EdgeShape, Forms, Inks, Joins,
+    Masking, Nudging, Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Recovery, Reduction,
     Relocation, Rounds, SCREEN_PIXELS, Settling, ShadeChoice, ShadeFit, ShadowChoice, Sharing,
     Stages, TimeShares,
 };

@@ -8,6 +8,7 @@
 
 mod check;
 mod ground;
+mod inks;
 mod presets;
 
 use serde::{Deserialize, Serialize};
@@ -17,6 +18,7 @@ use crate::optim::AdamParams;
 use crate::seed::Probing;
 use crate::trace::{AreaColors, Tracing};
 pub use ground::{BackgroundChoice, ShadeChoice, ShadeFit, ShadowChoice};
+pub use inks::Inks;
 
 /// Pixels of a picture that a screen shows well at once, 768×512: the default quality is for so many.
 pub const SCREEN_PIXELS: usize = 768 * 512;
@@ -64,6 +66,8 @@ pub struct Recipe {
     pub pens: Pens,
     /// Widths and colours that strokes share.
     pub sharing: Sharing,
+    /// Colours of thin lines.
+    pub inks: Inks,
     /// Shapes and level lines.
     pub forms: Forms,
     /// Visibility of errors.

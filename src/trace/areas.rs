@@ -75,6 +75,14 @@ impl Areas {
         let labels = all.map(label).collect();
         Some(Self { labels, colors })
     }
+
+    /// The colour of each pixel that has one.
+    pub(super) fn colors_of_pixels(&self) -> impl Iterator<Item = Option<u8>> + '_ {
+        self.labels.iter().map(|label| match label {
+            Label::Color(color) => Some(*color),
+            _ => None,
+        })
+    }
 }
 
 /// The label of pixel `i` alone.

@@ -4,8 +4,10 @@ use std::collections::BTreeMap;
 
 use super::areas::{Areas, Label, Pixels};
 use super::lines::Line;
+use super::parts::{Part, Parts};
 use super::recipe::Bridges;
 use super::skeleton::Spot;
+use crate::math::distance;
 
 /// A line and its colour.
 #[derive(Debug, Clone)]
@@ -14,6 +16,8 @@ pub(super) struct Colored {
     pub(super) color: u8,
     /// True if it goes on below another one, which has to be drawn on top of it.
     pub(super) is_covered: bool,
+    /// The part that it is of a shape that came apart.
+    pub(super) part: Part,
 }
 
 /// One end of a line.
@@ -31,10 +35,16 @@ struct Gap {
 pub(super) fn bridged(
     lines: Vec<Colored>,
     areas: &Areas,
+    parts: &Parts,
     pixels: &Pixels<'_>,
     bridges: Bridges,
 ) -> Vec<Colored> {
-    let mut gaps = gaps(&lines, areas, pixels, bridges);
+    let under = Under {
+        areas,
+        parts,
+        pixels,
+    };
+    let mut gaps = gaps(&lines, &under, bridges);
     gaps.sort_by(|a, b| {
         b.straightness
             .total_cmp(&a.straightness)
@@ -107,7 +117,7 @@ fn joined(
 }
 
 /// All gaps that a line could go on across.
-fn gaps(lines: &[Colored], areas: &Areas, pixels: &Pixels<'_>, bridges: Bridges) -> Vec<Gap> {
+fn gaps(lines: &[Colored], under: &Under<'_>, bridges: Bridges) -> Vec<Gap> {
     // Ends are compared with those in cells that a gap can reach into.
     const CELL: f32 = 32.0;
     let cell = |at: [f32; 2]| at.map(|v| (v / CELL).floor() as i32);
@@ -120,10 +130,14 @@ fn gaps(lines: &[Colored], areas: &Areas, pixels: &Pixels<'_>, bridges: Bridges)
         for a in [(i, false), (i, true)] {
             let (end, _) = leaving(&line.line, a.1);
             let [column, row] = cell(end.at);
-            let far = (bridges.longest_for(end.radius) / CELL).ceil() as i32;
+            let reach = match line.part {
+                Part::Lines(_) => bridges.longest_within(end.radius),
+                _ => bridges.longest_for(end.radius),
+            };
+            let far = (reach / CELL).ceil() as i32;
             let near = (-far..=far).flat_map(|y| (-far..=far).map(move |x| [column + x, row + y]));
             let others = near.filter_map(|place| cells.get(&place)).flatten();
-            gaps.extend(others.filter_map(|&b| gap(lines, [b, a], areas, pixels, bridges)));
+            gaps.extend(others.filter_map(|&b| gap(lines, [b, a], under, bridges)));
             cells.entry([column, row]).or_default().push(a);
         }
     }
@@ -134,6 +148,11 @@ impl Bridges {
     /// Longest gap, px, of a line with this radius.
     fn longest_for(&self, radius: f32) -> f32 {
         self.longest[0] * radius + self.longest[1]
+    }
+
+    /// Longest gap, px, that a blob of its colour fills.
+    fn longest_within(&self, radius: f32) -> f32 {
+        self.within[0] * radius + self.within[1]
     }
 }
 
@@ -152,28 +171,49 @@ fn leaving(line: &Line, is_end: bool) -> (Spot, [f32; 2]) {
     (end, away.map(|v| v / length.max(f32::MIN_POSITIVE)))
 }
 
+/// The picture under a gap.
+struct Under<'a> {
+    areas: &'a Areas,
+    parts: &'a Parts,
+    pixels: &'a Pixels<'a>,
+}
+
+impl Under<'_> {
+    /// The labels and parts at steps of a pixel from one place to another.
+    fn along(
+        &self,
+        from: [f32; 2],
+        to: [f32; 2],
+    ) -> impl Iterator<Item = Option<(Label, Part)>> + '_ {
+        let steps = distance(from, to).ceil() as usize;
+        (0..=steps).map(move |step| {
+            let share = step as f32 / steps.max(1) as f32;
+            let place = [0, 1].map(|k| from[k] + share * (to[k] - from[k]));
+            let i = self.pixels.at(place)?;
+            Some((self.areas.labels[i], self.parts.at(i)))
+        })
+    }
+}
+
 /// The gap between two ends, if a line may go on across it: it is short, straight and shows no canvas.
-fn gap(
-    lines: &[Colored],
-    ends: [End; 2],
-    areas: &Areas,
-    pixels: &Pixels<'_>,
-    bridges: Bridges,
-) -> Option<Gap> {
+fn gap(lines: &[Colored], ends: [End; 2], under: &Under<'_>, bridges: Bridges) -> Option<Gap> {
     // Ends of one colour; a dot has two ends, too, but is no ring.
     let [a, b] = ends;
-    let color = lines[a.0].color;
+    let (color, part) = (lines[a.0].color, lines[a.0].part);
     let is_same = a.0 == b.0;
-    if color != lines[b.0].color || (is_same && lines[a.0].line.spots.len() < bridges.least_ring) {
+    if color != lines[b.0].color
+        || part != lines[b.0].part
+        || (is_same && lines[a.0].line.spots.len() < bridges.least_ring)
+    {
         return None;
     }
-    // About the same width, and not far apart.
+    // About the same width.
     let (from, there) = leaving(&lines[a.0].line, a.1);
     let (to, back) = leaving(&lines[b.0].line, b.1);
     let way = [0, 1].map(|k| to.at[k] - from.at[k]);
     let length = (way[0] * way[0] + way[1] * way[1]).sqrt();
     let (less, more) = (from.radius.min(to.radius), from.radius.max(to.radius));
-    if more > 1.6 * less + 0.5 || length > bridges.longest_for(less) {
+    if more > 1.6 * less + 0.5 {
         return None;
     }
     // Both ends point along the gap. A gap of less than a pixel has no direction.
@@ -185,16 +225,25 @@ fn gap(
     if straightness <= bridges.straight {
         return None;
     }
-    // Something lies on the gap: where the canvas shows, there is no line below.
+    // Not far apart; but through a blob, however far, if it is straight.
     let own = Label::Color(color);
+    let parts = || under.along(from.at, to.at).flatten();
+    let is_blob = part != Part::Whole && parts().any(|(_, part)| matches!(part, Part::Blob(_)));
+    let may_join = match is_blob {
+        true => {
+            straightness > bridges.straight_within
+                && length <= bridges.longest_within(less)
+                && parts().all(|(label, _)| label == own)
+        }
+        false => length <= bridges.longest_for(less),
+    };
+    if !may_join {
+        return None;
+    }
+    // Something lies on the gap: where the canvas shows, there is no line below.
     let (mut open, mut covered) = (0, 0);
-    let steps = length.ceil() as usize;
-    for step in 0..=steps {
-        let share = step as f32 / steps.max(1) as f32;
-        match pixels
-            .at([0, 1].map(|k| from.at[k] + share * way[k]))
-            .map(|i| areas.labels[i])
-        {
+    for at in under.along(from.at, to.at) {
+        match at.map(|(label, _)| label) {
             Some(Label::Canvas) | None => open += 1,
             Some(label) if label != own => covered += 1,
             Some(_) => {}
@@ -205,6 +254,37 @@ fn gap(
         straightness,
         is_covered: covered > 0,
     })
+}
+
+impl Colored {
+    /// Lets a line that ends at a blob end in it, as its end is not seen there.
+    pub(super) fn reach_into_blobs(&mut self, parts: &Parts, pixels: &Pixels<'_>) {
+        if self.line.closed || !matches!(self.part, Part::Lines(_)) {
+            return;
+        }
+        for is_end in [false, true] {
+            let (end, way) = leaving(&self.line, is_end);
+            let place = |step: usize| [0, 1].map(|k| end.at[k] + step as f32 * way[k]);
+            let is_blob = |step: &usize| {
+                let at = pixels.at(place(*step)).map(|i| parts.at(i));
+                matches!(at, Some(Part::Blob(_)))
+            };
+            let reach = (2.0 * end.radius).ceil() as usize + 3;
+            let Some(border) = (1..=reach).find(is_blob) else {
+                continue;
+            };
+            let inner = (border..border + reach).take_while(is_blob).last();
+            let more = (1..=inner.unwrap_or(border)).map(|step| Spot {
+                at: place(step),
+                radius: end.radius,
+            });
+            let spots = &mut self.line.spots;
+            match is_end {
+                true => spots.extend(more),
+                false => drop(spots.splice(0..0, more.rev())),
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -226,6 +306,7 @@ mod tests {
             },
             color: 0,
             is_covered: false,
+            part: Part::Whole,
         }
     }
 
@@ -239,6 +320,7 @@ mod tests {
             labels: (0..64 * 40).map(label).collect(),
             colors: Vec::new(),
         };
+        let tracing = Recipe::of(Preset::Balanced).tracing;
         let pixels = Pixels {
             width: 64,
             height: 40,
@@ -249,8 +331,9 @@ mod tests {
         bridged(
             lines,
             &areas,
+            &Parts::of(&[], 64, 64 * 40, &tracing),
             &pixels,
-            Recipe::of(Preset::Balanced).tracing.bridges,
+            tracing.bridges,
         )
     }
 

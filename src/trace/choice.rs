@@ -12,6 +12,8 @@ use super::areas::Pixels;
 use super::even::Shape;
 use super::fill::{Fill, Flat};
 use super::gain::coverage;
+use super::parts::Part;
+use super::recipe::Tracing;
 use super::strokes::TracedStroke;
 use crate::math::distance;
 use crate::scene::{self, Area, Mark, Stroke};
@@ -29,26 +31,40 @@ const MOST_PRICE: f32 = 4.0;
 /// The regions under a stroke, with the pixels of each that it covers.
 type Votes = BTreeMap<u32, f32>;
 
-/// The marks that draw a picture, in painting order.
+/// The marks that draw a picture, in painting order; or lines that came apart from blobs although
+/// strokes do not draw them, each as its shape and its region.
 pub(super) fn chosen(
     flat: &Flat<'_>,
     fills: Vec<Fill>,
     mut strokes: Vec<TracedStroke>,
     pixels: &Pixels<'_>,
+    tracing: &Tracing,
     price: &(impl Fn(&Mark) -> f32 + Sync),
-) -> Vec<Traced> {
+) -> Result<Vec<Traced>, Vec<(u32, u32)>> {
     let traced = strokes.clone();
     let votes: Vec<Votes> = strokes
         .par_iter()
-        .map(|traced| votes(&traced.stroke, flat, pixels))
+        .map(|traced| votes(traced, flat, pixels))
         .collect();
     let groups = groups(&votes, flat.region_count());
     let wins = |group: &Group| stroked(group, flat, &fills, &strokes, pixels, price);
     let radii: Vec<Option<Vec<f32>>> = groups.par_iter().map(wins).collect();
     let won = radii.iter().map(Option::is_some).collect();
-    let won = unjoined(won, &groups, flat, &fills, &strokes);
+    let mut won = unjoined(won, &groups, flat, &fills, &strokes);
+    let undrawn = undrawn(&groups, &won, flat);
+    if !undrawn.is_empty() {
+        return Err(undrawn);
+    }
     // The regions that strokes draw need no area.
     let mut is_stroked = vec![false; flat.region_count()];
+    for region in crossed(&groups, &won, flat, &strokes, pixels, tracing.blobs.covered) {
+        is_stroked[region as usize] = true;
+        let own = groups
+            .iter()
+            .zip(&mut won)
+            .filter(|(group, _)| group.regions == [region]);
+        own.for_each(|(_, won)| *won = false);
+    }
     let mut places: Vec<Option<(usize, f32)>> = vec![None; strokes.len()];
     let gains: BTreeMap<u32, f32> = fills.iter().map(|fill| (fill.region, fill.gain)).collect();
     let drawn = groups.iter().zip(radii).zip(&won).filter(|(_, won)| **won);
@@ -88,7 +104,7 @@ pub(super) fn chosen(
     let areas = flat.areas(fills, &is_stroked);
     // A drawing of lines is one of strokes as they were traced.
     if areas.is_empty() {
-        return traced.into_iter().map(Traced::from).collect();
+        return Ok(traced.into_iter().map(Traced::from).collect());
     }
     // Strokes keep their order among each other, as far as areas lie not between.
     let mut found: Vec<(usize, Traced)> = Vec::new();
@@ -106,7 +122,56 @@ pub(super) fn chosen(
         found.push((2 * place + 1, Traced { mark, gain }));
     }
     found.sort_by_key(|(place, _)| *place);
-    found.into_iter().map(|(_, traced)| traced).collect()
+    Ok(found.into_iter().map(|(_, traced)| traced).collect())
+}
+
+/// The lines that came apart from blobs and are not drawn by strokes: shapes and regions.
+fn undrawn(groups: &[Group], won: &[bool], flat: &Flat<'_>) -> Vec<(u32, u32)> {
+    let drawn = groups.iter().zip(won).filter(|(_, won)| **won);
+    let drawn = drawn.flat_map(|(group, _)| group.regions.iter().copied());
+    let drawn: BTreeSet<u32> = drawn.collect();
+    let open = (0..flat.region_count() as u32).filter(|region| !drawn.contains(region));
+    let lines = open.filter_map(|region| match flat.part(region) {
+        // Corners of edges are no lines.
+        Part::Lines(shape) if flat.size(region) > SLIVER => Some((shape, region)),
+        _ => None,
+    });
+    lines.collect()
+}
+
+/// A part of lines of fewer pixels is a corner that edges have left. A guess.
+const SLIVER: f32 = 6.0;
+
+/// The blobs, and corners of lines, that lines cover a share of at least `most`, as they cross there.
+fn crossed(
+    groups: &[Group],
+    won: &[bool],
+    flat: &Flat<'_>,
+    strokes: &[TracedStroke],
+    pixels: &Pixels<'_>,
+    most: f32,
+) -> Vec<u32> {
+    let drawn = groups.iter().zip(won).filter(|(_, won)| **won);
+    let lines = drawn
+        .flat_map(|(group, _)| &group.strokes)
+        .map(|&i| &strokes[i]);
+    let lines = lines.filter(|traced| matches!(traced.part, Part::Lines(_)));
+    let mut covered: BTreeMap<usize, f32> = BTreeMap::new();
+    for (i, share) in lines.flat_map(|traced| coverage_of(&traced.stroke, pixels)) {
+        let most = covered.entry(i).or_default();
+        *most = most.max(share);
+    }
+    let share = |region: u32| {
+        let shares = flat.pixels_of(region).filter_map(|i| covered.get(&i));
+        shares.sum::<f32>() / flat.size(region)
+    };
+    let regions = 0..flat.region_count() as u32;
+    let is_crossed = |&region: &u32| match flat.part(region) {
+        Part::Whole => false,
+        Part::Lines(_) => flat.size(region) <= SLIVER,
+        Part::Blob(_) => share(region) > most,
+    };
+    regions.filter(is_crossed).collect()
 }
 
 fn coverage_of(stroke: &Stroke, pixels: &Pixels<'_>) -> Vec<(usize, f32)> {
@@ -131,12 +196,13 @@ fn rank(traced: &TracedStroke, votes: &Votes, flat: &Flat<'_>, pixels: &Pixels<'
 }
 
 /// The regions of about the stroke's colour that it covers a good part of, or that are a good part of it.
-fn votes(stroke: &Stroke, flat: &Flat<'_>, pixels: &Pixels<'_>) -> Votes {
+fn votes(traced: &TracedStroke, flat: &Flat<'_>, pixels: &Pixels<'_>) -> Votes {
     const GOOD: f32 = 0.2;
     let mut votes = Votes::new();
     let mut all = 0.0;
-    for (i, share) in coverage_of(stroke, pixels) {
-        if let Some(region) = flat.region_like(i, stroke.color) {
+    let is_own = |region: &u32| flat.part(*region) == traced.part;
+    for (i, share) in coverage_of(&traced.stroke, pixels) {
+        if let Some(region) = flat.region_like(i, traced.stroke.color).filter(is_own) {
             *votes.entry(region).or_default() += share;
         }
         all += share;
@@ -249,7 +315,10 @@ fn stroked(
         .collect();
     let of_areas: f32 = areas.iter().map(|area| price(&area.clone().into())).sum();
     let is_ellipse = matches!(&areas[..], [area] if is_ellipse(area));
-    if is_ellipse || of_strokes > MOST_PRICE * of_areas {
+    // What lines join is a thing, unless it is a line itself.
+    let is_blob = matches!(flat.part(group.regions[0]), Part::Blob(_));
+    let is_dot = is_blob && strokes.iter().any(|stroke| length(stroke) < LINE);
+    if is_ellipse || is_dot || of_strokes > MOST_PRICE * of_areas {
         return None;
     }
     let members = flat.members(&group.regions);
@@ -257,10 +326,36 @@ fn stroked(
         inside: |p| flat.share_at(p, &members),
         region: |p| pixels.at(p).map(|i| flat.region(i)),
     };
-    let radii = strokes.iter().map(|stroke| shape.even_radius(stroke));
-    let radii: Vec<f32> = radii.collect::<Option<_>>()?;
-    is_covered(&strokes, flat, &members, group, pixels).then_some(radii)
+    let even: Vec<Option<f32>> = strokes
+        .iter()
+        .map(|stroke| shape.even_radius(stroke))
+        .collect();
+    let is_even = |(_, radius): &(&&Stroke, &Option<f32>)| radius.is_some();
+    let lengths = |odd: bool| {
+        let own = strokes.iter().zip(&even).filter(|own| odd != is_even(own));
+        own.map(|(stroke, _)| length(stroke) * stroke.radius)
+            .sum::<f32>()
+    };
+    // Of the lines of a shape that came apart, few run so close to another one that neither is even.
+    let is_apart = matches!(flat.part(group.regions[0]), Part::Lines(_));
+    let most_odd = if is_apart {
+        MOST_ODD * lengths(false)
+    } else {
+        0.0
+    };
+    if lengths(true) > most_odd || even.iter().all(Option::is_none) {
+        return None;
+    }
+    let radii = strokes.iter().zip(even);
+    let radii = radii.map(|(stroke, radius)| radius.unwrap_or(stroke.radius));
+    is_covered(&strokes, flat, &members, group, pixels).then(|| radii.collect())
 }
+
+/// Length of the lines that are not even, in units of that of the others. A guess.
+const MOST_ODD: f32 = 0.25;
+
+/// A blob of fewer radii is no line. A guess.
+const LINE: f32 = 6.0;
 
 /// An ellipse is no stroke if its radii are above this, px. A guess.
 const STOUT: f32 = 4.0;
@@ -313,8 +408,9 @@ fn is_covered(
         .iter()
         .filter_map(|&region| flat.rank(region))
         .min();
-    // What lies on top hides it.
-    let is_seen = |i: usize| flat.rank(flat.region(i)) <= rank;
+    // What lies on top hides it, and so do blobs.
+    let is_blob = |i: usize| matches!(flat.part(flat.region(i)), Part::Blob(_));
+    let is_seen = |i: usize| flat.rank(flat.region(i)) <= rank && !is_blob(i);
     let narrow = covered(-1.0).into_iter();
     let beyond: f32 = narrow
         .filter(|&(i, _)| is_seen(i))

@@ -3,6 +3,7 @@
 //! ```text
 //! areas      the pixels by colour; antialiased ones belong to the nearer of the colours beside them
 //! shape      the connected shapes of each colour
+//! parts      lines, and what they join that is much wider
 //! skeleton   the middle of each shape, as a graph
 //! lines      the graph's edges, joined to long lines that run through crossings
 //! bridges    lines that go on below others, and rings
@@ -24,6 +25,7 @@ mod even;
 mod fill;
 mod gain;
 mod lines;
+mod parts;
 mod recipe;
 mod shape;
 mod skeleton;
@@ -37,7 +39,11 @@ use crate::scene::{Mark, Marks, Path};
 use crate::seed::Residual;
 use areas::{Areas, Pixels, Planes};
 use fill::Flat;
-pub use recipe::{AreaColors, Bridges, Fills, LineJoins, Outlines, Shades, Splines, Tracing};
+use parts::Parts;
+pub use recipe::{
+    AreaColors, Blobs, Bridges, Fills, LineJoins, Outlines, Shades, Splines, Tracing,
+};
+use shape::Shape;
 use strokes::TracedStroke;
 
 /// A traced mark and what it gains.
@@ -69,21 +75,48 @@ pub fn trace(
     // Areas of one colour. A picture without them, such as a photograph, has no lines that could be traced.
     let mattes = residuals.len();
     let areas = Areas::of(&pixels, tracing.min_flat_share, tracing.colors);
-    let strokes = match (&areas, marks) {
-        (Some(areas), Marks::Auto | Marks::Strokes) => {
-            strokes::strokes(&pixels, areas, mattes, &tracing)
-        }
-        _ => Vec::new(),
-    };
-    let flat = match marks {
-        Marks::Strokes => None,
-        _ => Flat::of(&pixels, mattes, &tracing.fills),
-    };
-    if let Some(flat) = flat {
+    let areas = areas.filter(|_| marks != Marks::Areas);
+    let mut parts = parts(areas.as_ref(), &pixels, &tracing);
+    let mut round = 0;
+    loop {
+        let strokes = match &areas {
+            Some(areas) => strokes::strokes(&pixels, areas, &parts, mattes, &tracing),
+            None => Vec::new(),
+        };
+        let flat = match marks {
+            Marks::Strokes => None,
+            _ => Flat::of(&pixels, mattes, &parts, &tracing.fills),
+        };
+        let Some(flat) = flat else {
+            return strokes.into_iter().map(Traced::from).collect();
+        };
         let fills = flat.fills(&tracing.fills);
-        return choice::chosen(&flat, fills, strokes, &pixels, &price);
+        match choice::chosen(&flat, fills, strokes, &pixels, &tracing, &price) {
+            Ok(traced) => return traced,
+            // What strokes do not draw stays with what it came apart from.
+            Err(lines) => {
+                let pixels = |line| flat.pixels_of(line).collect();
+                let lines = lines.into_iter().map(|(shape, line)| (shape, pixels(line)));
+                parts.join(lines.collect(), round < MOST_ROUNDS);
+                round += 1;
+            }
+        }
     }
-    strokes.into_iter().map(Traced::from).collect()
+}
+
+/// Rounds in which single lines of a shape are joined with its blobs, before all are. A guess.
+const MOST_ROUNDS: usize = 2;
+
+/// The parts of the shapes of all colours.
+fn parts(areas: Option<&Areas>, pixels: &Pixels<'_>, tracing: &Tracing) -> Parts {
+    let keys: Vec<Option<u8>> =
+        areas.map_or(Vec::new(), |areas| areas.colors_of_pixels().collect());
+    let shapes = match areas {
+        Some(_) => shape::shapes(&keys, pixels.width, tracing.least_area),
+        None => Vec::new(),
+    };
+    let shapes: Vec<&Shape> = shapes.iter().map(|(_, shape)| shape).collect();
+    Parts::of(&shapes, pixels.width, pixels.width * pixels.height, tracing)
 }
 
 impl From<TracedStroke> for Traced {

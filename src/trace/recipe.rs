@@ -28,6 +28,8 @@ pub struct Tracing {
     /// Growth of the distance to the outside towards the middle of a shape from a place that is no end of a line, px
     /// per px. A guess.
     pub growth: f32,
+    /// Blobs, which are wider than lines.
+    pub blobs: Blobs,
     /// Lines of skeletons.
     pub lines: LineJoins,
     /// Which lines go on below others.
@@ -179,6 +181,22 @@ pub struct AreaColors {
     pub least_share: f32,
 }
 
+/// Blobs of shapes that are lines otherwise, whose usual radius is `r` px. All of it is a guess.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Blobs {
+    /// A disc with a radius of so many `r`, and so many px more, has room in a blob and not in lines, nor where two of those
+    /// cross at 60°.
+    pub room: [f32; 2],
+    /// Within 2 px of a blob lines are thinner than so many `r`, and so many px more.
+    pub abrupt: [f32; 2],
+    /// A line is longer than so many times its width; what is shorter is a part of the blob.
+    pub least_aspect: f32,
+    /// Lines are as long together as this, px and in units of `r`.
+    pub least_length: [f32; 2],
+    /// A blob is none if lines that run across cover this share of it.
+    pub covered: f32,
+}
+
 /// Lines of the edges of a skeleton. All of it is a guess.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LineJoins {
@@ -201,6 +219,10 @@ pub struct Bridges {
     pub longest: [f32; 2],
     /// The cosine of the largest angle between a line's end and the gap.
     pub straight: f32,
+    /// Longest gap within a blob of its colour, in units of the line's radius and px, and the cosine there.
+    pub within: [f32; 2],
+    /// See `within`.
+    pub straight_within: f32,
     /// Most px of a gap that may show the canvas.
     pub open: usize,
     /// A line whose ends meet is a ring if it has this many places or more.

@@ -12,7 +12,23 @@ pub(super) struct Shape {
 }
 
 /// The 8-connected shapes of the pixels of a picture with the same key; those without a key belong to none.
-pub(super) fn shapes(keys: &[Option<u8>], width: usize, least: usize) -> Vec<(u8, Shape)> {
+pub(super) fn shapes<K: Copy + PartialEq>(
+    keys: &[Option<K>],
+    width: usize,
+    least: usize,
+) -> Vec<(K, Shape)> {
+    let found = connected(keys, width).into_iter();
+    let found = found.filter(|(_, members)| members.len() >= least);
+    found
+        .map(|(key, members)| (key, Shape::of(&members, width)))
+        .collect()
+}
+
+/// The 8-connected sets of pixels with the same key.
+pub(super) fn connected<K: Copy + PartialEq>(
+    keys: &[Option<K>],
+    width: usize,
+) -> Vec<(K, Vec<usize>)> {
     let height = keys.len() / width;
     let mut seen = vec![false; keys.len()];
     let mut found = Vec::new();
@@ -37,9 +53,7 @@ pub(super) fn shapes(keys: &[Option<u8>], width: usize, least: usize) -> Vec<(u8
                 }
             }
         }
-        if members.len() >= least {
-            found.push((key, Shape::of(&members, width)));
-        }
+        found.push((key, members));
     }
     found
 }
@@ -68,6 +82,12 @@ impl Shape {
     pub(super) fn place(&self, i: usize) -> [f32; 2] {
         let [x, y] = [i % self.width, i / self.width].map(|v| v as isize);
         [self.origin[0] + x, self.origin[1] + y].map(|v| v as f32 + 0.5)
+    }
+
+    /// Pixel `i` of the frame, which is one of the shape, in a picture `width` px wide.
+    pub(super) fn pixel(&self, i: usize, width: usize) -> usize {
+        let [x, y] = [i % self.width, i / self.width].map(|v| v as isize);
+        (self.origin[1] + y) as usize * width + (self.origin[0] + x) as usize
     }
 
     /// The columns and rows, in the picture, of the pixels of the shape and of those beside it.

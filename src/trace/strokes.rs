@@ -2,10 +2,11 @@
 
 use rayon::prelude::*;
 
-use super::areas::{self, Areas, Label, Pixel, Pixels};
+use super::areas::{self, Areas, Pixel, Pixels};
 use super::bridges::{self, Colored};
 use super::gain::Gain;
 use super::lines::{self, Line};
+use super::parts::{Part, Parts};
 use super::recipe::Tracing;
 use super::shape::{self, Shape};
 use super::skeleton::Graph;
@@ -20,38 +21,43 @@ pub(super) struct TracedStroke {
     pub(super) gain: f32,
     /// True if it goes on below others.
     pub(super) is_covered: bool,
+    /// The part that it is of a shape that came apart.
+    pub(super) part: Part,
 }
 
 /// The strokes along the lines of some areas, in painting order.
 pub(super) fn strokes(
     pixels: &Pixels<'_>,
     areas: &Areas,
+    parts: &Parts,
     mattes: usize,
     tracing: &Tracing,
 ) -> Vec<TracedStroke> {
     // Connected shapes, and the lines in the middle of each.
-    let keys: Vec<Option<u8>> = areas
-        .labels
-        .iter()
-        .map(|label| match label {
-            Label::Color(color) => Some(*color),
-            _ => None,
-        })
-        .collect();
+    let keys = areas.colors_of_pixels().enumerate();
+    let keys: Vec<Option<(u8, Part)>> =
+        keys.map(|(i, color)| Some((color?, parts.at(i)))).collect();
     let shapes = shape::shapes(&keys, pixels.width, tracing.least_area);
-    let colored = |(color, shape): &(u8, Shape)| {
+    let colored = |((color, part), shape): &((u8, Part), Shape)| {
         let mut lines = lines::lines(Graph::of(shape, tracing.growth), tracing.lines);
-        widen(&mut lines, area(shape, *color, areas, pixels));
+        widen(
+            &mut lines,
+            area(shape, (*color, *part), areas, parts, pixels),
+        );
         let colored = |line: Line| Colored {
             line,
             color: *color,
             is_covered: false,
+            part: *part,
         };
         lines.into_iter().map(colored).collect::<Vec<_>>()
     };
     let lines: Vec<Colored> = shapes.par_iter().flat_map_iter(colored).collect();
     // Lines that others cover become one before they are drawn, since their halves would be two strokes for ever.
-    let lines = bridges::bridged(lines, areas, pixels, tracing.bridges);
+    let mut lines = bridges::bridged(lines, areas, parts, pixels, tracing.bridges);
+    lines
+        .iter_mut()
+        .for_each(|line| line.reach_into_blobs(parts, pixels));
     // Strokes along those lines, if they explain what is there.
     let traced = |line: &Colored| stroke(line, areas, pixels, mattes, tracing);
     let mut strokes: Vec<TracedStroke> = lines.par_iter().filter_map(traced).collect();
@@ -64,7 +70,13 @@ pub(super) fn strokes(
 }
 
 /// The area of a shape, px², to which antialiased pixels add as much as is covered of them.
-fn area(shape: &Shape, color: u8, areas: &Areas, pixels: &Pixels<'_>) -> f32 {
+fn area(
+    shape: &Shape,
+    (color, part): (u8, Part),
+    areas: &Areas,
+    parts: &Parts,
+    pixels: &Pixels<'_>,
+) -> f32 {
     let Some(color) = areas.colors.get(usize::from(color)) else {
         return 0.0;
     };
@@ -73,6 +85,7 @@ fn area(shape: &Shape, color: u8, areas: &Areas, pixels: &Pixels<'_>) -> f32 {
         let (x, y) = (usize::try_from(x).ok()?, usize::try_from(y).ok()?);
         (x < pixels.width && y < pixels.height).then_some(y * pixels.width + x)
     });
+    let places = places.filter(|&i| [Part::Whole, part].contains(&parts.at(i)));
     places.map(|i| pixels.coverage(i, color)).sum()
 }
 
@@ -92,6 +105,7 @@ fn stroke(
         line,
         color,
         is_covered,
+        part,
     }: &Colored,
     areas: &Areas,
     pixels: &Pixels<'_>,
@@ -114,5 +128,6 @@ fn stroke(
         stroke,
         gain,
         is_covered: *is_covered,
+        part: *part,
     })
 }

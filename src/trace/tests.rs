@@ -194,6 +194,48 @@ fn a_line_beside_a_blob_is_a_stroke() {
     assert_eq!((strokes.count(), found.len()), (1, 2), "{found:?}");
 }
 
+/// The numbers of strokes and areas that are traced.
+fn counts(content: &str) -> [usize; 2] {
+    let found = traced(content, Marks::Auto);
+    let strokes = found.iter().filter(|t| t.mark.as_stroke().is_some());
+    let strokes = strokes.count();
+    [strokes, found.len() - strokes]
+}
+
+#[test]
+fn dots_and_the_lines_between_them_are_marks_each() {
+    let lines = r##"<path d="M18 20L78 30L40 78Z" stroke="#222" stroke-width="2.4"/>"##;
+    let dots = r##"<g fill="#222"><circle cx="18" cy="20" r="8"/><circle cx="78" cy="30" r="8"/><circle cx="40" cy="78" r="8"/></g>"##;
+    assert_eq!(counts(&format!("{lines}{dots}")), [3, 3]);
+}
+
+#[test]
+fn a_line_runs_straight_through_a_blob() {
+    let staff = r##"<path d="M6 30H90M6 46H90M6 62H90" stroke="#222" stroke-width="2"/>"##;
+    let note = r##"<ellipse cx="48" cy="46" rx="13" ry="9" fill="#222"/>"##;
+    assert_eq!(counts(&format!("{staff}{note}")), [3, 1]);
+}
+
+#[test]
+fn the_head_of_an_arrow_is_an_area() {
+    let arrow = r##"<path d="M10 48H66" stroke="#222" stroke-width="3"/><path d="M88 48L64 38V58Z" fill="#222"/>"##;
+    assert_eq!(counts(arrow), [1, 1]);
+}
+
+#[test]
+fn lines_that_meet_at_a_sharp_angle_have_no_blob() {
+    let corner = r##"<path d="M20 84L80 14L44 88M80 14L12 50" stroke="#222" stroke-width="7"/>"##;
+    assert_eq!(counts(corner)[1], 0);
+}
+
+#[test]
+fn a_handle_and_what_swells_slowly_stay_with_their_shape() {
+    let mug = r##"<path d="M14 20H60V80H14Z" fill="#222"/><path d="M60 32C90 30 90 68 60 66" stroke="#222" stroke-width="4"/>"##;
+    assert_eq!(counts(mug), [0, 1]);
+    let brush = r##"<path d="M6 48Q48 28 90 48Q48 68 6 48Z" fill="#222"/>"##;
+    assert_eq!(counts(brush), [0, 1]);
+}
+
 #[test]
 fn square_ends_are_no_stroke() {
     let found = traced(

@@ -1,5 +1,6 @@
 //! Shapes and level lines: a circle, an ellipse or a rectangle in a picture comes back as one, and a level line is exactly so.
 
+use crate::support::repository::committed;
 use strokefit::fit::{Background, Config, Fitter};
 use strokefit::scene::{Mark, Path, Scene, Shape};
 use strokefit::svg::{self, Group, WriteOptions};
@@ -168,4 +169,82 @@ fn an_icon_of_one_path_stays_one_and_shapes_alone_are_elements() {
     let alone = r##"<g fill="#203040"><ellipse cx="40" cy="60" rx="30" ry="18"/><ellipse cx="115" cy="50" rx="30" ry="18"/></g>"##;
     let (scene, text) = fitted(alone);
     assert_eq!((scene.len(), shapes(&scene).len()), (2, 2), "{text}");
+}
+
+/// Colours of all strokes, in levels, and their widths.
+fn pens(scene: &Scene) -> Vec<([u8; 3], f32)> {
+    let strokes = scene.marks().filter_map(|mark| mark.as_stroke().cloned());
+    strokes
+        .map(|stroke| {
+            (
+                stroke.color.map(|c| (255.0 * c).round() as u8),
+                2.0 * stroke.radius,
+            )
+        })
+        .collect()
+}
+
+#[test]
+fn a_plan_of_dots_and_lines_is_circles_and_lines() {
+    let (scene, text) = fitted(
+        r##"<path d="M20 25L140 40L70 100Z" fill="none" stroke="#1f77b4" stroke-width="2"/>
+        <g fill="#1f77b4"><circle cx="20" cy="25" r="8"/><circle cx="140" cy="40" r="8"/><circle cx="70" cy="100" r="8"/></g>"##,
+    );
+    let circles = shapes(&scene);
+    let dots = circles.iter().filter(|shape| match **shape {
+        Shape::Circle { radius, .. } => (radius - 8.0).abs() < 0.2,
+        _ => false,
+    });
+    assert_eq!(dots.count(), 3, "{text}");
+    assert_eq!(pens(&scene).len(), 3, "{text}");
+}
+
+/// Plans whose lines, dots and arrows are one connected shape.
+#[test]
+fn plans_come_back_as_their_things() {
+    // The most strokes and areas, the fewest circles, and dB.
+    let plans = [
+        ("network", [12, 14, 9], 44.0),
+        ("circuit", [18, 3, 3], 45.0),
+        ("score", [38, 2, 0], 44.0),
+        ("flow", [8, 5, 0], 44.5),
+        ("roads", [5, 4, 3], 49.0),
+        ("markers", [10, 16, 13], 41.5),
+    ];
+    for (name, [strokes, areas, circles], least_db) in plans {
+        let drawing = std::fs::read_to_string(committed(&format!("tests/data/plans/{name}.svg")));
+        let picture = verify::render(&drawing.unwrap(), Size::Scale(1.0), None).unwrap();
+        let fit = Fitter::new(Config::default()).fit(&picture).unwrap();
+        let text = fit.svg();
+        let scene = svg::read(&text).unwrap();
+        let found = pens(&scene).len();
+        assert!(
+            found <= strokes && scene.len() - found <= areas,
+            "{name}: {text}"
+        );
+        let is_circle = |shape: &&Shape| matches!(shape, Shape::Circle { .. });
+        assert!(
+            shapes(&scene).iter().filter(is_circle).count() >= circles,
+            "{name}: {text}"
+        );
+        let db = verify::fidelity(&text, &picture).unwrap().psnr_db;
+        assert!(db > least_db, "{name}: {db}");
+    }
+}
+
+#[test]
+fn thin_lines_have_their_colours_and_widths() {
+    let (scene, text) = fitted(
+        r##"<g fill="none" stroke-width="2"><path d="M10 20H150" stroke="#333"/><path d="M20 40V110H150" stroke="#b03060"/></g>"##,
+    );
+    let pens = pens(&scene);
+    assert_eq!(pens.len(), 2, "{text}");
+    for (color, width) in pens {
+        let is_meant = |meant: &[u8; 3]| (0..3).all(|k| color[k].abs_diff(meant[k]) <= 2);
+        assert!(
+            [[0x33; 3], [0xb0, 0x30, 0x60]].iter().any(is_meant),
+            "{text}"
+        );
+        assert!((width - 2.0).abs() < 0.1, "{text}");
+    }
 }

@@ -7,16 +7,22 @@
 //! | `given_widths` | strokes take the widths of given pens |
 //! | `shared_styles` | strokes come to share colour and width at once, for the smallest form of a file |
 //! | `shared_widths` | strokes of a drawing of lines come to share widths, and colours |
+//! | `inks` | thin lines take the colours of the picture |
 //! | `forms` | circles, rectangles and level lines become exactly such |
+//! | `covers` | what other marks hide of a border |
+//! | `proposals` | marks in the place of others, which stay if they pay |
 //! | `merge` | the agglomeration that decides which strokes share |
 //! | `preferences` | the colour that would suit each stroke best |
 //! | `rounds` | the descent between two choices |
 
+mod covers;
 mod forms;
 mod given_widths;
+mod inks;
 mod merge;
 mod palette;
 mod preferences;
+mod proposals;
 mod rounds;
 mod shared_styles;
 mod shared_widths;
@@ -46,8 +52,11 @@ pub(in crate::fit) fn restrict(session: &mut Session<'_>) -> Result<Outcome> {
     if session.config.colors != Colors::Free {
         session.drawing.remove_hidden();
     }
+    let inks = inks::run(session);
     forms::run(session)?;
-    session.history.ties = share_within_bytes(session);
+    let mut ties = share_within_bytes(session);
+    ties.extend(inks::ties(&session.drawing, &inks));
+    session.history.ties = ties;
     Ok(Outcome::Over)
 }
 

@@ -1,14 +1,14 @@
 //! The numbers of the presets.
 
 use super::{
-    AdamSettings, BackgroundChoice, Correction, Dense, Domain, Doubts, EdgeShape, Forms, Jitter,
-    Joins, Masking, Nudging, Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Recovery,
-    Reduction, Relocation, Rounds, SCREEN_PIXELS, Settling, ShadeChoice, ShadeFit, ShadowChoice,
-    Sharing, Stages, TimeShares,
+    AdamSettings, BackgroundChoice, Correction, Dense, Domain, Doubts, EdgeShape, Forms, Inks,
+    Jitter, Joins, Masking, Nudging, Pens, Points, Polish, Preset, Rates, Recipe, Recoloring,
+    Recovery, Reduction, Relocation, Rounds, SCREEN_PIXELS, Settling, ShadeChoice, ShadeFit,
+    ShadowChoice, Sharing, Stages, TimeShares,
 };
 use crate::optim::AdamParams;
 use crate::seed::Probing;
-use crate::trace::{AreaColors, Bridges, Fills, LineJoins, Splines, Tracing};
+use crate::trace::{AreaColors, Blobs, Bridges, Fills, LineJoins, Splines, Tracing};
 
 impl Recipe {
     /// The recipe of a preset.
@@ -118,6 +118,13 @@ const BALANCED: Recipe = Recipe {
             least_share: 0.004,
         },
         growth: 0.75,
+        blobs: Blobs {
+            room: [2.0, 0.5],
+            abrupt: [1.25, 0.6],
+            least_aspect: 4.0,
+            least_length: [24.0, 12.0],
+            covered: 0.8,
+        },
         lines: LineJoins {
             hook: [0.75, 3.0],
             crossing: 0.75,
@@ -128,6 +135,8 @@ const BALANCED: Recipe = Recipe {
         bridges: Bridges {
             longest: [8.0, 3.0],
             straight: 0.85,
+            within: [24.0, 12.0],
+            straight_within: 0.996,
             open: 3,
             least_ring: 8,
         },
@@ -295,6 +304,14 @@ const BALANCED: Recipe = Recipe {
         nearly_opaque: 0.8,
         off_page: 0.1,
         thin: 1.0,
+    },
+    inks: Inks {
+        thin: 2.0,
+        least_radius: 0.85,
+        beside: 2.0,
+        alike: 0.06,
+        least_even: 0.7,
+        least_change: 0.95,
     },
     forms: Forms {
         iterations: 20,

@@ -27,8 +27,12 @@ pub(in crate::trace) struct Fill {
 /// Colours that differ by less are one, levels. A guess.
 const ALIKE: f32 = 3.0;
 
-/// Joins shapes, which are given from back to front.
-pub(super) fn joined(fills: Vec<Fill>, neighbours: &[BTreeMap<u32, u32>]) -> Vec<Fill> {
+/// Joins shapes, which are given from back to front, but for those that `stand_alone`.
+pub(super) fn joined(
+    fills: Vec<Fill>,
+    neighbours: &[BTreeMap<u32, u32>],
+    stand_alone: impl Fn(&Fill) -> bool,
+) -> Vec<Fill> {
     let mut touching = touching(&fills, neighbours);
     let mut fills: Vec<Option<Fill>> = fills.into_iter().map(Some).collect();
     for upper in 1..fills.len() {
@@ -36,7 +40,8 @@ pub(super) fn joined(fills: Vec<Fill>, neighbours: &[BTreeMap<u32, u32>]) -> Vec
             let (Some(a), Some(b)) = (&fills[lower], &fills[upper]) else {
                 continue;
             };
-            if a.shades != b.shades || away(&a.color, &b.color) > ALIKE * LEVEL {
+            let is_alike = a.shades == b.shades && away(&a.color, &b.color) <= ALIKE * LEVEL;
+            if !is_alike || stand_alone(a) || stand_alone(b) {
                 continue;
             }
             // One of them moves to the other, past everything between that it does not touch.

@@ -29,6 +29,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use super::areas::{self, LEVEL, Pixel, Pixels, distance2, mix};
+use super::parts::{Part, Parts};
 use super::recipe::{Fills, Outlines};
 use crate::scene::{Area, Path, Rgb};
 use colors::{CANVAS, NONE};
@@ -58,8 +59,13 @@ pub(super) struct Flat<'a> {
 }
 
 impl<'a> Flat<'a> {
-    /// The stack of a picture, if it is one of few colours.
-    pub(super) fn of(pixels: &'a Pixels<'a>, mattes: usize, fills: &Fills) -> Option<Self> {
+    /// The stack of a picture whose shapes come apart like this, if it is one of few colours.
+    pub(super) fn of(
+        pixels: &'a Pixels<'a>,
+        mattes: usize,
+        parts: &Parts,
+        fills: &Fills,
+    ) -> Option<Self> {
         let shaded = Shaded::of(pixels, mattes, &fills.shades);
         let (mut colors, mut labels) = colors::flat_colors(pixels, shaded, mattes, fills);
         let flat = labels.iter().filter(|label| **label != NONE).count();
@@ -70,7 +76,7 @@ impl<'a> Flat<'a> {
         if explained(pixels, &mixtures, fills) < fills.least_shares[1] {
             return None;
         }
-        let regions = Regions::of(&colors, mixtures, fills);
+        let regions = Regions::of(&colors, mixtures, parts, fills);
         let neighbours = regions.neighbours();
         // What is translucent and of one colour is left to strokes.
         let is_drawn = |region: &Region| {
@@ -102,7 +108,9 @@ impl<'a> Flat<'a> {
         let fills = fills
             .into_iter()
             .filter(|fill| !left_out[fill.region as usize]);
-        let joined = compound::joined(fills.collect(), &self.neighbours);
+        let joined = compound::joined(fills.collect(), &self.neighbours, |fill| {
+            self.part(fill.region) != Part::Whole
+        });
         let filled = joined.iter().flat_map(|fill| {
             self.areas_of(fill).map(|area| Filled {
                 area,
@@ -268,6 +276,11 @@ impl<'a> Flat<'a> {
     /// The number of pixels of a region.
     pub(super) fn size(&self, region: u32) -> f32 {
         self.regions.list[region as usize].members.len() as f32
+    }
+
+    /// The part of a region.
+    pub(super) fn part(&self, region: u32) -> Part {
+        self.regions.list[region as usize].part
     }
 
     /// The label of a region.

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::super::areas::{LEVEL, Pixel, away, distance2};
+use super::super::parts::{Part, Parts};
 use super::super::recipe::Fills;
 use super::colors::{CANVAS, Colors};
 use super::mixtures::{Mixture, best_mixture};
@@ -19,6 +20,8 @@ pub(super) struct Region {
     pub(super) color: Pixel,
     /// The gradients on top of each other that take the place of the colour, back to front.
     pub(super) shades: Vec<Shade>,
+    /// The part that it is of a shape that came apart.
+    pub(super) part: Part,
 }
 
 /// The regions of a picture.
@@ -36,11 +39,17 @@ pub(super) struct Regions {
 
 impl Regions {
     /// The regions of pixels as mixtures. What is too small, or only edges, becomes part of what is beside it.
-    pub(super) fn of(colors: &Colors<'_>, mut mixtures: Vec<Mixture>, fills: &Fills) -> Self {
+    pub(super) fn of(
+        colors: &Colors<'_>,
+        mut mixtures: Vec<Mixture>,
+        parts: &Parts,
+        fills: &Fills,
+    ) -> Self {
         let width = colors.pixels.width;
-        let (mut of, mut members) = connected(&mixtures, width);
+        let by_label = |mixtures: &[Mixture]| connected(mixtures.len(), width, |i| mixtures[i].own);
+        let (mut of, mut members) = by_label(&mixtures);
         if dissolve(colors, &of, &members, &mut mixtures) {
-            (of, members) = connected(&mixtures, width);
+            (of, members) = by_label(&mixtures);
         }
         for _ in 0..6 {
             let is_small = |pixels: &Vec<u32>| is_small(colors, &mixtures, pixels, fills);
@@ -49,7 +58,12 @@ impl Regions {
                 break;
             }
             absorb(colors, &of, &members, &small, &mut mixtures);
-            (of, members) = connected(&mixtures, width);
+            (of, members) = by_label(&mixtures);
+        }
+        let mut parts_of = Vec::new();
+        if !parts.are_whole() {
+            parts_of = self::parts_of(&of, &members, parts, |i| mixtures[i].own == CANVAS);
+            (of, members) = connected(of.len(), width, |i| (of[i], parts_of[i]));
         }
         let (second, share) = seconds(colors, &mixtures, &of);
         let region = |pixels: Vec<u32>| {
@@ -59,6 +73,7 @@ impl Regions {
                 label,
                 color,
                 shades: colors.shades(label).to_vec(),
+                part: *parts_of.get(pixels[0] as usize).unwrap_or(&Part::Whole),
                 members: pixels,
             }
         };
@@ -103,13 +118,51 @@ impl Regions {
     }
 }
 
+/// The part of each pixel of the regions `of`. Edges belong to what is beside them.
+fn parts_of(
+    of: &[u32],
+    members: &[Vec<u32>],
+    parts: &Parts,
+    is_canvas: impl Fn(usize) -> bool,
+) -> Vec<Part> {
+    // A blob belongs to the region that has most of it.
+    let mut votes: Vec<BTreeMap<u32, u32>> = vec![BTreeMap::new(); parts.blobs()];
+    for i in (0..of.len()).filter(|&i| !is_canvas(i)) {
+        if let Part::Blob(blob) = parts.at(i) {
+            *votes[blob as usize].entry(of[i]).or_default() += 1;
+        }
+    }
+    let home = |votes: &BTreeMap<u32, u32>| {
+        let most = votes.iter().max_by_key(|&(region, votes)| (votes, region));
+        most.map(|(&region, _)| region)
+    };
+    let homes: Vec<Option<u32>> = votes.iter().map(home).collect();
+    let mut apart = vec![None; members.len()];
+    for (blob, home) in (0..).zip(&homes) {
+        if let Some(region) = home {
+            apart[*region as usize] = Some(Part::Lines(parts.shape(blob)));
+        }
+    }
+    let own = |i: usize| match (parts.near(i), apart[of[i] as usize]) {
+        (_, None) => Part::Whole,
+        (Part::Blob(blob), _) if homes[blob as usize] == Some(of[i]) => Part::Blob(blob),
+        (_, Some(lines)) => lines,
+    };
+    (0..of.len()).map(own).collect()
+}
+
 /// The region of each pixel, and the pixels of each region, row by row, 4-connected: two passes, after Rosenfeld and Pfaltz,
 /// "Sequential operations in digital picture processing".
-fn connected(mixtures: &[Mixture], width: usize) -> (Vec<u32>, Vec<Vec<u32>>) {
+fn connected<K: PartialEq>(
+    count: usize,
+    width: usize,
+    key: impl Fn(usize) -> K,
+) -> (Vec<u32>, Vec<Vec<u32>>) {
     // An earlier pixel of the same region, for each pixel but the first one.
-    let mut earlier: Vec<u32> = Vec::with_capacity(mixtures.len());
-    for (i, Mixture { own, .. }) in mixtures.iter().enumerate() {
-        let is_alike = |k: &usize| mixtures[*k].own == *own;
+    let mut earlier: Vec<u32> = Vec::with_capacity(count);
+    for i in 0..count {
+        let own = key(i);
+        let is_alike = |k: &usize| key(*k) == own;
         let left = i.checked_sub(1).filter(|_| !i.is_multiple_of(width));
         let left = left.filter(is_alike).map(|k| earlier[k]);
         let above = i.checked_sub(width).filter(is_alike).map(|k| earlier[k]);
@@ -359,7 +412,7 @@ mod tests {
         let labels = rows.concat();
         let mixtures = labels.bytes().map(|b| Mixture::pure(u16::from(b)));
         let mixtures: Vec<Mixture> = mixtures.collect();
-        let (of, members) = connected(&mixtures, rows[0].len());
+        let (of, members) = connected(mixtures.len(), rows[0].len(), |i| mixtures[i].own);
         for (region, pixels) in members.iter().enumerate() {
             assert!(pixels.is_sorted() && pixels.iter().all(|&i| of[i as usize] == region as u32));
         }

@@ -5,18 +5,15 @@
 //! hide in part, what is seen decides. A few steps of descent fit all proposals as what they are, and those stay that add less
 //! squared error than the bytes that they save are worth.
 
+use super::covers::{Covers, FLATNESS, is_inside};
+use super::proposals::{Proposal, adopt, traced};
 use crate::error::Result;
-use crate::fit::descent::held::Held;
-use crate::fit::descent::{Course, Descent};
-use crate::fit::drawing::{Drawing, Memento};
-use crate::fit::halves::by_halves;
-use crate::fit::recipe::{Forms, Rates};
+use crate::fit::drawing::Memento;
+use crate::fit::recipe::Forms;
 use crate::fit::run::session::Session;
 use crate::math::Point;
 use crate::metrics::psnr_db;
-use crate::render::StrokeRef;
 use crate::scene::{Area, Mark, Path, PathPoint, Shape, Stroke};
-use crate::svg::mark_bytes;
 
 /// Makes shapes of areas and traced strokes that nearly are such, and then lines level and upright. All strokes must be free.
 pub(super) fn run(session: &mut Session<'_>) -> Result<()> {
@@ -52,12 +49,6 @@ fn refuse_losses(session: &mut Session<'_>, forms: Forms, paths: Memento) -> Res
 /// Nearest that points of what is not a dot are, px: less than a picture tells.
 const DOT_PX: f32 = 0.1;
 
-/// Farthest that chords are from a ring that others may lie in, px.
-const FLATNESS: f32 = 0.1;
-
-/// Marks in the place of one; none if it stays as it is.
-type Proposal = Option<Vec<Mark>>;
-
 /// For each traced mark the shapes that it is, and at most `room` more marks than before.
 fn shapes(session: &Session<'_>, forms: Forms, mut room: usize) -> Vec<Proposal> {
     let has_areas = session.drawing.free().has_areas();
@@ -78,15 +69,6 @@ fn shapes(session: &Session<'_>, forms: Forms, mut room: usize) -> Vec<Proposal>
         Some(marks)
     };
     traced(&session.drawing, |i, mark| shaped(i, mark, &mut room))
-}
-
-/// The proposals for areas, and for strokes that were traced.
-fn traced(drawing: &Drawing, mut propose: impl FnMut(usize, Mark) -> Proposal) -> Vec<Proposal> {
-    let formed = drawing.formed();
-    let free = drawing.free().iter().enumerate();
-    let is_found = |i: usize, mark: StrokeRef<'_>| i < formed || mark.is_area();
-    free.map(|(i, mark)| is_found(i, mark).then(|| propose(i, mark.to_mark()))?)
-        .collect()
 }
 
 /// True if all points are in one place.
@@ -113,47 +95,6 @@ fn disc(dot: &Stroke) -> Area {
 fn like(path: &Path, forms: Forms) -> Option<Shape> {
     let is_shape = !path.is_closed() || Shape::of(path).is_some();
     Shape::like(path, forms.tolerance_px).filter(|_| !is_shape)
-}
-
-/// The opaque areas of a drawing, below which nothing is seen, and its page.
-struct Covers {
-    /// For each mark the corners of its rings, and the least and most x and y.
-    areas: Vec<Vec<(Vec<Point>, [Point; 2])>>,
-    page: Point,
-}
-
-impl Covers {
-    fn of(drawing: &Drawing) -> Self {
-        let rings = |mark: StrokeRef<'_>| match mark.to_mark() {
-            Mark::Area(area) if area.opacity == 1.0 => {
-                let corners = area.rings.iter().map(|ring| ring.flattened(FLATNESS));
-                corners.map(bounded).collect()
-            }
-            _ => Vec::new(),
-        };
-        let picture = drawing.surface().picture();
-        Self {
-            areas: drawing.free().iter().map(rings).collect(),
-            page: Point::new(picture.width() as f32, picture.height() as f32),
-        }
-    }
-
-    /// True if a place of mark `i` is on the page and not below another one.
-    fn is_seen(&self, i: usize, p: Point) -> bool {
-        let is_within = |[low, high]: [Point; 2]| low.inf(&p) == low && high.sup(&p) == high;
-        let winds = |(corners, bounds): &&(Vec<Point>, [Point; 2])| {
-            is_within(*bounds) && is_inside(p, corners)
-        };
-        let hides = |rings: &Vec<_>| rings.iter().filter(winds).count() % 2 == 1;
-        is_within([Point::origin(), self.page]) && !self.areas[i + 1..].iter().any(hides)
-    }
-}
-
-fn bounded(corners: Vec<Point>) -> (Vec<Point>, [Point; 2]) {
-    let first = corners.first().copied().unwrap_or_default();
-    let low = corners.iter().fold(first, |low, p| low.inf(p));
-    let high = corners.iter().fold(first, |high, p| high.sup(p));
-    (corners, [low, high])
 }
 
 /// The area as areas: one for each of its rings that is alone and a shape, and one of all others. An area of many rings
@@ -194,7 +135,9 @@ fn shapes_of(rings: &[Path], forms: Forms, is_seen: impl Fn(Point) -> bool) -> V
     let shaped = |(i, ring): (usize, &Path)| {
         let is_shape = Shape::of(ring).is_some();
         let seen = || Shape::like_seen(ring, forms.tolerance_px, &is_seen).filter(|_| !is_shape);
-        let shape = like(ring, forms).or_else(seen).filter(|_| is_alone(i))?;
+        // What other marks hide is bent by them.
+        let shape = seen().or_else(|| like(ring, forms));
+        let shape = shape.filter(|_| is_alone(i))?;
         Some(shape.ring())
     };
     rings.iter().enumerate().map(shaped).collect()
@@ -207,16 +150,6 @@ fn are_apart(a: &Path, b: &Path) -> bool {
         start.is_some_and(|p| is_inside(p, &outer.flattened(FLATNESS)))
     };
     !lies_in(a, b) && !lies_in(b, a)
-}
-
-/// True if a ray from `p` crosses the ring with these corners an odd number of times.
-fn is_inside(p: Point, corners: &[Point]) -> bool {
-    let crosses = |pair: &&[Point]| {
-        let (a, b) = (pair[0], pair[1]);
-        let is_passed = (a.y > p.y) != (b.y > p.y);
-        is_passed && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)
-    };
-    corners.windows(2).filter(crosses).count() % 2 == 1
 }
 
 /// For each traced mark that is no shape, its lines that are nearly level or upright exactly so.
@@ -265,117 +198,4 @@ fn leveled(path: &Path, forms: Forms) -> Path {
         }
     }
     Path::new(points, path.is_closed()).unwrap_or_else(|_| path.clone())
-}
-
-/// Fits the proposals, and keeps those that pay. Returns whether any does.
-fn adopt(session: &mut Session<'_>, forms: Forms, mut proposals: Vec<Proposal>) -> bool {
-    if proposals.iter().all(Option::is_none) {
-        return false;
-    }
-    let home = Home::of(&session.drawing);
-    let mut error = session.drawing.mse_of_trial();
-    let price = session.price.in_drawing(&mut session.drawing);
-    home.put(&mut session.drawing, &proposals, |_| true);
-    fit(session, forms, &proposals);
-    let drawing = &mut session.drawing;
-    proposals = fitted(drawing, &proposals);
-    let bytes = |mark: &Mark| mark_bytes(mark, &session.config.file);
-    let allowed = |i: usize| {
-        let after: usize = proposals[i].iter().flatten().map(bytes).sum();
-        let before = bytes(&home.marks[i].0) + forms.worth_bytes;
-        price.of_saved(before.saturating_sub(after))
-    };
-    let mut is_taken = vec![false; proposals.len()];
-    let proposed = (0..proposals.len()).filter(|&i| proposals[i].is_some());
-    by_halves(proposed.collect(), |group| {
-        let mut is_tried = is_taken.clone();
-        group.iter().for_each(|&i| is_tried[i] = true);
-        home.put(drawing, &proposals, |i| is_tried[i]);
-        let now = drawing.mse_of_trial();
-        let added = (now - error) * (3 * drawing.pixels()) as f64;
-        let pays = added <= group.iter().map(|&i| f64::from(allowed(i))).sum();
-        if pays {
-            (error, is_taken) = (now, is_tried);
-        }
-        pays
-    });
-    home.put(drawing, &proposals, |i| is_taken[i]);
-    is_taken.contains(&true)
-}
-
-/// The proposals as a descent has left them in the drawing.
-fn fitted(drawing: &Drawing, proposals: &[Proposal]) -> Vec<Proposal> {
-    let mut marks = drawing.free().iter().map(|mark| mark.to_mark());
-    let mut take = |proposal: &Proposal| {
-        let count = proposal.as_ref().map_or(1, Vec::len);
-        let marks: Vec<Mark> = marks.by_ref().take(count).collect();
-        proposal.is_some().then_some(marks)
-    };
-    proposals.iter().map(&mut take).collect()
-}
-
-/// All marks of a drawing, each with its stage.
-struct Home {
-    marks: Vec<(Mark, usize)>,
-}
-
-impl Home {
-    fn of(drawing: &Drawing) -> Self {
-        let marks = drawing.free().iter().map(|mark| mark.to_mark());
-        let stages = drawing.stages().iter().copied();
-        Self {
-            marks: marks.zip(stages).collect(),
-        }
-    }
-
-    /// Makes the drawing that of these marks, those that are `taken` replaced by what is proposed for them.
-    fn put(&self, drawing: &mut Drawing, proposals: &[Proposal], taken: impl Fn(usize) -> bool) {
-        let replaced = |(i, (mark, stage)): (usize, &(Mark, usize))| {
-            let marks = proposals[i].clone().filter(|_| taken(i));
-            let marks = marks.unwrap_or_else(|| vec![mark.clone()]);
-            let stage = *stage;
-            marks.into_iter().map(move |mark| (mark, stage))
-        };
-        drawing.replace(self.marks.iter().enumerate().flat_map(replaced));
-    }
-}
-
-/// Descends with what is proposed alone.
-fn fit(session: &mut Session<'_>, forms: Forms, proposals: &[Proposal]) {
-    let iterations = forms.iterations;
-    let restricted = session.restricted_rates().without_color();
-    let course = Course {
-        iterations,
-        before: 0,
-        of: iterations,
-        rates: Rates {
-            // A traced stroke moves as far as an area does.
-            position: forms.rate / session.recipe.tracing.pace,
-            radius: forms.rate.min(restricted.radius),
-            area: forms.rate,
-            opacity: 0.0,
-            ..restricted
-        },
-        pace: 1.0,
-        softness: None,
-        until: f32::INFINITY,
-        joint: None,
-    };
-    let drawing = &mut session.drawing;
-    let mut descent = Descent::new(drawing, &session.recipe, course, 0.0);
-    descent.held = Held::of(drawing.free(), drawing.formed());
-    let marks = proposals.iter().flat_map(|proposal| match proposal {
-        Some(marks) => vec![true; marks.len()],
-        None => vec![false],
-    });
-    for (i, _) in marks.enumerate().filter(|(_, moves)| !moves) {
-        drawing
-            .free()
-            .range(i)
-            .for_each(|place| descent.ties.fix(place));
-    }
-    for step in 0..iterations {
-        let done = step as f32 / iterations as f32;
-        descent.step(drawing, &session.annealing, (step, done), None);
-    }
 }

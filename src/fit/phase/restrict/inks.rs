@@ -1,0 +1,180 @@
+//! Inks: a thin line has the colour that the picture has along its middle.
+//!
+//! A line of a pixel or two looks the same if it is darker and narrower, or less opaque, so a fit may end at any of these. The
+//! picture tells which is meant where the line covers whole pixels: there it has its colour.
+
+use super::proposals::{Proposal, adopt, traced};
+use crate::fit::config::Colors;
+use crate::fit::descent::ties::Ties;
+use crate::fit::drawing::Drawing;
+use crate::fit::recipe::Inks;
+use crate::fit::run::session::Session;
+use crate::image::Image;
+use crate::math::median;
+use crate::render::STYLE;
+use crate::scene::{Mark, Rgb, Stroke};
+
+/// Gives thin traced lines on one colour the colours of the picture, with as much ink as before, and returns those. All
+/// strokes must be free.
+pub(super) fn run(session: &mut Session<'_>) -> Vec<Rgb> {
+    let is_free = session.config.colors == Colors::Free && session.config.pens.is_none();
+    // On two mattes colour and coverage are told apart.
+    if !is_free || session.drawing.surfaces.len() > 1 {
+        return Vec::new();
+    }
+    let inks = session.recipe.inks;
+    let picture = session.drawing.surface().picture();
+    let inked = |_: usize, mark: Mark| {
+        let stroke = inked(mark.as_stroke()?, picture, inks)?;
+        Some(vec![stroke.into()])
+    };
+    let proposals: Vec<Proposal> = traced(&session.drawing, inked);
+    let colors: Vec<Rgb> = proposals
+        .iter()
+        .flatten()
+        .flatten()
+        .map(Mark::color)
+        .collect();
+    adopt(session, session.recipe.forms, proposals);
+    colors
+}
+
+/// Ties of the strokes that have one of the `inks`: while they settle, their colours stay, and they stay opaque.
+pub(super) fn ties(drawing: &Drawing, inks: &[Rgb]) -> Ties {
+    let mut ties = Ties::default();
+    let strokes = drawing.free().iter().enumerate();
+    for (i, _) in strokes.filter(|(_, stroke)| !stroke.is_area() && inks.contains(&stroke.color()))
+    {
+        let end = drawing.free().range(i).end;
+        (end - STYLE + 1..end).for_each(|place| ties.fix(place));
+    }
+    ties
+}
+
+/// The opaque stroke of as much ink in the colour that the picture has along its middle.
+fn inked(stroke: &Stroke, picture: &Image, inks: Inks) -> Option<Stroke> {
+    if stroke.radius > inks.thin {
+        return None;
+    }
+    let (middle, sides) = seen_along(stroke, picture, inks.beside);
+    // On one colour, or nothing tells how much of a pixel is covered.
+    let page: Rgb = channels(|k| median(sides.iter().map(|side| side[k])))?;
+    let is_page = |side: &&Rgb| (0..3).all(|k| (side[k] - page[k]).abs() < inks.alike);
+    if (sides.iter().filter(is_page).count() as f32) < inks.least_even * sides.len() as f32 {
+        return None;
+    }
+    let contrast = [0, 1, 2].map(|k| stroke.color[k] - page[k]);
+    let contrast2: f32 = contrast.iter().map(|c| c * c).sum();
+    if contrast2 < inks.alike * inks.alike {
+        return None;
+    }
+    let covered = |seen: &Rgb| {
+        let along = (0..3).map(|k| (seen[k] - page[k]) * contrast[k]);
+        along.sum::<f32>() / contrast2
+    };
+    // The places that it covers most: a quarter of all.
+    let shares = || middle.iter().map(covered);
+    let half = median(shares())?;
+    let most = median(shares().filter(|share| *share >= half))?;
+    let most = || middle.iter().filter(|seen| covered(seen) >= most);
+    let color: Rgb = channels(|k| median(most().map(|seen| seen[k])))?;
+    let share = covered(&color);
+    if share <= 0.0 || share >= inks.least_change {
+        return None;
+    }
+    let radius = stroke.radius * stroke.opacity / share;
+    // A narrower line covers no pixel as a whole, and one of 1 px between two rows covers half of both.
+    let is_halved = (share - 0.5).abs() < 0.04 && (radius - 1.0).abs() < 0.08;
+    let is_told = radius >= inks.least_radius && radius <= inks.thin && !is_halved;
+    is_told.then(|| Stroke {
+        radius,
+        color,
+        opacity: 1.0,
+        ..stroke.clone()
+    })
+}
+
+/// The colours of a picture along the middle of a stroke, and `beside` px beside it on both sides.
+fn seen_along(stroke: &Stroke, picture: &Image, beside: f32) -> (Vec<Rgb>, Vec<Rgb>) {
+    let (width, height) = (picture.width(), picture.height());
+    let at = |p: [f32; 2]| {
+        let [x, y] = p.map(|v| v.floor());
+        let is_inside = x >= 0.0 && y >= 0.0 && x < width as f32 && y < height as f32;
+        is_inside.then(|| {
+            let i = y as usize * width + x as usize;
+            [0, 1, 2].map(|k| picture.planes()[k][i])
+        })
+    };
+    let (mut middle, mut sides) = (Vec::new(), Vec::new());
+    for pair in stroke.path.flattened(0.1).windows(2) {
+        let along = pair[1] - pair[0];
+        let length = along.norm();
+        let away = (stroke.radius + beside) / length.max(f32::MIN_POSITIVE);
+        for step in 0..length.ceil() as usize {
+            let p = pair[0] + along * ((step as f32 + 0.5) / length.ceil());
+            middle.extend(at([p.x, p.y]));
+            for side in [away, -away] {
+                sides.extend(at([p.x - side * along.y, p.y + side * along.x]));
+            }
+        }
+    }
+    (middle, sides)
+}
+
+fn channels(channel: impl Fn(usize) -> Option<f32>) -> Option<Rgb> {
+    Some([channel(0)?, channel(1)?, channel(2)?])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::{Preset, Recipe};
+    use crate::scene::{Path, PathPoint};
+
+    /// A picture of 32×16 px with these levels from row 8 on, on white.
+    fn rows(levels: &[f32]) -> Image {
+        let level = |i: usize| {
+            (i / 32)
+                .checked_sub(8)
+                .and_then(|row| levels.get(row).copied())
+        };
+        let plane: Vec<f32> = (0..32 * 16).map(|i| level(i).unwrap_or(1.0)).collect();
+        Image::new(32, 16, [plane.clone(), plane.clone(), plane]).unwrap()
+    }
+
+    /// A level line in the middle of the picture, in the colour that the picture has there.
+    fn told(picture: &Image, radius: f32, level: f32, y: f32) -> Option<Stroke> {
+        let at = |x: f32| PathPoint {
+            at: crate::math::Point::new(x, y),
+            is_on: true,
+        };
+        let stroke = Stroke {
+            path: Path::new(vec![at(2.0), at(30.0)], false).unwrap(),
+            radius,
+            color: [level; 3],
+            opacity: 1.0,
+        };
+        inked(&stroke, picture, Recipe::of(Preset::Balanced).inks)
+    }
+
+    #[test]
+    fn a_dark_narrow_line_has_its_colour_and_as_much_ink() {
+        let stroke = told(&rows(&[0.2, 0.2]), 0.8, 0.0, 9.0).unwrap();
+        assert!((stroke.color[0] - 0.2).abs() < 1e-6, "{stroke:?}");
+        assert!((stroke.radius - 1.0).abs() < 1e-5, "{stroke:?}");
+    }
+
+    #[test]
+    fn what_the_picture_does_not_tell_stays() {
+        // It has its colour.
+        assert!(told(&rows(&[0.2, 0.2]), 1.0, 0.2, 9.0).is_none());
+        // A line of 1 px between two rows.
+        assert!(told(&rows(&[0.5, 0.5]), 0.5, 0.0, 9.0).is_none());
+        // A wide line covers enough pixels.
+        assert!(told(&rows(&[0.2, 0.2, 0.2, 0.2]), 2.1, 0.0, 10.0).is_none());
+        // Two colours beside it.
+        let mut levels = [0.6; 8];
+        levels[..2].fill(0.2);
+        assert!(told(&rows(&levels), 0.8, 0.0, 9.0).is_none());
+    }
+}
