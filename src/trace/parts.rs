@@ -270,10 +270,11 @@ impl Pieces {
     /// True for each piece that is a line: long, and no handle of something larger. None is if they are short together.
     fn lines(&self, radius: f32, recipe: &Blobs) -> Vec<bool> {
         let least = (recipe.least_aspect * 4.0 * radius * radius).max(LEAST_PIXELS);
-        let is_line = |piece: &Piece| {
-            !piece.is_wide && piece.members.len() as f32 > least && !self.is_handle(piece)
+        let is_line = |(piece, is_handle): (&Piece, bool)| {
+            !piece.is_wide && piece.members.len() as f32 > least && !is_handle
         };
-        let lines: Vec<bool> = self.list.iter().map(is_line).collect();
+        let pieces = self.list.iter().zip(self.handles());
+        let lines: Vec<bool> = pieces.map(is_line).collect();
         let own = self.list.iter().zip(&lines).filter(|(_, line)| **line);
         let size: usize = own.map(|(piece, _)| piece.members.len()).sum();
         let [px, radii] = recipe.least_length;
@@ -283,21 +284,21 @@ impl Pieces {
         }
     }
 
-    /// True for a piece that leaves a larger one and comes back to it.
-    fn is_handle(&self, piece: &Piece) -> bool {
-        let beside = |i: usize| self.near(i, 2).find(|&other| self.list[other].is_wide);
-        let mut contacts = vec![None; self.of.len()];
-        for &i in &piece.members {
-            contacts[i] = beside(i);
-        }
-        let contacts = connected(&contacts, self.width);
-        let is_again = |i: usize| {
-            contacts[..i]
-                .iter()
-                .any(|(other, _)| *other == contacts[i].0)
+    /// True for each piece that leaves a larger one and comes back to it.
+    fn handles(&self) -> Vec<bool> {
+        let contact = |(i, piece): (usize, &Option<usize>)| {
+            let piece = (*piece).filter(|&piece| !self.list[piece].is_wide)?;
+            let beside = self.near(i, 2).find(|&other| self.list[other].is_wide)?;
+            Some((piece, beside))
         };
-        let mut again = (0..contacts.len()).filter(|&i| is_again(i));
-        again.any(|i| self.list[contacts[i].0].members.len() > piece.members.len())
+        let contacts: Vec<_> = self.of.iter().enumerate().map(contact).collect();
+        let mut seen = BTreeSet::new();
+        let mut handles = vec![false; self.list.len()];
+        for ((piece, other), _) in connected(&contacts, self.width) {
+            let is_larger = self.list[other].members.len() > self.list[piece].members.len();
+            handles[piece] |= !seen.insert((piece, other)) && is_larger;
+        }
+        handles
     }
 
     /// True for each wide piece that is a blob: lines begin there at once, and are nowhere near it as deep as `thin`.
