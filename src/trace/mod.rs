@@ -3,6 +3,7 @@
 //! ```text
 //! areas      the pixels by colour; antialiased ones belong to the nearer of the colours beside them
 //! shape      the connected shapes of each colour
+//! halves     lines between two rows of pixels
 //! parts      lines, and what they join that is much wider
 //! skeleton   the middle of each shape, as a graph
 //! lines      the graph's edges, joined to long lines that run through crossings
@@ -24,6 +25,7 @@ mod choice;
 mod even;
 mod fill;
 mod gain;
+mod halves;
 mod lines;
 mod parts;
 mod recipe;
@@ -39,6 +41,7 @@ use crate::scene::{Mark, Marks, Path};
 use crate::seed::Residual;
 use areas::{Areas, Pixels, Planes};
 use fill::Flat;
+pub(crate) use halves::Halves;
 use parts::Parts;
 pub use recipe::{
     AreaColors, Blobs, Bridges, Fills, LineJoins, Outlines, Shades, Splines, Tracing,
@@ -69,29 +72,45 @@ pub fn trace(
     marks: Marks,
     price: impl Fn(&Mark) -> f32 + Sync,
 ) -> Vec<Traced> {
-    let Some(pixels) = Pixels::of(residuals) else {
+    let Some(mut pixels) = Pixels::of(residuals) else {
         return Vec::new();
     };
+    // Lines between two rows of pixels have no colour of their own there.
+    let halves = Halves::set_on_rows(&mut pixels);
+    let mut traced = marks_of(&pixels, residuals.len(), &tracing, marks, price);
+    if let Some(halves) = halves {
+        halves.put_back(&mut traced);
+    }
+    traced
+}
+
+/// The marks of a picture, in painting order.
+fn marks_of(
+    pixels: &Pixels<'_>,
+    mattes: usize,
+    tracing: &Tracing,
+    marks: Marks,
+    price: impl Fn(&Mark) -> f32 + Sync,
+) -> Vec<Traced> {
     // Areas of one colour. A picture without them, such as a photograph, has no lines that could be traced.
-    let mattes = residuals.len();
-    let areas = Areas::of(&pixels, tracing.min_flat_share, tracing.colors);
+    let areas = Areas::of(pixels, tracing.min_flat_share, tracing.colors);
     let areas = areas.filter(|_| marks != Marks::Areas);
-    let mut parts = parts(areas.as_ref(), &pixels, &tracing);
+    let mut parts = parts(areas.as_ref(), pixels, tracing);
     let mut round = 0;
     loop {
         let strokes = match &areas {
-            Some(areas) => strokes::strokes(&pixels, areas, &parts, mattes, &tracing),
+            Some(areas) => strokes::strokes(pixels, areas, &parts, mattes, tracing),
             None => Vec::new(),
         };
         let flat = match marks {
             Marks::Strokes => None,
-            _ => Flat::of(&pixels, mattes, &parts, &tracing.fills),
+            _ => Flat::of(pixels, mattes, &parts, &tracing.fills),
         };
         let Some(flat) = flat else {
             return strokes.into_iter().map(Traced::from).collect();
         };
         let fills = flat.fills(&tracing.fills);
-        match choice::chosen(&flat, fills, strokes, &pixels, &tracing, &price) {
+        match choice::chosen(&flat, fills, strokes, pixels, tracing, &price) {
             Ok(traced) => return traced,
             // What strokes do not draw stays with what it came apart from.
             Err(lines) => {
@@ -102,6 +121,11 @@ pub fn trace(
             }
         }
     }
+}
+
+/// The lines of a picture on its canvas that lie between two rows of pixels, if crossings tell that there are such.
+pub(crate) fn halves(residual: Residual<'_>) -> Option<Halves> {
+    Halves::set_on_rows(&mut Pixels::of(&[residual])?)
 }
 
 /// Rounds in which single lines of a shape are joined with its blobs, before all are. A guess.

@@ -1,5 +1,6 @@
 //! Shapes and level lines: a circle, an ellipse or a rectangle in a picture comes back as one, and a level line is exactly so.
 
+use crate::support::fits::picture;
 use crate::support::repository::committed;
 use strokefit::fit::{Background, Config, Fitter};
 use strokefit::scene::{Mark, Path, Scene, Shape};
@@ -207,6 +208,7 @@ fn plans_come_back_as_their_things() {
         ("network", [12, 14, 9], 44.0),
         ("circuit", [18, 3, 3], 45.0),
         ("score", [38, 2, 0], 44.0),
+        ("grid", [24, 0, 0], 43.5),
         ("flow", [8, 5, 0], 44.5),
         ("roads", [5, 4, 3], 49.0),
         ("markers", [10, 16, 13], 41.5),
@@ -230,6 +232,23 @@ fn plans_come_back_as_their_things() {
         let db = verify::fidelity(&text, &picture).unwrap().psnr_db;
         assert!(db > least_db, "{name}: {db}");
     }
+}
+
+/// Staves and stems lie between rows and columns of pixels, where they look grey and 2 px wide.
+#[test]
+fn lines_between_rows_have_the_colour_of_their_pen() {
+    let picture = picture("music.png");
+    let fit = Fitter::new(Config::default()).fit(&picture).unwrap();
+    let text = fit.svg();
+    let scene = svg::read(&text).unwrap();
+    assert!(scene.len() <= 96, "{text}");
+    let pens = pens(&scene);
+    let dark = pens
+        .iter()
+        .filter(|(color, _)| color.iter().all(|&v| v < 32));
+    assert!(20 * dark.count() >= 19 * pens.len(), "{text}");
+    let hairs = pens.iter().filter(|(_, width)| (0.9..1.4).contains(width));
+    assert!(2 * hairs.count() >= pens.len(), "{text}");
 }
 
 #[test]

@@ -342,11 +342,20 @@ impl<'a> Flat<'a> {
     fn gains(&self) -> Vec<f32> {
         let regions = &self.regions;
         let below = compound::below(&self.stack.layers, regions.list.len());
+        // Lines that came apart are strokes: they go on beneath nothing.
+        let is_lines = |region: u32| matches!(self.part(region), Part::Lines(_));
+        let below_area = |region: u32| {
+            let mut lower = below[region as usize];
+            while let Some(lines) = lower.filter(|&lower| is_lines(lower)) {
+                lower = below[lines as usize];
+            }
+            lower
+        };
         let mut gains = vec![0.0; regions.list.len()];
         for i in 0..regions.of.len() {
             let (own, second, share) = (regions.of[i], regions.second[i], regions.share[i]);
             let seen = |region: u32| self.shown(region, i);
-            let behind = |region: u32| match below[region as usize] {
+            let behind = |region: u32| match below_area(region) {
                 Some(lower) => seen(lower),
                 None => self.pixels.canvas.at(i),
             };

@@ -1,7 +1,8 @@
 //! Inks: a thin line has the colour that the picture has along its middle.
 //!
 //! A line of a pixel or two looks the same if it is darker and narrower, or less opaque, so a fit may end at any of these. The
-//! picture tells which is meant where the line covers whole pixels: there it has its colour.
+//! picture tells which is meant where the line covers whole pixels: there it has its colour. Of a line between two rows only
+//! its crossings tell.
 
 use super::proposals::{Proposal, adopt, traced};
 use crate::fit::config::Colors;
@@ -13,6 +14,7 @@ use crate::image::Image;
 use crate::math::median;
 use crate::render::STYLE;
 use crate::scene::{Mark, Rgb, Stroke};
+use crate::trace;
 
 /// Gives thin traced lines on one colour the colours of the picture, with as much ink as before, and returns those. All
 /// strokes must be free.
@@ -23,9 +25,13 @@ pub(super) fn run(session: &mut Session<'_>) -> Vec<Rgb> {
         return Vec::new();
     }
     let inks = session.recipe.inks;
-    let picture = session.drawing.surface().picture();
+    let surface = session.drawing.surface();
+    let picture = surface.picture();
+    let halves = trace::halves(surface.residual_of(&surface.full_backdrop()));
     let inked = |_: usize, mark: Mark| {
-        let stroke = inked(mark.as_stroke()?, picture, inks)?;
+        let stroke = mark.as_stroke()?;
+        let drawn = halves.as_ref().and_then(|halves| halves.drawn(stroke));
+        let stroke = drawn.or_else(|| inked(stroke, picture, inks))?;
         Some(vec![stroke.into()])
     };
     let proposals: Vec<Proposal> = traced(&session.drawing, inked);
