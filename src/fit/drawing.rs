@@ -15,6 +15,7 @@ pub(super) mod surface;
 
 use fearless_simd::Level;
 
+use super::recipe::Recipe;
 use crate::render::{Canvas, CanvasLoss, Gradients, Params, Renderer, Softness, Strokes, Survey};
 use crate::scene::{Mark, Rgb};
 use bounds::Bounds;
@@ -292,6 +293,11 @@ impl Drawing {
     pub(super) fn traced(&self) -> usize {
         let free = self.stage_of.get(self.frozen.len()..).unwrap_or_default();
         free.partition_point(|&stage| stage < self.counters.traced_until)
+    }
+
+    /// True for a traced drawing of few marks, which come to share widths and colours.
+    pub(in crate::fit) fn is_of_lines(&self, recipe: &Recipe) -> bool {
+        self.counters.traced_until > 0 && self.free().len() <= recipe.sharing.most
     }
 
     /// Number of free strokes, from the back, that may be held to forms: those that were traced. A photograph, most of whose

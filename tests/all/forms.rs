@@ -111,6 +111,17 @@ fn the_smallest_file_of_as_many_strokes_is_a_fifth_shorter() {
 }
 
 #[test]
+fn the_smallest_file_of_lines_and_flat_art_looks_like_the_plain_one() {
+    for name in ["bicycle", "noto-gem"] {
+        let plain = drawn_with(name, &[]);
+        let smallest = drawn_with(name, &["--form", "smallest"]);
+        assert!(smallest.text.len() < plain.text.len(), "{name}");
+        let lost = plain.psnr_db() - smallest.psnr_db();
+        assert!(lost < 0.5, "{name}: {lost}");
+    }
+}
+
+#[test]
 fn an_opaque_capsule_of_the_smallest_file_takes_52_bytes_at_most() {
     for name in ["coffee-300", "noto-hibiscus", "noto-telescope"] {
         let options = ["--opaque", "--precision", "1", "--form", "smallest"];

@@ -6,7 +6,7 @@ use crate::fit::recipe::Recipe;
 use crate::math;
 use crate::render::{Params, StrokeRef, Strokes};
 use crate::scene::Mark;
-use crate::svg::{WriteOptions, mark_bytes};
+use crate::svg::{Form, WriteOptions, mark_bytes};
 
 /// The price of strokes and points, as squared error summed over pixels and channels.
 ///
@@ -52,15 +52,24 @@ impl Price {
             0.0
         };
         let wanted_db = config.budget.psnr_db.map(|db| db + points.beyond_db);
+        // Unless bytes are limited, the smallest form is that of the plain file's drawing, and not one of more marks.
+        let form = match config.file.form {
+            Form::Smallest if config.budget.bytes.is_none() => Form::Plain,
+            form => form,
+        };
+        let file = WriteOptions {
+            form,
+            ..config.file
+        };
         let price = match config.quality_for(pixels) {
             // A large picture has a lower price for each pixel, but people see as well what is wrong with it.
             Some(quality) => Self {
                 wanted_mse: mse(config.quality.unwrap_or(DEFAULT_QUALITY) - lost_db),
-                ..Self::new(Some(quality - lost_db), config.file)
+                ..Self::new(Some(quality - lost_db), file)
             },
             None => Self {
                 of_strokes: points.stroke_price,
-                ..Self::new(wanted_db, config.file)
+                ..Self::new(wanted_db, file)
             },
         };
         Self {

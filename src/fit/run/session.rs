@@ -317,15 +317,20 @@ impl<'a> Session<'a> {
         if !self.radii.is_empty() {
             rates = rates.without_radius();
         }
-        if self.config.file.form == Form::Smallest {
+        if self.hands_out_pens() {
             rates = rates.without_color().without_radius();
         }
         rates
     }
 
+    /// True if the strokes come to share pens of which there are few. A drawing of lines has few pens anyway.
+    pub(in crate::fit) fn hands_out_pens(&self) -> bool {
+        self.config.file.form == Form::Smallest && !self.drawing.is_of_lines(&self.recipe)
+    }
+
     /// Bytes of the drawing as a file; about, if its strokes will come to share pens, which makes them shorter.
     pub(in crate::fit) fn bytes(&self) -> usize {
-        if self.config.file.form != Form::Smallest {
+        if !self.hands_out_pens() {
             return self.writer.bytes(&self.drawing);
         }
         let strokes = self.drawing.free().iter();

@@ -17,12 +17,11 @@ use crate::fit::recipe::Recipe;
 use crate::fit::run::session::Session;
 use crate::render::{StrokeRef, Strokes};
 use crate::scene::{Rgb, Written, color, overlaps, quantum};
-use crate::svg::Form;
 
-/// Makes the strokes of each stage share pens if the file has the smallest form. Strokes keep the colours of a palette.
+/// Makes the strokes of each stage share pens if the file has the smallest form, unless they are lines. Strokes keep the colours of a palette.
 /// All strokes must be free.
 pub(super) fn run(session: &mut Session<'_>) -> Result<()> {
-    if session.config.file.form != Form::Smallest {
+    if !session.hands_out_pens() {
         return Ok(());
     }
     let keeps_colors = session.config.colors != Colors::Free;

@@ -16,7 +16,6 @@ use crate::fit::recipe::Recipe;
 use crate::math;
 use crate::render::STYLE;
 use crate::scene::quantum;
-use crate::svg::Form;
 
 /// Changes strokes for a squared error of at most this, as far as that can be told in advance, and ties what it has changed.
 type Step = fn(&mut Drawing, &Recipe, f32) -> Ties;
@@ -25,9 +24,7 @@ type Step = fn(&mut Drawing, &Recipe, f32) -> Ties;
 /// what is to stay so. All strokes must be free.
 pub(super) fn run(drawing: &mut Drawing, config: &Config, recipe: &Recipe) -> Ties {
     let mut ties = Ties::default();
-    let is_of_lines =
-        drawing.counters.traced_until > 0 && drawing.free().len() <= recipe.sharing.most;
-    if !is_of_lines || config.file.form == Form::Smallest {
+    if !drawing.is_of_lines(recipe) {
         return ties;
     }
     let (any_color, any_width) = (config.colors == Colors::Free, config.pens.is_none());
