@@ -58,15 +58,15 @@ impl Halves {
     /// Sets the lines between two rows or columns on one, if their crossings tell that they are such; and returns them.
     pub(super) fn set_on_rows(pixels: &mut Pixels<'_>) -> Option<Self> {
         let pen = pen(pixels)?;
-        if [false, true].map(|side| pen.halves(pixels, side).is_empty()) != [false; 2] {
+        let mut list = pen.halves(pixels, false);
+        if list.is_empty() || pen.halves(pixels, true).is_empty() {
             return None;
         }
-        let mut list = Vec::new();
-        for is_upright in [false, true] {
-            let halves = pen.halves(pixels, is_upright);
-            halves.iter().for_each(|half| pixels.set(half, &pen.ink));
-            list.extend(halves);
-        }
+        list.iter().for_each(|half| pixels.set(half, &pen.ink));
+        // Once level lines are set, less crosses the upright ones: they are found anew.
+        let upright = pen.halves(pixels, true);
+        upright.iter().for_each(|half| pixels.set(half, &pen.ink));
+        list.extend(upright);
         Some(Self { pen, list })
     }
 

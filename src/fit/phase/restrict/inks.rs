@@ -21,7 +21,7 @@ use crate::trace;
 pub(super) fn run(session: &mut Session<'_>) -> Vec<Rgb> {
     let is_free = session.config.colors == Colors::Free && session.config.pens.is_none();
     // On two mattes colour and coverage are told apart.
-    if !is_free || session.drawing.surfaces.len() > 1 {
+    if !is_free || session.drawing.surfaces.len() > 1 || session.drawing.formed() == 0 {
         return Vec::new();
     }
     let inks = session.recipe.inks;

@@ -18,7 +18,8 @@ use crate::fit::run::session::Session;
 use crate::render::{StrokeRef, Strokes};
 use crate::scene::{Rgb, Written, color, overlaps, quantum};
 
-/// Makes the strokes of each stage share pens if the file has the smallest form, unless they are lines. Strokes keep the colours of a palette.
+/// Makes the strokes of each stage share pens if the file has the smallest form, unless they are lines. Strokes
+/// keep the colours of a palette.
 /// All strokes must be free.
 pub(super) fn run(session: &mut Session<'_>) -> Result<()> {
     if !session.hands_out_pens() {
