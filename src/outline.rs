@@ -6,7 +6,7 @@
 use resvg::tiny_skia::{LineCap, LineJoin, Path, PathBuilder, PathSegment, Stroke as Pen};
 
 use crate::math::Point;
-use crate::scene::{self, Area, PathPoint, Piece, Stroke};
+use crate::scene::{self, Area, Band, PathPoint, Piece, Stroke};
 
 /// The length of the segment that a dot is written as, px.
 const DOT: f32 = 0.01;
@@ -33,9 +33,22 @@ pub(crate) fn stroked(stroke: &Stroke, scale: f32) -> Option<Path> {
         line_join: LineJoin::Round,
         ..Pen::default()
     };
+    drawn(&stroke.path, &pen, scale)
+}
+
+/// The outline of a band, as resvg strokes it.
+pub(crate) fn of_band(band: &Band) -> Option<Path> {
+    let pen = Pen {
+        width: band.width,
+        ..Pen::default()
+    };
+    drawn(&band.line, &pen, 1.0)
+}
+
+fn drawn(path: &scene::Path, pen: &Pen, scale: f32) -> Option<Path> {
     let mut line = PathBuilder::new();
-    push(&mut line, &stroke.path, scale);
-    line.finish()?.stroke(&pen, 1.0)
+    push(&mut line, path, scale);
+    line.finish()?.stroke(pen, 1.0)
 }
 
 /// Appends a path as resvg reads it from the file.

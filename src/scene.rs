@@ -3,6 +3,7 @@
 //! Coordinates are in px, with pixel centres at +0.5. Colours are sRGB-encoded, 0..1, and are composited in
 //! that encoding, as SVG renderers do.
 
+mod band;
 mod colors;
 mod filled_loop;
 mod grid;
@@ -17,14 +18,16 @@ mod shape;
 mod written_path;
 mod written_shape;
 
+pub use band::Band;
+pub(crate) use band::{polyline, through};
 pub(crate) use colors::distinct_colors;
-pub use grid::MAX_PRECISION;
+pub use grid::{MAX_PRECISION, MIN_WIDTH};
 pub(crate) use grid::{UNITS_PER_PX, color, quantum};
 pub(crate) use mark::counted;
 pub use mark::{Area, Mark, Marks};
 pub(crate) use overlap::overlaps;
 pub use path::{MAX_POINTS, Path, PathPoint, Piece};
-pub use quantize::{Dropped, MIN_WIDTH, Quantized};
+pub use quantize::{Dropped, Quantized};
 pub(crate) use quantize::{Written, WrittenShade};
 pub use shade::{Axis, MAX_STOPS, Shade, ShadeStop};
 pub(crate) use shade::{WrittenAxis, WrittenStop};
@@ -131,9 +134,15 @@ impl Scene {
         self.marks().filter_map(Mark::as_area)
     }
 
-    /// The numbers of areas and of strokes in words: "12 areas, 30 strokes".
+    /// The areas that the file fills, back to front: those that are no bands.
+    pub fn filled(&self) -> impl Iterator<Item = &Area> {
+        self.areas().filter(|area| area.band().is_none())
+    }
+
+    /// The numbers of filled areas and of strokes, with bands, in words: "12 areas, 30 strokes".
     pub fn counted(&self) -> String {
-        counted(self.areas().count(), self.strokes().count())
+        let filled = self.filled().count();
+        counted(filled, self.len() - filled)
     }
 
     /// Number of marks.

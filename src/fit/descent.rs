@@ -75,7 +75,7 @@ pub(super) struct Descent {
     /// Numbers that stay equal.
     #[serde(skip)]
     pub(super) ties: Ties,
-    /// Shapes and lines that stay such.
+    /// Shapes and lines that stay such: bands, unless there are more.
     #[serde(skip)]
     pub(super) held: Held,
     /// Gradients of the last step.
@@ -100,9 +100,15 @@ impl Descent {
             background: Adam::new(3, recipe.optimizer.background),
             scales: scales(&course.rates, drawing, recipe),
             ties: Ties::default(),
-            held: Held::default(),
+            held: Held::bands(drawing.free()),
             gradients: Gradients::default(),
         }
+    }
+
+    /// The descent that keeps the bands of the drawing bands: a stored one does not tell them.
+    pub(super) fn holding_bands(self, drawing: &Drawing) -> Self {
+        let held = Held::bands(drawing.free());
+        Self { held, ..self }
     }
 
     /// Number of iterations to come.
@@ -200,6 +206,7 @@ impl Descent {
     /// is new.
     pub(super) fn follow(&mut self, sources: &[Option<usize>], drawing: &Drawing, recipe: &Recipe) {
         self.adam.rearrange(1, sources);
+        self.held = Held::bands(drawing.free());
         self.scales = scales(&self.course.rates, drawing, recipe);
     }
 }

@@ -206,7 +206,7 @@ struct Options {
 impl Options {
     fn new(terrain: &Terrain<'_>, limits: Limits, points: &Points) -> Self {
         let stroke = terrain.stroke;
-        if !stroke.is_finite() {
+        if !stroke.is_finite() || terrain.is_band {
             return Self::default();
         }
         let may_grow = stroke.points.len() < limits.most;

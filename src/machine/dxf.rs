@@ -1,13 +1,13 @@
 //! DXF: lines, circles and polylines with arcs in millimetres, on a layer for each colour (AutoCAD 2004).
 //!
-//! Strokes are their centre lines, areas are their rings, circles are circles, and dots are points. Quadratic curves are
+//! Strokes and bands are their centre lines, areas are their rings, circles are circles, and dots are points. Quadratic curves are
 //! pairs of arcs that meet without a corner, as cutters and routers read them; the format has no compound paths and no opacity.
 
 mod arcs;
 mod file;
 
 use super::sheet::Sheet;
-use crate::scene::{Path, Piece, Shape, distinct_colors, quantum};
+use crate::scene::{Area, Path, Piece, Shape, distinct_colors, quantum};
 use arcs::Vertex;
 use file::File;
 
@@ -21,7 +21,9 @@ pub fn dxf(sheet: &Sheet<'_>) -> String {
     let mut file = File::new(page, &colors);
     for mark in sheet.scene.marks() {
         let layer = file::layer(mark.color().map(quantum));
-        for path in mark.paths() {
+        let band = mark.as_area().and_then(Area::band);
+        let middle = band.as_ref().map(|band| std::slice::from_ref(&band.line));
+        for path in middle.unwrap_or(mark.paths()) {
             push(&mut file, &layer, path, sheet);
         }
     }

@@ -35,8 +35,8 @@ use crate::scene::{Mark, Scene, Stage};
 /// The scene with the outline of each stroke in its place.
 pub fn outlined(scene: &Scene) -> Scene {
     let around = |mark: &Mark| match mark {
-        Mark::Stroke(stroke) => outline::area(stroke).into(),
-        Mark::Area(_) => mark.clone(),
+        Mark::Stroke(stroke) => outline::area(stroke),
+        Mark::Area(area) => area.clone().filled(),
     };
     let stage = |stage: &Stage| stage.marks.iter().map(around).collect();
     Scene {

@@ -130,6 +130,16 @@ fn push(out: &mut String, mark: &Mark, shade: Option<usize>) {
             push_path(out, &stroke.path);
             *out += "S\n";
         }
+        Mark::Area(area) if let Some(band) = area.band() => {
+            // Square ends and mitred corners, which do not reach farther than in SVG.
+            let _ = writeln!(out, "RG q 0 J 0 j 4 M {} w", number(band.width.into()));
+            push_path(out, &band.line);
+            *out += if band.line.is_closed() {
+                "s Q\n"
+            } else {
+                "S Q\n"
+            };
+        }
         Mark::Area(area) => {
             *out += "rg\n";
             *out += if shade.is_some() { "q " } else { "" };

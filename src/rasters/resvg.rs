@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use resvg::tiny_skia::{FillRule, Mask as Raster, PathBuilder, Rect, Transform};
+use resvg::tiny_skia::{FillRule, Mask as Raster, Path as Outline, PathBuilder, Rect, Transform};
 
 use super::footprint::Footprint;
 use crate::outline;
-use crate::scene::Mark;
+use crate::scene::{Mark, Path};
 
 /// The pixels of a picture of `width`×`height` px that `mark`, which is as its file has it, covers.
 pub(super) fn footprint(mark: &Mark, width: usize, height: usize) -> Footprint {
@@ -16,19 +16,26 @@ pub(super) fn footprint(mark: &Mark, width: usize, height: usize) -> Footprint {
 fn covered(mark: &Mark, size: [usize; 2]) -> Option<Footprint> {
     let outline = match mark {
         Mark::Stroke(stroke) => outline::stroked(stroke, 1.0)?,
-        Mark::Area(area) => {
-            let mut rings = PathBuilder::new();
-            area.rings
-                .iter()
-                .for_each(|ring| outline::push(&mut rings, ring, 1.0));
-            rings.finish()?
-        }
+        Mark::Area(area) if let Some(band) = area.band() => outline::of_band(&band)?,
+        Mark::Area(area) => outline_of_rings(&area.rings)?,
     };
+    filled(&outline, size)
+}
+
+fn outline_of_rings(rings: &[Path]) -> Option<Outline> {
+    let mut builder = PathBuilder::new();
+    rings
+        .iter()
+        .for_each(|ring| outline::push(&mut builder, ring, 1.0));
+    builder.finish()
+}
+
+fn filled(outline: &Outline, size: [usize; 2]) -> Option<Footprint> {
     // Only the box of the outline is drawn. It lies on whole pixels, so that samples fall where they do on the page.
     let [columns, rows] = touched(outline.bounds(), size);
     let mut raster = Raster::new(columns.len() as u32, rows.len() as u32)?;
     let corner = Transform::from_translate(-(columns.start as f32), -(rows.start as f32));
-    raster.fill_path(&outline, FillRule::Winding, true, corner);
+    raster.fill_path(outline, FillRule::Winding, true, corner);
     let width = size[0];
     let levels = rows.zip(raster.data().chunks_exact(columns.len()));
     let covered = levels.flat_map(|(y, levels)| (y * width + columns.start..).zip(levels));
@@ -57,7 +64,7 @@ mod tests {
 
     use super::*;
     use crate::math::{self, Point};
-    use crate::scene::{self, PathPoint, Scene, Stage, Stroke};
+    use crate::scene::{Area, Band, PathPoint, Scene, Stage, Stroke};
     use crate::sdf::Capsule;
     use crate::svg::{self, WriteOptions};
     use crate::verify::{self, Size};
@@ -100,7 +107,7 @@ mod tests {
                 PathPoint { at: Point::new(60.0 + x * u, 60.0 + y * v), is_on }
             });
             let stroke = Stroke {
-                path: scene::Path::new(points.collect(), true).unwrap(),
+                path: Path::new(points.collect(), true).unwrap(),
                 radius,
                 color: [0.0; 3],
                 opacity: 1.0,
@@ -108,6 +115,52 @@ mod tests {
             let written = Scene::empty(120, 120, None).quantized_mark(&stroke.into(), 2).unwrap();
             let written = written.as_stroke().unwrap();
             prop_assert!(deepest_hole(written, 120) < 1.5, "{written:?}");
+        }
+    }
+
+    #[test]
+    fn a_band_is_drawn_as_its_rings() {
+        let [on, off] = [PathPoint::on, PathPoint::off];
+        let bent = vec![
+            on([15.0, 20.0].into()),
+            off([25.0, 34.0].into()),
+            off([40.0, 41.0].into()),
+            off([60.0, 40.0].into()),
+            on([82.0, 22.0].into()),
+        ];
+        let corners = vec![
+            on([20.0, 70.0].into()),
+            on([50.0, 15.0].into()),
+            on([80.0, 75.5].into()),
+        ];
+        let (size, closed) = (100, corners.clone());
+        for (points, is_closed, most) in
+            [(bent, false, 32), (corners, false, 16), (closed, true, 16)]
+        {
+            let line = Path::new(points, is_closed).unwrap();
+            let band = Band { line, width: 7.5 };
+            let area = Area {
+                rings: band.rings(),
+                color: [0.0; 3],
+                opacity: 1.0,
+                shade: None,
+            };
+            let found = area.band().unwrap();
+            assert!((found.width - 7.5).abs() < 1e-4, "{found:?}");
+            let [of_band, of_rings] = [
+                outline::of_band(&band).unwrap(),
+                outline_of_rings(&area.rings).unwrap(),
+            ]
+            .map(|outline| filled(&outline, [size; 2]).unwrap());
+            let level = |footprint: &Footprint, pixel: u32| {
+                let found = footprint.iter().find(|(at, _)| *at == pixel);
+                found.map_or(0, |(_, level)| i32::from(level))
+            };
+            let pixels = 0..(size * size) as u32;
+            let apart =
+                pixels.map(|pixel| (level(&of_band, pixel) - level(&of_rings, pixel)).abs());
+            let apart = apart.max().unwrap();
+            assert!(apart <= most, "{apart} {band:?}");
         }
     }
 
@@ -122,13 +175,13 @@ mod tests {
                 on([40.0, 44.5].into()),
                 on([12.0, 41.0].into()),
             ];
-            scene::Path::new(points, closed).unwrap()
+            Path::new(points, closed).unwrap()
         };
         let paths = [
             bent(false),
             bent(true),
-            scene::Path::line([20.0, 9.0].into(), [44.5, 30.25].into()),
-            scene::Path::dot([25.5, 24.5].into()),
+            Path::line([20.0, 9.0].into(), [44.5, 30.25].into()),
+            Path::dot([25.5, 24.5].into()),
         ];
         for path in paths {
             let stroke = Stroke {

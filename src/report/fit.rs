@@ -180,7 +180,7 @@ impl FitReport {
                 ..Input::new(run.input, &fit.target)
             },
             strokes,
-            areas: fit.scene.areas().count(),
+            areas: fit.scene.filled().count(),
             points: fit.scene.points(),
             dropped: fit.dropped.total(),
             dropped_for: fit.dropped,

@@ -8,6 +8,10 @@ pub const MAX_PRECISION: u8 = 6;
 /// Units of what is written per px.
 pub(crate) const UNITS_PER_PX: i64 = 10_i64.pow(MAX_PRECISION as u32);
 
+/// Narrowest stroke, px. Rasterisers of the Skia family draw a width of 1 px or less as a hairline of lower
+/// opacity, with the wrong ink on diagonals. The excess over 1 px keeps rounding from reaching 1 px.
+pub const MIN_WIDTH: f64 = 1.02;
+
 /// The multiples of 10^−precision px, or of some steps of it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Grid {

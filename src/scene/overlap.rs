@@ -30,8 +30,8 @@ pub(crate) fn overlaps<'a>(
 /// Where a mark may leave ink: what is needed to compare it with many others.
 #[derive(Debug, Clone)]
 struct Swept {
-    /// Of a stroke, in units; 0 for an area.
-    width: i64,
+    /// Farthest that it reaches beyond its paths, in units; 0 for an area.
+    reach: i64,
     /// From where to where the points lie along each axis, in units.
     bounds: [[i64; 2]; 2],
     /// The paths, by segments at most [`TOLERANCE`] away from them; that of a dot has no length.
@@ -44,7 +44,7 @@ impl Swept {
     fn new(mark: &Written) -> Self {
         let starts = mark.paths.iter().flat_map(|path| path.points().first());
         Self {
-            width: mark.width,
+            reach: mark.reach(),
             bounds: bounds(mark),
             segments: segments(mark),
             starts: starts.map(|p| p.at.map(|units| units as f64)).collect(),
@@ -53,7 +53,7 @@ impl Swept {
 
     /// True if the order of the two marks can change the picture.
     fn meets(&self, other: &Self) -> bool {
-        let reach = reach(self.width, other.width);
+        let reach = self.reach + other.reach + APART;
         are_near(&self.bounds, &other.bounds, reach)
             && (is_nearer(&self.segments, &other.segments, reach as f64)
                 || self.covers(other)
@@ -62,13 +62,13 @@ impl Swept {
 
     /// True if it is an area that a path of `other` starts in.
     fn covers(&self, other: &Self) -> bool {
-        self.width == 0 && other.starts.iter().any(|&p| is_inside(p, &self.segments))
+        self.reach == 0 && other.starts.iter().any(|&p| is_inside(p, &self.segments))
     }
 
     /// From where to where, along the x axis, the mark can meet others, in units.
     fn span(&self) -> [i64; 2] {
         let [near, far] = self.bounds[0];
-        let margin = (self.width + APART + 1) / 2;
+        let margin = self.reach + (APART + 1) / 2;
         [near - margin, far + margin]
     }
 }
@@ -76,7 +76,7 @@ impl Swept {
 impl Written {
     /// True if the order of the two marks can change the picture.
     pub(crate) fn meets(&self, other: &Self) -> bool {
-        let reach = reach(self.width, other.width);
+        let reach = self.reach() + other.reach() + APART;
         are_near(&bounds(self), &bounds(other), reach) && Swept::new(self).meets(&Swept::new(other))
     }
 }
@@ -97,11 +97,6 @@ impl Written {
     pub(crate) fn bounds(&self) -> [[i64; 2]; 2] {
         bounds(self)
     }
-}
-
-/// Distance between paths of these widths up to which the marks may share a pixel, in units.
-fn reach(a: i64, b: i64) -> i64 {
-    (a + b) / 2 + APART
 }
 
 /// True if these boxes come nearer to each other than `reach`.
@@ -202,6 +197,7 @@ mod tests {
         Written {
             paths: vec![WrittenPath::line([x * PX, 10 * PX], [x * PX, 90 * PX])],
             shape: None,
+            is_band: false,
             width: width * PX,
             color: [0; 3],
             opacity: 255,
@@ -217,6 +213,7 @@ mod tests {
         let beyond = Written {
             paths: vec![WrittenPath::line([10 * PX, 96 * PX], [10 * PX, 96 * PX])],
             shape: None,
+            is_band: false,
             ..base.clone()
         };
         assert!(!base.meets(&beyond));
@@ -227,6 +224,7 @@ mod tests {
         let across = Written {
             paths: vec![WrittenPath::line([-500 * PX, 50 * PX], [500 * PX, 51 * PX])],
             shape: None,
+            is_band: false,
             ..stroke(0, 1)
         };
         assert!(stroke(10, 1).meets(&across));
@@ -241,11 +239,13 @@ mod tests {
         let arch = Written {
             paths: vec![WrittenPath::new(points.into(), false)],
             shape: None,
+            is_band: false,
             ..stroke(0, 2)
         };
         let dot = |x: i64, y: i64| Written {
             paths: vec![WrittenPath::line([x * PX, y * PX], [x * PX, y * PX])],
             shape: None,
+            is_band: false,
             ..stroke(0, 2)
         };
         // The top of the curve is at (50, 50).
@@ -267,12 +267,14 @@ mod tests {
         let area = |paths| Written {
             paths,
             shape: None,
+            is_band: false,
             width: 0,
             ..stroke(0, 2)
         };
         let dot = Written {
             paths: vec![WrittenPath::line([50 * PX; 2], [50 * PX; 2])],
             shape: None,
+            is_band: false,
             ..stroke(0, 2)
         };
         let [whole, holed] = [vec![square(0, 100)], vec![square(0, 100), square(20, 80)]].map(area);

@@ -5,14 +5,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::grid::{Grid, UNITS_PER_PX, color, quantum};
-use super::written_path::{WrittenPath, WrittenPoint};
+use super::grid::{Grid, MIN_WIDTH, UNITS_PER_PX, color, quantum};
+use super::written_path::{WrittenPath, WrittenPoint, spacing, step};
 use super::written_shape::WrittenShape;
-use super::{Area, Mark, Path, PathPoint, Rgb, Scene, Shade, Stage, Stroke};
-
-/// Narrowest stroke, px. Rasterisers of the Skia family draw a width of 1 px or less as a hairline of lower
-/// opacity, with the wrong ink on diagonals. The excess over 1 px keeps rounding from reaching 1 px.
-pub const MIN_WIDTH: f64 = 1.02;
+use super::{Area, Band, Mark, Path, PathPoint, Rgb, Scene, Shade, Stage, Stroke};
 
 /// Largest absolute value of a coordinate, px. All decimals up to here are exact.
 const MAX_COORDINATE: f32 = 1e9;
@@ -111,7 +107,7 @@ impl Scene {
             let written = written.map_err(|reason| dropped.count(reason)).ok()?;
             // A curve that turns back sharply gets points, as it is written as two lines.
             let (before, after) = (mark.points(), written.points().count());
-            if written.shape.is_none() {
+            if written.shape.is_none() && !written.is_band {
                 dropped.points += before.saturating_sub(after);
             }
             Some(written)
@@ -123,12 +119,14 @@ impl Scene {
 /// A mark as the integers of its SVG element.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Written {
-    /// The centre line of a stroke, or the rings of an area; at least one.
+    /// The centre line of a stroke or band, or the rings of an area; at least one.
     pub(crate) paths: Vec<WrittenPath>,
     /// The shape of the only path, if it is one.
     pub(crate) shape: Option<WrittenShape>,
-    /// Width of a stroke in units of 1/[`UNITS_PER_PX`] px; 0 for an area.
+    /// Width of a stroke in units of 1/[`UNITS_PER_PX`] px; 0 for an area that is no band.
     pub(crate) width: i64,
+    /// True for a band, which is written as a stroke with square ends.
+    pub(crate) is_band: bool,
     /// 8-bit red, green and blue.
     pub(crate) color: [u8; 3],
     /// Opacity in 1/255, never 0.
@@ -170,6 +168,21 @@ impl Written {
     pub(crate) fn anywhere(mark: &Mark, precision: u8) -> Result<Self, Unwritable> {
         check(mark)?;
         let grid = Grid::new(precision);
+        if let Some(band) = Self::band(mark, &grid) {
+            return Ok(band);
+        }
+        let rounded = Self::round_or_filled(mark, precision)?;
+        // An area may become a band only as it is rounded.
+        let band = rounded
+            .is_area()
+            .then(|| Self::band(&rounded.mark(), &grid));
+        Ok(band.flatten().unwrap_or(rounded))
+    }
+
+    /// The rounded mark as a stroke with round ends or an area, even if it is a band.
+    pub(crate) fn round_or_filled(mark: &Mark, precision: u8) -> Result<Self, Unwritable> {
+        check(mark)?;
+        let grid = Grid::new(precision);
         let width = mark.as_stroke().map_or(0, |stroke| {
             let width = grid.units(2.0 * f64::from(stroke.radius));
             width.max(grid.units_above(MIN_WIDTH))
@@ -183,15 +196,43 @@ impl Written {
             paths,
             shape,
             width,
+            is_band: false,
             color: shade.map_or_else(|| mark.color().map(quantum), Shade::mean),
             opacity: quantum(mark.opacity()),
             shade: shade.cloned().map(WrittenShade::from),
         })
     }
 
-    /// True if the mark is an area.
+    /// The mark as a band, if it is one and stays that as it is rounded.
+    fn band(mark: &Mark, grid: &Grid) -> Option<Self> {
+        let written = |area: &Area| {
+            let band = area.band()?;
+            let spacing = area.rings.iter().map(spacing).fold(0.0, f32::max);
+            // Points in `f32` tell a band by a few units in their last place.
+            let grid = grid.coarser(step(8.0 * spacing, grid));
+            Some(Self {
+                paths: vec![WrittenPath::rounded(&band.line, &grid)],
+                shape: None,
+                width: grid.units(band.width.into()),
+                is_band: true,
+                color: mark.color().map(quantum),
+                opacity: quantum(mark.opacity()),
+                shade: None,
+            })
+        };
+        let rounded = written(mark.as_area()?)?;
+        let again = written(rounded.mark().as_area()?)?;
+        (again == rounded).then_some(rounded)
+    }
+
+    /// True if the mark is an area that is no band.
     pub(crate) fn is_area(&self) -> bool {
         self.width == 0
+    }
+
+    /// True if the mark is a stroke with round ends.
+    pub(crate) fn is_round(&self) -> bool {
+        !self.is_area() && !self.is_band
     }
 
     /// The points of all paths.
@@ -205,15 +246,43 @@ impl Written {
         paths.flat_map(|path| path.segments(tolerance)).collect()
     }
 
+    /// Farthest that it reaches beyond its paths, in units: the corners of a band reach farther than its sides.
+    pub(crate) fn reach(&self) -> i64 {
+        let halves = if self.is_band { 4 } else { 1 };
+        halves * self.width / 2
+    }
+
     /// True if the bounding box reaches into a page of this size.
     fn touches(&self, width: u32, height: u32) -> bool {
-        let reach = self.width / 2;
+        let reach = self.reach();
         [width, height].iter().enumerate().all(|(axis, &side)| {
             let along = || self.points().map(|p| p.at[axis]);
             let far_end = along().max().unwrap_or(0) + reach;
             let near_end = along().min().unwrap_or(0) - reach;
             far_end > 0 && near_end < i64::from(side) * UNITS_PER_PX
         })
+    }
+
+    /// Half the width, px.
+    fn radius(&self) -> f32 {
+        (self.width as f64 / (2 * UNITS_PER_PX) as f64) as f32
+    }
+
+    /// The band of this mark's width along a line.
+    fn band_along(&self, line: Path) -> Band {
+        Band {
+            line,
+            width: 2.0 * self.radius(),
+        }
+    }
+
+    /// True unless it is a band that SVG would draw otherwise than as its rings.
+    pub(crate) fn is_sound(&self) -> bool {
+        !self.is_band
+            || self
+                .paths
+                .iter()
+                .all(|path| self.band_along(path.path()).is_sound())
     }
 
     /// The rounded mark.
@@ -224,14 +293,17 @@ impl Written {
             None => self.paths.iter().map(WrittenPath::path).collect(),
         };
         match paths.pop() {
-            Some(path) if !self.is_area() => Mark::Stroke(Stroke {
+            Some(path) if !self.is_area() && !self.is_band => Mark::Stroke(Stroke {
                 path,
-                radius: (self.width as f64 / (2 * UNITS_PER_PX) as f64) as f32,
+                radius: self.radius(),
                 color,
                 opacity,
             }),
             last => Mark::Area(Area {
-                rings: paths.into_iter().chain(last).collect(),
+                rings: match last {
+                    Some(line) if self.is_band => self.band_along(line).rings(),
+                    last => paths.into_iter().chain(last).collect(),
+                },
                 color,
                 opacity,
                 shade: self.shade.as_ref().map(|named| named.shade.clone()),

@@ -42,7 +42,7 @@ impl Shadow {
             return refuse("a shadow has a gradient: give one colour".into());
         }
         let blur = (blur * 100.0).round() as u32;
-        match Written::anywhere(&area.into(), PRECISION).map(|written| written.mark()) {
+        match Written::round_or_filled(&area.into(), PRECISION).map(|written| written.mark()) {
             Ok(Mark::Area(area)) => Ok(Self { area, blur }),
             _ => refuse("a shadow has nothing to be seen".into()),
         }
@@ -61,7 +61,7 @@ impl Shadow {
     /// The integers of the shadow's element, and of its blur in 1/[`UNITS_PER_PX`] px.
     pub(crate) fn written(&self) -> Option<(Written, i64)> {
         let area = Mark::Area(self.area.clone());
-        let written = Written::anywhere(&area, PRECISION).ok()?;
+        let written = Written::round_or_filled(&area, PRECISION).ok()?;
         Some((written, i64::from(self.blur) * HUNDREDTH))
     }
 

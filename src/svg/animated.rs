@@ -60,6 +60,9 @@ pub fn write_animated(
             Some(Mark::Stroke(stroke)) if is_long(stroke) => {
                 groups.push(&clock.along(line, part));
             }
+            Some(Mark::Area(area)) if area.band().is_some() => {
+                groups.push(&clock.along(line, part))
+            }
             Some(Mark::Area(area)) => groups.push(&clock.fading(line, area, part)),
             _ => groups.push(line),
         }

@@ -255,6 +255,7 @@ mod tests {
         Written {
             paths: vec![WrittenPath::line([x * PX, 10 * PX], [x * PX, 90 * PX])],
             shape: None,
+            is_band: false,
             width: width * PX,
             color: [color; 3],
             opacity: 255,
@@ -296,6 +297,7 @@ mod tests {
                 .collect(),
             shape: None,
             width: 0,
+            is_band: false,
             color: [color; 3],
             opacity: 255,
             shade: None,

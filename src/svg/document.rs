@@ -20,6 +20,9 @@ use outline::{MARK, Outline};
 const RESET: &str = "stroke-opacity:1;stroke-dasharray:none;marker:none;paint-order:normal;\
                      shape-rendering:auto;visibility:visible";
 
+/// More of them, which bands inherit.
+const RESET_BANDS: &str = ";stroke-linecap:butt;stroke-linejoin:miter;stroke-miterlimit:4";
+
 /// More of them, which only what is filled inherits.
 const RESET_FILL: &str = ";fill-opacity:1;fill-rule:nonzero;stroke:none";
 
@@ -122,7 +125,10 @@ impl Document {
         let layers = layers(scene, options, self.outline.stages + 1);
         let has_fill = options.form == Form::Outlines || scene.areas().next().is_some();
         let fill = if has_fill { RESET_FILL } else { "" };
-        self.with(&layers, [scene.width, scene.height], fill)
+        let has_bands = scene.areas().any(|area| area.band().is_some());
+        let bands = if has_bands { RESET_BANDS } else { "" };
+        let reset = [fill, bands].concat();
+        self.with(&layers, [scene.width, scene.height], &reset)
     }
 
     /// The document with `layers` of a picture of this size, which also need the properties `reset`.

@@ -11,7 +11,7 @@ use super::outline;
 use super::path::{self, Kind};
 use super::shape;
 use super::sheet::Sheet;
-use crate::scene::Written;
+use crate::scene::{Written, WrittenPath};
 
 /// Names of marks and classes of elements, which forms with an element for each mark have.
 #[derive(Debug, Clone, Copy, Default)]
@@ -46,18 +46,23 @@ pub(super) fn push(
     unit: Unit,
     names: Names<'_>,
 ) {
+    let has_round = strokes.iter().any(Written::is_round);
     match form {
         Form::Plain | Form::Css => {
             for (i, stroke) in strokes.iter().enumerate() {
                 let (attributes, shared) = names.of(stroke, i);
                 let alone = std::slice::from_ref(stroke);
-                push_path(out, alone, &attributes, shared, Style::Full);
+                push_path(out, alone, &attributes, shared, Style::Full { has_round });
                 out.push('\n');
             }
         }
         Form::Smallest => {
             let width = usual_width(strokes);
-            let style = Style::Short { width, unit };
+            let style = Style::Short {
+                width,
+                unit,
+                has_round,
+            };
             push_runs(out, &split(strokes), &[], style);
         }
         Form::Outlines => strokes.iter().for_each(|stroke| outline::push(out, stroke)),
@@ -66,7 +71,8 @@ pub(super) fn push(
 
 /// Appends the element of one mark in full, with these `names`.
 pub(super) fn push_alone(out: &mut String, mark: &Written, names: &str) {
-    push_path(out, std::slice::from_ref(mark), names, &[], Style::Full);
+    let style = Style::Full { has_round: true };
+    push_path(out, std::slice::from_ref(mark), names, &[], style);
 }
 
 /// Bytes of an element of one stroke. In the smallest form, its width is assumed to be shared with neighbours; classes count
@@ -76,8 +82,16 @@ pub(super) fn bytes(stroke: &Written, form: Form, unit: Unit) -> usize {
     let alone = std::slice::from_ref(stroke);
     match form {
         Form::Smallest => {
-            let style = Style::Short { width: None, unit };
+            let style = Style::Short {
+                width: None,
+                unit,
+                has_round: true,
+            };
             push_path(&mut out, alone, "", &[Attribute::Width], style);
+        }
+        form if stroke.is_band && form != Form::Outlines => {
+            push_alone(&mut out, stroke, "");
+            out.push('\n');
         }
         form => push(&mut out, alone, form, unit, Names::default()),
     }
@@ -129,9 +143,14 @@ fn joins(strokes: &[Written], next: &Written) -> bool {
         .is_some_and(|last| style_of(last) == style_of(next));
     is_alike
         && !next.is_area()
-        && next.shape.is_none()
-        && strokes.iter().all(|stroke| stroke.shape.is_none())
+        && is_line(next)
+        && strokes.iter().all(is_line)
         && (next.opacity == u8::MAX || !strokes.iter().any(|stroke| stroke.meets(next)))
+}
+
+/// True if other strokes can join the element of the mark.
+fn is_line(mark: &Written) -> bool {
+    mark.shape.is_none() && !mark.is_band
 }
 
 /// An attribute that the marks of an element have in common.
@@ -152,7 +171,7 @@ impl Attribute {
             Self::Color if let Some(gradient) = gradient::paint(mark) => {
                 format!(" {paint}=\"{gradient}\"")
             }
-            Self::Color if style == Style::Full => {
+            Self::Color if style.is_full() => {
                 format!(" {paint}=\"{}\"", dialect::hex(mark.color))
             }
             Self::Color => format!(" {paint}=\"{}\"", dialect::short_hex(mark.color)),
@@ -169,23 +188,38 @@ impl Attribute {
 /// Style of writing attributes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Style {
-    /// In full, colours with six digits.
-    Full,
+    /// In full, colours with six digits, in a layer that has strokes with round ends or has none.
+    Full { has_round: bool },
     /// As short as possible in a layer of this `width` with numbers in this `unit`.
-    Short { width: Option<i64>, unit: Unit },
+    Short {
+        width: Option<i64>,
+        unit: Unit,
+        has_round: bool,
+    },
 }
 
 impl Style {
+    fn is_full(self) -> bool {
+        matches!(self, Self::Full { .. })
+    }
+
+    /// True if the layer has strokes with round ends.
+    fn has_round(self) -> bool {
+        match self {
+            Self::Full { has_round } | Self::Short { has_round, .. } => has_round,
+        }
+    }
+
     fn layer_width(self) -> Option<i64> {
         match self {
-            Self::Full => None,
+            Self::Full { .. } => None,
             Self::Short { width, .. } => width,
         }
     }
 
     fn unit(self) -> Unit {
         match self {
-            Self::Full => Unit::PX,
+            Self::Full { .. } => Unit::PX,
             Self::Short { unit, .. } => unit,
         }
     }
@@ -202,7 +236,7 @@ fn push_path(
 ) {
     let only = strokes.first().filter(|_| strokes.len() == 1);
     // In full, each element has a line of its own.
-    let end = if style == Style::Full { "\n" } else { "" };
+    let end = if style.is_full() { "\n" } else { "" };
     for mark in strokes {
         gradient::push_of(out, mark, end);
     }
@@ -223,7 +257,18 @@ fn push_path(
             .first()
             .map_or_else(String::new, |stroke| attribute.text(stroke, style));
     }
+    out.push_str(only.filter(|_| style.has_round()).map_or("", ends));
     out.push_str("/>");
+}
+
+/// The attributes that give a band the ends and corners that other strokes of its layer do not have.
+fn ends(mark: &Written) -> &'static str {
+    let has_corners = mark.paths.iter().any(WrittenPath::has_joins);
+    match mark.is_band {
+        false => "",
+        true if has_corners => " stroke-linecap=\"butt\" stroke-linejoin=\"miter\"",
+        true => " stroke-linecap=\"butt\"",
+    }
 }
 
 /// Bytes of a group around elements, besides its attribute.

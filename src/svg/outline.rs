@@ -23,6 +23,7 @@ pub(super) fn push(out: &mut String, mark: &Written) {
                 .for_each(|shape| shape::push(out, shape, "", Unit::PX));
         }
         (rings, _) if mark.is_area() => push_rings(out, rings),
+        _ if mark.is_band => push_rings(out, &rings(mark)),
         ([dot], _) if dot.points().len() == 1 => push_circle(out, dot.points()[0].at, mark.width),
         (_, Some([a, b])) => push_capsule(out, a, b, mark.width),
         _ => push_rings(out, &rings(mark)),
@@ -51,9 +52,10 @@ fn straight(mark: &Written) -> Option<[[i64; 2]; 2]> {
 fn rings(stroke: &Written) -> Vec<WrittenPath> {
     let around = match stroke.mark() {
         Mark::Stroke(stroke) => outline::area(&stroke).into(),
-        area => area,
+        Mark::Area(band) => band.filled().into(),
     };
-    Written::anywhere(&around, LEAST_PRECISION).map_or_else(|_| Vec::new(), |area| area.paths)
+    Written::round_or_filled(&around, LEAST_PRECISION)
+        .map_or_else(|_| Vec::new(), |area| area.paths)
 }
 
 fn push_rings(out: &mut String, rings: &[WrittenPath]) {
@@ -129,6 +131,7 @@ mod tests {
             paths: vec![WrittenPath::new(points.iter().map(point).collect(), false)],
             shape: None,
             width: 3 * UNITS_PER_PX,
+            is_band: false,
             color: [255, 102, 0],
             opacity,
             shade: None,

@@ -19,7 +19,7 @@ use crate::scene::{
     MAX_POINTS, Mark, Rgb, Scene, Shade, Stage, Written, WrittenPath, WrittenShade, WrittenShape,
     color,
 };
-use element::{Element, short};
+use element::{ENDS, Element, short};
 
 /// Reads text that [`write`](super::write()) wrote, in any form except outlines.
 ///
@@ -163,9 +163,12 @@ impl<'a> Parser<'a> {
             .any(|key| group.find(key).is_some());
         if has_strokes {
             group.expect("fill", "none")?;
+        }
+        let has_round = group.find("stroke-linecap").is_some();
+        let has_join = group.find("stroke-linejoin").is_some();
+        if has_round || has_join {
             group.expect("stroke-linecap", "round")?;
         }
-        let has_join = group.find("stroke-linejoin").is_some();
         if has_join {
             group.expect("stroke-linejoin", "round")?;
         }
@@ -174,7 +177,7 @@ impl<'a> Parser<'a> {
         let unit = unit.unwrap_or(Unit::PX);
         let style = Style {
             layer_width: group.either("stroke-width", None, |text| width(text, unit))?,
-            ..Style::new(unit, has_strokes, has_join)
+            ..Style::new(unit, [has_strokes, has_round, has_join])
         };
         self.marks(&style, &mut stage)?;
         Ok(stage)
@@ -289,8 +292,10 @@ struct Style {
     opacity: Option<u8>,
     fill: Option<[u8; 3]>,
     fill_opacity: Option<u8>,
-    /// True if the layer says how strokes are drawn.
+    /// True if the layer says that its paths are strokes.
     has_strokes: bool,
+    /// True if the ends of strokes are round, unless they have square ones of their own.
+    has_round: bool,
     /// The default width.
     layer_width: Option<i64>,
     /// The unit of their numbers.
@@ -304,7 +309,7 @@ fn width(text: &str, unit: Unit) -> Option<i64> {
 }
 
 impl Style {
-    fn new(unit: Unit, has_strokes: bool, has_join: bool) -> Self {
+    fn new(unit: Unit, [has_strokes, has_round, has_join]: [bool; 3]) -> Self {
         Self {
             color: None,
             width: None,
@@ -312,6 +317,7 @@ impl Style {
             fill: None,
             fill_opacity: None,
             has_strokes,
+            has_round,
             layer_width: None,
             unit,
             has_join,
@@ -354,6 +360,7 @@ impl Style {
                 "<{}> has both a fill and a stroke: make it two",
                 path.name
             )),
+            Some(_) if is_band(path)? => Err("<path> has a fill and the ends of a stroke".into()),
             Some(color) => self.area(path, color, None).map(|area| vec![area]),
             None => self.strokes(path),
         }
@@ -400,6 +407,7 @@ impl Style {
             paths,
             shape,
             width: 0,
+            is_band: false,
             color,
             opacity: self.fill_opacity.unwrap_or(u8::MAX),
             shade: shade.map(WrittenShade::from),
@@ -418,28 +426,52 @@ impl Style {
         let width = width.ok_or_else(|| missing("stroke-width"))?;
         let color = self.color.ok_or_else(|| missing("stroke"))?;
         if !self.has_strokes {
-            return Err("<path> is a stroke, but its layer has no stroke-linecap=\"round\"".into());
+            return Err("<path> is a stroke, but its layer has no fill=\"none\"".into());
         }
-        if !self.has_join && paths.iter().any(WrittenPath::has_joins) {
-            return Err(
-                "<path> has a corner, but its layer has no stroke-linejoin=\"round\"".into(),
-            );
+        let has_square = is_band(path)?;
+        let is_band = has_square || !self.has_round;
+        let has_join = match has_square {
+            true => path.find(ENDS[1]).is_some(),
+            false => self.has_join || is_band,
+        };
+        if !has_join && paths.iter().any(WrittenPath::has_joins) {
+            let whose = if is_band { "it" } else { "its layer" };
+            return Err(format!(
+                "<path> has a corner, but {whose} has no stroke-linejoin"
+            ));
         }
         check_counts(&paths, "stroke")?;
         let opacity = self.opacity.unwrap_or(u8::MAX);
-        let stroke = |path| {
-            Written {
-                paths: vec![path],
-                shape,
-                width,
-                color,
-                opacity,
-                shade: None,
-            }
-            .mark()
+        let stroke = |path| Written {
+            paths: vec![path],
+            shape,
+            width,
+            is_band,
+            color,
+            opacity,
+            shade: None,
         };
-        Ok(paths.into_iter().map(stroke).collect())
+        let marks: Vec<Written> = paths.into_iter().map(stroke).collect();
+        match marks.iter().all(Written::is_sound) {
+            true => Ok(marks.iter().map(Written::mark).collect()),
+            false => Err("<path> with square ends has a corner that is too sharp, or a line too short for its width: \
+                          make it an area"
+                .into()),
+        }
     }
+}
+
+/// True if a path has square ends and mitred corners instead of those of its layer.
+fn is_band(path: &Element) -> Parsed<bool> {
+    let given = ENDS.map(|key| path.find(key).is_some());
+    if given == [false; 2] {
+        return Ok(false);
+    }
+    path.expect(ENDS[0], "butt")?;
+    if given[1] {
+        path.expect(ENDS[1], "miter")?;
+    }
+    Ok(true)
 }
 
 /// Refuses paths of too many points.

@@ -204,6 +204,7 @@ mod tests {
         Written {
             paths: vec![path],
             shape: None,
+            is_band: false,
             width: 2 * PX,
             color: [color; 3],
             opacity: 255,

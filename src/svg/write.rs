@@ -160,12 +160,14 @@ fn counts(layer: &Layer) -> String {
     counted(areas, layer.strokes.len() - areas)
 }
 
-/// The attributes of a layer that turn its paths without a fill into strokes.
+/// The attributes of a layer that turn its paths without a fill into strokes: with round ends, unless it has bands alone.
 fn style_attributes(layer: &Layer, form: Form) -> &'static str {
-    let mut strokes = layer.strokes.iter().filter(|mark| !mark.is_area());
-    let mut paths = strokes.clone().flat_map(|stroke| &stroke.paths);
-    if form == Form::Outlines || strokes.next().is_none() {
+    let round = || layer.strokes.iter().filter(|mark| mark.is_round());
+    let mut paths = round().flat_map(|stroke| &stroke.paths);
+    if form == Form::Outlines || layer.strokes.iter().all(Written::is_area) {
         ""
+    } else if round().next().is_none() {
+        " fill=\"none\""
     } else if paths.any(WrittenPath::has_joins) {
         " fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\""
     } else {

@@ -9,14 +9,14 @@ use rayon::prelude::*;
 
 use super::Traced;
 use super::areas::Pixels;
-use super::even::Shape;
+use super::even::{Pen, Shape, WAVERING};
 use super::fill::{Fill, Flat};
 use super::gain::coverage;
 use super::parts::Part;
 use super::recipe::Tracing;
 use super::strokes::TracedStroke;
 use crate::math::distance;
-use crate::scene::{self, Area, Mark, Stroke};
+use crate::scene::{self, Area, Mark, Stroke, polyline};
 
 /// Strokes and regions that share pixels.
 #[derive(Debug, Default)]
@@ -48,8 +48,8 @@ pub(super) fn chosen(
         .collect();
     let groups = groups(&votes, flat.region_count());
     let wins = |group: &Group| stroked(group, flat, &fills, &strokes, pixels, price);
-    let radii: Vec<Option<Vec<f32>>> = groups.par_iter().map(wins).collect();
-    let won = radii.iter().map(Option::is_some).collect();
+    let pens: Vec<Option<Vec<Pen>>> = groups.par_iter().map(wins).collect();
+    let won = pens.iter().map(Option::is_some).collect();
     let mut won = unjoined(won, &groups, flat, &fills, &strokes);
     let undrawn = undrawn(&groups, &won, flat);
     if !undrawn.is_empty() {
@@ -67,11 +67,12 @@ pub(super) fn chosen(
     }
     let mut places: Vec<Option<(usize, f32)>> = vec![None; strokes.len()];
     let gains: BTreeMap<u32, f32> = fills.iter().map(|fill| (fill.region, fill.gain)).collect();
-    let drawn = groups.iter().zip(radii).zip(&won).filter(|(_, won)| **won);
-    for ((group, radii), _) in drawn {
+    let mut bands: Vec<Option<Area>> = vec![None; strokes.len()];
+    let drawn = groups.iter().zip(pens).zip(&won).filter(|(_, won)| **won);
+    for ((group, pens), _) in drawn {
         let regions = group.regions.iter();
         regions.for_each(|&region| is_stroked[region as usize] = true);
-        for (&i, radius) in group.strokes.iter().zip(radii.into_iter().flatten()) {
+        for (&i, pen) in group.strokes.iter().zip(pens.into_iter().flatten()) {
             let rank = rank(&strokes[i], &votes[i], flat, pixels);
             // On top of an area it gains what its regions do.
             let worth = votes[i].iter().map(|(region, votes)| {
@@ -81,9 +82,10 @@ pub(super) fn chosen(
             places[i] = Some((rank, worth.sum::<f32>().max(strokes[i].gain)));
             // A width that was taken for that on the canvas.
             let own = &mut strokes[i].stroke.radius;
-            if (*own - radius).abs() > WRONG {
-                *own = radius;
+            if (*own - pen.radius).abs() > WRONG {
+                *own = pen.radius;
             }
+            bands[i] = pen.band.map(|band| band.area(&strokes[i].stroke));
         }
     }
     let grouped = votes.iter().map(|votes| !votes.is_empty());
@@ -103,16 +105,16 @@ pub(super) fn chosen(
     }
     let areas = flat.areas(fills, &is_stroked);
     // A drawing of lines is one of strokes as they were traced.
-    if areas.is_empty() {
+    if areas.is_empty() && bands.iter().all(Option::is_none) {
         return Ok(traced.into_iter().map(Traced::from).collect());
     }
     // Strokes keep their order among each other, as far as areas lie not between.
     let mut found: Vec<(usize, Traced)> = Vec::new();
-    for (traced, place) in strokes.into_iter().zip(places) {
+    for ((traced, place), band) in strokes.into_iter().zip(places).zip(bands) {
         let Some((rank, gain)) = place else {
             continue;
         };
-        let mark = traced.stroke.into();
+        let mark = band.map_or_else(|| traced.stroke.into(), Mark::Area);
         let place = areas.iter().filter(|area| area.rank < rank).count();
         found.push((2 * place, Traced { mark, gain }));
     }
@@ -293,7 +295,16 @@ const SHORT: f32 = 16.0;
 /// A radius is replaced by one that is farther away than this, px. A guess.
 const WRONG: f32 = 0.5;
 
-/// The radii of the strokes of a group, if they draw its regions and areas cost as much.
+/// The stroke along a polyline, if it is nearly that.
+fn without_wavering(stroke: &Stroke) -> Stroke {
+    let polyline = polyline(&stroke.path, WAVERING, stroke.radius);
+    Stroke {
+        path: polyline.unwrap_or_else(|| stroke.path.clone()),
+        ..stroke.clone()
+    }
+}
+
+/// The pens of the strokes of a group, if they draw its regions and areas cost as much.
 fn stroked(
     group: &Group,
     flat: &Flat<'_>,
@@ -301,11 +312,11 @@ fn stroked(
     strokes: &[TracedStroke],
     pixels: &Pixels<'_>,
     price: &(impl Fn(&Mark) -> f32 + Sync),
-) -> Option<Vec<f32>> {
+) -> Option<Vec<Pen>> {
     let strokes: Vec<&Stroke> = group.strokes.iter().map(|&i| &strokes[i].stroke).collect();
     let of_strokes: f32 = strokes
         .iter()
-        .map(|&stroke| price(&stroke.clone().into()))
+        .map(|&stroke| price(&without_wavering(stroke).into()))
         .sum();
     let own = |fill: &&Fill| group.regions.contains(&fill.region);
     let areas: Vec<Area> = fills
@@ -326,11 +337,8 @@ fn stroked(
         inside: |p| flat.share_at(p, &members),
         region: |p| pixels.at(p).map(|i| flat.region(i)),
     };
-    let even: Vec<Option<f32>> = strokes
-        .iter()
-        .map(|stroke| shape.even_radius(stroke))
-        .collect();
-    let is_even = |(_, radius): &(&&Stroke, &Option<f32>)| radius.is_some();
+    let even: Vec<Option<Pen>> = strokes.iter().map(|stroke| shape.pen(stroke)).collect();
+    let is_even = |(_, pen): &(&&Stroke, &Option<Pen>)| pen.is_some();
     let lengths = |odd: bool| {
         let own = strokes.iter().zip(&even).filter(|own| odd != is_even(own));
         own.map(|(stroke, _)| length(stroke) * stroke.radius)
@@ -346,10 +354,26 @@ fn stroked(
     if lengths(true) > most_odd || even.iter().all(Option::is_none) {
         return None;
     }
-    let radii = strokes.iter().zip(even);
-    let radii = radii.map(|(stroke, radius)| radius.unwrap_or(stroke.radius));
-    is_covered(&strokes, flat, &members, group, pixels).then(|| radii.collect())
+    let pens = strokes.iter().zip(even);
+    let pens = pens.map(|(stroke, pen)| pen.unwrap_or(Pen::round(stroke.radius)));
+    let mut pens: Vec<Pen> = pens.collect();
+    // Letters of bars are things, and no lines.
+    // Ends that are hidden are like those that are seen.
+    let is_square = |pen: &Pen| pen.band.is_some() && !pen.is_round;
+    match pens.iter().any(is_square) {
+        true => {
+            let lengths: f32 = strokes.iter().map(|stroke| length(stroke)).sum();
+            if lengths < LONG * strokes.len() as f32 {
+                return None;
+            }
+        }
+        false => pens.iter_mut().for_each(|pen| pen.band = None),
+    }
+    is_covered(&strokes, flat, &members, group, pixels).then_some(pens)
 }
+
+/// Lines with square ends have so many radii on average. A guess.
+const LONG: f32 = 12.0;
 
 /// Length of the lines that are not even, in units of that of the others. A guess.
 const MOST_ODD: f32 = 0.25;

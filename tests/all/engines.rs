@@ -20,7 +20,7 @@ use strokefit::fit::{Budget, Config, Fitter};
 use strokefit::image::Image;
 use strokefit::metrics;
 use strokefit::rasters::chromium;
-use strokefit::scene::{self, Axis, PathPoint, Scene, Shade, ShadeStop, Stage, Stroke};
+use strokefit::scene::{self, Area, Axis, Band, PathPoint, Scene, Shade, ShadeStop, Stage, Stroke};
 use strokefit::svg::{self, Form, WriteOptions};
 use strokefit::verify::{self, Size};
 
@@ -401,7 +401,54 @@ fn kinds() -> Vec<(&'static str, Scene)> {
         ),
     ];
     kinds.extend(bent);
+    kinds.push(("bands", bands()));
     kinds
+}
+
+/// Lines with square ends and mitred corners, one of them closed, one bent, one translucent.
+fn bands() -> Scene {
+    let on = |x: f32, y: f32| PathPoint::on([x, y].into());
+    let off = |x: f32, y: f32| PathPoint::off([x, y].into());
+    let lines = [
+        (vec![on(5.0, 6.5), on(25.0, 6.5)], false, 5.0, 1.0),
+        (
+            vec![on(8.0, 40.0), on(18.0, 18.0), on(30.0, 42.0)],
+            false,
+            4.0,
+            1.0,
+        ),
+        (
+            vec![on(36.0, 8.0), on(58.0, 8.0), on(50.0, 24.0)],
+            true,
+            3.0,
+            0.5,
+        ),
+        (
+            vec![
+                on(36.0, 40.0),
+                off(40.0, 31.0),
+                off(50.0, 30.0),
+                on(60.0, 38.0),
+            ],
+            false,
+            6.0,
+            1.0,
+        ),
+    ];
+    let area = |(points, closed, width, opacity)| Area {
+        rings: Band {
+            line: scene::Path::new(points, closed).unwrap(),
+            width,
+        }
+        .rings(),
+        color: [0.1, 0.3, 0.5],
+        opacity,
+        shade: None,
+    };
+    Scene {
+        stages: vec![lines.map(area).into_iter().collect()],
+        ..Scene::empty(64, 48, Some([1.0, 0.9, 0.7]))
+    }
 }
 
 /// Renders of `svg` at this size, by the engine and by resvg.

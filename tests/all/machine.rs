@@ -307,6 +307,19 @@ fn a_pdf_has_the_gradient_and_the_opacities() {
 }
 
 #[test]
+fn a_pdf_has_square_ends_and_mitred_corners() {
+    let place = Place::new();
+    let drawing = committed("tests/data/plans/chevrons.svg");
+    place.done(&["render", &drawing, "-o", "chevrons.png", "-q"]);
+    place.done(&["fit", "chevrons.png", "-o", "a.svg", "-o", "a.pdf", "-q"]);
+    let text = fs::read_to_string(place.path("a.svg")).unwrap();
+    assert_eq!(svg::read(&text).unwrap().filled().count(), 0, "{text}");
+    if let Some(db) = as_pdf(&place) {
+        assert!(db > 33.0, "{db}");
+    }
+}
+
+#[test]
 fn a_pdf_has_the_shapes() {
     let place = with_picture("twemoji__dog");
     let text = fitted(&place, &["-o", "a.pdf"]);

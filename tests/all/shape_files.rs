@@ -12,6 +12,9 @@ use strokefit::verify::{self, Size};
 const SHAPES: &str = r##"<circle cx="32.3" cy="30.6" r="18.2" fill="#c03020"/><rect x="80.5" y="62.2" width="60.3" height="44" rx="9.5" fill="#404858"/>
 <circle cx="36" cy="86" r="20" fill="none" stroke="#208040" stroke-width="5"/>"##;
 
+/// Lines with square ends and mitred corners.
+const BANDS: &str = r##"<g fill="none" stroke="#204080" stroke-width="6"><path d="M20 20H90V70"/><path d="M20 40L60 100H140"/></g>"##;
+
 /// A page of these elements, 160×120 px.
 fn page(elements: &str) -> String {
     format!(
@@ -88,8 +91,16 @@ fn shapes_of_a_base_stay_shapes() {
 
 #[test]
 fn a_fit_of_shapes_that_is_killed_goes_on_to_the_same_bytes() {
-    let place = with_picture();
-    let whole = fitted(&place, &[]);
+    for elements in [SHAPES, BANDS] {
+        killed_again_and_again(elements);
+    }
+}
+
+fn killed_again_and_again(elements: &str) {
+    let place = Place::new();
+    put_picture(&place, "a.png", elements);
+    place.done(&["fit", "a.png", "-o", "a.svg", "-q"]);
+    let whole = read(&place, "a.svg");
     let kept = ["--checkpoint", "fit.state", "--checkpoint-every", "0.001"];
     for life in 1.. {
         let mut command = place.command(STROKEFIT);
@@ -98,7 +109,7 @@ fn a_fit_of_shapes_that_is_killed_goes_on_to_the_same_bytes() {
             .args(kept);
         command.stdout(Stdio::null()).stderr(Stdio::null());
         let mut child = command.spawn().unwrap();
-        std::thread::sleep(Duration::from_millis(60 + 20 * life));
+        std::thread::sleep(Duration::from_millis(10 + 10 * life));
         let has_ended = child.try_wait().unwrap().is_some();
         child.kill().unwrap();
         child.wait().unwrap();
@@ -108,6 +119,63 @@ fn a_fit_of_shapes_that_is_killed_goes_on_to_the_same_bytes() {
         }
     }
     assert!(read(&place, "b.svg") == whole);
+}
+
+/// The lines with square ends of a file that strokefit wrote.
+fn bands(text: &str) -> usize {
+    let scene = svg::read(text).unwrap();
+    scene.areas().filter(|area| area.band().is_some()).count()
+}
+
+#[test]
+fn bands_are_lines_in_every_file() {
+    let place = Place::new();
+    put_picture(&place, "a.png", BANDS);
+    let outputs = ["-o", "a.animated.svg", "-o", "a.dxf"];
+    let kept = ["--checkpoint", "fit.state", "--checkpoint-every", "0.001"];
+    place.done(&[&["fit", "a.png", "-o", "a.svg", "-q"], &outputs[..], &kept].concat());
+    let text = read(&place, "a.svg");
+    assert_eq!(bands(&text), 2, "{text}");
+    assert_eq!(svg::read(&text).unwrap().len(), 2, "{text}");
+    // A file without round ends needs not say that there are none.
+    assert!(!text.contains("stroke-linecap"), "{text}");
+    let dxf = read(&place, "a.dxf");
+    // Two corners each, and no outline around them.
+    assert_eq!(dxf.matches("\nLWPOLYLINE\n").count(), 2, "{dxf}");
+    let animated = read(&place, "a.animated.svg");
+    assert_eq!(
+        animated.matches("\"stroke-dasharray\"").count(),
+        2,
+        "{animated}"
+    );
+    // A style sheet has their colour and width.
+    place.done(&["fit", "a.png", "-o", "css.svg", "-q", "--form", "css"]);
+    let css = read(&place, "css.svg");
+    assert!(bands(&css) == 2 && css.contains("class="), "{css}");
+    // What is read back is written the same way, and frozen ones stay.
+    place.done(&[
+        "refine",
+        "a.svg",
+        "a.png",
+        "-o",
+        "b.svg",
+        "-q",
+        "--freeze-base",
+        "--strokes",
+        "+1",
+    ]);
+    assert!(bands(&read(&place, "b.svg")) >= 2);
+    for form in ["--outline", "--cutout"] {
+        place.done(&["render", "a.svg", "-o", "c.svg", form]);
+        let filled = read(&place, "c.svg");
+        assert!(
+            bands(&filled) == 0 && !filled.contains("stroke="),
+            "{filled}"
+        );
+        let image = |text: &str| verify::render(text, Size::Scale(1.0), Some([1.0; 3])).unwrap();
+        let seen = strokefit::metrics::Agreement::between(&image(&filled), &image(&text));
+        assert!(seen.unwrap().psnr_db > 35.0, "{form}");
+    }
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use crate::support::fits::picture;
 use crate::support::repository::committed;
 use strokefit::fit::{Background, Config, Fitter};
-use strokefit::scene::{Mark, Path, Scene, Shape};
+use strokefit::scene::{Area, Band, Mark, Marks, Path, PathPoint, Scene, Shape};
 use strokefit::svg::{self, Group, WriteOptions};
 use strokefit::verify::{self, Size};
 
@@ -219,9 +219,9 @@ fn plans_come_back_as_their_things() {
         let fit = Fitter::new(Config::default()).fit(&picture).unwrap();
         let text = fit.svg();
         let scene = svg::read(&text).unwrap();
-        let found = pens(&scene).len();
+        let filled = scene.filled().count();
         assert!(
-            found <= strokes && scene.len() - found <= areas,
+            scene.len() - filled <= strokes && filled <= areas,
             "{name}: {text}"
         );
         let is_circle = |shape: &&Shape| matches!(shape, Shape::Circle { .. });
@@ -232,6 +232,63 @@ fn plans_come_back_as_their_things() {
         let db = verify::fidelity(&text, &picture).unwrap().psnr_db;
         assert!(db > least_db, "{name}: {db}");
     }
+}
+
+/// Lines with square ends and mitred corners, as charts and technical drawings have them, are strokes with those.
+#[test]
+fn square_ends_and_mitred_corners_come_back() {
+    // The artist's elements, of those the ones that are bands, and dB.
+    for (name, most, [least, bands], least_db) in [
+        ("chevrons", 5, [5, 5], 55.0),
+        ("menu", 6, [3, 2], 60.0),
+        ("frame", 6, [6, 4], 52.0),
+        // The dashes are elements of their own.
+        ("chart", 27, [24, 20], 46.0),
+    ] {
+        let drawing = std::fs::read_to_string(committed(&format!("tests/data/plans/{name}.svg")));
+        let picture = verify::render(&drawing.unwrap(), Size::Scale(1.0), None).unwrap();
+        let fit = Fitter::new(Config::default()).fit(&picture).unwrap();
+        let text = fit.svg();
+        let scene = svg::read(&text).unwrap();
+        assert!((least..=most).contains(&scene.len()), "{name}: {text}");
+        let found = scene.areas().filter(|area| area.band().is_some()).count();
+        assert!(found >= bands, "{name}: {text}");
+        let db = verify::fidelity(&text, &picture).unwrap().psnr_db;
+        assert!(db > least_db, "{name}: {db}");
+    }
+}
+
+/// The line, the corners and the width of a frame are those that were drawn, and a line with round ends keeps them.
+#[test]
+fn a_frame_is_a_line_with_corners_and_round_ends_stay_round() {
+    let (scene, text) = fitted(
+        r##"<path d="M20 20H90V70H20Z" fill="none" stroke="#204080" stroke-width="6"/><path d="M20 95H140" stroke="#c03020" stroke-width="9" stroke-linecap="round"/>"##,
+    );
+    let bands: Vec<Band> = scene.areas().filter_map(Area::band).collect();
+    let [frame] = &bands[..] else {
+        panic!("{text}")
+    };
+    assert!(
+        frame.line.is_closed() && (frame.width - 6.0).abs() < 0.1,
+        "{text}"
+    );
+    let corners = [[20.0, 20.0], [90.0, 20.0], [90.0, 70.0], [20.0, 70.0]];
+    for [x, y] in corners {
+        let is_here = |p: &PathPoint| (p.at.x - x).abs() < 0.1 && (p.at.y - y).abs() < 0.1;
+        assert!(frame.line.points().iter().any(is_here), "{text}");
+    }
+    assert_eq!(pens(&scene).len(), 1, "{text}");
+    let only_areas = Config {
+        marks: Marks::Areas,
+        background: Background::Color([1.0; 3]),
+        ..Config::default()
+    };
+    let picture = verify::render(&text, Size::Scale(1.0), None).unwrap();
+    let areas = Fitter::new(only_areas).fit(&picture).unwrap().svg();
+    assert!(
+        !areas.contains("stroke=") && areas.contains("fill="),
+        "{areas}"
+    );
 }
 
 /// Staves and stems lie between rows and columns of pixels, where they look grey and 2 px wide.

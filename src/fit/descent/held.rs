@@ -3,13 +3,13 @@
 //! points, as rounding and the optimiser's own scales move them a little off it.
 
 use crate::render::{StrokeRef, Strokes};
-use crate::scene::{Mark, Shape};
+use crate::scene::{Area, Band, Mark, Path, PathPoint, Shape, Stroke};
 
 /// The forms among the free strokes of a drawing.
 #[derive(Debug, Clone, Default)]
 pub(in crate::fit) struct Held {
-    /// Strokes and areas that are shapes, by their indices.
-    shapes: Vec<(usize, Shape)>,
+    /// Strokes and areas that are shapes or bands, by their indices.
+    shapes: Vec<(usize, Form)>,
     /// Places, among all numbers of the free strokes, of coordinates that are equal.
     equal: Vec<Vec<usize>>,
 }
@@ -20,8 +20,8 @@ impl Held {
         let mut held = Self::default();
         let found = strokes.iter().enumerate();
         for (i, stroke) in found.filter(|(i, stroke)| *i < formed || stroke.is_area()) {
-            match round_shape(&stroke.to_mark()) {
-                Some(shape) => held.shapes.push((i, shape)),
+            match Form::of(&stroke.to_mark()) {
+                Some(form) => held.shapes.push((i, form)),
                 None => {
                     let start = strokes.range(i).start;
                     let paths = stroke.paths();
@@ -33,17 +33,35 @@ impl Held {
         held
     }
 
+    /// The bands alone, which are none any more once their points have moved each by itself.
+    pub(in crate::fit) fn bands(strokes: &Strokes) -> Self {
+        let areas = strokes
+            .iter()
+            .enumerate()
+            .filter(|(_, mark)| mark.is_area());
+        let bands = areas.filter_map(|(i, mark)| Some((i, Form::of_band(&mark.to_mark())?)));
+        Self {
+            shapes: bands.collect(),
+            equal: Vec::new(),
+        }
+    }
+
+    /// True if a mark is a band.
+    pub(in crate::fit) fn is_band(mark: StrokeRef<'_>) -> bool {
+        mark.is_area() && mark.to_mark().as_area().and_then(Area::band).is_some()
+    }
+
     /// True if a stroke has a form, so that its points may only move together.
     pub(in crate::fit) fn has(stroke: StrokeRef<'_>) -> bool {
         let mut paths = stroke.paths();
-        round_shape(&stroke.to_mark()).is_some()
-            || paths.any(|(_, path)| !equal(path, 0).is_empty())
+        Form::of(&stroke.to_mark()).is_some() || paths.any(|(_, path)| !equal(path, 0).is_empty())
     }
 
     /// Leaves of slopes the part that changes no form: that of centre and radius, and of all ends of a line alike.
     pub(in crate::fit) fn project(&self, strokes: &Strokes, slopes: &mut [f32]) {
         for (i, shape) in &self.shapes {
-            shape.project(points_of(strokes, *i, slopes));
+            let points = &strokes.numbers()[places(strokes, *i)];
+            shape.project(points.as_chunks().0, points_of(strokes, *i, slopes));
         }
         for places in &self.equal {
             level(places, slopes);
@@ -86,16 +104,79 @@ fn points_of<'a>(strokes: &Strokes, i: usize, numbers: &'a mut [f32]) -> &'a mut
     numbers[places(strokes, i)].as_chunks_mut().0
 }
 
+impl Band {
+    /// The band with lines that are level or upright, as these coordinates of its middle are equal.
+    fn leveled(self, equal: &[Vec<usize>]) -> Self {
+        let points = self.line.points();
+        let mut numbers: Vec<f32> = points.iter().flat_map(|p| [p.at.x, p.at.y]).collect();
+        equal.iter().for_each(|places| level(places, &mut numbers));
+        let places = numbers.as_chunks::<2>().0.iter();
+        let points = points.iter().zip(places).map(|(p, &at)| PathPoint {
+            at: at.into(),
+            ..*p
+        });
+        Self {
+            line: Path::of_points(points.collect(), self.line.is_closed()),
+            ..self
+        }
+    }
+}
+
 /// Gives the numbers at these places their mean.
 fn level(places: &[usize], numbers: &mut [f32]) {
     let mean = places.iter().map(|&i| numbers[i]).sum::<f32>() / places.len() as f32;
     places.iter().for_each(|&i| numbers[i] = mean);
 }
 
-/// The shape of a mark, unless its corners are sharp: then its sides are level and upright lines.
-fn round_shape(mark: &Mark) -> Option<Shape> {
-    let [path] = mark.paths() else { return None };
-    Shape::of(path).filter(|shape| !matches!(shape, Shape::Rect { radius: 0.0, .. }))
+/// Numbers that all points of a mark follow from.
+#[derive(Debug, Clone)]
+enum Form {
+    Shape(Shape),
+    /// A band, and the places of coordinates that lines of its middle have in common.
+    Band(Band, Vec<Vec<usize>>),
+}
+
+impl Form {
+    /// The form of a mark; none of a rectangle with sharp corners, as its sides are level and upright lines.
+    fn of(mark: &Mark) -> Option<Self> {
+        Self::of_band(mark).or_else(|| {
+            let [path] = mark.paths() else { return None };
+            let shape = Shape::of(path);
+            let round = shape.filter(|shape| !matches!(shape, Shape::Rect { radius: 0.0, .. }));
+            round.map(Self::Shape)
+        })
+    }
+
+    fn of_band(mark: &Mark) -> Option<Self> {
+        let band = mark.as_area()?.band()?;
+        let middle = Strokes::from_iter([&Stroke {
+            path: band.line.clone(),
+            radius: 1.0,
+            color: mark.color(),
+            opacity: 1.0,
+        }]);
+        let equal = equal(middle.get(0), 0);
+        Some(Self::Band(band, equal))
+    }
+
+    /// Leaves of a change of these points the part that keeps the form.
+    fn project(&self, points: &[[f32; 2]], change: &mut [[f32; 2]]) {
+        match self {
+            Self::Shape(shape) => shape.project(change),
+            Self::Band(band, _) => band.near(points).as_ref().unwrap_or(band).project(change),
+        }
+    }
+
+    fn restore(&self, points: &mut [[f32; 2]]) {
+        match self {
+            Self::Shape(shape) => shape.restore(points),
+            Self::Band(band, equal) => {
+                if let Some(moved) = band.near(points) {
+                    moved.leveled(equal).put(points);
+                }
+            }
+        }
+    }
 }
 
 /// Places of coordinates that lines of a path have in common, where those of its first point are `start` and the next.
@@ -125,7 +206,6 @@ fn equal(path: StrokeRef<'_>, start: usize) -> Vec<Vec<usize>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Area, Path, PathPoint, Stroke};
 
     fn area(ring: Path) -> Mark {
         Mark::from(Area {

@@ -115,7 +115,7 @@ pub(super) fn best_insertion(terrain: &Terrain<'_>, points: &Points) -> Option<E
 /// Removal of the point whose loss costs least.
 pub(super) fn best_removal(terrain: &Terrain<'_>) -> Option<Edit> {
     let count = terrain.stroke.points.len();
-    if count < 3 {
+    if count < 3 || terrain.is_band {
         return None;
     }
     best_change(terrain, 0..count, |edit, k| edit.remove(k))
@@ -135,7 +135,7 @@ pub(super) fn best_loss(terrain: &Terrain<'_>) -> Option<Edit> {
 fn best_retraction(terrain: &Terrain<'_>) -> Option<Edit> {
     let StrokeRef { off, closed, .. } = terrain.stroke;
     let count = off.len();
-    if count < 3 || closed {
+    if count < 3 || closed || terrain.is_band {
         return None;
     }
     let retraction = |(k, end): (usize, usize)| {

@@ -9,6 +9,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::LEAST;
+use crate::fit::descent::held::Held;
 use crate::math::{self, nearest_on_segment};
 use crate::render::{Piece, Pieces, StrokeRef, Strokes, Survey, flattened};
 
@@ -20,6 +21,8 @@ pub(super) struct Terrain<'a> {
     pub(super) mark: usize,
     /// True if it is a ring of an area.
     pub(super) is_ring: bool,
+    /// True for a band, whose points only come and go in pairs.
+    pub(super) is_band: bool,
     /// A stroke, or a ring of an area as one.
     pub(super) stroke: StrokeRef<'a>,
     /// Its lines and curves, in drawing order.
@@ -45,9 +48,10 @@ impl<'a> Terrain<'a> {
         let of_mark = |mark: usize| {
             let stroke = strokes.get(mark);
             let mut first = survey.firsts[mark] as usize;
+            let is_band = Held::is_band(stroke);
             stroke.paths().map(move |(_, path)| {
                 let mut terrain = Self::new(survey, path, mark, first);
-                terrain.is_ring = stroke.is_area();
+                (terrain.is_ring, terrain.is_band) = (stroke.is_area(), is_band);
                 // Between rings is a vertex that no segment has.
                 first += terrain.vertices.len() + 1;
                 terrain
@@ -79,6 +83,7 @@ impl<'a> Terrain<'a> {
             path: 0,
             mark,
             is_ring: false,
+            is_band: false,
             stroke,
             pieces,
             vertices: &survey.vertices[range.clone()],

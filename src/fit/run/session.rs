@@ -232,9 +232,10 @@ impl<'a> Session<'a> {
     /// The descent in which the fit was cut off, or else a new one that follows `course`.
     pub(in crate::fit) fn descent(&mut self, course: Course) -> Descent {
         let (drawing, recipe, used) = (&self.drawing, &self.recipe, self.timer.used());
-        self.resumed
-            .take()
-            .unwrap_or_else(|| Descent::new(drawing, recipe, course, used))
+        match self.resumed.take() {
+            Some(resumed) => resumed.holding_bands(drawing),
+            None => Descent::new(drawing, recipe, course, used),
+        }
     }
 
     /// Counts an iteration of the free strokes, after which the mean squared error is `mse` and the descent has `left`

@@ -6,6 +6,9 @@ use super::Parsed;
 use crate::svg::shape;
 use crate::svg::sheet::Rules;
 
+/// The attributes of a path with square ends and mitred corners.
+pub(super) const ENDS: [&str; 2] = ["stroke-linecap", "stroke-linejoin"];
+
 /// An element without the attributes that have a prefix.
 pub(super) struct Element {
     pub(super) name: String,
@@ -51,9 +54,9 @@ impl Element {
         Ok(self)
     }
 
-    /// The attributes that say where a mark is, and its name; `None` if the element is no mark.
+    /// The attributes that say where a mark is, how a path ends, and its name; `None` if the element is no mark.
     pub(super) fn places(&self) -> Option<Vec<&'static str>> {
-        let path = (self.name == "path").then_some(&["d"][..]);
+        let path = (self.name == "path").then_some(&["d", ENDS[0], ENDS[1]][..]);
         let places = path.or_else(|| shape::attributes(&self.name))?;
         Some([places, &["id"]].concat())
     }

@@ -25,7 +25,7 @@ impl Parser<'_> {
         path.expect("id", &format!("{SHADOW_ID}-{number}"))?;
         path.expect("filter", &format!("url(#{id})"))?;
         path.attributes.retain(|(key, _)| key != "filter");
-        let style = Style::new(Unit::PX, false, false);
+        let style = Style::new(Unit::PX, [false; 3]);
         let style = style.of(&path, &path.places().unwrap_or_default())?;
         let marks = style.marks(&path)?;
         self.close(&path)?;

@@ -4,8 +4,8 @@ use proptest::prelude::*;
 
 use crate::math::{self, Point};
 use crate::scene::{
-    Area, Axis, MAX_STOPS, Mark, Path, PathPoint, Scene, Shade, ShadeStop, Shadow, Shape, Stage,
-    Stroke,
+    Area, Axis, Band, MAX_STOPS, Mark, Path, PathPoint, Scene, Shade, ShadeStop, Shadow, Shape,
+    Stage, Stroke,
 };
 use crate::svg::{Form, Group, WriteOptions};
 
@@ -123,12 +123,34 @@ fn area() -> impl Strategy<Value = Area> {
     let unit = || prop_oneof![0.0..=1.0_f32, Just(0.0), Just(1.0), Just(f32::NAN)];
     let rings = prop::collection::vec(ring(), 1..4);
     let shade = prop::option::weighted(0.3, shade());
+    let rings = prop_oneof![3 => rings, 1 => band()];
     let area = (rings, [unit(), unit(), unit()], unit(), shade);
     area.prop_map(|(rings, color, opacity, shade)| Area {
         rings,
         color,
         opacity,
         shade,
+    })
+}
+
+/// The rings of a line with square ends and mitred corners, or of what only nearly is one.
+fn band() -> impl Strategy<Value = Vec<Path>> {
+    let width = prop_oneof![0.5..20.0_f32, Just(3.0)];
+    let line = prop_oneof![path(point()), path(close_point())];
+    let whole = (line, width, any::<bool>());
+    whole.prop_filter_map("nothing", |(line, width, is_filled)| {
+        let rings = Band { line, width }.rings();
+        let rings = rings.into_iter().filter(|ring| !ring.points().is_empty());
+        let turned = |ring: &Path| {
+            let points = ring.points().iter().rev().copied();
+            Path::new(points.collect(), true).ok()
+        };
+        let rings: Vec<Path> = rings.collect();
+        let rings = match is_filled {
+            true => rings.iter().map(turned).collect::<Option<_>>()?,
+            false => rings,
+        };
+        (!rings.is_empty()).then_some(rings)
     })
 }
 

@@ -5,15 +5,17 @@
 //! hide in part, what is seen decides. A few steps of descent fit all proposals as what they are, and those stay that add less
 //! squared error than the bytes that they save are worth.
 
+use std::f32::consts::FRAC_PI_4;
+
 use super::covers::{Covers, FLATNESS, is_inside};
-use super::proposals::{Proposal, adopt, traced};
+use super::proposals::{Each, Proposal, adopt, traced};
 use crate::error::Result;
 use crate::fit::drawing::Memento;
 use crate::fit::recipe::Forms;
 use crate::fit::run::session::Session;
 use crate::math::Point;
 use crate::metrics::psnr_db;
-use crate::scene::{Area, Mark, Path, PathPoint, Shape, Stroke};
+use crate::scene::{Area, Band, Mark, Marks, Path, PathPoint, Shape, Stroke};
 
 /// Makes shapes of areas and traced strokes that nearly are such, and then lines level and upright. All strokes must be free.
 pub(super) fn run(session: &mut Session<'_>) -> Result<()> {
@@ -22,12 +24,31 @@ pub(super) fn run(session: &mut Session<'_>) -> Result<()> {
     let room = most.saturating_sub(session.drawing.len());
     let shapes = shapes(session, forms, room);
     let paths = session.drawing.memento();
-    if adopt(session, forms, shapes) {
+    if adopt(session, forms, shapes, Each::MayLose) {
         refuse_losses(session, forms, paths)?;
     }
+    if session.config.marks() == Marks::Auto {
+        let squared = squares(session, forms);
+        adopt(session, forms, squared, Each::Gains);
+    }
     let straight = straight(session, forms);
-    adopt(session, forms, straight);
+    adopt(session, forms, straight, Each::MayLose);
+    if session.config.marks() == Marks::Areas {
+        fill_bands(session);
+    }
     Ok(())
+}
+
+/// Makes bands areas that are filled, where the file is to have no strokes.
+fn fill_bands(session: &mut Session<'_>) {
+    let drawing = &mut session.drawing;
+    let marks = drawing.free().iter().map(|mark| match mark.to_mark() {
+        Mark::Area(area) => area.filled().into(),
+        stroke => stroke,
+    });
+    let stages = drawing.stages().iter().copied();
+    let marks: Vec<(Mark, usize)> = marks.zip(stages).collect();
+    drawing.replace(marks.into_iter());
 }
 
 /// Returns to the drawing of `paths` if the file with shapes is much less faithful: resvg draws large circles of a pen up to a
@@ -55,6 +76,7 @@ fn shapes(session: &Session<'_>, forms: Forms, mut room: usize) -> Vec<Proposal>
     let covers = Covers::of(&session.drawing);
     // An icon in one ink is one path by its artist, too.
     let is_whole = session.drawing.free().len() == 1;
+    let has_bands = session.config.marks() == Marks::Auto;
     let shaped = |i: usize, mark: Mark, room: &mut usize| {
         let is_disc = |dot: &Stroke| has_areas && is_dot(&dot.path);
         let marks = match mark {
@@ -63,7 +85,9 @@ fn shapes(session: &Session<'_>, forms: Forms, mut room: usize) -> Vec<Proposal>
                 stroke.path = like(&stroke.path, forms)?.ring();
                 vec![stroke.into()]
             }
-            Mark::Area(area) => parts(area, forms, is_whole, |p| covers.is_seen(i, p))?,
+            Mark::Area(area) => {
+                parts(area, forms, [is_whole, has_bands], |p| covers.is_seen(i, p))?
+            }
         };
         *room = room.checked_sub(marks.len() - 1)?;
         Some(marks)
@@ -91,6 +115,19 @@ fn disc(dot: &Stroke) -> Area {
     }
 }
 
+/// For each traced stroke a band: its square ends cover as much as round ones that end later.
+fn squares(session: &Session<'_>, forms: Forms) -> Vec<Proposal> {
+    let squared = |_: usize, mark: Mark| {
+        let stroke = mark.as_stroke()?;
+        let beyond = [FRAC_PI_4 * stroke.radius; 2];
+        let width = 2.0 * stroke.radius;
+        let band = Band::along(&stroke.path, width, beyond, [forms.tolerance_px, 0.0])?;
+        let band = Some(band).filter(Band::is_told)?;
+        Some(vec![band.area(stroke).into()])
+    };
+    traced(&session.drawing, squared)
+}
+
 /// The shape that a path nearly is, unless it is that already.
 fn like(path: &Path, forms: Forms) -> Option<Shape> {
     let is_shape = !path.is_closed() || Shape::of(path).is_some();
@@ -102,11 +139,20 @@ fn like(path: &Path, forms: Forms) -> Option<Shape> {
 fn parts(
     area: Area,
     forms: Forms,
-    is_whole: bool,
+    [is_whole, has_bands]: [bool; 2],
     is_seen: impl Fn(Point) -> bool,
 ) -> Option<Vec<Mark>> {
     let rings = &area.rings;
-    let shapes = shapes_of(rings, forms, is_seen);
+    if area.band().is_some() {
+        return None;
+    }
+    let has_bands = has_bands && area.shade.is_none();
+    let band = has_bands.then(|| Band::like(rings, forms.tolerance_px));
+    if let Some(band) = band.flatten() {
+        let rings = band.rings();
+        return Some(vec![Area { rings, ..area }.into()]);
+    }
+    let shapes = shapes_of(rings, forms, has_bands, is_seen);
     let pairs = rings.iter().zip(&shapes);
     let rest = pairs.filter(|(_, shape)| shape.is_none());
     let rest: Vec<Path> = rest.map(|(ring, _)| ring.clone()).collect();
@@ -127,7 +173,12 @@ fn parts(
 }
 
 /// For each ring of an area the ring of the shape that it is, if it is alone.
-fn shapes_of(rings: &[Path], forms: Forms, is_seen: impl Fn(Point) -> bool) -> Vec<Option<Path>> {
+fn shapes_of(
+    rings: &[Path],
+    forms: Forms,
+    has_bands: bool,
+    is_seen: impl Fn(Point) -> bool,
+) -> Vec<Option<Path>> {
     let is_alone = |i: usize| {
         let mut others = rings.iter().enumerate().filter(|&(k, _)| k != i);
         others.all(|(_, other)| are_apart(&rings[i], other))
@@ -136,9 +187,15 @@ fn shapes_of(rings: &[Path], forms: Forms, is_seen: impl Fn(Point) -> bool) -> V
         let is_shape = Shape::of(ring).is_some();
         let seen = || Shape::like_seen(ring, forms.tolerance_px, &is_seen).filter(|_| !is_shape);
         // What other marks hide is bent by them.
-        let shape = seen().or_else(|| like(ring, forms));
-        let shape = shape.filter(|_| is_alone(i))?;
-        Some(shape.ring())
+        let shape = seen()
+            .or_else(|| like(ring, forms))
+            .map(|shape| shape.ring());
+        let band = || {
+            let ring = std::slice::from_ref(ring);
+            let band = has_bands.then(|| Band::like(ring, forms.tolerance_px))??;
+            band.rings().pop()
+        };
+        shape.or_else(band).filter(|_| is_alone(i))
     };
     rings.iter().enumerate().map(shaped).collect()
 }
@@ -159,13 +216,23 @@ fn straight(session: &Session<'_>, forms: Forms) -> Vec<Proposal> {
         if is_shape {
             return None;
         }
+        let leveled_band = |band: Band| {
+            Band {
+                line: leveled(&band.line, forms),
+                ..band
+            }
+            .rings()
+        };
         let new = match mark.clone() {
             Mark::Stroke(mut stroke) => {
                 stroke.path = leveled(&stroke.path, forms);
                 Mark::from(stroke)
             }
             Mark::Area(mut area) => {
-                area.rings = area.rings.iter().map(|ring| leveled(ring, forms)).collect();
+                area.rings = match area.band() {
+                    Some(band) => leveled_band(band),
+                    None => area.rings.iter().map(|ring| leveled(ring, forms)).collect(),
+                };
                 Mark::from(area)
             }
         };

@@ -4,7 +4,7 @@
 //! picture tells which is meant where the line covers whole pixels: there it has its colour. Of a line between two rows only
 //! its crossings tell.
 
-use super::proposals::{Proposal, adopt, traced};
+use super::proposals::{Each, Proposal, adopt, traced};
 use crate::fit::config::Colors;
 use crate::fit::descent::ties::Ties;
 use crate::fit::drawing::Drawing;
@@ -41,7 +41,7 @@ pub(super) fn run(session: &mut Session<'_>) -> Vec<Rgb> {
         .flatten()
         .map(Mark::color)
         .collect();
-    adopt(session, session.recipe.forms, proposals);
+    adopt(session, session.recipe.forms, proposals, Each::MayLose);
     colors
 }
 

@@ -7,7 +7,7 @@ use crate::fit::halves::by_halves;
 use crate::fit::recipe::{Forms, Rates};
 use crate::fit::run::session::Session;
 use crate::render::StrokeRef;
-use crate::scene::Mark;
+use crate::scene::{Area, Mark};
 use crate::svg::mark_bytes;
 
 /// Marks in the place of one; none if it stays as it is.
@@ -25,40 +25,95 @@ pub(super) fn traced(
         .collect()
 }
 
+/// The demands on each proposal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Each {
+    /// It may cost more than it saves if others pay for that.
+    MayLose,
+    /// It pays by itself. It is one mark for one.
+    Gains,
+}
+
 /// Fits the proposals, and keeps those that pay. Returns whether any does.
-pub(super) fn adopt(session: &mut Session<'_>, forms: Forms, mut proposals: Vec<Proposal>) -> bool {
+pub(super) fn adopt(
+    session: &mut Session<'_>,
+    forms: Forms,
+    mut proposals: Vec<Proposal>,
+    each: Each,
+) -> bool {
     if proposals.iter().all(Option::is_none) {
         return false;
     }
     let home = Home::of(&session.drawing);
     let mut error = session.drawing.mse_of_trial();
+    let worth_before = match each {
+        Each::Gains => session.drawing.judge().worth,
+        Each::MayLose => Vec::new(),
+    };
     let price = session.price.in_drawing(&mut session.drawing);
     home.put(&mut session.drawing, &proposals, |_| true);
     fit(session, forms, &proposals);
     let drawing = &mut session.drawing;
     proposals = fitted(drawing, &proposals);
     let bytes = |mark: &Mark| mark_bytes(mark, &session.config.file);
-    let allowed = |i: usize| {
+    let saved = |i: usize| {
         let after: usize = proposals[i].iter().flatten().map(bytes).sum();
-        let before = bytes(&home.marks[i].0) + forms.worth_bytes;
-        price.of_saved(before.saturating_sub(after))
+        let mark = &home.marks[i].0;
+        let bands = proposals[i].iter().flatten().filter(|mark| is_band(mark));
+        // A stroke with square ends is no better to an editor than one with round ends. Of areas, the attributes of the ends
+        // and elements of their own are no loss, and buy no error either.
+        let (worth, free) = match mark {
+            Mark::Stroke(_) if bands.clone().next().is_some() => (0, 0),
+            Mark::Stroke(_) => (forms.worth_bytes, 0),
+            Mark::Area(_) => (
+                forms.worth_bytes,
+                bands.count() * (forms.worth_bytes + ENDS_BYTES),
+            ),
+        };
+        let before = bytes(mark) + worth;
+        let spent = price.of_saved(after.saturating_sub(before + free));
+        price.of_saved(before.saturating_sub(after)) - spent
     };
+    let allowed: Vec<f32> = (0..proposals.len()).map(saved).collect();
     let mut is_taken = vec![false; proposals.len()];
     let proposed = (0..proposals.len()).filter(|&i| proposals[i].is_some());
-    by_halves(proposed.collect(), |group| {
+    let (gaining, others): (Vec<usize>, Vec<usize>) = match each {
+        Each::MayLose => (proposed.collect(), Vec::new()),
+        Each::Gains => {
+            let worth = drawing.judge().worth;
+            proposed.partition(|&i| worth_before[i] - worth[i] <= allowed[i])
+        }
+    };
+    // Marks that share pixels have less worth by that. So a few are tried one by one.
+    let singles = others.chunks(1).take(MOST_SINGLES);
+    let mut accepts = |group: &[usize]| {
         let mut is_tried = is_taken.clone();
         group.iter().for_each(|&i| is_tried[i] = true);
         home.put(drawing, &proposals, |i| is_tried[i]);
         let now = drawing.mse_of_trial();
         let added = (now - error) * (3 * drawing.pixels()) as f64;
-        let pays = added <= group.iter().map(|&i| f64::from(allowed(i))).sum();
+        let pays = added <= group.iter().map(|&i| f64::from(allowed[i])).sum();
         if pays {
             (error, is_taken) = (now, is_tried);
         }
         pays
+    };
+    by_halves(gaining, &mut accepts);
+    singles.for_each(|one| {
+        accepts(one);
     });
     home.put(drawing, &proposals, |i| is_taken[i]);
     is_taken.contains(&true)
+}
+
+/// Most proposals that are tried one by one. A guess.
+const MOST_SINGLES: usize = 24;
+
+/// Bytes of the attributes that give a path square ends and mitred corners: its ends are not worse for them.
+const ENDS_BYTES: usize = " stroke-linecap=\"butt\" stroke-linejoin=\"miter\"".len();
+
+fn is_band(mark: &Mark) -> bool {
+    mark.as_area().and_then(Area::band).is_some()
 }
 
 /// The proposals as a descent has left them in the drawing.
