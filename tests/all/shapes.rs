@@ -200,7 +200,7 @@ fn a_plan_of_dots_and_lines_is_circles_and_lines() {
     assert_eq!(pens(&scene).len(), 3, "{text}");
 }
 
-/// Plans whose lines, dots and arrows are one connected shape.
+/// Plans whose lines, dots and arrows are one connected shape, or whose lines end at others.
 #[test]
 fn plans_come_back_as_their_things() {
     // The most strokes and areas, the fewest circles, and dB.
@@ -212,6 +212,8 @@ fn plans_come_back_as_their_things() {
         ("flow", [8, 5, 0], 44.5),
         ("roads", [5, 4, 3], 49.0),
         ("markers", [10, 16, 13], 41.5),
+        // Each piece of a grid line between two bars is a stroke.
+        ("bars", [16, 4, 0], 45.5),
     ];
     for (name, [strokes, areas, circles], least_db) in plans {
         let drawing = std::fs::read_to_string(committed(&format!("tests/data/plans/{name}.svg")));
