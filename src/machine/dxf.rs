@@ -7,7 +7,7 @@ mod arcs;
 mod file;
 
 use super::sheet::Sheet;
-use crate::scene::{Area, Path, Piece, Shape, distinct_colors, quantum};
+use crate::scene::{Path, Piece, Shape, distinct_colors, quantum};
 use arcs::Vertex;
 use file::File;
 
@@ -21,7 +21,7 @@ pub fn dxf(sheet: &Sheet<'_>) -> String {
     let mut file = File::new(page, &colors);
     for mark in sheet.scene.marks() {
         let layer = file::layer(mark.color().map(quantum));
-        let band = mark.as_area().and_then(Area::band);
+        let band = mark.band();
         let middle = band.as_ref().map(|band| std::slice::from_ref(&band.line));
         for path in middle.unwrap_or(mark.paths()) {
             push(&mut file, &layer, path, sheet);

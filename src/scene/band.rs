@@ -9,10 +9,11 @@
 
 use super::grid::MIN_WIDTH;
 use super::path::{Path, PathPoint};
+use super::polyline::{CLEAR, Turn, directions, polyline, turns};
 use super::shape::Shape;
 use super::written_path::spacing;
-use super::{Area, Stroke};
-use crate::math::{self, Point, nearest_on_segment};
+use super::{Area, Mark, Stroke};
+use crate::math::Point;
 
 /// A line of even width with square ends and mitred corners, as SVG's `stroke-linecap="butt"` and
 /// `stroke-linejoin="miter"` draw it.
@@ -252,146 +253,11 @@ impl Band {
     }
 }
 
-/// Cosine of the slightest turn that is a clear corner.
-const CLEAR: f64 = 0.94;
-
-/// The polyline with clear corners that a path is within a `tolerance`, px; `None` if it has none. The middle of a traced line
-/// is farther off where others join it, at corners and at its ends, by about its `radius`: there its long sides tell.
-pub(crate) fn polyline(path: &Path, tolerance: f32, radius: f32) -> Option<Path> {
-    let is_closed = path.is_closed();
-    let corners = simplified(path, tolerance)?;
-    let closing = is_closed.then(|| corners[0]);
-    let ends: Vec<Point> = corners.iter().copied().chain(closing).collect();
-    let blurred = 2.0 * tolerance + 3.0 * radius;
-    let sides = ends.windows(2).map(|ends| [ends[0], ends[1]]);
-    let mut sides: Vec<Side> = sides.filter(|[a, b]| (*b - *a).norm() >= blurred).collect();
-    let off = 2.0 * tolerance + 0.3 * radius;
-    sides = sides.into_iter().fold(Vec::new(), |mut joined, side| {
-        match joined.last_mut() {
-            Some(last) if is_one_line(*last, side, off) => last[1] = side[1],
-            _ => joined.push(side),
-        }
-        joined
-    });
-    if let (true, [first, .., last]) = (is_closed, &mut sides[..])
-        && is_one_line(*last, *first, off)
-    {
-        first[0] = last[0];
-        sides.pop();
+impl Mark {
+    /// The band that it is, if it is an area that is one.
+    pub fn band(&self) -> Option<Band> {
+        self.as_area()?.band()
     }
-    if let (false, [first, ..]) = (is_closed, &mut sides[..]) {
-        first[0] = on_line(path.ends().0, *first);
-    }
-    if let (false, [.., last]) = (is_closed, &mut sides[..]) {
-        last[1] = on_line(path.ends().1, *last);
-    }
-    let polyline = through(&sides, is_closed)?;
-    let places = path.flattened(0.05);
-    let corners: Vec<Point> = polyline.points().iter().map(|p| p.at).collect();
-    let is_like = are_near(&places, &corners, is_closed, 2.0 * tolerance + radius);
-    let turns = turns(polyline.points(), is_closed)?;
-    let inner = match is_closed {
-        true => 0..turns.len(),
-        false => 1..turns.len() - 1,
-    };
-    let is_clear = turns[inner].iter().all(|turn| turn.cosine < CLEAR);
-    (is_clear && is_like).then_some(polyline)
-}
-
-/// The polyline along these sides, whose corners are where two of them meet; `None` if some do not, or there is none.
-pub(crate) fn through(sides: &[Side], is_closed: bool) -> Option<Path> {
-    let corner = |i: usize| meeting(sides[i], sides[(i + 1) % sides.len()]);
-    let corners: Option<Vec<Point>> = match is_closed {
-        true => (0..sides.len()).map(corner).collect(),
-        false => {
-            let [[start, _], [_, end]] = [sides.first()?, sides.last()?];
-            let inner: Option<Vec<Point>> = (0..sides.len() - 1).map(corner).collect();
-            Some([vec![*start], inner?, vec![*end]].concat())
-        }
-    };
-    let points = corners?.into_iter().map(PathPoint::on).collect::<Vec<_>>();
-    (points.len() > 1).then(|| Path::of_points(points, is_closed))
-}
-
-/// The ends of a side.
-type Side = [Point; 2];
-
-/// True if two sides, one after the other, lie at most `off` px beside the line through both.
-fn is_one_line([a, b]: Side, [c, d]: Side, off: f32) -> bool {
-    let (u, v, way) = (b - a, d - c, d - a);
-    let beside = |p: Point| (p - a).perp(&way).abs() / way.norm().max(f32::MIN_POSITIVE);
-    let is_slight = f64::from(u.dot(&v)) >= CLEAR * f64::from(u.norm() * v.norm());
-    is_slight && beside(b) <= off && beside(c) <= off
-}
-
-/// The place on the line through a side that is nearest to `p`.
-fn on_line(p: Point, [a, b]: Side) -> Point {
-    let way = b - a;
-    a + way * ((p - a).dot(&way) / way.norm_squared())
-}
-
-/// The corners of a polyline that a path is within a tolerance of, px.
-fn simplified(path: &Path, tolerance: f32) -> Option<Vec<Point>> {
-    let is_closed = path.is_closed();
-    let places = path.flattened(0.05);
-    let end = places.len().checked_sub(1)?;
-    let far = |i: &usize| (places[*i] - places[0]).norm_squared();
-    let mut kept = match is_closed {
-        true => vec![0, (0..=end).max_by(|a, b| far(a).total_cmp(&far(b)))?, end],
-        false => vec![0, end],
-    };
-    while let Some((at, i)) = farthest_off(&places, &kept, tolerance) {
-        kept.insert(at, i);
-    }
-    let mut corners: Vec<Point> = kept.iter().map(|&i| places[i]).collect();
-    if is_closed {
-        corners.pop();
-    }
-    // Where a path turns back a little, or begins within a side, others cover what a corner adds.
-    let mut i = usize::from(!is_closed);
-    while i + usize::from(!is_closed) < corners.len() {
-        let mut fewer = corners.clone();
-        fewer.remove(i);
-        match fewer.len() > 1 && are_near(&places, &fewer, is_closed, tolerance) {
-            true => corners = fewer,
-            false => i += 1,
-        }
-    }
-    Some(corners)
-}
-
-/// Where the lines through two sides meet.
-fn meeting([a, b]: Side, [c, d]: Side) -> Option<Point> {
-    let (u, v) = (b - a, d - c);
-    let across = u.perp(&v);
-    (across != 0.0).then(|| a + u * ((c - a).perp(&v) / across))
-}
-
-/// True if each place is within a tolerance of the polyline of these corners.
-fn are_near(places: &[Point], corners: &[Point], is_closed: bool, tolerance: f32) -> bool {
-    let closing = is_closed.then(|| corners[0]);
-    let ends: Vec<Point> = corners.iter().copied().chain(closing).collect();
-    let is_near = |place: &Point| {
-        let away2 = |ends: &[Point]| {
-            nearest_on_segment((*place).into(), [ends[0], ends[1]].map(Into::into)).1
-        };
-        ends.windows(2)
-            .any(|ends| away2(ends) <= tolerance * tolerance)
-    };
-    places.iter().all(is_near)
-}
-
-/// The place that is farthest from the polyline of those that are kept, and where among them it belongs; `None` if all are
-/// within the tolerance.
-fn farthest_off(places: &[Point], kept: &[usize], tolerance: f32) -> Option<(usize, usize)> {
-    let spans = kept.windows(2).enumerate();
-    let away = spans.flat_map(|(k, span)| {
-        let ends = [span[0], span[1]].map(|i| <[f32; 2]>::from(places[i]));
-        let inner = span[0] + 1..span[1];
-        inner.map(move |i| (nearest_on_segment(places[i].into(), ends).1, (k + 1, i)))
-    });
-    let (far2, found) = away.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    (far2 > tolerance * tolerance).then_some(found)
 }
 
 impl Area {
@@ -420,47 +286,6 @@ const MOST_POINTS: usize = 64;
 
 /// An area is a band if it is at least so many times as long as wide.
 const LONG: f32 = 2.5;
-
-/// The turn of a line at one of its points.
-struct Turn {
-    cosine: f64,
-    /// The tangent of half of it.
-    tangent: f64,
-}
-
-/// Directions of the legs before and after each point of a line; `None` if points coincide.
-fn directions(points: &[PathPoint], is_closed: bool) -> Option<Vec<[[f64; 2]; 2]>> {
-    let count = points.len();
-    let leg = |from: usize, to: usize| {
-        let [a, b] = [from, to].map(|i| points[i % count].at);
-        let [dx, dy] = [b.x - a.x, b.y - a.y].map(f64::from);
-        let length = math::hypot(dx, dy);
-        (length > 0.0).then(|| [dx / length, dy / length])
-    };
-    let both = |i: usize| {
-        let before = (is_closed || i > 0).then(|| leg(i + count - 1, i));
-        let after = (is_closed || i + 1 < count).then(|| leg(i, i + 1));
-        let (before, after) = (before.or(after)?, after.or(before)?);
-        Some([before?, after?])
-    };
-    (0..count).map(both).collect()
-}
-
-fn turns(points: &[PathPoint], is_closed: bool) -> Option<Vec<Turn>> {
-    let turn = |[[ux, uy], [vx, vy]]: [[f64; 2]; 2]| {
-        let (cosine, sine) = (ux * vx + uy * vy, ux * vy - uy * vx);
-        Turn {
-            cosine,
-            tangent: sine.abs() / (1.0 + cosine),
-        }
-    };
-    Some(
-        directions(points, is_closed)?
-            .into_iter()
-            .map(turn)
-            .collect(),
-    )
-}
 
 /// For each point of a line the way to its left side, in units of half the width; `None` if there is none, as points
 /// coincide or the line turns back.
@@ -517,6 +342,7 @@ fn width(sides: &[[f64; 2]], pair: impl Fn(usize) -> [[f32; 2]; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math;
 
     fn line(points: &[([f32; 2], bool)], closed: bool) -> Path {
         let point = |&(at, is_on): &([f32; 2], bool)| PathPoint {

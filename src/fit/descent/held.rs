@@ -3,7 +3,7 @@
 //! points, as rounding and the optimiser's own scales move them a little off it.
 
 use crate::render::{StrokeRef, Strokes};
-use crate::scene::{Area, Band, Mark, Path, PathPoint, Shape, Stroke};
+use crate::scene::{Band, Mark, Path, PathPoint, Shape, Stroke};
 
 /// The forms among the free strokes of a drawing.
 #[derive(Debug, Clone, Default)]
@@ -48,7 +48,7 @@ impl Held {
 
     /// True if a mark is a band.
     pub(in crate::fit) fn is_band(mark: StrokeRef<'_>) -> bool {
-        mark.is_area() && mark.to_mark().as_area().and_then(Area::band).is_some()
+        mark.is_area() && mark.to_mark().band().is_some()
     }
 
     /// True if a stroke has a form, so that its points may only move together.
@@ -148,7 +148,7 @@ impl Form {
     }
 
     fn of_band(mark: &Mark) -> Option<Self> {
-        let band = mark.as_area()?.band()?;
+        let band = mark.band()?;
         let middle = Strokes::from_iter([&Stroke {
             path: band.line.clone(),
             radius: 1.0,
@@ -206,6 +206,7 @@ fn equal(path: StrokeRef<'_>, start: usize) -> Vec<Vec<usize>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Area;
 
     fn area(ring: Path) -> Mark {
         Mark::from(Area {

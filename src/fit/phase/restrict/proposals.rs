@@ -7,7 +7,7 @@ use crate::fit::halves::by_halves;
 use crate::fit::recipe::{Forms, Rates};
 use crate::fit::run::session::Session;
 use crate::render::StrokeRef;
-use crate::scene::{Area, Mark};
+use crate::scene::Mark;
 use crate::svg::mark_bytes;
 
 /// Marks in the place of one; none if it stays as it is.
@@ -59,7 +59,10 @@ pub(super) fn adopt(
     let saved = |i: usize| {
         let after: usize = proposals[i].iter().flatten().map(bytes).sum();
         let mark = &home.marks[i].0;
-        let bands = proposals[i].iter().flatten().filter(|mark| is_band(mark));
+        let bands = proposals[i]
+            .iter()
+            .flatten()
+            .filter(|mark| mark.band().is_some());
         // A stroke with square ends is no better to an editor than one with round ends. Of areas, the attributes of the ends
         // and elements of their own are no loss, and buy no error either.
         let (worth, free) = match mark {
@@ -111,10 +114,6 @@ const MOST_SINGLES: usize = 24;
 
 /// Bytes of the attributes that give a path square ends and mitred corners: its ends are not worse for them.
 const ENDS_BYTES: usize = " stroke-linecap=\"butt\" stroke-linejoin=\"miter\"".len();
-
-fn is_band(mark: &Mark) -> bool {
-    mark.as_area().and_then(Area::band).is_some()
-}
 
 /// The proposals as a descent has left them in the drawing.
 fn fitted(drawing: &Drawing, proposals: &[Proposal]) -> Vec<Proposal> {
