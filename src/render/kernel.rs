@@ -538,14 +538,17 @@ pub(super) fn differentiate<L: CanvasLoss, X: Extras>(
     scratch: &mut Scratch,
     sums: &mut Sums,
 ) -> TileSums {
-    dispatch!(level, simd => {
-        let Scratch { color, error, gradient, .. } = scratch;
+    let Scratch {
+        color,
+        error,
+        gradient,
+        ..
+    } = scratch;
+    let value = dispatch!(level, _simd => {
         // Only worth needs the error itself.
-        let value = loss.tile(job.tile, color, X::WORTH.then_some(error), gradient);
-        let blocks = scratch.kept_transmittance.len() as u64;
-        let backdrop = back_to_front::<_, X>(simd, job, scratch, sums);
-        TileSums { loss: value, backdrop, blocks }
-    })
+        loss.tile(job.tile, color, X::WORTH.then_some(error), gradient)
+    });
+    differentiate_canvas::<X>(level, job, value, scratch, sums)
 }
 
 /// [`differentiate`] for the sum of two losses: the second is of the canvas on the backdrop `other`.
@@ -557,7 +560,7 @@ pub(super) fn differentiate_on_mattes<L: CanvasLoss>(
     scratch: &mut Scratch,
     sums: &mut Sums,
 ) -> TileSums {
-    dispatch!(level, simd => {
+    let loss = dispatch!(level, simd => {
         let Scratch { color, gradient, .. } = scratch;
         let first = losses[0].tile(job.tile, color, None, gradient);
         // Both canvases have the same strokes, so that one pass 1 serves both.
@@ -565,10 +568,27 @@ pub(super) fn differentiate_on_mattes<L: CanvasLoss>(
         let Scratch { color, second, .. } = scratch;
         let loss = first + losses[1].tile(job.tile, color, None, second);
         add_second_loss(simd, job.backdrop, other, scratch);
-        let blocks = scratch.kept_transmittance.len() as u64;
-        let backdrop = back_to_front::<_, Mattes>(simd, job, scratch, sums);
-        TileSums { loss, backdrop, blocks }
-    })
+        loss
+    });
+    differentiate_canvas::<Mattes>(level, job, loss, scratch, sums)
+}
+
+// Apart from the losses, so that it is compiled once for all of them.
+#[inline(never)]
+fn differentiate_canvas<X: Extras>(
+    level: Level,
+    job: &TileJob<'_>,
+    loss: f64,
+    scratch: &mut Scratch,
+    sums: &mut Sums,
+) -> TileSums {
+    let blocks = scratch.kept_transmittance.len() as u64;
+    let backdrop = dispatch!(level, simd => back_to_front::<_, X>(simd, job, scratch, sums));
+    TileSums {
+        loss,
+        backdrop,
+        blocks,
+    }
 }
 
 /// Makes the canvas on the backdrop `from` that on `to`.
