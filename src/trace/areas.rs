@@ -260,13 +260,35 @@ pub(super) fn distance2(a: &Pixel, b: &Pixel) -> f32 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
 }
 
-/// The colour of an opaque stroke that looks like `pixel` on `mattes` mattes.
-pub(super) fn color(pixel: &Pixel, mattes: usize) -> Rgb {
-    std::array::from_fn(|k| match mattes {
-        1 => pixel[k],
-        _ => 0.5 * (pixel[k] + pixel[k + 3]),
-    })
+/// The colour and the opacity of what looks like `pixel` on a clear page, on so many mattes.
+pub(super) fn ink(pixel: &Pixel, mattes: usize) -> (Rgb, f32) {
+    let [red, green, blue, ..] = *pixel;
+    let color = [red, green, blue];
+    if mattes == 1 {
+        return (color.map(|c| c.clamp(0.0, 1.0)), 1.0);
+    }
+    if is_opaque(pixel) {
+        let mean = |k: usize| 0.5 * (pixel[k] + pixel[k + 3]);
+        return ([0, 1, 2].map(|k| mean(k).clamp(0.0, 1.0)), 1.0);
+    }
+    let opacity = 1.0 - through(pixel);
+    let own = color.map(|c| (c / opacity.max(LEVEL)).clamp(0.0, 1.0));
+    (own, opacity)
 }
+
+/// The share of light that a colour on a black and a white matte lets through.
+pub(super) fn through(pixel: &Pixel) -> f32 {
+    let shines = (0..3).map(|k| pixel[k + 3] - pixel[k]);
+    (shines.sum::<f32>() / 3.0).clamp(0.0, 1.0)
+}
+
+/// True if a colour on a black and a white matte is opaque.
+pub(super) fn is_opaque(pixel: &Pixel) -> bool {
+    through(pixel) < OPAQUE * LEVEL
+}
+
+/// A colour whose pixels on a black and a white matte differ by less is opaque, levels. A guess.
+const OPAQUE: f32 = 5.0;
 
 /// The largest difference of a channel.
 pub(super) fn away(a: &Pixel, b: &Pixel) -> f32 {

@@ -95,11 +95,9 @@ pub(super) fn chosen(
         .map(|(i, _)| i)
         .collect();
     for i in orphans {
-        let gain = flat.gain_on_top(
-            strokes[i].stroke.color,
-            &coverage_of(&strokes[i].stroke, pixels),
-        );
-        if gain > price(&strokes[i].stroke.clone().into()) {
+        let stroke = &strokes[i].stroke;
+        let gain = flat.gain_on_top((stroke.color, stroke.opacity), &coverage_of(stroke, pixels));
+        if gain > price(&stroke.clone().into()) {
             places[i] = Some((usize::MAX, gain));
         }
     }
@@ -203,8 +201,9 @@ fn votes(traced: &TracedStroke, flat: &Flat<'_>, pixels: &Pixels<'_>) -> Votes {
     let mut votes = Votes::new();
     let mut all = 0.0;
     let is_own = |region: &u32| flat.part(*region) == traced.part;
+    let ink = (traced.stroke.color, traced.stroke.opacity);
     for (i, share) in coverage_of(&traced.stroke, pixels) {
-        if let Some(region) = flat.region_like(i, traced.stroke.color).filter(is_own) {
+        if let Some(region) = flat.region_like(i, ink).filter(is_own) {
             *votes.entry(region).or_default() += share;
         }
         all += share;
@@ -329,7 +328,7 @@ fn stroked(
     // What lines join is a thing, unless it is a line itself.
     let is_blob = matches!(flat.part(group.regions[0]), Part::Blob(_));
     let is_dot = is_blob && strokes.iter().any(|stroke| length(stroke) < LINE);
-    if is_ellipse || is_dot || of_strokes > MOST_PRICE * of_areas {
+    if is_ellipse || is_dot || of_strokes > MOST_PRICE * of_areas || darken(&strokes, pixels) {
         return None;
     }
     let members = flat.members(&group.regions);
@@ -395,6 +394,22 @@ fn is_ellipse(area: &Area) -> bool {
     };
     matches!(shape, Some(scene::Shape::Ellipse { radii, .. }) if radii.iter().all(|&px| px > STOUT))
 }
+
+/// True if strokes of a group are translucent and overlap: their shape is darker there than it is seen.
+fn darken(strokes: &[&Stroke], pixels: &Pixels<'_>) -> bool {
+    let translucent = strokes.iter().filter(|stroke| stroke.opacity < 1.0);
+    let mut most: BTreeMap<usize, f32> = BTreeMap::new();
+    let mut overlap = 0.0;
+    for (i, share) in translucent.flat_map(|stroke| coverage_of(stroke, pixels)) {
+        let most = most.entry(i).or_default();
+        overlap += share.min(*most);
+        *most = most.max(share);
+    }
+    overlap > MOST_OVERLAP
+}
+
+/// Largest overlap of translucent strokes that is not seen, px². A guess.
+const MOST_OVERLAP: f32 = 2.0;
 
 /// True if strokes cover a group of regions and nothing else that is seen, give or take a part of a pixel.
 fn is_covered(

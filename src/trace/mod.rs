@@ -52,7 +52,7 @@ use strokes::TracedStroke;
 /// A traced mark and what it gains.
 #[derive(Debug, Clone)]
 pub struct Traced {
-    /// The mark, opaque.
+    /// The mark.
     pub mark: Mark,
     /// Squared error that the mark removes, summed over pixels and channels: a stroke alone, an area on top of what it
     /// lies on.

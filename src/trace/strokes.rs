@@ -117,11 +117,12 @@ fn stroke(
     let pixel: &Pixel = areas.colors.get(usize::from(*color))?;
     let gain = Gain::of(&path, radius, *color, pixel, areas, pixels);
     let is_explained = gain.removed > tracing.explained * gain.under;
+    let (color, opacity) = areas::ink(pixel, mattes);
     let stroke = Stroke {
         path,
         radius,
-        color: areas::color(pixel, mattes).map(|c| c.clamp(0.0, 1.0)),
-        opacity: 1.0,
+        color,
+        opacity,
     };
     let gain = gain.removed / mattes as f32;
     is_explained.then_some(TracedStroke {

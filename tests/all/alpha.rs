@@ -66,6 +66,47 @@ fn glass_is_drawn_as_glass() {
     assert!(alpha[at(3, 3)] < 0.05, "{}", alpha[at(3, 3)]);
 }
 
+/// Translucent shapes on a clear page are elements with an opacity: below what is opaque, across each other, on each other.
+#[test]
+fn translucent_shapes_are_elements() {
+    let star = r##"<path d="M120 20L150 90L225 95L168 142L187 215L120 175L53 215L72 142L15 95L90 90Z" fill="#e04020" opacity=".5"/>"##;
+    let two_tones = r##"<path fill="#1c274c" opacity=".5" d="M30 60H210V200H30Z"/><path fill="#1c274c" d="M60 30H180V80H60ZM90 110H150V170H90Z"/>"##;
+    let circles = r##"<circle cx="90" cy="120" r="65" fill="#f00" opacity=".5"/><circle cx="150" cy="120" r="65" fill="#00f" opacity=".5"/>"##;
+    let three = r##"<circle cx="90" cy="90" r="55" fill="#f00" opacity=".5"/><circle cx="150" cy="90" r="55" fill="#00f" opacity=".4"/><circle cx="120" cy="145" r="55" fill="#0c0" opacity=".5"/>"##;
+    let target = r##"<circle cx="120" cy="120" r="90" fill="#080" opacity=".4"/><circle cx="120" cy="120" r="40" fill="#fa0" opacity=".6"/>"##;
+    let cross = r##"<path d="M40 60L200 180M200 60L40 180" fill="none" stroke="#0a5" stroke-width="12" opacity=".55"/>"##;
+    let frame = r##"<rect x="50" y="60" width="140" height="120" fill="none" stroke="#0a5" stroke-width="12" opacity=".55"/>"##;
+    let glow = r##"<radialGradient id="g"><stop stop-color="#208" stop-opacity=".7"/><stop offset="1" stop-color="#208" stop-opacity="0"/></radialGradient><circle cx="120" cy="120" r="100" fill="url(#g)"/><path d="M90 90H150V150H90Z" fill="#fc0"/>"##;
+    // The opacities of the elements, from back to front, and dB on the worse matte.
+    for (name, elements, expected, least_db) in [
+        ("star", star, vec![0.5], 52.0),
+        ("two tones", two_tones, vec![0.5, 1.0], 60.0),
+        ("circles", circles, vec![0.5, 0.5], 45.0),
+        ("three", three, vec![0.5, 0.4, 0.5], 44.0),
+        ("target", target, vec![0.4, 0.6], 46.0),
+        ("cross", cross, vec![0.55], 48.0),
+        ("frame", frame, vec![0.55], 55.0),
+        ("glow", glow, vec![1.0, 1.0], 48.0),
+    ] {
+        let svg = format!(
+            r#"<svg xmlns="http://www.w3.org/2000/svg" width="240" height="240">{elements}</svg>"#
+        );
+        let picture = verify::render(&svg, Size::Scale(1.0), None).unwrap();
+        let fit = drawn(&picture, &Config::default());
+        let areas = fit.scene.areas();
+        let opacities: Vec<f32> = areas.map(|area| area.opacity).collect();
+        let is_near = |(a, b): (&f32, &f32)| (a - b).abs() < 0.01;
+        assert!(
+            fit.scene.len() == expected.len() && opacities.iter().zip(&expected).all(is_near),
+            "{name}: {opacities:?} in {}",
+            text(&fit)
+        );
+        let seen = verify::on_mattes(&text(&fit), &picture).unwrap();
+        let db = seen.black_db.min(seen.white_db);
+        assert!(db > least_db, "{name}: {db}");
+    }
+}
+
 #[test]
 fn without_a_colour_none_is_what_auto_is() {
     let none = Config {

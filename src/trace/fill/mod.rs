@@ -5,6 +5,7 @@
 //! colors     the colours of flat places
 //! mixtures   all other pixels as mixtures of the two colours beside them
 //! regions    the connected pixels of one colour
+//! translucent what is seen through, and where two such shapes cross
 //! stack      larger shapes lie below and go on beneath what lies on top
 //! contour    the line along which a shape covers half of a pixel
 //! corners    where that turns
@@ -23,12 +24,13 @@ mod regions;
 mod shades;
 mod span;
 mod stack;
+mod translucent;
 
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::areas::{self, LEVEL, Pixel, Pixels, distance2, mix};
+use super::areas::{self, LEVEL, Pixel, Pixels, distance2, is_opaque, mix};
 use super::parts::{Part, Parts};
 use super::recipe::{Fills, Outlines};
 use crate::scene::{Area, Path, Rgb};
@@ -40,6 +42,7 @@ use outline::Surroundings;
 use regions::{Region, Regions};
 use shades::Shaded;
 use stack::{Layer, Stack};
+use translucent::{Translucent, on_top};
 
 /// A filled shape, what it gains, and its place in the stack.
 #[derive(Debug, Clone)]
@@ -55,6 +58,7 @@ pub(super) struct Flat<'a> {
     pub(super) mattes: usize,
     regions: Regions,
     neighbours: Vec<BTreeMap<u32, u32>>,
+    translucent: Translucent,
     stack: Stack,
 }
 
@@ -78,18 +82,23 @@ impl<'a> Flat<'a> {
         }
         let regions = Regions::of(&colors, mixtures, parts, fills);
         let neighbours = regions.neighbours();
-        // What is translucent and of one colour is left to strokes.
-        let is_drawn = |region: &Region| {
-            let is_whole = mattes == 1 || !region.shades.is_empty() || is_opaque(&region.color);
-            region.label == CANVAS || is_whole
+        let translucent = match mattes {
+            1 => Translucent::none(regions.list.len()),
+            _ => Translucent::of(&regions, &neighbours, pixels),
         };
-        let drawn: Vec<bool> = regions.list.iter().map(is_drawn).collect();
-        let stack = Stack::of(&regions, &neighbours, &drawn, fills);
+        // What is translucent and of one colour on top of a drawing is left to strokes.
+        let is_drawn = |(region, r): (&Region, u32)| {
+            let is_whole = mattes == 1 || !region.shades.is_empty() || is_opaque(&region.color);
+            region.label == CANVAS || is_whole || translucent.has(r)
+        };
+        let drawn: Vec<bool> = regions.list.iter().zip(0..).map(is_drawn).collect();
+        let stack = Stack::of(&regions, &neighbours, &drawn, &translucent, fills);
         Some(Self {
             pixels,
             mattes,
             regions,
             neighbours,
+            translucent,
             stack,
         })
     }
@@ -123,14 +132,16 @@ impl<'a> Flat<'a> {
 
     /// The areas of a shape, back to front: one, or one for each of its gradients.
     pub(super) fn areas_of(&self, fill: &Fill) -> impl Iterator<Item = Area> {
-        let color = areas::color(&fill.color, self.mattes).map(|c| c.clamp(0.0, 1.0));
+        let (color, opacity) = areas::ink(&fill.color, self.mattes);
         let plain = fill.shades.is_empty().then_some(None);
+        // A gradient has opacities of its own.
+        let opacity = if fill.shades.is_empty() { opacity } else { 1.0 };
         let shades: Vec<_> = fill.shades.iter().cloned().map(Some).collect();
         let rings = fill.rings.clone();
         plain.into_iter().chain(shades).map(move |shade| Area {
             rings: rings.clone(),
             color,
-            opacity: 1.0,
+            opacity,
             shade,
         })
     }
@@ -143,15 +154,12 @@ impl<'a> Flat<'a> {
             .covers
             .iter()
             .for_each(|&r| covered[r as usize] = true);
-        let above = self
-            .stack
-            .ranks
-            .iter()
-            .map(|rank| rank.is_some_and(|rank| rank > layer.rank));
-        let free: Vec<bool> = above
-            .zip(&covered)
-            .map(|(above, &own)| above || own)
-            .collect();
+        let is_free = |r: u32| {
+            let is_above = self.rank(r).is_some_and(|rank| rank > layer.rank);
+            let is_seen = self.translucent.has(layer.region) && self.translucent.has(r);
+            covered[r as usize] || (is_above && !is_seen)
+        };
+        let free: Vec<bool> = (0..regions.list.len() as u32).map(is_free).collect();
         let field = self.field(layer, &covered);
         let around = Surroundings {
             page: [regions.width, regions.height].map(|v| v as f32),
@@ -169,7 +177,7 @@ impl<'a> Flat<'a> {
         let region = &regions.list[layer.region as usize];
         (!rings.is_empty()).then(|| Fill {
             rings,
-            color: region.color,
+            color: self.own_color(layer.region),
             shades: region.shades.clone(),
             region: layer.region,
             size: region.members.len() as f32,
@@ -177,6 +185,15 @@ impl<'a> Flat<'a> {
             rank: layer.rank,
             covers: layer.covers.clone(),
         })
+    }
+
+    /// The colour of a shape on a clear page, by that of the region and of what it lies on.
+    fn own_color(&self, region: u32) -> Pixel {
+        let color = |r: u32| self.regions.list[r as usize].color;
+        let seen = color(region);
+        let back = self.stack.below[region as usize].filter(|_| self.translucent.has(region));
+        let own = back.and_then(|back| on_top(&seen, &color(back)));
+        own.unwrap_or(seen)
     }
 
     /// The share of each pixel that a layer covers. At the picture's border it goes on for two pixels.
@@ -250,8 +267,8 @@ impl<'a> Flat<'a> {
         self.regions.of[i]
     }
 
-    /// The region of pixel `i`, if it has about this colour and is not the canvas.
-    pub(super) fn region_like(&self, i: usize, color: Rgb) -> Option<u32> {
+    /// The region of pixel `i`, if it has about this colour and opacity and is not the canvas.
+    pub(super) fn region_like(&self, i: usize, (color, opacity): (Rgb, f32)) -> Option<u32> {
         const LIKE: f32 = 0.12;
         let region = self.regions.of[i];
         let Region {
@@ -260,8 +277,9 @@ impl<'a> Flat<'a> {
             shades,
             ..
         } = &self.regions.list[region as usize];
-        let own = areas::color(own, self.mattes);
-        let is_like = (0..3).all(|k| (own[k] - color[k]).abs() < LIKE);
+        let (own, own_opacity) = areas::ink(own, self.mattes);
+        let is_like = (0..3).all(|k| (own[k] - color[k]).abs() * opacity < LIKE)
+            && (own_opacity - opacity).abs() < LIKE;
         (*label != CANVAS && shades.is_empty() && is_like).then_some(region)
     }
 
@@ -309,12 +327,16 @@ impl<'a> Flat<'a> {
 
     /// The squared error that something of a colour removes on top of all regions, where it covers some shares of
     /// pixels.
-    pub(super) fn gain_on_top(&self, color: Rgb, coverage: &[(usize, f32)]) -> f32 {
+    pub(super) fn gain_on_top(
+        &self,
+        (color, opacity): (Rgb, f32),
+        coverage: &[(usize, f32)],
+    ) -> f32 {
         let gain = coverage.iter().map(|&(i, covered)| {
             let target = self.pixels.target.at(i);
             let seen = self.seen(i);
             let drawn: Pixel = std::array::from_fn(|k| match k < 3 * self.mattes {
-                true => seen[k] + covered * (color[k % 3] - seen[k]),
+                true => seen[k] + opacity * covered * (color[k % 3] - seen[k]),
                 false => 0.0,
             });
             let weight = self.pixels.weights.map_or(1.0, |weights| weights[i]);
@@ -341,7 +363,7 @@ impl<'a> Flat<'a> {
     /// The squared error that each region spares: without it, what is next below it would be seen.
     fn gains(&self) -> Vec<f32> {
         let regions = &self.regions;
-        let below = compound::below(&self.stack.layers, regions.list.len());
+        let below = &self.stack.below;
         // Lines that came apart are strokes: they go on beneath nothing.
         let is_lines = |region: u32| matches!(self.part(region), Part::Lines(_));
         let below_area = |region: u32| {
@@ -363,6 +385,7 @@ impl<'a> Flat<'a> {
             let error = |a: Pixel, b: Pixel| distance2(&target, &mix(&a, &b, share));
             let weight = self.pixels.weights.map_or(1.0, |weights| weights[i]);
             let drawn = error(seen(own), seen(second));
+            let [own, second] = [own, second].map(|r| self.translucent.shape(r));
             gains[own as usize] += weight * (error(behind(own), seen(second)) - drawn);
             if share > 0.0 {
                 gains[second as usize] += weight * (error(seen(own), behind(second)) - drawn);
@@ -385,12 +408,6 @@ fn explained(pixels: &Pixels<'_>, mixtures: &[Mixture], fills: &Fills) -> f32 {
         }
     }
     known / all.max(f32::MIN_POSITIVE)
-}
-
-/// True if a colour on a black and a white matte is opaque.
-fn is_opaque(color: &Pixel) -> bool {
-    let shines = (0..3).map(|k| color[k + 3] - color[k]);
-    shines.sum::<f32>() < 3.0 * 5.0 * LEVEL
 }
 
 /// The rings around what covers at least half of a pixel; `shares` are those of all pixels of a page, row by row.

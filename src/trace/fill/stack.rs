@@ -2,14 +2,17 @@
 //!
 //! A shape with a larger convex hull lies below. It takes in the regions that it encloses, and those that lie on it
 //! and hardly touch anything farther below; its outline runs around all of them, so that paths go straight on beneath
-//! what lies on top. What shows the canvas is no shape: it stays a hole.
+//! what lies on top. What shows the canvas is no shape: it stays a hole. Translucent shapes lie below all others, beside each
+//! other or on one that shows through.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::recipe::Fills;
 use super::colors::CANVAS;
+use super::compound;
 use super::hull::hull_area;
 use super::regions::Regions;
+use super::translucent::{Translucent, on_top};
 
 /// A shape of the stack.
 #[derive(Debug, Clone)]
@@ -28,6 +31,8 @@ pub(super) struct Stack {
     pub(super) layers: Vec<Layer>,
     /// The rank of each region; `None` if it shows what is behind all.
     pub(super) ranks: Vec<Option<usize>>,
+    /// For each region the shape next below its own, if there is one: without its own, that would be seen.
+    pub(super) below: Vec<Option<u32>>,
 }
 
 type Neighbours = [BTreeMap<u32, u32>];
@@ -38,35 +43,78 @@ impl Stack {
         regions: &Regions,
         neighbours: &Neighbours,
         drawn: &[bool],
+        translucent: &Translucent,
         fills: &Fills,
     ) -> Self {
         let enclosed = enclosed(regions, neighbours);
         let holes = holes(regions, &enclosed, drawn);
-        let shows = |r: usize| drawn[r] && !holes[r];
-        let mut order: Vec<u32> = (0..regions.list.len() as u32)
-            .filter(|&r| shows(r as usize))
+        let shows = |r: u32| drawn[r as usize] && !holes[r as usize] && translucent.is_shape(r);
+        let count = regions.list.len() as u32;
+        let order = order(
+            regions,
+            translucent,
+            (0..count).filter(|&r| shows(r)).collect(),
+        );
+        let places: BTreeMap<u32, usize> =
+            order.iter().zip(0..).map(|(&r, rank)| (r, rank)).collect();
+        let ranks: Vec<Option<usize>> = (0..count)
+            .map(|r| places.get(&translucent.shape(r)).copied())
             .collect();
-        let size = |r: u32| hull_area(&regions.list[r as usize].members, regions.width);
-        let sizes: BTreeMap<u32, f64> = order.iter().map(|&r| (r, size(r))).collect();
-        order.sort_by(|a, b| sizes[b].total_cmp(&sizes[a]).then(a.cmp(b)));
-        let mut ranks = vec![None; regions.list.len()];
-        for (rank, &region) in order.iter().enumerate() {
-            ranks[region as usize] = Some(rank);
-        }
+        let ground = Ground {
+            regions,
+            neighbours,
+            translucent,
+            ranks: &ranks,
+        };
         let layers = order.iter().enumerate();
         let layers = layers.map(|(rank, &region)| {
             let inner = &enclosed[region as usize];
             Layer {
                 region,
-                covers: covered(region, rank, inner, neighbours, &ranks, fills),
+                covers: ground.covered(region, rank, inner, fills),
                 rank,
             }
         });
+        let layers: Vec<Layer> = layers.collect();
         Self {
-            layers: layers.collect(),
+            below: compound::below(&layers, regions.list.len()),
+            layers,
             ranks,
         }
     }
+}
+
+/// Shapes from back to front: translucent ones before others, large ones before small ones, and those that cross as is seen.
+fn order(regions: &Regions, translucent: &Translucent, mut shapes: Vec<u32>) -> Vec<u32> {
+    let size = |shape: u32| {
+        let members = |r: u32| &regions.list[r as usize].members;
+        match translucent.has(shape) {
+            true => {
+                let all: BTreeSet<u32> = translucent
+                    .pieces(shape)
+                    .flat_map(members)
+                    .copied()
+                    .collect();
+                hull_area(&all.into_iter().collect::<Vec<u32>>(), regions.width)
+            }
+            false => hull_area(members(shape), regions.width),
+        }
+    };
+    let sizes: BTreeMap<u32, f64> = shapes.iter().map(|&r| (r, size(r))).collect();
+    shapes.sort_by(|a, b| {
+        let is_front = |r: &u32| !translucent.has(*r);
+        let by_size = sizes[b].total_cmp(&sizes[a]).then(a.cmp(b));
+        is_front(a).cmp(&is_front(b)).then(by_size)
+    });
+    for pair in translucent.crossing() {
+        let places = pair.map(|shape| shapes.iter().position(|&r| r == shape));
+        if let [Some(front), Some(back)] = places
+            && front < back
+        {
+            shapes[front..=back].rotate_left(1);
+        }
+    }
+    shapes
 }
 
 /// The regions that each region encloses: no way leads from them to the picture's border past it.
@@ -125,39 +173,58 @@ fn holes(regions: &Regions, enclosed: &[Vec<u32>], drawn: &[bool]) -> Vec<bool> 
     holes
 }
 
-/// The regions that the shape of `region` covers.
-fn covered(
-    region: u32,
-    rank: usize,
-    enclosed: &[u32],
-    neighbours: &Neighbours,
-    ranks: &[Option<usize>],
-    fills: &Fills,
-) -> Vec<u32> {
-    let is_above = |r: u32| ranks[r as usize].is_some_and(|other| other > rank);
-    let is_below = |r: u32| ranks[r as usize].is_none_or(|other| other < rank);
-    let mut inside: BTreeSet<u32> = enclosed.iter().copied().filter(|&r| is_above(r)).collect();
-    inside.insert(region);
-    for _ in 0..4 {
-        let beside = inside.iter().flat_map(|&r| neighbours[r as usize].keys());
-        let beside: BTreeSet<u32> = beside.copied().filter(|&r| is_above(r)).collect();
-        let more: Vec<u32> = beside
-            .difference(&inside)
-            .copied()
-            .filter(|&r| {
-                let touched = &neighbours[r as usize];
-                let all: u32 = touched.values().sum();
-                let below = touched.iter().filter(|(q, _)| is_below(**q));
-                let below: u32 = below.map(|(_, count)| count).sum();
-                below as f32 <= fills.exposed * all as f32
-            })
-            .collect();
-        if more.is_empty() {
-            break;
+/// Regions and their places in the stack.
+struct Ground<'a> {
+    regions: &'a Regions,
+    neighbours: &'a Neighbours,
+    translucent: &'a Translucent,
+    ranks: &'a [Option<usize>],
+}
+
+impl Ground<'_> {
+    /// The regions that the shape of `region` covers.
+    fn covered(&self, region: u32, rank: usize, enclosed: &[u32], fills: &Fills) -> Vec<u32> {
+        let Self {
+            neighbours, ranks, ..
+        } = *self;
+        let is_above = |r: u32| ranks[r as usize].is_some_and(|other| other > rank);
+        let is_below = |r: u32| ranks[r as usize].is_none_or(|other| other < rank);
+        // What is seen through others lies on none but those that enclose it.
+        let is_hiding = |r: u32| is_above(r) && !self.translucent.has(r);
+        let is_inside = |&r: &u32| is_hiding(r) || (is_above(r) && self.lies_on(r, region));
+        let mut inside: BTreeSet<u32> = enclosed.iter().copied().filter(is_inside).collect();
+        inside.insert(region);
+        if self.translucent.has(region) {
+            inside.extend(self.translucent.pieces(region));
         }
-        inside.extend(more);
+        for _ in 0..4 {
+            let beside = inside.iter().flat_map(|&r| neighbours[r as usize].keys());
+            let beside: BTreeSet<u32> = beside.copied().filter(|&r| is_hiding(r)).collect();
+            let more: Vec<u32> = beside
+                .difference(&inside)
+                .copied()
+                .filter(|&r| {
+                    let touched = &neighbours[r as usize];
+                    let all: u32 = touched.values().sum();
+                    let below = touched.iter().filter(|(q, _)| is_below(**q));
+                    let below: u32 = below.map(|(_, count)| count).sum();
+                    below as f32 <= fills.exposed * all as f32
+                })
+                .collect();
+            if more.is_empty() {
+                break;
+            }
+            inside.extend(more);
+        }
+        connected_to(region, &inside, neighbours)
     }
-    connected_to(region, &inside, neighbours)
+
+    /// True if what is seen in a region may be something on top of the shape of another one.
+    fn lies_on(&self, region: u32, other: u32) -> bool {
+        let [seen, back] = [region, other].map(|r| &self.regions.list[r as usize]);
+        let is_plain = seen.shades.is_empty() && back.shades.is_empty();
+        is_plain && self.translucent.has(other) && on_top(&seen.color, &back.color).is_some()
+    }
 }
 
 /// The regions of `inside` that are connected with `region` there.
