@@ -236,6 +236,19 @@ fn plans_come_back_as_their_things() {
     }
 }
 
+/// Of shapes that overlap, the one whose outline is whole lies on top, and the other goes on beneath it.
+#[test]
+fn shapes_that_overlap_are_whole() {
+    let discs = r##"<circle cx="60" cy="60" r="40" fill="#f00"/><circle cx="100" cy="60" r="40" fill="#00f"/>"##;
+    let cards = r##"<rect x="20" y="20" width="70" height="60" fill="#f80"/><rect x="50" y="40" width="80" height="60" fill="#08f"/>"##;
+    let row = r##"<circle cx="40" cy="60" r="30" fill="#f00"/><circle cx="80" cy="60" r="30" fill="#00f"/><circle cx="120" cy="60" r="30" fill="#0a0"/>"##;
+    for drawing in [discs, cards, row] {
+        let (scene, text) = fitted(drawing);
+        let [whole, count] = [shapes(&scene).len(), drawing.matches("fill").count()];
+        assert_eq!([whole, scene.len()], [count; 2], "{text}");
+    }
+}
+
 /// Lines with square ends and mitred corners, as charts and technical drawings have them, are strokes with those.
 #[test]
 fn square_ends_and_mitred_corners_come_back() {

@@ -6,6 +6,7 @@
 //! mixtures   all other pixels as mixtures of the two colours beside them
 //! regions    the connected pixels of one colour
 //! translucent what is seen through, and where two such shapes cross
+//! overlaps   which of two shapes lies on top
 //! stack      larger shapes lie below and go on beneath what lies on top
 //! contour    the line along which a shape covers half of a pixel
 //! corners    where that turns
@@ -20,6 +21,7 @@ mod corners;
 mod hull;
 mod mixtures;
 mod outline;
+mod overlaps;
 mod regions;
 mod shades;
 mod span;

@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::super::recipe::Fills;
 use super::colors::CANVAS;
 use super::compound;
-use super::hull::hull_area;
+use super::overlaps::Overlaps;
 use super::regions::Regions;
 use super::translucent::{Translucent, on_top};
 
@@ -50,11 +50,9 @@ impl Stack {
         let holes = holes(regions, &enclosed, drawn);
         let shows = |r: u32| drawn[r as usize] && !holes[r as usize] && translucent.is_shape(r);
         let count = regions.list.len() as u32;
-        let order = order(
-            regions,
-            translucent,
-            (0..count).filter(|&r| shows(r)).collect(),
-        );
+        let shapes: Vec<u32> = (0..count).filter(|&r| shows(r)).collect();
+        let overlaps = Overlaps::of(regions, &enclosed, neighbours, translucent, &shapes);
+        let order = order(&overlaps, translucent, shapes);
         let places: BTreeMap<u32, usize> =
             order.iter().zip(0..).map(|(&r, rank)| (r, rank)).collect();
         let ranks: Vec<Option<usize>> = (0..count)
@@ -84,26 +82,12 @@ impl Stack {
     }
 }
 
-/// Shapes from back to front: translucent ones before others, large ones before small ones, and those that cross as is seen.
-fn order(regions: &Regions, translucent: &Translucent, mut shapes: Vec<u32>) -> Vec<u32> {
-    let size = |shape: u32| {
-        let members = |r: u32| &regions.list[r as usize].members;
-        match translucent.has(shape) {
-            true => {
-                let all: BTreeSet<u32> = translucent
-                    .pieces(shape)
-                    .flat_map(members)
-                    .copied()
-                    .collect();
-                hull_area(&all.into_iter().collect::<Vec<u32>>(), regions.width)
-            }
-            false => hull_area(members(shape), regions.width),
-        }
-    };
-    let sizes: BTreeMap<u32, f64> = shapes.iter().map(|&r| (r, size(r))).collect();
+/// Shapes from back to front: translucent ones before others, large ones before small ones, and those that overlap as is seen.
+fn order(overlaps: &Overlaps<'_>, translucent: &Translucent, mut shapes: Vec<u32>) -> Vec<u32> {
     shapes.sort_by(|a, b| {
         let is_front = |r: &u32| !translucent.has(*r);
-        let by_size = sizes[b].total_cmp(&sizes[a]).then(a.cmp(b));
+        let [a_size, b_size] = [a, b].map(|r| overlaps.hull_area(*r));
+        let by_size = b_size.total_cmp(&a_size).then(a.cmp(b));
         is_front(a).cmp(&is_front(b)).then(by_size)
     });
     for pair in translucent.crossing() {
@@ -114,6 +98,7 @@ fn order(regions: &Regions, translucent: &Translucent, mut shapes: Vec<u32>) -> 
             shapes[front..=back].rotate_left(1);
         }
     }
+    overlaps.settle(&mut shapes, |shape| !translucent.has(shape));
     shapes
 }
 

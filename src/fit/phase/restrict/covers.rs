@@ -48,23 +48,32 @@ impl Covers {
 /// Farthest beside a stroke that the border of what it runs into may be bent by it, px. A guess.
 const MELTED: f32 = 1.0;
 
+/// More opacity than this hides what lies below: the last descent has not made all of it full. A guess.
+const OPAQUE: f32 = 0.99;
+
 impl Cover {
     fn of(mark: Mark) -> Self {
-        let corners = |path: &Path| bounded(path.flattened(FLATNESS));
+        let corners = |path: &Path| {
+            let mut corners = path.flattened(FLATNESS);
+            if let [dot] = corners[..] {
+                corners.push(dot);
+            }
+            bounded(corners)
+        };
         match mark {
             Mark::Area(area) => Self {
                 rings: area.rings.iter().map(corners).collect(),
                 middle: None,
                 radius: 0.0,
                 color: area.color,
-                is_opaque: area.opacity == 1.0,
+                is_opaque: area.opacity > OPAQUE,
             },
             Mark::Stroke(stroke) => Self {
                 rings: Vec::new(),
                 middle: Some(corners(&stroke.path)),
                 radius: stroke.radius,
                 color: stroke.color,
-                is_opaque: stroke.opacity == 1.0,
+                is_opaque: stroke.opacity > OPAQUE,
             },
         }
     }
