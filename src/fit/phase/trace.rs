@@ -77,6 +77,9 @@ pub(super) fn paying(
     let residuals: Vec<_> = surfaces.map(|(s, canvas)| s.residual_of(canvas)).collect();
     let by_bytes = price.of_bytes_alone();
     let mut traced = trace(&residuals, tracing, marks, |mark| by_bytes.least_gain(mark));
+    if config.opaque {
+        traced.iter_mut().for_each(|t| make_opaque(&mut t.mark));
+    }
     let most = config.points.unwrap_or(usize::MAX);
     let has_room = |stroke: &Stroke| {
         let strokes = Strokes::from_iter([stroke]);
@@ -85,6 +88,16 @@ pub(super) fn paying(
     traced
         .retain(|t| t.mark.as_stroke().is_none_or(has_room) && t.gain > price.least_gain(&t.mark));
     traced
+}
+
+/// Gives a mark the colour that it has on black and on white in the mean.
+fn make_opaque(mark: &mut Mark) {
+    let (color, opacity) = match mark {
+        Mark::Stroke(stroke) => (&mut stroke.color, &mut stroke.opacity),
+        Mark::Area(area) => (&mut area.color, &mut area.opacity),
+    };
+    *color = color.map(|c| 0.5 + *opacity * (c - 0.5));
+    *opacity = 1.0;
 }
 
 /// Seeds a stage of as many of the traced marks as there is room and time for, on top of all others, which it freezes. Returns
