@@ -5,6 +5,8 @@
 //! 2 of a side of a polygon. Moves, colours and widths are free. *Numbers* are all that the file writes of shapes,
 //! gradients, transforms, colours (3 each), widths and opacities; those of style sheets do not count.
 
+use std::ops::Range;
+
 use roxmltree::{Document, Node, ParsingOptions};
 use svgtypes::{PathParser, PathSegment, PointsParser};
 
@@ -71,6 +73,65 @@ pub(super) fn crisp(svg: &str) -> Result<String> {
         " shape-rendering=\"crispEdges\"",
     );
     Ok(text)
+}
+
+/// The places in the text of the painted shapes, from back to front, but that of a rectangle that fills the page.
+///
+/// # Errors
+/// As [`Anatomy::of`].
+pub(super) fn elements(svg: &str) -> Result<Vec<Range<usize>>> {
+    let document = parse(svg)?;
+    Ok(painted(document.root_element())
+        .iter()
+        .map(Node::range)
+        .collect())
+}
+
+/// The places in the text of an artist's things: the outermost groups and shapes, or all shapes if there is only one.
+///
+/// # Errors
+/// As [`Anatomy::of`].
+pub(super) fn things(svg: &str) -> Result<Vec<Range<usize>>> {
+    let document = parse(svg)?;
+    let shapes = painted(document.root_element());
+    let mut parent = document.root_element();
+    loop {
+        let has_shapes = |node: &Node<'_, '_>| {
+            shapes
+                .iter()
+                .any(|shape| shape.ancestors().any(|a| a == *node))
+        };
+        let children: Vec<Node<'_, '_>> = parent.children().filter(has_shapes).collect();
+        match children[..] {
+            [only] if !is_painted(only) => parent = only,
+            _ => return Ok(children.iter().map(Node::range).collect()),
+        }
+    }
+}
+
+/// The painted shapes but a rectangle that fills the page.
+fn painted<'a, 'input>(root: Node<'a, 'input>) -> Vec<Node<'a, 'input>> {
+    let is_drawn = |node: &Node<'_, '_>| {
+        !node
+            .ancestors()
+            .any(|a| UNPAINTED.contains(&a.tag_name().name()))
+    };
+    let shapes = root
+        .descendants()
+        .filter(|node| is_painted(*node))
+        .filter(is_drawn);
+    let mut shapes: Vec<_> = shapes.collect();
+    if shapes.first().is_some_and(|first| is_page(*first, root)) {
+        shapes.remove(0);
+    }
+    shapes
+}
+
+/// What is in these is painted where it is used.
+const UNPAINTED: [&str; 6] = ["defs", "clipPath", "mask", "symbol", "pattern", "marker"];
+
+fn is_painted(node: Node<'_, '_>) -> bool {
+    is_shape(node) || node.tag_name().name() == "use"
 }
 
 fn parse(svg: &str) -> Result<Document<'_>> {

@@ -3,6 +3,7 @@
 //! Other programs trace the same pictures, where they are installed.
 
 mod anatomy;
+mod belonging;
 mod color_difference;
 mod displacement;
 mod gallery;
@@ -19,6 +20,7 @@ use crate::report::Damage;
 use crate::report::cases::OWN;
 use crate::report::shapes::{Contents, ShapesEntry, ShapesReport};
 use anatomy::Anatomy;
+use belonging::Things;
 use displacement::Areas;
 use strokefit::fit::{Config, Fitter};
 use strokefit::image::Image;
@@ -127,6 +129,7 @@ struct Truth<'a> {
     /// Fidelity of the artist's file, dB.
     artist_db: f64,
     areas: Areas,
+    things: Things,
 }
 
 impl<'a> Truth<'a> {
@@ -138,6 +141,7 @@ impl<'a> Truth<'a> {
             side,
             artist_db: decibels(svg, &picture)?,
             areas: Areas::of(svg, picture.width(), picture.height())?,
+            things: Things::of(svg, exactly(&picture))?,
             picture,
         })
     }
@@ -213,6 +217,7 @@ impl<'a> Case<'a> {
             truth_db: Some(decibels(svg, &self.truth.picture)?),
             delta_e: Some(color_difference::mean(large, &drawn)),
             displacement_px: self.truth.areas.displacement_px(svg)?,
+            belonging: self.truth.things.belonging(svg)?,
             wall_s: Some(wall_s),
             ..self.entry(by)
         })

@@ -32,6 +32,17 @@ pub struct Contents {
     pub bytes: usize,
 }
 
+/// How well elements are the artist's things, each 0 to 1: his groups and outermost shapes.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Belonging {
+    /// The share of what an element changes that is one thing's; mean of the elements.
+    pub purity: f64,
+    /// How much of a thing one element draws, by half of the median; mean of the things.
+    pub coverage: f64,
+    /// How near to each other in painting order the elements of a thing are; mean of the things.
+    pub locality: f64,
+}
+
 /// A drawing, a picture of it, and what was made of that picture.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ShapesEntry {
@@ -59,6 +70,8 @@ pub struct ShapesEntry {
     pub delta_e: Option<f64>,
     /// Mean displacement of the artist's edges, px; `None` where there are none.
     pub displacement_px: Option<f64>,
+    /// Elements as the artist's things; `None` where there are too many.
+    pub belonging: Option<Belonging>,
     /// Wall time, s.
     pub wall_s: Option<f64>,
     /// Why nothing was made.
@@ -152,7 +165,7 @@ impl ShapesReport {
     }
 }
 
-const HEAD: [&str; 25] = [
+const HEAD: [&str; 28] = [
     "drawing",
     "family",
     "side_px",
@@ -175,6 +188,9 @@ const HEAD: [&str; 25] = [
     "artist_db",
     "delta_e00",
     "displacement_px",
+    "purity",
+    "coverage",
+    "locality",
     "wall_s",
     "svg",
     "failure",
@@ -204,6 +220,9 @@ fn cells(entry: &ShapesEntry) -> Vec<String> {
         optional(entry.artist_db, 2),
         optional(entry.delta_e, 3),
         optional(entry.displacement_px, 4),
+        optional(entry.belonging.map(|b| b.purity), 3),
+        optional(entry.belonging.map(|b| b.coverage), 3),
+        optional(entry.belonging.map(|b| b.locality), 3),
         optional(entry.wall_s, 3),
         entry.svg_name(),
         entry.failure.clone().unwrap_or_default(),
@@ -238,6 +257,11 @@ pub(in crate::report) mod tests {
             artist_db: Some(39.0),
             delta_e: Some(0.5),
             displacement_px: Some(0.125),
+            belonging: Some(Belonging {
+                purity: 0.75,
+                coverage: 1.0,
+                locality: 0.5,
+            }),
             wall_s: Some(0.2),
             ..ShapesEntry::default()
         }

@@ -3,11 +3,10 @@
 use super::super::cases::OWN;
 use super::super::statistics::{distinct, mean, median, optional};
 use super::super::{Damage, Table};
-use super::Contents;
-use super::ShapesEntry;
+use super::{Belonging, Contents, ShapesEntry};
 
 /// The columns of numbers, after those that name a row.
-const HEAD: [&str; 13] = [
+const HEAD: [&str; 16] = [
     "drawings",
     "elements ÷ artist's, median",
     "share ≤ 2",
@@ -20,6 +19,9 @@ const HEAD: [&str; 13] = [
     "dB − artist's, median",
     "ΔE00, mean of families",
     "edges off by, px, median",
+    "purity, mean",
+    "coverage, mean",
+    "locality, mean",
     "s, median",
 ];
 
@@ -75,6 +77,10 @@ fn summed_up(cases: &[&ShapesEntry]) -> Vec<String> {
         let values: Vec<f64> = cases.iter().filter_map(|entry| value(entry)).collect();
         optional(Some(median(values)).filter(|m| !m.is_nan()), digits)
     };
+    let usual = |value: fn(&Belonging) -> f64| {
+        let values = cases.iter().filter_map(|entry| entry.belonging.as_ref());
+        optional(mean(&values.map(value).collect::<Vec<_>>()), 2)
+    };
     let few = ratios(|c| c.elements).filter(|ratio| *ratio <= 2.0);
     let share = few.count() as f64 / cases.len() as f64;
     vec![
@@ -90,6 +96,9 @@ fn summed_up(cases: &[&ShapesEntry]) -> Vec<String> {
         middle(ShapesEntry::beyond_artist_db, 1),
         optional(mean_of_families(cases), 2),
         middle(|e| e.displacement_px, 3),
+        usual(|b| b.purity),
+        usual(|b| b.coverage),
+        usual(|b| b.locality),
         middle(|e| e.wall_s, 2),
     ]
 }
@@ -150,7 +159,10 @@ mod tests {
         );
         assert_eq!(rows[1].last().unwrap(), "", "clean pictures do not grow");
         assert_eq!(rows[3].last().unwrap(), "3.00");
-        assert_eq!(rows[1][10..15], ["42.0", "3.0", "0.50", "0.125", "0.20"]);
+        let expected = [
+            "42.0", "3.0", "0.50", "0.125", "0.75", "1.00", "0.50", "0.20",
+        ];
+        assert_eq!(rows[1][10..18], expected);
     }
 
     #[test]
