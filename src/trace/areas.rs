@@ -231,6 +231,11 @@ impl Pixels<'_> {
         (is_inside && x < self.width && y < self.height).then_some(y * self.width + x)
     }
 
+    /// True if nothing is drawn yet at pixel `i` of a page that is on a black and a white matte.
+    pub(super) fn is_clear(&self, i: usize) -> bool {
+        through(&self.canvas.at(i)) > 1.0 - LEVEL
+    }
+
     /// The pixels at most `reach` columns and rows away from `i`.
     pub(super) fn around(&self, i: usize, reach: usize) -> impl Iterator<Item = usize> + '_ {
         let (x, y) = (i % self.width, i / self.width);
@@ -260,19 +265,21 @@ pub(super) fn distance2(a: &Pixel, b: &Pixel) -> f32 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
 }
 
+/// The colour of something opaque that looks like `pixel` on so many mattes, in the mean.
+pub(super) fn color(pixel: &Pixel, mattes: usize) -> Rgb {
+    [0, 1, 2].map(|k| match mattes {
+        1 => pixel[k].clamp(0.0, 1.0),
+        _ => (0.5 * (pixel[k] + pixel[k + 3])).clamp(0.0, 1.0),
+    })
+}
+
 /// The colour and the opacity of what looks like `pixel` on a clear page, on so many mattes.
 pub(super) fn ink(pixel: &Pixel, mattes: usize) -> (Rgb, f32) {
-    let [red, green, blue, ..] = *pixel;
-    let color = [red, green, blue];
-    if mattes == 1 {
-        return (color.map(|c| c.clamp(0.0, 1.0)), 1.0);
-    }
-    if is_opaque(pixel) {
-        let mean = |k: usize| 0.5 * (pixel[k] + pixel[k + 3]);
-        return ([0, 1, 2].map(|k| mean(k).clamp(0.0, 1.0)), 1.0);
+    if mattes == 1 || is_opaque(pixel) {
+        return (color(pixel, mattes), 1.0);
     }
     let opacity = 1.0 - through(pixel);
-    let own = color.map(|c| (c / opacity.max(LEVEL)).clamp(0.0, 1.0));
+    let own = [0, 1, 2].map(|k| (pixel[k] / opacity.max(LEVEL)).clamp(0.0, 1.0));
     (own, opacity)
 }
 

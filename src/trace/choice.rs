@@ -201,9 +201,8 @@ fn votes(traced: &TracedStroke, flat: &Flat<'_>, pixels: &Pixels<'_>) -> Votes {
     let mut votes = Votes::new();
     let mut all = 0.0;
     let is_own = |region: &u32| flat.part(*region) == traced.part;
-    let ink = (traced.stroke.color, traced.stroke.opacity);
     for (i, share) in coverage_of(&traced.stroke, pixels) {
-        if let Some(region) = flat.region_like(i, ink).filter(is_own) {
+        if let Some(region) = flat.region_like(i, &traced.pixel).filter(is_own) {
             *votes.entry(region).or_default() += share;
         }
         all += share;

@@ -18,6 +18,8 @@ use crate::scene::{Path, Stroke};
 #[derive(Debug, Clone)]
 pub(super) struct TracedStroke {
     pub(super) stroke: Stroke,
+    /// Its colour in the picture.
+    pub(super) pixel: Pixel,
     pub(super) gain: f32,
     /// True if it goes on below others.
     pub(super) is_covered: bool,
@@ -117,7 +119,12 @@ fn stroke(
     let pixel: &Pixel = areas.colors.get(usize::from(*color))?;
     let gain = Gain::of(&path, radius, *color, pixel, areas, pixels);
     let is_explained = gain.removed > tracing.explained * gain.under;
-    let (color, opacity) = areas::ink(pixel, mattes);
+    // On top of a drawing, descent finds the opacity.
+    let mut places = line.spots.iter().filter_map(|spot| pixels.at(spot.at));
+    let (color, opacity) = match places.all(|i| pixels.is_clear(i)) {
+        true => areas::ink(pixel, mattes),
+        false => (areas::color(pixel, mattes), 1.0),
+    };
     let stroke = Stroke {
         path,
         radius,
@@ -127,6 +134,7 @@ fn stroke(
     let gain = gain.removed / mattes as f32;
     is_explained.then_some(TracedStroke {
         stroke,
+        pixel: *pixel,
         gain,
         is_covered: *is_covered,
         part: *part,

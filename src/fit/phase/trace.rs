@@ -78,7 +78,8 @@ pub(super) fn paying(
     let by_bytes = price.of_bytes_alone();
     let mut traced = trace(&residuals, tracing, marks, |mark| by_bytes.least_gain(mark));
     if config.opaque {
-        traced.iter_mut().for_each(|t| make_opaque(&mut t.mark));
+        let translucent = traced.iter_mut().filter(|t| t.mark.opacity() < 1.0);
+        translucent.for_each(|t| make_opaque(&mut t.mark));
     }
     let most = config.points.unwrap_or(usize::MAX);
     let has_room = |stroke: &Stroke| {

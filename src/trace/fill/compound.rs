@@ -3,7 +3,6 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::areas::{LEVEL, Pixel, away, mix};
-use super::stack::Layer;
 use crate::scene::{Path, Shade};
 
 /// A shape to be painted.
@@ -106,14 +105,4 @@ fn rename(touching: &mut [BTreeSet<usize>], gone: usize, kept: usize) {
             touching[kept].insert(other);
         }
     }
-}
-
-/// The layers below which regions would be seen: for each region the shape next below its own, if there is one.
-pub(super) fn below(layers: &[Layer], count: usize) -> Vec<Option<u32>> {
-    let mut below = vec![None; count];
-    for layer in layers {
-        let others = layer.covers.iter().filter(|&&r| r != layer.region);
-        others.for_each(|&r| below[r as usize] = Some(layer.region));
-    }
-    below
 }

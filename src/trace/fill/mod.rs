@@ -32,7 +32,7 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::areas::{self, LEVEL, Pixel, Pixels, distance2, is_opaque, mix};
+use super::areas::{self, LEVEL, Pixel, Pixels, away, distance2, is_opaque, mix};
 use super::parts::{Part, Parts};
 use super::recipe::{Fills, Outlines};
 use crate::scene::{Area, Path, Rgb};
@@ -269,8 +269,8 @@ impl<'a> Flat<'a> {
         self.regions.of[i]
     }
 
-    /// The region of pixel `i`, if it has about this colour and opacity and is not the canvas.
-    pub(super) fn region_like(&self, i: usize, (color, opacity): (Rgb, f32)) -> Option<u32> {
+    /// The region of pixel `i`, if it has about this colour and is not the canvas.
+    pub(super) fn region_like(&self, i: usize, color: &Pixel) -> Option<u32> {
         const LIKE: f32 = 0.12;
         let region = self.regions.of[i];
         let Region {
@@ -279,9 +279,7 @@ impl<'a> Flat<'a> {
             shades,
             ..
         } = &self.regions.list[region as usize];
-        let (own, own_opacity) = areas::ink(own, self.mattes);
-        let is_like = (0..3).all(|k| (own[k] - color[k]).abs() * opacity < LIKE)
-            && (own_opacity - opacity).abs() < LIKE;
+        let is_like = away(own, color) < LIKE;
         (*label != CANVAS && shades.is_empty() && is_like).then_some(region)
     }
 

@@ -9,7 +9,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::recipe::Fills;
 use super::colors::CANVAS;
-use super::compound;
 use super::overlaps::Overlaps;
 use super::regions::Regions;
 use super::translucent::{Translucent, on_top};
@@ -75,7 +74,7 @@ impl Stack {
         });
         let layers: Vec<Layer> = layers.collect();
         Self {
-            below: compound::below(&layers, regions.list.len()),
+            below: below(&layers, regions.list.len()),
             layers,
             ranks,
         }
@@ -224,4 +223,14 @@ fn connected_to(region: u32, inside: &BTreeSet<u32>, neighbours: &Neighbours) ->
         }
     }
     found.into_iter().collect()
+}
+
+/// For each region the shape next below its own, if there is one.
+fn below(layers: &[Layer], count: usize) -> Vec<Option<u32>> {
+    let mut below = vec![None; count];
+    for layer in layers {
+        let others = layer.covers.iter().filter(|&&r| r != layer.region);
+        others.for_each(|&r| below[r as usize] = Some(layer.region));
+    }
+    below
 }

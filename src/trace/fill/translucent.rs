@@ -143,8 +143,11 @@ fn is_faded(regions: &Regions, region: &Region, pixels: &Pixels<'_>) -> bool {
 
 /// True if nothing is drawn yet behind most of a region.
 fn is_clear(region: &Region, pixels: &Pixels<'_>) -> bool {
-    let shown = |&&i: &&u32| through(&pixels.canvas.at(i as usize)) > 1.0 - LEVEL;
-    2 * region.members.iter().filter(shown).count() > region.members.len()
+    let clear = region
+        .members
+        .iter()
+        .filter(|&&i| pixels.is_clear(i as usize));
+    2 * clear.count() > region.members.len()
 }
 
 /// The shapes that are seen in a region on top of each other, from front to back, by the regions `beside` it.

@@ -127,7 +127,7 @@ fn painted<'a, 'input>(root: Node<'a, 'input>) -> Vec<Node<'a, 'input>> {
     shapes
 }
 
-/// What is in these is painted where it is used.
+/// Elements whose contents are painted where they are used.
 const UNPAINTED: [&str; 6] = ["defs", "clipPath", "mask", "symbol", "pattern", "marker"];
 
 fn is_painted(node: Node<'_, '_>) -> bool {

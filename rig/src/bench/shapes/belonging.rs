@@ -39,7 +39,7 @@ impl Things {
         Ok(Self { size, masks })
     }
 
-    /// How well the elements of other SVG text are these things; `None` if there are none on either side, or too many.
+    /// The measures of the elements of other SVG text; `None` if there are none, no things, or too many.
     ///
     /// # Errors
     /// As [`verify::render`].

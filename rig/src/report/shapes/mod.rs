@@ -32,14 +32,14 @@ pub struct Contents {
     pub bytes: usize,
 }
 
-/// How well elements are the artist's things, each 0 to 1: his groups and outermost shapes.
+/// Elements as the artist's things, which are his groups and outermost shapes; each number is from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Belonging {
     /// The share of what an element changes that is one thing's; mean of the elements.
     pub purity: f64,
-    /// How much of a thing one element draws, by half of the median; mean of the things.
+    /// The part of a thing that one element draws, in units of half the median and at most 1; mean of the things.
     pub coverage: f64,
-    /// How near to each other in painting order the elements of a thing are; mean of the things.
+    /// Nearness in painting order of the elements of a thing; mean of the things.
     pub locality: f64,
 }
 
