@@ -18,7 +18,7 @@ compile() {
         rustup target add "$target"
     # The renderer is written for vectors, and every browser has had them since 2023. What is not hot is inlined less than
     # usual (225): a page downloads all of it.
-    CARGO_ENCODED_RUSTFLAGS=$'-Ctarget-feature=+simd128\x1f-Cllvm-args=-inline-threshold=80' \
+    CARGO_ENCODED_RUSTFLAGS=$'-Ctarget-feature=+simd128\x1f-Cllvm-args=-inline-threshold=60' \
         cargo build --profile web --locked --package strokefit-web --lib --target "$target"
 }
 
