@@ -13,7 +13,7 @@ pub mod robust;
 pub mod scaling;
 pub mod shapes;
 pub mod stability;
-mod statistics;
+pub(crate) mod statistics;
 mod table;
 
 pub use damage::Damage;

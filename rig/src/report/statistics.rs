@@ -17,7 +17,7 @@ pub(super) fn optional(value: Option<f64>, digits: usize) -> String {
 }
 
 /// `None` of no values.
-pub(super) fn mean(values: &[f64]) -> Option<f64> {
+pub(crate) fn mean(values: &[f64]) -> Option<f64> {
     let sum: f64 = values.iter().sum();
     (!values.is_empty()).then(|| sum / values.len() as f64)
 }

@@ -99,6 +99,9 @@ impl<'a> Overlaps<'a> {
         else {
             return Vec::new();
         };
+        if missing <= slack || missing > MOST * hull.area() {
+            return Vec::new();
+        }
         let beside = self.neighbours[shape as usize].keys().copied();
         let whole = beside.filter(|&r| {
             let is_apart = !self.encloses(r, shape) && !self.encloses(shape, r);
@@ -108,7 +111,7 @@ impl<'a> Overlaps<'a> {
         let owners = whole.flat_map(|r| self.within(r).map(move |inner| (inner, r)));
         let owners: BTreeMap<u32, u32> = owners.collect();
         let most: f64 = owners.keys().map(|&r| self.size(r)).sum();
-        if missing <= slack || missing > MOST * hull.area() || most < missing - slack {
+        if most < missing - slack {
             return Vec::new();
         }
         let mut bites: BTreeMap<u32, f64> = BTreeMap::new();

@@ -1,6 +1,6 @@
 //! Translucent regions on a clear page.
 //!
-//! What lies behind such a region is seen through it. So it goes on beneath what is opaque, and lies on another one only where
+//! Such a region shows what lies behind it. So it goes on beneath what is opaque, and lies on another one only where
 //! that shows through it all over. Where two of one colour each cross, a third colour is seen, which is no shape of its own:
 //! both shapes go on there.
 

@@ -4,8 +4,11 @@
 //! `c`; `A(i, c) = Σ H_c·D_i`. Purity is how much of what an element changes is one thing's, coverage how many things an element
 //! draws, and locality how near to each other in painting order the elements of a thing are.
 
+use std::ops::Range;
+
 use super::anatomy::{elements, things};
 use crate::report::shapes::Belonging;
+use crate::report::statistics::mean;
 use strokefit::Result;
 use strokefit::verify::{self, Size};
 
@@ -60,11 +63,7 @@ impl Things {
 }
 
 /// For each range of the text, the change of each pixel without it; `None` if there are too many.
-fn changes(
-    svg: &str,
-    ranges: Vec<std::ops::Range<usize>>,
-    size: Size,
-) -> Result<Option<Vec<Vec<f32>>>> {
+fn changes(svg: &str, ranges: Vec<Range<usize>>, size: Size) -> Result<Option<Vec<Vec<f32>>>> {
     if ranges.len() > MOST {
         return Ok(None);
     }
@@ -97,10 +96,6 @@ fn drawn(svg: &str, size: Size) -> Result<Vec<[f32; 4]>> {
 /// The measures of `A(i, c)`, element by element, for so many things.
 fn belonging(attributed: &[Vec<f64>], things: usize) -> Option<Belonging> {
     let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
-    let mean = |values: Vec<f64>| {
-        let count = values.len() as f64;
-        (count > 0.0).then(|| values.iter().sum::<f64>() / count)
-    };
     // Elements that change nothing of any thing belong to none.
     let purities = attributed.iter().filter_map(|own| {
         let all: f64 = own.iter().sum();
@@ -118,24 +113,17 @@ fn belonging(attributed: &[Vec<f64>], things: usize) -> Option<Belonging> {
         let half = (attributed.len() as f64 - 1.0) / 2.0;
         (weight > 0.0).then(|| 1.0 - if half > 0.0 { deviation / half } else { 0.0 })
     };
-    let localities = (0..things).filter_map(locality).collect();
-    let found = Belonging {
-        purity: mean(purities.collect())?,
-        coverage: 0.0,
-        locality: mean(localities)?,
-    };
+    let localities: Vec<f64> = (0..things).filter_map(locality).collect();
+    let (purity, locality) = (mean(&purities.collect::<Vec<_>>())?, mean(&localities)?);
     let shown = most.clone();
     most.sort_by(f64::total_cmp);
     let threshold = most[things / 2] / 2.0;
-    let coverage = mean(
-        shown
-            .iter()
-            .map(|a| (a / threshold).clamp(0.0, 1.0))
-            .collect(),
-    );
-    Some(Belonging {
-        coverage: coverage.filter(|coverage| coverage.is_finite())?,
-        ..found
+    let covered = shown.iter().map(|a| (a / threshold).clamp(0.0, 1.0));
+    let coverage = mean(&covered.collect::<Vec<_>>())?;
+    coverage.is_finite().then_some(Belonging {
+        purity,
+        coverage,
+        locality,
     })
 }
 
