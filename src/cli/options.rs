@@ -40,7 +40,7 @@ pub(super) struct How {
     /// Worker threads [default: all cores]
     #[arg(long, value_name = "N", value_parser = |text: &str| execution("threads", text), allow_negative_numbers = true)]
     threads: Option<Execution>,
-    /// Instruction set: auto, avx512, avx2, sse4.2, sse2, neon or scalar
+    /// Instruction set: auto, avx512, avx2, sse4.2, sse2 or neon
     #[arg(long, value_name = "LEVEL", default_value = "auto", value_parser = |text: &str| execution("simd", text))]
     simd: Execution,
     /// Refuse pictures with more than N pixels

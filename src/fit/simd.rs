@@ -3,13 +3,11 @@
 use std::fmt;
 use std::str::FromStr;
 
-#[cfg(not(target_family = "wasm"))]
-use fearless_simd::Fallback;
 use fearless_simd::Level;
 
 use crate::error::{Error, ErrorKind, Result};
 
-/// The instruction set of the renderer. All of them give the same bits.
+/// The instruction set of the renderer. All of them give the same bits. A machine that has none of them has `Auto` alone.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Simd {
     /// The widest that this machine has.
@@ -27,20 +25,17 @@ pub enum Simd {
     Neon,
     /// The 128-bit vectors of WebAssembly, in a build with that feature.
     Simd128,
-    /// No vectors; not in WebAssembly.
-    Scalar,
 }
 
 impl Simd {
     /// Every name but `auto`, widest first.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 6] = [
         Self::Avx512,
         Self::Avx2,
         Self::Sse42,
         Self::Sse2,
         Self::Neon,
         Self::Simd128,
-        Self::Scalar,
     ];
 
     /// The level, if this machine has it.
@@ -48,8 +43,6 @@ impl Simd {
         let best = Level::new();
         match self {
             Self::Auto => Some(best),
-            #[cfg(not(target_family = "wasm"))]
-            Self::Scalar => Some(Level::Fallback(Fallback::new())),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             Self::Avx512 => best.as_avx512().map(Level::Avx512),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -98,7 +91,6 @@ impl fmt::Display for Simd {
             Self::Sse2 => "sse2",
             Self::Neon => "neon",
             Self::Simd128 => "simd128",
-            Self::Scalar => "scalar",
         })
     }
 }
@@ -109,7 +101,7 @@ impl FromStr for Simd {
     fn from_str(word: &str) -> Result<Self> {
         let mut names = [Self::Auto].into_iter().chain(Self::ALL);
         names.find(|name| name.to_string() == word).ok_or_else(|| {
-            let message = format!("'{word}' is no instruction set: use auto, avx512, avx2, sse4.2, sse2, neon, simd128 or scalar");
+            let message = format!("'{word}' is no instruction set: use auto, avx512, avx2, sse4.2, sse2, neon or simd128");
             Error::new(ErrorKind::Config, message)
         })
     }

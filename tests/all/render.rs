@@ -892,9 +892,10 @@ fn every_level_gives_the_same_bits() {
                 coverage,
                 width: 1.25,
             };
-            let expected = differentiated(&case, Simd::Scalar, softness, Loss::L2);
-            let on_mattes = differentiated_on_mattes(&case, Simd::Scalar, softness);
-            for simd in levels() {
+            let narrowest = levels().last().unwrap();
+            let expected = differentiated(&case, narrowest, softness, Loss::L2);
+            let on_mattes = differentiated_on_mattes(&case, narrowest, softness);
+            for simd in levels().filter(|&simd| simd != narrowest) {
                 let got = differentiated(&case, simd, softness, Loss::L2);
                 let bits = |g: &Gradients| -> Vec<u32> {
                     let strokes = g.strokes.iter();
