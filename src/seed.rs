@@ -176,7 +176,10 @@ impl<'a> Reduced<'a> {
     fn new(residual: &Residual<'a>, level: usize, halvings: usize) -> Self {
         Self {
             target: residual.target.level(level + halvings),
-            canvas: (0..halvings).fold(residual.canvas.to_image(), |image, _| image.halved()),
+            canvas: match halvings {
+                0 => residual.canvas.to_image(),
+                _ => (1..halvings).fold(residual.canvas.halved(), |image, _| image.halved()),
+            },
             weights: residual
                 .weights
                 .map(|weights| weights.level(level + halvings)),

@@ -48,6 +48,8 @@ pub(super) struct Drawing {
     edge: Softness,
     /// True if the canvases show the drawing as it is.
     is_rendered: bool,
+    /// The mean squared error of the drawing as it is, once it is known.
+    known_mse: Option<f64>,
     pub(super) counters: Counters,
 }
 
@@ -85,6 +87,7 @@ impl Drawing {
             bounds,
             edge,
             is_rendered: false,
+            known_mse: None,
             counters: Counters::default(),
         }
     }
@@ -101,7 +104,7 @@ impl Drawing {
 
     /// Mutable access to the free strokes.
     pub(super) fn free_mut(&mut self) -> &mut Strokes {
-        self.is_rendered = false;
+        self.forget();
         &mut self.free
     }
 
@@ -154,7 +157,7 @@ impl Drawing {
             change(&mut moved);
             // No stroke could make up for a background that is not finite.
             if moved.iter().all(|c| c.is_finite()) {
-                self.is_rendered = false;
+                (self.is_rendered, self.known_mse) = (false, None);
                 *color = moved.map(|c| c.clamp(0.0, 1.0));
             }
         }
@@ -204,13 +207,18 @@ impl Drawing {
     /// Lets errors count as `focus` says, everywhere alike if `None`. Nothing may be frozen.
     pub(super) fn focus_on(&mut self, focus: Option<&Focus>) {
         self.surfaces.iter_mut().for_each(|s| s.focus_on(focus));
-        self.is_rendered = false;
+        self.forget();
         self.renderer = renderer(self.surface(), self.level);
         self.render();
     }
 
+    /// Forgets what is known of the drawing, which changes.
+    fn forget(&mut self) {
+        (self.is_rendered, self.known_mse) = (false, None);
+    }
+
     fn free_all(&mut self) {
-        self.is_rendered = false;
+        self.forget();
         self.frozen.append(&mut self.free);
         std::mem::swap(&mut self.frozen, &mut self.free);
     }
@@ -377,6 +385,7 @@ impl Drawing {
     pub(super) fn judge(&mut self) -> Gradients {
         let mut gradients = Gradients::default();
         self.differentiate::<true>(self.edge, None, &mut gradients);
+        self.known_mse = Some(gradients.loss);
         let area = self.pixel_area();
         gradients.worth.iter_mut().for_each(|worth| *worth *= area);
         gradients
@@ -401,21 +410,20 @@ impl Drawing {
             .backward(&self.free, self.edge, backdrop, loss, gradients);
     }
 
-    /// The mean squared error of the drawing, at the current resolution.
+    /// The mean squared error of the drawing, at the current resolution. It is not rendered for that.
     pub(super) fn mse(&mut self) -> f64 {
-        self.render();
-        self.mse_of(self.surfaces.iter().map(|surface| &surface.canvas))
-    }
-
-    /// The mean squared error of the drawing, without canvases that show it: for a trial, of which no more is asked.
-    pub(super) fn mse_of_trial(&mut self) -> f64 {
+        if let Some(mse) = self.known_mse {
+            return mse;
+        }
         let (free, frozen) = (&self.free, self.frozen.len());
         let (renderer, edge) = (&mut self.renderer, self.edge);
         let losses = self.surfaces.iter().map(|surface| {
             let objective = surface.objective(None);
             renderer.loss(free, edge, surface.backdrop(frozen), &objective)
         });
-        losses.sum::<f64>() / self.surfaces.len() as f64
+        let mse = losses.sum::<f64>() / self.surfaces.len() as f64;
+        self.known_mse = Some(mse);
+        mse
     }
 
     /// The mean squared error of rendered canvases, one per surface.

@@ -88,9 +88,9 @@ pub(super) fn prune(drawing: &mut Drawing, price: Price, prunings: usize) {
         if removals.iter().all(Option::is_none) {
             return;
         }
-        let (before, error) = (drawing.memento(), drawing.mse_of_trial());
+        let (before, error) = (drawing.memento(), drawing.mse());
         drawing.edit(&removals);
-        let added = (drawing.mse_of_trial() - error) * (3 * drawing.pixels()) as f64;
+        let added = (drawing.mse() - error) * (3 * drawing.pixels()) as f64;
         if added > allowed {
             drawing.revert(before);
             return;

@@ -235,6 +235,28 @@ impl Canvas {
         Image::from_planes(width, height, planes)
     }
 
+    /// The picture at half the size (rounded up), as [`Image::halved`] has it.
+    pub fn halved(&self) -> Image {
+        let Grid { width, height, .. } = self.grid;
+        let (columns, rows) = (width.div_ceil(2), height.div_ceil(2));
+        let mut planes = [(); 3].map(|()| Vec::with_capacity(columns * rows));
+        for y in (0..height).step_by(2) {
+            // Two rows that belong together are in one block; a single last row or column is its own neighbour.
+            let below = if y + 1 < height { BLOCK } else { 0 };
+            for (tile, block, lanes, _) in self.grid.segments(y) {
+                let last = lanes.end - 1;
+                for (plane, lane) in planes.iter_mut().zip(&self.tiles[tile][block]) {
+                    plane.extend(lanes.clone().step_by(2).map(|left| {
+                        let right = last.min(left + 1);
+                        let mean = |row: usize| (lane.0[row + left] + lane.0[row + right]) / 2.0;
+                        (mean(0) + mean(below)) / 2.0
+                    }));
+                }
+            }
+        }
+        Image::from_planes(columns, rows, planes)
+    }
+
     /// The colour of one pixel.
     ///
     /// # Panics
@@ -262,7 +284,7 @@ impl Canvas {
 }
 
 /// Multiplies a tile by another.
-pub(crate) fn multiply(tile: &mut TileRgb, through: &TileRgb) {
+fn multiply(tile: &mut TileRgb, through: &TileRgb) {
     let lanes = tile.as_flattened_mut().iter_mut();
     for (lanes, through) in lanes.zip(through.as_flattened()) {
         for (value, through) in lanes.0.iter_mut().zip(through.0) {
@@ -331,6 +353,15 @@ mod tests {
                 }
             }
             assert_eq!(seen, vec![1; width * height]);
+        }
+    }
+
+    #[test]
+    fn a_canvas_is_halved_as_its_picture() {
+        for (width, height) in [(1, 1), (32, 32), (33, 5), (70, 67), (2, 35)] {
+            let color = |i: usize| [i as f32, 0.1 * (i % 7) as f32, 1.0];
+            let canvas = Canvas::from_fn(Grid::new(width, height), color);
+            assert_eq!(canvas.halved(), canvas.to_image().halved());
         }
     }
 }

@@ -83,7 +83,6 @@ use fearless_simd::Level;
 use rayon::prelude::*;
 
 pub use gradients::{Gradients, Survey};
-pub(crate) use grid::multiply;
 pub use grid::{BlockRgb, Canvas, Grid, Lanes, Run, TILE, TileRgb};
 pub use ground::{Plane, blurred, coverage, filled, ground};
 pub use paint::Paint;

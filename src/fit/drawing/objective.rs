@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::loss::Loss;
 use crate::render::{
     Backdrop, Canvas, CanvasLoss, Gradients, Grid, Lanes, Renderer, Softness, Strokes, TILE,
-    TileRgb, Untouched, multiply,
+    TileRgb, Untouched,
 };
 
 /// The mean of `loss` over width·height·3 values against `target`.
@@ -148,26 +148,21 @@ impl<'a> Objective<'a> {
     pub(in crate::fit) fn of(&self, canvas: &Canvas) -> f64 {
         let tiles = canvas.tiles().par_iter().enumerate();
         let sum = |(tile, canvas): (usize, &TileRgb)| {
-            let target = &self.target.tiles()[tile];
-            match self.error_weights {
-                Some(roots) => {
-                    let mut weighted = *canvas;
-                    multiply(&mut weighted, &roots.tiles()[tile]);
-                    self.sum(&weighted, target)
-                }
-                None => self.sum(canvas, target),
-            }
+            let roots = self.error_weights.map(|roots| &roots.tiles()[tile]);
+            self.sum(canvas, roots, &self.target.tiles()[tile])
         };
         let sums: Vec<f64> = tiles.map(sum).collect();
         sums.iter().sum::<f64>() * f64::from(self.scale)
     }
 
-    fn sum(&self, canvas: &TileRgb, target: &TileRgb) -> f64 {
+    fn sum(&self, canvas: &TileRgb, roots: Option<&TileRgb>, target: &TileRgb) -> f64 {
+        let roots = roots.map(|roots| roots.as_flattened());
         let mut sums = Lanes::splat(0.0);
         let lanes = canvas.as_flattened().iter().zip(target.as_flattened());
-        for (c, t) in lanes {
-            for (sum, (c, t)) in sums.0.iter_mut().zip(c.0.iter().zip(&t.0)) {
-                *sum += self.loss.value(c - t);
+        for (i, (c, t)) in lanes.enumerate() {
+            let roots = roots.map_or(&EQUAL, |roots| &roots[i]);
+            for (lane, sum) in sums.0.iter_mut().enumerate() {
+                *sum += self.loss.value(c.0[lane] * roots.0[lane] - t.0[lane]);
             }
         }
         sums.0.iter().map(|&s| f64::from(s)).sum()

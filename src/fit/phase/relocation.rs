@@ -30,13 +30,14 @@ pub(in crate::fit) fn relocate(
     let wanted = wanted(session);
     let (config, recipe, timer) = (session.config, &session.recipe, &mut session.timer);
     let drawing = &mut session.drawing;
-    let price = session.price.in_drawing(drawing);
+    let price = session.price;
     timer.searching(wanted, || {
         let relocation = recipe.relocation;
         let room = limit.saturating_sub(drawing.len());
         let scale = drawing.spacing(drawing.len()) * recipe.stages.scale * relocation.scale;
         // Worth of the strokes that are there, and the least worth that pays.
         let worth = drawing.judge().worth;
+        let price = price.in_drawing(drawing);
         let prices: Vec<f32> = drawing
             .free()
             .iter()

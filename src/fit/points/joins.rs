@@ -131,7 +131,7 @@ fn end(stroke: StrokeRef<'_>, is_end: bool) -> [f32; 2] {
 impl Drawing {
     /// The squared error, summed over channels and the pixels of the picture.
     fn squared_error(&mut self) -> f64 {
-        self.mse_of_trial() * 3.0 * self.pixels() as f64
+        self.mse() * 3.0 * self.pixels() as f64
     }
 
     /// Joins pairs of free strokes. The joined stroke lies where the upper one lay.

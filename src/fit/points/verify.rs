@@ -25,7 +25,7 @@ pub(super) fn verify(
     if of_rings.is_empty() {
         return;
     }
-    let (before, error) = (drawing.free().clone(), drawing.mse_of_trial());
+    let (before, error) = (drawing.free().clone(), drawing.mse());
     let values = (3 * drawing.pixels()) as f64;
     let mut done = 0;
     by_halves(of_rings, |group| {
@@ -37,7 +37,7 @@ pub(super) fn verify(
         let mut tried: Vec<Option<Edit>> = vec![None; edits.len()];
         group.iter().for_each(|&i| tried[i].clone_from(&edits[i]));
         drawing.edit(&tried);
-        let added = (drawing.mse_of_trial() - error) * values;
+        let added = (drawing.mse() - error) * values;
         drawing.free_mut().clone_from(&before);
         let foreseen =
             |edit: &Edit| TOLERANCE * f64::from(-edit.gain).max(0.0) + f64::from(to_keep);

@@ -45,7 +45,7 @@ pub(super) fn adopt(
         return false;
     }
     let home = Home::of(&session.drawing);
-    let mut error = session.drawing.mse_of_trial();
+    let mut error = session.drawing.mse();
     let worth_before = match each {
         Each::Gains => session.drawing.judge().worth,
         Each::MayLose => Vec::new(),
@@ -93,7 +93,7 @@ pub(super) fn adopt(
         let mut is_tried = is_taken.clone();
         group.iter().for_each(|&i| is_tried[i] = true);
         home.put(drawing, &proposals, |i| is_tried[i]);
-        let now = drawing.mse_of_trial();
+        let now = drawing.mse();
         let added = (now - error) * (3 * drawing.pixels()) as f64;
         let pays = added <= group.iter().map(|&i| f64::from(allowed[i])).sum();
         if pays {

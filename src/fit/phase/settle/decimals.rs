@@ -30,7 +30,7 @@ pub(super) fn drop_decimals(
         .map(|area| rounded(area, scene))
         .collect();
     let of_areas = (0..rounded.len()).filter(|&i| rounded[i].is_some());
-    let (mut error, mut has_changed) = (drawing.mse_of_trial(), false);
+    let (mut error, mut has_changed) = (drawing.mse(), false);
     by_halves(of_areas.collect(), |group| {
         let bytes = |drawing: &Drawing| -> usize {
             let of = |&i: &usize| price.bytes_of(drawing.free().get(i));
@@ -39,7 +39,7 @@ pub(super) fn drop_decimals(
         let (before, bytes_before) = (drawing.free().clone(), bytes(drawing));
         put(drawing, group, &rounded);
         let saved = bytes_before.saturating_sub(bytes(drawing));
-        let now = drawing.mse_of_trial();
+        let now = drawing.mse();
         let added = (now - error) * (3 * drawing.pixels()) as f64;
         let pays = added <= f64::from(price.of_saved(saved)) && saved > 0;
         if pays {
