@@ -204,6 +204,7 @@ mod tests {
     /// A file of no strokes.
     fn file(bytes: usize, mse: f64) -> RenderedFile {
         RenderedFile {
+            errors: vec![mse],
             rounded: Scene::empty(4, 3, None).quantized(2),
             drawn: Vec::new(),
             bytes,

@@ -33,7 +33,9 @@ pub(super) struct RenderedFile {
     pub(super) drawn: Vec<Image>,
     /// Bytes of SVG.
     pub(super) bytes: usize,
-    /// The mean squared error, on the matte where it is largest.
+    /// Their mean squared errors.
+    pub(super) errors: Vec<f64>,
+    /// The largest of them.
     pub(super) mse: f64,
 }
 
@@ -106,7 +108,8 @@ impl<'a> Writer<'a> {
             rounded,
             drawn,
             bytes,
-            mse: errors.into_iter().fold(0.0, f64::max),
+            mse: errors.iter().copied().fold(0.0, f64::max),
+            errors,
         };
         Ok((file, other))
     }

@@ -349,8 +349,9 @@ impl Surface {
 
     /// The backdrop of all strokes, at full resolution.
     pub(in crate::fit) fn full_backdrop(&self) -> Canvas {
-        let full = Canvas::from_image(self.picture()).grid();
-        self.backdrop.canvas(full, 0)
+        let picture = self.picture();
+        self.backdrop
+            .canvas(Grid::new(picture.width(), picture.height()), 0)
     }
 
     /// The picture and a canvas at any resolution.

@@ -45,7 +45,7 @@ fn run(session: &mut Session<'_>) -> Result<()> {
     let rates = session.restricted_rates();
     let (mut file, mut seen) = session.render_for_settling()?;
     let mut best = Best::of(session, &file, &seen);
-    let (mut share, mut pace) = (seen.first_share(), 1.0);
+    let (mut share, mut pace) = (seen.first_share(&file)?, 1.0);
     let mut round = 0;
     while allows_round(session, round) && session.progress.tell(&session.drawing, file.mse) {
         round += 1;
