@@ -16,7 +16,7 @@
 //! | --- | --- |
 //! | `order`, `phase` | the phases: which follows which, and a file for each |
 //! | `priced` | drawings of what pays, for a budget of strokes or bytes |
-//! | `config`, `recipe` | options, and all tuned numbers |
+//! | `config`, `recipe` | options, and the tuned numbers of the phases |
 //! | `budget` | limits, the price of a stroke, the plan of stages, the pixels that a drawing needs |
 //! | `drawing` | strokes in progress, on surfaces of target, backdrop and canvas; the objective; the background |
 //! | `descent` | gradient descent and its annealing |

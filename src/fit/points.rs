@@ -26,7 +26,7 @@ pub(super) use shed::shed;
 use terrain::Terrain;
 use verify::verify;
 
-/// Least segments of a line or a curve in a survey.
+/// Least segments of a line or a curve in a survey. A guess.
 const LEAST: usize = 4;
 
 /// Most trials of edits at a time. A guess: each renders the drawing.

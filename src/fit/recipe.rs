@@ -1,4 +1,5 @@
-//! All tuned numbers of a fit, each with what was measured when it was chosen.
+//! The tuned numbers of the phases of a fit, each with what was measured when it was chosen. A number that one step of tracing or
+//! of rearranging points needs alone stands beside that step.
 //!
 //! "±x dB" is the change of fidelity at equal numbers of strokes; the pages of `docs/notebook` name the pictures and have
 //! the complete tables. "Half, twice" is the change at half and at twice the value, in the mean of four samples at 300 strokes

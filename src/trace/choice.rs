@@ -382,7 +382,7 @@ const LINE: f32 = 6.0;
 /// An ellipse is no stroke if its radii are above this, px. A guess.
 const STOUT: f32 = 4.0;
 
-/// Farthest that an outline is from the ellipse that it is, px; as for forms.
+/// Farthest that an outline is from the ellipse that it is, px: a guess, as for forms.
 const NEAR: f32 = 0.45;
 
 /// True for an ellipse that is no circle: a fat stroke is as near to it as rays tell, but not its ends.

@@ -48,7 +48,7 @@ impl Pen {
     }
 }
 
-/// Farthest that the middle of a traced line is from its place, px.
+/// Farthest that the middle of a traced line is from its place, px. A guess.
 pub(super) const WAVERING: f32 = 0.6;
 
 /// Shortest side of a line with square ends, in radii: bends have shorter ones. A guess.

@@ -10,21 +10,21 @@ use super::areas::{LEVEL, Pixel, Pixels, away, distance2, mix};
 use crate::math::{Point, Vector, median};
 use crate::scene::{Mark, Stroke};
 
-/// Levels within which pixels are alike.
+/// Levels within which pixels are alike. A guess.
 const ALIKE: f32 = 3.0 * LEVEL;
-/// Shares whose difference is less are one.
+/// Shares whose difference is less are one. A guess.
 const NEAR: f32 = 0.03;
-/// Largest difference of the channels of inks that are one.
+/// Largest difference of the channels of inks that are one. A guess.
 const ALMOST: f32 = 0.1;
-/// Most inks that are compared with all others.
+/// Most inks that are compared with all others. A guess.
 const MOST_INKS: usize = 64;
-/// The share of a crossing's colour that none of its lines has.
+/// The share of a crossing's colour that none of its lines has. A guess.
 const DARKER: f32 = 0.06;
-/// Fewest crossings that tell a pen.
+/// Fewest crossings that tell a pen. A guess.
 const LEAST_CROSSINGS: usize = 4;
-/// Fewest pixels along a line.
+/// Fewest pixels along a line. A guess.
 const LEAST_LENGTH: usize = 6;
-/// The share of a stroke that has to run along lines between rows.
+/// The share of a stroke that has to run along lines between rows. A guess.
 const LEAST_ALONG: f32 = 0.7;
 
 /// Lines between two rows or columns of a picture, and the pen that has drawn them.

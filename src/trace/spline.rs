@@ -215,7 +215,8 @@ fn nearest(
     }
 }
 
-/// A spline that is farther off than so many tolerances is wild: between control points far from each other, it follows nothing.
+/// A spline that is farther off than so many tolerances is wild: between control points far from each other, it follows nothing. A
+/// guess.
 const WILD: f32 = 16.0;
 
 /// Shares of a spline at which its places lie, 0 to 1, if all are as far from each other.
@@ -252,7 +253,7 @@ fn by_bends(places: &[Place], closed: bool) -> Vec<f32> {
     shares.iter().map(|share| share / all).collect()
 }
 
-/// Places to either side over which a bend is measured.
+/// Places to either side over which a bend is measured. A guess.
 const BEND: usize = 8;
 
 /// Share of the control points that lie evenly along a line, and not where it bends. A guess.

@@ -191,12 +191,12 @@ fn beyond(at: Place, before: Place, page: [f32; 2]) -> Place {
     place
 }
 
-/// Depth from which on an edge is hidden, px.
+/// Depth from which on an edge is hidden, px. A guess.
 const HIDDEN: f32 = 0.05;
-/// Farthest that a hidden edge may be inside, px.
+/// Farthest that a hidden edge may be inside, px. A guess.
 const INSIDE: f32 = 0.35;
 
-/// Length of an edge, px, before it is hidden, along which it may lie outside as far.
+/// Length of an edge, px, before it is hidden, along which it may lie outside as far. A guess.
 const ENDING: f32 = 1.5;
 
 /// The samples of a contour with what is allowed of each, and the indices of its corners.

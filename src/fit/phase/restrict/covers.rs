@@ -4,7 +4,7 @@ use crate::fit::drawing::Drawing;
 use crate::math::{Point, nearest_on_segment};
 use crate::scene::{Mark, Path, Rgb};
 
-/// Farthest that chords are from a ring that others may lie in, px.
+/// Farthest that chords are from a ring that others may lie in, px. A guess.
 pub(super) const FLATNESS: f32 = 0.1;
 
 /// The marks of a drawing as far as they hide others, and its page.
