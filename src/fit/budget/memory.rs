@@ -4,6 +4,7 @@ use crate::fit::budget::plan::{Before, Plan};
 use crate::fit::budget::{reduction, rivals};
 use crate::fit::config::{Background, Config, MAX_STROKES};
 use crate::image::Image;
+use crate::render::TILE;
 
 /// Bytes for the program and its libraries.
 const BASE: u64 = 16 << 20;
@@ -14,6 +15,9 @@ const PER_PIXEL: u64 = 245;
 const PER_FLAT_PIXEL: u64 = 430;
 /// Bytes per pixel of a picture that is drawn on two mattes. Measured: 460 to 790.
 const PER_TRANSPARENT_PIXEL: u64 = 550;
+/// Bytes per pixel of the padding of tiles, which only canvases have. Measured for 65000×2, 30000×3 and 3×20000 px: 95
+/// to 145.
+const PER_PADDED_PIXEL: u64 = 135;
 /// Bytes per pixel of a picture that is reduced before it is drawn. Measured: 14 for 16 megapixels.
 const PER_PIXEL_READ: u64 = 15;
 /// Bytes per stroke for its points, the optimiser's state, the tiles that it touches, the SVG text and its tree. Measured:
@@ -28,7 +32,7 @@ pub fn predicted_rss_bytes(picture: &Image, config: &Config) -> u64 {
     let per_pixel = per_pixel(picture, config);
     match reduction::size(picture, config) {
         Some([width, height]) => of_pixels((width * height, per_pixel), Some(all), config),
-        None => of_pixels((all, per_pixel), None, config),
+        None => of_pixels((all, per_pixel), None, config) + padding(picture),
     }
 }
 
@@ -36,7 +40,15 @@ pub fn predicted_rss_bytes(picture: &Image, config: &Config) -> u64 {
 pub(crate) fn rss_bytes_of(target: &Image, page: Option<[u32; 2]>, config: &Config) -> u64 {
     let read = page.map(|[width, height]| width as usize * height as usize);
     let pixels = target.width() * target.height();
-    of_pixels((pixels, per_pixel(target, config)), read, config)
+    of_pixels((pixels, per_pixel(target, config)), read, config) + padding(target)
+}
+
+/// Predicted bytes for the padding of the tiles of a picture of this size, which is most of a picture of two rows.
+fn padding(picture: &Image) -> u64 {
+    let padded = |side: usize| side.next_multiple_of(TILE);
+    let (width, height) = (picture.width(), picture.height());
+    let pixels = padded(width) * padded(height) - width * height;
+    PER_PADDED_PIXEL * pixels as u64
 }
 
 /// Bytes for each pixel of `picture`.
