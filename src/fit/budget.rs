@@ -179,7 +179,7 @@ fn fits(budget: &Budget, file: &RenderedFile) -> bool {
 
 /// True if a fidelity is asked for, and `file` has it.
 fn reaches(budget: &Budget, file: &RenderedFile) -> bool {
-    budget.psnr_db.is_some_and(|db| psnr_db(file.mse) >= db)
+    budget.psnr_db.is_some_and(|db| psnr_db(file.mse()) >= db)
 }
 
 /// True if `new` serves the budget better than `old`. Few enough bytes count first, then enough fidelity. Of two files
@@ -188,7 +188,7 @@ pub(super) fn is_better(budget: &Budget, new: &RenderedFile, old: &RenderedFile)
     match (fits(budget, new), fits(budget, old)) {
         (true, true) => match (reaches(budget, new), reaches(budget, old)) {
             (true, true) => new.rounded.scene.len() < old.rounded.scene.len(),
-            (false, false) => new.mse < old.mse,
+            (false, false) => new.mse() < old.mse(),
             (reaches, _) => reaches,
         },
         (false, false) => new.bytes < old.bytes,
@@ -208,7 +208,6 @@ mod tests {
             rounded: Scene::empty(4, 3, None).quantized(2),
             drawn: Vec::new(),
             bytes,
-            mse,
         }
     }
 

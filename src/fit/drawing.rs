@@ -46,11 +46,17 @@ pub(super) struct Drawing {
     pub(super) bounds: Bounds,
     /// The edge of the finished drawing.
     edge: Softness,
-    /// True if the canvases show the drawing as it is.
-    is_rendered: bool,
-    /// The mean squared error of the drawing as it is, once it is known.
-    known_mse: Option<f64>,
+    known: Known,
     pub(super) counters: Counters,
+}
+
+/// What is known of the drawing as it is.
+#[derive(Debug, Clone, Copy, Default)]
+struct Known {
+    /// True if the canvases show it.
+    is_rendered: bool,
+    /// Its mean squared error.
+    mse: Option<f64>,
 }
 
 /// Counters of a whole fit.
@@ -86,8 +92,7 @@ impl Drawing {
             stage_of: Vec::new(),
             bounds,
             edge,
-            is_rendered: false,
-            known_mse: None,
+            known: Known::default(),
             counters: Counters::default(),
         }
     }
@@ -104,7 +109,7 @@ impl Drawing {
 
     /// Mutable access to the free strokes.
     pub(super) fn free_mut(&mut self) -> &mut Strokes {
-        self.forget();
+        self.known = Known::default();
         &mut self.free
     }
 
@@ -157,7 +162,7 @@ impl Drawing {
             change(&mut moved);
             // No stroke could make up for a background that is not finite.
             if moved.iter().all(|c| c.is_finite()) {
-                (self.is_rendered, self.known_mse) = (false, None);
+                self.known = Known::default();
                 *color = moved.map(|c| c.clamp(0.0, 1.0));
             }
         }
@@ -207,18 +212,13 @@ impl Drawing {
     /// Lets errors count as `focus` says, everywhere alike if `None`. Nothing may be frozen.
     pub(super) fn focus_on(&mut self, focus: Option<&Focus>) {
         self.surfaces.iter_mut().for_each(|s| s.focus_on(focus));
-        self.forget();
+        self.known = Known::default();
         self.renderer = renderer(self.surface(), self.level);
         self.render();
     }
 
-    /// Forgets what is known of the drawing, which changes.
-    fn forget(&mut self) {
-        (self.is_rendered, self.known_mse) = (false, None);
-    }
-
     fn free_all(&mut self) {
-        self.forget();
+        self.known = Known::default();
         self.frozen.append(&mut self.free);
         std::mem::swap(&mut self.frozen, &mut self.free);
     }
@@ -385,7 +385,7 @@ impl Drawing {
     pub(super) fn judge(&mut self) -> Gradients {
         let mut gradients = Gradients::default();
         self.differentiate::<true>(self.edge, None, &mut gradients);
-        self.known_mse = Some(gradients.loss);
+        self.known.mse = Some(gradients.loss);
         let area = self.pixel_area();
         gradients.worth.iter_mut().for_each(|worth| *worth *= area);
         gradients
@@ -393,14 +393,14 @@ impl Drawing {
 
     /// Renders all strokes to the canvases, unless these show them already.
     pub(super) fn render(&mut self) {
-        if self.is_rendered {
+        if self.known.is_rendered {
             return;
         }
         let (free, frozen) = (&self.free, self.frozen.len());
         for surface in &mut self.surfaces {
             surface.render(&mut self.renderer, free, self.edge, frozen);
         }
-        self.is_rendered = true;
+        self.known.is_rendered = true;
     }
 
     /// The derivatives of another `loss` on the first surface, with respect to all strokes, which must be free.
@@ -412,7 +412,7 @@ impl Drawing {
 
     /// The mean squared error of the drawing, at the current resolution. It is not rendered for that.
     pub(super) fn mse(&mut self) -> f64 {
-        if let Some(mse) = self.known_mse {
+        if let Some(mse) = self.known.mse {
             return mse;
         }
         let (free, frozen) = (&self.free, self.frozen.len());
@@ -422,7 +422,7 @@ impl Drawing {
             renderer.loss(free, edge, surface.backdrop(frozen), &objective)
         });
         let mse = losses.sum::<f64>() / self.surfaces.len() as f64;
-        self.known_mse = Some(mse);
+        self.known.mse = Some(mse);
         mse
     }
 

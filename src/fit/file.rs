@@ -35,8 +35,13 @@ pub(super) struct RenderedFile {
     pub(super) bytes: usize,
     /// Their mean squared errors.
     pub(super) errors: Vec<f64>,
-    /// The largest of them.
-    pub(super) mse: f64,
+}
+
+impl RenderedFile {
+    /// The mean squared error, on the matte where it is largest.
+    pub(super) fn mse(&self) -> f64 {
+        self.errors.iter().copied().fold(0.0, f64::max)
+    }
 }
 
 impl<'a> Writer<'a> {
@@ -108,7 +113,6 @@ impl<'a> Writer<'a> {
             rounded,
             drawn,
             bytes,
-            mse: errors.iter().copied().fold(0.0, f64::max),
             errors,
         };
         Ok((file, other))

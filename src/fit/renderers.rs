@@ -81,16 +81,18 @@ impl Renderings {
         10.0 * math::log10(self.worst_mse() / self.largest(|errors| errors.own).max(MIN_ERROR))
     }
 
-    /// Chromium's share of the offset in the first round, after which the `file` looks like this.
+    /// Chromium's share of the offset in the first round, after `file`, which these render.
     pub(super) fn first_share(&self, file: &RenderedFile) -> Result<f64> {
-        let mut largest = 0.0_f64;
-        for (errors, (resvg, chromium)) in
-            (self.errors.iter()).zip(file.drawn.iter().zip(&self.chromium))
-        {
-            let between = metrics::mse(resvg, chromium)?;
-            largest = largest.max(errors.fair_share(between, self.settling.browser_db));
-        }
-        Ok(largest)
+        let pairs = file.drawn.iter().zip(&self.chromium);
+        let mut shares = self
+            .errors
+            .iter()
+            .zip(pairs)
+            .map(|(errors, (resvg, chromium))| {
+                let between = metrics::mse(resvg, chromium)?;
+                Ok(errors.fair_share(between, self.settling.browser_db))
+            });
+        shares.try_fold(0.0, |largest, share| Ok(f64::max(largest, share?)))
     }
 
     /// Chromium's share in the next round, after one with `share`.

@@ -38,6 +38,11 @@ impl Simd {
         Self::Simd128,
     ];
 
+    /// Those that this machine has, widest first.
+    pub fn available() -> impl DoubleEndedIterator<Item = Self> {
+        Self::ALL.into_iter().filter(|simd| simd.level().is_some())
+    }
+
     /// The level, if this machine has it.
     pub fn level(self) -> Option<Level> {
         let best = Level::new();
@@ -67,11 +72,7 @@ impl Simd {
     #[doc(hidden)]
     pub fn require(self) -> Result<Level> {
         self.level().ok_or_else(|| {
-            let here: Vec<String> = Self::ALL
-                .into_iter()
-                .filter(|s| s.level().is_some())
-                .map(|s| s.to_string())
-                .collect();
+            let here: Vec<String> = Self::available().map(|s| s.to_string()).collect();
             let message = format!(
                 "this machine has no {self}: use auto or one of {}",
                 here.join(", ")

@@ -28,27 +28,21 @@ const PER_STROKE: u64 = 8000;
 /// megapixels, it is within a fifth of the true peak for 11, and within a half for all. Without a budget of strokes it assumes an ordinary
 /// drawing. A picture that is reduced counts as such, which is found out by reducing it.
 pub fn predicted_rss_bytes(picture: &Image, config: &Config) -> u64 {
-    let all = picture.width() * picture.height();
-    let per_pixel = per_pixel(picture, config);
+    let (all, per_pixel) = (size(picture), per_pixel(picture, config));
     match reduction::size(picture, config) {
-        Some([width, height]) => of_pixels((width * height, per_pixel), Some(all), config),
-        None => of_pixels((all, per_pixel), None, config) + padding(picture),
+        Some(reduced) => of_pixels((reduced, per_pixel), Some(all), config),
+        None => of_pixels((all, per_pixel), None, config),
     }
 }
 
 /// The predicted peak memory, bytes, of a process that has drawn `target`, the reduced picture of a page of `page` px if there is one.
 pub(crate) fn rss_bytes_of(target: &Image, page: Option<[u32; 2]>, config: &Config) -> u64 {
-    let read = page.map(|[width, height]| width as usize * height as usize);
-    let pixels = target.width() * target.height();
-    of_pixels((pixels, per_pixel(target, config)), read, config) + padding(target)
+    let read = page.map(|page| page.map(|side| side as usize));
+    of_pixels((size(target), per_pixel(target, config)), read, config)
 }
 
-/// Predicted bytes for the padding of the tiles of a picture of this size, which is most of a picture of two rows.
-fn padding(picture: &Image) -> u64 {
-    let padded = |side: usize| side.next_multiple_of(TILE);
-    let (width, height) = (picture.width(), picture.height());
-    let pixels = padded(width) * padded(height) - width * height;
-    PER_PADDED_PIXEL * pixels as u64
+fn size(picture: &Image) -> [usize; 2] {
+    [picture.width(), picture.height()]
 }
 
 /// Bytes for each pixel of `picture`.
@@ -62,12 +56,21 @@ fn per_pixel(picture: &Image, config: &Config) -> u64 {
     }
 }
 
-/// Predicted peak memory for a drawing of so many pixels, each of so many bytes. If the picture was reduced, `read` is its pixels
-/// as it was read.
-fn of_pixels((pixels, per_pixel): (usize, u64), read: Option<usize>, config: &Config) -> u64 {
+/// Predicted peak memory for a drawing of this size, px, of so many bytes for each pixel. If the picture was reduced, `read` is
+/// its size as it was read.
+fn of_pixels(
+    (size, per_pixel): ([usize; 2], u64),
+    read: Option<[usize; 2]>,
+    config: &Config,
+) -> u64 {
     let recipe = config.recipe();
     let limit = config.budget.strokes.map(|n| n.min(MAX_STROKES));
-    let strokes = Plan::new(config, &recipe, limit, Before::default(), pixels).strokes();
-    let read = PER_PIXEL_READ * read.unwrap_or(0) as u64;
-    BASE + read + per_pixel * pixels as u64 + PER_STROKE * strokes as u64
+    let pixels = |[width, height]: [usize; 2]| width * height;
+    let strokes = Plan::new(config, &recipe, limit, Before::default(), pixels(size)).strokes();
+    // Most of the canvases of two rows of pixels is padding.
+    let padding = pixels(size.map(|side| side.next_multiple_of(TILE))) - pixels(size);
+    BASE + PER_PIXEL_READ * read.map_or(0, pixels) as u64
+        + per_pixel * pixels(size) as u64
+        + PER_PADDED_PIXEL * padding as u64
+        + PER_STROKE * strokes as u64
 }

@@ -350,8 +350,8 @@ impl Surface {
     /// The backdrop of all strokes, at full resolution.
     pub(in crate::fit) fn full_backdrop(&self) -> Canvas {
         let picture = self.picture();
-        self.backdrop
-            .canvas(Grid::new(picture.width(), picture.height()), 0)
+        let full = Grid::new(picture.width(), picture.height());
+        self.backdrop.canvas(full, 0)
     }
 
     /// The picture and a canvas at any resolution.

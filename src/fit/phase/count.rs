@@ -61,7 +61,7 @@ fn keep_best(drawing: &mut Drawing, most: usize) {
 /// Makes the file of the settled drawing the best one if it serves the budget better than the best one so far.
 pub(in crate::fit) fn compare(session: &mut Session<'_>) -> Outcome {
     if let Some(file) = session.file.take() {
-        session.history.corrections.last_db = psnr_db(file.mse);
+        session.history.corrections.last_db = psnr_db(file.mse());
         let best = session.best.as_ref();
         if best.is_none_or(|best| budget::is_better(&session.config.budget, &file, best)) {
             session.set_best(file);

@@ -76,7 +76,7 @@ fn nudged(
 fn run(session: &mut Session<'_>, file: &RenderedFile, seen: &Renderings) -> bool {
     let nudging = session.recipe.settling.nudging;
     let sweeps = affordable(&session.drawing, session.config.file.precision, nudging);
-    if sweeps == 0 || !goes_on(session, file.mse) {
+    if sweeps == 0 || !goes_on(session, file.mse()) {
         return false;
     }
     let mut nudger = Nudger::of(session, file, seen);
@@ -87,7 +87,7 @@ fn run(session: &mut Session<'_>, file: &RenderedFile, seen: &Renderings) -> boo
         }
         let weights = weights(before);
         for set in 0..nudger.sets.len() {
-            if !goes_on(session, file.mse) {
+            if !goes_on(session, file.mse()) {
                 break 'sweeps;
             }
             nudger.visit_all(set, sweep, weights);

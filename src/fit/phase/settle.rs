@@ -47,13 +47,13 @@ fn run(session: &mut Session<'_>) -> Result<()> {
     let mut best = Best::of(session, &file, &seen);
     let (mut share, mut pace) = (seen.first_share(&file)?, 1.0);
     let mut round = 0;
-    while allows_round(session, round) && session.progress.tell(&session.drawing, file.mse) {
+    while allows_round(session, round) && session.progress.tell(&session.drawing, file.mse()) {
         round += 1;
         // Descend towards the picture less a part of what renderers add to it.
         let targets = seen.targets(&session.drawing, &file, share);
         let aim = Aim {
             targets: &targets,
-            mse: file.mse,
+            mse: file.mse(),
         };
         let mut descent = session.descent(course(settling, rates, pace));
         descent.ties.clone_from(&session.history.ties);

@@ -86,7 +86,7 @@ impl Drawn {
     /// True if the drawing has areas that strokes alone may be better than.
     pub(in crate::fit) fn has_doubtful_areas(&self) -> bool {
         let scene = &self.fit.scene;
-        let db = self.file.as_ref().map_or(0.0, |file| psnr_db(file.mse));
+        let db = self.file.as_ref().map_or(0.0, |file| psnr_db(file.mse()));
         self.has_areas() && (scene.len() > FEW || db < FAITHFUL_DB)
     }
 
@@ -96,11 +96,11 @@ impl Drawn {
         let pixels = self.fit.target.width() * self.fit.target.height();
         let cost = |drawn: &Self| {
             let file = drawn.file.as_ref()?;
-            price.cost(file.mse, pixels, file.bytes)
+            price.cost(file.mse(), pixels, file.bytes)
         };
         let is_better = |a: &Self, b: &Self| {
             let files = a.file.as_ref().zip(b.file.as_ref());
-            files.is_some_and(|(a, b)| a.mse <= b.mse) && a.fit.scene.len() <= b.fit.scene.len()
+            files.is_some_and(|(a, b)| a.mse() <= b.mse()) && a.fit.scene.len() <= b.fit.scene.len()
         };
         match cost(&self).zip(cost(&other)) {
             _ if is_better(&self, &other) => self,

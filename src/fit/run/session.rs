@@ -369,7 +369,7 @@ impl<'a> Session<'a> {
 
     /// Takes down why a fit ends that aims at a fidelity of `wanted_db`.
     pub(in crate::fit) fn stop_at(&mut self, wanted_db: f64) {
-        let best_db = self.best.as_ref().map_or(0.0, |best| psnr_db(best.mse));
+        let best_db = self.best.as_ref().map_or(0.0, |best| psnr_db(best.mse()));
         self.history.stop_at(wanted_db, best_db);
     }
 

@@ -55,13 +55,13 @@ fn fill_bands(session: &mut Session<'_>) {
 /// quarter of a pixel off, and paths of many points better.
 fn refuse_losses(session: &mut Session<'_>, forms: Forms, paths: Memento) -> Result<()> {
     let [most_lost_db, enough_db] = forms.most_lost_db;
-    let shaped_db = psnr_db(session.render_file()?.mse);
+    let shaped_db = psnr_db(session.render_file()?.mse());
     if shaped_db >= enough_db {
         return Ok(());
     }
     let shaped = session.drawing.memento();
     session.drawing.restore(paths);
-    if psnr_db(session.render_file()?.mse) - shaped_db <= most_lost_db {
+    if psnr_db(session.render_file()?.mse()) - shaped_db <= most_lost_db {
         session.drawing.restore(shaped);
     }
     Ok(())
