@@ -50,7 +50,7 @@ pub(super) struct Drawing {
     pub(super) counters: Counters,
 }
 
-/// What is known of the drawing as it is.
+/// Knowledge of the drawing as it is.
 #[derive(Debug, Clone, Copy, Default)]
 struct Known {
     /// True if the canvases show it.
