@@ -59,7 +59,6 @@ mod render;
 mod repeatability;
 mod shade;
 mod shapes;
-mod wording;
 
 // The program, and what the library has for it alone.
 #[cfg(feature = "cli")]
