@@ -7,6 +7,7 @@
 //! | [`inverse`] | how much of a drawing of strokes is found again in its picture? |
 //! | [`shapes`] | how much of any drawing is, in as few numbers as its artist needed? |
 //! | [`robust`] | how much of the damage of a picture is drawn? |
+//! | [`compare`] | what does a change of the program do to drawings of all kinds? |
 //! | [`scaling`] | how do time and memory grow with strokes, pixels and threads? |
 //!
 //! Each returns plain records of [`report`](crate::report), which turns them into tables, plots and pages.
@@ -14,8 +15,10 @@
 //! drawings. [`drawings`] makes pictures of known ones.
 
 pub mod child;
+pub mod compare;
 mod damages;
 pub mod drawings;
+pub(crate) mod files;
 pub mod inverse;
 pub mod measure;
 pub mod pareto;

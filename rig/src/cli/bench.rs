@@ -1,6 +1,6 @@
-//! The measurements: `pareto`, `stability`, `inverse`, `robust` and `scaling`.
+//! The measurements: `pareto`, `stability`, `inverse`, `robust`, `scaling` and `compare`.
 
-mod files;
+mod compare;
 mod inverse;
 mod robust;
 
@@ -22,6 +22,7 @@ use strokefit::report::json;
 use strokefit::cli::{Status, Verbosity, input, output};
 
 use super::domain;
+use compare::Compare;
 use inverse::Inverse;
 use robust::Robust;
 
@@ -32,6 +33,7 @@ pub(super) enum Benchmark {
     Inverse(Inverse),
     Robust(Robust),
     Scaling(Scaling),
+    Compare(Compare),
 }
 
 /// One case of a benchmark that another process of this program runs.
@@ -124,6 +126,7 @@ impl Benchmark {
             Self::Inverse(inverse) => inverse.run(files, verbosity),
             Self::Robust(robust) => robust.run(files, verbosity),
             Self::Scaling(scaling) => scaling.run(files, verbosity),
+            Self::Compare(compare) => compare.run(folder, files, verbosity),
         }
     }
 }
@@ -244,7 +247,8 @@ pub(super) fn run(benchmark: &Benchmark, verbosity: Verbosity) -> Result<Status>
     | Benchmark::Stability(Stability { extents, .. })
     | Benchmark::Inverse(Inverse { extents, .. })
     | Benchmark::Robust(Robust { extents, .. })
-    | Benchmark::Scaling(Scaling { extents, .. })) = benchmark;
+    | Benchmark::Scaling(Scaling { extents, .. })
+    | Benchmark::Compare(Compare { extents, .. })) = benchmark;
     let folder = extents.output.as_path();
     let mut tell = |event: Notice<'_>| {
         if let Notice::Wrote(path) = event {

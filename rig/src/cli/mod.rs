@@ -37,6 +37,7 @@ pub fn main(args: Vec<OsString>) -> u8 {
   strokefit-rig inverse emoji -o out --short
   strokefit-rig robust emoji -o out --short
   strokefit-rig scaling photo.png -o out
+  strokefit-rig compare ../old/strokefit target/release/strokefit -o out --short
   strokefit-rig lab circle -o out"
 )]
 struct Args {

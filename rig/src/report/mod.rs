@@ -3,6 +3,7 @@
 //! The rules of [`strokefit::report`] hold: fields may be added, none is renamed.
 
 pub mod cases;
+pub mod compare;
 mod damage;
 pub mod inverse;
 pub mod pareto;

@@ -14,6 +14,8 @@ mod support {
 }
 
 mod bench;
+#[cfg(unix)]
+mod compare;
 #[path = "../../../tests/all/dependencies.rs"]
 mod dependencies;
 mod help;

@@ -111,12 +111,10 @@ struct Original<'a> {
 
 impl<'a> Original<'a> {
     fn new(drawing: &'a Drawing) -> Result<Self> {
-        let own = verify::render(&drawing.svg, Size::Scale(1.0), None)?;
-        let scale = LARGE_PX / own.width().max(own.height()) as f64;
         Ok(Self {
             drawing,
             contents: contents(&drawing.svg)?,
-            large: verify::render(&drawing.svg, Size::Scale(scale), Some([1.0; 3]))?,
+            large: large(&drawing.svg)?,
         })
     }
 }
@@ -209,19 +207,30 @@ impl<'a> Case<'a> {
     }
 
     fn judged(&self, by: &str, svg: &str, wall_s: f64) -> Result<ShapesEntry> {
-        let large = &self.truth.original.large;
-        let drawn = verify::render(svg, exactly(large), Some([1.0; 3]))?;
         Ok(ShapesEntry {
             found: contents(svg)?,
             psnr_db: Some(decibels(svg, &self.picture)?),
             truth_db: Some(decibels(svg, &self.truth.picture)?),
-            delta_e: Some(color_difference::mean(large, &drawn)),
+            delta_e: Some(delta_e(&self.truth.original.large, svg)?),
             displacement_px: self.truth.areas.displacement_px(svg)?,
             belonging: self.truth.things.belonging(svg)?,
             wall_s: Some(wall_s),
             ..self.entry(by)
         })
     }
+}
+
+/// The large render of an artist's drawing, on white.
+pub(super) fn large(svg: &str) -> Result<Image> {
+    let own = verify::render(svg, Size::Scale(1.0), None)?;
+    let scale = LARGE_PX / own.width().max(own.height()) as f64;
+    verify::render(svg, Size::Scale(scale), Some([1.0; 3]))
+}
+
+/// Mean colour difference (ΔE00) of SVG text to the large render of its artist's drawing.
+pub(super) fn delta_e(large: &Image, svg: &str) -> Result<f64> {
+    let drawn = verify::render(svg, exactly(large), Some([1.0; 3]))?;
+    Ok(color_difference::mean(large, &drawn))
 }
 
 fn exactly(picture: &Image) -> Size {

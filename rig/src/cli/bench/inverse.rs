@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use crate::bench::drawings::{Drawing, Kind, Pictures};
+use crate::bench::files::{found, named, stem};
 use crate::bench::peers::{installed_for, missing_for_drawings};
 use crate::bench::{inverse, shapes};
 use crate::lab::ResultFolder;
@@ -14,7 +15,6 @@ use strokefit::image::Image;
 use strokefit::report::json;
 
 use super::super::domain;
-use super::files::{found, named, stem};
 use super::{Extents, say, say_missing};
 
 /// Drawings of shapes that a short run takes, at most.

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::bench::drawings::Kind;
+use crate::bench::files::{found, has_ending, named, stem};
 use crate::bench::peers::{installed_for, missing_for_drawings};
 use crate::bench::robust::{self, Gallery, Truth};
 use crate::bench::shapes::few;
@@ -13,7 +14,6 @@ use strokefit::cli::{Verbosity, input};
 use strokefit::report::json;
 
 use super::super::domain;
-use super::files::{found, has_ending, named, stem};
 use super::{Extents, say, say_missing};
 
 /// Endings of the files that a folder stands for.

@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 
 /// The files that are named, and those in the folders that are, in order; true for those in folders. Of a folder, files that end
 /// in one of `endings` count.
-pub(super) fn named(paths: &[PathBuf], endings: &[&str]) -> Result<Vec<(PathBuf, bool)>> {
+pub(crate) fn named(paths: &[PathBuf], endings: &[&str]) -> Result<Vec<(PathBuf, bool)>> {
     let mut files = Vec::new();
     for path in paths {
         if !path.is_dir() {
@@ -27,19 +27,19 @@ pub(super) fn named(paths: &[PathBuf], endings: &[&str]) -> Result<Vec<(PathBuf,
 }
 
 /// True for a name that ends so, after a dot.
-pub(super) fn has_ending(path: &Path, ending: &str) -> bool {
+pub(crate) fn has_ending(path: &Path, ending: &str) -> bool {
     path.extension()
         .is_some_and(|e| e.eq_ignore_ascii_case(ending))
 }
 
 /// A file's name without its ending.
-pub(super) fn stem(path: &Path) -> String {
+pub(crate) fn stem(path: &Path) -> String {
     let stem = path.file_stem().unwrap_or_default();
     stem.to_string_lossy().into_owned()
 }
 
 /// Writes a drawing that was made, if there is one.
-pub(super) fn found(files: &mut ResultFolder<'_>, name: &str, svg: &str) -> strokefit::Result<()> {
+pub(crate) fn found(files: &mut ResultFolder<'_>, name: &str, svg: &str) -> strokefit::Result<()> {
     match svg {
         "" => Ok(()),
         svg => files.text(name, svg),
