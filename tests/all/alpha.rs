@@ -2,7 +2,7 @@
 
 use crate::support::drafts::draft;
 use crate::support::fits::{drawn, sample};
-use strokefit::fit::{Background, Config, Execution, Fit, Fitter, Simd};
+use strokefit::fit::{Background, Config, Fit, Fitter};
 use strokefit::image::Image;
 use strokefit::verify::{self, Size};
 
@@ -130,18 +130,4 @@ fn on_a_colour_a_drawing_is_opaque() {
     assert!(text(&fit).contains("<rect width=\"48\" height=\"40\" fill=\"#336699\"/>"));
     assert_eq!((fit.target.alpha(), fit.soft.alpha()), (None, None));
     assert_eq!(fit.target, glass().flattened([0.2, 0.4, 0.6]));
-}
-
-#[test]
-fn neither_threads_nor_instructions_change_a_clear_drawing() {
-    let narrow = Execution {
-        threads: Some(1),
-        simd: Simd::available().next_back().unwrap(),
-    };
-    let picture = sample("noto-gem");
-    let slow = Fitter::new(draft(30))
-        .execution(narrow)
-        .fit(&picture)
-        .unwrap();
-    assert_eq!(slow.scene, drawn(&picture, &draft(30)).scene);
 }

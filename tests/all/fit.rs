@@ -9,7 +9,7 @@ use crate::support::fits::{drawn, sample};
 use strokefit::coverage::CoverageSchedule;
 use strokefit::fit::{
     Background, Budget, CancelToken, Config, Execution, Fit, Fitter, Preset, Progress, Rates,
-    Recipe, Simd, Stop,
+    Recipe, Stop,
 };
 use strokefit::image::Image;
 use strokefit::metrics;
@@ -268,35 +268,6 @@ fn progressive_drawings_are_better_with_every_layer() {
     let layers: Vec<f64> = fit.stages.iter().map(|stage| stage.layer_psnr_db).collect();
     assert!(layers.len() >= 6, "{layers:?}");
     assert!(layers.windows(2).all(|w| w[1] > w[0] + 0.3), "{layers:?}");
-}
-
-#[test]
-fn threads_simd_and_repetition_change_no_byte() {
-    let picture = sample("noto-rocket");
-    let config = draft(80);
-    let written = |threads, simd| {
-        let execution = Execution {
-            threads: Some(threads),
-            simd,
-        };
-        text(
-            &Fitter::new(config.clone())
-                .execution(execution)
-                .fit(&picture)
-                .unwrap(),
-            &config,
-        )
-    };
-    let expected = written(1, Simd::Auto);
-    for threads in [1, 2, 3] {
-        assert!(
-            written(threads, Simd::Auto) == expected,
-            "{threads} threads"
-        );
-    }
-    for simd in Simd::available() {
-        assert!(written(2, simd) == expected, "{simd}");
-    }
 }
 
 /// Five lines of 1.1 px, none of them level, drawn with exact areas.
