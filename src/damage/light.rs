@@ -1,7 +1,8 @@
 //! Uneven light on paper, and its spots: a smooth field, by which a scanned or photographed page is divided.
 
+use std::ops::Range;
+
 use super::planes::Planes;
-use super::recipe::Light;
 use crate::math::{self, median};
 
 /// Numbers of a quadratic field.
@@ -10,16 +11,38 @@ const TERMS: usize = 6;
 /// Luma of white.
 const WHITE: f32 = 255.0;
 
+// All of these are guesses.
+/// Cells along the shorter side.
+const CELLS: usize = 12;
+/// Rounds in which cells without paper are left out.
+const ROUNDS: usize = 4;
+/// Largest relative difference of paper and the light on it.
+const NEAR: f32 = 0.06;
+/// Least share of paper in a page.
+const LEAST_PAPER: f32 = 0.7;
+/// Least luma of paper, levels.
+const LEAST_LUMA: f32 = 90.0;
+/// Least range of the luma of paper in uneven light, levels.
+const LEAST_RANGE: f32 = 12.0;
+/// RMS of the luma of spots, levels. Even paper has less, and what has more is no paper.
+const SPOTS: Range<f32> = 1.0..6.0;
+/// Spots are cleared that differ from the paper by less than so many times their RMS.
+const CLEARED: f32 = 3.0;
+/// Least luma of paper that is white, levels.
+const WHITE_LUMA: f32 = 200.0;
+/// Most chroma of paper that is white, levels.
+const WHITE_CHROMA: f32 = 12.0;
+
 /// Divides a page by the light on it and clears the spots of its paper, so that this has one colour, white if it is nearly white;
 /// false if the picture is no page, or its paper is even.
-pub(super) fn evened(planes: &mut Planes, recipe: &Light) -> bool {
-    let Some(page) = Page::of(planes, recipe) else {
+pub(super) fn evened(planes: &mut Planes) -> bool {
+    let Some(page) = Page::of(planes) else {
         return false;
     };
     let [low, high] = page.range;
     let tones = [0, 1, 2].map(|c| page.tone(&planes.planes[c]));
-    let has_spots = recipe.spots.contains(&tones[0].spread);
-    if !has_spots && high - low < recipe.least_range {
+    let has_spots = SPOTS.contains(&tones[0].spread);
+    if !has_spots && high - low < LEAST_RANGE {
         return false;
     }
     for plane in &mut planes.planes {
@@ -27,11 +50,11 @@ pub(super) fn evened(planes: &mut Planes, recipe: &Light) -> bool {
         pixels.for_each(|(value, light)| *value *= high / light);
     }
     if has_spots {
-        clear(planes, &tones, recipe.cleared);
+        clear(planes, &tones);
     }
     let [luma, chromas @ ..] = tones.each_ref().map(|tone| tone.middle);
-    let is_tinted = chromas.iter().any(|c| c.abs() > recipe.white_chroma);
-    if luma >= recipe.white_luma && !is_tinted {
+    let is_tinted = chromas.iter().any(|c| c.abs() > WHITE_CHROMA);
+    if luma >= WHITE_LUMA && !is_tinted {
         whiten(planes, &tones);
     }
     true
@@ -48,8 +71,8 @@ struct Page {
 }
 
 impl Page {
-    fn of(planes: &Planes, recipe: &Light) -> Option<Self> {
-        let field = Field::of(planes, recipe)?;
+    fn of(planes: &Planes) -> Option<Self> {
+        let field = Field::of(planes)?;
         let (width, height) = (planes.width, planes.height);
         let place = |i: usize| {
             let (x, y) = (i % width, i / width);
@@ -59,10 +82,10 @@ impl Page {
         let wider = |[low, high]: [f32; 2], v: &f32| [low.min(*v), high.max(*v)];
         let range = light.iter().fold([f32::MAX, f32::MIN], wider);
         let luma = &planes.planes[0];
-        let is_paper = |i: &usize| (luma[*i] / light[*i] - 1.0).abs() < recipe.near;
+        let is_paper = |i: &usize| (luma[*i] / light[*i] - 1.0).abs() < NEAR;
         let paper: Vec<usize> = (0..light.len()).filter(is_paper).collect();
-        let is_page = range[0] >= recipe.least_luma
-            && paper.len() as f32 >= recipe.least_paper * light.len() as f32;
+        let is_page =
+            range[0] >= LEAST_LUMA && paper.len() as f32 >= LEAST_PAPER * light.len() as f32;
         is_page.then_some(Self {
             light,
             range,
@@ -90,13 +113,13 @@ struct Tone {
     spread: f32,
 }
 
-/// Gives what differs from the paper by less than `most` times the spread the colour of the paper. What differs by twice that keeps
+/// Gives what differs from the paper by less than [`CLEARED`] times the spread the colour of the paper. What differs by twice that keeps
 /// its own, and between them colours go over into each other, so that no edge is new.
-fn clear(planes: &mut Planes, paper: &[Tone; 3], most: f32) {
+fn clear(planes: &mut Planes, paper: &[Tone; 3]) {
     const LEAST_SPREAD: f32 = 0.5;
     for i in 0..planes.planes[0].len() {
         let away = |(plane, tone): (&Vec<f32>, &Tone)| {
-            (plane[i] - tone.middle).abs() / (most * tone.spread.max(LEAST_SPREAD))
+            (plane[i] - tone.middle).abs() / (CLEARED * tone.spread.max(LEAST_SPREAD))
         };
         let away = planes.planes.iter().zip(paper).map(away);
         let kept = (away.fold(0.0, f32::max) - 1.0).clamp(0.0, 1.0);
@@ -123,15 +146,15 @@ struct Field([f32; TERMS]);
 
 impl Field {
     /// The light on the paper: what the bright pixels of cells have, without cells that hold too little paper.
-    fn of(planes: &Planes, recipe: &Light) -> Option<Self> {
-        let mut cells = cells(planes, recipe);
+    fn of(planes: &Planes) -> Option<Self> {
+        let mut cells = cells(planes);
         let mut field = Self::fitted(&cells)?;
         // Ink darkens cells, so that those far below the field are left out and it is fitted anew.
-        for _ in 0..recipe.rounds {
+        for _ in 0..ROUNDS {
             let is_near =
-                |(place, value): &([f32; 2], f32)| *value > (1.0 - recipe.near) * field.at(*place);
+                |(place, value): &([f32; 2], f32)| *value > (1.0 - NEAR) * field.at(*place);
             let kept: Vec<([f32; 2], f32)> = cells.iter().copied().filter(is_near).collect();
-            if (kept.len() as f32) < recipe.least_paper * cells.len() as f32 {
+            if (kept.len() as f32) < LEAST_PAPER * cells.len() as f32 {
                 return None;
             }
             field = Self::fitted(&kept)?;
@@ -172,9 +195,9 @@ fn terms([x, y]: [f32; 2]) -> [f32; TERMS] {
 }
 
 /// The middles of cells, in units of the sides, and the luma that most of their brighter pixels have.
-fn cells(planes: &Planes, recipe: &Light) -> Vec<([f32; 2], f32)> {
+fn cells(planes: &Planes) -> Vec<([f32; 2], f32)> {
     let (width, height) = (planes.width, planes.height);
-    let side = (width.min(height) / recipe.cells).max(1);
+    let side = (width.min(height) / CELLS).max(1);
     let starts = |size: usize| (0..size.saturating_sub(side - 1)).step_by(side);
     let middle = |at: usize, size: usize| (at as f32 + side as f32 / 2.0) / size as f32;
     let mut cells = Vec::new();

@@ -5,7 +5,6 @@ use rayon::prelude::*;
 use super::cosine::SIDE;
 use super::grid;
 use super::planes::Planes;
-use super::recipe::Noises;
 
 /// Half the side of the window whose noise is measured, px.
 const HALF: usize = 2;
@@ -15,6 +14,34 @@ const REACH: usize = 6;
 
 /// Ranges of luma whose noise is measured apart.
 const TONES: usize = 16;
+
+/// Most pixels that are looked at. A guess.
+const MOST_SITES: usize = 250_000;
+/// Largest range of the means of 5×5 px within 13×13 px where there is nothing but noise, levels. A guess.
+const FAR_RANGE: f32 = 24.0;
+/// Largest range of 5×5 px without an edge, levels. A guess.
+const NEAR_RANGE: f32 = 32.0;
+/// Least range of a block with an edge, levels. A guess.
+pub(super) const EDGE_RANGE: f32 = 48.0;
+/// Least share of pixels far from edges. Photographs of detail have 0.1 to 0.3, flat art 0.4 and more.
+const LEAST_FAR: f32 = 0.3;
+/// Least share of pixels beside edges. A guess.
+const LEAST_NEAR: f32 = 0.001;
+/// Least share of pixels of one tone. A guess.
+const LEAST_TONE: f32 = 0.02;
+/// Least noise, levels: less is not seen.
+const LEAST: f32 = 0.6;
+/// Most noise, levels: more is hatching.
+const MOST: f32 = 25.0;
+/// Largest ratio of the quartiles of noise. White noise has 1.3, such noise after JPEG 1.7, photographs 1.5 to 4.
+const MOST_UNEVEN: f32 = 1.75;
+/// Noise beside edges is larger by this than what is measured there as noise, since edges are in it.
+const NEAR_IN_NOISE: f32 = 1.25;
+/// Largest noise, upper quartile, of a picture that is clean far from edges, levels. JPEG of flat art has 0 to 0.3, photographs
+/// 0.7 and more.
+const CLEAN: f32 = 0.6;
+/// Least noise in blocks with edges, levels, of which 0.7 have more. Clean flat art has 0 to 0.5, JPEG of quality 90 1.07 and more.
+const LEAST_BESIDE: f32 = 0.8;
 
 /// Noise of a picture, RMS in levels of luma.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,18 +82,18 @@ struct Site {
 ///
 /// White noise has about the same deviation everywhere; texture has not. Where flat places are clean but those beside
 /// edges are not, it is what compression or sharpening leaves there.
-pub(super) fn measure(planes: &Planes, recipe: &Noises) -> Option<Noise> {
-    let sites = sites(planes, recipe);
+pub(super) fn measure(planes: &Planes) -> Option<Noise> {
+    let sites = sites(planes);
     let count = sites.len();
     let far = |site: &&Site| site.is_far;
     let share = sites.iter().filter(far).count() as f32 / count.max(1) as f32;
-    if share < recipe.least_far {
+    if share < LEAST_FAR {
         return None;
     }
     // What is measured far from edges, and in blocks with an edge.
     let far = sorted(sites.iter().filter(far));
     let near = sorted(sites.iter().filter(|site| site.is_near));
-    let is_measured = near.len() as f32 > recipe.least_near * count as f32;
+    let is_measured = near.len() as f32 > LEAST_NEAR * count as f32;
     let beside = |share| {
         if is_measured {
             quantile(&near, share)
@@ -75,16 +102,16 @@ pub(super) fn measure(planes: &Planes, recipe: &Noises) -> Option<Noise> {
         }
     };
     // The same noise everywhere: grain, of which edges have some more.
-    let (tones, ratio) = tones(&sites, recipe);
-    if (recipe.least..recipe.most).contains(&quantile(&far, 0.5)) && ratio <= recipe.most_uneven {
+    let (tones, ratio) = tones(&sites);
+    if (LEAST..MOST).contains(&quantile(&far, 0.5)) && ratio <= MOST_UNEVEN {
         return Some(Noise {
             far: filled(tones),
-            near: beside(0.5) / recipe.near_in_noise,
+            near: beside(0.5) / NEAR_IN_NOISE,
         });
     }
     // Noise beside edges alone: compression.
-    let is_clean = quantile(&far, 0.75) <= recipe.clean;
-    (is_clean && beside(0.3) >= recipe.least_beside).then(|| Noise {
+    let is_clean = quantile(&far, 0.75) <= CLEAN;
+    (is_clean && beside(0.3) >= LEAST_BESIDE).then(|| Noise {
         far: [0.0; TONES],
         near: beside(0.5),
     })
@@ -109,19 +136,19 @@ pub(super) fn median_deviation(planes: &Planes, counts: impl Fn(usize) -> bool +
 }
 
 /// The sites of a picture. Nothing is measured where it is not opaque.
-fn sites(planes: &Planes, recipe: &Noises) -> Vec<Site> {
+fn sites(planes: &Planes) -> Vec<Site> {
     let (width, height) = (planes.width, planes.height);
     if width <= 2 * REACH || height <= 2 * REACH {
         return Vec::new();
     }
-    let step = (width * height).div_ceil(recipe.most_sites).isqrt().max(1);
+    let step = (width * height).div_ceil(MOST_SITES).isqrt().max(1);
     let rows: Vec<usize> = (REACH..height - REACH).step_by(step).collect();
     let grid = grid::offset(planes);
     let of_row = |&y: &usize| {
         let columns = (REACH..width - REACH).step_by(step);
         let opaque = columns.filter(|x| is_opaque(planes, [*x, y], HALF));
         opaque
-            .map(|x| site(planes, [x, y], grid, recipe))
+            .map(|x| site(planes, [x, y], grid))
             .collect::<Vec<_>>()
     };
     let sites: Vec<Vec<Site>> = rows.par_iter().map(of_row).collect();
@@ -138,7 +165,7 @@ fn is_opaque(planes: &Planes, [x, y]: [usize; 2], reach: usize) -> bool {
 }
 
 /// The site at a pixel. Blocks of JPEG begin at `grid`.
-fn site(planes: &Planes, [x, y]: [usize; 2], grid: [usize; 2], recipe: &Noises) -> Site {
+fn site(planes: &Planes, [x, y]: [usize; 2], grid: [usize; 2]) -> Site {
     let (luma, width) = (&planes.planes[0], planes.width);
     let rows = |[x, y]: [usize; 2], side: usize| {
         (y..y + side).map(move |row| &luma[row * width + x..row * width + x + side])
@@ -152,12 +179,12 @@ fn site(planes: &Planes, [x, y]: [usize; 2], grid: [usize; 2], recipe: &Noises) 
     let place = [(x, grid[0]), (y, grid[1])].map(|(at, start)| (at + SIDE - start) % SIDE);
     // A window within a block.
     let is_within = place.iter().all(|at| (HALF..SIDE - HALF).contains(at));
-    let is_flat = || range(window([x, y]).flatten().copied()) <= recipe.near_range;
-    let has_edge = |block| range(rows(block, SIDE).flatten().copied()) >= recipe.edge_range;
+    let is_flat = || range(window([x, y]).flatten().copied()) <= NEAR_RANGE;
+    let has_edge = |block| range(rows(block, SIDE).flatten().copied()) >= EDGE_RANGE;
     Site {
         luma: luma[y * width + x],
         deviation: deviation(window([x, y])),
-        is_far: range(around) <= recipe.far_range && is_opaque(planes, [x, y], REACH),
+        is_far: range(around) <= FAR_RANGE && is_opaque(planes, [x, y], REACH),
         is_near: is_within && is_flat() && block(planes, [x, y], place).is_some_and(has_edge),
     }
 }
@@ -205,7 +232,7 @@ fn deviation<'a>(rows: impl Iterator<Item = &'a [f32]>) -> f32 {
 }
 
 /// The noise of each tone that has enough far sites, and how uneven it is: the mean ratio of its upper to its lower quartile.
-fn tones(sites: &[Site], recipe: &Noises) -> ([Option<f32>; TONES], f32) {
+fn tones(sites: &[Site]) -> ([Option<f32>; TONES], f32) {
     let mut noises = [None; TONES];
     let [mut ratios, mut counts] = [0.0; 2];
     for (tone, noise) in noises.iter_mut().enumerate() {
@@ -213,11 +240,11 @@ fn tones(sites: &[Site], recipe: &Noises) -> ([Option<f32>; TONES], f32) {
             |site: &&Site| site.is_far && (site.luma as usize * TONES / 256).min(TONES - 1) == tone;
         let values = sorted(sites.iter().filter(is_of_tone));
         let count = values.len() as f32;
-        if count > recipe.least_tone * sites.len() as f32 {
+        if count > LEAST_TONE * sites.len() as f32 {
             let ratio = quantile(&values, 0.75) / quantile(&values, 0.25).max(0.1);
             ratios += count * ratio;
             counts += count;
-            *noise = Some(quantile(&values, 0.5)).filter(|_| ratio <= recipe.most_uneven);
+            *noise = Some(quantile(&values, 0.5)).filter(|_| ratio <= MOST_UNEVEN);
         }
     }
     (noises, ratios / counts.max(1.0))

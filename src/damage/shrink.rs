@@ -9,23 +9,26 @@ use super::cosine::{Block, Cosines, SIDE};
 /// Rows that are worked on together.
 const BAND: usize = 64;
 
+/// Largest picture, px, in which blocks begin at every pixel; at every second one in larger ones, and at every fourth one in those
+/// eight times as large. A guess.
+const ALL_BLOCKS: usize = 600_000;
+
 /// White noise: all coefficients have as much of it.
 pub(super) const WHITE: Block = [[1.0; SIDE]; SIDE];
 
 /// Luma and chromas, rows of `width`, without noise. Coefficients below `least` of the middle of a block's luma and of its range,
-/// times their part in the `spectrum` of the noise, are noise. Blocks begin at every `step` px.
+/// times their part in the `spectrum` of the noise, are noise.
 pub(super) fn shrink(
     planes: &[Vec<f32>; 3],
     width: usize,
-    step: usize,
     spectrum: &Block,
     least: &(impl Fn(f32, f32) -> f32 + Sync),
 ) -> [Vec<f32>; 3] {
     let height = planes[0].len() / width;
+    let step = step(width * height);
     let cosines = Cosines::new();
     // Blocks that begin outside of the picture hold its border as often as others hold their pixels.
     let starts = |from: usize, to: usize| {
-        let step = step as isize;
         let first = (from as isize - (SIDE as isize - 1)).div_euclid(step) * step;
         (first..to as isize).step_by(step as usize)
     };
@@ -49,6 +52,16 @@ pub(super) fn shrink(
     let tops: Vec<usize> = (0..height).step_by(BAND).collect();
     let bands: Vec<[Vec<f32>; 3]> = tops.par_iter().map(of_band).collect();
     [0, 1, 2].map(|k| bands.iter().flat_map(|band| &band[k]).copied().collect())
+}
+
+/// Rows and columns from one block to the next in a picture of so many pixels: of a large one fewer blocks hold each pixel, for
+/// time.
+fn step(pixels: usize) -> isize {
+    match pixels.div_ceil(ALL_BLOCKS) {
+        0..=1 => 1,
+        2..=8 => 2,
+        _ => 4,
+    }
 }
 
 /// The least and the largest value of a block.

@@ -7,33 +7,47 @@
 use rayon::prelude::*;
 
 use super::labels::{Color, Labels};
-use super::recipe::Stairs;
 use crate::error::Result;
 use crate::image::Image;
 
 /// Samples of a pixel across and down.
 const SAMPLES: usize = 4;
 
+/// Most colours of a picture without antialiasing. A guess.
+const MOST_COLORS: usize = 32;
+/// Largest share of the pixels at borders that are unlike three of those beside them: antialiased and dithered ones are.
+const MOST_LONELY: f32 = 0.1;
+/// Least common side, px, of the squares that a picture is made of; their stairs are meant.
+const LEAST_SQUARE: usize = 2;
+/// Farthest that a border moves, px along an axis. Below 0.5 the centres of pixels keep their colours.
+const REACH: f32 = 0.45;
+/// Rounds of smoothing. A guess.
+const ROUNDS: usize = 60;
+/// Most pixels of a speck, whose border stays: smooth ones shrink to nothing. A guess.
+const SPECK: usize = 8;
+/// Share of specks of what a transparent picture shows from which on its stairs are meant. The difference of two screenshots has
+/// 0.26; a guess.
+const MOST_SPECKS: f32 = 0.1;
+
 /// The ways to the cells above, right, below and left.
 const SIDES: [[f32; 2]; 4] = [[0.0, -1.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]];
 
 /// The picture with smooth borders in the place of stairs; `None` if it has none, or its stairs are meant.
-pub(super) fn smoothed(labels: &Labels, recipe: &Stairs) -> Result<Option<Image>> {
-    if labels.colors.len() > recipe.most_colors {
+pub(super) fn smoothed(labels: &Labels) -> Result<Option<Image>> {
+    if labels.colors.len() > MOST_COLORS {
         return Ok(None);
     }
     let [borders, lonely] = labels.borders();
     // Level and upright lines have no stairs to tell by, however long their borders are.
-    let is_antialiased =
-        lonely as f32 >= recipe.most_lonely * borders as f32 || lonely >= labels.steps();
-    if is_antialiased || labels.common_run() >= recipe.least_square {
+    let is_antialiased = lonely as f32 >= MOST_LONELY * borders as f32 || lonely >= labels.steps();
+    if is_antialiased || labels.common_run() >= LEAST_SQUARE {
         return Ok(None);
     }
-    let (specks, share) = labels.specks(recipe.speck);
-    if labels.is_transparent() && share > recipe.most_specks {
+    let (specks, share) = labels.specks(SPECK);
+    if labels.is_transparent() && share > MOST_SPECKS {
         return Ok(None);
     }
-    let nodes = labels.nodes(&specks, recipe);
+    let nodes = labels.nodes(&specks);
     labels.drawn(&nodes).map(Some)
 }
 
@@ -97,7 +111,7 @@ impl Labels {
     }
 
     /// The node of each cell, relative to its middle, px.
-    fn nodes(&self, specks: &[bool], recipe: &Stairs) -> Vec<[f32; 2]> {
+    fn nodes(&self, specks: &[bool]) -> Vec<[f32; 2]> {
         let [columns, rows] = self.cells();
         // Cells that a border runs through, other than those of specks.
         let mut nodes = vec![[0.0_f32; 2]; columns * rows];
@@ -119,7 +133,7 @@ impl Labels {
             })
         };
         // Each node goes towards the middle of those that the border leads to.
-        for _ in 0..recipe.rounds {
+        for _ in 0..ROUNDS {
             let moved: Vec<[f32; 2]> = borders
                 .par_iter()
                 .map(|(cell, crossed)| {
@@ -138,7 +152,7 @@ impl Labels {
                     }
                     // Halfway, or else neighbours would swap places for ever.
                     let halfway = |k: usize| (sum[k] / count + nodes[*cell][k]) / 2.0;
-                    [0, 1].map(|k| halfway(k).clamp(-recipe.reach, recipe.reach))
+                    [0, 1].map(|k| halfway(k).clamp(-REACH, REACH))
                 })
                 .collect();
             borders
