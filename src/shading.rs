@@ -14,23 +14,20 @@ use crate::math::Point;
 use crate::scene::{Axis, Shade};
 pub(crate) use stack::stacked;
 
+/// A block is met by a gradient if no channel is farther from it than this. A guess.
+pub(crate) const NEAR: f32 = 3.0 / 255.0;
+
 /// Fit of a gradient. All of it is a guess.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ShadeFit {
-    /// A block is met by a gradient if no channel is farther from it than this.
-    pub near: f32,
+pub(crate) struct ShadeFit {
     /// Below this share of the blocks nothing is refined any further.
-    pub hopeless_share: f32,
+    pub(crate) hopeless_share: f32,
     /// Most stops.
-    pub stops: usize,
+    pub(crate) stops: usize,
     /// Number of times that a shade is fitted to the blocks that the last one has met.
-    pub rounds: usize,
-    /// A line that is level or upright may be worse than the best one by this factor.
-    pub level: f32,
+    pub(crate) rounds: usize,
     /// One more stop has to remove this share of the squared error.
-    pub stop_share: f64,
-    /// Pull on stops that nothing tells about, towards the others.
-    pub ridge: f64,
+    pub(crate) stop_share: f64,
 }
 
 /// Premultiplied colour, and opacity.
@@ -104,7 +101,7 @@ impl Blocks {
         let candidates = [axis::Kind::Linear, axis::Kind::Radial];
         let candidates = candidates.map(|kind| self.shade(kind, fit, factors));
         let met = |shade: Shade| {
-            let met = self.met(fit.near, |block| premultiplied(&shade, block.center));
+            let met = self.met(NEAR, |block| premultiplied(&shade, block.center));
             (shade, met)
         };
         let candidates = candidates.into_iter().flatten().map(met);
@@ -119,8 +116,8 @@ impl Blocks {
         };
         let mut found = None;
         for factor in factors {
-            let near = factor * fit.near;
-            let axis = blocks.seen(axis::of(&blocks, kind, fit)?);
+            let near = factor * NEAR;
+            let axis = blocks.seen(axis::of(&blocks, kind)?);
             let shade = profile::of(&blocks, axis, fit)?;
             let met = self.met(near, |block| premultiplied(&shade, block.center));
             if met.share < fit.hopeless_share {

@@ -20,6 +20,10 @@ use anneal::Annealing;
 use held::Held;
 use ties::Ties;
 
+/// Factor on the steps of traced strokes, which are about where they belong. 0.15, 0.25, 0.4, 1: 39 icons have 42.8, 42.8, 42.5, 40.8
+/// dB.
+pub(super) const TRACED_PACE: f32 = 0.25;
+
 /// The length, the step sizes and the edge of a descent.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub(super) struct Course {
@@ -272,7 +276,7 @@ fn scales(rates: &Rates, drawing: &Drawing, recipe: &Recipe) -> Vec<f32> {
             continue;
         }
         let factor = (stroke.radius() / usual).sqrt().clamp(least, most);
-        let pace = if i < traced { recipe.tracing.pace } else { 1.0 };
+        let pace = if i < traced { TRACED_PACE } else { 1.0 };
         let ends = position * factor * pace;
         scales.resize(scales.len() + 2 * stroke.points.len(), ends);
         let style: [f32; STYLE] = [radius * factor, color, color, color, opacity];

@@ -138,9 +138,7 @@ impl<'a> Fitter<'a> {
     pub(super) fn prepare(&mut self, picture: &Image) -> Result<()> {
         let config = &mut self.config;
         config.check()?;
-        let choice = config.recipe().background;
-        config.background =
-            background::for_strokes(config.background, config.opaque, picture, &choice);
+        config.background = background::for_strokes(config.background, config.opaque, picture);
         if let Some(focus) = &self.focus {
             focus.check_size(picture)?;
         }

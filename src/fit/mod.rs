@@ -60,10 +60,9 @@ pub use drawing::objective::Objective;
 pub use fitter::Fitter;
 pub use options::{MAX_THREADS, OPTIONS, Options, Refusal, Value};
 pub use recipe::{
-    AdamSettings, BackgroundChoice, Correction, Domain, Doubts, EdgeShape, Forms, Inks, Joins,
-    Masking, Nudging, Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Recovery, Reduction,
-    Relocation, Rounds, SCREEN_PIXELS, Settling, ShadeChoice, ShadeFit, ShadowChoice, Sharing,
-    Stages, TimeShares,
+    AdamSettings, Correction, Domain, Doubts, EdgeShape, Forms, Inks, Joins, Masking, Nudging,
+    Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Recovery, Reduction, Relocation,
+    Rounds, SCREEN_PIXELS, Settling, Sharing, Stages, TimeShares,
 };
 pub use result::{Fit, StageRecord, Stop};
 pub use run::checkpoint::Checkpoint;

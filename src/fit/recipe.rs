@@ -8,7 +8,6 @@
 //! fit can run with. A checkpoint is bound to its recipe, so that no fit mixes two tunings.
 
 mod check;
-mod ground;
 mod inks;
 mod presets;
 
@@ -17,8 +16,6 @@ use serde::{Deserialize, Serialize};
 use crate::math;
 use crate::optim::AdamParams;
 use crate::seed::Probing;
-use crate::trace::{AreaColors, Tracing};
-pub use ground::{BackgroundChoice, ShadeChoice, ShadeFit, ShadowChoice};
 pub use inks::Inks;
 
 /// Pixels of a picture that a screen shows well at once, 768×512: the default quality is for so many.
@@ -41,8 +38,6 @@ pub enum Preset {
 pub struct Recipe {
     /// Search for candidates.
     pub probing: Probing,
-    /// Tracing of lines.
-    pub tracing: Tracing,
     /// Growth by stages.
     pub stages: Stages,
     /// The soft edge.
@@ -77,8 +72,6 @@ pub struct Recipe {
     pub settling: Settling,
     /// Correction of the number of strokes to meet a fidelity.
     pub correction: Correction,
-    /// Choice of the background.
-    pub background: BackgroundChoice,
     /// To which pixels a picture is reduced.
     pub reduction: Reduction,
     /// Most strokes of a drawing that competes with those of shorter presets. A guess.
@@ -92,18 +85,13 @@ pub struct Recipe {
 /// Losses to damage of a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Doubts {
+    /// Distance of the picture from what it means, RMS in levels.
+    pub doubt: f32,
     /// Doubt, levels, at which a byte has to remove twice the squared error. 2.5: JPEG 75 and noise of 8 levels cost 3 dB of
     /// quality, with which 20 drawings and icons have 1.07 and 1.00 times the numbers of the clean picture in the median.
     pub double: f32,
     /// By how much the quality is lowered, dB.
     pub lost_db: f64,
-    /// By how much the colours of areas lie farther apart, levels per level of doubt. Without this and the next two these drawings
-    /// have 1.87 and 1.40 instead of 1.40 and 1.19 times the numbers in the mean.
-    pub apart: f32,
-    /// By how much the range of flat pixels is larger.
-    pub flat: f32,
-    /// By how much a pixel of a colour may be farther from it beside another one.
-    pub exact: f32,
     /// By how much the contrast of what is recovered has to be larger, levels per level of doubt.
     pub contrast: f32,
 }
@@ -111,20 +99,9 @@ pub struct Doubts {
 impl Recipe {
     /// This recipe for a picture that may be `doubt` levels from what it means.
     pub(super) fn in_doubt(mut self, doubt: f32) -> Self {
-        let Doubts {
-            double,
-            lost_db,
-            apart,
-            flat,
-            exact,
-            contrast,
-        } = &mut self.doubts;
-        *lost_db = 10.0 * math::log10(1.0 + f64::from(doubt / *double));
-        let fills = &mut self.tracing.fills;
-        fills.flat += *flat * doubt;
-        fills.apart += *apart * doubt;
-        fills.exact += *exact * doubt;
-        self.recovery.contrast += *contrast * doubt / 255.0;
+        self.doubts.doubt = doubt;
+        self.doubts.lost_db = 10.0 * math::log10(1.0 + f64::from(doubt / self.doubts.double));
+        self.recovery.contrast += self.doubts.contrast * doubt / 255.0;
         self
     }
 }
@@ -168,10 +145,6 @@ pub struct Stages {
     /// The least that a stage has to add to the fidelity for each doubling of the strokes, where a fidelity is asked for, dB. Photographs
     /// gain 2.2; flat art, whose edges strokes of two points follow badly, falls from 2 to 0.1.
     pub least_slope_db: f64,
-    /// Strokes are fitted at the coarsest resolution that leaves them this typical radius, px. At a smaller one their
-    /// edges are finer than the pixels; at a larger one time goes to pixels that add nothing. A reduced picture for
-    /// large strokes: +0.15 dB at 0.8 of the time. Half, twice: −0.23, +0.07 dB.
-    pub min_scale: f32,
 }
 
 /// The soft edge of strokes, which narrows during a fit.
@@ -329,10 +302,6 @@ pub struct Recovery {
     pub contrast: f32,
     /// Rows and columns beside them that are traced, and weighed, too. A guess.
     pub reach: usize,
-    /// Fewest pixels of a shape that is traced. 3, 1: 25, 41 of 41 specks of 1 to 4 px are there.
-    pub least_area: usize,
-    /// The colours that are traced, finer ones than those of a whole picture, as many details are pale.
-    pub colors: AreaColors,
     /// Iterations of the polish that follows, in units of those of the first one. A guess.
     pub polish_share: f64,
 }

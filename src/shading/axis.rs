@@ -2,7 +2,7 @@
 
 use std::f32::consts::FRAC_PI_2;
 
-use super::{Block, Blocks, ShadeFit};
+use super::{Block, Blocks, NEAR};
 use crate::math::{self, Point, Vector};
 use crate::scene::Axis;
 
@@ -15,22 +15,25 @@ pub(super) enum Kind {
 
 /// Blocks whose values are compared because their offsets are similar: so many groups.
 const GROUPS: usize = 64;
+/// A line that is level or upright may be worse than the best one by this factor. A guess.
+const LEVEL: f32 = 1.1;
+
 /// The axis of this kind along which the blocks are most alike across. `None` if nothing changes, or the centre would be
 /// far away.
-pub(super) fn of(blocks: &Blocks, kind: Kind, fit: &ShadeFit) -> Option<Axis> {
+pub(super) fn of(blocks: &Blocks, kind: Kind) -> Option<Axis> {
     match kind {
         Kind::Linear => {
-            let angle = direction(blocks, fit.near)?;
+            let angle = direction(blocks, NEAR)?;
             let cost = |angle: f32| spread(blocks, line(blocks, angle));
             // A degree, down to a hundredth of one.
             let [angle] = math::search([angle], 0.02, 0.0002, |[angle]| cost(angle));
             // An axis that is meant to be level or upright is exactly so.
             let straight = (angle / FRAC_PI_2).round() * FRAC_PI_2;
-            let is_straight = cost(straight) <= f64::from(fit.level) * cost(angle);
+            let is_straight = cost(straight) <= f64::from(LEVEL) * cost(angle);
             Some(line(blocks, if is_straight { straight } else { angle }))
         }
         Kind::Radial => {
-            let center = center(blocks, fit.near)?;
+            let center = center(blocks, NEAR)?;
             let step = blocks.size[0].max(blocks.size[1]) / 50.0;
             let [x, y] = math::search([center.x, center.y], step, 0.05, |[x, y]| {
                 spread(blocks, circle(blocks, Point::new(x, y)))

@@ -10,9 +10,12 @@ const PLACES: usize = 64;
 const GROUPS: usize = 256;
 /// Squared error per block that is the rounding of the picture to 8 bit: nothing is gained below.
 const ROUNDING: f64 = 4.0 / 12.0 / (255.0 * 255.0);
+/// Pull on stops that nothing tells about, towards the others. A guess.
+const RIDGE: f64 = 1e-4;
+
 /// The shade along `axis`.
 pub(super) fn of(blocks: &Blocks, axis: Axis, fit: &ShadeFit) -> Option<Shade> {
-    let profile = Profile::of(blocks, axis, fit.ridge);
+    let profile = Profile::of(blocks, axis);
     let mut offsets = vec![0.0, 1.0];
     let mut error = profile.error(&offsets);
     while offsets.len() < fit.stops && error >= ROUNDING * profile.count {
@@ -98,12 +101,10 @@ struct Profile {
     groups: Vec<Group>,
     /// All blocks.
     count: f64,
-    /// See [`ShadeFit`].
-    ridge: f64,
 }
 
 impl Profile {
-    fn of(blocks: &Blocks, axis: Axis, ridge: f64) -> Self {
+    fn of(blocks: &Blocks, axis: Axis) -> Self {
         let mut sums = vec![[0.0_f64; 6]; GROUPS];
         for block in blocks.all.iter().filter(|block| block.weight > 0.0) {
             let offset = f64::from(axis.offset(block.center).clamp(0.0, 1.0));
@@ -126,7 +127,6 @@ impl Profile {
         Self {
             count: groups.iter().map(|group| group.count).sum(),
             groups,
-            ridge,
         }
     }
 
@@ -225,7 +225,7 @@ impl Profile {
             weight += group.count * factor * factor;
             sum += group.count * factor * value;
         }
-        let (pull, mean) = (self.ridge * weight.max(1e-6), sum / weight);
+        let (pull, mean) = (RIDGE * weight.max(1e-6), sum / weight);
         for (diagonal, wanted) in diagonal.iter_mut().zip(&mut wanted) {
             *diagonal += pull;
             *wanted += pull * mean;

@@ -4,7 +4,7 @@
 //! given axis both are linear between knots, so that the best ones are a linear least-squares problem. Places of the axis are
 //! searched for the least error. Then the lower shade is fitted again to what it must have been below the upper one, and so on.
 
-use super::{Block, Blocks, Met, ShadeFit, Value, axis, premultiplied, profile};
+use super::{Block, Blocks, Met, NEAR, ShadeFit, Value, axis, premultiplied, profile};
 use crate::math::{self, Point};
 use crate::scene::{Axis, Shade};
 
@@ -48,7 +48,7 @@ impl Blocks {
         let mut found = (vec![shade], met);
         while found.1.share < share && found.0.len() < most {
             let stack = self.stacked(&found.0, fit)?;
-            let met = self.met(fit.near, |block| stacked(&stack, block.center));
+            let met = self.met(NEAR, |block| stacked(&stack, block.center));
             if met.share <= found.1.share {
                 break;
             }
@@ -60,7 +60,7 @@ impl Blocks {
     /// The shades with one more on top, all fitted to each other.
     fn stacked(&self, below: &[Shade], fit: &ShadeFit) -> Option<Vec<Shade>> {
         let mut stack = below.to_vec();
-        let mut from = self.starts(below, fit);
+        let mut from = self.starts(below);
         let mut best: Option<(f32, Vec<Shade>)> = None;
         for _ in 0..ROUNDS {
             stack.truncate(below.len());
@@ -68,7 +68,7 @@ impl Blocks {
             from = vec![top.axis()];
             stack.push(top);
             self.refit(&mut stack, fit);
-            let met = self.met(fit.near, |block| stacked(&stack, block.center));
+            let met = self.met(NEAR, |block| stacked(&stack, block.center));
             if best.as_ref().is_none_or(|(share, _)| met.share > *share) {
                 best = Some((met.share, stack.clone()));
             }
@@ -104,7 +104,7 @@ impl Blocks {
 
     /// Axes that a search for a shade on top starts from: circles around what these shades do not explain and all over the
     /// part, and lines.
-    fn starts(&self, below: &[Shade], fit: &ShadeFit) -> Vec<Axis> {
+    fn starts(&self, below: &[Shade]) -> Vec<Axis> {
         let side = self.size[0].max(self.size[1]);
         let place = |i: usize| {
             [0, 1].map(|k| {
@@ -123,7 +123,7 @@ impl Blocks {
             .into_iter()
             .flat_map(|angle| [angle, angle + std::f32::consts::PI]);
         let lines = lines.map(|angle| axis::line(self, angle));
-        let around = self.unexplained(below, fit.near).into_iter();
+        let around = self.unexplained(below, NEAR).into_iter();
         let around = around.flat_map(|(center, spread)| {
             SPREADS.map(|spreads| Axis::Radial {
                 center,
@@ -163,7 +163,7 @@ impl Blocks {
             .map(|block| stacked(below, block.center))
             .collect();
         let cost = |axis: Axis| {
-            self.layer(axis, &seen, fit.near)
+            self.layer(axis, &seen, NEAR)
                 .map_or(f64::INFINITY, |layer| layer.error)
         };
         // The best start, and the best axis near it.
@@ -175,7 +175,7 @@ impl Blocks {
         });
         let axis = moved(start, numbers);
         // The layer's profile as a gradient of few stops.
-        let layer = self.layer(axis, &seen, fit.near)?;
+        let layer = self.layer(axis, &seen, NEAR)?;
         let blocks = Self {
             all: self
                 .all
@@ -337,7 +337,6 @@ pub(crate) fn stacked(shades: &[Shade], at: Point) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::{Preset, Recipe};
 
     const SIDE: usize = 40;
 
@@ -361,6 +360,13 @@ mod tests {
         }
     }
 
+    const FIT: ShadeFit = ShadeFit {
+        hopeless_share: 0.1,
+        stops: 6,
+        rounds: 4,
+        stop_share: 0.15,
+    };
+
     #[test]
     fn a_glow_on_a_sky_is_a_shade_on_a_shade() {
         let sun = Point::new(230.0, 90.0);
@@ -371,10 +377,9 @@ mod tests {
             [0, 1, 2].map(|c| below[c] + glow * ([1.0, 0.95, 0.7][c] - below[c]))
         };
         let blocks = blocks(sky);
-        let fit = Recipe::of(Preset::Balanced).tracing.fills.shades.fit;
-        let (alone, met) = blocks.best_shades(&fit, 0.95, 1).unwrap();
+        let (alone, met) = blocks.best_shades(&FIT, 0.95, 1).unwrap();
         assert!(alone.len() == 1 && met.share < 0.95, "{met:?}");
-        let (shades, met) = blocks.best_shades(&fit, 0.95, 3).unwrap();
+        let (shades, met) = blocks.best_shades(&FIT, 0.95, 3).unwrap();
         assert!(shades.len() == 2 && met.share >= 0.95, "{met:?}");
         let Axis::Radial { center, .. } = shades[1].axis() else {
             panic!("{shades:?}");
@@ -386,8 +391,7 @@ mod tests {
     #[test]
     fn a_ramp_needs_no_second_shade() {
         let blocks = blocks(|p| [p.x / 320.0, 0.5, 0.2]);
-        let fit = Recipe::of(Preset::Balanced).tracing.fills.shades.fit;
-        let (shades, _) = blocks.best_shades(&fit, 0.95, 3).unwrap();
+        let (shades, _) = blocks.best_shades(&FIT, 0.95, 3).unwrap();
         assert_eq!(shades.len(), 1);
     }
 }

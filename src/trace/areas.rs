@@ -8,7 +8,7 @@ use std::borrow::Cow;
 
 use rayon::prelude::*;
 
-use super::recipe::AreaColors;
+use super::tracing::Tracing;
 use crate::scene::Rgb;
 
 /// A pixel on one or two mattes: the colour on the first one, and that on the second one or zeros.
@@ -16,6 +16,18 @@ pub(super) type Pixel = [f32; 6];
 
 /// One level of 8 bits.
 pub(super) const LEVEL: f32 = 1.0 / 255.0;
+
+/// The share of the squared residual that has to lie in areas of few colours, or nothing is traced. Drawings of lines have 0.88 to
+/// 1.00, photographs 0.55 to 0.85.
+const MIN_FLAT_SHARE: f32 = 0.87;
+/// Most colours of a picture, and the share of the squared residual that has to be near to each. Guesses.
+const MOST_COLORS: (usize, f32) = (24, 0.004);
+/// As [`MOST_COLORS`], of lost details, many of which are pale. Guesses.
+const MOST_COLORS_OF_DETAILS: (usize, f32) = (48, 0.001);
+/// Pixels that colours are chosen from. A guess.
+const SAMPLES: usize = 65_536;
+/// Farthest that the pixels of a flat area are from its colour. A guess.
+const FLAT: f32 = 0.05;
 
 /// The pixels of target and canvas.
 pub(super) struct Pixels<'a> {
@@ -56,17 +68,17 @@ pub(super) struct Areas {
 }
 
 impl Areas {
-    /// The areas, unless less than `min_flat_share` of the squared residual lies in pixels close to one of few colours.
-    pub(super) fn of(pixels: &Pixels<'_>, min_flat_share: f32, choice: AreaColors) -> Option<Self> {
+    /// The areas, unless little of the squared residual lies in pixels close to one of few colours.
+    pub(super) fn of(pixels: &Pixels<'_>, tracing: Tracing) -> Option<Self> {
         let edges = pixels.edges();
-        let (colors, flat_share) = colors(pixels, &edges, choice);
-        if flat_share < min_flat_share {
+        let (colors, flat_share) = colors(pixels, &edges, tracing);
+        if flat_share < MIN_FLAT_SHARE && !tracing.is_of_details {
             return None;
         }
         let all = (0..edges.len()).into_par_iter();
         let inner: Vec<Label> = all
             .clone()
-            .map(|i| nearest_label(pixels, &colors, choice.near, i))
+            .map(|i| nearest_label(pixels, &colors, tracing.near(), i))
             .collect();
         let label = |i: usize| match edges[i] {
             true => label_beside(pixels, &colors, &edges, &inner, i),
@@ -127,13 +139,18 @@ fn label_beside(
 
 /// The colours of the pixels that differ from the canvas and are no edges, and the share of flat pixels among those.
 /// Everything is weighted by the squared residual: what stands out from the canvas is what strokes have to draw.
-fn colors(pixels: &Pixels<'_>, edges: &[bool], choice: AreaColors) -> (Vec<Pixel>, f32) {
+fn colors(pixels: &Pixels<'_>, edges: &[bool], tracing: Tracing) -> (Vec<Pixel>, f32) {
+    let near = tracing.near();
+    let (most, least_share) = match tracing.is_of_details {
+        true => MOST_COLORS_OF_DETAILS,
+        false => MOST_COLORS,
+    };
     // Samples: antialiased pixels would add the mixtures of two colours, and what is like the canvas needs no colour.
     let residual2 = |i: usize| distance2(&pixels.target.at(i), &pixels.canvas.at(i));
-    let differs = |i: usize| !edges[i] && residual2(i) > choice.near * choice.near;
+    let differs = |i: usize| !edges[i] && residual2(i) > near * near;
     let differs: Vec<bool> = (0..edges.len()).into_par_iter().map(differs).collect();
     let count = differs.iter().filter(|differs| **differs).count();
-    let stride = count.div_ceil(choice.samples).max(1);
+    let stride = count.div_ceil(SAMPLES).max(1);
     let samples = (0..edges.len()).filter(|&i| differs[i]).step_by(stride);
     let samples: Vec<(Pixel, f32)> = samples
         .map(|i| (pixels.target.at(i), residual2(i)))
@@ -144,9 +161,9 @@ fn colors(pixels: &Pixels<'_>, edges: &[bool], choice: AreaColors) -> (Vec<Pixel
     for round in 0..3 {
         let mut sums: Vec<(Pixel, f32)> = means.iter().map(|_| ([0.0; 6], 0.0)).collect();
         for (pixel, weight) in &samples {
-            let k = match nearest(&means, pixel, choice.near) {
+            let k = match nearest(&means, pixel, near) {
                 Some(k) => k,
-                None if round == 0 && means.len() < 4 * choice.most => {
+                None if round == 0 && means.len() < 4 * most => {
                     means.push((*pixel, 0.0));
                     sums.push(([0.0; 6], 0.0));
                     means.len() - 1
@@ -164,12 +181,12 @@ fn colors(pixels: &Pixels<'_>, edges: &[bool], choice: AreaColors) -> (Vec<Pixel
             }
             *weight = count;
         }
-        means.retain(|(_, weight)| *weight > choice.least_share * all);
+        means.retain(|(_, weight)| *weight > least_share * all);
     }
     means.sort_by(|a, b| b.1.total_cmp(&a.1));
-    means.truncate(choice.most);
+    means.truncate(most);
     // The share tells drawings from photographs, whose pixels are near to a mean and not like it.
-    let is_flat = |(pixel, _): &&(Pixel, f32)| nearest(&means, pixel, choice.flat).is_some();
+    let is_flat = |(pixel, _): &&(Pixel, f32)| nearest(&means, pixel, FLAT).is_some();
     let flat: f32 = samples
         .iter()
         .filter(is_flat)

@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use super::areas::{Areas, Label, Pixels};
 use super::lines::Line;
 use super::parts::{Part, Parts};
-use super::recipe::Bridges;
 use super::skeleton::Spot;
 use crate::math::distance;
 
@@ -23,6 +22,20 @@ pub(super) struct Colored {
 /// One end of a line.
 type End = (usize, bool);
 
+// All of these are guesses.
+/// Longest gap that a line goes on across, in units of its radius and px.
+const LONGEST: [f32; 2] = [8.0, 3.0];
+/// The cosine of the largest angle between a line's end and the gap.
+const STRAIGHT: f32 = 0.85;
+/// As [`LONGEST`], of a gap within a blob of its colour.
+const WITHIN: [f32; 2] = [24.0, 12.0];
+/// As [`STRAIGHT`], of such a gap.
+const STRAIGHT_WITHIN: f32 = 0.996;
+/// Most px of a gap that may show the canvas.
+const OPEN: usize = 3;
+/// A line whose ends meet is a ring if it has this many places or more.
+const LEAST_RING: usize = 8;
+
 /// A gap between two ends that continue each other.
 #[derive(Debug, Clone, Copy)]
 struct Gap {
@@ -37,14 +50,13 @@ pub(super) fn bridged(
     areas: &Areas,
     parts: &Parts,
     pixels: &Pixels<'_>,
-    bridges: Bridges,
 ) -> Vec<Colored> {
     let under = Under {
         areas,
         parts,
         pixels,
     };
-    let mut gaps = gaps(&lines, &under, bridges);
+    let mut gaps = gaps(&lines, &under);
     gaps.sort_by(|a, b| {
         b.straightness
             .total_cmp(&a.straightness)
@@ -117,7 +129,7 @@ fn joined(
 }
 
 /// All gaps that a line could go on across.
-fn gaps(lines: &[Colored], under: &Under<'_>, bridges: Bridges) -> Vec<Gap> {
+fn gaps(lines: &[Colored], under: &Under<'_>) -> Vec<Gap> {
     // Ends are compared with those in cells that a gap can reach into.
     const CELL: f32 = 32.0;
     let cell = |at: [f32; 2]| at.map(|v| (v / CELL).floor() as i32);
@@ -131,29 +143,22 @@ fn gaps(lines: &[Colored], under: &Under<'_>, bridges: Bridges) -> Vec<Gap> {
             let (end, _) = leaving(&line.line, a.1);
             let [column, row] = cell(end.at);
             let reach = match line.part {
-                Part::Lines(_) => bridges.longest_within(end.radius),
-                _ => bridges.longest_for(end.radius),
+                Part::Lines(_) => longest(WITHIN, end.radius),
+                _ => longest(LONGEST, end.radius),
             };
             let far = (reach / CELL).ceil() as i32;
             let near = (-far..=far).flat_map(|y| (-far..=far).map(move |x| [column + x, row + y]));
             let others = near.filter_map(|place| cells.get(&place)).flatten();
-            gaps.extend(others.filter_map(|&b| gap(lines, [b, a], under, bridges)));
+            gaps.extend(others.filter_map(|&b| gap(lines, [b, a], under)));
             cells.entry([column, row]).or_default().push(a);
         }
     }
     gaps
 }
 
-impl Bridges {
-    /// Longest gap, px, of a line with this radius.
-    fn longest_for(&self, radius: f32) -> f32 {
-        self.longest[0] * radius + self.longest[1]
-    }
-
-    /// Longest gap, px, that a blob of its colour fills.
-    fn longest_within(&self, radius: f32) -> f32 {
-        self.within[0] * radius + self.within[1]
-    }
+/// Longest gap, px, of a line with this radius.
+fn longest([radii, px]: [f32; 2], radius: f32) -> f32 {
+    radii * radius + px
 }
 
 /// The end of a line, and the direction in which it leaves there.
@@ -196,14 +201,14 @@ impl Under<'_> {
 }
 
 /// The gap between two ends, if a line may go on across it: it is short, straight and shows no canvas.
-fn gap(lines: &[Colored], ends: [End; 2], under: &Under<'_>, bridges: Bridges) -> Option<Gap> {
+fn gap(lines: &[Colored], ends: [End; 2], under: &Under<'_>) -> Option<Gap> {
     // Ends of one colour; a dot has two ends, too, but is no ring.
     let [a, b] = ends;
     let (color, part) = (lines[a.0].color, lines[a.0].part);
     let is_same = a.0 == b.0;
     if color != lines[b.0].color
         || part != lines[b.0].part
-        || (is_same && lines[a.0].line.spots.len() < bridges.least_ring)
+        || (is_same && lines[a.0].line.spots.len() < LEAST_RING)
     {
         return None;
     }
@@ -222,7 +227,7 @@ fn gap(lines: &[Colored], ends: [End; 2], under: &Under<'_>, bridges: Bridges) -
         ..1.0 => 1.0,
         _ => cosine(there).min(-cosine(back)),
     };
-    if straightness <= bridges.straight {
+    if straightness <= STRAIGHT {
         return None;
     }
     // Not far apart; but through a blob, however far, if it is straight.
@@ -231,11 +236,11 @@ fn gap(lines: &[Colored], ends: [End; 2], under: &Under<'_>, bridges: Bridges) -
     let is_blob = part != Part::Whole && parts().any(|(_, part)| matches!(part, Part::Blob(_)));
     let may_join = match is_blob {
         true => {
-            straightness > bridges.straight_within
-                && length <= bridges.longest_within(less)
+            straightness > STRAIGHT_WITHIN
+                && length <= longest(WITHIN, less)
                 && parts().all(|(label, _)| label == own)
         }
-        false => length <= bridges.longest_for(less),
+        false => length <= longest(LONGEST, less),
     };
     if !may_join {
         return None;
@@ -249,7 +254,7 @@ fn gap(lines: &[Colored], ends: [End; 2], under: &Under<'_>, bridges: Bridges) -
             Some(_) => {}
         }
     }
-    (open <= bridges.open).then_some(Gap {
+    (open <= OPEN).then_some(Gap {
         ends,
         straightness,
         is_covered: covered > 0,
@@ -291,7 +296,6 @@ impl Colored {
 mod tests {
     use super::super::areas::Planes;
     use super::*;
-    use crate::fit::{Preset, Recipe};
 
     /// A straight line of colour 0 along y = 20 px.
     fn line(xs: std::ops::Range<usize>, radius: f32) -> Colored {
@@ -320,7 +324,6 @@ mod tests {
             labels: (0..64 * 40).map(label).collect(),
             colors: Vec::new(),
         };
-        let tracing = Recipe::of(Preset::Balanced).tracing;
         let pixels = Pixels {
             width: 64,
             height: 40,
@@ -328,13 +331,7 @@ mod tests {
             canvas: Planes::default(),
             weights: None,
         };
-        bridged(
-            lines,
-            &areas,
-            &Parts::of(&[], 64, 64 * 40, &tracing),
-            &pixels,
-            tracing.bridges,
-        )
+        bridged(lines, &areas, &Parts::of(&[], 64, 64 * 40), &pixels)
     }
 
     #[test]

@@ -12,8 +12,7 @@ use super::areas::Pixels;
 use super::even::{Pen, Shape, WAVERING};
 use super::fill::{Fill, Flat};
 use super::gain::coverage;
-use super::parts::Part;
-use super::recipe::Tracing;
+use super::parts::{COVERED, Part};
 use super::strokes::TracedStroke;
 use crate::math::distance;
 use crate::scene::{self, Area, Mark, Stroke, polyline};
@@ -38,7 +37,6 @@ pub(super) fn chosen(
     fills: Vec<Fill>,
     mut strokes: Vec<TracedStroke>,
     pixels: &Pixels<'_>,
-    tracing: &Tracing,
     price: &(impl Fn(&Mark) -> f32 + Sync),
 ) -> Result<Vec<Traced>, Vec<(u32, u32)>> {
     let traced = strokes.clone();
@@ -57,7 +55,7 @@ pub(super) fn chosen(
     }
     // The regions that strokes draw need no area.
     let mut is_stroked = vec![false; flat.region_count()];
-    for region in crossed(&groups, &won, flat, &strokes, pixels, tracing.blobs.covered) {
+    for region in crossed(&groups, &won, flat, &strokes, pixels) {
         is_stroked[region as usize] = true;
         let own = groups
             .iter()
@@ -142,14 +140,13 @@ fn undrawn(groups: &[Group], won: &[bool], flat: &Flat<'_>) -> Vec<(u32, u32)> {
 /// A part of lines of fewer pixels is a corner that edges have left. A guess.
 const SLIVER: f32 = 6.0;
 
-/// The blobs, and corners of lines, that lines cover a share of at least `most`, as they cross there.
+/// The blobs, and corners of lines, that lines cover, as they cross there.
 fn crossed(
     groups: &[Group],
     won: &[bool],
     flat: &Flat<'_>,
     strokes: &[TracedStroke],
     pixels: &Pixels<'_>,
-    most: f32,
 ) -> Vec<u32> {
     let drawn = groups.iter().zip(won).filter(|(_, won)| **won);
     let lines = drawn
@@ -169,7 +166,7 @@ fn crossed(
     let is_crossed = |&region: &u32| match flat.part(region) {
         Part::Whole => false,
         Part::Lines(_) => flat.size(region) <= SLIVER,
-        Part::Blob(_) => share(region) > most,
+        Part::Blob(_) => share(region) > COVERED,
     };
     regions.filter(is_crossed).collect()
 }

@@ -4,9 +4,20 @@
 //! short spurs. Both go. Then, at each node, the two edges that continue each other most straightly become one line,
 //! and so on, so that lines run through crossings and end where nothing continues them.
 
-use super::recipe::LineJoins;
 use super::skeleton::{Edge, Graph, Spot};
 use crate::math::{distance, median};
+
+// All of these are guesses.
+/// A hook is thinner than this share of its line's radius, and not longer than so many of its radii.
+const HOOK: [f32; 2] = [0.75, 3.0];
+/// Nodes closer than this are one, in units of their radii together.
+const CROSSING: f32 = 0.75;
+/// A spur reaches beyond the disc around its node by less than this, px and in units of that disc's radius.
+const SPUR: [f32; 2] = [1.2, 0.35];
+/// Lines go on at a node if the cosine of their turn is above this.
+const SHARPEST_TURN: f32 = -0.86;
+/// A line is smooth at a node if the cosine of its turn there is above this.
+const SMOOTH_TURN: f32 = 0.82;
 
 /// A run of a skeleton from end to end.
 #[derive(Debug, Clone)]
@@ -17,15 +28,15 @@ pub(super) struct Line {
 
 impl Line {
     /// Drops the hooks that thinning leaves at slanted ends, where the line is much thinner than elsewhere.
-    fn trim(&mut self, [thin_share, longest]: [f32; 2]) {
+    fn trim(&mut self) {
         let Some(usual) = median(self.spots.iter().map(|spot| spot.radius)) else {
             return;
         };
         let hook = |spots: &mut dyn Iterator<Item = &Spot>| {
-            let is_thin = |spot: &&Spot| spot.radius < thin_share * usual;
+            let is_thin = |spot: &&Spot| spot.radius < HOOK[0] * usual;
             let thin = spots.take_while(is_thin).count();
             // A longer thin part is a taper, no hook.
-            if thin as f32 <= longest * usual {
+            if thin as f32 <= HOOK[1] * usual {
                 thin
             } else {
                 0
@@ -54,11 +65,11 @@ impl Line {
 }
 
 /// The lines of a graph.
-pub(super) fn lines(mut graph: Graph, joins: LineJoins) -> Vec<Line> {
+pub(super) fn lines(mut graph: Graph) -> Vec<Line> {
     // Each makes more of the other: without a spur, a branching point is a place on an edge.
-    while prune(&mut graph, joins.spur) || contract(&mut graph, joins.crossing) {}
-    let mut lines = chain(&graph, joins);
-    lines.iter_mut().for_each(|line| line.trim(joins.hook));
+    while prune(&mut graph) || contract(&mut graph) {}
+    let mut lines = chain(&graph);
+    lines.iter_mut().for_each(|line| line.trim());
     lines
 }
 
@@ -91,8 +102,8 @@ impl Graph {
 }
 
 /// Removes the least of the spurs. Returns whether there was one.
-fn prune(graph: &mut Graph, spur: [f32; 2]) -> bool {
-    let [px, radii] = spur;
+fn prune(graph: &mut Graph) -> bool {
+    let [px, radii] = SPUR;
     let degrees = graph.degrees();
     let spur = |edge: &Edge| {
         let [a, b] = edge.nodes?;
@@ -116,11 +127,11 @@ fn prune(graph: &mut Graph, spur: [f32; 2]) -> bool {
 }
 
 /// Makes one node of two branching points that belong to one crossing. Returns whether there were such.
-fn contract(graph: &mut Graph, crossing: f32) -> bool {
+fn contract(graph: &mut Graph) -> bool {
     let degrees = graph.degrees();
     let is_short = |edge: &Edge| {
         edge.nodes.is_some_and(|[a, b]| {
-            let reach = crossing * (graph.nodes[a].radius + graph.nodes[b].radius);
+            let reach = CROSSING * (graph.nodes[a].radius + graph.nodes[b].radius);
             let is_inner = degrees[a] > 2 && degrees[b] > 2;
             is_inner && graph.length(edge) < reach.max(2.0)
         })
@@ -150,13 +161,13 @@ fn contract(graph: &mut Graph, crossing: f32) -> bool {
 type End = (usize, bool);
 
 /// The lines along edges that continue each other.
-fn chain(graph: &Graph, joins: LineJoins) -> Vec<Line> {
+fn chain(graph: &Graph) -> Vec<Line> {
     // For each end of an edge, the end that it goes on at, and the cosine of the turn between.
     let runs: Vec<Vec<Spot>> = graph.edges.iter().map(|edge| graph.run(edge)).collect();
     let mut next: Vec<[Option<(End, f32)>; 2]> = vec![[None; 2]; runs.len()];
     for (node, spot) in graph.nodes.iter().enumerate() {
         let ends = ends_at(graph, node);
-        for (a, b, turn) in pairs(&runs, &ends, *spot, joins.sharpest_turn) {
+        for (a, b, turn) in pairs(&runs, &ends, *spot) {
             next[a.0][usize::from(a.1)] = Some((b, turn));
             next[b.0][usize::from(b.1)] = Some((a, turn));
         }
@@ -177,7 +188,7 @@ fn chain(graph: &Graph, joins: LineJoins) -> Vec<Line> {
             continue;
         }
         let start = start_of(&next, first);
-        lines.push(walk(&runs, &next, start, joins.smooth_turn, &mut seen));
+        lines.push(walk(&runs, &next, start, &mut seen));
     }
     lines
 }
@@ -209,7 +220,7 @@ fn direction(runs: &[Vec<Spot>], (i, is_end): End, node: Spot) -> [f32; 2] {
 }
 
 /// The pairs of ends at a node that continue each other, with the cosines of their turns, the straightest first.
-fn pairs(runs: &[Vec<Spot>], ends: &[End], node: Spot, sharpest_turn: f32) -> Vec<(End, End, f32)> {
+fn pairs(runs: &[Vec<Spot>], ends: &[End], node: Spot) -> Vec<(End, End, f32)> {
     let leaving: Vec<[f32; 2]> = ends.iter().map(|end| direction(runs, *end, node)).collect();
     let mut pairs = Vec::new();
     for (i, a) in leaving.iter().enumerate() {
@@ -218,7 +229,7 @@ fn pairs(runs: &[Vec<Spot>], ends: &[End], node: Spot, sharpest_turn: f32) -> Ve
         }
     }
     // Two edges that meet alone are one line, however sharp the corner.
-    pairs.retain(|pair| ends.len() == 2 || pair.2 > sharpest_turn);
+    pairs.retain(|pair| ends.len() == 2 || pair.2 > SHARPEST_TURN);
     pairs.sort_by(|a, b| b.2.total_cmp(&a.2));
     let mut taken: Vec<End> = Vec::new();
     pairs.retain(|(a, b, _)| {
@@ -248,7 +259,6 @@ fn walk(
     runs: &[Vec<Spot>],
     next: &[[Option<(End, f32)>; 2]],
     start: End,
-    smooth_turn: f32,
     seen: &mut [bool],
 ) -> Line {
     let mut spots: Vec<Spot> = Vec::new();
@@ -267,7 +277,7 @@ fn walk(
                 closed: false,
             };
         };
-        if turn > smooth_turn {
+        if turn > SMOOTH_TURN {
             smooth_over(&mut spots);
         }
         if seen[entering.0] {
@@ -309,7 +319,6 @@ fn smooth_over(spots: &mut Vec<Spot>) {
 mod tests {
     use super::super::shape::shapes;
     use super::*;
-    use crate::fit::{Preset, Recipe};
     use crate::math::nearest_on_segment;
 
     /// The lines of the pixels within `reach` of the given segments, in a picture of 80×80 px.
@@ -320,11 +329,10 @@ mod tests {
             segments.iter().any(|ends| dist2(ends) < reach * reach)
         };
         let keys: Vec<Option<u8>> = (0..6400).map(|i| is_near(i).then_some(0)).collect();
-        let tracing = Recipe::of(Preset::Balanced).tracing;
         let found = shapes(&keys, 80, 4);
         found
             .iter()
-            .flat_map(|(_, shape)| lines(Graph::of(shape, tracing.growth), tracing.lines))
+            .flat_map(|(_, shape)| lines(Graph::of(shape)))
             .collect()
     }
 

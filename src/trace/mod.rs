@@ -14,7 +14,7 @@
 //! fill       filled shapes, stacked
 //! even       which shapes a stroke draws
 //! choice     strokes or areas
-//! recipe     the tuned numbers of all that
+//! tracing    what is looked for
 //! ```
 //!
 //! The result has the right lines, about a pixel off their places; descent makes it exact.
@@ -28,11 +28,11 @@ mod gain;
 mod halves;
 mod lines;
 mod parts;
-mod recipe;
 mod shape;
 mod skeleton;
 mod spline;
 mod strokes;
+mod tracing;
 
 use std::borrow::Cow;
 
@@ -43,11 +43,9 @@ use areas::{Areas, Pixels, Planes};
 use fill::Flat;
 pub(crate) use halves::Halves;
 use parts::Parts;
-pub use recipe::{
-    AreaColors, Blobs, Bridges, Fills, LineJoins, Outlines, Shades, Splines, Tracing,
-};
 use shape::Shape;
 use strokes::TracedStroke;
+pub use tracing::Tracing;
 
 /// A traced mark and what it gains.
 #[derive(Debug, Clone)]
@@ -59,9 +57,10 @@ pub struct Traced {
     pub gain: f32,
 }
 
-/// The rings around what covers at least half of a pixel; `shares` are those of all pixels of a page, row by row.
-pub fn rings(shares: &[f32], width: usize, outlines: &Outlines) -> Vec<Path> {
-    fill::rings(shares, width, outlines)
+/// The rings around what covers at least half of a pixel; `shares` are those of all pixels of a page, row by row. They are
+/// as exact as `tolerance` px, or as those of areas.
+pub fn rings(shares: &[f32], width: usize, tolerance: f32) -> Vec<Path> {
+    fill::rings(shares, width, tolerance)
 }
 
 /// Traces full-size pictures on their canvases, which have one size. The marks are in painting order. `price` is the
@@ -77,7 +76,7 @@ pub fn trace(
     };
     // Lines between two rows of pixels have no colour of their own there.
     let halves = Halves::set_on_rows(&mut pixels);
-    let mut traced = marks_of(&pixels, residuals.len(), &tracing, marks, price);
+    let mut traced = marks_of(&pixels, residuals.len(), tracing, marks, price);
     if let Some(halves) = halves {
         halves.put_back(&mut traced);
     }
@@ -88,12 +87,12 @@ pub fn trace(
 fn marks_of(
     pixels: &Pixels<'_>,
     mattes: usize,
-    tracing: &Tracing,
+    tracing: Tracing,
     marks: Marks,
     price: impl Fn(&Mark) -> f32 + Sync,
 ) -> Vec<Traced> {
     // Areas of one colour. A picture without them, such as a photograph, has no lines that could be traced.
-    let areas = Areas::of(pixels, tracing.min_flat_share, tracing.colors);
+    let areas = Areas::of(pixels, tracing);
     let areas = areas.filter(|_| marks != Marks::Areas);
     let mut parts = parts(areas.as_ref(), pixels, tracing);
     let mut round = 0;
@@ -104,13 +103,13 @@ fn marks_of(
         };
         let flat = match marks {
             Marks::Strokes => None,
-            _ => Flat::of(pixels, mattes, &parts, &tracing.fills),
+            _ => Flat::of(pixels, mattes, &parts, tracing),
         };
         let Some(flat) = flat else {
             return strokes.into_iter().map(Traced::from).collect();
         };
-        let fills = flat.fills(&tracing.fills);
-        match choice::chosen(&flat, fills, strokes, pixels, tracing, &price) {
+        let fills = flat.fills();
+        match choice::chosen(&flat, fills, strokes, pixels, &price) {
             Ok(traced) => return traced,
             // What strokes do not draw stays with what it came apart from.
             Err(lines) => {
@@ -132,15 +131,15 @@ pub(crate) fn halves(residual: Residual<'_>) -> Option<Halves> {
 const MOST_ROUNDS: usize = 2;
 
 /// The parts of the shapes of all colours.
-fn parts(areas: Option<&Areas>, pixels: &Pixels<'_>, tracing: &Tracing) -> Parts {
+fn parts(areas: Option<&Areas>, pixels: &Pixels<'_>, tracing: Tracing) -> Parts {
     let keys: Vec<Option<u8>> =
         areas.map_or(Vec::new(), |areas| areas.colors_of_pixels().collect());
     let shapes = match areas {
-        Some(_) => shape::shapes(&keys, pixels.width, tracing.least_area),
+        Some(_) => shape::shapes(&keys, pixels.width, tracing.least_pixels()),
         None => Vec::new(),
     };
     let shapes: Vec<&Shape> = shapes.iter().map(|(_, shape)| shape).collect();
-    Parts::of(&shapes, pixels.width, pixels.width * pixels.height, tracing)
+    Parts::of(&shapes, pixels.width, pixels.width * pixels.height)
 }
 
 impl From<TracedStroke> for Traced {

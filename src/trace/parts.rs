@@ -9,10 +9,22 @@ use std::collections::BTreeSet;
 use rayon::prelude::*;
 
 use super::lines::{self, Line};
-use super::recipe::{Blobs, Tracing};
 use super::shape::{Shape, connected};
 use super::skeleton::Graph;
 use crate::math::{distance, median};
+
+// Numbers of blobs of shapes that are lines otherwise, whose usual radius is `r` px. All of them are guesses.
+/// A disc with a radius of so many `r`, and so many px more, has room in a blob and not in lines, nor where two of those cross at
+/// 60°.
+const ROOM: [f32; 2] = [2.0, 0.5];
+/// Within 2 px of a blob lines are thinner than so many `r`, and so many px more.
+const ABRUPT: [f32; 2] = [1.25, 0.6];
+/// A line is longer than so many times its width; what is shorter is a part of the blob.
+const LEAST_ASPECT: f32 = 4.0;
+/// Lines are as long together as this, px and in units of `r`.
+const LEAST_LENGTH: [f32; 2] = [24.0, 12.0];
+/// A blob is none if lines that run across cover this share of it.
+pub(super) const COVERED: f32 = 0.8;
 
 /// A part of the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,8 +49,8 @@ pub(super) struct Parts {
 
 impl Parts {
     /// The parts of some shapes of a picture `width` px wide that has `count` pixels.
-    pub(super) fn of(shapes: &[&Shape], width: usize, count: usize, tracing: &Tracing) -> Self {
-        let found = shapes.par_iter().map(|shape| blobs(shape, tracing));
+    pub(super) fn of(shapes: &[&Shape], width: usize, count: usize) -> Self {
+        let found = shapes.par_iter().map(|shape| blobs(shape));
         let found: Vec<Vec<Option<usize>>> = found.collect();
         let mut parts = Self {
             width,
@@ -156,8 +168,7 @@ impl Parts {
 }
 
 /// The blob of each pixel of a shape's frame; none at all if the shape is one part.
-fn blobs(shape: &Shape, tracing: &Tracing) -> Vec<Option<usize>> {
-    let recipe = &tracing.blobs;
+fn blobs(shape: &Shape) -> Vec<Option<usize>> {
     // The nearest pixel outside is half a pixel beyond the outline.
     let depths = shape.distances2().into_iter().map(|d2| d2.sqrt() - 0.5);
     let depths: Vec<f32> = depths.collect();
@@ -165,25 +176,25 @@ fn blobs(shape: &Shape, tracing: &Tracing) -> Vec<Option<usize>> {
         return Vec::new();
     };
     // What a disc reaches that has no room in lines is wide.
-    let Some(wide) = opened(shape, &depths, recipe.room[0] * radius + recipe.room[1]) else {
+    let Some(wide) = opened(shape, &depths, ROOM[0] * radius + ROOM[1]) else {
         return Vec::new();
     };
     let pieces = Pieces::of(shape, &wide);
-    let lines = pieces.lines(radius, recipe);
+    let lines = pieces.lines(radius);
     if !lines.contains(&true) {
         return Vec::new();
     }
-    let thin = recipe.abrupt[0] * radius + recipe.abrupt[1];
+    let thin = ABRUPT[0] * radius + ABRUPT[1];
     let mut blobs = pieces.blobs(&lines, &depths, thin);
     if !blobs.contains(&true) {
         return Vec::new();
     }
     // Where lines meet at a sharp angle, they draw what is wide there.
-    let away2 = distances2_to_lines(shape, radius, tracing);
+    let away2 = distances2_to_lines(shape, radius);
     let is_drawn = |&&i: &&usize| away2[i] <= (radius + SLACK) * (radius + SLACK);
     for (piece, is_blob) in pieces.list.iter().zip(&mut blobs) {
         let drawn = piece.members.iter().filter(is_drawn).count() as f32;
-        *is_blob &= drawn < recipe.covered * piece.members.len() as f32;
+        *is_blob &= drawn < COVERED * piece.members.len() as f32;
     }
     // What sticks to a blob is a part of it.
     let blob_of = |piece: usize| {
@@ -200,8 +211,8 @@ fn blobs(shape: &Shape, tracing: &Tracing) -> Vec<Option<usize>> {
 }
 
 /// The squared distance of each pixel of a shape's frame from the thin lines of its skeleton, px².
-fn distances2_to_lines(shape: &Shape, radius: f32, tracing: &Tracing) -> Vec<f32> {
-    let lines = lines::lines(Graph::of(shape, tracing.growth), tracing.lines);
+fn distances2_to_lines(shape: &Shape, radius: f32) -> Vec<f32> {
+    let lines = lines::lines(Graph::of(shape));
     let is_thin = |line: &&Line| {
         let usual = median(line.spots.iter().map(|spot| spot.radius));
         usual.is_some_and(|usual| usual <= 1.5 * radius + 0.5)
@@ -268,8 +279,8 @@ impl Pieces {
     }
 
     /// True for each piece that is a line: long, and no handle of something larger. None is if they are short together.
-    fn lines(&self, radius: f32, recipe: &Blobs) -> Vec<bool> {
-        let least = (recipe.least_aspect * 4.0 * radius * radius).max(LEAST_PIXELS);
+    fn lines(&self, radius: f32) -> Vec<bool> {
+        let least = (LEAST_ASPECT * 4.0 * radius * radius).max(LEAST_PIXELS);
         let is_line = |(piece, is_handle): (&Piece, bool)| {
             !piece.is_wide && piece.members.len() as f32 > least && !is_handle
         };
@@ -277,7 +288,7 @@ impl Pieces {
         let lines: Vec<bool> = pieces.map(is_line).collect();
         let own = self.list.iter().zip(&lines).filter(|(_, line)| **line);
         let size: usize = own.map(|(piece, _)| piece.members.len()).sum();
-        let [px, radii] = recipe.least_length;
+        let [px, radii] = LEAST_LENGTH;
         match size as f32 > 2.0 * radius * px.max(radii * radius) {
             true => lines,
             false => vec![false; lines.len()],

@@ -7,6 +7,9 @@ use std::collections::BTreeMap;
 
 use super::shape::Shape;
 
+/// Growth of the distance to the outside towards the middle of a shape from a place that is no end of a line, px per px. A guess.
+const GROWTH: f32 = 0.75;
+
 /// A place on the skeleton, px of the picture, and the radius of the largest disc around it within the shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Spot {
@@ -31,14 +34,13 @@ pub(super) struct Graph {
 }
 
 impl Graph {
-    /// The skeleton of a shape; for `growth` see [`Tracing`](super::Tracing).
-    pub(super) fn of(shape: &Shape, growth: f32) -> Self {
+    /// The skeleton of a shape.
+    pub(super) fn of(shape: &Shape) -> Self {
         let distances: Vec<f32> = shape.distances2().into_iter().map(f32::sqrt).collect();
         let thin = Grid {
             width: shape.width,
             inside: shape.inside.clone(),
             distances: &distances,
-            growth,
         };
         let thin = thin.thinned();
         let spot = |i: usize| Spot {
@@ -56,7 +58,6 @@ struct Grid<'a> {
     inside: Vec<bool>,
     /// Distance of each pixel to the outside, px.
     distances: &'a [f32],
-    growth: f32,
 }
 
 impl Grid<'_> {
@@ -134,7 +135,7 @@ impl Grid<'_> {
             } else {
                 std::f32::consts::SQRT_2
             };
-            self.distances[k] - self.distances[i] > self.growth * step
+            self.distances[k] - self.distances[i] > GROWTH * step
         })
     }
 

@@ -6,16 +6,21 @@
 use std::ops::RangeInclusive;
 
 use super::lines::Line;
-use super::recipe::Splines;
 use crate::math::{self, Point, direction, nearest_on_segment};
 use crate::scene::{Path, PathPoint};
 
+/// The cosine of a corner's turn within [`CORNER_REACH`] radii is less than this. A guess.
+const CORNER: f32 = 0.62;
+/// Reach to either side of a place over which its turn is measured, in radii. A guess.
+const CORNER_REACH: f32 = 0.9;
+/// Farthest that a spline may be from its line, px and in units of the radius. A guess.
+const TOLERANCE: [f32; 2] = [0.35, 0.03];
 /// Distance between the places of a resampled line, px.
 const STEP: f32 = 1.0;
 type Place = [f32; 2];
 
 /// The path of a line whose stroke has this radius, px.
-pub(super) fn path(line: &Line, radius: f32, splines: Splines) -> Path {
+pub(super) fn path(line: &Line, radius: f32) -> Path {
     let places: Vec<Place> = line.spots.iter().map(|spot| spot.at).collect();
     let mut places = resampled(&places, line.closed);
     if places.len() < 3 {
@@ -23,9 +28,9 @@ pub(super) fn path(line: &Line, radius: f32, splines: Splines) -> Path {
     }
     // Pixels make stairs, the larger ones the wider the line is.
     smooth(&mut places, line.closed, (0.25 * radius) as usize + 1);
-    let [px, radii] = splines.tolerance;
+    let [px, radii] = TOLERANCE;
     let tolerance = px + radii * radius;
-    let corners = corners(&places, line.closed, radius, splines);
+    let corners = corners(&places, line.closed, radius);
     if line.closed {
         return closed_path(places, &corners, tolerance);
     }
@@ -117,9 +122,9 @@ fn smooth(places: &mut [Place], closed: bool, times: usize) {
 }
 
 /// The indices of the corners, in order.
-fn corners(places: &[Place], closed: bool, radius: f32, splines: Splines) -> Vec<usize> {
+fn corners(places: &[Place], closed: bool, radius: f32) -> Vec<usize> {
     let count = places.len();
-    let reach = ((splines.corner_reach * radius / STEP) as usize).clamp(3, 24);
+    let reach = ((CORNER_REACH * radius / STEP) as usize).clamp(3, 24);
     if count < 2 * reach + 1 {
         return Vec::new();
     }
@@ -137,7 +142,7 @@ fn corners(places: &[Place], closed: bool, radius: f32, splines: Splines) -> Vec
     let cosines: Vec<f32> = (0..count).map(cosine).collect();
     // Of neighbouring places that turn, the sharpest one is the corner.
     let is_sharpest = |&i: &usize| {
-        cosines[i] < splines.corner
+        cosines[i] < CORNER
             && (1..=reach).all(|d| {
                 let before = (closed || i >= d).then(|| cosines[(i + count - d) % count]);
                 let after = (closed || i + d < count).then(|| cosines[(i + d) % count]);
@@ -423,7 +428,6 @@ const WINDOW: usize = 24;
 mod tests {
     use super::super::skeleton::Spot;
     use super::*;
-    use crate::fit::{Preset, Recipe};
 
     fn line(places: impl IntoIterator<Item = Place>, closed: bool) -> Line {
         let spots = places.into_iter().map(|at| Spot { at, radius: 3.0 });
@@ -443,7 +447,7 @@ mod tests {
     }
 
     fn path_of(line: &Line) -> Path {
-        path(line, 3.0, Recipe::of(Preset::Balanced).tracing.splines)
+        path(line, 3.0)
     }
 
     fn kinds(path: &Path) -> Vec<bool> {

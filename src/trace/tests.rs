@@ -1,5 +1,4 @@
 use super::*;
-use crate::fit::{Preset, Recipe};
 use crate::math::Point;
 use crate::render::{Canvas, Grid};
 use crate::rng;
@@ -40,12 +39,12 @@ fn traced_on(pictures: &[(Image, Rgb)], marks: Marks) -> Vec<Traced> {
     let residuals: Vec<Residual<'_>> = residuals.collect();
     // About that of 34 dB.
     let price = |mark: &Mark| 0.0012 * (40.0 + 10.0 * mark.points() as f32);
-    trace(
-        &residuals,
-        Recipe::of(Preset::Balanced).tracing,
-        marks,
-        price,
-    )
+    let tracing = Tracing {
+        doubt: 0.0,
+        has_shades: true,
+        is_of_details: false,
+    };
+    trace(&residuals, tracing, marks, price)
 }
 
 fn traced(content: &str, marks: Marks) -> Vec<Traced> {

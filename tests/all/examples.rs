@@ -8,13 +8,11 @@ mod loss;
 mod memory;
 #[path = "../../examples/observer.rs"]
 mod observer;
-#[path = "../../examples/recipe.rs"]
-mod recipe;
 #[path = "../../examples/refine.rs"]
 mod refine;
 
 use crate::support::repository::committed;
-use strokefit::fit::{Preset, Recipe, Stop};
+use strokefit::fit::Stop;
 use strokefit::image::{Image, Limits};
 use strokefit::svg::{self, WriteOptions};
 use strokefit::verify::{self, Size};
@@ -86,24 +84,4 @@ fn refine_keeps_the_base_and_comes_closer() {
     let (text, [before, after]) = refine::refine(&base, &picture, 60).unwrap();
     assert!(text.contains(body), "{text}");
     assert!(after.psnr_db > before.psnr_db + 5.0, "{before:?} {after:?}");
-}
-
-#[test]
-fn recipe_tells_what_a_number_is_worth() {
-    let sample = image::open(committed("samples/coffee-300.png")).unwrap();
-    let small = sample.thumbnail(40, 40).to_rgb8();
-    let (width, height) = small.dimensions();
-    let plane = |c: usize| small.pixels().map(|p| f32::from(p[c]) / 255.0).collect();
-    let size = (width as usize, height as usize);
-    let picture = [Image::new(size.0, size.1, [plane(0), plane(1), plane(2)]).unwrap()];
-    let row = |name| recipe::ROWS.iter().find(|row| row.0 == name).unwrap();
-    let iterations = row("polish.iterations");
-    let usual = recipe::measure(&picture, iterations.1, Recipe::of(Preset::Balanced)).unwrap();
-    let [db, _] = recipe::change(&picture, iterations, usual, 0.01).unwrap();
-    assert!(db < -0.5, "{db} dB by a hundredth of the iterations");
-    // Stages that shrink are refused.
-    assert_eq!(
-        recipe::change(&picture, row("stages.growth"), usual, 0.5),
-        None
-    );
 }

@@ -1,9 +1,25 @@
 //! The choice of the background.
 
+use std::ops::Range;
+
 use crate::fit::config::Background;
-use crate::fit::recipe::BackgroundChoice;
 use crate::image::Image;
 use crate::scene::Rgb;
+
+/// Least share of the pixels that have the most common colour if that becomes the background; otherwise the mean colour does.
+const PREVAILING_SHARE: f64 = 0.25;
+/// Share of the pixels along the border from which on their most common colour is the background. A guess: three of eleven logos on
+/// white had the logo's colour as paper.
+const BORDER_SHARE: f64 = 0.4;
+/// Share of the border that has about one colour, from which on it is spotted paper of that colour. A guess.
+const SPOTTED_SHARE: f64 = 0.6;
+/// Farthest that the spots of paper are from its colour, levels of 8 bits. A guess.
+const SPOTS: u8 = 10;
+/// Share of the pixels in translucent areas that opaque strokes may miss. Beyond it, the picture is flattened onto white for them. A
+/// guess.
+const TRANSLUCENT_SHARE: f64 = 0.005;
+/// Alpha of translucent pixels. A guess.
+const TRANSLUCENT: Range<f32> = 0.03..0.97;
 
 /// The background, replaced by white where opaque strokes need that: they cannot reproduce translucent areas, such as
 /// soft shadows or glass, so that a picture with such areas is flattened onto white for them.
@@ -11,9 +27,8 @@ pub(in crate::fit) fn for_strokes(
     background: Background,
     opaque: bool,
     picture: &Image,
-    choice: &BackgroundChoice,
 ) -> Background {
-    let is_translucent = || translucent_share(picture, choice) > choice.translucent_share;
+    let is_translucent = || translucent_share(picture) > TRANSLUCENT_SHARE;
     if background == Background::Auto && opaque && is_translucent() {
         Background::Color([1.0; 3])
     } else {
@@ -30,17 +45,13 @@ pub(in crate::fit) fn matte(background: Background) -> Rgb {
 }
 
 /// The background that a fit to `target` starts with, and whether it keeps its colour.
-pub(in crate::fit) fn choose(
-    background: Background,
-    target: &Image,
-    choice: &BackgroundChoice,
-) -> (Rgb, bool) {
+pub(in crate::fit) fn choose(background: Background, target: &Image) -> (Rgb, bool) {
     match background {
         Background::Auto => {
             let levels = target.to_rgb8();
             let (colors, _) = levels.as_chunks();
-            let paper = border_color(colors, target.width(), choice);
-            let color = paper.unwrap_or_else(|| prevailing_color(target, colors, choice));
+            let paper = border_color(colors, target.width());
+            let color = paper.unwrap_or_else(|| prevailing_color(target, colors));
             (color, false)
         }
         Background::None => ([1.0; 3], true),
@@ -49,43 +60,42 @@ pub(in crate::fit) fn choose(
 }
 
 /// The colour of the paper that is seen along the border of an opaque picture, if there is one.
-pub(super) fn paper(picture: &Image, choice: &BackgroundChoice) -> Option<Rgb> {
+pub(super) fn paper(picture: &Image) -> Option<Rgb> {
     let levels = picture.to_rgb8();
     let (colors, _) = levels.as_chunks();
-    border_color(colors, picture.width(), choice)
+    border_color(colors, picture.width())
 }
 
 /// The most common colour of the pixels along the border, if that is the colour of enough of them: paper reaches the
 /// border, and what is drawn on it may cover more than half of it.
-fn border_color(colors: &[[u8; 3]], width: usize, choice: &BackgroundChoice) -> Option<Rgb> {
+fn border_color(colors: &[[u8; 3]], width: usize) -> Option<Rgb> {
     let height = colors.len() / width;
     let rows = (0..height).flat_map(|y| [y * width, y * width + width - 1]);
     let columns = (0..width).flat_map(|x| [x, (height - 1) * width + x]);
     let border: Vec<[u8; 3]> = rows.chain(columns).map(|i| colors[i]).collect();
-    common_color(border.iter().copied(), choice.border_share)
-        .or_else(|| spotted_color(border, choice))
+    common_color(border.iter().copied(), BORDER_SHARE).or_else(|| spotted_color(border))
 }
 
 /// The mean of the colours near the most common one, if enough of the pixels have those: paper that was scanned has spots.
-fn spotted_color(mut pixels: Vec<[u8; 3]>, choice: &BackgroundChoice) -> Option<Rgb> {
+fn spotted_color(mut pixels: Vec<[u8; 3]>) -> Option<Rgb> {
     let all = pixels.len();
     let most = most_common(&mut pixels)?[0];
     let is_near = |color: &[u8; 3]| {
         let channels = color.iter().zip(most);
-        channels.fold(0, |far, (a, b)| far.max(a.abs_diff(b))) <= choice.spots
+        channels.fold(0, |far, (a, b)| far.max(a.abs_diff(b))) <= SPOTS
     };
     pixels.retain(is_near);
     let mean = |c: usize| {
         let sum: f32 = pixels.iter().map(|color| f32::from(color[c])).sum();
         sum / (255.0 * pixels.len() as f32)
     };
-    let is_paper = pixels.len() as f64 >= choice.spotted_share * all as f64;
+    let is_paper = pixels.len() as f64 >= SPOTTED_SHARE * all as f64;
     is_paper.then(|| [0, 1, 2].map(mean))
 }
 
 /// The most common colour if its share is large enough, otherwise the mean colour.
-fn prevailing_color(image: &Image, colors: &[[u8; 3]], choice: &BackgroundChoice) -> Rgb {
-    common_color(colors.iter().copied(), choice.prevailing_share).unwrap_or_else(|| {
+fn prevailing_color(image: &Image, colors: &[[u8; 3]]) -> Rgb {
+    common_color(colors.iter().copied(), PREVAILING_SHARE).unwrap_or_else(|| {
         [0, 1, 2].map(|c| {
             let sum: f64 = image.planes()[c].iter().map(|&v| f64::from(v)).sum();
             (sum / colors.len() as f64) as f32
@@ -111,13 +121,12 @@ fn most_common(colors: &mut [[u8; 3]]) -> Option<&[[u8; 3]]> {
 
 /// Share of the pixels that are translucent and have only translucent neighbours. This leaves out the antialiased edges
 /// of opaque shapes, which are a pixel wide.
-fn translucent_share(image: &Image, choice: &BackgroundChoice) -> f64 {
+fn translucent_share(image: &Image) -> f64 {
     let Some(alpha) = image.alpha() else {
         return 0.0;
     };
     let (width, height) = (image.width(), image.height());
-    let [least, most] = choice.translucent;
-    let shows = |x: usize, y: usize| (least..most).contains(&alpha[y * width + x]);
+    let shows = |x: usize, y: usize| TRANSLUCENT.contains(&alpha[y * width + x]);
     let inside = |x: usize, y: usize| {
         shows(x, y)
             && (x == 0 || shows(x - 1, y))
@@ -132,7 +141,6 @@ fn translucent_share(image: &Image, choice: &BackgroundChoice) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::recipe::{Preset, Recipe};
     use crate::math;
 
     /// A grey disc with an antialiased edge, `alpha` inside.
@@ -149,13 +157,12 @@ mod tests {
 
     #[test]
     fn paper_with_spots_is_the_page() {
-        let choice = Recipe::of(Preset::Balanced).background;
         let of = |x: usize, y: usize| match (x, y) {
             (8..32, 8..32) => 20,
             _ => 236 + (x * 7 + y * 11) % 9,
         };
         let page = Image::from_fn(40, 40, 3, |x, y, _| of(x, y) as f32 / 255.0).unwrap();
-        let (color, is_fixed) = choose(Background::Auto, &page, &choice);
+        let (color, is_fixed) = choose(Background::Auto, &page);
         assert!(!is_fixed);
         assert!(
             color.iter().all(|v| (v * 255.0 - 240.0).abs() < 1.5),
@@ -163,15 +170,14 @@ mod tests {
         );
         // Where every tone is as common as any other one there is no paper, and the background is their mean.
         let striped = Image::from_fn(40, 40, 3, |x, y, _| ((x + y) % 40) as f32 / 39.0).unwrap();
-        let (color, _) = choose(Background::Auto, &striped, &choice);
+        let (color, _) = choose(Background::Auto, &striped);
         assert!((color[0] - 0.5).abs() < 0.1, "{color:?}");
     }
 
     #[test]
     fn what_is_translucent_is_laid_on_white_for_opaque_strokes() {
         let (solid, glass) = (disc(1.0), disc(0.5));
-        let choice = Recipe::of(Preset::Balanced).background;
-        let of = |background, opaque, picture| for_strokes(background, opaque, picture, &choice);
+        let of = |background, opaque, picture| for_strokes(background, opaque, picture);
         let (auto, none) = (Background::Auto, Background::None);
         assert_eq!(of(auto, true, &solid), auto);
         assert_eq!(of(auto, true, &glass), Background::Color([1.0; 3]));

@@ -2,7 +2,6 @@
 
 use crate::fit::config::Background;
 use crate::fit::drawing::{background, shading, shadows};
-use crate::fit::recipe::BackgroundChoice;
 use crate::image::Image;
 use crate::scene::{Rgb, Scene, Shade, Shadow};
 
@@ -16,21 +15,17 @@ pub(in crate::fit) struct Ground {
 impl Ground {
     /// The background and the ground of a new drawing. A shade replaces the background, and a shadow lies on one of one colour
     /// that stays.
-    pub(in crate::fit) fn choose(
-        picture: &Image,
-        choice: &BackgroundChoice,
-        price_per_byte: f32,
-    ) -> (Background, Self) {
-        let shade = shading::choose(picture, &choice.shade, price_per_byte);
+    pub(in crate::fit) fn choose(picture: &Image, price_per_byte: f32) -> (Background, Self) {
+        let shade = shading::choose(picture, price_per_byte);
         if shade.is_some() {
             let shadows = Vec::new();
             return (Background::None, Self { shade, shadows });
         }
         let page = match picture.alpha() {
             Some(_) => Some(None),
-            None => background::paper(picture, choice).map(Some),
+            None => background::paper(picture).map(Some),
         };
-        let of = |page| shadows::choose(picture, page, &choice.shadow, price_per_byte);
+        let of = |page| shadows::choose(picture, page, price_per_byte);
         let shadows = page.map_or_else(Vec::new, of);
         let background = match page.flatten() {
             Some(color) if !shadows.is_empty() => Background::Color(color),

@@ -1,39 +1,51 @@
 //! The choice of a shade: a gradient for a picture whose page is one.
 
-use crate::fit::recipe::ShadeChoice;
 use crate::image::Image;
 use crate::scene::{Axis, Scene, Shade, ShadeStop};
-use crate::shading::{Block, Blocks, Value};
+use crate::shading::{Block, Blocks, NEAR, ShadeFit, Value};
 use crate::svg::{self, WriteOptions};
+
+// All of these are guesses.
+/// Blocks along the longer side of the picture, whose means are fitted.
+const BLOCKS: usize = 64;
+/// The least share of the blocks that a gradient has to meet.
+const LEAST_SHARE: f32 = 0.5;
+/// Share of the blocks that it has to meet beyond those of the best single colour.
+const LEAST_GAIN: f32 = 0.25;
+/// Largest change of a page per px: a larger one is the edge of a thing.
+const STEEPEST: f32 = 14.0 / 255.0;
+/// The fit of the gradient.
+const FIT: ShadeFit = ShadeFit {
+    hopeless_share: 0.2,
+    stops: 8,
+    rounds: 4,
+    stop_share: 0.1,
+};
 
 /// The shade of `picture`, if more of the picture is near it than near its best single colour, and it removes as much
 /// squared error as its bytes have to at `price_per_byte`.
-pub(in crate::fit) fn choose(
-    picture: &Image,
-    choice: &ShadeChoice,
-    price_per_byte: f32,
-) -> Option<Shade> {
-    let (blocks, area) = blocks(picture, choice);
+pub(in crate::fit) fn choose(picture: &Image, price_per_byte: f32) -> Option<Shade> {
+    let (blocks, area) = blocks(picture);
     let flat = flat(&blocks);
-    let alone = blocks.met(choice.fit.near, |_| flat);
+    let alone = blocks.met(NEAR, |_| flat);
     // No shade is near more than all of the picture.
-    if alone.share + choice.least_gain > 1.0 {
+    if alone.share + LEAST_GAIN > 1.0 {
         return None;
     }
-    let (shade, met) = blocks.best_shade(&choice.fit)?;
-    if has_edge(&shade, choice.steepest) {
+    let (shade, met) = blocks.best_shade(&FIT)?;
+    if has_edge(&shade) {
         return None;
     }
     let gain = (alone.error - met.error) * area;
     let page = Scene::empty(picture.width() as u32, picture.height() as u32, None);
-    let is_worth_it = met.share >= choice.least_share
-        && met.share >= alone.share + choice.least_gain
+    let is_worth_it = met.share >= LEAST_SHARE
+        && met.share >= alone.share + LEAST_GAIN
         && gain >= price_per_byte * bytes(&page, &shade) as f32;
     is_worth_it.then_some(shade)
 }
 
-/// True if the shade changes by more than this per px somewhere: there is the edge of a thing, which is none of the page.
-fn has_edge(shade: &Shade, steepest: f32) -> bool {
+/// True if the shade changes by more than [`STEEPEST`] somewhere: there is the edge of a thing, which is none of the page.
+fn has_edge(shade: &Shade) -> bool {
     let length = match shade.axis() {
         Axis::Linear { from, to } => (to - from).norm(),
         Axis::Radial { radius, .. } => radius,
@@ -46,7 +58,7 @@ fn has_edge(shade: &Shade, steepest: f32) -> bool {
             c => stop.color[c] * stop.opacity,
         };
         let changes = (0..4).map(|c| (value(&ends[1], c) - value(&ends[0], c)).abs());
-        changes.fold(0.0, f32::max) > steepest * px
+        changes.fold(0.0, f32::max) > STEEPEST * px
     })
 }
 
@@ -61,9 +73,9 @@ fn bytes(page: &Scene, shade: &Shade) -> usize {
 }
 
 /// The means of the picture's blocks, and the pixels of one.
-fn blocks(picture: &Image, choice: &ShadeChoice) -> (Blocks, f32) {
+fn blocks(picture: &Image) -> (Blocks, f32) {
     let size = [picture.width(), picture.height()];
-    let (blocks, side) = Blocks::of_page(size, choice.blocks, |pixels| {
+    let (blocks, side) = Blocks::of_page(size, BLOCKS, |pixels| {
         let mut sum = [0.0; 4];
         for &pixel in pixels {
             let alpha = picture.alpha().map_or(1.0, |alpha| alpha[pixel]);
@@ -90,7 +102,6 @@ fn flat(blocks: &Blocks) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::recipe::{Preset, Recipe};
     use crate::math;
 
     const WIDTH: usize = 120;
@@ -108,11 +119,7 @@ mod tests {
     }
 
     fn shade(picture: &Image) -> Option<Shade> {
-        choose(
-            picture,
-            &Recipe::of(Preset::Balanced).background.shade,
-            1e-3,
-        )
+        choose(picture, 1e-3)
     }
 
     /// The largest difference of a channel, in levels, on black.
@@ -204,9 +211,8 @@ mod tests {
     #[test]
     fn a_shade_that_costs_more_than_it_removes_is_left_out() {
         let ramp = picture(|x, _| [0.4 + 0.1 * x / WIDTH as f32, 0.5, 0.5, 1.0]);
-        let choice = Recipe::of(Preset::Balanced).background.shade;
-        assert!(choose(&ramp, &choice, 1e-4).is_some());
-        assert_eq!(choose(&ramp, &choice, 1.0), None);
+        assert!(choose(&ramp, 1e-4).is_some());
+        assert_eq!(choose(&ramp, 1.0), None);
     }
 
     #[test]

@@ -7,52 +7,72 @@
 mod caster;
 mod shares;
 
-use crate::fit::recipe::ShadowChoice;
 use crate::image::Image;
 use crate::math::Vector;
 use crate::scene::{Area, Path, Rgb, Shadow, Shape};
-use crate::shading::Blocks;
-use crate::trace::{self, Outlines};
+use crate::shading::{Blocks, ShadeFit};
+use crate::trace;
 use caster::{Cast, Search};
 use shares::Shares;
+
+// All of these, and those of shares and casters, are guesses.
+/// Most shadows of one thing.
+const MOST: usize = 3;
+/// Of the squared error, no second shadow is looked for below this share.
+const EXPLAINED: f32 = 0.002;
+/// A shadow has to leave less than this share of the squared error.
+const LEAST_GAIN: f32 = 0.5;
+/// All shadows have to leave less than this share of it.
+const LEFT: f32 = 0.03;
+/// Bytes of a shadow, about.
+const BYTES: f32 = 300.0;
+/// Farthest that the outline of a shadow may be off, in units of its blur.
+const OUTLINE_OF_BLUR: f32 = 0.15;
+/// Farthest that an outline may be from a circle, an ellipse or a rectangle, px, to be one.
+const SHAPE: f32 = 0.8;
+/// Blocks along the longer side of the picture that a gradient is fitted to.
+const GRADIENT_BLOCKS: usize = 64;
+/// Share of the soft ones of them that a gradient has to meet to be the better explanation.
+const GRADIENT_SHARE: f32 = 0.9;
+/// The fit of that gradient.
+const GRADIENT: ShadeFit = ShadeFit {
+    hopeless_share: 0.5,
+    stops: 8,
+    rounds: 2,
+    stop_share: 0.1,
+};
 
 /// The shadows of `picture` on a page of this colour, or on no page, back to front. None if there is nothing soft on the page,
 /// or the blurs of one shape do not explain it, or their bytes cost more than they gain at `price_per_byte`.
 pub(in crate::fit) fn choose(
     picture: &Image,
     page: Option<Rgb>,
-    choice: &ShadowChoice,
     price_per_byte: f32,
 ) -> Vec<Shadow> {
-    found(picture, page, choice, price_per_byte).unwrap_or_default()
+    found(picture, page, price_per_byte).unwrap_or_default()
 }
 
-fn found(
-    picture: &Image,
-    page: Option<Rgb>,
-    choice: &ShadowChoice,
-    price_per_byte: f32,
-) -> Option<Vec<Shadow>> {
+fn found(picture: &Image, page: Option<Rgb>, price_per_byte: f32) -> Option<Vec<Shadow>> {
     // What is soft, unless a gradient does, and the outline of what casts it.
-    let shares = Shares::of(picture, page, choice)?;
-    if is_gradient(&shares, choice) {
+    let shares = Shares::of(picture, page)?;
+    if is_gradient(&shares) {
         return None;
     }
-    let rings = rings(&shares, choice, 0.0);
-    let mut search = Search::of(&shares, &rings, choice)?;
+    let rings = rings(&shares, 0.0);
+    let mut search = Search::of(&shares, &rings)?;
     // The blurs of that outline, if they explain it and pay.
     let all = search.error();
-    let casts = casts(&mut search, choice);
+    let casts = casts(&mut search);
     let gain = (all - search.error()) * shares.contrast2;
-    let is_explained = search.error() <= choice.left * all;
-    if !is_explained || gain < price_per_byte * choice.bytes * casts.len() as f32 {
+    let is_explained = search.error() <= LEFT * all;
+    if !is_explained || gain < price_per_byte * BYTES * casts.len() as f32 {
         return None;
     }
     let shadow = |cast: &Cast| {
         // A shape stays one; of any other outline, a blur hides most points.
         let rings = match &rings[..] {
             [ring] if Shape::of(ring).is_some() => rings.clone(),
-            _ => self::rings(&shares, choice, choice.outline_of_blur * cast.blur),
+            _ => self::rings(&shares, OUTLINE_OF_BLUR * cast.blur),
         };
         let by = Vector::new(cast.shift[0], cast.shift[1]);
         let area = Area {
@@ -67,16 +87,16 @@ fn found(
 }
 
 /// The blurs that explain the shares: a lamp and the light of the sky make two.
-fn casts(search: &mut Search<'_>, choice: &ShadowChoice) -> Vec<Cast> {
+fn casts(search: &mut Search) -> Vec<Cast> {
     let all = search.error();
     let mut casts = Vec::new();
-    while casts.len() < choice.most && search.error() > choice.explained * all {
+    while casts.len() < MOST && search.error() > EXPLAINED * all {
         let Some(cast) = search.best() else {
             break;
         };
         let before = search.error();
         search.take(&cast);
-        if search.error() > choice.least_gain * before {
+        if search.error() > LEAST_GAIN * before {
             break;
         }
         casts.push(cast);
@@ -85,28 +105,22 @@ fn casts(search: &mut Search<'_>, choice: &ShadowChoice) -> Vec<Cast> {
 }
 
 /// The outline of what casts a shadow, as exact as `tolerance` px or as the picture tells.
-fn rings(shares: &Shares, choice: &ShadowChoice, tolerance: f32) -> Vec<Path> {
-    let tolerance = tolerance.max(choice.outlines.tolerance);
-    let outlines = Outlines {
-        tolerance,
-        candidates: 0.75 * tolerance,
-        ..choice.outlines
-    };
-    let rings = trace::rings(&shares.caster.values, shares.width, &outlines);
-    let shape = |ring: Path| Shape::like(&ring, choice.shape).map_or(ring, |shape| shape.ring());
+fn rings(shares: &Shares, tolerance: f32) -> Vec<Path> {
+    let rings = trace::rings(&shares.caster.values, shares.width, tolerance);
+    let shape = |ring: Path| Shape::like(&ring, SHAPE).map_or(ring, |shape| shape.ring());
     rings.into_iter().map(shape).collect()
 }
 
 /// True if the soft pixels lie along one gradient: a glow that is no blur.
-fn is_gradient(shares: &Shares, choice: &ShadowChoice) -> bool {
+fn is_gradient(shares: &Shares) -> bool {
     let size = [shares.width, shares.seen.len() / shares.width];
-    let (blocks, _) = Blocks::of_page(size, choice.gradient_blocks, |pixels| {
+    let (blocks, _) = Blocks::of_page(size, GRADIENT_BLOCKS, |pixels| {
         let soft = pixels
             .iter()
             .map(|&i| shares.seen[i].filter(|share| *share > 0.0));
         let sum: Option<f32> = soft.sum();
         sum.map(|sum| [sum / pixels.len() as f32; 4])
     });
-    let found = blocks.best_shade(&choice.fit);
-    found.is_some_and(|(_, met)| met.share >= choice.gradient_share)
+    let found = blocks.best_shade(&GRADIENT);
+    found.is_some_and(|(_, met)| met.share >= GRADIENT_SHARE)
 }

@@ -15,7 +15,6 @@ use crate::image::Image;
 use crate::metrics::Details;
 use crate::render::Canvas;
 use crate::scene::Marks;
-use crate::trace::Tracing;
 
 /// Seeds a stage of strokes along the details that the polished drawing has lost.
 pub(in crate::fit) fn recover(session: &mut Session<'_>) -> Result<Outcome> {
@@ -43,17 +42,11 @@ pub(in crate::fit) fn recover(session: &mut Session<'_>) -> Result<Outcome> {
     let canvases: Vec<Canvas> = surfaces
         .map(|(surface, drawn)| inside(drawn, surface.picture(), &lost))
         .collect();
-    let tracing = Tracing {
-        min_flat_share: 0.0,
-        least_area: session.recipe.recovery.least_area,
-        colors: session.recipe.recovery.colors,
-        ..session.recipe.tracing
-    };
     let marks = match session.config.marks() {
         Marks::Areas => Marks::Areas,
         Marks::Auto | Marks::Strokes => Marks::Strokes,
     };
-    let traced = trace::paying(session, &canvases, tracing, marks);
+    let traced = trace::paying(session, &canvases, marks, true);
     Ok(match trace::add(session, traced) {
         true => Outcome::Seeded(Purpose::Recover),
         false => Outcome::Over,

@@ -16,12 +16,19 @@ use crate::render::{Canvas, Strokes};
 use crate::scene::{Mark, Marks, Stroke};
 use crate::trace::{Traced, Tracing, trace};
 
+/// Most times that a drawing is traced before its polish where nothing is traced after it; otherwise once. 1, 2, 3 of the latter: six
+/// pictures of flat art have 37.97, 38.39, 38.61 dB in 15.9, 17.1, 18.0 kB and take 1.5, 1.9, 2.0 s; a comic of 36 dB needs 3 of
+/// the former.
+const ROUNDS: usize = 3;
+/// Scale of the fit of traced strokes, px: they are about as far from where they belong. A guess.
+const SCALE: f32 = 2.0;
+
 /// Adds strokes along the lines of the residual, on top of all others.
 pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> {
     // Traced until nothing pays, or the fidelity is near; once if what is lost is traced later.
     let rounds = match session.recovers() {
         true => 1,
-        false => session.recipe.tracing.rounds,
+        false => ROUNDS,
     };
     let is_rejected = session
         .history
@@ -36,8 +43,7 @@ pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> 
         true => Vec::new(),
         false => {
             let canvases = canvases(&mut session.drawing);
-            let (tracing, marks) = (session.recipe.tracing, session.config.marks());
-            paying(session, &canvases, tracing, marks)
+            paying(session, &canvases, session.config.marks(), false)
         }
     };
     if add(session, traced) {
@@ -60,19 +66,22 @@ pub(super) fn canvases(drawing: &mut Drawing) -> Vec<Canvas> {
     drawing.surfaces.iter().map(|s| s.canvas.clone()).collect()
 }
 
-/// The marks traced on `canvases` that are worth their price, in painting order.
+/// The marks traced on `canvases`, of a whole picture or of details that its drawing has lost, that are worth their price, in
+/// painting order.
 pub(super) fn paying(
     session: &Session<'_>,
     canvases: &[Canvas],
-    mut tracing: Tracing,
     marks: Marks,
+    is_of_details: bool,
 ) -> Vec<Traced> {
     let (config, price) = (session.config, session.price);
     let surfaces = &session.drawing.surfaces;
     // A gradient has many colours, and on a transparent page many opacities.
-    if config.colors != Colors::Free || config.opaque && surfaces.len() > 1 {
-        tracing.fills.shades.most = 0;
-    }
+    let tracing = Tracing {
+        doubt: session.recipe.doubts.doubt,
+        has_shades: config.colors == Colors::Free && !(config.opaque && surfaces.len() > 1),
+        is_of_details,
+    };
     let surfaces = surfaces.iter().zip(canvases);
     let residuals: Vec<_> = surfaces.map(|(s, canvas)| s.residual_of(canvas)).collect();
     let by_bytes = price.of_bytes_alone();
@@ -129,7 +138,7 @@ pub(super) fn add(session: &mut Session<'_>, traced: Vec<Traced>) -> bool {
         planned: PlannedStage {
             index,
             count,
-            scale: session.recipe.tracing.scale,
+            scale: SCALE,
         },
         began,
         before,

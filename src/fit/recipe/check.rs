@@ -14,13 +14,10 @@ impl Recipe {
         // Divisors, and what is drawn or moved by.
         let lengths = [
             ("stages.scale", self.stages.scale),
-            ("stages.min_scale", self.stages.min_scale),
             ("relocation.scale", self.relocation.scale),
             ("probing.radii", smallest(self.probing.radii)),
             ("probing.lengths", smallest(self.probing.lengths)),
             ("probing.cells", self.probing.cells),
-            ("tracing.pace", self.tracing.pace),
-            ("tracing.colors.near", self.tracing.colors.near),
             ("recovery.weight", self.recovery.weight),
             ("masking.contrast", self.masking.contrast as f32),
             ("masking.ceiling", self.masking.ceiling as f32),
@@ -50,8 +47,6 @@ impl Recipe {
         // Parts of a whole.
         let shares = [
             ("probing.probed", self.probing.probed),
-            ("tracing.min_flat_share", self.tracing.min_flat_share),
-            ("tracing.explained", self.tracing.explained),
             ("edge.annealed", self.edge.annealed),
             ("domain.min_opacity", self.domain.min_opacity),
             ("dense.share", self.dense.share),
@@ -115,10 +110,6 @@ impl Recipe {
         demand("stages.growth", growth, grows, "1 to 100")?;
         let counts = [
             ("stages.count", self.stages.count),
-            ("tracing.least_area", self.tracing.least_area),
-            ("recovery.least_area", self.recovery.least_area),
-            ("tracing.colors.most", self.tracing.colors.most),
-            ("tracing.colors.samples", self.tracing.colors.samples),
             ("masking.window", self.masking.window),
             ("stages.first", self.stages.first),
             ("stages.pixels_per_stroke", self.stages.pixels_per_stroke),

@@ -1,14 +1,12 @@
 //! The numbers of the presets.
 
 use super::{
-    AdamSettings, BackgroundChoice, Correction, Dense, Domain, Doubts, EdgeShape, Forms, Inks,
-    Jitter, Joins, Masking, Nudging, Pens, Points, Polish, Preset, Rates, Recipe, Recoloring,
-    Recovery, Reduction, Relocation, Rounds, SCREEN_PIXELS, Settling, ShadeChoice, ShadeFit,
-    ShadowChoice, Sharing, Stages, TimeShares,
+    AdamSettings, Correction, Dense, Domain, Doubts, EdgeShape, Forms, Inks, Jitter, Joins,
+    Masking, Nudging, Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Recovery, Reduction,
+    Relocation, Rounds, SCREEN_PIXELS, Settling, Sharing, Stages, TimeShares,
 };
 use crate::optim::AdamParams;
 use crate::seed::Probing;
-use crate::trace::{AreaColors, Blobs, Bridges, Fills, LineJoins, Splines, Tracing};
 
 impl Recipe {
     /// The recipe of a preset.
@@ -103,50 +101,6 @@ const BALANCED: Recipe = Recipe {
         cells: 2.5,
         probed: 0.6,
     },
-    tracing: Tracing {
-        min_flat_share: 0.87,
-        explained: 0.4,
-        least_area: 2,
-        pace: 0.25,
-        rounds: 3,
-        scale: 2.0,
-        colors: AreaColors {
-            most: 24,
-            samples: 65_536,
-            near: 0.12,
-            flat: 0.05,
-            least_share: 0.004,
-        },
-        growth: 0.75,
-        blobs: Blobs {
-            room: [2.0, 0.5],
-            abrupt: [1.25, 0.6],
-            least_aspect: 4.0,
-            least_length: [24.0, 12.0],
-            covered: 0.8,
-        },
-        lines: LineJoins {
-            hook: [0.75, 3.0],
-            crossing: 0.75,
-            spur: [1.2, 0.35],
-            sharpest_turn: -0.86,
-            smooth_turn: 0.82,
-        },
-        bridges: Bridges {
-            longest: [8.0, 3.0],
-            straight: 0.85,
-            within: [24.0, 12.0],
-            straight_within: 0.996,
-            open: 3,
-            least_ring: 8,
-        },
-        splines: Splines {
-            corner: 0.62,
-            corner_reach: 0.9,
-            tolerance: [0.35, 0.03],
-        },
-        fills: Fills::MEASURED,
-    },
     stages: Stages {
         count: 8,
         growth: 1.35,
@@ -167,7 +121,6 @@ const BALANCED: Recipe = Recipe {
         paying_share: 0.3,
         polish_gain_db: 12.0,
         least_slope_db: 1.3,
-        min_scale: 2.5,
     },
     edge: EdgeShape {
         final_slope: 1.2,
@@ -235,14 +188,6 @@ const BALANCED: Recipe = Recipe {
         weight: 8.0,
         contrast: 10.0 / 255.0,
         reach: 4,
-        least_area: 1,
-        colors: AreaColors {
-            most: 48,
-            samples: 65_536,
-            near: 0.06,
-            flat: 0.05,
-            least_share: 0.001,
-        },
         polish_share: 0.2,
     },
     points: Points {
@@ -369,64 +314,6 @@ const BALANCED: Recipe = Recipe {
         approach_share: 0.2,
         polish_share: 0.4,
     },
-    background: BackgroundChoice {
-        prevailing_share: 0.25,
-        border_share: 0.4,
-        spotted_share: 0.6,
-        spots: 10,
-        translucent_share: 0.005,
-        translucent: [0.03, 0.97],
-        shade: ShadeChoice {
-            blocks: 64,
-            least_share: 0.5,
-            least_gain: 0.25,
-            steepest: 14.0 / 255.0,
-            fit: ShadeFit {
-                near: 3.0 / 255.0,
-                hopeless_share: 0.2,
-                stops: 8,
-                rounds: 4,
-                level: 1.1,
-                stop_share: 0.1,
-                ridge: 1e-4,
-            },
-        },
-        shadow: ShadowChoice {
-            page: 1.5 / 255.0,
-            bend: 10.0 / 255.0,
-            near: 4.0 / 255.0,
-            least_share: 0.002,
-            rounds: 3,
-            least_pixels: 60,
-            surrounded: 0.3,
-            blocks: 160,
-            blurs: [1.5, 2.5, 4.0, 6.5, 10.0, 16.0, 26.0, 40.0],
-            blur_step: 1.25,
-            refinements: 5,
-            shift_step: 2.0,
-            shift_finest: 0.05,
-            most: 3,
-            explained: 0.002,
-            least_gain: 0.5,
-            left: 0.03,
-            bytes: 300.0,
-            outline_blur: 1.0,
-            outline_of_blur: 0.15,
-            shape: 0.8,
-            gradient_blocks: 64,
-            gradient_share: 0.9,
-            fit: ShadeFit {
-                near: 3.0 / 255.0,
-                hopeless_share: 0.5,
-                stops: 8,
-                rounds: 2,
-                level: 1.1,
-                stop_share: 0.1,
-                ridge: 1e-4,
-            },
-            outlines: Fills::MEASURED.outlines,
-        },
-    },
     reduction: Reduction {
         enough_pixels: 2 * SCREEN_PIXELS,
         least_pixels: SCREEN_PIXELS,
@@ -442,11 +329,9 @@ const BALANCED: Recipe = Recipe {
     },
     rivals: 64,
     doubts: Doubts {
+        doubt: 0.0,
         double: 2.5,
         lost_db: 0.0,
-        apart: 2.0,
-        flat: 2.0,
-        exact: 1.0,
         contrast: 8.0,
     },
     time: TimeShares {

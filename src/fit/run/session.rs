@@ -129,7 +129,6 @@ impl<'a> Session<'a> {
             picture,
             choose_background(picture, config, base, &recipe),
             base,
-            &recipe,
             coarsest,
         )?;
         let weights = weights(config, &recipe, &target, focus.as_ref());
@@ -476,7 +475,7 @@ fn choose_background(
     let pixels = picture.width() * picture.height();
     let price = Price::of(config, recipe, pixels);
     match may_be {
-        true => Ground::choose(picture, &recipe.background, price.per_byte()),
+        true => Ground::choose(picture, price.per_byte()),
         false => (config.background, Ground::default()),
     }
 }

@@ -1,9 +1,13 @@
 //! Corners of an outline: where lines fitted to either side turn. They are put where the two lines meet, since the
 //! pixels have rounded them.
 
-use super::super::recipe::Outlines;
 use super::contour::Place;
 use crate::math::{self, distance};
+
+/// A corner's sides are fitted from the first to the second distance from it, px. A guess.
+const SIDES: [f32; 2] = [0.8, 4.5];
+/// The cosine of a corner's turn is below this. That of 0.62 rad; a guess.
+const CORNER: f32 = 0.814;
 
 /// A corner.
 #[derive(Debug, Clone, Copy)]
@@ -18,10 +22,10 @@ pub(super) struct Corner {
 type Line = [Place; 2];
 
 /// The cosine of the turn at each sample of a ring, and the corners.
-pub(super) fn corners(ring: &[Place], step: f32, outlines: &Outlines) -> (Vec<f32>, Vec<Corner>) {
+pub(super) fn corners(ring: &[Place], step: f32) -> (Vec<f32>, Vec<Corner>) {
     let count = ring.len();
-    let near = ((outlines.sides[0] / step).round() as usize).max(1);
-    let mut far = ((outlines.sides[1] / step).round() as usize).max(near + 1);
+    let near = ((SIDES[0] / step).round() as usize).max(1);
+    let mut far = ((SIDES[1] / step).round() as usize).max(near + 1);
     if count < 2 * far + 2 {
         far = ((count - 2) / 3).max(near + 1);
     }
@@ -38,7 +42,7 @@ pub(super) fn corners(ring: &[Place], step: f32, outlines: &Outlines) -> (Vec<f3
     let reach = ((2.0 / step).round() as usize).max(1);
     // The sharpest one of its neighbours, the first of equals.
     let is_corner = |&i: &usize| {
-        turns[i] < outlines.corner
+        turns[i] < CORNER
             && is_pointed(ring, i, &sides[i], turns[i])
             && (1..=reach).all(|d| {
                 turns[(i + count * 2 - d) % count] > turns[i] && turns[(i + d) % count] >= turns[i]

@@ -3,7 +3,6 @@
 use rayon::prelude::*;
 
 use super::super::areas::{LEVEL, Pixel, Pixels, away, distance2, mix};
-use super::super::recipe::Fills;
 use super::colors::{Colors, NONE};
 use crate::math::median;
 
@@ -32,11 +31,14 @@ impl Mixture {
     }
 }
 
+/// Root of the squared error over which neither a colour nor a mixture of two explains a pixel, levels. A guess.
+pub(super) const UNEXPLAINED: f32 = 26.0;
+
 /// All pixels as mixtures of the colours beside them. Colours that nothing explains are added.
-pub(super) fn mixtures(colors: &mut Colors<'_>, labels: &mut [u16], fills: &Fills) -> Vec<Mixture> {
+pub(super) fn mixtures(colors: &mut Colors<'_>, labels: &mut [u16]) -> Vec<Mixture> {
     let all = (0..labels.len()).into_par_iter();
     let mut mixtures: Vec<Mixture> = all.map(|i| mixture(colors, labels, i)).collect();
-    let limit = (fills.unexplained * LEVEL) * (fills.unexplained * LEVEL);
+    let limit = (UNEXPLAINED * LEVEL) * (UNEXPLAINED * LEVEL);
     let unexplained = |mixtures: &[Mixture], i: usize| mixtures[i].error > limit;
     let mut bad: Vec<usize> = (0..labels.len())
         .filter(|&i| unexplained(&mixtures, i))

@@ -34,7 +34,7 @@ use rayon::prelude::*;
 
 use super::areas::{self, LEVEL, Pixel, Pixels, away, distance2, is_opaque, mix};
 use super::parts::{Part, Parts};
-use super::recipe::{Fills, Outlines};
+use super::tracing::Tracing;
 use crate::scene::{Area, Path, Rgb};
 use colors::{CANVAS, NONE};
 pub(super) use compound::Fill;
@@ -64,25 +64,37 @@ pub(super) struct Flat<'a> {
     stack: Stack,
 }
 
+/// The share of the pixels that has to be flat, or there are no filled shapes. Drawings of filled shapes have 0.69 to 0.99,
+/// photographs 0.07 to 0.31, scanned line drawings 0.53 to 0.68.
+const LEAST_FLAT: f32 = 0.6;
+/// The share of the squared residual that colours and their mixtures have to explain. Drawings of filled shapes have 0.93 to 1,
+/// photographs 0.30 to 0.77, scanned line drawings 0.86 to 0.93.
+const LEAST_EXPLAINED: f32 = 0.9;
+/// Farthest that a hidden edge may be beyond the samples, px. A guess.
+const HIDDEN: f32 = 32.0;
+
 impl<'a> Flat<'a> {
     /// The stack of a picture whose shapes come apart like this, if it is one of few colours.
     pub(super) fn of(
         pixels: &'a Pixels<'a>,
         mattes: usize,
         parts: &Parts,
-        fills: &Fills,
+        tracing: Tracing,
     ) -> Option<Self> {
-        let shaded = Shaded::of(pixels, mattes, &fills.shades);
-        let (mut colors, mut labels) = colors::flat_colors(pixels, shaded, mattes, fills);
+        let shaded = match tracing.has_shades {
+            true => Shaded::of(pixels, mattes),
+            false => Shaded::none(pixels),
+        };
+        let (mut colors, mut labels) = colors::flat_colors(pixels, shaded, mattes, tracing.doubt);
         let flat = labels.iter().filter(|label| **label != NONE).count();
-        if (flat as f32) < fills.least_shares[0] * labels.len() as f32 {
+        if (flat as f32) < LEAST_FLAT * labels.len() as f32 {
             return None;
         }
-        let mixtures = mixtures::mixtures(&mut colors, &mut labels, fills);
-        if explained(pixels, &mixtures, fills) < fills.least_shares[1] {
+        let mixtures = mixtures::mixtures(&mut colors, &mut labels);
+        if explained(pixels, &mixtures) < LEAST_EXPLAINED {
             return None;
         }
-        let regions = Regions::of(&colors, mixtures, parts, fills);
+        let regions = Regions::of(&colors, mixtures, parts);
         let neighbours = regions.neighbours();
         let translucent = match mattes {
             1 => Translucent::none(regions.list.len()),
@@ -94,7 +106,7 @@ impl<'a> Flat<'a> {
             region.label == CANVAS || is_whole || translucent.has(r)
         };
         let drawn: Vec<bool> = regions.list.iter().zip(0..).map(is_drawn).collect();
-        let stack = Stack::of(&regions, &neighbours, &drawn, &translucent, fills);
+        let stack = Stack::of(&regions, &neighbours, &drawn, &translucent);
         Some(Self {
             pixels,
             mattes,
@@ -106,11 +118,11 @@ impl<'a> Flat<'a> {
     }
 
     /// The shapes of the stack, from back to front.
-    pub(super) fn fills(&self, fills: &Fills) -> Vec<Fill> {
+    pub(super) fn fills(&self) -> Vec<Fill> {
         let gains = self.gains();
         let layers = self.stack.layers.par_iter();
         layers
-            .filter_map(|layer| self.fill(layer, &gains, fills))
+            .filter_map(|layer| self.fill(layer, &gains))
             .collect()
     }
 
@@ -149,7 +161,7 @@ impl<'a> Flat<'a> {
     }
 
     /// The shape of a layer.
-    fn fill(&self, layer: &Layer, gains: &[f32], fills: &Fills) -> Option<Fill> {
+    fn fill(&self, layer: &Layer, gains: &[f32]) -> Option<Fill> {
         let regions = &self.regions;
         let mut covered = vec![false; regions.list.len()];
         layer
@@ -166,15 +178,15 @@ impl<'a> Flat<'a> {
         let around = Surroundings {
             page: [regions.width, regions.height].map(|v| v as f32),
             field: &field,
-            depth: |at, outward| self.depth(at, outward, &free, fills.outlines.hidden),
+            depth: |at, outward| self.depth(at, outward, &free, HIDDEN),
         };
-        let least = 0.6 * fills.least_area as f32;
+        let least = 0.6 * colors::LEAST_AREA as f32;
         let contours = field.contours();
         let rings = contours
             .iter()
             .filter(|ring| contour::twice_area(ring).abs() > 2.0 * least);
         let rings: Vec<Path> = rings
-            .filter_map(|contour| outline::ring(contour, &fills.outlines, &around))
+            .filter_map(|contour| outline::ring(contour, outline::TOLERANCE, &around))
             .collect();
         let region = &regions.list[layer.region as usize];
         (!rings.is_empty()).then(|| Fill {
@@ -396,9 +408,9 @@ impl<'a> Flat<'a> {
 }
 
 /// The share of the squared residual that lies in pixels that colours or their mixtures explain.
-fn explained(pixels: &Pixels<'_>, mixtures: &[Mixture], fills: &Fills) -> f32 {
+fn explained(pixels: &Pixels<'_>, mixtures: &[Mixture]) -> f32 {
     // Half of what begins to be a colour of its own.
-    let limit = 0.5 * fills.unexplained * LEVEL;
+    let limit = 0.5 * mixtures::UNEXPLAINED * LEVEL;
     let (mut all, mut known) = (0.0, 0.0);
     for (i, mixture) in mixtures.iter().enumerate() {
         let residual = distance2(&pixels.target.at(i), &pixels.canvas.at(i));
@@ -410,8 +422,9 @@ fn explained(pixels: &Pixels<'_>, mixtures: &[Mixture], fills: &Fills) -> f32 {
     known / all.max(f32::MIN_POSITIVE)
 }
 
-/// The rings around what covers at least half of a pixel; `shares` are those of all pixels of a page, row by row.
-pub(super) fn rings(shares: &[f32], width: usize, outlines: &Outlines) -> Vec<Path> {
+/// The rings around what covers at least half of a pixel; `shares` are those of all pixels of a page, row by row. They are
+/// as exact as `tolerance` px, or as those of areas.
+pub(super) fn rings(shares: &[f32], width: usize, tolerance: f32) -> Vec<Path> {
     let height = shares.len() / width;
     let framed = width + 2;
     let mut values = vec![0.0; framed * (height + 2)];
@@ -435,6 +448,6 @@ pub(super) fn rings(shares: &[f32], width: usize, outlines: &Outlines) -> Vec<Pa
     let contours = field.contours();
     let rings = contours.iter();
     rings
-        .filter_map(|contour| outline::ring(contour, outlines, &around))
+        .filter_map(|contour| outline::ring(contour, tolerance.max(outline::TOLERANCE), &around))
         .collect()
 }

@@ -3,12 +3,19 @@
 //! A contour is cut at its corners. Between two of them the cheapest chain of spans within the tolerance is found by
 //! dynamic programme; its spans end at corners of a polygon close to the contour. Hidden edges may lie farther out.
 
-use super::super::recipe::Outlines;
 use super::contour::{Field, Place, resampled};
 use super::corners::{Corner, corners};
 use super::span::{MOST, Sample, Span, fit};
 use crate::math::{self, Point};
 use crate::scene::{Path, PathPoint};
+
+/// Distance of the samples of an outline, px. A guess.
+const STEP: f32 = 0.5;
+/// Farthest that the outline of an area may be from the samples, px. 0.18, 0.3, 0.5: +0.6, 0, −2.6 dB at 1.16, 1, 0.9 times the
+/// bytes of 64 drawings at 256 px (`docs/areas.md`).
+pub(super) const TOLERANCE: f32 = 0.3;
+/// Tolerance of the polygon whose corners are the candidates for on-points, in units of that of the outline. A guess.
+const POLYGON: f32 = 0.22 / 0.3;
 
 /// The shape that an outline is around, and what hides it.
 pub(super) struct Surroundings<'a, D> {
@@ -20,13 +27,13 @@ pub(super) struct Surroundings<'a, D> {
     pub(super) depth: D,
 }
 
-/// The ring along a contour.
+/// The ring along a contour, at most `tolerance` px from it.
 pub(super) fn ring<D: Fn(Place, Place) -> f32>(
     contour: &[Place],
-    outlines: &Outlines,
+    tolerance: f32,
     around: &Surroundings<'_, D>,
 ) -> Option<Path> {
-    let mut places = resampled(contour, outlines.step);
+    let mut places = resampled(contour, STEP);
     let count = places.len();
     let outward = |i: usize| {
         let [a, b] = [places[(i + count - 2) % count], places[(i + 2) % count]];
@@ -38,15 +45,15 @@ pub(super) fn ring<D: Fn(Place, Place) -> f32>(
         let shift = around.field.edge(*place, *out);
         *place = [0, 1].map(|k| place[k] + shift * out[k]);
     }
-    let (turns, corners) = corners(&places, outlines.step, outlines);
+    let (turns, corners) = corners(&places, STEP);
     let depths = places.iter().zip(&outward);
     let depths: Vec<f32> = depths.map(|(&at, &out)| (around.depth)(at, out)).collect();
-    let (samples, corners) = samples(&places, &outward, &depths, corners, outlines);
+    let (samples, corners) = samples(&places, &outward, &depths, corners, tolerance);
     let outline = Outline {
         samples,
         hidden: depths.iter().map(|depth| *depth > HIDDEN).collect(),
         corners,
-        outlines,
+        tolerance,
     };
     let is_outside = |p: &Place| (0..2).any(|k| p[k] < 0.0 || p[k] > around.page[k]);
     let outside: Vec<bool> = places.iter().map(is_outside).collect();
@@ -66,17 +73,17 @@ pub(super) fn ring<D: Fn(Place, Place) -> f32>(
 }
 
 /// The samples around a shape.
-struct Outline<'a> {
+struct Outline {
     samples: Vec<Sample>,
     hidden: Vec<bool>,
     /// The indices of corners.
     corners: Vec<usize>,
-    outlines: &'a Outlines,
+    tolerance: f32,
 }
 
 type Points = Vec<(Place, bool)>;
 
-impl Outline<'_> {
+impl Outline {
     /// The points of an outline within the page.
     fn whole(&self, turns: &[f32]) -> Points {
         let count = self.samples.len();
@@ -151,7 +158,7 @@ impl Outline<'_> {
         let hidden: Vec<bool> = along.map(|i| self.hidden[i]).collect();
         let inner = run.iter().map(|&i| self.samples[i]);
         let samples: Vec<Sample> = start.into_iter().chain(inner).chain(end).collect();
-        chain(&samples, &hidden, self.outlines, points);
+        chain(&samples, &hidden, self.tolerance, points);
     }
 
     /// The corners of the page that samples outside of it go around.
@@ -205,11 +212,11 @@ fn samples(
     outward: &[Place],
     depths: &[f32],
     corners: Vec<Corner>,
-    outlines: &Outlines,
+    tolerance: f32,
 ) -> (Vec<Sample>, Vec<usize>) {
     let count = places.len();
     // Where an edge begins to be hidden, the contour turns along what hides it.
-    let reach = (ENDING / outlines.step).ceil() as usize;
+    let reach = (ENDING / STEP).ceil() as usize;
     let is_ending = |i: usize| {
         let near = (0..=2 * reach).map(|d| depths[(i + count * 2 + d - reach) % count]);
         depths[i] <= HIDDEN && near.fold(0.0, f32::max) > HIDDEN
@@ -228,7 +235,7 @@ fn samples(
             return Sample {
                 at,
                 outward: out,
-                tolerance: [outlines.tolerance; 2],
+                tolerance: [tolerance; 2],
                 weight: 1.0,
             };
         }
@@ -236,7 +243,7 @@ fn samples(
         Sample {
             at: [0, 1].map(|k| at[k] + shift * out[k]),
             outward: out,
-            tolerance: [INSIDE, depth.max(outlines.tolerance)],
+            tolerance: [INSIDE, depth.max(tolerance)],
             weight: 0.05,
         }
     };
@@ -270,8 +277,8 @@ struct Best {
 }
 
 /// Appends the points of a run, its last one left out.
-fn chain(run: &[Sample], hidden: &[bool], outlines: &Outlines, points: &mut Vec<(Place, bool)>) {
-    let candidates = candidates(run, hidden, outlines);
+fn chain(run: &[Sample], hidden: &[bool], tolerance: f32, points: &mut Vec<(Place, bool)>) {
+    let candidates = candidates(run, hidden, tolerance);
     let unreached = Best {
         cost: usize::MAX,
         from: 0,
@@ -281,7 +288,7 @@ fn chain(run: &[Sample], hidden: &[bool], outlines: &Outlines, points: &mut Vec<
     best[0].cost = 0;
     for a in 0..candidates.len() - 1 {
         if best[a].cost < usize::MAX {
-            extend(run, &candidates, a, &mut best, outlines);
+            extend(run, &candidates, a, &mut best);
         }
     }
     // Backwards from the end.
@@ -298,16 +305,13 @@ fn chain(run: &[Sample], hidden: &[bool], outlines: &Outlines, points: &mut Vec<
 }
 
 /// Tries all spans that start at candidate `a`.
-fn extend(run: &[Sample], candidates: &[usize], a: usize, best: &mut [Best], outlines: &Outlines) {
+fn extend(run: &[Sample], candidates: &[usize], a: usize, best: &mut [Best]) {
     // A longer span needs as many off-points as a shorter one, or more.
     let mut least = 0;
     let mut failed = 0;
     for b in a + 1..candidates.len() {
         let samples = thinned(&run[candidates[a]..=candidates[b]]);
-        let most = outlines
-            .most_off
-            .min(MOST)
-            .min(samples.len().saturating_sub(2));
+        let most = MOST.min(samples.len().saturating_sub(2));
         let found = (least..=most)
             .take_while(|count| best[a].cost + 1 + count < best[b].cost)
             .find_map(|count| {
@@ -352,10 +356,10 @@ fn thinned(run: &[Sample]) -> Vec<Sample> {
 
 /// The samples at which spans may end: corners of a polygon near to the run, places where it becomes hidden, and one
 /// in the middle of long gaps.
-fn candidates(run: &[Sample], hidden: &[bool], outlines: &Outlines) -> Vec<usize> {
+fn candidates(run: &[Sample], hidden: &[bool], tolerance: f32) -> Vec<usize> {
     let mut found = vec![];
-    for tolerance in [1.0, 2.0, 4.0] {
-        found = polygon(run, tolerance * outlines.candidates);
+    for factor in [1.0, 2.0, 4.0] {
+        found = polygon(run, factor * POLYGON * tolerance);
         if found.len() <= 40 {
             break;
         }

@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 
 use super::super::areas::{LEVEL, Pixel, away, distance2};
 use super::super::parts::{Part, Parts};
-use super::super::recipe::Fills;
-use super::colors::{CANVAS, Colors};
+use super::colors::{self, CANVAS, Colors};
 use super::mixtures::{Mixture, best_mixture};
 use crate::math::median;
 use crate::scene::Shade;
@@ -39,12 +38,7 @@ pub(super) struct Regions {
 
 impl Regions {
     /// The regions of pixels as mixtures. What is too small, or only edges, becomes part of what is beside it.
-    pub(super) fn of(
-        colors: &Colors<'_>,
-        mut mixtures: Vec<Mixture>,
-        parts: &Parts,
-        fills: &Fills,
-    ) -> Self {
+    pub(super) fn of(colors: &Colors<'_>, mut mixtures: Vec<Mixture>, parts: &Parts) -> Self {
         let width = colors.pixels.width;
         let by_label = |mixtures: &[Mixture]| connected(mixtures.len(), width, |i| mixtures[i].own);
         let (mut of, mut members) = by_label(&mixtures);
@@ -52,7 +46,7 @@ impl Regions {
             (of, members) = by_label(&mixtures);
         }
         for _ in 0..6 {
-            let is_small = |pixels: &Vec<u32>| is_small(colors, &mixtures, pixels, fills);
+            let is_small = |pixels: &Vec<u32>| is_small(colors, &mixtures, pixels);
             let small: Vec<bool> = members.iter().map(is_small).collect();
             if small.iter().all(|small| *small) || !small.contains(&true) {
                 break;
@@ -321,7 +315,7 @@ fn labels_without(
 }
 
 /// True if a region has few pixels, or hardly any of its colour.
-fn is_small(colors: &Colors<'_>, mixtures: &[Mixture], pixels: &[u32], fills: &Fills) -> bool {
+fn is_small(colors: &Colors<'_>, mixtures: &[Mixture], pixels: &[u32]) -> bool {
     let area = pixels.len();
     if area >= 60 {
         return false;
@@ -332,7 +326,7 @@ fn is_small(colors: &Colors<'_>, mixtures: &[Mixture], pixels: &[u32], fills: &F
         away(&colors.pixels.target.at(i), &color) < 14.0 * LEVEL
     };
     let pure = pixels.iter().filter(is_pure).count();
-    area < fills.least_area || (area < 12 && pure == 0) || pure * 8 < area
+    area < colors::LEAST_AREA || (area < 12 && pure == 0) || pure * 8 < area
 }
 
 /// Gives the pixels of small regions to the regions beside them that are nearest in colour.

@@ -7,14 +7,48 @@
 use rayon::prelude::*;
 
 use super::super::areas::{LEVEL, Pixel, Pixels, away};
-use super::super::recipe::Shades;
 use crate::image::beside;
 use crate::math::Point;
 use crate::scene::Shade;
-use crate::shading::{Block, Blocks, Value, stacked};
+use crate::shading::{self, Block, Blocks, ShadeFit, Value, stacked};
 
 /// A pixel of no shade.
 const NONE: u16 = u16::MAX;
+
+// All of these are guesses.
+/// Most gradients of a picture.
+const MOST: usize = 64;
+/// Largest second difference of smooth pixels, levels: that of rounding is 2.
+const BEND: f32 = 3.0;
+/// Steepest step from pixel to pixel of one gradient, levels.
+const STEEPEST: f32 = 14.0;
+/// Fewest pixels of a gradient.
+const LEAST_PIXELS: usize = 40;
+/// Least range of its values, levels.
+const LEAST_RANGE: f32 = 12.0;
+/// Blocks along the longer side of a part, whose means are fitted.
+const BLOCKS: usize = 40;
+/// The share of the blocks that a gradient has to meet.
+const LEAST_SHARE: f32 = 0.9;
+/// Share of the blocks that it has to meet beyond those of a single colour.
+const LEAST_GAIN: f32 = 0.25;
+/// Most gradients on top of each other.
+const MOST_STACKED: usize = 3;
+/// Fewest pixels of a part that may have several.
+const LEAST_STACKED: usize = 2000;
+/// A colour with this share of a part is taken away from it if no gradient is found.
+const FLAT_SHARE: f32 = 0.25;
+/// Most times that colours are taken away.
+const ROUNDS: usize = 4;
+/// The fit of a gradient.
+const FIT: ShadeFit = ShadeFit {
+    hopeless_share: 0.1,
+    stops: 6,
+    rounds: 4,
+    stop_share: 0.15,
+};
+/// Pixels that differ by less are of one colour: rounding.
+const FLAT: f32 = 1.5 * LEVEL;
 
 /// The shades of a picture.
 pub(super) struct Shaded {
@@ -34,21 +68,23 @@ enum Found {
 }
 
 impl Shaded {
-    /// The shades of the smooth parts of a picture on so many mattes.
-    pub(super) fn of(pixels: &Pixels<'_>, mattes: usize, numbers: &Shades) -> Self {
-        let mut shaded = Self {
+    /// None: a picture of colours alone.
+    pub(super) fn none(pixels: &Pixels<'_>) -> Self {
+        Self {
             list: Vec::new(),
             of: vec![NONE; pixels.width * pixels.height],
-        };
-        if numbers.most == 0 {
-            return shaded;
         }
-        let mut open = smooth_pixels(pixels, numbers);
-        for _ in 0..numbers.rounds {
+    }
+
+    /// The shades of the smooth parts of a picture on so many mattes.
+    pub(super) fn of(pixels: &Pixels<'_>, mattes: usize) -> Self {
+        let mut shaded = Self::none(pixels);
+        let mut open = smooth_pixels(pixels);
+        for _ in 0..ROUNDS {
             let mut is_over = true;
-            for mut part in parts(pixels, &open, numbers) {
-                match shaded.judge(pixels, &part, mattes, numbers) {
-                    Found::Shade(index) => shaded.take(pixels, &part, mattes, index, numbers),
+            for mut part in parts(pixels, &open) {
+                match shaded.judge(pixels, &part, mattes) {
+                    Found::Shade(index) => shaded.take(pixels, &part, mattes, index),
                     Found::Color(color) => {
                         let is_of = |&i: &usize| away(&pixels.target.at(i), &color) < FLAT;
                         part.retain(is_of);
@@ -72,24 +108,16 @@ impl Shaded {
     }
 
     /// Tells what a part is: a known shade goes on, or it has one of its own.
-    fn judge(
-        &mut self,
-        pixels: &Pixels<'_>,
-        part: &[usize],
-        mattes: usize,
-        numbers: &Shades,
-    ) -> Found {
-        let blocks = blocks(pixels, part, mattes, numbers.blocks);
-        let near = numbers.fit.near;
+    fn judge(&mut self, pixels: &Pixels<'_>, part: &[usize], mattes: usize) -> Found {
+        let blocks = blocks(pixels, part, mattes);
+        let near = shading::NEAR;
         let share = |shades: &Vec<Shade>| {
             let met = blocks.met(near + LEVEL, |block| stacked(shades, block.center));
             met.share
         };
         // A shade that things in front have cut in parts is one.
         let known = self.list.iter();
-        let known = known
-            .map(share)
-            .position(|share| share >= numbers.least_share);
+        let known = known.map(share).position(|share| share >= LEAST_SHARE);
         if let Some(index) = known {
             return Found::Shade(index as u16);
         }
@@ -98,39 +126,31 @@ impl Shaded {
         let flat = value(&color, mattes);
         let alone = blocks.met(near, |_| flat).share;
         // A small part is hardly several.
-        let most = if part.len() < numbers.least_stacked {
+        let most = if part.len() < LEAST_STACKED {
             1
         } else {
-            numbers.most_stacked
+            MOST_STACKED
         };
-        let found = blocks.best_shades(&numbers.fit, numbers.least_share, most);
-        let found = found.filter(|(_, met)| {
-            met.share >= numbers.least_share && met.share >= alone + numbers.least_gain
-        });
+        let found = blocks.best_shades(&FIT, LEAST_SHARE, most);
+        let found =
+            found.filter(|(_, met)| met.share >= LEAST_SHARE && met.share >= alone + LEAST_GAIN);
         match found {
-            Some((shades, _)) if self.list.len() < numbers.most => {
+            Some((shades, _)) if self.list.len() < MOST => {
                 self.list.push(shades);
                 Found::Shade(self.list.len() as u16 - 1)
             }
-            _ if count as f32 > numbers.flat_share * part.len() as f32 => Found::Color(color),
+            _ if count as f32 > FLAT_SHARE * part.len() as f32 => Found::Color(color),
             _ => Found::Nothing,
         }
     }
 
     /// Gives the pixels of a part that a shade meets to it, and those around that it meets as well: where a gradient ends
     /// within a shape, the rest is not smooth there.
-    fn take(
-        &mut self,
-        pixels: &Pixels<'_>,
-        part: &[usize],
-        mattes: usize,
-        index: u16,
-        numbers: &Shades,
-    ) {
+    fn take(&mut self, pixels: &Pixels<'_>, part: &[usize], mattes: usize, index: u16) {
         let shades = &self.list[usize::from(index)];
         let is_met = |i: usize| {
             let seen = shown(shades, pixels, i, mattes);
-            away(&pixels.target.at(i), &seen) <= numbers.fit.near + LEVEL
+            away(&pixels.target.at(i), &seen) <= shading::NEAR + LEVEL
         };
         let mut taken: Vec<usize> = part.iter().copied().filter(|&i| is_met(i)).collect();
         taken.iter().for_each(|&i| self.of[i] = index);
@@ -170,13 +190,10 @@ fn value(pixel: &Pixel, mattes: usize) -> Value {
     [pixel[0], pixel[1], pixel[2], opacity]
 }
 
-/// Pixels that differ by less are of one colour: rounding.
-const FLAT: f32 = 1.5 * LEVEL;
-
 /// True for each pixel whose neighbours on opposite sides have it about in their middle.
-fn smooth_pixels(pixels: &Pixels<'_>, numbers: &Shades) -> Vec<bool> {
+fn smooth_pixels(pixels: &Pixels<'_>) -> Vec<bool> {
     let (width, height) = (pixels.width, pixels.height);
-    let bend = numbers.bend * LEVEL;
+    let bend = BEND * LEVEL;
     let mut smooth = vec![true; width * height];
     let rows = smooth.par_chunks_exact_mut(width).enumerate();
     rows.for_each(|(y, row)| {
@@ -202,8 +219,8 @@ fn smooth_pixels(pixels: &Pixels<'_>, numbers: &Shades) -> Vec<bool> {
 }
 
 /// The connected parts of the open pixels that are large and not of one colour, the largest first.
-fn parts(pixels: &Pixels<'_>, open: &[bool], numbers: &Shades) -> Vec<Vec<usize>> {
-    let steepest = numbers.steepest * LEVEL;
+fn parts(pixels: &Pixels<'_>, open: &[bool]) -> Vec<Vec<usize>> {
+    let steepest = STEEPEST * LEVEL;
     let mut is_seen: Vec<bool> = open.iter().map(|open| !open).collect();
     let mut parts = Vec::new();
     for start in 0..open.len() {
@@ -228,18 +245,18 @@ fn parts(pixels: &Pixels<'_>, open: &[bool], numbers: &Shades) -> Vec<Vec<usize>
             }
         }
         // Flat parts are colours, and small ones tell no axis.
-        let is_large = part.len() >= numbers.least_pixels;
-        if is_large && away(&low, &high) >= numbers.least_range * LEVEL {
+        let is_large = part.len() >= LEAST_PIXELS;
+        if is_large && away(&low, &high) >= LEAST_RANGE * LEVEL {
             parts.push(part);
         }
     }
     parts.sort_by_key(|part| std::cmp::Reverse(part.len()));
-    parts.truncate(numbers.most);
+    parts.truncate(MOST);
     parts
 }
 
-/// The means of blocks of a part, at most so many along its longer side.
-fn blocks(pixels: &Pixels<'_>, part: &[usize], mattes: usize, most: usize) -> Blocks {
+/// The means of blocks of a part.
+fn blocks(pixels: &Pixels<'_>, part: &[usize], mattes: usize) -> Blocks {
     let place = |i: usize| [i % pixels.width, i / pixels.width];
     let (mut low, mut high) = ([usize::MAX; 2], [0; 2]);
     for at in part.iter().map(|&i| place(i)) {
@@ -247,7 +264,7 @@ fn blocks(pixels: &Pixels<'_>, part: &[usize], mattes: usize, most: usize) -> Bl
         high = [0, 1].map(|k| high[k].max(at[k] + 1));
     }
     let size = [0, 1].map(|k| high[k] - low[k]);
-    let side = size[0].max(size[1]).div_ceil(most).max(1);
+    let side = size[0].max(size[1]).div_ceil(BLOCKS).max(1);
     let [columns, rows] = size.map(|v| v.div_ceil(side));
     // Sums over the pixels of the part in each block, and their number.
     let mut sums = vec![([0.0_f32; 4], 0.0_f32); columns * rows];

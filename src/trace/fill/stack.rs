@@ -7,7 +7,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::super::recipe::Fills;
 use super::colors::CANVAS;
 use super::overlaps::Overlaps;
 use super::regions::Regions;
@@ -43,7 +42,6 @@ impl Stack {
         neighbours: &Neighbours,
         drawn: &[bool],
         translucent: &Translucent,
-        fills: &Fills,
     ) -> Self {
         let enclosed = enclosed(regions, neighbours);
         let holes = holes(regions, &enclosed, drawn);
@@ -68,7 +66,7 @@ impl Stack {
             let inner = &enclosed[region as usize];
             Layer {
                 region,
-                covers: ground.covered(region, rank, inner, fills),
+                covers: ground.covered(region, rank, inner),
                 rank,
             }
         });
@@ -165,9 +163,12 @@ struct Ground<'a> {
     ranks: &'a [Option<usize>],
 }
 
+/// A shape goes on beneath another one that has at most this share of its border with shapes farther below. A guess.
+const EXPOSED: f32 = 0.08;
+
 impl Ground<'_> {
     /// The regions that the shape of `region` covers.
-    fn covered(&self, region: u32, rank: usize, enclosed: &[u32], fills: &Fills) -> Vec<u32> {
+    fn covered(&self, region: u32, rank: usize, enclosed: &[u32]) -> Vec<u32> {
         let Self {
             neighbours, ranks, ..
         } = *self;
@@ -192,7 +193,7 @@ impl Ground<'_> {
                     let all: u32 = touched.values().sum();
                     let below = touched.iter().filter(|(q, _)| is_below(**q));
                     let below: u32 = below.map(|(_, count)| count).sum();
-                    below as f32 <= fills.exposed * all as f32
+                    below as f32 <= EXPOSED * all as f32
                 })
                 .collect();
             if more.is_empty() {

@@ -1,10 +1,22 @@
 //! The blurs of a shape that meet the shares of a shadow best.
 
 use super::shares::Shares;
-use crate::fit::recipe::ShadowChoice;
 use crate::math;
 use crate::render::{self, Plane, blurred};
 use crate::scene::Path;
+
+/// Blocks along the longer side of the picture, whose shares are fitted.
+const BLOCKS: usize = 160;
+/// Standard deviations of the blurs that are tried first, px.
+const BLURS: [f32; 8] = [1.5, 2.5, 4.0, 6.5, 10.0, 16.0, 26.0, 40.0];
+/// The factor between the best of these and its neighbours; its root is the next one, and so on.
+const BLUR_STEP: f32 = 1.25;
+/// Number of times that blurs are tried.
+const REFINEMENTS: usize = 5;
+/// The first step of the search for a place, blocks.
+const SHIFT_STEP: f32 = 2.0;
+/// The last step.
+const SHIFT_FINEST: f32 = 0.05;
 
 /// A blur of the caster's shape.
 pub(super) struct Cast {
@@ -16,8 +28,7 @@ pub(super) struct Cast {
 }
 
 /// The shares of a reduced picture, and of what casts them. Lengths are in px of the picture.
-pub(super) struct Search<'a> {
-    choice: &'a ShadowChoice,
+pub(super) struct Search {
     /// Pixels along the side of a block.
     side: usize,
     caster: Plane,
@@ -25,12 +36,12 @@ pub(super) struct Search<'a> {
     shares: Vec<(usize, f32)>,
 }
 
-impl<'a> Search<'a> {
+impl Search {
     /// The search on the blocks that a shadow is fitted on, if any of them is seen.
-    pub(super) fn of(shares: &Shares, rings: &[Path], choice: &'a ShadowChoice) -> Option<Self> {
+    pub(super) fn of(shares: &Shares, rings: &[Path]) -> Option<Self> {
         let (width, height) = (shares.width, shares.seen.len() / shares.width);
         let caster = render::filled(rings.iter().cloned(), [width, height]);
-        let side = width.max(height).div_ceil(choice.blocks).max(1);
+        let side = width.max(height).div_ceil(BLOCKS).max(1);
         let columns = width.div_ceil(side);
         let count = columns * height.div_ceil(side);
         // A block counts where nothing covers any of its pixels.
@@ -60,7 +71,6 @@ impl<'a> Search<'a> {
         };
         let is_shaded = known.iter().any(|(_, share)| *share > 0.0);
         is_shaded.then_some(Self {
-            choice,
             side,
             caster,
             shares: known,
@@ -81,15 +91,10 @@ impl<'a> Search<'a> {
     /// The cast that leaves the least error.
     pub(super) fn best(&self) -> Option<Cast> {
         let mut best: Option<(f32, Cast)> = None;
-        let mut ratio = self.choice.blur_step;
-        let mut blurs: Vec<f32> = self
-            .choice
-            .blurs
-            .iter()
-            .map(|blur| blur / self.side as f32)
-            .collect();
+        let mut ratio = BLUR_STEP;
+        let mut blurs: Vec<f32> = BLURS.iter().map(|blur| blur / self.side as f32).collect();
         // Coarse ones first, and then ever finer ones beside the best.
-        for _ in 0..self.choice.refinements {
+        for _ in 0..REFINEMENTS {
             for blur in blurs {
                 let soft = blurred(self.caster.clone(), blur);
                 let from = best.as_ref().map_or([0.0; 2], |(_, cast)| cast.shift);
@@ -144,12 +149,7 @@ impl<'a> Search<'a> {
                 opacity,
             )
         };
-        let shift = math::search(
-            from,
-            self.choice.shift_step,
-            self.choice.shift_finest,
-            |shift| cost(shift).0,
-        );
+        let shift = math::search(from, SHIFT_STEP, SHIFT_FINEST, |shift| cost(shift).0);
         let (error, opacity) = cost(shift);
         (error as f32, shift, opacity)
     }

@@ -1,9 +1,26 @@
 //! The shares of a colour that lies softly on the page, and what they surround.
 
-use crate::fit::recipe::ShadowChoice;
 use crate::image::{Image, beside};
 use crate::render::{self, Plane};
 use crate::scene::Rgb;
+
+// Colours are in 0..1.
+/// Largest difference from the page of what is the page.
+const PAGE: f32 = 1.5 / 255.0;
+/// Largest second difference of what is soft.
+const BEND: f32 = 10.0 / 255.0;
+/// Largest difference of what is soft from a mixture of the page with one colour.
+const NEAR: f32 = 4.0 / 255.0;
+/// The least share of the pixels that is soft.
+const LEAST_SHARE: f32 = 0.002;
+/// Number of times that the colour is found, each time by what is near the last one.
+const ROUNDS: usize = 3;
+/// Fewest pixels of what casts a shadow.
+const LEAST_PIXELS: usize = 60;
+/// The least share of its outline that a shadow is seen along.
+const SURROUNDED: f32 = 0.3;
+/// Blur of the pixels of what casts a shadow before its outline is traced, px: as they are, they have stairs.
+const OUTLINE_BLUR: f32 = 1.0;
 
 /// Premultiplied colour and opacity.
 type Value = [f32; 4];
@@ -32,20 +49,20 @@ enum Kind {
 
 impl Shares {
     /// The shares of a picture on a page of this colour, or on none, if there are enough of them around something.
-    pub(super) fn of(picture: &Image, page: Option<Rgb>, choice: &ShadowChoice) -> Option<Self> {
+    pub(super) fn of(picture: &Image, page: Option<Rgb>) -> Option<Self> {
         let page = page.map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
         // What is page, and what is soft beside it.
         let values = Values(picture);
-        let mut kinds = kinds(&values, page, choice);
+        let mut kinds = kinds(&values, page);
         let soft = kinds.iter().filter(|kind| **kind == Kind::Soft).count();
-        if (soft as f32) < choice.least_share * kinds.len() as f32 {
+        if (soft as f32) < LEAST_SHARE * kinds.len() as f32 {
             return None;
         }
         // The one colour that it mixes the page with; what is of another is not soft.
-        let ink = ink(&values, &kinds, page, choice)?;
+        let ink = ink(&values, &kinds, page)?;
         let along = |i: usize| share(values.at(i), page, ink);
         for (i, kind) in kinds.iter_mut().enumerate() {
-            if *kind == Kind::Soft && along(i).1 > choice.near {
+            if *kind == Kind::Soft && along(i).1 > NEAR {
                 *kind = Kind::Other;
             }
         }
@@ -57,7 +74,7 @@ impl Shares {
         };
         let caster = Plane {
             width: values.width(),
-            values: caster(&values, &kinds, choice),
+            values: caster(&values, &kinds),
         };
         let is_cast = caster.values.iter().any(|&share| share > 0.0);
         let apart = |c: usize| (ink[c] - page[c]) * (ink[c] - page[c]);
@@ -67,7 +84,7 @@ impl Shares {
             color: [ink[0], ink[1], ink[2]],
             contrast2,
             seen: kinds.iter().enumerate().map(seen).collect(),
-            caster: render::blurred(caster, choice.outline_blur),
+            caster: render::blurred(caster, OUTLINE_BLUR),
         })
     }
 }
@@ -111,8 +128,8 @@ fn away(a: Value, b: Value) -> f32 {
 }
 
 /// Floods the picture from its page through what is smooth.
-fn kinds(values: &Values<'_>, page: Value, choice: &ShadowChoice) -> Vec<Kind> {
-    let kind = |i: usize| match away(values.at(i), page) <= choice.page {
+fn kinds(values: &Values<'_>, page: Value) -> Vec<Kind> {
+    let kind = |i: usize| match away(values.at(i), page) <= PAGE {
         true => Kind::Page,
         false => Kind::Other,
     };
@@ -122,7 +139,7 @@ fn kinds(values: &Values<'_>, page: Value, choice: &ShadowChoice) -> Vec<Kind> {
         .collect();
     while let Some(i) = open.pop() {
         for k in beside(i, values.width(), kinds.len()) {
-            if kinds[k] == Kind::Other && values.is_smooth(k, choice.bend) {
+            if kinds[k] == Kind::Other && values.is_smooth(k, BEND) {
                 kinds[k] = Kind::Soft;
                 open.push(k);
             }
@@ -132,12 +149,11 @@ fn kinds(values: &Values<'_>, page: Value, choice: &ShadowChoice) -> Vec<Kind> {
 }
 
 /// The colour that the soft pixels mix the page with: as far from the page as a colour can be.
-fn ink(values: &Values<'_>, kinds: &[Kind], page: Value, choice: &ShadowChoice) -> Option<Value> {
+fn ink(values: &Values<'_>, kinds: &[Kind], page: Value) -> Option<Value> {
     let is_soft = |i: &usize| kinds[*i] == Kind::Soft;
     let mut ink = None;
-    for _ in 0..choice.rounds {
-        let is_near =
-            |i: &usize| ink.is_none_or(|ink| share(values.at(*i), page, ink).1 <= choice.near);
+    for _ in 0..ROUNDS {
+        let is_near = |i: &usize| ink.is_none_or(|ink| share(values.at(*i), page, ink).1 <= NEAR);
         let soft = (0..kinds.len()).filter(is_soft).filter(is_near);
         let differences = soft.map(|i| {
             let value = values.at(i);
@@ -201,7 +217,7 @@ fn share(value: Value, page: Value, ink: Value) -> (f32, f32) {
 }
 
 /// The shares of the pixels of what is neither page nor soft, and surrounded by what is soft for the most part.
-fn caster(values: &Values<'_>, kinds: &[Kind], choice: &ShadowChoice) -> Vec<f32> {
+fn caster(values: &Values<'_>, kinds: &[Kind]) -> Vec<f32> {
     let (width, count) = (values.width(), kinds.len());
     let mut is_cast = vec![false; count];
     let mut is_seen: Vec<bool> = kinds.iter().map(|kind| *kind != Kind::Other).collect();
@@ -224,7 +240,7 @@ fn caster(values: &Values<'_>, kinds: &[Kind], choice: &ShadowChoice) -> Vec<f32
                 }
             }
         }
-        if part.len() >= choice.least_pixels && soft as f32 > choice.surrounded * all as f32 {
+        if part.len() >= LEAST_PIXELS && soft as f32 > SURROUNDED * all as f32 {
             part.into_iter().for_each(|i| is_cast[i] = true);
         }
     }

@@ -1,7 +1,7 @@
 //! Proposals: marks in the place of others, which are fitted as what they are and stay if they pay.
 
 use crate::fit::descent::held::Held;
-use crate::fit::descent::{Course, Descent};
+use crate::fit::descent::{Course, Descent, TRACED_PACE};
 use crate::fit::drawing::Drawing;
 use crate::fit::halves::by_halves;
 use crate::fit::recipe::{Forms, Rates};
@@ -162,7 +162,7 @@ fn fit(session: &mut Session<'_>, forms: Forms, proposals: &[Proposal]) {
         of: iterations,
         rates: Rates {
             // A traced stroke moves as far as an area does.
-            position: forms.rate / session.recipe.tracing.pace,
+            position: forms.rate / TRACED_PACE,
             radius: forms.rate.min(restricted.radius),
             area: forms.rate,
             opacity: 0.0,
