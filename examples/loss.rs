@@ -9,7 +9,7 @@
 use strokefit::coverage::Coverage;
 use strokefit::fit::Simd;
 use strokefit::image::Image;
-use strokefit::optim::{Adam, Optimizer, Schedule};
+use strokefit::optim::{Adam, Schedule};
 use strokefit::render::{
     Backdrop, Canvas, CanvasLoss, Gradients, Grid, PARAMS, Params, Renderer, Softness, StrokeMut,
     Strokes, TileRgb,

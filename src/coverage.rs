@@ -1,7 +1,7 @@
 //! Soft coverage functions. They map the signed distance from a pixel's centre to a stroke's edge to the
 //! covered part of the pixel, 0..1.
 //!
-//! `d` is the distance in px, positive inside ([`sdf`](crate::sdf)). `s > 0` is the softness in px, the width
+//! `d` is the distance in px, positive inside. `s > 0` is the softness in px, the width
 //! over which the edge rises from 0 to 1. `x = d/s`.
 //!
 //! | function | value | derivative by `d` | where it ends |

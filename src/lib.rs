@@ -47,7 +47,7 @@
 //! ```text
 //! error  words  clock  threads    what went wrong, choices, what a platform may lack
 //! math  rng                       points, draws by counter
-//! sdf  coverage  scene  image     distances, soft edges, drawings, pictures
+//! coverage  scene  image          soft edges, drawings, pictures
 //! metrics  loss  optim            measures, losses, optimisers
 //! damage                          picture → the picture that is meant
 //! shading                         smooth blocks of a picture → the gradient that they are of
@@ -87,7 +87,7 @@
 //! | path | *points*, open or closed: the centre line of a stroke, or a ring; see [`scene::Path`] |
 //! | shape | a closed path that is a circle, an ellipse or a rectangle, with an element of its own; see [`scene::Shape`] |
 //! | point | of a path: *on* it, joined to the next by a line, or *off* it, where it is the control point of a curve |
-//! | capsule | the stroke of two on-points; with equal ends it is a *dot*, the stroke of one point; see `sdf` |
+//! | capsule | the stroke of two on-points; with equal ends it is a *dot*, the stroke of one point |
 //! | scene | the drawing: size (px), background, and marks from back to front, grouped in stages |
 //! | stage | marks that are added together: seeded where the residual is largest, fitted with all earlier strokes frozen, kept if they pay |
 //! | layer | a group of the SVG, holding the marks of one stage or of one colour |
@@ -210,8 +210,6 @@ pub mod report;
 #[doc(hidden)]
 pub mod rng;
 pub mod scene;
-#[doc(hidden)]
-pub mod sdf;
 #[doc(hidden)]
 pub mod seed;
 mod shading;

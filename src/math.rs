@@ -10,15 +10,9 @@ pub use elementary::{
     Elementary, atan, cbrt, cos, exp, exp2, hypot, ln, log2, log10, powf, sin, sin_cos, tan, tanh,
 };
 pub(crate) use linear::solve_symmetric;
-pub use plane::{Point2, Vector2};
+pub use plane::{Point, Vector};
 pub use real::{Real, powi};
 pub(crate) use search::search;
-
-/// A point of the picture plane in px; x to the right, y down, pixel centres at +0.5.
-pub type Point = Point2<f32>;
-
-/// A displacement in the picture plane in px.
-pub type Vector = Vector2<f32>;
 
 /// The distance of two places, px.
 pub(crate) fn distance(a: [f32; 2], b: [f32; 2]) -> f32 {

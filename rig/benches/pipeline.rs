@@ -23,7 +23,7 @@ use strokefit::fit::{Budget, Config, Fitter, Objective, Preset, Recipe, Simd};
 use strokefit::image::{Image, Limits};
 use strokefit::loss::Loss;
 use strokefit::metrics;
-use strokefit::optim::{Adam, AdamParams, Optimizer};
+use strokefit::optim::{Adam, AdamParams};
 use strokefit::render::{Backdrop, Canvas, Gradients, PARAMS, Renderer, Softness, Strokes};
 use strokefit::scene::{Scene, Stage};
 use strokefit::seed::{Pyramid, Residual, Wanted, propose};

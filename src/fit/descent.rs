@@ -14,7 +14,7 @@ use super::drawing::Drawing;
 use super::drawing::objective::Target;
 use super::recipe::{Jitter, Rates, Recipe};
 use super::time::Timer;
-use crate::optim::{Adam, Optimizer, Schedule};
+use crate::optim::{Adam, Schedule};
 use crate::render::{Gradients, STYLE, Strokes};
 use anneal::Annealing;
 use held::Held;

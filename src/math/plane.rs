@@ -2,36 +2,34 @@
 
 use std::ops::{Add, AddAssign, Div, Index, IndexMut, Mul, Neg, Sub};
 
-use super::Real;
-
-/// A place.
+/// A point of the picture plane in px; x to the right, y down, pixel centres at +0.5.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Point2<T> {
+pub struct Point {
     /// To the right.
-    pub x: T,
+    pub x: f32,
     /// Down.
-    pub y: T,
+    pub y: f32,
 }
 
-/// A displacement.
+/// A displacement in the picture plane in px.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Vector2<T> {
+pub struct Vector {
     /// To the right.
-    pub x: T,
+    pub x: f32,
     /// Down.
-    pub y: T,
+    pub y: f32,
 }
 
-impl<T: Real> Point2<T> {
+impl Point {
     /// The point (0, 0).
     pub fn origin() -> Self {
-        Self::new(T::zero(), T::zero())
+        Self::new(0.0, 0.0)
     }
 
     /// Where it is from the origin.
     #[inline]
-    pub fn coords(self) -> Vector2<T> {
-        Vector2::new(self.x, self.y)
+    pub fn coords(self) -> Vector {
+        Vector::new(self.x, self.y)
     }
 
     /// The upper left corner of the box around both.
@@ -47,40 +45,40 @@ impl<T: Real> Point2<T> {
     }
 }
 
-impl<T: Real> Vector2<T> {
+impl Vector {
     /// No displacement.
     #[inline]
     pub fn zeros() -> Self {
-        Self::new(T::zero(), T::zero())
+        Self::new(0.0, 0.0)
     }
 
     /// The scalar product.
     #[inline]
-    pub fn dot(&self, other: &Self) -> T {
+    pub fn dot(&self, other: &Self) -> f32 {
         self.x * other.x + self.y * other.y
     }
 
     /// The scalar product with `other` turned by a right angle: above 0 where it lies clockwise, as y points down.
     #[inline]
-    pub fn perp(&self, other: &Self) -> T {
+    pub fn perp(&self, other: &Self) -> f32 {
         self.x * other.y - self.y * other.x
     }
 
     /// The square of the length.
     #[inline]
-    pub fn norm_squared(&self) -> T {
+    pub fn norm_squared(&self) -> f32 {
         self.dot(self)
     }
 
     /// The length.
     #[inline]
-    pub fn norm(&self) -> T {
+    pub fn norm(&self) -> f32 {
         self.norm_squared().sqrt()
     }
 
     /// This direction at length 1; `None` up to the length `least`.
     #[inline]
-    pub fn try_normalize(&self, least: T) -> Option<Self> {
+    pub fn try_normalize(&self, least: f32) -> Option<Self> {
         let norm = self.norm();
         // A length that is no number is not small.
         let is_small = norm <= least;
@@ -95,19 +93,19 @@ impl<T: Real> Vector2<T> {
 
     /// The lesser coordinate.
     #[inline]
-    pub fn min(&self) -> T {
+    pub fn min(&self) -> f32 {
         self.x.min(self.y)
     }
 
     /// The greater coordinate.
     #[inline]
-    pub fn max(&self) -> T {
+    pub fn max(&self) -> f32 {
         self.x.max(self.y)
     }
 
     /// The longer of the distances along the axes.
     #[inline]
-    pub fn amax(&self) -> T {
+    pub fn amax(&self) -> f32 {
         self.abs().max()
     }
 }
@@ -115,40 +113,40 @@ impl<T: Real> Vector2<T> {
 /// Items that both have as pairs of numbers.
 macro_rules! pair {
     ($($pair:ident)*) => {$(
-        impl<T> $pair<T> {
+        impl $pair {
             /// From both coordinates.
             #[inline]
-            pub const fn new(x: T, y: T) -> Self {
+            pub const fn new(x: f32, y: f32) -> Self {
                 Self { x, y }
             }
         }
 
-        impl<T> From<[T; 2]> for $pair<T> {
+        impl From<[f32; 2]> for $pair {
             #[inline]
-            fn from([x, y]: [T; 2]) -> Self {
+            fn from([x, y]: [f32; 2]) -> Self {
                 Self { x, y }
             }
         }
 
-        impl<T> From<$pair<T>> for [T; 2] {
+        impl From<$pair> for [f32; 2] {
             #[inline]
-            fn from(pair: $pair<T>) -> Self {
+            fn from(pair: $pair) -> Self {
                 [pair.x, pair.y]
             }
         }
 
-        impl<T> Index<usize> for $pair<T> {
-            type Output = T;
+        impl Index<usize> for $pair {
+            type Output = f32;
 
             #[inline]
-            fn index(&self, axis: usize) -> &T {
+            fn index(&self, axis: usize) -> &f32 {
                 [&self.x, &self.y][axis]
             }
         }
 
-        impl<T> IndexMut<usize> for $pair<T> {
+        impl IndexMut<usize> for $pair {
             #[inline]
-            fn index_mut(&mut self, axis: usize) -> &mut T {
+            fn index_mut(&mut self, axis: usize) -> &mut f32 {
                 let Self { x, y } = self;
                 if axis == 0 { x } else { y }
             }
@@ -156,12 +154,12 @@ macro_rules! pair {
     )*};
 }
 
-pair! { Point2 Vector2 }
+pair! { Point Vector }
 
-impl<T> From<Vector2<T>> for Point2<T> {
+impl From<Vector> for Point {
     /// The point there from the origin.
     #[inline]
-    fn from(place: Vector2<T>) -> Self {
+    fn from(place: Vector) -> Self {
         Self::new(place.x, place.y)
     }
 }
@@ -169,11 +167,11 @@ impl<T> From<Vector2<T>> for Point2<T> {
 /// Sums and differences, coordinate by coordinate.
 macro_rules! sums {
     ($($left:ident $operator:ident $method:ident $right:ident = $sum:ident;)*) => {$(
-        impl<T: Real> $operator<$right<T>> for $left<T> {
-            type Output = $sum<T>;
+        impl $operator<$right> for $left {
+            type Output = $sum;
 
             #[inline]
-            fn $method(self, other: $right<T>) -> $sum<T> {
+            fn $method(self, other: $right) -> $sum {
                 $sum::new(self.x.$method(other.x), self.y.$method(other.y))
             }
         }
@@ -181,32 +179,32 @@ macro_rules! sums {
 }
 
 sums! {
-    Point2 Add add Vector2 = Point2;
-    Point2 Sub sub Vector2 = Point2;
-    Point2 Sub sub Point2 = Vector2;
-    Vector2 Add add Vector2 = Vector2;
-    Vector2 Sub sub Vector2 = Vector2;
+    Point Add add Vector = Point;
+    Point Sub sub Vector = Point;
+    Point Sub sub Point = Vector;
+    Vector Add add Vector = Vector;
+    Vector Sub sub Vector = Vector;
 }
 
-impl<T: Real> Mul<T> for Vector2<T> {
+impl Mul<f32> for Vector {
     type Output = Self;
 
     #[inline]
-    fn mul(self, factor: T) -> Self {
+    fn mul(self, factor: f32) -> Self {
         Self::new(self.x * factor, self.y * factor)
     }
 }
 
-impl<T: Real> Div<T> for Vector2<T> {
+impl Div<f32> for Vector {
     type Output = Self;
 
     #[inline]
-    fn div(self, divisor: T) -> Self {
+    fn div(self, divisor: f32) -> Self {
         Self::new(self.x / divisor, self.y / divisor)
     }
 }
 
-impl<T: Real> Neg for Vector2<T> {
+impl Neg for Vector {
     type Output = Self;
 
     #[inline]
@@ -215,7 +213,7 @@ impl<T: Real> Neg for Vector2<T> {
     }
 }
 
-impl<T: Real> AddAssign for Vector2<T> {
+impl AddAssign for Vector {
     #[inline]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;

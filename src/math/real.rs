@@ -1,9 +1,8 @@
 //! Floating-point types of generic formulas.
 
 use std::f64::consts::PI;
-use std::fmt::{Debug, Display};
-use std::iter::Sum;
-use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use super::Elementary;
 
@@ -12,8 +11,6 @@ use super::Elementary;
 pub trait Real:
     Elementary
     + Debug
-    + Display
-    + Default
     + PartialOrd
     + Add<Output = Self>
     + Sub<Output = Self>
@@ -23,8 +20,6 @@ pub trait Real:
     + AddAssign
     + SubAssign
     + MulAssign
-    + DivAssign
-    + Sum
     + Send
     + Sync
     + 'static

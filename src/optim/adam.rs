@@ -17,7 +17,6 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Optimizer, clip};
 use crate::math::Real;
 
 /// Parameters of Adam besides the learning rate.
@@ -98,20 +97,45 @@ impl<T: Real> Adam<T> {
             &mut params[..n],
             gradients,
             |i| rate * scales[i],
-            |_| T::one(),
             |i, take, _| take * squares[i],
         );
     }
 
-    /// One step; value `i` at the learning rate `rate(i)`, after it was multiplied by `keep(i)`. Of the gradient `g`,
-    /// the moving average of its square takes `share(i, 1−β₂, g)`.
+    /// Moves `params` down `gradients` with one learning `rate` for all. Values beyond the shortest slice do not change.
+    pub fn step(&mut self, params: &mut [T], gradients: &[T], rate: T) {
+        self.update(params, gradients, |_| rate, square);
+    }
+
+    /// Moves `params` with the learning rate `rate · scales[i]` for value `i`, since positions, radii, colours and
+    /// opacities need different rates. `scales` are filled once; `rate` follows a [`Schedule`](super::Schedule).
+    pub fn step_scaled(&mut self, params: &mut [T], gradients: &[T], rate: T, scales: &[T]) {
+        let n = scales.len().min(params.len());
+        let scales = &scales[..n];
+        self.update(&mut params[..n], gradients, |i| rate * scales[i], square);
+    }
+
+    /// Resets the state of the values in `range`, as if they had never made a step. Indices beyond the end are ignored.
+    pub fn reset(&mut self, range: Range<usize>) {
+        let end = range.end.min(self.mean.len());
+        let range = range.start.min(end)..end;
+        for state in [
+            &mut self.mean,
+            &mut self.square,
+            &mut self.mean_of_one,
+            &mut self.square_of_one,
+        ] {
+            state[range.clone()].fill(T::zero());
+        }
+    }
+
+    /// One step; value `i` at the learning rate `rate(i)`. Of the gradient `g`, the moving average of its square takes
+    /// `share(i, 1−β₂, g)`.
     #[inline]
-    pub(super) fn update(
+    fn update(
         &mut self,
         params: &mut [T],
         gradients: &[T],
         rate: impl Fn(usize) -> T,
-        keep: impl Fn(usize) -> T,
         share: impl Fn(usize, T, T) -> T,
     ) {
         let [keep1, keep2] = self.params.betas.map(T::of);
@@ -130,45 +154,15 @@ impl<T: Real> Adam<T> {
             mean_of_one[i] = keep1 * mean_of_one[i] + take1;
             square_of_one[i] = keep2 * square_of_one[i] + take2;
             let scale = mean_of_one[i] * ((square[i] / square_of_one[i]).sqrt() + eps);
-            params[i] = params[i] * keep(i) - rate(i) * mean[i] / scale;
+            params[i] -= rate(i) * mean[i] / scale;
         }
     }
 }
 
 /// The share of a squared gradient that its moving average takes.
 #[inline]
-pub(super) fn square<T: Real>(_: usize, take: T, g: T) -> T {
+fn square<T: Real>(_: usize, take: T, g: T) -> T {
     take * g * g
-}
-
-impl<T: Real> Optimizer<T> for Adam<T> {
-    fn step(&mut self, params: &mut [T], gradients: &[T], rate: T) {
-        self.update(params, gradients, |_| rate, |_| T::one(), square);
-    }
-
-    fn step_scaled(&mut self, params: &mut [T], gradients: &[T], rate: T, scales: &[T]) {
-        let n = scales.len().min(params.len());
-        let scales = &scales[..n];
-        self.update(
-            &mut params[..n],
-            gradients,
-            |i| rate * scales[i],
-            |_| T::one(),
-            square,
-        );
-    }
-
-    fn reset(&mut self, range: Range<usize>) {
-        let range = clip(range, self.mean.len());
-        for state in [
-            &mut self.mean,
-            &mut self.square,
-            &mut self.mean_of_one,
-            &mut self.square_of_one,
-        ] {
-            state[range.clone()].fill(T::zero());
-        }
-    }
 }
 
 #[cfg(test)]

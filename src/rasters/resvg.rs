@@ -63,9 +63,8 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::math::{self, Point};
+    use crate::math::{self, Point, nearest_on_segment};
     use crate::scene::{Area, Band, PathPoint, Scene, Stage, Stroke};
-    use crate::sdf::Capsule;
     use crate::svg::{self, WriteOptions};
     use crate::verify::{self, Size};
 
@@ -78,13 +77,11 @@ mod tests {
             .collect();
         let line = stroke.path.flattened(0.02);
         let depth = |pixel: usize| {
-            let p = Point::new((pixel % side) as f32 + 0.5, (pixel / side) as f32 + 0.5);
-            let capsule = |ends: &[Point]| Capsule {
-                a: ends[0],
-                b: ends[1],
-                radius: stroke.radius,
-            };
-            let depths = line.windows(2).map(|ends| capsule(ends).distance(p, 1e-9));
+            let p = [pixel % side, pixel / side].map(|at| at as f32 + 0.5);
+            let away2 = |ends: &[Point]| nearest_on_segment(p, [ends[0].into(), ends[1].into()]).1;
+            let depths = line
+                .windows(2)
+                .map(|ends| stroke.radius - away2(ends).sqrt());
             depths.fold(f32::MIN, f32::max)
         };
         let holes = (0..side * side).filter(|&pixel| !covered.contains(&(pixel as u32)));

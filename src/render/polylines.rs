@@ -1,19 +1,16 @@
 //! Flattening: paths to polylines, and derivatives by the vertices of polylines to derivatives by points of paths.
 //!
 //! The renderer knows polylines alone. Each line of a path is one segment or more, and each quadratic Bézier curve as
-//! many as [`sdf`](crate::sdf) says, at equal steps of its parameter. So every vertex is a mean, with fixed weights, of the
+//! many as [`steps`] says, at equal steps of its parameter. So every vertex is a mean, with fixed weights, of the
 //! ends of its piece and the control point between them: flattening is linear, and the derivative by a point is the same
 //! weights times the derivatives by the vertices.
 
 use rayon::prelude::*;
 
-use crate::math::Vector;
-use crate::sdf;
-
 use super::crossings::Crossings;
 use super::gradients::add;
 use super::paint::Ink;
-use super::strokes::{STYLE, StrokeRef, Strokes};
+use super::strokes::{STYLE, StrokeRef, Strokes, steps};
 
 /// The vertex between the rings of an area: no segment that has it is drawn.
 const BETWEEN_RINGS: [f32; 2] = [f32::NAN; 2];
@@ -283,7 +280,8 @@ impl Piece {
         );
         // The second difference: how far chords are from the curve depends on it and the number of steps alone.
         let bend = [0, 1].map(|k| a[k] - 2.0 * c[k] + b[k]);
-        sdf::steps(Vector::from(bend), f64::from(stroke.flatness())).max(least)
+        let bend = (bend[0] * bend[0] + bend[1] * bend[1]).sqrt();
+        steps(f64::from(bend), f64::from(stroke.flatness())).max(least)
     }
 
     /// The vertices of the piece behind its start, as one of so many segments.
@@ -395,8 +393,8 @@ impl Iterator for Pieces<'_> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::reference;
     use super::*;
-    use crate::math::Point;
     use crate::rng;
 
     /// Strokes of one to six points of all kinds, open and closed.
@@ -425,16 +423,6 @@ mod tests {
         strokes
     }
 
-    fn for_reference(stroke: StrokeRef<'_>) -> sdf::Path<f32> {
-        sdf::Path {
-            points: stroke.points.iter().map(|&p| Point::from(p)).collect(),
-            off: stroke.off.to_vec(),
-            closed: stroke.closed,
-            radius: 1.0,
-            flatness: stroke.flatness(),
-        }
-    }
-
     /// Derivatives that each vertex hands back to each point, equal for x and y: the weight of the point in the vertex.
     fn weights(polylines: &Polylines, i: usize, stroke: StrokeRef<'_>) -> Vec<Vec<f32>> {
         let count = (polylines.firsts[i + 1] - polylines.firsts[i]) as usize;
@@ -460,11 +448,13 @@ mod tests {
                 // The renderer's dot is a segment of no length.
                 weights.pop();
             }
-            let means = for_reference(stroke).flattened().means;
+            let means = reference::Stroke::from(stroke).outline().means;
             assert_eq!(weights.len(), means.len(), "{stroke:?}");
             for (got, mean) in weights.iter().zip(means) {
                 let mut expected = vec![0.0; count];
-                mean.0.iter().for_each(|&(k, weight)| expected[k] += weight);
+                for (k, weight) in mean.0 {
+                    expected[k] += weight as f32;
+                }
                 let apart = got.iter().zip(&expected).map(|(g, e)| (g - e).abs());
                 assert!(
                     apart.fold(0.0, f32::max) < 1e-6,

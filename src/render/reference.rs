@@ -2,7 +2,7 @@
 //! compared with.
 //!
 //! **Forward.** Source-over with opacity, back to front: with `d` the signed distance of a pixel's
-//! sample point ([`sdf`](crate::sdf)) and `σ` the coverage ([`coverage`](crate::coverage)),
+//! sample point and `σ` the coverage ([`coverage`](crate::coverage)),
 //!
 //! ```text
 //! m = opacity·σ(d)          C ← C + m(c − C)
@@ -30,7 +30,7 @@
 //! derivative by x of at most `Σ k·w`, `k = 2|∂C/∂d|²` and `∂C/∂d = T·opacity·σ'(d)·(c − B)`, since `w² ≤ w`. Sums of
 //! these bounds also hold for vertices that move together, because the `w` of a pixel add up to 1.
 //!
-//! **Areas.** A stroke with rings is an area: its distance is that of [`sdf::Area`](crate::sdf::Area), and all else is as
+//! **Areas.** A stroke with rings is an area: its distance is that of its contours, and all else is as
 //! for a path, without a radius. A cut makes coverage 1 deep inside it as well as 0 far outside.
 //!
 //! Domain: any finite parameters; a radius of 0 or below leaves what the coverage function has
@@ -40,12 +40,13 @@
 //! for real-time radiance field rendering", SIGGRAPH 2023, do front to back; here without their
 //! division.
 
+mod outline;
 mod scene;
 
-use crate::coverage::Coverage;
-use crate::math::{Point2, Vector2};
+use kurbo::{Point, Vec2};
 
-use scene::Shape;
+use crate::coverage::Coverage;
+use outline::Outline;
 pub use scene::{Rgb, Scene, Stroke};
 
 /// The derivatives of a loss by every number of a [`Scene`], each in the place of its number.
@@ -89,13 +90,13 @@ impl Reference {
 
     /// The picture of `scene`.
     pub fn render(&self, scene: &Scene) -> Vec<Rgb> {
-        let shapes = flattened(scene);
+        let outlines = outlines(scene);
         self.samples(scene)
             .map(|p| {
-                let strokes = scene.strokes.iter().zip(&shapes);
-                strokes.fold(scene.background, |behind, (stroke, shape)| {
+                let strokes = scene.strokes.iter().zip(&outlines);
+                strokes.fold(scene.background, |behind, (stroke, outline)| {
                     let (color, share) = stroke.ink(p);
-                    let m = stroke.opacity * share * self.covered(shape, p).0;
+                    let m = stroke.opacity * share * self.covered(outline, p).0;
                     over(behind, color, m)
                 })
             })
@@ -104,13 +105,13 @@ impl Reference {
 
     /// The derivatives of a loss by every number of `scene`, from `d_canvas = ∂L/∂canvas`.
     pub fn gradients(&self, scene: &Scene, d_canvas: &[Rgb]) -> Gradients {
-        let shapes = flattened(scene);
+        let outlines = outlines(scene);
         let mut background = [0.0; 3];
         let mut strokes: Vec<Stroke> = scene.strokes.iter().map(Stroke::zero).collect();
-        let vertices = |shape: &Shape| vec![Vector2::zeros(); shape.means.len()];
-        let mut slopes: Vec<Vec<Vector2<f64>>> = shapes.iter().map(vertices).collect();
+        let vertices = |outline: &Outline| vec![Vec2::ZERO; outline.means.len()];
+        let mut slopes: Vec<Vec<Vec2>> = outlines.iter().map(vertices).collect();
         for (p, &g) in self.samples(scene).zip(d_canvas) {
-            let layers = self.layers(scene, &shapes, p);
+            let layers = self.layers(scene, &outlines, p);
             let through = layers
                 .first()
                 .map_or(1.0, |back| back.transmittance * (1.0 - back.m));
@@ -118,17 +119,17 @@ impl Reference {
             for (i, layer) in layers.iter().enumerate() {
                 let stroke = &scene.strokes[i];
                 let d_distance = accumulate(&mut strokes[i], stroke, layer, g);
-                for (vertex, by) in shapes[i].by_vertices(p, self.eps) {
+                for (vertex, by) in outlines[i].by_vertices(p, self.eps) {
                     slopes[i][vertex] += by * d_distance;
                 }
             }
         }
-        for ((stroke, shape), slopes) in strokes.iter_mut().zip(&shapes).zip(slopes) {
-            let mut by_points = vec![Vector2::zeros(); stroke.points.len()];
-            for (mean, slope) in shape.means.iter().zip(slopes) {
+        for ((stroke, outline), slopes) in strokes.iter_mut().zip(&outlines).zip(slopes) {
+            let mut by_points = vec![Vec2::ZERO; stroke.points.len()];
+            for (mean, slope) in outline.means.iter().zip(slopes) {
                 mean.hand_back(slope, &mut by_points);
             }
-            stroke.points = by_points.into_iter().map(Into::into).collect();
+            stroke.points = by_points.into_iter().map(|by| [by.x, by.y]).collect();
         }
         Gradients {
             background,
@@ -138,17 +139,17 @@ impl Reference {
 
     /// The stiffness of every vertex of the flattened path of each stroke.
     pub fn stiffness(&self, scene: &Scene) -> Vec<Vec<f64>> {
-        let shapes = flattened(scene);
+        let outlines = outlines(scene);
         let mut stiffness: Vec<Vec<f64>> =
-            shapes.iter().map(|s| vec![0.0; s.means.len()]).collect();
+            outlines.iter().map(|s| vec![0.0; s.means.len()]).collect();
         for p in self.samples(scene) {
-            for (i, layer) in self.layers(scene, &shapes, p).iter().enumerate() {
+            for (i, layer) in self.layers(scene, &outlines, p).iter().enumerate() {
                 let reach = layer.reach();
                 let by_distance = layer.transmittance * scene.strokes[i].opacity * layer.slope;
                 let k = 2.0 * by_distance * by_distance * dot(reach, reach);
                 // The derivatives by both ends are u·(1−h) and u·h, so their lengths are the shares.
-                for (vertex, by) in shapes[i].by_vertices(p, 0.0) {
-                    stiffness[i][vertex] += k * by.norm();
+                for (vertex, by) in outlines[i].by_vertices(p, 0.0) {
+                    stiffness[i][vertex] += k * by.hypot();
                 }
             }
         }
@@ -159,9 +160,9 @@ impl Reference {
     /// for each stroke. Positive where a stroke is worth having.
     pub fn leave_one_out(&self, scene: &Scene, target: &[Rgb]) -> Vec<f64> {
         let mut changes = vec![0.0; scene.strokes.len()];
-        let (canvas, shapes) = (self.render(scene), flattened(scene));
+        let (canvas, outlines) = (self.render(scene), outlines(scene));
         for (k, p) in self.samples(scene).enumerate().take(target.len()) {
-            for (i, layer) in self.layers(scene, &shapes, p).iter().enumerate() {
+            for (i, layer) in self.layers(scene, &outlines, p).iter().enumerate() {
                 for channel in 0..3 {
                     let e = canvas[k][channel] - target[k][channel];
                     let delta = -layer.transmittance * layer.m * layer.reach()[channel];
@@ -186,20 +187,20 @@ impl Reference {
     }
 
     /// The sample points of all pixels, row by row.
-    fn samples(&self, scene: &Scene) -> impl Iterator<Item = Point2<f64>> + use<> {
+    fn samples(&self, scene: &Scene) -> impl Iterator<Item = Point> + use<> {
         let (width, offset) = (scene.width, self.sample_offset);
         let at = move |i| i as f64 + offset;
-        (0..scene.height).flat_map(move |y| (0..width).map(move |x| Point2::new(at(x), at(y))))
+        (0..scene.height).flat_map(move |y| (0..width).map(move |x| Point::new(at(x), at(y))))
     }
 
     /// Coverage and its derivative by the distance.
-    fn covered(&self, shape: &Shape, p: Point2<f64>) -> (f64, f64) {
-        let d = shape.distance(p, self.eps);
+    fn covered(&self, outline: &Outline, p: Point) -> (f64, f64) {
+        let d = outline.distance(p, self.eps);
         let support = self.coverage.support(self.softness);
         if self.cut && d < -support {
             return (0.0, 0.0);
         }
-        if self.cut && shape.is_area() && d > support {
+        if self.cut && outline.is_area && d > support {
             return (1.0, 0.0);
         }
         let value = self.coverage.value(d, self.softness);
@@ -207,11 +208,11 @@ impl Reference {
     }
 
     /// Each stroke at the sample point `p`, back to front.
-    fn layers(&self, scene: &Scene, shapes: &[Shape], p: Point2<f64>) -> Vec<Layer> {
+    fn layers(&self, scene: &Scene, outlines: &[Outline], p: Point) -> Vec<Layer> {
         let mut behind = scene.background;
         let mut layers = Vec::with_capacity(scene.strokes.len());
-        for (stroke, shape) in scene.strokes.iter().zip(shapes) {
-            let (coverage, slope) = self.covered(shape, p);
+        for (stroke, outline) in scene.strokes.iter().zip(outlines) {
+            let (coverage, slope) = self.covered(outline, p);
             let (color, share) = stroke.ink(p);
             let (coverage, slope) = (share * coverage, share * slope);
             let m = stroke.opacity * coverage;
@@ -256,8 +257,8 @@ struct Layer {
 }
 
 /// The outlines of all strokes.
-fn flattened(scene: &Scene) -> Vec<Shape> {
-    scene.strokes.iter().map(Stroke::shape).collect()
+fn outlines(scene: &Scene) -> Vec<Outline> {
+    scene.strokes.iter().map(Stroke::outline).collect()
 }
 
 /// Adds what one pixel with `∂L/∂canvas = g` has to say about the look of `stroke`; returns `∂L/∂d` there.

@@ -32,6 +32,20 @@ pub(super) fn flatness(opacity: f32) -> f32 {
     (0.08 / (opacity * opacity)).min(0.5)
 }
 
+/// Most segments of one curve, so that one of more than some 1,300 px may be off by more.
+const MAX_STEPS: usize = 64;
+
+/// Number of segments that keep within `flatness` of a quadratic curve, px, from the length of its second difference `a − 2b + c`.
+///
+/// A curve is at most a quarter of that from its chord, and each halving of the step quarters the distance. The hair that
+/// is taken off keeps curves in round numbers, whose ratio is a whole number, from hanging on rounding.
+pub(super) fn steps(bend: f64, flatness: f64) -> usize {
+    let steps = (bend / (4.0 * flatness)).sqrt() - 1e-3;
+    // `ceil` is a call where the target has no instruction for it.
+    let whole = steps as usize;
+    (whole + usize::from(steps > whole as f64)).clamp(1, MAX_STEPS)
+}
+
 /// The numbers of a capsule: the strokes that seeding proposes.
 pub type Params = [f32; PARAMS];
 

@@ -50,7 +50,6 @@ mod examples;
 mod fit;
 mod fitter;
 mod fuzz;
-mod golden;
 mod gradients;
 mod imports;
 mod library;

@@ -22,7 +22,7 @@ use strokefit::coverage::{Coverage, CoverageSchedule};
 use strokefit::fit::{Execution, Objective};
 use strokefit::image::{Animation, AnimationFormat, Image};
 use strokefit::loss::Loss;
-use strokefit::optim::{Adam, AdamParams, Optimizer};
+use strokefit::optim::{Adam, AdamParams};
 use strokefit::render::{
     Backdrop, Canvas, Gradients, Grid, OPACITY, PARAMS, Renderer, Softness, StrokeMut,
 };

@@ -13,6 +13,7 @@ use rayon::prelude::*;
 
 use super::descent::{Method, Trajectory, descend};
 use super::matching::{Matching, Samples};
+use super::shapes::Circle;
 use super::table::{self, STEPS};
 use super::{COVERAGES, ResultFolder, SIZE, sheet_of_step};
 use crate::report::Table;
@@ -22,7 +23,6 @@ use strokefit::Result;
 use strokefit::coverage::Coverage;
 use strokefit::image::Image;
 use strokefit::math::{self, Real};
-use strokefit::sdf::Circle;
 
 /// ε of the article's small experiments, px.
 const EPS: f64 = 1e-4;

@@ -2,8 +2,9 @@
 
 use std::fmt;
 
+use super::optimizers::{AdamW, AdamWParams, Optimizer, RmsProp, RmsPropParams};
 use strokefit::math::Real;
-use strokefit::optim::{Adam, AdamParams, AdamW, AdamWParams, Optimizer, RmsProp, RmsPropParams};
+use strokefit::optim::{Adam, AdamParams};
 
 /// Something to make small.
 pub trait Problem<T: Real> {

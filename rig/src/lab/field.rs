@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use super::descent::Problem;
 use super::matching::{Matching, Samples};
+use super::shapes::Circle;
 use super::{COVERAGES, ResultFolder, SIZE};
 use crate::report::Table;
 use crate::report::picture::{self, heat};
@@ -17,7 +18,6 @@ use strokefit::Result;
 use strokefit::coverage::Coverage;
 use strokefit::image::Image;
 use strokefit::math;
-use strokefit::sdf::Circle;
 
 const TARGET: [f64; 3] = [48.0, 48.0, 8.0];
 const RADIUS: f64 = 8.0;

@@ -3,10 +3,10 @@
 use std::marker::PhantomData;
 
 use super::descent::Problem;
+use super::shapes::{Capsule, Circle, Combination};
 use strokefit::coverage::Coverage;
 use strokefit::loss::Loss;
-use strokefit::math::{Point2, Real};
-use strokefit::sdf::{Capsule, Circle, Combination};
+use strokefit::math::Real;
 
 /// A shape given by a few numbers, the last of which is its radius.
 pub trait Parametric<T: Real>: Sized {
@@ -17,10 +17,10 @@ pub trait Parametric<T: Real>: Sized {
     fn from_params(params: &[T]) -> Self;
 
     /// Signed distance at `p`, px, positive inside.
-    fn distance(&self, p: Point2<T>, eps: T) -> T;
+    fn distance(&self, p: [T; 2], eps: T) -> T;
 
     /// Adds `weight` times the derivatives of the distance at `p` to `sum`.
-    fn accumulate(&self, p: Point2<T>, eps: T, weight: T, sum: &mut [T]);
+    fn accumulate(&self, p: [T; 2], eps: T, weight: T, sum: &mut [T]);
 }
 
 /// `[x, y, radius]`.
@@ -29,18 +29,18 @@ impl<T: Real> Parametric<T> for Circle<T> {
 
     fn from_params(params: &[T]) -> Self {
         Self {
-            center: Point2::new(params[0], params[1]),
+            center: [params[0], params[1]],
             radius: params[2],
         }
     }
 
-    fn distance(&self, p: Point2<T>, eps: T) -> T {
+    fn distance(&self, p: [T; 2], eps: T) -> T {
         Circle::distance(self, p, eps)
     }
 
-    fn accumulate(&self, p: Point2<T>, eps: T, weight: T, sum: &mut [T]) {
+    fn accumulate(&self, p: [T; 2], eps: T, weight: T, sum: &mut [T]) {
         let by = self.jet(p, eps).by_center;
-        add(sum, weight, [by.x, by.y, T::one()]);
+        add(sum, weight, [by[0], by[1], T::one()]);
     }
 }
 
@@ -50,19 +50,19 @@ impl<T: Real> Parametric<T> for Capsule<T> {
 
     fn from_params(params: &[T]) -> Self {
         Self {
-            a: Point2::new(params[0], params[1]),
-            b: Point2::new(params[2], params[3]),
+            a: [params[0], params[1]],
+            b: [params[2], params[3]],
             radius: params[4],
         }
     }
 
-    fn distance(&self, p: Point2<T>, eps: T) -> T {
+    fn distance(&self, p: [T; 2], eps: T) -> T {
         Capsule::distance(self, p, eps)
     }
 
-    fn accumulate(&self, p: Point2<T>, eps: T, weight: T, sum: &mut [T]) {
+    fn accumulate(&self, p: [T; 2], eps: T, weight: T, sum: &mut [T]) {
         let jet = self.jet(p, eps);
-        let by = [jet.by_a.x, jet.by_a.y, jet.by_b.x, jet.by_b.y, T::one()];
+        let by = [jet.by_a[0], jet.by_a[1], jet.by_b[0], jet.by_b[1], T::one()];
         add(sum, weight, by);
     }
 }
@@ -87,9 +87,9 @@ pub struct Samples<T> {
 
 impl<T: Real> Samples<T> {
     /// All points, row by row.
-    pub fn points(self) -> impl Iterator<Item = Point2<T>> {
+    pub fn points(self) -> impl Iterator<Item = [T; 2]> {
         let at = move |i: usize| T::of(i as f64) + self.origin;
-        (0..self.size).flat_map(move |y| (0..self.size).map(move |x| Point2::new(at(x), at(y))))
+        (0..self.size).flat_map(move |y| (0..self.size).map(move |x| [at(x), at(y)]))
     }
 
     /// Coverage of the union of the shapes of `params` at all points, with an edge of 1 px.
@@ -106,7 +106,7 @@ fn shapes<T: Real, S: Parametric<T>>(params: &[T]) -> Vec<S> {
 
 /// The distance to the union of `shapes` at `p`, with the index of the one that it is; where
 /// several tie, of the first.
-fn union<T: Real, S: Parametric<T>>(shapes: &[S], p: Point2<T>, eps: T) -> (usize, T) {
+fn union<T: Real, S: Parametric<T>>(shapes: &[S], p: [T; 2], eps: T) -> (usize, T) {
     let mut nearest = (0, T::of(f64::NEG_INFINITY));
     for (i, shape) in shapes.iter().enumerate() {
         let d = shape.distance(p, eps);

@@ -1,8 +1,8 @@
 //! The experiments of the article that this project starts from, and what they show beyond it.
 //!
 //! Each experiment is a file with a function `run`, which writes tables, pictures and animations to a
-//! [`ResultFolder`]; `strokefit-rig lab` runs them by name. They use the same distances, coverage functions,
-//! optimisers and renderers as the fit.
+//! [`ResultFolder`]; `strokefit-rig lab` runs them by name. They use the same coverage functions, losses,
+//! Adam and renderers as the fit.
 //!
 //! | experiment | question |
 //! | --- | --- |
@@ -15,8 +15,8 @@
 //! | [`article`] | how far do thousands of strokes get, all at once from a random start? |
 //! | [`compare`] | which coverage function is best, in the render and in the file? |
 //!
-//! They share [`descent`] (a problem, an optimiser, its trajectory), [`matching`] (a union of shapes
-//! against a target) and [`table`].
+//! They share [`shapes`], [`optimizers`], [`descent`] (a problem, an optimiser, its trajectory), [`matching`] (a union of
+//! shapes against a target) and [`table`].
 //!
 //! Like the article, the small experiments sample pixels at integer coordinates.
 
@@ -28,8 +28,10 @@ pub mod compose;
 pub mod descent;
 pub mod field;
 pub mod matching;
+pub mod optimizers;
 mod output;
 pub mod sdf;
+pub mod shapes;
 pub mod star;
 pub mod table;
 

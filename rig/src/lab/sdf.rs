@@ -4,14 +4,13 @@
 //! and of their union, intersection and subtraction; charts and a table of the coverage functions
 //! and their derivatives over the distance.
 
+use super::shapes::{Capsule, Circle, Combination};
 use super::{ResultFolder, SIZE};
 use crate::report::Table;
 use crate::report::picture::{self, distance, gray};
 use crate::report::plot::{Chart, Panel, Sheet};
 use strokefit::Result;
 use strokefit::coverage::Coverage;
-use strokefit::math::Point2;
-use strokefit::sdf::{Capsule, Circle, Combination};
 
 /// The functions on show.
 const SHOWN: [Coverage; 9] = [
@@ -103,14 +102,14 @@ fn sheet(title: &str, panels: Vec<Panel>) -> Result<strokefit::image::Image> {
     sheet.draw()
 }
 
-fn field(distance: impl Fn(Point2<f64>) -> f64) -> Vec<f64> {
-    let at = |i: usize| Point2::new((i % SIZE) as f64, (i / SIZE) as f64);
+fn field(distance: impl Fn([f64; 2]) -> f64) -> Vec<f64> {
+    let at = |i: usize| [(i % SIZE) as f64, (i / SIZE) as f64];
     (0..SIZE * SIZE).map(|i| distance(at(i))).collect()
 }
 
 fn circle() -> Vec<f64> {
     let circle = Circle {
-        center: Point2::new(26.0, 30.0),
+        center: [26.0, 30.0],
         radius: 14.0,
     };
     field(|p| circle.distance(p, EPS))
@@ -118,8 +117,8 @@ fn circle() -> Vec<f64> {
 
 fn capsule() -> Vec<f64> {
     let capsule = Capsule {
-        a: Point2::new(22.0, 48.0),
-        b: Point2::new(50.0, 18.0),
+        a: [22.0, 48.0],
+        b: [50.0, 18.0],
         radius: 8.0,
     };
     field(|p| capsule.distance(p, EPS))

@@ -5,6 +5,7 @@
 
 use super::descent::{Method, Trajectory, descend};
 use super::matching::{Matching, Samples};
+use super::shapes::Capsule;
 use super::table::{self, STEPS};
 use super::{COVERAGES, ResultFolder, SIZE, sheet_of_step};
 use crate::report::Table;
@@ -14,7 +15,6 @@ use strokefit::Result;
 use strokefit::coverage::Coverage;
 use strokefit::image::Image;
 use strokefit::math::Real;
-use strokefit::sdf::Capsule;
 
 /// The star: `[a.x, a.y, b.x, b.y, radius]`, px.
 pub const STAR: [[f64; 5]; 4] = [

@@ -65,7 +65,7 @@ pub fn push_descent<T: Real>(table: &mut Table, labels: &Labels, descent: &Traje
     let shown = SHOWN.iter().chain(&[STEPS]);
     cells.extend(shown.map(|&step| descent.loss_at(step).to_string()));
     cells.push(descent.least().to_string());
-    let last = descent.last().iter().map(|x| format!("{x:.6}"));
+    let last = descent.last().iter().map(|x| format!("{:.6}", x.to_f64()));
     cells.push(last.collect::<Vec<_>>().join(" "));
     table.row(cells);
 }

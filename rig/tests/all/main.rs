@@ -18,6 +18,7 @@ mod bench;
 mod compare;
 #[path = "../../../tests/all/dependencies.rs"]
 mod dependencies;
+mod golden;
 mod help;
 #[path = "../../../tests/all/imports.rs"]
 mod imports;

@@ -1,10 +1,9 @@
 //! Drawings for the reference: strokes and scenes in `f64`.
 
-use std::ops::Range;
+use kurbo::Point;
 
-use crate::math::{Point2, Vector2};
+use super::outline::{Knots, Outline};
 use crate::scene;
-use crate::sdf::{Area, Flattened, Mean, Path, Polyline};
 
 use super::super::paint::Paint;
 use super::super::strokes::{PARAMS, STYLE, StrokeRef, Strokes, flatness};
@@ -49,7 +48,7 @@ impl Stroke {
     }
 
     /// The colour at `p`, and the opacity of the gradient there.
-    pub(super) fn ink(&self, p: Point2<f64>) -> (Rgb, f64) {
+    pub(super) fn ink(&self, p: Point) -> (Rgb, f64) {
         let Some(paint) = &self.paint else {
             return (self.color, 1.0);
         };
@@ -79,97 +78,24 @@ impl Stroke {
         }
     }
 
-    /// The path of some of the points as a polyline.
-    fn flattened(&self, points: Range<usize>, closed: bool, radius: f64) -> Flattened<f64> {
-        let path = Path {
-            points: self.points[points.clone()]
-                .iter()
-                .map(|&p| p.into())
-                .collect(),
-            off: self.off[points].to_vec(),
-            closed,
-            radius,
-            flatness: f64::from(flatness(self.opacity as f32)),
-        };
-        path.flattened()
-    }
-
     /// The outline that the points draw.
-    pub(super) fn shape(&self) -> Shape {
+    pub(in crate::render) fn outline(&self) -> Outline {
+        let knots = Knots {
+            points: &self.points,
+            off: &self.off,
+            closed: self.closed,
+        };
+        let flatness = f64::from(flatness(self.opacity as f32));
         if self.rings.is_empty() {
-            let whole = self.flattened(0..self.points.len(), self.closed, self.radius);
-            return Shape {
-                outline: Outline::Path(whole.polyline),
-                means: whole.means,
-            };
-        }
-        let (mut polylines, mut means) = (Vec::new(), Vec::new());
-        let mut start = 0;
-        for &end in &self.rings {
-            let ring = self.flattened(start..end, true, 0.0);
-            polylines.push(ring.polyline);
-            means.extend(ring.means.into_iter().map(|Mean(parts)| {
-                let parts = parts.into_iter();
-                Mean(parts.map(|(i, weight)| (start + i, weight)).collect())
-            }));
-            start = end;
-        }
-        Shape {
-            outline: Outline::Area(Area { rings: polylines }),
-            means,
+            Outline::path(knots, self.radius, flatness)
+        } else {
+            Outline::area(knots, &self.rings, flatness)
         }
     }
 
     /// A stroke of the same kinds of points, all of whose numbers are 0.
     pub(super) fn zero(&self) -> Self {
         self.with_params(&vec![0.0; 2 * self.points.len() + STYLE])
-    }
-}
-
-/// The outline that the points of a stroke draw, flattened.
-pub(super) struct Shape {
-    outline: Outline,
-    /// The mean of points that each vertex is: of the path, or of all rings one after another.
-    pub(super) means: Vec<Mean<f64>>,
-}
-
-enum Outline {
-    Path(Polyline<f64>),
-    Area(Area<f64>),
-}
-
-impl Shape {
-    /// Signed distance from `p` to the edge in px, positive inside.
-    pub(super) fn distance(&self, p: Point2<f64>, eps: f64) -> f64 {
-        match &self.outline {
-            Outline::Path(path) => path.distance(p, eps),
-            Outline::Area(area) => area.distance(p, eps),
-        }
-    }
-
-    /// The two vertices that move the edge near `p`, and the derivatives of the distance by them.
-    pub(super) fn by_vertices(&self, p: Point2<f64>, eps: f64) -> [(usize, Vector2<f64>); 2] {
-        let (first, ends, by_ends) = match &self.outline {
-            Outline::Path(path) => {
-                let jet = path.jet(p, eps);
-                (0, jet.ends, jet.by_ends)
-            }
-            Outline::Area(area) => {
-                let jet = area.jet(p, eps);
-                let before = area.rings[..jet.ring].iter();
-                (
-                    before.map(|ring| ring.points.len()).sum(),
-                    jet.ends,
-                    jet.by_ends,
-                )
-            }
-        };
-        [0, 1].map(|i| (first + ends[i], by_ends[i]))
-    }
-
-    /// True for an area: coverage then is 1 where the distance is large enough, whatever its function has there.
-    pub(super) fn is_area(&self) -> bool {
-        matches!(self.outline, Outline::Area(_))
     }
 }
 

@@ -93,7 +93,7 @@ const SINGLE: [(&str, &str, &str, &str, &str); 7] = [
         "noto-gem.png",
         "outlines in 20 kB, from sigmoid",
         "fit",
-        "--preset draft --look exact --bytes 20000 --coverage sigmoid>smoothstep --form outlines --precision 3",
+        "--preset draft --look exact --bytes 20000 --coverage sigmoid>smoothstep --outline --precision 3",
     ),
     (
         "alpha",

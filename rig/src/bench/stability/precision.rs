@@ -11,7 +11,7 @@ use strokefit::fit::{Execution, Objective};
 use strokefit::image::Image;
 use strokefit::loss::Loss;
 use strokefit::math;
-use strokefit::optim::{Adam, AdamParams, Optimizer, Schedule};
+use strokefit::optim::{Adam, AdamParams, Schedule};
 use strokefit::render::reference::Scene;
 use strokefit::render::{Backdrop, Canvas, Gradients, Grid, Renderer, STYLE, Softness, Strokes};
 

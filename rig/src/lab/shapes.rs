@@ -1,4 +1,4 @@
-//! Signed distance fields of circles, capsules, paths and areas, and their combinations.
+//! Signed distance fields of circles and capsules, and their combinations, over a generic number.
 //!
 //! **Distances are positive inside** the shape, zero on its edge and negative outside, in px. Much of the
 //! literature, including the source of this file, uses the opposite sign.
@@ -7,8 +7,6 @@
 //! circle         d = r − √(|p−c|² + ε)
 //! capsule        d = r − √(|q|² + ε)
 //!                q = (p−a) − h(b−a),   h = clamp((p−a)·(b−a) / (|b−a|² + ε), 0, 1)
-//! path           d = max dₛ over the capsules of its segments
-//! area           d = ±min |p−s| over the segments of its rings, + where they wind around p
 //! union          d = max(d₁, d₂)
 //! intersection   d = min(d₁, d₂)
 //! subtraction    d = min(d₁, −d₂)
@@ -30,23 +28,21 @@
 //!
 //! **Degenerate cases.** A capsule of zero length is a circle: `h = 0`, and the gradient of both ends goes to
 //! `a`. On the centre line `u = 0` if ε > 0; at ε = 0, where no derivative exists, 0 is used as well. Where
-//! the operands of a combination tie, each gets half of the derivative. Where segments of a path tie, the first gets all
-//! of it.
+//! the operands of a combination tie, each gets half of the derivative.
 //!
 //! An example, with `#` deep inside, `+` inside and `.` just outside:
 //!
 //! ```
-//! use strokefit::math::Point2;
-//! use strokefit::sdf::Capsule;
+//! use rig::lab::shapes::Capsule;
 //!
-//! let capsule = Capsule { a: Point2::new(7.0, 7.0), b: Point2::new(26.0, 3.0), radius: 3.0 };
+//! let capsule = Capsule { a: [7.0, 7.0], b: [26.0, 3.0], radius: 3.0 };
 //! let shade = |d: f64| match d {
 //!     d if d > 1.5 => '#',
 //!     d if d > 0.0 => '+',
 //!     d if d > -1.5 => '.',
 //!     _ => ' ',
 //! };
-//! let pixel = |x, y| shade(capsule.distance(Point2::new(f64::from(x) + 0.5, f64::from(y) + 0.5), 0.0));
+//! let pixel = |x, y| shade(capsule.distance([x, y].map(|at: i32| f64::from(at) + 0.5), 0.0));
 //! let row = |y: i32| (0..32).map(|x| pixel(x, y)).collect::<String>();
 //! let picture = (0..11).map(|y| row(y).trim_end().to_owned()).collect::<Vec<_>>();
 //! assert_eq!(picture, [
@@ -67,20 +63,16 @@
 //! Source: Inigo Quilez, "2D distance functions" (the segment and the boolean operators), with the sign
 //! reversed and ε added as in the golden data of this crate's tests.
 
-mod area;
-mod path;
+use strokefit::math::Real;
 
-pub use area::{Area, AreaJet};
-pub(crate) use path::steps;
-pub use path::{Flattened, Mean, Path, PathJet, Polyline, PolylineJet};
-
-use crate::math::{Point2, Real, Vector2};
+/// A point or a displacement, px.
+pub type Pair<T> = [T; 2];
 
 /// A disc.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Circle<T: Real> {
     /// Centre, px.
-    pub center: Point2<T>,
+    pub center: Pair<T>,
     /// Radius, px.
     pub radius: T,
 }
@@ -91,20 +83,20 @@ pub struct CircleJet<T: Real> {
     /// Signed distance, px, positive inside.
     pub d: T,
     /// `∂d/∂center`.
-    pub by_center: Vector2<T>,
+    pub by_center: Pair<T>,
 }
 
 impl<T: Real> Circle<T> {
     /// Signed distance from `p` to the edge in px, positive inside.
     #[inline]
-    pub fn distance(&self, p: Point2<T>, eps: T) -> T {
-        self.radius - length(p - self.center, eps)
+    pub fn distance(&self, p: Pair<T>, eps: T) -> T {
+        self.radius - length(minus(p, self.center), eps)
     }
 
     /// The distance at `p` with its derivatives.
     #[inline]
-    pub fn jet(&self, p: Point2<T>, eps: T) -> CircleJet<T> {
-        let q = p - self.center;
+    pub fn jet(&self, p: Pair<T>, eps: T) -> CircleJet<T> {
+        let q = minus(p, self.center);
         let length = length(q, eps);
         CircleJet {
             d: self.radius - length,
@@ -117,9 +109,9 @@ impl<T: Real> Circle<T> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Capsule<T: Real> {
     /// Where the centre line starts, px.
-    pub a: Point2<T>,
+    pub a: Pair<T>,
     /// Where it ends, px.
-    pub b: Point2<T>,
+    pub b: Pair<T>,
     /// Radius, px.
     pub radius: T,
 }
@@ -130,36 +122,36 @@ pub struct CapsuleJet<T: Real> {
     /// Signed distance, px, positive inside.
     pub d: T,
     /// `∂d/∂a`.
-    pub by_a: Vector2<T>,
+    pub by_a: Pair<T>,
     /// `∂d/∂b`.
-    pub by_b: Vector2<T>,
+    pub by_b: Pair<T>,
 }
 
 impl<T: Real> Capsule<T> {
     /// Signed distance from `p` to the edge in px, positive inside.
     #[inline]
-    pub fn distance(&self, p: Point2<T>, eps: T) -> T {
-        let (pa, ba) = (p - self.a, self.b - self.a);
-        let h = foot(&pa, &ba, eps).clamp(T::zero(), T::one());
-        self.radius - length(pa - ba * h, eps)
+    pub fn distance(&self, p: Pair<T>, eps: T) -> T {
+        let (pa, ba) = (minus(p, self.a), minus(self.b, self.a));
+        let h = foot(pa, ba, eps).clamp(T::zero(), T::one());
+        self.radius - length(minus(pa, times(ba, h)), eps)
     }
 
     /// The distance at `p` with its derivatives.
     #[inline]
-    pub fn jet(&self, p: Point2<T>, eps: T) -> CapsuleJet<T> {
-        let (pa, ba) = (p - self.a, self.b - self.a);
-        let foot = foot(&pa, &ba, eps);
+    pub fn jet(&self, p: Pair<T>, eps: T) -> CapsuleJet<T> {
+        let (pa, ba) = (minus(p, self.a), minus(self.b, self.a));
+        let foot = foot(pa, ba, eps);
         let h = foot.clamp(T::zero(), T::one());
-        let q = pa - ba * h;
+        let q = minus(pa, times(ba, h));
         let length = length(q, eps);
         let u = direction(q, length);
-        let (mut by_a, mut by_b) = (u * (T::one() - h), u * h);
-        let m = ba.dot(&ba) + eps;
+        let (mut by_a, mut by_b) = (times(u, T::one() - h), times(u, h));
+        let m = dot(ba, ba) + eps;
         if foot == h && m > T::zero() {
-            let along = u.dot(&ba) / m;
-            let twice = ba * (h + h);
-            by_a += (twice - ba - pa) * along;
-            by_b += (pa - twice) * along;
+            let along = dot(u, ba) / m;
+            let twice = times(ba, h + h);
+            by_a = plus(by_a, times(minus(minus(twice, ba), pa), along));
+            by_b = plus(by_b, times(minus(pa, twice), along));
         }
         CapsuleJet {
             d: self.radius - length,
@@ -217,36 +209,52 @@ fn shares<T: Real>(x: T, y: T) -> (T, T) {
     (share, T::one() - share)
 }
 
+fn plus<T: Real>(a: Pair<T>, b: Pair<T>) -> Pair<T> {
+    [a[0] + b[0], a[1] + b[1]]
+}
+
+fn minus<T: Real>(a: Pair<T>, b: Pair<T>) -> Pair<T> {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+fn times<T: Real>(a: Pair<T>, factor: T) -> Pair<T> {
+    a.map(|x| x * factor)
+}
+
+fn dot<T: Real>(a: Pair<T>, b: Pair<T>) -> T {
+    a[0] * b[0] + a[1] * b[1]
+}
+
 /// The foot of the perpendicular from `p` on the line, 0 at `a` and 1 at `b`.
 #[inline]
-fn foot<T: Real>(pa: &Vector2<T>, ba: &Vector2<T>, eps: T) -> T {
-    let m = ba.dot(ba) + eps;
+fn foot<T: Real>(pa: Pair<T>, ba: Pair<T>, eps: T) -> T {
+    let m = dot(ba, ba) + eps;
     if m > T::zero() {
-        pa.dot(ba) / m
+        dot(pa, ba) / m
     } else {
         T::zero()
     }
 }
 
 #[inline]
-fn length<T: Real>(q: Vector2<T>, eps: T) -> T {
-    (q.dot(&q) + eps).sqrt()
+fn length<T: Real>(q: Pair<T>, eps: T) -> T {
+    (dot(q, q) + eps).sqrt()
 }
 
 /// `q / length`, or zero if there is no direction.
 #[inline]
-fn direction<T: Real>(q: Vector2<T>, length: T) -> Vector2<T> {
+fn direction<T: Real>(q: Pair<T>, length: T) -> Pair<T> {
     if length > T::zero() {
-        q / length
+        q.map(|q| q / length)
     } else {
-        Vector2::zeros()
+        [T::zero(); 2]
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rng;
+    use strokefit::rng;
 
     const EPS: f64 = 1e-3;
 
@@ -255,14 +263,14 @@ mod tests {
         f64::from(rng::draw(1, 0, i, k)) * 16.0 - 4.0
     }
 
-    fn point(i: u64, k: u64) -> Point2<f64> {
-        Point2::new(coordinate(i, k), coordinate(i, k + 1))
+    fn point(i: u64, k: u64) -> Pair<f64> {
+        [coordinate(i, k), coordinate(i, k + 1)]
     }
 
     fn capsule([ax, ay, bx, by, radius]: [f64; 5]) -> Capsule<f64> {
         Capsule {
-            a: Point2::new(ax, ay),
-            b: Point2::new(bx, by),
+            a: [ax, ay],
+            b: [bx, by],
             radius,
         }
     }
@@ -289,21 +297,21 @@ mod tests {
     #[test]
     fn distances_are_positive_inside() {
         let circle = Circle {
-            center: Point2::new(3.0, 4.0),
+            center: [3.0, 4.0],
             radius: 2.0,
         };
-        assert_eq!(circle.distance(Point2::new(3.0, 4.0), 0.0), 2.0);
-        assert_eq!(circle.distance(Point2::new(0.0, 0.0), 0.0), -3.0);
+        assert_eq!(circle.distance([3.0, 4.0], 0.0), 2.0);
+        assert_eq!(circle.distance([0.0, 0.0], 0.0), -3.0);
         let capsule = capsule([0.0, 0.0, 10.0, 0.0, 1.0]);
-        assert_eq!(capsule.distance(Point2::new(5.0, 0.0), 0.0), 1.0);
-        assert_eq!(capsule.distance(Point2::new(5.0, 3.0), 0.0), -2.0);
-        assert_eq!(capsule.distance(Point2::new(-3.0, 4.0), 0.0), -4.0);
-        assert_eq!(capsule.distance(Point2::new(14.0, -3.0), 0.0), -4.0);
+        assert_eq!(capsule.distance([5.0, 0.0], 0.0), 1.0);
+        assert_eq!(capsule.distance([5.0, 3.0], 0.0), -2.0);
+        assert_eq!(capsule.distance([-3.0, 4.0], 0.0), -4.0);
+        assert_eq!(capsule.distance([14.0, -3.0], 0.0), -4.0);
     }
 
     #[test]
     fn a_capsule_of_zero_length_is_a_circle() {
-        let center = Point2::new(2.0, 3.0);
+        let center = [2.0, 3.0];
         let circle = Circle {
             center,
             radius: 1.5,
@@ -318,7 +326,8 @@ mod tests {
                 let p = point(i, 0);
                 let (round, long) = (circle.jet(p, eps), capsule.jet(p, eps));
                 assert_eq!(round.d, long.d);
-                assert!((round.by_center - long.by_a - long.by_b).norm() < 1e-12);
+                let apart = minus(round.by_center, plus(long.by_a, long.by_b));
+                assert!(length(apart, 0.0) < 1e-12);
             }
         }
     }
@@ -327,11 +336,11 @@ mod tests {
     fn nothing_is_infinite_on_the_centre_line() {
         let thin = capsule([1.0, 1.0, 5.0, 1.0, 0.0]);
         for x in [1.0, 3.0, 5.0] {
-            let jet = thin.jet(Point2::new(x, 1.0), 0.0);
-            assert_eq!((jet.d, jet.by_a.norm(), jet.by_b.norm()), (0.0, 0.0, 0.0));
+            let jet = thin.jet([x, 1.0], 0.0);
+            assert_eq!((jet.d, jet.by_a, jet.by_b), (0.0, [0.0; 2], [0.0; 2]));
         }
-        let dot = capsule([1.0, 1.0, 1.0, 1.0, 2.0]).jet(Point2::new(1.0, 1.0), 0.0);
-        assert_eq!((dot.d, dot.by_a.norm(), dot.by_b.norm()), (2.0, 0.0, 0.0));
+        let dot = capsule([1.0, 1.0, 1.0, 1.0, 2.0]).jet([1.0, 1.0], 0.0);
+        assert_eq!((dot.d, dot.by_a, dot.by_b), (2.0, [0.0; 2], [0.0; 2]));
     }
 
     #[test]
@@ -353,18 +362,20 @@ mod tests {
         let mut failures = Vec::new();
         for i in 0..200 {
             let (a, b, p) = (point(i, 0), point(i, 2), point(i, 4));
-            let jet = capsule([a.x, a.y, b.x, b.y, 1.0]).jet(p, EPS);
-            let numeric = differences([a.x, a.y, b.x, b.y, 1.0], |x| capsule(x).distance(p, EPS));
-            let analytic = [jet.by_a.x, jet.by_a.y, jet.by_b.x, jet.by_b.y, 1.0];
+            let jet = capsule([a[0], a[1], b[0], b[1], 1.0]).jet(p, EPS);
+            let numeric = differences([a[0], a[1], b[0], b[1], 1.0], |x| {
+                capsule(x).distance(p, EPS)
+            });
+            let analytic = [jet.by_a[0], jet.by_a[1], jet.by_b[0], jet.by_b[1], 1.0];
             check(&format!("capsule {i}"), &analytic, &numeric, &mut failures);
 
             let circle = |[x, y, radius]: [f64; 3]| Circle {
-                center: Point2::new(x, y),
+                center: [x, y],
                 radius,
             };
-            let by_center = circle([a.x, a.y, 1.0]).jet(p, EPS).by_center;
-            let numeric = differences([a.x, a.y, 1.0], |x| circle(x).distance(p, EPS));
-            let analytic = [by_center.x, by_center.y, 1.0];
+            let by_center = circle([a[0], a[1], 1.0]).jet(p, EPS).by_center;
+            let numeric = differences([a[0], a[1], 1.0], |x| circle(x).distance(p, EPS));
+            let analytic = [by_center[0], by_center[1], 1.0];
             check(&format!("circle {i}"), &analytic, &numeric, &mut failures);
         }
         assert!(failures.is_empty(), "{}", failures.join("\n"));

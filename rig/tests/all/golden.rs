@@ -1,18 +1,17 @@
 //! The reference renderer, the losses and Adam against numbers that were computed with `PyTorch`.
 //!
-//! `data/golden_gradients.json` says in its `convention` how it counts. It has coordinates as
+//! `tests/data/golden_gradients.json` says in its `convention` how it counts. It has coordinates as
 //! `[row, column]`, with pixels at integer coordinates; here a row is a y and a column an x.
 
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
+use rig::lab::shapes::Capsule;
 use strokefit::coverage::Coverage;
 use strokefit::loss::Loss;
-use strokefit::math::Point2;
-use strokefit::optim::{Adam, AdamParams, Optimizer};
+use strokefit::optim::{Adam, AdamParams};
 use strokefit::render::reference::{Gradients, Reference, Rgb, Scene, Stroke};
 use strokefit::render::{OPACITY, PARAMS};
-use strokefit::sdf::Capsule;
 
 const TOLERANCE: f64 = 1e-9;
 
@@ -160,7 +159,7 @@ impl Tally {
 }
 
 fn golden() -> Golden {
-    serde_json::from_str(include_str!("../data/golden_gradients.json")).unwrap()
+    serde_json::from_str(include_str!("../../../tests/data/golden_gradients.json")).unwrap()
 }
 
 fn for_each_norm(mut check: impl FnMut(&str, &Case, &Norm, Reference)) {
@@ -182,12 +181,12 @@ fn signed_distances() {
     for case in golden().cases {
         for (i, (stroke, theirs)) in case.scene().strokes.iter().zip(&case.sdf).enumerate() {
             let capsule = Capsule {
-                a: stroke.points[0].into(),
-                b: stroke.points[1].into(),
+                a: stroke.points[0],
+                b: stroke.points[1],
                 radius: stroke.radius,
             };
             for (y, row) in theirs.iter().enumerate() {
-                let at = |x| capsule.distance(Point2::new(x as f64, y as f64), case.eps);
+                let at = |x| capsule.distance([x as f64, y as f64], case.eps);
                 let ours: Vec<f64> = (0..case.cols).map(at).collect();
                 tally.compare(&format!("{}, stroke {i}, row {y}", case.name), &ours, row);
             }
