@@ -56,7 +56,6 @@
 //! trace                           residual → areas, and strokes along the lines that are seen
 //! outline                         stroke → the rings around it
 //! svg                             drawing → SVG text
-//! rasters                         mark → the pixels that resvg, Chromium and exact renderers cover
 //! verify                          SVG text → resvg's render of it
 //! engines                         other programs' renders of it
 //! fit                             stages, polish, restricting, settling, budgets
@@ -131,19 +130,14 @@
 //! | survey | how the squared error depends on the vertices of all strokes, so that the gain of a new point is known |
 //! | join | making one stroke of two that look alike and meet end to end |
 //! | restrict | to give strokes the colours and widths that the file may have |
-//! | settle | last steps against renders of the written file, by resvg and by the model of Chromium |
-//! | nudge | to move points by a tenth of a px at most, to where rasterisers draw the stroke better |
-//! | rasteriser | a way to antialias: that of resvg, of Chromium, or exact areas; see `rasters` |
-//! | footprint | the pixels that a stroke covers, and how much of each, as a rasteriser draws it |
-//! | fragment | a stroke in a pixel, with how much of it each rasteriser covers |
-//! | fringe | the pixels that a stroke may come to cover more or less when it is nudged |
-//! | offset | difference between a renderer's picture of the file and our own canvas, per channel |
-//! | phase | one step in the order of a fit: a stage, the polish, the settling, the nudging, … |
+//! | settle | last steps against resvg's renders of the written file |
+//! | offset | difference between resvg's picture of the file and our own canvas, per channel |
+//! | phase | one step in the order of a fit: a stage, the polish, the settling, … |
 //! | session | a fit under way: all that its phases hand around |
 //! | surface | one matte's target, backdrop and canvas; a drawing has one, a transparent drawing two |
 //! | course | how long a descent runs, at what step sizes and with which edge |
 //! | memento | what a drawing was, to the bit |
-//! | aim | what settling descends towards: the target less the renderers' offset |
+//! | aim | what settling descends towards: the target less resvg's offset |
 //! | preferred colour | the colour of a stroke that fits best while all other strokes stay as they are |
 //! | rehearsal | writing and rendering an unfinished drawing only to learn how long that takes |
 //! | plan | how many strokes each stage adds, and their typical radius (px) |
@@ -203,8 +197,6 @@ pub mod math;
 pub mod metrics;
 pub mod optim;
 mod outline;
-#[doc(hidden)]
-pub mod rasters;
 pub mod render;
 pub mod report;
 #[doc(hidden)]

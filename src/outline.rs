@@ -6,7 +6,7 @@
 use resvg::tiny_skia::{LineCap, LineJoin, Path, PathBuilder, PathSegment, Stroke as Pen};
 
 use crate::math::Point;
-use crate::scene::{self, Area, Band, PathPoint, Piece, Stroke};
+use crate::scene::{self, Area, PathPoint, Piece, Stroke};
 
 /// The length of the segment that a dot is written as, px.
 const DOT: f32 = 0.01;
@@ -18,42 +18,24 @@ const SCALE: f32 = 4.0;
 /// The area that looks like the stroke.
 pub(crate) fn area(stroke: &Stroke) -> Area {
     Area {
-        rings: stroked(stroke, SCALE).map_or_else(Vec::new, |path| rings(&path, SCALE)),
+        rings: stroked(stroke).map_or_else(Vec::new, |path| rings(&path)),
         color: stroke.color,
         opacity: stroke.opacity,
         shade: None,
     }
 }
 
-/// The outline of a stroke on a page that is `scale` times as large.
-pub(crate) fn stroked(stroke: &Stroke, scale: f32) -> Option<Path> {
+/// The outline of a stroke on a page that is [`SCALE`] times as large.
+fn stroked(stroke: &Stroke) -> Option<Path> {
     let pen = Pen {
-        width: 2.0 * stroke.radius * scale,
+        width: 2.0 * stroke.radius * SCALE,
         line_cap: LineCap::Round,
         line_join: LineJoin::Round,
         ..Pen::default()
     };
-    drawn(&stroke.path, &pen, scale)
-}
-
-/// The outline of a band, as resvg strokes it.
-pub(crate) fn of_band(band: &Band) -> Option<Path> {
-    let pen = Pen {
-        width: band.width,
-        ..Pen::default()
-    };
-    drawn(&band.line, &pen, 1.0)
-}
-
-fn drawn(path: &scene::Path, pen: &Pen, scale: f32) -> Option<Path> {
+    let path = &stroke.path;
     let mut line = PathBuilder::new();
-    push(&mut line, path, scale);
-    line.finish()?.stroke(pen, 1.0)
-}
-
-/// Appends a path as resvg reads it from the file.
-pub(crate) fn push(line: &mut PathBuilder, path: &scene::Path, scale: f32) {
-    let to = |p: Point| (p.x * scale, p.y * scale);
+    let to = |p: Point| (p.x * SCALE, p.y * SCALE);
     for (i, piece) in path.pieces().enumerate() {
         if i == 0 {
             let (x, y) = to(piece.start());
@@ -71,16 +53,17 @@ pub(crate) fn push(line: &mut PathBuilder, path: &scene::Path, scale: f32) {
     if let [dot] = path.points() {
         let (x, y) = to(dot.at);
         line.move_to(x, y);
-        line.line_to(x + DOT * scale, y);
+        line.line_to(x + DOT * SCALE, y);
     }
     if path.is_closed() {
         line.close();
     }
+    line.finish()?.stroke(&pen, 1.0)
 }
 
 /// The contours of an outline, which has lines and quadratic curves, as rings.
-fn rings(outline: &Path, scale: f32) -> Vec<scene::Path> {
-    let at = |p: resvg::tiny_skia::Point| Point::new(p.x / scale, p.y / scale);
+fn rings(outline: &Path) -> Vec<scene::Path> {
+    let at = |p: resvg::tiny_skia::Point| Point::new(p.x / SCALE, p.y / SCALE);
     let mut rings: Vec<Vec<PathPoint>> = Vec::new();
     for segment in outline.segments() {
         let points = match segment {

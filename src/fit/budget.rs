@@ -131,7 +131,7 @@ pub(super) fn typical_bytes(config: &Config, target: &Image) -> usize {
 
 /// True if the fit depends on the render of its file, or on the file's bytes.
 pub(super) fn needs_file(budget: &Budget, recipe: &Recipe) -> bool {
-    recipe.settling.rounds > 0 || budget.psnr_db.is_some() || budget.bytes.is_some()
+    recipe.settling_rounds > 0 || budget.psnr_db.is_some() || budget.bytes.is_some()
 }
 
 /// True if two files are compared by the budget rather than by price.
@@ -165,11 +165,6 @@ pub(super) fn met(budget: &Budget, strokes: usize, file: &RenderedFile) -> Optio
     } else {
         None
     }
-}
-
-/// True if `new` meets the limits on bytes and fidelity that `old` meets.
-pub(super) fn meets_as_much(budget: &Budget, new: &RenderedFile, old: &RenderedFile) -> bool {
-    (fits(budget, new) || !fits(budget, old)) && (reaches(budget, new) || !reaches(budget, old))
 }
 
 /// True if `file` has no more bytes than allowed.
@@ -311,14 +306,6 @@ mod tests {
         assert_eq!(met(&BUDGET, 9, &long), Some(Stop::Bytes));
         assert_eq!(met(&BUDGET, 10, &good), Some(Stop::Strokes));
         assert_eq!(met(&Budget::default(), 10, &good), None);
-    }
-
-    #[test]
-    fn no_limit_that_was_met_is_given_up() {
-        let (short, long, poor) = (file(90, 0.009), file(150, 0.009), file(90, 0.02));
-        let meets = |new, old| meets_as_much(&BUDGET, new, old);
-        assert!(!meets(&long, &short) && !meets(&poor, &short));
-        assert!(meets(&short, &long) && meets(&long, &long) && meets(&poor, &poor));
     }
 
     #[test]

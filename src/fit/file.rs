@@ -84,37 +84,20 @@ impl<'a> Writer<'a> {
 
     /// Rounds and writes `drawing`, and renders the file.
     pub(super) fn render(&self, drawing: &Drawing) -> Result<RenderedFile> {
-        let (file, ()) = self.render_beside(drawing, |_, _| ())?;
-        Ok(file)
-    }
-
-    /// Rounds and writes `drawing`, and renders the file, while `other` work goes on with the drawing as it is written.
-    pub(super) fn render_beside<T: Send>(
-        &self,
-        drawing: &Drawing,
-        other: impl FnOnce(&Scene, &[Surface]) -> T + Send,
-    ) -> Result<(RenderedFile, T)> {
         let rounded = self.round(drawing);
-        let surfaces = &drawing.surfaces;
-        let render = || {
-            let text = self.text(&rounded);
-            let render = |surface: &Surface| {
-                let image = verify::render_like(&text, surface.picture(), surface.matte)?;
-                let mse = metrics::mse(surface.picture(), &image)?;
-                Ok((image, mse))
-            };
-            let rendered: Result<Vec<_>> = surfaces.par_iter().map(render).collect();
-            rendered.map(|rendered| (rendered, text.len()))
+        let text = self.text(&rounded);
+        let render = |surface: &Surface| {
+            let image = verify::render_like(&text, surface.picture(), surface.matte)?;
+            let mse = metrics::mse(surface.picture(), &image)?;
+            Ok((image, mse))
         };
-        let (rendered, other) = rayon::join(render, || other(&rounded.scene, surfaces));
-        let (rendered, bytes) = rendered?;
-        let (drawn, errors): (Vec<_>, Vec<_>) = rendered.into_iter().unzip();
-        let file = RenderedFile {
+        let rendered: Result<Vec<_>> = drawing.surfaces.par_iter().map(render).collect();
+        let (drawn, errors): (Vec<_>, Vec<_>) = rendered?.into_iter().unzip();
+        Ok(RenderedFile {
             rounded,
             drawn,
-            bytes,
+            bytes: text.len(),
             errors,
-        };
-        Ok((file, other))
+        })
     }
 }

@@ -5,8 +5,7 @@
 //! then fits all strokes jointly, and relocates those of least worth to where more is to be gained; small things that got lost
 //! on the way are traced again. If the file may have
 //! only a few colours or pens, the strokes are restricted to those. Settling takes the last steps against what the
-//! written file really looks like, and nudging moves points to where rasterisers draw the strokes better. Finally the
-//! fit adds or removes strokes, and fits them again, until the file is as faithful and as short as the budgets ask for.
+//! written file really looks like. Finally the fit adds or removes strokes, and fits them again, until the file is as faithful and as short as the budgets ask for.
 //!
 //! [`Fitter::fit`] runs the phases: `order` says which follows which, and `phase` has a file for each. The session holds
 //! the whole state of a fit. Between two phases, and between two iterations of most phases, a [`Checkpoint`] can keep
@@ -21,7 +20,7 @@
 //! | `drawing` | strokes in progress, on surfaces of target, backdrop and canvas; the objective; the background |
 //! | `descent` | gradient descent and its annealing |
 //! | `points` | points of strokes that come, go, join |
-//! | `file`, `renderers` | the written file, as resvg and Chromium render it |
+//! | `file` | the written file, as resvg renders it |
 //! | `halves` | search by halves |
 //! | `run`, `time` | a fit under way: session, history, checkpoint, progress, finish; its clock and its forecast |
 
@@ -39,7 +38,6 @@ mod phase;
 mod points;
 mod priced;
 mod recipe;
-mod renderers;
 mod result;
 mod run;
 mod simd;
@@ -60,9 +58,9 @@ pub use drawing::objective::Objective;
 pub use fitter::Fitter;
 pub use options::{MAX_THREADS, OPTIONS, Options, Refusal, Value};
 pub use recipe::{
-    AdamSettings, Correction, Domain, Doubts, EdgeShape, Forms, Inks, Joins, Masking, Nudging,
+    AdamSettings, Correction, Domain, Doubts, EdgeShape, Forms, Inks, Joins, Masking,
     Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Recovery, Reduction, Relocation,
-    Rounds, SCREEN_PIXELS, Settling, Sharing, Stages, TimeShares,
+    Rounds, SCREEN_PIXELS, Sharing, Stages, TimeShares,
 };
 pub use result::{Fit, StageRecord, Stop};
 pub use run::checkpoint::Checkpoint;
@@ -77,7 +75,7 @@ use crate::image::Image;
 use budget::price::Price;
 use budget::{reduction, rivals};
 use order::{Outcome, Phase};
-use phase::{count, grow, nudge, polish, recover, restrict, settle, trace};
+use phase::{count, grow, polish, recover, restrict, settle, trace};
 use run::finish::{self, Drawn};
 use run::session::{Session, Watch};
 use run::trials::Trials;
@@ -271,7 +269,6 @@ fn run(session: &mut Session<'_>) -> Result<Outcome> {
         Phase::Recover => recover::recover(session)?,
         Phase::Restrict(_) => restrict::restrict(session)?,
         Phase::Settle(_) => settle::settle(session)?,
-        Phase::Nudge(_) => nudge::nudge(session)?,
         Phase::Compare(_) => count::compare(session),
         Phase::MeetFidelity => count::meet_fidelity(session),
         Phase::MeetBytes => count::meet_bytes(session),

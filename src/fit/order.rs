@@ -11,7 +11,7 @@
 //!   ↓
 //! recover ─→ stage ─→ polish  draw small things that were lost on the way
 //!   ↓
-//! finish                      restrict ─→ settle ─→ nudge ─→ compare
+//! finish                      restrict ─→ settle ─→ compare
 //!   ↓
 //! fidelity ─→ stage ─→ polish ─→ finish ─→ fidelity     until the file is as faithful as asked for
 //!   ↓
@@ -19,12 +19,11 @@
 //! bytes ─→ polish ─→ finish                             once, if bytes are left
 //! ```
 //!
-//! To *finish* a drawing takes four phases:
+//! To *finish* a drawing takes three phases:
 //!
 //! ```text
 //! restrict    give strokes the colours and widths that the file may have
 //! settle      fit them to what renderers make of the file
-//! nudge       move points to where rasterisers draw the strokes better
 //! compare     keep the file if it is the best so far
 //! ```
 
@@ -53,8 +52,6 @@ pub(super) enum Phase {
     Restrict(Limit),
     /// Fit the strokes to what renderers make of the file.
     Settle(Limit),
-    /// Move points by a tenth of a px at most, to where rasterisers draw the strokes better.
-    Nudge(Limit),
     /// Keep the file if it serves the budget better than the best one so far.
     Compare(Limit),
     /// Add or remove strokes if the file misses or exceeds the fidelity asked for.
@@ -150,8 +147,7 @@ pub(super) fn next(phase: Phase, outcome: Outcome, config: &Config) -> Phase {
         (Phase::Recover, _) => FINISH,
 
         (Phase::Restrict(limit), _) => Phase::Settle(limit),
-        (Phase::Settle(limit), _) => Phase::Nudge(limit),
-        (Phase::Nudge(limit), _) => Phase::Compare(limit),
+        (Phase::Settle(limit), _) => Phase::Compare(limit),
         (Phase::Compare(Limit::Fidelity), _) => Phase::MeetFidelity,
         (Phase::Compare(Limit::Bytes), _) => Phase::MeetBytes,
 
@@ -189,7 +185,7 @@ impl Phase {
 
     /// True if a fit can go on from the state before this phase. No state holds the file that settling hands on.
     pub(super) fn is_resumable(self) -> bool {
-        !matches!(self, Self::Nudge(_) | Self::Compare(_))
+        !matches!(self, Self::Compare(_))
     }
 
     /// True if a checkpoint keeps the state before this phase even if it is not due: the phase takes long and cannot be
@@ -204,10 +200,9 @@ mod tests {
     use super::*;
 
     /// The phases that finish a drawing.
-    const FINISHED: [Phase; 4] = [
+    const FINISHED: [Phase; 3] = [
         FINISH,
         Phase::Settle(Limit::Fidelity),
-        Phase::Nudge(Limit::Fidelity),
         Phase::Compare(Limit::Fidelity),
     ];
 

@@ -8,13 +8,11 @@
 //! | `recover` | small things that were lost on the way are traced again |
 //! | `restrict` | strokes get the colours and widths that the file may have |
 //! | `settle` | the last steps are taken against renders of the written file |
-//! | `nudge` | points move by a tenth of a px at most, to where rasterisers draw the strokes better |
 //! | `count` | files are compared, and strokes added and removed until budgets are met |
 
 pub(super) mod count;
 pub(super) mod descend;
 pub(super) mod grow;
-pub(super) mod nudge;
 pub(super) mod polish;
 pub(super) mod recover;
 pub(super) mod relocation;

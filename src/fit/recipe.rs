@@ -68,8 +68,10 @@ pub struct Recipe {
     pub forms: Forms,
     /// Visibility of errors.
     pub masking: Masking,
-    /// The last steps, against renders of the written file.
-    pub settling: Settling,
+    /// Most rounds of settling, the last steps, against renders of the written file; 0 for none. Settling as a whole: +0.1 dB
+    /// at 34 dB, +1.8 at 40. Drafts have none: one round took a fifth of a draft's time for 0.09 dB, and 40 more iterations
+    /// of polish bring 0.11.
+    pub settling_rounds: usize,
     /// Correction of the number of strokes to meet a fidelity.
     pub correction: Correction,
     /// To which pixels a picture is reduced.
@@ -480,67 +482,8 @@ pub struct Masking {
     pub ceiling: f64,
 }
 
-/// The last steps, against renders of the written file.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settling {
-    /// Most rounds; 0 for none. Settling as a whole: +0.1 dB at 34 dB, +1.8 at 40. Drafts have none: one round
-    /// took a fifth of a draft's time for 0.09 dB, and 40 more iterations of polish bring 0.11.
-    pub rounds: usize,
-    /// A round that changes the fidelity by less than this, dB, is the last. 0 instead of 0.02: +0.02 dB on photographs, in
-    /// five rounds instead of three.
-    pub least_db: f64,
-    /// Iterations of each round. 150 instead of 20: +0.005 dB.
-    pub iterations: usize,
-    /// Step sizes, in units of those of the polish. Half, twice: −0.03, +0.02 dB.
-    pub rate: f32,
-    /// Step sizes of the points of areas, px, before that factor. A guess: about as far as traced strokes move.
-    pub area: f32,
-    /// Additional factor on the rates of colours and opacities, as the strokes hardly move. Half, twice: −0.03, −0.03 dB.
-    pub color_rate: f32,
-    /// Distance that strokes move in a round, in units of the round before. How a renderer antialiases an edge depends on the
-    /// position of the edge, so that a correction holds only for edges that stay where they are.
-    /// Half, twice: −0.03, +0.01 dB.
-    pub next_pace: f32,
-    /// Shortfall that the browser may have, dB. At 0, photographs would lose fidelity in resvg for a gain in the
-    /// browser that nobody sees. The check of engines passes up to 0.6. Half, twice: −0.05, +0.05 dB.
-    pub browser_db: f64,
-    /// Share of the offset that a round subtracts from the target. A share of 1 overcorrects edges; with a smaller one
-    /// the browser falls behind. Half, twice: −0.01, −0.15 dB.
-    pub offset_taken: f64,
-    /// Increase in a round of the browser's share of the offset for each dB of shortfall beyond `browser_db`. Half,
-    /// twice: −0.01, −0.03 dB.
-    pub share_per_db: f64,
-    /// Nudging, which follows the rounds.
-    pub nudging: Nudging,
-    /// Bytes of a settled file in units of those before, at most; photographs 1.003, flat art 0.994 to 1.005.
-    pub growth: f64,
-}
-
-/// Nudging of points to where rasterisers draw the strokes better; `docs/engines.md` has what was measured.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Nudging {
-    /// Strokes are nudged if renderers add at least this to the error of the drawing, dB. Photographs of few strokes have 0.0 to
-    /// 0.3, flat art of few strokes up to 0.3, thin lines and flat art of many strokes 1.0 to 6.
-    pub added_db: f64,
-    /// Where all rasterisers are as faithful as this, dB, nudging ends: the model of a browser is hardly better. 52: resvg gains
-    /// 1.4 dB on a drawing of 53 dB, and Chromium falls 0.7 dB behind it.
-    pub until_db: f64,
-    /// Most visits of each stroke. 4 instead of 8: −0.2 dB on bicycle of 500 strokes, at half of the time.
-    pub sweeps: usize,
-    /// A sweep that brings less than this, dB, is the last.
-    pub least_db: f64,
-    /// Places that are tried in a visit. 4 instead of 8: −0.1 to −0.2 dB, at half of the time.
-    pub tries: usize,
-    /// Most places that are tried in all, unless one sweep has more.
-    pub trials: usize,
-    /// Share of the trials that move a whole stroke, not one of its points. A guess.
-    pub whole: f32,
-    /// Farthest that a point moves along each axis, px. 0.07, 0.15: no change beyond 0.1 dB. Without a limit, Cairo lost 5 dB
-    /// before exact areas judged as well.
-    pub reach_px: f32,
-    /// Most pixels of the picture. Nudging takes 160 bytes for each.
-    pub most_pixels: usize,
-}
+/// Iterations of a round of settling. 150 instead of 20: +0.005 dB.
+pub(super) const SETTLING_STEPS: usize = 20;
 
 /// Correction of the number of strokes to meet a fidelity.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -618,11 +561,8 @@ pub struct Reduction {
 pub struct TimeShares {
     /// Time to write and render a stroke, in units of that for a pixel.
     pub stroke_px: f64,
-    /// Cost of one browser render that depends on the strokes, in writes of the drawing.
-    pub browser: f64,
-    /// Cost of one browser render that does not, with our own render and the comparisons, in writes of an empty
-    /// drawing.
-    pub browser_empty: f64,
+    /// Cost of our own render of a file and the comparisons, in writes of an empty drawing.
+    pub looking: f64,
     /// Cost of judging and reporting after the fit, in writes of the drawing: it is written and rendered once more, and
     /// compressed for the report.
     pub judging: f64,

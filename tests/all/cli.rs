@@ -478,7 +478,6 @@ fn what_is_said_to_help_a_picture_of_few_pixels_helps() {
         image::RgbImage::from_fn(4, 4, |x, y| image::Rgb([255 * ((x + y) % 2) as u8; 3]));
     picture.put_pixel(3, 3, image::Rgb([128; 3]));
     picture.save(place.path("in.png")).unwrap();
-    // A draft is not nudged to where renderers draw it better.
     let output = place.run(&["fit", "in.png", "-o", "out.svg", "--preset", "draft"]);
     assert_eq!(output.status.code(), Some(0));
     assert!(

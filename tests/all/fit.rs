@@ -8,12 +8,10 @@ use crate::support::drafts::draft;
 use crate::support::fits::{drawn, sample};
 use strokefit::coverage::CoverageSchedule;
 use strokefit::fit::{
-    Background, Budget, CancelToken, Config, Execution, Fit, Fitter, Preset, Progress, Rates,
+    Budget, CancelToken, Config, Execution, Fit, Fitter, Preset, Progress, Rates,
     Recipe, Stop,
 };
 use strokefit::image::Image;
-use strokefit::metrics;
-use strokefit::rasters::chromium;
 use strokefit::scene::{Mark, Scene};
 use strokefit::svg;
 use strokefit::verify::{self, Verdict};
@@ -270,61 +268,6 @@ fn progressive_drawings_are_better_with_every_layer() {
     assert!(layers.windows(2).all(|w| w[1] > w[0] + 0.3), "{layers:?}");
 }
 
-/// Five lines of 1.1 px, none of them level, drawn with exact areas.
-fn thin_lines(width: usize, height: usize) -> Image {
-    let darkness = |x: f32, y: f32| {
-        let lines = (1..6).map(|k| {
-            let slope = 0.07 * k as f32 - 0.2;
-            let away = (y - 11.3 * k as f32 - slope * x).abs() / slope.hypot(1.0);
-            (1.05 - away).clamp(0.0, 1.0)
-        });
-        lines.fold(0.0, f32::max)
-    };
-    let plane: Vec<f32> = (0..width * height)
-        .map(|i| 1.0 - darkness((i % width) as f32 + 0.5, (i / width) as f32 + 0.5))
-        .collect();
-    Image::new(width, height, [plane.clone(), plane.clone(), plane]).unwrap()
-}
-
-#[test]
-fn nudged_lines_are_drawn_better_where_they_were_drawn_worst() {
-    let picture = thin_lines(96, 72);
-    let page = Image::filled(96, 72, [1.0; 3]).unwrap();
-    let with = |sweeps: usize, threads: usize| {
-        let mut recipe = Recipe::of(Preset::Balanced);
-        recipe.settling.nudging.sweeps = sweeps;
-        let config = Config {
-            recipe: Some(recipe),
-            ..budget_of(12)
-        };
-        let execution = Execution {
-            threads: Some(threads),
-            ..Execution::default()
-        };
-        let fitter = Fitter::new(config.clone()).execution(execution);
-        let fit = fitter.fit(&picture).unwrap();
-        let shown = chromium::draw(fit.scene.marks(), std::slice::from_ref(&page)).remove(0);
-        let by_resvg = verdict(&fit, &config).fidelity.psnr_db;
-        let by_browser = metrics::psnr(&picture, &shown).unwrap();
-        (by_resvg.min(by_browser), text(&fit, &config))
-    };
-    let (plain_db, _) = with(0, 2);
-    let (nudged_db, text) = with(8, 2);
-    assert!(nudged_db > plain_db + 0.5, "{plain_db}, {nudged_db}");
-    for threads in [1, 3] {
-        assert!(with(8, threads).1 == text, "{threads} threads");
-    }
-}
-
-fn budget_of(strokes: usize) -> Config {
-    let budget = Budget {
-        strokes: Some(strokes),
-        ..Budget::default()
-    };
-    Config {
-        budget,
-        background: Background::Color([1.0; 3]),
-        ..Config::default()
     }
 }
 

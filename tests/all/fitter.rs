@@ -127,7 +127,7 @@ fn a_fit_that_is_stopped_at_any_call_goes_on_to_the_same_drawing() {
     let config = with_recipe(|recipe| {
         (recipe.stages.count, recipe.stages.iterations) = (2, 3);
         recipe.polish.iterations = 5;
-        (recipe.settling.rounds, recipe.settling.iterations) = (3, 2);
+        recipe.settling_rounds = 2;
     });
     let whole = drawn(&picture, &config).scene;
     let mut failed = Vec::new();

@@ -16,7 +16,10 @@ use strokefit::render::{
     Survey,
 };
 use strokefit::rng::draw;
-use strokefit::scene::{Path, PathPoint, Stroke};
+use strokefit::scene::{Path, PathPoint, Scene, Stage, Stroke};
+use strokefit::sdf::Capsule;
+use strokefit::svg::{self, WriteOptions};
+use strokefit::verify::{self, Size};
 
 /// ε of the fast renderer's distances, px².
 const EPS: f64 = 1e-6;
@@ -688,6 +691,56 @@ proptest! {
             prop_assert!((x - y).abs() < 1e-3, "{x} {y}");
         }
     }
+}
+
+proptest! {
+    #[test]
+    fn no_written_stroke_has_a_hole(
+        points in prop::collection::vec((-1.5..1.5_f32, -1.5..1.5_f32, any::<bool>()), 3..11),
+        [x, y] in [3.0..45.0_f32, 3.0..45.0_f32],
+        radius in 2.0..42.0_f32,
+        is_round in any::<bool>(),
+    ) {
+        // A loop around the page's middle, or any points.
+        let count = points.len() as f32;
+        let points = points.iter().enumerate().map(|(i, &(dx, dy, is_on))| {
+            let (sin, cos) = (i as f32 / count * std::f32::consts::TAU).sin_cos();
+            let [u, v] = if is_round { [cos + 0.2 * dx, sin + 0.2 * dy] } else { [dx, dy] };
+            PathPoint { at: Point::new(60.0 + x * u, 60.0 + y * v), is_on }
+        });
+        let path = Path::new(points.collect(), true).unwrap();
+        let stroke = Stroke { path, radius, color: [0.0; 3], opacity: 1.0 };
+        let scene = Scene {
+            stages: vec![Stage::from_iter([stroke])],
+            ..Scene::empty(120, 120, Some([1.0; 3]))
+        };
+        let text = svg::write(&scene, &WriteOptions::default());
+        prop_assert!(deepest_hole(&text) < 1.5, "{text}");
+    }
+}
+
+/// The farthest, px, that a pixel within the one stroke of a file is from its edge, of pixels that resvg leaves light.
+fn deepest_hole(text: &str) -> f32 {
+    let scene = svg::read(text).unwrap();
+    let stroke = scene.strokes().next().unwrap();
+    let line = stroke.path.flattened(0.02);
+    let seen = verify::render(text, Size::Scale(1.0), None).unwrap();
+    let width = seen.width();
+    let light = seen.planes()[0]
+        .iter()
+        .enumerate()
+        .filter(|(_, level)| **level > 0.5);
+    let depth = |(pixel, _)| {
+        let p = Point::new((pixel % width) as f32 + 0.5, (pixel / width) as f32 + 0.5);
+        let capsule = |ends: &[Point]| Capsule {
+            a: ends[0],
+            b: ends[1],
+            radius: stroke.radius,
+        };
+        let depths = line.windows(2).map(|ends| capsule(ends).distance(p, 1e-9));
+        depths.fold(f32::MIN, f32::max)
+    };
+    light.map(depth).fold(f32::MIN, f32::max)
 }
 
 /// The loss rises as its gradient says, by central differences of the fast renderer itself.

@@ -122,7 +122,7 @@ fn at_most(strokes: usize) -> Budget {
 /// A draft is not settled against its file unless asked.
 fn settled() -> Option<Recipe> {
     let mut recipe = Recipe::of(Preset::Draft);
-    recipe.settling.rounds = 2;
+    recipe.settling_rounds = 2;
     Some(recipe)
 }
 

@@ -51,12 +51,6 @@ impl Held {
         mark.is_area() && mark.to_mark().band().is_some()
     }
 
-    /// True if a stroke has a form, so that its points may only move together.
-    pub(in crate::fit) fn has(stroke: StrokeRef<'_>) -> bool {
-        let mut paths = stroke.paths();
-        Form::of(&stroke.to_mark()).is_some() || paths.any(|(_, path)| !equal(path, 0).is_empty())
-    }
-
     /// Leaves of slopes the part that changes no form: that of centre and radius, and of all ends of a line alike.
     pub(in crate::fit) fn project(&self, strokes: &Strokes, slopes: &mut [f32]) {
         for (i, shape) in &self.shapes {

@@ -209,12 +209,19 @@ fn db_per_doubling((few, few_db): (usize, f64), (many, many_db): (usize, f64)) -
     if slope.is_nan() { 0.0 } else { slope }
 }
 
+/// Bytes of a settled file in units of those before, at most; photographs 1.003, flat art 0.994 to 1.005.
+const GROWTH: f64 = 1.005;
+
 /// By how many bytes the drawing will exceed the budget when it has settled; 0 if it will not.
 pub(super) fn excess(session: &Session<'_>) -> usize {
     let Some(most) = session.config.budget.bytes else {
         return 0;
     };
-    let bytes = session.writer.bytes(&session.drawing) as f64 * session.recipe.settling.growth;
+    let growth = match session.recipe.settling_rounds {
+        0 => 1.0,
+        _ => GROWTH,
+    };
+    let bytes = growth * session.writer.bytes(&session.drawing) as f64;
     (bytes as usize).saturating_sub(most)
 }
 

@@ -26,7 +26,6 @@ impl Recipe {
             ("pens.ladder − 1", self.pens.ladder - 1.0),
             ("optimizer.radius_factors", self.optimizer.radius_factors[0]),
             ("edge.final_slope", self.edge.final_slope as f32),
-            ("settling.nudging.reach_px", self.settling.nudging.reach_px),
             ("dense.pixels", self.dense.pixels),
             ("dense.position", self.dense.position),
             ("polish.sparse", self.polish.sparse),
@@ -117,7 +116,6 @@ impl Recipe {
             ("coloring.rounds.count", self.coloring.rounds.count),
             ("pens.rounds.count", self.pens.rounds.count),
             ("pens.window", self.pens.window),
-            ("settling.nudging.tries", self.settling.nudging.tries),
             ("coloring.window", self.coloring.window),
             ("points.at_a_time", self.points.at_a_time),
             ("time.min_search", self.time.min_search),
@@ -187,7 +185,6 @@ mod tests {
         refused(|r| r.edge.annealed = 1.5, "edge.annealed", "1.5");
         refused(|r| r.relocation.every = 0, "relocation.every", "0");
         refused(|r| r.relocation.share = f32::NAN, "relocation.share", "NaN");
-        refused(|r| r.settling.nudging.tries = 0, "nudging.tries", "0");
         refused(|r| r.correction.least_part = 2.0, "least_part", "2");
     }
 }

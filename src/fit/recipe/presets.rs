@@ -2,8 +2,8 @@
 
 use super::{
     AdamSettings, Correction, Dense, Domain, Doubts, EdgeShape, Forms, Inks, Jitter, Joins,
-    Masking, Nudging, Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Recovery, Reduction,
-    Relocation, Rounds, SCREEN_PIXELS, Settling, Sharing, Stages, TimeShares,
+    Masking, Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Recovery, Reduction,
+    Relocation, Rounds, SCREEN_PIXELS, Sharing, Stages, TimeShares,
 };
 use crate::optim::AdamParams;
 use crate::seed::Probing;
@@ -41,7 +41,6 @@ impl Recipe {
             polish,
             dense,
             relocation,
-            settling,
             ..
         } = BALANCED;
         // With few iterations, steps have to be long until the end.
@@ -84,11 +83,7 @@ impl Recipe {
                 ..relocation
             },
             // A round takes as long as a fifth of the polish.
-            settling: Settling {
-                rounds: 0,
-                growth: 1.0,
-                ..settling
-            },
+            settling_rounds: 0,
             ..BALANCED
         }
     }
@@ -274,30 +269,7 @@ const BALANCED: Recipe = Recipe {
         contrast: 0.04,
         ceiling: 0.2,
     },
-    settling: Settling {
-        rounds: 5,
-        least_db: 0.02,
-        iterations: 20,
-        rate: 0.02,
-        area: 0.6,
-        color_rate: 5.0,
-        next_pace: 0.1,
-        browser_db: 0.4,
-        offset_taken: 0.7,
-        share_per_db: 0.15,
-        nudging: Nudging {
-            added_db: 0.9,
-            until_db: 51.0,
-            sweeps: 8,
-            least_db: 0.05,
-            tries: 8,
-            trials: 1 << 16,
-            whole: 0.25,
-            reach_px: 0.1,
-            most_pixels: 1 << 20,
-        },
-        growth: 1.005,
-    },
+    settling_rounds: 5,
     correction: Correction {
         regained_db: 1.5,
         count: 6,
@@ -336,8 +308,7 @@ const BALANCED: Recipe = Recipe {
     },
     time: TimeShares {
         stroke_px: 160.0,
-        browser: 0.25,
-        browser_empty: 1.15,
+        looking: 1.15,
         judging: 1.75,
         judging_transparent: 2.2,
         judging_empty: 2.6,

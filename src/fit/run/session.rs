@@ -22,7 +22,6 @@ use crate::fit::drawing::{Drawing, Memento};
 use crate::fit::file::{RenderedFile, Writer};
 use crate::fit::order::{Phase, Purpose};
 use crate::fit::recipe::{Domain, Rates, Recipe};
-use crate::fit::renderers::{self, Renderings};
 use crate::fit::result::Stop;
 use crate::fit::run::checkpoint::{self, Checkpoint};
 use crate::fit::run::history::{self, History};
@@ -59,8 +58,6 @@ pub(in crate::fit) struct Session<'a> {
     pub(in crate::fit) best: Option<RenderedFile>,
     /// The file of the settled drawing, until it is compared with the best one.
     pub(in crate::fit) file: Option<RenderedFile>,
-    /// Other renders of that file, if strokes were fitted to it.
-    pub(in crate::fit) renderings: Option<Renderings>,
     pub(in crate::fit) progress: Tracker<'a>,
     pub(in crate::fit) timer: Timer,
 
@@ -175,7 +172,6 @@ impl<'a> Session<'a> {
             ),
             best: None,
             file: None,
-            renderings: None,
             progress: Tracker::new(
                 watch.observer,
                 watch.token,
@@ -297,15 +293,6 @@ impl<'a> Session<'a> {
     pub(in crate::fit) fn render_file(&mut self) -> Result<RenderedFile> {
         let (writer, drawing) = (self.writer, &self.drawing);
         self.timer.writing(drawing.len(), || writer.render(drawing))
-    }
-
-    /// Rounds, writes and renders the drawing, with other renders of the file.
-    pub(in crate::fit) fn render_for_settling(&mut self) -> Result<(RenderedFile, Renderings)> {
-        let (writer, drawing) = (self.writer, &mut self.drawing);
-        let render = || writer.render_beside(drawing, renderers::by_chromium);
-        let (file, chromium) = self.timer.writing(drawing.len(), render)?;
-        let renderings = Renderings::of(&file, chromium, drawing, self.recipe.settling)?;
-        Ok((file, renderings))
     }
 
     /// The step sizes of the polish, for what strokes may still change once the drawing is restricted.

@@ -6,7 +6,7 @@
 
 use std::time::Duration;
 
-use crate::fit::recipe::{Recipe, TimeShares};
+use crate::fit::recipe::{Recipe, SETTLING_STEPS, TimeShares};
 
 /// Measured durations, s, and what they leave for the parts of a fit. Times are in seconds since the limit was set,
 /// usually when the fit began.
@@ -19,8 +19,6 @@ pub(in crate::fit) struct Forecast {
     needs_file: bool,
     /// Rounds of settling.
     rounds: usize,
-    /// Steps of each round.
-    steps: usize,
     shares: TimeShares,
     /// Duration of a write, per pixel of its size.
     per_pixel: f64,
@@ -47,8 +45,7 @@ impl Forecast {
             pixels: pixels as f64,
             is_transparent,
             needs_file,
-            rounds: recipe.settling.rounds,
-            steps: recipe.settling.iterations,
+            rounds: recipe.settling_rounds,
             shares: recipe.time,
             per_pixel: 0.0,
             due: 0.0,
@@ -89,7 +86,7 @@ impl Forecast {
     /// Number of `wanted` candidates that there is time to search for, on a drawing of `strokes` strokes; 0 if too few. Leaves
     /// time for a few steps that fit the new strokes.
     pub(in crate::fit) fn affordable(&self, wanted: usize, strokes: usize, now: f64) -> usize {
-        let left = self.end_of_descent(strokes) - now - self.steps as f64 * self.step;
+        let left = self.end_of_descent(strokes) - now - SETTLING_STEPS as f64 * self.step;
         let affordable = (left / self.search.max(f64::MIN_POSITIVE)) as usize;
         let affordable = affordable.min(wanted);
         if affordable >= wanted / self.shares.min_search {
@@ -135,17 +132,16 @@ impl Forecast {
         self.per_pixel * self.size(strokes)
     }
 
-    /// Duration of a write that a round of settling starts from, and of its render by the model of a browser.
+    /// Duration of a write that a round of settling starts from, and of looking at it.
     fn seeing(&self, strokes: usize) -> f64 {
-        (1.0 + self.shares.browser) * self.write_s(strokes)
-            + self.shares.browser_empty * self.write_s(0)
+        self.write_s(strokes) + self.shares.looking * self.write_s(0)
     }
 
     /// The time reserved for the first write and the rounds of settling, which are shorter if the limit is short.
     fn settling(&self, strokes: usize) -> f64 {
         let seeing = self.seeing(strokes);
         let round = |steps: f64| seeing + steps * self.step;
-        let rounds = self.rounds as f64 * round(self.steps as f64);
+        let rounds = self.rounds as f64 * round(SETTLING_STEPS as f64);
         let most = self.limit * self.shares.settling;
         if self.rounds > 0 && round(self.shares.min_round) < most {
             seeing + rounds.min(most)
@@ -196,9 +192,8 @@ mod tests {
             forecast.wrote(strokes, span, self.now);
         }
 
-        fn look(&mut self, strokes: usize) {
-            self.now +=
-                shares().browser * self.write_s(strokes) + shares().browser_empty * self.write_s(0);
+        fn look(&mut self) {
+            self.now += shares().looking * self.write_s(0);
         }
 
         fn step(&mut self, forecast: &mut Forecast, strokes: usize) {
@@ -222,14 +217,14 @@ mod tests {
             let strokes = strokes(self.now);
             self.write(&mut forecast, strokes);
             if forecast.allows_round(strokes, self.now) {
-                self.look(strokes);
+                self.look();
             }
             while forecast.allows_round(strokes, self.now) {
                 while forecast.allows_step(strokes, self.now) {
                     self.step(&mut forecast, strokes);
                 }
                 self.write(&mut forecast, strokes);
-                self.look(strokes);
+                self.look();
             }
             self.now
                 + shares().judging * self.write_s(strokes)
