@@ -58,9 +58,9 @@ pub use drawing::objective::Objective;
 pub use fitter::Fitter;
 pub use options::{MAX_THREADS, OPTIONS, Options, Refusal, Value};
 pub use recipe::{
-    AdamSettings, Correction, Domain, Doubts, EdgeShape, Forms, Inks, Joins, Masking,
-    Pens, Points, Polish, Preset, Rates, Recipe, Recoloring, Recovery, Reduction, Relocation,
-    Rounds, SCREEN_PIXELS, Sharing, Stages, TimeShares,
+    AdamSettings, Correction, Domain, Doubts, EdgeShape, Forms, Inks, Joins, Masking, Pens, Points,
+    Polish, Preset, Rates, Recipe, Recoloring, Recovery, Reduction, Relocation, Rounds,
+    SCREEN_PIXELS, Sharing, Stages, TimeShares,
 };
 pub use result::{Fit, StageRecord, Stop};
 pub use run::checkpoint::Checkpoint;

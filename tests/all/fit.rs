@@ -8,8 +8,7 @@ use crate::support::drafts::draft;
 use crate::support::fits::{drawn, sample};
 use strokefit::coverage::CoverageSchedule;
 use strokefit::fit::{
-    Budget, CancelToken, Config, Execution, Fit, Fitter, Preset, Progress, Rates,
-    Recipe, Stop,
+    Budget, CancelToken, Config, Execution, Fit, Fitter, Preset, Progress, Rates, Recipe, Stop,
 };
 use strokefit::image::Image;
 use strokefit::scene::{Mark, Scene};
@@ -266,9 +265,6 @@ fn progressive_drawings_are_better_with_every_layer() {
     let layers: Vec<f64> = fit.stages.iter().map(|stage| stage.layer_psnr_db).collect();
     assert!(layers.len() >= 6, "{layers:?}");
     assert!(layers.windows(2).all(|w| w[1] > w[0] + 0.3), "{layers:?}");
-}
-
-    }
 }
 
 #[test]
