@@ -8,7 +8,7 @@ use crate::support::drafts::draft;
 use crate::support::fits::{drawn, sample};
 use strokefit::coverage::CoverageSchedule;
 use strokefit::fit::{
-    Budget, CancelToken, Config, Execution, Fit, Fitter, Preset, Progress, Rates, Recipe, Stop,
+    Budget, CancelToken, Config, Fit, Fitter, Preset, Progress, Rates, Recipe, Stop,
 };
 use strokefit::image::Image;
 use strokefit::scene::{Mark, Scene};
