@@ -122,7 +122,8 @@ impl<'a> Dom<'a> {
                 }
                 Event::Text(part) if part.trim().is_empty() => {}
                 Event::Text(_) | Event::GeneralRef(_) => {
-                    self.push(Content::Text(&text[start..end]), start..end)?;
+                    let content = text.get(start..end).unwrap_or_default();
+                    self.push(Content::Text(content), start..end)?;
                 }
                 Event::CData(part) => {
                     let from = start + "<![CDATA[".len();
@@ -157,7 +158,7 @@ impl<'a> Dom<'a> {
         // From the text itself, so that names and values live as long as it does.
         let from = bytes.start + "<".len();
         let inner = self.text.get(from..from + tag.len()).unwrap_or_default();
-        let (name, _) = inner.split_at(tag.name().as_ref().len());
+        let name = inner.get(..tag.name().as_ref().len()).unwrap_or_default();
         let first = self.attributes.len();
         for attribute in Attributes::new(inner, name.len()) {
             let attribute = attribute.map_err(|error| Fault::new(bytes.start, error))?;
