@@ -70,8 +70,8 @@ pub(super) const EXTERNAL: &str = "external-reference";
 /// File size at which readers built on libxml2 stop, bytes.
 const LIBXML2_BYTES: usize = 10_000_000;
 
-/// Widest stroke, px, that some renderers draw as a hairline (1 px included).
-const HAIRLINE_PX: f64 = 1.0;
+/// Widest stroke, px, that some renderers draw as a hairline: 1 px included, also where a rotation rounds it up.
+const HAIRLINE_PX: f64 = 1.0 + 1e-9;
 
 /// Largest relative difference of the aspect ratios of page and `viewBox`: files write sides with a few decimals.
 const ASPECT_TOLERANCE: f64 = 1e-3;
