@@ -1,5 +1,7 @@
 //! The vocabulary that reader and writer of the dialect share: names, numbers, colours.
 
+use svgtypes::{Color, Length, LengthUnit, Number};
+
 use crate::scene::{MAX_PRECISION, UNITS_PER_PX};
 
 /// The namespace of SVG. It must have `http`; otherwise no program draws the file.
@@ -85,30 +87,18 @@ impl Unit {
         }
     }
 
-    /// The value of a decimal in 1/[`UNITS_PER_PX`] px. `None` if it is not a plain decimal, has too many places
-    /// for this unit, or is beyond ±2·10⁹ px.
+    /// The value of a number in 1/[`UNITS_PER_PX`] px. `None` if the text is no number, or as [`Self::units`].
     pub(super) fn parse(self, text: &str) -> Option<i64> {
-        let (negative, magnitude) = match text.strip_prefix('-') {
-            Some(rest) => (true, rest),
-            None => (false, text),
-        };
-        let is_digits = |s: &str| s.bytes().all(|b| b.is_ascii_digit());
-        let (whole, fraction) = match magnitude.split_once('.') {
-            Some((_, "")) => return None,
-            Some(parts) => parts,
-            None => (magnitude, ""),
-        };
-        let places = self.places();
-        if whole.is_empty()
-            || ![whole, fraction].into_iter().all(is_digits)
-            || fraction.len() > places
-        {
-            return None;
-        }
-        let whole = whole.parse::<i64>().ok()?.checked_mul(self.0)?;
-        // The zero before it allows for no places at all.
-        let units = whole.checked_add(format!("0{fraction:0<places$}").parse().ok()?)?;
-        (units <= MAX_UNITS).then_some(if negative { -units } else { units })
+        self.units(text.parse::<Number>().ok()?.0)
+    }
+
+    /// The value of `number` in 1/[`UNITS_PER_PX`] px. `None` if it has too many decimals for this unit, or is beyond ±2·10⁹ px.
+    pub(super) fn units(self, number: f64) -> Option<i64> {
+        let one = self.0 as f64;
+        let units = (number * one).round();
+        // Both are whole and below 2⁵³. So the quotient is the number nearest to the decimal, as is what a parser returns.
+        let is_exact = units / one == number && units.abs() <= MAX_UNITS as f64;
+        is_exact.then_some(units as i64)
     }
 
     /// Number of decimals.
@@ -133,18 +123,25 @@ pub(super) fn short_hex(channels: [u8; 3]) -> String {
     }
 }
 
-/// The channels of `#rrggbb` or `#rgb`.
-pub(super) fn channels(hex: &str) -> Option<[u8; 3]> {
-    let digits = hex
-        .strip_prefix('#')
-        .filter(|h| h.bytes().all(|b| b.is_ascii_hexdigit()))?;
-    let bits = u32::from_str_radix(digits, 16).ok()?;
-    let [_, r, g, b] = bits.to_be_bytes();
-    match digits.len() {
-        6 => Some([r, g, b]),
-        3 => Some([8, 4, 0].map(|shift| (bits >> shift & 0xf) as u8 * 0x11)),
-        _ => None,
-    }
+/// The channels of an opaque colour.
+pub(super) fn channels(text: &str) -> Option<[u8; 3]> {
+    let color: Color = text.parse().ok()?;
+    (color.alpha == u8::MAX).then_some([color.red, color.green, color.blue])
+}
+
+/// A length in px; `None` for percentages, font units, and text that is not a length.
+pub(super) fn length_px(text: &str) -> Option<f64> {
+    let Length { number, unit } = text.trim().parse().ok()?;
+    let px = match unit {
+        LengthUnit::None | LengthUnit::Px => 1.0,
+        LengthUnit::Pt => 4.0 / 3.0,
+        LengthUnit::Pc => 16.0,
+        LengthUnit::Mm => 96.0 / 25.4,
+        LengthUnit::Cm => 96.0 / 2.54,
+        LengthUnit::In => 96.0,
+        LengthUnit::Em | LengthUnit::Ex | LengthUnit::Percent => return None,
+    };
+    Some(number * px)
 }
 
 /// Opacity k/255 with 3 decimals, enough to recover k.
@@ -213,22 +210,37 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_plain_decimal_is_refused() {
+    fn numbers_that_no_unit_counts_are_refused() {
         for text in [
             "",
             "-",
-            ".5",
-            "5.",
-            "1e3",
-            "+1",
             "1.2.3",
+            "1 2",
             "NaN",
             "inf",
             "0.0000001",
+            "1e-7",
             "2000000001",
             "99999999999999999999",
         ] {
             assert_eq!(Unit::PX.parse(text), None, "{text}");
+        }
+        for (text, units) in [
+            ("-2000000000", -MAX_UNITS),
+            ("1999999999.999999", MAX_UNITS - 1),
+            ("5e-1", 500_000),
+        ] {
+            assert_eq!(Unit::PX.parse(text), Some(units), "{text}");
+        }
+    }
+
+    #[test]
+    fn lengths_are_in_px() {
+        for (text, px) in [("2", 2.0), (" 1in ", 96.0), ("3pt", 4.0)] {
+            assert_eq!(length_px(text), Some(px), "{text}");
+        }
+        for text in ["50%", "1em", "auto", ""] {
+            assert_eq!(length_px(text), None, "{text}");
         }
     }
 
@@ -245,7 +257,7 @@ mod tests {
         for text in ["0", "0.001", "1.1", "-0.5", "x"] {
             assert_eq!(opacity_quantum(text), None, "{text}");
         }
-        for text in ["#ff", "ffffff", "#ffff", "#ffffff00", "#+12345", "#ééé"] {
+        for text in ["#ff", "ffffff", "#ffff00e", "#ffffff00", "#+12345", "#ééé"] {
             assert_eq!(channels(text), None, "{text}");
         }
     }

@@ -5,15 +5,17 @@
 //! stroke opacity on the root does not affect them. The attribute `data-strokefit` holds the size of the
 //! picture and marks the group, so that it can be found again. A drawing by strokefit needs no such group.
 
-mod outline;
-
-pub use outline::page_width;
-
-use super::dialect::{INKSCAPE_NAMESPACE, SVG_NAMESPACE};
-use super::{Form, WriteOptions, layers, read};
-use crate::error::{Error, ErrorKind, Result};
+use super::dialect::{self, INKSCAPE_NAMESPACE, SVG_NAMESPACE};
+use super::dom::{Dom, Node};
+use super::{Form, Length, WriteOptions, layers, read};
+use crate::error::Result;
 use crate::scene::Scene;
-use outline::{MARK, Outline};
+
+/// The ids of our layers begin with this.
+const LAYERS: [&str; 3] = ["stage-", "color-", "object-"];
+
+/// The attribute of the group of layers: width and height of the picture, px.
+const MARK: &str = "data-strokefit";
 
 /// Properties that marks inherit and do not set themselves. As a style they override rules for groups in
 /// the document's style sheets.
@@ -35,7 +37,13 @@ const IDENTITY: Placement = [1.0, 0.0, 0.0, 1.0, 0.0, 0.0];
 #[derive(Debug, Clone)]
 pub struct Document {
     text: String,
-    outline: Outline,
+    /// Position of the end tag of the root element.
+    end: usize,
+    elements: usize,
+    texts: usize,
+    references: usize,
+    /// The highest number of a layer with a name like ours.
+    stages: usize,
     /// True if the layers need no group of their own, as in strokefit's drawings.
     is_ours: bool,
     placement: Placement,
@@ -48,19 +56,38 @@ impl Document {
     /// Reads the document from an SVG's text.
     ///
     /// # Errors
-    /// [`ErrorKind::Svg`] when the text is not well-formed XML or its root has no size.
+    /// [`ErrorKind::Svg`](crate::ErrorKind::Svg) when the text is not well-formed XML or its root has no size.
     pub fn parse(mut text: String) -> Result<Self> {
-        let refused = |message| Error::new(ErrorKind::Svg, message);
-        let mut outline = Outline::of(&text).map_err(refused)?;
-        outline.fill(&mut text);
-        Ok(Self {
-            is_ours: read(&text).is_ok(),
+        let dom = Dom::parse(&text);
+        let root = dom.root()?;
+        check_size(root)?;
+        let inner = || root.descendants().filter(Node::is_element);
+        let ids = inner().filter_map(|element| element.get("id"));
+        let mut document = Self {
+            end: root.inside().end,
+            elements: inner().count(),
+            texts: inner().filter(|element| element.name() == "text").count(),
+            references: inner().filter(refers_outside).count(),
+            stages: ids.filter_map(layer_number).max().unwrap_or(0),
+            is_ours: read::scene(&dom).is_ok(),
+            placement: IDENTITY,
             probe: unused(&text, "strokefit-probe"),
             group: unused(&text, "strokefit"),
-            text,
-            outline,
-            placement: IDENTITY,
-        })
+            text: String::new(),
+        };
+        // A root of one tag gets an end tag.
+        if root.raw().ends_with("/>") && root.inside().is_empty() {
+            let tag = root.bytes().end - "/>".len();
+            let name = root.raw().trim_start_matches('<');
+            let name = name
+                .split(|c: char| c.is_ascii_whitespace() || c == '/')
+                .next();
+            let end = format!("></{}>", name.unwrap_or_default());
+            text.replace_range(tag..tag + "/>".len(), &end);
+            document.end = tag + ">".len();
+        }
+        document.text = text;
+        Ok(document)
     }
 
     /// The text as it was given, except that a root element without content gets an end tag.
@@ -70,26 +97,32 @@ impl Document {
 
     /// Number of elements within the root.
     pub fn elements(&self) -> usize {
-        self.outline.elements
+        self.elements
     }
 
     /// Number of text elements, which need fonts.
     pub fn texts(&self) -> usize {
-        self.outline.texts
+        self.texts
     }
 
     /// Number of elements that show something of another file.
     pub fn references(&self) -> usize {
-        self.outline.references
+        self.references
     }
 
     /// The document without the marks that strokefit added, and these marks, in px of their picture. `None`
     /// if there are none, if they were changed, or if something lies above them.
     pub(crate) fn split(&self) -> Option<(Self, Scene)> {
-        let group = self.outline.group.as_ref()?;
-        let (head, tail) = (&self.text[..group.start], &self.text[self.outline.end..]);
+        let dom = Dom::parse(&self.text);
+        let group = dom.root().ok()?.children().last()?;
+        let size = group.get(MARK)?.split_once(' ')?;
+        let size = [size.0.parse().ok()?, size.1.parse().ok()?];
+        // Only the end of its line may follow.
+        let above = self.text.get(group.bytes().end..self.end);
+        above.filter(|above| *above == "\n")?;
+        let (head, tail) = (&self.text[..group.bytes().start], &self.text[self.end..]);
         let document = Self::parse([head, tail].concat()).ok()?;
-        let scene = group.scene(&self.text, document.outline.stages)?;
+        let scene = read::layers(group, size, document.stages + 1).ok()?;
         Some((document, scene))
     }
 
@@ -122,7 +155,7 @@ impl Document {
         if scene.is_empty() {
             return self.text.clone();
         }
-        let layers = layers(scene, options, self.outline.stages + 1);
+        let layers = layers(scene, options, self.stages + 1);
         let has_fill = options.form == Form::Outlines || scene.areas().next().is_some();
         let fill = if has_fill { RESET_FILL } else { "" };
         let has_bands = scene.areas().any(|area| area.band().is_some());
@@ -133,7 +166,7 @@ impl Document {
 
     /// The document with `layers` of a picture of this size, which also need the properties `reset`.
     fn with(&self, layers: &str, [width, height]: [u32; 2], reset: &str) -> String {
-        let (head, tail) = self.text.split_at(self.outline.end);
+        let (head, tail) = self.text.split_at(self.end);
         if self.is_ours && self.placement == IDENTITY {
             return format!("{head}{layers}{tail}");
         }
@@ -148,6 +181,36 @@ impl Document {
             self.group
         )
     }
+}
+
+/// The width of the page in the root of an SVG, if it has a unit.
+pub fn page_width(text: &str) -> Option<Length> {
+    let dom = Dom::parse(text);
+    let root = dom.nodes().find(Node::is_element)?;
+    Length::parse(root.get("width")?)
+}
+
+/// Refuses a root whose size depends on its content, because layers would change it.
+fn check_size(root: Node<'_>) -> Result<()> {
+    let length = |key| root.get(key).and_then(dialect::length_px);
+    if root.get("viewBox").is_some() || length("width").and(length("height")).is_some() {
+        return Ok(());
+    }
+    let why = "the root element has neither a viewBox nor a width and height in px: add one";
+    Err(root.refused(why))
+}
+
+/// The number in the id of a layer like ours.
+fn layer_number(id: &str) -> Option<usize> {
+    let number = LAYERS.iter().find_map(|name| id.strip_prefix(name));
+    number?.parse().ok()
+}
+
+/// True if the element shows something of another file.
+fn refers_outside(element: &Node<'_>) -> bool {
+    let target = element.get("href").or_else(|| element.get("xlink:href"));
+    let is_outside = |target: &str| !target.starts_with('#') && !target.starts_with("data:");
+    ["image", "use", "feImage"].contains(&element.name()) && target.is_some_and(is_outside)
 }
 
 /// An id like `name` that is new in the text.
@@ -320,7 +383,7 @@ mod tests {
         for (text, why) in [
             ("", "no <svg>"),
             ("<!-- nothing -->", "no <svg>"),
-            ("<svg viewBox=\"0 0 1 1\"><g>", "ends within"),
+            ("<svg viewBox=\"0 0 1 1\"><g>", "ends before </g>"),
             ("<svg viewBox=\"0 0 1 1\"><g></svg>", "not well-formed"),
             (
                 "<svg width=\"4\" height=\"100%\"></svg>",

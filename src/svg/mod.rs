@@ -1,4 +1,5 @@
-//! Writes scenes as SVG text, and reads them back: [`fn@write`] and [`read`]. This module alone uses `quick-xml`.
+//! Writes scenes as SVG text, and reads them back: [`fn@write`] and [`read`]. This module alone uses `quick-xml` and
+//! `svgtypes`.
 //!
 //! The dialect is small on purpose, so that all renderers agree on it and the file is easy to edit:
 //!
@@ -68,7 +69,8 @@
 //! it is, below new strokes. Reading leaves out points without effect: points that coincide, and on-points
 //! exactly halfway between two off-points.
 //!
-//! Reading returns the scene to the bit as it was written: quantised, and arranged if the form asks for it.
+//! Reading returns the scene to the bit as it was written: quantised, and arranged if the form asks for it. It takes numbers,
+//! steps and opaque colours in any spelling of SVG.
 //!
 //! ```
 //! use strokefit::scene::{Scene, Path, Stage, Stroke};
@@ -89,6 +91,7 @@ mod animated;
 mod arrange;
 mod dialect;
 mod document;
+mod dom;
 mod element;
 mod gradient;
 mod layer;

@@ -164,7 +164,10 @@ impl Length {
     /// The length that an attribute says.
     pub(crate) fn parse(text: &str) -> Option<Self> {
         let &(unit, _) = UNITS.iter().find(|(unit, _)| text.ends_with(unit))?;
-        let value = Unit::PX.parse(text.strip_suffix(unit)?)?;
+        let number = text.strip_suffix(unit)?;
+        let is_plain = number.starts_with(|c: char| c.is_ascii_digit())
+            && number.bytes().all(|b| b.is_ascii_digit() || b == b'.');
+        let value = Unit::PX.parse(number).filter(|_| is_plain)?;
         (value > 0 && value % STEP == 0).then_some(Self { value, unit })
     }
 

@@ -35,19 +35,13 @@ fn precise(precision: u8) -> WriteOptions {
 
 proptest! {
     #[test]
-    fn reading_what_was_written_gives_the_quantised_scene(scene in scene(), precision in 0..=6_u8) {
-        let text = write(&scene, &precise(precision));
-        let quantized = scene.quantized(precision);
-        prop_assert_eq!(quantized.scene.len() + quantized.dropped.total(), scene.len());
-        prop_assert_eq!(read(&text).unwrap(), quantized.scene);
-    }
-
-    #[test]
     fn every_form_comes_back(scene in prop_oneof![scene(), scene_of_few_styles()], options in options()) {
         let text = write(&scene, &options);
-        let back = read(&text).unwrap();
+        let (back, quantized) = (read(&text).unwrap(), scene.quantized(options.precision));
         prop_assert_eq!(&back, &arrange(&scene, &options));
         prop_assert_eq!(write(&back, &options), text);
+        prop_assert_eq!(quantized.scene.len() + quantized.dropped.total(), scene.len());
+        prop_assert_eq!(read(&write(&scene, &precise(options.precision))).unwrap(), quantized.scene);
     }
 
     #[test]
@@ -318,18 +312,11 @@ fn the_smallest_form_counts_the_last_decimal_where_that_is_shorter() {
 
 #[test]
 fn layers_are_the_document_without_its_head() {
-    let (text, layers) = (
-        write(&sample(), &WriteOptions::default()),
-        layers(&sample(), &WriteOptions::default(), 1),
-    );
-    assert!(layers.starts_with("<g id=\"stage-1\""));
-    assert!(text.ends_with(&(layers + "</svg>\n")));
-}
-
-#[test]
-fn layers_are_numbered_from_where_they_are_told() {
-    let layers = layers(&sample(), &WriteOptions::default(), 4);
-    let found = ["id=\"stage-4\"", "Stage 5: 2 strokes"].map(|text| layers.contains(text));
+    let layers = |first| layers(&sample(), &WriteOptions::default(), first);
+    let text = write(&sample(), &WriteOptions::default());
+    assert!(layers(1).starts_with("<g id=\"stage-1\""));
+    assert!(text.ends_with(&(layers(1) + "</svg>\n")));
+    let found = ["id=\"stage-4\"", "Stage 5: 2 strokes"].map(|text| layers(4).contains(text));
     assert_eq!(found, [true; 2]);
 }
 
@@ -348,12 +335,12 @@ fn what_is_not_the_dialect_is_named_with_its_line() {
         (
             "2000/svg",
             "1999/svg",
-            "line 1: <svg> is in the namespace \"http://www.w3.org/1999/svg\"",
+            "line 1: <svg> is not in the namespace",
         ),
         (
             " xmlns=\"http://www.w3.org/2000/svg\"",
             "",
-            "line 1: <svg> is in no namespace",
+            "line 1: <svg> is not in the namespace",
         ),
         (
             "viewBox=\"0 0 120 40\"",
@@ -422,7 +409,7 @@ fn what_is_not_the_dialect_is_named_with_its_line() {
         assert!(message.contains(expected), "{to}: {message}");
     }
     assert!(refusal("").contains("there is no <svg> element"));
-    assert!(refusal("<html/>").contains("no namespace"));
+    assert!(refusal("<html/>").contains("<html>, not <svg>"));
 }
 
 #[test]
@@ -575,7 +562,7 @@ fn other_style_sheets_are_refused() {
         (".red-1{", "path{", "<style> has a rule"),
         (".red-1{fill", ".red-1{d", "<style> has a rule"),
         (".red-1{fill:#cc0000}", "", "has the class red-1"),
-        ("#cc0000}", "rgb(9 9 9)}", "has fill=\"rgb(9 9 9)\""),
+        ("#cc0000}", "#cc000080}", "has fill=\"#cc000080\""),
         (
             "class=\"red-1\"",
             "class=\"red-1\" fill=\"#fff\"",

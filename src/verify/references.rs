@@ -1,7 +1,8 @@
 //! The size of an SVG once every reference is replaced by what it refers to.
 //!
 //! Ten patterns that each draw the one before ten times are a dozen lines, and ten thousand million parts.
-//! resvg follows some of these references without counting, so they are counted beforehand.
+//! resvg follows some of these references without counting, so they are counted beforehand: in the tree that resvg draws,
+//! whose entities are expanded, and not in that of `svg`, which has the text as it is.
 
 use std::collections::HashMap;
 

@@ -418,7 +418,7 @@ fn what_cannot_be_refined_is_refused() {
         (
             "cut.svg",
             svg(page, "<g>").replace("</svg>", ""),
-            "ends within",
+            "ends before </g>",
         ),
         ("mixed.svg", svg(page, "<g>"), "not well-formed"),
         (

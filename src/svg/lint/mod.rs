@@ -13,22 +13,18 @@
 //! assert_eq!(findings[0].lines, [2]);
 //! ```
 
-mod element;
-mod number;
-mod path;
-mod reference;
+mod page;
 mod rules;
-mod stroke;
-mod walk;
+mod values;
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use rules::Rule;
-
-/// File size at which readers built on libxml2 stop, bytes.
-const LIBXML2_BYTES: usize = 10_000_000;
+use super::dom::Dom;
+use page::Page;
+use rules::{RULES, Rule};
 
 /// Number of lines that a finding's text names; the record has all of them.
 const SHOWN_LINES: usize = 3;
@@ -65,7 +61,7 @@ pub struct Finding {
 impl Finding {
     /// True if the file refers to something outside itself.
     pub fn is_external(&self) -> bool {
-        self.rule == rules::EXTERNAL.name
+        self.rule == rules::EXTERNAL
     }
 }
 
@@ -104,39 +100,33 @@ impl fmt::Display for Finding {
 
 /// Finds constructs in SVG text that programs draw differently, the worst first.
 pub fn lint(text: &str) -> Vec<Finding> {
-    let mut findings = Findings::default();
-    if text.len() > LIBXML2_BYTES {
-        findings.add(&rules::LARGE_FILE, 1, format!("{} bytes", text.len()));
-    }
-    walk::walk(text, &mut findings);
-    findings.sorted()
+    let dom = Dom::parse(text);
+    let sheets = page::sheets(&dom);
+    let page = Page::of(text, &dom, &sheets);
+    let mut findings: Vec<Finding> = RULES
+        .iter()
+        .flat_map(|rule| findings(rule, &page))
+        .collect();
+    findings.sort_by_key(|finding| (finding.severity, finding.lines.first().copied()));
+    findings
 }
 
-/// The findings so far: one entry for each rule, or for each rule and element.
-#[derive(Default)]
-struct Findings(Vec<Finding>);
-
-impl Findings {
-    /// Notes that `found` on `line` breaks `rule`.
-    fn add(&mut self, rule: &Rule, line: usize, found: impl Into<String>) {
-        let at = self.0.iter().position(|f| f.rule == rule.name);
-        self.insert(at, rule, line, found.into());
-    }
-
-    /// Notes as [`Self::add`] does, but with an entry for each different `found`.
-    fn add_each(&mut self, rule: &Rule, line: usize, found: String) {
-        let at = self
-            .0
-            .iter()
-            .position(|f| f.rule == rule.name && f.found == found);
-        self.insert(at, rule, line, found);
-    }
-
-    fn insert(&mut self, at: Option<usize>, rule: &Rule, line: usize, found: String) {
-        match at {
-            Some(at) if self.0[at].lines.last() == Some(&line) => {}
-            Some(at) => self.0[at].lines.push(line),
-            None => self.0.push(Finding {
+/// The findings of a rule: one for all places, or one for each text that is found.
+fn findings(rule: &Rule, page: &Page<'_>) -> Vec<Finding> {
+    let mut findings: Vec<Finding> = Vec::new();
+    let mut known = BTreeMap::new();
+    for (at, found) in rule.places(page) {
+        let line = page.dom.line(at);
+        let key = if rule.is_each() {
+            found.clone()
+        } else {
+            String::new()
+        };
+        let index = *known.entry(key).or_insert(findings.len());
+        match findings.get_mut(index) {
+            Some(finding) if finding.lines.last() == Some(&line) => {}
+            Some(finding) => finding.lines.push(line),
+            None => findings.push(Finding {
                 rule: rule.name.into(),
                 severity: rule.severity,
                 lines: vec![line],
@@ -146,13 +136,7 @@ impl Findings {
             }),
         }
     }
-
-    /// By severity, then by place.
-    fn sorted(mut self) -> Vec<Finding> {
-        self.0
-            .sort_by_key(|f| (f.severity, f.lines.first().copied()));
-        self.0
-    }
+    findings
 }
 
 #[cfg(test)]

@@ -1,0 +1,139 @@
+//! Reads gradients, and shadows: filters that blur, with the areas that they are for.
+
+use super::element::Element;
+use super::{Reader, elements, painted, unexpected};
+use crate::error::Result;
+use crate::scene::{MAX_STOPS, Mark, Scene, Shade, Shadow, WrittenAxis, WrittenStop};
+use crate::svg::dialect::{self, BLUR_ID, SHADE_ID, SHADOW_ID, Unit};
+use crate::svg::dom::Node;
+use crate::svg::shadow::place;
+
+/// True if the element is a gradient.
+pub(super) fn is_gradient(node: &Node<'_>) -> bool {
+    [dialect::LINEAR, dialect::RADIAL].contains(&node.name())
+}
+
+/// The element after a gradient or a filter.
+pub(super) fn filled<'r>(definition: Node<'_>, next: Option<Node<'r>>) -> Result<Node<'r>> {
+    let why = "nothing follows a gradient or a filter: give a file that strokefit wrote";
+    next.ok_or_else(|| definition.refused(why))
+}
+
+/// The number of an attribute in units of `step` each, if it is whole.
+fn whole(text: &str, step: i64) -> Option<i64> {
+    let units = Unit::PX.parse(text)?;
+    (units % step == 0).then_some(units / step)
+}
+
+impl Reader {
+    /// The gradient of a page, and the rectangle after it.
+    pub(super) fn page_shade(
+        &self,
+        gradient: Node<'_>,
+        next: Option<Node<'_>>,
+        page: &Scene,
+    ) -> Result<Shade> {
+        self.element(gradient)?.expect("id", SHADE_ID)?;
+        let rect = filled(gradient, next)?;
+        if rect.name() != "rect" {
+            return Err(unexpected(rect));
+        }
+        let rect = self.leaf(rect)?;
+        rect.expect_page(page)?;
+        rect.expect("fill", &format!("url(#{SHADE_ID})"))?;
+        Ok(self.gradient(gradient)?.1)
+    }
+
+    /// The id of a gradient, and its colours.
+    pub(super) fn gradient<'r>(&'r self, node: Node<'r>) -> Result<(String, Shade)> {
+        let gradient = self.element(node)?;
+        let axis = axis(&gradient)?;
+        let stop = |node: Node<'_>| match node.name() {
+            "stop" => stop(&self.leaf(node)?),
+            _ => Err(unexpected(node)),
+        };
+        let stops = elements(node)?.into_iter().map(stop);
+        let stops = stops.collect::<Result<Vec<_>>>()?;
+        let is_few = stops.len() <= MAX_STOPS;
+        let shade = Shade::written(axis, stops).filter(|_| is_few);
+        let why =
+            "is shorter than a px, or has less than two stops, too many, or stops out of order";
+        let shade = shade.ok_or_else(|| gradient.refused(why))?;
+        Ok((gradient.get("id", |id| Some(id.to_owned()))?, shade))
+    }
+
+    /// The shadow of a filter, the `number`-th of its file, and the area after it.
+    pub(super) fn shadow(
+        &self,
+        node: Node<'_>,
+        next: Option<Node<'_>>,
+        number: usize,
+    ) -> Result<Shadow> {
+        let filter = self.element(node)?;
+        let known = dialect::FILTER.map(|(name, _)| name);
+        filter.only(&[&["id"], &known[..], &dialect::FILTER_PLACE].concat())?;
+        let id = format!("{BLUR_ID}-{number}");
+        for (name, value) in dialect::FILTER.into_iter().chain([("id", id.as_str())]) {
+            filter.expect(name, value)?;
+        }
+        let (gaussian, deviation) = dialect::GAUSSIAN;
+        let steps = elements(node)?;
+        let [blur] = steps[..] else {
+            return Err(filter.refused("has not one step: give a file that strokefit wrote"));
+        };
+        if blur.name() != gaussian {
+            return Err(unexpected(blur));
+        }
+        let blur = self.leaf(blur)?;
+        blur.only(&[deviation])?;
+        let hundredths = blur.get(deviation, |text| whole(text, dialect::HUNDREDTH))?;
+
+        let area = self.mark(filled(node, next)?, &filter, &["filter"])?;
+        area.expect("id", &format!("{SHADOW_ID}-{number}"))?;
+        area.expect("filter", &format!("url(#{id})"))?;
+        let [Mark::Area(shape)] = &painted(&area, Unit::PX, None)?[..] else {
+            return Err(area.refused("is a shadow and a stroke: make it an area"));
+        };
+        let shadow = Shadow::new(shape.clone(), hundredths as f32 / 100.0);
+        let shadow = shadow.map_err(|error| area.refused(error))?;
+        for (name, px) in dialect::FILTER_PLACE.iter().zip(place(&shadow)) {
+            filter.expect(name, &px.to_string())?;
+        }
+        Ok(shadow)
+    }
+}
+
+fn axis(gradient: &Element<'_>) -> Result<WrittenAxis> {
+    let is_linear = gradient.node.name() == dialect::LINEAR;
+    let names = if is_linear {
+        &dialect::LINEAR_AXIS[..]
+    } else {
+        &dialect::RADIAL_AXIS
+    };
+    gradient.only(&[&["id", "gradientUnits"], names].concat())?;
+    gradient.expect("gradientUnits", "userSpaceOnUse")?;
+    let hundredths = |text: &str| Some(whole(text, dialect::HUNDREDTH)? * dialect::HUNDREDTH);
+    let number = |name: &&str| gradient.get(name, hundredths);
+    match names.iter().map(number).collect::<Result<Vec<_>>>()?[..] {
+        [x, y, radius] => Ok(WrittenAxis::Radial([x, y, radius])),
+        [ax, ay, bx, by] => Ok(WrittenAxis::Linear([ax, ay, bx, by])),
+        _ => Err(unexpected(gradient.node)),
+    }
+}
+
+fn stop(element: &Element<'_>) -> Result<WrittenStop> {
+    element.only(&["offset", "stop-color", "stop-opacity"])?;
+    let thousandths = |text: &str| {
+        let thousandths = u16::try_from(whole(text, dialect::THOUSANDTH)?).ok()?;
+        (thousandths <= 1000).then_some(thousandths)
+    };
+    let opacity = |text: &str| match text {
+        "0" => Some(0),
+        text => dialect::opacity_quantum(text),
+    };
+    Ok(WrittenStop {
+        offset: element.get("offset", thousandths)?,
+        color: element.get("stop-color", dialect::channels)?,
+        opacity: element.either("stop-opacity", opacity)?.unwrap_or(u8::MAX),
+    })
+}
