@@ -10,12 +10,10 @@
 //! other end.
 
 mod nearby;
-mod precedence;
 mod steps;
 
-use crate::scene::{UNITS_PER_PX, Written, WrittenPath, WrittenPoint};
+use crate::scene::{Precedence, UNITS_PER_PX, Written, WrittenPath, WrittenPoint};
 use nearby::Nearby;
-use precedence::Precedence;
 use steps::Tour;
 
 /// The strokes in an order of little travel, for a pen that comes `from` a place. The picture does not change.
@@ -160,27 +158,21 @@ fn nearest_first(strokes: &[Written], precedence: &Precedence, from: Option<Spot
     let ways: Vec<Vec<Visit>> = of_strokes.map(|(i, s)| Visit::all(i, s)).collect();
     let begins: Vec<Spot> = ways.iter().flatten().map(|visit| visit.ends[0]).collect();
     let mut ready = Nearby::over(&begins);
-    let mut below = precedence.counts();
+    let mut waiting = precedence.waiting();
     let put = |ready: &mut Nearby<Visit>, stroke: usize| {
         ways[stroke]
             .iter()
             .for_each(|&way| ready.put(way.ends[0], way));
     };
-    (0..strokes.len())
-        .filter(|&i| below[i] == 0)
-        .for_each(|i| put(&mut ready, i));
+    waiting.free().into_iter().for_each(|i| put(&mut ready, i));
     let mut visits = Vec::with_capacity(strokes.len());
     let mut at = from.unwrap_or_default();
     while let Some(&(_, next)) = ready.nearest(at, 1, |_| true).first() {
         for way in &ways[next.stroke] {
             ready.take(way.ends[0], |other| other.stroke == next.stroke);
         }
-        for &above in precedence.above(next.stroke) {
-            below[above] -= 1;
-            if below[above] == 0 {
-                put(&mut ready, above);
-            }
-        }
+        let freed = waiting.draw(next.stroke);
+        freed.into_iter().for_each(|i| put(&mut ready, i));
         visits.push(next);
         at = next.ends[1];
     }

@@ -5,9 +5,8 @@ use std::collections::VecDeque;
 use std::ops::RangeInclusive;
 
 use super::nearby::Nearby;
-use super::precedence::Precedence;
 use super::{Spot, Visit, dist};
-use crate::scene::{Written, WrittenPath};
+use crate::scene::{Precedence, Written, WrittenPath};
 
 /// Strokes near each end that a step may make a neighbour. With 5, tours of 1,000 random lines are 1 % longer; with 16 they
 /// are as long.
