@@ -191,19 +191,28 @@ impl<'a> Tour<'a> {
         for _ in 0..PASSES {
             let mut changes = false;
             for first in 0..count {
-                // A longer part contains the same pair.
-                let mut is_bound = false;
-                for last in first..count.min(first + window) {
-                    is_bound = is_bound || self.has_to_follow(last, first..last);
-                    if !is_bound && self.reversal_saves(first, last) > LEAST {
-                        self.reverse(first, last);
+                let stop = count.min(first + window);
+                // The end of the longest part from `first` on whose order does not matter.
+                let bound = |tour: &Self| {
+                    let mut rest = first + 1..stop;
+                    rest.find(|&i| tour.has_to_follow(i, first..i))
+                        .unwrap_or(stop)
+                };
+                let mut end = bound(self);
+                for last in first..stop {
+                    if last < end && self.reversal_saves(first, last) > LEAST {
+                        self.reverse(first..last + 1);
                         changes = true;
                     }
-                    for swap in swaps(first, last) {
-                        if self.swap_saves(swap) > LEAST && self.may_swap(swap) {
-                            self.swap(swap);
+                    let reach = BLOCK.min(last - first);
+                    for middle in (1..=reach).flat_map(|n| [first + n, last + 1 - n]) {
+                        if self.swap_saves(first, middle, last) > LEAST
+                            && (middle..=last).all(|i| !self.has_to_follow(i, first..middle))
+                        {
+                            self.visits[first..=last].rotate_left(middle - first);
+                            self.take_places(first..last + 1);
+                            end = bound(self);
                             changes = true;
-                            is_bound = !self.may_reverse(first, last);
                         }
                     }
                 }
@@ -220,24 +229,6 @@ impl<'a> Tour<'a> {
         below.any(|&other| places.contains(&self.place[other]))
     }
 
-    fn may_reverse(&self, first: usize, last: usize) -> bool {
-        (first..=last).all(|i| !self.has_to_follow(i, first..i))
-    }
-
-    fn may_swap(
-        &self,
-        Swap {
-            first,
-            middle,
-            last,
-            flips,
-        }: Swap,
-    ) -> bool {
-        (middle..=last).all(|i| !self.has_to_follow(i, first..middle))
-            && (!flips[0] || self.may_reverse(first, middle - 1))
-            && (!flips[1] || self.may_reverse(middle, last))
-    }
-
     /// Where the pen is lifted before place `i`.
     fn lifted(&self, i: usize) -> Option<Spot> {
         let before = i.checked_sub(1).map(|before| self.visits[before].ends[1]);
@@ -249,67 +240,35 @@ impl<'a> Tour<'a> {
         self.visits.get(i).map(|visit| visit.ends[0])
     }
 
-    /// Where the pen is set down and lifted to draw the part from `first` to `last`.
-    fn ends(&self, first: usize, last: usize) -> [Option<Spot>; 2] {
-        [self.set_down(first), self.lifted(last + 1)]
+    /// Travel from the visit before place `i` to that at place `k`, px.
+    fn way(&self, i: usize, k: usize) -> f64 {
+        way(self.lifted(i), self.set_down(k))
     }
 
-    /// By how much the reversal of a part makes the tour shorter, px.
+    /// By how much the reversal of the part from `first` to `last` makes the tour shorter, px.
     fn reversal_saves(&self, first: usize, last: usize) -> f64 {
-        let (before, after) = (self.lifted(first), self.set_down(last + 1));
-        let [from, to] = self.ends(first, last);
-        way(before, from) + way(to, after) - way(before, to) - way(from, after)
+        let old = self.way(first, first) + self.way(last + 1, last + 1);
+        old - way(self.lifted(first), self.lifted(last + 1))
+            - way(self.set_down(first), self.set_down(last + 1))
     }
 
-    /// By how much a swap makes the tour shorter, px.
-    fn swap_saves(
-        &self,
-        Swap {
-            first,
-            middle,
-            last,
-            flips,
-        }: Swap,
-    ) -> f64 {
-        let (before, after) = (self.lifted(first), self.set_down(last + 1));
-        let [mut a, mut b] = [self.ends(first, middle - 1), self.ends(middle, last)];
-        let old = way(before, a[0]) + way(a[1], b[0]) + way(b[1], after);
-        if flips[0] {
-            a.reverse();
-        }
-        if flips[1] {
-            b.reverse();
-        }
-        old - way(before, b[0]) - way(b[1], a[0]) - way(a[1], after)
+    /// By how much it makes the tour shorter if the part from `first` on and that from `middle` to `last` change places, px.
+    fn swap_saves(&self, first: usize, middle: usize, last: usize) -> f64 {
+        let after = last + 1;
+        let old = self.way(first, first) + self.way(middle, middle) + self.way(after, after);
+        old - self.way(first, middle) - self.way(after, first) - self.way(middle, after)
     }
 
-    fn swap(
-        &mut self,
-        Swap {
-            first,
-            middle,
-            last,
-            flips,
-        }: Swap,
-    ) {
-        if flips[0] {
-            self.reverse(first, middle - 1);
-        }
-        if flips[1] {
-            self.reverse(middle, last);
-        }
-        self.visits[first..=last].rotate_left(middle - first);
-        for i in first..=last {
+    fn reverse(&mut self, part: Range<usize>) {
+        let visits = &mut self.visits[part.clone()];
+        visits.reverse();
+        visits.iter_mut().for_each(|visit| *visit = visit.flipped());
+        self.take_places(part);
+    }
+
+    fn take_places(&mut self, part: Range<usize>) {
+        for i in part {
             self.place[self.visits[i].stroke] = i;
-        }
-    }
-
-    fn reverse(&mut self, first: usize, last: usize) {
-        let part = &mut self.visits[first..=last];
-        part.reverse();
-        for (visit, place) in part.iter_mut().zip(first..) {
-            *visit = visit.flipped();
-            self.place[visit.stroke] = place;
         }
     }
 
@@ -336,31 +295,6 @@ impl<'a> Tour<'a> {
         }
         changes
     }
-}
-
-/// Two neighbouring parts of a tour that change places, the second from `middle` on; either is reversed if it flips.
-#[derive(Debug, Clone, Copy)]
-struct Swap {
-    first: usize,
-    middle: usize,
-    last: usize,
-    flips: [bool; 2],
-}
-
-/// The swaps of the places from `first` to `last` with a part of at most [`BLOCK`] strokes, which may flip.
-fn swaps(first: usize, last: usize) -> impl Iterator<Item = Swap> {
-    (1..=BLOCK.min(last - first)).flat_map(move |length| {
-        let swap = move |middle: usize, flips: [bool; 2]| Swap {
-            first,
-            middle,
-            last,
-            flips,
-        };
-        let [head, tail] = [first + length, last + 1 - length];
-        [false, true]
-            .into_iter()
-            .flat_map(move |flip| [swap(head, [flip, false]), swap(tail, [false, flip])])
-    })
 }
 
 /// Travel from one point to another, px; none from where the pen is not.
