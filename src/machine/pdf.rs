@@ -1,9 +1,11 @@
 //! PDF: one page with a layer for each stage of the drawing (ISO 32000-1; layers are its optional content). This file alone uses
 //! the `pdf-writer` crate.
 
+use std::collections::BTreeSet;
+
 use pdf_writer::types::{FunctionShadingType, LineCapStyle, LineJoinStyle, MaskType};
-use pdf_writer::writers::Resources;
-use pdf_writer::{Content, Dict, Filter, Finish, Name, Pdf, Rect, Ref, TextStr};
+use pdf_writer::writers::{ExtGraphicsState, Resources};
+use pdf_writer::{Content, Dict, Filter, Finish, Name, Pdf, Rect, Ref, Settings, TextStr};
 
 use super::sheet::Sheet;
 use crate::render;
@@ -53,24 +55,27 @@ struct File {
     content: Content,
     /// The page in px.
     page: [f32; 2],
-    /// Layers, gradients and graphics states (opacities and soft masks) by the names that the content has for them.
+    /// Opacities of marks, each a graphics state.
+    opacities: BTreeSet<u8>,
+    /// Layers, gradients and soft masks by the names that the content has for them.
     layers: Vec<(String, Ref)>,
     shadings: Vec<(String, Ref)>,
-    states: Vec<(String, Ref)>,
+    masks: Vec<(String, Ref)>,
 }
 
 impl File {
     fn new(page: [f32; 2]) -> Self {
-        let mut pdf = Pdf::new();
+        let mut pdf = Pdf::with_settings(Settings { pretty: false });
         pdf.set_version(1, 5);
         Self {
             pdf,
             next: Ref::new(1),
             content: Content::new(),
             page,
+            opacities: BTreeSet::new(),
             layers: Vec::new(),
             shadings: Vec::new(),
-            states: Vec::new(),
+            masks: Vec::new(),
         }
     }
 
@@ -194,9 +199,9 @@ impl File {
         let state = self.next.bump();
         let mut graphics = self.pdf.ext_graphics(state);
         graphics.soft_mask().subtype(MaskType::Luminosity).group(id);
-        let name = format!("Mask{}", self.states.len());
+        let name = format!("Mask{}", self.masks.len());
         self.content.set_parameters(Name(name.as_bytes()));
-        self.states.push((name, state));
+        self.masks.push((name, state));
     }
 
     /// Draws the marks of a stage as a layer.
@@ -216,24 +221,13 @@ impl File {
         self.content.end_marked_content();
     }
 
-    /// Sets the opacity of all that follows.
-    fn set_opacity(&mut self, opacity: u8) {
-        let name = format!("O{opacity}");
-        self.content.set_parameters(Name(name.as_bytes()));
-        if self.states.iter().all(|(known, _)| *known != name) {
-            let id = self.next.bump();
-            let alpha = level(opacity);
-            let mut state = self.pdf.ext_graphics(id);
-            state.non_stroking_alpha(alpha).stroking_alpha(alpha);
-            self.states.push((name, id));
-        }
-    }
-
     /// Draws a mark.
     fn mark(&mut self, mark: &Mark) {
-        self.set_opacity(quantum(mark.opacity()));
+        let opacity = quantum(mark.opacity());
+        self.opacities.insert(opacity);
         let [r, g, b] = channels(mark.color().map(quantum));
         let content = &mut self.content;
+        content.set_parameters(Name(format!("O{opacity}").as_bytes()));
         match mark {
             Mark::Stroke(stroke) => {
                 content.set_stroke_rgb(r, g, b);
@@ -276,7 +270,14 @@ impl File {
         page.parent(pages).contents(content);
         page.group().transparency().color_space().device_rgb();
         let mut resources = page.resources();
-        name(resources.ext_g_states(), &self.states);
+        let mut states = resources.ext_g_states();
+        for &opacity in &self.opacities {
+            let state = states.insert(Name(format!("O{opacity}").as_bytes()));
+            let mut state = state.start::<ExtGraphicsState<'_>>();
+            state.non_stroking_alpha(level(opacity));
+            state.stroking_alpha(level(opacity));
+        }
+        name(states, &self.masks);
         name(resources.shadings(), &self.shadings);
         name(resources.insert(Name(b"Properties")).dict(), &self.layers);
         resources.finish();
