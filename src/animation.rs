@@ -30,7 +30,7 @@ use crate::scene::{MAX_PRECISION, Scene};
 use crate::svg::{self, Timing};
 #[cfg(feature = "animation")]
 use crate::{
-    image::{Animation, AnimationFormat},
+    image::{AnimationFormat, animated},
     metrics,
     scene::{Mark, Rgb, counted},
     svg::{Form, WriteOptions},
@@ -145,7 +145,7 @@ impl Film<'_> {
     /// # Errors
     /// Each as [`verify::render`](crate::verify::render); [`ErrorKind::Picture`] when a legend's
     /// picture is of another size.
-    pub fn frames(&self, scene: &Scene) -> impl Iterator<Item = Result<Image>> {
+    pub fn frames(&self, scene: &Scene) -> impl ExactSizeIterator<Item = Result<Image>> {
         let mut marks = scene.marks();
         let mut painting = None;
         self.parts(scene).into_iter().map(move |part| {
@@ -165,16 +165,16 @@ impl Film<'_> {
     /// An animation of the frames. It repeats for ever and shows the last frame longer.
     ///
     /// # Errors
-    /// As [`frames`](Self::frames), and [`Animation::push`].
+    /// As [`frames`](Self::frames), and [`animated`].
     pub fn encode(&self, scene: &Scene, format: AnimationFormat) -> Result<Vec<u8>> {
-        let count = self.parts(scene).len();
-        let timing = timing(count);
-        let mut animation = Animation::new(format);
-        for (i, frame) in self.frames(scene).enumerate() {
-            let rest = if i + 1 == count { timing.last_ms } else { 0 };
-            animation.push(&frame?, timing.part_ms + rest)?;
-        }
-        animation.finish()
+        let frames = self.frames(scene);
+        let last = frames.len() - 1;
+        let timing = timing(frames.len());
+        let shown = frames.enumerate().map(|(i, frame)| {
+            let rest = if i == last { timing.last_ms } else { 0 };
+            Ok((frame?, timing.part_ms + rest))
+        });
+        animated(format, shown)
     }
 
     /// SVG that draws itself in the same steps, with as many decimals as `scene` was rounded to; it has

@@ -1,5 +1,5 @@
 //! Pictures: planar `f32`, sRGB-encoded. This module alone uses the crates `image`, `tiff`, `zune-jpeg`, `moxcms`,
-//! `gif` and `crc32fast`.
+//! `gif` and `png`.
 //!
 //! It reads PNG, JPEG, WebP, GIF, BMP, TIFF, ICO, QOI, TGA, DDS, Radiance HDR, farbfeld and PNM (the first
 //! frame or page), with 8 or 16 bits or floats, grey, colour or CMYK, and applies the orientation given by EXIF. It converts
@@ -37,7 +37,7 @@ use std::fmt;
 use std::path::Path;
 
 #[cfg(feature = "animation")]
-pub use animate::{Animation, AnimationFormat};
+pub use animate::{AnimationFormat, animated};
 pub use decode::Limits;
 pub use formats::{FORMATS, Format};
 pub(crate) use header::{Embeddable, stated_size};

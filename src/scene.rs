@@ -25,7 +25,7 @@ pub use grid::{MAX_PRECISION, MIN_WIDTH};
 pub(crate) use grid::{UNITS_PER_PX, color, quantum};
 pub(crate) use mark::counted;
 pub use mark::{Area, Mark, Marks};
-pub(crate) use overlap::overlaps;
+pub(crate) use overlap::{Bundles, Precedence};
 pub use path::{MAX_POINTS, Path, PathPoint, Piece};
 pub(crate) use polyline::{polyline, through};
 pub use quantize::{Dropped, Quantized};

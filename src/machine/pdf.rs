@@ -1,208 +1,350 @@
-//! PDF: one page with a layer for each stage of the drawing (ISO 32000-1; layers are its optional content).
+//! PDF: one page with a layer for each stage of the drawing (ISO 32000-1; layers are its optional content). This file alone uses
+//! the `pdf-writer` crate.
 
-mod file;
-mod shade;
-mod shadow;
+use std::collections::BTreeSet;
 
-use std::fmt::Write;
+use pdf_writer::types::{FunctionShadingType, LineCapStyle, LineJoinStyle, MaskType};
+use pdf_writer::writers::{ExtGraphicsState, Resources};
+use pdf_writer::{Content, Dict, Filter, Finish, Name, Pdf, Rect, Ref, Settings, TextStr};
 
 use super::sheet::Sheet;
-use crate::scene::{Mark, Path, Piece, Rgb, Scene, quantum};
-use file::File;
+use crate::render;
+use crate::report::deflated;
+use crate::scene::{
+    Mark, Path, Piece, Rgb, Shade, Shadow, UNITS_PER_PX, WrittenAxis, WrittenStop, quantum,
+};
 
 /// The bytes of a PDF of the drawing. Colours are those of the screen (`DeviceRGB`), curves are exact, and lengths are those
 /// of the page.
 pub fn pdf(sheet: &Sheet<'_>) -> Vec<u8> {
     let scene = sheet.scene;
-    let mut file = File::new();
-    let [catalog, pages, page] = [file.reserve(), file.reserve(), file.reserve()];
-    let layers: Vec<usize> = (1..=scene.stages.len())
-        .map(|number| file.add(&format!("<</Type/OCG/Name(Layer {number})>>")))
-        .collect();
-    // The page's shade comes first, and then those of areas in their order.
-    let [mut shadings, mut masks] = [const { String::new() }; 2];
-    let shades = scene.marks().filter_map(Mark::shade);
-    for (number, shade) in scene.shade.iter().chain(shades).enumerate() {
-        let [shading, mask] = shade::add(&mut file, shade, number, scene);
-        shadings += &shading;
-        masks += &mask;
-    }
-    let size = [scene.width, scene.height];
-    for (number, shadow) in scene.shadows.iter().enumerate() {
-        masks += &shadow::add(&mut file, shadow, number, size);
-    }
-    let content = file.stream("", content(sheet).as_bytes());
-    let (states, layers_named) = (states(scene), names(&layers));
-    let resources =
-        format!("/ExtGState<<{states}{masks}>>/Properties<<{layers_named}>>/Shading<<{shadings}>>");
-    let [width, height] =
-        [scene.width, scene.height].map(|side| number(f64::from(side) * sheet.pt()));
-    file.set(
-        page,
-        &format!(
-            "<</Type/Page/Parent {pages} 0 R/MediaBox[0 0 {width} {height}]\
-             /Group<</S/Transparency/CS/DeviceRGB>>/Contents {content} 0 R/Resources<<{resources}>>>>"
-        ),
-    );
-    file.set(pages, &format!("<</Type/Pages/Kids[{page} 0 R]/Count 1>>"));
-    let groups = list(&layers);
-    file.set(
-        catalog,
-        &format!(
-            "<</Type/Catalog/Pages {pages} 0 R/OCProperties<</OCGs[{groups}]/D<</Order[{groups}]/ON[{groups}]>>>>>>"
-        ),
-    );
-    file.finish(catalog)
-}
-
-/// References to objects.
-fn list(objects: &[usize]) -> String {
-    let references: Vec<_> = objects.iter().map(|id| format!("{id} 0 R")).collect();
-    references.join(" ")
-}
-
-/// The opacities by the names that the content has for them.
-fn states(scene: &Scene) -> String {
-    let is_used = |k: &u8| scene.marks().any(|mark| quantum(mark.opacity()) == *k);
-    let state = |k: u8| {
-        let opacity = number(f64::from(k) / 255.0);
-        format!("/O{k}<</ca {opacity}/CA {opacity}>>")
-    };
-    (0..=u8::MAX).filter(is_used).map(state).collect()
-}
-
-/// The layers by the names that the content has for them.
-fn names(layers: &[usize]) -> String {
-    let name = |(id, number): (&usize, usize)| format!("/L{number} {id} 0 R");
-    layers.iter().zip(1..).map(name).collect()
-}
-
-/// The operators that draw the page.
-fn content(sheet: &Sheet<'_>) -> String {
-    let scene = sheet.scene;
-    let (scale, height) = (sheet.pt(), f64::from(scene.height) * sheet.pt());
+    let [width, height] = [scene.width, scene.height].map(|side| side as f32);
+    let mut file = File::new([width, height]);
     // PDF's y axis goes up.
-    let mut out = format!(
-        "{} 0 0 {} 0 {} cm\n1 J 1 j\n",
-        number(scale),
-        number(-scale),
-        number(height)
-    );
+    let scale = sheet.pt() as f32;
+    let upright = [scale, 0.0, 0.0, -scale, 0.0, scale * height];
+    let head = file.content.transform(upright.map(short));
+    head.set_line_cap(LineCapStyle::RoundCap);
+    head.set_line_join(LineJoinStyle::RoundJoin);
     if let Some(color) = scene.background {
-        let _ = writeln!(
-            out,
-            "{} rg 0 0 {} {} re f",
-            rgb(color),
-            scene.width,
-            scene.height
-        );
+        file.fill_page(color);
     }
-    let mut shades = 0..;
-    if scene.shade.is_some() {
-        let _ = writeln!(out, "q {} Q", shade::operators(shades.next().unwrap_or(0)));
+    if let Some(shade) = &scene.shade {
+        file.content.save_state();
+        file.shade(shade);
     }
-    for (number, shadow) in scene.shadows.iter().enumerate() {
-        let size = [scene.width, scene.height];
-        let _ = writeln!(out, "q {} Q", shadow::operators(shadow, number, size));
+    for shadow in &scene.shadows {
+        file.content.save_state();
+        file.shadow(shadow, [scene.width, scene.height]);
     }
-    for (stage, number) in scene.stages.iter().zip(1..) {
-        let _ = writeln!(out, "/OC/L{number} BDC");
-        for mark in &stage.marks {
-            let shade = mark.shade().and_then(|_| shades.next());
-            push(&mut out, mark, shade);
-        }
-        out += "EMC\n";
+    for stage in &scene.stages {
+        file.layer(&stage.marks);
     }
-    out
+    file.finish(short(scale))
 }
 
-/// Appends the operators of a mark, which has the shade of this number.
-fn push(out: &mut String, mark: &Mark, shade: Option<usize>) {
-    let _ = write!(
-        out,
-        "/O{} gs {} ",
-        quantum(mark.opacity()),
-        rgb(mark.color())
-    );
-    match mark {
-        Mark::Stroke(stroke) => {
-            let _ = writeln!(out, "RG {} w", number(2.0 * f64::from(stroke.radius)));
-            push_path(out, &stroke.path);
-            *out += "S\n";
+/// Length of a sudden change of colour, as a share of the axis.
+const STEP: f32 = 1e-4;
+
+/// A file whose page is being drawn.
+struct File {
+    pdf: Pdf,
+    /// The next object.
+    next: Ref,
+    /// The page's operators.
+    content: Content,
+    /// The page in px.
+    page: [f32; 2],
+    /// Opacities of marks, each a graphics state.
+    opacities: BTreeSet<u8>,
+    /// Layers, gradients and soft masks by the names that the content has for them.
+    layers: Vec<(String, Ref)>,
+    shadings: Vec<(String, Ref)>,
+    masks: Vec<(String, Ref)>,
+}
+
+impl File {
+    fn new(page: [f32; 2]) -> Self {
+        let mut pdf = Pdf::with_settings(Settings { pretty: false });
+        pdf.set_version(1, 5);
+        Self {
+            pdf,
+            next: Ref::new(1),
+            content: Content::new(),
+            page,
+            opacities: BTreeSet::new(),
+            layers: Vec::new(),
+            shadings: Vec::new(),
+            masks: Vec::new(),
         }
-        Mark::Area(area) if let Some(band) = area.band() => {
-            // Square ends and mitred corners, which do not reach farther than in SVG.
-            let _ = writeln!(out, "RG q 0 J 0 j 4 M {} w", number(band.width.into()));
-            push_path(out, &band.line);
-            *out += if band.line.is_closed() {
-                "s Q\n"
-            } else {
-                "S Q\n"
-            };
+    }
+
+    /// Fills the page with a colour.
+    fn fill_page(&mut self, color: Rgb) {
+        let ([r, g, b], [width, height]) = (channels(color.map(quantum)), self.page);
+        self.content.set_fill_rgb(r, g, b);
+        self.content.rect(0.0, 0.0, width, height).fill_nonzero();
+    }
+
+    /// Draws a gradient on all that is not clipped away, and restores the graphics state.
+    fn shade(&mut self, shade: &Shade) {
+        let shading = self.shading(shade, true);
+        let opacity = self.shading(shade, false);
+        let mut content = Content::new();
+        content.shading(Name(b"Mask"));
+        self.mask(&content.finish(), |resources| {
+            resources.shadings().pair(Name(b"Mask"), opacity);
+        });
+        let name = format!("Shade{}", self.shadings.len());
+        self.content.shading(Name(name.as_bytes())).restore_state();
+        self.shadings.push((name, shading));
+    }
+
+    /// The colours of a gradient, or its opacities as greys.
+    fn shading(&mut self, shade: &Shade, is_color: bool) -> Ref {
+        let value = |stop: &WrittenStop| match is_color {
+            true => channels(stop.color).to_vec(),
+            false => vec![level(stop.opacity)],
+        };
+        let function = self.function(&shade.stops, value);
+        let id = self.next.bump();
+        let px = |units: i64| units as f32 / UNITS_PER_PX as f32;
+        let mut shading = self.pdf.function_shading(id);
+        let space = shading.color_space();
+        if is_color {
+            space.device_rgb();
+        } else {
+            space.device_gray();
         }
-        Mark::Area(area) => {
-            *out += "rg\n";
-            *out += if shade.is_some() { "q " } else { "" };
-            area.rings.iter().for_each(|ring| push_path(out, ring));
-            match shade {
-                Some(shade) => {
-                    let _ = writeln!(out, "W n {} Q", shade::operators(shade));
-                }
-                None => *out += "f\n",
+        match shade.axis {
+            WrittenAxis::Linear(ends) => {
+                shading.shading_type(FunctionShadingType::Axial);
+                shading.coords(ends.map(px));
+            }
+            WrittenAxis::Radial(circle) => {
+                let [x, y, r] = circle.map(px);
+                shading.shading_type(FunctionShadingType::Radial);
+                shading.coords([x, y, 0.0, x, y, r]);
             }
         }
+        shading.extend([true, true]).function(function);
+        id
+    }
+
+    /// The values between stops, which change linearly.
+    fn function(&mut self, stops: &[WrittenStop], value: impl Fn(&WrittenStop) -> Vec<f32>) -> Ref {
+        let offset = |stop: &WrittenStop| f32::from(stop.offset) / 1000.0;
+        let first = stops.first().map(|stop| (0.0, value(stop)));
+        let last = stops.last().map(|stop| (1.0, value(stop)));
+        let between = stops.iter().map(|stop| (offset(stop), value(stop)));
+        let mut knots: Vec<(f32, Vec<f32>)> =
+            first.into_iter().chain(between).chain(last).collect();
+        knots.dedup_by(|next, kept| next.0 <= kept.0 && next.1 == kept.1);
+        // Every step of a stitching function has a length.
+        for i in 1..knots.len() {
+            knots[i].0 = knots[i].0.max(knots[i - 1].0 + STEP);
+        }
+        let mut steps = Vec::new();
+        for ends in knots.windows(2) {
+            let id = self.next.bump();
+            let [from, to] = [&ends[0].1, &ends[1].1].map(|values| values.iter().copied());
+            let mut step = self.pdf.exponential_function(id);
+            step.domain([0.0, 1.0]).c0(from).c1(to).n(1.0);
+            steps.push(id);
+        }
+        let inner = knots.iter().skip(1).take(steps.len().saturating_sub(1));
+        let id = self.next.bump();
+        let mut whole = self.pdf.stitching_function(id);
+        whole.domain([0.0, 1.0]).bounds(inner.map(|knot| knot.0));
+        whole.encode(steps.iter().flat_map(|_| [0.0, 1.0]));
+        whole.functions(steps);
+        id
+    }
+
+    /// Draws a shadow: PDF has no blur, so that its coverage is an image, which masks its colour. Restores the graphics state.
+    fn shadow(&mut self, shadow: &Shadow, [width, height]: [u32; 2]) {
+        let coverage = render::coverage(shadow, width as usize, height as usize).into_iter();
+        let levels = coverage.map(|covered| (255.0 * shadow.area().opacity * covered + 0.5) as u8);
+        let levels = deflated(&levels.collect::<Vec<_>>());
+        let id = self.next.bump();
+        let mut image = self.pdf.image_xobject(id, &levels);
+        image.filter(Filter::FlateDecode);
+        image.width(width as i32).height(height as i32);
+        image.color_space().device_gray();
+        image.bits_per_component(8).interpolate(true);
+        image.finish();
+        // An image fills a square whose y axis goes up.
+        let mut content = Content::new();
+        let [width, height] = self.page;
+        content.transform([width, 0.0, 0.0, -height, 0.0, height]);
+        content.x_object(Name(b"Image"));
+        self.mask(&content.finish(), |resources| {
+            resources.x_objects().pair(Name(b"Image"), id);
+        });
+        self.fill_page(shadow.area().color);
+        self.content.restore_state();
+    }
+
+    /// Masks all that follows by the luminosity of `content`, which uses the `resources`.
+    fn mask(&mut self, content: &[u8], resources: impl FnOnce(&mut Resources<'_>)) {
+        let content = deflated(content);
+        let id = self.next.bump();
+        let mut form = self.pdf.form_xobject(id, &content);
+        let [width, height] = self.page;
+        form.filter(Filter::FlateDecode);
+        form.bbox(Rect::new(0.0, 0.0, width, height));
+        form.group().transparency().color_space().device_gray();
+        resources(&mut form.resources());
+        form.finish();
+        let state = self.next.bump();
+        let mut graphics = self.pdf.ext_graphics(state);
+        graphics.soft_mask().subtype(MaskType::Luminosity).group(id);
+        let name = format!("Mask{}", self.masks.len());
+        self.content.set_parameters(Name(name.as_bytes()));
+        self.masks.push((name, state));
+    }
+
+    /// Draws the marks of a stage as a layer.
+    fn layer(&mut self, marks: &[Mark]) {
+        let id = self.next.bump();
+        let number = self.layers.len() + 1;
+        let (name, title) = (format!("L{number}"), format!("Layer {number}"));
+        let mut layer = self.pdf.indirect(id).dict();
+        layer.pair(Name(b"Type"), Name(b"OCG"));
+        layer.pair(Name(b"Name"), TextStr(&title));
+        layer.finish();
+        let content = &mut self.content;
+        let begun = content.begin_marked_content_with_properties(Name(b"OC"));
+        begun.properties_named(Name(name.as_bytes()));
+        self.layers.push((name, id));
+        marks.iter().for_each(|mark| self.mark(mark));
+        self.content.end_marked_content();
+    }
+
+    /// Draws a mark.
+    fn mark(&mut self, mark: &Mark) {
+        let opacity = quantum(mark.opacity());
+        self.opacities.insert(opacity);
+        let [r, g, b] = channels(mark.color().map(quantum));
+        let content = &mut self.content;
+        content.set_parameters(Name(format!("O{opacity}").as_bytes()));
+        match mark {
+            Mark::Stroke(stroke) => {
+                content.set_stroke_rgb(r, g, b);
+                content.set_line_width(short(2.0 * stroke.radius));
+                push(content, &stroke.path);
+                content.stroke();
+            }
+            Mark::Area(area) if let Some(band) = area.band() => {
+                content.set_stroke_rgb(r, g, b).save_state();
+                // Square ends and mitred corners, which do not reach farther than in SVG.
+                content.set_line_cap(LineCapStyle::ButtCap);
+                content.set_line_join(LineJoinStyle::MiterJoin);
+                content.set_miter_limit(4.0);
+                content.set_line_width(short(band.width));
+                push(content, &band.line);
+                content.stroke().restore_state();
+            }
+            Mark::Area(area) => {
+                content.set_fill_rgb(r, g, b).save_state();
+                area.rings.iter().for_each(|ring| push(content, ring));
+                if let Some(shade) = mark.shade() {
+                    content.clip_nonzero().end_path();
+                    self.shade(shade);
+                } else {
+                    content.fill_nonzero().restore_state();
+                }
+            }
+        }
+    }
+
+    /// The bytes of the file, whose page has so many points for a px.
+    fn finish(mut self, scale: f32) -> Vec<u8> {
+        let [root, pages, only, content] = [(); 4].map(|()| self.next.bump());
+        let data = deflated(&self.content.finish());
+        self.pdf.stream(content, &data).filter(Filter::FlateDecode);
+        self.pdf.pages(pages).kids([only]).count(1);
+        let mut page = self.pdf.page(only);
+        let [width, height] = self.page.map(|side| short(side * scale));
+        page.media_box(Rect::new(0.0, 0.0, width, height));
+        page.parent(pages).contents(content);
+        page.group().transparency().color_space().device_rgb();
+        let mut resources = page.resources();
+        let mut states = resources.ext_g_states();
+        for &opacity in &self.opacities {
+            let state = states.insert(Name(format!("O{opacity}").as_bytes()));
+            let mut state = state.start::<ExtGraphicsState<'_>>();
+            state.non_stroking_alpha(level(opacity));
+            state.stroking_alpha(level(opacity));
+        }
+        name(states, &self.masks);
+        name(resources.shadings(), &self.shadings);
+        name(resources.insert(Name(b"Properties")).dict(), &self.layers);
+        resources.finish();
+        page.finish();
+        let mut catalog = self.pdf.catalog(root);
+        catalog.pages(pages);
+        let layers = || self.layers.iter().map(|(_, id)| *id);
+        let mut optional = catalog.insert(Name(b"OCProperties")).dict();
+        optional.insert(Name(b"OCGs")).array().items(layers());
+        let mut shown = optional.insert(Name(b"D")).dict();
+        for list in [Name(b"Order"), Name(b"ON")] {
+            shown.insert(list).array().items(layers());
+        }
+        shown.finish();
+        optional.finish();
+        catalog.finish();
+        let mut bytes = self.pdf.finish();
+        bytes.push(b'\n');
+        bytes
+    }
+}
+
+/// Lists named objects among the resources of the page.
+fn name(mut resources: Dict<'_>, objects: &[(String, Ref)]) {
+    for (name, id) in objects {
+        resources.pair(Name(name.as_bytes()), *id);
     }
 }
 
 /// Appends the operators of a path.
-fn push_path(out: &mut String, path: &Path) {
-    let mut pieces = path.pieces().peekable();
-    let start = pieces.peek().map(|piece| piece.start());
-    let start = start.or_else(|| path.points().first().map(|dot| dot.at));
-    let at = |x: f32, y: f32| format!("{} {}", number(x.into()), number(y.into()));
-    if let Some(start) = start {
-        let _ = writeln!(out, "{} m", at(start.x, start.y));
-    }
+fn push(content: &mut Content, path: &Path) {
     if let [dot] = path.points() {
         // A subpath of no length with round caps is a disc.
-        let _ = writeln!(out, "{} l", at(dot.at.x, dot.at.y));
+        let [x, y] = [dot.at.x, dot.at.y].map(short);
+        content.move_to(x, y).line_to(x, y);
     }
-    for piece in pieces {
-        let _ = match piece {
-            Piece::Line([_, b]) => writeln!(out, "{} l", at(b.x, b.y)),
+    for (i, piece) in path.pieces().enumerate() {
+        if i == 0 {
+            let start = piece.start();
+            content.move_to(short(start.x), short(start.y));
+        }
+        match piece {
+            Piece::Line([_, b]) => content.line_to(short(b.x), short(b.y)),
             Piece::Curve([a, c, b]) => {
                 // A quadratic curve as a cubic one.
-                let third = |end: f32, knee: f32| end + (knee - end) * 2.0 / 3.0;
-                let first = at(third(a.x, c.x), third(a.y, c.y));
-                let second = at(third(b.x, c.x), third(b.y, c.y));
-                writeln!(out, "{first} {second} {} c", at(b.x, b.y))
+                let third = |end: f32, knee: f32| short(end + (knee - end) * 2.0 / 3.0);
+                let [x1, y1] = [third(a.x, c.x), third(a.y, c.y)];
+                let [x2, y2] = [third(b.x, c.x), third(b.y, c.y)];
+                content.cubic_to(x1, y1, x2, y2, short(b.x), short(b.y))
             }
         };
     }
     if path.is_closed() {
-        *out += "h\n";
+        content.close_path();
     }
-}
-
-/// The channels of a colour.
-fn rgb(color: Rgb) -> String {
-    channels(color.map(quantum))
 }
 
 /// Channels of 8 bits as PDF counts them.
-fn channels(color: [u8; 3]) -> String {
-    let parts = color.map(|c| number(f64::from(c) / 255.0));
-    parts.join(" ")
+fn channels(color: [u8; 3]) -> [f32; 3] {
+    color.map(level)
+}
+
+fn level(level: u8) -> f32 {
+    short(f32::from(level) / 255.0)
 }
 
 /// A number with at most 4 decimals.
-#[inline(never)]
-fn number(value: f64) -> String {
-    let text = format!("{value:.4}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" {
-        "0".into()
-    } else {
-        text.into()
-    }
+fn short(value: f32) -> f32 {
+    (f64::from(value) * 1e4).round() as f32 / 1e4
 }

@@ -1,30 +1,155 @@
-//! Finds pairs of marks that may share a pixel, so that their order matters.
+//! Precedence: which marks may share a pixel, so that their order matters, and what follows for reordering them.
 
 use super::grid::UNITS_PER_PX;
 use super::quantize::Written;
 use crate::math;
 
-/// The pairs of marks that may share a pixel and whose order `matters` where they do, the lower mark of each first. The
-/// pairs come in no useful order, but always in the same one.
-pub(crate) fn overlaps<'a>(
-    marks: impl IntoIterator<Item = &'a Written>,
-    matters: impl Fn(&Written, &Written) -> bool,
-) -> Vec<[usize; 2]> {
-    let marks: Vec<&Written> = marks.into_iter().collect();
-    let swept: Vec<Swept> = marks.iter().copied().map(Swept::new).collect();
-    // A sweep from left to right compares a mark with those alone that reach as far right as its left end.
-    let mut from_left: Vec<usize> = (0..marks.len()).collect();
-    from_left.sort_by_key(|&i| swept[i].span());
-    let (mut open, mut pairs): (Vec<usize>, Vec<_>) = (Vec::new(), Vec::new());
-    for i in from_left {
-        open.retain(|&k| swept[k].span()[1] >= swept[i].span()[0]);
-        let partners = open
-            .iter()
-            .filter(|&&k| matters(marks[i], marks[k]) && swept[i].meets(&swept[k]));
-        pairs.extend(partners.map(|&k| [i.min(k), i.max(k)]));
-        open.push(i);
+/// Precedence of marks: which ones have to be drawn before which.
+#[derive(Debug, Clone)]
+pub(crate) struct Precedence {
+    /// The later marks that have to stay above each mark, in order.
+    above: Vec<Vec<usize>>,
+    /// The earlier marks that have to stay below each mark, in order.
+    below: Vec<Vec<usize>>,
+}
+
+impl Precedence {
+    /// Precedence of marks of given colours: two that may share a pixel keep their order if they differ in colour or if one has a
+    /// gradient. Layers of one colour give the same result in either order.
+    pub(crate) fn of<'a>(marks: impl IntoIterator<Item = &'a Written>) -> Self {
+        let matters =
+            |a: &Written, b: &Written| a.color != b.color || a.shade.is_some() || b.shade.is_some();
+        Self::where_matters(marks.into_iter().map(Some), matters)
     }
-    pairs
+
+    /// Precedence of marks of any colours: all that may share a pixel keep their order. `None` is a mark that leaves no ink.
+    pub(crate) fn of_shapes<'a>(marks: impl IntoIterator<Item = Option<&'a Written>>) -> Self {
+        Self::where_matters(marks, |_, _| true)
+    }
+
+    fn where_matters<'a>(
+        marks: impl IntoIterator<Item = Option<&'a Written>>,
+        matters: impl Fn(&Written, &Written) -> bool,
+    ) -> Self {
+        let marks: Vec<Option<&Written>> = marks.into_iter().collect();
+        let none = vec![Vec::new(); marks.len()];
+        let (mut above, mut below) = (none.clone(), none);
+        let inked = marks.into_iter().enumerate();
+        let inked = inked.filter_map(|(i, mark)| mark.map(|mark| (i, mark, Swept::new(mark))));
+        // A sweep from left to right compares a mark with those alone that reach as far right as its left end.
+        let mut from_left: Vec<_> = inked.collect();
+        from_left.sort_by_key(|(_, _, swept)| swept.span());
+        let mut open: Vec<&(usize, &Written, Swept)> = Vec::new();
+        for next in &from_left {
+            let (i, mark, swept) = next;
+            open.retain(|(_, _, other)| other.span()[1] >= swept.span()[0]);
+            for (k, other, other_swept) in &open {
+                if matters(mark, other) && swept.meets(other_swept) {
+                    above[*i.min(k)].push(*i.max(k));
+                    below[*i.max(k)].push(*i.min(k));
+                }
+            }
+            open.push(next);
+        }
+        let lists = above.iter_mut().chain(&mut below);
+        lists.for_each(|list| list.sort_unstable());
+        Self { above, below }
+    }
+
+    /// The marks that have to come after this one and meet it, in order.
+    pub(crate) fn above(&self, mark: usize) -> &[usize] {
+        &self.above[mark]
+    }
+
+    /// The marks that have to come before this one and meet it, in order.
+    pub(crate) fn below(&self, mark: usize) -> &[usize] {
+        &self.below[mark]
+    }
+
+    /// The order in which marks become free to be drawn.
+    pub(crate) fn waiting(&self) -> Waiting<'_> {
+        Waiting {
+            precedence: self,
+            below: self.below.iter().map(Vec::len).collect(),
+        }
+    }
+}
+
+/// Marks that wait until all below them are drawn.
+#[derive(Debug)]
+pub(crate) struct Waiting<'a> {
+    precedence: &'a Precedence,
+    /// For each mark, the number of marks below it that are not drawn yet.
+    below: Vec<usize>,
+}
+
+impl Waiting<'_> {
+    /// The marks that may be drawn first.
+    pub(crate) fn free(&self) -> Vec<usize> {
+        let marks = 0..self.below.len();
+        marks.filter(|&mark| self.below[mark] == 0).collect()
+    }
+
+    /// Draws a mark, and returns those that become free by it.
+    pub(crate) fn draw(&mut self, mark: usize) -> Vec<usize> {
+        let above = self.precedence.above(mark).iter().copied();
+        let freed = above.filter(|&above| {
+            self.below[above] -= 1;
+            self.below[above] == 0
+        });
+        freed.collect()
+    }
+}
+
+/// Precedence among bundles of marks, each drawn one directly after the other. A bundle goes by the number of one of its marks.
+#[derive(Debug, Clone)]
+pub(crate) struct Bundles {
+    /// For each bundle, those that have to come later at some time: row by row, closed under transitivity.
+    later: Vec<Vec<bool>>,
+}
+
+impl Bundles {
+    /// A bundle for each mark.
+    pub(crate) fn new(precedence: &Precedence) -> Self {
+        let count = precedence.above.len();
+        let mut later = vec![vec![false; count]; count];
+        // From the top down, all that comes after an upper mark is known when the lower one is reached.
+        for lower in (0..count).rev() {
+            let mut row = vec![false; count];
+            for &upper in precedence.above(lower) {
+                unite(&mut row, &later[upper]);
+                row[upper] = true;
+            }
+            later[lower] = row;
+        }
+        Self { later }
+    }
+
+    /// Merges bundle `k` into `i` unless a third one has to be drawn between the two; true if they are one now.
+    pub(crate) fn try_join(&mut self, i: usize, k: usize) -> bool {
+        let is_parted = |from: usize, to: usize| {
+            let mut between = self.later[from].iter().zip(&self.later);
+            between.any(|(&is_after, row)| is_after && row[to])
+        };
+        if is_parted(i, k) || is_parted(k, i) {
+            return false;
+        }
+        let mut joined = std::mem::take(&mut self.later[k]);
+        unite(&mut joined, &self.later[i]);
+        (joined[i], joined[k]) = (false, false);
+        for row in self.later.iter_mut().filter(|row| !row.is_empty()) {
+            if row[i] || row[k] {
+                unite(row, &joined);
+                (row[i], row[k]) = (true, false);
+            }
+        }
+        self.later[i] = joined;
+        true
+    }
+}
+
+fn unite(row: &mut [bool], other: &[bool]) {
+    row.iter_mut().zip(other).for_each(|(a, b)| *a |= b);
 }
 
 /// Where a mark may leave ink: what is needed to compare it with many others.

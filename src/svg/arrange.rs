@@ -12,7 +12,7 @@ use super::objects;
 use super::options::{Form, Group, Order, WriteOptions};
 use super::path::{self, Kind};
 use super::tour;
-use crate::scene::{Scene, Stage, Written, WrittenPath, overlaps};
+use crate::scene::{Precedence, Scene, Stage, Written, WrittenPath};
 
 /// The layers of the file, none of them empty.
 pub(super) fn layers(scene: &Scene, options: &WriteOptions) -> Vec<Layer> {
@@ -155,34 +155,26 @@ fn order<R: Ord, K: Ord>(
     run: impl Fn(&Written) -> R,
     group_key: impl Fn(&Written) -> K,
 ) -> Vec<usize> {
-    let above = above(strokes);
-    let mut below = vec![0_usize; strokes.len()];
-    above.iter().flatten().for_each(|&i| below[i] += 1);
+    let precedence = Precedence::of(strokes);
+    let mut waiting = precedence.waiting();
     let mut runs: BTreeMap<R, Run<'_>> = BTreeMap::new();
-    for (i, stroke) in strokes.iter().enumerate() {
-        let run = runs.entry(run(stroke)).or_default();
-        run.left += 1;
-        if below[i] == 0 {
-            run.ready.insert((stroke, i));
-        }
+    for stroke in strokes {
+        runs.entry(run(stroke)).or_default().left += 1;
     }
+    let mut free = waiting.free();
     let mut order: Vec<usize> = Vec::with_capacity(strokes.len());
-    while let Some(next) = take(
-        &mut runs,
-        order.last().map(|&i| &strokes[i]),
-        &run,
-        &group_key,
-    ) {
-        order.push(next);
-        for &i in &above[next] {
-            below[i] -= 1;
-            if below[i] == 0 {
-                let run = runs.entry(run(&strokes[i])).or_default();
-                run.ready.insert((&strokes[i], i));
-            }
+    loop {
+        for i in free {
+            let run = runs.entry(run(&strokes[i])).or_default();
+            run.ready.insert((&strokes[i], i));
         }
+        let last = order.last().map(|&i| &strokes[i]);
+        let Some(next) = take(&mut runs, last, &run, &group_key) else {
+            return order;
+        };
+        order.push(next);
+        free = waiting.draw(next);
     }
-    order
 }
 
 /// The strokes of one style.
@@ -231,17 +223,6 @@ fn begin<'a, R, K: Ord>(
         (is_whole(run), group == last, relatives, run.ready.len())
     };
     ready().max_by_key(rank).map(|(_, first)| first)
-}
-
-/// For each stroke, the later ones that must stay above it.
-fn above(strokes: &[Written]) -> Vec<Vec<usize>> {
-    let mut above = vec![Vec::new(); strokes.len()];
-    let may_not_swap =
-        |a: &Written, b: &Written| a.color != b.color || a.shade.is_some() || b.shade.is_some();
-    for [lower, upper] in overlaps(strokes, may_not_swap) {
-        above[lower].push(upper);
-    }
-    above
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Layers of things: an area with what lies on it, as a face with its eyes, and marks of one colour that touch.
 
 use super::layer::{Layer, LayerKind};
-use crate::scene::{UNITS_PER_PX, Written, overlaps};
+use crate::scene::{Precedence, UNITS_PER_PX, Written};
 
 /// An area that has this share of the page's sides is the page, and nobody's thing. A guess.
 const PAGE: f64 = 0.9;
@@ -14,20 +14,17 @@ type Thing = Vec<usize>;
 /// A mark belongs to the topmost thing that it meets, if that is an area which encloses it or has a mark of its colour that it
 /// touches. So it changes places with no mark that it meets, and the picture stays as it is.
 pub(super) fn by_object(marks: &[Written], page: [u32; 2]) -> Vec<Layer> {
-    // The lower marks that each one meets: it may go below none of them.
-    let mut below = vec![Vec::new(); marks.len()];
-    for [lower, upper] in overlaps(marks, |_, _| true) {
-        below[upper].push(lower);
-    }
+    let precedence = Precedence::of_shapes(marks.iter().map(Some));
     let mut things: Vec<Thing> = Vec::new();
     let mut thing_of: Vec<usize> = Vec::with_capacity(marks.len());
     for (i, mark) in marks.iter().enumerate() {
         // Past the topmost thing that it meets it would change the picture.
-        let topmost = below[i].iter().map(|&k| thing_of[k]).max();
+        let below = precedence.below(i);
+        let topmost = below.iter().map(|&k| thing_of[k]).max();
         let belongs = topmost.filter(|&thing| {
             let root = &marks[things[thing][0]];
             let touches = |k: &&usize| thing_of[**k] == thing && is_alike(&marks[**k], mark);
-            !is_page(root, page) && (root.encloses(mark) || below[i].iter().any(|k| touches(&k)))
+            !is_page(root, page) && (root.encloses(mark) || below.iter().any(|k| touches(&k)))
         });
         let thing = belongs.unwrap_or_else(|| {
             things.push(Thing::new());

@@ -76,8 +76,6 @@ const CHORD: f64 = 1e-3;
 /// Length of the paths of a mark, px.
 fn drawn(stroke: &Written) -> f64 {
     let segments = stroke.segments(CHORD);
-    segments
-        .iter()
-        .map(|&[a, b]| tour::dist(tour::spot(a), tour::spot(b)))
-        .sum()
+    let lengths = segments.iter().map(|&[a, b]| tour::dist(a, b));
+    lengths.sum()
 }

@@ -20,7 +20,7 @@ use crate::report::plot::captioned;
 use strokefit::Result;
 use strokefit::coverage::{Coverage, CoverageSchedule};
 use strokefit::fit::{Execution, Objective};
-use strokefit::image::{Animation, AnimationFormat, Image};
+use strokefit::image::Image;
 use strokefit::loss::Loss;
 use strokefit::optim::{Adam, AdamParams};
 use strokefit::render::{
@@ -319,8 +319,8 @@ const CAPTION: usize = 380;
 /// The pictures so far.
 struct Recording {
     table: Table,
-    plain: Animation,
-    legend: Animation,
+    plain: Vec<Image>,
+    legend: Vec<Image>,
 }
 
 impl Recording {
@@ -337,21 +337,26 @@ impl Recording {
         ];
         Self {
             table: Table::new(&head),
-            plain: Animation::new(AnimationFormat::Gif),
-            legend: Animation::new(AnimationFormat::Gif),
+            plain: Vec::new(),
+            legend: Vec::new(),
         }
     }
 
     fn push(&mut self, picture: &Image, row: &Row) -> Result<()> {
         self.table.row(row.cells());
-        self.plain.push(picture, FRAME_MS)?;
+        self.plain.push(picture.clone());
         self.legend
-            .push(&captioned(picture, &row.legend(), CAPTION)?, FRAME_MS)
+            .push(captioned(picture, &row.legend(), CAPTION)?);
+        Ok(())
     }
 
     fn finish(self, output: &mut ResultFolder<'_>) -> Result<()> {
-        output.bytes("article.gif", &self.plain.finish()?)?;
-        output.bytes("article-legend.gif", &self.legend.finish()?)?;
+        for (name, frames) in [
+            ("article.gif", self.plain),
+            ("article-legend.gif", self.legend),
+        ] {
+            output.animation(name, FRAME_MS, frames.into_iter().map(Ok))?;
+        }
         output.text("article.csv", &self.table.csv())
     }
 }

@@ -4,7 +4,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use strokefit::image::{Animation, AnimationFormat, Image};
+use strokefit::image::{AnimationFormat, Image, animated};
 use strokefit::{Error, ErrorKind, Result};
 
 /// Progress of an experiment.
@@ -71,11 +71,9 @@ impl<'a> ResultFolder<'a> {
         frame_ms: u32,
         frames: impl IntoIterator<Item = Result<Image>>,
     ) -> Result<()> {
-        let mut animation = Animation::new(AnimationFormat::Gif);
-        for frame in frames {
-            animation.push(&frame?, frame_ms)?;
-        }
-        self.bytes(name, &animation.finish()?)
+        let frames = frames.into_iter().map(|frame| Ok((frame?, frame_ms)));
+        let frames: Vec<_> = frames.collect();
+        self.bytes(name, &animated(AnimationFormat::Gif, frames.into_iter())?)
     }
 
     /// Writes a file.

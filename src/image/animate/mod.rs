@@ -9,8 +9,6 @@ mod gif;
 mod patch;
 mod webp;
 
-use ::image::ImageError;
-
 use super::Image;
 use crate::error::{Error, ErrorKind, Result};
 use patch::Patch;
@@ -45,98 +43,85 @@ impl AnimationFormat {
     }
 }
 
-/// Combines patches to a file.
-trait Encoder {
-    /// Appends a frame that is shown for `ms` milliseconds.
-    fn push(&mut self, patch: &Patch, ms: u32) -> Result<()>;
-
-    /// Returns the complete file.
-    fn finish(self: Box<Self>) -> Result<Vec<u8>>;
-}
-
-/// An unfinished animation. It repeats for ever.
-pub struct Animation {
+/// A file that shows these frames, each for its milliseconds, which GIF rounds to hundredths of a second. It repeats for
+/// ever. The alpha of frames is ignored.
+///
+/// # Errors
+/// The first error of a frame; [`ErrorKind::Picture`] when there is none, when a side is longer than the format allows, or
+/// when a frame differs in size from the first.
+pub fn animated(
     format: AnimationFormat,
-    /// Created with the size of the first frame.
-    encoder: Option<Box<dyn Encoder + Send>>,
-    /// The previous frame.
-    shown: Option<Image>,
-}
-
-impl Animation {
-    /// An animation without frames.
-    pub fn new(format: AnimationFormat) -> Self {
-        Self {
-            format,
-            encoder: None,
-            shown: None,
-        }
-    }
-
-    /// Appends a frame that is shown for `ms` milliseconds, which GIF rounds to hundredths of a second.
-    /// Its alpha is ignored.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Picture`] when a side is longer than the format allows, or the frame differs in size
-    /// from the first.
-    pub fn push(&mut self, image: &Image, ms: u32) -> Result<()> {
-        self.check(image)?;
-        let patch = Patch::between(self.shown.as_ref(), image);
-        let encoder = match &mut self.encoder {
-            Some(encoder) => encoder,
-            None => self.encoder.insert(start(self.format, image)?),
-        };
-        encoder.push(&patch, ms)?;
-        self.shown = Some(image.clone());
-        Ok(())
-    }
-
-    /// The file.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Picture`] when there is no frame.
-    pub fn finish(self) -> Result<Vec<u8>> {
-        let Some(encoder) = self.encoder else {
-            let message = "the animation has no frames: push at least one";
-            return Err(Error::new(ErrorKind::Picture, message));
-        };
-        encoder.finish()
-    }
-
-    fn check(&self, image: &Image) -> Result<()> {
-        let (width, height) = (image.width(), image.height());
-        let (name, most) = (self.format.name(), self.format.max_side());
-        let refused = |message| Err(Error::new(ErrorKind::Picture, message));
-        if width.max(height) > most {
-            return refused(format!(
-                "an animated {name} of {width}×{height} px is not possible: at most {most} px per side"
-            ));
-        }
-        match &self.shown {
-            Some(first) if (first.width(), first.height()) != (width, height) => refused(format!(
-                "a frame has {width}×{height} px and the animation {}×{}: make them equal",
-                first.width(),
-                first.height()
-            )),
-            _ => Ok(()),
-        }
+    mut frames: impl ExactSizeIterator<Item = Result<(Image, u32)>>,
+) -> Result<Vec<u8>> {
+    let count = frames.len() as u32;
+    let Some(first) = frames.next() else {
+        let message = "the animation has no frames: give at least one";
+        return Err(Error::new(ErrorKind::Picture, message));
+    };
+    let first = first?;
+    let [width, height] = [first.0.width(), first.0.height()];
+    check(format, [width, height])?;
+    let mut shown: Option<Image> = None;
+    let mut patches = std::iter::once(Ok(first)).chain(frames).map(move |frame| {
+        let (image, ms) = frame?;
+        is_equal([width, height], &image)?;
+        let patch = Patch::between(shown.as_ref(), &image, ms);
+        shown = Some(image);
+        Ok(patch)
+    });
+    let mut patches = Patches {
+        // The sides are checked.
+        width: width as u32,
+        height: height as u32,
+        count,
+        patches: &mut patches,
+    };
+    match format {
+        AnimationFormat::Gif => gif::encoded(&mut patches),
+        AnimationFormat::Apng => apng::encoded(&mut patches),
+        AnimationFormat::Webp => webp::encoded(&mut patches),
     }
 }
 
-fn start(format: AnimationFormat, first: &Image) -> Result<Box<dyn Encoder + Send>> {
-    // The sides were checked before.
-    let (width, height) = (first.width() as u32, first.height() as u32);
-    Ok(match format {
-        AnimationFormat::Gif => Box::new(gif::Gif::new(width, height)?),
-        AnimationFormat::Apng => Box::new(apng::Apng::new(width, height)),
-        AnimationFormat::Webp => Box::new(webp::Webp::new(width, height)),
-    })
+/// The patches of an animation, the first of which is a whole frame.
+struct Patches<'a> {
+    width: u32,
+    height: u32,
+    count: u32,
+    patches: &'a mut dyn Iterator<Item = Result<Patch>>,
 }
 
-/// A frame that cannot be encoded.
-fn unencoded(name: &str, cause: ImageError) -> Error {
-    let message = format!("cannot encode a frame as {name}: {cause}");
-    Error::new(ErrorKind::Picture, message).caused_by(cause)
+impl Iterator for Patches<'_> {
+    type Item = Result<Patch>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        self.patches.next()
+    }
+}
+
+/// Refuses a size that the format does not allow.
+fn check(format: AnimationFormat, [width, height]: [usize; 2]) -> Result<()> {
+    let (name, most) = (format.name(), format.max_side());
+    if width.max(height) <= most {
+        return Ok(());
+    }
+    let message = format!(
+        "an animated {name} of {width}×{height} px is not possible: at most {most} px per side"
+    );
+    Err(Error::new(ErrorKind::Picture, message))
+}
+
+/// Refuses a frame that is not of the size of the first.
+fn is_equal(first: [usize; 2], frame: &Image) -> Result<()> {
+    let size = [frame.width(), frame.height()];
+    if size == first {
+        return Ok(());
+    }
+    let ([width, height], [first_width, first_height]) = (size, first);
+    let message = format!(
+        "a frame has {width}×{height} px and the animation {first_width}×{first_height}: make them equal"
+    );
+    Err(Error::new(ErrorKind::Picture, message))
 }
 
 #[cfg(test)]
@@ -172,11 +157,8 @@ mod tests {
     }
 
     fn encoded(format: AnimationFormat, frames: &[Image]) -> Vec<u8> {
-        let mut animation = Animation::new(format);
-        for frame in frames {
-            animation.push(frame, 80).unwrap();
-        }
-        animation.finish().unwrap()
+        let frames = frames.iter().map(|frame| Ok((frame.clone(), 80)));
+        animated(format, frames).unwrap()
     }
 
     fn decoded(format: AnimationFormat, bytes: &[u8]) -> Vec<Frame> {
@@ -249,7 +231,7 @@ mod tests {
             (AnimationFormat::Webp, 16_385),
         ] {
             let wide = Image::filled(side, 1, [0.0; 3]).unwrap();
-            let error = Animation::new(format).push(&wide, 40).unwrap_err();
+            let error = animated(format, [Ok((wide, 40))].into_iter()).unwrap_err();
             assert_eq!(error.kind(), ErrorKind::Picture);
             assert!(error.to_string().contains(&side.to_string()), "{error}");
         }
@@ -257,16 +239,15 @@ mod tests {
 
     #[test]
     fn frames_of_two_sizes_are_refused() {
-        let mut animation = Animation::new(AnimationFormat::Apng);
-        animation
-            .push(&Image::filled(3, 2, [0.0; 3]).unwrap(), 40)
-            .unwrap();
-        let other = Image::filled(2, 3, [0.0; 3]).unwrap();
-        assert!(animation.push(&other, 40).is_err());
+        let frames = [[3, 2], [2, 3]].map(|[width, height]| {
+            let image = Image::filled(width, height, [0.0; 3])?;
+            Ok((image, 40))
+        });
+        assert!(animated(AnimationFormat::Apng, frames.into_iter()).is_err());
     }
 
     #[test]
     fn no_frames_make_no_file() {
-        assert!(Animation::new(AnimationFormat::Gif).finish().is_err());
+        assert!(animated(AnimationFormat::Gif, [].into_iter()).is_err());
     }
 }

@@ -11,6 +11,8 @@ pub(super) struct Patch {
     pub(super) y: u32,
     pub(super) width: u32,
     pub(super) height: u32,
+    /// Time for which it is shown, ms.
+    pub(super) ms: u32,
     /// `width·height` pixels row by row, not premultiplied.
     pub(super) rgba: Vec<u8>,
 }
@@ -21,12 +23,12 @@ type Rgb8 = [u8; 3];
 impl Patch {
     /// The patch that turns `before` into `image`, of the same size; without `before`, the whole image. A
     /// frame that equals the previous one is a single transparent pixel.
-    pub(super) fn between(before: Option<&Image>, image: &Image) -> Self {
+    pub(super) fn between(before: Option<&Image>, image: &Image, ms: u32) -> Self {
         let (width, height) = (image.width(), image.height());
         let after = pixels(image);
         let Some(before) = before.map(pixels) else {
             let opaque = after.iter().flat_map(|&color| opaque(color)).collect();
-            return Self::new([0, 0, width, height], opaque);
+            return Self::new([0, 0, width, height], opaque, ms);
         };
         let differs = |x: usize, y: usize| before[y * width + x] != after[y * width + x];
         let [x, y, right, bottom] = bounds(width, height, differs).unwrap_or([0, 0, 1, 1]);
@@ -36,16 +38,17 @@ impl Patch {
             let pixel = differs(x, y).then(|| opaque(after[y * width + x]));
             rgba.extend(pixel.unwrap_or_default());
         }
-        Self::new([x, y, right - x, bottom - y], rgba)
+        Self::new([x, y, right - x, bottom - y], rgba, ms)
     }
 
-    fn new(place: [usize; 4], rgba: Vec<u8>) -> Self {
+    fn new(place: [usize; 4], rgba: Vec<u8>, ms: u32) -> Self {
         let [x, y, width, height] = place.map(|n| n as u32);
         Self {
             x,
             y,
             width,
             height,
+            ms,
             rgba,
         }
     }
@@ -94,7 +97,7 @@ mod tests {
         let before = grey(&[0.0; 20], 5);
         let mut levels = [0.0; 20];
         (levels[13], levels[19]) = (1.0, 1.0);
-        let patch = Patch::between(Some(&before), &grey(&levels, 5));
+        let patch = Patch::between(Some(&before), &grey(&levels, 5), 40);
         assert_eq!([patch.x, patch.y, patch.width, patch.height], [2, 2, 3, 2]);
         let alphas: Vec<u8> = patch.rgba.chunks(4).map(|p| p[3]).collect();
         assert_eq!(alphas, [0, 255, 0, 0, 0, 255]);
@@ -103,7 +106,7 @@ mod tests {
     #[test]
     fn nothing_new_is_one_clear_pixel() {
         let image = grey(&[0.5; 6], 3);
-        let patch = Patch::between(Some(&image), &image);
+        let patch = Patch::between(Some(&image), &image, 40);
         assert_eq!((patch.width, patch.height), (1, 1));
         assert_eq!(patch.rgba, [0; 4]);
     }

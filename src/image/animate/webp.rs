@@ -2,9 +2,9 @@
 //! (RIFF: all numbers little-endian, chunks padded to even lengths).
 
 use ::image::codecs::webp::WebPEncoder;
-use ::image::{ExtendedColorType, ImageEncoder};
+use ::image::{ExtendedColorType, ImageError};
 
-use super::{Encoder, Patch, unencoded};
+use super::{Patch, Patches};
 use crate::error::{Error, ErrorKind, Result};
 
 /// Flags of the extended header: has alpha, has an animation.
@@ -14,68 +14,37 @@ const HEAD: usize = 12;
 /// Longest time of a frame, ms.
 const MAX_MS: u32 = (1 << 24) - 1;
 
-/// An unfinished WebP.
-pub(super) struct Webp {
-    width: u32,
-    height: u32,
-    /// Chunks of all frames.
-    chunks: Vec<u8>,
-}
-
-impl Webp {
-    pub(super) fn new(width: u32, height: u32) -> Self {
-        Self {
-            width,
-            height,
-            chunks: Vec::new(),
-        }
-    }
-}
-
-impl Encoder for Webp {
-    fn push(&mut self, patch: &Patch, ms: u32) -> Result<()> {
-        let mut frame = Vec::new();
+/// A file of patches, each composited over the previous ones.
+pub(super) fn encoded(patches: &mut Patches<'_>) -> Result<Vec<u8>> {
+    let mut body = b"WEBP".to_vec();
+    let mut header = vec![ALPHA_AND_ANIMATION, 0, 0, 0];
+    header.extend(three_bytes(patches.width - 1));
+    header.extend(three_bytes(patches.height - 1));
+    push_chunk(&mut body, b"VP8X", &header);
+    // White background; 0 plays mean an endless loop.
+    push_chunk(&mut body, b"ANIM", &[255, 255, 255, 255, 0, 0]);
+    for patch in patches {
+        let patch = patch?;
         let numbers = [patch.x / 2, patch.y / 2, patch.width - 1, patch.height - 1];
-        for number in numbers.into_iter().chain([ms.min(MAX_MS)]) {
-            frame.extend(three_bytes(number));
-        }
+        let numbers = numbers.into_iter().chain([patch.ms.min(MAX_MS)]);
+        let mut frame: Vec<u8> = numbers.flat_map(three_bytes).collect();
         // Composited over the previous frame, and kept.
         frame.push(0);
-        frame.extend(&still(patch)?[HEAD..]);
-        push_chunk(&mut self.chunks, b"ANMF", &frame);
-        Ok(())
+        frame.extend(still(&patch)?.get(HEAD..).unwrap_or_default());
+        push_chunk(&mut body, b"ANMF", &frame);
     }
-
-    fn finish(self: Box<Self>) -> Result<Vec<u8>> {
-        let mut body = b"WEBP".to_vec();
-        let mut header = vec![ALPHA_AND_ANIMATION, 0, 0, 0];
-        header.extend(three_bytes(self.width - 1));
-        header.extend(three_bytes(self.height - 1));
-        push_chunk(&mut body, b"VP8X", &header);
-        // White background; 0 plays mean an endless loop.
-        push_chunk(&mut body, b"ANIM", &[255, 255, 255, 255, 0, 0]);
-        body.extend(self.chunks);
-        let mut file = Vec::with_capacity(body.len() + 8);
-        push_chunk(&mut file, b"RIFF", &body);
-        Ok(file)
-    }
+    let mut file = Vec::with_capacity(body.len() + 8);
+    push_chunk(&mut file, b"RIFF", &body);
+    Ok(file)
 }
 
 /// The patch as a file of its own: a head and one chunk of lossless data.
 fn still(patch: &Patch) -> Result<Vec<u8>> {
     let mut webp = Vec::new();
+    let kind = ExtendedColorType::Rgba8;
     WebPEncoder::new_lossless(&mut webp)
-        .write_image(
-            &patch.rgba,
-            patch.width,
-            patch.height,
-            ExtendedColorType::Rgba8,
-        )
-        .map_err(|cause| unencoded("WebP", cause))?;
-    if webp.get(HEAD..HEAD + 4) != Some(b"VP8L") {
-        let message = "cannot encode a frame as WebP: the encoder gave no lossless data";
-        return Err(Error::new(ErrorKind::Picture, message));
-    }
+        .encode(&patch.rgba, patch.width, patch.height, kind)
+        .map_err(unencoded)?;
     Ok(webp)
 }
 
@@ -91,4 +60,9 @@ fn push_chunk(file: &mut Vec<u8>, kind: &[u8; 4], content: &[u8]) {
     if content.len() % 2 == 1 {
         file.push(0);
     }
+}
+
+fn unencoded(cause: ImageError) -> Error {
+    let message = format!("cannot encode a frame as WebP: {cause}");
+    Error::new(ErrorKind::Picture, message).caused_by(cause)
 }

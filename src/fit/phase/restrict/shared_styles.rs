@@ -16,7 +16,7 @@ use crate::fit::drawing::Drawing;
 use crate::fit::recipe::Recipe;
 use crate::fit::run::session::Session;
 use crate::render::{StrokeRef, Strokes};
-use crate::scene::{Rgb, Written, color, overlaps, quantum};
+use crate::scene::{Bundles, Precedence, Rgb, Written, color, quantum};
 
 /// Makes the strokes of each stage share pens if the file has the smallest form, unless they are lines. Strokes
 /// keep the colours of a palette.
@@ -165,99 +165,19 @@ fn share(
         reach: usize::MAX,
         grid,
     };
-    let mut order = Order::new(strokes);
-    others.extend(merge(opaque, rule, |i, k| order.try_join(i, k)));
+    let mut bundles = bundles(strokes);
+    others.extend(merge(opaque, rule, |i, k| bundles.try_join(i, k)));
     others
 }
 
-/// Which strokes have to be drawn before which; those of one pen are drawn together.
-struct Order {
-    /// For each stroke, or the first stroke of each pen, a bit for each that has to come later.
-    later: Vec<Vec<u64>>,
-    /// For each, a bit for each that has to come earlier.
-    earlier: Vec<Vec<u64>>,
-}
-
-impl Order {
-    fn new(strokes: &Strokes) -> Self {
-        let count = strokes.len();
-        // Which strokes meet does not depend on the decimals.
-        let written = strokes.iter().enumerate();
-        let written = written
-            .filter_map(|(i, stroke)| Some((i, Written::anywhere(&stroke.to_mark(), 2).ok()?)));
-        let (ids, written): (Vec<usize>, Vec<Written>) = written.unzip();
-        let mut pairs = overlaps(&written, |_, _| true);
-        pairs.sort_unstable();
-        let none = vec![0_u64; count.div_ceil(64)];
-        let mut order = Self {
-            later: vec![none.clone(); count],
-            earlier: vec![none; count],
-        };
-        // From the top down, all that comes after the upper stroke of a pair is known when the pair is met.
-        for [i, k] in pairs.into_iter().rev().map(|pair| pair.map(|at| ids[at])) {
-            let beyond = order.later[k].clone();
-            unite(&mut order.later[i], &beyond);
-            set(&mut order.later[i], k);
-        }
-        for i in 0..count {
-            for k in (i + 1..count).filter(|&k| is_set(&order.later[i], k)) {
-                set(&mut order.earlier[k], i);
-            }
-        }
-        order
-    }
-
-    /// True if no stroke has to be drawn between the two.
-    fn may_join(&self, i: usize, k: usize) -> bool {
-        let between = |from: usize, to: usize| {
-            let bits = self.later[from].iter().zip(&self.earlier[to]);
-            bits.fold(0, |any, (later, earlier)| any | (later & earlier)) != 0
-        };
-        !between(i, k) && !between(k, i)
-    }
-
-    /// Merges `k` into `i` if no stroke has to be drawn between the two, and returns whether that is so.
-    fn try_join(&mut self, i: usize, k: usize) -> bool {
-        if !self.may_join(i, k) {
-            return false;
-        }
-        for of in [&mut self.later, &mut self.earlier] {
-            let other = of[k].clone();
-            unite(&mut of[i], &other);
-            clear(&mut of[i], i);
-            clear(&mut of[i], k);
-        }
-        let (later, earlier) = (self.later[i].clone(), self.earlier[i].clone());
-        for j in 0..self.later.len() {
-            clear(&mut self.later[j], k);
-            clear(&mut self.earlier[j], k);
-            if is_set(&earlier, j) {
-                unite(&mut self.later[j], &later);
-                set(&mut self.later[j], i);
-            }
-            if is_set(&later, j) {
-                unite(&mut self.earlier[j], &earlier);
-                set(&mut self.earlier[j], i);
-            }
-        }
-        true
-    }
-}
-
-fn set(bits: &mut [u64], i: usize) {
-    bits[i / 64] |= 1 << (i % 64);
-}
-
-fn clear(bits: &mut [u64], i: usize) {
-    bits[i / 64] &= !(1 << (i % 64));
-}
-
-fn is_set(bits: &[u64], i: usize) -> bool {
-    bits[i / 64] >> (i % 64) & 1 == 1
-}
-
-fn unite(bits: &mut [u64], others: &[u64]) {
-    bits.iter_mut().zip(others).for_each(|(a, b)| *a |= b);
+/// The strokes, each a bundle of its own.
+fn bundles(strokes: &Strokes) -> Bundles {
+    // Which strokes meet does not depend on the decimals.
+    let written = strokes
+        .iter()
+        .map(|stroke| Written::anywhere(&stroke.to_mark(), 2).ok());
+    let written: Vec<Option<Written>> = written.collect();
+    Bundles::new(&Precedence::of_shapes(written.iter().map(Option::as_ref)))
 }
 
 #[cfg(test)]

@@ -16,7 +16,7 @@ use crate::fit::recipe::Recoloring;
 use crate::fit::run::session::Session;
 use crate::metrics::psnr_db;
 use crate::render::StrokeRef;
-use crate::scene::{Written, overlaps, quantum};
+use crate::scene::{Precedence, Written, quantum};
 
 /// An 8-bit colour.
 type Color = [u8; 3];
@@ -81,13 +81,11 @@ fn order(drawing: &mut Drawing, coloring: Recoloring, precision: u8) -> Vec<Colo
 fn stacked(strokes: &[(Written, f32)], window: usize) -> Vec<Color> {
     let mut below: BTreeMap<(Color, Color), f32> = BTreeMap::new();
     for window in strokes.chunks(window) {
-        let mut pairs = overlaps(window.iter().map(|(s, _)| s), |a, b| a.color != b.color);
-        // Sums depend on their order.
-        pairs.sort_unstable();
-        for [(lower, weight), (upper, other)] in
-            pairs.into_iter().map(|pair| pair.map(|i| &window[i]))
-        {
-            *below.entry((lower.color, upper.color)).or_default() += weight.min(*other);
+        let precedence = Precedence::of(window.iter().map(|(stroke, _)| stroke));
+        for (i, (lower, weight)) in window.iter().enumerate() {
+            for (upper, other) in precedence.above(i).iter().map(|&k| &window[k]) {
+                *below.entry((lower.color, upper.color)).or_default() += weight.min(*other);
+            }
         }
     }
     let mut left: Vec<Color> = strokes.iter().map(|(stroke, _)| stroke.color).collect();
