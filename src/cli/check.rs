@@ -10,11 +10,12 @@ use std::time::Duration;
 use anyhow::Result;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use strokefit::engines::{ENGINES, Engine};
+use strokefit::fit;
 use strokefit::report::{self, CheckReport, Input, SCHEMA};
 use strokefit::{svg, verify};
 
 use super::output::Output;
-use super::{Status, Verbosity, complain, domain, input, misuse};
+use super::{Status, Verbosity, complain, input, misuse};
 use trial::{PictureFolder, Trial};
 
 /// The judge, always asked.
@@ -59,7 +60,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "OUT.png", requires = "input")]
     map: Option<PathBuf>,
     /// Time limit for each program
-    #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = domain::seconds, allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = fit::seconds)]
     timeout: Duration,
     /// Write the result as JSON. - means standard output, instead of the table
     #[arg(long, value_name = "R.json")]

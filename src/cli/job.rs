@@ -105,7 +105,7 @@ impl Job<'_> {
     /// Says how much memory is about to be used.
     fn foretell(&self, picture: &Image, verbosity: Verbosity) {
         if verbosity.verbose {
-            let bytes = fit::predicted_rss_bytes(picture, self.options.config());
+            let bytes = fit::predicted_rss_bytes(picture, &self.options.config());
             verbosity.detail(format_args!("needs about {} MiB of memory", bytes >> 20));
         }
     }
@@ -160,7 +160,7 @@ impl Job<'_> {
         let run = Run {
             input: &input,
             base: base.as_deref(),
-            config: self.options.config(),
+            config: &self.options.config(),
             wall: drawn.wall,
             usage: Usage::now(),
         };

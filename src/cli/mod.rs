@@ -6,7 +6,6 @@
 pub mod bar;
 mod batch;
 mod check;
-mod domain;
 mod drawing;
 mod events;
 mod fit;
@@ -18,7 +17,6 @@ mod manual;
 mod narration;
 mod options;
 pub mod output;
-mod palette;
 mod pictures;
 mod product;
 mod progress;

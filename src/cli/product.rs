@@ -37,7 +37,7 @@ impl<'a> Product<'a> {
     /// The drawing of a fit, made into what was asked for.
     pub(super) fn of(judged: &'a Judged, asked: &Drawing) -> Result<Self> {
         let page = svg::page_width(&judged.svg);
-        let pens = asked.options.config.pens.as_ref();
+        let pens = asked.config().pens;
         let radii = pens
             .map(|pens| pens.radii(page, &judged.fit.target))
             .transpose()?;

@@ -9,7 +9,7 @@ use strokefit::svg::{self, Form, WriteOptions};
 
 use super::pictures::{FilmOptions, Format, Pictures, Subject};
 use super::product::{Made, Product};
-use super::{Status, domain, input, misuse};
+use super::{Status, input, misuse};
 
 /// Render an SVG to a PNG or an animation, as resvg draws it, or convert it to PDF or DXF
 ///
@@ -32,12 +32,18 @@ pub(super) struct Args {
     #[arg(short, long, value_name = "OUT.png", required = true)]
     output: Vec<PathBuf>,
     /// Pixels per unit of the SVG
-    #[arg(long, value_name = "X", default_value = "1", value_parser = domain::scale, allow_negative_numbers = true)]
+    #[arg(long, value_name = "X", default_value = "1", value_parser = scale)]
     scale: f64,
     #[command(flatten)]
     machine: Machine,
     #[command(flatten)]
     film: FilmOptions,
+}
+
+fn scale(text: &str) -> Result<f64, &'static str> {
+    let factor = text.parse().ok();
+    let factor = factor.filter(|factor: &f64| factor.is_finite() && *factor > 0.0);
+    factor.ok_or("give a factor above 0, such as 2 or 0.5")
 }
 
 /// Choice of what a drawing becomes before it is written.

@@ -10,10 +10,11 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use clap::{Arg, ArgAction, ArgMatches, Command, Id, value_parser};
+use clap::{Arg, ArgAction, ArgMatches, Command, FromArgMatches, Id, value_parser};
 use toml::{Spanned, Value};
 
 use super::hint::Hint;
+use super::options::Options;
 use super::refusal::parts;
 use super::{input, misuse};
 
@@ -102,6 +103,7 @@ pub(super) fn printed(command: &Command, args: &[OsString]) -> Result<Option<Str
         .clone()
         .mut_subcommand(&name, |command| command.mut_args(|arg| arg.required(false)));
     let matches = eased.try_get_matches_from(args)?;
+    check_ranges(&matches)?;
     let command = command.find_subcommand(&name);
     Ok(command
         .zip(matches.subcommand_matches(&name))
@@ -164,12 +166,25 @@ fn flag(at: &str, command: &Command, key: &str, value: &Value) -> Result<OsStrin
     Ok(format!("--{key}={text}").into())
 }
 
+/// Refuses an option of a drawing that is out of its range.
+pub(super) fn check_ranges(matches: &ArgMatches) -> Result<(), clap::Error> {
+    match matches.subcommand() {
+        Some((name, matches)) if DRAWING.contains(&name) => in_range(matches),
+        _ => Ok(()),
+    }
+}
+
+fn in_range(matches: &ArgMatches) -> Result<(), clap::Error> {
+    let refusal = |error| clap::Error::raw(ErrorKind::ValueValidation, format!("--{error}"));
+    Options::from_arg_matches(matches)?.check().map_err(refusal)
+}
+
 /// Checks that the command takes the flag's value.
 fn check(at: &str, command: &Command, flag: &OsString) -> Result<()> {
-    let outcome = command
-        .clone()
-        .try_get_matches_from([OsString::from(command.get_name()), flag.clone()]);
-    match outcome {
+    let args = [OsString::from(command.get_name()), flag.clone()];
+    let eased = command.clone().mut_args(|arg| arg.required(false));
+    let outcome = eased.try_get_matches_from(args);
+    match outcome.and_then(|matches| in_range(&matches)) {
         Err(e)
             if matches!(
                 e.kind(),
@@ -204,7 +219,7 @@ fn settable(command: &Command) -> impl Iterator<Item = &Arg> {
 }
 
 fn is_switch(arg: &Arg) -> bool {
-    matches!(arg.get_action(), ArgAction::SetTrue)
+    matches!(arg.get_action(), ArgAction::SetTrue | ArgAction::SetFalse)
 }
 
 /// Switch that undoes the switch `key`.
@@ -220,16 +235,21 @@ fn text(command: &Command, matches: &ArgMatches) -> String {
     let name = command.get_name();
     let mut text =
         format!("# Options of strokefit {name}, read by --config. Flags override them.\n");
-    let mut heading = None;
-    for arg in settable(command) {
-        if heading != Some(arg.get_help_heading()) {
-            heading = Some(arg.get_help_heading());
-            text += &format!(
-                "\n## {}\n",
-                arg.get_help_heading().unwrap_or("Input and output")
-            );
+    let heading = |arg: &&Arg| {
+        arg.get_help_heading()
+            .unwrap_or("Input and output")
+            .to_owned()
+    };
+    let mut headings = Vec::new();
+    for heading in settable(command).map(|arg| heading(&arg)) {
+        if !headings.contains(&heading) {
+            headings.push(heading);
         }
-        text += &line(arg, matches);
+    }
+    for title in headings {
+        text += &format!("\n## {title}\n");
+        let args = settable(command).filter(|arg| heading(arg) == title);
+        text.extend(args.map(|arg| line(arg, matches)));
     }
     text
 }
@@ -255,7 +275,8 @@ fn line(arg: &Arg, matches: &ArgMatches) -> String {
 fn value(arg: &Arg, matches: &ArgMatches) -> Option<Value> {
     let id = arg.get_id().as_str();
     if is_switch(arg) {
-        return Some(Value::Boolean(matches.get_flag(id)));
+        let is_set = matches.get_flag(id) == matches!(arg.get_action(), ArgAction::SetTrue);
+        return Some(Value::Boolean(is_set));
     }
     let raw = matches.get_raw(id)?.next()?.to_string_lossy().into_owned();
     // The sign of +300 has a meaning, which a number of TOML loses.

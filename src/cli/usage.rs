@@ -17,7 +17,9 @@ const TEMPLATE: &str = "{about}{after-help}\n\n{usage-heading} {usage}\n\n{all-a
 
 /// The whole command line.
 pub(super) fn command() -> Command {
-    examples_first(Args::command()).mut_subcommands(settings::offer)
+    let command = examples_first(Args::command()).mut_subcommands(settings::offer);
+    // What begins with a minus and a digit is a value that is out of range, and no flag.
+    command.mut_subcommands(|command| command.mut_args(|arg| arg.allow_negative_numbers(true)))
 }
 
 /// The command, with help of it and of its subcommands that begins with examples.
@@ -52,6 +54,7 @@ fn understand(args: Vec<OsString>) -> Result<Understood> {
         return Ok(Understood::Print(text));
     }
     let matches = command.try_get_matches_from(args)?;
+    settings::check_ranges(&matches)?;
     let args = Args::from_arg_matches(&matches)?;
     Ok(Understood::Run(Box::new(args)))
 }

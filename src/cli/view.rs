@@ -128,7 +128,7 @@ pub(super) fn more(
         },
         // That of the drawing stays.
         background: Background::Auto,
-        ..options.config().clone()
+        ..options.config()
     };
     let base = Base {
         document: fit.base.as_ref().and_then(|base| base.document.clone()),

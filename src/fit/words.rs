@@ -5,16 +5,20 @@
 use std::fmt;
 use std::str::FromStr;
 
+use serde::{Deserialize, Deserializer, de};
+
 use super::{Background, Colors, ErrorWeighting, Preset};
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::{Marks, color, quantum};
-use crate::words::{short, words};
+use crate::words::{from_text, short, words};
 
 words!(Preset, "a preset": Draft = "draft", Balanced = "balanced", Best = "best");
 
 words!(Marks, "a kind of marks": Auto = "auto", Strokes = "strokes", Areas = "areas");
 
 words!(ErrorWeighting, "a look": Eye = "eye", Exact = "exact");
+
+from_text!(Background);
 
 impl fmt::Display for Background {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -111,6 +115,26 @@ impl FromStr for Colors {
             });
         }
         Self::palette(text)
+    }
+}
+
+/// A number of colours, or a text as `FromStr` takes it.
+#[derive(Deserialize)]
+#[serde(
+    untagged,
+    expecting = "give a whole number from 1 to 4096, or colours as a text"
+)]
+enum Given {
+    Count(usize),
+    Text(String),
+}
+
+impl<'de> Deserialize<'de> for Colors {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        match Given::deserialize(from)? {
+            Given::Count(most) => Ok(Self::AtMost(most)),
+            Given::Text(text) => text.parse().map_err(de::Error::custom),
+        }
     }
 }
 
