@@ -12,12 +12,13 @@ use strokefit::svg::Form;
 /// The drawing that is asked for.
 #[derive(Debug, Clone, clap::Args)]
 pub(super) struct Drawing {
+    // Comes first, as clap hands each value over but once.
+    #[command(flatten)]
+    beyond: Beyond,
     #[command(flatten)]
     budget: Budget,
     #[command(flatten)]
     config: Config,
-    #[command(flatten)]
-    beyond: Beyond,
     /// At most N colours, including the background
     #[arg(long, alias = "colours", value_name = "N", help_heading = "Look")]
     colors: Option<usize>,

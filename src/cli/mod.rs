@@ -14,7 +14,6 @@ pub mod input;
 mod interrupt;
 mod job;
 mod manual;
-mod narration;
 mod options;
 pub mod output;
 mod pictures;

@@ -105,13 +105,7 @@ pub(super) fn run(args: &Args) -> Result<Status> {
             path.display()
         )));
     }
-    write(&pictures, &text, args).map_err(|error| {
-        // The file is to blame for errors of the library.
-        match error.downcast::<strokefit::Error>() {
-            Ok(error) => error.within(input::name(&args.file)).into(),
-            Err(error) => error,
-        }
-    })?;
+    write(&pictures, &text, args).map_err(|error| input::blame(error, &args.file))?;
     Ok(Status::Done)
 }
 

@@ -69,22 +69,14 @@ pub(super) fn expand(command: &Command, mut args: Vec<OsString>) -> Result<Vec<O
     let path = matches.try_get_one::<PathBuf>(CONFIG).ok().flatten();
     let place = args.iter().skip(1).position(|arg| arg == name);
     if let (Some(path), Some(place), Some(command)) = (path, place, command.find_subcommand(name)) {
-        if input::is_stdin(path) && reads_stdin(command, matches) {
-            return Err(misuse(
-                "standard input cannot be both the options and a picture: name one of them",
-            ));
-        }
+        let ids = command.get_positionals().map(|arg| arg.get_id().as_str());
+        let pictures = ids.filter_map(|id| matches.get_raw(id)).flatten();
+        let files: Vec<&Path> = pictures.map(Path::new).chain([path.as_path()]).collect();
+        input::expect_one_stdin(&files, "the options and a picture")?;
         let flags = flags(path, &input::text(path, "a TOML file")?, command)?;
         args.splice(place + 2..place + 2, flags);
     }
     Ok(args)
-}
-
-/// True if one of the files to read is standard input.
-fn reads_stdin(command: &Command, matches: &ArgMatches) -> bool {
-    let ids = command.get_positionals().map(|arg| arg.get_id().as_str());
-    let mut names = ids.filter_map(|id| matches.get_raw(id)).flatten();
-    names.any(|name| input::is_stdin(Path::new(name)))
 }
 
 /// Text that `--print-config` prints, if `args` ask for it.
