@@ -275,12 +275,7 @@ fn value(arg: &Arg, matches: &ArgMatches) -> Option<Value> {
     if raw.starts_with('+') {
         return Some(Value::String(raw));
     }
-    let integer = raw.parse().ok().map(Value::Integer);
-    let whole = raw.bytes().all(|b| b.is_ascii_digit());
-    let float = raw.parse().ok().filter(|v: &f64| v.is_finite() && !whole);
-    integer
-        .or(float.map(Value::Float))
-        .or(Some(Value::String(raw)))
+    Some(raw.parse().unwrap_or(Value::String(raw)))
 }
 
 #[cfg(test)]

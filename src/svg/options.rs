@@ -191,6 +191,14 @@ impl FromStr for Length {
     }
 }
 
+/// The channels of an opaque colour: `#rrggbb`, `#rgb`, or what else CSS has for one, such as `white`.
+pub(crate) fn opaque_color(text: &str) -> Option<[u8; 3]> {
+    let color: svgtypes::Color = text.parse().ok()?;
+    // With four or eight digits it has an opacity, even if that is 1.
+    let is_hex = matches!(text.len(), 4 | 7) || !text.starts_with('#');
+    (is_hex && color.alpha == 255).then_some([color.red, color.green, color.blue])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
