@@ -30,7 +30,7 @@ pub struct FitReport {
     /// Number of them for each reason.
     pub dropped_for: Dropped,
     /// One per layer of the drawing, in order.
-    pub stages: Vec<StageEntry>,
+    pub stages: Vec<StageRecord>,
     /// Length of the SVG text in bytes.
     pub svg_bytes: usize,
     /// Its length when compressed by gzip.
@@ -45,9 +45,8 @@ pub struct FitReport {
     pub peak_rss_bytes: Option<u64>,
     /// The prediction of that, bytes.
     pub predicted_rss_bytes: u64,
-    /// Why no more was done: `strokes`, `psnr`, `bytes`, `time`, `converged` or
-    /// `interrupted`.
-    pub stop: String,
+    /// Why no more was done.
+    pub stop: Stop,
     /// Loss of fidelity because colours have a layer each, dB; left out if they have not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stacking_db: Option<f64>,
@@ -80,48 +79,6 @@ pub struct BaseEntry {
     pub strokes: usize,
     /// Elements that were passed through as they are.
     pub elements: usize,
-}
-
-/// Outcome of one stage.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct StageEntry {
-    /// Index of the layer, from 1.
-    pub index: usize,
-    /// Strokes and areas of the stage in the drawing.
-    pub strokes: usize,
-    /// Iterations of the optimiser.
-    pub iterations: usize,
-    /// Wall time, s.
-    pub wall_s: f64,
-    /// Fidelity of the soft render after the stage, dB; `null` when perfect.
-    pub psnr_db: Option<f64>,
-    /// Fidelity of the finished drawing's layers up to this one, dB; `null` when perfect.
-    pub layer_psnr_db: Option<f64>,
-}
-
-impl From<&StageRecord> for StageEntry {
-    fn from(record: &StageRecord) -> Self {
-        Self {
-            index: record.index,
-            strokes: record.strokes,
-            iterations: record.iterations,
-            wall_s: record.wall.as_secs_f64(),
-            psnr_db: Some(record.psnr_db).filter(|db| db.is_finite()),
-            layer_psnr_db: Some(record.layer_psnr_db).filter(|db| db.is_finite()),
-        }
-    }
-}
-
-/// The word of [`FitReport::stop`].
-pub fn stop_word(stop: Stop) -> &'static str {
-    match stop {
-        Stop::Strokes => "strokes",
-        Stop::Psnr => "psnr",
-        Stop::Bytes => "bytes",
-        Stop::Time => "time",
-        Stop::Converged => "converged",
-        Stop::Interrupted => "interrupted",
-    }
 }
 
 /// Facts about a run that a report has and a drawing lacks.
@@ -184,7 +141,7 @@ impl FitReport {
             points: fit.scene.points(),
             dropped: fit.dropped.total(),
             dropped_for: fit.dropped,
-            stages: fit.stages.iter().map(StageEntry::from).collect(),
+            stages: fit.stages.clone(),
             svg_bytes: svg.len(),
             svg_gzip_bytes: gzip_bytes(svg),
             bytes_per_stroke: per_stroke(svg.len(), strokes),
@@ -192,7 +149,7 @@ impl FitReport {
             cpu_s: run.usage.cpu_s,
             peak_rss_bytes: run.usage.peak_rss_bytes,
             predicted_rss_bytes: rss_bytes_of(&fit.target, fit.scene.page, run.config),
-            stop: stop_word(fit.stop).into(),
+            stop: fit.stop,
             stacking_db: fit.stacking_db,
             travel: svg::travel(&fit.scene, &fit.file),
             seed: run.config.seed,
