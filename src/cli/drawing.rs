@@ -6,11 +6,16 @@ use std::path::{Path, PathBuf};
 
 use clap::{ArgMatches, Command, FromArgMatches};
 use strokefit::fit::{Budget, Colors, Config, MAX_STROKES};
-use strokefit::machine::Hatch;
 use strokefit::svg::Form;
+
+use super::product::Made;
 
 /// The drawing that is asked for.
 #[derive(Debug, Clone, clap::Args)]
+#[command(
+    mut_arg("outline", |outline| outline.conflicts_with("form")),
+    mut_arg("cutout", |cutout| cutout.conflicts_with("form")),
+)]
 pub(super) struct Drawing {
     // Comes first, as clap hands each value over but once.
     #[command(flatten)]
@@ -30,23 +35,8 @@ pub(super) struct Drawing {
     /// people look, a face before a wall
     #[arg(long, value_name = "MASK.png", help_heading = "Look")]
     pub(super) focus: Option<PathBuf>,
-    /// Write filled outlines instead of strokes, one for each, for programs that ignore strokes
-    #[arg(long, help_heading = "File", conflicts_with = "form")]
-    outline: bool,
-    /// Write what is seen of each colour as one path, for cutters: areas do not overlap, share their borders, and end at the
-    /// page. All is opaque; the background is one of the areas unless it is none
-    #[arg(long, help_heading = "File", conflicts_with_all = ["outline", "hatch", "form"])]
-    pub(super) cutout: bool,
-    /// Fill areas with lines for a plotter, so far apart, such as 0.5mm, at an angle, 45 degrees if none is given. The lines
-    /// are as wide as the thinnest of the --pens, or as they are far apart
-    #[arg(
-        long,
-        value_name = "DISTANCE[:ANGLE]",
-        help_heading = "File",
-        allow_hyphen_values = true,
-        conflicts_with = "outline"
-    )]
-    pub(super) hatch: Option<Hatch>,
+    #[command(flatten, next_help_heading = "File")]
+    pub(super) made: Made,
 }
 
 impl Drawing {
@@ -58,12 +48,12 @@ impl Drawing {
         };
         let counted = self.colors.map(Colors::AtMost);
         config.colors = self.palette.clone().or(counted).unwrap_or_default();
-        if self.outline {
+        if self.made.outline {
             config.file.form = Form::Outlines;
         }
-        config.hatched = self.hatch.is_some();
+        config.hatched = self.made.hatch.is_some();
         // A machine's paths stay on the page, and lie beside each other.
-        config.confined = self.cutout || self.hatch.is_some();
+        config.confined = self.made.is_for_machines();
         config.opaque |= config.confined;
         config
     }

@@ -94,7 +94,7 @@ impl Options {
 
     /// The drawing as its files hold it: cut out, hatched or outlined if that was asked for.
     pub(super) fn product<'a>(&self, judged: &'a Judged) -> Result<Product<'a>> {
-        Product::of(judged, &self.drawing)
+        Product::of(judged, &self.drawing.made, self.config().pens.as_ref())
     }
 
     pub(super) fn limits(&self) -> Limits {
