@@ -42,6 +42,7 @@ use std::str::FromStr;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::math::{self, Real};
+use crate::words::from_text;
 
 /// Coverage below which [`Coverage::support`] drops a tail: half of one of 256 levels, so that even a stroke
 /// of the highest contrast changes no 8-bit pixel there. With a higher value the cut shows as a ring
@@ -255,6 +256,8 @@ impl FromStr for CoverageSchedule {
         }
     }
 }
+
+from_text!(CoverageSchedule);
 
 #[cfg(test)]
 mod tests {

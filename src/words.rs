@@ -1,4 +1,8 @@
-//! Choices among a few words.
+//! Choices among a few words, and options that are read from a text.
+
+use std::str::FromStr;
+
+use serde::{Deserialize, Deserializer, de};
 
 use crate::error::{Error, ErrorKind};
 
@@ -29,10 +33,31 @@ macro_rules! words {
                 }
             }
         }
+
+        crate::words::from_text!($choice);
     };
 }
 
-pub(crate) use words;
+/// Lets JSON have a value as the text that `FromStr` reads.
+macro_rules! from_text {
+    ($($option:ty),+) => {
+        $(impl<'de> serde::Deserialize<'de> for $option {
+            fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+                crate::words::parsed(from)
+            }
+        })+
+    };
+}
+
+pub(crate) use {from_text, words};
+
+/// A value of JSON that is a text.
+pub(crate) fn parsed<'de, D: Deserializer<'de>, T: FromStr<Err = Error>>(
+    from: D,
+) -> Result<T, D::Error> {
+    let text = String::deserialize(from)?;
+    text.parse().map_err(de::Error::custom)
+}
 
 /// The beginning of a text, for a message.
 pub(crate) fn short(text: &str) -> String {

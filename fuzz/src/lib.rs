@@ -9,7 +9,7 @@ mod scene;
 use std::fmt::Display;
 use std::str::FromStr;
 
-use strokefit::fit::{Background, Colors, OPTIONS, Options, Preset, Simd, Value};
+use strokefit::fit::{Background, Colors, OPTIONS, Options, Preset, Simd};
 use strokefit::image::{Image, Limits};
 use strokefit::svg;
 use strokefit::verify::{self, Size};
@@ -77,8 +77,9 @@ pub fn words(data: &[u8]) {
     let text = String::from_utf8_lossy(data);
     let text = text.as_ref();
     let set = |name: &str| {
-        let set = Options::default().set(name, Value::Written(text));
-        set.err().map(|refusal| refusal.to_string())
+        let value = serde_json::from_str(text).unwrap_or(serde_json::Value::from(text));
+        let read = Options::from_json([(name.to_owned(), value)].into_iter().collect());
+        read.err().map(|refusal| refusal.to_string())
     };
     let refusals = [
         word::<Simd>(text),
@@ -89,7 +90,7 @@ pub fn words(data: &[u8]) {
         word::<svg::Group>(text),
         word::<svg::Length>(text),
     ];
-    let refusals = refusals.into_iter().chain(OPTIONS.split(", ").map(set));
+    let refusals = refusals.into_iter().chain(OPTIONS.map(set));
     if !text.contains(char::is_control) {
         let mut refusals = refusals.flatten();
         assert!(refusals.all(|line| !line.contains('\n')));

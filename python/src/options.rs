@@ -1,57 +1,46 @@
 //! Options of a fit, from a dictionary of Python's. `None` is an option's default.
 
-use pyo3::exceptions::{PyOverflowError, PyTypeError};
-use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyString};
-use strokefit::fit::{Options, Refusal, Value};
+use std::error::Error;
 
-use crate::failure::Failure;
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use serde_json::{Map, Number, Value};
+use strokefit::fit::Options;
 
 /// Reads the options that the dictionary gives.
 pub(crate) fn read(given: &Bound<'_, PyDict>) -> PyResult<Options> {
-    let mut options = Options::default();
+    let mut options = Map::new();
     for (name, object) in given.iter().filter(|(_, object)| !object.is_none()) {
         let name: String = name.extract()?;
-        let text = object.cast::<PyString>().ok();
-        let text = text.map(|text| text.to_cow()).transpose()?;
-        let value = text.as_deref().map_or_else(|| number(&object), Value::Text);
-        if let Err(refusal) = options.set(&name, value) {
-            return Err(refused(refusal, &name, value, &object)?);
+        let value = value(&name, &object)?;
+        options.insert(name, value);
+    }
+    Options::from_json(options).map_err(|error| {
+        let is_type = |cause: &dyn Error| cause.to_string().starts_with("invalid type");
+        match error.source().is_some_and(is_type) {
+            true => PyTypeError::new_err(error.to_string()),
+            false => PyValueError::new_err(error.to_string()),
         }
-    }
-    Ok(options)
-}
-
-/// The value of what is no text.
-fn number(object: &Bound<'_, PyAny>) -> Value<'static> {
-    if let Ok(on) = object.extract() {
-        return Value::Switch(on);
-    }
-    match object.extract() {
-        Ok(whole) => Value::Whole(whole),
-        // It has more than 127 bits.
-        Err(error) if PyErr::is_instance_of::<PyOverflowError>(&error, object.py()) => {
-            Value::Whole(i128::MAX)
-        }
-        Err(_) => object.extract().map_or(Value::Other, Value::Number),
-    }
-}
-
-/// The exception of a value of the wrong kind, or of the right kind and out of range.
-fn refused(
-    refusal: Refusal,
-    name: &str,
-    value: Value<'_>,
-    object: &Bound<'_, PyAny>,
-) -> PyResult<PyErr> {
-    let is_kind = matches!(refusal, Refusal::Kind(_));
-    let shown = match value {
-        Value::Number(number) if !is_kind => number.to_string(),
-        _ => object.repr()?.to_string(),
-    };
-    let error = refusal.of(name, format_args!("{name}={shown}"));
-    Ok(match is_kind {
-        true => PyTypeError::new_err(error.to_string()),
-        false => Failure::Library(error).into(),
     })
+}
+
+fn value(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Value> {
+    if let Ok(on) = object.extract::<bool>() {
+        return Ok(on.into());
+    }
+    if let Ok(text) = object.extract::<String>() {
+        return Ok(text.into());
+    }
+    if let Ok(whole) = object.extract::<i128>() {
+        let number = Number::from_i128(whole).map(Value::Number);
+        let large = || PyValueError::new_err(format!("{name} is {whole}: give a smaller number"));
+        return number.ok_or_else(large);
+    }
+    let number = object.extract::<f64>().map_err(|_| {
+        let message = format!("{name} is {object}: give a number, a text, True or False");
+        PyTypeError::new_err(message)
+    })?;
+    let finite = Number::from_f64(number).map(Value::Number);
+    finite.ok_or_else(|| PyValueError::new_err(format!("{name} is {number}: give a finite number")))
 }

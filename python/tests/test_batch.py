@@ -105,7 +105,7 @@ def test_other_options_are_refused_by_name(crowd: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("options", "error", "words"),
     [
-        ({"strokes": 0}, ValueError, "strokes=0: give a whole number"),
+        ({"strokes": 0}, ValueError, "strokes is 0: give a whole number"),
         ({"speed": 3}, TypeError, "'speed' is no option"),
         ({"threads": 2}, TypeError, "'threads' is no option"),
         ({"engine": "spark"}, ValueError, "give local or ray"),

@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
-use strokefit::report::Event;
+use strokefit::report::{Event, Judged};
 
 use super::events::Events;
 use super::job::{Draw, Drawn, Job, Outputs};
@@ -127,14 +127,23 @@ fn several(
     verbosity: Verbosity,
     draw: &Draw<'_>,
 ) -> Status {
-    let table = NameColumn::of(jobs);
-    verbosity.say(table.head());
+    let names = jobs.iter().map(|job| job.input.display().to_string());
+    let width = names.map(|name| name.chars().count()).max();
+    let width = width.unwrap_or(0).max("picture".len());
+    verbosity.say(format_args!(
+        "{:width$}  strokes   points      bytes        s  fidelity  agreement",
+        "picture"
+    ));
     let (mut worst, mut done, mut failed) = (Status::Done, 0, 0);
     for (i, (job, outputs)) in jobs.iter().zip(outputs).enumerate() {
         let heading = format!("{} of {} ", i + 1, jobs.len());
         let status = match attempt(job, outputs, events, heading, verbosity, draw) {
             Ok(drawn) => {
-                verbosity.say(table.row(job, &drawn));
+                verbosity.say(format_args!(
+                    "{:width$}  {}",
+                    job.input.display().to_string(),
+                    row(&drawn)
+                ));
                 job.judge(&drawn, verbosity)
             }
             Err(error) => {
@@ -157,6 +166,22 @@ fn several(
         }
     ));
     worst
+}
+
+/// What the table says of a drawing, after the name of the picture.
+fn row(drawn: &Drawn) -> String {
+    let Judged {
+        fit, svg, verdict, ..
+    } = &drawn.judged;
+    format!(
+        "{:>7} {:>8} {:>10} {:>8.2}  {:>5.2} dB   {:>5.2} dB",
+        fit.scene.len(),
+        fit.scene.points(),
+        svg.len(),
+        drawn.wall.as_secs_f64(),
+        verdict.fidelity.psnr_db,
+        verdict.agreement.psnr_db,
+    )
 }
 
 /// Does one job; a failure is an event too.
@@ -214,44 +239,6 @@ fn clash(path: &Path, jobs: usize) -> anyhow::Error {
     misuse(format!(
         "{name}: two outputs would go to the same place: {remedy}"
     ))
-}
-
-/// The width of the pictures' names, in characters.
-struct NameColumn(usize);
-
-impl NameColumn {
-    fn of(jobs: &[Job<'_>]) -> Self {
-        let widths = jobs
-            .iter()
-            .map(|job| job.input.display().to_string().chars().count());
-        Self(widths.max().unwrap_or(0).max("picture".len()))
-    }
-
-    fn head(&self) -> String {
-        let width = self.0;
-        format!(
-            "{:width$}  strokes   points      bytes        s  fidelity  agreement",
-            "picture"
-        )
-    }
-
-    fn row(&self, job: &Job<'_>, drawn: &Drawn) -> String {
-        let (width, name) = (self.0, job.input.display().to_string());
-        let scene = &drawn.judged.fit.scene;
-        let (strokes, points, bytes, wall) = (
-            scene.len(),
-            scene.points(),
-            drawn.judged.svg.len(),
-            drawn.wall.as_secs_f64(),
-        );
-        let (fidelity, agreement) = (
-            drawn.judged.verdict.fidelity.psnr_db,
-            drawn.judged.verdict.agreement.psnr_db,
-        );
-        format!(
-            "{name:width$}  {strokes:>7} {points:>8} {bytes:>10} {wall:>8.2}  {fidelity:>5.2} dB   {agreement:>5.2} dB"
-        )
-    }
 }
 
 #[cfg(test)]

@@ -4,17 +4,18 @@ mod map;
 mod table;
 mod trial;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use anyhow::Result;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use strokefit::engines::{ENGINES, Engine};
+use strokefit::fit;
 use strokefit::report::{self, CheckReport, Input, SCHEMA};
 use strokefit::{svg, verify};
 
 use super::output::Output;
-use super::{Status, Verbosity, complain, domain, input, misuse};
+use super::{Status, Verbosity, complain, input};
 use trial::{PictureFolder, Trial};
 
 /// The judge, always asked.
@@ -59,7 +60,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "OUT.png", requires = "input")]
     map: Option<PathBuf>,
     /// Time limit for each program
-    #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = domain::seconds, allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = fit::seconds)]
     timeout: Duration,
     /// Write the result as JSON. - means standard output, instead of the table
     #[arg(long, value_name = "R.json")]
@@ -91,11 +92,11 @@ impl Args {
 }
 
 pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
-    if input::is_stdin(&args.file) && args.input.as_deref().is_some_and(input::is_stdin) {
-        return Err(misuse(
-            "standard input cannot be both the SVG and the picture: name one of them",
-        ));
-    }
+    let files: Vec<&Path> = [args.file.as_path()]
+        .into_iter()
+        .chain(args.input.as_deref())
+        .collect();
+    input::expect_one_stdin(&files, "the SVG and the picture")?;
     let report = args.report.as_deref().map(Output::open).transpose()?;
     let map = args.map.as_deref().map(Output::open).transpose()?;
     let pictures = args
@@ -120,11 +121,8 @@ fn judge(
 ) -> Result<CheckReport> {
     let svg = input::svg(&args.file)?;
     let target = args.input.as_deref().map(input::picture).transpose()?;
-    let named = |error: anyhow::Error| match error.downcast::<strokefit::Error>() {
-        Ok(error) => error.within(input::name(&args.file)).into(),
-        Err(error) => error,
-    };
-    let mut trial = Trial::new(&svg, target.as_ref(), args.timeout, pictures).map_err(named)?;
+    let trial = Trial::new(&svg, target.as_ref(), args.timeout, pictures);
+    let mut trial = trial.map_err(|error| input::blame(error, &args.file))?;
     for engine in args.engines() {
         trial.ask(engine)?;
     }

@@ -1,290 +1,165 @@
-//! The options of a drawing as flags: the library reads their values.
+//! The options of a drawing as flags: those of the library, and those of the command line alone.
 
-use std::path::PathBuf;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
 
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
-use clap::error::ErrorKind;
-use clap::{Arg, ArgAction, ArgMatches, Command, FromArgMatches, value_parser};
-use strokefit::fit::{Config, MAX_STROKES, Options, Value};
-use strokefit::machine::Hatch;
+use clap::{ArgMatches, Command, FromArgMatches};
+use strokefit::fit::{Budget, Colors, Config, MAX_STROKES};
+use strokefit::svg::Form;
 
-use super::palette;
-
-/// The options by heading, as in the help: the flag, the name of its value with its default, what it is for, and the words
-/// that it may have; a word without help is one of former versions. A flag without a value is a switch.
-const OPTIONS: [(&str, &str); 3] = [
-    (
-        "Budget (the first one reached stops)",
-        "
---strokes N
-    At most N strokes. With refine, +N counts those beyond the strokes that BASE brings
---psnr DB
-    Stop when the file reaches DB decibels of PSNR: 25 is rough, 30 fair, 35 good
---bytes N
-    At most N bytes of SVG; 20kB, 1.5MB and 64KiB are understood
---time SECONDS
-    At most this many seconds, from reading the picture to writing the SVG",
-    ),
-    (
-        "Look",
-        "
---quality Q
-    Quality, 0 to 60; higher keeps more. A stroke is kept while every byte it costs removes at least the squared error
-    that one pixel has at Q dB [default: 30, less for pictures over 768×512, unless --strokes, --psnr or --bytes is given]
---preset PRESET=balanced
-    How much time to spend for a better drawing
-    * draft: An eighth of the time, 2 to 3 dB worse
-    * balanced: The default
-    * best: Three to five times the time, 0.7 to 0.9 dB better
---marks MARKS=auto
-    What the drawing is made of
-    * auto: Areas for what is filled, strokes for lines and for the rest. With --pens or --bytes, strokes
-    * strokes: Strokes alone, for plotters and embroidery
-    * areas: Areas alone, for cutters
---progressive
-    Fit each layer for the layers below it only. The drawing is good after every layer, and some dB worse in the end
---literal
-    Draw noise, traces of JPEG and other damage of the picture as they are
---opaque
-    Use opaque strokes only. They are easier to edit and cost some dB
---look LOOK
-    Which errors count: eye (those that people see, so that smooth places have fewer seams) or exact (all alike, for a
-    tenth of a dB more) [default: eye, but exact with --psnr]
---pens WIDTHS
-    Only these widths of strokes: lengths such as 0.3mm,0.8mm on a page of a --width, or numbers in px of the picture
---coverage EDGE=smoothstep
-    Coverage function of soft edges: smoothstep, sigmoid, tanh or atan[:K]; A>B changes from A to B during the fit. Here
-    tanh draws the same as sigmoid, and atan:K the same as atan for any K, because a fit gives all edges the same slope
---points N
-    Most points of a stroke, 2 or more. 2 draws line segments alone [default: as many as pay]
---stages N
-    Number of stages, each a layer of the SVG [default: chosen from the budget]
---no-polish
-    Skip the joint fit of all strokes after the stages. The fit is faster and some dB worse
---background COLOR=auto
-    Background colour: auto, none, #rrggbb or a name such as white. auto keeps transparency; with --opaque it flattens a
-    picture with translucent areas onto white. A colour is what the picture is flattened onto
---focus MASK.png
-    Grey picture of the input's size that says how much an error counts where: white 1, black 0.002. Strokes go where
-    people look, a face before a wall
---seed S=0
-    Seed of all random choices. Another seed gives a slightly different drawing
---colors N
-    At most N colours, including the background
---palette LIST|FILE
-    Only these colours: a list #rrggbb,white,..., a file with one colour per line, or a GIMP palette. Paper stays as it
-    is if none of them is like it",
-    ),
-    (
-        "File",
-        "
---precision N=2
-    Decimals of coordinates and widths, 0 to 6
---form FORM=plain
-    What one element of the SVG holds
-    * plain: One stroke
-    * smallest: As many strokes as possible: fewest bytes, hardest to edit
-    * css: One stroke; its colour and its width are in classes of a style sheet, the one place to change them
-    * elements:
---group GROUP=stage
-    What one layer of the SVG holds
-    * stage: The strokes of one stage
-    * color: Strokes of one colour. With --colors or --palette each colour has one layer
-    * object: A thing: an area with what lies on it, or touching strokes of one colour. Marks have names
-      and keep the order that they were fitted in
---order ORDER=fitted
-    In which order the strokes of a layer come
-    * fitted: The order that they were fitted in
-    * travel: With short ways between them, for a plotter; the picture stays the same
---outline
-    Write filled outlines instead of strokes, one for each, for programs that ignore strokes
---cutout
-    Write what is seen of each colour as one path, for cutters: areas do not overlap, share their borders, and end at the
-    page. All is opaque; the background is one of the areas unless it is none
---hatch DISTANCE[:ANGLE]
-    Fill areas with lines for a plotter, so far apart, such as 0.5mm, at an angle, 45 degrees if none is given. The lines are as wide as the
-    thinnest of the --pens, or as they are far apart
---width LENGTH
-    Width of the page in mm, cm, in, pt or px, such as 120mm [default: one px per pixel of the picture]",
-    ),
-];
-
-/// The switches, with the option that each sets and its value.
-const SWITCHES: [(&str, &str, Value<'_>); 5] = [
-    ("literal", "literal", Value::Switch(true)),
-    ("progressive", "progressive", Value::Switch(true)),
-    ("opaque", "opaque", Value::Switch(true)),
-    ("no-polish", "polish", Value::Switch(false)),
-    ("outline", "form", Value::Text("outlines")),
-];
+use super::product::Made;
 
 /// The drawing that is asked for.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, clap::Args)]
+#[command(
+    mut_arg("outline", |outline| outline.conflicts_with("form")),
+    mut_arg("cutout", |cutout| cutout.conflicts_with("form")),
+)]
 pub(super) struct Drawing {
-    pub(super) options: Options,
-    /// True if the limit on strokes counts those beyond the base.
-    counts_new: bool,
-    /// The picture of weights.
+    // Comes first, as clap hands each value over but once.
+    #[command(flatten)]
+    beyond: Beyond,
+    #[command(flatten)]
+    budget: Budget,
+    #[command(flatten)]
+    config: Config,
+    /// At most N colours, including the background
+    #[arg(long, alias = "colours", value_name = "N", help_heading = "Look")]
+    colors: Option<usize>,
+    /// Only these colours: a list #rrggbb,white,..., a file with one colour per line, or a GIMP palette. Paper stays as it
+    /// is if none of them is like it
+    #[arg(long, value_name = "LIST|FILE", help_heading = "Look", value_parser = palette, conflicts_with = "colors")]
+    palette: Option<Colors>,
+    /// Grey picture of the input's size that says how much an error counts where: white 1, black 0.002. Strokes go where
+    /// people look, a face before a wall
+    #[arg(long, value_name = "MASK.png", help_heading = "Look")]
     pub(super) focus: Option<PathBuf>,
-    /// True if areas are cut out.
-    pub(super) cutout: bool,
-    /// Lines that fill areas, if they do.
-    pub(super) hatch: Option<Hatch>,
+    #[command(flatten, next_help_heading = "File")]
+    pub(super) made: Made,
 }
 
 impl Drawing {
+    /// The configuration of a drawing that begins from nothing.
+    pub(super) fn config(&self) -> Config {
+        let mut config = Config {
+            budget: self.budget,
+            ..self.config.clone()
+        };
+        let counted = self.colors.map(Colors::AtMost);
+        config.colors = self.palette.clone().or(counted).unwrap_or_default();
+        if self.made.outline {
+            config.file.form = Form::Outlines;
+        }
+        config.hatched = self.made.hatch.is_some();
+        // A machine's paths stay on the page, and lie beside each other.
+        config.confined = self.made.is_for_machines();
+        config.opaque |= config.confined;
+        config
+    }
+
     /// The configuration of a drawing whose base brings `before` strokes.
     pub(super) fn config_beyond(&self, before: usize) -> Config {
-        let mut config = self.options.config.clone();
-        if let Some(strokes) = config.budget.strokes.as_mut().filter(|_| self.counts_new) {
+        let mut config = self.config();
+        if let Some(strokes) = config.budget.strokes.as_mut().filter(|_| self.beyond.0) {
             *strokes = before.saturating_add(*strokes).min(MAX_STROKES);
         }
         config
     }
 }
 
-impl clap::Args for Drawing {
+/// True if the limit on strokes begins with +: it counts those beyond the base.
+#[derive(Debug, Clone, Copy, Default)]
+struct Beyond(bool);
+
+impl clap::Args for Beyond {
     fn augment_args(command: Command) -> Command {
-        command.args(args())
+        command
     }
 
     fn augment_args_for_update(command: Command) -> Command {
-        Self::augment_args(command)
+        command
     }
 }
 
-impl FromArgMatches for Drawing {
+impl FromArgMatches for Beyond {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        let mut drawing = Self::default();
-        drawing.update_from_arg_matches(matches)?;
-        Ok(drawing)
+        let text = matches
+            .get_raw("strokes")
+            .and_then(|mut texts| texts.next());
+        Ok(Self(text.is_some_and(|text| {
+            text.as_encoded_bytes().starts_with(b"+")
+        })))
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
-        let mut set = |name: &str, value: Value<'_>| {
-            let refused = |refusal| clap::Error::raw(ErrorKind::ValueValidation, refusal);
-            self.options.set(name, value).map_err(refused)
-        };
-        for arg in args() {
-            let name = arg.get_id().as_str();
-            // Switches and paths are no texts.
-            if let Ok(Some(text)) = matches.try_get_one::<String>(name) {
-                set(name, Value::Written(text.trim_start_matches('+')))?;
-            }
-        }
-        for (flag, name, value) in SWITCHES {
-            if matches.get_flag(flag) {
-                set(name, value)?;
-            }
-        }
-        self.counts_new = matches
-            .get_one("strokes")
-            .is_some_and(|text: &String| text.starts_with('+'));
-        self.focus = matches.get_one("focus").cloned();
-        self.cutout = matches.get_flag("cutout");
-        self.hatch = matches.get_one("hatch").copied();
-        let config = &mut self.options.config;
-        config.hatched |= self.hatch.is_some();
-        if self.cutout || self.hatch.is_some() {
-            (config.confined, config.opaque) = (true, true);
-        }
+        *self = Self::from_arg_matches(matches)?;
         Ok(())
     }
 }
 
-fn args() -> impl Iterator<Item = Arg> {
-    OPTIONS.into_iter().flat_map(|(heading, options)| {
-        let entries = options.split("\n--").skip(1);
-        entries.map(move |entry| related(arg(entry).help_heading(heading)))
-    })
-}
+/// Longest file that counts as a palette, bytes.
+const MAX_PALETTE_BYTES: u64 = 1 << 20;
 
-/// The argument with what sets it apart.
-fn related(arg: Arg) -> Arg {
-    match arg.get_id().as_str() {
-        "progressive" => arg.conflicts_with("no-polish"),
-        "outline" => arg.conflicts_with("form"),
-        "cutout" => arg.conflicts_with_all(["outline", "hatch", "form"]),
-        "hatch" => arg.conflicts_with("outline").allow_hyphen_values(true),
-        "palette" => arg.conflicts_with("colors"),
-        "colors" => arg.alias("colours"),
-        "pens" | "width" => arg.allow_hyphen_values(true),
-        _ => arg,
+/// The colours of a list, or of a file.
+fn palette(text: &str) -> Result<Colors, String> {
+    let list = Colors::palette(text);
+    let is_file = Path::new(text).exists();
+    let is_list = text.contains(',') || list.is_ok();
+    if text.starts_with('#') || !is_file && is_list {
+        return list.map_err(|error| error.to_string());
     }
-}
-
-fn arg(entry: &'static str) -> Arg {
-    let (flag, text) = entry.split_once('\n').unwrap_or((entry, ""));
-    let mut parts = text.split("    * ");
-    let help = parts.next().unwrap_or_default().split_whitespace();
-    let help = help.collect::<Vec<_>>().join(" ");
-    let Some((name, value)) = flag.split_once(' ') else {
-        return Arg::new(flag)
-            .long(flag)
-            .help(help)
-            .action(ArgAction::SetTrue);
+    let remedy =
+        "give #rrggbb,#rrggbb,..., a file with one such colour per line, or a GIMP palette";
+    let unreadable = |e: io::Error| match e.kind() {
+        io::ErrorKind::NotFound => format!("no such file: {remedy}"),
+        _ => format!("cannot be read ({e}): {remedy}"),
     };
-    let (value, default) = match value.split_once('=') {
-        Some((value, default)) => (value, Some(default)),
-        None => (value, None),
-    };
-    let words: Vec<_> = parts.filter_map(|part| part.split_once(':')).collect();
-    Arg::new(name)
-        .long(name)
-        .help(help)
-        .value_name(value)
-        .default_value(default)
-        .value_parser(parser(name, &words))
-        .allow_negative_numbers(true)
-}
-
-/// The parser of an option's value, which stays text. It may be one of these words, if there are any.
-fn parser(name: &'static str, words: &[(&'static str, &'static str)]) -> ValueParser {
-    let checked = move |text: &str| checked(name, text);
-    match name {
-        "strokes" => ValueParser::new(move |text: &str| {
-            checked(text.strip_prefix('+').unwrap_or(text)).map(|_| text.to_owned())
-        }),
-        "palette" => ValueParser::new(move |text: &str| checked(&palette::read(text)?)),
-        "focus" => value_parser!(PathBuf),
-        "hatch" => ValueParser::new(|text: &str| text.parse::<Hatch>()),
-        _ if words.is_empty() => ValueParser::new(checked),
-        _ => {
-            let values = words.iter().map(|(word, help)| {
-                let help = help.trim();
-                PossibleValue::new(*word).help(help).hide(help.is_empty())
-            });
-            let words = PossibleValuesParser::new(values);
-            ValueParser::new(words.try_map(move |word| checked(&word)))
-        }
+    if fs::metadata(text).map_err(unreadable)?.len() > MAX_PALETTE_BYTES {
+        return Err(format!("the file is longer than 1 MiB: {remedy}"));
     }
-}
-
-/// The text, if it is a value of the option.
-fn checked(name: &str, text: &str) -> Result<String, String> {
-    read(name, text).map(|_| text.to_owned())
-}
-
-/// The default options with this one set.
-pub(super) fn read(name: &str, text: &str) -> Result<Options, String> {
-    let mut options = Options::default();
-    let set = options.set(name, Value::Written(text));
-    set.map(|()| options).map_err(|refusal| refusal.to_string())
+    let bytes = fs::read(text).map_err(unreadable)?;
+    let text = String::from_utf8(bytes).map_err(|_| format!("not a text file: {remedy}"))?;
+    Colors::palette(&text).map_err(|error| error.to_string())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use strokefit::fit::OPTIONS;
+
+    fn command() -> Command {
+        <Drawing as clap::Args>::augment_args(Command::new("x"))
+    }
 
     fn drawing(flags: &[&str]) -> Drawing {
-        let command = <Drawing as clap::Args>::augment_args(Command::new("x"));
         let args = ["x"].iter().chain(flags);
-        Drawing::from_arg_matches(&command.get_matches_from(args)).unwrap()
+        Drawing::from_arg_matches(&command().get_matches_from(args)).unwrap()
     }
 
     #[test]
     fn without_flags_all_is_as_the_library_has_it() {
-        assert_eq!(drawing(&[]).options, Options::default());
+        assert_eq!(drawing(&[]).config(), Config::default());
+    }
+
+    #[test]
+    fn every_option_of_a_drawing_is_a_flag() {
+        let command = command();
+        let flags: Vec<&str> = command
+            .get_arguments()
+            .filter_map(|arg| arg.get_long())
+            .collect();
+        for name in OPTIONS
+            .iter()
+            .filter(|name| !["threads", "simd"].contains(name))
+        {
+            assert!(
+                flags
+                    .iter()
+                    .any(|flag| flag.trim_start_matches("no-") == *name),
+                "{name}"
+            );
+        }
     }
 
     #[test]
@@ -292,19 +167,34 @@ mod tests {
         let most = |flag| drawing(&[flag]).config_beyond(200).budget.strokes;
         assert_eq!(most("--strokes=300"), Some(300));
         assert_eq!(most("--strokes=+300"), Some(500));
-        for text in ["+", "+0", "++3", "+-3"] {
-            let command = <Drawing as clap::Args>::augment_args(Command::new("x"));
+        assert!(drawing(&["--strokes=+0"]).config().check_ranges().is_err());
+        for text in ["+", "++3", "+-3"] {
             let args = ["x".to_owned(), format!("--strokes={text}")];
-            assert!(command.try_get_matches_from(args).is_err(), "{text}");
+            assert!(command().try_get_matches_from(args).is_err(), "{text}");
         }
     }
 
     #[test]
     fn switches_set_what_they_say() {
-        let config = drawing(&["--no-polish", "--opaque", "--outline"])
-            .options
-            .config;
+        let config = drawing(&["--no-polish", "--opaque", "--outline"]).config();
         assert!(!config.polish && config.opaque && !config.progressive);
-        assert_eq!(config.file.form.to_string(), "outlines");
+        assert_eq!(config.file.form, Form::Outlines);
+    }
+
+    #[test]
+    fn a_list_is_told_from_a_file() {
+        let two = Colors::Palette(vec![[255, 0, 0], [0, 0, 255]]);
+        assert_eq!(palette("red,#00f"), Ok(two.clone()));
+        for (text, words) in [
+            ("rot,blau", "'rot' is not a colour"),
+            ("no-such-file", "no such file"),
+        ] {
+            let message = palette(text).unwrap_err();
+            assert!(message.contains(words), "{message}");
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("two.txt");
+        fs::write(&path, "red\nblue\n").unwrap();
+        assert_eq!(palette(&path.to_string_lossy()), Ok(two));
     }
 }

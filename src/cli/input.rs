@@ -7,13 +7,31 @@ use std::path::Path;
 use anyhow::{Result, anyhow};
 use strokefit::image::{Image, Limits, Remark};
 
-use super::hint;
+use super::{hint, misuse};
 
 const STDIN: &str = "-";
 
 /// True if the argument means standard input.
 pub(super) fn is_stdin(path: &Path) -> bool {
     path == Path::new(STDIN)
+}
+
+/// Refuses to read two of the files from standard input; `what` says what they are.
+pub(super) fn expect_one_stdin(files: &[&Path], what: &str) -> Result<()> {
+    if files.iter().filter(|path| is_stdin(path)).count() > 1 {
+        return Err(misuse(format!(
+            "standard input cannot be both {what}: name one of them"
+        )));
+    }
+    Ok(())
+}
+
+/// An error of the library about the file at `path`, with its name.
+pub(super) fn blame(error: anyhow::Error, path: &Path) -> anyhow::Error {
+    match error.downcast::<strokefit::Error>() {
+        Ok(error) => error.within(name(path)).into(),
+        Err(error) => error,
+    }
 }
 
 /// The name of the file in messages.

@@ -1,25 +1,22 @@
 //! One drawing from start to end: read, fit, write, verify, report.
 
-use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::Result;
-use strokefit::damage::Damage;
 use strokefit::fit::{self, DEFAULT_STROKES, Fit, Observer, PIXELS_PER_STROKE, Progress, Stop};
 use strokefit::image::Image;
 use strokefit::metrics::{Agreement, psnr_db};
 use strokefit::report::{self, Event, FitReport, Input, Judged, Run, Usage};
-use strokefit::scene::{Dropped, Scene};
+use strokefit::scene::Dropped;
 use strokefit::verify::MIN_AGREEMENT_DB;
 
 use super::events::{Events, Phases};
 use super::interrupt::Interrupt;
-use super::narration::Narration;
 use super::options::Options;
 use super::output::{self, Output};
 use super::pictures::{Pictures, Subject};
-use super::progress::FitBar;
+use super::progress::{FitBar, Narration};
 use super::{Status, Verbosity, complain, input};
 
 /// Picture to draw, and places for the results.
@@ -60,17 +57,11 @@ impl Job<'_> {
             }
         }
         events.tell(&Event::Start(input.clone()));
-        self.foretell(&picture, verbosity);
+        let memory = fit::predicted_rss_bytes(&picture, &self.options.config());
+        verbosity.detail(format_args!("needs about {} MiB of memory", memory >> 20));
         let bar = FitBar::new(verbosity.quiet, heading);
         let fit = self.watched(&picture, start, events, bar, verbosity, draw)?;
-        if let Some(damage) = fit.damage {
-            let name = input::name(self.input);
-            verbosity.say(format_args!(
-                "{name}: left out, as damage: {damage} (--literal draws it)"
-            ));
-        }
-        tell_dropped(fit.dropped, verbosity);
-        tell_reduced(&fit.scene, input::name(self.input), verbosity);
+        tell_omitted(&fit, input::name(self.input), verbosity);
         let mut drawn = Drawn {
             judged: Judged::new(fit)?,
             wall: Duration::ZERO,
@@ -100,14 +91,6 @@ impl Job<'_> {
         self.forget(&drawn)?;
         Interrupt::rest();
         Ok(drawn)
-    }
-
-    /// Says how much memory is about to be used.
-    fn foretell(&self, picture: &Image, verbosity: Verbosity) {
-        if verbosity.verbose {
-            let bytes = fit::predicted_rss_bytes(picture, self.options.config());
-            verbosity.detail(format_args!("needs about {} MiB of memory", bytes >> 20));
-        }
     }
 
     /// Draws, showing and telling how it goes.
@@ -160,7 +143,7 @@ impl Job<'_> {
         let run = Run {
             input: &input,
             base: base.as_deref(),
-            config: self.options.config(),
+            config: &self.options.config(),
             wall: drawn.wall,
             usage: Usage::now(),
         };
@@ -169,58 +152,81 @@ impl Job<'_> {
 
     /// Outcome in a line.
     pub(super) fn summary(&self, drawn: &Drawn) -> String {
+        let Judged {
+            fit, svg, verdict, ..
+        } = &drawn.judged;
         format!(
             "{}: {}, {} bytes, {:.2} s, fidelity {:.2} dB, agreement {:.2} dB",
             output::name(&self.output),
-            drawn.judged.fit.scene.counted(),
-            drawn.judged.svg.len(),
+            fit.scene.counted(),
+            svg.len(),
             drawn.wall.as_secs_f64(),
-            drawn.judged.verdict.fidelity.psnr_db,
-            drawn.judged.verdict.agreement.psnr_db,
+            verdict.fidelity.psnr_db,
+            verdict.agreement.psnr_db,
         )
     }
 
-    /// Says that the drawing has as many strokes as one may have if nothing is said of their number.
-    fn tell_capped(&self, drawn: &Drawn, verbosity: Verbosity) {
-        let strokes = drawn.judged.fit.scene.len();
-        let is_open = self.options.config().is_open() && self.base.is_none();
-        let is_capped = is_open && drawn.judged.fit.stop == Stop::Strokes;
-        let target = &drawn.judged.fit.target;
-        let most = DEFAULT_STROKES.min(target.width() * target.height() / PIXELS_PER_STROKE);
-        let is_full = is_open && 10 * strokes >= 9 * most;
-        let is_noise = is_full && drawn.judged.verdict.fidelity.psnr_db < NOISE_DB;
-        let is_dithered = |damage: Damage| damage.dithering > 0.0;
-        if is_noise || drawn.judged.fit.damage.is_some_and(is_dithered) {
+    /// The status of a drawing that was written. What is short of the promise is said even when quiet.
+    pub(super) fn judge(&self, drawn: &Drawn, verbosity: Verbosity) -> Status {
+        let name = output::name(&self.output);
+        let Judged {
+            fit, svg, verdict, ..
+        } = &drawn.judged;
+        let config = self.options.config();
+        if let Some(signal) = Interrupt::caught() {
+            if fit.stop == Stop::Interrupted {
+                complain(format_args!(
+                    "{name}: interrupted: the file holds the drawing as far as it had come"
+                ));
+            }
+            return Status::Interrupted(signal);
+        }
+        let missed = |why: String| {
+            complain(format_args!("{name}: target not reached: {why}"));
+            Status::TargetMissed
+        };
+        let is_open = config.is_open() && self.base.is_none();
+        if is_dithered(&drawn.judged, is_open) {
             verbosity.say(format_args!(
-                "{}: the picture is of dots or noise finer than strokes: blur it, or give the picture before it was dithered",
-                output::name(&self.output)
+                "{name}: the picture is of dots or noise finer than strokes: blur it, or give the picture before it was dithered"
             ));
         }
-        if is_capped && 10 * strokes >= 9 * DEFAULT_STROKES {
+        let strokes = fit.scene.len();
+        if is_open && fit.stop == Stop::Strokes && 10 * strokes >= 9 * DEFAULT_STROKES {
             verbosity.say(format_args!(
-                "{}: more strokes would pay, but {strokes} are the most unless --strokes or --quality asks for more",
-                output::name(&self.output)
+                "{name}: more strokes would pay, but {strokes} are the most unless --strokes or --quality asks for more"
             ));
         }
-    }
-
-    /// Says that a page of one colour would be more like the picture than the drawing is.
-    fn tell_poor(&self, drawn: &Drawn) {
-        let reached = drawn.judged.verdict.fidelity.psnr_db;
-        let flat = one_color_db(&drawn.judged.fit.target);
-        // A page without its shadows is unlike the photograph.
-        let is_lit = drawn
-            .judged
-            .fit
-            .damage
-            .is_some_and(|damage| damage.uneven_light);
-        if !is_lit && reached + POOR_DB < flat {
+        let budget = config.budget;
+        if let Some(most) = budget.bytes.filter(|_| is_blank(&drawn.judged)) {
+            return missed(format!(
+                "no stroke fits in {most} bytes: the empty page takes {}, and a first stroke about {FIRST_STROKE_BYTES} more",
+                svg.len()
+            ));
+        }
+        tell_poor(&drawn.judged, &name);
+        if !drawn.judged.holds() {
             complain(format_args!(
-                "{}: warning: a page of one colour would be more like the picture ({flat:.1} dB) than this drawing ({reached:.1} dB): \
-                 give other colours or more of them, or another --background",
-                output::name(&self.output)
+                "{name}: fidelity check failed: {}: the file was kept; try --opaque or a higher --precision",
+                disagreement(&verdict.agreement)
+            ));
+            return Status::Disagrees;
+        }
+        if drawn.judged.is_tiny() && verdict.agreement.psnr_db < MIN_AGREEMENT_DB {
+            complain(format_args!(
+                "{name}: strokes are as wide as the pixels of so small a picture: draw it at 16 times its size, enlarged without smoothing"
             ));
         }
+        let reached = verdict.fidelity.psnr_db;
+        if let Some(wanted) = budget.psnr_db.filter(|wanted| reached < *wanted) {
+            let remedy = self.remedy(fit.stop);
+            return missed(format!("{reached:.2} dB of {wanted}: {remedy}"));
+        }
+        if let Some(most) = budget.bytes.filter(|most| svg.len() > *most) {
+            let bytes = svg.len();
+            return missed(format!("{bytes} bytes, more than {most}: allow more bytes"));
+        }
+        Status::Done
     }
 
     /// Advice on how a drawing that ended for this reason comes nearer to the fidelity asked for.
@@ -235,75 +241,6 @@ impl Job<'_> {
             Stop::Strokes => "allow more strokes, by --strokes".into(),
             _ => "what is missing is finer than strokes: draw the picture at twice its size, or without its noise".into(),
         }
-    }
-
-    /// The status of a drawing that was written. What is short of the promise is said even when quiet.
-    pub(super) fn judge(&self, drawn: &Drawn, verbosity: Verbosity) -> Status {
-        let name = output::name(&self.output);
-        if let Some(signal) = Interrupt::caught() {
-            if drawn.judged.fit.stop == Stop::Interrupted {
-                complain(format_args!(
-                    "{name}: interrupted: the file holds the drawing as far as it had come"
-                ));
-            }
-            return Status::Interrupted(signal);
-        }
-        self.tell_capped(drawn, verbosity);
-        if let Some(most) = self
-            .options
-            .config()
-            .budget
-            .bytes
-            .filter(|_| is_blank(drawn))
-        {
-            complain(format_args!(
-                "{name}: target not reached: no stroke fits in {most} bytes: the empty page takes {}, and a first stroke about \
-                 {FIRST_STROKE_BYTES} more",
-                drawn.judged.svg.len()
-            ));
-            return Status::TargetMissed;
-        }
-        self.tell_poor(drawn);
-        if !drawn.judged.holds() {
-            complain(format_args!(
-                "{name}: fidelity check failed: {}: the file was kept; try --opaque or a higher --precision",
-                disagreement(&drawn.judged.verdict.agreement)
-            ));
-            return Status::Disagrees;
-        }
-        if drawn.judged.is_tiny() && drawn.judged.verdict.agreement.psnr_db < MIN_AGREEMENT_DB {
-            complain(format_args!(
-                "{name}: strokes are as wide as the pixels of so small a picture: draw it at 16 times its size, enlarged without smoothing"
-            ));
-        }
-        let reached = drawn.judged.verdict.fidelity.psnr_db;
-        if let Some(wanted) = self
-            .options
-            .config()
-            .budget
-            .psnr_db
-            .filter(|wanted| reached < *wanted)
-        {
-            let remedy = self.remedy(drawn.judged.fit.stop);
-            complain(format_args!(
-                "{name}: target not reached: {reached:.2} dB of {wanted}: {remedy}"
-            ));
-            return Status::TargetMissed;
-        }
-        if let Some(most) = self
-            .options
-            .config()
-            .budget
-            .bytes
-            .filter(|most| drawn.judged.svg.len() > *most)
-        {
-            complain(format_args!(
-                "{name}: target not reached: {} bytes, more than {most}: allow more bytes",
-                drawn.judged.svg.len()
-            ));
-            return Status::TargetMissed;
-        }
-        Status::Done
     }
 }
 
@@ -335,6 +272,17 @@ impl<'a> Outputs<'a> {
 /// A drawing of as many strokes as are allowed, and yet less faithful than this, dB, is one of noise.
 const NOISE_DB: f64 = 22.0;
 
+/// True if a picture is of dots or noise that strokes cannot draw: it says so itself, or it takes about as many strokes as it
+/// may have, and still looks like nothing.
+fn is_dithered(judged: &Judged, is_open: bool) -> bool {
+    let Judged { fit, verdict, .. } = judged;
+    let pixels = fit.target.width() * fit.target.height();
+    let most = DEFAULT_STROKES.min(pixels / PIXELS_PER_STROKE);
+    let is_full = is_open && 10 * fit.scene.len() >= 9 * most;
+    let is_noise = is_full && verdict.fidelity.psnr_db < NOISE_DB;
+    is_noise || fit.damage.is_some_and(|damage| damage.dithering > 0.0)
+}
+
 /// Bytes of a layer with one stroke, about.
 const FIRST_STROKE_BYTES: usize = 250;
 
@@ -342,8 +290,8 @@ const FIRST_STROKE_BYTES: usize = 250;
 const BLANK_DB: f64 = 40.0;
 
 /// True if a drawing should have strokes and has none.
-fn is_blank(drawn: &Drawn) -> bool {
-    let Judged { fit, verdict, .. } = &drawn.judged;
+fn is_blank(judged: &Judged) -> bool {
+    let Judged { fit, verdict, .. } = judged;
     fit.base.is_none() && fit.scene.is_empty() && verdict.fidelity.psnr_db < BLANK_DB
 }
 
@@ -364,20 +312,30 @@ fn disagreement(agreement: &Agreement) -> String {
 /// Warns if a drawing is this much worse than a page of one colour, dB.
 const POOR_DB: f64 = 1.0;
 
+/// Says that a page of one colour would be more like the picture than the drawing is.
+fn tell_poor(judged: &Judged, name: &str) {
+    let reached = judged.verdict.fidelity.psnr_db;
+    let flat = one_color_db(&judged.fit.target);
+    // A page without its shadows is unlike the photograph.
+    let is_lit = judged.fit.damage.is_some_and(|damage| damage.uneven_light);
+    if !is_lit && reached + POOR_DB < flat {
+        complain(format_args!(
+            "{name}: warning: a page of one colour would be more like the picture ({flat:.1} dB) than this drawing ({reached:.1} dB): \
+             give other colours or more of them, or another --background"
+        ));
+    }
+}
+
 /// Fidelity of the best page of one colour, dB; transparent pictures are on white.
 fn one_color_db(picture: &Image) -> f64 {
     let variance = |plane: &Vec<f32>| {
-        let mean = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / plane.len() as f64;
-        let center = mean(&mut plane.iter().map(|&v| f64::from(v)));
-        mean(&mut plane.iter().map(|&v| away2(v, center)))
+        let values = || plane.iter().map(|&value| f64::from(value));
+        let mean = values().sum::<f64>() / plane.len() as f64;
+        let away2 = values().map(|value| (value - mean) * (value - mean));
+        away2.sum::<f64>() / plane.len() as f64
     };
     let flat = picture.on([1.0; 3]);
     psnr_db(flat.planes().iter().map(variance).sum::<f64>() / 3.0)
-}
-
-fn away2(value: f32, center: f64) -> f64 {
-    let away = f64::from(value) - center;
-    away * away
 }
 
 /// A drawing that was written.
@@ -387,24 +345,20 @@ pub(super) struct Drawn {
     pub(super) wall: Duration,
 }
 
-/// Says that a reduced picture was drawn.
-fn tell_reduced(scene: &Scene, name: impl Display, verbosity: Verbosity) {
-    if let Some([width, height]) = scene.page {
+/// Says what of the picture is not drawn, or not at its size.
+fn tell_omitted(fit: &Fit, name: String, verbosity: Verbosity) {
+    if let Some(damage) = fit.damage {
         verbosity.say(format_args!(
-            "{name}: {width}×{height} px were drawn as {}×{}, which show as much as strokes do; figures are for those",
-            scene.width, scene.height
+            "{name}: left out, as damage: {damage} (--literal draws it)"
         ));
     }
-}
-
-fn tell_dropped(dropped: Dropped, verbosity: Verbosity) {
     let Dropped {
         non_finite,
         invisible,
         off_page,
         points,
-    } = dropped;
-    if dropped.total() > 0 {
+    } = fit.dropped;
+    if fit.dropped.total() > 0 {
         verbosity.detail(format_args!(
             "dropped strokes: {non_finite} not finite, {invisible} invisible, {off_page} off the page"
         ));
@@ -412,6 +366,12 @@ fn tell_dropped(dropped: Dropped, verbosity: Verbosity) {
     if points > 0 {
         verbosity.detail(format_args!(
             "dropped points that rounding made superfluous: {points}"
+        ));
+    }
+    if let Some([width, height]) = fit.scene.page {
+        verbosity.say(format_args!(
+            "{name}: {width}×{height} px were drawn as {}×{}, which show as much as strokes do; figures are for those",
+            fit.scene.width, fit.scene.height
         ));
     }
 }

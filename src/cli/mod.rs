@@ -6,7 +6,6 @@
 pub mod bar;
 mod batch;
 mod check;
-mod domain;
 mod drawing;
 mod events;
 mod fit;
@@ -15,10 +14,8 @@ pub mod input;
 mod interrupt;
 mod job;
 mod manual;
-mod narration;
 mod options;
 pub mod output;
-mod palette;
 mod pictures;
 mod product;
 mod progress;

@@ -4,16 +4,19 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use anyhow::Result;
-use strokefit::fit::{Checkpoint, Colors, Config, Execution, Fit, Fitter, Focus, Observer, Preset};
+use clap::value_parser;
+use strokefit::fit::{
+    self, Checkpoint, Colors, Config, Execution, Fit, Fitter, Focus, Observer, Preset,
+};
 use strokefit::image::Limits;
 use strokefit::report::Judged;
 use strokefit::svg::WriteOptions;
 
-use super::drawing::{self, Drawing};
+use super::drawing::Drawing;
 use super::interrupt::GRACE;
 use super::pictures::FilmOptions;
 use super::product::Product;
-use super::{complain, domain, input};
+use super::{complain, input};
 
 /// The options of a command that draws.
 #[derive(Debug, clap::Args)]
@@ -37,28 +40,30 @@ pub(super) struct Options {
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Execution (never changes the result)")]
 pub(super) struct How {
-    /// Worker threads [default: all cores]
-    #[arg(long, value_name = "N", value_parser = |text: &str| execution("threads", text), allow_negative_numbers = true)]
-    threads: Option<Execution>,
-    /// Instruction set: auto, avx512, avx2, sse4.2, sse2 or neon
-    #[arg(long, value_name = "LEVEL", default_value = "auto", value_parser = |text: &str| execution("simd", text))]
-    simd: Execution,
+    #[command(flatten)]
+    execution: Execution,
     /// Refuse pictures with more than N pixels
-    #[arg(long, value_name = "N", value_parser = domain::pixels, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(1..))]
     max_pixels: Option<u64>,
     /// Save the state of the fit to FILE at intervals. If the fit is cut off, the same command resumes from
     /// FILE. The file is removed when the drawing is done
     #[arg(long, value_name = "FILE")]
     checkpoint: Option<PathBuf>,
     /// Seconds between two checkpoints [default: 10]
-    #[arg(long, value_name = "SECONDS", value_parser = domain::seconds, requires = "checkpoint", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", value_parser = fit::seconds, requires = "checkpoint")]
     checkpoint_every: Option<Duration>,
 }
 
 impl Options {
     /// The configuration of a drawing that begins from nothing.
-    pub(super) fn config(&self) -> &Config {
-        &self.drawing.options.config
+    pub(super) fn config(&self) -> Config {
+        self.drawing.config()
+    }
+
+    /// Refuses an option that is out of its range.
+    pub(super) fn check(&self) -> strokefit::Result<()> {
+        self.config().check_ranges()?;
+        self.how.execution.check()
     }
 
     /// The configuration of a drawing whose base brings `before` strokes.
@@ -89,7 +94,7 @@ impl Options {
 
     /// The drawing as its files hold it: cut out, hatched or outlined if that was asked for.
     pub(super) fn product<'a>(&self, judged: &'a Judged) -> Result<Product<'a>> {
-        Product::of(judged, &self.drawing)
+        Product::of(judged, &self.drawing.made, self.config().pens.as_ref())
     }
 
     pub(super) fn limits(&self) -> Limits {
@@ -146,14 +151,6 @@ impl Options {
     }
 
     pub(super) fn execution(&self) -> Execution {
-        Execution {
-            threads: self.how.threads.and_then(|how| how.threads),
-            simd: self.how.simd.simd,
-        }
+        self.how.execution
     }
-}
-
-/// Settings of the run that one option sets.
-fn execution(name: &str, text: &str) -> Result<Execution, String> {
-    drawing::read(name, text).map(|options| options.execution)
 }

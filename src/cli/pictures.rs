@@ -26,7 +26,7 @@ const NOT_WRITTEN: [&str; 9] = [
 #[command(next_help_heading = "Animation (.gif, .webp, .apng, .animated.svg and {n}.png)")]
 pub(super) struct FilmOptions {
     /// Add a stage, or N strokes, with each frame [default: as many as give about 50 frames]
-    #[arg(long, value_name = "stage|N", allow_negative_numbers = true)]
+    #[arg(long, value_name = "stage|N")]
     frames: Option<Step>,
     /// Write the number of strokes below each frame and, in fit, the PSNR
     #[arg(long)]

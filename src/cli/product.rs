@@ -3,12 +3,12 @@
 use std::borrow::Cow;
 
 use anyhow::Result;
+use strokefit::fit::Widths;
 use strokefit::machine::{self, Hatch, Sheet};
 use strokefit::report::Judged;
 use strokefit::scene::{MIN_WIDTH, Scene};
 use strokefit::svg::{self, Form, Group, WriteOptions};
 
-use super::drawing::Drawing;
 use super::misuse;
 
 /// Decimals of cut-outs. Rounded corners on the border of another area leave slivers, in whose width the border's length counts.
@@ -22,35 +22,34 @@ pub(super) struct Product<'a> {
     pub(super) text: Cow<'a, str>,
 }
 
-/// Choice of what is made of a drawing.
-#[derive(Debug, Clone, Copy)]
+/// What is made of a drawing before it is written.
+#[derive(Debug, Clone, Copy, clap::Args)]
 pub(super) struct Made {
-    /// True if areas are cut out.
+    /// Write filled outlines instead of strokes, one for each, for programs that ignore strokes
+    #[arg(long, conflicts_with_all = ["cutout", "hatch"])]
+    pub(super) outline: bool,
+    /// Write what is seen of each colour as one path, for cutters: areas do not overlap, share their borders, and end at the
+    /// page. All is opaque; the background is one of the areas unless it is none
+    #[arg(long, conflicts_with = "hatch")]
     pub(super) cutout: bool,
-    /// Lines that fill areas, if they do.
+    /// Fill areas with lines for a plotter, so far apart, such as 0.5mm, at an angle, 45 degrees if none is given. The lines
+    /// are as wide as the thinnest pen, or as they are far apart
+    #[arg(long, value_name = "DISTANCE[:ANGLE]", allow_hyphen_values = true)]
     pub(super) hatch: Option<Hatch>,
-    /// Width of the pen that draws them, px of the picture; without one, it is their distance.
-    pub(super) pen: Option<f32>,
 }
 
 impl<'a> Product<'a> {
-    /// The drawing of a fit, made into what was asked for.
-    pub(super) fn of(judged: &'a Judged, asked: &Drawing) -> Result<Self> {
+    /// The drawing of a fit with these pens, made into what was asked for.
+    pub(super) fn of(judged: &'a Judged, made: &Made, pens: Option<&Widths>) -> Result<Self> {
         let page = svg::page_width(&judged.svg);
-        let pens = asked.options.config.pens.as_ref();
-        let radii = pens
-            .map(|pens| pens.radii(page, &judged.fit.target))
-            .transpose()?;
-        let made = Made {
-            cutout: asked.cutout,
-            hatch: asked.hatch,
-            pen: radii.and_then(|radii| Some(2.0 * radii.first()?)),
-        };
+        let radii = pens.map(|pens| pens.radii(page, &judged.fit.target));
+        let radii = radii.transpose()?.unwrap_or_default();
+        let pen = radii.first().map(|radius| 2.0 * radius);
         let file = WriteOptions {
             width: page,
             ..judged.fit.file
         };
-        if !asked.cutout && asked.hatch.is_none() {
+        if !made.is_for_machines() {
             let outlines = |scene: &'a Scene| match file.form {
                 Form::Outlines => Cow::Owned(machine::outlined(scene)),
                 _ => Cow::Borrowed(scene),
@@ -63,15 +62,26 @@ impl<'a> Product<'a> {
         let whole = judged.whole().ok_or_else(|| {
             misuse("the SVG is not made of strokes and areas only: leave out --cutout and --hatch")
         })?;
-        made.product(whole, &file)
+        made.product(whole, &file, pen)
     }
 }
 
 impl Made {
-    /// The drawing that is made of a scene, in a file with these options.
-    pub(super) fn product(&self, scene: &Scene, file: &WriteOptions) -> Result<Product<'static>> {
+    /// True if a cutter or a plotter reads the file.
+    pub(super) fn is_for_machines(&self) -> bool {
+        self.cutout || self.hatch.is_some()
+    }
+
+    /// The drawing that is made of a scene, in a file with these options; `pen` is the width of the pen that hatches, px of the
+    /// picture.
+    pub(super) fn product(
+        &self,
+        scene: &Scene,
+        file: &WriteOptions,
+        pen: Option<f32>,
+    ) -> Result<Product<'static>> {
         let (made, text) = if let Some(hatch) = self.hatch {
-            let made = self.hatched(scene, hatch, file)?;
+            let made = hatched(scene, hatch, pen, file)?;
             let text = svg::write(&made, file);
             (made, text)
         } else if self.cutout {
@@ -92,22 +102,22 @@ impl Made {
             text: Cow::Owned(text),
         })
     }
+}
 
-    /// The drawing with its areas filled by lines.
-    fn hatched(&self, scene: &Scene, hatch: Hatch, file: &WriteOptions) -> Result<Scene> {
-        let sheet = Sheet {
-            scene,
-            width: file.width,
-        };
-        let spacing = hatch.spacing.px() / sheet.px();
-        if spacing < MIN_WIDTH {
-            return Err(misuse(format!(
-                "the lines of --hatch are {spacing:.2} px of the picture apart, and a stroke is {MIN_WIDTH} px or more wide: \
-                 enlarge the picture, or give a larger distance"
-            )));
-        }
-        let spacing = spacing as f32;
-        let pen = self.pen.unwrap_or(spacing);
-        Ok(machine::hatched(scene, spacing, pen, hatch.degrees)?)
+/// The drawing with its areas filled by the lines of a pen; without one, lines are as wide as they are far apart.
+fn hatched(scene: &Scene, hatch: Hatch, pen: Option<f32>, file: &WriteOptions) -> Result<Scene> {
+    let sheet = Sheet {
+        scene,
+        width: file.width,
+    };
+    let spacing = hatch.spacing.px() / sheet.px();
+    if spacing < MIN_WIDTH {
+        return Err(misuse(format!(
+            "the lines of --hatch are {spacing:.2} px of the picture apart, and a stroke is {MIN_WIDTH} px or more wide: \
+             enlarge the picture, or give a larger distance"
+        )));
     }
+    let spacing = spacing as f32;
+    let pen = pen.unwrap_or(spacing);
+    Ok(machine::hatched(scene, spacing, pen, hatch.degrees)?)
 }

@@ -49,11 +49,7 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
-    if input::is_stdin(&args.base) && input::is_stdin(&args.input) {
-        return Err(misuse(
-            "standard input cannot be both the SVG and the picture: name one of them",
-        ));
-    }
+    input::expect_one_stdin(&[&args.base, &args.input], "the SVG and the picture")?;
     if args.options.config().background != Background::Auto {
         return Err(misuse(
             "--background cannot be chosen when refining: the drawing keeps that of the SVG",

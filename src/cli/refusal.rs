@@ -1,6 +1,8 @@
 //! Turns clap's errors into one line that says what is wrong, and advice.
 
+use std::error::Error;
 use std::ffi::OsString;
+use std::num::{ParseFloatError, ParseIntError};
 use std::path::Path;
 
 use clap::error::ErrorKind;
@@ -13,7 +15,7 @@ pub(super) fn parts(error: &clap::Error, args: &[OsString]) -> (String, Option<S
         .map(|p| p.split_whitespace().collect::<Vec<_>>().join(" "))
         .collect();
     let wrong = paragraphs.first().map_or("", String::as_str);
-    let wrong = wrong.trim_start_matches("error: ").to_owned();
+    let wrong = wrong.trim_start_matches("error: ").to_owned() + remedy(error);
     let tips: Vec<&str> = paragraphs
         .iter()
         .flat_map(|p| p.split("tip: ").skip(1))
@@ -24,6 +26,15 @@ pub(super) fn parts(error: &clap::Error, args: &[OsString]) -> (String, Option<S
         .or(tips)
         .or_else(|| further(&paragraphs));
     (wrong, advice)
+}
+
+/// What would be right in place of a text that is no number, as the standard library does not say.
+fn remedy(error: &clap::Error) -> &'static str {
+    match error.source() {
+        Some(cause) if cause.is::<ParseIntError>() => ": give a whole number",
+        Some(cause) if cause.is::<ParseFloatError>() => ": give a number",
+        _ => "",
+    }
 }
 
 /// The command that was meant, where a picture was given and no subcommand.

@@ -4,12 +4,11 @@ use std::borrow::Cow;
 use std::path::PathBuf;
 
 use anyhow::Result;
-use strokefit::machine::Hatch;
 use strokefit::svg::{self, Form, WriteOptions};
 
 use super::pictures::{FilmOptions, Format, Pictures, Subject};
 use super::product::{Made, Product};
-use super::{Status, domain, input, misuse};
+use super::{Status, input, misuse};
 
 /// Render an SVG to a PNG or an animation, as resvg draws it, or convert it to PDF or DXF
 ///
@@ -32,54 +31,21 @@ pub(super) struct Args {
     #[arg(short, long, value_name = "OUT.png", required = true)]
     output: Vec<PathBuf>,
     /// Pixels per unit of the SVG
-    #[arg(long, value_name = "X", default_value = "1", value_parser = domain::scale, allow_negative_numbers = true)]
+    #[arg(long, value_name = "X", default_value = "1", value_parser = scale)]
     scale: f64,
-    #[command(flatten)]
-    machine: Machine,
+    #[command(
+        flatten,
+        next_help_heading = "Machines (for a file that strokefit wrote; the output may be an SVG)"
+    )]
+    made: Made,
     #[command(flatten)]
     film: FilmOptions,
 }
 
-/// Choice of what a drawing becomes before it is written.
-#[derive(Debug, clap::Args)]
-#[command(
-    next_help_heading = "Machines (for a file that strokefit wrote; the output may be an SVG)"
-)]
-struct Machine {
-    /// Write filled outlines instead of strokes, one for each
-    #[arg(long, conflicts_with_all = ["cutout", "hatch"])]
-    outline: bool,
-    /// Write what is seen of each colour as one path, for cutters
-    #[arg(long, conflicts_with = "hatch")]
-    cutout: bool,
-    /// Fill areas with lines for a plotter, so far apart, such as 0.5mm, at an angle [default: 45]
-    #[arg(long, value_name = "DISTANCE[:ANGLE]")]
-    hatch: Option<Hatch>,
-}
-
-impl Machine {
-    fn is_asked(&self) -> bool {
-        self.outline || self.cutout || self.hatch.is_some()
-    }
-
-    /// The drawing of a file, made into what was asked for.
-    fn product(&self, text: &str) -> Result<Product<'static>> {
-        let file = WriteOptions {
-            form: if self.outline {
-                Form::Outlines
-            } else {
-                Form::Plain
-            },
-            width: svg::page_width(text),
-            ..WriteOptions::default()
-        };
-        let made = Made {
-            cutout: self.cutout,
-            hatch: self.hatch,
-            pen: None,
-        };
-        made.product(&svg::read(text)?, &file)
-    }
+fn scale(text: &str) -> Result<f64, &'static str> {
+    let factor = text.parse().ok();
+    let factor = factor.filter(|factor: &f64| factor.is_finite() && *factor > 0.0);
+    factor.ok_or("give a factor above 0, such as 2 or 0.5")
 }
 
 pub(super) fn run(args: &Args) -> Result<Status> {
@@ -93,25 +59,31 @@ pub(super) fn run(args: &Args) -> Result<Status> {
     }
     let is_svg = |path: &&PathBuf| Format::of(path) == Some(Format::Svg);
     let svg = args.output.iter().find(is_svg);
-    if let Some(path) = svg.filter(|_| !args.machine.is_asked()) {
+    let is_made = args.made.outline || args.made.is_for_machines();
+    if let Some(path) = svg.filter(|_| !is_made) {
         return Err(misuse(format!(
             "{}: render writes an SVG only with --cutout, --hatch or --outline: name another output",
             path.display()
         )));
     }
-    write(&pictures, &text, args).map_err(|error| {
-        // The file is to blame for errors of the library.
-        match error.downcast::<strokefit::Error>() {
-            Ok(error) => error.within(input::name(&args.file)).into(),
-            Err(error) => error,
-        }
-    })?;
+    write(&pictures, &text, args, is_made).map_err(|error| input::blame(error, &args.file))?;
     Ok(Status::Done)
 }
 
-fn write(pictures: &Pictures<'_>, text: &str, args: &Args) -> Result<()> {
-    let product = match args.machine.is_asked() {
-        true => args.machine.product(text)?,
+fn write(pictures: &Pictures<'_>, text: &str, args: &Args, is_made: bool) -> Result<()> {
+    let product = match is_made {
+        true => {
+            let form = match args.made.outline {
+                true => Form::Outlines,
+                false => Form::Plain,
+            };
+            let file = WriteOptions {
+                form,
+                width: svg::page_width(text),
+                ..WriteOptions::default()
+            };
+            args.made.product(&svg::read(text)?, &file, None)?
+        }
         false => {
             let scene = pictures
                 .needs_marks()

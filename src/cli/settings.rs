@@ -10,10 +10,11 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use clap::{Arg, ArgAction, ArgMatches, Command, Id, value_parser};
+use clap::{Arg, ArgAction, ArgMatches, Command, FromArgMatches, Id, value_parser};
 use toml::{Spanned, Value};
 
 use super::hint::Hint;
+use super::options::Options;
 use super::refusal::parts;
 use super::{input, misuse};
 
@@ -68,22 +69,14 @@ pub(super) fn expand(command: &Command, mut args: Vec<OsString>) -> Result<Vec<O
     let path = matches.try_get_one::<PathBuf>(CONFIG).ok().flatten();
     let place = args.iter().skip(1).position(|arg| arg == name);
     if let (Some(path), Some(place), Some(command)) = (path, place, command.find_subcommand(name)) {
-        if input::is_stdin(path) && reads_stdin(command, matches) {
-            return Err(misuse(
-                "standard input cannot be both the options and a picture: name one of them",
-            ));
-        }
+        let ids = command.get_positionals().map(|arg| arg.get_id().as_str());
+        let pictures = ids.filter_map(|id| matches.get_raw(id)).flatten();
+        let files: Vec<&Path> = pictures.map(Path::new).chain([path.as_path()]).collect();
+        input::expect_one_stdin(&files, "the options and a picture")?;
         let flags = flags(path, &input::text(path, "a TOML file")?, command)?;
         args.splice(place + 2..place + 2, flags);
     }
     Ok(args)
-}
-
-/// True if one of the files to read is standard input.
-fn reads_stdin(command: &Command, matches: &ArgMatches) -> bool {
-    let ids = command.get_positionals().map(|arg| arg.get_id().as_str());
-    let mut names = ids.filter_map(|id| matches.get_raw(id)).flatten();
-    names.any(|name| input::is_stdin(Path::new(name)))
 }
 
 /// Text that `--print-config` prints, if `args` ask for it.
@@ -102,6 +95,7 @@ pub(super) fn printed(command: &Command, args: &[OsString]) -> Result<Option<Str
         .clone()
         .mut_subcommand(&name, |command| command.mut_args(|arg| arg.required(false)));
     let matches = eased.try_get_matches_from(args)?;
+    check_ranges(&matches)?;
     let command = command.find_subcommand(&name);
     Ok(command
         .zip(matches.subcommand_matches(&name))
@@ -164,12 +158,25 @@ fn flag(at: &str, command: &Command, key: &str, value: &Value) -> Result<OsStrin
     Ok(format!("--{key}={text}").into())
 }
 
+/// Refuses an option of a drawing that is out of its range.
+pub(super) fn check_ranges(matches: &ArgMatches) -> Result<(), clap::Error> {
+    match matches.subcommand() {
+        Some((name, matches)) if DRAWING.contains(&name) => in_range(matches),
+        _ => Ok(()),
+    }
+}
+
+fn in_range(matches: &ArgMatches) -> Result<(), clap::Error> {
+    let refusal = |error| clap::Error::raw(ErrorKind::ValueValidation, format!("--{error}"));
+    Options::from_arg_matches(matches)?.check().map_err(refusal)
+}
+
 /// Checks that the command takes the flag's value.
 fn check(at: &str, command: &Command, flag: &OsString) -> Result<()> {
-    let outcome = command
-        .clone()
-        .try_get_matches_from([OsString::from(command.get_name()), flag.clone()]);
-    match outcome {
+    let args = [OsString::from(command.get_name()), flag.clone()];
+    let eased = command.clone().mut_args(|arg| arg.required(false));
+    let outcome = eased.try_get_matches_from(args);
+    match outcome.and_then(|matches| in_range(&matches)) {
         Err(e)
             if matches!(
                 e.kind(),
@@ -204,7 +211,7 @@ fn settable(command: &Command) -> impl Iterator<Item = &Arg> {
 }
 
 fn is_switch(arg: &Arg) -> bool {
-    matches!(arg.get_action(), ArgAction::SetTrue)
+    matches!(arg.get_action(), ArgAction::SetTrue | ArgAction::SetFalse)
 }
 
 /// Switch that undoes the switch `key`.
@@ -220,16 +227,21 @@ fn text(command: &Command, matches: &ArgMatches) -> String {
     let name = command.get_name();
     let mut text =
         format!("# Options of strokefit {name}, read by --config. Flags override them.\n");
-    let mut heading = None;
-    for arg in settable(command) {
-        if heading != Some(arg.get_help_heading()) {
-            heading = Some(arg.get_help_heading());
-            text += &format!(
-                "\n## {}\n",
-                arg.get_help_heading().unwrap_or("Input and output")
-            );
+    let heading = |arg: &&Arg| {
+        arg.get_help_heading()
+            .unwrap_or("Input and output")
+            .to_owned()
+    };
+    let mut headings = Vec::new();
+    for heading in settable(command).map(|arg| heading(&arg)) {
+        if !headings.contains(&heading) {
+            headings.push(heading);
         }
-        text += &line(arg, matches);
+    }
+    for title in headings {
+        text += &format!("\n## {title}\n");
+        let args = settable(command).filter(|arg| heading(arg) == title);
+        text.extend(args.map(|arg| line(arg, matches)));
     }
     text
 }
@@ -255,19 +267,15 @@ fn line(arg: &Arg, matches: &ArgMatches) -> String {
 fn value(arg: &Arg, matches: &ArgMatches) -> Option<Value> {
     let id = arg.get_id().as_str();
     if is_switch(arg) {
-        return Some(Value::Boolean(matches.get_flag(id)));
+        let is_set = matches.get_flag(id) == matches!(arg.get_action(), ArgAction::SetTrue);
+        return Some(Value::Boolean(is_set));
     }
     let raw = matches.get_raw(id)?.next()?.to_string_lossy().into_owned();
     // The sign of +300 has a meaning, which a number of TOML loses.
     if raw.starts_with('+') {
         return Some(Value::String(raw));
     }
-    let integer = raw.parse().ok().map(Value::Integer);
-    let whole = raw.bytes().all(|b| b.is_ascii_digit());
-    let float = raw.parse().ok().filter(|v: &f64| v.is_finite() && !whole);
-    integer
-        .or(float.map(Value::Float))
-        .or(Some(Value::String(raw)))
+    Some(raw.parse().unwrap_or(Value::String(raw)))
 }
 
 #[cfg(test)]

@@ -17,7 +17,9 @@ const TEMPLATE: &str = "{about}{after-help}\n\n{usage-heading} {usage}\n\n{all-a
 
 /// The whole command line.
 pub(super) fn command() -> Command {
-    examples_first(Args::command()).mut_subcommands(settings::offer)
+    let command = examples_first(Args::command()).mut_subcommands(settings::offer);
+    // What begins with a minus and a digit is a value that is out of range, and no flag.
+    command.mut_subcommands(|command| command.mut_args(|arg| arg.allow_negative_numbers(true)))
 }
 
 /// The command, with help of it and of its subcommands that begins with examples.
@@ -26,34 +28,23 @@ pub fn examples_first(command: Command) -> Command {
     command.mut_subcommands(examples_first)
 }
 
-/// The parsed arguments, or the status to leave with: help was shown, or an error.
+/// The parsed arguments, or the status to leave with: help or options were shown, or an error.
 pub(super) fn parse(args: Vec<OsString>) -> Result<Args, Status> {
-    match understand(args.clone()) {
-        Ok(Understood::Run(args)) => Ok(*args),
-        Ok(Understood::Print(text)) => Err(match Output::Stdout.write(text.as_bytes()) {
-            Ok(()) => Status::Done,
-            Err(error) => fail(&error),
-        }),
-        Err(error) => Err(refuse(&error, &args)),
-    }
+    let understood = understand(args.clone()).map_err(|error| refuse(&error, &args))?;
+    understood.ok_or(Status::Done)
 }
 
-/// Request that the arguments make.
-enum Understood {
-    Run(Box<Args>),
-    /// The options as a file.
-    Print(String),
-}
-
-fn understand(args: Vec<OsString>) -> Result<Understood> {
+/// The arguments, unless they ask for the options as a file, which is printed.
+fn understand(args: Vec<OsString>) -> Result<Option<Args>> {
     let command = command();
     let args = settings::expand(&command, args)?;
     if let Some(text) = settings::printed(&command, &args)? {
-        return Ok(Understood::Print(text));
+        Output::Stdout.write(text.as_bytes())?;
+        return Ok(None);
     }
     let matches = command.try_get_matches_from(args)?;
-    let args = Args::from_arg_matches(&matches)?;
-    Ok(Understood::Run(Box::new(args)))
+    settings::check_ranges(&matches)?;
+    Ok(Some(Args::from_arg_matches(&matches)?))
 }
 
 /// Says what is wrong with the arguments, or shows the help that they ask for.

@@ -1,6 +1,6 @@
 //! `strokefit view` shows a drawing in a browser; `--view` shows a fit.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::Result;
@@ -14,7 +14,7 @@ use super::hint::Hint;
 use super::interrupt::GRACE;
 use super::job::Draw;
 use super::options::Options;
-use super::{Status, complain, input, misuse};
+use super::{Status, complain, input};
 
 /// Look at a drawing, stroke by stroke, in a browser
 ///
@@ -32,12 +32,11 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<Status> {
-    let is_stdin = |path: Option<&PathBuf>| path.is_some_and(|path| input::is_stdin(path));
-    if is_stdin(Some(&args.file)) && is_stdin(args.input.as_ref()) {
-        return Err(misuse(
-            "standard input cannot be both the SVG and the picture: name one of them",
-        ));
-    }
+    let files: Vec<&Path> = [args.file.as_path()]
+        .into_iter()
+        .chain(args.input.as_deref())
+        .collect();
+    input::expect_one_stdin(&files, "the SVG and the picture")?;
     let text = input::svg(&args.file)?;
     let name = input::name(&args.file);
     let scene = svg::read(&text).map_err(|error| unread(error, &text, &name))?;
@@ -128,7 +127,7 @@ pub(super) fn more(
         },
         // That of the drawing stays.
         background: Background::Auto,
-        ..options.config().clone()
+        ..options.config()
     };
     let base = Base {
         document: fit.base.as_ref().and_then(|base| base.document.clone()),

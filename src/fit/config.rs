@@ -3,6 +3,9 @@
 use std::collections::BTreeSet;
 use std::time::Duration;
 
+use serde::Deserialize;
+
+use super::domain::{self, SECONDS, allowed, within};
 use super::recipe::{Preset, Recipe, SCREEN_PIXELS};
 use super::simd::Simd;
 use super::widths::Widths;
@@ -14,51 +17,89 @@ use crate::svg::{Form, Order, WriteOptions};
 use crate::threads::Workers;
 
 /// Configuration of a fit. Equal configurations of equal pictures give equal bytes.
-#[derive(Debug, Clone, PartialEq)]
+///
+/// The documentation of a field is also the help of the program's option.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(default)]
+#[cfg_attr(
+    feature = "cli",
+    derive(clap::Args),
+    command(next_help_heading = "Look")
+)]
 pub struct Config {
-    /// When to stop adding strokes.
+    /// When to stop adding strokes. The program's help has it under a heading of its own.
+    #[serde(flatten)]
+    #[cfg_attr(feature = "cli", arg(skip))]
     pub budget: Budget,
-    /// Sets the price of a stroke: each of its bytes has to remove as much squared error as one pixel has at this many
-    /// dB. If it is `None`, a budget of strokes, fidelity or bytes makes strokes free, so that every stroke that
-    /// removes error stays; without such a budget [`quality_for`](Self::quality_for) the picture's size applies.
+    /// Quality, 0 to 60; higher keeps more. A stroke is kept while every byte it costs removes at least the squared error
+    /// that one pixel has at Q dB (default: 30, less for pictures over 768×512, unless --strokes, --psnr or --bytes is given)
+    #[cfg_attr(feature = "cli", arg(long, value_name = "Q"))]
     pub quality: Option<f64>,
-    /// Work to spend.
+    /// How much time to spend for a better drawing
+    #[cfg_attr(feature = "cli", arg(long, default_value_t))]
     pub preset: Preset,
-    /// True if each layer is polished on its own, so that the drawing looks finished after each.
-    pub progressive: bool,
-    /// The kinds of marks of the drawing.
+    /// What the drawing is made of
+    #[cfg_attr(feature = "cli", arg(long, default_value_t))]
     pub marks: Marks,
-    /// True if damage of the picture, such as noise, is drawn as it is.
+    /// Fit each layer for the layers below it only. The drawing is good after every layer, and some dB worse in the end
+    #[cfg_attr(feature = "cli", arg(long, conflicts_with = "no-polish"))]
+    pub progressive: bool,
+    /// Draw noise, traces of JPEG and other damage of the picture as they are
+    #[cfg_attr(feature = "cli", arg(long))]
     pub literal: bool,
-    /// Which errors count; `None` for [`ErrorWeighting::Exact`] where a fidelity is asked for, which is about exact errors, and for
-    /// [`ErrorWeighting::Eye`] elsewhere.
+    /// Which errors count (default: eye, but exact with --psnr)
+    #[cfg_attr(feature = "cli", arg(long))]
     pub look: Option<ErrorWeighting>,
-    /// True if all strokes have opacity 1.
+    /// Use opaque strokes only. They are easier to edit and cost some dB
+    #[cfg_attr(feature = "cli", arg(long))]
     pub opaque: bool,
-    /// The coverage function, or two: one while the edge is soft, and one for the final edge.
+    /// Coverage function of soft edges: smoothstep, sigmoid, tanh, atan or atan:K; A>B changes from A to B during the fit. Here
+    /// tanh draws the same as sigmoid, and atan:K the same as atan for any K, because a fit gives all edges the same slope
+    #[cfg_attr(feature = "cli", arg(long, value_name = "EDGE", default_value_t))]
     pub coverage: CoverageSchedule,
-    /// Most points of a stroke, at least 2, which makes all strokes capsules; `None` for as many as pay.
+    /// Most points of a stroke, 2 or more. 2 draws line segments alone (default: as many as pay)
+    #[cfg_attr(feature = "cli", arg(long, value_name = "N"))]
     pub points: Option<usize>,
-    /// The number of stages; `None` lets the preset and the budget decide.
+    /// Number of stages, each a layer of the SVG (default: chosen from the budget)
+    #[cfg_attr(feature = "cli", arg(long, value_name = "N"))]
     pub stages: Option<usize>,
-    /// True if strokes are polished after the stages.
+    /// True if all strokes are fitted jointly after the stages.
+    #[cfg_attr(feature = "cli", arg(id = "no-polish", long, action = clap::ArgAction::SetFalse, help =
+        "Skip the joint fit of all strokes after the stages. The fit is faster and some dB worse"))]
     pub polish: bool,
-    /// The colours that the drawing may have.
+    /// The colours that the drawing may have. On the command line two options choose them.
+    #[serde(alias = "palette")]
+    #[cfg_attr(feature = "cli", arg(skip))]
     pub colors: Colors,
-    /// The widths that strokes may have; any if `None`.
+    /// Only these widths of strokes: lengths such as 0.3mm,0.8mm on a page of a --width, or numbers in px of the picture
+    #[cfg_attr(
+        feature = "cli",
+        arg(long, value_name = "WIDTHS", allow_hyphen_values = true)
+    )]
     pub pens: Option<Widths>,
     /// True if a plotter or a cutter reads the file, and no path may run off the page. So it is, too, if there are
     /// pens or a length of the page, or the file is of outlines or in an order of little travel.
+    #[serde(skip)]
+    #[cfg_attr(feature = "cli", arg(skip))]
     pub confined: bool,
     /// True if pens fill areas by hatching, so that a drawing for pens may have areas.
+    #[serde(skip)]
+    #[cfg_attr(feature = "cli", arg(skip))]
     pub hatched: bool,
-    /// Options of the file. The fit takes its bytes and its render into account.
-    pub file: WriteOptions,
-    /// The colour behind all strokes.
+    /// Background colour: auto, none, #rrggbb or a name such as white. auto keeps transparency; with --opaque it flattens a
+    /// picture with translucent areas onto white. A colour is what the picture is flattened onto
+    #[cfg_attr(feature = "cli", arg(long, value_name = "COLOR", default_value_t))]
     pub background: Background,
-    /// Key of all random draws.
+    /// Seed of all random choices. Another seed gives a slightly different drawing
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S", default_value_t))]
     pub seed: u64,
+    /// Options of the file. The fit takes its bytes and its render into account.
+    #[serde(flatten)]
+    #[cfg_attr(feature = "cli", command(flatten))]
+    pub file: WriteOptions,
     /// The tuned numbers; [`Recipe::of`] the preset if `None`.
+    #[serde(skip)]
+    #[cfg_attr(feature = "cli", arg(skip))]
     pub recipe: Option<Recipe>,
 }
 
@@ -91,23 +132,36 @@ impl Default for Config {
 
 /// Which errors count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum ErrorWeighting {
-    /// Errors that people see: fewer seams where the picture is smooth, for a tenth of a dB.
+    /// Those that people see, so that smooth places have fewer seams
     Eye,
-    /// All errors alike, which gives the most dB.
+    /// All alike, for a tenth of a dB more
     Exact,
 }
 
 /// Bounds on the drawing; the first one reached stops.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Deserialize)]
+#[serde(default)]
+#[cfg_attr(feature = "cli", derive(clap::Args))]
+#[cfg_attr(
+    feature = "cli",
+    command(next_help_heading = "Budget (the first one reached stops)")
+)]
 pub struct Budget {
-    /// At most this many strokes.
+    /// At most N strokes. With refine, +N counts those beyond the strokes that BASE brings
+    #[cfg_attr(feature = "cli", arg(long, value_name = "N"))]
     pub strokes: Option<usize>,
-    /// Stop at this fidelity, dB.
+    /// Stop when the file reaches DB decibels of PSNR: 25 is rough, 30 fair, 35 good
+    #[serde(rename = "psnr")]
+    #[cfg_attr(feature = "cli", arg(long = "psnr", value_name = "DB"))]
     pub psnr_db: Option<f64>,
-    /// At most this many bytes of SVG.
+    /// At most N bytes of SVG; 20kB, 1.5MB and 64KiB are understood
+    #[cfg_attr(feature = "cli", arg(long, value_name = "N", value_parser = domain::bytes))]
     pub bytes: Option<usize>,
-    /// At most this much wall time.
+    /// At most this many seconds, from reading the picture to writing the SVG
+    #[serde(deserialize_with = "domain::time")]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "SECONDS", value_parser = domain::seconds))]
     pub time: Option<Duration>,
 }
 
@@ -155,11 +209,15 @@ pub enum Background {
 }
 
 /// Settings of a run. They never change the drawing.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(default)]
+#[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Execution {
-    /// Worker threads; one per core if `None`.
+    /// Worker threads (default: all cores)
+    #[cfg_attr(feature = "cli", arg(long, value_name = "N"))]
     pub threads: Option<usize>,
-    /// The instruction set of the renderer.
+    /// Instruction set: auto, avx512, avx2, sse4.2, sse2 or neon
+    #[cfg_attr(feature = "cli", arg(long, value_name = "LEVEL", default_value_t))]
     pub simd: Simd,
 }
 
@@ -177,6 +235,9 @@ pub const PIXELS_PER_STROKE: usize = 16;
 
 /// Strokes that any picture may have, however small it is.
 const MIN_STROKES: usize = 100;
+
+/// Most worker threads: more than any machine has cores only waste memory.
+pub const MAX_THREADS: usize = 1024;
 
 /// Beyond this quality, dB, a stroke may cost less than one 8-bit level of one pixel.
 const MAX_QUALITY: f64 = 60.0;
@@ -287,55 +348,49 @@ impl Config {
         }
     }
 
-    /// Refuses options that are outside their domains.
+    /// Refuses options that are out of their ranges, or do not go together.
     pub(super) fn check(&self) -> Result<()> {
-        let refuse = |message: String| Err(Error::new(ErrorKind::Config, message));
-        let Budget { psnr_db, time, .. } = self.budget;
-        if psnr_db.is_some_and(|db| !db.is_finite() || db <= 0.0) {
-            return refuse(format!(
-                "a fidelity of {} dB cannot be asked for: give one above 0",
-                psnr_db.unwrap_or(0.0)
-            ));
-        }
-        if let Some(quality) = self.quality.filter(|q| !(0.0..=MAX_QUALITY).contains(q)) {
-            return refuse(format!(
-                "a quality of {quality} is out of range: give 0 to {MAX_QUALITY}"
-            ));
-        }
-        if time.is_some_and(|time| time.is_zero()) {
-            return refuse("a time of 0 s leaves none to fit in: give more".into());
-        }
+        self.check_ranges()?;
         if self.marks == Marks::Areas && self.pens_draw_lines() {
-            return refuse(
-                "pens draw strokes, not areas: leave out pens, or ask for marks of strokes".into(),
-            );
+            let message =
+                "pens draw strokes, not areas: leave out pens, or ask for marks of strokes";
+            return Err(Error::new(ErrorKind::Config, message));
         }
         self.check_colors()?;
-        self.recipe().check()?;
-        if self.stages == Some(0) {
-            return refuse("0 stages add no stroke: give 1 or more".into());
-        }
-        if let Some(points) = self.points.filter(|n| !(2..=MAX_POINTS).contains(n)) {
-            return refuse(format!(
-                "{points} points of a stroke are out of range: give 2 to {MAX_POINTS}"
-            ));
-        }
-        if self.file.precision > MAX_PRECISION {
-            return refuse(format!(
-                "a precision of {} decimals is out of range: give 0 to {MAX_PRECISION}",
-                self.file.precision
-            ));
-        }
-        Ok(())
+        self.recipe().check()
+    }
+
+    /// Refuses an option that is out of its range. The message begins with its name.
+    #[doc(hidden)]
+    pub fn check_ranges(&self) -> Result<()> {
+        let Budget {
+            strokes,
+            psnr_db,
+            bytes,
+            time,
+        } = self.budget;
+        within("strokes", strokes, 1..=MAX_STROKES)?;
+        let decibels = "decibels from above 0 to 100, such as 32";
+        allowed("psnr", psnr_db, decibels, |&db| db > 0.0 && db <= 100.0)?;
+        allowed("bytes", bytes, "1 or more", |&bytes| bytes > 0)?;
+        allowed("time", time.map(|t| t.as_secs_f64()), SECONDS, |&s| s > 0.0)?;
+        let right = format!("a number from 0 to {MAX_QUALITY}");
+        let quality = 0.0..=MAX_QUALITY;
+        allowed("quality", self.quality, &right, |q| quality.contains(q))?;
+        within("points", self.points, 2..=MAX_POINTS)?;
+        within("stages", self.stages, 1..=MAX_STROKES)?;
+        let most = match self.colors {
+            Colors::AtMost(most) => Some(most),
+            Colors::Free | Colors::Palette(_) => None,
+        };
+        within("colors", most, 1..=Colors::MAX)?;
+        within("precision", Some(self.file.precision), 0..=MAX_PRECISION)
     }
 
     fn check_colors(&self) -> Result<()> {
         let refuse = |message: String| Err(Error::new(ErrorKind::Config, message));
         let Colors::Palette(palette) = &self.colors else {
-            return match self.colors {
-                Colors::AtMost(0) => refuse("0 colours draw nothing: give 1 or more".into()),
-                _ => Ok(()),
-            };
+            return Ok(());
         };
         if palette.is_empty() {
             return refuse("the palette has no colour: give one or more".into());
@@ -362,6 +417,12 @@ impl Config {
 }
 
 impl Execution {
+    /// Refuses a number of threads that is out of its range. The message begins with the option's name.
+    #[doc(hidden)]
+    pub fn check(&self) -> Result<()> {
+        within("threads", self.threads, 1..=MAX_THREADS)
+    }
+
     /// The worker threads.
     #[doc(hidden)]
     pub fn pool(&self) -> Result<Workers> {

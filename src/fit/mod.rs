@@ -28,6 +28,7 @@ mod base;
 mod budget;
 mod config;
 mod descent;
+mod domain;
 mod drawing;
 mod file;
 mod fitter;
@@ -50,13 +51,14 @@ pub use budget::memory::predicted_rss_bytes;
 pub(crate) use budget::memory::rss_bytes_of;
 pub use config::{
     Background, Budget, Colors, Config, DEFAULT_QUALITY, DEFAULT_STROKES, ErrorWeighting,
-    Execution, MAX_STROKES, PIXELS_PER_STROKE,
+    Execution, MAX_STROKES, MAX_THREADS, PIXELS_PER_STROKE,
 };
 pub use descent::anneal::final_softness;
+pub use domain::seconds;
 pub use drawing::focus::Focus;
 pub use drawing::objective::Objective;
 pub use fitter::Fitter;
-pub use options::{MAX_THREADS, OPTIONS, Options, Refusal, Value};
+pub use options::{OPTIONS, Options};
 pub use recipe::{
     AdamSettings, Correction, Domain, Doubts, EdgeShape, Forms, Inks, Joins, Masking, Pens, Points,
     Polish, Preset, Rates, Recipe, Recoloring, Recovery, Reduction, Relocation, Rounds,

@@ -1,357 +1,191 @@
-//! Options by name: the command line, the page, Node and Python set a [`Config`] and an [`Execution`] here.
+//! Options by name: the page, Node and Python hand them over as an object of JSON.
 
-use std::fmt;
-use std::ops::{Bound, RangeBounds};
-use std::str::FromStr;
-use std::time::Duration;
+use serde::Deserialize;
+use serde_json::{Map, Value};
 
-use super::{Colors, Config, Execution, MAX_STROKES};
+use super::{Config, Execution};
 use crate::error::{Error, ErrorKind, Result};
-use crate::scene::{MAX_POINTS, MAX_PRECISION};
 
-/// The names of all options, for a message.
-pub const OPTIONS: &str = "strokes, psnr, bytes, time, quality, preset, marks, progressive, literal, look, opaque, coverage, points, stages, polish, \
-    background, seed, colors, palette, pens, form, group, order, precision, width, threads, simd";
+/// The names of all options.
+pub const OPTIONS: [&str; 27] = [
+    "strokes",
+    "psnr",
+    "bytes",
+    "time",
+    "quality",
+    "preset",
+    "marks",
+    "progressive",
+    "literal",
+    "look",
+    "opaque",
+    "coverage",
+    "points",
+    "stages",
+    "polish",
+    "background",
+    "seed",
+    "colors",
+    "palette",
+    "pens",
+    "form",
+    "group",
+    "order",
+    "precision",
+    "width",
+    "threads",
+    "simd",
+];
 
-/// Most worker threads: more than any machine has cores only waste memory.
-pub const MAX_THREADS: usize = 1024;
-
-/// Configuration of a fit and settings of its run, set by name.
-#[derive(Debug, Clone, Default, PartialEq)]
+/// Configuration of a fit and settings of its run.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 pub struct Options {
     /// Configuration of the fit.
+    #[serde(flatten)]
     pub config: Config,
     /// Settings of the run.
+    #[serde(flatten)]
     pub execution: Execution,
 }
 
-/// The value of an option.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Value<'a> {
-    /// A value of any kind as it is written on a command line.
-    Written(&'a str),
-    /// True or false.
-    Switch(bool),
-    /// A whole number.
-    Whole(i128),
-    /// A number that may have decimals.
-    Number(f64),
-    /// A text that is no number.
-    Text(&'a str),
-    /// A value that no option has, such as a list.
-    Other,
-}
-
-/// The reason why an option cannot have a value.
-#[derive(Debug)]
-pub enum Refusal {
-    /// No option has this name.
-    Unknown,
-    /// The value is of another kind than the option's; this would be right.
-    Kind(String),
-    /// The value is out of range; this would be right.
-    Range(String),
-    /// The error names the value and the remedy.
-    Value(Error),
-}
-
 impl Options {
-    /// Sets the option `name`, one of [`OPTIONS`].
+    /// Reads an object of [`OPTIONS`]; what it lacks, and what is `null`, is as by default.
     ///
     /// # Errors
-    /// A [`Refusal`] when there is no such option, or its value is none of its values.
-    pub fn set(&mut self, name: &str, value: Value<'_>) -> Result<(), Refusal> {
-        let Self { config, execution } = self;
-        let (budget, file) = (&mut config.budget, &mut config.file);
-        match name {
-            "strokes" => budget.strokes = Some(value.whole(1..=MAX_STROKES)?),
-            "psnr" => budget.psnr_db = Some(value.decibels()?),
-            "bytes" => budget.bytes = Some(value.bytes()?),
-            "time" => budget.time = Some(value.seconds()?),
-            "quality" => config.quality = Some(value.number("a number from 0 to 60", |_| true)?),
-            "preset" => config.preset = value.word()?,
-            "progressive" => config.progressive = value.switch()?,
-            "marks" => config.marks = value.word()?,
-            "literal" => config.literal = value.switch()?,
-            "look" => config.look = Some(value.word()?),
-            "opaque" => config.opaque = value.switch()?,
-            "coverage" => config.coverage = value.word()?,
-            "points" => config.points = Some(value.whole(2..=MAX_POINTS)?),
-            "stages" => config.stages = Some(value.whole(1..=MAX_STROKES)?),
-            "polish" => config.polish = value.switch()?,
-            "background" => config.background = value.word()?,
-            "seed" => config.seed = value.whole(0..=u64::MAX)?,
-            "colors" => config.set_colors(value.colors()?)?,
-            "palette" => config.set_colors(value.palette()?)?,
-            "pens" => config.pens = Some(value.word()?),
-            "form" => file.form = value.word()?,
-            "group" => file.group = value.word()?,
-            "order" => file.order = value.word()?,
-            "precision" => file.precision = value.whole(0..=MAX_PRECISION)?,
-            "width" => file.width = Some(value.word()?),
-            "threads" => execution.threads = Some(value.whole(1..=MAX_THREADS)?),
-            "simd" => execution.simd = value.word()?,
-            _ => return Err(Refusal::Unknown),
+    /// [`ErrorKind::Config`] when there is no such option, or a value is none of its values. The message names both. The cause
+    /// is an error of `serde_json` if the value is of the wrong type.
+    pub fn from_json(mut given: Map<String, Value>) -> Result<Self> {
+        given.retain(|_, value| !value.is_null());
+        if let Some(name) = given.keys().find(|name| !OPTIONS.contains(&name.as_str())) {
+            return Err(refusal(format!(
+                "no option is called {name}: give {}",
+                OPTIONS.join(", ")
+            )));
         }
-        Ok(())
+        let options = read(given.clone()).map_err(|_| wrong(given))?;
+        options.config.check_ranges()?;
+        options.execution.check()?;
+        Ok(options)
     }
 }
 
-impl Config {
-    /// Sets the colours, which two options do.
-    fn set_colors(&mut self, colors: Colors) -> Result<(), Refusal> {
-        if self.colors != Colors::Free {
-            let message = "colors and palette exclude each other: give one of them";
-            return Err(Error::new(ErrorKind::Config, message).into());
+fn read(given: Map<String, Value>) -> serde_json::Result<Options> {
+    Options::deserialize(Value::Object(given))
+}
+
+/// The error of options that cannot be read together. Serde names no option; the one to blame cannot be read alone either.
+fn wrong(given: Map<String, Value>) -> Error {
+    for (name, value) in given {
+        let setting = format!("{name} is {value}");
+        if let Err(cause) = read(Map::from_iter([(name, value)])) {
+            return Error::new(ErrorKind::Config, format!("{setting}: {}", remedy(&cause)))
+                .caused_by(cause);
         }
-        self.colors = colors;
-        Ok(())
+    }
+    refusal("colors and palette exclude each other: give one of them".into())
+}
+
+/// What would be right in place of a value of another type.
+fn remedy(error: &serde_json::Error) -> String {
+    let message = error.to_string();
+    match message.rsplit_once(", expected ") {
+        Some((_, "a boolean")) => "give true or false".into(),
+        Some((_, "a string")) => "give a text".into(),
+        Some((_, "f64")) => "give a number".into(),
+        Some((_, "u8")) => format!("give a whole number from 0 to {}", u8::MAX),
+        Some((_, "usize" | "u64")) => "give a whole number of 0 or more".into(),
+        _ => message,
     }
 }
 
-impl<'a> Value<'a> {
-    /// A whole number of this range.
-    ///
-    /// # Errors
-    /// A [`Refusal`] when it is none of those.
-    pub fn whole<N>(self, range: impl RangeBounds<N>) -> Result<N, Refusal>
-    where
-        N: PartialOrd + fmt::Display + FromStr + TryFrom<i128>,
-    {
-        let right = || match (range.start_bound(), range.end_bound()) {
-            (Bound::Included(least), Bound::Included(most)) => {
-                format!("a whole number from {least} to {most}")
-            }
-            (Bound::Included(least), _) => format!("a whole number of {least} or more"),
-            _ => "a whole number".into(),
-        };
-        let number = match self {
-            Self::Written(text) => text.parse().ok().filter(|_| !text.starts_with('+')),
-            Self::Whole(number) => N::try_from(number).ok(),
-            _ => return Err(Refusal::Kind(right())),
-        };
-        let number = number.filter(|number| range.contains(number));
-        number.ok_or_else(|| Refusal::Range(right()))
-    }
-
-    /// A number that is `valid`; `right` says which are.
-    ///
-    /// # Errors
-    /// A [`Refusal`] when it is not.
-    pub fn number(self, right: &str, valid: impl Fn(f64) -> bool) -> Result<f64, Refusal> {
-        let number = match self {
-            Self::Written(text) => text.parse().ok(),
-            Self::Whole(number) => Some(number as f64),
-            Self::Number(number) => Some(number),
-            _ => return Err(Refusal::Kind(right.into())),
-        };
-        let number = number.filter(|number| valid(*number));
-        number.ok_or_else(|| Refusal::Range(right.into()))
-    }
-
-    /// Seconds above 0.
-    ///
-    /// # Errors
-    /// A [`Refusal`] when it is none of those.
-    pub fn seconds(self) -> Result<Duration, Refusal> {
-        let span = |seconds| Duration::try_from_secs_f64(seconds).unwrap_or_default();
-        let right = "seconds above 0, such as 10 or 0.5";
-        self.number(right, |seconds| !span(seconds).is_zero())
-            .map(span)
-    }
-
-    fn decibels(self) -> Result<f64, Refusal> {
-        let right = "decibels from above 0 to 100, such as 32";
-        self.number(right, |db| db > 0.0 && db <= 100.0)
-    }
-
-    /// A number of bytes; on a command line it may have a unit: `20000`, `20kB`, `1.5MB`, `64KiB`.
-    fn bytes(self) -> Result<usize, Refusal> {
-        let Self::Written(text) = self else {
-            return self.whole(1..);
-        };
-        let digits = text.find(|c: char| !(c.is_ascii_digit() || c == '.'));
-        let (number, unit) = text.split_at(digits.unwrap_or(text.len()));
-        let factor = match unit.trim().to_ascii_lowercase().as_str() {
-            "" | "b" => Some(1.0),
-            "k" | "kb" => Some(1e3),
-            "kib" => Some(1024.0),
-            "m" | "mb" => Some(1e6),
-            "mib" => Some(1024.0 * 1024.0),
-            _ => None,
-        };
-        let is_exact = factor != Some(1.0) || !number.contains('.');
-        // Beyond this limit, numbers of this type are not all whole.
-        let is_valid = |bytes: &f64| is_exact && (1.0..(1_u64 << 53) as f64).contains(bytes);
-        let bytes = factor.and_then(|factor| Some(number.parse::<f64>().ok()? * factor));
-        let right = "bytes, 1 or more, such as 20000, 20kB, 1.5MB or 64KiB";
-        let bytes = bytes.filter(is_valid).map(|bytes| bytes as usize);
-        bytes.ok_or_else(|| Refusal::Range(right.into()))
-    }
-
-    /// A number of colours, or a text that says which.
-    fn colors(self) -> Result<Colors, Refusal> {
-        match self {
-            Self::Text(_) => self.word(),
-            _ => self.whole(1..=Colors::MAX).map(Colors::AtMost),
-        }
-    }
-
-    fn palette(self) -> Result<Colors, Refusal> {
-        Ok(Colors::palette(self.text()?)?)
-    }
-
-    fn word<T: FromStr<Err = Error>>(self) -> Result<T, Refusal> {
-        Ok(self.text()?.parse::<T>()?)
-    }
-
-    /// A text.
-    ///
-    /// # Errors
-    /// A [`Refusal`] when it is of another kind.
-    pub fn text(self) -> Result<&'a str, Refusal> {
-        match self {
-            Self::Written(text) | Self::Text(text) => Ok(text),
-            _ => Err(Refusal::Kind("a text".into())),
-        }
-    }
-
-    /// True or false.
-    ///
-    /// # Errors
-    /// A [`Refusal`] when it is of another kind.
-    pub fn switch(self) -> Result<bool, Refusal> {
-        match self {
-            Self::Switch(on) => Ok(on),
-            _ => Err(Refusal::Kind("true or false".into())),
-        }
-    }
-}
-
-impl From<Error> for Refusal {
-    fn from(error: Error) -> Self {
-        Self::Value(error)
-    }
-}
-
-impl fmt::Display for Refusal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Unknown => f.write_str("no option has this name"),
-            Self::Kind(right) | Self::Range(right) => write!(f, "give {right}"),
-            Self::Value(error) => write!(f, "{error}"),
-        }
-    }
-}
-
-impl Refusal {
-    /// The error of the option `name`. `setting` is the option with its value, as the caller writes them.
-    pub fn of(self, name: &str, setting: impl fmt::Display) -> Error {
-        match self {
-            Self::Value(error) => error.within(name),
-            _ => Error::new(ErrorKind::Config, format!("{setting}: {self}")),
-        }
-    }
+fn refusal(message: String) -> Error {
+    Error::new(ErrorKind::Config, message)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use std::time::Duration;
 
-    fn set(name: &str, value: Value<'_>) -> Result<Options, String> {
-        let mut options = Options::default();
-        let set = options.set(name, value);
-        set.map(|()| options).map_err(|refusal| refusal.to_string())
+    use super::*;
+    use crate::fit::{Budget, Colors, Preset};
+
+    fn options(json: &str) -> Result<Options, String> {
+        Options::from_json(serde_json::from_str(json).unwrap()).map_err(|error| error.to_string())
     }
 
-    fn written(name: &str, text: &str) -> Result<Options, String> {
-        set(name, Value::Written(text))
+    #[test]
+    fn nothing_means_the_defaults() {
+        for json in ["{}", r#"{"strokes": null, "preset": null}"#] {
+            assert_eq!(options(json).unwrap(), Options::default());
+        }
     }
 
     #[test]
     fn every_name_is_that_of_an_option() {
-        for name in OPTIONS.split(", ") {
-            let refusal = Options::default().set(name, Value::Other).unwrap_err();
-            assert!(matches!(refusal, Refusal::Kind(_)), "{name}: {refusal}");
-        }
-        let refusal = Options::default().set("strkes", Value::Whole(1));
-        assert!(matches!(refusal, Err(Refusal::Unknown)));
-    }
-
-    #[test]
-    fn nonsense_is_refused() {
-        for text in ["", "0", "-1", "+3", "1.5", "x", "99999999999999999999999"] {
-            for name in ["strokes", "bytes", "threads", "colors", "points", "stages"] {
-                assert!(written(name, text).is_err(), "{name} {text}");
-            }
-        }
-        for text in ["NaN", "inf", "-1", "0", "1e400", ""] {
+        for name in OPTIONS {
+            let refused = options(&format!(r#"{{"{name}": {{}}}}"#)).unwrap_err();
             assert!(
-                written("psnr", text).is_err() && written("time", text).is_err(),
-                "{text}"
+                refused.starts_with(&format!("{name} is {{}}: give ")),
+                "{refused}"
             );
         }
-        for text in [
-            "kB",
-            "1.5B",
-            "1e3",
-            "-2kB",
-            "0.0001kB",
-            "9GB",
-            "99999999999999MB",
-        ] {
-            assert!(written("bytes", text).is_err(), "{text}");
-        }
-        assert!(written("precision", "7").is_err() && written("precision", "-1").is_err());
     }
 
     #[test]
-    fn sense_is_understood() {
-        let budget = |name, text| written(name, text).unwrap().config.budget;
-        assert_eq!(budget("strokes", "900000").strokes, Some(900_000));
-        for (text, value) in [
-            ("20000", 20_000),
-            ("20kB", 20_000),
-            ("20 KB", 20_000),
-            ("1.5MB", 1_500_000),
-            ("64KiB", 65_536),
-            ("7b", 7),
-        ] {
-            assert_eq!(budget("bytes", text).bytes, Some(value), "{text}");
-        }
-        assert_eq!(budget("psnr", "32.5").psnr_db, Some(32.5));
-        assert_eq!(budget("time", "0.5").time, Some(Duration::from_millis(500)));
-        let seed = u64::MAX.to_string();
-        assert_eq!(written("seed", &seed).unwrap().config.seed, u64::MAX);
+    fn options_of_every_kind_arrive() {
+        let read = options(
+            r#"{
+            "strokes": 500, "psnr": 32, "time": 1.5, "bytes": 20000, "preset": "draft", "polish": false, "colors": "8",
+            "seed": 18446744073709551615, "simd": "sse4.2", "threads": 2
+        }"#,
+        );
+        let mut expected = Options::default();
+        expected.config.budget = Budget {
+            strokes: Some(500),
+            psnr_db: Some(32.0),
+            time: Some(Duration::from_millis(1500)),
+            bytes: Some(20_000),
+        };
+        expected.config.preset = Preset::Draft;
+        expected.config.polish = false;
+        expected.config.colors = Colors::AtMost(8);
+        expected.config.seed = u64::MAX;
+        expected.execution.simd = crate::fit::Simd::Sse42;
+        expected.execution.threads = Some(2);
+        assert_eq!(read.unwrap(), expected);
+        let two = options(r##"{"palette": "#ff0000,#000000"}"##).unwrap();
+        assert!(matches!(two.config.colors, Colors::Palette(colors) if colors.len() == 2));
     }
 
     #[test]
-    fn values_are_of_their_kind() {
-        assert!(set("psnr", Value::Whole(32)).is_ok() && set("psnr", Value::Number(32.0)).is_ok());
-        for (name, value, right) in [
+    fn what_is_wrong_is_named_with_the_remedy() {
+        for (json, words) in [
+            (r#"{"strkes": 5}"#, ["called strkes", "give strokes, "]),
+            (r#"{"strokes": 0}"#, ["strokes is 0", "from 1 to 900000"]),
+            (r#"{"strokes": -1}"#, ["strokes is -1", "0 or more"]),
+            (r#"{"strokes": "5"}"#, ["strokes is \"5\"", "whole number"]),
+            (r#"{"bytes": 1.5}"#, ["bytes is 1.5", "whole number"]),
+            (r#"{"psnr": -3}"#, ["psnr is -3", "decibels"]),
+            (r#"{"quality": 99}"#, ["quality is 99", "0 to 60"]),
+            (r#"{"time": -1}"#, ["time is -1", "seconds"]),
             (
-                "strokes",
-                Value::Number(5.0),
-                "give a whole number from 1 to 900000",
+                r#"{"preset": "drft"}"#,
+                ["preset is \"drft\"", "draft, balanced or best"],
             ),
+            (r#"{"opaque": 1}"#, ["opaque is 1", "true or false"]),
+            (r#"{"precision": 7}"#, ["precision is 7", "0 to 6"]),
+            (r#"{"points": 1}"#, ["points is 1", "2 to 65535"]),
+            (r#"{"stages": 0}"#, ["stages is 0", "whole number"]),
+            (r#"{"colors": 0}"#, ["colors is 0", "1 to 4096"]),
+            (r#"{"threads": 0}"#, ["threads is 0", "1 to 1024"]),
+            (r#"{"width": "9"}"#, ["width is \"9\"", "120mm"]),
             (
-                "strokes",
-                Value::Text("5"),
-                "give a whole number from 1 to 900000",
+                r##"{"colors": 3, "palette": "#ff0000"}"##,
+                ["colors and palette", "one of them"],
             ),
-            ("bytes", Value::Other, "give a whole number of 1 or more"),
-            ("opaque", Value::Whole(1), "give true or false"),
-            ("preset", Value::Switch(true), "give a text"),
         ] {
-            assert_eq!(set(name, value).unwrap_err(), right);
+            let error = options(json).unwrap_err();
+            assert!(words.iter().all(|word| error.contains(word)), "{error}");
         }
-    }
-
-    #[test]
-    fn colors_are_a_number_or_a_palette() {
-        let mut options = set("colors", Value::Whole(8)).unwrap();
-        assert_eq!(options.config.colors, Colors::AtMost(8));
-        let refusal = options.set("palette", Value::Text("#ff0000")).unwrap_err();
-        assert!(refusal.to_string().contains("give one of them"));
     }
 }

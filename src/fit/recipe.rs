@@ -23,6 +23,7 @@ pub const SCREEN_PIXELS: usize = 768 * 512;
 
 /// Work to spend on a drawing.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Preset {
     /// An eighth of the time, 2 to 3 dB worse.
     Draft,

@@ -2,12 +2,13 @@
 
 use std::time::Duration;
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
 use super::base::Base;
 use super::drawing::focus::Focus;
 use crate::damage::Damage;
 use crate::image::Image;
+use crate::metrics::null_is_infinite;
 use crate::scene::{Dropped, Scene};
 use crate::svg::WriteOptions;
 
@@ -46,7 +47,7 @@ impl Fit {
     }
 }
 
-/// The record of one stage.
+/// The record of one stage. In JSON, an infinite number of dB is `null`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct StageRecord {
     /// From 1.
@@ -55,17 +56,33 @@ pub struct StageRecord {
     pub strokes: usize,
     /// Iterations of the optimiser.
     pub iterations: usize,
-    /// Wall time of the stage.
+    /// Wall time of the stage; a checkpoint and a report have `wall_s`, in s.
+    #[serde(
+        rename = "wall_s",
+        serialize_with = "seconds",
+        deserialize_with = "span"
+    )]
     pub wall: Duration,
     /// Fidelity of the soft render to the target after the stage, dB, at the resolution that the stage
     /// was fitted at: large strokes are fitted to a reduced picture.
+    #[serde(deserialize_with = "null_is_infinite")]
     pub psnr_db: f64,
     /// Fidelity of the finished drawing's layers up to this one, dB.
+    #[serde(deserialize_with = "null_is_infinite")]
     pub layer_psnr_db: f64,
+}
+
+fn seconds<S: Serializer>(wall: &Duration, to: S) -> Result<S::Ok, S::Error> {
+    to.serialize_f64(wall.as_secs_f64())
+}
+
+fn span<'de, D: Deserializer<'de>>(from: D) -> Result<Duration, D::Error> {
+    Duration::try_from_secs_f64(f64::deserialize(from)?).map_err(de::Error::custom)
 }
 
 /// Why a fit ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Stop {
     /// The stroke budget is used.
     Strokes,

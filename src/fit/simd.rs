@@ -1,11 +1,9 @@
 //! SIMD levels by name, and those that this machine has.
 
-use std::fmt;
-use std::str::FromStr;
-
 use fearless_simd::Level;
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::words::words;
 
 /// The instruction set of the renderer. All of them give the same bits. A machine that has none of them has `Auto` alone.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -28,19 +26,10 @@ pub enum Simd {
 }
 
 impl Simd {
-    /// Every name but `auto`, widest first.
-    pub const ALL: [Self; 6] = [
-        Self::Avx512,
-        Self::Avx2,
-        Self::Sse42,
-        Self::Sse2,
-        Self::Neon,
-        Self::Simd128,
-    ];
-
     /// Those that this machine has, widest first.
     pub fn available() -> impl DoubleEndedIterator<Item = Self> {
-        Self::ALL.into_iter().filter(|simd| simd.level().is_some())
+        let named = Self::ALL.into_iter().filter(|simd| *simd != Self::Auto);
+        named.filter(|simd| simd.level().is_some())
     }
 
     /// The level, if this machine has it.
@@ -82,28 +71,13 @@ impl Simd {
     }
 }
 
-impl fmt::Display for Simd {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Auto => "auto",
-            Self::Avx512 => "avx512",
-            Self::Avx2 => "avx2",
-            Self::Sse42 => "sse4.2",
-            Self::Sse2 => "sse2",
-            Self::Neon => "neon",
-            Self::Simd128 => "simd128",
-        })
-    }
-}
-
-impl FromStr for Simd {
-    type Err = Error;
-
-    fn from_str(word: &str) -> Result<Self> {
-        let mut names = [Self::Auto].into_iter().chain(Self::ALL);
-        names.find(|name| name.to_string() == word).ok_or_else(|| {
-            let message = format!("'{word}' is no instruction set: use auto, avx512, avx2, sse4.2, sse2, neon or simd128");
-            Error::new(ErrorKind::Config, message)
-        })
-    }
-}
+words!(
+    Simd,
+    "an instruction set": Auto = "auto",
+    Avx512 = "avx512",
+    Avx2 = "avx2",
+    Sse42 = "sse4.2",
+    Sse2 = "sse2",
+    Neon = "neon",
+    Simd128 = "simd128"
+);

@@ -7,6 +7,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
 use crate::scene::MIN_WIDTH;
 use crate::svg::Length;
+use crate::words::from_text;
 
 /// The widths that all strokes have: those of the pens of a plotter.
 #[derive(Debug, Clone, PartialEq)]
@@ -131,6 +132,8 @@ impl FromStr for Widths {
         Ok(Self(widths))
     }
 }
+
+from_text!(Widths);
 
 fn refusal(message: String) -> Error {
     Error::new(ErrorKind::Config, message)

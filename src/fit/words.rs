@@ -5,16 +5,21 @@
 use std::fmt;
 use std::str::FromStr;
 
+use serde::{Deserialize, Deserializer, de};
+
 use super::{Background, Colors, ErrorWeighting, Preset};
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::{Marks, color, quantum};
-use crate::words::{short, words};
+use crate::svg::opaque_color;
+use crate::words::{from_text, short, words};
 
 words!(Preset, "a preset": Draft = "draft", Balanced = "balanced", Best = "best");
 
 words!(Marks, "a kind of marks": Auto = "auto", Strokes = "strokes", Areas = "areas");
 
 words!(ErrorWeighting, "a look": Eye = "eye", Exact = "exact");
+
+from_text!(Background);
 
 impl fmt::Display for Background {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -40,7 +45,7 @@ impl FromStr for Background {
         match text {
             "auto" => Ok(Self::Auto),
             "none" => Ok(Self::None),
-            _ => channels(text)
+            _ => opaque_color(text)
                 .map(|rgb| Self::Color(color(rgb)))
                 .ok_or_else(unknown),
         }
@@ -65,14 +70,14 @@ impl Colors {
             return gimp(text);
         }
         if text.trim().lines().count() > 1 {
-            return distinct(lines(text), channels, "#rrggbb");
+            return distinct(lines(text), opaque_color, "#rrggbb");
         }
         let words = text.split(',').map(str::trim);
         distinct(
             words
                 .filter(|_| !text.trim().is_empty())
                 .map(|word| (None, word)),
-            channels,
+            opaque_color,
             "#rrggbb,#rrggbb,...",
         )
     }
@@ -114,6 +119,26 @@ impl FromStr for Colors {
     }
 }
 
+/// A number of colours, or a text as `FromStr` takes it.
+#[derive(Deserialize)]
+#[serde(
+    untagged,
+    expecting = "give a whole number from 1 to 4096, or colours as a text"
+)]
+enum Given {
+    Count(usize),
+    Text(String),
+}
+
+impl<'de> Deserialize<'de> for Colors {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        match Given::deserialize(from)? {
+            Given::Count(most) => Ok(Self::AtMost(most)),
+            Given::Text(text) => text.parse().map_err(de::Error::custom),
+        }
+    }
+}
+
 /// The lines that say something, each with its number.
 fn lines(text: &str) -> impl Iterator<Item = (Option<usize>, &str)> {
     let numbered = text.lines().map(str::trim).enumerate();
@@ -138,49 +163,6 @@ fn gimp(text: &str) -> Result<Colors> {
 fn levels(line: &str) -> Option<[u8; 3]> {
     let mut words = line.split_ascii_whitespace().map(|word| word.parse().ok());
     Some([words.next()??, words.next()??, words.next()??])
-}
-
-/// Names of colours, those of CSS 2.1 and a few more.
-const NAMES: [(&str, [u8; 3]); 22] = [
-    ("aqua", [0, 255, 255]),
-    ("black", [0, 0, 0]),
-    ("blue", [0, 0, 255]),
-    ("brown", [165, 42, 42]),
-    ("cyan", [0, 255, 255]),
-    ("fuchsia", [255, 0, 255]),
-    ("gray", [128, 128, 128]),
-    ("green", [0, 128, 0]),
-    ("grey", [128, 128, 128]),
-    ("lime", [0, 255, 0]),
-    ("magenta", [255, 0, 255]),
-    ("maroon", [128, 0, 0]),
-    ("navy", [0, 0, 128]),
-    ("olive", [128, 128, 0]),
-    ("orange", [255, 165, 0]),
-    ("pink", [255, 192, 203]),
-    ("purple", [128, 0, 128]),
-    ("red", [255, 0, 0]),
-    ("silver", [192, 192, 192]),
-    ("teal", [0, 128, 128]),
-    ("white", [255, 255, 255]),
-    ("yellow", [255, 255, 0]),
-];
-
-/// The channels of `#rrggbb`, `#rgb` or a name.
-fn channels(text: &str) -> Option<[u8; 3]> {
-    let Some(digits) = text.strip_prefix('#') else {
-        let mut names = NAMES.iter();
-        let named = names.find(|(name, _)| name.eq_ignore_ascii_case(text));
-        return named.map(|(_, channels)| *channels);
-    };
-    let is_hex = digits.bytes().all(|b| b.is_ascii_hexdigit());
-    let number = u32::from_str_radix(digits, 16).ok().filter(|_| is_hex)?;
-    let [_, channels @ ..] = number.to_be_bytes();
-    match digits.len() {
-        6 => Some(channels),
-        3 => Some([8, 4, 0].map(|shift| (number >> shift & 15) as u8 * 17)),
-        _ => None,
-    }
 }
 
 /// The palette of these texts, which have a line number where they are lines.

@@ -30,7 +30,7 @@ pub struct FitReport {
     /// Number of them for each reason.
     pub dropped_for: Dropped,
     /// One per layer of the drawing, in order.
-    pub stages: Vec<StageEntry>,
+    pub stages: Vec<StageRecord>,
     /// Length of the SVG text in bytes.
     pub svg_bytes: usize,
     /// Its length when compressed by gzip.
@@ -45,9 +45,8 @@ pub struct FitReport {
     pub peak_rss_bytes: Option<u64>,
     /// The prediction of that, bytes.
     pub predicted_rss_bytes: u64,
-    /// Why no more was done: `strokes`, `psnr`, `bytes`, `time`, `converged` or
-    /// `interrupted`.
-    pub stop: String,
+    /// Why no more was done.
+    pub stop: Stop,
     /// Loss of fidelity because colours have a layer each, dB; left out if they have not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stacking_db: Option<f64>,
@@ -80,48 +79,6 @@ pub struct BaseEntry {
     pub strokes: usize,
     /// Elements that were passed through as they are.
     pub elements: usize,
-}
-
-/// Outcome of one stage.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct StageEntry {
-    /// Index of the layer, from 1.
-    pub index: usize,
-    /// Strokes and areas of the stage in the drawing.
-    pub strokes: usize,
-    /// Iterations of the optimiser.
-    pub iterations: usize,
-    /// Wall time, s.
-    pub wall_s: f64,
-    /// Fidelity of the soft render after the stage, dB; `null` when perfect.
-    pub psnr_db: Option<f64>,
-    /// Fidelity of the finished drawing's layers up to this one, dB; `null` when perfect.
-    pub layer_psnr_db: Option<f64>,
-}
-
-impl From<&StageRecord> for StageEntry {
-    fn from(record: &StageRecord) -> Self {
-        Self {
-            index: record.index,
-            strokes: record.strokes,
-            iterations: record.iterations,
-            wall_s: record.wall.as_secs_f64(),
-            psnr_db: Some(record.psnr_db).filter(|db| db.is_finite()),
-            layer_psnr_db: Some(record.layer_psnr_db).filter(|db| db.is_finite()),
-        }
-    }
-}
-
-/// The word of [`FitReport::stop`].
-pub fn stop_word(stop: Stop) -> &'static str {
-    match stop {
-        Stop::Strokes => "strokes",
-        Stop::Psnr => "psnr",
-        Stop::Bytes => "bytes",
-        Stop::Time => "time",
-        Stop::Converged => "converged",
-        Stop::Interrupted => "interrupted",
-    }
 }
 
 /// Facts about a run that a report has and a drawing lacks.
@@ -184,7 +141,7 @@ impl FitReport {
             points: fit.scene.points(),
             dropped: fit.dropped.total(),
             dropped_for: fit.dropped,
-            stages: fit.stages.iter().map(StageEntry::from).collect(),
+            stages: fit.stages.clone(),
             svg_bytes: svg.len(),
             svg_gzip_bytes: gzip_bytes(svg),
             bytes_per_stroke: per_stroke(svg.len(), strokes),
@@ -192,7 +149,7 @@ impl FitReport {
             cpu_s: run.usage.cpu_s,
             peak_rss_bytes: run.usage.peak_rss_bytes,
             predicted_rss_bytes: rss_bytes_of(&fit.target, fit.scene.page, run.config),
-            stop: stop_word(fit.stop).into(),
+            stop: fit.stop,
             stacking_db: fit.stacking_db,
             travel: svg::travel(&fit.scene, &fit.file),
             seed: run.config.seed,
@@ -220,83 +177,10 @@ impl BaseEntry {
 mod tests {
     use super::*;
 
-    fn report() -> FitReport {
-        let quality = Quality {
-            details_kept: None,
-            psnr_db: f64::INFINITY,
-            ssim: 1.0,
-            mse: 0.0,
-            l1: 0.0,
-            ssimulacra2: 100.0,
-        };
-        let record = StageRecord {
-            index: 1,
-            strokes: 9,
-            iterations: 40,
-            wall: Duration::from_millis(250),
-            psnr_db: 31.5,
-            layer_psnr_db: 30.5,
-        };
-        FitReport {
-            schema: SCHEMA,
-            input: Input {
-                damage: None,
-                path: "a.png".into(),
-                width: 4,
-                height: 3,
-                remarks: Vec::new(),
-            },
-            strokes: 9,
-            areas: 2,
-            points: 20,
-            dropped: 1,
-            dropped_for: Dropped {
-                off_page: 1,
-                points: 5,
-                ..Dropped::default()
-            },
-            stages: vec![StageEntry::from(&record)],
-            svg_bytes: 900,
-            svg_gzip_bytes: 400,
-            bytes_per_stroke: Some(100.0),
-            wall_s: 0.5,
-            cpu_s: Some(0.75),
-            peak_rss_bytes: None,
-            predicted_rss_bytes: 12_582_912,
-            stop: stop_word(Stop::Strokes).into(),
-            stacking_db: None,
-            travel: None,
-            seed: 7,
-            fidelity: quality,
-            soft: quality,
-            agreement: Agreement {
-                psnr_db: 41.0,
-                max_abs: 12,
-                patch_abs: 3,
-            },
-            alpha: Some(OnMattes {
-                black_db: 28.5,
-                white_db: f64::INFINITY,
-                magenta_db: 29.0,
-                black_ssimulacra2: 61.5,
-                white_ssimulacra2: 100.0,
-                magenta_ssimulacra2: 60.0,
-            }),
-            focus: Some(OnFocus {
-                inside_db: 33.0,
-                outside_db: 21.5,
-            }),
-            base: Some(BaseEntry {
-                path: "b.svg".into(),
-                strokes: 4,
-                elements: 0,
-            }),
-        }
-    }
-
     #[test]
     fn the_fields_scripts_rely_on_are_there() {
-        let expected = serde_json::json!({
+        let quality = serde_json::json!({"psnr_db": null, "ssim": 1.0, "mse": 0.0, "l1": 0.0, "ssimulacra2": 100.0});
+        let json = serde_json::json!({
             "schema": 1,
             "input": {"path": "a.png", "width": 4, "height": 3},
             "strokes": 9,
@@ -314,8 +198,8 @@ mod tests {
             "predicted_rss_bytes": 12_582_912,
             "stop": "strokes",
             "seed": 7,
-            "fidelity": {"psnr_db": null, "ssim": 1.0, "mse": 0.0, "l1": 0.0, "ssimulacra2": 100.0},
-            "soft": {"psnr_db": null, "ssim": 1.0, "mse": 0.0, "l1": 0.0, "ssimulacra2": 100.0},
+            "fidelity": quality,
+            "soft": quality,
             "agreement": {"psnr_db": 41.0, "max_abs": 12, "patch_abs": 3},
             "alpha": {
                 "black_db": 28.5, "white_db": null, "magenta_db": 29.0,
@@ -324,20 +208,13 @@ mod tests {
             "focus": {"inside_db": 33.0, "outside_db": 21.5},
             "base": {"path": "b.svg", "strokes": 4, "elements": 0},
         });
-        assert_eq!(serde_json::to_value(report()).unwrap(), expected);
-    }
-
-    #[test]
-    fn a_report_from_before_areas_has_none() {
-        let mut json = serde_json::to_value(report()).unwrap();
-        json.as_object_mut().unwrap().remove("areas");
-        let read: FitReport = serde_json::from_value(json).unwrap();
-        assert_eq!(read.areas, 0);
-    }
-
-    #[test]
-    fn a_report_comes_back_from_its_json() {
-        let json = serde_json::to_string(&report()).unwrap();
-        assert_eq!(serde_json::from_str::<FitReport>(&json).unwrap(), report());
+        let report: FitReport = serde_json::from_value(json.clone()).unwrap();
+        assert_eq!(report.fidelity.psnr_db, f64::INFINITY);
+        assert_eq!(serde_json::to_value(&report).unwrap(), json);
+        // A report from before areas has none.
+        let mut former = json;
+        former.as_object_mut().unwrap().remove("areas");
+        let report: FitReport = serde_json::from_value(former).unwrap();
+        assert_eq!(report.areas, 0);
     }
 }

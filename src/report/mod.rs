@@ -23,7 +23,7 @@ use crate::image::{Image, Remark};
 
 pub use check::{AgainstResvg, CheckReport, NotDrawn, RendererEntry};
 pub use event::{Event, PhaseEntry};
-pub use fit::{BaseEntry, FitReport, Run, StageEntry, stop_word};
+pub use fit::{BaseEntry, FitReport, Run};
 pub use judged::{Judged, OnFocus};
 pub use scene::{MarkRecord, SceneRecord, ShadeRecord};
 pub(crate) use size::deflated;

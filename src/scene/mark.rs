@@ -14,13 +14,14 @@ pub enum Mark {
 
 /// The kinds of marks that a drawing may have.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Marks {
-    /// Areas for what is filled, strokes for what is drawn with a pen, and for all that is left.
+    /// Areas for what is filled, strokes for lines and for the rest. With --pens or --bytes, strokes
     #[default]
     Auto,
-    /// Strokes alone, for plotters and embroidery.
+    /// Strokes alone, for plotters and embroidery
     Strokes,
-    /// Areas alone, for cutters.
+    /// Areas alone, for cutters
     Areas,
 }
 

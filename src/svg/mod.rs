@@ -114,6 +114,7 @@ pub use arrange::arrange;
 pub(crate) use dialect::SVG_NAMESPACE;
 pub use document::{Document, Placement, page_width};
 pub use lint::{Finding, Severity, lint};
+pub(crate) use options::opaque_color;
 pub use options::{Form, Group, Length, Order, WriteOptions};
 pub use read::read;
 pub use travel::{LayerTravel, Travel, travel};

@@ -3,23 +3,39 @@
 use std::fmt;
 use std::str::FromStr;
 
+use serde::Deserialize;
+
 use super::dialect::Unit;
 use crate::error::{Error, ErrorKind};
 use crate::scene::UNITS_PER_PX;
-use crate::words::words;
+use crate::words::{from_text, words};
 
 /// Options of writing a scene.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(default)]
+#[cfg_attr(
+    feature = "cli",
+    derive(clap::Args),
+    command(next_help_heading = "File")
+)]
 pub struct WriteOptions {
-    /// Decimals of coordinates and widths, 0..=6; a larger number counts as 6.
+    /// Decimals of coordinates and widths, 0 to 6
+    #[cfg_attr(feature = "cli", arg(long, value_name = "N", default_value_t = 2))]
     pub precision: u8,
-    /// Content of an element.
+    /// What one element of the SVG holds
+    #[cfg_attr(feature = "cli", arg(long, default_value_t))]
     pub form: Form,
-    /// Content of a layer.
+    /// What one layer of the SVG holds
+    #[cfg_attr(feature = "cli", arg(long, default_value_t))]
     pub group: Group,
-    /// Order of the strokes of a layer.
+    /// In which order the strokes of a layer come
+    #[cfg_attr(feature = "cli", arg(long, default_value_t))]
     pub order: Order,
-    /// Width of the page; its height follows. `None`: one px per pixel of the picture.
+    /// Width of the page in mm, cm, in, pt or px, such as 120mm (default: one px per pixel of the picture)
+    #[cfg_attr(
+        feature = "cli",
+        arg(long, value_name = "LENGTH", allow_hyphen_values = true)
+    )]
     pub width: Option<Length>,
 }
 
@@ -48,86 +64,62 @@ impl Default for WriteOptions {
 
 /// Content of an element of the file.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Form {
-    /// One stroke, with all its attributes.
+    /// One stroke
     #[default]
     Plain,
-    /// As many strokes of one style as can be drawn together. Groups hold the attributes that neighbours share.
-    /// To allow this, strokes that do not touch may swap places, and a stroke may swap its ends. Numbers are
-    /// whole: they count units of the last decimal.
+    /// As many strokes as possible: fewest bytes, hardest to edit
+    ///
+    /// Groups hold the attributes that neighbours share. Strokes that do not touch may swap places, and a stroke may swap
+    /// its ends. Numbers are whole: they count units of the last decimal.
     Smallest,
-    /// One stroke, whose colour and width are in classes of a style sheet: the one place to change them in. Layers that are laid
-    /// on another SVG are in the plain form, as its own style sheets may have the same classes.
+    /// One stroke; its colour and its width are in classes of a style sheet, the one place to change them
+    ///
+    /// Layers that are laid on another SVG are in the plain form, as its own style sheets may have the same classes.
     Css,
-    /// The filled outline of one stroke, for programs that ignore strokes. It cannot be read back.
+    /// The filled outline of one stroke, for programs that ignore strokes. It cannot be read back
+    #[cfg_attr(feature = "cli", value(skip))]
     Outlines,
 }
 
 /// Content of a layer of the file.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Group {
-    /// The strokes that were added together.
+    /// The strokes of one stage
     #[default]
     Stage,
-    /// Strokes of one colour that can be drawn one after the other. A colour has several layers if its strokes lie
-    /// below another colour in one place and above it in another.
+    /// Strokes of one colour. With --colors or --palette each colour has one layer
+    ///
+    /// Without these, a colour has several layers if its strokes lie below another colour in one place and above it in another.
     Color,
-    /// A thing: an area with what lies on it, or marks of one colour that touch. Marks of the plain form have names, and they
-    /// keep the order that they were fitted in.
+    /// A thing: an area with what lies on it, or touching strokes of one colour. Marks have names and keep the order that they
+    /// were fitted in
     Object,
 }
 
 /// In which order the strokes of a layer come.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Order {
-    /// The order that the strokes were fitted in; the smallest form changes it.
+    /// The order that they were fitted in
     #[default]
     Fitted,
-    /// With little travel of a pen between strokes. Strokes change places where the picture stays the same, are drawn from
-    /// either end, and closed paths begin at any of their points. In the smallest form this applies to the strokes of
-    /// each style.
+    /// With short ways between them, for a plotter; the picture stays the same
+    ///
+    /// Strokes are drawn from either end, and closed paths begin at any of their points. In the smallest form this applies
+    /// to the strokes of each style.
     Travel,
 }
 
-impl Form {
-    /// Every form.
-    pub const ALL: [Self; 4] = [Self::Plain, Self::Smallest, Self::Css, Self::Outlines];
-}
-
-/// A form of former versions, in which each stroke had an element of its own while the plain form joined strokes.
-const FORMER_PLAIN: &str = "elements";
-
-impl fmt::Display for Form {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Plain => "plain",
-            Self::Smallest => "smallest",
-            Self::Css => "css",
-            Self::Outlines => "outlines",
-        })
-    }
-}
-
-impl FromStr for Form {
-    type Err = Error;
-
-    /// `plain`, `smallest`, `css` or `outlines`.
-    fn from_str(text: &str) -> Result<Self, Error> {
-        let mut forms = Self::ALL.into_iter();
-        forms.find(|form| form.to_string() == text).ok_or_else(|| {
-            let remedy = match text {
-                FORMER_PLAIN => "give plain, which has one element per stroke now",
-                _ => "give plain, smallest, css or outlines",
-            };
-            let message = format!("'{text}' is not a form: {remedy}");
-            Error::new(ErrorKind::Config, message)
-        })
-    }
-}
+words!(Form, "a form": Plain = "plain", Smallest = "smallest", Css = "css", Outlines = "outlines");
 
 words!(Group, "a grouping": Stage = "stage", Color = "color", Object = "object");
 
 words!(Order, "an order": Fitted = "fitted", Travel = "travel");
+
+from_text!(Length);
 
 /// A length with its unit, exact to 4 decimals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -202,6 +194,14 @@ impl FromStr for Length {
     }
 }
 
+/// The channels of an opaque colour: `#rrggbb`, `#rgb`, or what else CSS has for one, such as `white`.
+pub(crate) fn opaque_color(text: &str) -> Option<[u8; 3]> {
+    let color: svgtypes::Color = text.parse().ok()?;
+    // With four or eight digits it has an opacity, even if that is 1.
+    let is_hex = matches!(text.len(), 4 | 7) || !text.starts_with('#');
+    (is_hex && color.alpha == 255).then_some([color.red, color.green, color.blue])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -229,8 +229,6 @@ mod tests {
             error.contains("'small'") && error.contains("smallest"),
             "{error}"
         );
-        let error = FORMER_PLAIN.parse::<Form>().unwrap_err().to_string();
-        assert!(error.contains("one element per stroke"), "{error}");
         let error = "".parse::<Group>().unwrap_err().to_string();
         assert!(
             error.contains("''") && error.contains("color or object"),

@@ -29,19 +29,17 @@ mod http;
 mod page;
 mod server;
 mod shared;
-mod watch;
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Duration;
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::fit::Observer;
+use crate::fit::{Observer, Progress};
 use crate::image::Image;
 use crate::scene::Scene;
 use server::Server;
 use shared::Shared;
-
-pub use watch::Watched;
 
 /// Time that [`Viewer::wait`] waits without a request from the page. Browsers let a page in the background ask at least
 /// once a minute.
@@ -87,7 +85,10 @@ impl Viewer {
 
     /// An observer that tells the page and `inner`, and stops the fit when either wants to.
     pub fn watch<'a>(&'a self, inner: &'a mut (dyn Observer + Send)) -> Watched<'a> {
-        Watched::new(&self.shared, inner)
+        Watched {
+            shared: &self.shared,
+            inner,
+        }
     }
 
     /// Shows a finished drawing; `svg` is its file.
@@ -104,6 +105,23 @@ impl Viewer {
     /// or no page has been heard of for [`PATIENCE`].
     pub fn wait(&self) -> Option<usize> {
         self.shared.wait(PATIENCE)
+    }
+}
+
+/// Reports a fit to the page and to another observer; either may stop it.
+pub struct Watched<'a> {
+    shared: &'a Shared,
+    inner: &'a mut (dyn Observer + Send),
+}
+
+impl Observer for Watched<'_> {
+    fn observe(&mut self, progress: &Progress<'_>) -> ControlFlow<()> {
+        self.inner.observe(progress)?;
+        if self.shared.note(progress) {
+            ControlFlow::Continue(())
+        } else {
+            ControlFlow::Break(())
+        }
     }
 }
 

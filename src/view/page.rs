@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::curve::Point;
 use super::http::Response;
-use super::shared::{Shared, Shown, State};
+use super::shared::{Numbers, Shared, Shown, State};
 use crate::report::SceneRecord;
 
 /// A file of the page. All but `index.html` and `page.js` are also those of the page of `web/`, which fits by itself.
@@ -52,12 +52,7 @@ pub(super) fn state(shared: &Shared, seen: Option<u64>) -> Option<Vec<u8>> {
         grows,
         more,
         svg_bytes: file.map(|file| file.len()),
-        done: numbers.map(|numbers| numbers.done),
-        stage: numbers.map(|numbers| numbers.stage),
-        stages: numbers.map(|numbers| numbers.stages),
-        polishing: numbers.is_some_and(|numbers| numbers.polishing),
-        settling: numbers.is_some_and(|numbers| numbers.settling),
-        last: numbers.map(|numbers| numbers.last),
+        numbers,
         curve: curve.points(),
         version: shown.as_ref().map_or(0, |shown| shown.version),
         scene: shown
@@ -79,13 +74,9 @@ struct StateRecord<'a> {
     grows: bool,
     more: Option<usize>,
     svg_bytes: Option<usize>,
-    /// Fraction of the fit, and the stage under way of how many; `null` when nothing was fitted.
-    done: Option<f64>,
-    stage: Option<usize>,
-    stages: Option<usize>,
-    polishing: bool,
-    settling: bool,
-    last: Option<Point>,
+    /// Left out when nothing was fitted.
+    #[serde(flatten)]
+    numbers: Option<Numbers>,
     curve: &'a [Point],
     version: u64,
     scene: Option<SceneRecord>,

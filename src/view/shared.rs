@@ -3,6 +3,8 @@
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+use serde::Serialize;
+
 use super::curve::{Curve, Point};
 use crate::fit::Progress;
 use crate::scene::Scene;
@@ -25,8 +27,9 @@ pub(super) enum Wish {
 }
 
 /// Numbers of a fit under way.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize)]
 pub(super) struct Numbers {
+    /// Fraction of the fit.
     pub(super) done: f64,
     pub(super) stage: usize,
     pub(super) stages: usize,

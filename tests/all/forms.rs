@@ -370,10 +370,6 @@ fn options_that_make_no_sense_are_refused() {
     assert_refused(&["--width", "-3mm"], "such as 120mm");
     assert_refused(&["--outline", "--form", "smallest"], "--outline");
     assert_refused(&["--form", "tiny"], "smallest");
-    assert_refused(
-        &["--form", "elements"],
-        "give plain, which has one element per stroke now",
-    );
     assert_refused(&["--group", "size"], "color");
 }
 

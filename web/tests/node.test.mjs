@@ -129,8 +129,8 @@ describe("fit", () => {
     const png = sample("noto-gem.png");
     for (const [call, words] of [
       [() => fit(bar(3), width, height, { strkes: 5 }), /no option is called strkes: give strokes/],
-      [() => fit(bar(3), width, height, { strokes: 1.5 }), /strokes is 1\.5: give a whole number from 1/],
-      [() => fit(bar(3), width, height, { preset: "drft" }), /preset: 'drft'.*draft, balanced or best/],
+      [() => fit(bar(3), width, height, { strokes: 1.5 }), /strokes is 1\.5: give a whole number/],
+      [() => fit(bar(3), width, height, { preset: "drft" }), /preset is "drft".*draft, balanced or best/],
       [() => fit(bar(3), width, height, { base: "nonsense" }), /SVG/],
       [() => fit(bar(3), width, height + 1), /3456 samples are not 1 to 4 for each of 48×25 px/],
       [() => fit(bar(3), 0, height), /0×24/],

@@ -398,9 +398,7 @@ fn busy(drawing: &Workload, speed: &Speed, limits: &Limits) {
 
 /// Prints `backward` of a drawing at every level of this machine.
 fn levels(drawing: &Workload, target: &Canvas, rounds: usize) {
-    let levels = Simd::ALL
-        .into_iter()
-        .filter_map(|simd| Some((simd, simd.level()?)));
+    let levels = Simd::available().filter_map(|simd| Some((simd, simd.level()?)));
     let mut benches: Vec<_> = levels
         .map(|(simd, level)| {
             let bench = Bench::new(drawing, target, level, 1);

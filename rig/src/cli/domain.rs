@@ -4,7 +4,7 @@ use std::fmt::Display;
 use std::str::FromStr;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use strokefit::fit::{MAX_STROKES, MAX_THREADS, Value};
+use strokefit::fit::{MAX_STROKES, MAX_THREADS};
 
 /// One of the values, by the words that they are read from and written as, each with its help.
 pub(super) fn one_of<T, const N: usize>(
@@ -36,6 +36,7 @@ pub(super) fn side(text: &str) -> Result<u16, String> {
 }
 
 fn whole(text: &str, most: usize) -> Result<usize, String> {
-    let number = Value::Written(text).whole(1..=most);
-    number.map_err(|refusal| refusal.to_string())
+    let number = text.parse().ok();
+    let number = number.filter(|number| (1..=most).contains(number));
+    number.ok_or_else(|| format!("give a whole number from 1 to {most}"))
 }

@@ -184,8 +184,8 @@ function showState() {
   element("title").textContent = document.title = `strokefit: ${state.title}`;
   element("phase").textContent = phase();
   element("progress").value = state.finished ? 1 : (state.done ?? 0);
-  element("progress").hidden = state.done === null;
-  element("stop").hidden = state.finished || state.done === null;
+  element("progress").hidden = state.done == null;
+  element("stop").hidden = state.finished || state.done == null;
   element("more").hidden = !state.grows;
   element("download").hidden = !scene || !element("download").href;
   for (const id of ["target-panel", "residual-panel", "compare"]) element(id).hidden = !state.target;

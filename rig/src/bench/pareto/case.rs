@@ -12,10 +12,10 @@ use crate::lab::article::{Capsules, Reproduction};
 use crate::lab::unwritten;
 use crate::report::pareto::ParetoEntry;
 use strokefit::coverage::{Coverage, CoverageSchedule};
-use strokefit::fit::{Budget, Config, Execution, Fitter, Preset};
+use strokefit::fit::{Budget, Config, Execution, Fitter, Preset, StageRecord};
 use strokefit::image::Image;
 use strokefit::metrics::Agreement;
-use strokefit::report::{StageEntry, Usage, gzip_bytes};
+use strokefit::report::{Usage, gzip_bytes};
 use strokefit::svg::{self, WriteOptions};
 use strokefit::verify::{self, MIN_AGREEMENT_DB};
 use strokefit::{Error, ErrorKind, Result};
@@ -148,7 +148,7 @@ struct Made {
     text: String,
     strokes: Option<usize>,
     soft: Option<Image>,
-    stages: Vec<StageEntry>,
+    stages: Vec<StageRecord>,
     /// Peak memory of another program, bytes.
     peak_rss_bytes: Option<u64>,
 }
@@ -262,7 +262,7 @@ fn fitted(
         text: svg::write(&fit.scene, &WriteOptions::default()),
         strokes: Some(fit.scene.len()),
         soft: Some(fit.soft),
-        stages: fit.stages.iter().map(StageEntry::from).collect(),
+        stages: fit.stages.clone(),
         peak_rss_bytes: None,
     })
 }

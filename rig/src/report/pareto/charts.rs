@@ -96,7 +96,7 @@ fn stages(picture: &str, here: &[&ParetoEntry]) -> Chart {
         else {
             continue;
         };
-        let stages = largest.stages.iter().map(|stage| stage.psnr_db);
+        let stages = largest.stages.iter().map(|stage| Some(stage.psnr_db));
         let errors = stages.chain([largest.psnr_db()]);
         let points: Vec<[f64; 2]> = (1..)
             .zip(errors)

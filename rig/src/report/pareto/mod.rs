@@ -14,7 +14,8 @@ mod spread;
 mod tables;
 
 use serde::{Deserialize, Serialize};
-use strokefit::report::{SCHEMA, StageEntry};
+use strokefit::fit::StageRecord;
+use strokefit::report::SCHEMA;
 
 pub use charts::charts;
 pub use compare::{Comparison, Holds};
@@ -82,7 +83,7 @@ pub struct ParetoEntry {
     /// The file as resvg draws it against our own soft render, dB, for our own; `null` when perfect.
     pub agreement_db: Option<f64>,
     /// The stages, for our own.
-    pub stages: Vec<StageEntry>,
+    pub stages: Vec<StageRecord>,
     /// Why there is no drawing, or none that is as it was fitted.
     pub failure: Option<String>,
 }
