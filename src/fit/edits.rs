@@ -170,85 +170,98 @@ pub(super) fn disjoint(mut edits: Vec<Edit>) -> Vec<Edit> {
 
 /// The paths that edits change: each by its mark and its index among the paths of that, or all of them.
 #[derive(Debug, Default)]
-struct Touched(BTreeSet<(usize, usize)>);
+pub(super) struct Touched(BTreeSet<(usize, usize)>);
 
 /// The index of all paths of a mark.
 const ALL: usize = usize::MAX;
 
 impl Touched {
     /// Adds the paths of an edit, unless another edit changes one of them. Returns whether it did.
-    fn takes(&mut self, edit: &Edit) -> bool {
-        let places = edit.changes.iter().filter(|(mark, _)| *mark != TOP);
-        let places = places.map(|(mark, change)| match change {
-            Change::Marks(_) => (*mark, ALL),
-            Change::Path { index, .. } => (*mark, *index),
-        });
-        let is_free = |&(mark, path): &(usize, usize)| {
+    pub(super) fn takes(&mut self, edit: &Edit) -> bool {
+        let is_free = self.allows(edit);
+        if is_free {
+            self.0.extend(places(edit));
+        }
+        is_free
+    }
+
+    /// True if no other edit changes a path of this one.
+    pub(super) fn allows(&self, edit: &Edit) -> bool {
+        places(edit).all(|(mark, path)| {
             let mut others = self.0.range((mark, 0)..=(mark, ALL));
             !others.any(|&(_, other)| other == path || [path, other].contains(&ALL))
-        };
-        let places: Vec<_> = places.collect();
-        let takes = places.iter().all(is_free);
-        if takes {
-            self.0.extend(places);
-        }
-        takes
+        })
     }
+}
+
+/// The paths that an edit changes.
+fn places(edit: &Edit) -> impl Iterator<Item = (usize, usize)> {
+    let changes = edit.changes.iter().filter(|(mark, _)| *mark != TOP);
+    changes.map(|(mark, change)| match change {
+        Change::Marks(_) => (*mark, ALL),
+        Change::Path { index, .. } => (*mark, *index),
+    })
 }
 
 /// Most trials of one call of [`apply_priced`]. A guess: each renders the drawing.
 const TRIALS: usize = 64;
 
-/// Edits that were made.
+/// Edits that were tried.
 #[derive(Debug, Default)]
-pub(super) struct Made {
-    pub(super) edits: Vec<Edit>,
+pub(super) struct Tried {
+    pub(super) made: Vec<Edit>,
+    pub(super) refused: Vec<Edit>,
     /// The former index of each number of the free strokes, `None` for a new one.
     pub(super) sources: Vec<Option<usize>>,
 }
 
-/// Makes those of these edits of different paths that pay: that add no more squared error, as rendered, than their prices allow. All
-/// that are foreseen to pay are tried at once and, where the sum lies, each half of them. What may not pay is then tried
-/// one by one.
-pub(super) fn apply_priced(drawing: &mut Drawing, edits: Vec<Edit>) -> Made {
+/// Makes those of these edits of different paths that pay: that add no more squared error, as rendered, than their prices
+/// allow. All that are foreseen to pay are tried at once and, where the sum lies, each half of them. What may not pay is
+/// then tried one by one.
+pub(super) fn apply_priced(drawing: &mut Drawing, edits: Vec<Edit>) -> Tried {
     let values = 3.0 * drawing.pixels() as f64;
-    let before = drawing.marks();
-    let mut error = drawing.mse();
+    let (before, mut error) = (drawing.marks(), drawing.mse());
     let mut taken: Vec<usize> = Vec::new();
-    let (paying, others) = (0..edits.len()).partition(|&i| edits[i].surplus() >= 0.0);
-    let others: Vec<usize> = others;
-    let mut groups: Vec<Vec<usize>> = others.chunks(1).rev().map(<[usize]>::to_vec).collect();
-    groups.push(paying);
-    let mut trials = 0..TRIALS;
-    while let Some(group) = groups.pop()
-        && trials.next().is_some()
-    {
-        if group.is_empty() {
-            continue;
-        }
-        let tried = [&taken[..], &group].concat();
+    let (paying, others): (Vec<usize>, Vec<usize>) =
+        (0..edits.len()).partition(|&i| edits[i].surplus() >= 0.0);
+    let groups = std::iter::once(paying).chain(others.into_iter().map(|i| vec![i]));
+    by_halves(groups.collect(), |group| {
+        let tried = [&taken[..], group].concat();
         drawing.set_marks(before.clone());
         drawing.apply(tried.iter().map(|&i| &edits[i]));
         let now = drawing.mse();
         let allowed: f64 = group.iter().map(|&i| f64::from(edits[i].price)).sum();
-        if (now - error) * values <= allowed {
+        let pays = (now - error) * values <= allowed;
+        if pays {
             (error, taken) = (now, tried);
-        } else if group.len() > 1 {
+        }
+        pays
+    });
+    drawing.set_marks(before);
+    let sources = drawing.apply(taken.iter().map(|&i| &edits[i]));
+    taken.sort_unstable();
+    let edits = edits.into_iter().enumerate();
+    let (made, refused): (Vec<_>, Vec<_>) =
+        edits.partition(|(i, _)| taken.binary_search(i).is_ok());
+    let [made, refused] =
+        [made, refused].map(|edits| edits.into_iter().map(|(_, edit)| edit).collect());
+    Tried {
+        made,
+        refused,
+        sources,
+    }
+}
+
+/// Offers each group to `accepts` and, of what it refuses, each half, down to single ones.
+fn by_halves(mut groups: Vec<Vec<usize>>, mut accepts: impl FnMut(&[usize]) -> bool) {
+    groups.retain(|group| !group.is_empty());
+    groups.reverse();
+    for _ in 0..TRIALS {
+        let Some(group) = groups.pop() else { return };
+        if !accepts(&group) && group.len() > 1 {
             let (first, second) = group.split_at(group.len() / 2);
             groups.extend([second.to_vec(), first.to_vec()]);
         }
-    }
-    drawing.set_marks(before.clone());
-    let sources = drawing.apply(taken.iter().map(|&i| &edits[i]));
-    taken.sort_unstable();
-    let is_taken = |i: &usize| taken.binary_search(i).is_ok();
-    let edits = edits.into_iter().enumerate();
-    Made {
-        edits: edits
-            .filter(|(i, _)| is_taken(i))
-            .map(|(_, edit)| edit)
-            .collect(),
-        sources,
     }
 }
 
@@ -324,4 +337,96 @@ fn push_with_paths(strokes: &mut Strokes, stroke: StrokeRef<'_>, changes: &[&Cha
         rings: if stroke.is_area() { &rings } else { &[] },
         ..stroke
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A point more, or less, on a stroke.
+    fn edit(mark: usize, gain: f32, price: f32) -> Edit {
+        Edit {
+            changes: vec![(mark, Change::Marks(Vec::new()))],
+            gain,
+            price,
+            growth: if price > 0.0 { -1 } else { 1 },
+        }
+    }
+
+    /// The marks and gains of the edits that are chosen of strokes with a new point and a loss of these gains each.
+    fn chosen(gains: &[(f32, f32)], free: usize, price: f32) -> Vec<(usize, f32)> {
+        let edits = gains.iter().enumerate().flat_map(|(i, &(new, loss))| {
+            let price = price.max(f32::MIN_POSITIVE);
+            [edit(i, new, -price), edit(i, loss, price)]
+        });
+        let room = Room {
+            free,
+            most: usize::MAX,
+            swaps: usize::MAX,
+        };
+        let edits = choose(edits.collect(), room);
+        let mut chosen: Vec<_> = edits
+            .iter()
+            .map(|edit| (edit.changes[0].0, edit.gain))
+            .collect();
+        chosen.sort_by_key(|(mark, _)| *mark);
+        chosen
+    }
+
+    #[test]
+    fn what_pays_comes_and_what_does_not_goes() {
+        let chosen = chosen(&[(5.0, -9.0), (1.0, -9.0), (1.0, -1.0)], 9, 2.0);
+        assert_eq!(chosen, [(0, 5.0), (2, -1.0)]);
+    }
+
+    #[test]
+    fn the_most_gaining_come_first() {
+        let chosen = chosen(&[(3.0, -9.0), (5.0, -9.0), (4.0, -9.0)], 2, 0.0);
+        assert_eq!(chosen, [(1, 5.0), (2, 4.0)]);
+    }
+
+    #[test]
+    fn without_room_what_gains_more_takes_the_place_of_what_is_worth_less() {
+        let chosen = chosen(&[(1.0, -0.5), (8.0, -9.0), (1.0, -3.0)], 0, 0.0);
+        assert_eq!(chosen, [(0, -0.5), (1, 8.0)]);
+    }
+
+    #[test]
+    fn one_edit_changes_a_path_or_all_of_a_mark() {
+        let path = |mark, index| Edit {
+            changes: vec![(
+                mark,
+                Change::Path {
+                    index,
+                    points: Vec::new(),
+                    off: Vec::new(),
+                },
+            )],
+            ..edit(mark, 0.0, 0.0)
+        };
+        let edits = vec![
+            path(3, 0),
+            path(3, 1),
+            path(3, 0),
+            edit(3, 0.0, 0.0),
+            edit(4, 0.0, 0.0),
+        ];
+        assert_eq!(disjoint(edits).len(), 3);
+    }
+
+    #[test]
+    fn what_is_refused_is_found_among_many() {
+        let (mut taken, mut trials) = (Vec::new(), 0);
+        by_halves(vec![Vec::new(), (0..64).collect()], |group| {
+            trials += 1;
+            let is_good = !group.contains(&17) && !group.contains(&40);
+            if is_good {
+                taken.extend_from_slice(group);
+            }
+            is_good
+        });
+        let good: Vec<usize> = (0..64).filter(|i| ![17, 40].contains(i)).collect();
+        assert_eq!(taken, good);
+        assert!(trials < 26, "{trials}");
+    }
 }

@@ -11,7 +11,9 @@ use super::budget::price::Price;
 use super::budget::{self, typical_bytes};
 use super::drawing::Drawing;
 use super::edits::terrain::{LEAST, Terrain};
-use super::edits::{self, Change, Edit, Room, apply_priced, choose, disjoint, drop_marks, joins};
+use super::edits::{
+    self, Change, Edit, Room, Touched, apply_priced, choose, disjoint, drop_marks, joins,
+};
 use super::run::session::Session;
 use crate::render::{StrokeRef, Survey};
 
@@ -46,17 +48,21 @@ pub(super) fn rearrange(session: &mut Session<'_>, done: f32) -> Vec<Option<usiz
 }
 
 /// Takes away points that are not worth their price now that the strokes are where they belong. Each path loses at most one
-/// point at a time.
+/// point at a time, and none any more once a loss has turned out dearer than foreseen.
 pub(super) fn prune(drawing: &mut Drawing, price: Price, prunings: usize) {
+    let mut refused = Touched::default();
     for _ in 0..prunings {
         let price = price.in_drawing(drawing);
-        let losses = losses(drawing, price);
-        if apply_priced(drawing, choose(losses, Room::default()))
-            .edits
-            .is_empty()
-        {
+        let mut losses = losses(drawing, price);
+        losses.retain(|edit| refused.allows(edit));
+        let tried = apply_priced(drawing, choose(losses, Room::default()));
+        if tried.made.is_empty() {
             return;
         }
+        tried
+            .refused
+            .iter()
+            .for_each(|edit| _ = refused.takes(edit));
     }
 }
 
@@ -106,15 +112,15 @@ pub(super) fn shed(
             wanted = wanted.saturating_sub(bytes(edit));
             is_wanted
         });
-        let made = apply_priced(drawing, tolerated(edits));
-        left = left.saturating_sub(made.edits.iter().map(bytes).sum());
-        let kept = match made.edits.is_empty() {
+        let tried = apply_priced(drawing, tolerated(edits));
+        left = left.saturating_sub(tried.made.iter().map(bytes).sum());
+        let kept = match tried.made.is_empty() {
             true => {
                 let least = edits::least(drawing, 1);
                 left = left.saturating_sub(least.iter().map(bytes).sum());
                 drawing.apply(&least)
             }
-            false => made.sources,
+            false => tried.sources,
         };
         sources = kept.into_iter().map(|from| sources[from?]).collect();
     }

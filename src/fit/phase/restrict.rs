@@ -73,8 +73,8 @@ const UNSEEN: f32 = 0.5 / 255.0;
 fn remove_hidden(drawing: &mut Drawing) {
     let unseen = |mark: StrokeRef<'_>| 3.0 * pixels(mark) * UNSEEN * UNSEEN;
     let losses = drop_marks(drawing, unseen);
-    let made = apply_priced(drawing, choose(losses, Room::default()));
-    drawing.counters.hidden += made.edits.len();
+    let tried = apply_priced(drawing, choose(losses, Room::default()));
+    drawing.counters.hidden += tried.made.len();
 }
 
 /// About how many pixels a stroke covers; of an area, those of its bounding box.

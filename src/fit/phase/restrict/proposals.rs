@@ -54,7 +54,7 @@ pub(super) fn adopt(session: &mut Session<'_>, forms: Forms, mut edits: Vec<Edit
     }
     session.drawing.set_marks(home);
     edits.sort_by(|a, b| b.surplus().total_cmp(&a.surplus()));
-    !apply_priced(&mut session.drawing, edits).edits.is_empty()
+    !apply_priced(&mut session.drawing, edits).made.is_empty()
 }
 
 /// Bytes that `new` marks save in the place of `old`, and those that the form is worth to an editor.

@@ -41,7 +41,7 @@ pub(super) fn run(drawing: &mut Drawing, config: &Config, recipe: &Recipe) -> Ti
         let mut edits = step(drawing, recipe, allowance);
         let each = allowance / edits.len() as f32;
         edits.iter_mut().for_each(|edit| edit.price = each);
-        for edit in apply_priced(drawing, edits).edits {
+        for edit in apply_priced(drawing, edits).made {
             for number in numbers.clone() {
                 let places = edit.changes.iter();
                 let places = places.map(|(i, _)| drawing.free().range(*i).end - STYLE + number);

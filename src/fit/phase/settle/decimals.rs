@@ -38,7 +38,7 @@ pub(super) fn drop_decimals(
         .enumerate()
         .filter_map(coarse)
         .collect();
-    !apply_priced(drawing, edits).edits.is_empty()
+    !apply_priced(drawing, edits).made.is_empty()
 }
 
 /// The area with fewer decimals; `None` for a stroke, or if nothing would be left.
