@@ -141,12 +141,10 @@ pub(super) fn choose(mut edits: Vec<Edit>, room: Room) -> Vec<Edit> {
     chosen.retain(|edit| touched.takes(edit));
     let freed: usize = chosen.iter().map(|edit| edit.growth.unsigned_abs()).sum();
     let adding = adding.into_iter().filter(pays);
-    let adding: Vec<Edit> = adding
-        .filter(|e| touched.takes(e))
-        .take(room.most)
-        .collect();
-    let mut adding = adding.into_iter();
-    chosen.extend(adding.by_ref().take(room.free.saturating_add(freed)));
+    let adding: Vec<Edit> = adding.filter(|edit| touched.allows(edit)).collect();
+    let mut adding = adding.into_iter().take(room.most);
+    let coming = adding.by_ref().take(room.free.saturating_add(freed));
+    chosen.extend(coming.filter(|edit| touched.takes(edit)));
     // Exchanges.
     leaving.retain(|edit| edit.growth < 0);
     leaving.sort_by(|a, b| b.gain.total_cmp(&a.gain));
@@ -154,7 +152,7 @@ pub(super) fn choose(mut edits: Vec<Edit>, room: Room) -> Vec<Edit> {
         if new.gain + old.gain <= 0.0 {
             break;
         }
-        if touched.takes(&old) {
+        if touched.allows(&old) && touched.takes(&new) && touched.takes(&old) {
             chosen.extend([old, new]);
         }
     }
