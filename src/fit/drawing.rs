@@ -4,7 +4,6 @@ pub(super) mod background;
 pub(super) mod bounds;
 pub(super) mod focus;
 pub(super) mod ground;
-pub(super) mod hidden;
 pub(super) mod masking;
 mod memento;
 pub(super) mod objective;
@@ -168,11 +167,6 @@ impl Drawing {
         }
     }
 
-    /// The edge of the finished drawing.
-    pub(super) fn edge(&self) -> Softness {
-        self.edge
-    }
-
     /// Pixels of the picture per pixel of the current resolution.
     pub(super) fn pixel_area(&self) -> f32 {
         (1 << (2 * self.surface().halvings())) as f32
@@ -238,42 +232,27 @@ impl Drawing {
         self.stage_of.resize(self.len(), stage);
     }
 
-    /// The stage of each stroke, frozen ones included, counted from 0.
-    pub(super) fn stages(&self) -> &[usize] {
-        &self.stage_of
+    /// The free marks, back to front, and the stage of each.
+    pub(super) fn marks(&self) -> (Strokes, Vec<usize>) {
+        (
+            self.free.clone(),
+            self.stage_of[self.frozen.len()..].to_vec(),
+        )
     }
 
-    /// Replaces all marks by these, each with its stage, in px of the current resolution. None may be frozen.
-    pub(super) fn replace(&mut self, marks: impl Iterator<Item = (Mark, usize)>) {
-        let (marks, stages): (Vec<Mark>, Vec<usize>) = marks.unzip();
-        *self.free_mut() = marks.iter().collect();
-        self.stage_of = stages;
-    }
-
-    /// Keeps the free strokes for which `keep` is true.
-    pub(super) fn retain_free(&mut self, keep: &[bool]) {
-        let frozen = self.frozen.len();
-        let gone = self.free().iter().zip(keep).filter(|(_, keep)| !**keep);
-        self.counters.lost += gone.filter(|(stroke, _)| !stroke.is_finite()).count();
-        let kept = |i: usize| i < frozen || keep.get(i - frozen).copied().unwrap_or(false);
-        let mut i = 0..;
-        self.stage_of.retain(|_| i.next().is_some_and(kept));
-        self.free_mut().retain(keep);
+    /// Replaces the free marks by these, each with its stage, in px of the current resolution.
+    pub(super) fn set_marks(&mut self, (marks, stages): (Strokes, Vec<usize>)) {
+        let lost = |marks: &Strokes| marks.iter().filter(|mark| !mark.is_finite()).count();
+        self.counters.lost += lost(&self.free);
+        self.counters.lost -= lost(&marks).min(self.counters.lost);
+        self.stage_of.truncate(self.frozen.len());
+        self.stage_of.extend(stages);
+        *self.free_mut() = marks;
     }
 
     /// Puts the free strokes into the order that `sources` lists them in. Places keep their stages.
     pub(super) fn reorder(&mut self, sources: &[usize]) {
         *self.free_mut() = sources.iter().map(|&i| self.free.get(i)).collect();
-    }
-
-    /// Removes the `count` free strokes of least worth.
-    pub(super) fn remove_least(&mut self, count: usize) {
-        let worth = self.judge().worth;
-        let mut order: Vec<usize> = (0..worth.len()).collect();
-        order.sort_by(|&i, &j| worth[i].total_cmp(&worth[j]).then(i.cmp(&j)));
-        let mut keep = vec![true; worth.len()];
-        order.into_iter().take(count).for_each(|i| keep[i] = false);
-        self.retain_free(&keep);
     }
 
     /// The number of strokes of each stage, back to front, without empty stages.

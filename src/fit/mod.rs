@@ -19,9 +19,9 @@
 //! | `budget` | limits, the price of a stroke, the plan of stages, the pixels that a drawing needs |
 //! | `drawing` | strokes in progress, on surfaces of target, backdrop and canvas; the objective; the background |
 //! | `descent` | gradient descent and its annealing |
-//! | `points` | points of strokes that come, go, join |
+//! | `edits` | marks and points in the place of others, which stay if they pay |
+//! | `points` | points of strokes that come and go at their price |
 //! | `file` | the written file, as resvg renders it |
-//! | `halves` | search by halves |
 //! | `run`, `time` | a fit under way: session, history, checkpoint, progress, finish; its clock and its forecast |
 
 mod base;
@@ -30,9 +30,9 @@ mod config;
 mod descent;
 mod domain;
 mod drawing;
+mod edits;
 mod file;
 mod fitter;
-mod halves;
 mod options;
 mod order;
 mod phase;

@@ -10,10 +10,11 @@ pub(in crate::fit) struct Ties {
 }
 
 impl Ties {
-    /// Ties the numbers at these places.
+    /// Ties the numbers at these places. A single one stays as it is.
     pub(in crate::fit) fn tie(&mut self, places: Vec<usize>) {
-        if places.len() > 1 {
-            self.groups.push(places);
+        match places[..] {
+            [place] => self.fix(place),
+            _ => self.groups.push(places),
         }
     }
 
@@ -47,8 +48,7 @@ mod tests {
     fn tied_numbers_have_the_derivative_of_their_group() {
         let mut ties = Ties::default();
         ties.tie(vec![0, 3]);
-        ties.tie(vec![1]);
-        ties.fix(2);
+        ties.tie(vec![2]);
         let mut slopes = [1.0, 2.0, 4.0, 8.0];
         ties.gather(&mut slopes);
         assert_eq!(slopes, [9.0, 2.0, 0.0, 9.0]);

@@ -5,6 +5,7 @@ use crate::error::Result;
 use crate::fit::base::Base;
 use crate::fit::budget;
 use crate::fit::drawing::Drawing;
+use crate::fit::edits;
 use crate::fit::order::{Outcome, Purpose};
 use crate::fit::points;
 use crate::fit::recipe::Correction;
@@ -54,7 +55,8 @@ fn keep_best(drawing: &mut Drawing, most: usize) {
     while drawing.len() > most {
         // The worth is that of a stroke removed alone; with its neighbours gone, a stroke is worth more.
         let at_a_time = drawing.len().div_ceil(8);
-        drawing.remove_least(at_a_time.min(drawing.len() - most));
+        let least = edits::least(drawing, at_a_time.min(drawing.len() - most));
+        drawing.apply(&least);
     }
 }
 
@@ -150,7 +152,8 @@ fn resize(session: &mut Session<'_>, wanted: usize) -> Outcome {
     if removed == 0 {
         return Outcome::Over;
     }
-    session.drawing.remove_least(removed);
+    let least = edits::least(&mut session.drawing, removed);
+    session.drawing.apply(&least);
     Outcome::Removed
 }
 

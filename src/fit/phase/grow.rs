@@ -6,6 +6,7 @@ use crate::fit::budget::plan::PlannedStage;
 use crate::fit::budget::price::Price;
 use crate::fit::descent::Course;
 use crate::fit::drawing::Drawing;
+use crate::fit::edits::{Room, apply_priced, choose, drop_marks};
 use crate::fit::order::{Outcome, Purpose};
 use crate::fit::phase::descend::descend;
 use crate::fit::phase::search::search;
@@ -204,12 +205,8 @@ pub(in crate::fit) fn stage_polish(session: &mut Session<'_>) -> Result<Outcome>
 /// Removes the free strokes that are not worth their `price`, and returns how many are left.
 fn accept(drawing: &mut Drawing, price: Price) -> usize {
     let price = price.in_drawing(drawing);
-    let worth = drawing.judge().worth;
-    let strokes = drawing.free().iter().zip(worth);
-    let keep: Vec<bool> = strokes
-        .map(|(stroke, worth)| worth > price.least_worth(stroke))
-        .collect();
-    drawing.retain_free(&keep);
+    let losses = drop_marks(drawing, |mark| price.least_worth(mark));
+    apply_priced(drawing, choose(losses, Room::default()));
     drawing.free().len()
 }
 

@@ -7,9 +7,10 @@
 //!
 //! [`Relocation::gain`]: crate::fit::recipe::Relocation::gain
 
+use crate::fit::edits::{Edit, Room, TOP, choose, drop_marks};
 use crate::fit::phase::search::search;
 use crate::fit::run::session::Session;
-use crate::render::Params;
+use crate::render::Strokes;
 use crate::scene::Marks;
 use crate::seed::Candidate;
 
@@ -35,88 +36,30 @@ pub(in crate::fit) fn relocate(
         let relocation = recipe.relocation;
         let room = limit.saturating_sub(drawing.len());
         let scale = drawing.spacing(drawing.len()) * recipe.stages.scale * relocation.scale;
-        // Worth of the strokes that are there, and the least worth that pays.
-        let worth = drawing.judge().worth;
+        // What is not worth its price goes.
         let price = price.in_drawing(drawing);
-        let prices: Vec<f32> = drawing
-            .free()
-            .iter()
-            .map(|p| price.least_worth(p))
-            .collect();
+        let mut edits = drop_marks(drawing, |mark| price.least_worth(mark));
         // Candidates whose gain pays.
         let count = match config.marks() {
             Marks::Areas => 0,
             Marks::Auto | Marks::Strokes => wanted.max(room.min(wanted * relocation.fill)),
         };
         let candidates = search(drawing, count, scale, recipe.probing, config.seed);
-        let mut paying: Vec<Candidate> = candidates
-            .into_iter()
-            .map(adapt)
-            .filter(|c| c.gain > price.least_gain_of_capsule(&c.stroke))
-            .collect();
-        paying.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-        let gains: Vec<f32> = paying.iter().map(|c| c.gain * relocation.gain).collect();
-        let (keep, coming) = exchange(&worth, &prices, &gains, room);
-        // The optimiser has to know which numbers moved to where.
-        let kept = (0..keep.len()).filter(|&i| keep[i]);
-        let mut sources: Vec<Option<usize>> = kept
-            .flat_map(|i| drawing.free().range(i).map(Some))
-            .collect();
-        // The best candidate is drawn last, so that none of lesser gain hides it.
-        let newcomers: Vec<Params> = paying[..coming].iter().rev().map(|c| c.stroke).collect();
-        let stage = drawing.last_stage();
-        drawing.retain_free(&keep);
-        drawing.extend(newcomers, stage);
-        sources.resize(drawing.free().numbers().len(), None);
-        sources
+        let candidates = candidates.into_iter().map(adapt);
+        let paying = candidates.filter(|c| c.gain > price.least_gain_of_capsule(&c.stroke));
+        edits.extend(paying.map(|c| {
+            let stroke = Strokes::from_iter([&c.stroke]).get(0).to_mark();
+            Edit {
+                gain: c.gain * relocation.gain,
+                growth: 1,
+                ..Edit::replacing(TOP, vec![stroke], 0.0)
+            }
+        }));
+        let room = Room {
+            free: room,
+            most: usize::MAX,
+            swaps: usize::MAX,
+        };
+        drawing.apply(&choose(edits, room))
     })
-}
-
-/// Which strokes stay, and how many candidates are added, of those that will gain `gains`, best first.
-///
-/// Strokes not worth their price go. Candidates take the free places first. Then the best remaining candidate replaces
-/// the stroke of least worth, and so on, as long as its gain exceeds the worth.
-fn exchange(worth: &[f32], prices: &[f32], gains: &[f32], room: usize) -> (Vec<bool>, usize) {
-    let mut keep: Vec<bool> = worth
-        .iter()
-        .zip(prices)
-        .map(|(worth, price)| worth > price)
-        .collect();
-    let vacated = keep.iter().filter(|&&stays| !stays).count();
-    let mut coming = gains.len().min(room + vacated);
-    let mut order: Vec<usize> = (0..worth.len()).filter(|&i| keep[i]).collect();
-    order.sort_by(|&i, &j| worth[i].total_cmp(&worth[j]).then(i.cmp(&j)));
-    for (i, &gain) in order.into_iter().zip(&gains[coming..]) {
-        if gain <= worth[i] {
-            break;
-        }
-        keep[i] = false;
-        coming += 1;
-    }
-    (keep, coming)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn strokes_worth_less_than_candidates_go() {
-        let worth = [4.0, 0.5, 2.0, 9.0, 0.1];
-        let (keep, coming) = exchange(&worth, &[0.0; 5], &[5.0, 3.0, 1.0], 0);
-        // 0.1 < 5 and 0.5 < 3, but 2 > 1.
-        assert_eq!((keep, coming), (vec![true, false, true, true, false], 2));
-    }
-
-    #[test]
-    fn strokes_not_worth_their_price_go_anyway() {
-        let (keep, coming) = exchange(&[4.0, -1.0, 0.5], &[1.0; 3], &[], 0);
-        assert_eq!((keep, coming), (vec![true, false, false], 0));
-    }
-
-    #[test]
-    fn free_places_are_filled_first() {
-        let (keep, coming) = exchange(&[4.0, 8.0], &[0.0; 2], &[3.0, 2.0], 2);
-        assert_eq!((keep, coming), (vec![true, true], 2));
-    }
 }

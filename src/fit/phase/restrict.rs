@@ -29,12 +29,17 @@ mod shared_widths;
 mod stack;
 mod width_grid;
 
+use std::f32::consts::PI;
+
 use super::count;
 use crate::error::Result;
 use crate::fit::config::Colors;
 use crate::fit::descent::ties::Ties;
+use crate::fit::drawing::Drawing;
+use crate::fit::edits::{Room, apply_priced, choose, drop_marks};
 use crate::fit::order::Outcome;
 use crate::fit::run::session::Session;
+use crate::render::StrokeRef;
 use crate::svg::Group;
 
 /// Gives the strokes the colours and widths that the file may have.
@@ -50,7 +55,7 @@ pub(in crate::fit) fn restrict(session: &mut Session<'_>) -> Result<Outcome> {
     shared_styles::run(session)?;
     // In free colours, each stroke is worth its price.
     if session.config.colors != Colors::Free {
-        session.drawing.remove_hidden();
+        remove_hidden(&mut session.drawing);
     }
     let inks = inks::run(session);
     forms::run(session)?;
@@ -58,6 +63,31 @@ pub(in crate::fit) fn restrict(session: &mut Session<'_>) -> Result<Outcome> {
     ties.extend(inks::ties(&session.drawing, &inks));
     session.history.ties = ties;
     Ok(Outcome::Over)
+}
+
+/// Change of a channel that cannot be seen: less than half an 8-bit level.
+const UNSEEN: f32 = 0.5 / 255.0;
+
+/// Removes strokes without which the drawing is as good, since they are covered or have the colour of what they cover, and counts
+/// them. A palette makes many of them, and they are in the way of whoever edits the file.
+fn remove_hidden(drawing: &mut Drawing) {
+    let unseen = |mark: StrokeRef<'_>| 3.0 * pixels(mark) * UNSEEN * UNSEEN;
+    let losses = drop_marks(drawing, unseen);
+    let tried = apply_priced(drawing, choose(losses, Room::default()));
+    drawing.counters.hidden += tried.made.len();
+}
+
+/// About how many pixels a stroke covers; of an area, those of its bounding box.
+fn pixels(stroke: StrokeRef<'_>) -> f32 {
+    if stroke.is_area() {
+        let side = |axis: usize| {
+            let along = || stroke.points.iter().map(|p| p[axis]);
+            along().fold(0.0, f32::max) - along().fold(f32::INFINITY, f32::min)
+        };
+        return side(0) * side(1);
+    }
+    let radius = stroke.radius();
+    radius * (2.0 * stroke.length() + PI * radius)
 }
 
 /// Makes strokes share widths and colours, of as many strokes as the budget of bytes allows then.

@@ -6,8 +6,9 @@ use crate::fit::budget::plan::PlannedStage;
 use crate::fit::config::Colors;
 use crate::fit::drawing::Drawing;
 use crate::fit::drawing::surface::Surface;
+use crate::fit::edits::written_points;
 use crate::fit::order::{Outcome, Purpose};
-use crate::fit::points::written_points;
+
 use crate::fit::result::Stop;
 use crate::fit::run::history::OpenStage;
 use crate::fit::run::session::Session;

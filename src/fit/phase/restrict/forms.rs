@@ -8,13 +8,15 @@
 use std::f32::consts::FRAC_PI_4;
 
 use super::covers::{Covers, FLATNESS, is_inside};
-use super::proposals::{Each, Proposal, adopt, traced};
+use super::proposals::{adopt, traced};
 use crate::error::Result;
-use crate::fit::drawing::Memento;
+use crate::fit::drawing::{Drawing, Memento};
+use crate::fit::edits::Edit;
 use crate::fit::recipe::Forms;
 use crate::fit::run::session::Session;
 use crate::math::Point;
 use crate::metrics::psnr_db;
+use crate::render::StrokeRef;
 use crate::scene::{Area, Band, Mark, Marks, Path, PathPoint, Shape, Stroke};
 
 /// Makes shapes of areas and traced strokes that nearly are such, and then lines level and upright. All strokes must be free.
@@ -24,31 +26,34 @@ pub(super) fn run(session: &mut Session<'_>) -> Result<()> {
     let room = most.saturating_sub(session.drawing.len());
     let shapes = shapes(session, forms, room);
     let paths = session.drawing.memento();
-    if adopt(session, forms, shapes, Each::MayLose) {
+    if adopt(session, forms, shapes) {
         refuse_losses(session, forms, paths)?;
     }
     if session.config.marks() == Marks::Auto {
         let squared = squares(session, forms);
-        adopt(session, forms, squared, Each::Gains);
+        adopt(session, forms, squared);
     }
     let straight = straight(session, forms);
-    adopt(session, forms, straight, Each::MayLose);
+    adopt(session, forms, straight);
     if session.config.marks() == Marks::Areas {
-        fill_bands(session);
+        fill_bands(&mut session.drawing);
     }
     Ok(())
 }
 
 /// Makes bands areas that are filled, where the file is to have no strokes.
-fn fill_bands(session: &mut Session<'_>) {
-    let drawing = &mut session.drawing;
-    let marks = drawing.free().iter().map(|mark| match mark.to_mark() {
-        Mark::Area(area) => area.filled().into(),
-        stroke => stroke,
-    });
-    let stages = drawing.stages().iter().copied();
-    let marks: Vec<(Mark, usize)> = marks.zip(stages).collect();
-    drawing.replace(marks.into_iter());
+fn fill_bands(drawing: &mut Drawing) {
+    let filled = |(i, mark): (usize, StrokeRef<'_>)| match mark.to_mark() {
+        Mark::Area(area) => Some(Edit::replacing(i, vec![area.filled().into()], 0.0)),
+        Mark::Stroke(_) => None,
+    };
+    let filled: Vec<Edit> = drawing
+        .free()
+        .iter()
+        .enumerate()
+        .filter_map(filled)
+        .collect();
+    drawing.apply(&filled);
 }
 
 /// Returns to the drawing of `paths` if the file with shapes is much less faithful: resvg draws large circles of a pen up to a
@@ -71,7 +76,7 @@ fn refuse_losses(session: &mut Session<'_>, forms: Forms, paths: Memento) -> Res
 const DOT_PX: f32 = 0.1;
 
 /// For each traced mark the shapes that it is, and at most `room` more marks than before.
-fn shapes(session: &Session<'_>, forms: Forms, mut room: usize) -> Vec<Proposal> {
+fn shapes(session: &Session<'_>, forms: Forms, mut room: usize) -> Vec<Edit> {
     let has_areas = session.drawing.free().has_areas();
     let covers = Covers::of(&session.drawing);
     // An icon in one ink is one path by its artist, too.
@@ -116,7 +121,7 @@ fn disc(dot: &Stroke) -> Area {
 }
 
 /// For each traced stroke a band: its square ends cover as much as round ones that end later.
-fn squares(session: &Session<'_>, forms: Forms) -> Vec<Proposal> {
+fn squares(session: &Session<'_>, forms: Forms) -> Vec<Edit> {
     let squared = |_: usize, mark: Mark| {
         let stroke = mark.as_stroke()?;
         let beyond = [FRAC_PI_4 * stroke.radius; 2];
@@ -210,7 +215,7 @@ fn are_apart(a: &Path, b: &Path) -> bool {
 }
 
 /// For each traced mark that is no shape, its lines that are nearly level or upright exactly so.
-fn straight(session: &Session<'_>, forms: Forms) -> Vec<Proposal> {
+fn straight(session: &Session<'_>, forms: Forms) -> Vec<Edit> {
     let straightened = |_: usize, mark: Mark| {
         let is_shape = matches!(mark.paths(), [path] if Shape::of(path).is_some());
         if is_shape {

@@ -4,7 +4,7 @@
 //! picture tells which is meant where the line covers whole pixels: there it has its colour. Of a line between two rows only
 //! its crossings tell.
 
-use super::proposals::{Each, Proposal, adopt, traced};
+use super::proposals::{adopt, traced};
 use crate::fit::config::Colors;
 use crate::fit::descent::ties::Ties;
 use crate::fit::drawing::Drawing;
@@ -13,7 +13,7 @@ use crate::fit::run::session::Session;
 use crate::image::Image;
 use crate::math::median;
 use crate::render::STYLE;
-use crate::scene::{Mark, Rgb, Stroke};
+use crate::scene::{Rgb, Stroke};
 use crate::trace;
 
 /// Gives thin traced lines on one colour the colours of the picture, with as much ink as before, and returns those. All
@@ -28,20 +28,17 @@ pub(super) fn run(session: &mut Session<'_>) -> Vec<Rgb> {
     let surface = session.drawing.surface();
     let picture = surface.picture();
     let halves = trace::halves(surface.residual_of(&surface.full_backdrop()));
-    let inked = |_: usize, mark: Mark| {
-        let stroke = mark.as_stroke()?;
+    let inked = |stroke: &Stroke| {
         let drawn = halves.as_ref().and_then(|halves| halves.drawn(stroke));
-        let stroke = drawn.or_else(|| inked(stroke, picture, inks))?;
-        Some(vec![stroke.into()])
+        drawn.or_else(|| inked(stroke, picture, inks))
     };
-    let proposals: Vec<Proposal> = traced(&session.drawing, inked);
-    let colors: Vec<Rgb> = proposals
-        .iter()
-        .flatten()
-        .flatten()
-        .map(Mark::color)
-        .collect();
-    adopt(session, session.recipe.forms, proposals, Each::MayLose);
+    let mut colors = Vec::new();
+    let proposed = traced(&session.drawing, |_, mark| {
+        let stroke = inked(mark.as_stroke()?)?;
+        colors.push(stroke.color);
+        Some(vec![stroke.into()])
+    });
+    adopt(session, session.recipe.forms, proposed);
     colors
 }
 

@@ -12,13 +12,14 @@ use super::width_grid::WidthGrid;
 use crate::fit::config::{Colors, Config};
 use crate::fit::descent::ties::Ties;
 use crate::fit::drawing::Drawing;
+use crate::fit::edits::{Change, Edit, apply_priced};
 use crate::fit::recipe::Recipe;
 use crate::math;
-use crate::render::STYLE;
+use crate::render::{STYLE, StrokeMut, Strokes};
 use crate::scene::quantum;
 
-/// Changes strokes for a squared error of at most this, as far as that can be told in advance, and ties what it has changed.
-type Step = fn(&mut Drawing, &Recipe, f32) -> Ties;
+/// Proposes what adds a squared error of at most this, as far as that can be told in advance.
+type Step = fn(&mut Drawing, &Recipe, f32) -> Vec<Edit>;
 
 /// Makes strokes of a drawing that was traced opaque, and share widths and colours, as far as these are not given. Returns
 /// what is to stay so. All strokes must be free.
@@ -28,36 +29,47 @@ pub(super) fn run(drawing: &mut Drawing, config: &Config, recipe: &Recipe) -> Ti
         return ties;
     }
     let (any_color, any_width) = (config.colors == Colors::Free, config.pens.is_none());
-    let steps: [(Step, bool); 3] = [
-        (make_opaque, any_color && any_width),
-        (share_widths, any_width),
-        (share_colors, any_color),
+    // Each step, the numbers of a style that it changes, and whether it is allowed.
+    let steps: [(Step, Range<usize>, bool); 3] = [
+        (opaque, 4..5, any_color && any_width),
+        (shared_widths, 0..1, any_width),
+        (shared_colors, 1..4, any_color),
     ];
-    for (step, _) in steps.into_iter().filter(|(_, is_allowed)| *is_allowed) {
-        ties.extend(backtrack(drawing, recipe, step));
+    for (step, numbers, _) in steps.into_iter().filter(|(_, _, is_allowed)| *is_allowed) {
+        let values = (3 * drawing.pixels()) as f64;
+        let allowance = (recipe.sharing.error * drawing.mse() * values) as f32;
+        let mut edits = step(drawing, recipe, allowance);
+        let each = allowance / edits.len() as f32;
+        edits.iter_mut().for_each(|edit| edit.price = each);
+        for edit in apply_priced(drawing, edits).made {
+            for number in numbers.clone() {
+                let places = edit.changes.iter();
+                let places = places.map(|(i, _)| drawing.free().range(*i).end - STYLE + number);
+                ties.tie(places.collect());
+            }
+        }
     }
     ties
 }
 
-/// Backtracking line search: takes a step that adds little squared error, as far as is allowed or, since strokes that
-/// overlap add more than the sum of what each adds alone, less far.
-fn backtrack(drawing: &mut Drawing, recipe: &Recipe, step: Step) -> Ties {
-    let (before, error) = (drawing.memento(), drawing.mse());
-    let values = (3 * drawing.pixels()) as f64;
-    for trial in 0..recipe.sharing.trials {
-        let allowance = recipe.sharing.error * error * values * math::powi(0.25, trial);
-        let ties = step(drawing, recipe, allowance as f32);
-        if drawing.mse() <= (1.0 + recipe.sharing.error) * error {
-            return ties;
-        }
-        drawing.revert(before.clone());
+/// The edit of these strokes that gives each this style.
+fn restyled(strokes: &Strokes, members: &[usize], style: impl Fn(StrokeMut<'_>)) -> Edit {
+    let change = |&i: &usize| {
+        let mut one = Strokes::from_iter([strokes.get(i)]);
+        one.change(|_, stroke| style(stroke));
+        (i, Change::Marks(vec![one.get(0).to_mark()]))
+    };
+    Edit {
+        changes: members.iter().map(change).collect(),
+        gain: 0.0,
+        price: 0.0,
+        growth: 0,
     }
-    Ties::default()
 }
 
 /// Makes nearly opaque strokes opaque. A thin one gets thinner by as much, so that it has as much ink; a wider one gets
 /// the colour that it has on the page.
-fn make_opaque(drawing: &mut Drawing, recipe: &Recipe, allowance: f32) -> Ties {
+fn opaque(drawing: &mut Drawing, recipe: &Recipe, allowance: f32) -> Vec<Edit> {
     let sharing = recipe.sharing;
     let shown = preferences(drawing, 0.0, recipe.coloring.min_shown);
     let strokes = drawing.free().iter().zip(&shown).enumerate();
@@ -75,34 +87,27 @@ fn make_opaque(drawing: &mut Drawing, recipe: &Recipe, allowance: f32) -> Ties {
         left -= cost;
         left >= 0.0
     });
-    let mut becomes = vec![false; drawing.free().len()];
-    affordable.for_each(|(_, i)| becomes[i] = true);
     // As much ink as before, or the colour that it has on the page.
     let (bounds, page) = (drawing.bounds, drawing.background());
-    drawing.free_mut().change(|i, stroke| {
+    let becomes = |stroke: StrokeMut<'_>| {
         let is_area = stroke.is_area;
-        if becomes[i] {
-            let [radius, color @ .., opacity] = stroke.style;
-            if *radius < sharing.thin && !is_area {
-                *radius *= *opacity;
-            } else if let Some(page) = page {
-                let mixed = color.iter_mut().zip(page);
-                mixed.for_each(|(c, page)| *c = page + *opacity * (*c - page));
-            }
-            *opacity = 1.0;
-            bounds.apply(stroke);
+        let [radius, color @ .., opacity] = &mut *stroke.style;
+        if *radius < sharing.thin && !is_area {
+            *radius *= *opacity;
+        } else if let Some(page) = page {
+            let mixed = color.iter_mut().zip(page);
+            mixed.for_each(|(c, page)| *c = page + *opacity * (*c - page));
         }
-    });
-    let mut ties = Ties::default();
-    for i in (0..becomes.len()).filter(|&i| becomes[i]) {
-        ties.fix(drawing.free().range(i).end - 1);
-    }
-    ties
+        *opacity = 1.0;
+        bounds.apply(stroke);
+    };
+    let edit = |(_, i)| restyled(drawing.free(), &[i], becomes);
+    affordable.map(edit).collect()
 }
 
 /// Merges neighbours in the order of widths: a width between two others is cheaper to merge with one of them than they are
 /// with each other.
-fn share_widths(drawing: &mut Drawing, recipe: &Recipe, allowance: f32) -> Ties {
+fn shared_widths(drawing: &mut Drawing, recipe: &Recipe, allowance: f32) -> Vec<Edit> {
     let strokes = drawing.free().iter().enumerate();
     let mut groups: Vec<Group> = strokes
         .filter(|(_, stroke)| !stroke.is_area())
@@ -116,16 +121,12 @@ fn share_widths(drawing: &mut Drawing, recipe: &Recipe, allowance: f32) -> Ties 
         .collect();
     groups.sort_by(|a, b| a.radius.total_cmp(&b.radius));
     let groups = merge(groups, rule(allowance, 1), |_, _| true);
-    let radii = shared(&groups, drawing, |group| group.radius);
-    drawing.free_mut().change(|i, stroke| {
-        if let Some(radius) = radii[i] {
-            stroke.style[0] = radius;
-        }
-    });
-    tied(&groups, drawing, 0..1)
+    shared(drawing, &groups, |group, stroke| {
+        stroke.style[0] = group.radius
+    })
 }
 
-fn share_colors(drawing: &mut Drawing, recipe: &Recipe, allowance: f32) -> Ties {
+fn shared_colors(drawing: &mut Drawing, recipe: &Recipe, allowance: f32) -> Vec<Edit> {
     let shown = preferences(drawing, 0.0, recipe.coloring.min_shown);
     let mut groups: Vec<Group> = Vec::new();
     for (i, (stroke, shown)) in drawing.free().iter().zip(&shown).enumerate() {
@@ -144,13 +145,9 @@ fn share_colors(drawing: &mut Drawing, recipe: &Recipe, allowance: f32) -> Ties 
         }
     }
     let groups = merge(groups, rule(allowance, usize::MAX), |_, _| true);
-    let colors = shared(&groups, drawing, |group| group.color);
-    drawing.free_mut().change(|i, mut stroke| {
-        if let Some(color) = colors[i] {
-            stroke.color_mut().copy_from_slice(&color);
-        }
-    });
-    tied(&groups, drawing, 1..4)
+    shared(drawing, &groups, |group, mut stroke| {
+        stroke.color_mut().copy_from_slice(&group.color);
+    })
 }
 
 /// Groups are merged for a squared error of at most `allowance`.
@@ -165,26 +162,10 @@ fn rule(allowance: f32, reach: usize) -> Rule<'static> {
     }
 }
 
-/// For each stroke that shares, `what` it shares with its group.
-fn shared<T: Copy>(groups: &[Group], drawing: &Drawing, what: fn(&Group) -> T) -> Vec<Option<T>> {
-    let mut shared = vec![None; drawing.free().len()];
-    for group in groups.iter().filter(|group| group.members.len() > 1) {
-        let members = group.members.iter();
-        members.for_each(|&i| shared[i] = Some(what(group)));
-    }
-    shared
-}
-
-/// Ties these numbers of the style of each group's strokes.
-fn tied(groups: &[Group], drawing: &Drawing, numbers: Range<usize>) -> Ties {
-    let strokes = drawing.free();
-    let mut ties = Ties::default();
-    for (group, number) in groups
-        .iter()
-        .flat_map(|group| numbers.clone().map(move |number| (group, number)))
-    {
-        let place = |&i: &usize| strokes.range(i).end - STYLE + number;
-        ties.tie(group.members.iter().map(place).collect());
-    }
-    ties
+/// An edit for each group of several strokes, which get `what` they share.
+fn shared(drawing: &Drawing, groups: &[Group], what: fn(&Group, StrokeMut<'_>)) -> Vec<Edit> {
+    let groups = groups.iter().filter(|group| group.members.len() > 1);
+    let edit =
+        |group: &Group| restyled(drawing.free(), &group.members, |stroke| what(group, stroke));
+    groups.map(edit).collect()
 }

@@ -8,23 +8,24 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::LEAST;
+use super::{Edit, written_points};
 use crate::fit::descent::held::Held;
 use crate::math::{self, nearest_on_segment};
 use crate::render::{Piece, Pieces, StrokeRef, Strokes, Survey, flattened};
 
+/// Least segments of a line or a curve in a survey. A guess.
+pub(in crate::fit) const LEAST: usize = 4;
+
 /// One path and the survey of its vertices.
-pub(super) struct Terrain<'a> {
-    /// The index among all paths of the drawing.
-    pub(super) path: usize,
+pub(in crate::fit) struct Terrain<'a> {
     /// The index of the stroke or area that it belongs to.
     pub(super) mark: usize,
+    /// The index among the paths of that.
+    pub(super) path: usize,
     /// True if it is a ring of an area.
-    pub(super) is_ring: bool,
-    /// True for a band, whose points only come and go in pairs.
-    pub(super) is_band: bool,
+    pub(in crate::fit) is_ring: bool,
     /// A stroke, or a ring of an area as one.
-    pub(super) stroke: StrokeRef<'a>,
+    pub(in crate::fit) stroke: StrokeRef<'a>,
     /// Its lines and curves, in drawing order.
     pub(super) pieces: Vec<Cut>,
     vertices: &'a [[f32; 2]],
@@ -43,29 +44,32 @@ pub(super) struct Cut {
 }
 
 impl<'a> Terrain<'a> {
-    /// The terrains of all paths: of each stroke, and of each ring of an area.
-    pub(super) fn all(survey: &'a Survey, strokes: &'a Strokes) -> Vec<Self> {
+    /// The terrains of all paths whose points may come and go: of each stroke, and of each ring of an area. Those of a band
+    /// come and go in pairs.
+    pub(in crate::fit) fn all(survey: &'a Survey, strokes: &'a Strokes) -> Vec<Self> {
         let of_mark = |mark: usize| {
             let stroke = strokes.get(mark);
             let mut first = survey.firsts[mark] as usize;
-            let is_band = Held::is_band(stroke);
-            stroke.paths().map(move |(_, path)| {
-                let mut terrain = Self::new(survey, path, mark, first);
-                (terrain.is_ring, terrain.is_band) = (stroke.is_area(), is_band);
+            let is_fit = stroke.is_finite() && !Held::is_band(stroke);
+            let paths = stroke.paths().enumerate().filter(move |_| is_fit);
+            paths.map(move |(path, (_, points))| {
+                let terrain = Self::new(survey, points, (mark, path, stroke.is_area()), first);
                 // Between rings is a vertex that no segment has.
                 first += terrain.vertices.len() + 1;
                 terrain
             })
         };
         let marks = (0..strokes.len()).into_par_iter();
-        let mut terrains: Vec<Self> = marks.flat_map_iter(of_mark).collect();
-        let places = terrains.iter_mut().enumerate();
-        places.for_each(|(path, terrain)| terrain.path = path);
-        terrains
+        marks.flat_map_iter(of_mark).collect()
     }
 
     /// The terrain of a path whose vertices begin with number `start` of the survey.
-    fn new(survey: &'a Survey, stroke: StrokeRef<'a>, mark: usize, start: usize) -> Self {
+    fn new(
+        survey: &'a Survey,
+        stroke: StrokeRef<'a>,
+        (mark, path, is_ring): (usize, usize, bool),
+        start: usize,
+    ) -> Self {
         let mut first = 0;
         let cut = |piece: Piece| {
             let steps = piece.steps(stroke, LEAST);
@@ -80,16 +84,24 @@ impl<'a> Terrain<'a> {
         // The polyline of a dot is a segment without a length.
         let range = start..start + first.max(1) + 1;
         Self {
-            path: 0,
             mark,
-            is_ring: false,
-            is_band: false,
+            path,
+            is_ring,
             stroke,
             pieces,
             vertices: &survey.vertices[range.clone()],
             slopes: &survey.slopes[range.clone()],
             stiffness: &survey.stiffness[range],
         }
+    }
+
+    /// Most points of the path in its file once it is edited.
+    pub(in crate::fit) fn written_points(&self, edit: &Edit) -> usize {
+        let changed = edit
+            .changes
+            .iter()
+            .find_map(|(_, change)| change.on(self.stroke));
+        written_points(changed.unwrap_or(self.stroke))
     }
 
     /// The best shift in the direction `across`, of at most `most` px, of the vertices from `first` on, each by its part

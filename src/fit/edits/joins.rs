@@ -1,48 +1,32 @@
-//! Joins: two nearly equal strokes that meet end to end become one, if this costs less than the bytes of a stroke.
-//!
-//! Ends, widths and colours give the pairs. A render of all joins then tells their cost. If they cost more than they save, the less
-//! alike half of the pairs is left out, and so on.
+//! Joins: one stroke for two nearly equal ones that meet end to end.
 
 use std::collections::BTreeMap;
 
-use super::written_points;
-use crate::fit::budget::price::Price;
-use crate::fit::drawing::Drawing;
+use super::{Change, Edit, written_points};
 use crate::fit::recipe::Joins;
 use crate::math::distance;
 use crate::render::{STYLE, StrokeRef, Strokes};
 
-/// Joins free strokes where that pays. Returns the former index of each number of the free strokes, `None` for a new
-/// one; nothing if no two strokes are joined. A stroke has at most `most` points, and one could be spared that is worth
-/// `spare`.
-pub(super) fn join(
-    drawing: &mut Drawing,
-    price: Price,
-    joins: Joins,
+/// Joins of free strokes, the most alike first. A stroke has at most `most` points; without the lower stroke of a pair, as
+/// much is spared as `price` says.
+pub(in crate::fit) fn joins(
+    strokes: &Strokes,
     most: usize,
-    spare: f32,
-) -> Option<Vec<Option<usize>>> {
-    let price = price.in_drawing(drawing);
-    let mut pairs = pairs(drawing.free(), most, &joins);
-    if pairs.is_empty() {
-        return None;
-    }
-    let least = joins.share * drawing.free().len() as f32;
-    pairs.truncate(least.ceil() as usize);
-    let before = drawing.squared_error();
-    let saved = |pair: &Pair| price.least_worth(drawing.free().get(pair.lower)).max(spare);
-    let saved: Vec<f32> = pairs.iter().map(saved).collect();
-    let memento = drawing.memento();
-    while !pairs.is_empty() {
-        let sources = drawing.join(&pairs);
-        let cost = drawing.squared_error() - before;
-        if cost < saved[..pairs.len()].iter().map(|&v| f64::from(v)).sum() {
-            return Some(sources);
-        }
-        drawing.revert(memento.clone());
-        pairs.truncate(pairs.len() / 2);
-    }
-    None
+    joins: &Joins,
+    price: impl Fn(StrokeRef<'_>) -> f32,
+) -> Vec<Edit> {
+    let join = |pair: Pair| Edit {
+        changes: vec![
+            (pair.lower, Change::Marks(Vec::new())),
+            (pair.upper, joined(strokes, pair)),
+        ],
+        gain: 0.0,
+        price: price(strokes.get(pair.lower)),
+        growth: -1,
+    };
+    let mut pairs = pairs(strokes, most, joins);
+    pairs.truncate((joins.share * strokes.len() as f32).ceil() as usize);
+    pairs.into_iter().map(join).collect()
 }
 
 /// Two strokes that meet.
@@ -128,87 +112,44 @@ fn end(stroke: StrokeRef<'_>, is_end: bool) -> [f32; 2] {
     end.copied().unwrap_or_default()
 }
 
-impl Drawing {
-    /// The squared error, summed over channels and the pixels of the picture.
-    fn squared_error(&mut self) -> f64 {
-        self.mse() * 3.0 * self.pixels() as f64
-    }
-
-    /// Joins pairs of free strokes. The joined stroke lies where the upper one lay.
-    fn join(&mut self, pairs: &[Pair]) -> Vec<Option<usize>> {
-        let strokes = self.free();
-        let mut pair_of = vec![None; strokes.len()];
-        pairs
+/// The joined stroke: the lower one up to where they meet, a point there, and the upper one from there on.
+fn joined(strokes: &Strokes, pair: Pair) -> Change {
+    let points = |i: usize, is_reversed: bool| {
+        let stroke = strokes.get(i);
+        let mut points: Vec<([f32; 2], bool)> = stroke
+            .points
             .iter()
-            .for_each(|pair| pair_of[pair.upper] = Some(pair));
-        let mut keep = vec![true; strokes.len()];
-        pairs.iter().for_each(|pair| keep[pair.lower] = false);
-        let (mut joined, mut sources) = (Strokes::new(), Vec::new());
-        for (i, stroke) in strokes.iter().enumerate() {
-            match pair_of[i] {
-                Some(pair) => push_joined(&mut joined, &mut sources, strokes, pair),
-                None => {
-                    joined.push(stroke);
-                    if keep[i] {
-                        sources.extend(strokes.range(i).map(Some));
-                    }
-                }
-            }
-        }
-        *self.free_mut() = joined;
-        self.retain_free(&keep);
-        sources
-    }
-}
-
-/// Adds the joined stroke: the lower one up to where they meet, a point there, and the upper one from there on.
-fn push_joined(
-    joined: &mut Strokes,
-    sources: &mut Vec<Option<usize>>,
-    strokes: &Strokes,
-    pair: &Pair,
-) {
-    // The points of both, each with the former index of its first number, from end to end.
-    let numbered = |i: usize, is_reversed: bool| {
-        let (stroke, start) = (strokes.get(i), strokes.range(i).start);
-        let points = stroke.points.iter().zip(stroke.off).enumerate();
-        let mut points: Vec<_> = points
-            .map(|(k, (&at, &is_off))| (at, is_off, Some(start + 2 * k)))
+            .copied()
+            .zip(stroke.off.iter().copied())
             .collect();
         if is_reversed {
             points.reverse();
         }
         points
     };
-    let mut points = numbered(pair.lower, !pair.ends[0]);
-    let rest = numbered(pair.upper, pair.ends[1]);
-    if let (Some(last), Some((first, _, _))) = (points.last_mut(), rest.first()) {
+    let mut all = points(pair.lower, !pair.ends[0]);
+    let rest = points(pair.upper, pair.ends[1]);
+    if let (Some(last), Some((first, _))) = (all.last_mut(), rest.first()) {
         last.0 = [0, 1].map(|axis| 0.5 * (last.0[axis] + first[axis]));
     }
     // One point in the middle stands for both ends that meet.
-    points.extend(&rest[1..]);
+    all.extend(&rest[1..]);
     // The style is the mean by length, so that a short piece does not change a long one.
     let (a, b) = (strokes.get(pair.lower), strokes.get(pair.upper));
     let (weight, other) = (a.length(), b.length());
     let share = other / (weight + other).max(f32::MIN_POSITIVE);
     let style: [f32; STYLE] =
         std::array::from_fn(|k| a.style[k] + share * (b.style[k] - a.style[k]));
-    let places: Vec<[f32; 2]> = points.iter().map(|point| point.0).collect();
-    let off: Vec<bool> = points.iter().map(|point| point.1).collect();
-    joined.push(StrokeRef {
-        points: &places,
+    let (points, off): (Vec<_>, Vec<_>) = all.into_iter().unzip();
+    let stroke = StrokeRef {
+        points: &points,
         off: &off,
         closed: false,
         rings: &[],
         paint: None,
         style: &style,
-    });
-    sources.extend(
-        points
-            .iter()
-            .flat_map(|point| [point.2, point.2.map(|at| at + 1)]),
-    );
-    sources.extend(strokes.range(pair.upper).rev().take(STYLE).rev().map(Some));
+    };
+    Change::Marks(vec![stroke.to_mark()])
 }
 
 #[cfg(test)]
@@ -256,10 +197,10 @@ mod tests {
             ends: [true, true],
             unlike: 0.0,
         };
-        let (mut joined, mut sources) = (Strokes::new(), Vec::new());
-        push_joined(&mut joined, &mut sources, &strokes, &pair);
-        assert_eq!(joined.get(0).points, [[1.0, 1.0], [9.0, 1.5], [20.0, 9.0]]);
-        let expected = [0, 1, 2, 3, 9, 10, 13, 14, 15, 16, 17].map(Some);
-        assert_eq!(sources, expected);
+        let Change::Marks(marks) = joined(&strokes, pair) else {
+            panic!("a mark");
+        };
+        let strokes = Strokes::from_iter(&marks);
+        assert_eq!(strokes.get(0).points, [[1.0, 1.0], [9.0, 1.5], [20.0, 9.0]]);
     }
 }

@@ -1,75 +1,60 @@
-//! The changes of a stroke's points, each with its gain.
+//! Edits of a path's points: one more, one less, a corner that becomes smooth or a control point that becomes a corner.
 
 use std::ops::Range;
 
 use super::terrain::{Cut, Terrain};
+use super::{Change, Edit};
 use crate::fit::recipe::Points;
 use crate::render::{Knot, Piece, StrokeRef};
 
-/// A change of the points of one path.
+/// Points of a path in the place of its own.
 #[derive(Debug, Clone)]
-pub(super) struct Edit {
-    /// The index of the path among all of the drawing.
-    pub(super) path: usize,
-    /// True if the path is a ring of an area.
-    pub(super) is_of_ring: bool,
-    /// Squared error that it removes; below 0 if it adds some.
-    pub(super) gain: f32,
-    pub(super) points: Vec<[f32; 2]>,
-    pub(super) off: Vec<bool>,
-    /// The former index of each point, `None` for a new one.
-    pub(super) sources: Vec<Option<usize>>,
+struct Changed {
+    points: Vec<[f32; 2]>,
+    off: Vec<bool>,
 }
 
-impl Edit {
-    /// No change yet.
-    fn of_none(terrain: &Terrain<'_>) -> Self {
+impl Changed {
+    fn of(path: StrokeRef<'_>) -> Self {
         Self {
-            path: terrain.path,
-            is_of_ring: terrain.is_ring,
-            gain: 0.0,
-            points: terrain.stroke.points.to_vec(),
-            off: terrain.stroke.off.to_vec(),
-            sources: (0..terrain.stroke.points.len()).map(Some).collect(),
+            points: path.points.to_vec(),
+            off: path.off.to_vec(),
         }
     }
 
-    /// `stroke`, edited.
-    pub(super) fn of<'a>(&'a self, stroke: StrokeRef<'a>) -> StrokeRef<'a> {
+    fn on<'a>(&'a self, path: StrokeRef<'a>) -> StrokeRef<'a> {
         StrokeRef {
             points: &self.points,
             off: &self.off,
-            ..stroke
+            ..path
         }
-    }
-
-    /// Takes all changes back.
-    fn reset(&mut self, terrain: &Terrain<'_>) {
-        self.points.clear();
-        self.points.extend_from_slice(terrain.stroke.points);
-        self.off.clear();
-        self.off.extend_from_slice(terrain.stroke.off);
-        self.sources.clear();
-        self.sources
-            .extend((0..terrain.stroke.points.len()).map(Some));
-    }
-
-    fn insert(&mut self, k: usize, at: [f32; 2], is_off: bool) {
-        self.points.insert(k, at);
-        self.off.insert(k, is_off);
-        self.sources.insert(k, None);
     }
 
     fn remove(&mut self, k: usize) {
         self.points.remove(k);
         self.off.remove(k);
-        self.sources.remove(k);
     }
 
     /// True if the points make a path.
     fn is_path(&self, closed: bool) -> bool {
         let is_on = |end: Option<&bool>| end == Some(&false);
         closed || (is_on(self.off.first()) && is_on(self.off.last()))
+    }
+
+    /// The edit that `gain`s this much.
+    fn edit(self, terrain: &Terrain<'_>, gain: f32, price: f32) -> Edit {
+        let growth = self.points.len() as isize - terrain.stroke.points.len() as isize;
+        let change = Change::Path {
+            index: terrain.path,
+            points: self.points,
+            off: self.off,
+        };
+        Edit {
+            changes: vec![(terrain.mark, change)],
+            gain,
+            price,
+            growth,
+        }
     }
 }
 
@@ -85,20 +70,8 @@ struct Insertion {
     moved: Option<(usize, [f32; 2])>,
 }
 
-impl Insertion {
-    fn into_edit(self, terrain: &Terrain<'_>) -> Edit {
-        let mut edit = Edit::of_none(terrain);
-        if let Some((k, to)) = self.moved {
-            edit.points[k] = to;
-        }
-        edit.insert(self.place, self.at, self.is_off);
-        edit.gain = self.gain;
-        edit
-    }
-}
-
-/// The new point that gains most.
-pub(super) fn best_insertion(terrain: &Terrain<'_>, points: &Points) -> Option<Edit> {
+/// The point more that gains most; it has to gain `to_add`.
+pub(in crate::fit) fn add(terrain: &Terrain<'_>, to_add: f32, points: &Points) -> Option<Edit> {
     let within = |(i, &cut): (usize, &Cut)| {
         let chord = Chord::of(terrain, cut.piece).filter(|chord| chord.length > points.shortest);
         let insertions = chord.map(|chord| match cut.piece.control {
@@ -108,49 +81,42 @@ pub(super) fn best_insertion(terrain: &Terrain<'_>, points: &Points) -> Option<E
         insertions.into_iter().flatten().flatten()
     };
     let insertions = terrain.pieces.iter().enumerate().flat_map(within);
-    let best = insertions.reduce(|best, other| if other.gain > best.gain { other } else { best });
-    best.map(|insertion| insertion.into_edit(terrain))
-}
-
-/// Removal of the point whose loss costs least.
-pub(super) fn best_removal(terrain: &Terrain<'_>) -> Option<Edit> {
-    let count = terrain.stroke.points.len();
-    if count < 3 || terrain.is_band {
-        return None;
+    let best =
+        insertions.reduce(|best, other| if other.gain > best.gain { other } else { best })?;
+    let mut changed = Changed::of(terrain.stroke);
+    if let Some((k, to)) = best.moved {
+        changed.points[k] = to;
     }
-    best_change(terrain, 0..count, |edit, k| edit.remove(k))
+    changed.points.insert(best.place, best.at);
+    changed.off.insert(best.place, best.is_off);
+    Some(changed.edit(terrain, best.gain, -to_add))
 }
 
-/// Removal of the point whose loss costs least, where an end may move.
-pub(super) fn best_loss(terrain: &Terrain<'_>) -> Option<Edit> {
-    best(
-        [best_removal(terrain), best_retraction(terrain)]
-            .into_iter()
-            .flatten(),
-    )
-}
-
-/// Removal of the control point beside an end whose loss costs least. A curve that turns back there ends where it
+/// The point less that costs least; it spares `to_keep`. An end may move: a curve that turns back beside it ends where it
 /// turned.
-fn best_retraction(terrain: &Terrain<'_>) -> Option<Edit> {
+pub(in crate::fit) fn drop(terrain: &Terrain<'_>, to_keep: f32) -> Option<Edit> {
     let StrokeRef { off, closed, .. } = terrain.stroke;
     let count = off.len();
-    if count < 3 || closed || terrain.is_band {
+    if count < 3 {
         return None;
     }
+    let removal = best_change(terrain, 0..count, to_keep, |changed, k| changed.remove(k));
     let retraction = |(k, end): (usize, usize)| {
-        let tip = terrain.tip(end).filter(|_| off[k])?;
-        best_change(terrain, k..k + 1, |edit, k| {
-            edit.points[end] = tip;
-            edit.remove(k);
+        let tip = terrain.tip(end).filter(|_| off[k] && !closed)?;
+        best_change(terrain, k..k + 1, to_keep, |changed, k| {
+            changed.points[end] = tip;
+            changed.remove(k);
         })
     };
-    let ends = [(1, 0), (count - 2, count - 1)];
-    best(ends.into_iter().filter_map(retraction))
+    let retractions = [(1, 0), (count - 2, count - 1)]
+        .into_iter()
+        .filter_map(retraction);
+    let edits = removal.into_iter().chain(retractions);
+    edits.reduce(|best, edit| if edit.gain > best.gain { edit } else { best })
 }
 
 /// The corner that should be smooth, or the control point that should be a corner. The path stays near the point.
-pub(super) fn best_toggle(terrain: &Terrain<'_>) -> Option<Edit> {
+pub(in crate::fit) fn toggle(terrain: &Terrain<'_>, to_change: f32) -> Option<Edit> {
     let StrokeRef {
         points,
         off,
@@ -162,18 +128,18 @@ pub(super) fn best_toggle(terrain: &Terrain<'_>) -> Option<Edit> {
         return None;
     }
     let inner = if closed { 0..count } else { 1..count - 1 };
-    best_change(terrain, inner, |edit, k| {
+    best_change(terrain, inner, -to_change, |changed, k| {
         let neighbours = [(k + count - 1) % count, (k + 1) % count];
         let [a, b] = neighbours.map(|i| match off[i] {
             true => [0, 1].map(|axis| 0.5 * (points[i][axis] + points[k][axis])),
             false => points[i],
         });
         // A quadratic curve is farthest from its chord at a quarter of its ends and half of its control point.
-        edit.points[k] = [0, 1].map(|axis| match off[k] {
+        changed.points[k] = [0, 1].map(|axis| match off[k] {
             true => 0.25 * (a[axis] + b[axis]) + 0.5 * points[k][axis],
             false => 2.0 * points[k][axis] - 0.5 * (a[axis] + b[axis]),
         });
-        edit.off[k] = !off[k];
+        changed.off[k] = !off[k];
     })
 }
 
@@ -181,28 +147,21 @@ pub(super) fn best_toggle(terrain: &Terrain<'_>) -> Option<Edit> {
 fn best_change(
     terrain: &Terrain<'_>,
     of: Range<usize>,
-    change: impl Fn(&mut Edit, usize),
+    price: f32,
+    change: impl Fn(&mut Changed, usize),
 ) -> Option<Edit> {
-    let mut trial = Edit::of_none(terrain);
-    let mut best: Option<(usize, f32)> = None;
+    let mut best: Option<(f32, Changed)> = None;
     for k in of {
-        trial.reset(terrain);
-        change(&mut trial, k);
-        if trial.is_path(terrain.stroke.closed) {
-            let gain = terrain.gain(trial.of(terrain.stroke), k);
-            if best.is_none_or(|(_, most)| gain > most) {
-                best = Some((k, gain));
+        let mut changed = Changed::of(terrain.stroke);
+        change(&mut changed, k);
+        if changed.is_path(terrain.stroke.closed) {
+            let gain = terrain.gain(changed.on(terrain.stroke), k);
+            if best.as_ref().is_none_or(|(most, _)| gain > *most) {
+                best = Some((gain, changed));
             }
         }
     }
-    let (k, gain) = best?;
-    trial.reset(terrain);
-    change(&mut trial, k);
-    Some(Edit { gain, ..trial })
-}
-
-fn best(edits: impl Iterator<Item = Edit>) -> Option<Edit> {
-    edits.reduce(|best, edit| if edit.gain > best.gain { edit } else { best })
+    best.map(|(gain, changed)| changed.edit(terrain, gain, price))
 }
 
 /// The line between the knots of a piece.
