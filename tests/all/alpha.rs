@@ -2,7 +2,7 @@
 
 use crate::support::drafts::draft;
 use crate::support::fits::{drawn, sample};
-use strokefit::fit::{Background, Config, Fit, Fitter};
+use strokefit::fit::{Background, Config, Fit};
 use strokefit::image::Image;
 use strokefit::verify::{self, Size};
 

@@ -17,7 +17,6 @@ use strokefit::render::{
 };
 use strokefit::rng::draw;
 use strokefit::scene::{Path, PathPoint, Scene, Stage, Stroke};
-use strokefit::sdf::Capsule;
 use strokefit::svg::{self, WriteOptions};
 use strokefit::verify::{self, Size};
 
@@ -732,12 +731,12 @@ fn deepest_hole(text: &str) -> f32 {
         .filter(|(_, level)| **level > 0.5);
     let depth = |(pixel, _)| {
         let p = Point::new((pixel % width) as f32 + 0.5, (pixel / width) as f32 + 0.5);
-        let capsule = |ends: &[Point]| Capsule {
-            a: ends[0],
-            b: ends[1],
-            radius: stroke.radius,
+        let away = |ends: &[Point]| {
+            let (along, p) = (ends[1] - ends[0], p - ends[0]);
+            let h = (p.dot(&along) / along.norm_squared().max(1e-9)).clamp(0.0, 1.0);
+            (p - along * h).norm()
         };
-        let depths = line.windows(2).map(|ends| capsule(ends).distance(p, 1e-9));
+        let depths = line.windows(2).map(|ends| stroke.radius - away(ends));
         depths.fold(f32::MIN, f32::max)
     };
     light.map(depth).fold(f32::MIN, f32::max)
