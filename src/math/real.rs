@@ -1,7 +1,7 @@
 //! Floating-point types of generic formulas.
 
 use std::f64::consts::PI;
-use std::fmt::Debug;
+use std::fmt::{Debug, Display};
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use super::Elementary;
@@ -11,6 +11,7 @@ use super::Elementary;
 pub trait Real:
     Elementary
     + Debug
+    + Display
     + PartialOrd
     + Add<Output = Self>
     + Sub<Output = Self>
