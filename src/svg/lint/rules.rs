@@ -217,11 +217,7 @@ pub(super) const RULES: [Rule; 23] = [
         severity: Warning,
         why: "only browsers run it, and only if the file is opened directly",
         remedy: "remove it",
-        check: Each(|e| {
-            e.name() == "script"
-                || e.values()
-                    .any(|(key, _)| key.len() > 4 && key.starts_with("on"))
-        }),
+        check: Any(script),
     },
     Rule {
         name: "feature",
@@ -353,6 +349,14 @@ fn external(page: &Page<'_>) -> Vec<Found> {
     }
     found.sort();
     found
+}
+
+/// A script: an element, or an attribute such as `onload`, which the root has most often.
+fn script(element: &Element<'_>) -> Option<String> {
+    let is_handler = |key: &str| key.len() > 4 && key.starts_with("on");
+    let handler = element.values().find(|(key, _)| is_handler(key));
+    let handler = handler.map(|(key, _)| element.quote(key));
+    handler.or_else(|| (element.name() == "script").then(|| "<script>".into()))
 }
 
 fn doctypes(page: &Page<'_>) -> Vec<Found> {

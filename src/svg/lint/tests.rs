@@ -92,6 +92,8 @@ fn each_rule_finds_its_case_and_nothing_else() {
             .filter(|f| *f != rule && !expected.contains(&f.as_str()));
         assert_eq!(others.count(), 0, "{body}: {found:?}");
     }
+    let run = page("").replace("<svg ", "<svg onload=\"x()\" ");
+    assert_eq!(names(&run), ["script"]);
 }
 
 #[test]
