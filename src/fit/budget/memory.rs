@@ -11,8 +11,8 @@ const BASE: u64 = 16 << 20;
 /// Bytes per pixel for the picture, its reductions, canvases and renders, and for judging them: of a photograph. Measured: 215 to
 /// 315.
 const PER_PIXEL: u64 = 245;
-/// Bytes per pixel of flat art and drawings of lines, which are nudged if that pays. Measured: 270 to 520.
-const PER_FLAT_PIXEL: u64 = 430;
+/// Bytes per pixel of flat art and drawings of lines. Measured for dashboard-900 and line-cat-1000: 370 and 210.
+const PER_FLAT_PIXEL: u64 = 300;
 /// Bytes per pixel of a picture that is drawn on two mattes. Measured: 460 to 790.
 const PER_TRANSPARENT_PIXEL: u64 = 550;
 /// Bytes per pixel of the padding of tiles, which only canvases have. Measured for 65000×2, 30000×3 and 3×20000 px: 95
