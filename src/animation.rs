@@ -3,9 +3,9 @@
 //! ```
 //! use strokefit::animation::{self, Film, Legend, Step};
 //! use strokefit::image::AnimationFormat;
-//! use strokefit::scene::{Scene, Path, Stage, Stroke};
+//! use strokefit::scene::{Cap, Scene, Path, Stage, Stroke};
 //!
-//! let stroke = |x| Stroke { path: Path::dot([x, 4.0].into()), radius: 2.0, color: [0.1; 3], opacity: 1.0 };
+//! let stroke = |x| Stroke { path: Path::dot((x, 4.0).into()), radius: 2.0, color: [0.1; 3], opacity: 1.0 };
 //! let scene = Scene {
 //!     stages: vec![Stage::from_iter([3.0, 8.0, 13.0].map(stroke))],
 //!     ..Scene::empty(16, 8, Some([1.0; 3]))
@@ -235,16 +235,17 @@ fn precision(scene: &Scene) -> u8 {
 #[cfg(all(test, feature = "animation"))]
 mod tests {
     use super::*;
-    use crate::scene::{Area, Path, PathPoint, Stroke};
+    use crate::scene::{Area, Cap, Path, PathPoint, Stroke};
     use crate::verify;
 
     fn scene(stages: &[usize]) -> Scene {
         let stroke = |k: usize| Stroke {
             path: Path::line(
-                [(k * 7 % 30) as f32, 3.0].into(),
-                [20.0, (k * 5 % 24) as f32].into(),
+                ((k * 7 % 30) as f32, 3.0).into(),
+                (20.0, (k * 5 % 24) as f32).into(),
             ),
             radius: 1.5,
+            cap: Cap::Round,
             color: [k as f32 / 20.0, 0.3, 0.8 - k as f32 / 40.0],
             opacity: 0.6,
         };
@@ -321,7 +322,8 @@ mod tests {
 
     #[test]
     fn a_drawing_of_areas_plays_and_says_how_many_there_are() {
-        let corners = [[2.0, 2.0], [30.0, 4.0], [16.0, 22.0]].map(|p| PathPoint::on(p.into()));
+        let corners = [[2.0, 2.0], [30.0, 4.0], [16.0, 22.0]]
+            .map(|[x, y]: [f64; 2]| PathPoint::on((x, y).into()));
         let area = Area {
             rings: vec![Path::new(corners.into(), true).unwrap()],
             color: [0.2, 0.4, 0.8],

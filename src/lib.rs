@@ -80,9 +80,9 @@
 //! | doubt | how far the picture that is meant may be from the truth, RMS in levels of 8 bits |
 //! | details | letters, dots, thin lines: small things that nothing around hides |
 //! | mark | one element of a drawing: a stroke or an area; see [`scene::Mark`] |
-//! | stroke | all points within a radius (px) of a path, with a colour and an opacity (0..1); see [`scene`] |
+//! | stroke | a path drawn with a pen that has round ends or square ones, with a colour and an opacity (0..1); see [`scene::Stroke`] |
 //! | area | one or more closed paths, its *rings*, filled where they wind around a point (SVG's nonzero rule), with a colour or a shade and an opacity; see [`scene::Area`] |
-//! | band | an area that is a line of even width with square ends and mitred corners; the file has it as a stroke; see [`scene::Band`] |
+//! | band | a line of even width with square ends and mitred corners: the path and the width of a stroke with [`scene::Cap::Butt`]; see [`scene::Band`] |
 //! | path | *points*, open or closed: the centre line of a stroke, or a ring; see [`scene::Path`] |
 //! | shape | a closed path that is a circle, an ellipse or a rectangle, with an element of its own; see [`scene::Shape`] |
 //! | point | of a path: *on* it, joined to the next by a line, or *off* it, where it is the control point of a curve |

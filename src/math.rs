@@ -1,8 +1,7 @@
-//! Geometry words of the crate, and its elementary functions: the one door of `libm`.
+//! Points of the crate, which are `kurbo`'s, and its elementary functions: the one door of `libm`.
 
 mod elementary;
 mod linear;
-mod plane;
 mod real;
 mod search;
 
@@ -10,9 +9,21 @@ pub use elementary::{
     Elementary, atan, cbrt, cos, exp, exp2, hypot, ln, log2, log10, powf, sin, sin_cos, tan, tanh,
 };
 pub(crate) use linear::solve_symmetric;
-pub use plane::{Point, Vector};
 pub use real::{Real, powi};
 pub(crate) use search::search;
+
+/// Points and displacements of the picture plane, px; x to the right, y down, pixel centres at +0.5.
+pub use kurbo::{Point, Vec2};
+
+/// The point of single-precision coordinates, as the renderer has them.
+pub fn point([x, y]: [f32; 2]) -> Point {
+    Point::new(x.into(), y.into())
+}
+
+/// The coordinates of a point in single precision, as the renderer has them.
+pub fn xy(p: Point) -> [f32; 2] {
+    [p.x as f32, p.y as f32]
+}
 
 /// The distance of two places, px.
 pub(crate) fn distance(a: [f32; 2], b: [f32; 2]) -> f32 {

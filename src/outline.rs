@@ -3,57 +3,61 @@
 //! The rings are filled by the nonzero rule. A ring crosses itself where the stroke does, and on the inner side of
 //! bends: the rule fills each place once all the same.
 
+use kurbo::{ParamCurve, PathSeg};
 use resvg::tiny_skia::{LineCap, LineJoin, Path, PathBuilder, PathSegment, Stroke as Pen};
 
-use crate::math::Point;
-use crate::scene::{self, Area, PathPoint, Piece, Stroke};
+use crate::math::{self, Point, Vec2};
+use crate::scene::{self, Area, Mark, PathPoint, Stroke};
 
 /// The length of the segment that a dot is written as, px.
-const DOT: f32 = 0.01;
+const DOT: f64 = 0.01;
 
 /// The stroker's round caps and joins may be a quarter of its unit off. At this scale that is a sixteenth of a px, at 8 % more
 /// bytes than at 1; 8 takes 21 % more. Renders at 1 and 3 times the size do not change by it.
-const SCALE: f32 = 4.0;
+const SCALE: f64 = 4.0;
 
-/// The area that looks like the stroke.
-pub(crate) fn area(stroke: &Stroke) -> Area {
-    Area {
-        rings: stroked(stroke).map_or_else(Vec::new, |path| rings(&path)),
-        color: stroke.color,
-        opacity: stroke.opacity,
-        shade: None,
+/// The area that looks like a mark.
+pub(crate) fn of_mark(mark: &Mark) -> Area {
+    match mark.clone().filled() {
+        Mark::Area(area) => area,
+        Mark::Stroke(stroke) => Area {
+            rings: stroked(&stroke).map_or_else(Vec::new, |path| rings(&path)),
+            color: stroke.color,
+            opacity: stroke.opacity,
+            shade: None,
+        },
     }
 }
 
-/// The outline of a stroke on a page that is [`SCALE`] times as large.
+/// The outline of a stroke with round ends on a page that is [`SCALE`] times as large.
 fn stroked(stroke: &Stroke) -> Option<Path> {
     let pen = Pen {
-        width: 2.0 * stroke.radius * SCALE,
+        width: (2.0 * stroke.radius * SCALE) as f32,
         line_cap: LineCap::Round,
         line_join: LineJoin::Round,
         ..Pen::default()
     };
     let path = &stroke.path;
     let mut line = PathBuilder::new();
-    let to = |p: Point| (p.x * SCALE, p.y * SCALE);
-    for (i, piece) in path.pieces().enumerate() {
+    let to = |p: Point| ((p.x * SCALE) as f32, (p.y * SCALE) as f32);
+    for (i, segment) in path.segments().enumerate() {
         if i == 0 {
-            let (x, y) = to(piece.start());
+            let (x, y) = to(segment.start());
             line.move_to(x, y);
         }
-        let (x, y) = to(piece.end());
-        match piece {
-            Piece::Line(_) => line.line_to(x, y),
-            Piece::Curve([_, knee, _]) => {
-                let (knee_x, knee_y) = to(knee);
+        let (x, y) = to(segment.end());
+        match segment {
+            PathSeg::Quad(curve) => {
+                let (knee_x, knee_y) = to(curve.p1);
                 line.quad_to(knee_x, knee_y, x, y);
             }
+            _ => line.line_to(x, y),
         }
     }
     if let [dot] = path.points() {
-        let (x, y) = to(dot.at);
-        line.move_to(x, y);
-        line.line_to(x + DOT * SCALE, y);
+        let [start, end] = [0.0, DOT].map(|px| to(dot.at + Vec2::new(px, 0.0)));
+        line.move_to(start.0, start.1);
+        line.line_to(end.0, end.1);
     }
     if path.is_closed() {
         line.close();
@@ -63,7 +67,7 @@ fn stroked(stroke: &Stroke) -> Option<Path> {
 
 /// The contours of an outline, which has lines and quadratic curves, as rings.
 fn rings(outline: &Path) -> Vec<scene::Path> {
-    let at = |p: resvg::tiny_skia::Point| Point::new(p.x / SCALE, p.y / SCALE);
+    let at = |p: resvg::tiny_skia::Point| (math::point([p.x, p.y]).to_vec2() / SCALE).to_point();
     let mut rings: Vec<Vec<PathPoint>> = Vec::new();
     for segment in outline.segments() {
         let points = match segment {

@@ -4,6 +4,7 @@
 //! that encoding, as SVG renderers do.
 
 mod band;
+mod canonical;
 mod colors;
 mod filled_loop;
 mod grid;
@@ -16,39 +17,46 @@ mod quantize;
 mod shade;
 mod shadow;
 mod shape;
-mod written_path;
-mod written_shape;
 
 pub use band::Band;
 pub(crate) use colors::distinct_colors;
 pub use grid::{MAX_PRECISION, MIN_WIDTH};
-pub(crate) use grid::{UNITS_PER_PX, color, quantum};
+pub(crate) use grid::{UNITS_PER_PX, color, px, quantum, units};
 pub(crate) use mark::counted;
 pub use mark::{Area, Mark, Marks};
 pub(crate) use overlap::{Bundles, Precedence};
-pub use path::{MAX_POINTS, Path, PathPoint, Piece};
+pub use path::{MAX_POINTS, Path, PathPoint};
 pub(crate) use polyline::{polyline, through};
+pub(crate) use quantize::quantized_anywhere;
 pub use quantize::{Dropped, Quantized};
-pub(crate) use quantize::{Written, WrittenShade};
 pub use shade::{Axis, MAX_STOPS, Shade, ShadeStop};
-pub(crate) use shade::{WrittenAxis, WrittenStop};
 pub use shadow::Shadow;
-pub use shape::Shape;
-pub(crate) use written_path::{WrittenPath, WrittenPoint};
-pub(crate) use written_shape::WrittenShape;
+pub use shape::{Shape, ShapeKind};
 
 use crate::math::Point;
 
 /// An sRGB-encoded colour, 0..1 per channel.
 pub type Rgb = [f32; 3];
 
-/// One stroke: a path swept by a disc, in one colour.
+/// The ends and corners of a stroke.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Cap {
+    /// Round ends and corners: the path is swept by a disc.
+    #[default]
+    Round,
+    /// Square ends and mitred corners, as SVG's `stroke-linecap="butt"` and `stroke-linejoin="miter"` draw them.
+    Butt,
+}
+
+/// One stroke: a path drawn with a pen, in one colour.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stroke {
     /// The centre line, px.
     pub path: Path,
     /// Half the stroke width, px.
-    pub radius: f32,
+    pub radius: f64,
+    /// Its ends and corners.
+    pub cap: Cap,
     /// sRGB-encoded colour, 0..1.
     pub color: Rgb,
     /// 0 (invisible) to 1 (opaque).
@@ -105,12 +113,22 @@ impl Scene {
 
     /// The scene with all points on the page: those beyond its border are on the border. Curves stay within their points.
     #[must_use]
-    pub fn confined(mut self) -> Self {
-        let [width, height] = [self.width, self.height].map(|side| side as f32);
+    pub fn confined(self) -> Self {
+        let [width, height] = [self.width, self.height].map(f64::from);
         let held = |p: Point| Point::new(p.x.clamp(0.0, width), p.y.clamp(0.0, height));
+        self.with_marks(|mark| mark.map(held))
+    }
+
+    /// The scene with an area in the place of each stroke with square ends, which looks the same.
+    #[must_use]
+    pub fn filled(self) -> Self {
+        self.with_marks(Mark::filled)
+    }
+
+    fn with_marks(mut self, f: impl Fn(Mark) -> Mark) -> Self {
         for stage in &mut self.stages {
             let marks = std::mem::take(&mut stage.marks).into_iter();
-            stage.marks = marks.map(|mark| mark.map(held)).collect();
+            stage.marks = marks.map(&f).collect();
         }
         self
     }
@@ -135,15 +153,9 @@ impl Scene {
         self.marks().filter_map(Mark::as_area)
     }
 
-    /// The areas that the file fills, back to front: those that are no bands.
-    pub fn filled(&self) -> impl Iterator<Item = &Area> {
-        self.areas().filter(|area| area.band().is_none())
-    }
-
-    /// The numbers of filled areas and of strokes, with bands, in words: "12 areas, 30 strokes".
+    /// The numbers of areas and of strokes in words: "12 areas, 30 strokes".
     pub fn counted(&self) -> String {
-        let filled = self.filled().count();
-        counted(filled, self.len() - filled)
+        counted(self.areas().count(), self.strokes().count())
     }
 
     /// Number of marks.

@@ -47,8 +47,8 @@ pub(crate) struct Blocks {
     pub(crate) columns: usize,
     pub(crate) all: Vec<Block>,
     /// The corner of the part with the least coordinates, and its size, px.
-    pub(crate) low: [f32; 2],
-    pub(crate) size: [f32; 2],
+    pub(crate) low: [f64; 2],
+    pub(crate) size: [f64; 2],
 }
 
 /// Likeness of blocks to a shade.
@@ -76,7 +76,7 @@ impl Blocks {
             let pixels = (y..below).flat_map(|y| (x..right).map(move |x| y * width + x));
             let value = value(&pixels.collect::<Vec<_>>());
             Block {
-                center: Point::new((x + right) as f32 / 2.0, (y + below) as f32 / 2.0),
+                center: Point::new((x + right) as f64 / 2.0, (y + below) as f64 / 2.0),
                 value: value.unwrap_or_default(),
                 weight: if value.is_some() { 1.0 } else { 0.0 },
             }
@@ -85,7 +85,7 @@ impl Blocks {
             columns,
             all: (0..columns * rows).map(block).collect(),
             low: [0.0; 2],
-            size: [width as f32, height as f32],
+            size: [width as f64, height as f64],
         };
         (blocks, side)
     }
@@ -169,8 +169,8 @@ impl Blocks {
             }
             let slope = |c: usize| {
                 [
-                    (right.value[c] - left.value[c]) / (right.center.x - left.center.x),
-                    (below.value[c] - above.value[c]) / (below.center.y - above.center.y),
+                    (right.value[c] - left.value[c]) / (right.center.x - left.center.x) as f32,
+                    (below.value[c] - above.value[c]) / (below.center.y - above.center.y) as f32,
                 ]
             };
             Some((self.all[i].center, [0, 1, 2, 3].map(slope)))
@@ -180,9 +180,9 @@ impl Blocks {
     /// The axis without ends that no block which takes part is near: nothing tells of the colours there.
     fn seen(&self, axis: Axis) -> Axis {
         // About a block.
-        const NEAR: f32 = 0.03;
+        const NEAR: f64 = 0.03;
         let taking_part = self.all.iter().filter(|block| block.weight > 0.0);
-        let (mut first, mut last) = (1.0_f32, 0.0_f32);
+        let (mut first, mut last) = (1.0_f64, 0.0_f64);
         for offset in taking_part.map(|block| axis.offset(block.center).clamp(0.0, 1.0)) {
             (first, last) = (first.min(offset), last.max(offset));
         }
@@ -202,14 +202,14 @@ impl Blocks {
     }
 
     /// The largest offset of the part along `axis`, and the smallest.
-    fn extent(&self, axis: Axis) -> [f32; 2] {
+    fn extent(&self, axis: Axis) -> [f64; 2] {
         let [left, top] = self.low;
         let [right, bottom] = [0, 1].map(|k| self.low[k] + self.size[k]);
         let corners = [[left, top], [right, top], [left, bottom], [right, bottom]];
         let offsets = corners.map(|[x, y]| axis.offset(Point::new(x, y)));
         [
-            offsets.iter().copied().fold(f32::INFINITY, f32::min),
-            offsets.iter().copied().fold(f32::NEG_INFINITY, f32::max),
+            offsets.iter().copied().fold(f64::INFINITY, f64::min),
+            offsets.iter().copied().fold(f64::NEG_INFINITY, f64::max),
         ]
     }
 }

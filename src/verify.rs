@@ -231,7 +231,7 @@ pub fn silence_panics() {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Path, Scene, Stage, Stroke};
+    use crate::scene::{Cap, Path, Scene, Stage, Stroke};
     use crate::svg::{self, WriteOptions};
 
     const RED: &str = r##"<svg xmlns="http://www.w3.org/2000/svg" width="4" height="2" viewBox="0 0 4 2"><rect width="2" height="2" fill="#ff0000"/></svg>"##;
@@ -355,11 +355,12 @@ mod tests {
         let stroke = |path| Stroke {
             path,
             radius: 3.0,
+            cap: Cap::Round,
             color: [0.8, 0.2, 0.4],
             opacity: 1.0,
         };
-        let dot = stroke(Path::dot([30.5, 10.5].into()));
-        let line = stroke(Path::line([5.0, 5.0].into(), [20.0, 15.0].into()));
+        let dot = stroke(Path::dot((30.5, 10.5).into()));
+        let line = stroke(Path::line((5.0, 5.0).into(), (20.0, 15.0).into()));
         let page = Scene::empty(40, 20, Some([0.2, 0.4, 0.6]));
         svg::write(
             &Scene {

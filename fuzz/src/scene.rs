@@ -9,8 +9,9 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use strokefit::coverage::Coverage;
 use strokefit::fit::{Objective, Simd};
 use strokefit::loss::Loss;
+use strokefit::math;
 use strokefit::render::{Backdrop, Canvas, Gradients, Renderer, Softness, Strokes};
-use strokefit::scene::{Area, Mark, Path, PathPoint, Quantized, Scene, Stroke};
+use strokefit::scene::{Area, Cap, Mark, Path, PathPoint, Quantized, Scene, Stroke};
 use strokefit::verify::{self, Size};
 use strokefit::{image::Image, svg};
 
@@ -43,7 +44,7 @@ impl Source<'_> {
 
     fn mark(&mut self) -> Mark {
         let [ax, ay, bx, by, radius, red, green, blue, opacity] = [(); 9].map(|()| self.float());
-        let (a, b) = ([ax, ay].into(), [bx, by].into());
+        let (a, b) = (math::point([ax, ay]), math::point([bx, by]));
         let color = [red, green, blue];
         let path = match self.byte() % 8 {
             0 | 1 => Path::dot(a),
@@ -62,7 +63,12 @@ impl Source<'_> {
         };
         Mark::Stroke(Stroke {
             path,
-            radius,
+            radius: radius.into(),
+            cap: if self.byte().is_multiple_of(4) {
+                Cap::Butt
+            } else {
+                Cap::Round
+            },
             color,
             opacity,
         })
@@ -78,7 +84,7 @@ impl Source<'_> {
     fn path(&mut self, [start, end]: [PathPoint; 2], closed: bool) -> Path {
         let kinds = self.byte();
         let between = (0..kinds % 8).map(|i| PathPoint {
-            at: [self.float(), self.float()].into(),
+            at: math::point([self.float(), self.float()]),
             is_on: kinds >> (i + 1) & 1 == 1,
         });
         let points = [start].into_iter().chain(between).chain([end]).collect();

@@ -5,7 +5,7 @@ use std::iter;
 use numpy::{Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use strokefit::math::Point;
+use strokefit::math::{self, Point};
 use strokefit::scene::{Area, Mark, Path, PathPoint, Scene, Stroke};
 
 use crate::failure::Failure;
@@ -56,6 +56,7 @@ pub(crate) type MarkColumns<'py> = (
 
 /// The marks of `scene`, back to front.
 pub(crate) fn marks<'py>(py: Python<'py>, scene: &Scene) -> PyResult<MarkColumns<'py>> {
+    let scene = scene.clone().filled();
     let points = || scene.marks().flat_map(Mark::paths).flat_map(Path::points);
     let (mut rings, mut end) = (Vec::new(), 0);
     for mark in scene.marks() {
@@ -67,7 +68,7 @@ pub(crate) fn marks<'py>(py: Python<'py>, scene: &Scene) -> PyResult<MarkColumns
     Ok((
         places(py, points().map(|point| point.at))?,
         starts(py, scene.marks().map(Mark::points)),
-        column(py, scene.marks().map(|mark| 2.0 * mark.radius())),
+        column(py, scene.marks().map(|mark| 2.0 * mark.radius() as f32)),
         rows(py, scene.marks().map(Mark::color))?,
         column(py, scene.marks().map(Mark::opacity)),
         column(py, points().map(|point| point.is_on)),
@@ -84,7 +85,8 @@ pub(crate) fn marks<'py>(py: Python<'py>, scene: &Scene) -> PyResult<MarkColumns
 
 /// The strokes of `scene`, back to front.
 pub(crate) fn strokes<'py>(py: Python<'py>, scene: &Scene) -> PyResult<StrokeColumns<'py>> {
-    let (strokes, layers, order) = placed(scene, Mark::as_stroke);
+    let scene = scene.clone().filled();
+    let (strokes, layers, order) = placed(&scene, Mark::as_stroke);
     let strokes = || strokes.iter().copied();
     let points = || strokes().flat_map(|stroke| stroke.path.points());
     Ok((
@@ -95,7 +97,7 @@ pub(crate) fn strokes<'py>(py: Python<'py>, scene: &Scene) -> PyResult<StrokeCol
             strokes().map(|stroke: &Stroke| stroke.path.points().len()),
         ),
         column(py, strokes().map(|stroke| stroke.path.is_closed())),
-        column(py, strokes().map(|stroke| 2.0 * stroke.radius)),
+        column(py, strokes().map(|stroke| 2.0 * stroke.radius as f32)),
         rows(py, strokes().map(|stroke| stroke.color))?,
         column(py, strokes().map(|stroke| stroke.opacity)),
         PyArray1::from_vec(py, layers),
@@ -105,7 +107,8 @@ pub(crate) fn strokes<'py>(py: Python<'py>, scene: &Scene) -> PyResult<StrokeCol
 
 /// The areas of `scene`, back to front.
 pub(crate) fn areas<'py>(py: Python<'py>, scene: &Scene) -> PyResult<AreaColumns<'py>> {
-    let (areas, layers, order) = placed(scene, Mark::as_area);
+    let scene = scene.clone().filled();
+    let (areas, layers, order) = placed(&scene, Mark::as_area);
     let areas = || areas.iter().copied();
     let rings = || areas().flat_map(|area: &Area| &area.rings);
     let points = || rings().flat_map(Path::points);
@@ -164,11 +167,11 @@ pub(crate) fn flattened<'py>(
         .outer_iter()
         .zip(kinds)
         .map(|(at, &is_on)| PathPoint {
-            at: Point::new(at[0], at[1]),
+            at: math::point([at[0], at[1]]),
             is_on,
         });
     let path = Path::new(points.collect(), closed).map_err(Failure::Library)?;
-    places(on_path.py(), path.flattened(tolerance))
+    places(on_path.py(), path.flattened(tolerance.into()))
 }
 
 /// Places, n × 2.
@@ -176,7 +179,7 @@ fn places(
     py: Python<'_>,
     places: impl IntoIterator<Item = Point>,
 ) -> PyResult<Bound<'_, PyArray2<f32>>> {
-    rows(py, places.into_iter().map(|place| [place.x, place.y]))
+    rows(py, places.into_iter().map(math::xy))
 }
 
 fn column<T: Element>(py: Python<'_>, values: impl Iterator<Item = T>) -> Bound<'_, PyArray1<T>> {

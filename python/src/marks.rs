@@ -58,6 +58,7 @@ impl PackedMarks {
                 off: row.off,
                 closed: row.closed,
                 rings: row.rings,
+                form: None,
                 paint: None,
                 style: &row.style,
             });

@@ -117,7 +117,6 @@ fn hatched(scene: &Scene, hatch: Hatch, pen: Option<f32>, file: &WriteOptions) -
              enlarge the picture, or give a larger distance"
         )));
     }
-    let spacing = spacing as f32;
-    let pen = pen.unwrap_or(spacing);
+    let pen = pen.map_or(spacing, f64::from);
     Ok(machine::hatched(scene, spacing, pen, hatch.degrees)?)
 }

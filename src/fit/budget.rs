@@ -14,7 +14,7 @@ use super::result::Stop;
 use crate::image::Image;
 use crate::math::Point;
 use crate::metrics::psnr_db;
-use crate::scene::{Path, Stroke};
+use crate::scene::{Cap, Path, Stroke};
 use crate::svg;
 
 /// Bytes of a file without layers.
@@ -116,13 +116,14 @@ pub(super) fn recipe(config: &Config, base: Option<&Base>, target: &Image) -> Re
 /// Bytes of a typical stroke, to estimate how many strokes a budget of bytes allows.
 pub(super) fn typical_bytes(config: &Config, target: &Image) -> usize {
     // At two thirds of the picture no decimal is 0; and most strokes are about as short as this one.
-    let place = |share: f32, step: f32| {
-        let [x, y] = [target.width(), target.height()].map(|side| side as f32 * share);
+    let place = |share: f64, step: f64| {
+        let [x, y] = [target.width(), target.height()].map(|side| side as f64 * share);
         Point::new(x + step, y - step)
     };
     let stroke = Stroke {
         path: Path::line(place(2.0 / 3.0, 0.0), place(2.0 / 3.0, 10.0 / 3.0)),
         radius: 5.0 / 3.0,
+        cap: Cap::Round,
         color: [1.0 / 3.0; 3].map(|c: f32| c + 0.01),
         opacity: if config.opaque { 1.0 } else { 2.0 / 3.0 },
     };

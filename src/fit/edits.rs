@@ -57,6 +57,7 @@ impl Change {
             Self::Path { points, off, .. } => Some(StrokeRef {
                 points,
                 off,
+                form: None,
                 ..path
             }),
         }
@@ -333,6 +334,7 @@ fn push_with_paths(strokes: &mut Strokes, stroke: StrokeRef<'_>, changes: &[&Cha
         points: &all_points,
         off: &all_off,
         rings: if stroke.is_area() { &rings } else { &[] },
+        form: None,
         ..stroke
     });
 }

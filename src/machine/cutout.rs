@@ -2,7 +2,7 @@
 
 use super::visible;
 use crate::error::Result;
-use crate::scene::{Area, Scene, Stage};
+use crate::scene::{Scene, Stage};
 
 /// The visible parts of the scene as one area per colour. The background is one of them, if there is
 /// one; so the scene has none.
@@ -13,8 +13,6 @@ use crate::scene::{Area, Scene, Stage};
 pub fn cut_out(scene: &Scene) -> Result<Scene> {
     let areas = visible::areas(scene)?.into_iter();
     let areas = areas.filter(|area| !area.rings.is_empty());
-    // A cutter follows outlines, not the middle of a line.
-    let areas = areas.map(Area::filled);
     let cut = Scene {
         background: None,
         shade: None,

@@ -6,8 +6,11 @@
 mod arcs;
 mod file;
 
+use kurbo::{ParamCurve, PathSeg};
+
 use super::sheet::Sheet;
-use crate::scene::{Path, Piece, Shape, distinct_colors, quantum};
+use crate::math::Point;
+use crate::scene::{Path, Shape, distinct_colors, quantum};
 use arcs::Vertex;
 use file::File;
 
@@ -21,9 +24,7 @@ pub fn dxf(sheet: &Sheet<'_>) -> String {
     let mut file = File::new(page, &colors);
     for mark in sheet.scene.marks() {
         let layer = file::layer(mark.color().map(quantum));
-        let band = mark.band();
-        let middle = band.as_ref().map(|band| std::slice::from_ref(&band.line));
-        for path in middle.unwrap_or(mark.paths()) {
+        for path in mark.paths() {
             push(&mut file, &layer, path, sheet);
         }
     }
@@ -34,29 +35,34 @@ pub fn dxf(sheet: &Sheet<'_>) -> String {
 fn push(file: &mut File, layer: &str, path: &Path, sheet: &Sheet<'_>) {
     let height = f64::from(sheet.scene.height);
     // Its y axis goes up.
-    let at =
-        |p: crate::math::Point| [f64::from(p.x), height - f64::from(p.y)].map(|px| px * sheet.mm());
+    let at = |p: Point| [p.x, height - p.y].map(|px| px * sheet.mm());
     if let [dot] = path.points() {
         return file.point(layer, at(dot.at));
     }
-    if let Some(Shape::Circle { center, radius }) = Shape::of(path) {
-        return file.circle(layer, at(center), f64::from(radius) * sheet.mm());
+    if let Some(Shape::Circle { center, radius }) = path.shape() {
+        return file.circle(layer, at(center), radius * sheet.mm());
     }
-    let mut pieces = path.pieces();
-    if let (Some(Piece::Line([a, b])), None) = (pieces.next(), pieces.next()) {
-        return file.line(layer, at(a), at(b));
+    let segments: Vec<PathSeg> = path.segments().collect();
+    if let [PathSeg::Line(line)] = segments[..] {
+        return file.line(layer, at(line.p0), at(line.p1));
     }
     let mut vertices: Vec<Vertex> = Vec::new();
     let mut end = None;
-    for piece in path.pieces() {
-        match piece {
-            Piece::Line([a, _]) => vertices.push(Vertex {
-                at: at(a),
+    for segment in segments {
+        match segment {
+            PathSeg::Quad(curve) => {
+                arcs::push(
+                    &mut vertices,
+                    [curve.p0, curve.p1, curve.p2].map(at),
+                    TOLERANCE,
+                );
+            }
+            _ => vertices.push(Vertex {
+                at: at(segment.start()),
                 bulge: 0.0,
             }),
-            Piece::Curve(points) => arcs::push(&mut vertices, points.map(at), TOLERANCE),
         }
-        end = Some(at(piece.end()));
+        end = Some(at(segment.end()));
     }
     if !path.is_closed() {
         vertices.extend(end.map(|at| Vertex { at, bulge: 0.0 }));

@@ -3,11 +3,11 @@
 use super::visible;
 use crate::error::{Error, ErrorKind, Result};
 use crate::math::{self, Point};
-use crate::scene::{Area, Mark, Path, Scene, Stage, Stroke, color, quantum};
+use crate::scene::{Area, Cap, Mark, Path, Scene, Stage, Stroke, color, quantum};
 use crate::svg::Length;
 
 /// Farthest that the chords of a border are from its curves, px.
-const TOLERANCE: f32 = 0.02;
+const TOLERANCE: f64 = 0.02;
 
 /// Lines that fill areas.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,7 +44,8 @@ impl std::str::FromStr for Hatch {
 ///
 /// # Errors
 /// As [`cut_out`](super::cut_out).
-pub fn hatched(scene: &Scene, spacing: f32, pen: f32, degrees: f64) -> Result<Scene> {
+pub fn hatched(scene: &Scene, spacing: f64, pen: f64, degrees: f64) -> Result<Scene> {
+    let scene = &scene.clone().filled();
     let paper = scene.background.map(|c| c.map(quantum));
     let mut stages = Vec::new();
     for area in areas(scene)? {
@@ -94,13 +95,13 @@ fn areas(scene: &Scene) -> Result<Vec<Area>> {
 
 /// Distances of the pen from the border, in units of its radius. What the pen does not reach at one of them, because that is
 /// thinner than the pen, is drawn at the next. The steps are a guess.
-const DISTANCES: [f32; 5] = [1.0, 0.7, 0.45, 0.25, 0.1];
+const DISTANCES: [f64; 5] = [1.0, 0.7, 0.45, 0.25, 0.1];
 
 /// Smaller pieces that the pen does not reach are left out, in units of its width squared. They lie in corners. A guess.
 const SMALLEST: f64 = 0.4;
 
 /// The lines that fill an area.
-fn filled(area: &Area, spacing: f32, pen: f32, degrees: f64) -> Result<Vec<Stroke>> {
+fn filled(area: &Area, spacing: f64, pen: f64, degrees: f64) -> Result<Vec<Stroke>> {
     let radius = pen / 2.0;
     let mut paths = Vec::new();
     let mut rest = area.rings.clone();
@@ -111,7 +112,7 @@ fn filled(area: &Area, spacing: f32, pen: f32, degrees: f64) -> Result<Vec<Strok
             paths.extend(lines(&inner, spacing, degrees));
         }
         rest = visible::around(&rest, &inner, radius)?;
-        rest.retain(|ring| visible::enclosed(ring) > SMALLEST * f64::from(pen * pen));
+        rest.retain(|ring| visible::enclosed(ring) > SMALLEST * pen * pen);
         if rest.is_empty() {
             break;
         }
@@ -119,6 +120,7 @@ fn filled(area: &Area, spacing: f32, pen: f32, degrees: f64) -> Result<Vec<Strok
     let stroke = |path| Stroke {
         path,
         radius,
+        cap: Cap::Round,
         color: area.color,
         opacity: 1.0,
     };
@@ -126,12 +128,11 @@ fn filled(area: &Area, spacing: f32, pen: f32, degrees: f64) -> Result<Vec<Strok
 }
 
 /// Straight lines at an angle within rings.
-fn lines(rings: &[Path], spacing: f32, degrees: f64) -> Vec<Path> {
+fn lines(rings: &[Path], spacing: f64, degrees: f64) -> Vec<Path> {
     let (sin, cos) = math::sin_cos(-degrees.to_radians());
-    let (sin, cos) = (sin as f32, cos as f32);
     let turned = |p: Point| [p.x * cos + p.y * sin, p.y * cos - p.x * sin];
-    let back = |[u, v]: [f32; 2]| Point::new(u * cos - v * sin, u * sin + v * cos);
-    let sides: Vec<[[f32; 2]; 2]> = rings
+    let back = |[u, v]: [f64; 2]| Point::new(u * cos - v * sin, u * sin + v * cos);
+    let sides: Vec<[[f64; 2]; 2]> = rings
         .iter()
         .flat_map(|ring| {
             let corners = ring.flattened(TOLERANCE);
@@ -144,8 +145,8 @@ fn lines(rings: &[Path], spacing: f32, degrees: f64) -> Vec<Path> {
         .collect();
     let ends = || sides.iter().flatten().map(|p| p[1]);
     let (low, high) = (
-        ends().fold(f32::INFINITY, f32::min),
-        ends().fold(f32::NEG_INFINITY, f32::max),
+        ends().fold(f64::INFINITY, f64::min),
+        ends().fold(f64::NEG_INFINITY, f64::max),
     );
     let mut found = Vec::new();
     // The lines of all areas are multiples of the distance, so that those of neighbours meet.
@@ -156,9 +157,9 @@ fn lines(rings: &[Path], spacing: f32, degrees: f64) -> Vec<Path> {
         0
     };
     for row in 0..rows {
-        let v = (first + row as f32) * spacing;
+        let v = (first + row as f64) * spacing;
         let mut cuts = cuts(&sides, v);
-        cuts.sort_by(f32::total_cmp);
+        cuts.sort_by(f64::total_cmp);
         let pairs = cuts.as_chunks::<2>().0.iter();
         let mut lines: Vec<_> = pairs
             .filter(|[from, to]| to - from > TOLERANCE)
@@ -177,8 +178,8 @@ fn lines(rings: &[Path], spacing: f32, degrees: f64) -> Vec<Path> {
 }
 
 /// Where sides cross the row at `v`.
-fn cuts(sides: &[[[f32; 2]; 2]], v: f32) -> Vec<f32> {
-    let crossing = |[a, b]: &&[[f32; 2]; 2]| (a[1] <= v) != (b[1] <= v);
-    let at = |[a, b]: &[[f32; 2]; 2]| a[0] + (v - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
+fn cuts(sides: &[[[f64; 2]; 2]], v: f64) -> Vec<f64> {
+    let crossing = |[a, b]: &&[[f64; 2]; 2]| (a[1] <= v) != (b[1] <= v);
+    let at = |[a, b]: &[[f64; 2]; 2]| a[0] + (v - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
     sides.iter().filter(crossing).map(at).collect()
 }

@@ -1,7 +1,7 @@
 //! Drawings for machines and print: cut-outs and hatching, which are drawings again, and files in PDF and DXF.
 //!
 //! ```text
-//! bezier    paths of the two kinds, ours and kurbo's
+//! bezier    paths that a sweep found
 //! visible   marks → the places where each colour is seen
 //! cutout    areas that do not overlap
 //! hatch     areas → pen lines
@@ -30,15 +30,11 @@ pub use pdf::pdf;
 pub use sheet::Sheet;
 
 use crate::outline;
-use crate::scene::{Mark, Scene, Stage};
+use crate::scene::{Scene, Stage};
 
 /// The scene with the outline of each stroke in its place.
 pub fn outlined(scene: &Scene) -> Scene {
-    let around = |mark: &Mark| match mark {
-        Mark::Stroke(stroke) => outline::area(stroke),
-        Mark::Area(area) => area.clone().filled(),
-    };
-    let stage = |stage: &Stage| stage.marks.iter().map(around).collect();
+    let stage = |stage: &Stage| stage.marks.iter().map(outline::of_mark).collect();
     Scene {
         stages: scene.stages.iter().map(stage).collect(),
         background: scene.background,

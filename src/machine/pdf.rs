@@ -3,16 +3,16 @@
 
 use std::collections::BTreeSet;
 
+use kurbo::{ParamCurve, PathSeg};
 use pdf_writer::types::{FunctionShadingType, LineCapStyle, LineJoinStyle, MaskType};
 use pdf_writer::writers::{ExtGraphicsState, Resources};
 use pdf_writer::{Content, Dict, Filter, Finish, Name, Pdf, Rect, Ref, Settings, TextStr};
 
 use super::sheet::Sheet;
+use crate::math::{self, Point};
 use crate::render;
 use crate::report::deflated;
-use crate::scene::{
-    Mark, Path, Piece, Rgb, Shade, Shadow, UNITS_PER_PX, WrittenAxis, WrittenStop, quantum,
-};
+use crate::scene::{Axis, Cap, Mark, Path, Rgb, Shade, ShadeStop, Shadow, quantum};
 
 /// The bytes of a PDF of the drawing. Colours are those of the screen (`DeviceRGB`), curves are exact, and lengths are those
 /// of the page.
@@ -102,13 +102,12 @@ impl File {
 
     /// The colours of a gradient, or its opacities as greys.
     fn shading(&mut self, shade: &Shade, is_color: bool) -> Ref {
-        let value = |stop: &WrittenStop| match is_color {
-            true => channels(stop.color).to_vec(),
-            false => vec![level(stop.opacity)],
+        let value = |stop: &ShadeStop| match is_color {
+            true => channels(stop.color.map(quantum)).to_vec(),
+            false => vec![level(quantum(stop.opacity))],
         };
-        let function = self.function(&shade.stops, value);
+        let function = self.function(shade.stops(), value);
         let id = self.next.bump();
-        let px = |units: i64| units as f32 / UNITS_PER_PX as f32;
         let mut shading = self.pdf.function_shading(id);
         let space = shading.color_space();
         if is_color {
@@ -116,13 +115,13 @@ impl File {
         } else {
             space.device_gray();
         }
-        match shade.axis {
-            WrittenAxis::Linear(ends) => {
+        match shade.axis() {
+            Axis::Linear { from, to } => {
                 shading.shading_type(FunctionShadingType::Axial);
-                shading.coords(ends.map(px));
+                shading.coords([from.x, from.y, to.x, to.y].map(|px| px as f32));
             }
-            WrittenAxis::Radial(circle) => {
-                let [x, y, r] = circle.map(px);
+            Axis::Radial { center, radius } => {
+                let [x, y, r] = [center.x, center.y, radius].map(|px| px as f32);
                 shading.shading_type(FunctionShadingType::Radial);
                 shading.coords([x, y, 0.0, x, y, r]);
             }
@@ -132,8 +131,8 @@ impl File {
     }
 
     /// The values between stops, which change linearly.
-    fn function(&mut self, stops: &[WrittenStop], value: impl Fn(&WrittenStop) -> Vec<f32>) -> Ref {
-        let offset = |stop: &WrittenStop| f32::from(stop.offset) / 1000.0;
+    fn function(&mut self, stops: &[ShadeStop], value: impl Fn(&ShadeStop) -> Vec<f32>) -> Ref {
+        let offset = |stop: &ShadeStop| stop.offset;
         let first = stops.first().map(|stop| (0.0, value(stop)));
         let last = stops.last().map(|stop| (1.0, value(stop)));
         let between = stops.iter().map(|stop| (offset(stop), value(stop)));
@@ -230,19 +229,16 @@ impl File {
         content.set_parameters(Name(format!("O{opacity}").as_bytes()));
         match mark {
             Mark::Stroke(stroke) => {
-                content.set_stroke_rgb(r, g, b);
-                content.set_line_width(short(2.0 * stroke.radius));
-                push(content, &stroke.path);
-                content.stroke();
-            }
-            Mark::Area(area) if let Some(band) = area.band() => {
+                let width = short(2.0 * stroke.radius as f32);
                 content.set_stroke_rgb(r, g, b).save_state();
-                // Square ends and mitred corners, which do not reach farther than in SVG.
-                content.set_line_cap(LineCapStyle::ButtCap);
-                content.set_line_join(LineJoinStyle::MiterJoin);
-                content.set_miter_limit(4.0);
-                content.set_line_width(short(band.width));
-                push(content, &band.line);
+                if stroke.cap == Cap::Butt {
+                    // Mitred corners do not reach farther than in SVG.
+                    content.set_line_cap(LineCapStyle::ButtCap);
+                    content.set_line_join(LineJoinStyle::MiterJoin);
+                    content.set_miter_limit(4.0);
+                }
+                content.set_line_width(width);
+                push(content, &stroke.path);
                 content.stroke().restore_state();
             }
             Mark::Area(area) => {
@@ -311,23 +307,20 @@ fn name(mut resources: Dict<'_>, objects: &[(String, Ref)]) {
 fn push(content: &mut Content, path: &Path) {
     if let [dot] = path.points() {
         // A subpath of no length with round caps is a disc.
-        let [x, y] = [dot.at.x, dot.at.y].map(short);
+        let [x, y] = math::xy(dot.at).map(short);
         content.move_to(x, y).line_to(x, y);
     }
-    for (i, piece) in path.pieces().enumerate() {
+    let at = |p: Point| math::xy(p).map(short);
+    for (i, segment) in path.segments().enumerate() {
         if i == 0 {
-            let start = piece.start();
-            content.move_to(short(start.x), short(start.y));
+            let [x, y] = at(segment.start());
+            content.move_to(x, y);
         }
-        match piece {
-            Piece::Line([_, b]) => content.line_to(short(b.x), short(b.y)),
-            Piece::Curve([a, c, b]) => {
-                // A quadratic curve as a cubic one.
-                let third = |end: f32, knee: f32| short(end + (knee - end) * 2.0 / 3.0);
-                let [x1, y1] = [third(a.x, c.x), third(a.y, c.y)];
-                let [x2, y2] = [third(b.x, c.x), third(b.y, c.y)];
-                content.cubic_to(x1, y1, x2, y2, short(b.x), short(b.y))
-            }
+        let cubic = segment.to_cubic();
+        let [[x1, y1], [x2, y2], [x, y]] = [cubic.p1, cubic.p2, cubic.p3].map(at);
+        match segment {
+            PathSeg::Line(_) => content.line_to(x, y),
+            _ => content.cubic_to(x1, y1, x2, y2, x, y),
         };
     }
     if path.is_closed() {

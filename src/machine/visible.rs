@@ -13,7 +13,7 @@ use linesweeper::topology::{Topology, WindingNumber};
 use super::bezier;
 use crate::error::{Error, ErrorKind, Result};
 use crate::outline;
-use crate::scene::{Area, Mark, Path, Scene, Stroke, color, distinct_colors, quantum};
+use crate::scene::{Area, Cap, Mark, Path, Scene, Stroke, color, distinct_colors, quantum};
 
 /// Farthest that borders may be moved where outlines touch, px. Files hold a hundredth.
 const NEAR: f64 = 1e-4;
@@ -35,31 +35,31 @@ pub(super) fn areas(scene: &Scene) -> Result<Vec<Area>> {
 }
 
 /// The parts within some rings that are farther than `reach` px from these.
-pub(super) fn inset(rings: &[Path], reach: f32) -> Result<Vec<Path>> {
+pub(super) fn inset(rings: &[Path], reach: f64) -> Result<Vec<Path>> {
     without(rings, &[band(rings, reach)])
 }
 
 /// The parts within some rings that are farther than `reach` px from all within `inner` ones.
-pub(super) fn around(rings: &[Path], inner: &[Path], reach: f32) -> Result<Vec<Path>> {
+pub(super) fn around(rings: &[Path], inner: &[Path], reach: f64) -> Result<Vec<Path>> {
     without(rings, &[band(inner, reach), bezier(inner)])
 }
 
 /// All places within `reach` px of the rings.
-fn band(rings: &[Path], reach: f32) -> BezPath {
+fn band(rings: &[Path], reach: f64) -> BezPath {
     let stroke = |ring: &Path| Stroke {
         path: ring.clone(),
         radius: reach,
+        cap: Cap::Round,
         color: [0.0; 3],
         opacity: 1.0,
     };
-    let outlines = rings.iter().map(|ring| outline::area(&stroke(ring)).rings);
+    let outlines = rings.iter();
+    let outlines = outlines.map(|ring| outline::of_mark(&stroke(ring).into()).rings);
     bezier(&outlines.flatten().collect::<Vec<_>>())
 }
 
 fn bezier(rings: &[Path]) -> BezPath {
-    let mut path = BezPath::new();
-    rings.iter().for_each(|ring| bezier::push(&mut path, ring));
-    path
+    rings.iter().flat_map(Path::bezier).collect()
 }
 
 /// The parts within some rings that are within none of the others.
@@ -91,11 +91,10 @@ fn outlines(scene: &Scene) -> Result<Vec<([u8; 3], BezPath)>> {
             let message = "translucent marks show two colours at a place, which cannot be cut out: draw with --opaque";
             return Err(Error::new(ErrorKind::Config, message));
         }
-        let path = match mark {
-            Mark::Stroke(stroke) => bezier(&outline::area(stroke).rings),
-            Mark::Area(area) => bezier(&area.rings),
-        };
-        Ok((mark.color().map(quantum), path))
+        Ok((
+            mark.color().map(quantum),
+            bezier(&outline::of_mark(mark).rings),
+        ))
     };
     let marks = scene.marks().map(outline);
     background.map(Ok).into_iter().chain(marks).collect()

@@ -3,11 +3,11 @@
 /// A place near `start` where `cost` is least, by steps along each number in turn that are halved where none is an
 /// improvement.
 pub(crate) fn search<const N: usize>(
-    start: [f32; N],
-    mut step: f32,
-    finest: f32,
-    cost: impl Fn([f32; N]) -> f64,
-) -> [f32; N] {
+    start: [f64; N],
+    mut step: f64,
+    finest: f64,
+    cost: impl Fn([f64; N]) -> f64,
+) -> [f64; N] {
     let (mut best, mut least) = (start, cost(start));
     while step >= finest {
         let mut improved = false;

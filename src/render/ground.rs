@@ -6,7 +6,7 @@ mod fill;
 pub use blur::{Plane, blurred};
 pub use fill::filled;
 
-use crate::math::Vector;
+use crate::math::Vec2;
 use crate::scene::{Rgb, Scene, Shadow};
 
 /// The shade and the shadows of `scene` on its background or, where it has none, on `behind`: three planes, row by row.
@@ -39,12 +39,12 @@ pub fn coverage(shadow: &Shadow, width: usize, height: usize) -> Vec<f32> {
     let origin = low.map(|at| at.max(-reach));
     let end = [0, 1].map(|axis: usize| high[axis].min(page[axis] + reach));
     let size = [0, 1].map(|axis| (end[axis] - origin[axis]).max(0) as usize);
-    let shift = Vector::new(-(origin[0] as f32), -(origin[1] as f32));
+    let shift = Vec2::new(-(origin[0] as f64), -(origin[1] as f64));
     let rings = shadow
         .area()
         .rings
         .iter()
-        .map(|ring| ring.clone().map(|p| p + shift));
+        .map(|ring| ring.clone().moved(shift));
     let sharp = filled(rings, size);
     let soft = blurred(sharp, shadow.blur());
     let mut covered = vec![0.0; width * height];
@@ -70,12 +70,12 @@ mod tests {
 
     fn shadow(blur: f32) -> Shadow {
         let shape = Shape::Rect {
-            low: [20.0, 14.5].into(),
-            high: [90.0, 61.0].into(),
+            low: (20.0, 14.5).into(),
+            high: (90.0, 61.0).into(),
             radius: 12.0,
         };
         let area = Area {
-            rings: vec![shape.ring()],
+            rings: vec![shape.path()],
             color: [0.1, 0.2, 0.3],
             opacity: 0.6,
             shade: None,

@@ -87,7 +87,8 @@ pub use grid::{BlockRgb, Canvas, Grid, Lanes, Run, TILE, TileRgb};
 pub use ground::{Plane, blurred, coverage, filled, ground};
 pub use paint::Paint;
 pub use strokes::{
-    AX, AY, BX, BY, OPACITY, PARAMS, Params, RADIUS, RED, STYLE, StrokeMut, StrokeRef, Strokes,
+    AX, AY, BX, BY, Form, OPACITY, PARAMS, Params, RADIUS, RED, STYLE, StrokeMut, StrokeRef,
+    Strokes,
 };
 
 use crate::coverage::Coverage;

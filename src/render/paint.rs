@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::math::Point;
+use crate::math;
 use crate::scene::{Axis, Rgb, Shade, ShadeStop};
 
 /// The gradient of an area, in a picture of any resolution.
@@ -16,8 +16,9 @@ pub struct Paint {
 
 impl Paint {
     /// Colour and opacity at a place in px of the area's numbers.
-    pub fn at(&self, [x, y]: [f32; 2]) -> (Rgb, f32) {
-        self.shade.at(Point::new(x / self.scale, y / self.scale))
+    pub fn at(&self, at: [f32; 2]) -> (Rgb, f32) {
+        let at = math::point(at).to_vec2() / f64::from(self.scale);
+        self.shade.at(at.to_point())
     }
 }
 
@@ -54,25 +55,26 @@ impl Ink {
     const SHORTEST: f32 = 1e-5;
 
     pub(super) fn of(Paint { shade, scale }: &Paint) -> Self {
+        let scale = f64::from(*scale);
         let axis = match shade.axis() {
             Axis::Linear { from, to } => {
                 let along = to - from;
-                let per_px = along / along.norm_squared();
+                let per_px = along / along.hypot2();
                 InkAxis::Linear {
-                    start: -(per_px.x * from.x + per_px.y * from.y),
-                    slope: [per_px.x / scale, per_px.y / scale],
+                    start: -per_px.dot(from.to_vec2()) as f32,
+                    slope: math::xy((per_px / scale).to_point()),
                 }
             }
             Axis::Radial { center, radius } => InkAxis::Radial {
-                center: [center.x * scale, center.y * scale],
-                slope: 1.0 / (radius * scale),
+                center: math::xy((center.to_vec2() * scale).to_point()),
+                slope: (1.0 / (radius * scale)) as f32,
             },
         };
         let value = |stop: &ShadeStop| {
             let [red, green, blue] = stop.color;
             [red, green, blue, stop.opacity]
         };
-        let stops: Vec<ShadeStop> = shade.stops().collect();
+        let stops = shade.stops();
         let ramp = |pair: &[ShadeStop]| {
             let [before, after] = [value(&pair[0]), value(&pair[1])];
             Ramp {

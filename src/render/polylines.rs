@@ -415,6 +415,7 @@ mod tests {
                     off: &off,
                     closed,
                     rings: &[],
+                    form: None,
                     paint: None,
                     style: &[1.0, 1.0, 1.0, 1.0, [0.2, 0.6, 1.0][kinds as usize % 3]],
                 });
@@ -488,6 +489,7 @@ mod tests {
                 off: &[false, true, false],
                 closed: false,
                 rings: &[],
+                form: None,
                 paint: None,
                 style: &[1.0, 1.0, 1.0, 1.0, opacity],
             };

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::paint::Paint;
-use crate::math::{self, Point};
-use crate::scene::{Area, Mark, Path, PathPoint, Rgb, Stroke};
+use crate::math;
+use crate::scene::{Area, Band, Cap, Mark, Path, PathPoint, Rgb, ShapeKind, Stroke};
 
 /// Numbers of a capsule, in the order of the constants below.
 pub const PARAMS: usize = 9;
@@ -78,6 +78,16 @@ struct Outline {
     /// The index after its paint, or after the last one before it.
     paints_end: u32,
     closed: bool,
+    form: Option<Form>,
+}
+
+/// Numbers that all points of a mark follow from, where they are no path like any other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Form {
+    /// The sides and radii of a shape, which is the only path.
+    Shape(ShapeKind),
+    /// The line and the width of a stroke with square ends, whose outline is rings to be filled.
+    Band,
 }
 
 /// One of [`Strokes`].
@@ -91,6 +101,8 @@ pub struct StrokeRef<'a> {
     pub closed: bool,
     /// For an area, the index behind the last point of each of its rings; none for a stroke.
     pub rings: &'a [u32],
+    /// Numbers that all points follow from.
+    pub form: Option<Form>,
     /// Radius, red, green, blue, opacity. The radius of an area is 0.
     pub style: &'a [f32; STYLE],
     /// The gradient that an area is filled with instead of its colour.
@@ -178,10 +190,28 @@ impl<'a> StrokeRef<'a> {
         self.style.iter().fold(points, zero) == 0.0
     }
 
+    /// The band whose rings the points are, if they are such.
+    pub fn band(&self) -> Option<Band> {
+        let is_closed = self.rings.len() > 1;
+        let near = || Band::near(self.points, self.off, is_closed);
+        (self.form == Some(Form::Band)).then(near)?
+    }
+
     /// The stroke or area as a part of a scene.
     pub fn to_mark(&self) -> Mark {
         if !self.is_area() {
             return self.to_stroke().into();
+        }
+        if let Some(band) = self.band() {
+            let (path, radius) = (band.line, 0.5 * band.width);
+            let stroke = Stroke {
+                path,
+                radius,
+                cap: Cap::Butt,
+                color: self.color(),
+                opacity: self.opacity(),
+            };
+            return stroke.into();
         }
         let area = Area {
             rings: self.paths().map(|(_, ring)| ring.to_path()).collect(),
@@ -196,16 +226,22 @@ impl<'a> StrokeRef<'a> {
     pub fn to_stroke(&self) -> Stroke {
         Stroke {
             path: self.to_path(),
-            radius: self.radius(),
+            radius: self.radius().into(),
+            cap: Cap::Round,
             color: self.color(),
             opacity: self.opacity(),
         }
     }
 
     fn to_path(self) -> Path {
+        if let Some(Form::Shape(kind)) = self.form
+            && let Some(shape) = kind.nearest(self.points)
+        {
+            return shape.path();
+        }
         let points = self.points.iter().zip(self.off);
-        let points = points.map(|(&[x, y], &is_off)| PathPoint {
-            at: Point::new(x, y),
+        let points = points.map(|(&at, &is_off)| PathPoint {
+            at: math::point(at),
             is_on: !is_off,
         });
         Path::of_points(points.collect(), self.closed)
@@ -289,6 +325,7 @@ impl Strokes {
             rings_end,
             paints_end,
             closed,
+            form,
         } = self.outlines[i];
         let (points, style) = self.numbers[self.range(i)]
             .split_last_chunk()
@@ -298,6 +335,7 @@ impl Strokes {
             off: &self.off[self.first_point(i)..end as usize],
             closed,
             rings: &self.rings[self.first_ring(i)..rings_end as usize],
+            form,
             style,
             paint: self.paints[self.first_paint(i)..paints_end as usize].first(),
         }
@@ -354,6 +392,7 @@ impl Strokes {
             rings_end: self.rings.len() as u32,
             paints_end: self.paints.len() as u32,
             closed: stroke.closed,
+            form: stroke.form,
         });
     }
 
@@ -365,6 +404,7 @@ impl Strokes {
                 off: &[false; 2],
                 closed: false,
                 rings: &[],
+                form: None,
                 style,
                 paint: None,
             });
@@ -373,42 +413,54 @@ impl Strokes {
 
     /// Adds a stroke of a scene on top.
     pub fn push_stroke(&mut self, stroke: &Stroke) {
-        let style = (stroke.radius, stroke.color, stroke.opacity);
-        self.push_paths(std::slice::from_ref(&stroke.path), &[], style, None);
+        self.push_mark(&Mark::Stroke(stroke.clone()));
     }
 
     /// Adds a stroke or an area of a scene on top.
     pub fn push_mark(&mut self, mark: &Mark) {
+        let form = mark.shape().map(|shape| Form::Shape(shape.kind()));
         match mark {
-            Mark::Stroke(stroke) => self.push_stroke(stroke),
-            Mark::Area(area) => {
-                let ends = area.rings.iter().scan(0, |end, ring| {
-                    *end += ring.points().len() as u32;
-                    Some(*end)
-                });
-                let ends: Vec<u32> = ends.collect();
-                let paint = area.shade.clone().map(|shade| Paint { shade, scale: 1.0 });
-                let style = (0.0, area.color, area.opacity);
-                self.push_paths(&area.rings, &ends, style, paint.as_ref());
+            Mark::Stroke(stroke) if stroke.cap == Cap::Butt => {
+                if let Mark::Area(rings) = mark.clone().filled() {
+                    self.push_area(&rings, Some(Form::Band));
+                }
             }
+            Mark::Stroke(stroke) => {
+                let style = (stroke.radius as f32, stroke.color, stroke.opacity);
+                self.push_paths(mark.paths(), &[], form, style, None);
+            }
+            Mark::Area(area) => self.push_area(area, form),
         }
+    }
+
+    fn push_area(&mut self, area: &Area, form: Option<Form>) {
+        let ends = area.rings.iter().scan(0, |end, ring| {
+            *end += ring.points().len() as u32;
+            Some(*end)
+        });
+        let ends: Vec<u32> = ends.collect();
+        let paint = area.shade.clone().map(|shade| Paint { shade, scale: 1.0 });
+        let style = (0.0, area.color, area.opacity);
+        self.push_paths(&area.rings, &ends, form, style, paint.as_ref());
     }
 
     fn push_paths(
         &mut self,
         paths: &[Path],
         rings: &[u32],
+        form: Option<Form>,
         (radius, [red, green, blue], opacity): (f32, Rgb, f32),
         paint: Option<&Paint>,
     ) {
         let points = || paths.iter().flat_map(Path::points);
-        let places: Vec<[f32; 2]> = points().map(|p| [p.at.x, p.at.y]).collect();
+        let places: Vec<[f32; 2]> = points().map(|p| math::xy(p.at)).collect();
         let off: Vec<bool> = points().map(|p| !p.is_on).collect();
         self.push(StrokeRef {
             points: &places,
             off: &off,
             closed: paths.first().is_some_and(Path::is_closed),
             rings,
+            form,
             style: &[radius, red, green, blue, opacity],
             paint,
         });

@@ -137,7 +137,7 @@ impl FitReport {
                 ..Input::new(run.input, &fit.target)
             },
             strokes,
-            areas: fit.scene.filled().count(),
+            areas: fit.scene.areas().count(),
             points: fit.scene.points(),
             dropped: fit.dropped.total(),
             dropped_for: fit.dropped,

@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use crate::scene::{Axis, Mark, Path, PathPoint, Rgb, Scene, Shade, ShadeStop, Shadow};
+use crate::math;
+use crate::scene::{Mark, Path, PathPoint, Rgb, Scene, Shade, ShadeStop, Shadow};
 
 /// A scene in numbers and colours that a page can hand to a canvas.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -57,33 +58,32 @@ impl From<&Scene> for SceneRecord {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ShadeRecord {
     /// x1, y1, x2, y2 of a linear gradient, or the centre and the radius of a radial one, px.
-    pub axis: Vec<f32>,
+    pub axis: Vec<f64>,
     /// Offsets and colours `rgb(r g b / a)`.
     pub stops: Vec<(f32, String)>,
 }
 
 impl From<&Shade> for ShadeRecord {
     fn from(shade: &Shade) -> Self {
-        let color = |stop: ShadeStop| {
+        let color = |stop: &ShadeStop| {
             let [r, g, b] = stop.color.map(|c| (c * 255.0).round());
             (stop.offset, format!("rgb({r} {g} {b} / {})", stop.opacity))
         };
         Self {
-            axis: match shade.axis() {
-                Axis::Linear { from, to } => vec![from.x, from.y, to.x, to.y],
-                Axis::Radial { center, radius } => vec![center.x, center.y, radius],
-            },
-            stops: shade.stops().map(color).collect(),
+            axis: shade.axis().numbers(),
+            stops: shade.stops().iter().map(color).collect(),
         }
     }
 }
 
 impl From<&Mark> for MarkRecord {
     fn from(mark: &Mark) -> Self {
+        // A canvas has one kind of ends: what has square ones is shown as an area.
+        let mark = mark.clone().filled();
         let points = mark.paths().iter().flat_map(Path::points);
         Self(
-            points.flat_map(|p| [p.at.x, p.at.y]).collect(),
-            mark.radius(),
+            points.flat_map(|p| math::xy(p.at)).collect(),
+            mark.radius() as f32,
             css(mark.color()),
             mark.opacity(),
             mark.paths().iter().map(kinds).collect(),
@@ -112,13 +112,15 @@ fn css(color: Rgb) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Area, Stage, Stroke};
+    use crate::math::Point;
+    use crate::scene::{Area, Axis, Cap, Stage, Stroke};
 
     #[test]
     fn a_page_reads_points_radius_colour_opacity_and_kinds() {
         let stroke = Stroke {
-            path: Path::line([1.5, 2.0].into(), [3.0, 4.0].into()),
+            path: Path::line((1.5, 2.0).into(), (3.0, 4.0).into()),
             radius: 0.75,
+            cap: Cap::Round,
             color: [1.0, 0.5, 0.0],
             opacity: 0.25,
         };
@@ -134,9 +136,9 @@ mod tests {
 
     #[test]
     fn a_page_reads_the_rings_of_an_area_one_after_the_other() {
-        let ring = |points: &[([f32; 2], bool)]| {
-            let point = |&(at, is_on): &([f32; 2], bool)| PathPoint {
-                at: at.into(),
+        let ring = |points: &[([f64; 2], bool)]| {
+            let point = |&([x, y], is_on): &([f64; 2], bool)| PathPoint {
+                at: Point::new(x, y),
                 is_on,
             };
             Path::new(points.iter().map(point).collect(), true).unwrap()
@@ -156,8 +158,8 @@ mod tests {
             r##"[[0.0,0.0,8.0,0.0,4.0,6.0,3.0,1.0,4.0,5.0],0.0,"#0080ff",1.0,"ooozocz"]"##;
         assert_eq!(json(area.clone()), expected);
         let axis = Axis::Linear {
-            from: [0.0, 0.0].into(),
-            to: [8.0, 0.0].into(),
+            from: (0.0, 0.0).into(),
+            to: (8.0, 0.0).into(),
         };
         let stop = |offset| ShadeStop {
             offset,
@@ -173,7 +175,7 @@ mod tests {
     #[test]
     fn a_page_reads_the_axis_and_the_stops_of_a_shade() {
         let axis = Axis::Radial {
-            center: [4.0, 3.0].into(),
+            center: (4.0, 3.0).into(),
             radius: 2.5,
         };
         let stop = |offset, opacity| ShadeStop {

@@ -1,19 +1,14 @@
-//! Bands: areas that are lines of even width, with square ends and mitred corners.
+//! Bands: lines of even width with square ends and mitred corners, as strokes with [`Cap::Butt`] have them.
 //!
-//! A stroke is swept by a disc, so its ends and corners are round. What a pen with square ends draws is an area here, and a
-//! `<path>` with a stroke in the file, so that editors show its line and its width.
-//!
-//! Rings *are* a band if their points are those of [`Band::rings`]: each point of the line has one to either side of it. The
-//! points of an open band go along one side and back along the other one; a closed band has a ring for each side. Control
-//! points lie where the sides of the line's control polygon meet.
+//! What it covers is an area too: each point of the line has one to either side of it. The rings of an open band go along one
+//! side and back along the other one; a closed band has a ring for each side. Control points lie where the sides of the line's
+//! control polygon meet. So the points of the rings depend on those of the line, and on the width.
 
 use super::grid::MIN_WIDTH;
 use super::path::{Path, PathPoint};
 use super::polyline::{CLEAR, Turn, directions, polyline, turns};
-use super::shape::Shape;
-use super::written_path::spacing;
-use super::{Area, Mark, Stroke};
-use crate::math::Point;
+use super::{Area, Cap, Mark, Stroke};
+use crate::math::{self, Point, Vec2};
 
 /// A line of even width with square ends and mitred corners, as SVG's `stroke-linecap="butt"` and
 /// `stroke-linejoin="miter"` draw it.
@@ -22,7 +17,7 @@ pub struct Band {
     /// The middle, px.
     pub line: Path,
     /// The width, px.
-    pub width: f32,
+    pub width: f64,
 }
 
 /// SVG cuts corners off that reach farther than 4 half widths. This is the sum of 1 and the cosine of their turn, with
@@ -33,8 +28,8 @@ const SHARPEST: f64 = 0.13;
 const SHARPEST_CURVE: f64 = 0.5;
 
 /// A rectangle is a line, px: at most so wide, and at least so many times as long.
-const THIN_PX: f32 = 6.0;
-const SLENDER: f32 = 2.0;
+const THIN_PX: f64 = 6.0;
+const SLENDER: f64 = 2.0;
 
 impl Band {
     /// The rings of an area that looks like the band: one, or two of a closed one.
@@ -43,7 +38,7 @@ impl Band {
         let sides = sides(points, self.line.is_closed()).unwrap_or_default();
         let beside = |sign: f64| {
             let moved = points.iter().zip(&sides).map(move |(p, side)| PathPoint {
-                at: moved(p.at, side, 0.5 * sign * f64::from(self.width)),
+                at: p.at + 0.5 * sign * self.width * *side,
                 is_on: p.is_on,
             });
             moved.collect::<Vec<_>>()
@@ -56,25 +51,8 @@ impl Band {
         }
     }
 
-    /// The band that these rings are the rings of.
-    pub fn of(rings: &[Path]) -> Option<Self> {
-        if let [ring] = rings
-            && let Some(Shape::Rect { low, high, .. }) = Shape::of(ring)
-        {
-            let sides = high - low;
-            let is_line = sides.min() <= THIN_PX && sides.max() >= SLENDER * sides.min();
-            if !is_line {
-                return None;
-            }
-        }
-        let points: Vec<PathPoint> = rings.iter().flat_map(Path::points).copied().collect();
-        let band = Self::between(&points, rings)?;
-        let near = 4.0 * rings.iter().map(spacing).fold(0.0, f32::max);
-        (band.is_sound() && band.deviation(&points)? <= near).then_some(band)
-    }
-
     /// The band that these rings, those of a polygon or of a frame, are within a `tolerance` in px; a long one of several.
-    pub(crate) fn like(rings: &[Path], tolerance: f32) -> Option<Self> {
+    pub(crate) fn like(rings: &[Path], tolerance: f64) -> Option<Self> {
         let straight = |ring: &Path| polyline(ring, tolerance, 0.0).unwrap_or_else(|| ring.clone());
         let rings: &[Path] = &rings.iter().map(straight).collect::<Vec<_>>();
         let points: Vec<PathPoint> = rings.iter().flat_map(Path::points).copied().collect();
@@ -99,7 +77,8 @@ impl Band {
             .flat_map(|points| (0..points.len()).map(move |by| turned(points, by)));
         let bands = turns.filter_map(|points| {
             let band = Self::between(&points, rings)?;
-            let is_like = band.is_sound() && band.deviation(&points)? <= tolerance;
+            let is_like =
+                band.is_sound() && band.deviation(&points)? <= tolerance && !band.is_box(tolerance);
             (is_like && band.slenderness() >= LONG).then_some(band)
         });
         bands.max_by(|a, b| a.slenderness().total_cmp(&b.slenderness()))
@@ -108,9 +87,9 @@ impl Band {
     /// The band along a path, or the [`polyline`] that it is within a `tolerance` of, that goes on `beyond` its ends, px.
     pub(crate) fn along(
         path: &Path,
-        width: f32,
-        beyond: [f32; 2],
-        [tolerance, radius]: [f32; 2],
+        width: f64,
+        beyond: [f64; 2],
+        [tolerance, radius]: [f64; 2],
     ) -> Option<Self> {
         let polyline = polyline(path, tolerance, radius);
         let mut points = polyline.as_ref().unwrap_or(path).points().to_vec();
@@ -118,7 +97,8 @@ impl Band {
         if !path.is_closed() {
             for ([end, inner], px) in [[0, 1], [last, last - 1]].into_iter().zip(beyond) {
                 let (end_at, inner_at) = (points[end].at, points[inner].at);
-                let away = (end_at - inner_at).try_normalize(0.0)?;
+                let away = (end_at - inner_at).normalize();
+                let away = Some(away).filter(|away| away.is_finite())?;
                 points[end].at = end_at + away * px;
             }
         }
@@ -140,21 +120,32 @@ impl Band {
         !self.line.is_closed() || has_corner().is_some()
     }
 
-    /// The band as an area in the colour and opacity of a stroke.
-    pub(crate) fn area(&self, stroke: &Stroke) -> Area {
-        Area {
-            rings: self.rings(),
-            color: stroke.color,
-            opacity: stroke.opacity,
-            shade: None,
+    /// True if it is a rectangle rather than a line: level or upright, and wide.
+    fn is_box(&self, tolerance: f64) -> bool {
+        let [a, b] = self.line.points() else {
+            return false;
+        };
+        let way = b.at - a.at;
+        let is_along = way.x.abs().min(way.y.abs()) <= tolerance;
+        let is_line = self.width <= THIN_PX && way.hypot() >= SLENDER * self.width;
+        is_along && !is_line
+    }
+
+    /// The stroke with square ends in the colour and opacity of another one.
+    pub(crate) fn stroke(self, like: &Stroke) -> Stroke {
+        Stroke {
+            path: self.line,
+            radius: 0.5 * self.width,
+            cap: Cap::Butt,
+            ..like.clone()
         }
     }
 
     /// Length of the line in widths.
-    pub(crate) fn slenderness(&self) -> f32 {
+    pub(crate) fn slenderness(&self) -> f64 {
         let line = self.line.flattened(0.1);
-        let lengths = line.windows(2).map(|ends| (ends[1] - ends[0]).norm());
-        lengths.sum::<f32>() / self.width
+        let lengths = line.windows(2).map(|ends| (ends[1] - ends[0]).hypot());
+        lengths.sum::<f64>() / self.width
     }
 
     /// True if SVG draws the band as its rings.
@@ -163,7 +154,7 @@ impl Band {
         let Some(turns) = turns(points, is_closed) else {
             return false;
         };
-        let half = 0.5 * f64::from(self.width);
+        let half = 0.5 * self.width;
         let count = points.len();
         let is_turn = |(p, turn): (&PathPoint, &Turn)| match p.is_on {
             true => 1.0 + turn.cosine >= SHARPEST,
@@ -172,37 +163,33 @@ impl Band {
         // Both corners of a leg have room for their inner sides.
         let has_room = |i: usize| {
             let (a, b) = (i, (i + 1) % count);
-            let length = f64::from((points[b].at - points[a].at).norm());
+            let length = (points[b].at - points[a].at).hypot();
             half * (turns[a].tangent + turns[b].tangent) <= length
         };
         let legs = if is_closed { count } else { count - 1 };
-        let length = |i: usize| (points[(i + 1) % count].at - points[i].at).norm();
-        f64::from(self.width) >= MIN_WIDTH
-            && (0..legs).map(length).sum::<f32>() >= self.width
+        let length = |i: usize| (points[(i + 1) % count].at - points[i].at).hypot();
+        self.width >= MIN_WIDTH
+            && (0..legs).map(length).sum::<f64>() >= self.width
             && self.width.is_finite()
             && points.iter().zip(&turns).all(is_turn)
             && (0..legs).all(has_room)
     }
 
-    /// The band near to the points of this band's rings, each a little beside its place.
-    pub(crate) fn near(&self, places: &[[f32; 2]]) -> Option<Self> {
-        let flags = self.line.points().iter().map(|p| p.is_on);
-        let flags = flags.clone().chain(flags.rev());
-        let points = places.iter().zip(flags).map(|(&at, is_on)| PathPoint {
-            at: at.into(),
-            is_on,
+    /// The band whose rings have points near to these, which are on or off its line as `off` says.
+    pub(crate) fn near(places: &[[f32; 2]], off: &[bool], is_closed: bool) -> Option<Self> {
+        let points = places.iter().zip(off).map(|(&at, is_off)| PathPoint {
+            at: math::point(at),
+            is_on: !is_off,
         });
-        between(&points.collect::<Vec<_>>(), self.line.is_closed())
+        between(&points.collect::<Vec<_>>(), is_closed)
     }
 
     /// Moves points to those of the rings.
     pub(crate) fn put(&self, places: &mut [[f32; 2]]) {
         let rings = self.rings();
         let points = rings.iter().flat_map(Path::points);
-        places
-            .iter_mut()
-            .zip(points)
-            .for_each(|(place, point)| *place = point.at.into());
+        let pairs = places.iter_mut().zip(points);
+        pairs.for_each(|(place, point)| *place = math::xy(point.at));
     }
 
     /// Leaves of a change of these points the part that keeps the band: the change of its line and of its width.
@@ -211,16 +198,14 @@ impl Band {
             return;
         };
         let half = sides.len();
-        let pair = |change: &[[f32; 2]], i: usize| [change[i], change[2 * half - 1 - i]];
+        let pair =
+            |change: &[[f32; 2]], i: usize| [i, 2 * half - 1 - i].map(|k| math::point(change[k]));
         let width = width(&sides, |i| pair(change, i));
-        for (i, side) in sides.iter().enumerate() {
+        for (i, &side) in sides.iter().enumerate() {
             let [a, b] = pair(change, i);
-            for axis in 0..2 {
-                let middle = 0.5 * (a[axis] + b[axis]);
-                let away = (0.5 * width * side[axis]) as f32;
-                change[i][axis] = middle + away;
-                change[2 * half - 1 - i][axis] = middle - away;
-            }
+            let (middle, away) = (a.midpoint(b), 0.5 * width * side);
+            change[i] = math::xy(middle + away);
+            change[2 * half - 1 - i] = math::xy(middle - away);
         }
     }
 
@@ -245,39 +230,39 @@ impl Band {
     }
 
     /// Farthest that one of these points is from its place, px.
-    fn deviation(&self, points: &[PathPoint]) -> Option<f32> {
+    fn deviation(&self, points: &[PathPoint]) -> Option<f64> {
         let rings = self.rings();
         let own = rings.iter().flat_map(Path::points);
-        let away = own.zip(points).map(|(a, b)| (a.at - b.at).amax());
-        away.max_by(f32::total_cmp)
+        let away = own.zip(points).map(|(a, b)| a.at - b.at);
+        let away = away.map(|by| by.x.abs().max(by.y.abs()));
+        away.max_by(f64::total_cmp)
+    }
+}
+
+impl Stroke {
+    /// The line with square ends that it is, if it is one.
+    pub(crate) fn band(&self) -> Option<Band> {
+        let band = || Band {
+            line: self.path.clone(),
+            width: 2.0 * self.radius,
+        };
+        (self.cap == Cap::Butt).then(band)
     }
 }
 
 impl Mark {
-    /// The band that it is, if it is an area that is one.
-    pub fn band(&self) -> Option<Band> {
-        self.as_area()?.band()
-    }
-}
-
-impl Area {
-    /// The band that it is, so that its file draws it as a stroke.
-    pub fn band(&self) -> Option<Band> {
-        self.shade.is_none().then(|| Band::of(&self.rings))?
-    }
-
-    /// The area with its rings turned if it is a band, so that it looks the same and is none.
+    /// This mark, as the area that looks like it if it is a stroke with square ends.
     #[must_use]
-    pub(crate) fn filled(mut self) -> Self {
-        if self.band().is_none() {
-            return self;
+    pub fn filled(self) -> Self {
+        match self.as_stroke().and_then(Stroke::band) {
+            Some(band) => Self::Area(Area {
+                rings: band.rings(),
+                color: self.color(),
+                opacity: self.opacity(),
+                shade: None,
+            }),
+            None => self,
         }
-        let reversed = |ring: &Path| {
-            let points = ring.points().iter().rev().copied();
-            Path::of_points(points.collect(), true)
-        };
-        self.rings = self.rings.iter().map(reversed).collect();
-        self
     }
 }
 
@@ -285,14 +270,14 @@ impl Area {
 const MOST_POINTS: usize = 64;
 
 /// An area is a band if it is at least so many times as long as wide.
-const LONG: f32 = 2.5;
+const LONG: f64 = 2.5;
 
 /// For each point of a line the way to its left side, in units of half the width; `None` if there is none, as points
 /// coincide or the line turns back.
-fn sides(points: &[PathPoint], is_closed: bool) -> Option<Vec<[f64; 2]>> {
-    let side = |[[ux, uy], [vx, vy]]: [[f64; 2]; 2]| {
-        let whole = 1.0 + ux * vx + uy * vy;
-        (whole > 0.01).then(|| [-(uy + vy) / whole, (ux + vx) / whole])
+fn sides(points: &[PathPoint], is_closed: bool) -> Option<Vec<Vec2>> {
+    let side = |[before, after]: [Vec2; 2]| {
+        let whole = 1.0 + before.dot(after);
+        (whole > 0.01).then(|| (before + after).turn_90() / whole)
     };
     directions(points, is_closed)?
         .into_iter()
@@ -300,26 +285,16 @@ fn sides(points: &[PathPoint], is_closed: bool) -> Option<Vec<[f64; 2]>> {
         .collect()
 }
 
-fn moved(p: Point, side: &[f64; 2], by: f64) -> Point {
-    let at = |px: f32, axis: usize| (f64::from(px) + by * side[axis]) as f32;
-    Point::new(at(p.x, 0), at(p.y, 1))
-}
-
 /// The line amid pairs of points, the first with the last one, and the width that suits them best.
 fn between(points: &[PathPoint], is_closed: bool) -> Option<Band> {
     let half = points.len() / 2;
     let pair = |i: usize| [points[i].at, points[points.len() - 1 - i].at];
-    let middle = |i: usize| {
-        let [a, b] = pair(i);
-        let at = |a: f32, b: f32| (0.5 * (f64::from(a) + f64::from(b))) as f32;
-        PathPoint {
-            at: Point::new(at(a.x, b.x), at(a.y, b.y)),
-            is_on: points[i].is_on,
-        }
+    let middle = |i: usize| PathPoint {
+        at: pair(i)[0].midpoint(pair(i)[1]),
+        is_on: points[i].is_on,
     };
     let line: Vec<PathPoint> = (0..half).map(middle).collect();
-    let sides = sides(&line, is_closed)?;
-    let width = width(&sides, |i| pair(i).map(<[f32; 2]>::from)) as f32;
+    let width = width(&sides(&line, is_closed)?, pair);
     (width > 0.0).then(|| Band {
         line: Path::of_points(line, is_closed),
         width,
@@ -327,14 +302,12 @@ fn between(points: &[PathPoint], is_closed: bool) -> Option<Band> {
 }
 
 /// The width for which points beside a line are nearest to pairs, by least squares.
-fn width(sides: &[[f64; 2]], pair: impl Fn(usize) -> [[f32; 2]; 2]) -> f64 {
+fn width(sides: &[Vec2], pair: impl Fn(usize) -> [Point; 2]) -> f64 {
     let (mut along, mut square) = (0.0, f64::MIN_POSITIVE);
     for (i, side) in sides.iter().enumerate() {
         let [a, b] = pair(i);
-        for axis in 0..2 {
-            along += side[axis] * (f64::from(a[axis]) - f64::from(b[axis]));
-            square += side[axis] * side[axis];
-        }
+        along += side.dot(a - b);
+        square += side.hypot2();
     }
     along / square
 }
@@ -344,9 +317,9 @@ mod tests {
     use super::*;
     use crate::math;
 
-    fn line(points: &[([f32; 2], bool)], closed: bool) -> Path {
-        let point = |&(at, is_on): &([f32; 2], bool)| PathPoint {
-            at: at.into(),
+    fn line(points: &[([f64; 2], bool)], closed: bool) -> Path {
+        let point = |&([x, y], is_on): &([f64; 2], bool)| PathPoint {
+            at: Point::new(x, y),
             is_on,
         };
         Path::new(points.iter().map(point).collect(), closed).unwrap()
@@ -379,21 +352,6 @@ mod tests {
     }
 
     #[test]
-    fn rings_are_their_band_and_moved_ones_are_none() {
-        for band in bands() {
-            let rings = band.rings();
-            let found = Band::of(&rings).unwrap();
-            let pairs = found.line.points().iter().zip(band.line.points());
-            assert!(pairs.into_iter().all(|(a, b)| (a.at - b.at).amax() < 1e-4));
-            assert!((found.width - band.width).abs() < 1e-4);
-            let mut points = rings[0].points().to_vec();
-            points[1].at.x += 0.01;
-            let moved = [vec![Path::new(points, true).unwrap()], rings[1..].to_vec()].concat();
-            assert_eq!(Band::of(&moved), None);
-        }
-    }
-
-    #[test]
     fn rings_that_begin_anywhere_and_are_a_little_off_are_like_their_band() {
         for band in bands().into_iter().filter(|band| band.width != 4.0) {
             for by in 0..3 {
@@ -412,28 +370,28 @@ mod tests {
         }
     }
 
+    /// The points of a band's rings as a descent has them.
+    fn points(band: &Band) -> (Vec<[f32; 2]>, Vec<bool>) {
+        let rings = band.rings();
+        let points = rings.iter().flat_map(Path::points);
+        points.map(|p| (math::xy(p.at), !p.is_on)).unzip()
+    }
+
     #[test]
-    fn rings_of_moved_points_are_restored_to_a_band() {
+    fn moved_points_are_those_of_a_band_near_to_it() {
         for band in bands() {
-            let rings = band.rings();
-            let points = rings.iter().flat_map(Path::points);
-            let mut places: Vec<[f32; 2]> = points.map(|p| p.at.into()).collect();
+            let (mut places, off) = points(&band);
             for (i, place) in places.iter_mut().enumerate() {
                 let (sin, cos) = math::sin_cos(2.0 * i as f32);
                 *place = [place[0] + 0.1 * sin, place[1] + 0.1 * cos];
             }
-            band.near(&places).unwrap().put(&mut places);
-            let mut rest = places.iter();
-            let restored = rings.iter().map(|ring| {
-                let points = ring.points().iter().zip(rest.by_ref());
-                let points = points.map(|(p, &at)| PathPoint {
-                    at: at.into(),
-                    ..*p
-                });
-                Path::new(points.collect(), true).unwrap()
-            });
-            let restored: Vec<Path> = restored.collect();
-            assert!(Band::of(&restored).is_some());
+            let near = Band::near(&places, &off, band.line.is_closed()).unwrap();
+            assert!((near.width - band.width).abs() < 0.2, "{near:?}");
+            near.put(&mut places);
+            let again = Band::near(&places, &off, band.line.is_closed()).unwrap();
+            let pairs = again.line.points().iter().zip(near.line.points());
+            assert!(pairs.into_iter().all(|(a, b)| (a.at - b.at).hypot() < 1e-4));
+            assert!((again.width - near.width).abs() < 1e-4);
         }
     }
 
@@ -483,9 +441,7 @@ mod tests {
             line: line(&[([10.0, 10.0], true), ([70.0, 10.0], true)], false),
             width,
         };
-        assert!(Band::of(&level(3.0).rings()).is_some());
-        assert!(Band::of(&level(9.0).rings()).is_none());
-        let rect = Shape::rect([[10.0, 8.5].into(), [70.0, 11.5].into()], 0.0);
-        assert_eq!(Band::of(&[rect.ring()]), None);
+        assert!(Band::like(&level(3.0).rings(), 0.3).is_some());
+        assert!(Band::like(&level(9.0).rings(), 0.3).is_none());
     }
 }

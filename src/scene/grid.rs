@@ -1,6 +1,9 @@
-//! The numbers that a file can hold: decimals of a px, as whole units, and channels of 8 bits.
+//! The numbers that a file can hold: decimals of a px, and channels of 8 bits.
+//!
+//! A rounded coordinate is the `f64` nearest to its decimal. [`units`] gives the decimal back exactly.
 
 use super::Rgb;
+use crate::math::Point;
 
 /// Most decimals of a coordinate or width.
 pub const MAX_PRECISION: u8 = 6;
@@ -12,48 +15,49 @@ pub(crate) const UNITS_PER_PX: i64 = 10_i64.pow(MAX_PRECISION as u32);
 /// opacity, with the wrong ink on diagonals. The excess over 1 px keeps rounding from reaching 1 px.
 pub const MIN_WIDTH: f64 = 1.02;
 
-/// The multiples of 10^−precision px, or of some steps of it.
+/// The decimal of a rounded coordinate or length, in units of 1/[`UNITS_PER_PX`] px.
+pub(crate) fn units(px: f64) -> i64 {
+    (px * UNITS_PER_PX as f64).round() as i64
+}
+
+/// The coordinate or length of so many units, px.
+pub(crate) fn px(units: i64) -> f64 {
+    units as f64 / UNITS_PER_PX as f64
+}
+
+/// The multiples of 10^−precision px.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Grid {
     /// 10^precision, at most 10^6.
-    per_px: i64,
-    /// Distance between its points, in multiples.
-    step: i64,
+    per_px: f64,
 }
 
 impl Grid {
     pub(super) fn new(precision: u8) -> Self {
+        let per_px = 10_i64.pow(precision.min(MAX_PRECISION).into());
         Self {
-            per_px: 10_i64.pow(precision.min(MAX_PRECISION).into()),
-            step: 1,
+            per_px: per_px as f64,
         }
     }
 
-    /// The grid with only each `step`th point.
-    pub(super) fn coarser(self, step: i64) -> Self {
-        Self { step, ..self }
+    /// The nearest multiple.
+    pub(super) fn round(&self, px: f64) -> f64 {
+        (px * self.per_px).round() / self.per_px
     }
 
-    /// Multiples of 10^−precision in a px.
-    pub(super) fn per_px(&self) -> f64 {
-        self.per_px as f64
+    /// The nearest point of the grid.
+    pub(super) fn point(&self, p: Point) -> Point {
+        Point::new(self.round(p.x), self.round(p.y))
     }
 
-    /// The nearest point of the grid to `px`, in units.
-    pub(super) fn units(&self, px: f64) -> i64 {
-        let steps = (px * self.per_px as f64 / self.step as f64).round();
-        steps as i64 * self.step * (UNITS_PER_PX / self.per_px)
+    /// The largest multiple of at most `px`, which is a multiple of half a step.
+    pub(super) fn below(&self, px: f64) -> f64 {
+        ((2.0 * px * self.per_px).round() / 2.0).floor() / self.per_px
     }
 
-    /// The largest multiple of at most so many units.
-    pub(super) fn below(&self, units: i64) -> i64 {
-        let unit = self.step * (UNITS_PER_PX / self.per_px);
-        units / unit * unit
-    }
-
-    /// The smallest multiple of at least `px`, in units.
-    pub(super) fn units_above(&self, px: f64) -> i64 {
-        (px * self.per_px as f64).ceil() as i64 * (UNITS_PER_PX / self.per_px)
+    /// The smallest multiple of at least `px`.
+    pub(super) fn above(&self, px: f64) -> f64 {
+        (px * self.per_px).ceil() / self.per_px
     }
 }
 

@@ -1,36 +1,38 @@
 //! Likeness: the shape that a closed path nearly is, or the part of it that is seen.
 
-use super::path::Path;
+use kurbo::Rect;
+
+use super::path::{Path, bounds};
 use super::shape::Shape;
-use crate::math::{self, Point};
+use crate::math::{self, Point, Vec2};
 
 /// Farthest that chords are from the path, and that places along it are from each other, px.
-const FLATNESS: f32 = 0.02;
-const STEP: f32 = 0.5;
+const FLATNESS: f64 = 0.02;
+const STEP: f64 = 0.5;
 
 /// By how much a shape has to be nearer for each number more than another one, px: noise makes an ellipse or a rectangle with
 /// round corners of every circle.
-const PER_NUMBER: f32 = 0.1;
+const PER_NUMBER: f64 = 0.1;
 
 /// Narrower shapes have to be nearer by more, in inverse proportion, px: few pixels tell of a dot that it has no corners.
-const SMALL: f32 = 6.0;
+const SMALL: f64 = 6.0;
 
 /// Narrowest that a shape is, in tolerances: a smaller path is near to shapes of any kind.
-const LEAST_SIDE: f32 = 4.0;
+const LEAST_SIDE: f64 = 4.0;
 
 /// Least share of a shape's outline that is seen where the rest may be anything. A guess.
-const LEAST_SEEN: f32 = 0.4;
+const LEAST_SEEN: f64 = 0.4;
 
 impl Shape {
     /// The nearest shape, if no place of this closed path is farther from it than `tolerance` px.
-    pub(crate) fn like(path: &Path, tolerance: f32) -> Option<Self> {
+    pub(crate) fn like(path: &Path, tolerance: f64) -> Option<Self> {
         let chords = path.flattened(FLATNESS);
         let moments = Moments::of(&chords)?;
         let places = places(&chords);
         let shapes = moments.shapes(&chords).into_iter();
         let near = shapes.filter_map(|(shape, more)| {
             let away = |&p: &Point| shape.distance(p).abs();
-            let away = places.iter().map(away).fold(0.0, f32::max);
+            let away = places.iter().map(away).fold(0.0, f64::max);
             // A path that goes along a part of the shape, and back, encloses less.
             let is_whole = (shape.area() - moments.area).abs() <= tolerance * moments.length;
             let side = shape.least_side();
@@ -46,7 +48,7 @@ impl Shape {
     /// farther from it than `tolerance` px. It has no round corners unless it is round.
     pub(crate) fn like_seen(
         path: &Path,
-        tolerance: f32,
+        tolerance: f64,
         is_seen: impl Fn(Point) -> bool,
     ) -> Option<Self> {
         let all = places(&path.flattened(FLATNESS));
@@ -54,7 +56,7 @@ impl Shape {
         if seen.len() == all.len() {
             return None;
         }
-        let seen_px = STEP * seen.len() as f32;
+        let seen_px = STEP * seen.len() as f64;
         let is_near = |shape: &Self| {
             let mut away = seen.iter().map(|&p| shape.distance(p).abs());
             let is_large = shape.least_side() >= LEAST_SIDE * tolerance;
@@ -69,17 +71,17 @@ impl Shape {
     }
 
     /// The lesser of width and height, px.
-    fn least_side(&self) -> f32 {
+    fn least_side(&self) -> f64 {
         match *self {
             Self::Circle { radius, .. } => 2.0 * radius,
             Self::Ellipse { radii, .. } => 2.0 * radii[0].min(radii[1]),
-            Self::Rect { low, high, .. } => (high - low).min(),
+            Self::Rect { low, high, .. } => (high - low).x.min((high - low).y),
         }
     }
 
     /// About how long the outline is, px.
-    fn length(&self) -> f32 {
-        use std::f32::consts::PI;
+    fn length(&self) -> f64 {
+        use std::f64::consts::PI;
         match *self {
             Self::Circle { radius, .. } => 2.0 * PI * radius,
             Self::Ellipse { radii, .. } => PI * (radii[0] + radii[1]),
@@ -88,31 +90,33 @@ impl Shape {
     }
 
     /// About how far a point is from the outline, px, positive outside.
-    fn distance(&self, p: Point) -> f32 {
+    fn distance(&self, p: Point) -> f64 {
         let (center, half, round) = match *self {
             Self::Circle { center, radius } => (center, [radius; 2], radius),
             Self::Rect { low, high, radius } => {
                 let half = (high - low) * 0.5;
-                (low + half, half.into(), radius)
+                (low + half, [half.x, half.y], radius)
             }
             Self::Ellipse { center, radii } => {
                 // To first order: a level of the quadratic form, over its slope.
                 let away = p - center;
-                let level = [0, 1].map(|axis| away[axis] / radii[axis]);
-                let slope = [0, 1].map(|axis| level[axis] / radii[axis]);
-                let above = level[0] * level[0] + level[1] * level[1] - 1.0;
-                return 0.5 * above / math::hypot(slope[0], slope[1]).max(f32::MIN_POSITIVE);
+                let level = Vec2::new(away.x / radii[0], away.y / radii[1]);
+                let slope = Vec2::new(level.x / radii[0], level.y / radii[1]);
+                return 0.5 * (level.hypot2() - 1.0) / slope.hypot().max(f64::MIN_POSITIVE);
             }
         };
         let away = p - center;
-        let beyond = [0, 1].map(|axis| away[axis].abs() - half[axis] + round);
-        let outside = beyond.map(|px| px.max(0.0));
-        math::hypot(outside[0], outside[1]) + beyond[0].max(beyond[1]).min(0.0) - round
+        let beyond = Vec2::new(
+            away.x.abs() - half[0] + round,
+            away.y.abs() - half[1] + round,
+        );
+        let outside = Vec2::new(beyond.x.max(0.0), beyond.y.max(0.0));
+        outside.hypot() + beyond.x.max(beyond.y).min(0.0) - round
     }
 
     /// The area inside, px².
-    fn area(&self) -> f32 {
-        use std::f32::consts::PI;
+    fn area(&self) -> f64 {
+        use std::f64::consts::PI;
         match *self {
             Self::Circle { radius, .. } => PI * radius * radius,
             Self::Ellipse { radii, .. } => PI * radii[0] * radii[1],
@@ -126,8 +130,8 @@ impl Shape {
 /// The circle through places, by least squares of `x² + y² − 2 a x − 2 b y − c`.
 fn circle_through(places: &[Point]) -> Option<Shape> {
     let (origin, [a, b, c]) = fitted(places, |x, y| ([2.0 * x, 2.0 * y, 1.0], x * x + y * y))?;
-    let radius = (c + a * a + b * b).sqrt() as f32;
-    let center = moved(origin, [a, b]);
+    let radius = (c + a * a + b * b).sqrt();
+    let center = origin + Vec2::new(a, b);
     (radius > 0.0).then_some(Shape::Circle { center, radius })
 }
 
@@ -136,23 +140,17 @@ fn ellipse_through(places: &[Point]) -> Option<Shape> {
     let row = |x: f64, y: f64| ([2.0 * x, 2.0 * y, 1.0, -y * y], x * x);
     let (origin, [a, b, c, d]) = fitted(places, row)?;
     let square = c + a * a + b * b / d;
-    let radii = [square, square / d].map(|square| square.sqrt() as f32);
-    let center = moved(origin, [a, b / d]);
+    let radii = [square, square / d].map(|square| square.sqrt());
+    let center = origin + Vec2::new(a, b / d);
     let is_solid = radii.iter().all(|&radius| radius > 0.0);
     is_solid.then_some(Shape::Ellipse { center, radii })
 }
 
 /// The rectangle around places.
 fn box_around(places: &[Point]) -> Option<Shape> {
-    let first = *places.first()?;
-    let low = places.iter().fold(first, |low, p| low.inf(p));
-    let high = places.iter().fold(first, |high, p| high.sup(p));
-    let radius = 0.0;
-    ((high - low).min() > 0.0).then_some(Shape::Rect { low, high, radius })
-}
-
-fn moved(origin: Point, by: [f64; 2]) -> Point {
-    Point::new(origin.x + by[0] as f32, origin.y + by[1] as f32)
+    let Rect { x0, y0, x1, y1 } = bounds(places.iter().copied());
+    let corners = [Point::new(x0, y0), Point::new(x1, y1)];
+    (x1 > x0 && y1 > y0).then(|| Shape::rect(corners, 0.0))
 }
 
 /// The factors of the terms of `row` that meet its value best at all places, which are given from the origin, their mean.
@@ -160,15 +158,13 @@ fn fitted<const N: usize>(
     places: &[Point],
     row: impl Fn(f64, f64) -> ([f64; N], f64),
 ) -> Option<(Point, [f64; N])> {
-    let count = places.len().max(1) as f32;
-    let sum = places
-        .iter()
-        .fold([0.0; 2], |sum, p| [sum[0] + p.x, sum[1] + p.y]);
-    let origin = Point::new(sum[0] / count, sum[1] / count);
+    let count = places.len().max(1) as f64;
+    let sum = places.iter().fold(Vec2::ZERO, |sum, p| sum + p.to_vec2());
+    let origin = (sum / count).to_point();
     let mut columns = vec![vec![0.0; N]; N];
     let mut right = vec![0.0; N];
     for p in places {
-        let (terms, value) = row((p.x - origin.x).into(), (p.y - origin.y).into());
+        let (terms, value) = row(p.x - origin.x, p.y - origin.y);
         for (i, column) in columns.iter_mut().enumerate() {
             let products = terms.iter().map(|term| term * terms[i]);
             column
@@ -185,11 +181,11 @@ fn fitted<const N: usize>(
 /// Integrals over the inside of a polygon.
 struct Moments {
     /// Area, px², and length of the outline, px.
-    area: f32,
-    length: f32,
+    area: f64,
+    length: f64,
     center: Point,
     /// Standard deviations of x and y, px.
-    spread: [f32; 2],
+    spread: [f64; 2],
 }
 
 impl Moments {
@@ -198,7 +194,7 @@ impl Moments {
         let origin = corners.first()?;
         let (mut area, mut length, mut first, mut second) = (0.0_f64, 0.0, [0.0; 2], [0.0; 2]);
         for pair in corners.windows(2) {
-            let [a, b] = [0, 1].map(|i| [0, 1].map(|k| f64::from(pair[i][k] - origin[k])));
+            let [a, b] = [0, 1].map(|i| pair[i] - *origin).map(|p| [p.x, p.y]);
             let cross = a[0] * b[1] - a[1] * b[0];
             area += cross / 2.0;
             length += math::hypot(b[0] - a[0], b[1] - a[1]);
@@ -207,9 +203,9 @@ impl Moments {
             second = [0, 1].map(|k| second[k] + cross * square(k) / 12.0);
         }
         let mean = first.map(|sum| sum / area);
-        let spread = [0, 1].map(|k| (second[k] / area - mean[k] * mean[k]).sqrt() as f32);
-        let center = Point::new(origin.x + mean[0] as f32, origin.y + mean[1] as f32);
-        let (area, length) = (area.abs() as f32, length as f32);
+        let spread = [0, 1].map(|k| (second[k] / area - mean[k] * mean[k]).sqrt());
+        let center = Point::new(origin.x + mean[0], origin.y + mean[1]);
+        let area = area.abs();
         let is_solid = area > 0.0 && spread.iter().all(|&px| px > 0.0);
         is_solid.then_some(Self {
             area,
@@ -220,28 +216,20 @@ impl Moments {
     }
 
     /// The shapes of these moments, each with its numbers beyond the three of a circle.
-    fn shapes(&self, corners: &[Point]) -> [(Shape, f32); 4] {
-        use std::f32::consts::PI;
+    fn shapes(&self, corners: &[Point]) -> [(Shape, f64); 4] {
+        use std::f64::consts::PI;
         let center = self.center;
         let radius = (self.area / PI).sqrt();
         let radii = self.spread.map(|px| 2.0 * px);
-        let away = self.spread.map(|px| px * 3.0_f32.sqrt()).into();
-        let (low, high) = (center - away, center + away);
-        let sharp = Shape::Rect {
-            low,
-            high,
-            radius: 0.0,
-        };
-        let low = corners.iter().fold(center, |low, p| low.inf(p));
-        let high = corners.iter().fold(center, |high, p| high.sup(p));
-        let side = high - low;
-        let missing = (side.x * side.y - self.area).max(0.0);
-        let radius_of_corners = (missing / (4.0 - PI)).sqrt().min(0.5 * side.min());
-        let round = Shape::Rect {
-            low,
-            high,
-            radius: radius_of_corners,
-        };
+        let [dx, dy] = self.spread.map(|px| px * 3.0_f64.sqrt());
+        let away = Vec2::new(dx, dy);
+        let sharp = Shape::rect([center - away, center + away], 0.0);
+        let around = bounds(corners.iter().copied());
+        let missing = (around.area() - self.area).max(0.0);
+        let most = 0.5 * around.width().min(around.height());
+        let radius_of_corners = (missing / (4.0 - PI)).sqrt().min(most);
+        let corners = [around.origin(), Point::new(around.x1, around.y1)];
+        let round = Shape::rect(corners, radius_of_corners);
         [
             (Shape::Circle { center, radius }, 0.0),
             (sharp, 1.0),
@@ -255,8 +243,8 @@ impl Moments {
 fn places(corners: &[Point]) -> Vec<Point> {
     let along = |pair: &[Point]| {
         let (from, step) = (pair[0], pair[1] - pair[0]);
-        let count = (step.norm() / STEP).ceil().max(1.0) as u16;
-        (0..count).map(move |i| from + step * (f32::from(i) / f32::from(count)))
+        let count = (step.hypot() / STEP).ceil().max(1.0) as u16;
+        (0..count).map(move |i| from + step * (f64::from(i) / f64::from(count)))
     };
     corners.windows(2).flat_map(along).collect()
 }
@@ -292,12 +280,12 @@ mod tests {
     }
 
     /// The path, begun elsewhere, with each point somewhat beside its place.
-    fn beside(path: &Path, by: f32) -> Path {
+    fn beside(path: &Path, by: f64) -> Path {
         let mut points: Vec<PathPoint> = path.points().to_vec();
         points.rotate_left(1);
         for (i, point) in points.iter_mut().enumerate() {
-            let (sin, cos) = math::sin_cos(2.0 * i as f32);
-            point.at = point.at + math::Vector::new(by * sin, by * cos);
+            let (sin, cos) = math::sin_cos(2.0 * i as f64);
+            point.at = point.at + Vec2::new(by * sin, by * cos);
         }
         Path::new(points, true).unwrap()
     }
@@ -305,10 +293,10 @@ mod tests {
     #[test]
     fn a_path_beside_a_shape_is_like_it() {
         for shape in shapes() {
-            let found = Shape::like(&beside(&shape.ring(), 0.1), 0.3).unwrap();
+            let found = Shape::like(&beside(&shape.path(), 0.1), 0.3).unwrap();
             let kind = std::mem::discriminant(&shape);
             assert_eq!(std::mem::discriminant(&found), kind, "{found:?}");
-            let outline = places(&shape.ring().flattened(FLATNESS));
+            let outline = places(&shape.path().flattened(FLATNESS));
             assert!(
                 outline.iter().all(|&p| found.distance(p).abs() < 0.3),
                 "{found:?}"
@@ -320,7 +308,7 @@ mod tests {
     fn the_seen_part_of_a_path_tells_its_shape() {
         for shape in &shapes()[..3] {
             // What lies to the left of x = 26 is hidden, and runs anyhow.
-            let points = beside(&shape.ring(), 0.03);
+            let points = beside(&shape.path(), 0.03);
             let free = |p: Point| {
                 if p.x < 26.0 {
                     Point::new(26.0 - 0.5 * (26.0 - p.x), p.y)

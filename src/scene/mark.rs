@@ -1,12 +1,12 @@
 //! Marks: what a scene is made of.
 
-use super::{Path, Rgb, Shade, Stroke};
+use super::{Cap, Path, Rgb, Shade, Shape, Stroke};
 use crate::math::Point;
 
 /// One element of a drawing.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Mark {
-    /// A path swept by a disc.
+    /// A path drawn with a pen.
     Stroke(Stroke),
     /// Filled rings.
     Area(Area),
@@ -75,7 +75,7 @@ impl Mark {
     }
 
     /// Half the width of a stroke, px; 0 for an area.
-    pub fn radius(&self) -> f32 {
+    pub fn radius(&self) -> f64 {
         match self {
             Self::Stroke(stroke) => stroke.radius,
             Self::Area(_) => 0.0,
@@ -85,6 +85,25 @@ impl Mark {
     /// Number of points of all paths together.
     pub fn points(&self) -> usize {
         self.paths().iter().map(|path| path.points().len()).sum()
+    }
+
+    /// The circle, ellipse or rectangle that its only path is.
+    pub fn shape(&self) -> Option<Shape> {
+        match self.paths() {
+            [path] => path.shape(),
+            _ => None,
+        }
+    }
+
+    /// True if it is an area.
+    pub fn is_area(&self) -> bool {
+        self.as_area().is_some()
+    }
+
+    /// True if it is a stroke with square ends and mitred corners.
+    pub fn is_butt(&self) -> bool {
+        self.as_stroke()
+            .is_some_and(|stroke| stroke.cap == Cap::Butt)
     }
 
     /// The gradient of an area that has one.
@@ -125,13 +144,13 @@ impl Mark {
 
     /// True if every number of the mark is finite.
     pub fn is_finite(&self) -> bool {
-        let points = self.paths().iter().flat_map(Path::points);
-        let mut places = points.flat_map(|p| [p.at.x, p.at.y]);
-        let style = self
-            .color()
-            .into_iter()
-            .chain([self.radius(), self.opacity()]);
-        places.all(f32::is_finite) && style.into_iter().all(f32::is_finite)
+        let mut points = self.paths().iter().flat_map(Path::points);
+        let [red, green, blue] = self.color();
+        points.all(|p| p.at.is_finite())
+            && self.radius().is_finite()
+            && [red, green, blue, self.opacity()]
+                .iter()
+                .all(|v| v.is_finite())
     }
 }
 
@@ -174,12 +193,12 @@ mod tests {
         };
         // Its axis ends beyond the page, as that of a shape which the border cuts off.
         let axis = Axis::Linear {
-            from: [-5.0, 2.0].into(),
-            to: [30.0, 2.0].into(),
+            from: (-5.0, 2.0).into(),
+            to: (30.0, 2.0).into(),
         };
         let shade = Shade::new(axis, &[stop(0.0), stop(1.0)]).unwrap();
-        let corners = [[-3.0, 1.0], [25.0, 1.0], [8.0, 7.0]];
-        let points = corners.map(|at| PathPoint::on(at.into()));
+        let corners = [(-3.0, 1.0), (25.0, 1.0), (8.0, 7.0)];
+        let points = corners.map(|at: (f64, f64)| PathPoint::on(at.into()));
         let area = Area {
             rings: vec![Path::new(points.into(), true).unwrap()],
             color: [0.5; 3],
@@ -192,7 +211,7 @@ mod tests {
         };
         let confined = scene.confined();
         let area = confined.areas().next().unwrap();
-        let xs: Vec<f32> = area.rings[0].points().iter().map(|p| p.at.x).collect();
+        let xs: Vec<f64> = area.rings[0].points().iter().map(|p| p.at.x).collect();
         assert_eq!(xs, [0.0, 20.0, 8.0]);
         assert_eq!(area.shade, Some(shade));
     }

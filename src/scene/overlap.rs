@@ -1,8 +1,9 @@
 //! Precedence: which marks may share a pixel, so that their order matters, and what follows for reordering them.
 
-use super::grid::UNITS_PER_PX;
-use super::quantize::Written;
-use crate::math;
+use kurbo::{BezPath, Line, ParamCurveNearest, Rect, Shape};
+
+use super::{Mark, Path};
+use crate::math::Point;
 
 /// Precedence of marks: which ones have to be drawn before which.
 #[derive(Debug, Clone)]
@@ -16,33 +17,39 @@ pub(crate) struct Precedence {
 impl Precedence {
     /// Precedence of marks of given colours: two that may share a pixel keep their order if they differ in colour or if one has a
     /// gradient. Layers of one colour give the same result in either order.
-    pub(crate) fn of<'a>(marks: impl IntoIterator<Item = &'a Written>) -> Self {
-        let matters =
-            |a: &Written, b: &Written| a.color != b.color || a.shade.is_some() || b.shade.is_some();
+    pub(crate) fn of<'a>(marks: impl IntoIterator<Item = &'a Mark>) -> Self {
+        let matters = |a: &Mark, b: &Mark| {
+            a.color() != b.color() || a.shade().is_some() || b.shade().is_some()
+        };
         Self::where_matters(marks.into_iter().map(Some), matters)
     }
 
     /// Precedence of marks of any colours: all that may share a pixel keep their order. `None` is a mark that leaves no ink.
-    pub(crate) fn of_shapes<'a>(marks: impl IntoIterator<Item = Option<&'a Written>>) -> Self {
+    pub(crate) fn of_shapes<'a>(marks: impl IntoIterator<Item = Option<&'a Mark>>) -> Self {
         Self::where_matters(marks, |_, _| true)
     }
 
     fn where_matters<'a>(
-        marks: impl IntoIterator<Item = Option<&'a Written>>,
-        matters: impl Fn(&Written, &Written) -> bool,
+        marks: impl IntoIterator<Item = Option<&'a Mark>>,
+        matters: impl Fn(&Mark, &Mark) -> bool,
     ) -> Self {
-        let marks: Vec<Option<&Written>> = marks.into_iter().collect();
+        let marks: Vec<Option<&Mark>> = marks.into_iter().collect();
         let none = vec![Vec::new(); marks.len()];
         let (mut above, mut below) = (none.clone(), none);
         let inked = marks.into_iter().enumerate();
         let inked = inked.filter_map(|(i, mark)| mark.map(|mark| (i, mark, Swept::new(mark))));
         // A sweep from left to right compares a mark with those alone that reach as far right as its left end.
         let mut from_left: Vec<_> = inked.collect();
-        from_left.sort_by_key(|(_, _, swept)| swept.span());
-        let mut open: Vec<&(usize, &Written, Swept)> = Vec::new();
+        from_left.sort_by(|(_, _, a), (_, _, b)| {
+            a.near
+                .x0
+                .total_cmp(&b.near.x0)
+                .then(a.near.x1.total_cmp(&b.near.x1))
+        });
+        let mut open: Vec<&(usize, &Mark, Swept)> = Vec::new();
         for next in &from_left {
             let (i, mark, swept) = next;
-            open.retain(|(_, _, other)| other.span()[1] >= swept.span()[0]);
+            open.retain(|(_, _, other)| other.near.x1 >= swept.near.x0);
             for (k, other, other_swept) in &open {
                 if matters(mark, other) && swept.meets(other_swept) {
                     above[*i.min(k)].push(*i.max(k));
@@ -155,254 +162,204 @@ fn unite(row: &mut [bool], other: &[bool]) {
 /// Where a mark may leave ink: what is needed to compare it with many others.
 #[derive(Debug, Clone)]
 struct Swept {
-    /// Farthest that it reaches beyond its paths, in units; 0 for an area.
-    reach: i64,
-    /// From where to where the points lie along each axis, in units.
-    bounds: [[i64; 2]; 2],
-    /// The paths, by segments at most [`TOLERANCE`] away from them; that of a dot has no length.
-    segments: Vec<Segment>,
+    /// Farthest that it reaches beyond its paths, px.
+    reach: f64,
+    /// A box around all that other marks can meet it in, px.
+    near: Rect,
+    /// Lines at most [`TOLERANCE`] away from its paths; that of a dot has no length.
+    lines: Vec<Line>,
+    /// The rings of an area.
+    rings: Option<BezPath>,
     /// A point of each path.
-    starts: Vec<[f64; 2]>,
+    starts: Vec<Point>,
 }
 
 impl Swept {
-    fn new(mark: &Written) -> Self {
-        let starts = mark.paths.iter().flat_map(|path| path.points().first());
+    fn new(mark: &Mark) -> Self {
+        let starts = mark.paths().iter().flat_map(|path| path.points().first());
         Self {
             reach: mark.reach(),
-            bounds: bounds(mark),
-            segments: segments(mark),
-            starts: starts.map(|p| p.at.map(|units| units as f64)).collect(),
+            near: mark.extent().inflate(0.5 * APART, 0.5 * APART),
+            lines: mark
+                .paths()
+                .iter()
+                .flat_map(|path| path.lines(TOLERANCE))
+                .collect(),
+            rings: mark.is_area().then(|| rings(mark)),
+            starts: starts.map(|p| p.at).collect(),
         }
     }
 
     /// True if the order of the two marks can change the picture.
     fn meets(&self, other: &Self) -> bool {
         let reach = self.reach + other.reach + APART;
-        are_near(&self.bounds, &other.bounds, reach)
-            && (is_nearer(&self.segments, &other.segments, reach as f64)
+        overlap(self.near, other.near)
+            && (are_nearer(&self.lines, &other.lines, reach)
                 || self.covers(other)
                 || other.covers(self))
     }
 
     /// True if it is an area that a path of `other` starts in.
     fn covers(&self, other: &Self) -> bool {
-        self.reach == 0 && other.starts.iter().any(|&p| is_inside(p, &self.segments))
-    }
-
-    /// From where to where, along the x axis, the mark can meet others, in units.
-    fn span(&self) -> [i64; 2] {
-        let [near, far] = self.bounds[0];
-        let margin = self.reach + (APART + 1) / 2;
-        [near - margin, far + margin]
+        let has = |rings: &BezPath| other.starts.iter().any(|&p| rings.winding(p) != 0);
+        self.rings.as_ref().is_some_and(has)
     }
 }
 
-impl Written {
+impl Mark {
     /// True if the order of the two marks can change the picture.
     pub(crate) fn meets(&self, other: &Self) -> bool {
-        let reach = self.reach() + other.reach() + APART;
-        are_near(&bounds(self), &bounds(other), reach) && Swept::new(self).meets(&Swept::new(other))
+        let [a, b] = [self, other].map(|mark| mark.extent().inflate(0.5 * APART, 0.5 * APART));
+        overlap(a, b) && Swept::new(self).meets(&Swept::new(other))
     }
-}
 
-impl Written {
     /// True if it is an area that nearly all of `other` lies in.
     pub(crate) fn encloses(&self, other: &Self) -> bool {
         if !self.is_area() {
             return false;
         }
-        let own = segments(self);
-        let places: Vec<[f64; 2]> = segments(other).iter().map(|[a, _]| *a).collect();
-        let inside = places.iter().filter(|&&p| is_inside(p, &own)).count();
+        let rings = rings(self);
+        let places: Vec<Point> = other
+            .paths()
+            .iter()
+            .flat_map(|path| path.lines(TOLERANCE))
+            .map(|line| line.p0)
+            .collect();
+        let inside = places.iter().filter(|&&p| rings.winding(p) != 0).count();
         10 * inside >= 9 * places.len()
     }
-
-    /// From where to where the points lie along each axis, in units.
-    pub(crate) fn bounds(&self) -> [[i64; 2]; 2] {
-        bounds(self)
-    }
 }
 
-/// True if these boxes come nearer to each other than `reach`.
-fn are_near(a: &[[i64; 2]; 2], b: &[[i64; 2]; 2], reach: i64) -> bool {
-    a.iter()
-        .zip(b)
-        .all(|([a_near, a_far], [b_near, b_far])| a_near - b_far < reach && b_near - a_far < reach)
+/// True if two boxes have an inside in common.
+fn overlap(a: Rect, b: Rect) -> bool {
+    a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1
 }
 
-/// From where to where the points of a mark lie along each axis, in units.
-fn bounds(mark: &Written) -> [[i64; 2]; 2] {
-    [0, 1].map(|axis| {
-        let along = || mark.points().map(|p| p.at[axis]);
-        [along().min().unwrap_or(0), along().max().unwrap_or(0)]
-    })
+/// The rings of an area, as polygons.
+fn rings(area: &Mark) -> BezPath {
+    let polygon = |ring: &Path| {
+        BezPath::from_path_segments(ring.lines(TOLERANCE).into_iter().map(Into::into))
+    };
+    area.paths()
+        .iter()
+        .flat_map(|ring| polygon(ring).into_elements())
+        .collect()
 }
 
-/// The paths of a mark as segments that are at most [`TOLERANCE`] away from them; that of a dot has no length.
-fn segments(mark: &Written) -> Vec<Segment> {
-    let mut segments = mark.segments(TOLERANCE);
-    if let (Some(dot), []) = (mark.points().next(), segments.as_slice()) {
-        segments.push([dot.at; 2]);
-    }
-    let float = |p: [i64; 2]| p.map(|units| units as f64);
-    segments.into_iter().map(|ends| ends.map(float)).collect()
-}
-
-/// Marks farther apart than the diagonal of a pixel have no pixel in common. What chords are away from their curve is
+/// Marks farther apart than the diagonal of a pixel, px, have no pixel in common. What chords are away from their curve is
 /// within the rest.
-const APART: i64 = UNITS_PER_PX * 3 / 2;
+const APART: f64 = 1.5;
 
-/// Largest distance between segments and their curve, px: less than half of the excess of [`APART`] over the diagonal
+/// Largest distance between lines and their curve, px: less than half of the excess of [`APART`] over the diagonal
 /// of a pixel.
 const TOLERANCE: f64 = 0.04;
 
-/// A segment from one place to another, in units.
-pub(super) type Segment = [[f64; 2]; 2];
-
-/// True if some of these segments come nearer to each other than this.
-fn is_nearer(a: &[Segment], b: &[Segment], reach: f64) -> bool {
-    let is_near = |&a: &Segment, &b: &Segment| {
-        (0..2).all(|axis| {
-            let far = |s: Segment| s[0][axis].max(s[1][axis]);
-            let near = |s: Segment| s[0][axis].min(s[1][axis]);
-            near(a) - far(b) < reach && near(b) - far(a) < reach
-        })
+/// True if some of these lines come nearer to each other than this.
+fn are_nearer(a: &[Line], b: &[Line], reach: f64) -> bool {
+    let around = |line: &Line| Rect::from_points(line.p0, line.p1);
+    let is_near = |a: &Line, b: &Line| {
+        overlap(around(a).inflate(reach, reach), around(b)) && distance2(*a, *b) < reach * reach
     };
-    a.iter()
-        .any(|a| b.iter().any(|b| is_near(a, b) && distance(*a, *b) < reach))
+    a.iter().any(|a| b.iter().any(|b| is_near(a, b)))
 }
 
-/// Distance of two segments, in units.
-fn distance(a: Segment, b: Segment) -> f64 {
+/// The square of the distance of two lines.
+fn distance2(a: Line, b: Line) -> f64 {
     if cross(a, b) {
         return 0.0;
     }
-    let gaps = [gap(a[0], b), gap(a[1], b), gap(b[0], a), gap(b[1], a)];
+    let gap = |p: Point, line: Line| line.nearest(p, 0.0).distance_sq;
+    let gaps = [gap(a.p0, b), gap(a.p1, b), gap(b.p0, a), gap(b.p1, a)];
     gaps.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// Distance of a point from a segment, in units.
-pub(super) fn gap([x, y]: [f64; 2], [a, b]: Segment) -> f64 {
-    let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
-    let length2 = dx * dx + dy * dy;
-    let along = ((x - a[0]) * dx + (y - a[1]) * dy) / length2.max(f64::MIN_POSITIVE);
-    let h = along.clamp(0.0, 1.0);
-    math::hypot(x - a[0] - h * dx, y - a[1] - h * dy)
-}
-
-fn cross(a: Segment, b: Segment) -> bool {
-    let side = |[from, to]: Segment, p: [f64; 2]| {
-        (to[0] - from[0]) * (p[1] - from[1]) - (to[1] - from[1]) * (p[0] - from[0])
-    };
-    side(a, b[0]) * side(a, b[1]) < 0.0 && side(b, a[0]) * side(b, a[1]) < 0.0
-}
-
-/// True if closed paths of these segments wind around `p`.
-pub(super) fn is_inside(p: [f64; 2], segments: &[Segment]) -> bool {
-    let crossing = |&[a, b]: &Segment| {
-        let side = (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
-        match (a[1] <= p[1], b[1] <= p[1]) {
-            (true, false) if side > 0.0 => 1,
-            (false, true) if side < 0.0 => -1,
-            _ => 0,
-        }
-    };
-    segments.iter().map(crossing).sum::<i32>() != 0
+fn cross(a: Line, b: Line) -> bool {
+    let side = |line: Line, p: Point| (line.p1 - line.p0).cross(p - line.p0);
+    side(a, b.p0) * side(a, b.p1) < 0.0 && side(b, a.p0) * side(b, a.p1) < 0.0
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{PathPoint, WrittenPath};
+    use crate::scene::{Area, Cap, PathPoint, Stroke};
 
-    const PX: i64 = UNITS_PER_PX;
+    fn stroke_along(path: Path, width: f64) -> Mark {
+        let stroke = Stroke {
+            path,
+            radius: 0.5 * width,
+            cap: Cap::Round,
+            color: [0.0; 3],
+            opacity: 1.0,
+        };
+        stroke.into()
+    }
 
-    fn stroke(x: i64, width: i64) -> Written {
-        Written {
-            paths: vec![WrittenPath::line([x * PX, 10 * PX], [x * PX, 90 * PX])],
-            shape: None,
-            is_band: false,
-            width: width * PX,
-            color: [0; 3],
-            opacity: 255,
-            shade: None,
-        }
+    fn line(a: (f64, f64), b: (f64, f64), width: f64) -> Mark {
+        stroke_along(Path::line(a.into(), b.into()), width)
+    }
+
+    fn dot(x: f64, y: f64) -> Mark {
+        stroke_along(Path::dot(Point::new(x, y)), 2.0)
+    }
+
+    fn stroke(x: f64, width: f64) -> Mark {
+        line((x, 10.0), (x, 90.0), width)
     }
 
     #[test]
     fn strokes_touch_where_they_may_share_a_pixel() {
-        let base = stroke(10, 4);
-        let touches = [13, 14, 15].map(|x| base.meets(&stroke(x, 2)));
+        let base = stroke(10.0, 4.0);
+        let touches = [13.0, 14.0, 15.0].map(|x| base.meets(&stroke(x, 2.0)));
         assert_eq!(touches, [true, true, false]);
-        let beyond = Written {
-            paths: vec![WrittenPath::line([10 * PX, 96 * PX], [10 * PX, 96 * PX])],
-            shape: None,
-            is_band: false,
-            ..base.clone()
-        };
-        assert!(!base.meets(&beyond));
+        assert!(!base.meets(&stroke_along(Path::dot(Point::new(10.0, 96.0)), 4.0)));
     }
 
     #[test]
     fn crossing_strokes_touch() {
-        let across = Written {
-            paths: vec![WrittenPath::line([-500 * PX, 50 * PX], [500 * PX, 51 * PX])],
-            shape: None,
-            is_band: false,
-            ..stroke(0, 1)
-        };
-        assert!(stroke(10, 1).meets(&across));
+        let across = line((-500.0, 50.0), (500.0, 51.0), 1.0);
+        assert!(stroke(10.0, 1.0).meets(&across));
     }
 
     #[test]
     fn a_path_touches_where_it_goes_and_nowhere_else() {
-        let points = [(10, true), (50, false), (90, true)].map(|(x, is_on)| PathPoint {
-            at: [x * PX, if is_on { 10 } else { 90 } * PX],
+        let points = [(10.0, true), (50.0, false), (90.0, true)].map(|(x, is_on)| PathPoint {
+            at: Point::new(x, if is_on { 10.0 } else { 90.0 }),
             is_on,
         });
-        let arch = Written {
-            paths: vec![WrittenPath::new(points.into(), false)],
-            shape: None,
-            is_band: false,
-            ..stroke(0, 2)
-        };
-        let dot = |x: i64, y: i64| Written {
-            paths: vec![WrittenPath::line([x * PX, y * PX], [x * PX, y * PX])],
-            shape: None,
-            is_band: false,
-            ..stroke(0, 2)
-        };
+        let arch = stroke_along(Path::of_points(points.into(), false), 2.0);
         // The top of the curve is at (50, 50).
-        let found =
-            [(50, 53), (50, 54), (50, 70), (50, 10), (20, 26)].map(|(x, y)| arch.meets(&dot(x, y)));
+        let dots = [
+            (50.0, 53.0),
+            (50.0, 54.0),
+            (50.0, 70.0),
+            (50.0, 10.0),
+            (20.0, 26.0),
+        ];
+        let found = dots.map(|(x, y)| arch.meets(&dot(x, y)));
         assert_eq!(found, [true, false, false, false, true]);
     }
 
     #[test]
     fn an_area_touches_what_lies_in_it_and_not_what_lies_in_its_hole() {
-        let square = |low: i64, high: i64| {
-            let corners = [[low, low], [high, low], [high, high], [low, high]];
-            let mut points = corners.map(|p| PathPoint::on(p.map(|px| px * PX)));
-            if low > 0 {
+        let square = |low: f64, high: f64| {
+            let corners = [(low, low), (high, low), (high, high), (low, high)];
+            let mut points = corners.map(|p| PathPoint::on(p.into()));
+            if low > 0.0 {
                 points.reverse();
             }
-            WrittenPath::new(points.into(), true)
+            Path::of_points(points.into(), true)
         };
-        let area = |paths| Written {
-            paths,
-            shape: None,
-            is_band: false,
-            width: 0,
-            ..stroke(0, 2)
+        let area = |rings| {
+            Mark::Area(Area {
+                rings,
+                color: [0.0; 3],
+                opacity: 1.0,
+                shade: None,
+            })
         };
-        let dot = Written {
-            paths: vec![WrittenPath::line([50 * PX; 2], [50 * PX; 2])],
-            shape: None,
-            is_band: false,
-            ..stroke(0, 2)
-        };
-        let [whole, holed] = [vec![square(0, 100)], vec![square(0, 100), square(20, 80)]].map(area);
+        let (outer, hole) = (square(0.0, 100.0), square(20.0, 80.0));
+        let [whole, holed] = [vec![outer.clone()], vec![outer, hole]].map(area);
+        let dot = dot(50.0, 50.0);
         assert_eq!([&whole, &holed].map(|a| a.meets(&dot)), [true, false]);
         assert!(dot.meets(&whole) && whole.meets(&holed));
     }

@@ -1,4 +1,4 @@
-//! Paths: the centre lines of strokes.
+//! Paths: the centre lines of strokes and the outlines of areas.
 //!
 //! A path is a list of points, each **on** the path or **off** it, as in TrueType's outlines. Two on-points in a row
 //! are joined by a line. A run of off-points between two on-points is a quadratic spline: each off-point is the control
@@ -6,114 +6,58 @@
 //! on-points, without a corner. A closed path goes on from its last point to its first; an open one starts and ends on
 //! the path. A path of one point is a dot.
 //!
-//! ```
-//! use strokefit::math::Point;
-//! use strokefit::scene::{Path, PathPoint, Piece};
+//! The points are what a fit moves. [`Path::segments`] and [`Path::bezier`] are the same path as `kurbo` has it.
 //!
-//! let [a, b, c, d] = [[0.0, 0.0], [4.0, 0.0], [8.0, 4.0], [8.0, 8.0]].map(Point::from);
+//! ```
+//! use kurbo::{Line, PathSeg, QuadBez};
+//! use strokefit::math::Point;
+//! use strokefit::scene::{Path, PathPoint};
+//!
+//! let [a, b, c, d] = [(0.0, 0.0), (4.0, 0.0), (8.0, 4.0), (8.0, 8.0)].map(Point::from);
 //! let path = Path::new(vec![PathPoint::on(a), PathPoint::off(b), PathPoint::off(c), PathPoint::on(d)], false)?;
 //! let implied = Point::new(6.0, 2.0);
-//! assert_eq!(path.pieces().collect::<Vec<_>>(), [Piece::Curve([a, b, implied]), Piece::Curve([implied, c, d])]);
+//! let curves = [QuadBez::new(a, b, implied), QuadBez::new(implied, c, d)];
+//! assert_eq!(path.segments().collect::<Vec<_>>(), curves.map(PathSeg::Quad));
 //! # Ok::<(), strokefit::Error>(())
 //! ```
 
+use kurbo::{BezPath, Line, ParamCurve, PathEl, PathSeg, QuadBez, Rect};
+
+use super::shape::Shape;
 use crate::error::{Error, ErrorKind, Result};
-use crate::math::Point;
+use crate::math::{Point, Vec2};
 
 /// Most points of a path.
 pub const MAX_POINTS: usize = 65_535;
 
 /// A point of a path.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct PathPoint<P = Point> {
-    /// The place, px.
-    pub at: P,
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PathPoint {
+    /// Its coordinates, px.
+    pub at: Point,
     /// True if the path goes through it; otherwise it is the control point of a curve.
     pub is_on: bool,
 }
 
-impl<P> PathPoint<P> {
+impl PathPoint {
     /// A point that the path goes through.
-    pub fn on(at: P) -> Self {
+    pub fn on(at: Point) -> Self {
         Self { at, is_on: true }
     }
 
     /// A control point.
-    pub fn off(at: P) -> Self {
+    pub fn off(at: Point) -> Self {
         Self { at, is_on: false }
     }
 }
 
-/// A kind of place that has middles.
-pub(super) trait Place: Copy {
-    /// The place halfway between two.
-    fn middle(a: Self, b: Self) -> Self;
-}
-
-impl Place for Point {
-    fn middle(a: Self, b: Self) -> Self {
-        Self::from((a.coords() + b.coords()) * 0.5)
-    }
-}
-
-/// The centre line of a stroke: one point or more, open or closed.
+/// One point or more, open or closed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Path {
     points: Vec<PathPoint>,
     closed: bool,
-}
-
-/// A part of a path between two on-points, implied ones included.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Piece<P = Point> {
-    /// From one point to another.
-    Line([P; 2]),
-    /// A quadratic Bézier curve: start, control point, end.
-    Curve([P; 3]),
-}
-
-/// Most steps of a flattened curve. They are enough for 0.05 px along curves of 10,000 px.
-const MAX_STEPS: f64 = 256.0;
-
-/// Equal steps of its parameter that a curve takes, so that its chords are at most `tolerance` away from it, where
-/// `bend` is |a − 2c + b| (Wang's formula).
-pub(super) fn steps(bend: f64, tolerance: f64) -> u16 {
-    let steps = (bend / (4.0 * tolerance)).sqrt().ceil();
-    steps.clamp(1.0, MAX_STEPS) as u16
-}
-
-impl<P: Copy> Piece<P> {
-    /// Where the piece starts.
-    pub fn start(self) -> P {
-        match self {
-            Self::Line([start, _]) | Self::Curve([start, ..]) => start,
-        }
-    }
-
-    /// Where the piece ends.
-    pub fn end(self) -> P {
-        match self {
-            Self::Line([_, end]) | Self::Curve([.., end]) => end,
-        }
-    }
-}
-
-impl Piece {
-    /// Appends what follows the start of the piece, as corners of a polyline within `tolerance` px of it.
-    fn flatten(self, tolerance: f32, out: &mut Vec<Point>) {
-        let [a, c, b] = match self {
-            Self::Line([_, end]) => return out.push(end),
-            Self::Curve(points) => points.map(|p| p.coords()),
-        };
-        let bend = (a - c * 2.0 + b).norm();
-        let steps = steps(bend.into(), tolerance.into());
-        let inner = (1..steps).map(|i| f32::from(i) / f32::from(steps));
-        out.extend(inner.map(|t| {
-            let u = 1.0 - t;
-            Point::from(a * (u * u) + c * (2.0 * u * t) + b * (t * t))
-        }));
-        out.push(Point::from(b));
-    }
+    /// The shape that the points were made of.
+    shape: Option<Shape>,
 }
 
 impl Path {
@@ -136,34 +80,36 @@ impl Path {
                         .into(),
                 )
             }
-            _ => Ok(Self { points, closed }),
-        }
-    }
-
-    /// The path of points that are known to be a path.
-    pub(crate) fn of_points(points: Vec<PathPoint>, closed: bool) -> Self {
-        Self { points, closed }
-    }
-
-    /// A dot.
-    pub fn dot(p: Point) -> Self {
-        Self {
-            points: vec![PathPoint::on(p)],
-            closed: false,
-        }
-    }
-
-    /// The line segment from `a` to `b`.
-    pub fn line(a: Point, b: Point) -> Self {
-        Self {
-            points: vec![PathPoint::on(a), PathPoint::on(b)],
-            closed: false,
+            _ => Ok(Self::of_points(points, closed)),
         }
     }
 
     /// The path of points that keep the rules of [`new`](Self::new).
-    pub(super) fn of_valid(points: Vec<PathPoint>, closed: bool) -> Self {
-        Self { points, closed }
+    pub(crate) fn of_points(points: Vec<PathPoint>, closed: bool) -> Self {
+        Self {
+            points,
+            closed,
+            shape: None,
+        }
+    }
+
+    /// The closed path of a shape, which has these points.
+    pub(super) fn of_shape(shape: Shape, points: Vec<PathPoint>) -> Self {
+        Self {
+            points,
+            closed: true,
+            shape: Some(shape),
+        }
+    }
+
+    /// A dot.
+    pub fn dot(p: Point) -> Self {
+        Self::of_points(vec![PathPoint::on(p)], false)
+    }
+
+    /// The line segment from `a` to `b`.
+    pub fn line(a: Point, b: Point) -> Self {
+        Self::of_points(vec![PathPoint::on(a), PathPoint::on(b)], false)
     }
 
     /// The points, in drawing order; never empty.
@@ -176,71 +122,121 @@ impl Path {
         self.closed
     }
 
-    /// First and last point; the same for a dot. Those of a closed path mean nothing in particular.
-    pub fn ends(&self) -> (Point, Point) {
-        match self.points.as_slice() {
-            [first, .., last] => (first.at, last.at),
-            [only] => (only.at, only.at),
-            [] => (Point::origin(), Point::origin()),
-        }
+    /// The circle, ellipse or rectangle that the path is.
+    pub fn shape(&self) -> Option<Shape> {
+        self.shape
     }
 
-    /// This path with `f` applied to every point.
+    /// First and last point; the same for a dot. Those of a closed path mean nothing in particular.
+    pub fn ends(&self) -> (Point, Point) {
+        let [first, last] = [self.points.first(), self.points.last()]
+            .map(|end| end.map_or(Point::ORIGIN, |p| p.at));
+        (first, last)
+    }
+
+    /// This path with `f` applied to every point. A shape whose points move is none any more.
     #[must_use]
     pub fn map(mut self, f: impl Fn(Point) -> Point) -> Self {
-        self.points.iter_mut().for_each(|p| p.at = f(p.at));
+        for point in &mut self.points {
+            let at = f(point.at);
+            self.shape = self.shape.filter(|_| at == point.at);
+            point.at = at;
+        }
         self
     }
 
+    /// This path, moved. A shape stays one.
+    #[must_use]
+    pub(crate) fn moved(self, by: Vec2) -> Self {
+        let shape = self.shape.map(|shape| shape.moved(by));
+        let moved = self.map(|p| p + by);
+        Self { shape, ..moved }
+    }
+
+    /// The path drawn the other way.
+    #[must_use]
+    pub(crate) fn reversed(&self) -> Self {
+        let mut points: Vec<PathPoint> = self.points.iter().rev().copied().collect();
+        if self.closed && self.points.first().is_some_and(|p| p.is_on) {
+            points.rotate_right(1);
+        }
+        Self::of_points(points, self.closed)
+    }
+
     /// The lines and curves of the path, in drawing order; none for a dot.
-    pub fn pieces(&self) -> impl Iterator<Item = Piece> {
-        pieces(&self.points, self.closed)
+    pub fn segments(&self) -> impl Iterator<Item = PathSeg> {
+        Segments::new(&self.points, self.closed)
+    }
+
+    /// The path as `kurbo` has it. A closed one ends where it starts.
+    pub fn bezier(&self) -> BezPath {
+        let start = self.segments().next().map(|first| first.start());
+        let start = start.unwrap_or(self.ends().0);
+        let rest = self.segments().map(|segment| segment.as_path_el());
+        std::iter::once(PathEl::MoveTo(start)).chain(rest).collect()
     }
 
     /// The corners of a polyline that is at most `tolerance` px away from the path. That of a closed path ends where
     /// it starts; a dot is one point.
-    pub fn flattened(&self, tolerance: f32) -> Vec<Point> {
-        let mut out = Vec::new();
-        for piece in self.pieces() {
-            if out.is_empty() {
-                out.push(piece.start());
-            }
-            piece.flatten(tolerance, &mut out);
+    pub fn flattened(&self, tolerance: f64) -> Vec<Point> {
+        let mut corners = Vec::new();
+        kurbo::flatten(self.bezier(), tolerance, |element| {
+            corners.extend(element.end_point());
+        });
+        corners
+    }
+
+    /// The path as lines that are at most `tolerance` px away from it; that of a dot has no length.
+    pub(crate) fn lines(&self, tolerance: f64) -> Vec<Line> {
+        let corners = self.flattened(tolerance);
+        match corners[..] {
+            [dot] => vec![Line::new(dot, dot)],
+            _ => corners
+                .windows(2)
+                .map(|ends| Line::new(ends[0], ends[1]))
+                .collect(),
         }
-        if out.is_empty() {
-            out.extend(self.points.first().map(|p| p.at));
-        }
-        out
+    }
+
+    /// True if segments meet, so that the shape of joins matters.
+    pub(crate) fn has_joins(&self) -> bool {
+        self.closed || self.segments().nth(1).is_some()
+    }
+
+    /// The box around the points.
+    pub(crate) fn bounds(&self) -> Rect {
+        bounds(self.points.iter().map(|p| p.at))
     }
 }
 
-/// The lines and curves of a path of these points.
-pub(super) fn pieces<P: Place>(
-    points: &[PathPoint<P>],
-    closed: bool,
-) -> impl Iterator<Item = Piece<P>> {
-    Pieces::new(points, closed)
+/// The box around points, an empty one at the origin if there is none.
+pub(crate) fn bounds(points: impl IntoIterator<Item = Point>) -> Rect {
+    let mut points = points.into_iter();
+    let first = points.next().unwrap_or(Point::ORIGIN);
+    points.fold(Rect::from_points(first, first), |bounds, p| {
+        bounds.union_pt(p)
+    })
 }
 
-/// The pieces of a path that are still to come.
-struct Pieces<'a, P> {
-    points: &'a [PathPoint<P>],
-    /// The index of the point after the next piece's start; a closed path goes on from 0 beyond its last point.
+/// The segments of a path that are still to come.
+struct Segments<'a> {
+    points: &'a [PathPoint],
+    /// The index of the point after the next segment's start; a closed path goes on from 0 beyond its last point.
     next: usize,
     /// The index at which the path has come to its end.
     end: usize,
-    /// Where the next piece starts; nowhere if the path has no point.
-    at: Option<P>,
+    /// Where the next segment starts; nowhere if the path has no point.
+    at: Option<Point>,
 }
 
-impl<'a, P: Place> Pieces<'a, P> {
-    fn new(points: &'a [PathPoint<P>], closed: bool) -> Self {
+impl<'a> Segments<'a> {
+    fn new(points: &'a [PathPoint], closed: bool) -> Self {
         let count = points.len();
         let first_on = points.iter().position(|p| p.is_on);
         let (next, at) = match (first_on, points) {
             (Some(first), _) => (first + 1, Some(points[first].at)),
             // All points of a closed path may be off: it starts halfway between the last one and the first.
-            (None, [first, .., last]) => (0, Some(P::middle(last.at, first.at))),
+            (None, [first, .., last]) => (0, Some(last.at.midpoint(first.at))),
             _ => (0, None),
         };
         let end = match (count, closed) {
@@ -256,15 +252,15 @@ impl<'a, P: Place> Pieces<'a, P> {
         }
     }
 
-    fn point(&self, i: usize) -> PathPoint<P> {
+    fn point(&self, i: usize) -> PathPoint {
         self.points[i % self.points.len()]
     }
 }
 
-impl<P: Place> Iterator for Pieces<'_, P> {
-    type Item = Piece<P>;
+impl Iterator for Segments<'_> {
+    type Item = PathSeg;
 
-    fn next(&mut self) -> Option<Piece<P>> {
+    fn next(&mut self) -> Option<PathSeg> {
         if self.next >= self.end {
             return None;
         }
@@ -272,17 +268,17 @@ impl<P: Place> Iterator for Pieces<'_, P> {
         self.next += 1;
         if knot.is_on {
             self.at = Some(knot.at);
-            return Some(Piece::Line([from, knot.at]));
+            return Some(PathSeg::Line(Line::new(from, knot.at)));
         }
         let after = self.point(self.next);
         let to = if after.is_on {
             self.next += 1;
             after.at
         } else {
-            P::middle(knot.at, after.at)
+            knot.at.midpoint(after.at)
         };
         self.at = Some(to);
-        Some(Piece::Curve([from, knot.at, to]))
+        Some(PathSeg::Quad(QuadBez::new(from, knot.at, to)))
     }
 }
 
@@ -290,20 +286,16 @@ impl<P: Place> Iterator for Pieces<'_, P> {
 mod tests {
     use super::*;
 
-    fn path(points: &[(f32, f32, bool)], closed: bool) -> Result<Path> {
-        let point = |&(x, y, is_on): &(f32, f32, bool)| PathPoint {
+    fn path(points: &[(f64, f64, bool)], closed: bool) -> Result<Path> {
+        let point = |&(x, y, is_on): &(f64, f64, bool)| PathPoint {
             at: Point::new(x, y),
             is_on,
         };
         Path::new(points.iter().map(point).collect(), closed)
     }
 
-    fn ends(piece: Piece) -> [Point; 2] {
-        [piece.start(), piece.end()]
-    }
-
     #[test]
-    fn pieces_lie_end_to_end() {
+    fn segments_lie_end_to_end() {
         let shapes = [(0.0, 0.0), (4.0, 1.0), (6.0, 5.0), (3.0, 7.0), (1.0, 6.0)];
         for kinds in 0_u32..32 {
             for closed in [false, true] {
@@ -315,25 +307,25 @@ mod tests {
                     assert!(!closed && kinds & 0b10001 != 0b10001);
                     continue;
                 };
-                let pieces: Vec<_> = path.pieces().collect();
+                let segments: Vec<_> = path.segments().collect();
                 let offs = 5 - kinds.count_ones() as usize;
                 let joined = points.iter().zip(points.iter().cycle().skip(1));
                 let pairs = joined.take(if closed { 5 } else { 4 });
                 let lines = pairs.filter(|(a, b)| a.2 && b.2).count();
-                assert_eq!(pieces.len(), lines + offs, "{kinds:b} {closed}");
-                for pair in pieces.windows(2) {
-                    assert_eq!(ends(pair[0])[1], ends(pair[1])[0], "{kinds:b}");
+                assert_eq!(segments.len(), lines + offs, "{kinds:b} {closed}");
+                for pair in segments.windows(2) {
+                    assert_eq!(pair[0].end(), pair[1].start(), "{kinds:b}");
                 }
                 if closed {
-                    assert_eq!(ends(pieces[0])[0], ends(pieces[pieces.len() - 1])[1]);
+                    assert_eq!(segments[0].start(), segments[segments.len() - 1].end());
                 }
             }
         }
     }
 
     #[test]
-    fn a_dot_has_no_piece() {
-        assert_eq!(Path::dot(Point::new(1.0, 2.0)).pieces().count(), 0);
+    fn a_dot_has_no_segment() {
+        assert_eq!(Path::dot(Point::new(1.0, 2.0)).segments().count(), 0);
     }
 
     #[test]

@@ -1,14 +1,16 @@
 //! Polylines: the straight sides and clear corners of a path that wavers, as the middle of a traced line does.
 
+use kurbo::{Line, ParamCurveNearest, Vec2};
+
 use super::path::{Path, PathPoint};
-use crate::math::{self, Point, nearest_on_segment};
+use crate::math::Point;
 
 /// Cosine of the slightest turn that is a clear corner.
 pub(super) const CLEAR: f64 = 0.94;
 
 /// The polyline with clear corners that a path is within a `tolerance`, px; `None` if it has none. The middle of a traced line
 /// is farther off where others join it, at corners and at its ends, by about its `radius`: there its long sides tell.
-pub(crate) fn polyline(path: &Path, tolerance: f32, radius: f32) -> Option<Path> {
+pub(crate) fn polyline(path: &Path, tolerance: f64, radius: f64) -> Option<Path> {
     let is_closed = path.is_closed();
     // 1. The sides that are long enough to tell where the line is.
     let corners = simplified(path, tolerance)?;
@@ -16,7 +18,9 @@ pub(crate) fn polyline(path: &Path, tolerance: f32, radius: f32) -> Option<Path>
     let ends: Vec<Point> = corners.iter().copied().chain(closing).collect();
     let blurred = 2.0 * tolerance + 3.0 * radius;
     let sides = ends.windows(2).map(|ends| [ends[0], ends[1]]);
-    let mut sides: Vec<Side> = sides.filter(|[a, b]| (*b - *a).norm() >= blurred).collect();
+    let mut sides: Vec<Side> = sides
+        .filter(|[a, b]| (*b - *a).hypot() >= blurred)
+        .collect();
     // 2. Sides on one line are one side.
     let off = 2.0 * tolerance + 0.3 * radius;
     sides = sides.into_iter().fold(Vec::new(), |mut joined, side| {
@@ -72,25 +76,25 @@ pub(crate) fn through(sides: &[Side], is_closed: bool) -> Option<Path> {
 type Side = [Point; 2];
 
 /// True if two sides, one after the other, lie at most `off` px beside the line through both.
-fn is_one_line([a, b]: Side, [c, d]: Side, off: f32) -> bool {
+fn is_one_line([a, b]: Side, [c, d]: Side, off: f64) -> bool {
     let (u, v, way) = (b - a, d - c, d - a);
-    let beside = |p: Point| (p - a).perp(&way).abs() / way.norm().max(f32::MIN_POSITIVE);
-    let is_slight = f64::from(u.dot(&v)) >= CLEAR * f64::from(u.norm() * v.norm());
+    let beside = |p: Point| (p - a).cross(way).abs() / way.hypot().max(f64::MIN_POSITIVE);
+    let is_slight = u.dot(v) >= CLEAR * u.hypot() * v.hypot();
     is_slight && beside(b) <= off && beside(c) <= off
 }
 
 /// The place on the line through a side that is nearest to `p`.
 fn on_line(p: Point, [a, b]: Side) -> Point {
     let way = b - a;
-    a + way * ((p - a).dot(&way) / way.norm_squared())
+    a + way * ((p - a).dot(way) / way.hypot2())
 }
 
 /// The corners of a polyline that a path is within a tolerance of, px.
-fn simplified(path: &Path, tolerance: f32) -> Option<Vec<Point>> {
+fn simplified(path: &Path, tolerance: f64) -> Option<Vec<Point>> {
     let is_closed = path.is_closed();
     let places = path.flattened(0.05);
     let end = places.len().checked_sub(1)?;
-    let far = |i: &usize| (places[*i] - places[0]).norm_squared();
+    let far = |i: &usize| (places[*i] - places[0]).hypot2();
     // Ramer–Douglas–Peucker: the place that is farthest off becomes a corner, until none is too far off.
     let mut kept = match is_closed {
         true => vec![0, (0..=end).max_by(|a, b| far(a).total_cmp(&far(b)))?, end],
@@ -118,19 +122,15 @@ fn simplified(path: &Path, tolerance: f32) -> Option<Vec<Point>> {
 
 /// Where the lines through two sides meet.
 fn meeting([a, b]: Side, [c, d]: Side) -> Option<Point> {
-    let (u, v) = (b - a, d - c);
-    let across = u.perp(&v);
-    (across != 0.0).then(|| a + u * ((c - a).perp(&v) / across))
+    Line::new(a, b).crossing_point(Line::new(c, d))
 }
 
 /// True if each place is within a tolerance of the polyline of these corners.
-fn are_near(places: &[Point], corners: &[Point], is_closed: bool, tolerance: f32) -> bool {
+fn are_near(places: &[Point], corners: &[Point], is_closed: bool, tolerance: f64) -> bool {
     let closing = is_closed.then(|| corners[0]);
     let ends: Vec<Point> = corners.iter().copied().chain(closing).collect();
     let is_near = |place: &Point| {
-        let away2 = |ends: &[Point]| {
-            nearest_on_segment((*place).into(), [ends[0], ends[1]].map(Into::into)).1
-        };
+        let away2 = |ends: &[Point]| distance2(*place, ends[0], ends[1]);
         ends.windows(2)
             .any(|ends| away2(ends) <= tolerance * tolerance)
     };
@@ -139,15 +139,20 @@ fn are_near(places: &[Point], corners: &[Point], is_closed: bool, tolerance: f32
 
 /// The place that is farthest from the polyline of those that are kept, and where among them it belongs; `None` if all are
 /// within the tolerance.
-fn farthest_off(places: &[Point], kept: &[usize], tolerance: f32) -> Option<(usize, usize)> {
+fn farthest_off(places: &[Point], kept: &[usize], tolerance: f64) -> Option<(usize, usize)> {
     let spans = kept.windows(2).enumerate();
     let away = spans.flat_map(|(k, span)| {
-        let ends = [span[0], span[1]].map(|i| <[f32; 2]>::from(places[i]));
+        let [a, b] = [span[0], span[1]].map(|i| places[i]);
         let inner = span[0] + 1..span[1];
-        inner.map(move |i| (nearest_on_segment(places[i].into(), ends).1, (k + 1, i)))
+        inner.map(move |i| (distance2(places[i], a, b), (k + 1, i)))
     });
     let (far2, found) = away.max_by(|a, b| a.0.total_cmp(&b.0))?;
     (far2 > tolerance * tolerance).then_some(found)
+}
+
+/// The square of a point's distance from the line segment from `a` to `b`.
+fn distance2(p: Point, a: Point, b: Point) -> f64 {
+    Line::new(a, b).nearest(p, 0.0).distance_sq
 }
 
 /// The turn of a line at one of its points.
@@ -158,13 +163,11 @@ pub(super) struct Turn {
 }
 
 /// Directions of the legs before and after each point of a line; `None` if points coincide.
-pub(super) fn directions(points: &[PathPoint], is_closed: bool) -> Option<Vec<[[f64; 2]; 2]>> {
+pub(super) fn directions(points: &[PathPoint], is_closed: bool) -> Option<Vec<[Vec2; 2]>> {
     let count = points.len();
     let leg = |from: usize, to: usize| {
-        let [a, b] = [from, to].map(|i| points[i % count].at);
-        let [dx, dy] = [b.x - a.x, b.y - a.y].map(f64::from);
-        let length = math::hypot(dx, dy);
-        (length > 0.0).then(|| [dx / length, dy / length])
+        let way = points[to % count].at - points[from % count].at;
+        (way.hypot() > 0.0).then(|| way.normalize())
     };
     let both = |i: usize| {
         let before = (is_closed || i > 0).then(|| leg(i + count - 1, i));
@@ -177,11 +180,11 @@ pub(super) fn directions(points: &[PathPoint], is_closed: bool) -> Option<Vec<[[
 
 /// The turns of a line at its points, 0 at its ends; `None` if points coincide.
 pub(super) fn turns(points: &[PathPoint], is_closed: bool) -> Option<Vec<Turn>> {
-    let turn = |[[ux, uy], [vx, vy]]: [[f64; 2]; 2]| {
-        let (cosine, sine) = (ux * vx + uy * vy, ux * vy - uy * vx);
+    let turn = |[before, after]: [Vec2; 2]| {
+        let cosine = before.dot(after);
         Turn {
             cosine,
-            tangent: sine.abs() / (1.0 + cosine),
+            tangent: before.cross(after).abs() / (1.0 + cosine),
         }
     };
     Some(

@@ -1,17 +1,18 @@
 //! Rounds marks to what the SVG can hold: a fixed number of decimals, and 8-bit colour and opacity.
 //!
-//! [`Written`] is a mark in exactly these integers. Quantising, writing and reading all go through it, so
-//! reading a written file gives the quantised scene to the bit.
+//! A rounded mark is a mark like any other, whose numbers are exactly those of the file, so that reading a written file
+//! gives the quantised scene to the bit.
 
 use serde::{Deserialize, Serialize};
 
-use super::grid::{Grid, MIN_WIDTH, UNITS_PER_PX, color, quantum};
-use super::written_path::{WrittenPath, WrittenPoint, spacing, step};
-use super::written_shape::WrittenShape;
-use super::{Area, Band, Mark, Path, PathPoint, Rgb, Scene, Shade, Stage, Stroke};
+use kurbo::Rect;
+
+use super::grid::{Grid, MIN_WIDTH, color, quantum};
+use super::path::bounds;
+use super::{Area, Cap, Mark, Path, PathPoint, Rgb, Scene, Shade, Shape, Stroke};
 
 /// Largest absolute value of a coordinate, px. All decimals up to here are exact.
-const MAX_COORDINATE: f32 = 1e9;
+const MAX_COORDINATE: f64 = 1e9;
 
 /// A scene rounded to what its SVG holds, and what was dropped.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,7 +69,8 @@ impl Scene {
     ///
     /// Coordinates and widths are rounded, widths kept at [`MIN_WIDTH`] or more; colours and
     /// opacities become multiples of 1/255; a path shorter than the precision becomes a dot; a closed path that its pen
-    /// fills becomes an open one that ends where it starts; rings without an inside go. Off-points are
+    /// fills becomes an open one that ends where it starts; rings without an inside go; a stroke with square ends that SVG
+    /// would draw otherwise becomes an area. Off-points are
     /// rounded so that the file also holds the on-points that they imply.
     /// [`Dropped`] counts what is left out. Stages without marks are left out as well.
     pub fn quantized(&self, precision: u8) -> Quantized {
@@ -84,10 +86,19 @@ impl Scene {
             dropped: Dropped::default(),
         };
         for (origin, stage) in self.stages.iter().enumerate() {
-            let marks = self.written(stage, precision, &mut quantized.dropped);
+            let dropped = &mut quantized.dropped;
+            let rounded = stage.marks.iter().filter_map(|mark| {
+                let rounded = self.rounded(mark, precision);
+                let rounded = rounded.map_err(|reason| dropped.count(reason)).ok()?;
+                // A curve that turns back sharply gets points, as it is written as two lines.
+                if rounded.shape().is_none() && !mark.is_butt() {
+                    dropped.points += mark.points().saturating_sub(rounded.points());
+                }
+                Some(rounded)
+            });
+            let marks: Vec<Mark> = rounded.collect();
             if !marks.is_empty() {
-                let stage = marks.iter().map(Written::mark).collect();
-                quantized.scene.stages.push(stage);
+                quantized.scene.stages.push(marks.into_iter().collect());
                 quantized.origins.push(origin);
             }
         }
@@ -96,255 +107,130 @@ impl Scene {
 
     /// The mark as the file of this scene with `precision` decimals has it; `None` if it is not written.
     pub(crate) fn quantized_mark(&self, mark: &Mark, precision: u8) -> Option<Mark> {
-        let written = Written::new(mark, self, precision).ok()?;
-        Some(written.mark())
+        self.rounded(mark, precision).ok()
     }
 
-    /// The marks of `stage` that can be written; the others are counted.
-    fn written(&self, stage: &Stage, precision: u8, dropped: &mut Dropped) -> Vec<Written> {
-        let written = |mark: &Mark| {
-            let written = Written::new(mark, self, precision);
-            let written = written.map_err(|reason| dropped.count(reason)).ok()?;
-            // A curve that turns back sharply gets points, as it is written as two lines.
-            let (before, after) = (mark.points(), written.points().count());
-            if written.shape.is_none() && !written.is_band {
-                dropped.points += before.saturating_sub(after);
-            }
-            Some(written)
-        };
-        stage.marks.iter().filter_map(written).collect()
+    fn rounded(&self, mark: &Mark, precision: u8) -> Result<Mark, Unwritable> {
+        let rounded = rounded(mark, precision)?;
+        let page = Rect::new(0.0, 0.0, self.width.into(), self.height.into());
+        let is_on_page = rounded.extent().intersect(page).area() > 0.0;
+        is_on_page.then_some(rounded).ok_or(Unwritable::OffPage)
     }
 }
 
-/// A mark as the integers of its SVG element.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Written {
-    /// The centre line of a stroke or band, or the rings of an area; at least one.
-    pub(crate) paths: Vec<WrittenPath>,
-    /// The shape of the only path, if it is one.
-    pub(crate) shape: Option<WrittenShape>,
-    /// Width of a stroke in units of 1/[`UNITS_PER_PX`] px; 0 for an area that is no band.
-    pub(crate) width: i64,
-    /// True for a band, which is written as a stroke with square ends.
-    pub(crate) is_band: bool,
-    /// 8-bit red, green and blue.
-    pub(crate) color: [u8; 3],
-    /// Opacity in 1/255, never 0.
-    pub(crate) opacity: u8,
-    /// The gradient of an area that has one; its colour then is the mean of that.
-    pub(crate) shade: Option<WrittenShade>,
-}
-
-/// A gradient of an area, and the name that it has in its file.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct WrittenShade {
-    pub(crate) shade: Shade,
-    /// The numbers of its layer and of the shade in it, from 1; 0 if it has no place in a file yet.
-    pub(crate) place: [usize; 2],
-}
-
-impl From<Shade> for WrittenShade {
-    fn from(shade: Shade) -> Self {
-        Self {
-            shade,
-            place: [0; 2],
-        }
-    }
-}
-
-impl Written {
-    /// The mark rounded to `precision` decimals, or the reason why it would be invisible on the page of
-    /// `scene`.
-    pub(crate) fn new(mark: &Mark, scene: &Scene, precision: u8) -> Result<Self, Unwritable> {
-        let written = Self::anywhere(mark, precision)?;
-        if written.touches(scene.width, scene.height) {
-            Ok(written)
-        } else {
-            Err(Unwritable::OffPage)
-        }
+impl Mark {
+    /// Farthest that it reaches beyond its paths, px: the corners of a band reach farther than its sides.
+    pub(crate) fn reach(&self) -> f64 {
+        let radii = if self.is_butt() { 4.0 } else { 1.0 };
+        radii * self.radius()
     }
 
-    /// The mark rounded to `precision` decimals, whatever its place.
-    pub(crate) fn anywhere(mark: &Mark, precision: u8) -> Result<Self, Unwritable> {
-        check(mark)?;
-        let grid = Grid::new(precision);
-        if let Some(band) = Self::band(mark, &grid) {
-            return Ok(band);
-        }
-        let rounded = Self::round_or_filled(mark, precision)?;
-        // An area may become a band only as it is rounded.
-        let band = rounded
-            .is_area()
-            .then(|| Self::band(&rounded.mark(), &grid));
-        Ok(band.flatten().unwrap_or(rounded))
-    }
-
-    /// The rounded mark as a stroke with round ends or an area, even if it is a band.
-    pub(crate) fn round_or_filled(mark: &Mark, precision: u8) -> Result<Self, Unwritable> {
-        check(mark)?;
-        let grid = Grid::new(precision);
-        let width = mark.as_stroke().map_or(0, |stroke| {
-            let width = grid.units(2.0 * f64::from(stroke.radius));
-            width.max(grid.units_above(MIN_WIDTH))
-        });
-        let (paths, shape) = geometry(mark, &grid, width);
-        if paths.is_empty() {
-            return Err(Unwritable::Invisible);
-        }
-        let shade = mark.shade();
-        Ok(Self {
-            paths,
-            shape,
-            width,
-            is_band: false,
-            color: shade.map_or_else(|| mark.color().map(quantum), Shade::mean),
-            opacity: quantum(mark.opacity()),
-            shade: shade.cloned().map(WrittenShade::from),
-        })
-    }
-
-    /// The mark as a band, if it is one and stays that as it is rounded.
-    fn band(mark: &Mark, grid: &Grid) -> Option<Self> {
-        let written = |area: &Area| {
-            let band = area.band()?;
-            let spacing = area.rings.iter().map(spacing).fold(0.0, f32::max);
-            // Points in `f32` tell a band by a few units in their last place.
-            let grid = grid.coarser(step(8.0 * spacing, grid));
-            Some(Self {
-                paths: vec![WrittenPath::rounded(&band.line, &grid)],
-                shape: None,
-                width: grid.units(band.width.into()),
-                is_band: true,
-                color: mark.color().map(quantum),
-                opacity: quantum(mark.opacity()),
-                shade: None,
-            })
-        };
-        let rounded = written(mark.as_area()?)?;
-        let again = written(rounded.mark().as_area()?)?;
-        (again == rounded).then_some(rounded)
-    }
-
-    /// True if the mark is an area that is no band.
-    pub(crate) fn is_area(&self) -> bool {
-        self.width == 0
-    }
-
-    /// True if the mark is a stroke with round ends.
-    pub(crate) fn is_round(&self) -> bool {
-        !self.is_area() && !self.is_band
-    }
-
-    /// The points of all paths.
-    pub(crate) fn points(&self) -> impl Iterator<Item = &WrittenPoint> {
-        self.paths.iter().flat_map(WrittenPath::points)
-    }
-
-    /// The segments of polylines at most `tolerance` px away from the paths.
-    pub(crate) fn segments(&self, tolerance: f64) -> Vec<[[i64; 2]; 2]> {
-        let paths = self.paths.iter();
-        paths.flat_map(|path| path.segments(tolerance)).collect()
-    }
-
-    /// Farthest that it reaches beyond its paths, in units: the corners of a band reach farther than its sides.
-    pub(crate) fn reach(&self) -> i64 {
-        let halves = if self.is_band { 4 } else { 1 };
-        halves * self.width / 2
-    }
-
-    /// True if the bounding box reaches into a page of this size.
-    fn touches(&self, width: u32, height: u32) -> bool {
+    /// A box around all that it may cover, px.
+    pub(crate) fn extent(&self) -> Rect {
         let reach = self.reach();
-        [width, height].iter().enumerate().all(|(axis, &side)| {
-            let along = || self.points().map(|p| p.at[axis]);
-            let far_end = along().max().unwrap_or(0) + reach;
-            let near_end = along().min().unwrap_or(0) - reach;
-            far_end > 0 && near_end < i64::from(side) * UNITS_PER_PX
-        })
+        self.bounds().inflate(reach, reach)
     }
 
-    /// Half the width, px.
-    fn radius(&self) -> f32 {
-        (self.width as f64 / (2 * UNITS_PER_PX) as f64) as f32
-    }
-
-    /// The band of this mark's width along a line.
-    fn band_along(&self, line: Path) -> Band {
-        Band {
-            line,
-            width: 2.0 * self.radius(),
-        }
-    }
-
-    /// True unless it is a band that SVG would draw otherwise than as its rings.
-    pub(crate) fn is_sound(&self) -> bool {
-        !self.is_band
-            || self
-                .paths
-                .iter()
-                .all(|path| self.band_along(path.path()).is_sound())
-    }
-
-    /// The rounded mark.
-    pub(crate) fn mark(&self) -> Mark {
-        let (color, opacity) = (color(self.color), f32::from(self.opacity) / 255.0);
-        let mut paths: Vec<Path> = match self.shape {
-            Some(shape) => vec![shape.ring()],
-            None => self.paths.iter().map(WrittenPath::path).collect(),
-        };
-        match paths.pop() {
-            Some(path) if !self.is_area() && !self.is_band => Mark::Stroke(Stroke {
-                path,
-                radius: self.radius(),
-                color,
-                opacity,
-            }),
-            last => Mark::Area(Area {
-                rings: match last {
-                    Some(line) if self.is_band => self.band_along(line).rings(),
-                    last => paths.into_iter().chain(last).collect(),
-                },
-                color,
-                opacity,
-                shade: self.shade.as_ref().map(|named| named.shade.clone()),
-            }),
-        }
+    /// The box around its points, px.
+    pub(crate) fn bounds(&self) -> Rect {
+        bounds(self.paths().iter().flat_map(Path::points).map(|p| p.at))
     }
 }
 
-/// The rounded paths, of an area those that have an inside; and the shape of the only one, unless a pen of this `width`
-/// fills it.
-fn geometry(mark: &Mark, grid: &Grid, width: i64) -> (Vec<WrittenPath>, Option<WrittenShape>) {
-    let rounded = mark.paths().iter();
-    let mut paths: Vec<(&Path, WrittenPath)> = rounded
-        .map(|path| (path, WrittenPath::rounded(path, grid)))
-        .collect();
-    // The rounded points of a shape may enclose nothing where the shape, with rounded radii, does.
-    let is_shape =
-        |path: &Path| mark.paths().len() == 1 && WrittenShape::rounded(path, grid).is_some();
-    paths.retain(|(path, rounded)| width > 0 || rounded.encloses() || is_shape(path));
-    if let [(path, rounded)] = &paths[..] {
-        // A path may become a rectangle only as it is rounded.
-        let shape = WrittenShape::rounded(path, grid);
-        let shape = shape.or_else(|| WrittenShape::rounded(&rounded.path(), grid));
-        if let Some((shape, ring)) = shape.map(|shape| (shape, shape.path()))
-            && (width == 0 || ring.clone().opened_if_filled(width).is_closed())
-        {
-            return (vec![ring], Some(shape));
-        }
+/// The mark as a file with `precision` decimals has it, whatever its place; `None` if it is not written.
+pub(crate) fn quantized_anywhere(mark: &Mark, precision: u8) -> Option<Mark> {
+    rounded(mark, precision).ok()
+}
+
+/// The mark rounded to `precision` decimals, or the reason why it would be invisible.
+fn rounded(mark: &Mark, precision: u8) -> Result<Mark, Unwritable> {
+    check(mark)?;
+    let grid = Grid::new(precision);
+    if let Some(band) = mark.as_stroke().and_then(|stroke| band(stroke, &grid)) {
+        return Ok(band.into());
     }
-    let paths = paths.into_iter().map(|(_, rounded)| match mark {
-        Mark::Stroke(_) => rounded.opened_if_filled(width),
-        Mark::Area(_) => rounded,
+    match mark.clone().filled() {
+        Mark::Stroke(stroke) => Ok(round(&stroke, &grid).into()),
+        Mark::Area(filled) => area(&filled, &grid).map(Mark::from),
+    }
+}
+
+/// A rounded stroke with round ends.
+fn round(stroke: &Stroke, grid: &Grid) -> Stroke {
+    let width = grid.round(2.0 * stroke.radius).max(grid.above(MIN_WIDTH));
+    let rounded = stroke.path.rounded(grid);
+    let shaped = shaped(&stroke.path, rounded.clone(), grid);
+    // What its pen fills is no shape any more, as it is written open.
+    let path = match shaped.clone().opened_if_filled(width).is_closed() {
+        true => shaped,
+        false => rounded.opened_if_filled(width),
+    };
+    Stroke {
+        path,
+        radius: 0.5 * width,
+        cap: Cap::Round,
+        color: quantized_color(stroke.color),
+        opacity: quantized_opacity(stroke.opacity),
+    }
+}
+
+/// A rounded stroke with square ends, unless SVG would draw it otherwise.
+fn band(stroke: &Stroke, grid: &Grid) -> Option<Stroke> {
+    let rounded = Stroke {
+        path: stroke.path.rounded(grid),
+        radius: 0.5 * grid.round(2.0 * stroke.radius),
+        cap: stroke.cap,
+        color: quantized_color(stroke.color),
+        opacity: quantized_opacity(stroke.opacity),
+    };
+    rounded.band()?.is_sound().then_some(rounded)
+}
+
+/// A rounded area with its rings that have an inside.
+pub(super) fn area(area: &Area, grid: &Grid) -> Result<Area, Unwritable> {
+    let is_alone = area.rings.len() == 1;
+    let rings = area.rings.iter().map(|ring| {
+        let rounded = ring.rounded(grid);
+        if is_alone {
+            shaped(ring, rounded, grid)
+        } else {
+            rounded
+        }
     });
-    (paths.collect(), None)
+    let rings: Vec<Path> = rings
+        .filter(|ring| ring.shape().is_some() || ring.encloses())
+        .collect();
+    if rings.is_empty() {
+        return Err(Unwritable::Invisible);
+    }
+    let color_of = |shade: &Shade| color(shade.mean());
+    let shade = area.shade.clone();
+    Ok(Area {
+        rings: match &rings[..] {
+            // Of several rings one may be left.
+            [ring] => vec![shaped(ring, ring.clone(), grid)],
+            _ => rings,
+        },
+        color: shade
+            .as_ref()
+            .map_or_else(|| quantized_color(area.color), color_of),
+        opacity: quantized_opacity(area.opacity),
+        shade,
+    })
+}
+
+/// The path of the element of a shape that a path is, or became as it was rounded; otherwise the rounded path.
+fn shaped(path: &Path, rounded: Path, grid: &Grid) -> Path {
+    let shape = path.shape().and_then(|shape| shape.rounded(grid));
+    let shape = shape.or_else(|| Shape::rect_of(&rounded));
+    shape.map_or(rounded, Shape::path)
 }
 
 /// Refuses marks that are invisible at any precision.
 fn check(mark: &Mark) -> Result<(), Unwritable> {
     let far = |p: &PathPoint| p.at.x.abs() > MAX_COORDINATE || p.at.y.abs() > MAX_COORDINATE;
     let radius = mark.radius();
-    let is_thin = mark.as_stroke().is_some() && radius <= 0.0;
+    let is_thin = !mark.is_area() && radius <= 0.0;
     if !mark.is_finite() {
         Err(Unwritable::NonFinite)
     } else if is_thin || quantum(mark.opacity()) == 0 {
@@ -360,23 +246,28 @@ fn quantized_color(rgb: Rgb) -> Rgb {
     color(rgb.map(quantum))
 }
 
+fn quantized_opacity(opacity: f32) -> f32 {
+    f32::from(quantum(opacity)) / 255.0
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::math::Point;
-    use crate::scene::Path;
+    use crate::scene::Stage;
 
     fn stroke(path: Path) -> Stroke {
         Stroke {
             path,
             radius: 2.0,
+            cap: Cap::Round,
             color: [0.2, 0.5, 1.0],
             opacity: 1.0,
         }
     }
 
-    fn capsule(a: [f32; 2], b: [f32; 2]) -> Stroke {
-        stroke(Path::line(a.into(), b.into()))
+    fn capsule([ax, ay]: [f64; 2], [bx, by]: [f64; 2]) -> Stroke {
+        stroke(Path::line(Point::new(ax, ay), Point::new(bx, by)))
     }
 
     fn scene(strokes: Vec<Stroke>) -> Scene {
@@ -462,7 +353,7 @@ mod tests {
             capsule([-9.0, 5.0], [-2.5, 5.0]),
             capsule([5.0, 12.5], [9.0, 12.5]),
             capsule([5.0, 1.0], [5.0, 3e9]),
-            capsule([f32::NAN, 1.0], [5.0, 3.0]),
+            capsule([f64::NAN, 1.0], [5.0, 3.0]),
         ];
         let Quantized { scene, dropped, .. } = scene(strokes).quantized(2);
         let expected = Dropped {

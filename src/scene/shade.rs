@@ -5,30 +5,31 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Rgb, UNITS_PER_PX, quantum};
+use super::Rgb;
+use super::grid::{Grid, color, quantum};
 use crate::error::{Error, ErrorKind, Result};
-use crate::math::{self, Point};
+use crate::math::Point;
 
 /// Most stops of a shade.
 pub const MAX_STOPS: usize = 16;
 
-/// Units of what is written per hundredth of a px.
-const HUNDREDTH: i64 = UNITS_PER_PX / 100;
-/// Shortest axis, hundredths of a px.
-const MIN_LENGTH: f64 = 100.0;
+/// Decimals of its coordinates.
+const PRECISION: u8 = 2;
+/// Shortest axis, px.
+const MIN_LENGTH: f64 = 1.0;
 /// Largest absolute value of a coordinate, px.
-const MAX_COORDINATE: f32 = 1e6;
+const MAX_COORDINATE: f64 = 1e6;
 
 /// A gradient over the whole page or an area. Colour and opacity change linearly from stop to stop; before the first stop
 /// and beyond the last they stay.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Shade {
-    pub(crate) axis: WrittenAxis,
-    pub(crate) stops: Vec<WrittenStop>,
+    axis: Axis,
+    stops: Vec<ShadeStop>,
 }
 
 /// Axis of a gradient, px. Offsets of stops are shares of it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Axis {
     /// From one point to another; colours are constant across it.
     Linear {
@@ -42,12 +43,12 @@ pub enum Axis {
         /// Offset 0.
         center: Point,
         /// The distance that has offset 1.
-        radius: f32,
+        radius: f64,
     },
 }
 
 /// A place of the axis with its colour.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ShadeStop {
     /// Share of the axis, 0..1.
     pub offset: f32,
@@ -57,19 +58,20 @@ pub struct ShadeStop {
     pub opacity: f32,
 }
 
-/// An [`Axis`] in units of 1/[`UNITS_PER_PX`] px: x1, y1, x2, y2 or the centre and the radius.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub(crate) enum WrittenAxis {
-    Linear([i64; 4]),
-    Radial([i64; 3]),
-}
+impl ShadeStop {
+    /// The offset in thousandths of the axis, rounded.
+    pub(crate) fn thousandths(&self) -> u16 {
+        (self.offset * 1000.0).round() as u16
+    }
 
-/// A [`ShadeStop`]: thousandths of the axis, 8-bit channels and opacity.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub(crate) struct WrittenStop {
-    pub(crate) offset: u16,
-    pub(crate) color: [u8; 3],
-    pub(crate) opacity: u8,
+    /// The stop as a file has it.
+    fn rounded(&self) -> Self {
+        Self {
+            offset: f32::from(self.thousandths()) / 1000.0,
+            color: color(self.color.map(quantum)),
+            opacity: f32::from(quantum(self.opacity)) / 255.0,
+        }
+    }
 }
 
 impl Shade {
@@ -83,11 +85,7 @@ impl Shade {
             let message = format!("a gradient has {what}");
             Err(Error::new(ErrorKind::Config, message))
         };
-        let numbers = match axis {
-            Axis::Linear { from, to } => [from.x, from.y, to.x, to.y],
-            Axis::Radial { center, radius } => [center.x, center.y, radius, 0.0],
-        };
-        if !numbers.iter().all(|v| v.abs() <= MAX_COORDINATE) {
+        if !axis.numbers().iter().all(|v| v.abs() <= MAX_COORDINATE) {
             return refuse("a coordinate that is not finite or beyond a million px");
         }
         let offsets = || stops.iter().map(|stop| stop.offset);
@@ -97,78 +95,52 @@ impl Shade {
         if !offsets().all(|offset| (0.0..=1.0).contains(&offset)) || !offsets().is_sorted() {
             return refuse("offsets that are not between 0 and 1, or that fall");
         }
-        let units = numbers.map(|v| (f64::from(v) * 100.0).round() as i64 * HUNDREDTH);
-        let written = |stop: &ShadeStop| WrittenStop {
-            offset: (stop.offset * 1000.0).round() as u16,
-            color: stop.color.map(quantum),
-            opacity: quantum(stop.opacity),
-        };
+        let grid = Grid::new(PRECISION);
         let axis = match axis {
-            Axis::Linear { .. } => WrittenAxis::Linear(units),
-            Axis::Radial { .. } => WrittenAxis::Radial([units[0], units[1], units[2]]),
+            Axis::Linear { from, to } => Axis::Linear {
+                from: grid.point(from),
+                to: grid.point(to),
+            },
+            Axis::Radial { center, radius } => Axis::Radial {
+                center: grid.point(center),
+                radius: grid.round(radius),
+            },
         };
-        let shade = Self::written(axis, stops.iter().map(written).collect());
-        shade.map_or_else(|| refuse("an axis shorter than a px"), Ok)
-    }
-
-    /// The shade of these numbers of a file, unless its axis is too short, its stops are too few, too many or not in order.
-    pub(crate) fn written(axis: WrittenAxis, stops: Vec<WrittenStop>) -> Option<Self> {
         let length = match axis {
-            WrittenAxis::Linear([ax, ay, bx, by]) => {
-                math::hypot((bx - ax) as f64, (by - ay) as f64)
-            }
-            WrittenAxis::Radial([.., radius]) => radius as f64,
+            Axis::Linear { from, to } => (to - from).hypot(),
+            Axis::Radial { radius, .. } => radius,
         };
-        let whole = length >= MIN_LENGTH * HUNDREDTH as f64
-            && (2..=MAX_STOPS).contains(&stops.len())
-            && stops.is_sorted_by_key(|stop| stop.offset);
-        whole.then_some(Self { axis, stops })
+        if length < MIN_LENGTH {
+            return refuse("an axis shorter than a px");
+        }
+        let stops = stops.iter().map(ShadeStop::rounded).collect();
+        Ok(Self { axis, stops })
     }
 
     /// Axis of the gradient. Offsets are shares of it.
     pub fn axis(&self) -> Axis {
-        let px = |units: i64| (units as f64 / UNITS_PER_PX as f64) as f32;
-        match self.axis {
-            WrittenAxis::Linear(numbers) => {
-                let [ax, ay, bx, by] = numbers.map(px);
-                Axis::Linear {
-                    from: Point::new(ax, ay),
-                    to: Point::new(bx, by),
-                }
-            }
-            WrittenAxis::Radial(numbers) => {
-                let [x, y, radius] = numbers.map(px);
-                Axis::Radial {
-                    center: Point::new(x, y),
-                    radius,
-                }
-            }
-        }
+        self.axis
     }
 
     /// The stops, by rising offset.
-    pub fn stops(&self) -> impl ExactSizeIterator<Item = ShadeStop> {
-        self.stops.iter().map(|stop| ShadeStop {
-            offset: f32::from(stop.offset) / 1000.0,
-            color: stop.color.map(|level| f32::from(level) / 255.0),
-            opacity: f32::from(stop.opacity) / 255.0,
-        })
+    pub fn stops(&self) -> &[ShadeStop] {
+        &self.stops
     }
 
     /// The mean colour over the axis, of 8-bit channels.
     pub(crate) fn mean(&self) -> [u8; 3] {
         let mut sums = [0; 3];
-        let mut add = |thousandths: u64, stop: &WrittenStop| {
-            let channels = sums.iter_mut().zip(stop.color);
+        let mut add = |thousandths: u64, stop: &ShadeStop| {
+            let channels = sums.iter_mut().zip(stop.color.map(quantum));
             channels.for_each(|(sum, level)| *sum += thousandths * u64::from(level));
         };
-        let ends = [self.stops.first(), self.stops.last()];
-        if let [Some(first), Some(last)] = ends {
-            add(2 * u64::from(first.offset), first);
-            add(2000 - 2 * u64::from(last.offset), last);
+        let offset = |stop: &ShadeStop| u64::from(stop.thousandths());
+        if let [first, .., last] = &self.stops[..] {
+            add(2 * offset(first), first);
+            add(2000 - 2 * offset(last), last);
         }
         for pair in self.stops.windows(2) {
-            let width = u64::from(pair[1].offset - pair[0].offset);
+            let width = offset(&pair[1]) - offset(&pair[0]);
             pair.iter().for_each(|stop| add(width, stop));
         }
         sums.map(|sum: u64| ((sum + 1000) / 2000) as u8)
@@ -176,7 +148,7 @@ impl Shade {
 
     /// True if all of it is opaque.
     pub fn is_opaque(&self) -> bool {
-        self.stops.iter().all(|stop| stop.opacity == u8::MAX)
+        self.stops.iter().all(|stop| stop.opacity == 1.0)
     }
 
     /// Colour and opacity at `point`.
@@ -189,7 +161,7 @@ impl Shade {
         let axis = self.axis();
         let mut planes: [Vec<f32>; 3] = Default::default();
         for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
-            let center = Point::new(x as f32 + 0.5, y as f32 + 0.5);
+            let center = Point::new(x as f64 + 0.5, y as f64 + 0.5);
             let (color, opacity) = self.at_offset(axis.offset(center));
             for (c, plane) in planes.iter_mut().enumerate() {
                 plane.push(behind[c] + opacity * (color[c] - behind[c]));
@@ -200,21 +172,19 @@ impl Shade {
 
     /// Colour and opacity at `offset`: straight, not premultiplied, as SVG interpolates them. Of stops with one offset the
     /// last holds from there on.
-    fn at_offset(&self, offset: f32) -> (Rgb, f32) {
-        let thousandths = offset * 1000.0;
-        let after = self
-            .stops
-            .partition_point(|stop| f32::from(stop.offset) <= thousandths);
+    fn at_offset(&self, offset: f64) -> (Rgb, f32) {
+        let offset = offset as f32;
+        let after = self.stops.partition_point(|stop| stop.offset <= offset);
         // There are at least two stops.
         let last = self.stops.len() - 1;
         let [left, right] = [after.saturating_sub(1), after.min(last)].map(|i| self.stops[i]);
-        let width = f32::from(right.offset) - f32::from(left.offset);
+        let width = right.offset - left.offset;
         let part = if width > 0.0 {
-            ((thousandths - f32::from(left.offset)) / width).clamp(0.0, 1.0)
+            ((offset - left.offset) / width).clamp(0.0, 1.0)
         } else {
             0.0
         };
-        let mix = |a: u8, b: u8| (f32::from(a) + part * (f32::from(b) - f32::from(a))) / 255.0;
+        let mix = |a: f32, b: f32| a + part * (b - a);
         let color = [0, 1, 2].map(|c| mix(left.color[c], right.color[c]));
         (color, mix(left.opacity, right.opacity))
     }
@@ -222,16 +192,21 @@ impl Shade {
 
 impl Axis {
     /// The offset at `point`, not clamped.
-    pub fn offset(&self, point: Point) -> f32 {
+    pub fn offset(&self, point: Point) -> f64 {
         match *self {
             Self::Linear { from, to } => {
                 let along = to - from;
-                (point - from).dot(&along) / along.norm_squared()
+                (point - from).dot(along) / along.hypot2()
             }
-            Self::Radial { center, radius } => {
-                let away = point - center;
-                math::hypot(away.x, away.y) / radius
-            }
+            Self::Radial { center, radius } => (point - center).hypot() / radius,
+        }
+    }
+
+    /// Its numbers as a file has them: both points, or the centre and the radius.
+    pub(crate) fn numbers(&self) -> Vec<f64> {
+        match *self {
+            Self::Linear { from, to } => vec![from.x, from.y, to.x, to.y],
+            Self::Radial { center, radius } => vec![center.x, center.y, radius],
         }
     }
 }
@@ -248,7 +223,7 @@ mod tests {
         }
     }
 
-    fn across(width: f32) -> Axis {
+    fn across(width: f64) -> Axis {
         Axis::Linear {
             from: Point::new(0.0, 0.0),
             to: Point::new(width, 0.0),
@@ -311,7 +286,7 @@ mod tests {
         let two = [stop(0.0, 0.0, 1.0), stop(1.0, 1.0, 1.0)];
         assert!(Shade::new(across(10.0), &two).is_ok());
         assert!(Shade::new(across(0.5), &two).is_err());
-        assert!(Shade::new(across(f32::NAN), &two).is_err());
+        assert!(Shade::new(across(f64::NAN), &two).is_err());
         assert!(Shade::new(across(10.0), &two[..1]).is_err());
         assert!(Shade::new(across(10.0), &[two[1], two[0]]).is_err());
         assert!(Shade::new(across(10.0), &[stop(0.0, 0.0, 1.0); MAX_STOPS + 1]).is_err());

@@ -1,16 +1,17 @@
 //! Shapes: closed paths that SVG has elements for, circles, ellipses and rectangles, parallel to the axes.
 //!
-//! A path *is* a shape if its points are those of [`Shape::ring`]. So nothing has to say that it is one: a descent that
-//! moves its points makes it a path like any other, unless it puts them back with [`Shape::restore`].
+//! A path says that it is a shape if it was made by [`Shape::path`]; see [`Path::shape`].
 //!
-//! Along each axis, a point of a ring lies at a *side* of the shape plus its radius times a number that depends on the kind
-//! of ring alone. So the nearest shape to moved points is a linear regression.
+//! Along each axis, a point of that path lies at a *side* of the shape plus its radius times a number that depends on the
+//! kind of shape and the number of points alone. So the nearest shape to moved points is a linear regression.
 
 use std::f64::consts::FRAC_PI_2;
 
+use serde::{Deserialize, Serialize};
+
+use super::grid::{Grid, units};
 use super::path::{Path, PathPoint};
-use super::written_path::spacing;
-use crate::math::{self, Point};
+use crate::math::{self, Point, Vec2};
 
 /// A closed path with an element of its own.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,14 +21,14 @@ pub enum Shape {
         /// Its centre, px.
         center: Point,
         /// Its radius, px.
-        radius: f32,
+        radius: f64,
     },
     /// `<ellipse>`.
     Ellipse {
         /// Its centre, px.
         center: Point,
         /// Its radii along x and y, px.
-        radii: [f32; 2],
+        radii: [f64; 2],
     },
     /// `<rect>`.
     Rect {
@@ -36,7 +37,7 @@ pub enum Shape {
         /// The opposite corner, px.
         high: Point,
         /// The radius of round corners, px; 0 for sharp ones.
-        radius: f32,
+        radius: f64,
     },
 }
 
@@ -61,92 +62,176 @@ struct Place {
 
 impl Shape {
     /// The closed path of the shape's element; its curves bulge by 0.02 px at most.
-    pub fn ring(&self) -> Path {
-        let radius = match *self {
-            Self::Circle { radius, .. } | Self::Rect { radius, .. } => f64::from(radius),
-            Self::Ellipse { radii: [x, y], .. } => f64::from(x.max(y)),
+    pub fn path(self) -> Path {
+        let radius = match self {
+            Self::Circle { radius, .. } | Self::Rect { radius, .. } => radius,
+            Self::Ellipse { radii: [x, y], .. } => x.max(y),
         };
         let bulge = |quarter: usize| radius * math::powi(half_angle(quarter), 4) / 8.0;
         let quarter = QUARTERS.into_iter().find(|&n| bulge(n) <= BULGE);
-        let places = self.places(quarter.unwrap_or(16));
+        let places = self.kind().places(quarter.unwrap_or(16));
         let points = places.iter().map(|place| PathPoint {
-            at: self.at(place),
+            at: self.frame().at(place),
             is_on: place.is_on,
         });
-        Path::of_valid(points.collect(), true)
+        Path::of_shape(self, points.collect())
     }
 
-    /// The shape that this path is the ring of.
-    pub fn of(path: &Path) -> Option<Self> {
-        if !path.is_closed() {
+    /// The rectangle whose corners a path has, in either sense: a file has one element for both.
+    pub(super) fn rect_of(path: &Path) -> Option<Self> {
+        let [a, b, c, d] = path.points() else {
             return None;
-        }
-        let at: Vec<Point> = path.points().iter().map(|p| p.at).collect();
-        let (zero, count) = (Point::origin(), at.len());
-        let round = [Self::circle(zero, 0.0), Self::ellipse(zero, [0.0; 2])];
-        let round = round.map(|kind| (kind, count / 4));
-        let rect = (Self::rect([zero; 2], 1.0), count.saturating_sub(8) / 4);
-        let kinds = round.into_iter().chain([rect]);
-        let mut kinds = kinds.filter(|(_, quarter)| QUARTERS.contains(quarter));
-        let shape = kinds.find_map(|(kind, quarter)| {
-            let places = kind.places(quarter);
-            let kept = path.points().iter().map(|p| p.is_on);
-            if !kept.eq(places.iter().map(|place| place.is_on)) {
-                return None;
-            }
-            let shape = kind.nearest(&at, &places)?;
-            let away = |(p, place): (&Point, &Place)| (shape.at(place) - *p).abs().max();
-            let is_exact = at
-                .iter()
-                .zip(&places)
-                .all(|pair| away(pair) <= 2.0 * spacing(path));
-            is_exact.then_some(shape)
-        });
-        shape.or_else(|| sharp(path))
-    }
-
-    /// Moves the points of this shape's ring, each a little beside its place, to those of the nearest shape of its kind.
-    pub(crate) fn restore(&self, points: &mut [[f32; 2]]) {
-        let places = self.places_of(points.len());
-        if let Some(shape) = self.nearest(&of_arrays(points), &places) {
-            put(points, shape.frame(), &places);
-        }
-    }
-
-    /// Leaves of a change of this shape's points the part that keeps the shape: the change of its sides and radii.
-    pub(crate) fn project(&self, change: &mut [[f32; 2]]) {
-        let places = self.places_of(change.len());
-        // Points depend on sides and radii linearly.
-        let frame = self.nearest_frame(&of_arrays(change), &places);
-        put(change, frame, &places);
-    }
-
-    /// The places of a ring of so many points.
-    fn places_of(&self, count: usize) -> Vec<Place> {
-        let corners = match self {
-            Self::Rect { radius, .. } if *radius > 0.0 => 8,
-            _ => 0,
         };
-        self.places((count - corners) / 4)
+        let is_level = |p: &PathPoint, q: &PathPoint| p.at.y == q.at.y;
+        let is_upright = |p: &PathPoint, q: &PathPoint| p.at.x == q.at.x;
+        let is_along = is_level(a, b) && is_upright(b, c) && is_level(c, d) && is_upright(d, a)
+            || is_upright(a, b) && is_level(b, c) && is_upright(c, d) && is_level(d, a);
+        let is_rect = path.is_closed() && path.points().iter().all(|p| p.is_on) && is_along;
+        let bounds = path.bounds();
+        (is_rect && bounds.area() > 0.0)
+            .then(|| Self::rect([bounds.origin(), Point::new(bounds.x1, bounds.y1)], 0.0))
     }
 
-    pub(super) fn circle(center: Point, radius: f32) -> Self {
+    /// The shape with its numbers on the `grid`; `None` if nothing is left of it.
+    pub(super) fn rounded(self, grid: &Grid) -> Option<Self> {
+        let rounded = match self {
+            Self::Circle { center, radius } => Self::circle(grid.point(center), grid.round(radius)),
+            Self::Ellipse { center, radii } => match radii.map(|px| grid.round(px)) {
+                [x, y] if x == y => Self::circle(grid.point(center), x),
+                radii => Self::ellipse(grid.point(center), radii),
+            },
+            Self::Rect { low, high, radius } => {
+                let (low, high) = (grid.point(low), grid.point(high));
+                let side = high - low;
+                let most = grid.below(0.5 * side.x.min(side.y));
+                Self::rect([low, high], grid.round(radius).min(most))
+            }
+        };
+        rounded.is_solid().then_some(rounded)
+    }
+
+    /// True if it has an inside, and its corners have room.
+    pub(crate) fn is_solid(&self) -> bool {
+        match *self {
+            Self::Circle { radius, .. } => radius > 0.0,
+            Self::Ellipse { radii: [x, y], .. } => x > 0.0 && y > 0.0 && x != y,
+            Self::Rect { low, high, radius } => {
+                let side = high - low;
+                let least = units(2.0 * radius).max(1);
+                radius >= 0.0 && units(side.x.min(side.y)) >= least
+            }
+        }
+    }
+
+    pub(crate) fn circle(center: Point, radius: f64) -> Self {
         Self::Circle { center, radius }
     }
 
-    pub(super) fn ellipse(center: Point, radii: [f32; 2]) -> Self {
+    pub(crate) fn ellipse(center: Point, radii: [f64; 2]) -> Self {
         Self::Ellipse { center, radii }
     }
 
-    pub(super) fn rect([low, high]: [Point; 2], radius: f32) -> Self {
+    pub(crate) fn rect([low, high]: [Point; 2], radius: f64) -> Self {
         Self::Rect { low, high, radius }
     }
 
-    /// The places of all points of a ring with this many control points for each quarter turn.
-    fn places(&self, quarter: usize) -> Vec<Place> {
+    /// This shape, moved.
+    pub(super) fn moved(self, by: Vec2) -> Self {
         match self {
-            Self::Rect { radius, .. } => {
-                let is_round = *radius > 0.0;
+            Self::Circle { center, radius } => Self::circle(center + by, radius),
+            Self::Ellipse { center, radii } => Self::ellipse(center + by, radii),
+            Self::Rect { low, high, radius } => Self::rect([low + by, high + by], radius),
+        }
+    }
+
+    /// Its kind.
+    pub(crate) fn kind(&self) -> ShapeKind {
+        match self {
+            Self::Circle { .. } => ShapeKind::Circle,
+            Self::Ellipse { .. } => ShapeKind::Ellipse,
+            Self::Rect { radius: 0.0, .. } => ShapeKind::Rect,
+            Self::Rect { .. } => ShapeKind::RoundRect,
+        }
+    }
+
+    fn frame(&self) -> Frame {
+        let (sides, radii) = match *self {
+            Self::Circle { center, radius } => ([center; 2], [radius; 2]),
+            Self::Ellipse { center, radii } => ([center; 2], radii),
+            Self::Rect { low, high, radius } => ([low, high], [radius; 2]),
+        };
+        Frame { sides, radii }
+    }
+}
+
+/// A kind of shape: the linear map from its sides and radii to the points of its path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum ShapeKind {
+    /// `<circle>`.
+    Circle,
+    /// `<ellipse>`.
+    Ellipse,
+    /// `<rect>` with sharp corners.
+    Rect,
+    /// `<rect>` with round corners.
+    RoundRect,
+}
+
+impl ShapeKind {
+    /// The shape of this kind that is nearest to the points of its path, each a little beside its place, by least squares;
+    /// `None` if it would be empty.
+    pub(crate) fn nearest(self, points: &[[f32; 2]]) -> Option<Shape> {
+        let Frame { sides, radii } = self.nearest_frame(points, &self.places_of(points.len()));
+        let [low, high] = sides;
+        let side = high - low;
+        let shape = match self {
+            Self::Circle => Shape::circle(low, radii[0]),
+            Self::Ellipse => Shape::ellipse(low, radii),
+            Self::Rect => Shape::rect(sides, 0.0),
+            Self::RoundRect => Shape::rect(sides, radii[0].min(0.5 * side.x.min(side.y))),
+        };
+        let is_solid = match self {
+            Self::Circle | Self::Ellipse => radii[0] > 0.0 && radii[1] > 0.0,
+            Self::Rect => side.x > 0.0 && side.y > 0.0,
+            Self::RoundRect => radii[0] > 0.0 && side.x > 0.0 && side.y > 0.0,
+        };
+        is_solid.then_some(shape)
+    }
+
+    /// Moves points to those of the nearest shape of this kind.
+    pub(crate) fn restore(self, points: &mut [[f32; 2]]) {
+        if let Some(shape) = self.nearest(points) {
+            put(points, shape.frame(), &self.places_of(points.len()));
+        }
+    }
+
+    /// Leaves of a change of a shape's points the part that keeps the shape: the change of its sides and radii.
+    pub(crate) fn project(self, change: &mut [[f32; 2]]) {
+        let places = self.places_of(change.len());
+        // Points depend on sides and radii linearly.
+        let frame = self.nearest_frame(change, &places);
+        put(change, frame, &places);
+    }
+
+    /// The places of a path of so many points.
+    fn places_of(self, count: usize) -> Vec<Place> {
+        let corners = if self == Self::RoundRect { 8 } else { 0 };
+        self.places((count - corners) / 4)
+    }
+
+    /// The places of all points of a path with this many control points for each quarter turn.
+    fn places(self, quarter: usize) -> Vec<Place> {
+        match self {
+            Self::Circle | Self::Ellipse => {
+                let arcs = TURNS.into_iter().flat_map(|turn| arc(turn, quarter));
+                let place = |factors| Place {
+                    is_high: [false; 2],
+                    factors,
+                    is_on: false,
+                };
+                arcs.map(place).collect()
+            }
+            Self::Rect | Self::RoundRect => {
                 let corner = |turn: usize| {
                     let is_high = [turn == 3 || turn == 0, turn < 2];
                     let sign = is_high.map(|is_high| if is_high { 1.0 } else { -1.0 });
@@ -158,9 +243,9 @@ impl Shape {
                     let ends = [0.0, 1.0].map(|share| (turned(turn, share, 1.0), true));
                     let [start, end] = ends.map(|end| vec![end]);
                     let arc = arc(turn, quarter).map(|direction| (direction, false));
-                    let points = match is_round {
-                        true => [start, arc.collect(), end].concat(),
-                        false => vec![(sign, true)],
+                    let points = match self {
+                        Self::RoundRect => [start, arc.collect(), end].concat(),
+                        _ => vec![(sign, true)],
                     };
                     points.into_iter().map(place)
                 };
@@ -169,34 +254,11 @@ impl Shape {
                 places.rotate_right(1);
                 places
             }
-            _ => {
-                let arcs = TURNS.into_iter().flat_map(|turn| arc(turn, quarter));
-                let place = |factors| Place {
-                    is_high: [false; 2],
-                    factors,
-                    is_on: false,
-                };
-                arcs.map(place).collect()
-            }
         }
     }
 
-    /// Where a place is, px.
-    fn at(&self, place: &Place) -> Point {
-        self.frame().at(place)
-    }
-
-    fn frame(&self) -> Frame {
-        let (sides, radii) = match *self {
-            Self::Circle { center, radius } => ([center; 2], [radius; 2]),
-            Self::Ellipse { center, radii } => ([center; 2], radii),
-            Self::Rect { low, high, radius } => ([low, high], [radius; 2]),
-        };
-        Frame { sides, radii }
-    }
-
     /// The sides and radii of the shape of this kind that is nearest to points at these places, by least squares.
-    fn nearest_frame(&self, at: &[Point], places: &[Place]) -> Frame {
+    fn nearest_frame(self, at: &[[f32; 2]], places: &[Place]) -> Frame {
         let group = |axis: usize, is_high: bool| -> Vec<[f64; 2]> {
             let points = at.iter().zip(places);
             points
@@ -206,50 +268,23 @@ impl Shape {
         };
         let [low_x, low_y, high_x, high_y] =
             [(0, false), (1, false), (0, true), (1, true)].map(|(axis, high)| group(axis, high));
-        let point = |x: f32, y: f32| Point::new(x, y);
         let (sides, radii) = match self {
-            Self::Circle { .. } => {
+            Self::Circle => {
                 let (center, radius) = regression(&[low_x, low_y]);
-                ([point(center[0], center[1]); 2], [radius; 2])
+                ([Point::new(center[0], center[1]); 2], [radius; 2])
             }
-            Self::Ellipse { .. } => {
+            Self::Ellipse => {
                 let [(x, x_radius), (y, y_radius)] =
                     [low_x, low_y].map(|group| regression(&[group]));
-                ([point(x[0], y[0]); 2], [x_radius, y_radius])
+                ([Point::new(x[0], y[0]); 2], [x_radius, y_radius])
             }
-            Self::Rect { .. } => {
+            Self::Rect | Self::RoundRect => {
                 let (sides, radius) = regression(&[low_x, low_y, high_x, high_y]);
-                let corners = [point(sides[0], sides[1]), point(sides[2], sides[3])];
-                (corners, [radius; 2])
+                let low = Point::new(sides[0], sides[1]);
+                ([low, Point::new(sides[2], sides[3])], [radius; 2])
             }
         };
         Frame { sides, radii }
-    }
-
-    /// The shape of this kind with these sides and radii; `None` if it would be empty.
-    fn framed(&self, frame: Frame) -> Option<Self> {
-        let ([low, high], radii) = (frame.sides, frame.radii);
-        match *self {
-            Self::Circle { .. } => (radii[0] > 0.0).then(|| Self::circle(low, radii[0])),
-            Self::Ellipse { .. } => {
-                let is_solid = radii.iter().all(|&radius| radius > 0.0);
-                is_solid.then(|| Self::ellipse(low, radii))
-            }
-            Self::Rect { radius: round, .. } => {
-                let side = (high - low).min();
-                let radius = match round > 0.0 {
-                    true => radii[0].clamp(0.0, (0.5 * side).max(0.0)),
-                    false => 0.0,
-                };
-                let is_solid = side > 0.0 && (radius > 0.0) == (round > 0.0);
-                is_solid.then(|| Self::rect([low, high], radius))
-            }
-        }
-    }
-
-    /// The shape of this kind that is nearest to points at these places, by least squares; `None` if it would be empty.
-    fn nearest(&self, at: &[Point], places: &[Place]) -> Option<Self> {
-        self.framed(self.nearest_frame(at, places))
     }
 }
 
@@ -259,47 +294,24 @@ struct Frame {
     /// The sides of least and of most x and y; twice the centre of a round shape.
     sides: [Point; 2],
     /// The radii along x and y.
-    radii: [f32; 2],
+    radii: [f64; 2],
 }
 
 impl Frame {
     fn at(&self, place: &Place) -> Point {
-        let at = |axis: usize| {
-            let side = self.sides[usize::from(place.is_high[axis])][axis];
-            (f64::from(side) + f64::from(self.radii[axis]) * place.factors[axis]) as f32
-        };
-        Point::new(at(0), at(1))
+        let [x, y] = place
+            .is_high
+            .map(|is_high| self.sides[usize::from(is_high)]);
+        let [dx, dy] = [0, 1].map(|axis| self.radii[axis] * place.factors[axis]);
+        Point::new(x.x + dx, y.y + dy)
     }
-}
-
-fn of_arrays(points: &[[f32; 2]]) -> Vec<Point> {
-    points.iter().map(|&p| p.into()).collect()
 }
 
 /// Puts points where these places of a frame are.
 fn put(points: &mut [[f32; 2]], frame: Frame, places: &[Place]) {
     for (point, place) in points.iter_mut().zip(places) {
-        *point = frame.at(place).into();
+        *point = math::xy(frame.at(place));
     }
-}
-
-/// The rectangle with these corners, in either sense.
-fn sharp(path: &Path) -> Option<Shape> {
-    let [a, b, c, d] = path.points() else {
-        return None;
-    };
-    let is_level = |p: &PathPoint, q: &PathPoint, axis: usize| p.at[axis] == q.at[axis];
-    let is_along = |axis: usize| {
-        let other = 1 - axis;
-        is_level(a, b, axis)
-            && is_level(c, d, axis)
-            && is_level(b, c, other)
-            && is_level(d, a, other)
-    };
-    let corners = [a.at.inf(&c.at), a.at.sup(&c.at)];
-    let is_solid = (corners[1] - corners[0]).min() > 0.0;
-    let is_rect = path.points().iter().all(|p| p.is_on) && (is_along(0) || is_along(1));
-    (is_rect && is_solid).then_some(Shape::rect(corners, 0.0))
 }
 
 /// Half the angle that one control point of a quarter turn stands for.
@@ -330,7 +342,7 @@ fn arc(turn: usize, quarter: usize) -> impl Iterator<Item = [f64; 2]> {
 }
 
 /// The sides, one for each group of pairs of a factor and a coordinate, and the one slope of all groups.
-fn regression(groups: &[Vec<[f64; 2]>]) -> (Vec<f32>, f32) {
+fn regression(groups: &[Vec<[f64; 2]>]) -> (Vec<f64>, f64) {
     let mean = |group: &[[f64; 2]], k: usize| {
         group.iter().map(|pair| pair[k]).sum::<f64>() / group.len().max(1) as f64
     };
@@ -343,8 +355,8 @@ fn regression(groups: &[Vec<[f64; 2]>]) -> (Vec<f32>, f32) {
         }
     }
     let slope = if square > 0.0 { along / square } else { 0.0 };
-    let side = |group: &Vec<[f64; 2]>| (mean(group, 1) - slope * mean(group, 0)) as f32;
-    (groups.iter().map(side).collect(), slope as f32)
+    let side = |group: &Vec<[f64; 2]>| mean(group, 1) - slope * mean(group, 0);
+    (groups.iter().map(side).collect(), slope)
 }
 
 #[cfg(test)]
@@ -362,66 +374,55 @@ mod tests {
         ]
     }
 
+    /// The points of a shape's path, as a descent has them.
+    fn points(shape: Shape) -> Vec<[f32; 2]> {
+        let path = shape.path();
+        path.points().iter().map(|p| math::xy(p.at)).collect()
+    }
+
     #[test]
-    fn a_ring_is_its_shape_and_a_moved_one_is_none() {
+    fn the_nearest_shape_to_the_points_of_a_shape_is_that_shape() {
         for shape in shapes() {
-            let ring = shape.ring();
-            let found = Shape::of(&ring).unwrap();
-            assert_eq!(
-                std::mem::discriminant(&found),
-                std::mem::discriminant(&shape)
+            let found = shape.kind().nearest(&points(shape)).unwrap();
+            let pairs = points(found)
+                .into_iter()
+                .flatten()
+                .zip(points(shape).into_iter().flatten());
+            assert!(
+                pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-4),
+                "{found:?}"
             );
-            let away = |(a, b): (&PathPoint, &PathPoint)| (a.at - b.at).abs().max();
-            let found = found.ring();
-            let pairs = found.points().iter().zip(ring.points());
-            assert!(pairs.map(away).all(|px| px < 1e-4), "{found:?}");
-            let mut points = ring.points().to_vec();
-            points[1].at.x += 0.01;
-            assert_eq!(Shape::of(&Path::new(points, true).unwrap()), None);
         }
     }
 
     #[test]
-    fn a_ring_of_moved_points_is_restored_to_the_nearest_one() {
+    fn moved_points_are_restored_to_the_nearest_shape() {
         for shape in &shapes()[..3] {
-            let ring = shape.ring();
-            let mut points: Vec<[f32; 2]> = ring.points().iter().map(|p| p.at.into()).collect();
-            for (i, point) in points.iter_mut().enumerate() {
+            let mut moved = points(*shape);
+            for (i, point) in moved.iter_mut().enumerate() {
                 let (sin, cos) = math::sin_cos(2.0 * i as f32);
                 *point = [point[0] + 0.1 * sin, point[1] + 0.1 * cos];
             }
-            shape.restore(&mut points);
-            let restored = ring.points().iter().zip(&points);
-            let restored = restored.map(|(p, &at)| PathPoint {
-                at: at.into(),
-                ..*p
-            });
-            let restored = Path::new(restored.collect(), true).unwrap();
-            let found = Shape::of(&restored).unwrap();
-            assert_eq!(
-                std::mem::discriminant(&found),
-                std::mem::discriminant(shape)
-            );
-            let pairs = restored.points().iter().zip(ring.points());
-            assert!(
-                pairs
-                    .into_iter()
-                    .all(|(a, b)| (a.at - b.at).abs().max() < 0.06)
-            );
+            shape.kind().restore(&mut moved);
+            let restored = points(shape.kind().nearest(&moved).unwrap());
+            let pairs = moved.iter().flatten().zip(restored.iter().flatten());
+            assert!(pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-4));
+            let own = points(*shape);
+            let pairs = moved.iter().flatten().zip(own.iter().flatten());
+            assert!(pairs.into_iter().all(|(a, b)| (a - b).abs() < 0.06));
         }
     }
 
     #[test]
     fn what_keeps_a_shape_is_left_of_a_change() {
         for shape in &shapes()[..3] {
-            let ring = shape.ring();
-            let points: Vec<[f32; 2]> = ring.points().iter().map(|p| p.at.into()).collect();
+            let (kind, points) = (shape.kind(), points(*shape));
             let change = |i: usize| <[f32; 2]>::from(math::sin_cos(5.0 * i as f32));
             let mut left: Vec<[f32; 2]> = (0..points.len()).map(change).collect();
-            shape.project(&mut left);
+            kind.project(&mut left);
             // Once more changes nothing, and the rest is at a right angle to it.
             let mut again = left.clone();
-            shape.project(&mut again);
+            kind.project(&mut again);
             let pairs = || left.iter().flatten().zip(again.iter().flatten());
             assert!(pairs().all(|(a, b)| (a - b).abs() < 1e-5));
             let rest = (0..points.len())
@@ -434,7 +435,7 @@ mod tests {
                 .map(|(p, by)| [0, 1].map(|k| p[k] + 0.1 * by[k]))
                 .collect();
             let mut restored = moved.clone();
-            shape.restore(&mut restored);
+            kind.restore(&mut restored);
             let pairs = moved.iter().flatten().zip(restored.iter().flatten());
             assert!(pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-3));
         }
@@ -442,17 +443,20 @@ mod tests {
 
     #[test]
     fn corners_make_a_rectangle_in_either_sense() {
-        let corners = [[1.0, 2.0], [9.0, 2.0], [9.0, 7.5], [1.0, 7.5]];
-        let rect = Shape::rect([corners[0].into(), corners[2].into()], 0.0);
+        let corners = [(1.0, 2.0), (9.0, 2.0), (9.0, 7.5), (1.0, 7.5)].map(Point::from);
+        let rect = Shape::rect([corners[0], corners[2]], 0.0);
         for turn in 0..4 {
-            let mut points = corners.map(|p| PathPoint::on(p.into())).to_vec();
+            let mut points = corners.map(PathPoint::on).to_vec();
             points.rotate_left(turn);
-            assert_eq!(Shape::of(&Path::of_valid(points.clone(), true)), Some(rect));
+            let of = |points: &[PathPoint], closed: bool| {
+                Shape::rect_of(&Path::of_points(points.to_vec(), closed))
+            };
+            assert_eq!(of(&points, true), Some(rect));
             points.reverse();
-            assert_eq!(Shape::of(&Path::of_valid(points.clone(), true)), Some(rect));
-            assert_eq!(Shape::of(&Path::of_valid(points.clone(), false)), None);
+            assert_eq!(of(&points, true), Some(rect));
+            assert_eq!(of(&points, false), None);
             points[0].at.x += 0.1;
-            assert_eq!(Shape::of(&Path::of_valid(points, true)), None);
+            assert_eq!(of(&points, true), None);
         }
     }
 }

@@ -1,9 +1,9 @@
 //! The axis of a shade.
 
-use std::f32::consts::FRAC_PI_2;
+use std::f64::consts::FRAC_PI_2;
 
 use super::{Block, Blocks, NEAR};
-use crate::math::{self, Point, Vector};
+use crate::math::{self, Point, Vec2};
 use crate::scene::Axis;
 
 /// Which axes there are.
@@ -24,7 +24,7 @@ pub(super) fn of(blocks: &Blocks, kind: Kind) -> Option<Axis> {
     match kind {
         Kind::Linear => {
             let angle = direction(blocks, NEAR)?;
-            let cost = |angle: f32| spread(blocks, line(blocks, angle));
+            let cost = |angle: f64| spread(blocks, line(blocks, angle));
             // A degree, down to a hundredth of one.
             let [angle] = math::search([angle], 0.02, 0.0002, |[angle]| cost(angle));
             // An axis that is meant to be level or upright is exactly so.
@@ -44,14 +44,14 @@ pub(super) fn of(blocks: &Blocks, kind: Kind) -> Option<Axis> {
 }
 
 /// The angle along which values change most: of the largest eigenvector of Σ g gᵀ over all gradients g.
-fn direction(blocks: &Blocks, near: f32) -> Option<f32> {
+fn direction(blocks: &Blocks, near: f32) -> Option<f64> {
     let [xx, xy, yy] = tensor(blocks, near, |_, [x, y]| [x * x, x * y, y * y]);
     let is_flat = xx + yy <= 0.0;
     // Half the angle whose tangent is 2·xy / (xx − yy), in any quadrant.
     let (sine, cosine) = (2.0 * xy, xx - yy);
     let length = math::hypot(sine, cosine);
     // tan(φ/2) = sin φ / (1 + cos φ), and the tangent of half of φ gives φ itself.
-    let half = |sine: f32, cosine: f32| {
+    let half = |sine: f64, cosine: f64| {
         if cosine <= -1.0 + 1e-6 {
             FRAC_PI_2
         } else {
@@ -85,7 +85,7 @@ fn center(blocks: &Blocks, near: f32) -> Option<Point> {
 
 /// The sum over blocks and channels of what `term` makes of the place and the gradient. Steep gradients are edges of
 /// things, and do not count.
-fn tensor(blocks: &Blocks, near: f32, term: impl Fn(Point, [f32; 2]) -> [f32; 3]) -> [f32; 3] {
+fn tensor(blocks: &Blocks, near: f32, term: impl Fn(Point, [f64; 2]) -> [f64; 3]) -> [f64; 3] {
     let steepest = 4.0 * near;
     let mut sums = [0.0; 3];
     for (place, slopes) in blocks.slopes() {
@@ -94,7 +94,7 @@ fn tensor(blocks: &Blocks, near: f32, term: impl Fn(Point, [f32; 2]) -> [f32; 3]
             continue;
         }
         for slope in slopes {
-            let terms = term(place, slope);
+            let terms = term(place, slope.map(f64::from));
             sums.iter_mut()
                 .zip(terms)
                 .for_each(|(sum, term)| *sum += term);
@@ -104,9 +104,9 @@ fn tensor(blocks: &Blocks, near: f32, term: impl Fn(Point, [f32; 2]) -> [f32; 3]
 }
 
 /// The line in this direction, in radians, from one end of the part to the other.
-pub(super) fn line(blocks: &Blocks, angle: f32) -> Axis {
+pub(super) fn line(blocks: &Blocks, angle: f64) -> Axis {
     let (sine, cosine) = math::sin_cos(angle);
-    let along = Vector::new(cosine, sine);
+    let along = Vec2::new(cosine, sine);
     let [[left, top], [width, height]] = [blocks.low, blocks.size];
     let middle = Point::new(left + width / 2.0, top + height / 2.0);
     let unit = Axis::Linear {
@@ -134,7 +134,7 @@ fn circle(blocks: &Blocks, center: Point) -> Axis {
 /// from the means themselves would be those along the axis where groups are wide.
 fn spread(blocks: &Blocks, axis: Axis) -> f64 {
     let taking_part = || blocks.all.iter().filter(|block| block.weight > 0.0);
-    let offset = |block: &Block| f64::from(axis.offset(block.center).clamp(0.0, 1.0));
+    let offset = |block: &Block| axis.offset(block.center).clamp(0.0, 1.0);
     // Each group has a knot at its mean offset.
     let mut sums = [[0.0; 6]; GROUPS];
     for block in taking_part() {

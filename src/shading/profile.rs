@@ -75,7 +75,7 @@ fn trimmed(axis: Axis, mut stops: Vec<ShadeStop>) -> Option<Shade> {
     }
     let axis = match axis {
         Axis::Linear { from, to } => {
-            let at = |offset: f32| -> Point { from + (to - from) * offset };
+            let at = |offset: f32| -> Point { from.lerp(to, offset.into()) };
             Axis::Linear {
                 from: at(first),
                 to: at(last),
@@ -83,7 +83,7 @@ fn trimmed(axis: Axis, mut stops: Vec<ShadeStop>) -> Option<Shade> {
         }
         Axis::Radial { center, radius } => Axis::Radial {
             center,
-            radius: radius * last,
+            radius: radius * f64::from(last),
         },
     };
     Shade::new(axis, &stops).ok()
@@ -107,7 +107,7 @@ impl Profile {
     fn of(blocks: &Blocks, axis: Axis) -> Self {
         let mut sums = vec![[0.0_f64; 6]; GROUPS];
         for block in blocks.all.iter().filter(|block| block.weight > 0.0) {
-            let offset = f64::from(axis.offset(block.center).clamp(0.0, 1.0));
+            let offset = axis.offset(block.center).clamp(0.0, 1.0);
             let group = (offset * GROUPS as f64) as usize;
             let [r, g, b, a] = block.value.map(f64::from);
             let terms = [1.0, offset, r, g, b, a];

@@ -16,15 +16,15 @@ const RIDGE: f64 = 1e-4;
 const DARKEST: f64 = 0.004;
 /// Places along each side of a part, and lengths of an axis in units of the part's longer side, that a search starts from.
 const STARTS: usize = 4;
-const LENGTHS: [f32; 2] = [0.25, 0.7];
+const LENGTHS: [f64; 2] = [0.25, 0.7];
 /// Angles that a line starts from, radians.
-const ANGLES: [f32; 4] = [0.0, 0.785, 1.571, 2.356];
+const ANGLES: [f64; 4] = [0.0, 0.785, 1.571, 2.356];
 /// Number of times that each shade is fitted anew.
 const ROUNDS: usize = 4;
 /// Distances that are near to the lowest shade while it is fitted, in units of the last one: what lies on it goes bit by bit.
 const FACTORS: [f32; 6] = [16.0, 8.0, 4.0, 2.0, 1.0, 1.0];
 /// Radii of circles around what a stack does not explain, in units of its spread.
-const SPREADS: [f32; 4] = [1.2, 2.0, 3.0, 4.5];
+const SPREADS: [f64; 4] = [1.2, 2.0, 3.0, 4.5];
 /// Of what lies below a higher opacity, nothing is known.
 const HIDING: f32 = 0.8;
 
@@ -108,20 +108,20 @@ impl Blocks {
         let side = self.size[0].max(self.size[1]);
         let place = |i: usize| {
             [0, 1].map(|k| {
-                let step = [i % STARTS, i / STARTS][k] as f32 + 0.5;
-                self.low[k] + self.size[k] * step / STARTS as f32
+                let step = [i % STARTS, i / STARTS][k] as f64 + 0.5;
+                self.low[k] + self.size[k] * step / STARTS as f64
             })
         };
         let places = (0..STARTS * STARTS).map(place);
         let circles = places.flat_map(|center| {
             LENGTHS.map(|length| Axis::Radial {
-                center: center.into(),
+                center: Point::new(center[0], center[1]),
                 radius: length * side,
             })
         });
         let lines = ANGLES
             .into_iter()
-            .flat_map(|angle| [angle, angle + std::f32::consts::PI]);
+            .flat_map(|angle| [angle, angle + std::f64::consts::PI]);
         let lines = lines.map(|angle| axis::line(self, angle));
         let around = self.unexplained(below, NEAR).into_iter();
         let around = around.flat_map(|(center, spread)| {
@@ -134,24 +134,25 @@ impl Blocks {
     }
 
     /// The middle of what these shades do not explain, and its spread, px.
-    fn unexplained(&self, below: &[Shade], near: f32) -> Option<(Point, f32)> {
+    fn unexplained(&self, below: &[Shade], near: f32) -> Option<(Point, f64)> {
         let missing = |block: &Block| {
             let seen = stacked(below, block.center);
             let apart = block.value.iter().zip(seen).map(|(a, b)| (a - b).abs());
             let beyond = (apart.fold(0.0, f32::max) - near).max(0.0);
             block.weight * beyond * beyond
         };
-        let weights: Vec<f32> = self.all.iter().map(missing).collect();
-        let mean = |of: &dyn Fn(&Block) -> f32| {
+        let missing = self.all.iter().map(missing).map(f64::from);
+        let weights: Vec<f64> = missing.collect();
+        let mean = |of: &dyn Fn(&Block) -> f64| {
             let sum = self
                 .all
                 .iter()
                 .zip(&weights)
                 .map(|(block, weight)| weight * of(block));
-            sum.sum::<f32>() / weights.iter().sum::<f32>()
+            sum.sum::<f64>() / weights.iter().sum::<f64>()
         };
         let center = Point::new(mean(&|block| block.center.x), mean(&|block| block.center.y));
-        let spread = mean(&|block| (block.center - center).norm_squared()).sqrt();
+        let spread = mean(&|block| (block.center - center).hypot2()).sqrt();
         (spread > 0.0).then_some((center, spread))
     }
 
@@ -193,7 +194,7 @@ impl Blocks {
     /// The best layer along an axis on top of what is `seen`, where differences far beyond `near` count little.
     fn layer(&self, axis: Axis, seen: &[Value], near: f32) -> Option<Layer> {
         let is_short = match axis {
-            Axis::Linear { from, to } => (to - from).norm() < 2.0,
+            Axis::Linear { from, to } => (to - from).hypot() < 2.0,
             Axis::Radial { radius, .. } => radius < 2.0,
         };
         if is_short {
@@ -293,14 +294,14 @@ impl Layer {
 
 /// The two knots that a place lies between, with their shares.
 fn knots(axis: Axis, at: Point) -> [(usize, f64); 2] {
-    let along = f64::from(axis.offset(at).clamp(0.0, 1.0)) * (KNOTS - 1) as f64;
+    let along = axis.offset(at).clamp(0.0, 1.0) * (KNOTS - 1) as f64;
     let first = (along as usize).min(KNOTS - 2);
     let share = along - first as f64;
     [(first, 1.0 - share), (first + 1, share)]
 }
 
 /// The numbers of an axis that a search changes.
-fn numbers(axis: Axis) -> [f32; 4] {
+fn numbers(axis: Axis) -> [f64; 4] {
     match axis {
         Axis::Linear { from, to } => [from.x, from.y, to.x, to.y],
         Axis::Radial { center, radius } => [center.x, center.y, radius, 0.0],
@@ -308,7 +309,7 @@ fn numbers(axis: Axis) -> [f32; 4] {
 }
 
 /// The axis of the kind of `axis` with these numbers.
-fn moved(axis: Axis, numbers: [f32; 4]) -> Axis {
+fn moved(axis: Axis, numbers: [f64; 4]) -> Axis {
     let [a, b, c, d] = numbers;
     match axis {
         Axis::Linear { .. } => Axis::Linear {
@@ -343,7 +344,7 @@ mod tests {
     /// Blocks of 8 px of an opaque picture.
     fn blocks(value: impl Fn(Point) -> [f32; 3]) -> Blocks {
         let block = |i: usize| {
-            let center = Point::new((i % SIDE) as f32 * 8.0 + 4.0, (i / SIDE) as f32 * 8.0 + 4.0);
+            let center = Point::new((i % SIDE) as f64 * 8.0 + 4.0, (i / SIDE) as f64 * 8.0 + 4.0);
             let [r, g, b] = value(center).map(|v| (v * 255.0).round() / 255.0);
             Block {
                 center,
@@ -351,7 +352,7 @@ mod tests {
                 weight: 1.0,
             }
         };
-        let size = 8.0 * SIDE as f32;
+        let size = 8.0 * SIDE as f64;
         Blocks {
             columns: SIDE,
             all: (0..SIDE * SIDE).map(block).collect(),
@@ -371,8 +372,8 @@ mod tests {
     fn a_glow_on_a_sky_is_a_shade_on_a_shade() {
         let sun = Point::new(230.0, 90.0);
         let sky = |p: Point| {
-            let t = p.y / 320.0;
-            let glow = 0.9 * (1.0 - (p - sun).norm() / 80.0).max(0.0);
+            let t = (p.y / 320.0) as f32;
+            let glow = 0.9 * (1.0 - (p.distance(sun) / 80.0) as f32).max(0.0);
             let below = [0.15 + 0.7 * t, 0.5 + 0.4 * t, 0.75 + 0.2 * t];
             [0, 1, 2].map(|c| below[c] + glow * ([1.0, 0.95, 0.7][c] - below[c]))
         };
@@ -384,13 +385,13 @@ mod tests {
         let Axis::Radial { center, .. } = shades[1].axis() else {
             panic!("{shades:?}");
         };
-        assert!((center - sun).norm() < 3.0, "{shades:?}");
+        assert!((center - sun).hypot() < 3.0, "{shades:?}");
         assert!(shades[0].is_opaque(), "{shades:?}");
     }
 
     #[test]
     fn a_ramp_needs_no_second_shade() {
-        let blocks = blocks(|p| [p.x / 320.0, 0.5, 0.2]);
+        let blocks = blocks(|p| [(p.x / 320.0) as f32, 0.5, 0.2]);
         let (shades, _) = blocks.best_shades(&FIT, 0.95, 3).unwrap();
         assert_eq!(shades.len(), 1);
     }

@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use super::{Form, WriteOptions, dialect, write};
-use crate::scene::{Area, Mark, Scene, Stroke, quantum};
+use crate::scene::{Area, Cap, Mark, Scene, Stroke, quantum};
 
 /// Durations in an animated drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -60,9 +60,6 @@ pub fn write_animated(
             Some(Mark::Stroke(stroke)) if is_long(stroke) => {
                 groups.push(&clock.along(line, part));
             }
-            Some(Mark::Area(area)) if area.band().is_some() => {
-                groups.push(&clock.along(line, part))
-            }
             Some(Mark::Area(area)) => groups.push(&clock.fading(line, area, part)),
             _ => groups.push(line),
         }
@@ -95,7 +92,7 @@ fn tags(element: &str) -> (&str, String) {
 
 /// True if to see the stroke grow tells more than to see it appear.
 fn is_long(stroke: &Stroke) -> bool {
-    stroke.path.points().len() > 2 || stroke.path.is_closed()
+    stroke.cap == Cap::Butt || stroke.path.points().len() > 2 || stroke.path.is_closed()
 }
 
 struct Clock {
@@ -179,13 +176,14 @@ impl Groups {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Path, PathPoint, Stage};
+    use crate::scene::{Cap, Path, PathPoint, Stage};
     use crate::verify::{Size, render};
 
     fn stroke(k: usize) -> Stroke {
         Stroke {
-            path: Path::line([k as f32, 2.0].into(), [k as f32 + 3.0, 8.0].into()),
+            path: Path::line((k as f32, 2.0).into(), (k as f32 + 3.0, 8.0).into()),
             radius: 1.0,
+            cap: Cap::Round,
             color: [k as f32 / 7.0, 0.5, 0.2],
             opacity: 0.8,
         }
@@ -221,7 +219,8 @@ mod tests {
     #[test]
     fn a_long_path_is_drawn_along_its_length() {
         let mut scene = scene();
-        let points = [[1.0, 1.0], [9.0, 1.0], [5.0, 9.0]].map(|p| PathPoint::on(p.into()));
+        let points = [[1.0, 1.0], [9.0, 1.0], [5.0, 9.0]]
+            .map(|[x, y]: [f64; 2]| PathPoint::on((x, y).into()));
         scene.stages[1].marks[0] = Mark::from(Stroke {
             path: Path::new(points.into(), true).unwrap(),
             ..stroke(3)
@@ -237,7 +236,8 @@ mod tests {
     #[test]
     fn an_area_fades_in_with_its_part() {
         let mut scene = scene();
-        let corners = [[1.0, 1.0], [9.0, 1.0], [5.0, 9.0]].map(|p| PathPoint::on(p.into()));
+        let corners = [[1.0, 1.0], [9.0, 1.0], [5.0, 9.0]]
+            .map(|[x, y]: [f64; 2]| PathPoint::on((x, y).into()));
         scene.stages[1].marks[0] = Mark::from(Area {
             rings: vec![Path::new(corners.into(), true).unwrap()],
             color: [0.2, 0.4, 0.6],

@@ -7,19 +7,20 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::dialect::Unit;
-use super::layer::{Layer, LayerKind};
+use super::layer::{Layer, LayerKind, Written};
 use super::objects;
 use super::options::{Form, Group, Order, WriteOptions};
 use super::path::{self, Kind};
 use super::tour;
-use crate::scene::{Precedence, Scene, Stage, Written, WrittenPath};
+use crate::scene::{Mark, Path, Precedence, Scene, Stage, units};
 
 /// The layers of the file, none of them empty.
 pub(super) fn layers(scene: &Scene, options: &WriteOptions) -> Vec<Layer> {
     let written = |stage: &Stage| -> Vec<_> {
         let marks = stage.marks.iter();
         marks
-            .filter_map(|mark| Written::new(mark, scene, options.precision).ok())
+            .filter_map(|mark| scene.quantized_mark(mark, options.precision))
+            .map(Written::from)
             .collect()
     };
     let stages = scene.stages.iter().map(written);
@@ -45,7 +46,7 @@ pub(super) fn layers(scene: &Scene, options: &WriteOptions) -> Vec<Layer> {
         for layer in &mut layers {
             let strokes = layer.strokes.iter_mut();
             strokes.for_each(|stroke| orient(stroke, options.unit()));
-            layer.strokes = arranged(std::mem::take(&mut layer.strokes), style_of, |s| s.width);
+            layer.strokes = arranged(std::mem::take(&mut layer.strokes), style_of, Written::width);
         }
     }
     if options.order == Order::Travel {
@@ -75,7 +76,7 @@ fn with_little_travel(strokes: Vec<Written>, form: Form) -> Vec<Written> {
 /// The scene in the order and the layers of its file: what [`read`](super::read) returns for the text that
 /// [`write`](super::write()) wrote, unless it wrote outlines, which cannot be read.
 pub fn arrange(scene: &Scene, options: &WriteOptions) -> Scene {
-    let stage = |layer: &Layer| layer.strokes.iter().map(Written::mark).collect();
+    let stage = |layer: &Layer| layer.strokes.iter().map(|mark| mark.mark.clone()).collect();
     let quantized = scene.quantized(options.precision).scene;
     Scene {
         stages: layers(&quantized, options).iter().map(stage).collect(),
@@ -85,23 +86,24 @@ pub fn arrange(scene: &Scene, options: &WriteOptions) -> Scene {
 
 /// Starts a stroke at the end that makes its path shorter. Shapes stay as they are, and rings keep their sense, which makes holes.
 fn orient(mark: &mut Written, unit: Unit) {
-    if mark.is_area() || mark.shape.is_some() {
+    let Mark::Stroke(stroke) = &mut mark.mark else {
+        return;
+    };
+    if stroke.path.shape().is_some() {
         return;
     }
-    for path in &mut mark.paths {
-        let length = |path: &WrittenPath| path::data([path], Kind::Line, unit).len();
-        let mut reversed = path.reversed();
-        // A reversed path may have fewer points than its other direction had, so that this is asked until it settles.
-        while length(&reversed) < length(path) {
-            *path = reversed;
-            reversed = path.reversed();
-        }
+    let length = |path: &Path| path::data([path], Kind::Line, unit).len();
+    let mut turned = stroke.path.turned();
+    // A turned path may have fewer points than its other direction had, so that this is asked until it settles.
+    while length(&turned) < length(&stroke.path) {
+        stroke.path = turned;
+        turned = stroke.path.turned();
     }
 }
 
 /// Numbers that strokes must have in common to be one path.
 pub(super) fn style_of(stroke: &Written) -> (i64, [u8; 3], u8) {
-    (stroke.width, stroke.color, stroke.opacity)
+    (stroke.width(), stroke.color(), stroke.opacity())
 }
 
 /// Number of strokes that are arranged together. Comparing the pairs of more would take long.
@@ -110,7 +112,7 @@ const WINDOW: usize = 4096;
 /// Layers of one colour.
 fn by_color(strokes: Vec<Written>) -> Vec<Layer> {
     let in_order = strokes.clone();
-    let arranged = arranged(strokes, |s| s.color, |_| ());
+    let arranged = arranged(strokes, Written::color, |_| ());
     // Strokes that a fit has stacked by colour stay as they are, however many there are.
     let best = [in_order, arranged]
         .into_iter()
@@ -119,7 +121,7 @@ fn by_color(strokes: Vec<Written>) -> Vec<Layer> {
     let mut seen: BTreeMap<[u8; 3], usize> = BTreeMap::new();
     let mut layers = Vec::new();
     for run in runs(&best) {
-        let color = run.first().map_or([0; 3], |stroke| stroke.color);
+        let color = run.first().map_or([0; 3], Written::color);
         let count = seen.entry(color).or_default();
         layers.push(Layer {
             strokes: run.to_vec(),
@@ -132,7 +134,7 @@ fn by_color(strokes: Vec<Written>) -> Vec<Layer> {
 
 /// Neighbours of one colour.
 fn runs(strokes: &[Written]) -> impl Iterator<Item = &[Written]> {
-    strokes.chunk_by(|a, b| a.color == b.color)
+    strokes.chunk_by(|a, b| a.color() == b.color())
 }
 
 /// Reorders strokes so that those of one `run` are together as far as possible, and runs of one `group_key` follow each
@@ -155,9 +157,10 @@ fn order<R: Ord, K: Ord>(
     run: impl Fn(&Written) -> R,
     group_key: impl Fn(&Written) -> K,
 ) -> Vec<usize> {
-    let precedence = Precedence::of(strokes);
+    let precedence = Precedence::of(strokes.iter().map(|stroke| &stroke.mark));
     let mut waiting = precedence.waiting();
-    let mut runs: BTreeMap<R, Run<'_>> = BTreeMap::new();
+    let ranks = ranks(strokes);
+    let mut runs: BTreeMap<R, Run> = BTreeMap::new();
     for stroke in strokes {
         runs.entry(run(stroke)).or_default().left += 1;
     }
@@ -166,10 +169,9 @@ fn order<R: Ord, K: Ord>(
     loop {
         for i in free {
             let run = runs.entry(run(&strokes[i])).or_default();
-            run.ready.insert((&strokes[i], i));
+            run.ready.insert((ranks[i], i));
         }
-        let last = order.last().map(|&i| &strokes[i]);
-        let Some(next) = take(&mut runs, last, &run, &group_key) else {
+        let Some(next) = take(&mut runs, strokes, order.last().copied(), &run, &group_key) else {
             return order;
         };
         order.push(next);
@@ -179,23 +181,38 @@ fn order<R: Ord, K: Ord>(
 
 /// The strokes of one style.
 #[derive(Default)]
-struct Run<'a> {
-    /// Strokes that may be placed next.
-    ready: BTreeSet<(&'a Written, usize)>,
+struct Run {
+    /// Strokes that may be placed next, each behind its rank.
+    ready: BTreeSet<(usize, usize)>,
     /// Number of strokes that are not placed yet, ready or not.
     left: usize,
 }
 
+/// For each stroke its place in an order that depends on nothing but what strokes are.
+fn ranks(strokes: &[Written]) -> Vec<usize> {
+    let key = |stroke: &Written| {
+        let points = stroke.paths().iter().flat_map(Path::points);
+        let points = points.flat_map(|p| [units(p.at.x), units(p.at.y), i64::from(p.is_on)]);
+        let style = (stroke.mark.is_butt(), style_of(stroke));
+        (points.collect::<Vec<i64>>(), style)
+    };
+    let keys: BTreeSet<_> = strokes.iter().map(key).collect();
+    let ranks: BTreeMap<_, usize> = keys.into_iter().zip(0..).collect();
+    strokes.iter().map(|stroke| ranks[&key(stroke)]).collect()
+}
+
 /// Takes a stroke of the same style as the last one, or begins a run.
 fn take<R: Ord, K: Ord>(
-    runs: &mut BTreeMap<R, Run<'_>>,
-    last: Option<&Written>,
+    runs: &mut BTreeMap<R, Run>,
+    strokes: &[Written],
+    last: Option<usize>,
     run: impl Fn(&Written) -> R,
     group_key: impl Fn(&Written) -> K,
 ) -> Option<usize> {
     let may_go_on = |key: &R| runs.get(key).is_some_and(|run| !run.ready.is_empty());
+    let last = last.map(|i| &strokes[i]);
     let key = last.map(&run).filter(may_go_on);
-    let key = key.or_else(|| begin(runs, last.map(&group_key), group_key).map(run))?;
+    let key = key.or_else(|| begin(runs, strokes, last.map(&group_key), group_key).map(run))?;
     let run = runs.get_mut(&key)?;
     run.left -= 1;
     run.ready.pop_first().map(|(_, i)| i)
@@ -204,20 +221,21 @@ fn take<R: Ord, K: Ord>(
 /// The first stroke of the next run. It prefers a run that can be placed as a whole, then one of the `last` group,
 /// then one of the group with the most such runs, then the run with the most strokes ready.
 fn begin<'a, R, K: Ord>(
-    runs: &BTreeMap<R, Run<'a>>,
+    runs: &BTreeMap<R, Run>,
+    strokes: &'a [Written],
     last: Option<K>,
     group_key: impl Fn(&Written) -> K,
 ) -> Option<&'a Written> {
     let ready = || {
         runs.values()
-            .filter_map(|run| Some((run, run.ready.first()?.0)))
+            .filter_map(|run| Some((run, &strokes[run.ready.first()?.1])))
     };
-    let is_whole = |run: &Run<'_>| run.ready.len() == run.left;
+    let is_whole = |run: &Run| run.ready.len() == run.left;
     let mut counts = BTreeMap::<K, usize>::new();
     for (_, first) in ready().filter(|(run, _)| is_whole(run)) {
         *counts.entry(group_key(first)).or_default() += 1;
     }
-    let rank = |(run, first): &(&Run<'_>, &Written)| {
+    let rank = |(run, first): &(&Run, &Written)| {
         let group = Some(group_key(first));
         let relatives = group.as_ref().and_then(|group| counts.get(group)).copied();
         (is_whole(run), group == last, relatives, run.ready.len())
@@ -228,94 +246,105 @@ fn begin<'a, R, K: Ord>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::PathPoint;
+    use crate::math::Point;
+    use crate::scene::{Area, Cap, PathPoint, Stroke, color};
 
-    const PX: i64 = crate::scene::UNITS_PER_PX;
-
-    fn stroke(x: i64, color: u8, width: i64) -> Written {
-        Written {
-            paths: vec![WrittenPath::line([x * PX, 10 * PX], [x * PX, 90 * PX])],
-            shape: None,
-            is_band: false,
-            width: width * PX,
-            color: [color; 3],
-            opacity: 255,
-            shade: None,
-        }
+    fn stroke(x: f64, level: u8, width: f64) -> Written {
+        let stroke = Stroke {
+            path: Path::line(Point::new(x, 10.0), Point::new(x, 90.0)),
+            radius: 0.5 * width,
+            cap: Cap::Round,
+            color: color([level; 3]),
+            opacity: 1.0,
+        };
+        Mark::from(stroke).into()
     }
 
     fn by_width(strokes: &[Written]) -> Vec<usize> {
-        order(strokes, style_of, |s| s.width)
+        order(strokes, style_of, Written::width)
     }
 
     #[test]
     fn strokes_apart_come_together_by_look() {
         let strokes = [
-            stroke(10, 1, 4),
-            stroke(30, 2, 2),
-            stroke(50, 3, 4),
-            stroke(70, 4, 2),
+            stroke(10.0, 1, 4.0),
+            stroke(30.0, 2, 2.0),
+            stroke(50.0, 3, 4.0),
+            stroke(70.0, 4, 2.0),
         ];
         assert_eq!(by_width(&strokes), [2, 0, 3, 1]);
     }
 
     /// A square whose sides are this far `away` from (x, 50); with a `hole`, a frame 4 px wide.
-    fn square(x: i64, away: i64, hole: bool, color: u8) -> Written {
-        let ring = |away: i64| {
-            let [left, right] = [x - away, x + away];
-            let [top, bottom] = [50 - away, 50 + away];
-            [[left, top], [right, top], [right, bottom], [left, bottom]]
-                .map(|p| PathPoint::on(p.map(|px| px * PX)))
+    fn square(x: f64, away: f64, hole: bool, level: u8) -> Written {
+        let ring = |away: f64| {
+            let [left, right, top, bottom] = [x - away, x + away, 50.0 - away, 50.0 + away];
+            let corners = [(left, top), (right, top), (right, bottom), (left, bottom)];
+            corners.map(|p| PathPoint::on(p.into())).to_vec()
         };
-        let mut inner = ring(away - 4).to_vec();
+        let mut inner = ring(away - 4.0);
         inner.reverse();
-        let rings = [Some(ring(away).to_vec()), hole.then_some(inner)];
-        Written {
-            paths: rings
+        let rings = [Some(ring(away)), hole.then_some(inner)];
+        let area = Area {
+            rings: rings
                 .into_iter()
                 .flatten()
-                .map(|points| WrittenPath::new(points, true))
+                .map(|points| Path::of_points(points, true))
                 .collect(),
-            shape: None,
-            width: 0,
-            is_band: false,
-            color: [color; 3],
-            opacity: 255,
+            color: color([level; 3]),
+            opacity: 1.0,
             shade: None,
-        }
+        };
+        Mark::from(area).into()
     }
 
     #[test]
     fn an_area_goes_past_what_it_does_not_cover_and_nothing_else() {
-        let by_color = |marks: &[Written]| order(marks, |s| s.color, |_| ());
+        let by_color = |marks: &[Written]| order(marks, Written::color, |_| ());
         // A line in the middle of the page, and the square around it or the frame.
-        let line = || stroke(50, 2, 2);
+        let line = || stroke(50.0, 2, 2.0);
         assert_eq!(
-            by_color(&[square(50, 48, false, 1), line(), square(50, 20, false, 1)]),
+            by_color(&[
+                square(50.0, 48.0, false, 1),
+                line(),
+                square(50.0, 20.0, false, 1)
+            ]),
             [0, 1, 2]
         );
         assert_eq!(
-            by_color(&[square(90, 30, false, 1), line(), square(90, 20, false, 1)]),
+            by_color(&[
+                square(90.0, 30.0, false, 1),
+                line(),
+                square(90.0, 20.0, false, 1)
+            ]),
             [0, 2, 1]
         );
-        let inside = square(50, 10, false, 2);
+        let inside = square(50.0, 10.0, false, 2);
         assert_eq!(
             by_color(&[
-                square(50, 40, true, 1),
+                square(50.0, 40.0, true, 1),
                 inside.clone(),
-                square(50, 40, true, 1)
+                square(50.0, 40.0, true, 1)
             ]),
             [0, 2, 1]
         );
         assert_eq!(
-            by_color(&[square(50, 40, false, 1), inside, square(50, 40, false, 1)]),
+            by_color(&[
+                square(50.0, 40.0, false, 1),
+                inside,
+                square(50.0, 40.0, false, 1)
+            ]),
             [0, 1, 2]
         );
     }
 
     #[test]
     fn what_lies_above_stays_above() {
-        let strokes = [stroke(10, 1, 4), stroke(11, 2, 2), stroke(12, 3, 4)];
+        let strokes = [
+            stroke(10.0, 1, 4.0),
+            stroke(11.0, 2, 2.0),
+            stroke(12.0, 3, 4.0),
+        ];
         assert_eq!(by_width(&strokes), [0, 1, 2]);
     }
 }

@@ -9,7 +9,7 @@ use super::dialect::{self, INKSCAPE_NAMESPACE, SVG_NAMESPACE};
 use super::dom::{Dom, Node};
 use super::{Form, Length, WriteOptions, layers, read};
 use crate::error::Result;
-use crate::scene::Scene;
+use crate::scene::{Mark, Scene};
 
 /// The ids of our layers begin with this.
 const LAYERS: [&str; 3] = ["stage-", "color-", "object-"];
@@ -158,7 +158,7 @@ impl Document {
         let layers = layers(scene, options, self.stages + 1);
         let has_fill = options.form == Form::Outlines || scene.areas().next().is_some();
         let fill = if has_fill { RESET_FILL } else { "" };
-        let has_bands = scene.areas().any(|area| area.band().is_some());
+        let has_bands = scene.marks().any(Mark::is_butt);
         let bands = if has_bands { RESET_BANDS } else { "" };
         let reset = [fill, bands].concat();
         self.with(&layers, [scene.width, scene.height], &reset)
@@ -229,7 +229,7 @@ fn unused(text: &str, name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Area, Path, PathPoint, Stage, Stroke};
+    use crate::scene::{Area, Cap, Path, PathPoint, Stage, Stroke};
     use crate::svg::Group;
     use crate::verify::{self, Size};
 
@@ -241,8 +241,9 @@ mod tests {
 
     fn scene() -> Scene {
         let stroke = Stroke {
-            path: Path::line([1.0, 1.0].into(), [5.0, 5.0].into()),
+            path: Path::line((1.0, 1.0).into(), (5.0, 5.0).into()),
             radius: 1.0,
+            cap: Cap::Round,
             color: [1.0, 0.0, 0.0],
             opacity: 1.0,
         };
@@ -312,8 +313,8 @@ mod tests {
 
     /// A frame: an area with a hole, as long as both rings turn in their ways and the rule is nonzero.
     fn frame() -> Area {
-        let ring = |corners: [[f32; 2]; 4]| {
-            let points = corners.map(|p| PathPoint::on(p.into()));
+        let ring = |corners: [[f64; 2]; 4]| {
+            let points = corners.map(|[x, y]| PathPoint::on((x, y).into()));
             Path::new(points.into(), true).unwrap()
         };
         let outer = ring([[1.0, 1.0], [9.0, 1.0], [9.0, 9.0], [1.0, 9.0]]);

@@ -5,13 +5,14 @@ use std::collections::BTreeMap;
 use super::arrange::style_of;
 use super::dialect::{self, Unit};
 use super::gradient;
+use super::layer::Written;
 use super::names;
 use super::options::Form;
 use super::outline;
 use super::path::{self, Kind};
 use super::shape;
 use super::sheet::Sheet;
-use crate::scene::{Written, WrittenPath};
+use crate::scene::Path;
 
 /// Names of marks and classes of elements, which forms with an element for each mark have.
 #[derive(Debug, Clone, Copy, Default)]
@@ -89,7 +90,7 @@ pub(super) fn bytes(stroke: &Written, form: Form, unit: Unit) -> usize {
             };
             push_path(&mut out, alone, "", &[Attribute::Width], style);
         }
-        form if stroke.is_band && form != Form::Outlines => {
+        form if stroke.mark.is_butt() && form != Form::Outlines => {
             push_alone(&mut out, stroke, "");
             out.push('\n');
         }
@@ -115,7 +116,7 @@ fn usual_width(strokes: &[Written]) -> Option<i64> {
     let mut counts = BTreeMap::<i64, usize>::new();
     for element in split(strokes) {
         if !element[0].is_area() {
-            *counts.entry(element[0].width).or_default() += 1;
+            *counts.entry(element[0].width()).or_default() += 1;
         }
     }
     let (width, count) = counts.into_iter().max_by_key(|&(_, count)| count)?;
@@ -145,12 +146,13 @@ fn joins(strokes: &[Written], next: &Written) -> bool {
         && !next.is_area()
         && is_line(next)
         && strokes.iter().all(is_line)
-        && (next.opacity == u8::MAX || !strokes.iter().any(|stroke| stroke.meets(next)))
+        && (next.opacity() == u8::MAX
+            || !strokes.iter().any(|stroke| stroke.mark.meets(&next.mark)))
 }
 
 /// True if other strokes can join the element of the mark.
 fn is_line(mark: &Written) -> bool {
-    mark.shape.is_none() && !mark.is_band
+    mark.shape().is_none() && !mark.mark.is_butt()
 }
 
 /// An attribute that the marks of an element have in common.
@@ -172,15 +174,15 @@ impl Attribute {
                 format!(" {paint}=\"{gradient}\"")
             }
             Self::Color if style.is_full() => {
-                format!(" {paint}=\"{}\"", dialect::hex(mark.color))
+                format!(" {paint}=\"{}\"", dialect::hex(mark.color()))
             }
-            Self::Color => format!(" {paint}=\"{}\"", dialect::short_hex(mark.color)),
-            Self::Width if mark.is_area() || style.layer_width() == Some(mark.width) => {
+            Self::Color => format!(" {paint}=\"{}\"", dialect::short_hex(mark.color())),
+            Self::Width if mark.is_area() || style.layer_width() == Some(mark.width()) => {
                 String::new()
             }
-            Self::Width => width_text(mark.width, style.unit()),
-            Self::Opacity if mark.opacity == u8::MAX => String::new(),
-            Self::Opacity => format!(" {paint}-opacity=\"{}\"", dialect::opacity(mark.opacity)),
+            Self::Width => width_text(mark.width(), style.unit()),
+            Self::Opacity if mark.opacity() == u8::MAX => String::new(),
+            Self::Opacity => format!(" {paint}-opacity=\"{}\"", dialect::opacity(mark.opacity())),
         }
     }
 }
@@ -240,14 +242,14 @@ fn push_path(
     for mark in strokes {
         gradient::push_of(out, mark, end);
     }
-    if let Some(shape) = only.and_then(|mark| mark.shape) {
+    if let Some(shape) = only.and_then(Written::shape) {
         shape::push(out, shape, names, style.unit());
     } else {
         let kind = match only {
             Some(area) if area.is_area() => Kind::Ring,
             _ => Kind::Line,
         };
-        let paths = strokes.iter().flat_map(|mark| &mark.paths);
+        let paths = strokes.iter().flat_map(Written::paths);
         let d = path::data(paths, kind, style.unit());
         *out += &format!("<path{names} d=\"{d}\"");
     }
@@ -263,8 +265,8 @@ fn push_path(
 
 /// The attributes that give a band the ends and corners that other strokes of its layer do not have.
 fn ends(mark: &Written) -> &'static str {
-    let has_corners = mark.paths.iter().any(WrittenPath::has_joins);
-    match mark.is_band {
+    let has_corners = mark.paths().iter().any(Path::has_joins);
+    match mark.mark.is_butt() {
         false => "",
         true if has_corners => " stroke-linecap=\"butt\" stroke-linejoin=\"miter\"",
         true => " stroke-linecap=\"butt\"",

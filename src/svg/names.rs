@@ -1,26 +1,29 @@
 //! Names for marks and colours that a person can look for.
 
-use crate::scene::{Written, WrittenShape};
+use super::layer::Written;
+use crate::math::Vec2;
+use crate::scene::{Shape, units};
 
 /// A mark in words, such as `dark-red-area`.
 pub(super) fn of_mark(mark: &Written) -> String {
-    let kind = match mark.paths.as_slice() {
-        _ if let Some(shape) = mark.shape => of_shape(shape),
+    let kind = match mark.paths() {
+        _ if let Some(shape) = mark.shape() => of_shape(shape),
         _ if mark.is_area() => "area",
         [path] if path.points().len() == 1 => "dot",
         [path] if path.is_closed() => "loop",
         [path] if path.points().len() == 2 => "line",
         _ => "curve",
     };
-    format!("{}-{kind}", of_color(mark.color).replace(' ', "-"))
+    format!("{}-{kind}", of_color(mark.color()).replace(' ', "-"))
 }
 
-fn of_shape(shape: WrittenShape) -> &'static str {
+fn of_shape(shape: Shape) -> &'static str {
+    let is_square = |side: Vec2| units(side.x) == units(side.y);
     match shape {
-        WrittenShape::Circle(..) => "circle",
-        WrittenShape::Ellipse(..) => "ellipse",
-        WrittenShape::Rect([low, high], _) if high[0] - low[0] == high[1] - low[1] => "square",
-        WrittenShape::Rect(..) => "rectangle",
+        Shape::Circle { .. } => "circle",
+        Shape::Ellipse { .. } => "ellipse",
+        Shape::Rect { low, high, .. } if is_square(high - low) => "square",
+        Shape::Rect { .. } => "rectangle",
     }
 }
 

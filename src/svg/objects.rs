@@ -1,7 +1,9 @@
 //! Layers of things: an area with what lies on it, as a face with its eyes, and marks of one colour that touch.
 
-use super::layer::{Layer, LayerKind};
-use crate::scene::{Precedence, UNITS_PER_PX, Written};
+use kurbo::Rect;
+
+use super::layer::{Layer, LayerKind, Written};
+use crate::scene::Precedence;
 
 /// An area that has this share of the page's sides is the page, and nobody's thing. A guess.
 const PAGE: f64 = 0.9;
@@ -14,7 +16,7 @@ type Thing = Vec<usize>;
 /// A mark belongs to the topmost thing that it meets, if that is an area which encloses it or has a mark of its colour that it
 /// touches. So it changes places with no mark that it meets, and the picture stays as it is.
 pub(super) fn by_object(marks: &[Written], page: [u32; 2]) -> Vec<Layer> {
-    let precedence = Precedence::of_shapes(marks.iter().map(Some));
+    let precedence = Precedence::of_shapes(marks.iter().map(|mark| Some(&mark.mark)));
     let mut things: Vec<Thing> = Vec::new();
     let mut thing_of: Vec<usize> = Vec::with_capacity(marks.len());
     for (i, mark) in marks.iter().enumerate() {
@@ -24,7 +26,8 @@ pub(super) fn by_object(marks: &[Written], page: [u32; 2]) -> Vec<Layer> {
         let belongs = topmost.filter(|&thing| {
             let root = &marks[things[thing][0]];
             let touches = |k: &&usize| thing_of[**k] == thing && is_alike(&marks[**k], mark);
-            !is_page(root, page) && (root.encloses(mark) || below.iter().any(|k| touches(&k)))
+            !is_page(root, page)
+                && (root.mark.encloses(&mark.mark) || below.iter().any(|k| touches(&k)))
         });
         let thing = belongs.unwrap_or_else(|| {
             things.push(Thing::new());
@@ -42,7 +45,7 @@ fn layers(things: &[Thing], marks: &[Written]) -> Vec<Layer> {
     let layer = |things: &[Thing]| {
         let own = things.iter().flatten();
         let strokes: Vec<Written> = own.map(|&i| marks[i].clone()).collect();
-        let color = strokes.first().map(|mark| mark.color);
+        let color = strokes.first().map(Written::color);
         let is_thing = !things.iter().any(is_alone);
         Layer {
             strokes,
@@ -54,31 +57,31 @@ fn layers(things: &[Thing], marks: &[Written]) -> Vec<Layer> {
 
 /// True if two marks have one colour and are both strokes or both areas.
 fn is_alike(a: &Written, b: &Written) -> bool {
-    a.color == b.color && a.is_area() == b.is_area()
+    a.color() == b.color() && a.is_area() == b.is_area()
 }
 
 /// True if a mark is as large as the page.
 fn is_page(mark: &Written, page: [u32; 2]) -> bool {
-    let bounds = mark.bounds();
-    (0..2).all(|axis| {
-        let [low, high] = bounds[axis];
-        let side = i64::from(page[axis]) * UNITS_PER_PX;
-        (high.min(side) - low.max(0)) as f64 >= PAGE * side as f64
-    })
+    let [width, height] = page.map(f64::from);
+    let seen = mark
+        .mark
+        .bounds()
+        .intersect(Rect::new(0.0, 0.0, width, height));
+    seen.width() >= PAGE * width && seen.height() >= PAGE * height
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::math::Point;
-    use crate::scene::{Area, Mark, Path, PathPoint, Scene, Stage, Stroke};
+    use crate::scene::{Area, Cap, Mark, Path, PathPoint, Scene, Stage, Stroke};
 
     const PAGE: u32 = 100;
 
-    fn square(x: f32, away: f32, grey: f32) -> Mark {
+    fn square(x: f64, away: f64, grey: f32) -> Mark {
         let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
         let points = corners
-            .map(|[dx, dy]: [f32; 2]| PathPoint::on(Point::new(x + away * dx, 50.0 + away * dy)));
+            .map(|[dx, dy]: [f64; 2]| PathPoint::on(Point::new(x + away * dx, 50.0 + away * dy)));
         let area = Area {
             rings: vec![Path::new(points.into(), true).unwrap()],
             color: [grey; 3],
@@ -88,10 +91,11 @@ mod tests {
         area.into()
     }
 
-    fn line(from: [f32; 2], to: [f32; 2], grey: f32) -> Mark {
+    fn line([ax, ay]: [f64; 2], [bx, by]: [f64; 2], grey: f32) -> Mark {
         let stroke = Stroke {
-            path: Path::line(from.into(), to.into()),
+            path: Path::line(Point::new(ax, ay), Point::new(bx, by)),
             radius: 1.0,
+            cap: Cap::Round,
             color: [grey; 3],
             opacity: 1.0,
         };
@@ -106,9 +110,9 @@ mod tests {
         };
         let written = marks
             .iter()
-            .map(|mark| Written::new(mark, &scene, 2).unwrap());
+            .map(|mark| scene.quantized_mark(mark, 2).unwrap().into());
         let written: Vec<Written> = written.collect();
-        let tenths = |mark: &Written| u32::from(mark.color[0]) * 10 / 255;
+        let tenths = |mark: &Written| u32::from(mark.color()[0]) * 10 / 255;
         let layer = |layer: Layer| {
             let is_thing = layer.kind != LayerKind::Object(None);
             (layer.strokes.iter().map(tenths).collect(), is_thing)

@@ -3,11 +3,12 @@
 
 use super::dialect::{self, Unit};
 use super::gradient;
+use super::layer::Written;
 use super::path::{self, Kind};
 use super::shape;
-use crate::math;
+use crate::math::{Point, Vec2};
 use crate::outline;
-use crate::scene::{Mark, Piece, UNITS_PER_PX, Written, WrittenPath};
+use crate::scene::{Area, Mark, Path, UNITS_PER_PX, quantized_anywhere, units};
 
 /// Decimals of outlines: where both sides of a stroke are rounded, a tenth of a px shows in its width.
 const LEAST_PRECISION: u8 = 2;
@@ -15,64 +16,63 @@ const LEAST_PRECISION: u8 = 2;
 /// Appends the outline of a mark as an element of its own: that of an area is its rings.
 pub(super) fn push(out: &mut String, mark: &Written) {
     gradient::push_of(out, mark, "\n");
-    let shape = mark.shape.filter(|_| mark.is_area());
-    match (mark.paths.as_slice(), straight(mark)) {
-        _ if shape.is_some() => {
-            shape
-                .into_iter()
-                .for_each(|shape| shape::push(out, shape, "", Unit::PX));
-        }
-        (rings, _) if mark.is_area() => push_rings(out, rings),
-        _ if mark.is_band => push_rings(out, &rings(mark)),
-        ([dot], _) if dot.points().len() == 1 => push_circle(out, dot.points()[0].at, mark.width),
-        (_, Some([a, b])) => push_capsule(out, a, b, mark.width),
-        _ => push_rings(out, &rings(mark)),
+    match &mark.mark {
+        Mark::Area(area) => push_area(out, area),
+        Mark::Stroke(stroke) => match (stroke.path.points(), straight(&stroke.path)) {
+            _ if mark.mark.is_butt() => push_rings(out, &rings(mark)),
+            ([dot], _) => push_circle(out, dot.at, mark.width()),
+            (_, Some([a, b])) => push_capsule(out, a, b, mark.width()),
+            _ => push_rings(out, &rings(mark)),
+        },
     }
-    let paint = gradient::paint(mark).unwrap_or_else(|| dialect::hex(mark.color));
+    let paint = gradient::paint(mark).unwrap_or_else(|| dialect::hex(mark.color()));
     *out += &format!(" fill=\"{paint}\"");
-    if mark.opacity < u8::MAX {
-        *out += &format!(" fill-opacity=\"{}\"", dialect::opacity(mark.opacity));
+    if mark.opacity() < u8::MAX {
+        *out += &format!(" fill-opacity=\"{}\"", dialect::opacity(mark.opacity()));
     }
     out.push_str("/>\n");
 }
 
-/// The ends of a stroke that is one line.
-fn straight(mark: &Written) -> Option<[[i64; 2]; 2]> {
-    let [path] = mark.paths.as_slice() else {
-        return None;
-    };
-    let mut pieces = path.pieces();
-    match (pieces.next(), pieces.next()) {
-        (Some(Piece::Line(ends)), None) => Some(ends),
+fn push_area(out: &mut String, area: &Area) {
+    match &area.rings[..] {
+        [ring] if let Some(shape) = ring.shape() => shape::push(out, shape, "", Unit::PX),
+        rings => push_rings(out, rings),
+    }
+}
+
+/// The ends of a path that is one line.
+fn straight(path: &Path) -> Option<[Point; 2]> {
+    match path.points() {
+        [a, b] if !path.is_closed() => Some([a.at, b.at]),
         _ => None,
     }
 }
 
 /// The rings around a stroke.
-fn rings(stroke: &Written) -> Vec<WrittenPath> {
-    let around = match stroke.mark() {
-        Mark::Stroke(stroke) => outline::area(&stroke).into(),
-        Mark::Area(band) => band.filled().into(),
-    };
-    Written::round_or_filled(&around, LEAST_PRECISION)
-        .map_or_else(|_| Vec::new(), |area| area.paths)
+fn rings(mark: &Written) -> Vec<Path> {
+    let around = outline::of_mark(&mark.mark);
+    match quantized_anywhere(&around.into(), LEAST_PRECISION) {
+        Some(Mark::Area(area)) => area.rings,
+        _ => Vec::new(),
+    }
 }
 
-fn push_rings(out: &mut String, rings: &[WrittenPath]) {
+fn push_rings(out: &mut String, rings: &[Path]) {
     *out += &format!("<path d=\"{}\"", path::data(rings, Kind::Ring, Unit::PX));
 }
 
-fn push_circle(out: &mut String, [x, y]: [i64; 2], width: i64) {
-    let numbers = [x, y, width / 2].map(number);
+fn push_circle(out: &mut String, center: Point, width: i64) {
+    let numbers = [units(center.x), units(center.y), width / 2].map(number);
     let [x, y, r] = numbers;
     *out += &format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\"");
 }
 
 /// One side, an arc around the second end, the other side, an arc around the first. The two sides are the same
 /// step, forth and back, and so are the chords of the arcs; so rounding cannot open the outline.
-fn push_capsule(out: &mut String, a: [i64; 2], b: [i64; 2], width: i64) {
+fn push_capsule(out: &mut String, a: Point, b: Point, width: i64) {
+    let [a, b] = [a, b].map(|p| [units(p.x), units(p.y)]);
     let side = [b[0] - a[0], b[1] - a[1]];
-    let length = math::hypot(side[0] as f64, side[1] as f64);
+    let length = Vec2::new(side[0] as f64, side[1] as f64).hypot();
     let across = |along: i64| rounded(along as f64 / length * width as f64);
     let chord = [across(-side[1]), across(side[0])];
     // By specification, a radius too short for its chord is stretched to a half circle; a longer one would
@@ -123,21 +123,19 @@ fn pair([x, y]: [i64; 2], spaced: bool) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{PathPoint, WrittenPath};
+    use crate::scene::{Cap, PathPoint, Stroke};
 
-    fn written(points: &[[i64; 2]], opacity: u8) -> String {
-        let point = |p: &[i64; 2]| PathPoint::on(p.map(|px| px * UNITS_PER_PX));
-        let stroke = Written {
-            paths: vec![WrittenPath::new(points.iter().map(point).collect(), false)],
-            shape: None,
-            width: 3 * UNITS_PER_PX,
-            is_band: false,
-            color: [255, 102, 0],
+    fn written(points: &[[f64; 2]], opacity: f32) -> String {
+        let point = |&[x, y]: &[f64; 2]| PathPoint::on(Point::new(x, y));
+        let stroke = Stroke {
+            path: Path::canonical(points.iter().map(point).collect(), false),
+            radius: 1.5,
+            cap: Cap::Round,
+            color: [1.0, 0.4, 0.0],
             opacity,
-            shade: None,
         };
         let mut out = String::new();
-        push(&mut out, &stroke);
+        push(&mut out, &Mark::from(stroke).into());
         out
     }
 
@@ -145,13 +143,13 @@ mod tests {
     fn a_capsule_has_two_lines_and_two_arcs() {
         let d = "M10 18.5l30 0a1.5 1.5 0 0 1 0 3l-30 0a1.5 1.5 0 0 1 0-3z";
         let expected = format!("<path d=\"{d}\" fill=\"#ff6600\"/>\n");
-        assert_eq!(written(&[[10, 20], [40, 20]], 255), expected);
+        assert_eq!(written(&[[10.0, 20.0], [40.0, 20.0]], 1.0), expected);
     }
 
     #[test]
     fn a_dot_is_a_circle() {
         let expected =
             "<circle cx=\"10\" cy=\"20\" r=\"1.5\" fill=\"#ff6600\" fill-opacity=\"0.502\"/>\n";
-        assert_eq!(written(&[[10, 20]], 128), expected);
+        assert_eq!(written(&[[10.0, 20.0]], 128.0 / 255.0), expected);
     }
 }

@@ -2,8 +2,11 @@
 
 use svgtypes::{PathParser, PathSegment};
 
+use kurbo::{ParamCurve, PathSeg};
+
 use super::dialect::{MAX_UNITS, Unit};
-use crate::scene::{PathPoint, Piece, UNITS_PER_PX, WrittenPath, WrittenPoint};
+use crate::math::Point;
+use crate::scene::{Path, PathPoint, UNITS_PER_PX, px, units};
 
 /// The length of the segment that represents a dot.
 const DOT: i64 = UNITS_PER_PX / 100;
@@ -23,7 +26,7 @@ pub(super) enum Kind {
 
 /// The `d` of these paths. The places of each step are absolute or relative, whichever is shorter.
 pub(super) fn data<'a>(
-    paths: impl IntoIterator<Item = &'a WrittenPath>,
+    paths: impl IntoIterator<Item = &'a Path>,
     kind: Kind,
     unit: Unit,
 ) -> String {
@@ -49,34 +52,34 @@ struct Writer {
 }
 
 impl Writer {
-    fn push(&mut self, path: &WrittenPath) {
-        let mut pieces = path.pieces().peekable();
-        let Some(first) = pieces.peek().copied() else {
+    fn push(&mut self, path: &Path) {
+        let mut segments = path.segments().peekable();
+        let Some(first) = segments.peek().map(|first| place(first.start())) else {
             return self.push_dot(path);
         };
-        self.push_step('M', &[first.start()]);
+        self.push_step('M', &[first]);
         self.letter = None;
         let mut control = None;
-        while let Some(piece) = pieces.next() {
-            match piece {
+        while let Some(segment) = segments.next() {
+            let [from, to] = [segment.start(), segment.end()].map(place);
+            let knee = match segment {
+                PathSeg::Quad(curve) => Some(place(curve.p1)),
+                _ => None,
+            };
+            match knee {
                 // The command that closes the path draws this line.
-                Piece::Line(_) if path.is_closed() && pieces.peek().is_none() => {}
-                Piece::Line([from, to]) => self.push_step(self.line_letter(from, to), &[to]),
-                Piece::Curve([from, knee, to])
-                    if control.map(|c| mirrored(c, from)) == Some(knee) =>
-                {
+                None if path.is_closed() && segments.peek().is_none() => {}
+                None => self.push_step(self.line_letter(from, to), &[to]),
+                Some(knee) if control.map(|c| mirrored(c, from)) == Some(knee) => {
                     self.push_step('T', &[to]);
                 }
-                Piece::Curve([_, knee, to]) => self.push_step('Q', &[knee, to]),
+                Some(knee) => self.push_step('Q', &[knee, to]),
             }
-            control = match piece {
-                Piece::Line(_) => None,
-                Piece::Curve([_, knee, _]) => Some(knee),
-            };
+            control = knee;
         }
         if path.is_closed() {
             self.out.push('z');
-            (self.at, self.letter) = (Some(first.start()), None);
+            (self.at, self.letter) = (Some(first), None);
         }
     }
 
@@ -89,9 +92,9 @@ impl Writer {
         }
     }
 
-    fn push_dot(&mut self, path: &WrittenPath) {
+    fn push_dot(&mut self, path: &Path) {
         for point in path.points() {
-            self.push_step('M', &[point.at]);
+            self.push_step('M', &[place(point.at)]);
             self.out.push('h');
             self.unit.push(&mut self.out, DOT);
             // The next relative step would start 0.01 off.
@@ -146,13 +149,22 @@ impl Writer {
     }
 }
 
+/// The place of a rounded point.
+fn place(p: Point) -> Place {
+    [units(p.x), units(p.y)]
+}
+
+fn point([x, y]: Place) -> Point {
+    Point::new(px(x), px(y))
+}
+
 /// The place opposite of `point` as seen from `center`.
 fn mirrored(point: Place, center: Place) -> Place {
     [0, 1].map(|axis| 2 * center[axis] - point[axis])
 }
 
 /// The paths of a `d`, or `None` if it is not part of the dialect.
-pub(super) fn parse(d: &str, kind: Kind, unit: Unit) -> Option<Vec<WrittenPath>> {
+pub(super) fn parse(d: &str, kind: Kind, unit: Unit) -> Option<Vec<Path>> {
     let mut reader = Reader {
         kind,
         unit,
@@ -172,9 +184,9 @@ pub(super) fn parse(d: &str, kind: Kind, unit: Unit) -> Option<Vec<WrittenPath>>
 struct Reader {
     kind: Kind,
     unit: Unit,
-    paths: Vec<WrittenPath>,
+    paths: Vec<Path>,
     /// The points of the path that has begun.
-    points: Vec<WrittenPoint>,
+    points: Vec<PathPoint>,
     /// Where a relative segment starts; nowhere after a dot.
     at: Option<Place>,
     /// The control point of the last segment, if that was a curve.
@@ -191,16 +203,16 @@ impl Reader {
             self.at
         };
         let along = |axis: usize, by: f64| Some(origin?[axis] + self.unit.units(by)?);
-        let place = |x: f64, y: f64| within([along(0, x)?, along(1, y)?]);
+        let to = |x: f64, y: f64| within([along(0, x)?, along(1, y)?]);
         match segment {
             S::MoveTo { x, y, .. } => {
-                let start = place(x, y)?;
+                let start = to(x, y)?;
                 self.end()?;
-                self.points.push(PathPoint::on(start));
+                self.points.push(PathPoint::on(point(start)));
                 (self.at, self.control) = (Some(start), None);
                 Some(())
             }
-            S::LineTo { x, y, .. } => self.extend(None, place(x, y)?),
+            S::LineTo { x, y, .. } => self.extend(None, to(x, y)?),
             S::HorizontalLineTo { x, .. } if is_ring => {
                 let to = [along(0, x)?, self.at?[1]];
                 self.extend(None, within(to)?)
@@ -210,10 +222,10 @@ impl Reader {
                 self.extend(None, within(to)?)
             }
             S::HorizontalLineTo { abs: false, x } if self.unit.units(x)? == DOT => self.dot(),
-            S::Quadratic { x1, y1, x, y, .. } => self.extend(Some(place(x1, y1)?), place(x, y)?),
+            S::Quadratic { x1, y1, x, y, .. } => self.extend(Some(to(x1, y1)?), to(x, y)?),
             S::SmoothQuadratic { x, y, .. } => {
                 let knee = within(mirrored(self.control?, self.at?))?;
-                self.extend(Some(knee), place(x, y)?)
+                self.extend(Some(knee), to(x, y)?)
             }
             S::ClosePath { .. } => self.close(),
             _ => None,
@@ -225,8 +237,9 @@ impl Reader {
         if self.points.is_empty() {
             return None;
         }
-        self.points.extend(control.map(PathPoint::off));
-        self.points.push(PathPoint::on(to));
+        self.points
+            .extend(control.map(|knee| PathPoint::off(point(knee))));
+        self.points.push(PathPoint::on(point(to)));
         (self.at, self.control) = (Some(to), control);
         Some(())
     }
@@ -241,7 +254,7 @@ impl Reader {
     }
 
     fn close(&mut self) -> Option<()> {
-        self.at = self.points.first().map(|start| start.at);
+        self.at = self.points.first().map(|start| place(start.at));
         if self.points.len() < 2 {
             return None;
         }
@@ -262,7 +275,7 @@ impl Reader {
 
     fn push(&mut self, closed: bool) {
         let points = std::mem::take(&mut self.points);
-        self.paths.push(WrittenPath::new(points, closed));
+        self.paths.push(Path::canonical(points, closed));
         self.control = None;
     }
 }
@@ -282,21 +295,21 @@ mod tests {
     }
 
     /// The path of these points, in px; each is on it unless it says `false`.
-    fn path(points: &[(i64, i64, bool)], closed: bool) -> WrittenPath {
-        let point = |&(x, y, is_on): &(i64, i64, bool)| PathPoint {
-            at: px(x, y),
+    fn path(points: &[(i64, i64, bool)], closed: bool) -> Path {
+        let on_or_off = |&(x, y, is_on): &(i64, i64, bool)| PathPoint {
+            at: point(px(x, y)),
             is_on,
         };
-        WrittenPath::new(points.iter().map(point).collect(), closed)
+        Path::canonical(points.iter().map(on_or_off).collect(), closed)
     }
 
-    fn line(places: &[(i64, i64)]) -> WrittenPath {
+    fn line(places: &[(i64, i64)]) -> Path {
         let points: Vec<_> = places.iter().map(|&(x, y)| (x, y, true)).collect();
         path(&points, false)
     }
 
     /// Writes, and checks that reading gives the same.
-    fn written(paths: &[WrittenPath]) -> String {
+    fn written(paths: &[Path]) -> String {
         let d = data(paths, Kind::Line, Unit::PX);
         assert_eq!(
             parse(&d, Kind::Line, Unit::PX).as_deref(),

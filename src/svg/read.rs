@@ -14,7 +14,7 @@ use super::shape;
 use super::sheet::{self, Rules};
 use crate::error::{Error, Result};
 use crate::scene::{
-    MAX_POINTS, Mark, Scene, Shade, Stage, Written, WrittenPath, WrittenShade, WrittenShape, color,
+    Area, Cap, MAX_POINTS, Mark, Path, Scene, Shade, Shape, Stage, Stroke, color as rgb, px,
 };
 use element::Element;
 
@@ -60,7 +60,7 @@ pub(super) fn scene(dom: &Dom<'_>) -> Result<Scene> {
     if let Some(node) = children.next_if(|node| node.name() == "rect") {
         let rect = reader.leaf(node)?;
         rect.expect_page(&scene)?;
-        scene.background = Some(rect.get("fill", dialect::channels).map(color)?);
+        scene.background = Some(rect.get("fill", dialect::channels).map(rgb)?);
     }
     if let Some(node) = children.next_if(ground::is_gradient) {
         scene.shade = Some(reader.page_shade(node, children.next(), &scene)?);
@@ -251,19 +251,16 @@ fn painted(
 fn area(element: &Element<'_>, unit: Unit, color: [u8; 3], shade: Option<Shade>) -> Result<Mark> {
     let shape = shape(element, unit)?;
     let rings = |d: &str| path::parse(d, Kind::Ring, unit);
-    let paths = shape.map_or_else(|| element.get("d", rings), |_| Ok(Vec::new()))?;
-    check_counts(element, &paths, "ring")?;
+    let rings = shape.map_or_else(|| element.get("d", rings), |shape| Ok(vec![shape.path()]))?;
+    check_counts(element, &rings, "ring")?;
     let opacity = element.either("fill-opacity", dialect::opacity_quantum)?;
-    let written = Written {
-        paths,
-        shape,
-        width: 0,
-        is_band: false,
-        color,
-        opacity: opacity.unwrap_or(u8::MAX),
-        shade: shade.map(WrittenShade::from),
+    let area = Area {
+        rings,
+        color: rgb(color),
+        opacity: f32::from(opacity.unwrap_or(u8::MAX)) / 255.0,
+        shade,
     };
-    Ok(written.mark())
+    Ok(area.into())
 }
 
 fn strokes(element: &Element<'_>, unit: Unit) -> Result<Vec<Mark>> {
@@ -275,7 +272,7 @@ fn strokes(element: &Element<'_>, unit: Unit) -> Result<Vec<Mark>> {
     let is_band = element.either("stroke-linecap", ends)?.unwrap_or(0) == 0;
     let join = if is_band { "miter" } else { "round" };
     if element.find("stroke-linejoin").unwrap_or("miter") != join
-        && paths.iter().any(WrittenPath::has_joins)
+        && paths.iter().any(Path::has_joins)
     {
         let why = format!("has a corner, but not stroke-linejoin=\"{join}\": give it that");
         return Err(element.refused(why));
@@ -286,18 +283,17 @@ fn strokes(element: &Element<'_>, unit: Unit) -> Result<Vec<Mark>> {
         element.get("stroke", dialect::channels)?,
     );
     let opacity = element.either("stroke-opacity", dialect::opacity_quantum)?;
-    let stroke = |path| Written {
-        paths: vec![path],
-        shape,
-        width,
-        is_band,
-        color,
-        opacity: opacity.unwrap_or(u8::MAX),
-        shade: None,
+    let stroke = |path| Stroke {
+        path,
+        radius: 0.5 * px(width),
+        cap: if is_band { Cap::Butt } else { Cap::Round },
+        color: rgb(color),
+        opacity: f32::from(opacity.unwrap_or(u8::MAX)) / 255.0,
     };
-    let marks: Vec<Written> = paths.into_iter().map(stroke).collect();
-    match marks.iter().all(Written::is_sound) {
-        true => Ok(marks.iter().map(Written::mark).collect()),
+    let strokes: Vec<Stroke> = paths.into_iter().map(stroke).collect();
+    let is_sound = |stroke: &Stroke| stroke.band().is_none_or(|band| band.is_sound());
+    match strokes.iter().all(is_sound) {
+        true => Ok(strokes.into_iter().map(Mark::from).collect()),
         false => Err(element.refused(
             "with square ends has a corner that is too sharp, or a line too short for its width: make it an area",
         )),
@@ -305,7 +301,7 @@ fn strokes(element: &Element<'_>, unit: Unit) -> Result<Vec<Mark>> {
 }
 
 /// The shape of an element that has one.
-fn shape(element: &Element<'_>, unit: Unit) -> Result<Option<WrittenShape>> {
+fn shape(element: &Element<'_>, unit: Unit) -> Result<Option<Shape>> {
     let Some(attributes) = shape::attributes(element.node.name()) else {
         return Ok(None);
     };
@@ -320,7 +316,7 @@ fn shape(element: &Element<'_>, unit: Unit) -> Result<Option<WrittenShape>> {
 }
 
 /// Refuses paths of too many points.
-fn check_counts(element: &Element<'_>, paths: &[WrittenPath], kind: &str) -> Result<()> {
+fn check_counts(element: &Element<'_>, paths: &[Path], kind: &str) -> Result<()> {
     let counts = paths.iter().map(|path| path.points().len());
     match counts.max().filter(|&count| count > MAX_POINTS) {
         Some(count) => Err(element.refused(format!(

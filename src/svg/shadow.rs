@@ -2,13 +2,10 @@
 
 use super::dialect::{self, Unit};
 use super::element;
-use crate::scene::Shadow;
+use crate::scene::{Mark, Shadow};
 
 /// Appends the filter and the element of a shadow, the `number`-th of its file, in px.
 pub(super) fn push(out: &mut String, shadow: &Shadow, number: usize) {
-    let Some((shape, blur)) = shadow.written() else {
-        return;
-    };
     let (filter, id) = (dialect::BLUR_ID, dialect::SHADOW_ID);
     *out += &format!("<filter id=\"{filter}-{number}\"");
     for (name, value) in dialect::FILTER {
@@ -19,10 +16,13 @@ pub(super) fn push(out: &mut String, shadow: &Shadow, number: usize) {
     }
     let (gaussian, deviation) = dialect::GAUSSIAN;
     *out += &format!("><{gaussian} {deviation}=\"");
-    Unit::PX.push(out, blur);
+    Unit::PX.push(
+        out,
+        (f64::from(shadow.blur()) * 100.0).round() as i64 * dialect::HUNDREDTH,
+    );
     *out += "\"/></filter>";
     let names = format!(" id=\"{id}-{number}\" filter=\"url(#{filter}-{number})\"");
-    element::push_alone(out, &shape, &names);
+    element::push_alone(out, &Mark::from(shadow.area().clone()).into(), &names);
     out.push('\n');
 }
 

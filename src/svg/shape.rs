@@ -1,7 +1,8 @@
 //! The elements of shapes: `<circle>`, `<ellipse>` and `<rect>`.
 
 use super::dialect::Unit;
-use crate::scene::WrittenShape;
+use crate::math::Point;
+use crate::scene::{Shape, px, units};
 
 /// Names of the elements, and of the attributes that say where they are. The last one of a rectangle may be absent.
 const CIRCLE: (&str, [&str; 3]) = ("circle", ["cx", "cy", "r"]);
@@ -21,36 +22,44 @@ pub(super) fn attributes(name: &str) -> Option<&'static [&'static str]> {
 }
 
 /// Appends the beginning of the element of `shape`, with these `names`, up to its attributes of style.
-pub(super) fn push(out: &mut String, shape: WrittenShape, names: &str, unit: Unit) {
-    let mut element = |name: &str, attributes: &[&str], numbers: &[i64]| {
+pub(super) fn push(out: &mut String, shape: Shape, names: &str, unit: Unit) {
+    let mut element = |name: &str, attributes: &[&str], numbers: &[f64]| {
         *out += &format!("<{name}{names}");
         for (attribute, &number) in attributes.iter().zip(numbers) {
             *out += &format!(" {attribute}=\"");
-            unit.push(out, number);
+            unit.push(out, units(number));
             out.push('"');
         }
     };
     match shape {
-        WrittenShape::Circle([x, y], radius) => element(CIRCLE.0, &CIRCLE.1, &[x, y, radius]),
-        WrittenShape::Ellipse([x, y], [rx, ry]) => element(ELLIPSE.0, &ELLIPSE.1, &[x, y, rx, ry]),
-        WrittenShape::Rect([low, high], radius) => {
-            let [width, height] = [0, 1].map(|axis| high[axis] - low[axis]);
-            let numbers = [low[0], low[1], width, height, radius];
-            let count = if radius > 0 { 5 } else { 4 };
+        Shape::Circle { center, radius } => {
+            element(CIRCLE.0, &CIRCLE.1, &[center.x, center.y, radius]);
+        }
+        Shape::Ellipse { center, radii } => {
+            element(
+                ELLIPSE.0,
+                &ELLIPSE.1,
+                &[center.x, center.y, radii[0], radii[1]],
+            );
+        }
+        Shape::Rect { low, high, radius } => {
+            let side = high - low;
+            let numbers = [low.x, low.y, side.x, side.y, radius];
+            let count = if radius > 0.0 { 5 } else { 4 };
             element(RECT.0, &RECT.1, &numbers[..count]);
         }
     }
 }
 
 /// The shape of the element of this name with these numbers, in the order of its [`attributes`].
-pub(super) fn of(name: &str, numbers: &[i64]) -> Option<WrittenShape> {
+pub(super) fn of(name: &str, numbers: &[i64]) -> Option<Shape> {
+    let point = |x: i64, y: i64| Point::new(px(x), px(y));
     let shape = match (name, numbers) {
-        ("circle", &[x, y, radius]) => WrittenShape::Circle([x, y], radius),
-        ("ellipse", &[x, y, rx, ry]) => WrittenShape::Ellipse([x, y], [rx, ry]),
+        ("circle", &[x, y, radius]) => Shape::circle(point(x, y), px(radius)),
+        ("ellipse", &[x, y, rx, ry]) => Shape::ellipse(point(x, y), [px(rx), px(ry)]),
         ("rect", &[x, y, width, height, ref radius @ ..]) => {
-            let radius = radius.first().copied();
-            let corners = [[x, y], [x + width, y + height]];
-            WrittenShape::Rect(corners, radius.unwrap_or(0))
+            let corners = [point(x, y), point(x + width, y + height)];
+            Shape::rect(corners, px(radius.first().copied().unwrap_or(0)))
         }
         _ => return None,
     };

@@ -16,8 +16,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::dialect::{self, Unit};
+use super::layer::Written;
 use super::names;
-use crate::scene::{Written, distinct_colors};
+use crate::scene::distinct_colors;
 
 /// The class of the page.
 pub(super) const BACKGROUND: &str = "background";
@@ -39,10 +40,10 @@ impl Sheet {
         background: Option<[u8; 3]>,
         marks: impl Iterator<Item = &'a Written>,
     ) -> Self {
-        let marks: Vec<&Written> = marks.filter(|mark| mark.shade.is_none()).collect();
-        let order = distinct_colors(marks.iter().map(|mark| mark.color));
+        let marks: Vec<&Written> = marks.filter(|mark| mark.mark.shade().is_none()).collect();
+        let order = distinct_colors(marks.iter().map(|mark| mark.color()));
         let strokes = marks.iter().filter(|mark| !mark.is_area());
-        let mut widths: Vec<i64> = strokes.map(|stroke| stroke.width).collect();
+        let mut widths: Vec<i64> = strokes.map(|stroke| stroke.width()).collect();
         widths.sort_unstable();
         widths.dedup();
         let widths = widths.into_iter().zip(1..);
@@ -64,8 +65,11 @@ impl Sheet {
 
     /// The attribute that gives a mark its colour and width; nothing if it has a gradient.
     pub(super) fn class(&self, mark: &Written) -> String {
-        match (self.colors.get(&mark.color), self.widths.get(&mark.width)) {
-            _ if mark.shade.is_some() => String::new(),
+        match (
+            self.colors.get(&mark.color()),
+            self.widths.get(&mark.width()),
+        ) {
+            _ if mark.mark.shade().is_some() => String::new(),
             (Some(color), None) => format!(" class=\"{color}\""),
             (Some(color), Some(width)) => format!(" class=\"{color}-line {width}\""),
             (None, _) => String::new(),
@@ -81,7 +85,7 @@ impl Sheet {
     ) -> String {
         let has = |is_area: bool| {
             let own = marks.iter().filter(move |mark| mark.is_area() == is_area);
-            own.map(|mark| mark.color).collect::<BTreeSet<_>>()
+            own.map(|mark| mark.color()).collect::<BTreeSet<_>>()
         };
         let (areas, strokes) = (has(true), has(false));
         let mut rules = background.map_or_else(String::new, |color| {

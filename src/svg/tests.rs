@@ -7,7 +7,8 @@ use crate::error::ErrorKind;
 use crate::math::Point;
 use crate::metrics::Agreement;
 use crate::scene::{
-    Area, Axis, Dropped, MAX_POINTS, Mark, Path, PathPoint, Scene, Shade, ShadeStop, Stage, Stroke,
+    Area, Axis, Cap, Dropped, MAX_POINTS, Mark, Path, PathPoint, Scene, Shade, ShadeStop, Stage,
+    Stroke,
 };
 use crate::verify;
 use scenes::{mark, options, scene, scene_of_few_styles};
@@ -115,7 +116,7 @@ proptest! {
     fn the_bytes_of_a_mark_are_what_the_file_grows_by(mark in mark(), precision in 0..=6_u8) {
         let options = WriteOptions { form: Form::Plain, ..precise(precision) };
         // Bands have attributes of their own beside a stroke with round ends.
-        let dot = Mark::from(Stroke { path: Path::dot([3.0, 3.0].into()), radius: 2.0, color: [0.0; 3], opacity: 1.0 });
+        let dot = Mark::from(Stroke { path: Path::dot((3.0, 3.0).into()), radius: 2.0, cap: Cap::Round, color: [0.0; 3], opacity: 1.0 });
         let bytes = |count: usize| {
             let marks = std::iter::once(dot.clone()).chain(vec![mark.clone(); count]);
             let scene = Scene { stages: vec![marks.collect()], ..Scene::empty(1_000_000, 9, None) };
@@ -133,7 +134,7 @@ proptest! {
     fn outlines_of_areas_are_the_areas(scene in scene(), precision in 0..=6_u8) {
         // Bands are strokes in other forms.
         let is_filled = |mark: &&Mark| match scene.quantized_mark(mark, precision).as_ref().unwrap_or(mark) {
-            Mark::Area(area) => area.band().is_none(),
+            Mark::Area(_) => true,
             Mark::Stroke(_) => false,
         };
         let areas = |stage: &Stage| stage.marks.iter().filter(is_filled).cloned().collect();
@@ -181,6 +182,7 @@ fn line() -> Stroke {
     Stroke {
         path: Path::line(Point::new(100.25, 20.5), Point::new(97.04, 25.06)),
         radius: 1.5,
+        cap: Cap::Round,
         color: [1.0, 0.4, 0.0],
         opacity: 1.0,
     }
@@ -223,7 +225,7 @@ fn the_dialect_is_this() {
 
 #[test]
 fn a_path_of_several_points_is_one_element_with_round_joins() {
-    let on = |x, y| PathPoint::on([x, y].into());
+    let on = |x, y| PathPoint::on((x, y).into());
     let corners = vec![on(5.0, 5.0), on(15.0, 8.0), on(12.0, 20.0), on(30.0, 20.0)];
     let bent = Stroke {
         path: Path::new(corners, false).unwrap(),
@@ -249,7 +251,7 @@ fn a_path_of_several_points_is_one_element_with_round_joins() {
     assert!(message.contains("has a corner"), "{message}");
     let curve = vec![
         on(5.0, 5.0),
-        PathPoint::off([9.0, 30.0].into()),
+        PathPoint::off((9.0, 30.0).into()),
         on(30.0, 5.0),
     ];
     let curve = Stroke {
@@ -263,7 +265,7 @@ fn a_path_of_several_points_is_one_element_with_round_joins() {
 #[test]
 fn a_stroke_of_too_many_points_is_refused() {
     let strokes = |count: usize| {
-        let on = |k: usize| PathPoint::on([(k % 40) as f32, (k / 40) as f32].into());
+        let on = |k: usize| PathPoint::on(((k % 40) as f64, (k / 40) as f64).into());
         let points = (0..count).map(on).collect();
         Stroke {
             path: Path::new(points, false).unwrap(),
@@ -428,7 +430,7 @@ fn comments_white_space_and_prefixed_attributes_do_not_matter() {
 /// A page with a glow.
 fn glowing() -> Scene {
     let axis = Axis::Radial {
-        center: [4.5, 3.25].into(),
+        center: (4.5, 3.25).into(),
         radius: 2.5,
     };
     let stop = |offset, opacity| ShadeStop {
@@ -489,17 +491,19 @@ fn other_gradients_are_refused() {
 
 /// A background, an area and strokes of its colour and of another red, and a line twice as wide.
 fn in_classes() -> String {
-    let line = |y: f32, color, radius| {
-        let path = Path::line([1.0, y].into(), [9.0, y].into());
+    let line = |y: f64, color, radius| {
+        let path = Path::line((1.0, y).into(), (9.0, y).into());
         let opacity = if y > 5.0 { 0.5 } else { 1.0 };
         Mark::from(Stroke {
             path,
             radius,
+            cap: Cap::Round,
             color,
             opacity,
         })
     };
-    let corners = [[2.0, 2.0], [8.0, 2.0], [5.0, 8.0]].map(|p| PathPoint::on(p.into()));
+    let corners =
+        [[2.0, 2.0], [8.0, 2.0], [5.0, 8.0]].map(|[x, y]: [f64; 2]| PathPoint::on((x, y).into()));
     let area = Area {
         rings: vec![Path::new(corners.into(), true).unwrap()],
         color: [0.8, 0.0, 0.0],

@@ -12,7 +12,9 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use crate::scene::{Precedence, UNITS_PER_PX, Written, WrittenPath, WrittenPoint};
+use super::layer::Written;
+use crate::math::Point;
+use crate::scene::{Mark, Path, PathPoint, Precedence, UNITS_PER_PX, units};
 
 /// Pairs of places that a pass looks at, at most: all pairs of a tour of 2,000 strokes. A guess.
 const PAIRS: usize = 2_000_000;
@@ -28,7 +30,7 @@ const LEAST: f64 = 1e-6;
 
 /// The strokes in an order of little travel, for a pen that comes `from` a point. The picture does not change.
 pub(super) fn shortened(strokes: &[Written], from: Option<Spot>) -> Vec<Written> {
-    let precedence = Precedence::of(strokes);
+    let precedence = Precedence::of(strokes.iter().map(|stroke| &stroke.mark));
     let mut tour = Tour::nearest_first(strokes, &precedence, from);
     tour.improve(strokes);
     let visits = tour.visits.iter();
@@ -52,7 +54,7 @@ pub(super) fn between(strokes: &[Written]) -> f64 {
 pub(super) type Spot = [i64; 2];
 
 /// Distance of two points, px.
-pub(super) fn dist(a: Spot, b: Spot) -> f64 {
+fn dist(a: Spot, b: Spot) -> f64 {
     dist2(a, b).sqrt() / UNITS_PER_PX as f64
 }
 
@@ -64,22 +66,28 @@ fn dist2([ax, ay]: Spot, [bx, by]: Spot) -> f64 {
 
 /// Where a pen is set down and lifted to draw the first path of a mark, which all others follow.
 fn ends_of(mark: &Written) -> [Spot; 2] {
-    mark.paths.first().map_or([[0; 2]; 2], |path| ends(path, 0))
+    mark.paths()
+        .first()
+        .map_or([[0; 2]; 2], |path| ends(path, 0))
 }
 
 /// Where a pen is set down and lifted to draw the path; a closed one from its point `start`, or, if that is off the path, from
 /// between it and the previous one.
-fn ends(path: &WrittenPath, start: usize) -> [Spot; 2] {
+fn ends(path: &Path, start: usize) -> [Spot; 2] {
     let points = path.points();
     let (Some(first), Some(last)) = (points.get(start), points.last()) else {
         return [[0; 2]; 2];
     };
     if !path.is_closed() {
-        return [first.at, last.at];
+        return [first, last].map(|p| spot(p.at));
     }
     let previous = &points[(start + points.len() - 1) % points.len()];
     let other = if first.is_on { first } else { previous };
-    [[0, 1].map(|axis| i64::midpoint(first.at[axis], other.at[axis])); 2]
+    [spot(first.at.midpoint(other.at)); 2]
+}
+
+fn spot(p: Point) -> Spot {
+    [units(p.x), units(p.y)]
 }
 
 /// A way to draw a stroke.
@@ -98,7 +106,7 @@ struct Visit {
 impl Visit {
     /// All ways to draw a mark: an area begins with its first ring, a shape where its element says.
     fn all(stroke: usize, mark: &Written) -> Vec<Self> {
-        let Some(path) = mark.paths.first() else {
+        let Some(path) = mark.paths().first() else {
             return Vec::new();
         };
         let beginning_at = |start: usize| Self {
@@ -108,13 +116,13 @@ impl Visit {
             is_reversed: false,
         };
         let forward = beginning_at(0);
-        if mark.shape.is_some() || path.points().len() == 1 {
+        if mark.shape().is_some() || path.points().len() == 1 {
             return vec![forward];
         }
         if !path.is_closed() {
             return vec![forward, forward.flipped()];
         }
-        let is_off = |point: &WrittenPoint| !point.is_on;
+        let is_off = |point: &PathPoint| !point.is_on;
         let all_off = path.points().iter().all(is_off);
         let starts = (0..path.points().len()).filter(|&i| all_off || path.points()[i].is_on);
         starts.map(beginning_at).collect()
@@ -133,13 +141,17 @@ impl Visit {
     /// The stroke, drawn in this way.
     fn drawn(&self, stroke: &Written) -> Written {
         let mut drawn = stroke.clone();
-        if let Some(path) = drawn.paths.first_mut() {
+        let path = match &mut drawn.mark {
+            Mark::Stroke(stroke) => Some(&mut stroke.path),
+            Mark::Area(area) => area.rings.first_mut(),
+        };
+        if let Some(path) = path.filter(|path| path.shape().is_none()) {
             if path.is_closed() {
                 let mut points = path.points().to_vec();
                 points.rotate_left(self.start);
-                *path = WrittenPath::new(points, true);
+                *path = Path::canonical(points, true);
             } else if self.is_reversed {
-                *path = path.reversed();
+                *path = path.turned();
             }
         }
         drawn
@@ -278,7 +290,7 @@ impl<'a> Tour<'a> {
         for i in 0..self.visits.len() {
             let now = self.visits[i];
             let mark = &strokes[now.stroke];
-            if !mark.paths.first().is_some_and(WrittenPath::is_closed) {
+            if !mark.paths().first().is_some_and(Path::is_closed) {
                 continue;
             }
             let neighbours = [self.lifted(i), self.set_down(i + 1)];
@@ -333,25 +345,26 @@ fn nearest(ready: &BTreeSet<Visit>, at: Spot) -> Option<Visit> {
 mod tests {
     use super::*;
     use crate::rng;
-    use crate::scene::PathPoint;
+    use crate::scene::{Cap, Stroke, color};
 
-    const PX: i64 = UNITS_PER_PX;
-
-    fn path(points: &[[i64; 2]], closed: bool) -> WrittenPath {
-        let on = |p: &[i64; 2]| PathPoint::on(p.map(|px| px * PX));
-        WrittenPath::new(points.iter().map(on).collect(), closed)
+    fn path(points: &[[i64; 2]], closed: bool) -> Path {
+        let on = |p: &[i64; 2]| PathPoint::on(Point::new(p[0] as f64, p[1] as f64));
+        Path::canonical(points.iter().map(on).collect(), closed)
     }
 
-    fn stroke(path: WrittenPath, color: u8) -> Written {
-        Written {
-            paths: vec![path],
-            shape: None,
-            is_band: false,
-            width: 2 * PX,
-            color: [color; 3],
-            opacity: 255,
-            shade: None,
-        }
+    fn stroke_of(path: Path, level: u8, radius: f64, opacity: f32) -> Written {
+        let stroke = Stroke {
+            path,
+            radius,
+            cap: Cap::Round,
+            color: color([level; 3]),
+            opacity,
+        };
+        Mark::from(stroke).into()
+    }
+
+    fn stroke(path: Path, level: u8) -> Written {
+        stroke_of(path, level, 1.0, 1.0)
     }
 
     /// Lines of 5 px at random places of a square, of so many colours.
@@ -377,7 +390,10 @@ mod tests {
         ];
         let drawn = shortened(&strokes, Some([0, 0]));
         assert_eq!(between(&drawn), 2.0);
-        let starts: Vec<_> = drawn.iter().map(|s| ends_of(s)[0][0] / PX).collect();
+        let starts: Vec<_> = drawn
+            .iter()
+            .map(|s| ends_of(s)[0][0] / UNITS_PER_PX)
+            .collect();
         assert_eq!(starts, [0, 11, 40]);
     }
 
@@ -389,7 +405,7 @@ mod tests {
         assert_eq!(between(&drawn), 1.0);
         let closed = drawn
             .iter()
-            .flat_map(|s| &s.paths)
+            .flat_map(Written::paths)
             .find(|path| path.is_closed());
         assert_eq!(closed.map(|path| path.points().len()), Some(4));
     }
@@ -405,16 +421,22 @@ mod tests {
 
     #[test]
     fn strokes_that_meet_keep_their_order_unless_they_are_alike() {
-        let mut strokes = lines(400, 100, 3);
         // Widths tell strokes apart.
-        strokes.iter_mut().zip(0..).for_each(|(s, i)| s.width += i);
+        let strokes: Vec<Written> = lines(400, 100, 3)
+            .into_iter()
+            .enumerate()
+            .map(|(i, line)| {
+                let radius = 1.0 + 1e-6 * i as f64;
+                stroke_of(line.paths()[0].clone(), line.color()[0], radius, 1.0)
+            })
+            .collect();
         let drawn = shortened(&strokes, None);
         assert!(between(&drawn) < 0.7 * between(&strokes));
-        let place = |stroke: &Written| drawn.iter().position(|s| s.width == stroke.width);
+        let place = |stroke: &Written| drawn.iter().position(|s| s.width() == stroke.width());
         let mut pairs = 0;
         for (i, below) in strokes.iter().enumerate() {
             for above in &strokes[i + 1..] {
-                if below.meets(above) && below.color != above.color {
+                if below.mark.meets(&above.mark) && below.color() != above.color() {
                     assert!(place(below) < place(above), "{below:?} {above:?}");
                     pairs += 1;
                 }

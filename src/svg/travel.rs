@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::arrange;
-use super::layer::Layer;
+use super::layer::{Layer, Written};
 use super::options::{Order, WriteOptions};
 use super::tour;
-use crate::scene::{Scene, Written};
+use crate::scene::{Path, Scene};
 
 /// Travel of a pen that draws a file, in px of the picture. The ways to the first stroke of a layer and from its last
 /// one are not counted: that is where pens are changed.
@@ -75,7 +75,10 @@ const CHORD: f64 = 1e-3;
 
 /// Length of the paths of a mark, px.
 fn drawn(stroke: &Written) -> f64 {
-    let segments = stroke.segments(CHORD);
-    let lengths = segments.iter().map(|&[a, b]| tour::dist(a, b));
-    lengths.sum()
+    let length = |path: &Path| {
+        let corners = path.flattened(CHORD);
+        let lengths = corners.windows(2).map(|ends| ends[0].distance(ends[1]));
+        lengths.sum::<f64>()
+    };
+    stroke.paths().iter().map(length).sum()
 }

@@ -4,12 +4,12 @@ use super::arrange;
 use super::dialect::{self, Unit};
 use super::element::{self, Names};
 use super::gradient;
-use super::layer::{Layer, LayerKind};
+use super::layer::{Layer, LayerKind, Written};
 use super::names;
 use super::options::{Form, Order, WriteOptions};
 use super::shadow;
 use super::sheet::{BACKGROUND, Sheet};
-use crate::scene::{Mark, Scene, Written, WrittenPath, counted, quantum};
+use crate::scene::{Mark, Path, Scene, counted, quantized_anywhere, quantum};
 
 /// The scene as SVG text: rounded by [`Scene::quantized`], without the strokes that this drops, and in the order
 /// given by [`arrange`](super::arrange()).
@@ -41,9 +41,10 @@ fn numbered(
     let mut out = String::new();
     for (index, mut layer) in layers.into_iter().enumerate() {
         let number = first + index;
-        let shades = layer.strokes.iter_mut().filter_map(|m| m.shade.as_mut());
-        for (k, shade) in shades.enumerate() {
-            shade.place = [number, k + 1];
+        let shaded = layer.strokes.iter_mut();
+        let shaded = shaded.filter(|mark| mark.mark.shade().is_some());
+        for (k, mark) in shaded.enumerate() {
+            mark.place = [number, k + 1];
         }
         out.push_str(&shortest(number, &layer, options, sheet));
     }
@@ -53,8 +54,8 @@ fn numbered(
 /// Bytes that the mark takes in a file; 0 if it would be dropped at any place. In the smallest form this
 /// depends on its neighbours; the width then counts as shared, and the colour as the mark's own.
 pub fn mark_bytes(mark: &Mark, options: &WriteOptions) -> usize {
-    Written::anywhere(mark, options.precision).map_or(0, |mark| {
-        element::bytes(&mark, options.form, options.unit())
+    quantized_anywhere(mark, options.precision).map_or(0, |mark| {
+        element::bytes(&mark.into(), options.form, options.unit())
     })
 }
 
@@ -96,7 +97,7 @@ fn shortest(number: usize, layer: &Layer, options: &WriteOptions, sheet: Option<
     let text = |unit| text(number, layer, options, unit, sheet);
     let in_px = text(Unit::PX);
     // The axis of a gradient is in px.
-    let has_shades = layer.strokes.iter().any(|mark| mark.shade.is_some());
+    let has_shades = layer.strokes.iter().any(|mark| mark.mark.shade().is_some());
     if options.unit() == Unit::PX || has_shades {
         return in_px;
     }
@@ -163,12 +164,12 @@ fn counts(layer: &Layer) -> String {
 /// The attributes of a layer that turn its paths without a fill into strokes: with round ends, unless it has bands alone.
 fn style_attributes(layer: &Layer, form: Form) -> &'static str {
     let round = || layer.strokes.iter().filter(|mark| mark.is_round());
-    let mut paths = round().flat_map(|stroke| &stroke.paths);
+    let mut paths = round().flat_map(Written::paths);
     if form == Form::Outlines || layer.strokes.iter().all(Written::is_area) {
         ""
     } else if round().next().is_none() {
         " fill=\"none\""
-    } else if paths.any(WrittenPath::has_joins) {
+    } else if paths.any(Path::has_joins) {
         " fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\""
     } else {
         " fill=\"none\" stroke-linecap=\"round\""

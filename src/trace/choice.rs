@@ -14,7 +14,7 @@ use super::fill::{Fill, Flat};
 use super::gain::coverage;
 use super::parts::{COVERED, Part};
 use super::strokes::TracedStroke;
-use crate::math::distance;
+use crate::math::{self, distance};
 use crate::scene::{self, Area, Mark, Stroke, polyline};
 
 /// Strokes and regions that share pixels.
@@ -65,7 +65,7 @@ pub(super) fn chosen(
     }
     let mut places: Vec<Option<(usize, f32)>> = vec![None; strokes.len()];
     let gains: BTreeMap<u32, f32> = fills.iter().map(|fill| (fill.region, fill.gain)).collect();
-    let mut bands: Vec<Option<Area>> = vec![None; strokes.len()];
+    let mut bands: Vec<Option<Stroke>> = vec![None; strokes.len()];
     let drawn = groups.iter().zip(pens).zip(&won).filter(|(_, won)| **won);
     for ((group, pens), _) in drawn {
         let regions = group.regions.iter();
@@ -80,10 +80,10 @@ pub(super) fn chosen(
             places[i] = Some((rank, worth.sum::<f32>().max(strokes[i].gain)));
             // A width that was taken for that on the canvas.
             let own = &mut strokes[i].stroke.radius;
-            if (*own - pen.radius).abs() > WRONG {
-                *own = pen.radius;
+            if (*own - f64::from(pen.radius)).abs() > WRONG {
+                *own = pen.radius.into();
             }
-            bands[i] = pen.band.map(|band| band.area(&strokes[i].stroke));
+            bands[i] = pen.band.map(|band| band.stroke(&strokes[i].stroke));
         }
     }
     let grouped = votes.iter().map(|votes| !votes.is_empty());
@@ -110,7 +110,7 @@ pub(super) fn chosen(
         let Some((rank, gain)) = place else {
             continue;
         };
-        let mark = band.map_or_else(|| traced.stroke.into(), Mark::Area);
+        let mark = band.unwrap_or(traced.stroke).into();
         let place = areas.iter().filter(|area| area.rank < rank).count();
         found.push((2 * place, Traced { mark, gain }));
     }
@@ -172,7 +172,7 @@ fn crossed(
 }
 
 fn coverage_of(stroke: &Stroke, pixels: &Pixels<'_>) -> Vec<(usize, f32)> {
-    coverage(&stroke.path, stroke.radius, pixels)
+    coverage(&stroke.path, stroke.radius as f32, pixels)
 }
 
 /// The place of a stroke in the stack: that of its regions, or below what it goes on beneath.
@@ -180,7 +180,7 @@ fn rank(traced: &TracedStroke, votes: &Votes, flat: &Flat<'_>, pixels: &Pixels<'
     let own = votes.keys().filter_map(|&region| flat.rank(region));
     let line = traced.stroke.path.flattened(0.1);
     let crossed = line.windows(2).flat_map(|ends| {
-        let [a, b] = [[ends[0].x, ends[0].y], [ends[1].x, ends[1].y]];
+        let [a, b] = [math::xy(ends[0]), math::xy(ends[1])];
         let steps = distance(a, b).ceil() as usize;
         (0..steps).map(move |step| {
             let share = step as f32 / steps as f32;
@@ -278,17 +278,15 @@ fn unjoined(
 /// Length of a stroke's middle, in units of its radius.
 fn length(stroke: &Stroke) -> f32 {
     let line = stroke.path.flattened(0.1);
-    let sides = line
-        .windows(2)
-        .map(|w| distance([w[0].x, w[0].y], [w[1].x, w[1].y]));
-    sides.sum::<f32>() / stroke.radius
+    let sides = line.windows(2).map(|ends| ends[0].distance(ends[1]));
+    (sides.sum::<f64>() / stroke.radius) as f32
 }
 
 /// Strokes of fewer radii are short. A guess.
 const SHORT: f32 = 16.0;
 
 /// A radius is replaced by one that is farther away than this, px. A guess.
-const WRONG: f32 = 0.5;
+const WRONG: f64 = 0.5;
 
 /// The stroke along a polyline, if it is nearly that.
 fn without_wavering(stroke: &Stroke) -> Stroke {
@@ -336,7 +334,7 @@ fn stroked(
     let is_even = |(_, pen): &(&&Stroke, &Option<Pen>)| pen.is_some();
     let lengths = |odd: bool| {
         let own = strokes.iter().zip(&even).filter(|own| odd != is_even(own));
-        own.map(|(stroke, _)| length(stroke) * stroke.radius)
+        own.map(|(stroke, _)| length(stroke) * stroke.radius as f32)
             .sum::<f32>()
     };
     // Of the lines of a shape that came apart, few run so close to another one that neither is even.
@@ -350,7 +348,7 @@ fn stroked(
         return None;
     }
     let pens = strokes.iter().zip(even);
-    let pens = pens.map(|(stroke, pen)| pen.unwrap_or(Pen::round(stroke.radius)));
+    let pens = pens.map(|(stroke, pen)| pen.unwrap_or(Pen::round(stroke.radius as f32)));
     let mut pens: Vec<Pen> = pens.collect();
     // Letters of bars are things, and no lines.
     // Ends that are hidden are like those that are seen.
@@ -377,10 +375,10 @@ const MOST_ODD: f32 = 0.25;
 const LINE: f32 = 6.0;
 
 /// An ellipse is no stroke if its radii are above this, px. A guess.
-const STOUT: f32 = 4.0;
+const STOUT: f64 = 4.0;
 
 /// Farthest that an outline is from the ellipse that it is, px: a guess, as for forms.
-const NEAR: f32 = 0.45;
+const NEAR: f64 = 0.45;
 
 /// True for an ellipse that is no circle: a fat stroke is as near to it as rays tell, but not its ends.
 fn is_ellipse(area: &Area) -> bool {
@@ -420,8 +418,9 @@ fn is_covered(
     let covered = |side: f32| {
         let mut covered: BTreeMap<usize, f32> = BTreeMap::new();
         for stroke in strokes {
-            let slack = side * (SLACK[0] + SLACK[1] * stroke.radius);
-            let radius = (stroke.radius + slack).max(0.3);
+            let radius = stroke.radius as f32;
+            let slack = side * (SLACK[0] + SLACK[1] * radius);
+            let radius = (radius + slack).max(0.3);
             for (i, share) in coverage(&stroke.path, radius, pixels) {
                 let most = covered.entry(i).or_default();
                 *most = most.max(share);
@@ -453,7 +452,7 @@ fn is_covered(
         .sum();
     // A straight line runs on below the blurred edges of what it ends at, or crosses at a sharp angle.
     let is_line = |stroke: &&Stroke| {
-        stroke.path.points().len() == 2 && length(stroke) * stroke.radius >= STRAIGHT
+        stroke.path.points().len() == 2 && length(stroke) * stroke.radius as f32 >= STRAIGHT
     };
     let most_beyond = match strokes.iter().all(is_line) {
         true => 0.1 * size + 5.0,

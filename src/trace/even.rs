@@ -5,7 +5,7 @@
 
 use std::f32::consts::SQRT_2;
 
-use crate::math::{Point, direction, distance, median};
+use crate::math::{self, Point, direction, distance, median};
 use crate::scene::{Band, Path, Stroke, polyline, through};
 
 type Place = [f32; 2];
@@ -49,7 +49,7 @@ impl Pen {
 }
 
 /// Farthest that the middle of a traced line is from its place, px. A guess.
-pub(super) const WAVERING: f32 = 0.6;
+pub(super) const WAVERING: f64 = 0.6;
 
 /// Shortest side of a line with square ends, in radii: bends have shorter ones. A guess.
 const SIDE: f32 = 3.0;
@@ -92,10 +92,11 @@ impl Form {
 impl<I: Fn(Place) -> f32, R: Fn(Place) -> Option<u32>> Shape<I, R> {
     /// The pen that draws the shape along the middle of the stroke, if there is one.
     pub(super) fn pen(&self, stroke: &Stroke) -> Option<Pen> {
+        let own = stroke.radius as f32;
         let line = places_of(&stroke.path);
-        let places = smoothed(along(&line, 1.0), 0.5 * stroke.radius);
-        let reach = 1.7 * stroke.radius + 2.0;
-        if places.len() < 3 || (places.len() as f32) < 0.7 * stroke.radius {
+        let places = smoothed(along(&line, 1.0), 0.5 * own);
+        let reach = 1.7 * own + 2.0;
+        if places.len() < 3 || (places.len() as f32) < 0.7 * own {
             let middle = places[places.len() / 2].0;
             return self.disc_radius(middle, reach).map(Pen::round);
         }
@@ -104,7 +105,7 @@ impl<I: Fn(Place) -> f32, R: Fn(Place) -> Option<u32>> Shape<I, R> {
             .filter_map(|&(at, way)| self.radius(at, way, reach));
         let widths: Vec<f32> = widths.collect();
         let Some(radius) = median(widths.iter().copied()) else {
-            return Some(Pen::round(stroke.radius));
+            return Some(Pen::round(own));
         };
         let odd = widths
             .iter()
@@ -139,7 +140,7 @@ impl<I: Fn(Place) -> f32, R: Fn(Place) -> Option<u32>> Shape<I, R> {
         if radius < THINNEST {
             return None;
         }
-        let path = self.centered(&polyline(&stroke.path, WAVERING, radius)?, radius)?;
+        let path = self.centered(&polyline(&stroke.path, WAVERING, radius.into())?, radius)?;
         let (line, is_closed) = (places_of(&path), path.is_closed());
         let mut sides = line.windows(2);
         let is_long = sides.all(|ends| distance(ends[0], ends[1]) >= SIDE * radius);
@@ -149,7 +150,12 @@ impl<I: Fn(Place) -> f32, R: Fn(Place) -> Option<u32>> Shape<I, R> {
         }
         let beyond = |(at, way)| self.ray(at, way, 2.2 * radius + 2.0).unwrap_or(0.0);
         let beyond = ends_of(&places).map(beyond);
-        let band = Band::along(&path, 2.0 * radius, beyond, [WAVERING, 0.0])?;
+        let band = Band::along(
+            &path,
+            2.0 * f64::from(radius),
+            beyond.map(f64::from),
+            [WAVERING, 0.0],
+        )?;
         let is_round = self.has(&line, &places, is_closed, radius, Form::Rounder);
         Some((band, is_round))
     }
@@ -181,7 +187,7 @@ impl<I: Fn(Place) -> f32, R: Fn(Place) -> Option<u32>> Shape<I, R> {
             let [[a, a_off], [b, b_off]] = [median(first)?, median(last)?];
             let at = |px: f32| {
                 let off = a_off + (b_off - a_off) * (px - a) / (b - a);
-                Point::from([0, 1].map(|k| ends[0][k] + px * way[k] + off * normal[k]))
+                math::point([0, 1].map(|k| ends[0][k] + px * way[k] + off * normal[k]))
             };
             Some([at(0.0), at(length)])
         };
@@ -304,7 +310,7 @@ impl<I: Fn(Place) -> f32, R: Fn(Place) -> Option<u32>> Shape<I, R> {
 }
 
 fn places_of(path: &Path) -> Vec<Place> {
-    path.flattened(0.1).iter().map(|p| [p.x, p.y]).collect()
+    path.flattened(0.1).into_iter().map(math::xy).collect()
 }
 
 /// The first and the last of places along a line, each with the direction in which the line ends.

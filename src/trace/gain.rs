@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::areas::{Areas, Label, Pixel, Pixels, distance2, mix};
-use crate::math::nearest_on_segment;
+use crate::math::{self, nearest_on_segment};
 use crate::scene::Path;
 
 /// The squared residual under a stroke, and how much of it the stroke removes; summed over the channels of one matte.
@@ -41,7 +41,7 @@ impl Gain {
 
 /// The pixels that a stroke touches, and those 1 px around it, with their coverage.
 pub(super) fn coverage(path: &Path, radius: f32, pixels: &Pixels<'_>) -> Vec<(usize, f32)> {
-    let mut line: Vec<[f32; 2]> = path.flattened(0.1).iter().map(|p| [p.x, p.y]).collect();
+    let mut line: Vec<[f32; 2]> = path.flattened(0.1).into_iter().map(math::xy).collect();
     if let [dot] = line[..] {
         line.push(dot);
     }

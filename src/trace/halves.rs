@@ -7,7 +7,7 @@
 
 use super::Traced;
 use super::areas::{LEVEL, Pixel, Pixels, away, distance2, mix};
-use crate::math::{Point, Vector, median};
+use crate::math::{self, Point, Vec2, median};
 use crate::scene::{Mark, Stroke};
 
 /// Levels within which pixels are alike. A guess.
@@ -86,9 +86,9 @@ impl Halves {
         let (mut all, mut own, mut covered) = (0.0, 0.0, 0.0);
         for ends in line.windows(2) {
             let way = ends[1] - ends[0];
-            let steps = way.norm().ceil();
+            let steps = way.hypot().ceil();
             for step in 0..steps as usize {
-                let at = ends[0] + way * ((step as f32 + 0.5) / steps);
+                let at = ends[0] + way * ((step as f64 + 0.5) / steps);
                 let is_along = |half: &&Half| half.is_at(at) && half.is_along(way);
                 all += 1.0;
                 if let Some(half) = self.list.iter().find(is_along) {
@@ -98,7 +98,7 @@ impl Halves {
             }
         }
         (own > LEAST_ALONG * all).then(|| Stroke {
-            radius: covered / own,
+            radius: (covered / own).into(),
             color: [0, 1, 2].map(|k| self.pen.ink[k]),
             opacity: 1.0,
             ..stroke.clone()
@@ -265,11 +265,8 @@ impl Half {
 
     /// A place along and across the line, px.
     fn turned(&self, p: Point) -> [f32; 2] {
-        if self.is_upright {
-            [p.y, p.x]
-        } else {
-            [p.x, p.y]
-        }
+        let [x, y] = math::xy(p);
+        if self.is_upright { [y, x] } else { [x, y] }
     }
 
     /// True near the line, where it lies in the picture.
@@ -278,8 +275,8 @@ impl Half {
         self.reaches(x) && (y - self.row as f32 - 1.0).abs() < 0.5
     }
 
-    fn is_along(&self, way: Vector) -> bool {
-        let [x, y] = self.turned(Point::origin() + way);
+    fn is_along(&self, way: Vec2) -> bool {
+        let [x, y] = self.turned(way.to_point());
         y.abs() < 0.1 * x.abs()
     }
 
@@ -292,7 +289,7 @@ impl Half {
     fn put_back(&self, p: Point) -> Point {
         let [first, second] = self.set();
         let middle = self.row as f32 + (0.5 * first + 1.5 * second) / (first + second);
-        let back = self.row as f32 + 1.0 - middle;
+        let back = f64::from(self.row as f32 + 1.0 - middle);
         let [x, y] = self.turned(p);
         match self.reaches(x) && (y - middle).abs() < 1.0 {
             true if self.is_upright => Point::new(p.x + back, p.y),
@@ -343,7 +340,7 @@ impl Pixels<'_> {
 mod tests {
     use super::super::areas::Planes;
     use super::*;
-    use crate::scene::Path;
+    use crate::scene::{Cap, Path};
 
     const SIZE: usize = 48;
 
@@ -389,6 +386,7 @@ mod tests {
         let pale = Stroke {
             path: Path::line(from, to),
             radius: 1.0,
+            cap: Cap::Round,
             color: [0.4; 3],
             opacity: 1.0,
         };

@@ -6,7 +6,7 @@
 use std::ops::RangeInclusive;
 
 use super::lines::Line;
-use crate::math::{self, Point, direction, nearest_on_segment};
+use crate::math::{self, direction, nearest_on_segment};
 use crate::scene::{Path, PathPoint};
 
 /// The cosine of a corner's turn within [`CORNER_REACH`] radii is less than this. A guess.
@@ -63,11 +63,11 @@ fn closed_path(mut places: Vec<Place>, corners: &[usize], tolerance: f32) -> Pat
 }
 
 fn on(place: Place) -> PathPoint {
-    PathPoint::on(Point::new(place[0], place[1]))
+    PathPoint::on(math::point(place))
 }
 
 fn off(place: Place) -> PathPoint {
-    PathPoint::off(Point::new(place[0], place[1]))
+    PathPoint::off(math::point(place))
 }
 
 fn distance(a: Place, b: Place) -> f32 {
@@ -476,7 +476,7 @@ mod tests {
         let places = &circle()[20..140];
         let path = path_of(&line(places.iter().copied(), false));
         let (a, b) = path.ends();
-        assert_eq!([[a.x, a.y], [b.x, b.y]], [places[0], places[119]]);
+        assert_eq!([math::xy(a), math::xy(b)], [places[0], places[119]]);
         assert!(kinds(&path).iter().filter(|is_on| **is_on).count() == 2);
     }
 
@@ -491,7 +491,7 @@ mod tests {
         let places: Vec<Place> = (0..800).map(place).collect();
         let path = path_of(&line(places.iter().copied(), false));
         assert!(path.points().len() < 400, "{} points", path.points().len());
-        let drawn: Vec<Place> = path.flattened(0.05).iter().map(|p| [p.x, p.y]).collect();
+        let drawn: Vec<Place> = path.flattened(0.05).into_iter().map(math::xy).collect();
         for p in &places[20..] {
             let away2 = drawn
                 .windows(2)

@@ -12,7 +12,7 @@ use super::skeleton::Graph;
 use super::spline;
 use super::tracing::Tracing;
 use crate::math::median;
-use crate::scene::{Path, Stroke};
+use crate::scene::{Cap, Path, Stroke};
 
 /// The share of the squared residual under a stroke that the stroke has to remove. 0.4, 0.6, 0.75: text has 200, 215, 253 strokes at
 /// equal fidelity, as bars of letters one pixel thin are hardly explained before they are fitted.
@@ -130,7 +130,8 @@ fn stroke(
     };
     let stroke = Stroke {
         path,
-        radius,
+        radius: radius.into(),
+        cap: Cap::Round,
         color,
         opacity,
     };

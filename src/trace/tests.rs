@@ -65,14 +65,14 @@ fn areas(content: &str) -> Vec<Area> {
 }
 
 /// The area within a ring, px², negative if it runs counterclockwise.
-fn size(ring: &Path) -> f32 {
+fn size(ring: &Path) -> f64 {
     let line = ring.flattened(0.01);
     let next = line.iter().cycle().skip(1);
     let pairs = line.iter().zip(next);
-    0.5 * pairs.map(|(a, b)| a.x * b.y - a.y * b.x).sum::<f32>()
+    0.5 * pairs.map(|(a, b)| a.x * b.y - a.y * b.x).sum::<f64>()
 }
 
-fn is_near(p: Point, [x, y]: [f32; 2], within: f32) -> bool {
+fn is_near(p: Point, [x, y]: [f64; 2], within: f64) -> bool {
     (p.x - x).abs() < within && (p.y - y).abs() < within
 }
 
@@ -138,7 +138,7 @@ fn a_disc_has_few_points() {
     let ring = &found[0].rings[0];
     assert!(ring.points().len() <= 9, "{ring:?}");
     for p in ring.flattened(0.05) {
-        let away = crate::math::distance([p.x, p.y], [48.3, 47.1]) - 30.0;
+        let away = p.distance(Point::new(48.3, 47.1)) - 30.0;
         assert!(away.abs() < 0.4, "{away} px off at {p:?}");
     }
 }
@@ -147,7 +147,7 @@ fn a_disc_has_few_points() {
 fn a_small_disc_has_no_corners() {
     let found = areas(r##"<circle cx="48.3" cy="47.1" r="4" fill="#204080"/>"##);
     for p in found[0].rings[0].flattened(0.05) {
-        let away = crate::math::distance([p.x, p.y], [48.3, 47.1]) - 4.0;
+        let away = p.distance(Point::new(48.3, 47.1)) - 4.0;
         assert!(away.abs() < 0.4, "{away} px off at {p:?}");
     }
 }
@@ -156,8 +156,8 @@ fn a_small_disc_has_no_corners() {
 fn a_hole_runs_the_other_way() {
     let found = areas(r##"<path d="M10 10H86V86H10ZM30 30V66H66V30Z" fill="#204080"/>"##);
     assert_eq!(found.len(), 1);
-    let mut sizes: Vec<f32> = found[0].rings.iter().map(size).collect();
-    sizes.sort_by(f32::total_cmp);
+    let mut sizes: Vec<f64> = found[0].rings.iter().map(size).collect();
+    sizes.sort_by(f64::total_cmp);
     assert_eq!(sizes.len(), 2);
     assert!(sizes[0] * sizes[1] < 0.0, "{sizes:?}");
 }
@@ -364,8 +364,8 @@ fn a_shape_across_the_border_goes_on_beyond_it() {
     assert_eq!(found.len(), 1);
     let points = found[0].rings[0].points();
     assert_eq!(points.len(), 4, "{points:?}");
-    let at = |k: fn(Point) -> f32| points.iter().map(move |p| k(p.at));
-    assert!(at(|p| p.x).fold(0.0, f32::min) < 0.0 && at(|p| p.y).fold(0.0, f32::max) > 96.0);
+    let at = |k: fn(Point) -> f64| points.iter().map(move |p| k(p.at));
+    assert!(at(|p| p.x).fold(0.0, f64::min) < 0.0 && at(|p| p.y).fold(0.0, f64::max) > 96.0);
 }
 
 #[test]

@@ -5,7 +5,7 @@ use resvg::usvg::{Group, Node, Paint, Path};
 
 use super::tree::parse;
 use crate::error::Result;
-use crate::math::Point;
+use crate::math::{self, Point};
 
 /// Chords of a curve.
 const CHORDS: u16 = 24;
@@ -66,7 +66,7 @@ fn of(path: &Path, scale: f32) -> Element {
     };
     let place = |mut p: SkiaPoint| {
         transform.map_point(&mut p);
-        Point::new(p.x * scale, p.y * scale)
+        math::point([p.x * scale, p.y * scale])
     };
     let mut here = Point::new(0.0, 0.0);
     for segment in path.data().segments() {
@@ -91,7 +91,7 @@ fn of(path: &Path, scale: f32) -> Element {
         element.points += curve.len() - 1;
         let chords = if curve.len() == 2 { 1 } else { CHORDS };
         if let Some(line) = element.lines.last_mut() {
-            let share = |i: u16| f32::from(i) / f32::from(chords);
+            let share = |i: u16| f64::from(i) / f64::from(chords);
             line.extend((1..=chords).map(|i| at(&curve, share(i))));
         }
         here = curve[curve.len() - 1];
@@ -101,13 +101,10 @@ fn of(path: &Path, scale: f32) -> Element {
 }
 
 /// The point at `t` of a Bézier curve, after de Casteljau.
-fn at(points: &[Point], t: f32) -> Point {
+fn at(points: &[Point], t: f64) -> Point {
     let mut points = points.to_vec();
     while points.len() > 1 {
-        points = points
-            .windows(2)
-            .map(|w| w[0] + (w[1] - w[0]) * t)
-            .collect();
+        points = points.windows(2).map(|w| w[0].lerp(w[1], t)).collect();
     }
     points[0]
 }
@@ -133,7 +130,7 @@ mod tests {
             (Point::new(4.0, 4.0), Point::new(12.0, 12.0))
         );
         assert_eq!(found[2].nodes, [curve[0], curve[24]]);
-        assert!((curve[12] - Point::new(10.0, 6.0)).norm() < 1e-5);
+        assert!((curve[12] - Point::new(10.0, 6.0)).hypot() < 1e-5);
     }
 
     #[test]

@@ -17,8 +17,9 @@ use serde_json::Value;
 use strokefit::engines::{DrawRequest, Engine};
 use strokefit::fit::{Budget, Config, Fitter};
 use strokefit::image::Image;
+use strokefit::math;
 use strokefit::metrics;
-use strokefit::scene::{self, Area, Axis, Band, PathPoint, Scene, Shade, ShadeStop, Stage, Stroke};
+use strokefit::scene::{self, Axis, Cap, PathPoint, Scene, Shade, ShadeStop, Stage, Stroke};
 use strokefit::svg::{self, Form, WriteOptions};
 use strokefit::verify::{self, Size};
 
@@ -162,14 +163,16 @@ fn draws_fits_of_many_strokes_as_faithfully_as_resvg(name: &str) {
 }
 
 fn capsule(a: [f32; 2], b: [f32; 2], width: f32) -> Stroke {
+    let [a, b] = [a, b].map(math::point);
     let path = if a == b {
-        scene::Path::dot(a.into())
+        scene::Path::dot(a)
     } else {
-        scene::Path::line(a.into(), b.into())
+        scene::Path::line(a, b)
     };
     Stroke {
         path,
-        radius: width / 2.0,
+        radius: f64::from(width) / 2.0,
+        cap: Cap::Round,
         color: [0.1, 0.3, 0.8],
         opacity: 1.0,
     }
@@ -178,7 +181,7 @@ fn capsule(a: [f32; 2], b: [f32; 2], width: f32) -> Stroke {
 /// A path of points, each on it or off it.
 fn bent(points: &[(f32, f32, bool)], closed: bool, width: f32, opacity: f32) -> Stroke {
     let point = |&(x, y, is_on): &(f32, f32, bool)| PathPoint {
-        at: [x, y].into(),
+        at: math::point([x, y]),
         is_on,
     };
     let points = points.iter().map(point).collect();
@@ -316,8 +319,8 @@ fn kinds() -> Vec<(&'static str, Scene)> {
 
 /// Lines with square ends and mitred corners, one of them closed, one bent, one translucent.
 fn bands() -> Scene {
-    let on = |x: f32, y: f32| PathPoint::on([x, y].into());
-    let off = |x: f32, y: f32| PathPoint::off([x, y].into());
+    let on = |x: f32, y: f32| PathPoint::on(math::point([x, y]));
+    let off = |x: f32, y: f32| PathPoint::off(math::point([x, y]));
     let lines = [
         (vec![on(5.0, 6.5), on(25.0, 6.5)], false, 5.0, 1.0),
         (
@@ -344,18 +347,15 @@ fn bands() -> Scene {
             1.0,
         ),
     ];
-    let area = |(points, closed, width, opacity)| Area {
-        rings: Band {
-            line: scene::Path::new(points, closed).unwrap(),
-            width,
-        }
-        .rings(),
+    let band = |(points, closed, width, opacity)| Stroke {
+        path: scene::Path::new(points, closed).unwrap(),
+        radius: 0.5 * width,
+        cap: Cap::Butt,
         color: [0.1, 0.3, 0.5],
         opacity,
-        shade: None,
     };
     Scene {
-        stages: vec![lines.map(area).into_iter().collect()],
+        stages: vec![lines.map(band).into_iter().collect()],
         ..Scene::empty(64, 48, Some([1.0, 0.9, 0.7]))
     }
 }
@@ -391,11 +391,11 @@ fn shades_are_drawn_alike() {
         stop(1.0, [1.0, 0.9, 0.1], 1.0),
     ];
     let linear = Axis::Linear {
-        from: [4.0, 6.0].into(),
-        to: [58.0, 40.0].into(),
+        from: (4.0, 6.0).into(),
+        to: (58.0, 40.0).into(),
     };
     let radial = Axis::Radial {
-        center: [30.5, 20.5].into(),
+        center: (30.5, 20.5).into(),
         radius: 25.25,
     };
     for name in ["inkscape", "rsvg", "chromium", "cairosvg"] {

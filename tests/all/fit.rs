@@ -401,7 +401,7 @@ fn the_drawing_can_be_seen_while_it_grows() {
             .marks()
             .flat_map(Mark::paths)
             .map(|path| path.ends().0.x)
-            .fold(0.0, f32::max)
+            .fold(0.0, f64::max)
     };
     assert!(reach(&seen[seen.len() / 3]) > 200.0);
     assert_eq!(seen.last().unwrap().len(), fit.scene.len());

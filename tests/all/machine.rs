@@ -7,9 +7,10 @@ use crate::support::place::Place;
 use crate::support::refusal::assert_refused;
 use crate::support::repository::committed;
 use crate::support::skip::skip;
+use kurbo::Shape;
 use strokefit::image::Image;
 use strokefit::metrics::Agreement;
-use strokefit::scene::{Mark, Path, Piece, Scene};
+use strokefit::scene::{Mark, Path, Scene};
 use strokefit::svg;
 use strokefit::verify::{self, Size};
 
@@ -43,17 +44,7 @@ fn agreement(a: &Image, b: &Image) -> f64 {
 
 /// The area that a ring encloses, px², with a sign for its direction.
 fn enclosed(ring: &Path) -> f64 {
-    let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
-    let place = |p: strokefit::math::Point| [f64::from(p.x), f64::from(p.y)];
-    let twice = |piece: Piece| match piece {
-        Piece::Line([a, b]) => cross(place(a), place(b)),
-        // Green's theorem along a quadratic curve.
-        Piece::Curve([a, c, b]) => {
-            let [a, c, b] = [a, c, b].map(place);
-            (2.0 * cross(a, c) + 2.0 * cross(c, b) + cross(a, b)) / 3.0
-        }
-    };
-    ring.pieces().map(twice).sum::<f64>() / 2.0
+    ring.bezier().area()
 }
 
 /// The areas of a scene, px².
@@ -63,14 +54,14 @@ fn sizes(scene: &Scene) -> Vec<f64> {
 }
 
 /// Farthest that a point of a scene is beyond its page, px.
-fn beyond(scene: &Scene) -> f32 {
-    let page = [scene.width as f32, scene.height as f32];
+fn beyond(scene: &Scene) -> f64 {
+    let page = [f64::from(scene.width), f64::from(scene.height)];
     let points = scene.marks().flat_map(Mark::paths).flat_map(Path::points);
-    let away = |(x, side): (f32, f32)| (-x).max(x - side);
+    let away = |(x, side): (f64, f64)| (-x).max(x - side);
     points
         .flat_map(|p| [(p.at.x, page[0]), (p.at.y, page[1])])
         .map(away)
-        .fold(f32::MIN, f32::max)
+        .fold(f64::MIN, f64::max)
 }
 
 #[test]
@@ -205,7 +196,7 @@ fn hatching_fills_areas_with_lines() {
     let scene = svg::read(&text).unwrap();
     assert_eq!(scene.areas().count(), 0);
     let lines = scene.strokes().filter(|s| s.path.points().len() == 2);
-    let slopes: Vec<f32> = lines
+    let slopes: Vec<f64> = lines
         .map(|line| {
             let (a, b) = line.path.ends();
             (a.y - b.y) / (b.x - a.x)
@@ -213,7 +204,7 @@ fn hatching_fills_areas_with_lines() {
         .collect();
     let right = slopes
         .iter()
-        .filter(|slope| (**slope - 30_f32.to_radians().tan()).abs() < 0.03);
+        .filter(|slope| (**slope - 30_f64.to_radians().tan()).abs() < 0.03);
     assert!(right.count() > 100, "{}", slopes.len());
     // Lines as wide as they are apart leave little bare.
     let plain = fitted(&place, &["--opaque", "--background", "none"]);
@@ -313,7 +304,7 @@ fn a_pdf_has_square_ends_and_mitred_corners() {
     place.done(&["render", &drawing, "-o", "chevrons.png", "-q"]);
     place.done(&["fit", "chevrons.png", "-o", "a.svg", "-o", "a.pdf", "-q"]);
     let text = fs::read_to_string(place.path("a.svg")).unwrap();
-    assert_eq!(svg::read(&text).unwrap().filled().count(), 0, "{text}");
+    assert_eq!(svg::read(&text).unwrap().areas().count(), 0, "{text}");
     if let Some(db) = as_pdf(&place) {
         assert!(db > 33.0, "{db}");
     }

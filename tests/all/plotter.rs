@@ -28,7 +28,7 @@ fn image(text: &str) -> Image {
 /// All widths of strokes, in hundredths of a px.
 fn widths(text: &str) -> BTreeSet<u32> {
     let scene = svg::read(text).unwrap();
-    let hundredths = |radius: f32| (200.0 * radius).round() as u32;
+    let hundredths = |radius: f64| (200.0 * radius).round() as u32;
     scene.strokes().map(|s| hundredths(s.radius)).collect()
 }
 

@@ -5,18 +5,19 @@ use strokefit::fit::{Background, Budget, Config, Fit, Fitter};
 use strokefit::image::Image;
 use strokefit::math::Point;
 use strokefit::metrics;
-use strokefit::scene::{Path, PathPoint, Scene, Stage, Stroke};
+use strokefit::scene::{Cap, Path, PathPoint, Scene, Stage, Stroke};
 use strokefit::svg::{self, WriteOptions};
 use strokefit::verify::{self, Size};
 
 const SIDE: u32 = 96;
 
 /// The picture of a stroke of 7 px in dark blue on white, through these points.
-fn picture(points: &[(f32, f32)], closed: bool) -> Image {
+fn picture(points: &[(f64, f64)], closed: bool) -> Image {
     let points = points.iter().map(|&(x, y)| PathPoint::on(Point::new(x, y)));
     drawn(Stroke {
         path: Path::new(points.collect(), closed).unwrap(),
         radius: 3.5,
+        cap: Cap::Round,
         color: [0.1, 0.2, 0.5],
         opacity: 1.0,
     })
@@ -24,7 +25,7 @@ fn picture(points: &[(f32, f32)], closed: bool) -> Image {
 
 /// The picture of an ellipse.
 fn ring() -> Image {
-    let turn = |k: usize| (k as f32 * std::f32::consts::TAU / 24.0).sin_cos();
+    let turn = |k: usize| (k as f64 * std::f64::consts::TAU / 24.0).sin_cos();
     let points = (0..24).map(turn);
     let points: Vec<_> = points
         .map(|(y, x)| (48.0 + 30.0 * x, 48.0 + 24.0 * y))

@@ -1,6 +1,7 @@
 //! The fast renderer against the naive one in `f64`: images, gradients, leave-one-out; the same bits
 //! at every SIMD level and number of threads.
 
+use kurbo::{Line, ParamCurveNearest};
 use proptest::prelude::*;
 
 use crate::support::areas::{Rings, areas, paints};
@@ -9,14 +10,14 @@ use strokefit::coverage::Coverage;
 use strokefit::fit::{Objective, Simd};
 use strokefit::image::Image;
 use strokefit::loss::Loss;
-use strokefit::math::Point;
+use strokefit::math::{self, Point};
 use strokefit::render::reference::{self, Reference};
 use strokefit::render::{
     Backdrop, Canvas, Gradients, Grid, Paint, Params, Renderer, Softness, StrokeRef, Strokes,
     Survey,
 };
 use strokefit::rng::draw;
-use strokefit::scene::{Path, PathPoint, Scene, Stage, Stroke};
+use strokefit::scene::{Cap, Path, PathPoint, Scene, Stage, Stroke};
 use strokefit::svg::{self, WriteOptions};
 use strokefit::verify::{self, Size};
 
@@ -134,6 +135,7 @@ fn along_paths() -> Vec<Case> {
         strokes.push_stroke(&Stroke {
             path,
             radius: [1.3, 4.2, 0.4][k % 3],
+            cap: Cap::Round,
             color: [0.9, 0.2, 0.1],
             opacity: [0.6, 1.0][k % 2],
         });
@@ -163,6 +165,7 @@ fn push_area(
         off: &rings.off,
         closed: true,
         rings: &rings.ends,
+        form: None,
         paint,
         style: &[0.0, red, green, blue, opacity],
     });
@@ -245,13 +248,14 @@ fn long(radius: f32, opacity: f32) -> Case {
             *v = (*v + 7.0 * u(i, k as u64)).clamp(-5.0, 78.0);
         }
         Some(PathPoint {
-            at: Point::new(at[0], at[1]),
+            at: math::point([at[0], at[1]]),
             is_on: i == 0 || i == 999 || u(i, 2) > -0.2,
         })
     });
     let stroke = Stroke {
         path: Path::new(walk.collect(), false).unwrap(),
-        radius,
+        radius: radius.into(),
+        cap: Cap::Round,
         color: [0.2, 0.9, 0.4],
         opacity,
     };
@@ -283,6 +287,7 @@ fn along_borders() -> Case {
     let stroke = Stroke {
         path: Path::new(points.to_vec(), false).unwrap(),
         radius: 1.1,
+        cap: Cap::Round,
         color: [0.7, 0.1, 0.4],
         opacity: 0.7,
     };
@@ -308,13 +313,14 @@ fn random_paths(seed: u64, width: usize, height: usize, count: usize) -> Case {
             let at = [0, 1].map(|axis| spread * (u(i, 3 + 3 * k as u64 + axis) - 0.5));
             let is_end = !closed && (k == 0 || k == points - 1) || points == 1;
             PathPoint {
-                at: Point::new(x + at[0], y + at[1]),
+                at: math::point([x + at[0], y + at[1]]),
                 is_on: is_end || u(i, 5 + 3 * k as u64) < 0.5,
             }
         };
         Stroke {
             path: Path::new((0..points).map(point).collect(), closed).unwrap(),
-            radius: capsule.radius(),
+            radius: capsule.radius().into(),
+            cap: Cap::Round,
             color: capsule.color(),
             opacity: capsule.opacity(),
         }
@@ -705,10 +711,10 @@ proptest! {
         let points = points.iter().enumerate().map(|(i, &(dx, dy, is_on))| {
             let (sin, cos) = (i as f32 / count * std::f32::consts::TAU).sin_cos();
             let [u, v] = if is_round { [cos + 0.2 * dx, sin + 0.2 * dy] } else { [dx, dy] };
-            PathPoint { at: Point::new(60.0 + x * u, 60.0 + y * v), is_on }
+            PathPoint { at: math::point([60.0 + x * u, 60.0 + y * v]), is_on }
         });
         let path = Path::new(points.collect(), true).unwrap();
-        let stroke = Stroke { path, radius, color: [0.0; 3], opacity: 1.0 };
+        let stroke = Stroke { path, radius: radius.into(), cap: Cap::Round, color: [0.0; 3], opacity: 1.0 };
         let scene = Scene {
             stages: vec![Stage::from_iter([stroke])],
             ..Scene::empty(120, 120, Some([1.0; 3]))
@@ -719,7 +725,7 @@ proptest! {
 }
 
 /// The farthest, px, that a pixel within the one stroke of a file is from its edge, of pixels that resvg leaves light.
-fn deepest_hole(text: &str) -> f32 {
+fn deepest_hole(text: &str) -> f64 {
     let scene = svg::read(text).unwrap();
     let stroke = scene.strokes().next().unwrap();
     let line = stroke.path.flattened(0.02);
@@ -730,16 +736,14 @@ fn deepest_hole(text: &str) -> f32 {
         .enumerate()
         .filter(|(_, level)| **level > 0.5);
     let depth = |(pixel, _)| {
-        let p = Point::new((pixel % width) as f32 + 0.5, (pixel / width) as f32 + 0.5);
-        let away = |ends: &[Point]| {
-            let (along, p) = (ends[1] - ends[0], p - ends[0]);
-            let h = (p.dot(&along) / along.norm_squared().max(1e-9)).clamp(0.0, 1.0);
-            (p - along * h).norm()
-        };
-        let depths = line.windows(2).map(|ends| stroke.radius - away(ends));
-        depths.fold(f32::MIN, f32::max)
+        let p = Point::new((pixel % width) as f64 + 0.5, (pixel / width) as f64 + 0.5);
+        let away2 = |ends: &[Point]| Line::new(ends[0], ends[1]).nearest(p, 0.0).distance_sq;
+        let depths = line
+            .windows(2)
+            .map(|ends| stroke.radius - away2(ends).sqrt());
+        depths.fold(f64::MIN, f64::max)
     };
-    light.map(depth).fold(f32::MIN, f32::max)
+    light.map(depth).fold(f64::MIN, f64::max)
 }
 
 /// The loss rises as its gradient says, by central differences of the fast renderer itself.

@@ -48,7 +48,7 @@ fn a_card_casts_the_shadow_that_was_drawn() {
         panic!("{:?}", scene.shadows);
     };
     assert!((shadow.blur() - 6.0).abs() < 0.8, "{shadow:?}");
-    let Some(Shape::Rect { low, high, .. }) = Shape::of(&shadow.area().rings[0]) else {
+    let Some(Shape::Rect { low, high, .. }) = shadow.area().rings[0].shape() else {
         panic!("{shadow:?}");
     };
     let sides = [low.x - 30.0, low.y - 34.0, high.x - 140.0, high.y - 94.0];

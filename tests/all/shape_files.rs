@@ -45,8 +45,7 @@ fn elements(text: &str) -> Vec<&str> {
 }
 
 fn shapes(scene: &Scene) -> usize {
-    let is_shape = |mark: &&Mark| matches!(mark.paths(), [path] if Shape::of(path).is_some());
-    scene.marks().filter(is_shape).count()
+    scene.marks().filter_map(Mark::shape).count()
 }
 
 /// Draws `a.svg`, whose marks are three shapes.
@@ -69,7 +68,7 @@ fn shapes_of_a_base_stay_shapes() {
     let refined = read(&place, "b.svg");
     let scene = svg::read(&refined).unwrap();
     assert!(shapes(&scene) >= 3 && scene.len() > 3, "{refined}");
-    let moved = scene.areas().any(|area| match Shape::of(&area.rings[0]) {
+    let moved = scene.areas().any(|area| match area.rings[0].shape() {
         Some(Shape::Circle { center, .. }) => (center.x - 32.7).abs() < 0.1,
         _ => false,
     });
@@ -124,7 +123,7 @@ fn killed_again_and_again(elements: &str) {
 /// The lines with square ends of a file that strokefit wrote.
 fn bands(text: &str) -> usize {
     let scene = svg::read(text).unwrap();
-    scene.areas().filter(|area| area.band().is_some()).count()
+    scene.marks().filter(|mark| mark.is_butt()).count()
 }
 
 #[test]

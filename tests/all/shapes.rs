@@ -3,7 +3,7 @@
 use crate::support::fits::picture;
 use crate::support::repository::committed;
 use strokefit::fit::{Background, Config, Fitter};
-use strokefit::scene::{Area, Band, Mark, Marks, Path, PathPoint, Scene, Shape};
+use strokefit::scene::{Cap, Mark, Marks, Path, PathPoint, Scene, Shape, Stroke};
 use strokefit::svg::{self, Group, WriteOptions};
 use strokefit::verify::{self, Size};
 
@@ -32,14 +32,10 @@ fn fitted_in(elements: &str, group: Group) -> (Scene, String) {
 
 /// The shapes that are elements of their own.
 fn shapes(scene: &Scene) -> Vec<Shape> {
-    let only = |mark: &Mark| match mark.paths() {
-        [path] => Shape::of(path),
-        _ => None,
-    };
-    scene.marks().filter_map(only).collect()
+    scene.marks().filter_map(Mark::shape).collect()
 }
 
-fn is_near(found: [f32; 4], expected: [f32; 4]) -> bool {
+fn is_near(found: [f64; 4], expected: [f64; 4]) -> bool {
     found
         .iter()
         .zip(expected)
@@ -143,10 +139,7 @@ fn a_ring_that_a_pen_draws_is_a_circle_with_a_stroke() {
     let [path] = strokes[..] else {
         panic!("{text}")
     };
-    assert!(
-        matches!(Shape::of(path), Some(Shape::Circle { .. })),
-        "{text}"
-    );
+    assert!(matches!(path.shape(), Some(Shape::Circle { .. })), "{text}");
     assert!(text.contains("<circle"), "{text}");
 }
 
@@ -179,7 +172,7 @@ fn pens(scene: &Scene) -> Vec<([u8; 3], f32)> {
         .map(|stroke| {
             (
                 stroke.color.map(|c| (255.0 * c).round() as u8),
-                2.0 * stroke.radius,
+                2.0 * stroke.radius as f32,
             )
         })
         .collect()
@@ -221,7 +214,7 @@ fn plans_come_back_as_their_things() {
         let fit = Fitter::new(Config::default()).fit(&picture).unwrap();
         let text = fit.svg();
         let scene = svg::read(&text).unwrap();
-        let filled = scene.filled().count();
+        let filled = scene.areas().count();
         assert!(
             scene.len() - filled <= strokes && filled <= areas,
             "{name}: {text}"
@@ -266,7 +259,7 @@ fn square_ends_and_mitred_corners_come_back() {
         let text = fit.svg();
         let scene = svg::read(&text).unwrap();
         assert!((least..=most).contains(&scene.len()), "{name}: {text}");
-        let found = scene.areas().filter(|area| area.band().is_some()).count();
+        let found = scene.marks().filter(|mark| mark.is_butt()).count();
         assert!(found >= bands, "{name}: {text}");
         let db = verify::fidelity(&text, &picture).unwrap().psnr_db;
         assert!(db > least_db, "{name}: {db}");
@@ -279,18 +272,19 @@ fn a_frame_is_a_line_with_corners_and_round_ends_stay_round() {
     let (scene, text) = fitted(
         r##"<path d="M20 20H90V70H20Z" fill="none" stroke="#204080" stroke-width="6"/><path d="M20 95H140" stroke="#c03020" stroke-width="9" stroke-linecap="round"/>"##,
     );
-    let bands: Vec<Band> = scene.areas().filter_map(Area::band).collect();
+    let bands = scene.strokes().filter(|stroke| stroke.cap == Cap::Butt);
+    let bands: Vec<&Stroke> = bands.collect();
     let [frame] = &bands[..] else {
         panic!("{text}")
     };
     assert!(
-        frame.line.is_closed() && (frame.width - 6.0).abs() < 0.1,
+        frame.path.is_closed() && (frame.radius - 3.0).abs() < 0.05,
         "{text}"
     );
     let corners = [[20.0, 20.0], [90.0, 20.0], [90.0, 70.0], [20.0, 70.0]];
     for [x, y] in corners {
         let is_here = |p: &PathPoint| (p.at.x - x).abs() < 0.1 && (p.at.y - y).abs() < 0.1;
-        assert!(frame.line.points().iter().any(is_here), "{text}");
+        assert!(frame.path.points().iter().any(is_here), "{text}");
     }
     assert_eq!(pens(&scene).len(), 1, "{text}");
     let only_areas = Config {

@@ -125,6 +125,7 @@ fn strokes(numbers: &[f32], kinds: &[u8]) -> Strokes {
                 off: &off,
                 closed: kind & CLOSED != 0,
                 rings: &rings,
+                form: None,
                 paint: None,
                 style,
             });

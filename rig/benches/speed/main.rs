@@ -156,6 +156,7 @@ fn settled(
             off: &vec![false; points.len()],
             closed: false,
             rings: &[],
+            form: None,
             paint: None,
             style: path.style,
         });

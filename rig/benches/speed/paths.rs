@@ -144,6 +144,7 @@ fn walks(size: StrokeSize, grid: Grid, count: usize, segments: usize) -> Strokes
             off: &off,
             closed: false,
             rings: &[],
+            form: None,
             paint: None,
             style: &[size.radius_px, draw(3), draw(4), draw(5), size.opacity],
         });

@@ -190,6 +190,7 @@ impl Price {
                 off: &[false; 3][..points.len()],
                 closed: false,
                 rings: &[],
+                form: None,
                 paint: None,
                 style: &[1.67, 0.4, 0.5, 0.6, 1.0],
             })

@@ -2,26 +2,32 @@
 //! so. A descent follows what its slopes leave of the form, and after each step the nearest such form takes the place of the
 //! points, as rounding and the optimiser's own scales move them a little off it.
 
-use crate::render::{StrokeRef, Strokes};
-use crate::scene::{Band, Mark, Path, PathPoint, Shape, Stroke};
+use crate::math;
+use crate::render::{Form, StrokeRef, Strokes};
+use crate::scene::{Band, Cap, Path, PathPoint, Stroke};
 
 /// The forms among the free strokes of a drawing.
 #[derive(Debug, Clone, Default)]
 pub(in crate::fit) struct Held {
-    /// Strokes and areas that are shapes or bands, by their indices.
-    shapes: Vec<(usize, Form)>,
+    /// Strokes and areas that are shapes or bands, by their indices. Of a band, the places of coordinates that lines of its
+    /// middle have in common.
+    formed: Vec<(usize, Form, Places)>,
     /// Places, among all numbers of the free strokes, of coordinates that are equal.
-    equal: Vec<Vec<usize>>,
+    equal: Places,
 }
+
+/// Groups of places of numbers that are equal.
+type Places = Vec<Vec<usize>>;
 
 impl Held {
     /// The forms that areas have, and the first `formed` strokes. Others are level by chance.
     pub(in crate::fit) fn of(strokes: &Strokes, formed: usize) -> Self {
-        let mut held = Self::default();
+        let mut held = Self::bands(strokes);
         let found = strokes.iter().enumerate();
         for (i, stroke) in found.filter(|(i, stroke)| *i < formed || stroke.is_area()) {
-            match Form::of(&stroke.to_mark()) {
-                Some(form) => held.shapes.push((i, form)),
+            match stroke.form {
+                Some(Form::Band) => {}
+                Some(form) => held.formed.push((i, form, Places::new())),
                 None => {
                     let start = strokes.range(i).start;
                     let paths = stroke.paths();
@@ -35,27 +41,23 @@ impl Held {
 
     /// The bands alone, which are none any more once their points have moved each by itself.
     pub(in crate::fit) fn bands(strokes: &Strokes) -> Self {
-        let areas = strokes
-            .iter()
-            .enumerate()
-            .filter(|(_, mark)| mark.is_area());
-        let bands = areas.filter_map(|(i, mark)| Some((i, Form::of_band(&mark.to_mark())?)));
+        let bands = strokes.iter().enumerate();
+        let bands = bands.filter_map(|(i, mark)| Some((i, Form::Band, equal_of(&mark.band()?))));
         Self {
-            shapes: bands.collect(),
-            equal: Vec::new(),
+            formed: bands.collect(),
+            equal: Places::new(),
         }
-    }
-
-    /// True if a mark is a band.
-    pub(in crate::fit) fn is_band(mark: StrokeRef<'_>) -> bool {
-        mark.is_area() && mark.to_mark().band().is_some()
     }
 
     /// Leaves of slopes the part that changes no form: that of centre and radius, and of all ends of a line alike.
     pub(in crate::fit) fn project(&self, strokes: &Strokes, slopes: &mut [f32]) {
-        for (i, shape) in &self.shapes {
-            let points = &strokes.numbers()[places(strokes, *i)];
-            shape.project(points.as_chunks().0, points_of(strokes, *i, slopes));
+        for (i, form, _) in &self.formed {
+            let change = slopes[places(strokes, *i)].as_chunks_mut().0;
+            match (form, strokes.get(*i).band()) {
+                (Form::Shape(kind), _) => kind.project(change),
+                (Form::Band, Some(band)) => band.project(change),
+                (Form::Band, None) => {}
+            }
         }
         for places in &self.equal {
             level(places, slopes);
@@ -64,8 +66,8 @@ impl Held {
 
     /// Gives all points of a shape the largest of their squared slopes, so that an optimiser scales them alike.
     pub(in crate::fit) fn share(&self, strokes: &Strokes, squares: &mut [f32]) {
-        for (i, _) in &self.shapes {
-            let points = points_of(strokes, *i, squares).as_flattened_mut();
+        for (i, ..) in &self.formed {
+            let points = &mut squares[places(strokes, *i)];
             let most = points.iter().copied().fold(0.0, f32::max);
             points.fill(most);
         }
@@ -73,14 +75,19 @@ impl Held {
 
     /// True if there is none.
     pub(in crate::fit) fn is_empty(&self) -> bool {
-        self.shapes.is_empty() && self.equal.is_empty()
+        self.formed.is_empty() && self.equal.is_empty()
     }
 
     /// Restores the forms after their points have moved.
     pub(in crate::fit) fn restore(&self, strokes: &mut Strokes) {
-        for (i, shape) in &self.shapes {
-            let range = places(strokes, *i);
-            shape.restore(strokes.numbers_mut()[range].as_chunks_mut().0);
+        for (i, form, equal) in &self.formed {
+            let (places, band) = (places(strokes, *i), strokes.get(*i).band());
+            let points = strokes.numbers_mut()[places].as_chunks_mut().0;
+            match (form, band) {
+                (Form::Shape(kind), _) => kind.restore(points),
+                (Form::Band, Some(band)) => leveled(band, equal).put(points),
+                (Form::Band, None) => {}
+            }
         }
         let numbers = strokes.numbers_mut();
         self.equal.iter().for_each(|places| level(places, numbers));
@@ -93,26 +100,31 @@ fn places(strokes: &Strokes, i: usize) -> std::ops::Range<usize> {
     start..start + 2 * strokes.get(i).points.len()
 }
 
-/// Of `numbers` as a drawing has, those that belong to the points of a stroke.
-fn points_of<'a>(strokes: &Strokes, i: usize, numbers: &'a mut [f32]) -> &'a mut [[f32; 2]] {
-    numbers[places(strokes, i)].as_chunks_mut().0
+/// Places of coordinates that lines of a band's middle have in common.
+fn equal_of(band: &Band) -> Places {
+    let middle = Strokes::from_iter([&Stroke {
+        path: band.line.clone(),
+        radius: 1.0,
+        cap: Cap::Round,
+        color: [0.0; 3],
+        opacity: 1.0,
+    }]);
+    equal(middle.get(0), 0)
 }
 
-impl Band {
-    /// The band with lines that are level or upright, as these coordinates of its middle are equal.
-    fn leveled(self, equal: &[Vec<usize>]) -> Self {
-        let points = self.line.points();
-        let mut numbers: Vec<f32> = points.iter().flat_map(|p| [p.at.x, p.at.y]).collect();
-        equal.iter().for_each(|places| level(places, &mut numbers));
-        let places = numbers.as_chunks::<2>().0.iter();
-        let points = points.iter().zip(places).map(|(p, &at)| PathPoint {
-            at: at.into(),
-            ..*p
-        });
-        Self {
-            line: Path::of_points(points.collect(), self.line.is_closed()),
-            ..self
-        }
+/// The band with lines that are level or upright, as these coordinates of its middle are equal.
+fn leveled(band: Band, equal: &[Vec<usize>]) -> Band {
+    let points = band.line.points();
+    let mut numbers: Vec<f32> = points.iter().flat_map(|p| math::xy(p.at)).collect();
+    equal.iter().for_each(|places| level(places, &mut numbers));
+    let places = numbers.as_chunks::<2>().0.iter();
+    let points = points.iter().zip(places).map(|(p, &at)| PathPoint {
+        at: math::point(at),
+        ..*p
+    });
+    Band {
+        line: Path::of_points(points.collect(), band.line.is_closed()),
+        ..band
     }
 }
 
@@ -122,59 +134,8 @@ fn level(places: &[usize], numbers: &mut [f32]) {
     places.iter().for_each(|&i| numbers[i] = mean);
 }
 
-/// Numbers that all points of a mark follow from.
-#[derive(Debug, Clone)]
-enum Form {
-    Shape(Shape),
-    /// A band, and the places of coordinates that lines of its middle have in common.
-    Band(Band, Vec<Vec<usize>>),
-}
-
-impl Form {
-    /// The form of a mark; none of a rectangle with sharp corners, as its sides are level and upright lines.
-    fn of(mark: &Mark) -> Option<Self> {
-        Self::of_band(mark).or_else(|| {
-            let [path] = mark.paths() else { return None };
-            let shape = Shape::of(path);
-            let round = shape.filter(|shape| !matches!(shape, Shape::Rect { radius: 0.0, .. }));
-            round.map(Self::Shape)
-        })
-    }
-
-    fn of_band(mark: &Mark) -> Option<Self> {
-        let band = mark.band()?;
-        let middle = Strokes::from_iter([&Stroke {
-            path: band.line.clone(),
-            radius: 1.0,
-            color: mark.color(),
-            opacity: 1.0,
-        }]);
-        let equal = equal(middle.get(0), 0);
-        Some(Self::Band(band, equal))
-    }
-
-    /// Leaves of a change of these points the part that keeps the form.
-    fn project(&self, points: &[[f32; 2]], change: &mut [[f32; 2]]) {
-        match self {
-            Self::Shape(shape) => shape.project(change),
-            Self::Band(band, _) => band.near(points).as_ref().unwrap_or(band).project(change),
-        }
-    }
-
-    fn restore(&self, points: &mut [[f32; 2]]) {
-        match self {
-            Self::Shape(shape) => shape.restore(points),
-            Self::Band(band, equal) => {
-                if let Some(moved) = band.near(points) {
-                    moved.leveled(equal).put(points);
-                }
-            }
-        }
-    }
-}
-
 /// Places of coordinates that lines of a path have in common, where those of its first point are `start` and the next.
-fn equal(path: StrokeRef<'_>, start: usize) -> Vec<Vec<usize>> {
+fn equal(path: StrokeRef<'_>, start: usize) -> Places {
     let count = path.points.len();
     let mut equal = Vec::new();
     for axis in 0..2 {
@@ -200,7 +161,7 @@ fn equal(path: StrokeRef<'_>, start: usize) -> Vec<Vec<usize>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Area;
+    use crate::scene::{Area, Mark, Shape};
 
     fn area(ring: Path) -> Mark {
         Mark::from(Area {
@@ -216,15 +177,15 @@ mod tests {
         let mut strokes = Strokes::from_iter([mark]);
         let held = Held::of(&strokes, 1);
         let numbers = strokes.numbers_mut().iter_mut().enumerate();
-        numbers.for_each(|(i, number)| *number += 0.02 * crate::math::sin(3.0 * i as f32));
+        numbers.for_each(|(i, number)| *number += 0.02 * math::sin(3.0 * i as f32));
         held.restore(&mut strokes);
         strokes.get(0).to_mark()
     }
 
     #[test]
     fn shapes_stay_shapes() {
-        let (low, high) = ([10.0, 12.0].into(), [40.0, 33.0].into());
-        let center = [30.0, 31.0].into();
+        let (low, high) = ((10.0, 12.0).into(), (40.0, 33.0).into());
+        let center = (30.0, 31.0).into();
         for shape in [
             Shape::Circle {
                 center,
@@ -245,8 +206,8 @@ mod tests {
                 radius: 0.0,
             },
         ] {
-            let moved = moved(&area(shape.ring()));
-            let found = Shape::of(&moved.paths()[0]).unwrap();
+            let moved = moved(&area(shape.path()));
+            let found = moved.shape().unwrap();
             assert_eq!(
                 std::mem::discriminant(&found),
                 std::mem::discriminant(&shape)
@@ -258,16 +219,21 @@ mod tests {
     #[test]
     fn lines_stay_level_and_upright() {
         let points = [
-            [1.0, 2.0],
-            [9.0, 2.0],
-            [20.0, 2.0],
-            [20.0, 9.0],
-            [25.0, 12.0],
+            (1.0, 2.0),
+            (9.0, 2.0),
+            (20.0, 2.0),
+            (20.0, 9.0),
+            (25.0, 12.0),
         ];
-        let path = Path::new(points.map(|p| PathPoint::on(p.into())).into(), false).unwrap();
+        let path = Path::new(
+            points.map(|p: (f64, f64)| PathPoint::on(p.into())).into(),
+            false,
+        )
+        .unwrap();
         let stroke = Stroke {
             path,
             radius: 1.0,
+            cap: Cap::Round,
             color: [0.5; 3],
             opacity: 1.0,
         };

@@ -38,17 +38,18 @@ impl Jitter {
 mod tests {
     use super::*;
     use crate::math::Point;
-    use crate::scene::{Path, Stroke};
+    use crate::scene::{Cap, Path, Stroke};
 
     const JITTER: Jitter = Jitter { px: 0.1, from: 0.8 };
 
     fn strokes() -> Strokes {
         let mut strokes = Strokes::new();
         for i in 0..200 {
-            let at = |dx: f32| Point::new(i as f32 + dx, 5.0);
+            let at = |dx: f64| Point::new(i as f64 + dx, 5.0);
             strokes.push_stroke(&Stroke {
                 path: Path::line(at(0.0), at(4.0)),
                 radius: 1.0,
+                cap: Cap::Round,
                 color: [0.5; 3],
                 opacity: 0.5,
             });

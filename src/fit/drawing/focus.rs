@@ -143,7 +143,7 @@ mod tests {
     use crate::fit::{Budget, Config, Fitter, Objective, Preset};
     use crate::loss::Loss;
     use crate::render::{Backdrop, Gradients, Renderer, Softness, Strokes};
-    use crate::scene::{Path, Stroke};
+    use crate::scene::{Cap, Path, Stroke};
 
     fn mask(values: [f32; 4]) -> Image {
         let plane = values.to_vec();
@@ -198,8 +198,9 @@ mod tests {
     fn judged(focus: Option<&Focus>, x: f32) -> (f64, f32, f32) {
         let target = Canvas::from_image(&checks());
         let dot = Stroke {
-            path: Path::dot([x, 24.0].into()),
+            path: Path::dot((x, 24.0).into()),
             radius: 6.0,
+            cap: Cap::Round,
             color: [0.5; 3],
             opacity: 0.8,
         };

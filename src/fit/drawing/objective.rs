@@ -281,8 +281,8 @@ mod tests {
     }
 
     /// An area with these corners, of this colour and opacity.
-    fn area(corners: &[[f32; 2]], color: [f32; 3], opacity: f32) -> Mark {
-        let place = |&[x, y]: &[f32; 2]| PathPoint::on(Point::new(x, y));
+    fn area(corners: &[[f64; 2]], color: [f32; 3], opacity: f32) -> Mark {
+        let place = |&[x, y]: &[f64; 2]| PathPoint::on(Point::new(x, y));
         let ring = Path::new(corners.iter().map(place).collect(), true).unwrap();
         Mark::Area(Area {
             rings: vec![ring],

@@ -47,12 +47,11 @@ pub(in crate::fit) fn choose(picture: &Image, price_per_byte: f32) -> Option<Sha
 /// True if the shade changes by more than [`STEEPEST`] somewhere: there is the edge of a thing, which is none of the page.
 fn has_edge(shade: &Shade) -> bool {
     let length = match shade.axis() {
-        Axis::Linear { from, to } => (to - from).norm(),
+        Axis::Linear { from, to } => (to - from).hypot(),
         Axis::Radial { radius, .. } => radius,
     };
-    let stops: Vec<ShadeStop> = shade.stops().collect();
-    stops.windows(2).any(|ends| {
-        let px = 1.0 + length * (ends[1].offset - ends[0].offset);
+    shade.stops().windows(2).any(|ends| {
+        let px = 1.0 + length as f32 * (ends[1].offset - ends[0].offset);
         let value = |stop: &ShadeStop, c: usize| match c {
             3 => stop.opacity,
             c => stop.color[c] * stop.opacity,

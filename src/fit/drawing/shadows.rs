@@ -8,7 +8,7 @@ mod caster;
 mod shares;
 
 use crate::image::Image;
-use crate::math::Vector;
+use crate::math;
 use crate::scene::{Area, Path, Rgb, Shadow, Shape};
 use crate::shading::{Blocks, ShadeFit};
 use crate::trace;
@@ -29,7 +29,7 @@ const BYTES: f32 = 300.0;
 /// Farthest that the outline of a shadow may be off, in units of its blur.
 const OUTLINE_OF_BLUR: f32 = 0.15;
 /// Farthest that an outline may be from a circle, an ellipse or a rectangle, px, to be one.
-const SHAPE: f32 = 0.8;
+const SHAPE: f64 = 0.8;
 /// Blocks along the longer side of the picture that a gradient is fitted to.
 const GRADIENT_BLOCKS: usize = 64;
 /// Share of the soft ones of them that a gradient has to meet to be the better explanation.
@@ -71,12 +71,12 @@ fn found(picture: &Image, page: Option<Rgb>, price_per_byte: f32) -> Option<Vec<
     let shadow = |cast: &Cast| {
         // A shape stays one; of any other outline, a blur hides most points.
         let rings = match &rings[..] {
-            [ring] if Shape::of(ring).is_some() => rings.clone(),
+            [ring] if ring.shape().is_some() => rings.clone(),
             _ => self::rings(&shares, OUTLINE_OF_BLUR * cast.blur),
         };
-        let by = Vector::new(cast.shift[0], cast.shift[1]);
+        let by = math::point(cast.shift).to_vec2();
         let area = Area {
-            rings: rings.into_iter().map(|ring| ring.map(|p| p + by)).collect(),
+            rings: rings.into_iter().map(|ring| ring.moved(by)).collect(),
             color: shares.color,
             opacity: cast.opacity,
             shade: None,
@@ -107,7 +107,7 @@ fn casts(search: &mut Search) -> Vec<Cast> {
 /// The outline of what casts a shadow, as exact as `tolerance` px or as the picture tells.
 fn rings(shares: &Shares, tolerance: f32) -> Vec<Path> {
     let rings = trace::rings(&shares.caster.values, shares.width, tolerance);
-    let shape = |ring: Path| Shape::like(&ring, SHAPE).map_or(ring, |shape| shape.ring());
+    let shape = |ring: Path| Shape::like(&ring, SHAPE).map_or(ring, Shape::path);
     rings.into_iter().map(shape).collect()
 }
 

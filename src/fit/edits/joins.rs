@@ -146,6 +146,7 @@ fn joined(strokes: &Strokes, pair: Pair) -> Change {
         off: &off,
         closed: false,
         rings: &[],
+        form: None,
         paint: None,
         style: &style,
     };

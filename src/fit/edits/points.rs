@@ -26,6 +26,7 @@ impl Changed {
         StrokeRef {
             points: &self.points,
             off: &self.off,
+            form: None,
             ..path
         }
     }

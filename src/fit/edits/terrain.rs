@@ -9,9 +9,8 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::{Edit, written_points};
-use crate::fit::descent::held::Held;
 use crate::math::{self, nearest_on_segment};
-use crate::render::{Piece, Pieces, StrokeRef, Strokes, Survey, flattened};
+use crate::render::{Form, Piece, Pieces, StrokeRef, Strokes, Survey, flattened};
 
 /// Least segments of a line or a curve in a survey. A guess.
 pub(in crate::fit) const LEAST: usize = 4;
@@ -50,7 +49,7 @@ impl<'a> Terrain<'a> {
         let of_mark = |mark: usize| {
             let stroke = strokes.get(mark);
             let mut first = survey.firsts[mark] as usize;
-            let is_fit = stroke.is_finite() && !Held::is_band(stroke);
+            let is_fit = stroke.is_finite() && stroke.form != Some(Form::Band);
             let paths = stroke.paths().enumerate().filter(move |_| is_fit);
             paths.map(move |(path, (_, points))| {
                 let terrain = Self::new(survey, points, (mark, path, stroke.is_area()), first);

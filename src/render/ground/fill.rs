@@ -5,7 +5,7 @@ use crate::math::Point;
 use crate::scene::Path;
 
 /// Farthest that chords are from curves, px.
-const FLATNESS: f32 = 0.02;
+const FLATNESS: f64 = 0.02;
 
 /// The share of each pixel that the rings fill, where they wind in one direction and holes in the other. Rings are in px from the
 /// plane's corner.
@@ -40,7 +40,7 @@ fn add(turns: &mut [f64], stride: usize, a: Point, b: Point) {
     } else {
         (-1.0, b, a)
     };
-    let [x0, y0, x1, y1] = [top.x, top.y, bottom.x, bottom.y].map(f64::from);
+    let [x0, y0, x1, y1] = [top.x, top.y, bottom.x, bottom.y];
     if y1 <= y0 {
         return;
     }

@@ -3,7 +3,8 @@
 use super::element::Element;
 use super::{Reader, elements, painted, unexpected};
 use crate::error::Result;
-use crate::scene::{MAX_STOPS, Mark, Scene, Shade, Shadow, WrittenAxis, WrittenStop};
+use crate::math::Point;
+use crate::scene::{Axis, Mark, Scene, Shade, ShadeStop, Shadow, color, px};
 use crate::svg::dialect::{self, BLUR_ID, SHADE_ID, SHADOW_ID, Unit};
 use crate::svg::dom::Node;
 use crate::svg::shadow::place;
@@ -54,11 +55,9 @@ impl Reader {
         };
         let stops = elements(node)?.into_iter().map(stop);
         let stops = stops.collect::<Result<Vec<_>>>()?;
-        let is_few = stops.len() <= MAX_STOPS;
-        let shade = Shade::written(axis, stops).filter(|_| is_few);
         let why =
             "is shorter than a px, or has less than two stops, too many, or stops out of order";
-        let shade = shade.ok_or_else(|| gradient.refused(why))?;
+        let shade = Shade::new(axis, &stops).map_err(|_| gradient.refused(why))?;
         Ok((gradient.get("id", |id| Some(id.to_owned()))?, shade))
     }
 
@@ -103,7 +102,7 @@ impl Reader {
     }
 }
 
-fn axis(gradient: &Element<'_>) -> Result<WrittenAxis> {
+fn axis(gradient: &Element<'_>) -> Result<Axis> {
     let is_linear = gradient.node.name() == dialect::LINEAR;
     let names = if is_linear {
         &dialect::LINEAR_AXIS[..]
@@ -112,16 +111,22 @@ fn axis(gradient: &Element<'_>) -> Result<WrittenAxis> {
     };
     gradient.only(&[&["id", "gradientUnits"], names].concat())?;
     gradient.expect("gradientUnits", "userSpaceOnUse")?;
-    let hundredths = |text: &str| Some(whole(text, dialect::HUNDREDTH)? * dialect::HUNDREDTH);
+    let hundredths = |text: &str| Some(px(whole(text, dialect::HUNDREDTH)? * dialect::HUNDREDTH));
     let number = |name: &&str| gradient.get(name, hundredths);
     match names.iter().map(number).collect::<Result<Vec<_>>>()?[..] {
-        [x, y, radius] => Ok(WrittenAxis::Radial([x, y, radius])),
-        [ax, ay, bx, by] => Ok(WrittenAxis::Linear([ax, ay, bx, by])),
+        [x, y, radius] => Ok(Axis::Radial {
+            center: Point::new(x, y),
+            radius,
+        }),
+        [ax, ay, bx, by] => Ok(Axis::Linear {
+            from: Point::new(ax, ay),
+            to: Point::new(bx, by),
+        }),
         _ => Err(unexpected(gradient.node)),
     }
 }
 
-fn stop(element: &Element<'_>) -> Result<WrittenStop> {
+fn stop(element: &Element<'_>) -> Result<ShadeStop> {
     element.only(&["offset", "stop-color", "stop-opacity"])?;
     let thousandths = |text: &str| {
         let thousandths = u16::try_from(whole(text, dialect::THOUSANDTH)?).ok()?;
@@ -131,9 +136,10 @@ fn stop(element: &Element<'_>) -> Result<WrittenStop> {
         "0" => Some(0),
         text => dialect::opacity_quantum(text),
     };
-    Ok(WrittenStop {
-        offset: element.get("offset", thousandths)?,
-        color: element.get("stop-color", dialect::channels)?,
-        opacity: element.either("stop-opacity", opacity)?.unwrap_or(u8::MAX),
+    let opacity = element.either("stop-opacity", opacity)?;
+    Ok(ShadeStop {
+        offset: f32::from(element.get("offset", thousandths)?) / 1000.0,
+        color: color(element.get("stop-color", dialect::channels)?),
+        opacity: f32::from(opacity.unwrap_or(u8::MAX)) / 255.0,
     })
 }

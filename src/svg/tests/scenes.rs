@@ -2,15 +2,15 @@
 
 use proptest::prelude::*;
 
-use crate::math::{self, Point};
+use crate::math::{self, Point, Vec2};
 use crate::scene::{
-    Area, Axis, Band, MAX_STOPS, Mark, Path, PathPoint, Scene, Shade, ShadeStop, Shadow, Shape,
+    Area, Axis, Cap, MAX_STOPS, Mark, Path, PathPoint, Scene, Shade, ShadeStop, Shadow, Shape,
     Stage, Stroke,
 };
 use crate::svg::{Form, Group, WriteOptions};
 
 fn point() -> impl Strategy<Value = Point> {
-    let coordinate = prop_oneof![-20.0..120.0_f32, 0.0..0.02_f32, Just(50.0), -1e6..1e6_f32];
+    let coordinate = prop_oneof![-20.0..120.0_f64, 0.0..0.02_f64, Just(50.0), -1e6..1e6_f64];
     (coordinate.clone(), coordinate).prop_map(|(x, y)| Point::new(x, y))
 }
 
@@ -26,11 +26,11 @@ fn shape() -> impl Strategy<Value = Path> {
 
 /// Rings of shapes, from a speck to more than the page.
 fn ring_of_shape() -> impl Strategy<Value = Path> {
-    let size = || prop_oneof![1.0..60.0_f32, 0.001..0.1_f32, Just(8.0)];
+    let size = || prop_oneof![1.0..60.0_f64, 0.001..0.1_f64, Just(8.0)];
     (point(), size(), size(), size(), 0..4_u8).prop_map(|(center, x, y, radius, kind)| {
-        let away = [x, y].into();
+        let away = Vec2::new(x, y);
         let (low, high) = (center - away, center + away);
-        let round = radius.min(0.5 * (high - low).min());
+        let round = radius.min(x.min(y));
         let rect = |radius| Shape::Rect { low, high, radius };
         let shape = match kind {
             0 => Shape::Circle { center, radius },
@@ -41,13 +41,13 @@ fn ring_of_shape() -> impl Strategy<Value = Path> {
             2 => rect(round),
             _ => rect(0.0),
         };
-        shape.ring()
+        shape.path()
     })
 }
 
 /// Places among which many coincide, or lie halfway between others, once they are rounded.
 fn close_point() -> impl Strategy<Value = Point> {
-    let coordinate = || prop_oneof![(0..5_u8).prop_map(f32::from), 0.0..4.0_f32];
+    let coordinate = || prop_oneof![(0..5_u8).prop_map(f64::from), 0.0..4.0_f64];
     (coordinate(), coordinate()).prop_map(|(x, y)| Point::new(x, y))
 }
 
@@ -75,11 +75,13 @@ pub(super) fn stroke() -> impl Strategy<Value = Stroke> {
             Just(f32::NAN)
         ]
     };
-    let radius = prop_oneof![0.0..20.0_f32, Just(0.5), 0.0..0.01_f32];
-    (shape(), radius, unit(), unit(), unit(), unit()).prop_map(
-        |(path, radius, r, g, b, opacity)| Stroke {
+    let radius = prop_oneof![0.0..20.0_f64, Just(0.5), 0.0..0.01_f64];
+    let cap = prop_oneof![2 => Just(Cap::Round), 1 => Just(Cap::Butt)];
+    (shape(), radius, cap, unit(), unit(), unit(), unit()).prop_map(
+        |(path, radius, cap, r, g, b, opacity)| Stroke {
             path,
             radius,
+            cap,
             color: [r, g, b],
             opacity,
         },
@@ -96,13 +98,13 @@ fn ring() -> impl Strategy<Value = Path> {
 
 /// A ring around a place, in either sense, from a speck to more than the page.
 fn round_ring() -> impl Strategy<Value = Path> {
-    let radius = prop_oneof![1.0..60.0_f32, 0.001..0.1_f32];
-    let points = prop::collection::vec((0.3..1.0_f32, any::<bool>()), 3..9);
+    let radius = prop_oneof![1.0..60.0_f64, 0.001..0.1_f64];
+    let points = prop::collection::vec((0.3..1.0_f64, any::<bool>()), 3..9);
     (point(), radius, any::<bool>(), points).prop_map(|(center, radius, turns_left, points)| {
-        let step = std::f32::consts::TAU / points.len() as f32;
+        let step = std::f64::consts::TAU / points.len() as f64;
         let step = if turns_left { -step } else { step };
         closed(points.iter().enumerate().map(|(i, &(share, is_on))| {
-            let (sin, cos) = math::sin_cos(i as f32 * step);
+            let (sin, cos) = math::sin_cos(i as f64 * step);
             let away = radius * share;
             (
                 Point::new(center.x + away * cos, center.y + away * sin),
@@ -123,34 +125,12 @@ fn area() -> impl Strategy<Value = Area> {
     let unit = || prop_oneof![0.0..=1.0_f32, Just(0.0), Just(1.0), Just(f32::NAN)];
     let rings = prop::collection::vec(ring(), 1..4);
     let shade = prop::option::weighted(0.3, shade());
-    let rings = prop_oneof![3 => rings, 1 => band()];
     let area = (rings, [unit(), unit(), unit()], unit(), shade);
     area.prop_map(|(rings, color, opacity, shade)| Area {
         rings,
         color,
         opacity,
         shade,
-    })
-}
-
-/// The rings of a line with square ends and mitred corners, or of what only nearly is one.
-fn band() -> impl Strategy<Value = Vec<Path>> {
-    let width = prop_oneof![0.5..20.0_f32, Just(3.0)];
-    let line = prop_oneof![path(point()), path(close_point())];
-    let whole = (line, width, any::<bool>());
-    whole.prop_filter_map("nothing", |(line, width, is_filled)| {
-        let rings = Band { line, width }.rings();
-        let rings = rings.into_iter().filter(|ring| !ring.points().is_empty());
-        let turned = |ring: &Path| {
-            let points = ring.points().iter().rev().copied();
-            Path::new(points.collect(), true).ok()
-        };
-        let rings: Vec<Path> = rings.collect();
-        let rings = match is_filled {
-            true => rings.iter().map(turned).collect::<Option<_>>()?,
-            false => rings,
-        };
-        (!rings.is_empty()).then_some(rings)
     })
 }
 
@@ -162,7 +142,7 @@ pub(super) fn mark() -> impl Strategy<Value = Mark> {
 fn shade() -> impl Strategy<Value = Shade> {
     let linear = (point(), point()).prop_map(|(from, to)| Axis::Linear { from, to });
     let radial =
-        (point(), 1.0..300.0_f32).prop_map(|(center, radius)| Axis::Radial { center, radius });
+        (point(), 1.0..300.0_f64).prop_map(|(center, radius)| Axis::Radial { center, radius });
     let unit = || prop_oneof![0.0..=1.0_f32, Just(0.0), Just(1.0)];
     let stop = (unit(), [unit(), unit(), unit()], unit());
     let stop = stop.prop_map(|(offset, color, opacity)| ShadeStop {
@@ -218,13 +198,14 @@ fn shadow() -> impl Strategy<Value = Option<Shadow>> {
 /// A stroke of few styles between few places, so that neighbours often share a style or an end.
 fn alike() -> impl Strategy<Value = Stroke> {
     let place =
-        || (0..5_u8, 0..5_u8).prop_map(|(x, y)| Point::from([x, y].map(|i| 9.5 * f32::from(i))));
+        || (0..5_u8, 0..5_u8).prop_map(|(x, y)| Point::new(9.5 * f64::from(x), 9.5 * f64::from(y)));
     let look = (0..2_u8, 0..2_u8, 0..3_u8);
     let line = (place(), place()).prop_map(|(a, b)| Path::line(a, b));
     let path = prop_oneof![3 => line, 1 => path(place())];
     (path, look).prop_map(|(path, (color, width, opacity))| Stroke {
         path,
-        radius: 1.0 + f32::from(width),
+        radius: 1.0 + f64::from(width),
+        cap: Cap::Round,
         color: [f32::from(color), 0.2, 0.6],
         opacity: if opacity == 0 { 0.5 } else { 1.0 },
     })
@@ -232,10 +213,10 @@ fn alike() -> impl Strategy<Value = Stroke> {
 
 /// An area of few styles around few places, sometimes with a hole or a second part.
 fn area_alike() -> impl Strategy<Value = Area> {
-    let place = (0..5_u8, 0..5_u8).prop_map(|(x, y)| [x, y].map(|i| 9.5 * f32::from(i)));
+    let place = (0..5_u8, 0..5_u8).prop_map(|(x, y)| [x, y].map(|i| 9.5 * f64::from(i)));
     let ring = (place, 1..4_u8, any::<bool>(), any::<bool>()).prop_map(
         |([x, y], size, is_round, turns_left)| {
-            let away = 4.0 * f32::from(size);
+            let away = 4.0 * f64::from(size);
             let mut corners = [[-away, -away], [away, -away], [away, away], [-away, away]];
             if turns_left {
                 corners.reverse();

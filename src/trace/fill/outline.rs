@@ -6,7 +6,7 @@
 use super::contour::{Field, Place, resampled};
 use super::corners::{Corner, corners};
 use super::span::{MOST, Sample, Span, fit};
-use crate::math::{self, Point};
+use crate::math;
 use crate::scene::{Path, PathPoint};
 
 /// Distance of the samples of an outline, px. A guess.
@@ -65,7 +65,7 @@ pub(super) fn ring<D: Fn(Place, Place) -> f32>(
     let points: Vec<PathPoint> = points
         .into_iter()
         .map(|(at, is_on)| PathPoint {
-            at: Point::new(at[0], at[1]),
+            at: math::point(at),
             is_on,
         })
         .collect();

@@ -170,7 +170,7 @@ impl Shaded {
 /// Shades on top of each other at pixel `i`, on each matte.
 pub(super) fn shown(shades: &[Shade], pixels: &Pixels<'_>, i: usize, mattes: usize) -> Pixel {
     let (x, y) = (i % pixels.width, i / pixels.width);
-    let center = Point::new(x as f32 + 0.5, y as f32 + 0.5);
+    let center = Point::new(x as f64 + 0.5, y as f64 + 0.5);
     let [red, green, blue, opacity] = stacked(shades, center);
     // The mattes are black and white, or the page is opaque.
     let through = if mattes > 1 { 1.0 - opacity } else { 0.0 };
@@ -277,10 +277,10 @@ fn blocks(pixels: &Pixels<'_>, part: &[usize], mattes: usize) -> Blocks {
     }
     let block = |(k, (sum, count)): (usize, ([f32; 4], f32))| {
         let corner = [k % columns, k / columns];
-        let center =
-            [0, 1].map(|axis| low[axis] as f32 + (corner[axis] as f32 + 0.5) * side as f32);
+        let [x, y] =
+            [0, 1].map(|axis| low[axis] as f64 + (corner[axis] as f64 + 0.5) * side as f64);
         Block {
-            center: center.into(),
+            center: Point::new(x, y),
             value: sum.map(|sum| sum / count.max(1.0)),
             weight: if 2.0 * count >= (side * side) as f32 {
                 1.0
@@ -292,8 +292,8 @@ fn blocks(pixels: &Pixels<'_>, part: &[usize], mattes: usize) -> Blocks {
     Blocks {
         columns,
         all: sums.into_iter().enumerate().map(block).collect(),
-        low: low.map(|v| v as f32),
-        size: size.map(|v| v as f32),
+        low: low.map(|v| v as f64),
+        size: size.map(|v| v as f64),
     }
 }
 

@@ -16,7 +16,7 @@ pub(crate) struct Rings {
 
 /// Gradients for areas of a picture of about 40 px.
 pub(crate) fn paints() -> Vec<(&'static str, Paint)> {
-    let linear = |scale: f32| Axis::Linear {
+    let linear = |scale: f64| Axis::Linear {
         from: Point::new(3.3 / scale, 7.5 / scale),
         to: Point::new(31.0 / scale, 19.0 / scale),
     };

@@ -1,13 +1,13 @@
 //! Paths of every kind, each with one kind of trouble.
 
-use strokefit::math::Point;
+use strokefit::math;
 use strokefit::scene::{Path, PathPoint};
 
 /// The paths with their names; they lie in and around a picture of `width`×`height` px.
 pub(crate) fn paths(width: f32, height: f32) -> Vec<(&'static str, Path)> {
     let path = |points: &[(f32, f32, char)], closed: bool| {
         let point = |&(x, y, kind): &(f32, f32, char)| PathPoint {
-            at: Point::new(x * width, y * height),
+            at: math::point([x * width, y * height]),
             is_on: kind == 'o',
         };
         Path::new(points.iter().map(point).collect(), closed).unwrap()

@@ -41,24 +41,24 @@ fn chords(elements: &[Element]) -> Vec<[Point; 2]> {
 /// Places half a px apart.
 fn places(&[a, b]: &[Point; 2]) -> impl Iterator<Item = Point> {
     let way = b - a;
-    let count = (2.0 * way.norm()).ceil().max(1.0);
-    (0..count as usize).map(move |i| a + way * (i as f32 / count))
+    let count = (2.0 * way.hypot()).ceil().max(1.0);
+    (0..count as usize).map(move |i| a + way * (i as f64 / count))
 }
 
 fn nearest(p: Point, chords: &[[Point; 2]]) -> f64 {
     let to = |&[a, b]: &[Point; 2]| {
         let way = b - a;
-        let h = (p - a).dot(&way) / way.norm_squared().max(f32::MIN_POSITIVE);
-        (a + way * h.clamp(0.0, 1.0) - p).norm()
+        let h = (p - a).dot(way) / way.hypot2().max(f64::MIN_POSITIVE);
+        (a + way * h.clamp(0.0, 1.0)).distance(p)
     };
-    f64::from(chords.iter().map(to).fold(f32::INFINITY, f32::min))
+    chords.iter().map(to).fold(f64::INFINITY, f64::min)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn line(points: &[[f32; 2]]) -> Element {
+    fn line(points: &[[f64; 2]]) -> Element {
         let points: Vec<Point> = points.iter().map(|&[x, y]| Point::new(x, y)).collect();
         Element {
             lines: vec![points],

@@ -146,8 +146,8 @@ fn marked_up(element: &Element, color: &str, px: f32) -> String {
         let _ = write!(
             svg,
             r##"<rect x="{:.2}" y="{:.2}" width="{side:.2}" height="{side:.2}" fill="#ffffff" stroke="{color}" stroke-width="{px:.2}"/>"##,
-            p.x - 2.0 * px,
-            p.y - 2.0 * px,
+            p.x - 2.0 * f64::from(px),
+            p.y - 2.0 * f64::from(px),
             side = 4.0 * px
         );
     }

@@ -14,7 +14,7 @@ use strokefit::fit::{Simd, final_softness};
 use strokefit::image::Image;
 use strokefit::math::{self, Point};
 use strokefit::render::{Backdrop, Canvas, Grid, Renderer, Strokes};
-use strokefit::scene::{MIN_WIDTH, Path, Scene, Stage, Stroke};
+use strokefit::scene::{Cap, MIN_WIDTH, Path, Scene, Stage, Stroke};
 use strokefit::verify;
 use strokefit::{Error, ErrorKind, Result};
 
@@ -218,10 +218,10 @@ impl Bench {
 fn stroke([x, y]: [f64; 2], width: f64, angle: f64) -> Stroke {
     let (sin, cos) = math::sin_cos(angle.to_radians());
     let (dx, dy) = (cos * LENGTH / 2.0, sin * LENGTH / 2.0);
-    let end = |x: f64, y: f64| Point::new(x as f32, y as f32);
     Stroke {
-        path: Path::line(end(x - dx, y - dy), end(x + dx, y + dy)),
-        radius: width as f32 / 2.0,
+        path: Path::line(Point::new(x - dx, y - dy), Point::new(x + dx, y + dy)),
+        radius: width / 2.0,
+        cap: Cap::Round,
         color: [0.0; 3],
         opacity: 1.0,
     }

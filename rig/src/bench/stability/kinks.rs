@@ -182,6 +182,7 @@ fn along_paths() -> impl Iterator<Item = Check<'static>> {
                 off: bend.off,
                 closed: bend.closed,
                 rings: &[],
+                form: None,
                 paint: None,
                 style: &[2.2, 0.9, 0.2, 0.1, 0.7],
             });

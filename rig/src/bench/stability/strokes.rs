@@ -163,6 +163,7 @@ fn walk(points: usize) -> Strokes {
         off: &vec![false; points],
         closed: false,
         rings: &[],
+        form: None,
         paint: None,
         style: &[1.2, 0.9, 0.2, 0.1, 0.6],
     });

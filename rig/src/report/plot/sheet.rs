@@ -310,8 +310,9 @@ mod tests {
 
     fn dots(count: usize) -> Scene {
         let stroke = |i: usize| Stroke {
-            path: scene::Path::dot([(i % 12) as f32, (i % 9) as f32].into()),
+            path: scene::Path::dot(((i % 12) as f64, (i % 9) as f64).into()),
             radius: 0.8,
+            cap: scene::Cap::Round,
             color: [0.4; 3],
             opacity: 0.5,
         };

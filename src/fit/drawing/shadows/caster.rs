@@ -14,9 +14,9 @@ const BLUR_STEP: f32 = 1.25;
 /// Number of times that blurs are tried.
 const REFINEMENTS: usize = 5;
 /// The first step of the search for a place, blocks.
-const SHIFT_STEP: f32 = 2.0;
+const SHIFT_STEP: f64 = 2.0;
 /// The last step.
-const SHIFT_FINEST: f32 = 0.05;
+const SHIFT_FINEST: f64 = 0.05;
 
 /// A blur of the caster's shape.
 pub(super) struct Cast {
@@ -149,7 +149,10 @@ impl Search {
                 opacity,
             )
         };
-        let shift = math::search(from, SHIFT_STEP, SHIFT_FINEST, |shift| cost(shift).0);
+        let shift = math::search(from.map(f64::from), SHIFT_STEP, SHIFT_FINEST, |shift| {
+            cost(shift.map(|px| px as f32)).0
+        });
+        let shift = shift.map(|px| px as f32);
         let (error, opacity) = cost(shift);
         (error as f32, shift, opacity)
     }

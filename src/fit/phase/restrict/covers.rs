@@ -1,25 +1,29 @@
 //! Covers: what other marks hide of a border.
 
+use kurbo::{BezPath, Line, ParamCurveNearest, Rect, Shape};
+
 use crate::fit::drawing::Drawing;
-use crate::math::{Point, nearest_on_segment};
-use crate::scene::{Mark, Path, Rgb};
+use crate::math::Point;
+use crate::scene::{Mark, Rgb};
 
 /// Farthest that chords are from a ring that others may lie in, px. A guess.
-pub(super) const FLATNESS: f32 = 0.1;
+const FLATNESS: f64 = 0.1;
 
 /// The marks of a drawing as far as they hide others, and its page.
 pub(super) struct Covers {
     marks: Vec<Cover>,
-    page: Point,
+    page: Rect,
 }
 
 /// A mark that hides others: all that it lies on if it is opaque, and the border of what has its colour.
 struct Cover {
-    /// The corners of the rings of an area, and the least and most x and y of each.
-    rings: Vec<(Vec<Point>, [Point; 2])>,
-    /// The middle of a stroke, and the least and most x and y.
-    middle: Option<(Vec<Point>, [Point; 2])>,
-    radius: f32,
+    /// The box around all that it covers.
+    extent: Rect,
+    /// The rings of an area, as polygons.
+    rings: Option<BezPath>,
+    /// The middle of a stroke.
+    middle: Vec<Line>,
+    radius: f64,
     color: Rgb,
     is_opaque: bool,
 }
@@ -28,9 +32,10 @@ impl Covers {
     pub(super) fn of(drawing: &Drawing) -> Self {
         let picture = drawing.surface().picture();
         let marks = drawing.free().iter().map(|mark| Cover::of(mark.to_mark()));
+        let [width, height] = [picture.width(), picture.height()].map(|side| side as f64);
         Self {
             marks: marks.collect(),
-            page: Point::new(picture.width() as f32, picture.height() as f32),
+            page: Rect::new(0.0, 0.0, width, height),
         }
     }
 
@@ -38,60 +43,51 @@ impl Covers {
     pub(super) fn is_seen(&self, i: usize, p: Point) -> bool {
         let mut others = self.marks.iter().enumerate().filter(|&(k, _)| k != i);
         let hides = |(k, other): (usize, &Cover)| {
+            let is_stroke = other.rings.is_none();
             (k > i && other.is_opaque && other.has(p, 0.0))
-                || (other.middle.is_some() && other.is_like(&self.marks[i]) && other.has(p, MELTED))
+                || (is_stroke && other.is_like(&self.marks[i]) && other.has(p, MELTED))
         };
-        is_within(p, [Point::origin(), self.page], 0.0) && !others.any(hides)
+        self.page.contains(p) && !others.any(hides)
     }
 }
 
 /// Farthest beside a stroke that the border of what it runs into may be bent by it, px. A guess.
-const MELTED: f32 = 1.0;
+const MELTED: f64 = 1.0;
 
 /// More opacity than this hides what lies below: the last descent has not made all of it full. A guess.
 const OPAQUE: f32 = 0.99;
 
 impl Cover {
     fn of(mark: Mark) -> Self {
-        let corners = |path: &Path| {
-            let mut corners = path.flattened(FLATNESS);
-            if let [dot] = corners[..] {
-                corners.push(dot);
-            }
-            bounded(corners)
-        };
-        match mark {
-            Mark::Area(area) => Self {
-                rings: area.rings.iter().map(corners).collect(),
-                middle: None,
-                radius: 0.0,
-                color: area.color,
-                is_opaque: area.opacity > OPAQUE,
-            },
-            Mark::Stroke(stroke) => Self {
-                rings: Vec::new(),
-                middle: Some(corners(&stroke.path)),
-                radius: stroke.radius,
-                color: stroke.color,
-                is_opaque: stroke.opacity > OPAQUE,
-            },
+        // What is drawn with square ends covers its rings.
+        let mark = mark.filled();
+        let lines: Vec<Line> = mark
+            .paths()
+            .iter()
+            .flat_map(|path| path.lines(FLATNESS))
+            .collect();
+        let segments = || lines.iter().copied().map(Into::into);
+        Self {
+            extent: mark.extent(),
+            rings: mark
+                .is_area()
+                .then(|| BezPath::from_path_segments(segments())),
+            radius: mark.radius(),
+            color: mark.color(),
+            is_opaque: mark.opacity() > OPAQUE,
+            middle: lines,
         }
     }
 
     /// True if a place lies on the mark, or at most `beside` px beside a stroke.
-    fn has(&self, p: Point, beside: f32) -> bool {
-        let winds = |(corners, bounds): &&(Vec<Point>, [Point; 2])| {
-            is_within(p, *bounds, 0.0) && is_inside(p, corners)
-        };
+    fn has(&self, p: Point, beside: f64) -> bool {
         let reach = self.radius + beside;
-        let is_near = |(middle, bounds): &(Vec<Point>, [Point; 2])| {
-            let ends = |pair: &[Point]| [pair[0], pair[1]].map(|p| [p.x, p.y]);
-            let near =
-                |pair: &[Point]| nearest_on_segment([p.x, p.y], ends(pair)).1 <= reach * reach;
-            is_within(p, *bounds, reach) && middle.windows(2).any(near)
-        };
-        self.rings.iter().filter(winds).count() % 2 == 1
-            || self.middle.as_ref().is_some_and(is_near)
+        let is_near = |line: &Line| line.nearest(p, 0.0).distance_sq <= reach * reach;
+        self.extent.inflate(beside, beside).contains(p)
+            && match &self.rings {
+                Some(rings) => rings.winding(p) != 0,
+                None => self.middle.iter().any(is_near),
+            }
     }
 
     /// True if two marks have colours that nobody tells apart.
@@ -99,27 +95,4 @@ impl Cover {
         let pairs = self.color.iter().zip(other.color);
         pairs.fold(0.0, |most: f32, (a, b)| most.max((a - b).abs())) < 0.04
     }
-}
-
-/// True if a place is in a box, or at most `beside` px beside it.
-fn is_within(p: Point, [low, high]: [Point; 2], beside: f32) -> bool {
-    (low.x - beside..=high.x + beside).contains(&p.x)
-        && (low.y - beside..=high.y + beside).contains(&p.y)
-}
-
-fn bounded(corners: Vec<Point>) -> (Vec<Point>, [Point; 2]) {
-    let first = corners.first().copied().unwrap_or_default();
-    let low = corners.iter().fold(first, |low, p| low.inf(p));
-    let high = corners.iter().fold(first, |high, p| high.sup(p));
-    (corners, [low, high])
-}
-
-/// True if a ray from `p` crosses the ring with these corners an odd number of times.
-pub(super) fn is_inside(p: Point, corners: &[Point]) -> bool {
-    let crosses = |pair: &&[Point]| {
-        let (a, b) = (pair[0], pair[1]);
-        let is_passed = (a.y > p.y) != (b.y > p.y);
-        is_passed && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)
-    };
-    corners.windows(2).filter(crosses).count() % 2 == 1
 }

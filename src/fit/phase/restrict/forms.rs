@@ -5,9 +5,11 @@
 //! hide in part, what is seen decides. A few steps of descent fit all proposals as what they are, and those stay that add less
 //! squared error than the bytes that they save are worth.
 
-use std::f32::consts::FRAC_PI_4;
+use std::f64::consts::FRAC_PI_4;
 
-use super::covers::{Covers, FLATNESS, is_inside};
+use kurbo::ParamCurve;
+
+use super::covers::Covers;
 use super::proposals::{adopt, traced};
 use crate::error::Result;
 use crate::fit::drawing::{Drawing, Memento};
@@ -17,7 +19,7 @@ use crate::fit::run::session::Session;
 use crate::math::Point;
 use crate::metrics::psnr_db;
 use crate::render::StrokeRef;
-use crate::scene::{Area, Band, Mark, Marks, Path, PathPoint, Shape, Stroke};
+use crate::scene::{Area, Band, Cap, Mark, Marks, Path, PathPoint, Shape, Stroke};
 
 /// Makes shapes of areas and traced strokes that nearly are such, and then lines level and upright. All strokes must be free.
 pub(super) fn run(session: &mut Session<'_>) -> Result<()> {
@@ -43,9 +45,9 @@ pub(super) fn run(session: &mut Session<'_>) -> Result<()> {
 
 /// Makes bands areas that are filled, where the file is to have no strokes.
 fn fill_bands(drawing: &mut Drawing) {
-    let filled = |(i, mark): (usize, StrokeRef<'_>)| match mark.to_mark() {
-        Mark::Area(area) => Some(Edit::replacing(i, vec![area.filled().into()], 0.0)),
-        Mark::Stroke(_) => None,
+    let filled = |(i, mark): (usize, StrokeRef<'_>)| {
+        let band = Some(mark.to_mark()).filter(Mark::is_butt)?;
+        Some(Edit::replacing(i, vec![band.filled()], 0.0))
     };
     let filled: Vec<Edit> = drawing
         .free()
@@ -73,7 +75,7 @@ fn refuse_losses(session: &mut Session<'_>, forms: Forms, paths: Memento) -> Res
 }
 
 /// Nearest that points of what is not a dot are, px: less than a picture tells.
-const DOT_PX: f32 = 0.1;
+const DOT_PX: f64 = 0.1;
 
 /// For each traced mark the shapes that it is, and at most `room` more marks than before.
 fn shapes(session: &Session<'_>, forms: Forms, mut room: usize) -> Vec<Edit> {
@@ -83,11 +85,12 @@ fn shapes(session: &Session<'_>, forms: Forms, mut room: usize) -> Vec<Edit> {
     let is_whole = session.drawing.free().len() == 1;
     let has_bands = session.config.marks() == Marks::Auto;
     let shaped = |i: usize, mark: Mark, room: &mut usize| {
-        let is_disc = |dot: &Stroke| has_areas && is_dot(&dot.path);
+        let is_disc = |dot: &Stroke| has_areas && dot.cap == Cap::Round && is_dot(&dot.path);
         let marks = match mark {
             Mark::Stroke(stroke) if is_disc(&stroke) => vec![disc(&stroke).into()],
+            Mark::Stroke(stroke) if stroke.cap == Cap::Butt => return None,
             Mark::Stroke(mut stroke) => {
-                stroke.path = like(&stroke.path, forms)?.ring();
+                stroke.path = like(&stroke.path, forms)?.path();
                 vec![stroke.into()]
             }
             Mark::Area(area) => {
@@ -103,7 +106,7 @@ fn shapes(session: &Session<'_>, forms: Forms, mut room: usize) -> Vec<Edit> {
 /// True if all points are in one place.
 fn is_dot(path: &Path) -> bool {
     let (first, _) = path.ends();
-    path.points().iter().all(|p| (p.at - first).norm() < DOT_PX)
+    path.points().iter().all(|p| p.at.distance(first) < DOT_PX)
 }
 
 /// The area of a dot.
@@ -113,7 +116,7 @@ fn disc(dot: &Stroke) -> Area {
         radius: dot.radius,
     };
     Area {
-        rings: vec![circle.ring()],
+        rings: vec![circle.path()],
         color: dot.color,
         opacity: dot.opacity,
         shade: None,
@@ -123,20 +126,25 @@ fn disc(dot: &Stroke) -> Area {
 /// For each traced stroke a band: its square ends cover as much as round ones that end later.
 fn squares(session: &Session<'_>, forms: Forms) -> Vec<Edit> {
     let squared = |_: usize, mark: Mark| {
-        let stroke = mark.as_stroke()?;
+        let stroke = mark.as_stroke().filter(|stroke| stroke.cap == Cap::Round)?;
         let beyond = [FRAC_PI_4 * stroke.radius; 2];
         let width = 2.0 * stroke.radius;
-        let band = Band::along(&stroke.path, width, beyond, [forms.tolerance_px, 0.0])?;
+        let band = Band::along(
+            &stroke.path,
+            width,
+            beyond,
+            [forms.tolerance_px.into(), 0.0],
+        )?;
         let band = Some(band).filter(Band::is_told)?;
-        Some(vec![band.area(stroke).into()])
+        Some(vec![band.stroke(stroke).into()])
     };
     traced(&session.drawing, squared)
 }
 
 /// The shape that a path nearly is, unless it is that already.
 fn like(path: &Path, forms: Forms) -> Option<Shape> {
-    let is_shape = !path.is_closed() || Shape::of(path).is_some();
-    Shape::like(path, forms.tolerance_px).filter(|_| !is_shape)
+    let is_shape = !path.is_closed() || path.shape().is_some();
+    Shape::like(path, forms.tolerance_px.into()).filter(|_| !is_shape)
 }
 
 /// The area as areas: one for each of its rings that is alone and a shape, and one of all others. An area of many rings
@@ -148,68 +156,82 @@ fn parts(
     is_seen: impl Fn(Point) -> bool,
 ) -> Option<Vec<Mark>> {
     let rings = &area.rings;
-    if area.band().is_some() {
-        return None;
-    }
     let has_bands = has_bands && area.shade.is_none();
-    let band = has_bands.then(|| Band::like(rings, forms.tolerance_px));
+    let band = has_bands.then(|| Band::like(rings, forms.tolerance_px.into()));
     if let Some(band) = band.flatten() {
-        let rings = band.rings();
-        return Some(vec![Area { rings, ..area }.into()]);
+        return Some(vec![filled(band, &area)]);
     }
-    let shapes = shapes_of(rings, forms, has_bands, is_seen);
-    let pairs = rings.iter().zip(&shapes);
-    let rest = pairs.filter(|(_, shape)| shape.is_none());
+    let alone = forms_of(&area, forms, has_bands, is_seen);
+    let pairs = rings.iter().zip(&alone);
+    let rest = pairs.filter(|(_, form)| form.is_none());
     let rest: Vec<Path> = rest.map(|(ring, _)| ring.clone()).collect();
     let is_all = rest.is_empty();
     let is_split = rings.len() <= forms.split_rings[usize::from(is_all)] && (is_all || !is_whole);
     if !is_split || rest.len() == rings.len() {
         return None;
     }
-    let alone = shapes.into_iter().flatten().map(|ring| vec![ring]);
-    let parts = alone.chain(Some(rest).filter(|rest| !rest.is_empty()));
-    let part = |rings| {
+    let rest = Some(rest).filter(|rest| !rest.is_empty());
+    let rest = rest.map(|rings| {
         Mark::from(Area {
             rings,
             ..area.clone()
         })
-    };
-    Some(parts.map(part).collect())
+    });
+    Some(alone.into_iter().flatten().chain(rest).collect())
 }
 
-/// For each ring of an area the ring of the shape that it is, if it is alone.
-fn shapes_of(
-    rings: &[Path],
+/// A band in the colour of an area.
+fn filled(band: Band, area: &Area) -> Mark {
+    let stroke = Stroke {
+        path: band.line,
+        radius: 0.5 * band.width,
+        cap: Cap::Butt,
+        color: area.color,
+        opacity: area.opacity,
+    };
+    stroke.into()
+}
+
+/// For each ring of an area the shape or the line that it is, if it is alone.
+fn forms_of(
+    area: &Area,
     forms: Forms,
     has_bands: bool,
     is_seen: impl Fn(Point) -> bool,
-) -> Vec<Option<Path>> {
+) -> Vec<Option<Mark>> {
+    let rings = &area.rings;
     let is_alone = |i: usize| {
         let mut others = rings.iter().enumerate().filter(|&(k, _)| k != i);
         others.all(|(_, other)| are_apart(&rings[i], other))
     };
-    let shaped = |(i, ring): (usize, &Path)| {
-        let is_shape = Shape::of(ring).is_some();
-        let seen = || Shape::like_seen(ring, forms.tolerance_px, &is_seen).filter(|_| !is_shape);
+    let formed = |(i, ring): (usize, &Path)| {
+        let seen = || Shape::like_seen(ring, forms.tolerance_px.into(), &is_seen);
         // What other marks hide is bent by them.
         let shape = seen()
-            .or_else(|| like(ring, forms))
-            .map(|shape| shape.ring());
+            .filter(|_| ring.shape().is_none())
+            .or_else(|| like(ring, forms));
+        let shape = shape.map(|shape| {
+            let rings = vec![shape.path()];
+            Mark::from(Area {
+                rings,
+                ..area.clone()
+            })
+        });
         let band = || {
             let ring = std::slice::from_ref(ring);
-            let band = has_bands.then(|| Band::like(ring, forms.tolerance_px))??;
-            band.rings().pop()
+            let band = has_bands.then(|| Band::like(ring, forms.tolerance_px.into()))??;
+            Some(filled(band, area))
         };
         shape.or_else(band).filter(|_| is_alone(i))
     };
-    rings.iter().enumerate().map(shaped).collect()
+    rings.iter().enumerate().map(formed).collect()
 }
 
 /// True if neither of two rings lies in the other one. The rings of a traced area do not cross.
 fn are_apart(a: &Path, b: &Path) -> bool {
     let lies_in = |inner: &Path, outer: &Path| {
-        let start = inner.pieces().next().map(|piece| piece.start());
-        start.is_some_and(|p| is_inside(p, &outer.flattened(FLATNESS)))
+        let start = inner.segments().next().map(|first| first.start());
+        start.is_some_and(|p| kurbo::Shape::winding(&outer.bezier(), p) != 0)
     };
     !lies_in(a, b) && !lies_in(b, a)
 }
@@ -217,30 +239,17 @@ fn are_apart(a: &Path, b: &Path) -> bool {
 /// For each traced mark that is no shape, its lines that are nearly level or upright exactly so.
 fn straight(session: &Session<'_>, forms: Forms) -> Vec<Edit> {
     let straightened = |_: usize, mark: Mark| {
-        let is_shape = matches!(mark.paths(), [path] if Shape::of(path).is_some());
-        if is_shape {
+        if mark.shape().is_some() {
             return None;
         }
-        let leveled_band = |band: Band| {
-            Band {
-                line: leveled(&band.line, forms),
-                ..band
+        let mut new = mark.clone();
+        match &mut new {
+            Mark::Stroke(stroke) => stroke.path = leveled(&stroke.path, forms),
+            Mark::Area(area) => {
+                let rings = area.rings.iter_mut();
+                rings.for_each(|ring| *ring = leveled(ring, forms));
             }
-            .rings()
-        };
-        let new = match mark.clone() {
-            Mark::Stroke(mut stroke) => {
-                stroke.path = leveled(&stroke.path, forms);
-                Mark::from(stroke)
-            }
-            Mark::Area(mut area) => {
-                area.rings = match area.band() {
-                    Some(band) => leveled_band(band),
-                    None => area.rings.iter().map(|ring| leveled(ring, forms)).collect(),
-                };
-                Mark::from(area)
-            }
-        };
+        }
         (new != mark).then(|| vec![new])
     };
     traced(&session.drawing, straightened)
@@ -248,26 +257,31 @@ fn straight(session: &Session<'_>, forms: Forms) -> Vec<Edit> {
 
 /// The path with the ends of lines that are nearly level, or upright, at their mean height, or place across.
 fn leveled(path: &Path, forms: Forms) -> Path {
-    let mut points: Vec<PathPoint> = path.points().to_vec();
-    let count = points.len();
+    let before: Vec<[f64; 2]> = path.points().iter().map(|p| [p.at.x, p.at.y]).collect();
+    let (mut after, count) = (before.clone(), before.len());
+    let is_on = |i: usize| path.points()[i].is_on;
     for axis in 0..2 {
         for i in 0..count {
             let next = (i + 1) % count;
-            let [a, b] = [path.points()[i], path.points()[next]];
-            let (across, along) = (
-                (b.at[axis] - a.at[axis]).abs(),
-                (b.at[1 - axis] - a.at[1 - axis]).abs(),
-            );
-            let is_line = a.is_on && b.is_on && (path.is_closed() || next > 0);
-            if is_line && across <= forms.level_px && across <= forms.level_slope * along {
+            let across = (before[next][axis] - before[i][axis]).abs();
+            let along = (before[next][1 - axis] - before[i][1 - axis]).abs();
+            let is_line = is_on(i) && is_on(next) && (path.is_closed() || next > 0);
+            if is_line
+                && across <= forms.level_px.into()
+                && across <= f64::from(forms.level_slope) * along
+            {
                 // The line before may have moved its end; then that place holds.
-                let mean = 0.5 * (points[i].at[axis] + points[next].at[axis]);
-                let is_chain = i > 0 && points[i].at[axis] != path.points()[i].at[axis];
-                let at = if is_chain { points[i].at[axis] } else { mean };
-                points[i].at[axis] = at;
-                points[next].at[axis] = at;
+                let is_chain = i > 0 && after[i][axis] != before[i][axis];
+                let mean = 0.5 * (after[i][axis] + after[next][axis]);
+                let at = if is_chain { after[i][axis] } else { mean };
+                (after[i][axis], after[next][axis]) = (at, at);
             }
         }
     }
-    Path::new(points, path.is_closed()).unwrap_or_else(|_| path.clone())
+    let points = path.points().iter().zip(after);
+    let points = points.map(|(p, [x, y])| PathPoint {
+        at: Point::new(x, y),
+        ..*p
+    });
+    Path::of_points(points.collect(), path.is_closed())
 }

@@ -11,9 +11,9 @@ use crate::fit::drawing::Drawing;
 use crate::fit::recipe::Inks;
 use crate::fit::run::session::Session;
 use crate::image::Image;
-use crate::math::median;
+use crate::math::{Point, median};
 use crate::render::STYLE;
-use crate::scene::{Rgb, Stroke};
+use crate::scene::{Cap, Rgb, Stroke};
 use crate::trace;
 
 /// Gives thin traced lines on one colour the colours of the picture, with as much ink as before, and returns those. All
@@ -56,7 +56,7 @@ pub(super) fn ties(drawing: &Drawing, inks: &[Rgb]) -> Ties {
 
 /// The opaque stroke of as much ink in the colour that the picture has along its middle.
 fn inked(stroke: &Stroke, picture: &Image, inks: Inks) -> Option<Stroke> {
-    if stroke.radius > inks.thin {
+    if stroke.cap == Cap::Butt || stroke.radius as f32 > inks.thin {
         return None;
     }
     let (middle, sides) = seen_along(stroke, picture, inks.beside);
@@ -85,12 +85,12 @@ fn inked(stroke: &Stroke, picture: &Image, inks: Inks) -> Option<Stroke> {
     if share <= 0.0 || share >= inks.least_change {
         return None;
     }
-    let radius = stroke.radius * stroke.opacity / share;
+    let radius = stroke.radius as f32 * stroke.opacity / share;
     // A narrower line covers no pixel as a whole, and one of 1 px between two rows covers half of both.
     let is_halved = (share - 0.5).abs() < 0.04 && (radius - 1.0).abs() < 0.08;
     let is_told = radius >= inks.least_radius && radius <= inks.thin && !is_halved;
     is_told.then(|| Stroke {
-        radius,
+        radius: radius.into(),
         color,
         opacity: 1.0,
         ..stroke.clone()
@@ -100,9 +100,9 @@ fn inked(stroke: &Stroke, picture: &Image, inks: Inks) -> Option<Stroke> {
 /// The colours of a picture along the middle of a stroke, and `beside` px beside it on both sides.
 fn seen_along(stroke: &Stroke, picture: &Image, beside: f32) -> (Vec<Rgb>, Vec<Rgb>) {
     let (width, height) = (picture.width(), picture.height());
-    let at = |p: [f32; 2]| {
-        let [x, y] = p.map(|v| v.floor());
-        let is_inside = x >= 0.0 && y >= 0.0 && x < width as f32 && y < height as f32;
+    let at = |p: Point| {
+        let Point { x, y } = p.floor();
+        let is_inside = x >= 0.0 && y >= 0.0 && x < width as f64 && y < height as f64;
         is_inside.then(|| {
             let i = y as usize * width + x as usize;
             [0, 1, 2].map(|k| picture.planes()[k][i])
@@ -111,13 +111,13 @@ fn seen_along(stroke: &Stroke, picture: &Image, beside: f32) -> (Vec<Rgb>, Vec<R
     let (mut middle, mut sides) = (Vec::new(), Vec::new());
     for pair in stroke.path.flattened(0.1).windows(2) {
         let along = pair[1] - pair[0];
-        let length = along.norm();
-        let away = (stroke.radius + beside) / length.max(f32::MIN_POSITIVE);
+        let length = along.hypot();
+        let away = (stroke.radius + f64::from(beside)) / length.max(f64::MIN_POSITIVE);
         for step in 0..length.ceil() as usize {
-            let p = pair[0] + along * ((step as f32 + 0.5) / length.ceil());
-            middle.extend(at([p.x, p.y]));
+            let p = pair[0] + along * ((step as f64 + 0.5) / length.ceil());
+            middle.extend(at(p));
             for side in [away, -away] {
-                sides.extend(at([p.x - side * along.y, p.y + side * along.x]));
+                sides.extend(at(p + side * along.turn_90()));
             }
         }
     }
@@ -146,14 +146,15 @@ mod tests {
     }
 
     /// A level line in the middle of the picture, in the colour that the picture has there.
-    fn told(picture: &Image, radius: f32, level: f32, y: f32) -> Option<Stroke> {
-        let at = |x: f32| PathPoint {
-            at: crate::math::Point::new(x, y),
+    fn told(picture: &Image, radius: f64, level: f32, y: f64) -> Option<Stroke> {
+        let at = |x: f64| PathPoint {
+            at: Point::new(x, y),
             is_on: true,
         };
         let stroke = Stroke {
             path: Path::new(vec![at(2.0), at(30.0)], false).unwrap(),
             radius,
+            cap: Cap::Round,
             color: [level; 3],
             opacity: 1.0,
         };

@@ -9,7 +9,7 @@ use crate::fit::edits::{Change, Edit, apply_priced};
 use crate::fit::recipe::{Forms, Rates};
 use crate::fit::run::session::Session;
 use crate::render::StrokeRef;
-use crate::scene::Mark;
+use crate::scene::{Cap, Mark};
 use crate::svg::mark_bytes;
 
 /// The proposals for areas, and for strokes that were traced.
@@ -61,14 +61,14 @@ pub(super) fn adopt(session: &mut Session<'_>, forms: Forms, mut edits: Vec<Edit
 fn bytes(old: &Mark, new: &[Mark], forms: Forms, session: &Session<'_>) -> isize {
     let of = |mark: &Mark| mark_bytes(mark, &session.config.file) as isize;
     let worth = forms.worth_bytes as isize;
-    let bands = new.iter().filter(|mark| mark.band().is_some()).count() as isize;
+    let bands = new.iter().filter(|mark| mark.is_butt()).count() as isize;
     let saved = of(old) - new.iter().map(of).sum::<isize>();
     match old {
         // A stroke with square ends is no better to an editor than one with round ends.
-        Mark::Stroke(_) if bands > 0 => saved,
-        Mark::Stroke(_) => saved + worth,
+        Mark::Stroke(old) if bands > 0 && old.cap == Cap::Round => saved,
+        Mark::Stroke(_) if bands == 0 => saved + worth,
         // Of areas, the attributes of the ends and elements of their own are no loss, and buy no error either.
-        Mark::Area(_) => {
+        _ => {
             let saved = saved + worth;
             saved.max((saved + bands * (worth + ENDS_BYTES)).min(0))
         }

@@ -16,7 +16,7 @@ use crate::fit::drawing::Drawing;
 use crate::fit::recipe::Recipe;
 use crate::fit::run::session::Session;
 use crate::render::{StrokeRef, Strokes};
-use crate::scene::{Bundles, Precedence, Rgb, Written, color, quantum};
+use crate::scene::{Bundles, Mark, Precedence, Rgb, color, quantized_anywhere, quantum};
 
 /// Makes the strokes of each stage share pens if the file has the smallest form, unless they are lines. Strokes
 /// keep the colours of a palette.
@@ -175,8 +175,8 @@ fn bundles(strokes: &Strokes) -> Bundles {
     // Which strokes meet does not depend on the decimals.
     let written = strokes
         .iter()
-        .map(|stroke| Written::anywhere(&stroke.to_mark(), 2).ok());
-    let written: Vec<Option<Written>> = written.collect();
+        .map(|stroke| quantized_anywhere(&stroke.to_mark(), 2));
+    let written: Vec<Option<Mark>> = written.collect();
     Bundles::new(&Precedence::of_shapes(written.iter().map(Option::as_ref)))
 }
 

@@ -16,7 +16,7 @@ use crate::fit::recipe::Recoloring;
 use crate::fit::run::session::Session;
 use crate::metrics::psnr_db;
 use crate::render::StrokeRef;
-use crate::scene::{Precedence, Written, quantum};
+use crate::scene::{Mark, Precedence, quantized_anywhere, quantum};
 
 /// An 8-bit colour.
 type Color = [u8; 3];
@@ -67,7 +67,7 @@ fn order(drawing: &mut Drawing, coloring: Recoloring, precision: u8) -> Vec<Colo
     let shown = preferences(drawing, 0.0, coloring.min_shown);
     let strokes = drawing.free().iter().zip(&shown);
     let written = |(stroke, shown): (StrokeRef<'_>, &PreferredColor)| {
-        let written = Written::anywhere(&stroke.to_mark(), precision).ok()?;
+        let written = quantized_anywhere(&stroke.to_mark(), precision)?;
         Some((written, shown.weight))
     };
     stacked(
@@ -78,17 +78,19 @@ fn order(drawing: &mut Drawing, coloring: Recoloring, precision: u8) -> Vec<Colo
 
 /// The colours of strokes, each with the pixels in which it shows, in an order that agrees with that of the strokes as far
 /// as possible: again and again, the colour comes next whose strokes lie below the remaining colours rather than above.
-fn stacked(strokes: &[(Written, f32)], window: usize) -> Vec<Color> {
+fn stacked(strokes: &[(Mark, f32)], window: usize) -> Vec<Color> {
+    let color = |mark: &Mark| mark.color().map(quantum);
     let mut below: BTreeMap<(Color, Color), f32> = BTreeMap::new();
     for window in strokes.chunks(window) {
         let precedence = Precedence::of(window.iter().map(|(stroke, _)| stroke));
         for (i, (lower, weight)) in window.iter().enumerate() {
             for (upper, other) in precedence.above(i).iter().map(|&k| &window[k]) {
-                *below.entry((lower.color, upper.color)).or_default() += weight.min(*other);
+                let pair = (color(lower), color(upper));
+                *below.entry(pair).or_default() += weight.min(*other);
             }
         }
     }
-    let mut left: Vec<Color> = strokes.iter().map(|(stroke, _)| stroke.color).collect();
+    let mut left: Vec<Color> = strokes.iter().map(|(stroke, _)| color(stroke)).collect();
     left.sort_unstable();
     left.dedup();
     let mut order = Vec::with_capacity(left.len());
@@ -111,17 +113,18 @@ fn stacked(strokes: &[(Written, f32)], window: usize) -> Vec<Color> {
 mod tests {
     use super::*;
     use crate::math::Point;
-    use crate::scene::{Path, Stroke};
+    use crate::scene::{Cap, Path, Stroke};
 
     /// Vertical strokes at `x`, of grey `level`.
-    fn stroke(x: f32, level: f32) -> (Written, f32) {
+    fn stroke(x: f64, level: f32) -> (Mark, f32) {
         let stroke = Stroke {
             path: Path::line(Point::new(x, 10.0), Point::new(x, 50.0)),
             radius: 4.0,
+            cap: Cap::Round,
             color: [level; 3],
             opacity: 1.0,
         };
-        (Written::anywhere(&stroke.into(), 2).unwrap(), 100.0)
+        (quantized_anywhere(&stroke.into(), 2).unwrap(), 100.0)
     }
 
     #[test]
