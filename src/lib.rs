@@ -128,6 +128,7 @@
 //! | jitter | differentiating strokes a little beside their places, so that a drawing depends less on antialiasing |
 //! | relocation | moving the strokes of least worth to where candidates gain more, during the polish |
 //! | survey | how the squared error depends on the vertices of all strokes, so that the gain of a new point is known |
+//! | edit | marks or points in the place of others, with the squared error that it is foreseen to remove and the price of the bytes that it saves; it is made if it pays as rendered |
 //! | join | making one stroke of two that look alike and meet end to end |
 //! | restrict | to give strokes the colours and widths that the file may have |
 //! | settle | last steps against resvg's renders of the written file |

@@ -432,8 +432,6 @@ pub struct Sharing {
     /// Growth of the squared error that is allowed to each of three steps (opaque strokes, few widths, few colours), in units of
     /// that of the drawing, before the drawing is settled. A guess, as are the other numbers.
     pub error: f64,
-    /// Most times that a step is made shorter because it added too much error.
-    pub trials: i32,
     /// Most strokes that are compared for their colours; drawings of more are not of a few pens.
     pub most: usize,
     /// The least opacity of a stroke that may become opaque. Less is meant to let through what is behind.

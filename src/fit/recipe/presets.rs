@@ -239,7 +239,6 @@ const BALANCED: Recipe = Recipe {
     },
     sharing: Sharing {
         error: 0.1,
-        trials: 5,
         most: 600,
         nearly_opaque: 0.8,
         off_page: 0.1,
