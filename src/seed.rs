@@ -23,22 +23,17 @@ const MIN_RADIUS: f32 = 0.52;
 /// The picture is halved until the scale is at most this, px: the largest shape, 4.5 + 2 scales long, has to fit the
 /// 32 px of a patch.
 const SCALE_LIMIT: f32 = 4.0;
-
-/// The tuned numbers of seeding.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Probing {
-    /// Radii of the probed shapes, in units of the scale.
-    pub radii: [f32; 3],
-    /// Lengths of the probed capsules, in units of the scale, at most 4.5, so that they fit a patch. A third one of
-    /// 7.5, in a larger patch: −0.01 dB.
-    pub lengths: [f32; 2],
-    /// Cells per stroke wanted; the best candidates are kept. 1, 2, 4: −0.49, 0, +0.09 dB. More is worse, since all
-    /// candidates are in the same few spots. Drafts 1.5: −0.18.
-    pub cells: f32,
-    /// Share of the cells that are probed, those with the largest residual. The others hardly ever give a candidate
-    /// that is kept: with all of them a draft gains 0.01 dB and takes 3 % longer.
-    pub probed: f32,
-}
+/// Radii of the probed shapes, in units of the scale. A guess.
+const RADII: [f32; 3] = [0.3, 0.55, 1.0];
+/// Lengths of the probed capsules, in units of the scale, at most 4.5, so that they fit a patch. A third one of 7.5, in a larger
+/// patch: −0.01 dB.
+const LENGTHS: [f32; 2] = [2.0, 4.5];
+/// Cells per stroke wanted; the best candidates are kept. 1, 2, 4: −0.49, 0, +0.09 dB. More is worse, since all candidates are in the
+/// same few spots. Drafts 1.5: −0.18.
+const CELLS: f32 = 2.5;
+/// Share of the cells that are probed, those with the largest residual. The others hardly ever give a candidate that is kept: with all
+/// of them a draft gains 0.01 dB and takes 3 % longer.
+const PROBED: f32 = 0.6;
 
 /// Task of a search.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,8 +42,6 @@ pub struct Wanted {
     pub count: usize,
     /// Their typical radius, px.
     pub scale: f32,
-    /// The tuned numbers of the search.
-    pub probing: Probing,
     /// Least opacity of a candidate; 1 for opaque drawings.
     pub min_opacity: f32,
     /// The pyramid level of the canvas; all lengths are in its px.
@@ -131,19 +124,19 @@ pub fn propose(level: Level, residuals: &[Residual<'_>], wanted: Wanted) -> Vec<
         .collect();
     let reduction = (1 << halvings) as f32;
     let scale = (wanted.scale / reduction).min(SCALE_LIMIT);
-    let radii = wanted.probing.radii.map(|r| (r * scale).max(MIN_RADIUS));
-    let probes = Probes::new(level, &radii, &wanted.probing.lengths.map(|l| l * scale));
+    let radii = RADII.map(|r| (r * scale).max(MIN_RADIUS));
+    let probes = Probes::new(level, &radii, &LENGTHS.map(|l| l * scale));
     // The cells with the largest residual.
     let energy = smoothed_energy(&residuals, (scale / 2.0).round() as usize);
     let cells = Cells::new(
         &residuals[0].canvas,
-        wanted.count as f32 * wanted.probing.cells,
+        wanted.count as f32 * CELLS,
         wanted.key,
     );
     let gain_scale = reduction * reduction / residuals.len() as f32;
     let patches = || -> Vec<_> { residuals.iter().map(|_| Patch::new()).collect() };
     let mut candidates: Vec<Candidate> = cells
-        .peaks(&energy, wanted.probing.probed)
+        .peaks(&energy, PROBED)
         .into_par_iter()
         .map_init(patches, |patches, (x, y)| {
             for (patch, residual) in patches.iter_mut().zip(&residuals) {
@@ -422,12 +415,6 @@ mod tests {
         let wanted = Wanted {
             count: 1,
             scale: 4.0,
-            probing: Probing {
-                radii: [0.3, 0.55, 1.0],
-                lengths: [2.0, 4.5],
-                cells: 4.0,
-                probed: 0.6,
-            },
             min_opacity: 1.0,
             level: 0,
             key: [0, 0],

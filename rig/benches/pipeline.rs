@@ -19,7 +19,7 @@ use criterion::{BatchSize, BenchmarkGroup, BenchmarkId, Criterion, Throughput};
 
 use rig::bench::measure::go_to_root;
 use strokefit::coverage::Coverage;
-use strokefit::fit::{Budget, Config, Fitter, Objective, Preset, Recipe, Simd};
+use strokefit::fit::{Budget, Config, Fitter, Objective, Simd};
 use strokefit::image::{Image, Limits};
 use strokefit::loss::Loss;
 use strokefit::metrics;
@@ -112,7 +112,6 @@ fn seed(criterion: &mut Criterion, image: &Image) {
             count,
             // Typical radius when `count` strokes share the picture.
             scale: 0.4 * (pixels(image) as f32 / count as f32).sqrt(),
-            probing: Recipe::of(Preset::Balanced).probing,
             min_opacity: 0.1,
             level: 0,
             key: [0, 0],

@@ -6,7 +6,7 @@ use std::time::Duration;
 use serde::Deserialize;
 
 use super::domain::{self, SECONDS, allowed, within};
-use super::recipe::{Preset, Recipe, SCREEN_PIXELS};
+use super::recipe::{Preset, Recipe};
 use super::simd::Simd;
 use super::widths::Widths;
 use crate::coverage::CoverageSchedule;
@@ -97,7 +97,8 @@ pub struct Config {
     #[serde(flatten)]
     #[cfg_attr(feature = "cli", command(flatten))]
     pub file: WriteOptions,
-    /// The tuned numbers; [`Recipe::of`] the preset if `None`.
+    /// Numbers other than those of the preset, for tests.
+    #[doc(hidden)]
     #[serde(skip)]
     #[cfg_attr(feature = "cli", arg(skip))]
     pub recipe: Option<Recipe>,
@@ -220,6 +221,9 @@ pub struct Execution {
     #[cfg_attr(feature = "cli", arg(long, value_name = "LEVEL", default_value_t))]
     pub simd: Simd,
 }
+
+/// Pixels of a picture that a screen shows well at once, 768×512: the default quality is for so many.
+pub const SCREEN_PIXELS: usize = 768 * 512;
 
 /// The quality of a drawing without a budget, dB, unless the picture is large.
 pub const DEFAULT_QUALITY: f64 = 30.0;
@@ -356,8 +360,7 @@ impl Config {
                 "pens draw strokes, not areas: leave out pens, or ask for marks of strokes";
             return Err(Error::new(ErrorKind::Config, message));
         }
-        self.check_colors()?;
-        self.recipe().check()
+        self.check_colors()
     }
 
     /// Refuses an option that is out of its range. The message begins with its name.

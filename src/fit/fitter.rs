@@ -44,6 +44,8 @@ pub struct Fitter<'a> {
     pub(super) page: Option<[u32; 2]>,
     /// Distance of the picture from what it means, as far as can be told, RMS in levels of 8 bits.
     pub(super) doubt: f32,
+    /// Most marks of a drawing that areas are split in, if few are wanted.
+    pub(super) most_marks: Option<usize>,
 }
 
 impl<'a> Fitter<'a> {
@@ -61,6 +63,7 @@ impl<'a> Fitter<'a> {
             grace: Duration::ZERO,
             page: None,
             doubt: 0.0,
+            most_marks: None,
         }
     }
 

@@ -51,7 +51,7 @@ pub use budget::memory::predicted_rss_bytes;
 pub(crate) use budget::memory::rss_bytes_of;
 pub use config::{
     Background, Budget, Colors, Config, DEFAULT_QUALITY, DEFAULT_STROKES, ErrorWeighting,
-    Execution, MAX_STROKES, MAX_THREADS, PIXELS_PER_STROKE,
+    Execution, MAX_STROKES, MAX_THREADS, PIXELS_PER_STROKE, SCREEN_PIXELS,
 };
 pub use descent::anneal::final_softness;
 pub use domain::seconds;
@@ -59,10 +59,11 @@ pub use drawing::focus::Focus;
 pub use drawing::objective::Objective;
 pub use fitter::Fitter;
 pub use options::{OPTIONS, Options};
+pub use recipe::Preset;
+#[doc(hidden)]
 pub use recipe::{
-    AdamSettings, Correction, Domain, Doubts, EdgeShape, Forms, Inks, Joins, Masking, Pens, Points,
-    Polish, Preset, Rates, Recipe, Recoloring, Recovery, Reduction, Relocation, Rounds,
-    SCREEN_PIXELS, Sharing, Stages, TimeShares,
+    Correction, Dense, Forms, Inks, Joins, Pens, Points, Polish, Rates, Recipe, Recoloring,
+    Relocation, Rounds, Sharing, Stages,
 };
 pub use result::{Fit, StageRecord, Stop};
 pub use run::checkpoint::Checkpoint;
@@ -149,11 +150,7 @@ impl Fitter<'_> {
         }
         let by_strokes = self.by_strokes_alone();
         let competes = competes || by_strokes.is_some();
-        let price = Price::of(
-            &self.config,
-            &self.recipe(),
-            picture.width() * picture.height(),
-        );
+        let price = Price::of(&self.config, self.doubt, picture.width() * picture.height());
         let mut drawn = self.draw(picture, since, trials.last(), competes)?;
         let stop = drawn.fit.stop;
         if let Some(rival) = by_strokes
@@ -216,11 +213,6 @@ impl Fitter<'_> {
         }
     }
 
-    /// The recipe for the picture, which may be in doubt.
-    fn recipe(&self) -> Recipe {
-        self.config.recipe().in_doubt(self.doubt)
-    }
-
     /// Draws `picture` once, by a configuration that was checked. A drawing that `competes` with others has a file to be
     /// compared by.
     fn draw(
@@ -230,7 +222,12 @@ impl Fitter<'_> {
         observer: &mut (dyn Observer + Send),
         competes: bool,
     ) -> Result<Drawn> {
-        self.config.recipe = Some(self.recipe());
+        let recipe = Recipe {
+            doubt: self.doubt,
+            most_marks: self.most_marks.unwrap_or(usize::MAX),
+            ..self.config.recipe()
+        };
+        self.config.recipe = Some(recipe);
         let (config, base, focus, page) = (&self.config, self.base.as_ref(), self.focus, self.page);
         let level = self.execution.simd.require()?;
         let (token, checkpoint, grace) = (self.token, self.checkpoint, self.grace);

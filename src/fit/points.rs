@@ -204,7 +204,7 @@ pub(super) fn bytes_left(session: &Session<'_>) -> Option<f32> {
 fn room(session: &Session<'_>) -> usize {
     let (config, strokes) = (session.config, session.drawing.free());
     let pixels = session.target.width() * session.target.height();
-    let most = budget::points(config, &session.recipe.points, strokes.len(), pixels);
+    let most = budget::points(config, strokes.len(), pixels);
     let by_strokes = most.map_or(usize::MAX, |most| most.saturating_sub(strokes.points()));
     let by_bytes = bytes_left(session).map_or(usize::MAX, |left| {
         (left.max(0.0) / session.price.point_bytes() as f32) as usize

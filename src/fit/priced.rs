@@ -4,7 +4,7 @@
 //! and have a shadow. What pays for its bytes at a quality is whole. So such drawings compete, each by itself: at the
 //! highest quality that keeps the budget, and at the next one, shortened to the budget.
 
-use super::budget::rivals;
+use super::budget::{reduction, rivals};
 use super::config::{Budget, Config, DEFAULT_QUALITY};
 use super::fitter::Fitter;
 use super::run::finish::Drawn;
@@ -68,10 +68,10 @@ impl Fitter<'_> {
         };
         let drawn = self.priced(usual, picture, since, trials)?;
         // A photograph of a dark sky has much of one colour, too, but needs many strokes for the rest. Of a few, each counts.
-        let most = self.config.recipe().rivals;
+        let most = rivals::FEW;
         let allowed = self.config.budget.strokes.unwrap_or(usize::MAX);
         let is_short = drawn.strokes().min(allowed) <= most;
-        let is_flat = drawn.has_areas() || is_short && rivals::is_flat(&self.config, picture);
+        let is_flat = drawn.has_areas() || is_short && reduction::is_flat(picture);
         search.take(drawn, search.high);
         // A photograph is drawn as well by what gains most.
         if !is_flat || trials.are_stopped() {
@@ -109,17 +109,13 @@ impl Fitter<'_> {
         since: Instant,
         trials: &mut Trials<'_>,
     ) -> Result<Drawn> {
-        let mut recipe = self.config.recipe();
-        // Whole, a drawing is worth more than one whose shapes are elements of their own.
-        if let Some(strokes) = self.config.budget.strokes {
-            recipe.forms.most_marks = strokes;
-        }
-        let rival = self.rival(Config {
+        let mut rival = self.rival(Config {
             budget: Budget::default(),
-            recipe: Some(recipe),
             quality,
             ..self.config.clone()
         });
+        // Whole, a drawing is worth more than one whose shapes are elements of their own.
+        rival.most_marks = self.config.budget.strokes;
         let drawn = rival.draw(picture, since, trials.next(), true)?;
         Ok(drawn.for_budget(self.config.budget))
     }

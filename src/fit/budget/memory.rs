@@ -1,7 +1,7 @@
 //! A prediction of the memory that a fit takes.
 
 use crate::fit::budget::plan::{Before, Plan};
-use crate::fit::budget::{reduction, rivals};
+use crate::fit::budget::reduction;
 use crate::fit::config::{Background, Config, MAX_STROKES};
 use crate::image::Image;
 use crate::render::TILE;
@@ -49,7 +49,7 @@ fn size(picture: &Image) -> [usize; 2] {
 fn per_pixel(picture: &Image, config: &Config) -> u64 {
     if picture.alpha().is_some() && !matches!(config.background, Background::Color(_)) {
         PER_TRANSPARENT_PIXEL
-    } else if rivals::is_flat(config, picture) {
+    } else if reduction::is_flat(picture) {
         PER_FLAT_PIXEL
     } else {
         PER_PIXEL

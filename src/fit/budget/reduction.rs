@@ -6,25 +6,48 @@
 
 use rayon::prelude::*;
 
-use crate::fit::config::{Budget, Config};
-use crate::fit::recipe::Reduction;
+use crate::fit::config::{Budget, Config, SCREEN_PIXELS};
 use crate::image::Image;
 use crate::metrics::{self, psnr_db};
+
+// `docs/accuracy.md` has what was measured.
+/// Pixels that a drawing of as many strokes as pay needs: twice the pixels of the screen that it is made for.
+const ENOUGH_PIXELS: usize = 2 * SCREEN_PIXELS;
+/// Fewest pixels that a picture is reduced to, however little detail it has: the price of strokes is that of a screen.
+const LEAST_PIXELS: usize = SCREEN_PIXELS;
+/// Pixels that a stroke needs, where their number is given: a dozen for each of its points, and more for their places.
+const PIXELS_PER_STROKE: usize = 200;
+/// Bytes of a stroke, about.
+const BYTES_PER_STROKE: usize = 70;
+/// Fidelity of a picture that was halved and enlarged again, dB, from which on its half is as good. Strokes end far below.
+const SAME_DB: f64 = 44.0;
+/// Such a fidelity of lines and sharp edges, whose places half as many pixels tell as well.
+const NEARLY_SAME_DB: f64 = 36.0;
+/// Share of pixels whose neighbours have their colour: flat art and drawings of lines have more, photographs mostly less.
+const FLAT_SHARE: f64 = 0.6;
+/// Largest difference of neighbours of one colour.
+const ONE_COLOR: f32 = 4.0 / 255.0;
+/// Largest share of the detail within 9 px that is finer than 2 px in a picture that was enlarged twice: such ones have 0.07 to 0.09,
+/// others 0.16 and more.
+const SOFT: f64 = 0.12;
+/// Smaller pictures, px, are not reduced because they are soft. A guess.
+const LEAST_SOFT_SIDE: usize = 200;
+/// A reduction by less than this along each side is not worth it.
+const LEAST_FACTOR: f64 = 1.4;
 
 /// Width and height to which `picture` is reduced before it is drawn by `config`; `None` if all of its pixels count.
 pub(in crate::fit) fn size(picture: &Image, config: &Config) -> Option<[usize; 2]> {
     let all = pixels(picture);
-    let recipe = config.recipe().reduction;
-    let counted = counted(config, &recipe);
-    let enough = counted.max(recipe.enough_pixels);
+    let counted = counted(config);
+    let enough = counted.max(ENOUGH_PIXELS);
     // Pens given in px are those of the picture.
     if config.pens.is_some() {
         return None;
     }
-    if is_soft(picture, config, &recipe) && all / 4 >= counted {
+    if is_soft(picture, config) && all / 4 >= counted {
         return Some([picture.width().div_ceil(2), picture.height().div_ceil(2)]);
     }
-    if all as f64 <= enough as f64 * recipe.least_factor * recipe.least_factor {
+    if all as f64 <= enough as f64 * LEAST_FACTOR * LEAST_FACTOR {
         return None;
     }
     let mut factor = 1.0;
@@ -33,9 +56,9 @@ pub(in crate::fit) fn size(picture: &Image, config: &Config) -> Option<[usize; 2
         let now = reduced.as_ref().unwrap_or(picture);
         let half = now.reduced(now.width().div_ceil(2), now.height().div_ceil(2));
         let loss_db = psnr_db(mse_enlarged(&half, now));
-        if is_same(loss_db, config, &recipe) && pixels(&half) >= counted.max(recipe.least_pixels) {
+        if is_same(loss_db, config) && pixels(&half) >= counted.max(LEAST_PIXELS) {
             factor *= 2.0;
-        } else if pixels(now) > enough && shows_no_more(loss_db, now, config, &recipe) {
+        } else if pixels(now) > enough && shows_no_more(loss_db, now, config) {
             factor = f64::min(2.0 * factor, (all as f64 / enough as f64).sqrt());
         } else {
             break;
@@ -43,7 +66,7 @@ pub(in crate::fit) fn size(picture: &Image, config: &Config) -> Option<[usize; 2
         reduced = Some(half);
     }
     let side = |px: usize| ((px as f64 / factor).round() as usize).max(1);
-    (factor >= recipe.least_factor).then(|| [side(picture.width()), side(picture.height())])
+    (factor >= LEAST_FACTOR).then(|| [side(picture.width()), side(picture.height())])
 }
 
 fn pixels(picture: &Image) -> usize {
@@ -51,38 +74,40 @@ fn pixels(picture: &Image) -> usize {
 }
 
 /// Pixels that the strokes need that `config` counts; 0 if it counts none.
-fn counted(config: &Config, recipe: &Reduction) -> usize {
+fn counted(config: &Config) -> usize {
     let Budget { strokes, bytes, .. } = config.budget;
-    let by_bytes = bytes.map(|bytes| bytes / recipe.bytes_per_stroke);
+    let by_bytes = bytes.map(|bytes| bytes / BYTES_PER_STROKE);
     let strokes = strokes.into_iter().chain(by_bytes).min();
-    strokes.map_or(0, |count| count.saturating_mul(recipe.pixels_per_stroke))
+    strokes.map_or(0, |count| count.saturating_mul(PIXELS_PER_STROKE))
 }
 
 /// True if a picture has no detail that its half lacks, from which it can be enlarged again to `loss_db`.
-fn is_same(loss_db: f64, config: &Config, recipe: &Reduction) -> bool {
-    loss_db
-        >= recipe
-            .same_db
-            .max(config.budget.psnr_db.unwrap_or(0.0) + 10.0)
+fn is_same(loss_db: f64, config: &Config) -> bool {
+    loss_db >= SAME_DB.max(config.budget.psnr_db.unwrap_or(0.0) + 10.0)
 }
 
 /// True if strokes show no more of `picture` than of its half, from which it can be enlarged again to `loss_db`.
-fn shows_no_more(loss_db: f64, picture: &Image, config: &Config, recipe: &Reduction) -> bool {
+fn shows_no_more(loss_db: f64, picture: &Image, config: &Config) -> bool {
     // A fidelity, or a quality of its own, is asked for of all that is in the picture.
     let is_for_screen = config.budget.psnr_db.is_none() && config.quality.is_none();
-    let is_photograph = || flat_share(picture, recipe.one_color) < recipe.flat_share;
-    is_for_screen && (loss_db >= recipe.nearly_same_db || is_photograph())
+    let is_photograph = || !is_flat(picture);
+    is_for_screen && (loss_db >= NEARLY_SAME_DB || is_photograph())
 }
 
 /// True if a picture of few pixels is soft, as one that was enlarged is, so that its half has all of its detail.
-fn is_soft(picture: &Image, config: &Config, recipe: &Reduction) -> bool {
+fn is_soft(picture: &Image, config: &Config) -> bool {
     // A larger one is reduced to the pixels of a screen, and no further.
-    let is_small = pixels(picture) <= recipe.enough_pixels;
+    let is_small = pixels(picture) <= ENOUGH_PIXELS;
     let least = picture.width().min(picture.height());
     is_small
         && config.budget.psnr_db.is_none()
-        && least >= recipe.least_soft_side
-        && metrics::fine_share(picture).is_some_and(|share| share < recipe.soft)
+        && least >= LEAST_SOFT_SIDE
+        && metrics::fine_share(picture).is_some_and(|share| share < SOFT)
+}
+
+/// True if `picture` is flat art or a drawing of lines.
+pub(in crate::fit) fn is_flat(picture: &Image) -> bool {
+    flat_share(picture) >= FLAT_SHARE
 }
 
 /// The mean squared error of `half`, enlarged linearly, against `picture`.
@@ -126,11 +151,11 @@ fn mse_enlarged(half: &Image, picture: &Image) -> f64 {
 }
 
 /// Share of the pixels that have the colour of the pixels to the right and below.
-pub(super) fn flat_share(picture: &Image, one_color: f32) -> f64 {
+fn flat_share(picture: &Image) -> f64 {
     let width = picture.width();
     let count = pixels(picture);
     let is_flat = |&i: &usize| {
-        let is_near = |plane: &Vec<f32>, k: usize| (plane[i] - plane[k]).abs() <= one_color;
+        let is_near = |plane: &Vec<f32>, k: usize| (plane[i] - plane[k]).abs() <= ONE_COLOR;
         let others = [i + 1, i + width].map(|k| k.min(count - 1));
         picture
             .planes()

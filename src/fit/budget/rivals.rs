@@ -9,12 +9,15 @@
 
 use std::time::Duration;
 
-use super::reduction::flat_share;
 use crate::fit::budget;
+use crate::fit::budget::reduction::is_flat;
 use crate::fit::config::{Budget, Config};
 use crate::fit::recipe::Preset;
 use crate::image::Image;
 use crate::scene::Marks;
+
+/// Most strokes of a drawing that competes with those of shorter presets. A guess.
+pub(in crate::fit) const FEW: usize = 64;
 
 /// The configurations of the drawings that a drawing of `picture` by `config` competes with.
 pub(in crate::fit) fn of(config: &Config, picture: &Image) -> Vec<Config> {
@@ -25,10 +28,9 @@ pub(in crate::fit) fn of(config: &Config, picture: &Image) -> Vec<Config> {
         ..
     } = config.budget;
     // A search for a fidelity tries several numbers of strokes anyway.
-    let is_alone = psnr_db.is_some() || time.is_some() || config.recipe.is_some();
-    let recipe = config.recipe();
-    let planned = budget::strokes(config, &recipe, None, picture);
-    if is_alone || planned.is_none_or(|strokes| strokes > recipe.rivals) {
+    let is_alone = psnr_db.is_some() || time.is_some();
+    let planned = budget::strokes(config, None, picture);
+    if is_alone || planned.is_none_or(|strokes| strokes > FEW) {
         return Vec::new();
     }
     let with = |preset, seed| Config {
@@ -60,21 +62,14 @@ pub(in crate::fit) fn has_priced(config: &Config, picture: &Image) -> bool {
         time,
     } = config.budget;
     let is_counted = strokes.is_some() || bytes.is_some();
-    let is_alone = psnr_db.is_some() || time.is_some() || config.recipe.is_some();
+    let is_alone = psnr_db.is_some() || time.is_some();
     if !is_counted || is_alone || config.preset == Preset::Draft {
         return false;
     }
-    let recipe = config.recipe();
-    let planned = budget::strokes(config, &recipe, None, picture);
+    let planned = budget::strokes(config, None, picture);
     let may_trace = config.allows_points() && !config.pens_draw_lines();
     let by_areas = may_trace && config.marks != Marks::Strokes;
-    planned.is_some_and(|strokes| strokes <= recipe.rivals) || by_areas && is_flat(config, picture)
-}
-
-/// True if `picture` is flat art or a drawing of lines.
-pub(in crate::fit) fn is_flat(config: &Config, picture: &Image) -> bool {
-    let reduction = config.recipe().reduction;
-    flat_share(picture, reduction.one_color) >= reduction.flat_share
+    planned.is_some_and(|strokes| strokes <= FEW) || by_areas && is_flat(picture)
 }
 
 /// The configuration of the drawing by strokes alone that one with areas may have to compete with.

@@ -1,12 +1,19 @@
 //! The domains of a stroke's parameters, at the resolution of a drawing.
 
-use crate::fit::recipe::Domain;
 use crate::render::{Grid, StrokeMut};
+
+/// Ends stay within this many px around the picture. Half, twice: +0.03, +0.08 dB.
+const MARGIN: f32 = 8.0;
+/// Least radius, px. Renderers draw widths of 1 px and less as hairlines, by another method.
+pub(in crate::fit) const MIN_RADIUS: f32 = 0.51;
 
 /// The domains of a stroke's parameters, to which each step of descent is clamped.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::fit) struct Bounds {
-    domain: Domain,
+    /// Farthest that ends are outside of the picture, px.
+    margin: f32,
+    /// The least opacity.
+    pub(in crate::fit) min_opacity: f32,
     /// Sides of the picture, px.
     sides: [f32; 2],
     /// The radii of the thinnest and the widest pen, px of the picture, if pens are given.
@@ -16,20 +23,17 @@ pub(in crate::fit) struct Bounds {
 }
 
 impl Bounds {
-    /// The bounds for a picture of `grid`'s size, which is `halvings` times halved; `opaque` fixes the opacity at 1. If there
-    /// are `radii` of pens, px of the picture, they bound all radii.
+    /// The bounds for a picture of `grid`'s size, which is `halvings` times halved; ends of strokes that are
+    /// confined stay in the picture. If there are `radii` of pens, px of the picture, they bound all radii.
     pub(in crate::fit) fn new(
         (grid, halvings): (Grid, usize),
-        domain: Domain,
-        opaque: bool,
+        is_confined: bool,
+        min_opacity: f32,
         radii: &[f32],
     ) -> Self {
-        let min_opacity = if opaque { 1.0 } else { domain.min_opacity };
         Self {
-            domain: Domain {
-                min_opacity,
-                ..domain
-            },
+            margin: if is_confined { 0.0 } else { MARGIN },
+            min_opacity,
             sides: [grid.width as f32, grid.height as f32],
             pens: radii.first().zip(radii.last()).map(|(a, b)| [*a, *b]),
             halvings,
@@ -45,10 +49,6 @@ impl Bounds {
         }
     }
 
-    pub(in crate::fit) fn min_opacity(&self) -> f32 {
-        self.domain.min_opacity
-    }
-
     /// The radius nearest to `scale`, px of the picture, that pens can draw; `scale` if none are given.
     pub(in crate::fit) fn drawable(&self, scale: f32) -> f32 {
         self.pens
@@ -58,9 +58,7 @@ impl Bounds {
     /// The least and the largest radius at the current resolution.
     fn radii(&self) -> [f32; 2] {
         let [width, height] = self.sides;
-        // A recipe may ask for strokes that are wider than a small picture.
-        let least = self.domain.min_radius;
-        let any = [least, width.max(height).max(least)];
+        let any = [MIN_RADIUS, width.max(height).max(MIN_RADIUS)];
         self.pens.map_or(any, |pens| {
             pens.map(|r| r / (1_u32 << self.halvings) as f32)
         })
@@ -68,7 +66,7 @@ impl Bounds {
 
     /// Clamps a stroke or an area to its domain. NaN stays; such a stroke is dropped later.
     pub(in crate::fit) fn apply(&self, stroke: StrokeMut<'_>) {
-        let margin = self.domain.margin;
+        let margin = self.margin;
         let [width, height] = self.sides;
         for end in stroke.points {
             end[0] = end[0].clamp(-margin, width + margin);
@@ -82,6 +80,6 @@ impl Bounds {
         for color in color {
             *color = color.clamp(0.0, 1.0);
         }
-        *opacity = opacity.clamp(self.domain.min_opacity, 1.0);
+        *opacity = opacity.clamp(self.min_opacity, 1.0);
     }
 }

@@ -2,13 +2,14 @@
 
 use crate::error::Result;
 use crate::fit::config::{Colors, Config};
+use crate::fit::descent::jitter::Jitter;
 use crate::fit::descent::{Course, Joint};
 use crate::fit::drawing::Drawing;
 use crate::fit::order::Purpose;
 use crate::fit::phase::descend::descend;
 use crate::fit::points;
-use crate::fit::recipe::{Polish, Recipe};
-use crate::fit::run::session::Session;
+use crate::fit::recipe::{Polish, Recipe, SPARSE};
+use crate::fit::run::session::{RECOVERY_SHARE, Session};
 use crate::svg::{Form, Group};
 
 /// Fits all strokes of the drawing jointly.
@@ -41,7 +42,7 @@ pub(in crate::fit) fn polish(session: &mut Session<'_>, purpose: Purpose) -> Res
         polish.iterations = (polish.iterations as f64 * share) as usize;
     }
     if purpose == Purpose::Recover {
-        let share = session.recipe.recovery.polish_share;
+        let share = RECOVERY_SHARE;
         polish.iterations = (polish.iterations as f64 * share) as usize;
     }
     if session.drawing.free().has_areas() {
@@ -53,7 +54,7 @@ pub(in crate::fit) fn polish(session: &mut Session<'_>, purpose: Purpose) -> Res
 /// The polish for as many points as the drawing has, where a fidelity is asked for: it is known only now.
 fn of_density(drawing: &Drawing, recipe: &Recipe) -> Polish {
     let density = drawing.pixels() as f32 / drawing.free().points().max(1) as f32;
-    recipe.for_density(density.min(recipe.polish.sparse)).polish
+    recipe.for_density(density.min(SPARSE)).polish
 }
 
 /// Fits the free strokes jointly, and may add strokes until the drawing has `limit`.
@@ -71,7 +72,7 @@ pub(super) fn run(session: &mut Session<'_>, limit: usize, polish: Polish) -> Re
         until: Shares::of(session.config, &recipe).polish,
         joint: Some(Joint {
             limit,
-            jitter: polish.jitter,
+            jitter: Jitter { px: polish.jitter },
         }),
     };
     let mut descent = session.descent(course);

@@ -16,6 +16,13 @@ use crate::metrics::Details;
 use crate::render::Canvas;
 use crate::scene::Marks;
 
+/// Least contrast of what is recovered. What people see begins here, too: see `details_kept`.
+const CONTRAST: f32 = 10.0 / 255.0;
+/// By how much that contrast has to be larger, levels per level of doubt.
+const CONTRAST_OF_DOUBT: f32 = 8.0;
+/// Rows and columns beside details that are traced, and weighed, too. A guess.
+const REACH: usize = 4;
+
 /// Seeds a stage of strokes along the details that the polished drawing has lost.
 pub(in crate::fit) fn recover(session: &mut Session<'_>) -> Result<Outcome> {
     let [traced, _] = session.history.traced;
@@ -55,11 +62,12 @@ pub(in crate::fit) fn recover(session: &mut Session<'_>) -> Result<Outcome> {
 
 /// The pixels in and near lost details, on any matte.
 fn lost(session: &Session<'_>, drawn: &[Image]) -> Vec<bool> {
-    let (drawing, recovery) = (&session.drawing, session.recipe.recovery);
+    let drawing = &session.drawing;
+    let contrast = CONTRAST + CONTRAST_OF_DOUBT * session.recipe.doubt / 255.0;
     let mut lost = vec![false; drawing.pixels()];
     for (surface, drawn) in drawing.surfaces.iter().zip(drawn) {
-        let details = Details::of(surface.picture(), recovery.contrast);
-        let near = details.near_losses(drawn, recovery.reach);
+        let details = Details::of(surface.picture(), contrast);
+        let near = details.near_losses(drawn, REACH);
         let pixels = lost.iter_mut().zip(near);
         pixels.for_each(|(lost, near)| *lost |= near);
     }

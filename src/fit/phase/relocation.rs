@@ -3,9 +3,7 @@
 //! The strokes of least worth, by exact leave-one-out, and those not worth their price are removed, and candidates are
 //! added on top instead. Both measures favour the stroke in place: a candidate's closed-form gain does not know what
 //! fitting it will add, and a stroke's worth does not know what its neighbours will make up for. So the gain of a
-//! candidate is multiplied ([`Relocation::gain`]).
-//!
-//! [`Relocation::gain`]: crate::fit::recipe::Relocation::gain
+//! candidate is multiplied (`Relocation::gain`).
 
 use crate::fit::edits::{Edit, Room, TOP, choose, drop_marks};
 use crate::fit::phase::search::search;
@@ -14,10 +12,17 @@ use crate::render::Strokes;
 use crate::scene::Marks;
 use crate::seed::Candidate;
 
+/// Share of the strokes that one relocation may move. 0.1, 0.2, 0.4: −0.06, 0, +0.12 dB; since gains are multiplied, 0.15 and 0.5:
+/// −0.02, 0.00.
+const SHARE: f32 = 0.3;
+/// A relocation that has free places to fill asks for up to this many times as many candidates as it may move strokes. Half, twice:
+/// 0.00 dB.
+const FILL: usize = 2;
+
 /// Number of strokes that one relocation may move.
 pub(in crate::fit) fn wanted(session: &Session<'_>) -> usize {
     let free = session.drawing.free().len();
-    (free as f32 * session.recipe.relocation.share).ceil() as usize
+    (free as f32 * SHARE).ceil() as usize
 }
 
 /// Replaces strokes by candidates that will gain more, and fills up to `limit` strokes with candidates that pay.
@@ -42,9 +47,9 @@ pub(in crate::fit) fn relocate(
         // Candidates whose gain pays.
         let count = match config.marks() {
             Marks::Areas => 0,
-            Marks::Auto | Marks::Strokes => wanted.max(room.min(wanted * relocation.fill)),
+            Marks::Auto | Marks::Strokes => wanted.max(room.min(wanted * FILL)),
         };
-        let candidates = search(drawing, count, scale, recipe.probing, config.seed);
+        let candidates = search(drawing, count, scale, config.seed);
         let candidates = candidates.into_iter().map(adapt);
         let paying = candidates.filter(|c| c.gain > price.least_gain_of_capsule(&c.stroke));
         edits.extend(paying.map(|c| {

@@ -2,14 +2,13 @@
 
 use crate::fit::drawing::Drawing;
 use crate::fit::drawing::surface::Surface;
-use crate::seed::{Candidate, Probing, Wanted, propose};
+use crate::seed::{Candidate, Wanted, propose};
 
 /// At most `count` candidates of `scale` px on top of `drawing`, best first; `seed` is the fit's.
 pub(in crate::fit) fn search(
     drawing: &mut Drawing,
     count: usize,
     scale: f32,
-    probing: Probing,
     seed: u64,
 ) -> Vec<Candidate> {
     drawing.counters.searches += 1;
@@ -18,8 +17,7 @@ pub(in crate::fit) fn search(
     let wanted = Wanted {
         count,
         scale: drawing.bounds.drawable(scale) / area.sqrt(),
-        probing,
-        min_opacity: drawing.bounds.min_opacity(),
+        min_opacity: drawing.bounds.min_opacity,
         level: drawing.surface().halvings(),
         key: [seed, drawing.counters.searches],
     };

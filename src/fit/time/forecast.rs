@@ -6,7 +6,37 @@
 
 use std::time::Duration;
 
-use crate::fit::recipe::{Recipe, SETTLING_STEPS, TimeShares};
+use crate::fit::recipe::{Recipe, SETTLING_STEPS};
+
+// The unit of most durations is a *write*: the time to round, write and render the drawing once, which is measured during the fit.
+// With these numbers fits end within 5 % of limits from half a second to ten, in a simulation of machines that draw strokes up to a
+// quarter faster or slower than expected (`the_limit_is_met_by_a_twentieth`).
+/// Time to write and render a stroke, in units of that for a pixel.
+const STROKE_PX: f64 = 160.0;
+/// Cost of our own render of a file and the comparisons, in writes of an empty drawing.
+const LOOKING: f64 = 1.15;
+/// Cost of judging and reporting after the fit, in writes of the drawing: it is written and rendered once more, and compressed for the
+/// report.
+const JUDGING: f64 = 1.75;
+/// That cost for a transparent drawing, which is rendered on two mattes.
+const JUDGING_TRANSPARENT: f64 = 2.2;
+/// Cost after the fit that does not depend on the strokes, in writes of an empty drawing: three comparisons, layers.
+const JUDGING_EMPTY: f64 = 2.6;
+/// Most of the limit, as a share, that rounds of settling take. Beyond it, descent gains more in the same time.
+const SETTLING: f64 = 0.125;
+/// Least share of the limit for descent, however long the rest takes.
+const MIN_DESCENT: f64 = 0.25;
+/// Least duration of a polish, in writes: this is a hundred steps or more. A polish begins with soft edges and long steps, so that one
+/// of 20 steps takes a drawing from 34 dB to 25.
+const MIN_POLISH: f64 = 15.0;
+/// Share of the time that measuring writes may take.
+const TRIAL_WRITES: f64 = 0.01;
+/// Least number of steps that make a round of settling worth its write.
+const MIN_ROUND: f64 = 2.0;
+/// Weight of a new measurement in the running mean of the duration of steps.
+const FRESHNESS: f64 = 0.2;
+/// A stage is left out if there is time to search for less than one in this many of the strokes wanted.
+const MIN_SEARCH: usize = 8;
 
 /// Measured durations, s, and what they leave for the parts of a fit. Times are in seconds since the limit was set,
 /// usually when the fit began.
@@ -19,7 +49,6 @@ pub(in crate::fit) struct Forecast {
     needs_file: bool,
     /// Rounds of settling.
     rounds: usize,
-    shares: TimeShares,
     /// Duration of a write, per pixel of its size.
     per_pixel: f64,
     /// Time of the next measurement of a write.
@@ -46,7 +75,6 @@ impl Forecast {
             is_transparent,
             needs_file,
             rounds: recipe.settling_rounds,
-            shares: recipe.time,
             per_pixel: 0.0,
             due: 0.0,
             step: 0.0,
@@ -57,14 +85,14 @@ impl Forecast {
     /// Records that writing and rendering `strokes` strokes took `span` and ended at `now`.
     pub(in crate::fit) fn wrote(&mut self, strokes: usize, span: f64, now: f64) {
         self.per_pixel = span / self.size(strokes);
-        self.due = now + span / self.shares.trial_writes;
+        self.due = now + span / TRIAL_WRITES;
     }
 
     /// Records that a step of descent took `span`.
     pub(in crate::fit) fn stepped(&mut self, span: f64) {
         self.step = match self.step {
             0.0 => span,
-            mean => mean + self.shares.freshness * (span - mean),
+            mean => mean + FRESHNESS * (span - mean),
         };
     }
 
@@ -89,7 +117,7 @@ impl Forecast {
         let left = self.end_of_descent(strokes) - now - SETTLING_STEPS as f64 * self.step;
         let affordable = (left / self.search.max(f64::MIN_POSITIVE)) as usize;
         let affordable = affordable.min(wanted);
-        if affordable >= wanted / self.shares.min_search {
+        if affordable >= wanted / MIN_SEARCH {
             affordable
         } else {
             0
@@ -98,12 +126,12 @@ impl Forecast {
 
     /// True if there is time for a polish that is long enough to be of use.
     pub(in crate::fit) fn allows_polish(&self, strokes: usize, now: f64) -> bool {
-        now + self.shares.min_polish * self.write_s(strokes) < self.end_of_descent(strokes)
+        now + MIN_POLISH * self.write_s(strokes) < self.end_of_descent(strokes)
     }
 
     /// True if another round of settling, of a few steps at least, ends in time.
     pub(in crate::fit) fn allows_round(&self, strokes: usize, now: f64) -> bool {
-        self.ends_in_time(strokes, now + self.shares.min_round * self.step)
+        self.ends_in_time(strokes, now + MIN_ROUND * self.step)
     }
 
     /// True if another step of a round of settling ends in time.
@@ -114,7 +142,7 @@ impl Forecast {
     /// The time by which the descent of a drawing of `strokes` strokes has to end.
     fn end_of_descent(&self, strokes: usize) -> f64 {
         let end = self.limit - self.settling(strokes) - self.judging(strokes);
-        end.max(self.limit * self.shares.min_descent)
+        end.max(self.limit * MIN_DESCENT)
     }
 
     /// True if a file whose writing begins at `now` can be looked at and judged in time.
@@ -124,7 +152,7 @@ impl Forecast {
 
     /// The size of a write, in pixels.
     fn size(&self, strokes: usize) -> f64 {
-        self.pixels + self.shares.stroke_px * strokes as f64
+        self.pixels + STROKE_PX * strokes as f64
     }
 
     /// Duration of rounding, writing and rendering a drawing of `strokes` strokes.
@@ -134,7 +162,7 @@ impl Forecast {
 
     /// Duration of a write that a round of settling starts from, and of looking at it.
     fn seeing(&self, strokes: usize) -> f64 {
-        self.write_s(strokes) + self.shares.looking * self.write_s(0)
+        self.write_s(strokes) + LOOKING * self.write_s(0)
     }
 
     /// The time reserved for the first write and the rounds of settling, which are shorter if the limit is short.
@@ -142,8 +170,8 @@ impl Forecast {
         let seeing = self.seeing(strokes);
         let round = |steps: f64| seeing + steps * self.step;
         let rounds = self.rounds as f64 * round(SETTLING_STEPS as f64);
-        let most = self.limit * self.shares.settling;
-        if self.rounds > 0 && round(self.shares.min_round) < most {
+        let most = self.limit * SETTLING;
+        if self.rounds > 0 && round(MIN_ROUND) < most {
             seeing + rounds.min(most)
         } else if self.needs_file {
             self.write_s(strokes)
@@ -155,11 +183,11 @@ impl Forecast {
     /// The time reserved for what follows the fit.
     fn judging(&self, strokes: usize) -> f64 {
         let writes = if self.is_transparent {
-            self.shares.judging_transparent
+            JUDGING_TRANSPARENT
         } else {
-            self.shares.judging
+            JUDGING
         };
-        writes * self.write_s(strokes) + self.shares.judging_empty * self.write_s(0)
+        writes * self.write_s(strokes) + JUDGING_EMPTY * self.write_s(0)
     }
 }
 
@@ -169,10 +197,6 @@ mod tests {
     use crate::fit::recipe::Preset;
 
     const PIXELS: usize = 768 * 512;
-
-    fn shares() -> TimeShares {
-        Recipe::of(Preset::Balanced).time
-    }
 
     /// A machine that keeps its own time.
     struct Machine {
@@ -193,7 +217,7 @@ mod tests {
         }
 
         fn look(&mut self) {
-            self.now += shares().looking * self.write_s(0);
+            self.now += LOOKING * self.write_s(0);
         }
 
         fn step(&mut self, forecast: &mut Forecast, strokes: usize) {
@@ -226,9 +250,7 @@ mod tests {
                 self.write(&mut forecast, strokes);
                 self.look();
             }
-            self.now
-                + shares().judging * self.write_s(strokes)
-                + shares().judging_empty * self.write_s(0)
+            self.now + JUDGING * self.write_s(strokes) + JUDGING_EMPTY * self.write_s(0)
         }
     }
 
@@ -271,7 +293,7 @@ mod tests {
 
     #[test]
     fn descent_has_its_part_however_long_the_rest_takes() {
-        assert!(forecast(1).end_of_descent(1_000_000) >= shares().min_descent);
+        assert!(forecast(1).end_of_descent(1_000_000) >= MIN_DESCENT);
     }
 
     #[test]

@@ -24,7 +24,7 @@ use crate::scene::{Area, Band, Cap, Mark, Marks, Path, PathPoint, Shape, Stroke}
 /// Makes shapes of areas and traced strokes that nearly are such, and then lines level and upright. All strokes must be free.
 pub(super) fn run(session: &mut Session<'_>) -> Result<()> {
     let forms = session.recipe.forms;
-    let most = session.limit.min(forms.most_marks);
+    let most = session.limit.min(session.recipe.most_marks);
     let room = most.saturating_sub(session.drawing.len());
     let shapes = shapes(session, forms, room);
     let paths = session.drawing.memento();

@@ -111,7 +111,7 @@ fn fit(session: &mut Session<'_>, forms: Forms, moving: &[Range<usize>]) {
         joint: None,
     };
     let drawing = &mut session.drawing;
-    let mut descent = Descent::new(drawing, &session.recipe, course, 0.0);
+    let mut descent = Descent::new(drawing, course, 0.0);
     descent.held = Held::of(drawing.free(), drawing.formed());
     let mut moves = vec![false; drawing.free().len()];
     moving

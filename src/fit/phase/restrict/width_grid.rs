@@ -1,5 +1,6 @@
 //! The radii that strokes may have.
 
+use crate::fit::drawing::bounds::MIN_RADIUS;
 use crate::fit::recipe::Recipe;
 use crate::math;
 
@@ -26,7 +27,7 @@ impl<'a> WidthGrid<'a> {
             return Self::Given(given);
         }
         Self::Series {
-            least: recipe.domain.min_radius,
+            least: MIN_RADIUS,
             step: recipe.pens.ladder,
         }
     }
