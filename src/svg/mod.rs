@@ -31,7 +31,7 @@
 //! - What is a [`Shape`](crate::scene::Shape) is a `<circle>`, an `<ellipse>`, or a `<rect>` whose corners are sharp or, with
 //!   `rx`, round. A line stays a path: Inkscape has no handles for a `<line>`, which takes 16 bytes more.
 //! - A path with `stroke-linecap="butt"`, and with `stroke-linejoin="miter"` where it has a corner, is a
-//!   [`Band`](crate::scene::Band): an area in a scene, whose rings are around the line. It shares no element with others. A
+//!   stroke with [`Cap::Butt`](crate::scene::Cap::Butt). It shares no element with others. A
 //!   layer with no other stroke has neither of these attributes, nor do its bands: CairoSVG takes no `butt` inside of `round`.
 //! - Each `M` begins a stroke or a ring, `L` draws lines, `Q` and `T` quadratic curves, and `z` closes a path. In areas,
 //!   and only there, `H` and `V` draw horizontal and vertical lines. The numbers of a step are absolute or, after a small
