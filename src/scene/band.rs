@@ -56,7 +56,7 @@ impl Band {
         let straight = |ring: &Path| polyline(ring, tolerance, 0.0).unwrap_or_else(|| ring.clone());
         let rings: &[Path] = &rings.iter().map(straight).collect::<Vec<_>>();
         let points: Vec<PathPoint> = rings.iter().flat_map(Path::points).copied().collect();
-        if points.len() > MOST_POINTS || points.len() % 2 > 0 {
+        if points.len() > MOST_POINTS || !points.len().is_multiple_of(2) {
             return None;
         }
         let mut reversed = points.clone();
@@ -225,7 +225,7 @@ impl Band {
         let is_paired = (0..half).all(|i| points[i].is_on == points[points.len() - 1 - i].is_on);
         let has_ends =
             is_closed || points.first()?.is_on && points.get(half.checked_sub(1)?)?.is_on;
-        let is_even = points.len() % 2 == 0 && half >= if is_closed { 3 } else { 2 };
+        let is_even = points.len().is_multiple_of(2) && half >= if is_closed { 3 } else { 2 };
         (is_even && is_paired && has_ends).then(|| between(points, is_closed))?
     }
 

@@ -422,12 +422,13 @@ mod tests {
     #[test]
     fn strokes_that_meet_keep_their_order_unless_they_are_alike() {
         // Widths tell strokes apart.
-        let strokes: Vec<Written> = lines(400, 100, 3)
+        let strokes: Vec<Written> = lines(420, 100, 3)
             .into_iter()
             .enumerate()
             .map(|(i, line)| {
+                let opacity = if i % 7 == 0 { 100.0 / 255.0 } else { 1.0 };
                 let radius = 1.0 + 1e-6 * i as f64;
-                stroke_of(line.paths()[0].clone(), line.color()[0], radius, 1.0)
+                stroke_of(line.paths()[0].clone(), line.color()[0], radius, opacity)
             })
             .collect();
         let drawn = shortened(&strokes, None);
