@@ -285,7 +285,7 @@ mod tests {
         points.rotate_left(1);
         for (i, point) in points.iter_mut().enumerate() {
             let (sin, cos) = math::sin_cos(2.0 * i as f64);
-            point.at = point.at + Vec2::new(by * sin, by * cos);
+            point.at += Vec2::new(by * sin, by * cos);
         }
         Path::new(points, true).unwrap()
     }

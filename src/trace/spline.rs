@@ -466,7 +466,7 @@ mod tests {
         assert!(path.is_closed() && path.points().len() <= 12, "{path:?}");
         assert!(path.points().iter().all(|p| !p.is_on));
         for p in path.flattened(0.05) {
-            let away = math::hypot(f64::from(p.x - 50.0), f64::from(p.y - 50.0)) - 40.0;
+            let away = math::hypot(p.x - 50.0, p.y - 50.0) - 40.0;
             assert!(away.abs() < 0.6, "{away} px off at {p:?}");
         }
     }

@@ -107,10 +107,10 @@ fn overlap_of_pairs(scene: &Scene) -> f64 {
         let mut cuts: Vec<f64> = Vec::new();
         for ring in area {
             for (a, b) in ring.iter().zip(ring.iter().cycle().skip(1)) {
-                let [ay, by] = [f64::from(a.y), f64::from(b.y)];
+                let [ay, by] = [a.y, b.y];
                 if (ay <= y) != (by <= y) {
                     let t = (y - ay) / (by - ay);
-                    cuts.push(f64::from(a.x) + t * f64::from(b.x - a.x));
+                    cuts.push(a.x + t * (b.x - a.x));
                 }
             }
         }

@@ -49,7 +49,6 @@ impl Recipe {
                     position: 1.5,
                     ..stages.rates
                 },
-                ..stages
             },
             polish: Polish {
                 iterations: 130,
