@@ -413,7 +413,7 @@ mod tests {
         let target = Image::from_planes(width, height, [plane(0.9), plane(0.1), plane(0.2)]);
         let canvas = Canvas::flat(Canvas::from_image(&target).grid(), [1.0; 3]);
         let wanted = Wanted {
-            count: 1,
+            count: 4,
             scale: 4.0,
             min_opacity: 1.0,
             level: 0,

@@ -106,7 +106,7 @@ mod tests {
 
     #[test]
     fn it_begins_late_and_without_a_distance_never() {
-        assert!(!JITTER.begins_by(0.79) && JITTER.begins_by(0.8));
+        assert!(!JITTER.begins_by(0.84) && JITTER.begins_by(0.85));
         assert!(!Jitter { px: 0.0 }.begins_by(1.0));
     }
 }
