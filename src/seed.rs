@@ -417,7 +417,8 @@ mod tests {
             scale: 4.0,
             min_opacity: 1.0,
             level: 0,
-            key: [0, 0],
+            // A shift of the cells with which one of them begins at the end of the bar.
+            key: [2, 0],
         };
         let target = Pyramid::new(target);
         let residual = Residual {
