@@ -93,15 +93,6 @@ impl Path {
         }
     }
 
-    /// The closed path of a shape, which has these points.
-    pub(super) fn of_shape(shape: Shape, points: Vec<PathPoint>) -> Self {
-        Self {
-            points,
-            closed: true,
-            shape: Some(shape),
-        }
-    }
-
     /// A dot.
     pub fn dot(p: Point) -> Self {
         Self::of_points(vec![PathPoint::on(p)], false)
@@ -125,6 +116,21 @@ impl Path {
     /// The circle, ellipse or rectangle that the path is.
     pub fn shape(&self) -> Option<Shape> {
         self.shape
+    }
+
+    /// The rectangle whose corners the path has, in either sense: a file has one element for both.
+    pub(super) fn rectangle(&self) -> Option<Shape> {
+        let [a, b, c, d] = self.points() else {
+            return None;
+        };
+        let is_level = |p: &PathPoint, q: &PathPoint| p.at.y == q.at.y;
+        let is_upright = |p: &PathPoint, q: &PathPoint| p.at.x == q.at.x;
+        let is_along = is_level(a, b) && is_upright(b, c) && is_level(c, d) && is_upright(d, a)
+            || is_upright(a, b) && is_level(b, c) && is_upright(c, d) && is_level(d, a);
+        let is_rect = self.closed && self.points().iter().all(|p| p.is_on) && is_along;
+        let bounds = self.bounds();
+        let corners = [bounds.origin(), Point::new(bounds.x1, bounds.y1)];
+        (is_rect && bounds.area() > 0.0).then(|| Shape::rect(corners, 0.0))
     }
 
     /// First and last point; the same for a dot. Those of a closed path mean nothing in particular.
@@ -282,6 +288,18 @@ impl Iterator for Segments<'_> {
     }
 }
 
+impl Shape {
+    /// The closed path of the shape's element; its curves bulge by 0.02 px at most.
+    pub fn path(self) -> Path {
+        let points = self.points().map(|(at, is_on)| PathPoint { at, is_on });
+        Path {
+            points: points.collect(),
+            closed: true,
+            shape: Some(self),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -338,6 +356,25 @@ mod tests {
         ] {
             let error = path(&points, false).unwrap_err();
             assert!(error.to_string().contains(why), "{error}");
+        }
+    }
+
+    #[test]
+    fn corners_make_a_rectangle_in_either_sense() {
+        let corners = [(1.0, 2.0), (9.0, 2.0), (9.0, 7.5), (1.0, 7.5)].map(Point::from);
+        let rect = Shape::rect([corners[0], corners[2]], 0.0);
+        for turn in 0..4 {
+            let mut points = corners.map(PathPoint::on).to_vec();
+            points.rotate_left(turn);
+            let of = |points: &[PathPoint], closed: bool| {
+                Path::of_points(points.to_vec(), closed).rectangle()
+            };
+            assert_eq!(of(&points, true), Some(rect));
+            points.reverse();
+            assert_eq!(of(&points, true), Some(rect));
+            assert_eq!(of(&points, false), None);
+            points[0].at.x += 0.1;
+            assert_eq!(of(&points, true), None);
         }
     }
 }

@@ -222,7 +222,7 @@ pub(super) fn area(area: &Area, grid: &Grid) -> Result<Area, Unwritable> {
 /// The path of the element of a shape that a path is, or became as it was rounded; otherwise the rounded path.
 fn shaped(path: &Path, rounded: Path, grid: &Grid) -> Path {
     let shape = path.shape().and_then(|shape| shape.rounded(grid));
-    let shape = shape.or_else(|| Shape::rect_of(&rounded));
+    let shape = shape.or_else(|| rounded.rectangle());
     shape.map_or(rounded, Shape::path)
 }
 

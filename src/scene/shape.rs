@@ -10,7 +10,6 @@ use std::f64::consts::FRAC_PI_2;
 use serde::{Deserialize, Serialize};
 
 use super::grid::{Grid, units};
-use super::path::{Path, PathPoint};
 use crate::math::{self, Point, Vec2};
 
 /// A closed path with an element of its own.
@@ -61,8 +60,8 @@ struct Place {
 }
 
 impl Shape {
-    /// The closed path of the shape's element; its curves bulge by 0.02 px at most.
-    pub fn path(self) -> Path {
+    /// The points of the shape's path, px, and whether each is on it; the curves bulge by 0.02 px at most.
+    pub(super) fn points(self) -> impl Iterator<Item = (Point, bool)> {
         let radius = match self {
             Self::Circle { radius, .. } | Self::Rect { radius, .. } => radius,
             Self::Ellipse { radii: [x, y], .. } => x.max(y),
@@ -70,26 +69,10 @@ impl Shape {
         let bulge = |quarter: usize| radius * math::powi(half_angle(quarter), 4) / 8.0;
         let quarter = QUARTERS.into_iter().find(|&n| bulge(n) <= BULGE);
         let places = self.kind().places(quarter.unwrap_or(16));
-        let points = places.iter().map(|place| PathPoint {
-            at: self.frame().at(place),
-            is_on: place.is_on,
-        });
-        Path::of_shape(self, points.collect())
-    }
-
-    /// The rectangle whose corners a path has, in either sense: a file has one element for both.
-    pub(super) fn rect_of(path: &Path) -> Option<Self> {
-        let [a, b, c, d] = path.points() else {
-            return None;
-        };
-        let is_level = |p: &PathPoint, q: &PathPoint| p.at.y == q.at.y;
-        let is_upright = |p: &PathPoint, q: &PathPoint| p.at.x == q.at.x;
-        let is_along = is_level(a, b) && is_upright(b, c) && is_level(c, d) && is_upright(d, a)
-            || is_upright(a, b) && is_level(b, c) && is_upright(c, d) && is_level(d, a);
-        let is_rect = path.is_closed() && path.points().iter().all(|p| p.is_on) && is_along;
-        let bounds = path.bounds();
-        (is_rect && bounds.area() > 0.0)
-            .then(|| Self::rect([bounds.origin(), Point::new(bounds.x1, bounds.y1)], 0.0))
+        let frame = self.frame();
+        places
+            .into_iter()
+            .map(move |place| (frame.at(&place), place.is_on))
     }
 
     /// The shape with its numbers on the `grid`; `None` if nothing is left of it.
@@ -438,25 +421,6 @@ mod tests {
             kind.restore(&mut restored);
             let pairs = moved.iter().flatten().zip(restored.iter().flatten());
             assert!(pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-3));
-        }
-    }
-
-    #[test]
-    fn corners_make_a_rectangle_in_either_sense() {
-        let corners = [(1.0, 2.0), (9.0, 2.0), (9.0, 7.5), (1.0, 7.5)].map(Point::from);
-        let rect = Shape::rect([corners[0], corners[2]], 0.0);
-        for turn in 0..4 {
-            let mut points = corners.map(PathPoint::on).to_vec();
-            points.rotate_left(turn);
-            let of = |points: &[PathPoint], closed: bool| {
-                Shape::rect_of(&Path::of_points(points.to_vec(), closed))
-            };
-            assert_eq!(of(&points, true), Some(rect));
-            points.reverse();
-            assert_eq!(of(&points, true), Some(rect));
-            assert_eq!(of(&points, false), None);
-            points[0].at.x += 0.1;
-            assert_eq!(of(&points, true), None);
         }
     }
 }
