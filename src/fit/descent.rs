@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::drawing::Drawing;
 use super::drawing::objective::Target;
+use super::recipe::Rates;
 use super::time::Timer;
 use crate::optim::{Adam, AdamParams, Schedule};
 use crate::render::{Gradients, STYLE, Strokes};
@@ -49,38 +50,6 @@ const AREA_COLOR: f32 = 0.1;
 /// Factor on the steps of traced strokes, which are about where they belong. 0.15, 0.25, 0.4, 1: 39 icons have 42.8, 42.8, 42.5, 40.8
 /// dB.
 pub(super) const TRACED_PACE: f32 = 0.25;
-
-/// Step sizes of the optimiser by kind of parameter, per iteration.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Rates {
-    /// Ends of strokes, px.
-    pub position: f32,
-    /// Radius, px.
-    pub radius: f32,
-    /// Colours.
-    pub color: f32,
-    /// Opacity.
-    pub opacity: f32,
-    /// Points of areas, px.
-    pub area: f32,
-    /// Factor on all rates in the last iteration, reached along half a cosine.
-    pub last: f64,
-}
-
-impl Rates {
-    /// These rates, but colours stay as they are.
-    pub(super) fn without_color(self) -> Self {
-        Self { color: 0.0, ..self }
-    }
-
-    /// These rates, but radii stay as they are.
-    pub(super) fn without_radius(self) -> Self {
-        Self {
-            radius: 0.0,
-            ..self
-        }
-    }
-}
 
 /// The length, the step sizes and the edge of a descent.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]

@@ -8,7 +8,8 @@
 mod inks;
 mod presets;
 
-pub use super::descent::Rates;
+use serde::{Deserialize, Serialize};
+
 pub use inks::Inks;
 
 /// Points are dense if a budget allows one for fewer pixels than this. With 20 instead of 16, jitter and opacities cost flat art of 500
@@ -375,5 +376,37 @@ impl Recipe {
             0
         };
         self.stages.iterations + polish
+    }
+}
+
+/// Step sizes of the optimiser by kind of parameter, per iteration.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Rates {
+    /// Ends of strokes, px.
+    pub position: f32,
+    /// Radius, px.
+    pub radius: f32,
+    /// Colours.
+    pub color: f32,
+    /// Opacity.
+    pub opacity: f32,
+    /// Points of areas, px.
+    pub area: f32,
+    /// Factor on all rates in the last iteration, reached along half a cosine.
+    pub last: f64,
+}
+
+impl Rates {
+    /// These rates, but colours stay as they are.
+    pub(super) fn without_color(self) -> Self {
+        Self { color: 0.0, ..self }
+    }
+
+    /// These rates, but radii stay as they are.
+    pub(super) fn without_radius(self) -> Self {
+        Self {
+            radius: 0.0,
+            ..self
+        }
     }
 }
