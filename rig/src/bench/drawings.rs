@@ -96,6 +96,14 @@ pub(super) fn record<Entry>(
     Ok(())
 }
 
+/// The record of what `draw` makes, and its SVG; where it fails, the record with the failure, and no SVG.
+pub(super) fn attempt<Entry>(
+    draw: impl FnOnce() -> Result<(Entry, String)>,
+    failed: impl FnOnce(Option<String>) -> Entry,
+) -> (Entry, String) {
+    draw().unwrap_or_else(|error| (failed(Some(error.to_string())), String::new()))
+}
+
 /// Pictures that are made of each drawing.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Pictures {

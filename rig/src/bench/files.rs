@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
-use crate::lab::ResultFolder;
 use anyhow::{Context, Result};
 
 /// The files that are named, and those in the folders that are, in order; true for those in folders. Of a folder, files that end
@@ -36,12 +35,4 @@ pub(crate) fn has_ending(path: &Path, ending: &str) -> bool {
 pub(crate) fn stem(path: &Path) -> String {
     let stem = path.file_stem().unwrap_or_default();
     stem.to_string_lossy().into_owned()
-}
-
-/// Writes a drawing that was made, if there is one.
-pub(crate) fn found(files: &mut ResultFolder<'_>, name: &str, svg: &str) -> strokefit::Result<()> {
-    match svg {
-        "" => Ok(()),
-        svg => files.text(name, svg),
-    }
 }

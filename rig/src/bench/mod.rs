@@ -19,6 +19,7 @@ pub mod compare;
 mod damages;
 pub mod drawings;
 pub(crate) mod files;
+pub mod gallery;
 pub mod inverse;
 pub mod measure;
 pub mod pareto;

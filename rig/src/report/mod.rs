@@ -3,6 +3,7 @@
 //! The rules of [`strokefit::report`] hold: fields may be added, none is renamed.
 
 pub mod cases;
+mod charts;
 pub mod compare;
 mod damage;
 pub mod inverse;
@@ -18,4 +19,4 @@ pub(crate) mod statistics;
 mod table;
 
 pub use damage::Damage;
-pub use table::Table;
+pub use table::{Column, Table};

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Table;
+use super::{Column, Table};
 
 /// One drawing.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -29,31 +29,31 @@ pub struct QualityReport {
 }
 
 impl QualityEntry {
-    fn cells(&self) -> [String; 6] {
-        [
-            self.picture.clone(),
-            self.by.clone(),
-            self.setting.clone(),
-            format!("{:.2}", self.wall_s),
-            format!("{:.1}", self.psnr_db),
-            self.bytes.to_string(),
-        ]
-    }
-
     /// The line of standard output.
     pub fn line(&self) -> String {
-        let [picture, by, setting, wall_s, psnr_db, bytes] = self.cells();
-        format!("{picture}, {by} {setting}: {wall_s} s, {psnr_db} dB, {bytes} bytes")
+        let Self {
+            picture,
+            by,
+            setting,
+            wall_s,
+            psnr_db,
+            bytes,
+        } = self;
+        format!("{picture}, {by} {setting}: {wall_s:.2} s, {psnr_db:.1} dB, {bytes} bytes")
     }
 }
 
 impl QualityReport {
     /// One row per drawing.
     pub fn table(&self) -> Table {
-        let mut table = Table::new(&["picture", "by", "setting", "wall_s", "dB", "bytes"]);
-        self.drawings
-            .iter()
-            .for_each(|drawing| table.row(drawing.cells()));
-        table
+        let columns: [Column<QualityEntry>; 6] = [
+            ("picture", |e| e.picture.clone()),
+            ("by", |e| e.by.clone()),
+            ("setting", |e| e.setting.clone()),
+            ("wall_s", |e| format!("{:.2}", e.wall_s)),
+            ("dB", |e| format!("{:.1}", e.psnr_db)),
+            ("bytes", |e| e.bytes.to_string()),
+        ];
+        Table::of(&columns, &self.drawings)
     }
 }

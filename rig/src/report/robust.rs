@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::cases::{self, Case, Cases, OWN};
+use super::cases::{Case, Cases, grouped};
 use super::shapes::Contents;
-use super::statistics::{distinct, mean, median, optional};
-use super::{Damage, Table};
+use super::statistics::{mean, median, optional};
+use super::{Column, Damage, Table};
 
 /// All cases of a run.
 pub type RobustReport = Cases<RobustEntry>;
@@ -38,19 +38,37 @@ pub struct RobustEntry {
 }
 
 impl RobustEntry {
-    /// The name of the SVG that was made.
-    pub fn svg_name(&self) -> String {
-        let (damage, by) = (self.damage.suffix(), cases::suffix(&self.by));
-        format!("{}{damage}{by}.svg", self.picture)
+    /// True if the drawing is nearer to the clean picture than its damaged input.
+    fn is_mended(&self) -> bool {
+        self.truth_db > self.input_db
+    }
+}
+
+impl Case for RobustEntry {
+    fn name(&self) -> &str {
+        &self.picture
     }
 
-    /// The line of standard output, ending in the verdict.
-    pub fn line(&self) -> String {
-        let case = (&*self.picture, &*self.damage.of(self.side_px), &*self.by);
-        cases::line(self, case, || self.words())
+    fn by(&self) -> &str {
+        &self.by
     }
 
-    /// Words for what was made.
+    fn side_px(&self) -> usize {
+        self.side_px
+    }
+
+    fn damage(&self) -> Damage {
+        self.damage
+    }
+
+    fn elements(&self) -> [usize; 2] {
+        [self.found.elements; 2]
+    }
+
+    fn svg_name(&self) -> String {
+        format!("{}{}", self.picture, self.suffix())
+    }
+
     fn words(&self) -> String {
         let recognised = self.recognised.as_ref();
         let recognised = recognised.map(|words| format!(", left out {words}"));
@@ -66,13 +84,6 @@ impl RobustEntry {
         )
     }
 
-    /// True if the drawing is nearer to the clean picture than its damaged input.
-    fn is_mended(&self) -> bool {
-        self.truth_db > self.input_db
-    }
-}
-
-impl Case for RobustEntry {
     fn failure(&self) -> Option<&str> {
         self.failure.as_deref()
     }
@@ -105,17 +116,9 @@ impl RobustReport {
             "s, median",
             "s, most",
         ]);
-        let made = self.made();
-        for damage in distinct(made.iter().map(|e| e.damage.to_string())) {
-            for by in distinct(made.iter().map(|e| e.by.clone())) {
-                let cases = made.iter().copied();
-                let cases = cases.filter(|e| e.damage.to_string() == damage && e.by == by);
-                let cases: Vec<_> = cases.collect();
-                if let Some(first) = cases.first() {
-                    let words = first.damage.words().unwrap_or_else(|| "none".into());
-                    table.row(self.summed_up(words, &by, &cases));
-                }
-            }
+        let damage = |entry: &RobustEntry| entry.damage.words().unwrap_or_else(|| "none".into());
+        for (damage, by, cases) in grouped(&self.made(), damage, |e| e.by.clone()) {
+            table.row(self.summed_up(damage, &by, &cases));
         }
         table
     }
@@ -137,7 +140,10 @@ impl RobustReport {
         let count = |is: fn(&RobustEntry) -> bool| cases.iter().filter(|entry| is(entry)).count();
         let finite = |values: Vec<f64>| mean(&values).filter(|mean| mean.is_finite());
         let seconds = known(|entry| entry.wall_s);
-        let ours = (by == OWN).then(|| count(|entry| entry.recognised.is_some()).to_string());
+        let ours = cases
+            .first()
+            .filter(|entry| entry.is_own())
+            .map(|_| count(|entry| entry.recognised.is_some()).to_string());
         [
             damage,
             by.to_owned(),
@@ -165,48 +171,31 @@ impl RobustReport {
 
     /// One row per case.
     pub fn table(&self) -> Table {
-        let mut table = Table::new(&[
-            "picture",
-            "side_px",
-            "damage",
-            "by",
-            "recognised",
-            "elements",
-            "parameters",
-            "numbers",
-            "bytes",
-            "psnr_db",
-            "truth_db",
-            "input_db",
-            "wall_s",
-            "svg",
-            "failure",
-        ]);
-        for entry in &self.entries {
-            table.row([
-                entry.picture.clone(),
-                entry.side_px.to_string(),
-                entry.damage.to_string(),
-                entry.by.clone(),
-                entry.recognised.clone().unwrap_or_default(),
-                entry.found.elements.to_string(),
-                entry.found.parameters.to_string(),
-                entry.found.numbers.to_string(),
-                entry.found.bytes.to_string(),
-                optional(entry.psnr_db, 2),
-                optional(entry.truth_db, 2),
-                optional(entry.input_db, 2),
-                optional(entry.wall_s, 3),
-                entry.svg_name(),
-                entry.failure.clone().unwrap_or_default(),
-            ]);
-        }
-        table
+        Table::of(&COLUMNS, &self.entries)
     }
 }
 
+const COLUMNS: [Column<RobustEntry>; 15] = [
+    ("picture", |e| e.picture.clone()),
+    ("side_px", |e| e.side_px.to_string()),
+    ("damage", |e| e.damage.to_string()),
+    ("by", |e| e.by.clone()),
+    ("recognised", |e| e.recognised.clone().unwrap_or_default()),
+    ("elements", |e| e.found.elements.to_string()),
+    ("parameters", |e| e.found.parameters.to_string()),
+    ("numbers", |e| e.found.numbers.to_string()),
+    ("bytes", |e| e.found.bytes.to_string()),
+    ("psnr_db", |e| optional(e.psnr_db, 2)),
+    ("truth_db", |e| optional(e.truth_db, 2)),
+    ("input_db", |e| optional(e.input_db, 2)),
+    ("wall_s", |e| optional(e.wall_s, 3)),
+    ("svg", Case::svg_name),
+    ("failure", |e| e.failure.clone().unwrap_or_default()),
+];
+
 #[cfg(test)]
 mod tests {
+    use super::super::cases::OWN;
     use super::*;
 
     fn found(picture: &str, damage: Damage, numbers: usize, truth_db: f64) -> RobustEntry {

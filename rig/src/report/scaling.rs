@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 use strokefit::report::SCHEMA;
 
-use super::Table;
 use super::plot::Chart;
 use super::stability::CaseVerdict;
+use super::{Column, Table};
 use strokefit::Result;
 use strokefit::math;
 
@@ -227,29 +227,24 @@ impl ScalingReport {
 
     /// Table to quote: one row per series.
     pub fn growth_table(&self) -> Table {
-        let mut table = Table::new(&[
-            "what",
-            "from … to",
-            "exponent of wall time (last two points)",
-            "of CPU time",
-            "of memory",
-            "wall time, s",
-            "peak memory, MiB",
-        ]);
-        for series in &self.series {
-            let points = &series.points;
-            let mib = |p: &PointEntry| p.peak_rss_bytes.map_or(0, |bytes| bytes >> 20).to_string();
-            table.row([
-                format!("{}, {}", series.task, series.axis),
-                ends(&series.values, |v| format!("{v}")),
-                series.wall.short(),
-                series.cpu.short(),
-                series.memory.short(),
-                ends(points, |p| significant(p.wall_s)),
-                ends(points, mib),
-            ]);
-        }
-        table
+        let columns: [Column<SeriesEntry>; 7] = [
+            ("what", |s| format!("{}, {}", s.task, s.axis)),
+            ("from … to", |s| ends(&s.values, |v| format!("{v}"))),
+            ("exponent of wall time (last two points)", |s| {
+                s.wall.short()
+            }),
+            ("of CPU time", |s| s.cpu.short()),
+            ("of memory", |s| s.memory.short()),
+            ("wall time, s", |s| {
+                ends(&s.points, |p| significant(p.wall_s))
+            }),
+            ("peak memory, MiB", |s| {
+                ends(&s.points, |p| {
+                    (p.peak_rss_bytes.unwrap_or(0) >> 20).to_string()
+                })
+            }),
+        ];
+        Table::of(&columns, &self.series)
     }
 
     /// One row per point.

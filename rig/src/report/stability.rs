@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use strokefit::report::SCHEMA;
 
-use super::Table;
+use super::{Column, Table};
 
 /// All checks of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -74,17 +74,12 @@ impl StabilityReport {
     /// The count of each verdict, the exceptions with their reasons, and all checks.
     pub fn markdown(&self) -> String {
         let of = |verdict| self.entries.iter().filter(move |e| e.verdict == verdict);
-        let mut exceptions = Table::new(&["case", "figure", "why"]);
-        for StabilityEntry {
-            group,
-            name,
-            figure,
-            note,
-            ..
-        } in of(CaseVerdict::Exception)
-        {
-            exceptions.row([format!("`{group}/{name}`"), figure.clone(), note.clone()]);
-        }
+        let columns: [Column<StabilityEntry>; 3] = [
+            ("case", |e| format!("`{}/{}`", e.group, e.name)),
+            ("figure", |e| e.figure.clone()),
+            ("why", |e| e.note.clone()),
+        ];
+        let exceptions = Table::of(&columns, of(CaseVerdict::Exception));
         format!(
             "# Hard cases\n\n{} cases: {} hold, {} are exceptions, {} failed.\n\n## Exceptions\n\n{}\n## All\n\n{}",
             self.entries.len(),
@@ -98,20 +93,15 @@ impl StabilityReport {
 
     /// One row per check.
     pub fn table(&self) -> Table {
-        let mut table = Table::new(&["group", "case", "checked", "figure", "verdict", "note"]);
-        for entry in &self.entries {
-            let verdict = entry.verdict.word().to_owned();
-            let StabilityEntry {
-                group,
-                name,
-                checked,
-                figure,
-                note,
-                ..
-            } = entry.clone();
-            table.row([group, name, checked, figure, verdict, note]);
-        }
-        table
+        let columns: [Column<StabilityEntry>; 6] = [
+            ("group", |e| e.group.clone()),
+            ("case", |e| e.name.clone()),
+            ("checked", |e| e.checked.clone()),
+            ("figure", |e| e.figure.clone()),
+            ("verdict", |e| e.verdict.word().to_owned()),
+            ("note", |e| e.note.clone()),
+        ];
+        Table::of(&columns, &self.entries)
     }
 }
 

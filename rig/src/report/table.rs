@@ -2,6 +2,9 @@
 
 use std::fmt::Display;
 
+/// A column of a table: its head, and its cell of a record.
+pub type Column<R> = (&'static str, fn(&R) -> String);
+
 /// A table of texts.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Table {
@@ -16,6 +19,16 @@ impl Table {
             head: head.iter().map(|cell| cell.as_ref().to_owned()).collect(),
             rows: Vec::new(),
         }
+    }
+
+    /// A row for each of `rows`, by columns of a head and the cell of a row.
+    pub fn of<'r, R: 'r>(columns: &[Column<R>], rows: impl IntoIterator<Item = &'r R>) -> Self {
+        let heads: Vec<&str> = columns.iter().map(|column| column.0).collect();
+        let mut table = Self::new(&heads);
+        for row in rows {
+            table.row(columns.iter().map(|column| column.1(row)));
+        }
+        table
     }
 
     /// Appends a row, of as many cells as the head has.

@@ -2,19 +2,18 @@
 //!
 //! Other programs that draw lines trace the same pictures, where they are installed.
 
+mod centre_lines;
 mod distances;
-mod gallery;
 
 use std::collections::BTreeSet;
 use std::time::Instant;
 
-pub use gallery::Gallery;
-
 use super::damages::damaged;
-use super::drawings::{self, Drawing, Pictures, picture, record};
+use super::drawings::{self, Drawing, Pictures, attempt, picture, record, side_nearest};
+use super::gallery::{Gallery, PANEL_PX};
 use super::peers::TunedPeer;
 use crate::report::Damage;
-use crate::report::cases::OWN;
+use crate::report::cases::{Case as _, OWN};
 use crate::report::inverse::{Inventory, InverseEntry, InverseReport};
 use distances::Distances;
 use strokefit::fit::{Config, Fitter};
@@ -52,6 +51,31 @@ pub fn own() -> Vec<Drawing> {
 
 /// A result as it comes.
 pub type Outcome<'a> = drawings::Outcome<'a, InverseEntry>;
+
+/// Shows a result in a gallery, if it is of a clean picture of the size nearest to that of a panel: the picture, the drawing, and
+/// the centre lines of ours.
+///
+/// # Errors
+/// As [`verify::render`].
+pub fn show(gallery: &mut Gallery, outcome: Outcome<'_>, sides: &[u16]) -> Result<()> {
+    let entry = outcome.entry;
+    let is_shown =
+        entry.side_px == side_nearest(sides, PANEL_PX) && entry.damage() == Damage::Clean;
+    if !is_shown || entry.failure.is_some() {
+        return Ok(());
+    }
+    let title = format!("{}, {} px", entry.drawing, entry.side_px);
+    let [found, of] = entry.elements();
+    let db = entry.psnr_db.unwrap_or(f64::NAN);
+    gallery.show(outcome, &title, &format!("{found} of {of}, {db:.1} dB"))?;
+    if !entry.is_own() {
+        return Ok(());
+    }
+    let apart = entry.mean_px.map(|px| format!("{px:.2} px off"));
+    let apart = apart.unwrap_or_else(|| "no centre lines".into());
+    let lines = centre_lines::centre_lines(outcome.svg, outcome.picture)?;
+    gallery.add(&apart, &lines)
+}
 
 /// Fits the pictures of all drawings and has `peers` trace them, telling each result as it comes.
 ///
@@ -122,12 +146,9 @@ impl<'a> Case<'a> {
             let svg = self.with_width(traced.svg)?;
             Ok((self.judged(peer.name(), &svg, wall_s)?, svg))
         };
-        trace().unwrap_or_else(|error: Error| {
-            let failed = InverseEntry {
-                failure: Some(error.to_string()),
-                ..self.entry(peer.name())
-            };
-            (failed, String::new())
+        attempt(trace, |failure| InverseEntry {
+            failure,
+            ..self.entry(peer.name())
         })
     }
 

@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::Path;
 
+use crate::bench::gallery::errors;
 use crate::report::pareto::{ARTICLE, Exhibit, OWN, ParetoEntry, front};
-use crate::report::picture::{self, heat};
 use strokefit::image::Image;
 use strokefit::verify;
 use strokefit::{Error, ErrorKind, Result};
@@ -17,9 +17,6 @@ const WIDEST: usize = 480;
 
 /// Longest SVG that the page embeds, bytes; longer ones are only in the folder.
 const LONGEST: usize = 200_000;
-
-/// A difference of a channel that is shown in the brightest colour, 0..1.
-const BRIGHTEST: f64 = 0.25;
 
 /// The picture, our front by bytes, what the article's recipe made, and the best of each peer.
 pub(super) fn exhibits(
@@ -85,7 +82,7 @@ fn exhibit(folder: &Path, target: &Image, entry: &ParetoEntry) -> Result<Exhibit
         Error::new(ErrorKind::Io, message)
     })?;
     let drawn = verify::render_like(&svg, target, [1.0; 3])?;
-    let difference = difference(target, &drawn)?;
+    let difference = errors(target, &drawn)?;
     Ok(Exhibit {
         picture: entry.picture.clone(),
         caption: format!(
@@ -103,18 +100,6 @@ fn exhibit(folder: &Path, target: &Image, entry: &ParetoEntry) -> Result<Exhibit
             svg
         },
     })
-}
-
-/// The largest difference of a channel, by colour.
-fn difference(target: &Image, drawn: &Image) -> Result<Image> {
-    let pixels = target.width() * target.height();
-    let of = |i: usize| {
-        let planes = target.planes().iter().zip(drawn.planes());
-        let apart = planes.map(|(a, b)| f64::from((a[i] - b[i]).abs()));
-        apart.fold(0.0, f64::max)
-    };
-    let values: Vec<f64> = (0..pixels).map(of).collect();
-    picture::map(target.width(), &values, |v| heat(v / BRIGHTEST))
 }
 
 fn thumbnail(mut image: Image) -> Image {

@@ -6,18 +6,15 @@ mod anatomy;
 mod belonging;
 mod color_difference;
 mod displacement;
-mod gallery;
 
 use std::time::Instant;
 
-pub use gallery::Gallery;
-pub(super) use gallery::{panel, shortened};
-
 use super::damages::damaged;
-use super::drawings::{self, Drawing, Pictures, picture, record};
+use super::drawings::{self, Drawing, Pictures, attempt, picture, record, side_nearest};
+use super::gallery::{BRIGHTEST, Gallery, PANEL_PX, errors};
 use super::peers::TunedPeer;
 use crate::report::Damage;
-use crate::report::cases::OWN;
+use crate::report::cases::{Case as _, OWN};
 use crate::report::shapes::{Contents, ShapesEntry, ShapesReport};
 use anatomy::Anatomy;
 use belonging::Things;
@@ -67,6 +64,30 @@ pub fn few<T>(all: Vec<T>, most: usize) -> Vec<T> {
 
 /// A result as it comes.
 pub type Outcome<'a> = drawings::Outcome<'a, ShapesEntry>;
+
+/// Shows a result in a gallery, if it is of a clean picture of the size nearest to that of a panel: the picture, the drawing, and
+/// the errors of ours.
+///
+/// # Errors
+/// As [`verify::render`].
+pub fn show(gallery: &mut Gallery, outcome: Outcome<'_>, sides: &[u16]) -> Result<()> {
+    let entry = outcome.entry;
+    let is_shown = entry.side_px == side_nearest(sides, PANEL_PX) && entry.damage == Damage::Clean;
+    if !is_shown || entry.failure.is_some() {
+        return Ok(());
+    }
+    let title = format!("{}, {} px", entry.drawing, entry.side_px);
+    let [found, of] = entry.elements();
+    let db = entry.truth_db.unwrap_or(f64::NAN);
+    gallery.show(outcome, &title, &format!("{found} of {of}, {db:.1} dB"))?;
+    if !entry.is_own() {
+        return Ok(());
+    }
+    let drawn = verify::render_like(outcome.svg, outcome.picture, [1.0; 3])?;
+    let edges = entry.displacement_px.unwrap_or(f64::NAN);
+    let title = format!("errors × {:.0}, edges {edges:.3} px off", 1.0 / BRIGHTEST);
+    gallery.add(&title, &errors(outcome.picture, &drawn)?)
+}
 
 /// Draws the pictures of all drawings in each of our ways and by each of `peers`, telling each result as it comes.
 ///
@@ -182,13 +203,13 @@ impl<'a> Case<'a> {
             let wall_s = began.elapsed().as_secs_f64();
             Ok((self.judged(by, &svg, wall_s)?, svg))
         };
-        draw().and_then(judge).unwrap_or_else(|error| {
-            let failed = ShapesEntry {
-                failure: Some(error.to_string()),
+        attempt(
+            || draw().and_then(judge),
+            |failure| ShapesEntry {
+                failure,
                 ..self.entry(by)
-            };
-            (failed, String::new())
-        })
+            },
+        )
     }
 
     /// The record of this case before anything is known of what was found.

@@ -3,19 +3,19 @@
 use std::path::PathBuf;
 
 use crate::bench::drawings::{Drawing, Kind, Pictures};
-use crate::bench::files::{found, named, stem};
+use crate::bench::files::{named, stem};
+use crate::bench::gallery::Gallery;
 use crate::bench::peers::{installed_for, missing_for_drawings};
 use crate::bench::{inverse, shapes};
 use crate::lab::ResultFolder;
-use crate::report::{self, Damage};
+use crate::report::Damage;
 use anyhow::Result;
 use strokefit::cli::{Verbosity, input};
 use strokefit::fit::Config;
-use strokefit::image::Image;
 use strokefit::report::json;
 
 use super::super::domain;
-use super::{Extents, say, say_missing};
+use super::{Extents, publish, say_missing, told};
 
 /// Drawings of shapes that a short run takes, at most.
 const FEW: usize = 6;
@@ -57,16 +57,14 @@ impl Inverse {
     fn find_strokes(&self, drawings: &[Drawing], files: &mut ResultFolder<'_>) -> Result<usize> {
         let pictures = self.pictures(Kind::Strokes);
         let peers = installed_for(Kind::Strokes);
-        let mut gallery = inverse::Gallery::of(&pictures.sides);
         let config = Config::default();
+        let mut gallery = Gallery::default();
         let report = inverse::run(drawings, &pictures, &peers, &config, &mut |outcome| {
-            say(&outcome.entry.line());
-            gallery.show(outcome)?;
-            found(files, &outcome.entry.svg_name(), outcome.svg)
+            inverse::show(&mut gallery, outcome, &pictures.sides)?;
+            told(files, outcome)
         })?;
         let tables = [report.table().csv(), report.markdown(), json(&report)?];
-        let charts = report::inverse::charts(&report)?;
-        publish(files, "inverse", &tables, &charts, &gallery.sheet()?)?;
+        publish(files, "inverse", &tables, &report.charts()?, gallery)?;
         Ok(report.failures())
     }
 
@@ -78,15 +76,13 @@ impl Inverse {
         };
         let pictures = self.pictures(Kind::Shapes);
         let (ours, peers) = (shapes::drawers(), installed_for(Kind::Shapes));
-        let mut gallery = shapes::Gallery::of(&pictures.sides);
+        let mut gallery = Gallery::default();
         let report = shapes::run(&drawings, &pictures, &ours, &peers, &mut |outcome| {
-            say(&outcome.entry.line());
-            gallery.show(outcome)?;
-            found(files, &outcome.entry.svg_name(), outcome.svg)
+            shapes::show(&mut gallery, outcome, &pictures.sides)?;
+            told(files, outcome)
         })?;
         let tables = [report.table().csv(), report.markdown(), json(&report)?];
-        let charts = report::shapes::charts(&report)?;
-        publish(files, "shapes", &tables, &charts, &gallery.sheet()?)?;
+        publish(files, "shapes", &tables, &report.charts()?, gallery)?;
         Ok(report.failures())
     }
 
@@ -124,22 +120,4 @@ impl Inverse {
         }
         pictures
     }
-}
-
-/// Writes the report `name`: the table, the summary, all of it, the plots and the gallery.
-fn publish(
-    files: &mut ResultFolder<'_>,
-    name: &str,
-    [csv, md, json]: &[String; 3],
-    charts: &[(&str, String)],
-    gallery: &Image,
-) -> Result<()> {
-    files.text(&format!("{name}.csv"), csv)?;
-    files.text(&format!("{name}.md"), md)?;
-    files.text(&format!("{name}.json"), json)?;
-    for (plot, svg) in charts {
-        files.text(&format!("{name}-{plot}.svg"), svg)?;
-    }
-    files.picture(&format!("{name}.png"), gallery)?;
-    Ok(())
 }

@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use crate::bench::drawings::Kind;
-use crate::bench::files::{found, has_ending, named, stem};
+use crate::bench::files::{has_ending, named, stem};
+use crate::bench::gallery::Gallery;
 use crate::bench::peers::{installed_for, missing_for_drawings};
-use crate::bench::robust::{self, Gallery, Truth};
+use crate::bench::robust::{self, Truth};
 use crate::bench::shapes::few;
 use crate::lab::ResultFolder;
 use crate::report::Damage;
@@ -14,7 +15,7 @@ use strokefit::cli::{Verbosity, input};
 use strokefit::report::json;
 
 use super::super::domain;
-use super::{Extents, say, say_missing};
+use super::{Extents, publish, say_missing, told};
 
 /// Endings of the files that a folder stands for.
 const ENDINGS: [&str; 4] = ["svg", "png", "jpg", "jpeg"];
@@ -22,6 +23,9 @@ const ENDINGS: [&str; 4] = ["svg", "png", "jpg", "jpeg"];
 /// Longer side of the pictures of SVGs, px: usual, and of short runs.
 const SIDE: u16 = 256;
 const SHORT_SIDE: u16 = 96;
+
+/// Pictures that are shown, at most; each has a dozen damages.
+const SHOWN: usize = 6;
 
 /// Pictures that a short run takes, at most.
 const FEW: usize = 2;
@@ -55,14 +59,14 @@ impl Robust {
         let peers = installed_for(Kind::Shapes);
         let mut gallery = Gallery::default();
         let report = robust::run(&truths, damages, &peers, &mut |outcome| {
-            say(&outcome.entry.line());
-            gallery.show(outcome)?;
-            found(files, &outcome.entry.svg_name(), outcome.svg)
+            let is_shown = |truth: &Truth| truth.name == outcome.entry.picture;
+            if truths.iter().take(SHOWN).any(is_shown) {
+                robust::show(&mut gallery, outcome)?;
+            }
+            told(files, outcome)
         })?;
-        files.text("robust.csv", &report.table().csv())?;
-        files.text("robust.md", &report.markdown())?;
-        files.text("robust.json", &json(&report)?)?;
-        files.picture("robust.png", &gallery.sheet()?)?;
+        let tables = [report.table().csv(), report.markdown(), json(&report)?];
+        publish(files, "robust", &tables, &[], gallery)?;
         say_missing(&missing_for_drawings(), verbosity);
         Ok(report.failures())
     }

@@ -1,8 +1,7 @@
 //! The report as tables and as Markdown.
 
-use super::{ParetoEntry, ParetoReport, Spread, optional};
-use crate::report::Table;
-use strokefit::metrics::Quality;
+use super::{Comparison, ParetoEntry, ParetoReport, Spread, optional};
+use crate::report::{Column, Table};
 
 /// Note on the meaning of the figures.
 pub(super) const NOTE: &str = "Fidelity compares resvg's render of the file with the picture, over 8-bit RGB on white. \
@@ -14,52 +13,31 @@ pub(super) const NOTE: &str = "Fidelity compares resvg's render of the file with
 impl ParetoReport {
     /// One row per drawing.
     pub fn table(&self) -> Table {
-        let mut table = Table::new(&HEAD);
-        self.entries
-            .iter()
-            .for_each(|entry| table.row(cells(entry)));
-        table
+        Table::of(&COLUMNS, &self.entries)
     }
 
     /// One row per comparison.
     pub fn comparison_table(&self) -> Table {
-        let mut table = Table::new(&["picture", "comparison", "figure", "verdict"]);
-        for c in &self.comparisons {
-            table.row([&c.picture, &c.claim, &c.figure, &c.holds.word().to_owned()]);
-        }
-        table
+        let columns: [Column<Comparison>; 4] = [
+            ("picture", |c| c.picture.clone()),
+            ("comparison", |c| c.claim.clone()),
+            ("figure", |c| c.figure.clone()),
+            ("verdict", |c| c.holds.word().to_owned()),
+        ];
+        Table::of(&columns, &self.comparisons)
     }
 
     /// One row per set of seeds.
     pub fn spread_table(&self) -> Table {
-        let mut table = Table::new(&[
-            "picture",
-            "drawing",
-            "seeds",
-            "PSNR dB",
-            "CPU s",
-            "gzip bytes",
-        ]);
-        for spread in &self.spreads {
-            let Spread {
-                psnr_db,
-                cpu_s,
-                gzip_bytes,
-                ..
-            } = spread;
-            let pair = |[mean, deviation]: [f64; 2], digits| {
-                format!("{mean:.digits$} ± {deviation:.digits$}")
-            };
-            table.row([
-                spread.picture.clone(),
-                spread.label.clone(),
-                spread.seeds.to_string(),
-                pair(*psnr_db, 2),
-                pair(*cpu_s, 2),
-                pair(*gzip_bytes, 0),
-            ]);
-        }
-        table
+        let columns: [Column<Spread>; 6] = [
+            ("picture", |s| s.picture.clone()),
+            ("drawing", |s| s.label.clone()),
+            ("seeds", |s| s.seeds.to_string()),
+            ("PSNR dB", |s| pair(s.psnr_db, 2)),
+            ("CPU s", |s| pair(s.cpu_s, 2)),
+            ("gzip bytes", |s| pair(s.gzip_bytes, 0)),
+        ];
+        Table::of(&columns, &self.spreads)
     }
 
     /// Everything as Markdown.
@@ -88,47 +66,31 @@ impl ParetoReport {
     }
 }
 
-const HEAD: [&str; 16] = [
-    "picture",
-    "family",
-    "settings",
-    "strokes",
-    "psnr_db",
-    "ssim",
-    "ssimulacra2",
-    "l1",
-    "cpu_s",
-    "wall_s",
-    "peak_mib",
-    "svg_bytes",
-    "gzip_bytes",
-    "agreement_db",
-    "seed",
-    "failure",
+const COLUMNS: [Column<ParetoEntry>; 16] = [
+    ("picture", |e| e.picture.clone()),
+    ("family", |e| e.family.clone()),
+    ("settings", |e| e.label.clone()),
+    ("strokes", |e| optional(e.strokes.map(|n| n as f64), 0)),
+    ("psnr_db", |e| optional(e.fidelity.map(|q| q.psnr_db), 2)),
+    ("ssim", |e| optional(e.fidelity.map(|q| q.ssim), 4)),
+    ("ssimulacra2", |e| {
+        optional(e.fidelity.map(|q| q.ssimulacra2), 1)
+    }),
+    ("l1", |e| optional(e.fidelity.map(|q| q.l1), 5)),
+    ("cpu_s", |e| optional(e.cpu_s, 2)),
+    ("wall_s", |e| optional(e.wall_s, 2)),
+    ("peak_mib", |e| {
+        let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
+        optional(e.peak_rss_bytes.map(mib), 0)
+    }),
+    ("svg_bytes", |e| e.svg_bytes.to_string()),
+    ("gzip_bytes", |e| e.gzip_bytes.to_string()),
+    ("agreement_db", |e| optional(e.agreement_db, 1)),
+    ("seed", |e| optional(e.seed.map(|seed| seed as f64), 0)),
+    ("failure", |e| e.failure.clone().unwrap_or_default()),
 ];
 
-fn cells(entry: &ParetoEntry) -> [String; 16] {
-    let quality = |f: fn(Quality) -> f64| entry.fidelity.map(f);
-    let mib = entry
-        .peak_rss_bytes
-        .map(|bytes| bytes as f64 / f64::from(1 << 20));
-    let whole = |v: Option<f64>| optional(v, 0);
-    [
-        entry.picture.clone(),
-        entry.family.clone(),
-        entry.label.clone(),
-        whole(entry.strokes.map(|n| n as f64)),
-        optional(quality(|q| q.psnr_db), 2),
-        optional(quality(|q| q.ssim), 4),
-        optional(quality(|q| q.ssimulacra2), 1),
-        optional(quality(|q| q.l1), 5),
-        optional(entry.cpu_s, 2),
-        optional(entry.wall_s, 2),
-        optional(mib, 0),
-        entry.svg_bytes.to_string(),
-        entry.gzip_bytes.to_string(),
-        optional(entry.agreement_db, 1),
-        whole(entry.seed.map(|seed| seed as f64)),
-        entry.failure.clone().unwrap_or_default(),
-    ]
+/// A mean and its standard deviation.
+fn pair([mean, deviation]: [f64; 2], digits: usize) -> String {
+    format!("{mean:.digits$} ± {deviation:.digits$}")
 }

@@ -1,16 +1,15 @@
 //! Findings of `strokefit-rig inverse` about drawings of any kind: how much of a drawing is found again, in how many
 //! numbers.
 
-mod charts;
 mod summary;
 
 use serde::{Deserialize, Serialize};
 
-pub use charts::charts;
-
-use super::cases::{self, Case, Cases};
-use super::statistics::optional;
-use super::{Damage, Table};
+use super::cases::{Case, Cases};
+use super::charts::{Axis, Value, against_size, elements};
+use super::statistics::{median, optional};
+use super::{Column, Damage, Table};
+use strokefit::Result;
 
 /// All cases of a run.
 pub type ShapesReport = Cases<ShapesEntry>;
@@ -84,30 +83,34 @@ impl ShapesEntry {
         of(&self.found) as f64 / of(&self.original).max(1) as f64
     }
 
-    /// The name of the SVG that was found.
-    pub fn svg_name(&self) -> String {
-        let (damage, by) = (self.damage.suffix(), cases::suffix(&self.by));
-        format!("{}-{}{damage}{by}.svg", self.drawing, self.side_px)
-    }
-
-    /// The picture in words.
-    fn kind(&self) -> String {
-        self.damage.of(self.side_px)
-    }
-
     /// Fidelity beyond that of the artist's file, dB.
     fn beyond_artist_db(&self) -> Option<f64> {
         let (truth, artist) = self.truth_db.zip(self.artist_db)?;
         Some(truth - artist).filter(|db| db.is_finite())
     }
+}
 
-    /// The line of standard output, ending in the verdict.
-    pub fn line(&self) -> String {
-        let case = (&*self.drawing, &*self.kind(), &*self.by);
-        cases::line(self, case, || self.words())
+impl Case for ShapesEntry {
+    fn name(&self) -> &str {
+        &self.drawing
     }
 
-    /// Words for what was made.
+    fn by(&self) -> &str {
+        &self.by
+    }
+
+    fn side_px(&self) -> usize {
+        self.side_px
+    }
+
+    fn damage(&self) -> Damage {
+        self.damage
+    }
+
+    fn elements(&self) -> [usize; 2] {
+        [self.found.elements, self.original.elements]
+    }
+
     fn words(&self) -> String {
         let edges = self
             .displacement_px
@@ -126,9 +129,7 @@ impl ShapesEntry {
             self.delta_e.unwrap_or(f64::NAN)
         )
     }
-}
 
-impl Case for ShapesEntry {
     fn failure(&self) -> Option<&str> {
         self.failure.as_deref()
     }
@@ -157,78 +158,73 @@ impl ShapesReport {
 
     /// One row per case.
     pub fn table(&self) -> Table {
-        let mut table = Table::new(&HEAD);
-        for entry in &self.entries {
-            table.row(cells(entry));
+        Table::of(&COLUMNS, &self.entries)
+    }
+
+    /// Name and SVG of each plot.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Picture`](strokefit::ErrorKind::Picture) when one cannot be drawn.
+    pub fn charts(&self) -> Result<Vec<(&'static str, String)>> {
+        let made = self.made();
+        let ratio = "median ÷ artist's";
+        let by_size: [(&str, Axis, Value<ShapesEntry>); 4] = [
+            ("parameters", ("parameters", ratio, true), |cases| {
+                Some(median(
+                    cases.iter().map(|e| e.ratio(|c| c.parameters)).collect(),
+                ))
+            }),
+            ("bytes", ("bytes", ratio, true), |cases| {
+                Some(median(cases.iter().map(|e| e.ratio(|c| c.bytes)).collect()))
+            }),
+            ("db", ("median PSNR", "dB", false), |cases| {
+                let db = cases.iter().filter_map(|e| e.truth_db);
+                Some(median(db.filter(|db| db.is_finite()).collect()))
+            }),
+            (
+                "delta",
+                ("ΔE00 at 1,024 px", "mean of families", false),
+                summary::mean_of_families,
+            ),
+        ];
+        let mut plots = vec![("elements", elements(&made, false).svg()?)];
+        for (name, axes, value) in by_size {
+            plots.push((name, against_size(&made, axes, value).svg()?));
         }
-        table
+        Ok(plots)
     }
 }
 
-const HEAD: [&str; 28] = [
-    "drawing",
-    "family",
-    "side_px",
-    "damage",
-    "by",
-    "drawn_elements",
-    "found_elements",
-    "drawn_rings",
-    "found_rings",
-    "drawn_points",
-    "found_points",
-    "drawn_parameters",
-    "found_parameters",
-    "drawn_numbers",
-    "found_numbers",
-    "drawn_bytes",
-    "found_bytes",
-    "psnr_db",
-    "truth_db",
-    "artist_db",
-    "delta_e00",
-    "displacement_px",
-    "purity",
-    "coverage",
-    "locality",
-    "wall_s",
-    "svg",
-    "failure",
+const COLUMNS: [Column<ShapesEntry>; 28] = [
+    ("drawing", |e| e.drawing.clone()),
+    ("family", |e| e.family.clone()),
+    ("side_px", |e| e.side_px.to_string()),
+    ("damage", |e| e.damage.to_string()),
+    ("by", |e| e.by.clone()),
+    ("drawn_elements", |e| e.original.elements.to_string()),
+    ("found_elements", |e| e.found.elements.to_string()),
+    ("drawn_rings", |e| e.original.rings.to_string()),
+    ("found_rings", |e| e.found.rings.to_string()),
+    ("drawn_points", |e| e.original.points.to_string()),
+    ("found_points", |e| e.found.points.to_string()),
+    ("drawn_parameters", |e| e.original.parameters.to_string()),
+    ("found_parameters", |e| e.found.parameters.to_string()),
+    ("drawn_numbers", |e| e.original.numbers.to_string()),
+    ("found_numbers", |e| e.found.numbers.to_string()),
+    ("drawn_bytes", |e| e.original.bytes.to_string()),
+    ("found_bytes", |e| e.found.bytes.to_string()),
+    ("psnr_db", |e| optional(e.psnr_db, 2)),
+    ("truth_db", |e| optional(e.truth_db, 2)),
+    ("artist_db", |e| optional(e.artist_db, 2)),
+    ("delta_e00", |e| optional(e.delta_e, 3)),
+    ("displacement_px", |e| optional(e.displacement_px, 4)),
+    ("purity", |e| optional(e.belonging.map(|b| b.purity), 3)),
+    ("coverage", |e| optional(e.belonging.map(|b| b.coverage), 3)),
+    ("locality", |e| optional(e.belonging.map(|b| b.locality), 3)),
+    ("wall_s", |e| optional(e.wall_s, 3)),
+    ("svg", Case::svg_name),
+    ("failure", |e| e.failure.clone().unwrap_or_default()),
 ];
-
-fn cells(entry: &ShapesEntry) -> Vec<String> {
-    let mut cells = vec![
-        entry.drawing.clone(),
-        entry.family.clone(),
-        entry.side_px.to_string(),
-        entry.damage.to_string(),
-        entry.by.clone(),
-    ];
-    let (drawn, found) = (entry.original, entry.found);
-    let counts = [
-        [drawn.elements, found.elements],
-        [drawn.rings, found.rings],
-        [drawn.points, found.points],
-        [drawn.parameters, found.parameters],
-        [drawn.numbers, found.numbers],
-        [drawn.bytes, found.bytes],
-    ];
-    cells.extend(counts.as_flattened().iter().map(usize::to_string));
-    cells.extend([
-        optional(entry.psnr_db, 2),
-        optional(entry.truth_db, 2),
-        optional(entry.artist_db, 2),
-        optional(entry.delta_e, 3),
-        optional(entry.displacement_px, 4),
-        optional(entry.belonging.map(|b| b.purity), 3),
-        optional(entry.belonging.map(|b| b.coverage), 3),
-        optional(entry.belonging.map(|b| b.locality), 3),
-        optional(entry.wall_s, 3),
-        entry.svg_name(),
-        entry.failure.clone().unwrap_or_default(),
-    ]);
-    cells
-}
 
 #[cfg(test)]
 pub(in crate::report) mod tests {
@@ -305,5 +301,27 @@ pub(in crate::report) mod tests {
         assert!(csv.lines().nth(1).unwrap().starts_with(row), "{csv}");
         let text = serde_json::to_string(&report).unwrap();
         assert_eq!(serde_json::from_str::<ShapesReport>(&text).unwrap(), report);
+    }
+
+    #[test]
+    fn all_who_found_drawings_have_their_lines() {
+        let noisy = ShapesEntry {
+            damage: Damage::Noise(8),
+            ..found("strokefit", 128, 9)
+        };
+        let entries = vec![
+            found("strokefit", 128, 2),
+            found("strokefit", 256, 3),
+            found("potrace", 128, 4),
+            noisy,
+        ];
+        let charts = ShapesReport::new(entries).charts().unwrap();
+        let names: Vec<_> = charts.iter().map(|(name, _)| *name).collect();
+        assert_eq!(names, ["elements", "parameters", "bytes", "db", "delta"]);
+        let has = |chart: usize, word| charts[chart].1.contains(word);
+        assert!(has(0, "as drawn") && has(0, "potrace") && !has(0, "noise"));
+        assert!(has(1, "strokefit noise 8") && has(2, "potrace"));
+        let marks = |chart: usize| charts[chart].1.matches("<circle").count();
+        assert_eq!([marks(0), marks(1)], [3, 4]);
     }
 }

@@ -1,6 +1,6 @@
 //! Medians over drawings.
 
-use super::super::cases::OWN;
+use super::super::cases::{Case, grouped};
 use super::super::statistics::{distinct, mean, median, optional};
 use super::super::{Damage, Table};
 use super::{Belonging, Contents, ShapesEntry};
@@ -28,19 +28,13 @@ const HEAD: [&str; 16] = [
 /// One row for each size and damage, and who found the drawings, with the growth of numbers by the damage.
 pub(super) fn by_picture(made: &[&ShapesEntry]) -> Table {
     let mut table = Table::new(&[&["pictures", "by"][..], &HEAD, &["growth, median"]].concat());
-    for kind in distinct(made.iter().map(|e| e.kind())) {
-        for by in distinct(made.iter().map(|e| e.by.clone())) {
-            let cases = chosen(made, |e| e.kind() == kind && e.by == by);
-            if cases.is_empty() {
-                continue;
-            }
-            let growth: Vec<f64> = cases.iter().filter_map(|e| growth(e, made)).collect();
-            let growth = Some(median(growth)).filter(|growth| growth.is_finite());
-            let mut row = vec![kind.clone(), by];
-            row.extend(summed_up(&cases));
-            row.push(optional(growth, 2));
-            table.row(row);
-        }
+    for (kind, by, cases) in grouped(made, Case::kind, |e| e.by.clone()) {
+        let growth: Vec<f64> = cases.iter().filter_map(|e| growth(e, made)).collect();
+        let growth = Some(median(growth)).filter(|growth| growth.is_finite());
+        let mut row = vec![kind, by];
+        row.extend(summed_up(&cases));
+        row.push(optional(growth, 2));
+        table.row(row);
     }
     table
 }
@@ -48,26 +42,13 @@ pub(super) fn by_picture(made: &[&ShapesEntry]) -> Table {
 /// One row for each family, size and damage: what we made.
 pub(super) fn by_family(made: &[&ShapesEntry]) -> Table {
     let mut table = Table::new(&[&["family", "pictures"][..], &HEAD].concat());
-    let own = chosen(made, |e| e.by == OWN);
-    for kind in distinct(own.iter().map(|e| e.kind())) {
-        for family in distinct(own.iter().map(|e| e.family.clone())) {
-            let cases = chosen(&own, |e| e.kind() == kind && e.family == family);
-            if !cases.is_empty() {
-                let mut row = vec![family, kind.clone()];
-                row.extend(summed_up(&cases));
-                table.row(row);
-            }
-        }
+    let own: Vec<&ShapesEntry> = made.iter().copied().filter(|e| e.is_own()).collect();
+    for (kind, family, cases) in grouped(&own, Case::kind, |e| e.family.clone()) {
+        let mut row = vec![family, kind];
+        row.extend(summed_up(&cases));
+        table.row(row);
     }
     table
-}
-
-fn chosen<'a>(
-    made: &[&'a ShapesEntry],
-    which: impl Fn(&ShapesEntry) -> bool,
-) -> Vec<&'a ShapesEntry> {
-    let chosen = made.iter().copied().filter(|entry| which(entry));
-    chosen.collect()
 }
 
 fn summed_up(cases: &[&ShapesEntry]) -> Vec<String> {
@@ -125,6 +106,7 @@ fn growth(entry: &ShapesEntry, made: &[&ShapesEntry]) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::super::cases::OWN;
     use super::super::tests::found;
     use super::*;
 

@@ -2,14 +2,11 @@
 //!
 //! Other programs trace the same pictures, where they are installed.
 
-mod gallery;
-
 use std::time::Instant;
 
-pub use gallery::Gallery;
-
 use super::damages::{common_colors, damaged};
-use super::drawings::{self, record};
+use super::drawings::{self, attempt, record};
+use super::gallery::Gallery;
 use super::peers::TunedPeer;
 use super::shapes::contents;
 use crate::report::Damage;
@@ -18,7 +15,7 @@ use crate::report::robust::{RobustEntry, RobustReport};
 use strokefit::fit::{Config, Fitter};
 use strokefit::image::Image;
 use strokefit::metrics::psnr;
-use strokefit::{Error, Result, verify};
+use strokefit::{Result, verify};
 
 /// A clean picture.
 #[derive(Debug, Clone)]
@@ -47,6 +44,22 @@ impl Truth {
 
 /// A result as it comes.
 pub type Outcome<'a> = drawings::Outcome<'a, RobustEntry>;
+
+/// Shows a result in a gallery: the damaged picture, and the drawing.
+///
+/// # Errors
+/// As [`verify::render`].
+pub fn show(gallery: &mut Gallery, outcome: Outcome<'_>) -> Result<()> {
+    let entry = outcome.entry;
+    if entry.failure.is_some() {
+        return Ok(());
+    }
+    let input_db = entry.input_db.unwrap_or(f64::NAN);
+    let db = entry.truth_db.unwrap_or(f64::NAN);
+    let title = format!("{}, {input_db:.1} dB", entry.damage);
+    let caption = format!("{} elements, {db:.1} dB", entry.found.elements);
+    gallery.show(outcome, &title, &caption)
+}
 
 /// Draws all pictures with each damage and has `peers` trace them, telling each result as it comes.
 ///
@@ -130,10 +143,13 @@ impl<'a> Case<'a> {
             };
             Ok((entry, svg))
         };
-        draw().and_then(judge).unwrap_or_else(|error: Error| {
-            let failure = Some(error.to_string());
-            (RobustEntry { failure, ..entry }, String::new())
-        })
+        attempt(
+            || draw().and_then(judge),
+            |failure| RobustEntry {
+                failure,
+                ..entry.clone()
+            },
+        )
     }
 }
 

@@ -1,14 +1,12 @@
 //! Findings of `strokefit-rig inverse`: how much of a drawing is found again in its picture.
 
-mod charts;
-
 use serde::{Deserialize, Serialize};
 
-pub use charts::charts;
-
-use super::cases::{self, Case, Cases};
-use super::statistics::{distinct, mean, median, optional};
-use super::{Damage, Table};
+use super::cases::{Case, Cases, grouped};
+use super::charts::{against_size, elements};
+use super::statistics::{mean, median, optional};
+use super::{Column, Damage, Table};
+use strokefit::Result;
 
 /// All cases of a run.
 pub type InverseReport = Cases<InverseEntry>;
@@ -64,15 +62,22 @@ impl InverseEntry {
     pub fn ratio(&self) -> f64 {
         self.found.elements as f64 / self.original.elements.max(1) as f64
     }
+}
 
-    /// The name of the SVG that was found.
-    pub fn svg_name(&self) -> String {
-        let (damage, by) = (self.damage().suffix(), cases::suffix(&self.by));
-        format!("{}-{}{damage}{by}.svg", self.drawing, self.side_px)
+impl Case for InverseEntry {
+    fn name(&self) -> &str {
+        &self.drawing
     }
 
-    /// Damage of the picture.
-    pub fn damage(&self) -> Damage {
+    fn by(&self) -> &str {
+        &self.by
+    }
+
+    fn side_px(&self) -> usize {
+        self.side_px
+    }
+
+    fn damage(&self) -> Damage {
         match (self.jpeg, self.noise) {
             (Some(quality), _) => Damage::Jpeg(quality),
             (None, Some(levels)) => Damage::Noise(levels),
@@ -80,18 +85,10 @@ impl InverseEntry {
         }
     }
 
-    /// The picture in words: its size and damage.
-    fn kind(&self) -> String {
-        self.damage().of(self.side_px)
+    fn elements(&self) -> [usize; 2] {
+        [self.found.elements, self.original.elements]
     }
 
-    /// The line of standard output, ending in the verdict.
-    pub fn line(&self) -> String {
-        let case = (&*self.drawing, &*self.kind(), &*self.by);
-        cases::line(self, case, || self.words())
-    }
-
-    /// Words for what was made.
     fn words(&self) -> String {
         let apart = self.mean_px.zip(self.largest_px);
         let apart = apart.map_or_else(
@@ -109,9 +106,7 @@ impl InverseEntry {
             self.psnr_db.unwrap_or(f64::NAN)
         )
     }
-}
 
-impl Case for InverseEntry {
     fn failure(&self) -> Option<&str> {
         self.failure.as_deref()
     }
@@ -141,64 +136,58 @@ impl InverseReport {
             "centre lines off by, px, mean",
             "s, median",
         ]);
-        for kind in distinct(self.entries.iter().map(InverseEntry::kind)) {
-            for by in distinct(self.entries.iter().map(|entry| entry.by.clone())) {
-                let made = self.made().into_iter();
-                let made = made.filter(|e| e.kind() == kind && e.by == by);
-                table.row(summed_up(&kind, &by, &made.collect::<Vec<_>>()));
-            }
+        for (kind, by, made) in grouped(&self.made(), Case::kind, |e| e.by.clone()) {
+            table.row(summed_up(&kind, &by, &made));
         }
         table
     }
 
     /// One row per case.
     pub fn table(&self) -> Table {
-        let mut table = Table::new(&[
-            "drawing",
-            "side_px",
-            "jpeg",
-            "by",
-            "drawn_elements",
-            "found_elements",
-            "drawn_lines",
-            "found_lines",
-            "drawn_points",
-            "found_points",
-            "drawn_bytes",
-            "found_bytes",
-            "psnr_db",
-            "mean_px",
-            "largest_px",
-            "wall_s",
-            "failure",
-        ]);
-        for entry in &self.entries {
-            table.row([
-                entry.drawing.clone(),
-                entry.side_px.to_string(),
-                entry
-                    .jpeg
-                    .map(|quality| quality.to_string())
-                    .unwrap_or_default(),
-                entry.by.clone(),
-                entry.original.elements.to_string(),
-                entry.found.elements.to_string(),
-                entry.original.lines.to_string(),
-                entry.found.lines.to_string(),
-                entry.original.points.to_string(),
-                entry.found.points.to_string(),
-                entry.original.bytes.to_string(),
-                entry.found.bytes.to_string(),
-                optional(entry.psnr_db, 2),
-                optional(entry.mean_px, 3),
-                optional(entry.largest_px, 2),
-                optional(entry.wall_s, 3),
-                entry.failure.clone().unwrap_or_default(),
-            ]);
-        }
-        table
+        Table::of(&COLUMNS, &self.entries)
+    }
+
+    /// Name and SVG of each plot: `elements`, `db` and `bytes`.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Picture`](strokefit::ErrorKind::Picture) when one cannot be drawn.
+    pub fn charts(&self) -> Result<Vec<(&'static str, String)>> {
+        let made = self.made();
+        let db = against_size(&made, ("mean PSNR", "dB", false), |cases| {
+            let finite = cases.iter().filter_map(|e| e.psnr_db);
+            mean(&finite.filter(|db| db.is_finite()).collect::<Vec<_>>())
+        });
+        let bytes = against_size(&made, ("median bytes", "bytes", true), |cases| {
+            Some(median(cases.iter().map(|e| e.found.bytes as f64).collect()))
+        });
+        let elements = elements(&made, true);
+        Ok(vec![
+            ("elements", elements.svg()?),
+            ("db", db.svg()?),
+            ("bytes", bytes.svg()?),
+        ])
     }
 }
+
+const COLUMNS: [Column<InverseEntry>; 17] = [
+    ("drawing", |e| e.drawing.clone()),
+    ("side_px", |e| e.side_px.to_string()),
+    ("jpeg", |e| optional(e.jpeg.map(f64::from), 0)),
+    ("by", |e| e.by.clone()),
+    ("drawn_elements", |e| e.original.elements.to_string()),
+    ("found_elements", |e| e.found.elements.to_string()),
+    ("drawn_lines", |e| e.original.lines.to_string()),
+    ("found_lines", |e| e.found.lines.to_string()),
+    ("drawn_points", |e| e.original.points.to_string()),
+    ("found_points", |e| e.found.points.to_string()),
+    ("drawn_bytes", |e| e.original.bytes.to_string()),
+    ("found_bytes", |e| e.found.bytes.to_string()),
+    ("psnr_db", |e| optional(e.psnr_db, 2)),
+    ("mean_px", |e| optional(e.mean_px, 3)),
+    ("largest_px", |e| optional(e.largest_px, 2)),
+    ("wall_s", |e| optional(e.wall_s, 3)),
+    ("failure", |e| e.failure.clone().unwrap_or_default()),
+];
 
 /// The cells of the summary for cases of one kind.
 fn summed_up(kind: &str, by: &str, cases: &[&InverseEntry]) -> [String; 10] {
@@ -295,6 +284,24 @@ mod tests {
         assert_eq!(report.failures(), 1);
         let summary = report.summary().csv();
         assert!(summary.contains("48 px,potrace,1,2.00,"), "{summary}");
+    }
+
+    #[test]
+    fn all_who_found_drawings_have_their_lines() {
+        let report = InverseReport::new(vec![
+            found(OWN, 48, None, 2),
+            found(OWN, 96, None, 3),
+            found(OWN, 48, Some(75), 9),
+            found("potrace", 48, None, 6),
+        ]);
+        let charts = report.charts().unwrap();
+        let names: Vec<_> = charts.iter().map(|(name, _)| *name).collect();
+        assert_eq!(names, ["elements", "db", "bytes"]);
+        let has = |chart: usize, word| charts[chart].1.contains(word);
+        assert!(has(0, "as drawn") && has(0, "potrace") && !has(0, "JPEG"));
+        assert!(has(1, "strokefit JPEG 75") && has(2, "potrace"));
+        let marks = |chart: usize| charts[chart].1.matches("<circle").count();
+        assert_eq!([marks(0), marks(1)], [3, 4]);
     }
 
     #[test]
