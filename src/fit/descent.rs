@@ -182,11 +182,14 @@ impl Descent {
         if self.step >= iterations {
             return None;
         }
+        // Two clocks, and the later one counts: iterations, and a limited time if it runs out first.
         let by_count = self.step as f32 / iterations as f32;
         let left = (until - self.used_before).max(f32::MIN_POSITIVE);
         let by_time = (timer.used() - self.used_before) / left;
+        // After a request to stop, the time that is left is spread over the share 1 − from of the course that was still to come.
         let from = self.hurried_from.unwrap_or(0.0);
         let by_time = from + (1.0 - from) * by_time;
+        // The time is used up: whatever follows this descent has to hurry, too.
         if by_time >= 1.0 {
             timer.hurry();
             return None;
@@ -220,11 +223,13 @@ impl Descent {
         let jitter = jitter.filter(|jitter| jitter.begins_by(done));
         let still = jitter.map(|jitter| jitter.apply(drawing.free_mut(), step));
         drawing.differentiate::<false>(edge, aim.map(|aim| aim.targets), &mut self.gradients);
+        // The step starts from the strokes' own places; the gradient alone was taken beside them.
         if let Some(still) = still {
             drawing.free_mut().numbers_mut().copy_from_slice(&still);
         }
         // A time limit may have shortened the course.
         let by_time = course.joint.is_some() || self.hurried_from.is_some();
+        // So step sizes still end at their last value, although some iterations of the schedule are skipped.
         let at = if by_time {
             (done * course.iterations as f32) as usize
         } else {
@@ -235,17 +240,22 @@ impl Descent {
         let bounds = drawing.bounds;
         let strokes = drawing.free_mut();
         let slopes = &mut self.gradients.strokes;
+        // Ties first: a projection onto a form must see the derivative of the whole group.
         self.ties.gather(slopes);
         self.held.project(strokes, slopes);
         let (adam, scales) = (&mut self.adam, &self.scales);
+        // Adam scales each number by its own second moment, which would turn the step away from the gradient. Where points have to
+        // move as one, they share the moment.
         match squares(strokes, slopes, &self.held) {
             None => adam.step_scaled(strokes.numbers_mut(), slopes, rate, scales),
             Some(squares) => {
                 adam.step_with_squares(strokes.numbers_mut(), slopes, rate, scales, &squares);
             }
         }
+        // Bounds clamp single numbers and may break a form, so forms are restored after them.
         strokes.change(|_, stroke| bounds.apply(stroke));
         self.held.restore(strokes);
+        // The canvas of frozen strokes has the background in it, so it moves only while none is frozen.
         if course.joint.is_some() && drawing.is_thawed() && !drawing.background_fixed {
             let rate = rate * course.rates.color;
             let (slope, background) = (&self.gradients.backdrop, &mut self.background);
@@ -295,6 +305,7 @@ fn squares(strokes: &Strokes, slopes: &[f32], held: &Held) -> Option<Vec<f32>> {
         let start = strokes.range(i).start;
         let points = &mut squares[start..start + 2 * strokes.get(i).points.len()];
         for point in points.as_chunks_mut::<2>().0 {
+            // Invariant under rotation: the step of a point keeps the direction of its gradient.
             *point = [point[0] + point[1]; 2];
         }
     }
@@ -320,6 +331,7 @@ fn scales(rates: &Rates, drawing: &Drawing) -> Vec<f32> {
         if stroke.is_area() {
             scales.resize(scales.len() + 2 * stroke.points.len(), area);
             let color = color * AREA_COLOR;
+            // Radius, three channels, opacity: an area has no radius.
             scales.extend([0.0, color, color, color, 0.0]);
             continue;
         }

@@ -134,21 +134,25 @@ pub(super) struct Room {
 /// left, what gains most takes the place of what costs least, as long as that gains something.
 pub(super) fn choose(mut edits: Vec<Edit>, room: Room) -> Vec<Edit> {
     edits.sort_by(|a, b| b.surplus().total_cmp(&a.surplus()));
+    // What pays without growth comes first: it needs no room, and a loss makes some.
     let pays = |edit: &Edit| edit.surplus() > 0.0;
     let (adding, others): (Vec<_>, Vec<_>) = edits.into_iter().partition(|edit| edit.growth > 0);
     let (paying, mut leaving): (Vec<_>, Vec<_>) = others.into_iter().partition(pays);
     let mut touched = Touched::default();
     let mut chosen = paying;
     chosen.retain(|edit| touched.takes(edit));
+    // Additions fill the room and what the losses freed. The iterator keeps the rest of them for the exchanges.
     let freed: usize = chosen.iter().map(|edit| edit.growth.unsigned_abs()).sum();
     let adding = adding.into_iter().filter(pays);
     let adding: Vec<Edit> = adding.filter(|edit| touched.allows(edit)).collect();
     let mut adding = adding.into_iter().take(room.most);
     let coming = adding.by_ref().take(room.free.saturating_add(freed));
     chosen.extend(coming.filter(|edit| touched.takes(edit)));
-    // Exchanges.
+    // Exchanges, where the room is used up.
+    // A loss that doesn't pay by itself still pays in exchange for an addition that gains more than it costs.
     leaving.retain(|edit| edit.growth < 0);
     leaving.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    // The best addition meets the cheapest loss, the next best the next cheapest: once a pair gains nothing, no later one does.
     for (new, old) in adding.zip(leaving).take(room.swaps) {
         if new.gain + old.gain <= 0.0 {
             break;
@@ -218,13 +222,16 @@ pub(super) struct Tried {
 /// allow. All that are foreseen to pay are tried at once and, where the sum lies, each half of them. What may not pay is
 /// then tried one by one.
 pub(super) fn apply_priced(drawing: &mut Drawing, edits: Vec<Edit>) -> Tried {
+    // The loss is a mean over pixels and channels, prices are sums.
     let values = 3.0 * drawing.pixels() as f64;
     let (before, mut error) = (drawing.marks(), drawing.mse());
     let mut taken: Vec<usize> = Vec::new();
     let (paying, others): (Vec<usize>, Vec<usize>) =
         (0..edits.len()).partition(|&i| edits[i].surplus() >= 0.0);
     let groups = std::iter::once(paying).chain(others.into_iter().map(|i| vec![i]));
+    // Each trial adds one group to all that were taken, so that interaction between edits is in the measured error.
     by_halves(groups.collect(), |group| {
+        // The indices of edits are those of the original marks, so every trial starts from them.
         let tried = [&taken[..], group].concat();
         drawing.set_marks(before.clone());
         drawing.apply(tried.iter().map(|&i| &edits[i]));
@@ -236,6 +243,7 @@ pub(super) fn apply_priced(drawing: &mut Drawing, edits: Vec<Edit>) -> Tried {
         }
         pays
     });
+    // The last trial may have been refused; the edits taken are applied once more.
     drawing.set_marks(before);
     let sources = drawing.apply(taken.iter().map(|&i| &edits[i]));
     taken.sort_unstable();
@@ -254,6 +262,7 @@ pub(super) fn apply_priced(drawing: &mut Drawing, edits: Vec<Edit>) -> Tried {
 /// Offers each group to `accepts` and, of what it refuses, each half, down to single ones.
 fn by_halves(mut groups: Vec<Vec<usize>>, mut accepts: impl FnMut(&[usize]) -> bool) {
     groups.retain(|group| !group.is_empty());
+    // A stack, whose top is the first group. Of two halves the first comes next, too, so that edits are tried in their order.
     groups.reverse();
     for _ in 0..TRIALS {
         let Some(group) = groups.pop() else { return };
@@ -285,6 +294,7 @@ impl Drawing {
                 (None, Change::Path { .. }) => {}
             }
         }
+        // Rebuild the marks from back to front. Each new number records its former index, so that the optimiser's moments follow.
         let (mut edited, mut of_stages, mut sources) = (Strokes::new(), Vec::new(), Vec::new());
         for (i, (stroke, changes)) in strokes.iter().zip(&changes).enumerate() {
             let range = strokes.range(i);
@@ -328,6 +338,7 @@ fn push_with_paths(strokes: &mut Strokes, stroke: StrokeRef<'_>, changes: &[&Cha
         let (points, off) = changed.unwrap_or((path.points, path.off));
         all_points.extend(points);
         all_off.extend(off);
+        // A ring is stored by the index at which it ends.
         rings.push(all_points.len() as u32);
     }
     strokes.push(StrokeRef {
