@@ -39,7 +39,7 @@ pub(super) fn layers(scene: &Scene, options: &WriteOptions) -> Vec<Layer> {
             objects::by_object(&marks, [scene.width, scene.height])
         }
     };
-    // An object is its marks in their order, which reading relies on.
+    // Objects are found by the order of marks: another order could give other objects when the file is written again.
     if options.group == Group::Object {
         return layers;
     }

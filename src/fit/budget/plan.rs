@@ -111,11 +111,13 @@ impl Plan {
         let count = match self.counts.get(step) {
             Some(&count) => count,
             None if self.open => {
+                // An open plan grows geometrically; the strokes of a base count as the stages that they would have been.
                 let count = FIRST as f64 * math::powi(GROWTH, (self.covered + step) as i32);
                 (count as usize).min(self.most.saturating_sub(before))
             }
             None => return None,
         };
+        // The side of the square that each stroke has to itself once the stage is drawn.
         let spacing = (self.pixels as f32 / (before + count).max(1) as f32).sqrt();
         (count > 0).then_some(PlannedStage {
             index,
@@ -132,6 +134,7 @@ fn counts(total: usize, stages: usize, growth: f64) -> Vec<usize> {
     let (mut counts, mut before, mut reached) = (Vec::new(), 0, 0.0);
     for weight in weights {
         reached += weight;
+        // Round the running sum, not each count: so the counts add up to `total`. Stages that round to none are left out.
         let after = (total as f64 * reached / whole).round() as usize;
         if after > before {
             counts.push(after - before);
@@ -149,10 +152,12 @@ fn rest(counts: &[usize], before: usize) -> Vec<usize> {
         let covered = count.min(there);
         there -= covered;
         carried += count - covered;
+        // A stage that is half done, or less, stays, and takes what earlier ones carried over.
         if covered * 2 <= count {
             rest.push(std::mem::take(&mut carried));
         }
     }
+    // The last stage has no next one to carry to.
     if carried > 0 {
         rest.push(carried);
     }

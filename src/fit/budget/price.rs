@@ -133,6 +133,8 @@ impl Price {
         let Some([error, wanted]) = self.errors.filter(|_| price > 0.0) else {
             return price;
         };
+        // Adding pays if counted(error) − counted(error − gain) ≥ price, which is solved for the gain. If even a perfect drawing
+        // would gain less, nothing does.
         let left = counted(error, wanted) - f64::from(price);
         uncounted(left, wanted).map_or(f32::INFINITY, |left| (error - left) as f32)
     }
@@ -142,6 +144,8 @@ impl Price {
         let Some([error, wanted]) = self.errors.filter(|_| price > 0.0) else {
             return price;
         };
+        // Removing pays if counted(error + worth) − counted(error) ≤ price. Below the quality a stroke may be worth more than its
+        // price and go: its error counts for less there.
         let without = counted(error, wanted) + f64::from(price);
         uncounted(without, wanted).map_or(0.0, |without| (without - error) as f32)
     }
@@ -208,6 +212,7 @@ impl Price {
         };
         // In the middle of the file's numbers: steps of some px, with one sign of two.
         let points = [[123.46, 78.91], [127.82, 74.57], [134.24, 76.35]];
+        // What the third point adds. At least 1, as it is a divisor.
         bytes(&points).saturating_sub(bytes(&points[..2])).max(1)
     }
 }
@@ -220,6 +225,7 @@ fn mse(psnr_db: f64) -> f64 {
 /// Counted part of a squared error; `wanted` is the one at the quality.
 fn counted(error: f64, wanted: f64) -> f64 {
     if error < wanted {
+        // The slope is error / wanted, so it joins the straight part at `wanted` in value and in slope.
         0.5 * (wanted + error * error / wanted)
     } else {
         error
@@ -230,6 +236,7 @@ fn counted(error: f64, wanted: f64) -> f64 {
 fn uncounted(count: f64, wanted: f64) -> Option<f64> {
     match 2.0 * count - wanted {
         _ if count >= wanted => Some(count),
+        // The inverse of ½(wanted + e² / wanted). No error counts less than ½ wanted.
         twice if twice >= 0.0 => Some((twice * wanted).sqrt()),
         _ => None,
     }

@@ -44,6 +44,7 @@ pub(in crate::fit) fn of(config: &Config, picture: &Image) -> Vec<Config> {
         Preset::Best => &[Preset::Draft, Preset::Balanced],
     };
     let mut rivals: Vec<Config> = shorter.iter().map(|&p| with(p, config.seed)).collect();
+    // Rivals with areas have rivals by strokes alone in turn.
     let by_strokes: Vec<Config> = rivals.iter().filter_map(by_strokes_alone).collect();
     rivals.extend(by_strokes);
     // Bytes decide which strokes stay, which is chance as well.
@@ -67,6 +68,7 @@ pub(in crate::fit) fn has_priced(config: &Config, picture: &Image) -> bool {
         return false;
     }
     let planned = budget::strokes(config, None, picture);
+    // Areas come from tracing, which needs points and no pens that draw lines.
     let may_trace = config.allows_points() && !config.pens_draw_lines();
     let by_areas = may_trace && config.marks != Marks::Strokes;
     planned.is_some_and(|strokes| strokes <= FEW) || by_areas && is_flat(picture)

@@ -55,6 +55,7 @@ pub(in crate::fit) fn relocate(
         edits.extend(paying.map(|c| {
             let stroke = Strokes::from_iter([&c.stroke]).get(0).to_mark();
             Edit {
+                // A candidate isn't fitted yet. The factor makes its gain comparable with the worth of fitted strokes.
                 gain: c.gain * relocation.gain,
                 growth: 1,
                 ..Edit::replacing(TOP, vec![stroke], 0.0)
@@ -65,6 +66,7 @@ pub(in crate::fit) fn relocate(
             most: usize::MAX,
             swaps: usize::MAX,
         };
+        // Not measured by trials: the descent that follows fits what was added.
         drawing.apply(&choose(edits, room))
     })
 }

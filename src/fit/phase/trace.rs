@@ -85,6 +85,7 @@ pub(super) fn paying(
     };
     let surfaces = surfaces.iter().zip(canvases);
     let residuals: Vec<_> = surfaces.map(|(s, canvas)| s.residual_of(canvas)).collect();
+    // Areas and strokes compete by their bytes alone; whether each is worth its price is asked below.
     let by_bytes = price.of_bytes_alone();
     let mut traced = trace(&residuals, tracing, marks, |mark| by_bytes.least_gain(mark));
     if config.opaque {
@@ -107,6 +108,7 @@ fn make_opaque(mark: &mut Mark) {
         Mark::Stroke(stroke) => (&mut stroke.color, &mut stroke.opacity),
         Mark::Area(area) => (&mut area.color, &mut area.opacity),
     };
+    // On black it looks like αc, on white like αc + 1 − α: the mean is ½ + α(c − ½).
     *color = color.map(|c| 0.5 + *opacity * (c - 0.5));
     *opacity = 1.0;
 }
@@ -151,9 +153,11 @@ pub(super) fn add(session: &mut Session<'_>, traced: Vec<Traced>) -> bool {
 /// The strokes of the `count` largest gains, in the order that they have.
 fn most_gaining(traced: Vec<Traced>, count: usize) -> Vec<Mark> {
     let mut order: Vec<usize> = (0..traced.len()).collect();
+    // Equal gains keep their order, so that the choice is the same on every machine.
     order.sort_by(|&i, &k| traced[k].gain.total_cmp(&traced[i].gain).then(i.cmp(&k)));
     let mut keep = vec![false; traced.len()];
     order.iter().take(count).for_each(|&i| keep[i] = true);
+    // In painting order again: marks above others have to stay above them.
     let kept = traced.into_iter().zip(keep).filter(|(_, keep)| *keep);
     kept.map(|(traced, _)| traced.mark).collect()
 }

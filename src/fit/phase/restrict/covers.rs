@@ -44,6 +44,7 @@ impl Covers {
         let mut others = self.marks.iter().enumerate().filter(|&(k, _)| k != i);
         let hides = |(k, other): (usize, &Cover)| {
             let is_stroke = other.rings.is_none();
+            // An opaque mark on top hides the border. So does a stroke of the same colour, above or below: the two run together.
             (k > i && other.is_opaque && other.has(p, 0.0))
                 || (is_stroke && other.is_like(&self.marks[i]) && other.has(p, MELTED))
         };

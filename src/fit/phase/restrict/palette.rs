@@ -37,6 +37,7 @@ pub(super) fn run(session: &mut Session<'_>) -> Result<Option<Palette>> {
     let rates = session.recipe.polish.rates.without_color();
     palette.recolor(&mut session.drawing, coloring);
     rounds::best(session, coloring.rounds, |session, round| {
+        // The last rounds relocate nothing, so that new strokes are fitted.
         if round + coloring.quiet_rounds < coloring.rounds.count {
             let limit = session.drawing.len();
             relocation::relocate(session, limit, |candidate| palette.adapt(candidate));
@@ -86,6 +87,7 @@ fn is_kept(
     };
     let area = drawing.pixel_area();
     let shown = area * preference.weight / drawing.pixels() as f32;
+    // Summed over three channels, as `dist2` is.
     let far2 = 3.0 * coloring.kept_distance * coloring.kept_distance;
     let is_far = |&c: &[u8; 3]| dist2(color(c), preference.color) > far2;
     shown >= coloring.kept_share && given.iter().all(is_far)
@@ -145,6 +147,7 @@ impl Palette {
         let wanted = [p[RED], p[RED + 1], p[RED + 2]];
         let color = self.nearest(wanted);
         let length = math::hypot(p[BX] - p[AX], p[BY] - p[AY]);
+        // A wrong colour of opacity α adds α²·|Δ|² to each of the pixels that the capsule covers.
         let area = p[RADIUS] * (2.0 * length + PI * p[RADIUS]);
         candidate.gain -= area * p[OPACITY] * p[OPACITY] * dist2(color, wanted);
         p[RED..OPACITY].copy_from_slice(&color);
@@ -159,6 +162,7 @@ impl Palette {
     /// Adds, one by one, the colour whose absence costs most, until there are `most` or none is missing.
     fn spread(&mut self, most: usize, preferences: &[PreferredColor]) {
         while self.colors.len() < most {
+            // The squared error that the nearest colour of the palette leaves. The first colour is that of the largest weight.
             let missed = |preference: &PreferredColor| match self.index(preference.color) {
                 Some(k) => preference.weight * dist2(self.colors[k], preference.color),
                 None => preference.weight,
@@ -171,6 +175,7 @@ impl Palette {
                 return;
             };
             let color = rounded(worst.color);
+            // Rounded to 8 bits it is in the palette already, so that no further colour would help.
             if self.colors.contains(&color) {
                 return;
             }
@@ -191,6 +196,7 @@ impl Palette {
                     *weight += preference.weight;
                 }
             }
+            // Lloyd's step. A colour that nothing is nearest to stays where it is.
             let moved = self.colors.iter_mut().zip(sums).skip(self.fixed);
             for (color, (sum, weight)) in moved.filter(|(_, (_, weight))| *weight > 0.0) {
                 *color = rounded(sum.map(|s| s / weight));
