@@ -106,11 +106,13 @@ fn filled(area: &Area, spacing: f64, pen: f64, degrees: f64) -> Result<Vec<Strok
     let mut paths = Vec::new();
     let mut rest = area.rings.clone();
     for (step, distance) in DISTANCES.into_iter().enumerate() {
+        // The pen's middle runs along the inset border, so that its outer edge meets the border itself.
         let inner = visible::inset(&rest, distance * radius)?;
         paths.extend(inner.iter().cloned());
         if step == 0 {
             paths.extend(lines(&inner, spacing, degrees));
         }
+        // What the pen doesn't reach from there is drawn nearer to the border in the next step.
         rest = visible::around(&rest, &inner, radius)?;
         rest.retain(|ring| visible::enclosed(ring) > SMALLEST * pen * pen);
         if rest.is_empty() {
@@ -129,6 +131,7 @@ fn filled(area: &Area, spacing: f64, pen: f64, degrees: f64) -> Result<Vec<Strok
 
 /// Straight lines at an angle within rings.
 fn lines(rings: &[Path], spacing: f64, degrees: f64) -> Vec<Path> {
+    // Turn the rings so that hatch lines are rows of constant v. The angle is negative because y points down.
     let (sin, cos) = math::sin_cos(-degrees.to_radians());
     let turned = |p: Point| [p.x * cos + p.y * sin, p.y * cos - p.x * sin];
     let back = |[u, v]: [f64; 2]| Point::new(u * cos - v * sin, u * sin + v * cos);
@@ -158,6 +161,7 @@ fn lines(rings: &[Path], spacing: f64, degrees: f64) -> Vec<Path> {
     };
     for row in 0..rows {
         let v = (first + row as f64) * spacing;
+        // Sorted, the borders that a row crosses lead in and out by turns, around holes too.
         let mut cuts = cuts(&sides, v);
         cuts.sort_by(f64::total_cmp);
         let pairs = cuts.as_chunks::<2>().0.iter();
@@ -179,6 +183,7 @@ fn lines(rings: &[Path], spacing: f64, degrees: f64) -> Vec<Path> {
 
 /// Where sides cross the row at `v`.
 fn cuts(sides: &[[[f64; 2]; 2]], v: f64) -> Vec<f64> {
+    // Half open: a corner on the row belongs to one of its two sides, so that the number of cuts is even.
     let crossing = |[a, b]: &&[[f64; 2]; 2]| (a[1] <= v) != (b[1] <= v);
     let at = |[a, b]: &[[f64; 2]; 2]| a[0] + (v - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
     sides.iter().filter(crossing).map(at).collect()

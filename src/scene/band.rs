@@ -43,6 +43,7 @@ impl Band {
             });
             moved.collect::<Vec<_>>()
         };
+        // Back along the other side: an open band is one ring, and of a closed one the inner ring becomes a hole.
         let (left, mut right) = (beside(1.0), beside(-1.0));
         right.reverse();
         match self.line.is_closed() {
@@ -71,6 +72,7 @@ impl Band {
             }
             points
         };
+        // Rings may begin anywhere and go either way: every start in both senses is a candidate, and the slenderest band wins.
         let senses = [points, reversed];
         let turns = senses
             .iter()
@@ -200,6 +202,7 @@ impl Band {
         let half = sides.len();
         let pair =
             |change: &[[f32; 2]], i: usize| [i, 2 * half - 1 - i].map(|k| math::point(change[k]));
+        // To first order the sides keep their directions: the line moves by the mean of a pair, the width by its difference.
         let width = width(&sides, |i| pair(change, i));
         for (i, &side) in sides.iter().enumerate() {
             let [a, b] = pair(change, i);
@@ -277,6 +280,7 @@ const LONG: f64 = 2.5;
 fn sides(points: &[PathPoint], is_closed: bool) -> Option<Vec<Vec2>> {
     let side = |[before, after]: [Vec2; 2]| {
         let whole = 1.0 + before.dot(after);
+        // A mitre: the bisector of both normals, 1 / cos(θ/2) long at a turn of θ, as |before + after| = 2 cos(θ/2).
         (whole > 0.01).then(|| (before + after).turn_90() / whole)
     };
     directions(points, is_closed)?
@@ -306,6 +310,7 @@ fn width(sides: &[Vec2], pair: impl Fn(usize) -> [Point; 2]) -> f64 {
     let (mut along, mut square) = (0.0, f64::MIN_POSITIVE);
     for (i, side) in sides.iter().enumerate() {
         let [a, b] = pair(i);
+        // A pair is the middle ± ½·width·side, so a − b = width·side, and width = Σ side·(a − b) / Σ |side|².
         along += side.dot(a - b);
         square += side.hypot2();
     }

@@ -21,12 +21,14 @@ impl Ground {
             let shadows = Vec::new();
             return (Background::None, Self { shade, shadows });
         }
+        // A transparent picture has no page, but may have shadows. An opaque one without paper has neither.
         let page = match picture.alpha() {
             Some(_) => Some(None),
             None => background::paper(picture).map(Some),
         };
         let of = |page| shadows::choose(picture, page, price_per_byte);
         let shadows = page.map_or_else(Vec::new, of);
+        // The blurs were fitted on this colour, so the background has to keep it.
         let background = match page.flatten() {
             Some(color) if !shadows.is_empty() => Background::Color(color),
             _ => Background::Auto,

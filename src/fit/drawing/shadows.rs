@@ -74,6 +74,7 @@ fn found(picture: &Image, page: Option<Rgb>, price_per_byte: f32) -> Option<Vec<
             [ring] if ring.shape().is_some() => rings.clone(),
             _ => self::rings(&shares, OUTLINE_OF_BLUR * cast.blur),
         };
+        // A blur moves with its outline, so the shift is a shift of the rings.
         let by = math::point(cast.shift).to_vec2();
         let area = Area {
             rings: rings.into_iter().map(|ring| ring.moved(by)).collect(),
@@ -83,6 +84,7 @@ fn found(picture: &Image, page: Option<Rgb>, price_per_byte: f32) -> Option<Vec<
         };
         Shadow::new(area, cast.blur).ok()
     };
+    // The first one found explains most and lies on top.
     casts.iter().rev().map(shadow).collect()
 }
 
@@ -95,6 +97,7 @@ fn casts(search: &mut Search) -> Vec<Cast> {
             break;
         };
         let before = search.error();
+        // Greedy: each blur explains what the ones before it have left.
         search.take(&cast);
         if search.error() > LEAST_GAIN * before {
             break;

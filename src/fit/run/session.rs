@@ -205,6 +205,7 @@ impl<'a> Session<'a> {
                 *weight = LOST_WEIGHT;
             }
         }
+        // On top of the weights so far, by multiplication.
         let near = Focus::of_weights(size, weights);
         self.weights = Some(match &self.weights {
             Some(weights) => weights.times(&near),
@@ -241,6 +242,7 @@ impl<'a> Session<'a> {
     pub(in crate::fit) fn advance(&mut self, left: usize, mse: f64) -> bool {
         self.timer.step(self.drawing.len());
         let strokes = self.drawing.free().len();
+        // Work is counted in iterations of one stroke: what is left of this descent, and the polishes still to come.
         let all = (self.drawing.len() * self.recipe.polish.iterations) as f64;
         let recovery = match self.recovers() {
             true => RECOVERY_SHARE,
@@ -277,6 +279,7 @@ impl<'a> Session<'a> {
         };
         let elapsed = self.timer.elapsed();
         let budget = self.config.budget;
+        // A stop doesn't extend a time limit: whichever ends first counts.
         let left = budget.time.map(|limit| limit.saturating_sub(elapsed));
         let limit = left.map_or(grace, |left| left.min(grace));
         let forecast = forecast(limit, self.config, &self.recipe, &self.drawing);
@@ -342,6 +345,7 @@ impl<'a> Session<'a> {
         };
         let kept = Before::of(self.base).layers.max(1);
         let more = self.drawing.stage_sizes().len().saturating_sub(kept);
+        // Layers show how the drawing came about. They stay as long as they take a small part of the bytes.
         let bytes = (more * budget::LAYER_BYTES) as f64;
         if bytes > self.recipe.correction.layers_share * most as f64 {
             more
@@ -377,11 +381,13 @@ impl<'a> Session<'a> {
             checkpoint::fingerprint(&self.target, self.config, self.base, self.focus.as_ref());
         match checkpoint.load::<State>(fingerprint)? {
             Some((phase, history, drawing, position, elapsed, descent)) => {
+                // The best file isn't in the checkpoint: it is rendered again from its drawing.
                 if let Some(best) = history.best.clone() {
                     self.drawing.restore(best);
                     self.best = Some(self.writer.render(&self.drawing)?);
                 }
                 (self.phase, self.history, self.resumed) = (phase, history, descent);
+                // Weights change with nothing frozen, so they come before the drawing, which may have frozen strokes.
                 if !self.history.lost.is_empty() {
                     self.weigh_lost();
                 }
