@@ -20,7 +20,7 @@ use super::drawing::Drawing;
 use crate::render::{STYLE, StrokeRef, Strokes};
 use crate::scene::Mark;
 
-/// The index of what is put on top of all marks.
+/// The index of marks that come on top of all others.
 pub(super) const TOP: usize = usize::MAX;
 
 /// A change of the free marks of a drawing.
@@ -36,7 +36,7 @@ pub(super) struct Edit {
     pub(super) growth: isize,
 }
 
-/// What takes the place of a mark.
+/// Replacement of a mark.
 #[derive(Debug, Clone)]
 pub(super) enum Change {
     /// These marks; none if it goes.
@@ -65,7 +65,7 @@ impl Change {
 }
 
 impl Edit {
-    /// What it is worth beyond its price, as foreseen.
+    /// Foreseen gain beyond its price.
     pub(super) fn surplus(&self) -> f32 {
         self.gain + self.price
     }
@@ -93,7 +93,7 @@ pub(super) fn written_points(stroke: StrokeRef<'_>) -> usize {
     stroke.points.len() + implied.count()
 }
 
-/// The loss of each free mark, which spares what `price` says.
+/// An edit for each free mark that removes it, and saves its `price`.
 pub(super) fn drop_marks(drawing: &mut Drawing, price: impl Fn(StrokeRef<'_>) -> f32) -> Vec<Edit> {
     let worth = drawing.judge().worth;
     let marks = drawing.free().iter().zip(worth).enumerate();
@@ -111,7 +111,7 @@ pub(super) fn drop_marks(drawing: &mut Drawing, price: impl Fn(StrokeRef<'_>) ->
     marks.map(loss).collect()
 }
 
-/// The losses of the `count` free marks of least worth.
+/// The edits that remove the `count` free marks of least worth.
 pub(super) fn least(drawing: &mut Drawing, count: usize) -> Vec<Edit> {
     let mut edits = drop_marks(drawing, |_| 0.0);
     edits.sort_by(|a, b| b.gain.total_cmp(&a.gain));
@@ -119,7 +119,7 @@ pub(super) fn least(drawing: &mut Drawing, count: usize) -> Vec<Edit> {
     edits
 }
 
-/// Limits of a choice; by default only what adds nothing is chosen.
+/// Limits of a choice. By default no edit that adds points or marks is chosen.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Room {
     /// By how many points, or marks, the drawing may grow, besides those that go.
@@ -130,8 +130,8 @@ pub(super) struct Room {
     pub(super) swaps: usize,
 }
 
-/// Chooses edits of different paths that pay, those first that add nothing, and then the most gaining. Where there is no room
-/// left, what gains most takes the place of what costs least, as long as that gains something.
+/// Chooses edits of different paths that pay: first all edits that add no points or marks, then the most gaining ones. Without
+/// room left, the most gaining addition takes the place of the cheapest loss, as long as the exchange gains.
 pub(super) fn choose(mut edits: Vec<Edit>, room: Room) -> Vec<Edit> {
     edits.sort_by(|a, b| b.surplus().total_cmp(&a.surplus()));
     // What pays without growth comes first: it needs no room, and a loss makes some.
@@ -164,14 +164,14 @@ pub(super) fn choose(mut edits: Vec<Edit>, room: Room) -> Vec<Edit> {
     chosen
 }
 
-/// Those of the edits that touch no path of an earlier one.
+/// Drops edits that touch a path of an earlier one.
 pub(super) fn disjoint(mut edits: Vec<Edit>) -> Vec<Edit> {
     let mut touched = Touched::default();
     edits.retain(|edit| touched.takes(edit));
     edits
 }
 
-/// The paths that edits change: each by its mark and its index among the paths of that, or all of them.
+/// The paths that edits change, each by its mark and by its index among the mark's paths, or [`ALL`].
 #[derive(Debug, Default)]
 pub(super) struct Touched(BTreeSet<(usize, usize)>);
 
@@ -218,9 +218,9 @@ pub(super) struct Tried {
     pub(super) sources: Vec<Option<usize>>,
 }
 
-/// Makes those of these edits of different paths that pay: that add no more squared error, as rendered, than their prices
-/// allow. All that are foreseen to pay are tried at once and, where the sum lies, each half of them. What may not pay is
-/// then tried one by one.
+/// Makes the edits that pay: rendered, they add no more squared error than their prices allow. The edits change different
+/// paths. All edits that should pay by their surplus are tried at once and, where a group fails, each half of it. The others
+/// are then tried one by one.
 pub(super) fn apply_priced(drawing: &mut Drawing, edits: Vec<Edit>) -> Tried {
     // The loss is a mean over pixels and channels, prices are sums.
     let values = 3.0 * drawing.pixels() as f64;
@@ -259,7 +259,7 @@ pub(super) fn apply_priced(drawing: &mut Drawing, edits: Vec<Edit>) -> Tried {
     }
 }
 
-/// Offers each group to `accepts` and, of what it refuses, each half, down to single ones.
+/// Offers each group to `accepts`, and each half of a refused group, down to single edits.
 fn by_halves(mut groups: Vec<Vec<usize>>, mut accepts: impl FnMut(&[usize]) -> bool) {
     groups.retain(|group| !group.is_empty());
     // A stack, whose top is the first group. Of two halves the first comes next, too, so that edits are tried in their order.

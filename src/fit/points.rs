@@ -2,7 +2,7 @@
 //!
 //! A survey tells how the squared error depends on the vertices of all strokes, and so what every change of a stroke's
 //! points would gain; [`edits`] proposes and measures them. Each path may change by one edit at a time; descent then fits
-//! it. The rule for strokes holds: what does not pay its price goes, and what pays comes. If the budget has
+//! it. The rule for strokes holds: a point that does not pay its price goes, and one that pays comes. If the budget has
 //! no room left, points that gain more take the places of points that cost less to lose.
 
 use rayon::prelude::*;
@@ -143,8 +143,8 @@ fn tolerated(mut edits: Vec<Edit>) -> Vec<Edit> {
     edits
 }
 
-/// The worth that a `share` of the strokes is below: what a stroke is worth that could be spared, where a budget binds. It
-/// would be used where it is worth more, and a point has to be worth as much for its bytes.
+/// Quantile of stroke contribution. Under a binding budget, a stroke below it is expendable: its bytes would be used where they
+/// gain more, and a point has to gain as much for its bytes.
 fn quantile_worth(drawing: &mut Drawing, share: f32) -> f32 {
     let mut worth = drawing.judge().worth;
     if worth.is_empty() {

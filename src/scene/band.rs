@@ -52,7 +52,7 @@ impl Band {
         }
     }
 
-    /// The band that these rings, those of a polygon or of a frame, are within a `tolerance` in px; a long one of several.
+    /// The band whose rings are within a `tolerance` in px of these rings of a polygon or a frame; the longest of several.
     pub(crate) fn like(rings: &[Path], tolerance: f64) -> Option<Self> {
         let straight = |ring: &Path| polyline(ring, tolerance, 0.0).unwrap_or_else(|| ring.clone());
         let rings: &[Path] = &rings.iter().map(straight).collect::<Vec<_>>();
@@ -162,7 +162,7 @@ impl Band {
             true => 1.0 + turn.cosine >= SHARPEST,
             false => turn.cosine >= SHARPEST_CURVE,
         };
-        // Both corners of a leg have room for their inner sides.
+        // A turn of θ shortens the inner side of a leg by half the width × tan(θ/2). Both corners of a leg have room for that.
         let has_room = |i: usize| {
             let (a, b) = (i, (i + 1) % count);
             let length = (points[b].at - points[a].at).hypot();
@@ -186,7 +186,7 @@ impl Band {
         between(&points.collect::<Vec<_>>(), is_closed)
     }
 
-    /// Moves points to those of the rings.
+    /// Moves points to the points of the rings.
     pub(crate) fn put(&self, places: &mut [[f32; 2]]) {
         let rings = self.rings();
         let points = rings.iter().flat_map(Path::points);
@@ -194,7 +194,7 @@ impl Band {
         pairs.for_each(|(place, point)| *place = math::xy(point.at));
     }
 
-    /// Leaves of a change of these points the part that keeps the band: the change of its line and of its width.
+    /// Projects a change of these points onto the changes that keep the band: of its line and of its width.
     pub(crate) fn project(&self, change: &mut [[f32; 2]]) {
         let Some(sides) = sides(self.line.points(), self.line.is_closed()) else {
             return;

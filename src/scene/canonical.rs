@@ -200,7 +200,7 @@ fn is_straight(before: &PathPoint, point: &PathPoint, after: &PathPoint) -> bool
 }
 
 /// The smallest radius of curvature of a curve, px. Cairo draws a sharper bend without its round outside: of a stroke
-/// 4 px wide with bends of 0.01 px, librsvg's render is 35 dB from that of a polyline, with 0.04 px 44 dB.
+/// 4 px wide with bends of 0.01 px, librsvg's render is 35 dB from its render of a polyline, with 0.04 px 44 dB.
 const SHARPEST: f64 = 0.02;
 
 /// Largest distance of the chord from a curve that it replaces because of a bend at an end, px.

@@ -172,7 +172,7 @@ struct Swept {
     reach: f64,
     /// A box around all that other marks can meet it in, px.
     near: Rect,
-    /// Lines at most [`TOLERANCE`] away from its paths; that of a dot has no length.
+    /// Lines at most [`TOLERANCE`] away from its paths. A dot is a line without length.
     lines: Vec<Line>,
     /// The rings of an area.
     rings: Option<BezPath>,
@@ -254,8 +254,8 @@ fn rings(area: &Mark) -> BezPath {
         .collect()
 }
 
-/// Marks farther apart than the diagonal of a pixel, px, have no pixel in common. What chords are away from their curve is
-/// within the rest.
+/// Marks farther apart than the diagonal of a pixel, px, have no pixel in common. The rest covers the distance of chords from
+/// their curve.
 const APART: f64 = 1.5;
 
 /// Largest distance between lines and their curve, px: less than half of the excess of [`APART`] over the diagonal

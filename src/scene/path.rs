@@ -186,7 +186,7 @@ impl Path {
         corners
     }
 
-    /// The path as lines that are at most `tolerance` px away from it; that of a dot has no length.
+    /// The path as lines that are at most `tolerance` px away from it. A dot is a line without length.
     pub(crate) fn lines(&self, tolerance: f64) -> Vec<Line> {
         let corners = self.flattened(tolerance);
         match corners[..] {

@@ -201,14 +201,14 @@ impl ShapeKind {
         is_solid.then_some(shape)
     }
 
-    /// Moves points to those of the nearest shape of this kind.
+    /// Moves points to the points of the nearest shape of this kind.
     pub(crate) fn restore(self, points: &mut [[f32; 2]]) {
         if let Some(shape) = self.nearest(points) {
             put(points, shape.frame(), &self.places_of(points.len()));
         }
     }
 
-    /// Leaves of a change of a shape's points the part that keeps the shape: the change of its sides and radii.
+    /// Projects a change of a shape's points onto the changes that keep the shape: of its sides and radii.
     pub(crate) fn project(self, change: &mut [[f32; 2]]) {
         let places = self.places_of(change.len());
         // Points depend on sides and radii linearly.

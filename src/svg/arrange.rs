@@ -60,7 +60,7 @@ pub(super) fn layers(scene: &Scene, options: &WriteOptions) -> Vec<Layer> {
     layers
 }
 
-/// The strokes of a layer in an order of little travel. In the smallest form, those of one style stay together.
+/// The strokes of a layer in an order of little travel. In the smallest form, strokes of one style stay together.
 fn with_little_travel(strokes: Vec<Written>, form: Form) -> Vec<Written> {
     let mut shortened = Vec::with_capacity(strokes.len());
     let is_together =

@@ -53,7 +53,7 @@ pub(super) enum Content<'a> {
     Element {
         /// Without its prefix.
         name: &'a str,
-        /// True if its namespace is that of SVG.
+        /// True if it is in SVG's namespace.
         is_svg: bool,
         attributes: Range<usize>,
     },

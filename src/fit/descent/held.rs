@@ -137,7 +137,7 @@ fn level(places: &[usize], numbers: &mut [f32]) {
     places.iter().for_each(|&i| numbers[i] = mean);
 }
 
-/// Places of coordinates that lines of a path have in common, where those of its first point are `start` and the next.
+/// Places of coordinates that lines of a path have in common. The coordinates of its first point are at `start` and behind it.
 fn equal(path: StrokeRef<'_>, start: usize) -> Places {
     let count = path.points.len();
     let mut equal = Vec::new();

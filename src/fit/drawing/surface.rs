@@ -130,7 +130,7 @@ enum AnyBackdrop {
 }
 
 impl AnyBackdrop {
-    /// A page of the size of `target`, with a ground on `color`, which is that of `background` if it has one.
+    /// A page of the size of `target`, with a ground on `color`, the colour of `background` if it has one.
     fn ground(target: &Image, ground: &Ground, color: Rgb, background: Background) -> Result<Self> {
         let (width, height) = (target.width(), target.height());
         let scene = ground.scene(width, height, None);

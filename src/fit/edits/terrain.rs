@@ -19,7 +19,7 @@ pub(in crate::fit) const LEAST: usize = 4;
 pub(in crate::fit) struct Terrain<'a> {
     /// The index of the stroke or area that it belongs to.
     pub(super) mark: usize,
-    /// The index among the paths of that.
+    /// The index among the mark's paths.
     pub(super) path: usize,
     /// True if it is a ring of an area.
     pub(in crate::fit) is_ring: bool,
@@ -43,8 +43,8 @@ pub(super) struct Cut {
 }
 
 impl<'a> Terrain<'a> {
-    /// The terrains of all paths whose points may come and go: of each stroke, and of each ring of an area. Those of a band
-    /// come and go in pairs.
+    /// The terrains of all paths whose points may come and go: of each stroke, and of each ring of an area. The points of a band
+    /// come and go in pairs, so bands have none.
     pub(in crate::fit) fn all(survey: &'a Survey, strokes: &'a Strokes) -> Vec<Self> {
         let of_mark = |mark: usize| {
             let stroke = strokes.get(mark);

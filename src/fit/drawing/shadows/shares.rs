@@ -51,14 +51,14 @@ impl Shares {
     /// The shares of a picture on a page of this colour, or on none, if there are enough of them around something.
     pub(super) fn of(picture: &Image, page: Option<Rgb>) -> Option<Self> {
         let page = page.map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
-        // What is page, and what is soft beside it.
+        // 1. The page, and soft pixels connected with it.
         let values = Values(picture);
         let mut kinds = kinds(&values, page);
         let soft = kinds.iter().filter(|kind| **kind == Kind::Soft).count();
         if (soft as f32) < LEAST_SHARE * kinds.len() as f32 {
             return None;
         }
-        // The one colour that it mixes the page with; what is of another is not soft.
+        // 2. The one colour that soft pixels mix the page with. Pixels off that mixture are not soft.
         let ink = ink(&values, &kinds, page)?;
         let along = |i: usize| share(values.at(i), page, ink);
         for (i, kind) in kinds.iter_mut().enumerate() {
@@ -66,7 +66,7 @@ impl Shares {
                 *kind = Kind::Other;
             }
         }
-        // The rest, where soft pixels surround it.
+        // 3. The caster: parts of the rest that soft pixels surround.
         let seen = |(i, kind): (usize, &Kind)| match kind {
             Kind::Page => Some(0.0),
             Kind::Soft => Some(along(i).0),
@@ -134,6 +134,7 @@ fn kinds(values: &Values<'_>, page: Value) -> Vec<Kind> {
         false => Kind::Other,
     };
     let mut kinds: Vec<Kind> = (0..values.len()).map(kind).collect();
+    // A flood through smooth pixels: a shadow is connected with the page, and an edge stops it.
     let mut open: Vec<usize> = (0..kinds.len())
         .filter(|&i| kinds[i] == Kind::Page)
         .collect();
@@ -164,10 +165,11 @@ fn ink(values: &Values<'_>, kinds: &[Kind], page: Value) -> Option<Value> {
     ink
 }
 
-/// The direction that differences have on the whole: they are summed by their size, those of the other side turned around.
+/// The direction that differences have on the whole: their sum weighted by size, with opposite ones turned around.
 fn direction(differences: impl Iterator<Item = Value>) -> Option<Value> {
     let differences: Vec<Value> = differences.collect();
     let mut axis = [0.0_f32; 4];
+    // The first sum has no axis yet and takes all signs as they are; the second turns differences against the axis around.
     for _ in 0..2 {
         let mut sum = [0.0_f64; 4];
         for difference in &differences {
@@ -212,6 +214,7 @@ fn share(value: Value, page: Value, ink: Value) -> (f32, f32) {
         whole += full * full;
     }
     let share = along / whole.max(f32::MIN_POSITIVE);
+    // The share is the projection of (value − page) onto (ink − page); the rest is the distance from the mixture.
     let mixed = [0, 1, 2, 3].map(|c| page[c] + share * (ink[c] - page[c]));
     (share, away(value, mixed))
 }
@@ -265,6 +268,7 @@ fn eroded(mask: &[bool], width: usize) -> Vec<bool> {
 fn covered(values: &Values<'_>, trimmed: &[bool], inner: &[bool], i: usize) -> f32 {
     let (mut sum, mut number) = (0.0, 0.0);
     for outside in beside(i, values.width(), inner.len()).filter(|&k| !trimmed[k]) {
+        // The pixel on the opposite side: i + (i − outside).
         let inside = (2 * i).checked_sub(outside);
         let Some(inside) = inside.filter(|&k| inner.get(k) == Some(&true)) else {
             continue;
