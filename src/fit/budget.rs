@@ -30,7 +30,7 @@ pub(super) const FILE_BYTES: usize = 200;
 /// Bytes of a layer without strokes.
 pub(super) const LAYER_BYTES: usize = 170;
 
-/// An estimate of how many strokes the budgets allow, those of `base` included; `None` if they set no limit.
+/// Estimated number of strokes that the budgets allow, including the strokes of `base`; `None` if they set no limit.
 pub(super) fn strokes(config: &Config, base: Option<&Base>, target: &Image) -> Option<usize> {
     // The file's head, or the base as a whole, is paid for first.
     let kept = base.map_or(FILE_BYTES + LAYER_BYTES, Base::bytes);
@@ -147,7 +147,7 @@ pub(super) fn compares_files(config: &Config, recipe: &Recipe) -> bool {
     is_limited && config.quality.is_none() && needs_file(&config.budget, recipe)
 }
 
-/// Why a fit ends that draws all that is planned.
+/// The reason for the end of a fit that has drawn its whole plan.
 pub(super) fn planned_stop(budget: &Budget) -> Stop {
     match (budget.strokes, budget.bytes) {
         (None, Some(_)) => Stop::Bytes,

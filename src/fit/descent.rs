@@ -43,7 +43,7 @@ const BACKGROUND: AdamParams = AdamParams {
 const USUAL_RADIUS: f32 = 2.0;
 /// Bounds of the factor that this gives. A guess.
 const RADIUS_FACTORS: [f32; 2] = [0.25, 4.0];
-/// Step sizes of the colours of areas, in units of those of strokes. A guess: traced colours are right within a level.
+/// Step sizes of the colours of areas, in units of the strokes'. A guess: traced colours are right within a level.
 const AREA_COLOR: f32 = 0.1;
 
 /// Factor on the steps of traced strokes, which are about where they belong. 0.15, 0.25, 0.4, 1: 39 icons have 42.8, 42.8, 42.5, 40.8
@@ -162,7 +162,7 @@ impl Descent {
         }
     }
 
-    /// The descent that keeps the bands of the drawing bands: a stored one does not tell them.
+    /// The descent that keeps the bands of the drawing bands: a stored descent does not hold them.
     pub(super) fn holding_bands(self, drawing: &Drawing) -> Self {
         let held = Held::bands(drawing.free());
         Self { held, ..self }
@@ -331,7 +331,7 @@ fn scales(rates: &Rates, drawing: &Drawing) -> Vec<f32> {
         if stroke.is_area() {
             scales.resize(scales.len() + 2 * stroke.points.len(), area);
             let color = color * AREA_COLOR;
-            // Radius, three channels, opacity: an area has no radius.
+            // Radius, three channels, opacity: an area has no radius and keeps its opacity.
             scales.extend([0.0, color, color, color, 0.0]);
             continue;
         }

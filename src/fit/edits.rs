@@ -152,7 +152,7 @@ pub(super) fn choose(mut edits: Vec<Edit>, room: Room) -> Vec<Edit> {
     // A loss that doesn't pay by itself still pays in exchange for an addition that gains more than it costs.
     leaving.retain(|edit| edit.growth < 0);
     leaving.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    // The best addition meets the cheapest loss, the next best the next cheapest: once a pair gains nothing, no later one does.
+    // The best addition meets the cheapest loss, the next best the next cheapest, until a pair gains nothing.
     for (new, old) in adding.zip(leaving).take(room.swaps) {
         if new.gain + old.gain <= 0.0 {
             break;
@@ -231,7 +231,7 @@ pub(super) fn apply_priced(drawing: &mut Drawing, edits: Vec<Edit>) -> Tried {
     let groups = std::iter::once(paying).chain(others.into_iter().map(|i| vec![i]));
     // Each trial adds one group to all that were taken, so that interaction between edits is in the measured error.
     by_halves(groups.collect(), |group| {
-        // The indices of edits are those of the original marks, so every trial starts from them.
+        // Edits have the indices of the original marks, so every trial starts from these.
         let tried = [&taken[..], group].concat();
         drawing.set_marks(before.clone());
         drawing.apply(tried.iter().map(|&i| &edits[i]));

@@ -25,7 +25,7 @@ struct Search {
     high: f64,
     /// The best drawing that keeps it.
     best: Option<Drawn>,
-    /// The drawing of the least quality that does not.
+    /// The drawing of the least quality that exceeds it.
     excessive: Option<Drawn>,
 }
 
@@ -46,7 +46,7 @@ impl Fitter<'_> {
     /// Number of drawings of what pays that `picture` has, at most.
     pub(super) fn most_of_what_pays(&self, picture: &Image) -> usize {
         match self.base.is_none() && rivals::has_priced(&self.config, picture) {
-            // The usual quality, those of the search, and the shortened one.
+            // The usual quality, the qualities of the search, and the shortened drawing.
             true => HALVINGS + 2,
             false => 0,
         }

@@ -152,7 +152,7 @@ fn lines(rings: &[Path], spacing: f64, degrees: f64) -> Vec<Path> {
         ends().fold(f64::NEG_INFINITY, f64::max),
     );
     let mut found = Vec::new();
-    // The lines of all areas are multiples of the distance, so that those of neighbours meet.
+    // The lines of all areas are at multiples of the distance, so that the lines of neighbours meet.
     let (first, last) = ((low / spacing).ceil(), (high / spacing).floor());
     let rows = if first <= last {
         (last - first) as usize + 1

@@ -52,6 +52,7 @@ impl Grid {
 
     /// The largest multiple of at most `px`, which is a multiple of half a step.
     pub(super) fn below(&self, px: f64) -> f64 {
+        // Half steps are rounded first, so that an error in the last bit can't take a whole step away.
         ((2.0 * px * self.per_px).round() / 2.0).floor() / self.per_px
     }
 

@@ -157,6 +157,7 @@ impl Path {
     #[must_use]
     pub(crate) fn reversed(&self) -> Self {
         let mut points: Vec<PathPoint> = self.points.iter().rev().copied().collect();
+        // A closed path keeps its start, so that only the direction changes.
         if self.closed && self.points.first().is_some_and(|p| p.is_on) {
             points.rotate_right(1);
         }

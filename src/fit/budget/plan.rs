@@ -10,7 +10,7 @@ use crate::math;
 /// Number of stages, unless the configuration sets it. With more stages, seeding sees the residual more often. Half, twice: −0.05,
 /// +0.04 dB.
 const COUNT: usize = 8;
-/// Strokes of a stage, in units of those of the stage before. 1.35 instead of 1.6: +0.08 dB; twice: −0.05.
+/// Strokes of a stage, in units of the strokes of the stage before. 1.35 instead of 1.6: +0.08 dB; twice: −0.05.
 const GROWTH: f64 = 1.35;
 /// Strokes of the first stage if the total is not known in advance. Half, twice, at the default quality: −0.04, +0.06 dB at −0.8,
 /// −4.5 % of the bytes.
@@ -90,7 +90,7 @@ impl Plan {
         }
     }
 
-    /// The number of layers, those of the base and those planned so far.
+    /// The number of layers of the base and of the stages planned so far.
     pub(in crate::fit) fn len(&self) -> usize {
         self.before + self.counts.len()
     }

@@ -11,7 +11,7 @@ use crate::svg::{Form, WriteOptions, mark_bytes};
 ///
 /// Squared error below that of the quality counts less and less: of E, the squared error at the quality, and e < E, the
 /// drawing's own, a small gain counts e/E of itself, so that e in all counts E/2 + e²/2E. A drawing that is better than
-/// wanted needs no strokes for what nobody sees. Above E every gain counts in full.
+/// wanted needs no strokes for errors that nobody sees. Above E every gain counts in full.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::fit) struct Price {
     per_byte: f32,
@@ -19,9 +19,9 @@ pub(in crate::fit) struct Price {
     wanted_mse: f64,
     /// The drawing's squared error and that at the quality.
     errors: Option<[f64; 2]>,
-    /// The price of a stroke's bytes, in units of that of a point's.
+    /// The price of a stroke's bytes, in units of the price of a point's.
     of_strokes: f32,
-    /// The price of the bytes of areas and of their points, in units of that of others.
+    /// The price of the bytes of areas and of their points, in units of the price of other bytes.
     of_areas: f32,
     file: WriteOptions,
 }
@@ -63,7 +63,7 @@ impl Price {
             0.0
         };
         let wanted_db = config.budget.psnr_db.map(|db| db + BEYOND_DB);
-        // Unless bytes are limited, the smallest form is that of the plain file's drawing, and not one of more marks.
+        // Price by the plain form unless bytes are limited: cheaper bytes in the smallest form mustn't buy more marks.
         let form = match config.file.form {
             Form::Smallest if config.budget.bytes.is_none() => Form::Plain,
             form => form,

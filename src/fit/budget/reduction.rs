@@ -40,7 +40,7 @@ pub(in crate::fit) fn size(picture: &Image, config: &Config) -> Option<[usize; 2
     let all = pixels(picture);
     let counted = counted(config);
     let enough = counted.max(ENOUGH_PIXELS);
-    // Pens given in px are those of the picture.
+    // Pens given in px are in px of the picture, not of a reduced one.
     if config.pens.is_some() {
         return None;
     }
@@ -92,7 +92,7 @@ fn is_same(loss_db: f64, config: &Config) -> bool {
 
 /// True if strokes show no more of `picture` than of its half, from which it can be enlarged again to `loss_db`.
 fn shows_no_more(loss_db: f64, picture: &Image, config: &Config) -> bool {
-    // A fidelity, or a quality of its own, is asked for of all that is in the picture.
+    // A given fidelity or quality covers everything in the picture.
     let is_for_screen = config.budget.psnr_db.is_none() && config.quality.is_none();
     let is_photograph = || !is_flat(picture);
     is_for_screen && (loss_db >= NEARLY_SAME_DB || is_photograph())

@@ -54,7 +54,7 @@ pub(in crate::fit) fn of(config: &Config, picture: &Image) -> Vec<Config> {
     rivals
 }
 
-/// True if a drawing of `picture` by `config` competes with those of what pays at several qualities.
+/// True if a drawing of `picture` by `config` competes with drawings of what pays at several qualities.
 pub(in crate::fit) fn has_priced(config: &Config, picture: &Image) -> bool {
     let Budget {
         strokes,

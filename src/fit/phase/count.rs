@@ -54,7 +54,7 @@ pub(in crate::fit) fn try_base(session: &mut Session<'_>) -> Result<Outcome> {
 /// Removes the strokes of least worth until `most` are left.
 fn keep_best(drawing: &mut Drawing, most: usize) {
     while drawing.len() > most {
-        // The worth is that of a stroke removed alone; with its neighbours gone, a stroke is worth more.
+        // Worth is measured by removing one stroke alone; with its neighbours gone, a stroke is worth more.
         let at_a_time = drawing.len().div_ceil(8);
         let least = edits::least(drawing, at_a_time.min(drawing.len() - most));
         drawing.apply(&least);

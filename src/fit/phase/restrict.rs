@@ -79,7 +79,7 @@ fn remove_hidden(drawing: &mut Drawing) {
     drawing.counters.hidden += tried.made.len();
 }
 
-/// About how many pixels a stroke covers; of an area, those of its bounding box.
+/// About how many pixels a stroke covers. An area counts with its bounding box.
 fn pixels(stroke: StrokeRef<'_>) -> f32 {
     if stroke.is_area() {
         let side = |axis: usize| {

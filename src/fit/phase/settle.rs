@@ -30,7 +30,7 @@ const LEAST_DB: f64 = 0.02;
 /// resvg and 40.3, 39.7, 39.0 in Chromium; 0, 0.7 for icons: 42.1, 43.1 and 40.2, 40.9. Exact areas as a second judge
 /// draw as 0.35 does.
 const OFFSET_TAKEN: f32 = 0.5;
-/// Step sizes, in units of those of the polish. Half, twice: −0.03, +0.02 dB.
+/// Step sizes, in units of the polish's. Half, twice: −0.03, +0.02 dB.
 const PACE: f32 = 0.02;
 /// Step sizes of the points of areas, px, before that factor. A guess: about as far as traced strokes move.
 const AREA_RATE: f32 = 0.6;

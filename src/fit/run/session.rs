@@ -35,7 +35,7 @@ use crate::svg::Form;
 /// Weight of errors near lost details. 5, 8, 16: a label of a map correlates by 0.957, 0.970, 0.980 with the picture; borders of 1 px
 /// take 8.8, 10.9, 13.2 kB, 75, 82, 84 % of them kept (1, 49 % in 5.6 kB).
 const LOST_WEIGHT: f32 = 8.0;
-/// Iterations of the polish that follows the recovery of details, in units of those of the first one. A guess.
+/// Iterations of the polish that follows the recovery of details, in units of the first polish's. A guess.
 pub(in crate::fit) const RECOVERY_SHARE: f64 = 0.2;
 
 /// A fit under way: first the fields that are fixed, then those that change.
@@ -84,7 +84,7 @@ pub(in crate::fit) type Task<'a> = (
     Option<[u32; 2]>,
 );
 
-/// Who is told of a fit and may stop it, and how long the fit may then go on.
+/// The observer and the token of a fit, and how long the fit may go on once it is stopped.
 pub(in crate::fit) struct Watch<'a> {
     pub(in crate::fit) observer: &'a mut (dyn Observer + Send),
     pub(in crate::fit) token: CancelToken,
@@ -191,7 +191,7 @@ impl<'a> Session<'a> {
         })
     }
 
-    /// True if small things that get lost are traced again. Those of a base were.
+    /// True if lost details are traced again. A base has been through that.
     pub(in crate::fit) fn recovers(&self) -> bool {
         self.base.is_none() && self.config.recovers()
     }

@@ -1,4 +1,4 @@
-//! Covers: what other marks hide of a border.
+//! Covers: the parts of a border that other marks hide.
 
 use kurbo::{BezPath, Line, ParamCurveNearest, Rect, Shape};
 
@@ -60,7 +60,7 @@ const OPAQUE: f32 = 0.99;
 
 impl Cover {
     fn of(mark: Mark) -> Self {
-        // What is drawn with square ends covers its rings.
+        // A stroke with square ends covers its rings.
         let mark = mark.filled();
         let lines: Vec<Line> = mark
             .paths()
@@ -91,7 +91,7 @@ impl Cover {
             }
     }
 
-    /// True if two marks have colours that nobody tells apart.
+    /// True if two marks have colours that nobody can distinguish.
     fn is_like(&self, other: &Self) -> bool {
         let pairs = self.color.iter().zip(other.color);
         pairs.fold(0.0, |most: f32, (a, b)| most.max((a - b).abs())) < 0.04

@@ -77,7 +77,7 @@ fn refuse_losses(session: &mut Session<'_>, forms: Forms, paths: Memento) -> Res
     Ok(())
 }
 
-/// Nearest that points of what is not a dot are, px: less than a picture tells.
+/// A path whose points are all nearer to its first one than this is a dot, px: no picture shows more.
 const DOT_PX: f64 = 0.1;
 
 /// For each traced mark the shapes that it is, and at most `room` more marks than before.
@@ -213,7 +213,7 @@ fn forms_of(
     };
     let formed = |(i, ring): (usize, &Path)| {
         let seen = || Shape::like_seen(ring, forms.tolerance_px.into(), &is_seen);
-        // What other marks hide is bent by them.
+        // The hidden part of a border is bent by the marks that hide it, so the seen part is asked first.
         let shape = seen()
             .filter(|_| ring.shape().is_none())
             .or_else(|| like(ring, forms));

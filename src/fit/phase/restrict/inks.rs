@@ -1,8 +1,8 @@
 //! Inks: a thin line has the colour that the picture has along its middle.
 //!
 //! A line of a pixel or two looks the same if it is darker and narrower, or less opaque, so a fit may end at any of these. The
-//! picture tells which is meant where the line covers whole pixels: there it has its colour. Of a line between two rows only
-//! its crossings tell.
+//! picture shows which is right where the line covers whole pixels: there it has its colour. A line between two rows shows it
+//! only at crossings.
 
 use super::proposals::{adopt, traced};
 use crate::fit::config::Colors;
@@ -61,7 +61,7 @@ fn inked(stroke: &Stroke, picture: &Image, inks: Inks) -> Option<Stroke> {
         return None;
     }
     let (middle, sides) = seen_along(stroke, picture, inks.beside);
-    // On one colour, or nothing tells how much of a pixel is covered.
+    // The page beside the line has to be of one colour; otherwise the coverage of a pixel can't be measured.
     let page: Rgb = channels(|k| median(sides.iter().map(|side| side[k])))?;
     let is_page = |side: &&Rgb| (0..3).all(|k| (side[k] - page[k]).abs() < inks.alike);
     if (sides.iter().filter(is_page).count() as f32) < inks.least_even * sides.len() as f32 {

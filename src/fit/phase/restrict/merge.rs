@@ -32,7 +32,7 @@ pub(super) struct Group {
 pub(super) struct Rule<'a> {
     /// Most merges.
     pub(super) merges: usize,
-    /// Most squared error that all merges add, as far as that can be told in advance.
+    /// Most squared error that all merges may add, estimated in advance.
     pub(super) allowance: f32,
     /// Factor on the cost of radii.
     pub(super) contrast: f32,
@@ -75,7 +75,7 @@ impl Group {
     }
 }
 
-/// Merges `groups` by `rule`. `join` is told of each merge, by the first strokes of both groups, and may refuse it.
+/// Merges `groups` by `rule`. `join` gets the first strokes of both groups of each merge, and may refuse it.
 pub(super) fn merge(
     groups: Vec<Group>,
     rule: Rule<'_>,

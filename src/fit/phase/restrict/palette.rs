@@ -3,8 +3,8 @@
 //! The drawing has first been fitted in any colours. Each round finds the colour that would suit every stroke best, by a
 //! Newton step on its own colour, gives the stroke the nearest colour of the palette, and then fits everything but
 //! colours. A palette that is not given is found by k-means during these rounds: each of its colours is the weighted
-//! mean of what would suit its strokes best. In this way strokes that overlap make up for colours that the palette lacks,
-//! as far as it allows.
+//! mean of the colours that would suit its strokes best. In this way strokes that overlap make up for colours that the
+//! palette lacks, as far as it allows.
 
 use std::f32::consts::PI;
 
@@ -22,9 +22,8 @@ use crate::render::{AX, AY, BX, BY, OPACITY, RADIUS, RED};
 use crate::scene::{Rgb, color, quantum};
 use crate::seed::Candidate;
 
-/// Restricts the drawing to the configured palette and fits the rest to that. Returns the palette, or nothing if any colours are
-/// allowed.
-/// All strokes must be free.
+/// Restricts the drawing to the configured palette and fits all other numbers again. Returns the palette, or nothing if any
+/// colours are allowed. All strokes must be free.
 pub(super) fn run(session: &mut Session<'_>) -> Result<Option<Palette>> {
     let (config, coloring) = (session.config, session.recipe.coloring);
     let has_background = session.writer.has_background;
@@ -162,7 +161,7 @@ impl Palette {
     /// Adds, one by one, the colour whose absence costs most, until there are `most` or none is missing.
     fn spread(&mut self, most: usize, preferences: &[PreferredColor]) {
         while self.colors.len() < most {
-            // The squared error that the nearest colour of the palette leaves. The first colour is that of the largest weight.
+            // The squared error that the nearest colour of the palette leaves. The first colour has the largest weight.
             let missed = |preference: &PreferredColor| match self.index(preference.color) {
                 Some(k) => preference.weight * dist2(self.colors[k], preference.color),
                 None => preference.weight,

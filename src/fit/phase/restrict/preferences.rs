@@ -24,7 +24,7 @@ impl CanvasLoss for Shown {
     }
 }
 
-/// The preferences of the strokes of `drawing`, followed by that of the background if there is one, each after a share
+/// The preferences of the strokes of `drawing`, followed by the background's if there is one, each after a share
 /// `damping` of its Newton step. A stroke that shows in fewer than `min_shown` px keeps its colour. All strokes must be
 /// free.
 pub(super) fn preferences(

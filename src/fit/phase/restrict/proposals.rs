@@ -121,7 +121,7 @@ fn fit(session: &mut Session<'_>, forms: Forms, moving: &[Range<usize>]) {
     moving
         .iter()
         .for_each(|span| moves[span.clone()].fill(true));
-    // All numbers of other marks are fixed, so that gains are those of the proposals.
+    // All numbers of other marks are fixed, so that gains come from the proposals alone.
     for i in (0..moves.len()).filter(|&i| !moves[i]) {
         let places = drawing.free().range(i);
         places.for_each(|place| descent.ties.fix(place));

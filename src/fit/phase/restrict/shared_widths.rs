@@ -18,7 +18,7 @@ use crate::math;
 use crate::render::{STYLE, StrokeMut, Strokes};
 use crate::scene::quantum;
 
-/// Proposes what adds a squared error of at most this, as far as that can be told in advance.
+/// Proposes edits that add at most this squared error, estimated in advance.
 type Step = fn(&mut Drawing, &Recipe, f32) -> Vec<Edit>;
 
 /// Makes strokes of a drawing that was traced opaque, and share widths and colours, as far as these are not given. Returns
