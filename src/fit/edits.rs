@@ -32,7 +32,7 @@ pub(super) struct Edit {
     pub(super) gain: f32,
     /// Squared error that it may add for what it saves; below 0 if it has to remove some for what it costs.
     pub(super) price: f32,
-    /// By how many the points, or the marks, become more.
+    /// Growth of the number of points, or of marks.
     pub(super) growth: isize,
 }
 
@@ -122,11 +122,11 @@ pub(super) fn least(drawing: &mut Drawing, count: usize) -> Vec<Edit> {
 /// Limits of a choice. By default no edit that adds points or marks is chosen.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Room {
-    /// By how many points, or marks, the drawing may grow, besides those that go.
+    /// Points, or marks, that the drawing may gain beyond the ones that go.
     pub(super) free: usize,
     /// Most edits that add something.
     pub(super) most: usize,
-    /// Most edits that add something in the place of what is worth less, once there is no room.
+    /// Most exchanges of an addition for a loss, once there is no room.
     pub(super) swaps: usize,
 }
 
@@ -134,7 +134,7 @@ pub(super) struct Room {
 /// room left, the most gaining addition takes the place of the cheapest loss, as long as the exchange gains.
 pub(super) fn choose(mut edits: Vec<Edit>, room: Room) -> Vec<Edit> {
     edits.sort_by(|a, b| b.surplus().total_cmp(&a.surplus()));
-    // What pays without growth comes first: it needs no room, and a loss makes some.
+    // Edits that pay without growth come first: they need no room, and a loss makes some.
     let pays = |edit: &Edit| edit.surplus() > 0.0;
     let (adding, others): (Vec<_>, Vec<_>) = edits.into_iter().partition(|edit| edit.growth > 0);
     let (paying, mut leaving): (Vec<_>, Vec<_>) = others.into_iter().partition(pays);

@@ -38,7 +38,7 @@ impl std::str::FromStr for Hatch {
     }
 }
 
-/// The scene with what is seen of its areas filled with lines `spacing` px apart, of a `pen` that is so many px wide:
+/// The scene with the visible parts of its areas filled with lines `spacing` px apart, of a `pen` that is so many px wide:
 /// one along their borders, and straight ones at an angle. Strokes stay, and lie on top. The background is paper, which
 /// stays bare; so does an area of its colour.
 ///
@@ -67,7 +67,7 @@ pub fn hatched(scene: &Scene, spacing: f64, pen: f64, degrees: f64) -> Result<Sc
 
 /// The visible parts of the areas, which areas and strokes on top hide, by colour.
 fn areas(scene: &Scene) -> Result<Vec<Area>> {
-    // Strokes hide what is below, and are of no colour themselves: they get one that no area has.
+    // Strokes hide marks below, but aren't hatched: they get a colour that no area has.
     let mut taken: Vec<[u8; 3]> = scene.areas().map(|area| area.color.map(quantum)).collect();
     taken.extend(scene.background.map(|c| c.map(quantum)));
     let free = (0..=u8::MAX).map(|level| [level, 0, 255 - level]);
@@ -93,8 +93,8 @@ fn areas(scene: &Scene) -> Result<Vec<Area>> {
     Ok(areas)
 }
 
-/// Distances of the pen from the border, in units of its radius. What the pen does not reach at one of them, because that is
-/// thinner than the pen, is drawn at the next. The steps are a guess.
+/// Distances of the pen from the border, in units of its radius. Parts that the pen does not reach at one of
+/// them, because they are thinner than the pen, are drawn at the next. The steps are a guess.
 const DISTANCES: [f64; 5] = [1.0, 0.7, 0.45, 0.25, 0.1];
 
 /// Smaller pieces that the pen does not reach are left out, in units of its width squared. They lie in corners. A guess.
@@ -112,7 +112,7 @@ fn filled(area: &Area, spacing: f64, pen: f64, degrees: f64) -> Result<Vec<Strok
         if step == 0 {
             paths.extend(lines(&inner, spacing, degrees));
         }
-        // What the pen doesn't reach from there is drawn nearer to the border in the next step.
+        // Parts that the pen doesn't reach from there are drawn nearer to the border in the next step.
         rest = visible::around(&rest, &inner, radius)?;
         rest.retain(|ring| visible::enclosed(ring) > SMALLEST * pen * pen);
         if rest.is_empty() {

@@ -1,6 +1,6 @@
 //! Bands: lines of even width with square ends and mitred corners, as strokes with [`Cap::Butt`] have them.
 //!
-//! What it covers is an area too: each point of the line has one to either side of it. The rings of an open band go along one
+//! A band covers an area too: each point of the line has one to either side of it. The rings of an open band go along one
 //! side and back along the other one; a closed band has a ring for each side. Control points lie where the sides of the line's
 //! control polygon meet. So the points of the rings depend on those of the line, and on the width.
 

@@ -8,7 +8,7 @@ use crate::math::Point;
 /// Most decimals of a coordinate or width.
 pub const MAX_PRECISION: u8 = 6;
 
-/// Units of what is written per px.
+/// Units of written numbers per px.
 pub(crate) const UNITS_PER_PX: i64 = 10_i64.pow(MAX_PRECISION as u32);
 
 /// Narrowest stroke, px. Rasterisers of the Skia family draw a width of 1 px or less as a hairline of lower

@@ -165,7 +165,7 @@ fn unite(row: &mut [bool], other: &[bool]) {
     row.iter_mut().zip(other).for_each(|(a, b)| *a |= b);
 }
 
-/// Where a mark may leave ink: what is needed to compare it with many others.
+/// Where a mark may leave ink, prepared for comparisons with many others.
 #[derive(Debug, Clone)]
 struct Swept {
     /// Farthest that it reaches beyond its paths, px.

@@ -109,7 +109,7 @@ fn simplified(path: &Path, tolerance: f64) -> Option<Vec<Point>> {
     if is_closed {
         corners.pop();
     }
-    // Where a path turns back a little, or begins within a side, others cover what a corner adds.
+    // Where a path turns back a little, or begins within a side, a corner adds nothing to the others.
     let mut i = usize::from(!is_closed);
     while i + usize::from(!is_closed) < corners.len() {
         let mut fewer = corners.clone();

@@ -14,14 +14,14 @@ use super::{Area, Cap, Mark, Path, PathPoint, Rgb, Scene, Shade, Shape, Stroke};
 /// Largest absolute value of a coordinate, px. All decimals up to here are exact.
 const MAX_COORDINATE: f64 = 1e9;
 
-/// A scene rounded to what its SVG holds, and what was dropped.
+/// A scene rounded to the numbers that its SVG holds, with counts of the marks that were dropped.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Quantized {
     /// The rounded scene. None of its stages is empty.
     pub scene: Scene,
     /// For each of its stages, the index in the original scene.
     pub origins: Vec<usize>,
-    /// Counts of what is not written.
+    /// Counts of marks and points that are not written.
     pub dropped: Dropped,
 }
 
@@ -164,7 +164,7 @@ fn round(stroke: &Stroke, grid: &Grid) -> Stroke {
     let width = grid.round(2.0 * stroke.radius).max(grid.above(MIN_WIDTH));
     let rounded = stroke.path.rounded(grid);
     let shaped = shaped(&stroke.path, rounded.clone(), grid);
-    // What its pen fills is no shape any more, as it is written open.
+    // A loop that its pen fills is written open, so it is no shape any more.
     let path = match shaped.clone().opened_if_filled(width).is_closed() {
         true => shaped,
         false => rounded.opened_if_filled(width),

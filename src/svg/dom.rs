@@ -1,7 +1,7 @@
 //! The text of an SVG as a tree: the one that the reader, the lint and a [`Document`](super::Document) walk.
 //!
-//! Each node knows its bytes in the text, so what is not read can stay as it is. Values of attributes and texts are those of
-//! the file: no entity is expanded. White space between elements, comments and the XML declaration are no nodes.
+//! Each node knows its bytes in the text, so bytes that are not read can stay as they are. Values of attributes and texts are
+//! as in the file: no entity is expanded. White space between elements, comments and the XML declaration are no nodes.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -17,7 +17,7 @@ use crate::error::{Error, ErrorKind, Result};
 /// Most nodes of a text. As many take some hundred MB; resvg stops at a quarter of them.
 const MAX_NODES: usize = 4_000_000;
 
-/// A text and its nodes, as far as it is well-formed.
+/// A text and its nodes, up to the first place that is not well-formed.
 #[derive(Debug)]
 pub(super) struct Dom<'a> {
     text: &'a str,
@@ -47,7 +47,7 @@ struct Item<'a> {
     next: usize,
 }
 
-/// What a node is.
+/// The content of a node.
 #[derive(Debug, Clone)]
 pub(super) enum Content<'a> {
     Element {
@@ -130,7 +130,7 @@ impl<'a> Dom<'a> {
                     self.push(Content::Text(content), start..end)?;
                 }
                 Event::CData(part) => {
-                    // Without the delimiters: the text is what lies between them.
+                    // The text lies between the delimiters.
                     let from = start + "<![CDATA[".len();
                     let content = text.get(from..from + part.len()).unwrap_or_default();
                     self.push(Content::Text(content), start..end)?;

@@ -1,4 +1,4 @@
-//! Layers of things: an area with what lies on it, as a face with its eyes, and marks of one colour that touch.
+//! Layers of things: an area with the marks on it, as a face with its eyes, and marks of one colour that touch.
 
 use kurbo::Rect;
 

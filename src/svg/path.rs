@@ -186,7 +186,7 @@ pub(super) fn parse(d: &str, kind: Kind, unit: Unit) -> Option<Vec<Path>> {
     Some(reader.paths).filter(|paths| !paths.is_empty())
 }
 
-/// Takes one segment after the other; each method returns `None` for what is not part of the dialect.
+/// Takes one segment after the other; each method returns `None` if a segment is not part of the dialect.
 struct Reader {
     kind: Kind,
     unit: Unit,

@@ -263,12 +263,12 @@ impl<'a> Tour<'a> {
         self.visits.get(i).map(|visit| visit.ends[0])
     }
 
-    /// Travel from the visit before place `i` to that at place `k`, px.
+    /// Travel from the visit before place `i` to the visit at place `k`, px.
     fn way(&self, i: usize, k: usize) -> f64 {
         way(self.lifted(i), self.set_down(k))
     }
 
-    /// By how much the reversal of the part from `first` to `last` makes the tour shorter, px.
+    /// Travel that the reversal of the part from `first` to `last` saves, px.
     fn reversal_saves(&self, first: usize, last: usize) -> f64 {
         // Only the ways at both ends of the part change; those inside it are the same backwards.
         let old = self.way(first, first) + self.way(last + 1, last + 1);
@@ -276,7 +276,7 @@ impl<'a> Tour<'a> {
             - way(self.set_down(first), self.set_down(last + 1))
     }
 
-    /// By how much it makes the tour shorter if the part from `first` on and that from `middle` to `last` change places, px.
+    /// Travel saved if the part from `first` on and the part from `middle` to `last` change places, px.
     fn swap_saves(&self, first: usize, middle: usize, last: usize) -> f64 {
         let after = last + 1;
         // Three ways change: into the first part, between the two, and out of the second.

@@ -73,7 +73,7 @@ impl Price {
             ..config.file
         };
         let price = match config.quality_for(pixels) {
-            // A large picture has a lower price for each pixel, but people see as well what is wrong with it.
+            // A large picture has a lower price for each pixel, but people see its errors as well.
             Some(quality) => Self {
                 wanted_mse: mse(config.quality.unwrap_or(DEFAULT_QUALITY) - lost_db),
                 ..Self::new(Some(quality - lost_db), file)
@@ -212,7 +212,7 @@ impl Price {
         };
         // In the middle of the file's numbers: steps of some px, with one sign of two.
         let points = [[123.46, 78.91], [127.82, 74.57], [134.24, 76.35]];
-        // What the third point adds. At least 1, as it is a divisor.
+        // The bytes of the third point. At least 1, as it is a divisor.
         bytes(&points).saturating_sub(bytes(&points[..2])).max(1)
     }
 }

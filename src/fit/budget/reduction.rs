@@ -10,7 +10,7 @@ use crate::fit::config::{Budget, Config, SCREEN_PIXELS};
 use crate::image::Image;
 use crate::metrics::{self, psnr_db};
 
-// `docs/accuracy.md` has what was measured.
+// `docs/accuracy.md` has the measurements.
 /// Pixels that a drawing of as many strokes as pay needs: twice the pixels of the screen that it is made for.
 const ENOUGH_PIXELS: usize = 2 * SCREEN_PIXELS;
 /// Fewest pixels that a picture is reduced to, however little detail it has: the price of strokes is that of a screen.

@@ -4,7 +4,7 @@
 //! fit of few strokes also draws as the shorter presets would, in a fraction of its time, and keeps the best drawing. A longer preset is
 //! therefore never worse than a shorter one.
 //!
-//! Areas, too, have a rival: where many of them draw what has no flat colours, such as gradients, or draw it badly, strokes
+//! Areas, too, have a rival: where many of them draw gradients or other uneven colours, or draw badly, strokes
 //! alone may be better.
 
 use std::time::Duration;

@@ -68,7 +68,7 @@ pub(super) fn paper(picture: &Image) -> Option<Rgb> {
 }
 
 /// The most common colour of the pixels along the border, if that is the colour of enough of them: paper reaches the
-/// border, and what is drawn on it may cover more than half of it.
+/// border, and the drawing on it may cover more than half of it.
 fn border_color(colors: &[[u8; 3]], width: usize) -> Option<Rgb> {
     let height = colors.len() / width;
     let rows = (0..height).flat_map(|y| [y * width, y * width + width - 1]);

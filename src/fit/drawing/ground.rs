@@ -1,4 +1,4 @@
-//! The ground of a drawing: what lies on its background and behind all marks.
+//! The ground of a drawing: gradient and shadows on its background, behind all marks.
 
 use crate::fit::config::Background;
 use crate::fit::drawing::{background, shading, shadows};

@@ -40,7 +40,7 @@ impl Target {
         }
     }
 
-    /// Forgets what is known of the backdrop, which has changed.
+    /// Forgets the errors of the backdrop, which has changed.
     pub(in crate::fit) fn forget_backdrop(&mut self) {
         self.untouched.fill(Untouched::new());
     }

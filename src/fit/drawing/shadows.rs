@@ -1,8 +1,8 @@
-//! The choice of shadows: soft shadows and glows on the page, each a blur of the shape of what casts it.
+//! The choice of shadows: soft shadows and glows on the page, each a blur of its caster's shape.
 //!
-//! A shadow mixes the page with one colour, by shares that change slowly. What lies among these shares, and is none of the page
-//! either, casts it. Blurs of its shape, at several places, are tried against the shares, which are known where nothing covers
-//! the shadow.
+//! A shadow mixes the page with one colour, by shares that change slowly. The caster lies among these shares
+//! and differs from the page. Blurs of its shape, at several places, are compared with the shares, which are known where
+//! nothing covers the shadow.
 
 mod caster;
 mod shares;

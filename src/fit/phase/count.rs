@@ -226,7 +226,7 @@ fn db_per_doubling((few, few_db): (usize, f64), (many, many_db): (usize, f64)) -
 /// Bytes of a settled file in units of those before, at most; photographs 1.003, flat art 0.994 to 1.005.
 const GROWTH: f64 = 1.005;
 
-/// By how many bytes the drawing will exceed the budget when it has settled; 0 if it will not.
+/// Bytes by which the settled drawing will exceed the budget; 0 if it will not.
 pub(super) fn excess(session: &Session<'_>) -> usize {
     let Some(most) = session.config.budget.bytes else {
         return 0;

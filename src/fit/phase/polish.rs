@@ -78,7 +78,7 @@ pub(super) fn run(session: &mut Session<'_>, limit: usize, polish: Polish) -> Re
     let mut descent = session.descent(course);
     descend(session, &mut descent, None)?;
     if session.config.allows_points() && session.drawing.counters.traced_until > 0 {
-        // Traced strokes come with more points than they need. They are pruned now that the fit no longer moves them.
+        // Tracing may have set points that no longer pay, now that the strokes are where they belong.
         let prunings = recipe.points.prunings;
         points::prune(&mut session.drawing, session.price, prunings);
     }

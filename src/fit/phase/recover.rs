@@ -4,7 +4,7 @@
 //! byte, which is one for the whole picture, letters go while strokes find their places, and nothing brings them back. People see
 //! what is small and stands alone, though: see [`Details`].
 //!
-//! They are looked for in what resvg makes of the file. An area that has become too thin has no inside there, though our own
+//! They are looked for in the render of the file by resvg. An area that has become too thin has no inside there, though our own
 //! edges, which are soft, show it.
 
 use super::trace;
@@ -16,9 +16,9 @@ use crate::metrics::Details;
 use crate::render::Canvas;
 use crate::scene::Marks;
 
-/// Least contrast of what is recovered. What people see begins here, too: see `details_kept`.
+/// Least contrast of recovered details. `details_kept` counts details from this contrast on, too.
 const CONTRAST: f32 = 10.0 / 255.0;
-/// By how much that contrast has to be larger, levels per level of doubt.
+/// Increase of that contrast, levels per level of doubt.
 const CONTRAST_OF_DOUBT: f32 = 8.0;
 /// Rows and columns beside details that are traced, and weighed, too. A guess.
 const REACH: usize = 4;

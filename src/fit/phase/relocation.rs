@@ -41,7 +41,7 @@ pub(in crate::fit) fn relocate(
         let relocation = recipe.relocation;
         let room = limit.saturating_sub(drawing.len());
         let scale = drawing.spacing(drawing.len()) * recipe.stages.scale * relocation.scale;
-        // What is not worth its price goes.
+        // Strokes that are not worth their price go.
         let price = price.in_drawing(drawing);
         let mut edits = drop_marks(drawing, |mark| price.least_worth(mark));
         // Candidates whose gain pays.

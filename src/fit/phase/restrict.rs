@@ -110,7 +110,7 @@ fn share_within_bytes(session: &mut Session<'_>) -> Ties {
         if excess == 0 || session.drawing.free().is_empty() {
             return ties;
         }
-        // Sharing saves bytes only if it is done again, on what is left.
+        // Sharing saves bytes only if it is done again, on the strokes that are left.
         session.drawing.revert(unshared);
         count::shorten(session, excess);
     }

@@ -26,7 +26,7 @@ const SCALE: f32 = 2.0;
 
 /// Adds strokes along the lines of the residual, on top of all others.
 pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> {
-    // Traced until nothing pays, or the fidelity is near; once if what is lost is traced later.
+    // Trace until nothing pays, or the fidelity is near; once if lost details are traced later.
     let rounds = match session.recovers() {
         true => 1,
         false => ROUNDS,
@@ -50,7 +50,7 @@ pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> 
     if add(session, traced) {
         return Ok(Outcome::Seeded(Purpose::Trace));
     }
-    // Stages go on with what is left.
+    // Stages go on with the strokes that are left to plan.
     session.history.stage = None;
     session.plan_rest();
     Ok(Outcome::Over)
@@ -117,7 +117,7 @@ fn make_opaque(mark: &mut Mark) {
 /// whether there are any.
 pub(super) fn add(session: &mut Session<'_>, traced: Vec<Traced>) -> bool {
     let index = session.history.records.len();
-    // Bytes plan for strokes, of which an area may take the place of many; what is too much is shed.
+    // A budget of bytes plans for strokes, and an area may take the place of many. Excess is shed later.
     let is_by_bytes = session.config.budget.bytes.is_some()
         && session.config.budget.strokes.is_none()
         && traced.iter().any(|traced| traced.mark.as_area().is_some());

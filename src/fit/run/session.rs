@@ -121,7 +121,7 @@ impl<'a> Session<'a> {
         let pens = config.pens.as_ref();
         let radii = pens.map_or(Ok(Vec::new()), |pens| pens.radii(page_width, picture))?;
         let widest = radii.last().copied().unwrap_or(f32::INFINITY);
-        // The picture at the resolution of the first stage, and what lies behind all strokes.
+        // The picture at the resolution of the first stage, and the backdrop of all strokes.
         let coarsest = coarsest(&plan, before, config, base).min(widest);
         let Prepared {
             target,

@@ -68,7 +68,7 @@ impl<'a> Trials<'a> {
 
 impl Observer for Trials<'_> {
     fn observe(&mut self, progress: &Progress<'_>) -> ControlFlow<()> {
-        // Whoever has said stop is not asked again.
+        // Don't poll an observer that has stopped the fit.
         if self.stopped && !self.has_grace {
             return ControlFlow::Break(());
         }

@@ -77,7 +77,7 @@ impl Search {
         })
     }
 
-    /// The squared error of what is not explained, in shares, summed over pixels.
+    /// The squared error of the shares that no cast explains yet, summed over pixels.
     pub(super) fn error(&self) -> f32 {
         let pixels = (self.side * self.side) as f32;
         pixels
@@ -124,7 +124,7 @@ impl Search {
         })
     }
 
-    /// Takes away what a cast explains.
+    /// Subtracts the shares that a cast explains.
     pub(super) fn take(&mut self, cast: &Cast) {
         let px = self.side as f32;
         let soft = blurred(self.caster.clone(), cast.blur / px);

@@ -1,25 +1,25 @@
-//! The shares of a colour that lies softly on the page, and what they surround.
+//! The shares of a colour that lies softly on the page, and the caster that they surround.
 
 use crate::image::{Image, beside};
 use crate::render::{self, Plane};
 use crate::scene::Rgb;
 
 // Colours are in 0..1.
-/// Largest difference from the page of what is the page.
+/// Pixels at most this far from the page's colour are page.
 const PAGE: f32 = 1.5 / 255.0;
-/// Largest second difference of what is soft.
+/// Largest second difference of soft pixels.
 const BEND: f32 = 10.0 / 255.0;
-/// Largest difference of what is soft from a mixture of the page with one colour.
+/// Largest difference of soft pixels from a mixture of the page with one colour.
 const NEAR: f32 = 4.0 / 255.0;
 /// The least share of the pixels that is soft.
 const LEAST_SHARE: f32 = 0.002;
-/// Number of times that the colour is found, each time by what is near the last one.
+/// Number of times that the colour is found, each time from the pixels near the last one.
 const ROUNDS: usize = 3;
-/// Fewest pixels of what casts a shadow.
+/// Fewest pixels of a caster.
 const LEAST_PIXELS: usize = 60;
 /// The least share of its outline that a shadow is seen along.
 const SURROUNDED: f32 = 0.3;
-/// Blur of the pixels of what casts a shadow before its outline is traced, px: as they are, they have stairs.
+/// Blur of the caster's pixels before its outline is traced, px: unblurred pixels give stairs.
 const OUTLINE_BLUR: f32 = 1.0;
 
 /// Premultiplied colour and opacity.
@@ -34,7 +34,7 @@ pub(super) struct Shares {
     pub(super) contrast2: f32,
     /// For each pixel the share of the colour, where it is seen.
     pub(super) seen: Vec<Option<f32>>,
-    /// The share of each pixel that belongs to what casts the shadow, blurred a little, because pixels have stairs.
+    /// The share of each pixel that belongs to the caster, blurred a little, because pixels have stairs.
     pub(super) caster: Plane,
 }
 
@@ -127,7 +127,7 @@ fn away(a: Value, b: Value) -> f32 {
     (0..4).map(|c| (a[c] - b[c]).abs()).fold(0.0, f32::max)
 }
 
-/// Floods the picture from its page through what is smooth.
+/// Floods the picture from its page through smooth pixels.
 fn kinds(values: &Values<'_>, page: Value) -> Vec<Kind> {
     let kind = |i: usize| match away(values.at(i), page) <= PAGE {
         true => Kind::Page,
@@ -219,12 +219,12 @@ fn share(value: Value, page: Value, ink: Value) -> (f32, f32) {
     (share, away(value, mixed))
 }
 
-/// The shares of the pixels of what is neither page nor soft, and surrounded by what is soft for the most part.
+/// The coverage of pixels by the caster: parts that are neither page nor soft, and that soft pixels surround for the most part.
 fn caster(values: &Values<'_>, kinds: &[Kind]) -> Vec<f32> {
     let (width, count) = (values.width(), kinds.len());
     let mut is_cast = vec![false; count];
     let mut is_seen: Vec<bool> = kinds.iter().map(|kind| *kind != Kind::Other).collect();
-    // Each connected part, with the number of its borders, and of those to what is soft.
+    // Each connected part, with the number of its borders, and of its borders to soft pixels.
     for start in 0..count {
         if is_seen[start] {
             continue;

@@ -15,7 +15,7 @@ pub(super) struct Covers {
     page: Rect,
 }
 
-/// A mark that hides others: all that it lies on if it is opaque, and the border of what has its colour.
+/// A mark that hides others: if it is opaque, all below it, and the border of marks of its colour.
 struct Cover {
     /// The box around all that it covers.
     extent: Rect,
@@ -55,7 +55,7 @@ impl Covers {
 /// Farthest beside a stroke that the border of what it runs into may be bent by it, px. A guess.
 const MELTED: f64 = 1.0;
 
-/// More opacity than this hides what lies below: the last descent has not made all of it full. A guess.
+/// Marks of more opacity than this hide those below: the last descent leaves some a little short of 1. A guess.
 const OPAQUE: f32 = 0.99;
 
 impl Cover {

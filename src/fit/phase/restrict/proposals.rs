@@ -1,4 +1,4 @@
-//! Proposals: marks in the place of one, which are fitted as what they are before they are measured.
+//! Proposals: marks in the place of one. They are fitted, shapes as shapes, before they are measured.
 
 use std::ops::Range;
 
@@ -32,7 +32,7 @@ pub(super) fn adopt(session: &mut Session<'_>, forms: Forms, mut edits: Vec<Edit
     if edits.is_empty() {
         return false;
     }
-    // 1. Make all proposals at once, and fit them together: they hardly touch each other, and each fit costs as much as one.
+    // 1. Make all proposals at once and fit them together, as a fit of all costs as much as a fit of one.
     let home = session.drawing.marks();
     let worth_before = session.drawing.judge().worth;
     let price = session.price.in_drawing(&mut session.drawing);

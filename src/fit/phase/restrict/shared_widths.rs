@@ -21,8 +21,8 @@ use crate::scene::quantum;
 /// Proposes edits that add at most this squared error, estimated in advance.
 type Step = fn(&mut Drawing, &Recipe, f32) -> Vec<Edit>;
 
-/// Makes strokes of a drawing that was traced opaque, and share widths and colours, as far as these are not given. Returns
-/// what is to stay so. All strokes must be free.
+/// Makes strokes of a drawing that was traced opaque, and share widths and colours unless these are given. Returns
+/// the ties that keep them so. All strokes must be free.
 pub(super) fn run(drawing: &mut Drawing, config: &Config, recipe: &Recipe) -> Ties {
     let mut ties = Ties::default();
     if !drawing.is_of_lines(recipe) {
