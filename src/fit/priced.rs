@@ -72,6 +72,7 @@ impl Fitter<'_> {
         let allowed = self.config.budget.strokes.unwrap_or(usize::MAX);
         let is_short = drawn.strokes().min(allowed) <= most;
         let is_flat = drawn.has_areas() || is_short && reduction::is_flat(picture);
+        // The usual quality first: if it keeps the budget, higher ones are searched, otherwise lower ones.
         search.take(drawn, search.high);
         // A photograph is drawn as well by what gains most.
         if !is_flat || trials.are_stopped() {
@@ -91,6 +92,7 @@ impl Fitter<'_> {
         let Some(excessive) = search.excessive else {
             return Ok(search.best);
         };
+        // The drawing just beyond the budget is the base of one more fit, which shortens it to the budget.
         let rival = Fitter {
             base: Some(excessive.into_base()),
             ..self.rival(self.config.clone())

@@ -143,13 +143,14 @@ fn runs(strokes: &[Written]) -> impl Iterator<Item = &[Written]> {
     strokes.chunk_by(|a, b| a.color() == b.color())
 }
 
-/// Reorders strokes so that those of one `run` are together as far as possible, and runs of one `group_key` follow each
+/// Reorders strokes so that strokes of one `run` are together as far as possible, and runs of one `group_key` follow each
 /// other.
 fn arranged<R: Ord, K: Ord>(
     mut strokes: Vec<Written>,
     run: impl Fn(&Written) -> R,
     group_key: impl Fn(&Written) -> K,
 ) -> Vec<Written> {
+    // Windows are arranged one by one, in order: a stroke never leaves its window, so the precedence between windows holds.
     for window in strokes.chunks_mut(WINDOW) {
         let order = order(window, &run, &group_key);
         let sorted: Vec<_> = order.iter().map(|&i| window[i].clone()).collect();

@@ -171,7 +171,7 @@ struct Tour<'a> {
 }
 
 impl<'a> Tour<'a> {
-    /// The tour that goes on to the nearest end of the strokes that may be drawn, again and again.
+    /// The greedy tour: it goes on to the nearest end of a stroke that may be drawn.
     fn nearest_first(strokes: &[Written], precedence: &'a Precedence, from: Option<Spot>) -> Self {
         let mut tour = Self {
             visits: Vec::with_capacity(strokes.len()),

@@ -165,7 +165,7 @@ fn resize(session: &mut Session<'_>, wanted: usize) -> Outcome {
 }
 
 impl Corrections {
-    /// Takes down that the last file has `strokes` strokes, and what these have gained since the file before.
+    /// Records that the last file has `strokes` strokes, and the fidelity that these have gained since the file before.
     fn measure(&mut self, strokes: usize, wanted_db: f64, correction: &Correction) {
         let now = (strokes, self.last_db);
         if let Some(before) = self.before.replace(now) {
