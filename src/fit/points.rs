@@ -203,7 +203,7 @@ fn edit(session: &mut Session<'_>, spare: f32) -> Vec<Option<usize>> {
     apply_priced(drawing, tolerated(choose(proposed, room))).sources
 }
 
-/// The bytes that are left for more points and strokes, less than 0 if there are too many of these; `None` without a budget of bytes.
+/// The bytes that are left for more points and strokes, less than 0 if there are too many; `None` without a budget of bytes.
 pub(super) fn bytes_left(session: &Session<'_>) -> Option<f32> {
     let most = session.config.budget.bytes? as f32 * session.recipe.points.filled;
     // Layers that will be joined are bytes that the finished file won't have.

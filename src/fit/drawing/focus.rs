@@ -1,7 +1,7 @@
 //! Weights of errors: how much an error counts in each pixel.
 //!
-//! The fit minimises `Σ w·(c − t)²`. It multiplies canvas and target by `√w`, so that all
-//! derivatives, worths and gains are those of the weighted error, exactly; see [`Renderer::set_error_weights`](crate::render::Renderer::set_error_weights).
+//! The fit minimises `Σ w·(c − t)²`. It multiplies canvas and target by `√w`, so that all derivatives, worths and gains are
+//! exactly those of the weighted error; see [`Renderer::set_error_weights`](crate::render::Renderer::set_error_weights).
 
 use std::sync::Arc;
 

@@ -56,8 +56,8 @@ fn affordable(session: &Session<'_>) -> usize {
     })
 }
 
-/// Rearranges strokes between the steps of a joint course: it switches to full resolution after its coarse share, and at intervals it
-/// changes the points of strokes and relocates strokes.
+/// Rearranges strokes between the steps of a joint course: it switches to full resolution after its coarse share, and at
+/// intervals it changes the points of strokes and relocates strokes.
 fn rearrange(session: &mut Session<'_>, descent: &mut Descent, step: usize, done: f32) {
     let Some(Joint { limit, .. }) = descent.course.joint else {
         return;

@@ -450,8 +450,8 @@ impl<'a> Session<'a> {
     }
 }
 
-/// The background and the ground of a new drawing. A ground, with `auto`, has any colours and opacities, so that a drawing of few colours or of given pens has none, and neither has one of opaque strokes that is
-/// transparent.
+/// The background and the ground of a new drawing. A ground, with `auto`, has any colours and opacities. So a drawing of few
+/// colours or of given pens has none, nor has a transparent drawing of opaque strokes.
 fn choose_background(
     picture: &Image,
     config: &Config,
