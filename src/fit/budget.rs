@@ -30,8 +30,9 @@ pub(super) const FILE_BYTES: usize = 200;
 /// Bytes of a layer without strokes.
 pub(super) const LAYER_BYTES: usize = 170;
 
-/// An estimate of how many strokes the budgets allow, those of `base` included; `None` if they set no limit.
+/// Estimated number of strokes that the budgets allow, including the strokes of `base`; `None` if they set no limit.
 pub(super) fn strokes(config: &Config, base: Option<&Base>, target: &Image) -> Option<usize> {
+    // The file's head, or the base as a whole, is paid for first.
     let kept = base.map_or(FILE_BYTES + LAYER_BYTES, Base::bytes);
     let share = if config.allows_points() {
         CAPSULES
@@ -92,6 +93,7 @@ pub(super) fn recipe(config: &Config, base: Option<&Base>, target: &Image) -> Re
     if !is_counted || !config.polish || recipe.polish.iterations == 0 {
         return recipe;
     }
+    // A polish fits the strokes of all stages again, so each stage may end sooner.
     let stages = &mut recipe.stages;
     stages.iterations = (stages.iterations as f32 * stages.polished_share) as usize;
     let Some(strokes) = strokes(config, base, target) else {
@@ -145,7 +147,7 @@ pub(super) fn compares_files(config: &Config, recipe: &Recipe) -> bool {
     is_limited && config.quality.is_none() && needs_file(&config.budget, recipe)
 }
 
-/// Why a fit ends that draws all that is planned.
+/// The reason for the end of a fit that has drawn its whole plan.
 pub(super) fn planned_stop(budget: &Budget) -> Stop {
     match (budget.strokes, budget.bytes) {
         (None, Some(_)) => Stop::Bytes,
@@ -155,6 +157,7 @@ pub(super) fn planned_stop(budget: &Budget) -> Stop {
 
 /// The first budget that a drawing of `strokes` strokes, written as `file`, meets.
 pub(super) fn met(budget: &Budget, strokes: usize, file: &RenderedFile) -> Option<Stop> {
+    // The first limit that holds is the reason given.
     if budget.strokes.is_some_and(|most| strokes >= most) {
         Some(Stop::Strokes)
     } else if reaches(budget, file) {
@@ -180,11 +183,14 @@ fn reaches(budget: &Budget, file: &RenderedFile) -> bool {
 /// that have both, the one with fewer strokes is better; of two that lack fidelity, the one with less error.
 pub(super) fn is_better(budget: &Budget, new: &RenderedFile, old: &RenderedFile) -> bool {
     match (fits(budget, new), fits(budget, old)) {
+        // Both fit: fidelity decides, then the number of strokes or the error.
         (true, true) => match (reaches(budget, new), reaches(budget, old)) {
             (true, true) => new.rounded.scene.len() < old.rounded.scene.len(),
             (false, false) => new.mse() < old.mse(),
+            // One of the two reaches the fidelity; it is better if that's the new one.
             (reaches, _) => reaches,
         },
+        // Neither fits: the nearer to the limit.
         (false, false) => new.bytes < old.bytes,
         (fits, _) => fits,
     }

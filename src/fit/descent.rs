@@ -44,7 +44,7 @@ const BACKGROUND: AdamParams = AdamParams {
 const USUAL_RADIUS: f32 = 2.0;
 /// Bounds of the factor that this gives. A guess.
 const RADIUS_FACTORS: [f32; 2] = [0.25, 4.0];
-/// Step sizes of the colours of areas, in units of those of strokes. A guess: traced colours are right within a level.
+/// Step sizes of the colours of areas, in units of the strokes'. A guess: traced colours are right within a level.
 const AREA_COLOR: f32 = 0.1;
 
 /// Factor on the steps of traced strokes, which are about where they belong. 0.15, 0.25, 0.4, 1: 39 icons have 42.8, 42.8, 42.5, 40.8
@@ -131,7 +131,7 @@ impl Descent {
         }
     }
 
-    /// The descent that keeps the bands of the drawing bands: a stored one does not tell them.
+    /// The descent that keeps the bands of the drawing bands: a stored descent does not hold them.
     pub(super) fn holding_bands(self, drawing: &Drawing) -> Self {
         let held = Held::bands(drawing.free());
         Self { held, ..self }
@@ -151,11 +151,14 @@ impl Descent {
         if self.step >= iterations {
             return None;
         }
+        // Two clocks, and the later one counts: iterations, and a limited time if it runs out first.
         let by_count = self.step as f32 / iterations as f32;
         let left = (until - self.used_before).max(f32::MIN_POSITIVE);
         let by_time = (timer.used() - self.used_before) / left;
+        // After a request to stop, the time that is left is spread over the share 1 − from of the course that was still to come.
         let from = self.hurried_from.unwrap_or(0.0);
         let by_time = from + (1.0 - from) * by_time;
+        // The time is used up: whatever follows this descent has to hurry, too.
         if by_time >= 1.0 {
             timer.hurry();
             return None;
@@ -189,11 +192,13 @@ impl Descent {
         let jitter = jitter.filter(|jitter| jitter.begins_by(done));
         let still = jitter.map(|jitter| jitter.apply(drawing.free_mut(), step));
         drawing.differentiate::<false>(edge, aim.map(|aim| aim.targets), &mut self.gradients);
+        // The step starts from the strokes' own places; the gradient alone was taken beside them.
         if let Some(still) = still {
             drawing.free_mut().numbers_mut().copy_from_slice(&still);
         }
         // A time limit may have shortened the course.
         let by_time = course.joint.is_some() || self.hurried_from.is_some();
+        // So step sizes still end at their last value, although some iterations of the schedule are skipped.
         let at = if by_time {
             (done * course.iterations as f32) as usize
         } else {
@@ -204,17 +209,22 @@ impl Descent {
         let bounds = drawing.bounds;
         let strokes = drawing.free_mut();
         let slopes = &mut self.gradients.strokes;
+        // Ties first: a projection onto a form must see the derivative of the whole group.
         self.ties.gather(slopes);
         self.held.project(strokes, slopes);
         let (adam, scales) = (&mut self.adam, &self.scales);
+        // Adam scales each number by its own second moment, which would turn the step away from the gradient. Where points have to
+        // move as one, they share the moment.
         match squares(strokes, slopes, &self.held) {
             None => adam.step_scaled(strokes.numbers_mut(), slopes, rate, scales),
             Some(squares) => {
                 adam.step_with_squares(strokes.numbers_mut(), slopes, rate, scales, &squares);
             }
         }
+        // Bounds clamp single numbers and may break a form, so forms are restored after them.
         strokes.change(|_, stroke| bounds.apply(stroke));
         self.held.restore(strokes);
+        // The canvas of frozen strokes has the background in it, so it moves only while none is frozen.
         if course.joint.is_some() && drawing.is_thawed() && !drawing.background_fixed {
             let rate = rate * course.rates.color;
             let (slope, background) = (&self.gradients.backdrop, &mut self.background);
@@ -264,6 +274,7 @@ fn squares(strokes: &Strokes, slopes: &[f32], held: &Held) -> Option<Vec<f32>> {
         let start = strokes.range(i).start;
         let points = &mut squares[start..start + 2 * strokes.get(i).points.len()];
         for point in points.as_chunks_mut::<2>().0 {
+            // Invariant under rotation: the step of a point keeps the direction of its gradient.
             *point = [point[0] + point[1]; 2];
         }
     }
@@ -289,6 +300,7 @@ fn scales(rates: &Rates, drawing: &Drawing) -> Vec<f32> {
         if stroke.is_area() {
             scales.resize(scales.len() + 2 * stroke.points.len(), area);
             let color = color * AREA_COLOR;
+            // Radius, three channels, opacity: an area has no radius and keeps its opacity.
             scales.extend([0.0, color, color, color, 0.0]);
             continue;
         }

@@ -128,6 +128,7 @@ impl Drawing {
             return false;
         }
         self.halve(halvings);
+        // Parameters are in px of the current level, and grow with it.
         enlarge(self.free_mut(), now - halvings);
         true
     }
@@ -213,6 +214,7 @@ impl Drawing {
 
     fn free_all(&mut self) {
         self.known = Known::default();
+        // The frozen strokes lie behind, so the free ones follow them in the list, which then becomes the free one.
         self.frozen.append(&mut self.free);
         std::mem::swap(&mut self.frozen, &mut self.free);
     }
@@ -243,6 +245,7 @@ impl Drawing {
     /// Replaces the free marks by these, each with its stage, in px of the current resolution.
     pub(super) fn set_marks(&mut self, (marks, stages): (Strokes, Vec<usize>)) {
         let lost = |marks: &Strokes| marks.iter().filter(|mark| !mark.is_finite()).count();
+        // Marks that go because they aren't finite are lost. Trials put marks back, which takes their count back.
         self.counters.lost += lost(&self.free);
         self.counters.lost -= lost(&marks).min(self.counters.lost);
         self.stage_of.truncate(self.frozen.len());
@@ -265,6 +268,7 @@ impl Drawing {
     pub(super) fn join_stages(&mut self, count: usize) {
         let mut stages: Vec<usize> = self.stage_of.clone();
         stages.dedup();
+        // The stages that are left begin at the lowest one to be joined; all above it take its number.
         let first = stages
             .len()
             .checked_sub(count + 1)
@@ -279,6 +283,7 @@ impl Drawing {
     /// Number of free strokes, from the back, in stages that were traced.
     pub(super) fn traced(&self) -> usize {
         let free = self.stage_of.get(self.frozen.len()..).unwrap_or_default();
+        // Stages never decrease from back to front, so a binary search finds the first one that was not traced.
         free.partition_point(|&stage| stage < self.counters.traced_until)
     }
 
@@ -323,6 +328,7 @@ impl Drawing {
             gradients.scale(0.5);
             return;
         }
+        // The loss is the mean over the surfaces, and so are its derivatives.
         let mut more = Gradients::default();
         for (i, surface) in self.surfaces.iter().enumerate() {
             let out = if i == 0 { &mut *gradients } else { &mut more };
@@ -364,7 +370,9 @@ impl Drawing {
     pub(super) fn judge(&mut self) -> Gradients {
         let mut gradients = Gradients::default();
         self.differentiate::<true>(self.edge, None, &mut gradients);
+        // At the final edge the loss is the mean squared error, so it needn't be computed again.
         self.known.mse = Some(gradients.loss);
+        // Worth is a sum over pixels of this resolution, and is wanted in pixels of the picture.
         let area = self.pixel_area();
         gradients.worth.iter_mut().for_each(|worth| *worth *= area);
         gradients

@@ -20,7 +20,7 @@ use super::drawing::Drawing;
 use crate::render::{STYLE, StrokeRef, Strokes};
 use crate::scene::Mark;
 
-/// The index of what is put on top of all marks.
+/// The index of marks that come on top of all others.
 pub(super) const TOP: usize = usize::MAX;
 
 /// A change of the free marks of a drawing.
@@ -32,11 +32,11 @@ pub(super) struct Edit {
     pub(super) gain: f32,
     /// Squared error that it may add for what it saves; below 0 if it has to remove some for what it costs.
     pub(super) price: f32,
-    /// By how many the points, or the marks, become more.
+    /// Growth of the number of points, or of marks.
     pub(super) growth: isize,
 }
 
-/// What takes the place of a mark.
+/// Replacement of a mark.
 #[derive(Debug, Clone)]
 pub(super) enum Change {
     /// These marks; none if it goes.
@@ -65,7 +65,7 @@ impl Change {
 }
 
 impl Edit {
-    /// What it is worth beyond its price, as foreseen.
+    /// Foreseen gain beyond its price.
     pub(super) fn surplus(&self) -> f32 {
         self.gain + self.price
     }
@@ -93,7 +93,7 @@ pub(super) fn written_points(stroke: StrokeRef<'_>) -> usize {
     stroke.points.len() + implied.count()
 }
 
-/// The loss of each free mark, which spares what `price` says.
+/// An edit for each free mark that removes it, and saves its `price`.
 pub(super) fn drop_marks(drawing: &mut Drawing, price: impl Fn(StrokeRef<'_>) -> f32) -> Vec<Edit> {
     let worth = drawing.judge().worth;
     let marks = drawing.free().iter().zip(worth).enumerate();
@@ -111,7 +111,7 @@ pub(super) fn drop_marks(drawing: &mut Drawing, price: impl Fn(StrokeRef<'_>) ->
     marks.map(loss).collect()
 }
 
-/// The losses of the `count` free marks of least worth.
+/// The edits that remove the `count` free marks of least worth.
 pub(super) fn least(drawing: &mut Drawing, count: usize) -> Vec<Edit> {
     let mut edits = drop_marks(drawing, |_| 0.0);
     edits.sort_by(|a, b| b.gain.total_cmp(&a.gain));
@@ -119,36 +119,40 @@ pub(super) fn least(drawing: &mut Drawing, count: usize) -> Vec<Edit> {
     edits
 }
 
-/// Limits of a choice; by default only what adds nothing is chosen.
+/// Limits of a choice. By default no edit that adds points or marks is chosen.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Room {
-    /// By how many points, or marks, the drawing may grow, besides those that go.
+    /// Points, or marks, that the drawing may gain beyond the ones that go.
     pub(super) free: usize,
     /// Most edits that add something.
     pub(super) most: usize,
-    /// Most edits that add something in the place of what is worth less, once there is no room.
+    /// Most exchanges of an addition for a loss, once there is no room.
     pub(super) swaps: usize,
 }
 
-/// Chooses edits of different paths that pay, those first that add nothing, and then the most gaining. Where there is no room
-/// left, what gains most takes the place of what costs least, as long as that gains something.
+/// Chooses edits of different paths that pay: first all edits that add no points or marks, then the most gaining ones. Without
+/// room left, the most gaining addition takes the place of the cheapest loss, as long as the exchange gains.
 pub(super) fn choose(mut edits: Vec<Edit>, room: Room) -> Vec<Edit> {
     edits.sort_by(|a, b| b.surplus().total_cmp(&a.surplus()));
+    // Edits that pay without growth come first: they need no room, and a loss makes some.
     let pays = |edit: &Edit| edit.surplus() > 0.0;
     let (adding, others): (Vec<_>, Vec<_>) = edits.into_iter().partition(|edit| edit.growth > 0);
     let (paying, mut leaving): (Vec<_>, Vec<_>) = others.into_iter().partition(pays);
     let mut touched = Touched::default();
     let mut chosen = paying;
     chosen.retain(|edit| touched.takes(edit));
+    // Additions fill the room and what the losses freed. The iterator keeps the rest of them for the exchanges.
     let freed: usize = chosen.iter().map(|edit| edit.growth.unsigned_abs()).sum();
     let adding = adding.into_iter().filter(pays);
     let adding: Vec<Edit> = adding.filter(|edit| touched.allows(edit)).collect();
     let mut adding = adding.into_iter().take(room.most);
     let coming = adding.by_ref().take(room.free.saturating_add(freed));
     chosen.extend(coming.filter(|edit| touched.takes(edit)));
-    // Exchanges.
+    // Exchanges, where the room is used up.
+    // A loss that doesn't pay by itself still pays in exchange for an addition that gains more than it costs.
     leaving.retain(|edit| edit.growth < 0);
     leaving.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    // The best addition meets the cheapest loss, the next best the next cheapest, until a pair gains nothing.
     for (new, old) in adding.zip(leaving).take(room.swaps) {
         if new.gain + old.gain <= 0.0 {
             break;
@@ -160,14 +164,14 @@ pub(super) fn choose(mut edits: Vec<Edit>, room: Room) -> Vec<Edit> {
     chosen
 }
 
-/// Those of the edits that touch no path of an earlier one.
+/// Drops edits that touch a path of an earlier one.
 pub(super) fn disjoint(mut edits: Vec<Edit>) -> Vec<Edit> {
     let mut touched = Touched::default();
     edits.retain(|edit| touched.takes(edit));
     edits
 }
 
-/// The paths that edits change: each by its mark and its index among the paths of that, or all of them.
+/// The paths that edits change, each by its mark and by its index among the mark's paths, or [`ALL`].
 #[derive(Debug, Default)]
 pub(super) struct Touched(BTreeSet<(usize, usize)>);
 
@@ -214,17 +218,20 @@ pub(super) struct Tried {
     pub(super) sources: Vec<Option<usize>>,
 }
 
-/// Makes those of these edits of different paths that pay: that add no more squared error, as rendered, than their prices
-/// allow. All that are foreseen to pay are tried at once and, where the sum lies, each half of them. What may not pay is
-/// then tried one by one.
+/// Makes the edits that pay: rendered, they add no more squared error than their prices allow. The edits change different
+/// paths. All edits that should pay by their surplus are tried at once and, where a group fails, each half of it. The others
+/// are then tried one by one.
 pub(super) fn apply_priced(drawing: &mut Drawing, edits: Vec<Edit>) -> Tried {
+    // The loss is a mean over pixels and channels, prices are sums.
     let values = 3.0 * drawing.pixels() as f64;
     let (before, mut error) = (drawing.marks(), drawing.mse());
     let mut taken: Vec<usize> = Vec::new();
     let (paying, others): (Vec<usize>, Vec<usize>) =
         (0..edits.len()).partition(|&i| edits[i].surplus() >= 0.0);
     let groups = std::iter::once(paying).chain(others.into_iter().map(|i| vec![i]));
+    // Each trial adds one group to all that were taken, so that interaction between edits is in the measured error.
     by_halves(groups.collect(), |group| {
+        // Edits have the indices of the original marks, so every trial starts from these.
         let tried = [&taken[..], group].concat();
         drawing.set_marks(before.clone());
         drawing.apply(tried.iter().map(|&i| &edits[i]));
@@ -236,6 +243,7 @@ pub(super) fn apply_priced(drawing: &mut Drawing, edits: Vec<Edit>) -> Tried {
         }
         pays
     });
+    // The last trial may have been refused; the edits taken are applied once more.
     drawing.set_marks(before);
     let sources = drawing.apply(taken.iter().map(|&i| &edits[i]));
     taken.sort_unstable();
@@ -251,9 +259,10 @@ pub(super) fn apply_priced(drawing: &mut Drawing, edits: Vec<Edit>) -> Tried {
     }
 }
 
-/// Offers each group to `accepts` and, of what it refuses, each half, down to single ones.
+/// Offers each group to `accepts`, and each half of a refused group, down to single edits.
 fn by_halves(mut groups: Vec<Vec<usize>>, mut accepts: impl FnMut(&[usize]) -> bool) {
     groups.retain(|group| !group.is_empty());
+    // A stack, whose top is the first group. Of two halves the first comes next, too, so that edits are tried in their order.
     groups.reverse();
     for _ in 0..TRIALS {
         let Some(group) = groups.pop() else { return };
@@ -285,6 +294,7 @@ impl Drawing {
                 (None, Change::Path { .. }) => {}
             }
         }
+        // Rebuild the marks from back to front. Each new number records its former index, so that the optimiser's moments follow.
         let (mut edited, mut of_stages, mut sources) = (Strokes::new(), Vec::new(), Vec::new());
         for (i, (stroke, changes)) in strokes.iter().zip(&changes).enumerate() {
             let range = strokes.range(i);
@@ -328,6 +338,7 @@ fn push_with_paths(strokes: &mut Strokes, stroke: StrokeRef<'_>, changes: &[&Cha
         let (points, off) = changed.unwrap_or((path.points, path.off));
         all_points.extend(points);
         all_off.extend(off);
+        // A ring is stored by the index at which it ends.
         rings.push(all_points.len() as u32);
     }
     strokes.push(StrokeRef {

@@ -42,7 +42,7 @@ pub struct Fitter<'a> {
     pub(super) grace: Duration,
     /// Size of the picture, px, if a reduced one is drawn.
     pub(super) page: Option<[u32; 2]>,
-    /// Distance of the picture from what it means, as far as can be told, RMS in levels of 8 bits.
+    /// Estimated RMS distance of the picture from the restored one, in 8-bit levels.
     pub(super) doubt: f32,
     /// Most marks of a drawing that areas are split in, if few are wanted.
     pub(super) most_marks: Option<usize>,

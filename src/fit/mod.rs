@@ -110,8 +110,8 @@ impl Fitter<'_> {
         Ok(fit)
     }
 
-    /// The picture that `picture` is meant to be, if that is another and damage is not to be drawn. A fidelity is asked for of
-    /// all that is in a picture.
+    /// The restored picture, if `picture` is damaged and damage is not to be drawn. A given fidelity covers everything in the
+    /// picture, so nothing is restored for it.
     fn meant(&mut self, picture: &Image) -> Result<Option<Meant>> {
         if self.config.literal || self.config.budget.psnr_db.is_some() {
             return Ok(None);
@@ -121,7 +121,7 @@ impl Fitter<'_> {
         Ok(meant)
     }
 
-    /// Draws the picture that is meant.
+    /// Draws the restored picture.
     fn fit_meant(mut self, picture: &Image, since: Instant) -> Result<Fit> {
         let pool = self.execution.pool()?;
         let reduced = pool.install(|| self.reduce(picture));
@@ -162,14 +162,14 @@ impl Fitter<'_> {
             drawn = drawn.or_cheaper(rival, price);
         }
         let drawn = drawn.or_better(best);
-        // Whoever stopped the fit is told so, whichever drawing is the better one.
+        // A stopped fit says so, whichever drawing is the better one.
         Ok(match stop {
             Stop::Interrupted => drawn.interrupted(),
             _ => drawn.fit,
         })
     }
 
-    /// The picture reduced to the pixels that its drawing needs, if these are fewer, or to those that its base was drawn of.
+    /// The picture reduced to the pixels that its drawing needs, if these are fewer, or to the size that its base was drawn at.
     fn reduce(&mut self, picture: &Image) -> Option<Image> {
         let side = |px: usize| u32::try_from(px).unwrap_or(u32::MAX);
         let page = [side(picture.width()), side(picture.height())];

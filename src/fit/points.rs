@@ -2,7 +2,7 @@
 //!
 //! A survey tells how the squared error depends on the vertices of all strokes, and so what every change of a stroke's
 //! points would gain; [`edits`] proposes and measures them. Each path may change by one edit at a time; descent then fits
-//! it. The rule for strokes holds: what does not pay its price goes, and what pays comes. If the budget has
+//! it. The rule for strokes holds: a point that does not pay its price goes, and one that pays comes. If the budget has
 //! no room left, points that gain more take the places of points that cost less to lose.
 
 use rayon::prelude::*;
@@ -24,6 +24,7 @@ const TOLERANCE: f32 = 2.0;
 /// index of each number of the free strokes, `None` for a new one.
 pub(super) fn rearrange(session: &mut Session<'_>, done: f32) -> Vec<Option<usize>> {
     let excess = bytes_left(session).map_or(0, |left| (-left).max(0.0) as usize);
+    // A drawing over its bytes loses some before anything else: no gain makes up for bytes beyond the budget.
     if excess > 0 {
         let at_a_time = session.recipe.points.at_a_time;
         return shed(&mut session.drawing, session.price, at_a_time, excess);
@@ -41,9 +42,11 @@ pub(super) fn rearrange(session: &mut Session<'_>, done: f32) -> Vec<Option<usiz
     let most = config.points.unwrap_or(usize::MAX);
     let price = session.price.in_drawing(drawing);
     let worth = |stroke: StrokeRef<'_>| price.least_worth(stroke).max(spare);
+    // Joins first. They free points that the edits of paths can use.
     let joins = joins::joins(drawing.free(), most, &points.joins, worth);
     let joined = apply_priced(drawing, joins).sources;
     let edited = edit(session, spare);
+    // Two rearrangements in a row: a number's source is the source of its source.
     edited.iter().map(|source| joined[(*source)?]).collect()
 }
 
@@ -54,6 +57,7 @@ pub(super) fn prune(drawing: &mut Drawing, price: Price, prunings: usize) {
     for _ in 0..prunings {
         let price = price.in_drawing(drawing);
         let mut losses = losses(drawing, price);
+        // A refusal stays one: the strokes don't move between the passes.
         losses.retain(|edit| refused.allows(edit));
         let tried = apply_priced(drawing, choose(losses, Room::default()));
         if tried.made.is_empty() {
@@ -88,6 +92,7 @@ pub(super) fn shed(
     let numbers = drawing.free().numbers().len();
     let mut sources: Vec<Option<usize>> = (0..numbers).map(Some).collect();
     let mut left = excess;
+    // Every pass removes at least one mark or point, so that the loop ends.
     while left > 0 && !drawing.free().is_empty() {
         let mut edits = losses(drawing, price);
         edits.extend(drop_marks(drawing, |mark| price.least_worth(mark)));
@@ -102,10 +107,12 @@ pub(super) fn shed(
             [(i, _), ..] => bytes[i],
             [] => 0,
         };
+        // Greedy by squared error per byte, as for a knapsack.
         let loss = |edit: &Edit| (-edit.gain).max(0.0) / bytes(edit) as f32;
         edits.sort_by(|a, b| loss(a).total_cmp(&loss(b)));
         let mut edits = disjoint(edits);
         edits.truncate(edits.len().div_ceil(at_a_time));
+        // No more than the excess: the last edit may overshoot it by its own bytes.
         let mut wanted = left;
         edits.retain(|edit| {
             let is_wanted = wanted > 0;
@@ -116,6 +123,7 @@ pub(super) fn shed(
         left = left.saturating_sub(tried.made.iter().map(bytes).sum());
         let kept = match tried.made.is_empty() {
             true => {
+                // Every trial was refused. The mark of least worth goes unasked, as the bytes have to.
                 let least = edits::least(drawing, 1);
                 left = left.saturating_sub(least.iter().map(bytes).sum());
                 drawing.apply(&least)
@@ -135,13 +143,14 @@ fn tolerated(mut edits: Vec<Edit>) -> Vec<Edit> {
     edits
 }
 
-/// The worth that a `share` of the strokes is below: what a stroke is worth that could be spared, where a budget binds. It
-/// would be used where it is worth more, and a point has to be worth as much for its bytes.
+/// Quantile of stroke contribution. Under a binding budget, a stroke below it is expendable: its bytes would be used where they
+/// gain more, and a point has to gain as much for its bytes.
 fn quantile_worth(drawing: &mut Drawing, share: f32) -> f32 {
     let mut worth = drawing.judge().worth;
     if worth.is_empty() {
         return 0.0;
     }
+    // Select rather than sort: only the quantile is needed.
     let at = (share * worth.len() as f32) as usize;
     let at = at.min(worth.len() - 1);
     worth.select_nth_unstable_by(at, f32::total_cmp).1.max(0.0)
@@ -151,6 +160,7 @@ fn quantile_worth(drawing: &mut Drawing, share: f32) -> f32 {
 fn edit(session: &mut Session<'_>, spare: f32) -> Vec<Option<usize>> {
     let points = session.recipe.points;
     let stroke_bytes = typical_bytes(session.config, &session.target) as f32;
+    // A point's part of the bytes of a stroke, by which a point competes with the strokes that could be spared.
     let share = session.price.point_bytes() as f32 / stroke_bytes;
     let room = room(session);
     let most = session.config.points.unwrap_or(usize::MAX);
@@ -184,6 +194,7 @@ fn edit(session: &mut Session<'_>, spare: f32) -> Vec<Option<usize>> {
     };
     let proposed: Vec<Edit> = terrains.par_iter().flat_map_iter(propose).collect();
     let paths = terrains.len() as f32;
+    // Limits of one pass, so that descent adapts the paths before the next one.
     let room = Room {
         free: room,
         most: (points.share * paths).ceil() as usize,
@@ -192,9 +203,10 @@ fn edit(session: &mut Session<'_>, spare: f32) -> Vec<Option<usize>> {
     apply_priced(drawing, tolerated(choose(proposed, room))).sources
 }
 
-/// The bytes that are left for more points and strokes, less than 0 if there are too many of these; `None` without a budget of bytes.
+/// The bytes that are left for more points and strokes, less than 0 if there are too many; `None` without a budget of bytes.
 pub(super) fn bytes_left(session: &Session<'_>) -> Option<f32> {
     let most = session.config.budget.bytes? as f32 * session.recipe.points.filled;
+    // Layers that will be joined are bytes that the finished file won't have.
     let layers = session.layers_to_join() * budget::LAYER_BYTES;
     let bytes = session.bytes().saturating_sub(layers) as f32;
     Some(most - bytes * session.history.corrections.restricted)
@@ -206,6 +218,7 @@ fn room(session: &Session<'_>) -> usize {
     let pixels = session.target.width() * session.target.height();
     let most = budget::points(config, strokes.len(), pixels);
     let by_strokes = most.map_or(usize::MAX, |most| most.saturating_sub(strokes.points()));
+    // Whichever limit binds first: points by count, or points by bytes.
     let by_bytes = bytes_left(session).map_or(usize::MAX, |left| {
         (left.max(0.0) / session.price.point_bytes() as f32) as usize
     });

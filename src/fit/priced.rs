@@ -25,7 +25,7 @@ struct Search {
     high: f64,
     /// The best drawing that keeps it.
     best: Option<Drawn>,
-    /// The drawing of the least quality that does not.
+    /// The drawing of the least quality that exceeds it.
     excessive: Option<Drawn>,
 }
 
@@ -46,7 +46,7 @@ impl Fitter<'_> {
     /// Number of drawings of what pays that `picture` has, at most.
     pub(super) fn most_of_what_pays(&self, picture: &Image) -> usize {
         match self.base.is_none() && rivals::has_priced(&self.config, picture) {
-            // The usual quality, those of the search, and the shortened one.
+            // The usual quality, the qualities of the search, and the shortened drawing.
             true => HALVINGS + 2,
             false => 0,
         }
@@ -72,6 +72,7 @@ impl Fitter<'_> {
         let allowed = self.config.budget.strokes.unwrap_or(usize::MAX);
         let is_short = drawn.strokes().min(allowed) <= most;
         let is_flat = drawn.has_areas() || is_short && reduction::is_flat(picture);
+        // The usual quality first: if it keeps the budget, higher ones are searched, otherwise lower ones.
         search.take(drawn, search.high);
         // A photograph is drawn as well by what gains most.
         if !is_flat || trials.are_stopped() {
@@ -91,6 +92,7 @@ impl Fitter<'_> {
         let Some(excessive) = search.excessive else {
             return Ok(search.best);
         };
+        // The drawing just beyond the budget is the base of one more fit, which shortens it to the budget.
         let rival = Fitter {
             base: Some(excessive.into_base()),
             ..self.rival(self.config.clone())

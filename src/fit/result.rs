@@ -25,12 +25,12 @@ pub struct Fit {
     pub file: WriteOptions,
     /// The target: the picture with its alpha, or flattened onto the background.
     pub target: Image,
-    /// Damage of the picture, if some was recognised: the drawing is then of the picture that is meant.
+    /// Damage of the picture, if some was recognised: the drawing is then of the restored picture.
     pub damage: Option<Damage>,
     /// Our own render of `scene` with the edge of a finished drawing; with alpha if the drawing has no
     /// background and the picture has alpha.
     pub soft: Image,
-    /// One record per stage of `scene`, those of the base included.
+    /// One record per stage of `scene`, the base's stages included.
     pub stages: Vec<StageRecord>,
     /// Why the fit ended.
     pub stop: Stop,

@@ -9,7 +9,7 @@ use crate::scene::MIN_WIDTH;
 use crate::svg::Length;
 use crate::words::from_text;
 
-/// The widths that all strokes have: those of the pens of a plotter.
+/// The widths of a plotter's pens, one of which each stroke has.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Widths(Vec<Width>);
 

@@ -43,6 +43,7 @@ fn push(file: &mut File, layer: &str, path: &Path, sheet: &Sheet<'_>) {
         return file.circle(layer, at(center), radius * sheet.mm());
     }
     let segments: Vec<PathSeg> = path.segments().collect();
+    // Simple entities first: every reader knows lines, circles and points, and an operator can edit them.
     if let [PathSeg::Line(line)] = segments[..] {
         return file.line(layer, at(line.p0), at(line.p1));
     }
@@ -64,6 +65,7 @@ fn push(file: &mut File, layer: &str, path: &Path, sheet: &Sheet<'_>) {
         }
         end = Some(at(segment.end()));
     }
+    // A closed polyline goes back to its first vertex by itself.
     if !path.is_closed() {
         vertices.extend(end.map(|at| Vertex { at, bulge: 0.0 }));
     }

@@ -38,7 +38,7 @@ impl std::str::FromStr for Hatch {
     }
 }
 
-/// The scene with what is seen of its areas filled with lines `spacing` px apart, of a `pen` that is so many px wide:
+/// The scene with the visible parts of its areas filled with lines `spacing` px apart, of a `pen` that is so many px wide:
 /// one along their borders, and straight ones at an angle. Strokes stay, and lie on top. The background is paper, which
 /// stays bare; so does an area of its colour.
 ///
@@ -67,7 +67,7 @@ pub fn hatched(scene: &Scene, spacing: f64, pen: f64, degrees: f64) -> Result<Sc
 
 /// The visible parts of the areas, which areas and strokes on top hide, by colour.
 fn areas(scene: &Scene) -> Result<Vec<Area>> {
-    // Strokes hide what is below, and are of no colour themselves: they get one that no area has.
+    // Strokes hide marks below, but aren't hatched: they get a colour that no area has.
     let mut taken: Vec<[u8; 3]> = scene.areas().map(|area| area.color.map(quantum)).collect();
     taken.extend(scene.background.map(|c| c.map(quantum)));
     let free = (0..=u8::MAX).map(|level| [level, 0, 255 - level]);
@@ -93,8 +93,8 @@ fn areas(scene: &Scene) -> Result<Vec<Area>> {
     Ok(areas)
 }
 
-/// Distances of the pen from the border, in units of its radius. What the pen does not reach at one of them, because that is
-/// thinner than the pen, is drawn at the next. The steps are a guess.
+/// Distances of the pen from the border, in units of its radius. Parts that the pen does not reach at one of
+/// them, because they are thinner than the pen, are drawn at the next. The steps are a guess.
 const DISTANCES: [f64; 5] = [1.0, 0.7, 0.45, 0.25, 0.1];
 
 /// Smaller pieces that the pen does not reach are left out, in units of its width squared. They lie in corners. A guess.
@@ -106,11 +106,13 @@ fn filled(area: &Area, spacing: f64, pen: f64, degrees: f64) -> Result<Vec<Strok
     let mut paths = Vec::new();
     let mut rest = area.rings.clone();
     for (step, distance) in DISTANCES.into_iter().enumerate() {
+        // The pen's middle runs along the inset border, so that its outer edge meets the border itself.
         let inner = visible::inset(&rest, distance * radius)?;
         paths.extend(inner.iter().cloned());
         if step == 0 {
             paths.extend(lines(&inner, spacing, degrees));
         }
+        // Parts that the pen doesn't reach from there are drawn nearer to the border in the next step.
         rest = visible::around(&rest, &inner, radius)?;
         rest.retain(|ring| visible::enclosed(ring) > SMALLEST * pen * pen);
         if rest.is_empty() {
@@ -129,6 +131,7 @@ fn filled(area: &Area, spacing: f64, pen: f64, degrees: f64) -> Result<Vec<Strok
 
 /// Straight lines at an angle within rings.
 fn lines(rings: &[Path], spacing: f64, degrees: f64) -> Vec<Path> {
+    // Turn the rings so that hatch lines are rows of constant v. The angle is negative because y points down.
     let (sin, cos) = math::sin_cos(-degrees.to_radians());
     let turned = |p: Point| [p.x * cos + p.y * sin, p.y * cos - p.x * sin];
     let back = |[u, v]: [f64; 2]| Point::new(u * cos - v * sin, u * sin + v * cos);
@@ -149,7 +152,7 @@ fn lines(rings: &[Path], spacing: f64, degrees: f64) -> Vec<Path> {
         ends().fold(f64::NEG_INFINITY, f64::max),
     );
     let mut found = Vec::new();
-    // The lines of all areas are multiples of the distance, so that those of neighbours meet.
+    // The lines of all areas are at multiples of the distance, so that the lines of neighbours meet.
     let (first, last) = ((low / spacing).ceil(), (high / spacing).floor());
     let rows = if first <= last {
         (last - first) as usize + 1
@@ -158,6 +161,7 @@ fn lines(rings: &[Path], spacing: f64, degrees: f64) -> Vec<Path> {
     };
     for row in 0..rows {
         let v = (first + row as f64) * spacing;
+        // Sorted, the borders that a row crosses lead in and out by turns, around holes too.
         let mut cuts = cuts(&sides, v);
         cuts.sort_by(f64::total_cmp);
         let pairs = cuts.as_chunks::<2>().0.iter();
@@ -179,6 +183,7 @@ fn lines(rings: &[Path], spacing: f64, degrees: f64) -> Vec<Path> {
 
 /// Where sides cross the row at `v`.
 fn cuts(sides: &[[[f64; 2]; 2]], v: f64) -> Vec<f64> {
+    // Half open: a corner on the row belongs to one of its two sides, so that the number of cuts is even.
     let crossing = |[a, b]: &&[[f64; 2]; 2]| (a[1] <= v) != (b[1] <= v);
     let at = |[a, b]: &[[f64; 2]; 2]| a[0] + (v - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
     sides.iter().filter(crossing).map(at).collect()

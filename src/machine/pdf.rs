@@ -88,6 +88,7 @@ impl File {
 
     /// Draws a gradient on all that is not clipped away, and restores the graphics state.
     fn shade(&mut self, shade: &Shade) {
+        // A PDF shading has no opacity: opacities are a second shading, in greys, which masks the first.
         let shading = self.shading(shade, true);
         let opacity = self.shading(shade, false);
         let mut content = Content::new();
@@ -133,6 +134,7 @@ impl File {
     /// The values between stops, which change linearly.
     fn function(&mut self, stops: &[ShadeStop], value: impl Fn(&ShadeStop) -> Vec<f32>) -> Ref {
         let offset = |stop: &ShadeStop| stop.offset;
+        // The first and the last colour go on to the ends of the axis, as in SVG.
         let first = stops.first().map(|stop| (0.0, value(stop)));
         let last = stops.last().map(|stop| (1.0, value(stop)));
         let between = stops.iter().map(|stop| (offset(stop), value(stop)));
@@ -151,6 +153,7 @@ impl File {
             step.domain([0.0, 1.0]).c0(from).c1(to).n(1.0);
             steps.push(id);
         }
+        // A stitching function lists only the bounds between its steps.
         let inner = knots.iter().skip(1).take(steps.len().saturating_sub(1));
         let id = self.next.bump();
         let mut whole = self.pdf.stitching_function(id);
@@ -245,6 +248,7 @@ impl File {
                 content.set_fill_rgb(r, g, b).save_state();
                 area.rings.iter().for_each(|ring| push(content, ring));
                 if let Some(shade) = mark.shade() {
+                    // A shading fills all that is visible, so the area clips it; `shade` restores the state saved above.
                     content.clip_nonzero().end_path();
                     self.shade(shade);
                 } else {
@@ -316,6 +320,7 @@ fn push(content: &mut Content, path: &Path) {
             let [x, y] = at(segment.start());
             content.move_to(x, y);
         }
+        // PDF has cubic curves alone; a quadratic one is a cubic one exactly.
         let cubic = segment.to_cubic();
         let [[x1, y1], [x2, y2], [x, y]] = [cubic.p1, cubic.p2, cubic.p3].map(at);
         match segment {

@@ -65,6 +65,7 @@ fn bezier(rings: &[Path]) -> BezPath {
 /// The parts within some rings that are within none of the others.
 fn without(rings: &[Path], others: &[BezPath]) -> Result<Vec<Path>> {
     let own = bezier(rings);
+    // A page around all of the rings, so that nothing is cut off.
     let page = own.bounding_box().inflate(1.0, 1.0).to_path(NEAR);
     let others = others.iter().map(|other| ([1; 3], other.clone()));
     let marks: Vec<_> = [([0; 3], own)].into_iter().chain(others).collect();
@@ -114,6 +115,7 @@ fn seen(page: &BezPath, marks: &[([u8; 3], BezPath)], colors: &[[u8; 3]]) -> Opt
     let topology = Topology::<Windings>::from_paths(tagged, NEAR).ok()?;
     let area = |own: &[u8; 3]| {
         let is_seen = |windings: &Windings| {
+            // A place has the colour of the mark on top, whose tag is the largest.
             let top = windings.top().and_then(|mark| marks.get(mark as usize - 1));
             windings.is_on_page() && top.is_some_and(|(color, _)| color == own)
         };
@@ -157,6 +159,7 @@ impl AddAssign for Windings {
         for (tag, turns) in other.0 {
             *self.0.entry(tag).or_default() += turns;
         }
+        // Outlines that don't wind around a place are left out, so the largest tag is a mark that covers it.
         self.0.retain(|_, turns| *turns != 0);
     }
 }

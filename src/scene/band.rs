@@ -1,6 +1,6 @@
 //! Bands: lines of even width with square ends and mitred corners, as strokes with [`Cap::Butt`] have them.
 //!
-//! What it covers is an area too: each point of the line has one to either side of it. The rings of an open band go along one
+//! A band covers an area too: each point of the line has one to either side of it. The rings of an open band go along one
 //! side and back along the other one; a closed band has a ring for each side. Control points lie where the sides of the line's
 //! control polygon meet. So the points of the rings depend on those of the line, and on the width.
 
@@ -43,6 +43,7 @@ impl Band {
             });
             moved.collect::<Vec<_>>()
         };
+        // Back along the other side: an open band is one ring, and of a closed one the inner ring becomes a hole.
         let (left, mut right) = (beside(1.0), beside(-1.0));
         right.reverse();
         match self.line.is_closed() {
@@ -51,7 +52,7 @@ impl Band {
         }
     }
 
-    /// The band that these rings, those of a polygon or of a frame, are within a `tolerance` in px; a long one of several.
+    /// The band whose rings are within a `tolerance` in px of these rings of a polygon or a frame; the longest of several.
     pub(crate) fn like(rings: &[Path], tolerance: f64) -> Option<Self> {
         let straight = |ring: &Path| polyline(ring, tolerance, 0.0).unwrap_or_else(|| ring.clone());
         let rings: &[Path] = &rings.iter().map(straight).collect::<Vec<_>>();
@@ -71,6 +72,7 @@ impl Band {
             }
             points
         };
+        // Rings may begin anywhere and go either way: every start in both senses is a candidate, and the slenderest band wins.
         let senses = [points, reversed];
         let turns = senses
             .iter()
@@ -160,7 +162,7 @@ impl Band {
             true => 1.0 + turn.cosine >= SHARPEST,
             false => turn.cosine >= SHARPEST_CURVE,
         };
-        // Both corners of a leg have room for their inner sides.
+        // A turn of θ shortens the inner side of a leg by half the width × tan(θ/2). Both corners of a leg have room for that.
         let has_room = |i: usize| {
             let (a, b) = (i, (i + 1) % count);
             let length = (points[b].at - points[a].at).hypot();
@@ -184,7 +186,7 @@ impl Band {
         between(&points.collect::<Vec<_>>(), is_closed)
     }
 
-    /// Moves points to those of the rings.
+    /// Moves points to the points of the rings.
     pub(crate) fn put(&self, places: &mut [[f32; 2]]) {
         let rings = self.rings();
         let points = rings.iter().flat_map(Path::points);
@@ -192,7 +194,7 @@ impl Band {
         pairs.for_each(|(place, point)| *place = math::xy(point.at));
     }
 
-    /// Leaves of a change of these points the part that keeps the band: the change of its line and of its width.
+    /// Projects a change of these points onto the changes that keep the band: of its line and of its width.
     pub(crate) fn project(&self, change: &mut [[f32; 2]]) {
         let Some(sides) = sides(self.line.points(), self.line.is_closed()) else {
             return;
@@ -200,6 +202,7 @@ impl Band {
         let half = sides.len();
         let pair =
             |change: &[[f32; 2]], i: usize| [i, 2 * half - 1 - i].map(|k| math::point(change[k]));
+        // To first order the sides keep their directions: the line moves by the mean of a pair, the width by its difference.
         let width = width(&sides, |i| pair(change, i));
         for (i, &side) in sides.iter().enumerate() {
             let [a, b] = pair(change, i);
@@ -277,6 +280,7 @@ const LONG: f64 = 2.5;
 fn sides(points: &[PathPoint], is_closed: bool) -> Option<Vec<Vec2>> {
     let side = |[before, after]: [Vec2; 2]| {
         let whole = 1.0 + before.dot(after);
+        // A mitre: the bisector of both normals, 1 / cos(θ/2) long at a turn of θ, as |before + after| = 2 cos(θ/2).
         (whole > 0.01).then(|| (before + after).turn_90() / whole)
     };
     directions(points, is_closed)?
@@ -306,6 +310,7 @@ fn width(sides: &[Vec2], pair: impl Fn(usize) -> [Point; 2]) -> f64 {
     let (mut along, mut square) = (0.0, f64::MIN_POSITIVE);
     for (i, side) in sides.iter().enumerate() {
         let [a, b] = pair(i);
+        // A pair is the middle ± ½·width·side, so a − b = width·side, and width = Σ side·(a − b) / Σ |side|².
         along += side.dot(a - b);
         square += side.hypot2();
     }

@@ -35,11 +35,14 @@ impl Path {
     pub(super) fn rounded(&self, grid: &Grid) -> Self {
         let mut points = self.points().to_vec();
         let first_on = points.iter().position(|p| p.is_on);
+        // Begin with an on-point, which is rounded by itself, so that each run of off-points starts from the grid.
         points.rotate_left(first_on.unwrap_or(0));
         let mut last: Option<PathPoint> = None;
         for point in &mut points {
             point.at = match last {
                 Some(last) if !last.is_on && !point.is_on => {
+                    // The implied point m goes to the grid, and the off-point to 2m − last. So neighbouring off-points are
+                    // an even number of steps apart, and a ring of off-points alone closes on the grid, too.
                     let halfway = grid.point(last.at.midpoint(point.at));
                     (halfway.to_vec2() * 2.0 - last.at.to_vec2()).to_point()
                 }
@@ -59,6 +62,7 @@ impl Path {
         if !self.segments().any(|segment| corner(&segment).is_some()) {
             return self;
         }
+        // The bend becomes an on-point and the curve two lines. At an end it's the end itself, and one line is left.
         let points = replaced(&self, |segment| match (segment, corner(&segment)) {
             (_, Some(corner)) => Some(PathPoint::on(grid.point(corner))),
             (PathSeg::Quad(curve), None) => Some(PathPoint::off(curve.p1)),
@@ -82,6 +86,7 @@ impl Path {
         let side = |p: &PathPoint| (b.at - a.at).cross(p.at - a.at);
         // A rounded path that is a line strays from it by rounding of its coordinates alone.
         let least = 1e-9 * (b.at - a.at).hypot();
+        // `side` is a distance times the length of the first leg; so is the bound, a distance of 1e-9 px.
         self.is_closed() && self.points().iter().any(|p| side(p).abs() > least)
     }
 }
@@ -110,6 +115,7 @@ impl Canonical {
     fn settle(&mut self) {
         loop {
             let before = self.points.clone();
+            // Straightening writes out implied points, and shortening takes back those that still are.
             self.straighten();
             self.shorten();
             if self.points == before {
@@ -124,6 +130,7 @@ impl Canonical {
         let path = Path::of_points(self.points.clone(), self.closed);
         let is_straight =
             |segment: PathSeg| matches!(segment, PathSeg::Quad(curve) if is_line(curve));
+        // All on-points are written out first: without its control point, a curve would take its implied ends along.
         if path.segments().any(is_straight) {
             self.points = replaced(&path, |segment| match segment {
                 PathSeg::Quad(curve) if !is_line(curve) => Some(PathPoint::off(curve.p1)),
@@ -134,7 +141,9 @@ impl Canonical {
 
     /// Applies the rules of the canonical form once. None of them changes the shape of a piece.
     fn shorten(&mut self) {
+        // 1. On-points that two off-points imply. Their neighbours are off-points, so removing them all at once is safe.
         self.retain(|[before, point, after]| !is_implied(before, point, after));
+        // 2. On-points in one place, also where a closed path ends at its start.
         let coincide = |p: &PathPoint, q: &PathPoint| p.is_on && q.is_on && p.at == q.at;
         self.points.dedup_by(|next, kept| coincide(next, kept));
         while self.closed
@@ -143,7 +152,9 @@ impl Canonical {
         {
             self.points.pop();
         }
+        // 3. Control points at an end of their curve. Both neighbours are on-points, so these stay.
         self.retain(|[before, point, after]| !is_straight(before, point, after));
+        // 4. A path whose points coincide is a dot, and a dot is open.
         if let Some([first, _]) = self
             .ends()
             .filter(|[first, _]| self.points.iter().all(|p| p.at == first.at))
@@ -152,6 +163,7 @@ impl Canonical {
         }
         self.closed &= self.points.len() > 1;
         if self.closed {
+            // 5. A closed path begins with an on-point if it has one, as the file's `M` does.
             let first_on = self.points.iter().position(|p| p.is_on);
             self.points.rotate_left(first_on.unwrap_or(0));
         }
@@ -188,7 +200,7 @@ fn is_straight(before: &PathPoint, point: &PathPoint, after: &PathPoint) -> bool
 }
 
 /// The smallest radius of curvature of a curve, px. Cairo draws a sharper bend without its round outside: of a stroke
-/// 4 px wide with bends of 0.01 px, librsvg's render is 35 dB from that of a polyline, with 0.04 px 44 dB.
+/// 4 px wide with bends of 0.01 px, librsvg's render is 35 dB from its render of a polyline, with 0.04 px 44 dB.
 const SHARPEST: f64 = 0.02;
 
 /// Largest distance of the chord from a curve that it replaces because of a bend at an end, px.
@@ -197,6 +209,7 @@ const BESIDE: f64 = 0.1;
 /// The point where a curve bends most if it does so more sharply than [`SHARPEST`]. At an end, where less of the stroke's
 /// width is at stake, it counts if the chord is at most [`BESIDE`] from the curve.
 fn cusp(curve: &QuadBez) -> Option<Point> {
+    // Half the speed is |there + t·bend|, half the acceleration |bend|, and their cross product doesn't depend on t.
     let there = curve.p1 - curve.p0;
     let bend = (curve.p2 - curve.p1) - there;
     let area = there.cross(bend).abs();
@@ -204,13 +217,16 @@ fn cusp(curve: &QuadBez) -> Option<Point> {
     let apex = -there.dot(bend) / bend.hypot2();
     let t = apex.clamp(0.0, 1.0);
     let is_within = t > 0.0 && t < 1.0;
+    // At the apex, speed and acceleration are at a right angle: |there × bend| = half speed · |bend|.
     let half_speed = if is_within {
         // Zero, as it should be, where the curve turns back into itself.
         area / bend.hypot()
     } else {
         (there + t * bend).hypot()
     };
+    // The radius of curvature is |B′|³ / |B′ × B″| = 8h³ / 4·area = 2h³ / area; multiplied out, as the area may be 0.
     let is_sharp = 2.0 * half_speed * half_speed * half_speed <= SHARPEST * area;
+    // `area` is chord · height of the control point, and a curve is half that height from its chord.
     let is_beside_chord = area <= 2.0 * BESIDE * (curve.p2 - curve.p0).hypot();
     (is_sharp && (is_within || is_beside_chord)).then(|| curve.eval(t))
 }

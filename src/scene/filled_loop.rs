@@ -29,6 +29,7 @@ impl Path {
             return self;
         };
         let mut points: Vec<PathPoint> = self.points().to_vec();
+        // An open path begins with an on-point, which here was implied.
         if !points.first().is_some_and(|p| p.is_on) {
             points.insert(0, PathPoint::on(start));
         }
@@ -56,6 +57,7 @@ fn leaves_gap(path: &Path, width: f64) -> bool {
             Point::new(around.x0 + x, around.y0 + y)
         })
         .any(|p| {
+            // The pen covers all places within half of its width of the path.
             let is_clear = |line: &Line| line.nearest(p, 0.0).distance_sq > reach2;
             inside.winding(p) != 0 && lines.iter().all(is_clear)
         })

@@ -8,7 +8,7 @@ use crate::math::Point;
 /// Most decimals of a coordinate or width.
 pub const MAX_PRECISION: u8 = 6;
 
-/// Units of what is written per px.
+/// Units of written numbers per px.
 pub(crate) const UNITS_PER_PX: i64 = 10_i64.pow(MAX_PRECISION as u32);
 
 /// Narrowest stroke, px. Rasterisers of the Skia family draw a width of 1 px or less as a hairline of lower
@@ -52,6 +52,7 @@ impl Grid {
 
     /// The largest multiple of at most `px`, which is a multiple of half a step.
     pub(super) fn below(&self, px: f64) -> f64 {
+        // Half steps are rounded first, so that an error in the last bit can't take a whole step away.
         ((2.0 * px * self.per_px).round() / 2.0).floor() / self.per_px
     }
 

@@ -111,6 +111,7 @@ impl Shape {
             away.y.abs() - half[1] + round,
         );
         let outside = Vec2::new(beyond.x.max(0.0), beyond.y.max(0.0));
+        // Distance to the box of the centres of the corners, less their radius; inside that box, to its nearest side.
         outside.hypot() + beyond.x.max(beyond.y).min(0.0) - round
     }
 
@@ -195,6 +196,7 @@ impl Moments {
         let (mut area, mut length, mut first, mut second) = (0.0_f64, 0.0, [0.0; 2], [0.0; 2]);
         for pair in corners.windows(2) {
             let [a, b] = [0, 1].map(|i| pair[i] - *origin).map(|p| [p.x, p.y]);
+            // Green's theorem: sums over triangles with the first corner, which keeps numbers small far from the page's origin.
             let cross = a[0] * b[1] - a[1] * b[0];
             area += cross / 2.0;
             length += math::hypot(b[0] - a[0], b[1] - a[1]);
@@ -203,6 +205,7 @@ impl Moments {
             second = [0, 1].map(|k| second[k] + cross * square(k) / 12.0);
         }
         let mean = first.map(|sum| sum / area);
+        // σ² = E[x²] − E[x]² over the inside.
         let spread = [0, 1].map(|k| (second[k] / area - mean[k] * mean[k]).sqrt());
         let center = Point::new(origin.x + mean[0], origin.y + mean[1]);
         let area = area.abs();
@@ -220,10 +223,12 @@ impl Moments {
         use std::f64::consts::PI;
         let center = self.center;
         let radius = (self.area / PI).sqrt();
+        // Inside an ellipse the standard deviation along an axis is half the radius; inside a rectangle, half the side over √3.
         let radii = self.spread.map(|px| 2.0 * px);
         let [dx, dy] = self.spread.map(|px| px * 3.0_f64.sqrt());
         let away = Vec2::new(dx, dy);
         let sharp = Shape::rect([center - away, center + away], 0.0);
+        // Round corners take (4 − π)r² from the box.
         let around = bounds(corners.iter().copied());
         let missing = (around.area() - self.area).max(0.0);
         let most = 0.5 * around.width().min(around.height());

@@ -191,7 +191,7 @@ mod tests {
             color: [offset; 3],
             opacity: 1.0,
         };
-        // Its axis ends beyond the page, as that of a shape which the border cuts off.
+        // Its axis ends beyond the page, like the axis of a shape that the border cuts off.
         let axis = Axis::Linear {
             from: (-5.0, 2.0).into(),
             to: (30.0, 2.0).into(),

@@ -49,8 +49,10 @@ impl Precedence {
         let mut open: Vec<&(usize, &Mark, Swept)> = Vec::new();
         for next in &from_left {
             let (i, mark, swept) = next;
+            // Marks that end left of this one end left of all later ones, too, and are done with.
             open.retain(|(_, _, other)| other.near.x1 >= swept.near.x0);
             for (k, other, other_swept) in &open {
+                // The cheap test first; the smaller index is the lower mark.
                 if matters(mark, other) && swept.meets(other_swept) {
                     above[*i.min(k)].push(*i.max(k));
                     below[*i.max(k)].push(*i.min(k));
@@ -138,12 +140,16 @@ impl Bundles {
             let mut between = self.later[from].iter().zip(&self.later);
             between.any(|(&is_after, row)| is_after && row[to])
         };
+        // A third bundle between the two would have to come both after and before the joined one.
         if is_parted(i, k) || is_parted(k, i) {
             return false;
         }
         let mut joined = std::mem::take(&mut self.later[k]);
         unite(&mut joined, &self.later[i]);
+        // One of the two may have had to precede the other, which their order inside the bundle now says.
         (joined[i], joined[k]) = (false, false);
+        // Whatever precedes one of the two precedes all that follows either; so the relation stays transitive. The row of `k` is
+        // empty from here on.
         for row in self.later.iter_mut().filter(|row| !row.is_empty()) {
             if row[i] || row[k] {
                 unite(row, &joined);
@@ -159,14 +165,14 @@ fn unite(row: &mut [bool], other: &[bool]) {
     row.iter_mut().zip(other).for_each(|(a, b)| *a |= b);
 }
 
-/// Where a mark may leave ink: what is needed to compare it with many others.
+/// Where a mark may leave ink, prepared for comparisons with many others.
 #[derive(Debug, Clone)]
 struct Swept {
     /// Farthest that it reaches beyond its paths, px.
     reach: f64,
     /// A box around all that other marks can meet it in, px.
     near: Rect,
-    /// Lines at most [`TOLERANCE`] away from its paths; that of a dot has no length.
+    /// Lines at most [`TOLERANCE`] away from its paths. A dot is a line without length.
     lines: Vec<Line>,
     /// The rings of an area.
     rings: Option<BezPath>,
@@ -192,6 +198,7 @@ impl Swept {
 
     /// True if the order of the two marks can change the picture.
     fn meets(&self, other: &Self) -> bool {
+        // Boxes, then outlines, then one mark wholly inside an area, where no outlines come near: in order of cost.
         let reach = self.reach + other.reach + APART;
         overlap(self.near, other.near)
             && (are_nearer(&self.lines, &other.lines, reach)
@@ -201,6 +208,7 @@ impl Swept {
 
     /// True if it is an area that a path of `other` starts in.
     fn covers(&self, other: &Self) -> bool {
+        // One point of each path is enough: outlines don't come near each other, so a path is inside as a whole or not at all.
         let has = |rings: &BezPath| other.starts.iter().any(|&p| rings.winding(p) != 0);
         self.rings.as_ref().is_some_and(has)
     }
@@ -246,8 +254,8 @@ fn rings(area: &Mark) -> BezPath {
         .collect()
 }
 
-/// Marks farther apart than the diagonal of a pixel, px, have no pixel in common. What chords are away from their curve is
-/// within the rest.
+/// Marks farther apart than the diagonal of a pixel, px, have no pixel in common. The rest covers the distance of chords from
+/// their curve.
 const APART: f64 = 1.5;
 
 /// Largest distance between lines and their curve, px: less than half of the excess of [`APART`] over the diagonal
@@ -258,6 +266,7 @@ const TOLERANCE: f64 = 0.04;
 fn are_nearer(a: &[Line], b: &[Line], reach: f64) -> bool {
     let around = |line: &Line| Rect::from_points(line.p0, line.p1);
     let is_near = |a: &Line, b: &Line| {
+        // Boxes are compared first; the distance takes four projections.
         overlap(around(a).inflate(reach, reach), around(b)) && distance2(*a, *b) < reach * reach
     };
     a.iter().any(|a| b.iter().any(|b| is_near(a, b)))
@@ -268,6 +277,7 @@ fn distance2(a: Line, b: Line) -> f64 {
     if cross(a, b) {
         return 0.0;
     }
+    // Two segments that don't cross are nearest at an end of one of them.
     let gap = |p: Point, line: Line| line.nearest(p, 0.0).distance_sq;
     let gaps = [gap(a.p0, b), gap(a.p1, b), gap(b.p0, a), gap(b.p1, a)];
     gaps.into_iter().fold(f64::INFINITY, f64::min)
@@ -275,6 +285,7 @@ fn distance2(a: Line, b: Line) -> f64 {
 
 fn cross(a: Line, b: Line) -> bool {
     let side = |line: Line, p: Point| (line.p1 - line.p0).cross(p - line.p0);
+    // The ends of each lie strictly on both sides of the other. Segments that touch are at distance 0 by their ends.
     side(a, b.p0) * side(a, b.p1) < 0.0 && side(b, a.p0) * side(b, a.p1) < 0.0
 }
 

@@ -163,6 +163,7 @@ impl Path {
     #[must_use]
     pub(crate) fn reversed(&self) -> Self {
         let mut points: Vec<PathPoint> = self.points.iter().rev().copied().collect();
+        // A closed path keeps its start, so that only the direction changes.
         if self.closed && self.points.first().is_some_and(|p| p.is_on) {
             points.rotate_right(1);
         }
@@ -192,7 +193,7 @@ impl Path {
         corners
     }
 
-    /// The path as lines that are at most `tolerance` px away from it; that of a dot has no length.
+    /// The path as lines that are at most `tolerance` px away from it. A dot is a line without length.
     pub(crate) fn lines(&self, tolerance: f64) -> Vec<Line> {
         let corners = self.flattened(tolerance);
         match corners[..] {

@@ -78,6 +78,7 @@ type Side = [Point; 2];
 /// True if two sides, one after the other, lie at most `off` px beside the line through both.
 fn is_one_line([a, b]: Side, [c, d]: Side, off: f64) -> bool {
     let (u, v, way) = (b - a, d - c, d - a);
+    // The line through both sides runs from the start of the first to the end of the second.
     let beside = |p: Point| (p - a).cross(way).abs() / way.hypot().max(f64::MIN_POSITIVE);
     let is_slight = u.dot(v) >= CLEAR * u.hypot() * v.hypot();
     is_slight && beside(b) <= off && beside(c) <= off
@@ -96,6 +97,7 @@ fn simplified(path: &Path, tolerance: f64) -> Option<Vec<Point>> {
     let end = places.len().checked_sub(1)?;
     let far = |i: &usize| (places[*i] - places[0]).hypot2();
     // Ramer–Douglas–Peucker: the place that is farthest off becomes a corner, until none is too far off.
+    // Two places that stay: the ends, or of a closed path its start and the place farthest from it.
     let mut kept = match is_closed {
         true => vec![0, (0..=end).max_by(|a, b| far(a).total_cmp(&far(b)))?, end],
         false => vec![0, end],
@@ -107,7 +109,7 @@ fn simplified(path: &Path, tolerance: f64) -> Option<Vec<Point>> {
     if is_closed {
         corners.pop();
     }
-    // Where a path turns back a little, or begins within a side, others cover what a corner adds.
+    // Where a path turns back a little, or begins within a side, a corner adds nothing to the others.
     let mut i = usize::from(!is_closed);
     while i + usize::from(!is_closed) < corners.len() {
         let mut fewer = corners.clone();
@@ -172,6 +174,7 @@ pub(super) fn directions(points: &[PathPoint], is_closed: bool) -> Option<Vec<[V
     let both = |i: usize| {
         let before = (is_closed || i > 0).then(|| leg(i + count - 1, i));
         let after = (is_closed || i + 1 < count).then(|| leg(i, i + 1));
+        // At an end the line goes straight on, so its turn is 0.
         let (before, after) = (before.or(after)?, after.or(before)?);
         Some([before?, after?])
     };
@@ -184,6 +187,7 @@ pub(super) fn turns(points: &[PathPoint], is_closed: bool) -> Option<Vec<Turn>> 
         let cosine = before.dot(after);
         Turn {
             cosine,
+            // tan(θ/2) = sin θ / (1 + cos θ)
             tangent: before.cross(after).abs() / (1.0 + cosine),
         }
     };

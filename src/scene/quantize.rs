@@ -14,14 +14,14 @@ use super::{Area, Cap, Mark, Path, PathPoint, Rgb, Scene, Shade, Shape, Stroke};
 /// Largest absolute value of a coordinate, px. All decimals up to here are exact.
 const MAX_COORDINATE: f64 = 1e9;
 
-/// A scene rounded to what its SVG holds, and what was dropped.
+/// A scene rounded to the numbers that its SVG holds, with counts of the marks that were dropped.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Quantized {
     /// The rounded scene. None of its stages is empty.
     pub scene: Scene,
     /// For each of its stages, the index in the original scene.
     pub origins: Vec<usize>,
-    /// Counts of what is not written.
+    /// Counts of marks and points that are not written.
     pub dropped: Dropped,
 }
 
@@ -113,6 +113,7 @@ impl Scene {
     fn rounded(&self, mark: &Mark, precision: u8) -> Result<Mark, Unwritable> {
         let rounded = rounded(mark, precision)?;
         let page = Rect::new(0.0, 0.0, self.width.into(), self.height.into());
+        // The rounded mark decides, since that's what a viewer draws.
         let is_on_page = rounded.extent().intersect(page).area() > 0.0;
         is_on_page.then_some(rounded).ok_or(Unwritable::OffPage)
     }
@@ -144,8 +145,10 @@ pub(crate) fn quantized_anywhere(mark: &Mark, precision: u8) -> Option<Mark> {
 
 /// The mark rounded to `precision` decimals, or the reason why it would be invisible.
 fn rounded(mark: &Mark, precision: u8) -> Result<Mark, Unwritable> {
+    // Refuse first: rounding needs finite numbers within the range where decimals are exact.
     check(mark)?;
     let grid = Grid::new(precision);
+    // A stroke with square ends stays one if SVG draws it alike; otherwise its outline is written as an area.
     if let Some(band) = mark.as_stroke().and_then(|stroke| band(stroke, &grid)) {
         return Ok(band.into());
     }
@@ -157,10 +160,11 @@ fn rounded(mark: &Mark, precision: u8) -> Result<Mark, Unwritable> {
 
 /// A rounded stroke with round ends.
 fn round(stroke: &Stroke, grid: &Grid) -> Stroke {
+    // SVG holds widths, so the width is rounded, and the radius is half of it. The least width is rounded up, onto the grid.
     let width = grid.round(2.0 * stroke.radius).max(grid.above(MIN_WIDTH));
     let rounded = stroke.path.rounded(grid);
     let shaped = shaped(&stroke.path, rounded.clone(), grid);
-    // What its pen fills is no shape any more, as it is written open.
+    // A loop that its pen fills is written open, so it is no shape any more.
     let path = match shaped.clone().opened_if_filled(width).is_closed() {
         true => shaped,
         false => rounded.opened_if_filled(width),
@@ -188,6 +192,7 @@ fn band(stroke: &Stroke, grid: &Grid) -> Option<Stroke> {
 
 /// A rounded area with its rings that have an inside.
 pub(super) fn area(area: &Area, grid: &Grid) -> Result<Area, Unwritable> {
+    // Elements such as `<circle>` have one outline: a ring of several can't be one.
     let is_alone = area.rings.len() == 1;
     let rings = area.rings.iter().map(|ring| {
         let rounded = ring.rounded(grid);
@@ -197,6 +202,7 @@ pub(super) fn area(area: &Area, grid: &Grid) -> Result<Area, Unwritable> {
             rounded
         }
     });
+    // Rounding may have flattened a ring into a line, which fills nothing.
     let rings: Vec<Path> = rings
         .filter(|ring| ring.shape().is_some() || ring.encloses())
         .collect();
@@ -221,6 +227,7 @@ pub(super) fn area(area: &Area, grid: &Grid) -> Result<Area, Unwritable> {
 
 /// The path of the element of a shape that a path is, or became as it was rounded; otherwise the rounded path.
 fn shaped(path: &Path, rounded: Path, grid: &Grid) -> Path {
+    // Round the numbers of the shape, not its points: rounded points of a circle are no circle any more.
     let shape = path.shape().and_then(|shape| shape.rounded(grid));
     let shape = shape.or_else(|| rounded.rectangle());
     shape.map_or(rounded, Shape::path)
@@ -231,6 +238,7 @@ fn check(mark: &Mark) -> Result<(), Unwritable> {
     let far = |p: &PathPoint| p.at.x.abs() > MAX_COORDINATE || p.at.y.abs() > MAX_COORDINATE;
     let radius = mark.radius();
     let is_thin = !mark.is_area() && radius <= 0.0;
+    // NaN first: every comparison below would be false for it.
     if !mark.is_finite() {
         Err(Unwritable::NonFinite)
     } else if is_thin || quantum(mark.opacity()) == 0 {

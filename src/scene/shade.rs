@@ -95,6 +95,7 @@ impl Shade {
         if !offsets().all(|offset| (0.0..=1.0).contains(&offset)) || !offsets().is_sorted() {
             return refuse("offsets that are not between 0 and 1, or that fall");
         }
+        // Round the axis before its length is checked: rounding may shorten it.
         let grid = Grid::new(PRECISION);
         let axis = match axis {
             Axis::Linear { from, to } => Axis::Linear {
@@ -135,6 +136,8 @@ impl Shade {
             channels.for_each(|(sum, level)| *sum += thousandths * u64::from(level));
         };
         let offset = |stop: &ShadeStop| u64::from(stop.thousandths());
+        // Twice the mean, in thousandths: a piece of constant colour counts twice its width, and a linear piece its width for each
+        // of its two ends. Whole numbers, so that reader and writer agree.
         if let [first, .., last] = &self.stops[..] {
             add(2 * offset(first), first);
             add(2000 - 2 * offset(last), last);
@@ -143,6 +146,7 @@ impl Shade {
             let width = offset(&pair[1]) - offset(&pair[0]);
             pair.iter().for_each(|stop| add(width, stop));
         }
+        // Half of the divisor is added, which rounds to the nearest level.
         sums.map(|sum: u64| ((sum + 1000) / 2000) as u8)
     }
 
@@ -177,6 +181,7 @@ impl Shade {
         let after = self.stops.partition_point(|stop| stop.offset <= offset);
         // There are at least two stops.
         let last = self.stops.len() - 1;
+        // Before the first stop and beyond the last one both are the same stop, so that the colour is constant there.
         let [left, right] = [after.saturating_sub(1), after.min(last)].map(|i| self.stops[i]);
         let width = right.offset - left.offset;
         let part = if width > 0.0 {

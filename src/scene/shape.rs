@@ -66,6 +66,7 @@ impl Shape {
             Self::Circle { radius, .. } | Self::Rect { radius, .. } => radius,
             Self::Ellipse { radii: [x, y], .. } => x.max(y),
         };
+        // The fewest control points whose curves stay within the tolerance; their error falls with the fourth power of the angle.
         let bulge = |quarter: usize| radius * math::powi(half_angle(quarter), 4) / 8.0;
         let quarter = QUARTERS.into_iter().find(|&n| bulge(n) <= BULGE);
         let places = self.kind().places(quarter.unwrap_or(16));
@@ -80,12 +81,14 @@ impl Shape {
         let rounded = match self {
             Self::Circle { center, radius } => Self::circle(grid.point(center), grid.round(radius)),
             Self::Ellipse { center, radii } => match radii.map(|px| grid.round(px)) {
+                // Rounding may make the radii equal; the file has one element for that.
                 [x, y] if x == y => Self::circle(grid.point(center), x),
                 radii => Self::ellipse(grid.point(center), radii),
             },
             Self::Rect { low, high, radius } => {
                 let (low, high) = (grid.point(low), grid.point(high));
                 let side = high - low;
+                // Rounded corners may not be larger than half of the rounded sides.
                 let most = grid.below(0.5 * side.x.min(side.y));
                 Self::rect([low, high], grid.round(radius).min(most))
             }
@@ -181,14 +184,14 @@ impl ShapeKind {
         is_solid.then_some(shape)
     }
 
-    /// Moves points to those of the nearest shape of this kind.
+    /// Moves points to the points of the nearest shape of this kind.
     pub(crate) fn restore(self, points: &mut [[f32; 2]]) {
         if let Some(shape) = self.nearest(points) {
             put(points, shape.frame(), &self.places_of(points.len()));
         }
     }
 
-    /// Leaves of a change of a shape's points the part that keeps the shape: the change of its sides and radii.
+    /// Projects a change of a shape's points onto the changes that keep the shape: of its sides and radii.
     pub(crate) fn project(self, change: &mut [[f32; 2]]) {
         let places = self.places_of(change.len());
         // Points depend on sides and radii linearly.
@@ -320,6 +323,7 @@ fn turned(turn: usize, share: f64, length: f64) -> [f64; 2] {
 
 /// The control points of a quarter turn around the origin, of radius 1.
 fn arc(turn: usize, quarter: usize) -> impl Iterator<Item = [f64; 2]> {
+    // Midpoints of neighbouring control points, where the curves meet, then lie on the unit circle.
     let length = 1.0 / math::sin_cos(half_angle(quarter)).1;
     (0..quarter).map(move |i| turned(turn, (i as f64 + 0.5) / quarter as f64, length))
 }
@@ -329,6 +333,7 @@ fn regression(groups: &[Vec<[f64; 2]>]) -> (Vec<f64>, f64) {
     let mean = |group: &[[f64; 2]], k: usize| {
         group.iter().map(|pair| pair[k]).sum::<f64>() / group.len().max(1) as f64
     };
+    // Each group has its own intercept, a side, and all have one slope, the radius: centred by group, it is the pooled slope.
     let (mut along, mut square) = (0.0, 0.0);
     for group in groups {
         let (factor, at) = (mean(group, 0), mean(group, 1));

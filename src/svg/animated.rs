@@ -49,6 +49,7 @@ pub fn write_animated(
         if !is_mark(line) {
             groups.close();
         } else {
+            // A part may be empty, so several may end at this mark.
             while parts.get(part).is_some_and(|range| marks >= range.end) {
                 part += 1;
                 groups.close();
@@ -90,7 +91,7 @@ fn tags(element: &str) -> (&str, String) {
     (open, format!("</{}>", name.unwrap_or_default()))
 }
 
-/// True if to see the stroke grow tells more than to see it appear.
+/// True if the stroke is worth drawing along its length; a dot or a line just appears.
 fn is_long(stroke: &Stroke) -> bool {
     stroke.cap == Cap::Butt || stroke.path.points().len() > 2 || stroke.path.is_closed()
 }

@@ -25,6 +25,7 @@ pub(super) fn layers(scene: &Scene, options: &WriteOptions) -> Vec<Layer> {
     };
     let stages = scene.stages.iter().map(written);
     let stages = stages.filter(|strokes| !strokes.is_empty());
+    // 1. Layers: stages, colours or objects.
     let mut layers: Vec<_> = match options.group {
         Group::Stage => stages
             .map(|strokes| Layer {
@@ -38,10 +39,11 @@ pub(super) fn layers(scene: &Scene, options: &WriteOptions) -> Vec<Layer> {
             objects::by_object(&marks, [scene.width, scene.height])
         }
     };
-    // Things are told by the order of their marks.
+    // Objects are found by the order of marks: another order could give other objects when the file is written again.
     if options.group == Group::Object {
         return layers;
     }
+    // 2. Strokes of one style side by side, as one `d` or one group serves them all.
     if options.form == Form::Smallest {
         for layer in &mut layers {
             let strokes = layer.strokes.iter_mut();
@@ -49,6 +51,7 @@ pub(super) fn layers(scene: &Scene, options: &WriteOptions) -> Vec<Layer> {
             layer.strokes = arranged(std::mem::take(&mut layer.strokes), style_of, Written::width);
         }
     }
+    // 3. Short ways between strokes, within what the style's order leaves free.
     if options.order == Order::Travel {
         for layer in &mut layers {
             layer.strokes = with_little_travel(std::mem::take(&mut layer.strokes), options.form);
@@ -57,7 +60,7 @@ pub(super) fn layers(scene: &Scene, options: &WriteOptions) -> Vec<Layer> {
     layers
 }
 
-/// The strokes of a layer in an order of little travel. In the smallest form, those of one style stay together.
+/// The strokes of a layer in an order of little travel. In the smallest form, strokes of one style stay together.
 fn with_little_travel(strokes: Vec<Written>, form: Form) -> Vec<Written> {
     let mut shortened = Vec::with_capacity(strokes.len());
     let is_together =
@@ -66,6 +69,7 @@ fn with_little_travel(strokes: Vec<Written>, form: Form) -> Vec<Written> {
         let from = tour::end(&shortened);
         shortened.extend(tour::shortened(run, from));
     }
+    // The tours of the runs start where the last one ends, and may be longer in sum than the order as it was.
     if tour::between(&shortened) < tour::between(&strokes) {
         shortened
     } else {
@@ -111,6 +115,7 @@ const WINDOW: usize = 4096;
 
 /// Layers of one colour.
 fn by_color(strokes: Vec<Written>) -> Vec<Layer> {
+    // Two candidates, and the one of fewer layers is taken; of equal ones the first, which changes nothing.
     let in_order = strokes.clone();
     let arranged = arranged(strokes, Written::color, |_| ());
     // Strokes that a fit has stacked by colour stay as they are, however many there are.
@@ -127,6 +132,7 @@ fn by_color(strokes: Vec<Written>) -> Vec<Layer> {
             strokes: run.to_vec(),
             kind: LayerKind::Color(color, *count),
         });
+        // A colour that comes again gets the next number, so that names of layers differ.
         *count += 1;
     }
     layers
@@ -137,13 +143,14 @@ fn runs(strokes: &[Written]) -> impl Iterator<Item = &[Written]> {
     strokes.chunk_by(|a, b| a.color() == b.color())
 }
 
-/// Reorders strokes so that those of one `run` are together as far as possible, and runs of one `group_key` follow each
+/// Reorders strokes so that strokes of one `run` are together as far as possible, and runs of one `group_key` follow each
 /// other.
 fn arranged<R: Ord, K: Ord>(
     mut strokes: Vec<Written>,
     run: impl Fn(&Written) -> R,
     group_key: impl Fn(&Written) -> K,
 ) -> Vec<Written> {
+    // Windows are arranged one by one, in order: a stroke never leaves its window, so the precedence between windows holds.
     for window in strokes.chunks_mut(WINDOW) {
         let order = order(window, &run, &group_key);
         let sorted: Vec<_> = order.iter().map(|&i| window[i].clone()).collect();
@@ -157,6 +164,7 @@ fn order<R: Ord, K: Ord>(
     run: impl Fn(&Written) -> R,
     group_key: impl Fn(&Written) -> K,
 ) -> Vec<usize> {
+    // Kahn's topological sort: the strokes with all below them drawn are free, and a greedy choice among them is next.
     let precedence = Precedence::of(strokes.iter().map(|stroke| &stroke.mark));
     let mut waiting = precedence.waiting();
     let ranks = ranks(strokes);
@@ -169,6 +177,7 @@ fn order<R: Ord, K: Ord>(
     loop {
         for i in free {
             let run = runs.entry(run(&strokes[i])).or_default();
+            // By rank, not by index: the order of equal choices mustn't depend on the order that came in.
             run.ready.insert((ranks[i], i));
         }
         let Some(next) = take(&mut runs, strokes, order.last().copied(), &run, &group_key) else {
@@ -211,6 +220,7 @@ fn take<R: Ord, K: Ord>(
 ) -> Option<usize> {
     let may_go_on = |key: &R| runs.get(key).is_some_and(|run| !run.ready.is_empty());
     let last = last.map(|i| &strokes[i]);
+    // Go on with the run as long as it has free strokes; a run that waits for others is broken.
     let key = last.map(&run).filter(may_go_on);
     let key = key.or_else(|| begin(runs, strokes, last.map(&group_key), group_key).map(run))?;
     let run = runs.get_mut(&key)?;
@@ -238,6 +248,7 @@ fn begin<'a, R, K: Ord>(
     let rank = |(run, first): &(&Run, &Written)| {
         let group = Some(group_key(first));
         let relatives = group.as_ref().and_then(|group| counts.get(group)).copied();
+        // Compared in this order. Whole runs first, as a broken one costs a second change of style.
         (is_whole(run), group == last, relatives, run.ready.len())
     };
     ready().max_by_key(rank).map(|(_, first)| first)

@@ -25,7 +25,7 @@ const RESET: &str = "stroke-opacity:1;stroke-dasharray:none;marker:none;paint-or
 /// More of them, which bands inherit.
 const RESET_BANDS: &str = ";stroke-linecap:butt;stroke-linejoin:miter;stroke-miterlimit:4";
 
-/// More of them, which only what is filled inherits.
+/// More of them, which only filled marks inherit.
 const RESET_FILL: &str = ";fill-opacity:1;fill-rule:nonzero;stroke:none";
 
 /// Maps px of a picture to the coordinates of a root element: `[a b c d e f]` of an SVG matrix.
@@ -69,6 +69,7 @@ impl Document {
             texts: inner().filter(|element| element.name() == "text").count(),
             references: inner().filter(refers_outside).count(),
             stages: ids.filter_map(layer_number).max().unwrap_or(0),
+            // A file of our own dialect has no rules that could restyle our layers.
             is_ours: read::scene(&dom).is_ok(),
             placement: IDENTITY,
             probe: unused(&text, "strokefit-probe"),
@@ -77,6 +78,7 @@ impl Document {
         };
         // A root of one tag gets an end tag.
         if root.raw().ends_with("/>") && root.inside().is_empty() {
+            // `<svg …/>` becomes `<svg …></svg>`, with its own name and prefix; layers go between the two tags.
             let tag = root.bytes().end - "/>".len();
             let name = root.raw().trim_start_matches('<');
             let name = name
@@ -150,7 +152,7 @@ impl Document {
     }
 
     /// The document with the stages of `scene`, in px of the picture, as layers on top. It is unchanged if the
-    /// scene has no mark. The numbers of layers continue those of the document.
+    /// scene has no mark. The numbers of layers go on from the document's.
     pub fn with_layers(&self, scene: &Scene, options: &WriteOptions) -> String {
         if scene.is_empty() {
             return self.text.clone();
@@ -166,6 +168,7 @@ impl Document {
 
     /// The document with `layers` of a picture of this size, which also need the properties `reset`.
     fn with(&self, layers: &str, [width, height]: [u32; 2], reset: &str) -> String {
+        // By position in the text, so that every other byte stays as it is.
         let (head, tail) = self.text.split_at(self.end);
         if self.is_ours && self.placement == IDENTITY {
             return format!("{head}{layers}{tail}");

@@ -1,7 +1,7 @@
 //! The text of an SVG as a tree: the one that the reader, the lint and a [`Document`](super::Document) walk.
 //!
-//! Each node knows its bytes in the text, so what is not read can stay as it is. Values of attributes and texts are those of
-//! the file: no entity is expanded. White space between elements, comments and the XML declaration are no nodes.
+//! Each node knows its bytes in the text, so bytes that are not read can stay as they are. Values of attributes and texts are
+//! as in the file: no entity is expanded. White space between elements, comments and the XML declaration are no nodes.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -17,7 +17,7 @@ use crate::error::{Error, ErrorKind, Result};
 /// Most nodes of a text. As many take some hundred MB; resvg stops at a quarter of them.
 const MAX_NODES: usize = 4_000_000;
 
-/// A text and its nodes, as far as it is well-formed.
+/// A text and its nodes, up to the first place that is not well-formed.
 #[derive(Debug)]
 pub(super) struct Dom<'a> {
     text: &'a str,
@@ -47,13 +47,13 @@ struct Item<'a> {
     next: usize,
 }
 
-/// What a node is.
+/// The content of a node.
 #[derive(Debug, Clone)]
 pub(super) enum Content<'a> {
     Element {
         /// Without its prefix.
         name: &'a str,
-        /// True if its namespace is that of SVG.
+        /// True if it is in SVG's namespace.
         is_svg: bool,
         attributes: Range<usize>,
     },
@@ -86,6 +86,7 @@ impl<'a> Dom<'a> {
         dom.fault = dom.build(&mut open).err();
         // Elements that are cut off end with the text.
         let next = dom.items.len();
+        // The tree stays usable up to the fault, so that a lint can report more than it.
         for index in open {
             let item = &mut dom.items[index];
             (item.inside.end, item.bytes.end, item.next) = (text.len(), text.len(), next);
@@ -101,11 +102,13 @@ impl<'a> Dom<'a> {
         let place = |at: u64| text.len() - body.len() + usize::try_from(at).unwrap_or(body.len());
         let mut xml = NsReader::from_str(body);
         loop {
+            // Positions before and after an event are the bytes of its node.
             let start = place(xml.buffer_position());
             let (namespace, event) = match xml.read_resolved_event() {
                 Ok(resolved) => resolved,
                 Err(error) => return Err(Fault::new(place(xml.error_position()), error)),
             };
+            // By namespace rather than by prefix: `x:svg` is SVG if the file binds x to it.
             let is_svg = namespace == ResolveResult::Bound(Namespace(SVG_NAMESPACE));
             let end = place(xml.buffer_position());
             match event {
@@ -116,6 +119,7 @@ impl<'a> Dom<'a> {
                 Event::Empty(tag) => self.open(&tag, start..end, is_svg)?,
                 Event::End(_) => {
                     let next = self.items.len();
+                    // Items so far are the element and all in it, so the next item is the first one after it.
                     if let Some(item) = open.pop().and_then(|at| self.items.get_mut(at)) {
                         (item.inside.end, item.bytes.end, item.next) = (start, end, next);
                     }
@@ -126,6 +130,7 @@ impl<'a> Dom<'a> {
                     self.push(Content::Text(content), start..end)?;
                 }
                 Event::CData(part) => {
+                    // The text lies between the delimiters.
                     let from = start + "<![CDATA[".len();
                     let content = text.get(from..from + part.len()).unwrap_or_default();
                     self.push(Content::Text(content), start..end)?;
@@ -136,6 +141,7 @@ impl<'a> Dom<'a> {
                 Event::Eof => break,
             }
         }
+        // The parser accepts an end of file inside an element, which is a fault here.
         match open.last() {
             Some(&index) => {
                 let name = self.node(index).map_or("", Node::name);
@@ -162,6 +168,7 @@ impl<'a> Dom<'a> {
         let first = self.attributes.len();
         for attribute in Attributes::new(inner, name.len()) {
             let attribute = attribute.map_err(|error| Fault::new(bytes.start, error))?;
+            // Always borrowed: attributes of a `str` are slices of it.
             if let Cow::Borrowed(value) = attribute.value {
                 self.attributes.push((attribute.key.into_inner(), value));
             }
@@ -180,6 +187,7 @@ impl<'a> Dom<'a> {
             let message = format!("the file has more than {MAX_NODES} elements and texts");
             return Err(Fault::new(bytes.start, message));
         }
+        // An empty place after the tag, until an end tag says more.
         let inside = bytes.end..bytes.end;
         self.items.push(Item {
             content,
@@ -206,6 +214,7 @@ impl<'a> Dom<'a> {
     }
 
     fn siblings(&self, range: Range<usize>) -> impl Iterator<Item = Node<'_>> {
+        // From one sibling to the next in one step, past all that is inside.
         let first = self.node(range.start);
         let next = move |node: &Node<'_>| self.node(node.item.next);
         std::iter::successors(first, next).take_while(move |node| node.index < range.end)

@@ -287,6 +287,7 @@ fn push_runs(out: &mut String, elements: &[&[Written]], shared: &[Attribute], st
         };
         let (run, later) = rest.split_at(length);
         *out += &format!("<g{}>", attribute.text(&first[0], style));
+        // Within the group, runs of the other attributes may be worth groups of their own.
         push_runs(out, run, &[shared, &[attribute]].concat(), style);
         out.push_str("</g>");
         rest = later;
@@ -303,6 +304,7 @@ fn best_run(
         let text = |element: &&[Written]| attribute.text(&element[0], style);
         let first = text(elements.first()?);
         let length = elements.iter().take_while(|e| text(e) == first).count();
+        // A group writes the attribute once instead of `length` times, and has to save a byte beyond its own tags.
         let saved = (first.len() * (length - 1)).checked_sub(GROUP_BYTES + 1)?;
         Some((saved, (attribute, length)))
     };

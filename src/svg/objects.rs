@@ -1,4 +1,4 @@
-//! Layers of things: an area with what lies on it, as a face with its eyes, and marks of one colour that touch.
+//! Layers of things: an area with the marks on it, as a face with its eyes, and marks of one colour that touch.
 
 use kurbo::Rect;
 
@@ -22,7 +22,9 @@ pub(super) fn by_object(marks: &[Written], page: [u32; 2]) -> Vec<Layer> {
     for (i, mark) in marks.iter().enumerate() {
         // Past the topmost thing that it meets it would change the picture.
         let below = precedence.below(i);
+        // Things are numbered from the back, so the largest number is the topmost one.
         let topmost = below.iter().map(|&k| thing_of[k]).max();
+        // The things above the topmost one don't meet the mark, so it can be drawn before them.
         let belongs = topmost.filter(|&thing| {
             let root = &marks[things[thing][0]];
             let touches = |k: &&usize| thing_of[**k] == thing && is_alike(&marks[**k], mark);
@@ -41,6 +43,7 @@ pub(super) fn by_object(marks: &[Written], page: [u32; 2]) -> Vec<Layer> {
 
 fn layers(things: &[Thing], marks: &[Written]) -> Vec<Layer> {
     let is_alone = |thing: &Thing| thing.len() == 1;
+    // Neighbours of one mark each share a layer: a layer for each of them would say nothing.
     let runs = things.chunk_by(|a, b| is_alone(a) && is_alone(b));
     let layer = |things: &[Thing]| {
         let own = things.iter().flatten();

@@ -13,12 +13,13 @@ use crate::scene::{Area, Mark, Path, UNITS_PER_PX, quantized_anywhere, units};
 /// Decimals of outlines: where both sides of a stroke are rounded, a tenth of a px shows in its width.
 const LEAST_PRECISION: u8 = 2;
 
-/// Appends the outline of a mark as an element of its own: that of an area is its rings.
+/// Appends the outline of a mark as an element of its own. An area's outline is its rings.
 pub(super) fn push(out: &mut String, mark: &Written) {
     gradient::push_of(out, mark, "\n");
     match &mark.mark {
         Mark::Area(area) => push_area(out, area),
         Mark::Stroke(stroke) => match (stroke.path.points(), straight(&stroke.path)) {
+            // Square ends first: a straight band isn't a capsule.
             _ if mark.mark.is_butt() => push_rings(out, &rings(mark)),
             ([dot], _) => push_circle(out, dot.at, mark.width()),
             (_, Some([a, b])) => push_capsule(out, a, b, mark.width()),
@@ -73,6 +74,7 @@ fn push_capsule(out: &mut String, a: Point, b: Point, width: i64) {
     let [a, b] = [a, b].map(|p| [units(p.x), units(p.y)]);
     let side = [b[0] - a[0], b[1] - a[1]];
     let length = Vec2::new(side[0] as f64, side[1] as f64).hypot();
+    // The chord of an end is the direction turned by 90°, as long as the stroke is wide.
     let across = |along: i64| rounded(along as f64 / length * width as f64);
     let chord = [across(-side[1]), across(side[0])];
     // By specification, a radius too short for its chord is stretched to a half circle; a longer one would

@@ -57,8 +57,10 @@ impl Writer {
         let Some(first) = segments.peek().map(|first| place(first.start())) else {
             return self.push_dot(path);
         };
+        // SVG reads further numbers after M as a line, so the next step has to have its letter.
         self.push_step('M', &[first]);
         self.letter = None;
+        // The control point of the last curve; after a line or a move there is none to mirror.
         let mut control = None;
         while let Some(segment) = segments.next() {
             let [from, to] = [segment.start(), segment.end()].map(place);
@@ -70,6 +72,7 @@ impl Writer {
                 // The command that closes the path draws this line.
                 None if path.is_closed() && segments.peek().is_none() => {}
                 None => self.push_step(self.line_letter(from, to), &[to]),
+                // T takes the control point opposite of the last one, which is exact in whole units.
                 Some(knee) if control.map(|c| mirrored(c, from)) == Some(knee) => {
                     self.push_step('T', &[to]);
                 }
@@ -79,6 +82,7 @@ impl Writer {
         }
         if path.is_closed() {
             self.out.push('z');
+            // After z the current point is the start of the path.
             (self.at, self.letter) = (Some(first), None);
         }
     }
@@ -105,6 +109,7 @@ impl Writer {
     /// Appends a step to the last of these places in its shortest form. It does without a letter where the letter of
     /// the last step serves, and that is no longer.
     fn push_step(&mut self, letter: char, places: &[Place]) {
+        // The shorter of the two. Of equal lengths, the one with the last letter: the next step may go without it.
         let from_page = self.lettered(letter, &self.numbers(letter, [0, 0], places));
         let from_here = self.at.map(|at| {
             let numbers = self.numbers(letter, at, places);
@@ -140,6 +145,7 @@ impl Writer {
 
     /// A step with its letter and as text.
     fn lettered(&self, letter: char, numbers: &str) -> (char, String) {
+        // Without a letter, a minus sign separates by itself.
         let separator = match self.letter {
             Some(last) if last == letter && numbers.starts_with('-') => String::new(),
             Some(last) if last == letter => " ".into(),
@@ -180,7 +186,7 @@ pub(super) fn parse(d: &str, kind: Kind, unit: Unit) -> Option<Vec<Path>> {
     Some(reader.paths).filter(|paths| !paths.is_empty())
 }
 
-/// Takes one segment after the other; each method returns `None` for what is not part of the dialect.
+/// Takes one segment after the other; each method returns `None` if a segment is not part of the dialect.
 struct Reader {
     kind: Kind,
     unit: Unit,
@@ -202,11 +208,13 @@ impl Reader {
         } else {
             self.at
         };
+        // Sums of whole units: a relative path gathers no rounding error, however long it is.
         let along = |axis: usize, by: f64| Some(origin?[axis] + self.unit.units(by)?);
         let to = |x: f64, y: f64| within([along(0, x)?, along(1, y)?]);
         match segment {
             S::MoveTo { x, y, .. } => {
                 let start = to(x, y)?;
+                // A move ends the path before it; an open one was complete with its last segment.
                 self.end()?;
                 self.points.push(PathPoint::on(point(start)));
                 (self.at, self.control) = (Some(start), None);
@@ -221,9 +229,11 @@ impl Reader {
                 let to = [self.at?[0], along(1, y)?];
                 self.extend(None, within(to)?)
             }
+            // Among strokes, the one horizontal step is the mark of a dot.
             S::HorizontalLineTo { abs: false, x } if self.unit.units(x)? == DOT => self.dot(),
             S::Quadratic { x1, y1, x, y, .. } => self.extend(Some(to(x1, y1)?), to(x, y)?),
             S::SmoothQuadratic { x, y, .. } => {
+                // SVG takes the current point where no curve precedes; our dialect refuses that, as it never writes it.
                 let knee = within(mirrored(self.control?, self.at?))?;
                 self.extend(Some(knee), to(x, y)?)
             }
@@ -255,6 +265,7 @@ impl Reader {
 
     fn close(&mut self) -> Option<()> {
         self.at = self.points.first().map(|start| place(start.at));
+        // A dot can't be closed.
         if self.points.len() < 2 {
             return None;
         }
@@ -275,6 +286,7 @@ impl Reader {
 
     fn push(&mut self, closed: bool) {
         let points = std::mem::take(&mut self.points);
+        // Canonical form drops the on-points that are implied: the points are those that were written.
         self.paths.push(Path::canonical(points, closed));
         self.control = None;
     }

@@ -269,6 +269,7 @@ fn strokes(element: &Element<'_>, unit: Unit) -> Result<Vec<Mark>> {
     let paths = shape.map_or_else(|| element.get("d", lines), |shape| Ok(vec![shape.path()]))?;
     check_counts(element, &paths, "stroke")?;
     let ends = |text: &str| ["butt", "round"].iter().position(|cap| *cap == text);
+    // SVG's defaults are square ends and mitres. A band needs both, a stroke with round ends neither.
     let is_band = element.either("stroke-linecap", ends)?.unwrap_or(0) == 0;
     let join = if is_band { "miter" } else { "round" };
     if element.find("stroke-linejoin").unwrap_or("miter") != join
@@ -291,6 +292,7 @@ fn strokes(element: &Element<'_>, unit: Unit) -> Result<Vec<Mark>> {
         opacity: f32::from(opacity.unwrap_or(u8::MAX)) / 255.0,
     };
     let strokes: Vec<Stroke> = paths.into_iter().map(stroke).collect();
+    // SVG cuts off the mitre of a sharp corner, and a band keeps it: the scene would look different from the file.
     let is_sound = |stroke: &Stroke| stroke.band().is_none_or(|band| band.is_sound());
     match strokes.iter().all(is_sound) {
         true => Ok(strokes.into_iter().map(Mark::from).collect()),

@@ -26,7 +26,7 @@ pub(super) fn push(out: &mut String, shadow: &Shadow, number: usize) {
     out.push('\n');
 }
 
-/// The x, y, width and height of the filter of a shadow, px: without them programs cut off what is far from the shape.
+/// The x, y, width and height of the filter of a shadow, px: without them programs cut off the blur far from the shape.
 pub(super) fn place(shadow: &Shadow) -> [i64; 4] {
     let [[left, top], [right, bottom]] = shadow.extent();
     [left, top, right - left, bottom - top]

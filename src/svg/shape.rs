@@ -45,6 +45,7 @@ pub(super) fn push(out: &mut String, shape: Shape, names: &str, unit: Unit) {
         Shape::Rect { low, high, radius } => {
             let side = high - low;
             let numbers = [low.x, low.y, side.x, side.y, radius];
+            // Without `rx` a rectangle has sharp corners.
             let count = if radius > 0.0 { 5 } else { 4 };
             element(RECT.0, &RECT.1, &numbers[..count]);
         }

@@ -82,6 +82,7 @@ fn ends(path: &Path, start: usize) -> [Spot; 2] {
         return [first, last].map(|p| spot(p.at));
     }
     let previous = &points[(start + points.len() - 1) % points.len()];
+    // Between two off-points the path begins at the implied point halfway.
     let other = if first.is_on { first } else { previous };
     [spot(first.at.midpoint(other.at)); 2]
 }
@@ -123,6 +124,7 @@ impl Visit {
             return vec![forward, forward.flipped()];
         }
         let is_off = |point: &PathPoint| !point.is_on;
+        // An implied start would have to be written; a ring without on-points has no other.
         let all_off = path.points().iter().all(is_off);
         let starts = (0..path.points().len()).filter(|&i| all_off || path.points()[i].is_on);
         starts.map(beginning_at).collect()
@@ -169,7 +171,7 @@ struct Tour<'a> {
 }
 
 impl<'a> Tour<'a> {
-    /// The tour that goes on to the nearest end of the strokes that may be drawn, again and again.
+    /// The greedy tour: it goes on to the nearest end of a stroke that may be drawn.
     fn nearest_first(strokes: &[Written], precedence: &'a Precedence, from: Option<Spot>) -> Self {
         let mut tour = Self {
             visits: Vec::with_capacity(strokes.len()),
@@ -182,11 +184,13 @@ impl<'a> Tour<'a> {
         // The ways to draw a stroke that may be drawn, from left to right.
         let mut ready: BTreeSet<Visit> = BTreeSet::new();
         loop {
+            // A stroke joins the choice once all below it are drawn.
             ready.extend(free.iter().flat_map(|&i| Visit::all(i, &strokes[i])));
             let at = tour.lifted(tour.visits.len()).unwrap_or_default();
             let Some(next) = nearest(&ready, at) else {
                 return tour;
             };
+            // One way was chosen; the others of this stroke go.
             for way in Visit::all(next.stroke, &strokes[next.stroke]) {
                 ready.remove(&way);
             }
@@ -199,6 +203,7 @@ impl<'a> Tour<'a> {
     /// Makes the tour of these strokes shorter until no change is left that does so.
     fn improve(&mut self, strokes: &[Written]) {
         let count = self.visits.len();
+        // Long tours look less far ahead, so that a pass takes about the same time.
         let window = PAIRS / count.max(1) + 1;
         for _ in 0..PASSES {
             let mut changes = false;
@@ -210,25 +215,31 @@ impl<'a> Tour<'a> {
                     rest.find(|&i| tour.has_to_follow(i, first..i))
                         .unwrap_or(stop)
                 };
+                // No two strokes of a reversed part may have to keep their order: the part ends before the first that does.
                 let mut end = bound(self);
                 for last in first..stop {
+                    // 2-opt: the part is drawn backwards.
                     if last < end && self.reversal_saves(first, last) > LEAST {
                         self.reverse(first..last + 1);
                         changes = true;
                     }
+                    // Or-opt: the first or the last one to three of the part move to its other end.
                     let reach = BLOCK.min(last - first);
                     for middle in (1..=reach).flat_map(|n| [first + n, last + 1 - n]) {
+                        // The saving is cheaper to compute than the precedence, and rules out most.
                         if self.swap_saves(first, middle, last) > LEAST
                             && (middle..=last).all(|i| !self.has_to_follow(i, first..middle))
                         {
                             self.visits[first..=last].rotate_left(middle - first);
                             self.take_places(first..last + 1);
+                            // Other strokes lie behind `first` now.
                             end = bound(self);
                             changes = true;
                         }
                     }
                 }
             }
+            // No short-circuit: starts are chosen in every pass, and a new start may make other changes pay.
             if !(self.choose_starts(strokes) | changes) {
                 break;
             }
@@ -252,21 +263,23 @@ impl<'a> Tour<'a> {
         self.visits.get(i).map(|visit| visit.ends[0])
     }
 
-    /// Travel from the visit before place `i` to that at place `k`, px.
+    /// Travel from the visit before place `i` to the visit at place `k`, px.
     fn way(&self, i: usize, k: usize) -> f64 {
         way(self.lifted(i), self.set_down(k))
     }
 
-    /// By how much the reversal of the part from `first` to `last` makes the tour shorter, px.
+    /// Travel that the reversal of the part from `first` to `last` saves, px.
     fn reversal_saves(&self, first: usize, last: usize) -> f64 {
+        // Only the ways at both ends of the part change; those inside it are the same backwards.
         let old = self.way(first, first) + self.way(last + 1, last + 1);
         old - way(self.lifted(first), self.lifted(last + 1))
             - way(self.set_down(first), self.set_down(last + 1))
     }
 
-    /// By how much it makes the tour shorter if the part from `first` on and that from `middle` to `last` change places, px.
+    /// Travel saved if the part from `first` on and the part from `middle` to `last` change places, px.
     fn swap_saves(&self, first: usize, middle: usize, last: usize) -> f64 {
         let after = last + 1;
+        // Three ways change: into the first part, between the two, and out of the second.
         let old = self.way(first, first) + self.way(middle, middle) + self.way(after, after);
         old - self.way(first, middle) - self.way(after, first) - self.way(middle, after)
     }
@@ -295,6 +308,7 @@ impl<'a> Tour<'a> {
             }
             let neighbours = [self.lifted(i), self.set_down(i + 1)];
             let way = |visit: &Visit| {
+                // A closed path is lifted where it was set down, so one point decides both ways.
                 let spots = neighbours.iter().flatten();
                 spots.map(|&spot| dist(spot, visit.ends[0])).sum::<f64>()
             };
@@ -316,6 +330,7 @@ fn way(a: Option<Spot>, b: Option<Spot>) -> f64 {
 
 /// The visit that begins nearest to a point.
 fn nearest(ready: &BTreeSet<Visit>, at: Spot) -> Option<Visit> {
+    // Visits are sorted by x. The search goes right and left from here, and stops where x alone is farther than the best.
     let pivot = Visit {
         ends: [at, [i64::MIN; 2]],
         stroke: 0,

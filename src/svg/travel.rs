@@ -40,6 +40,7 @@ pub fn travel(scene: &Scene, options: &WriteOptions) -> Option<Travel> {
         return None;
     }
     let scene = scene.quantized(options.precision).scene;
+    // The same layers without the tour, so that both numbers are of the same strokes.
     let fitted = WriteOptions {
         order: Order::Fitted,
         ..*options

@@ -10,7 +10,7 @@ use crate::math;
 /// Number of stages, unless the configuration sets it. With more stages, seeding sees the residual more often. Half, twice: −0.05,
 /// +0.04 dB.
 const COUNT: usize = 8;
-/// Strokes of a stage, in units of those of the stage before. 1.35 instead of 1.6: +0.08 dB; twice: −0.05.
+/// Strokes of a stage, in units of the strokes of the stage before. 1.35 instead of 1.6: +0.08 dB; twice: −0.05.
 const GROWTH: f64 = 1.35;
 /// Strokes of the first stage if the total is not known in advance. Half, twice, at the default quality: −0.04, +0.06 dB at −0.8,
 /// −4.5 % of the bytes.
@@ -90,7 +90,7 @@ impl Plan {
         }
     }
 
-    /// The number of layers, those of the base and those planned so far.
+    /// The number of layers of the base and of the stages planned so far.
     pub(in crate::fit) fn len(&self) -> usize {
         self.before + self.counts.len()
     }
@@ -111,11 +111,13 @@ impl Plan {
         let count = match self.counts.get(step) {
             Some(&count) => count,
             None if self.open => {
+                // An open plan grows geometrically; the strokes of a base count as the stages that they would have been.
                 let count = FIRST as f64 * math::powi(GROWTH, (self.covered + step) as i32);
                 (count as usize).min(self.most.saturating_sub(before))
             }
             None => return None,
         };
+        // The side of the square that each stroke has to itself once the stage is drawn.
         let spacing = (self.pixels as f32 / (before + count).max(1) as f32).sqrt();
         (count > 0).then_some(PlannedStage {
             index,
@@ -132,6 +134,7 @@ fn counts(total: usize, stages: usize, growth: f64) -> Vec<usize> {
     let (mut counts, mut before, mut reached) = (Vec::new(), 0, 0.0);
     for weight in weights {
         reached += weight;
+        // Round the running sum, not each count: so the counts add up to `total`. Stages that round to none are left out.
         let after = (total as f64 * reached / whole).round() as usize;
         if after > before {
             counts.push(after - before);
@@ -149,10 +152,12 @@ fn rest(counts: &[usize], before: usize) -> Vec<usize> {
         let covered = count.min(there);
         there -= covered;
         carried += count - covered;
+        // A stage that is half done, or less, stays, and takes what earlier ones carried over.
         if covered * 2 <= count {
             rest.push(std::mem::take(&mut carried));
         }
     }
+    // The last stage has no next one to carry to.
     if carried > 0 {
         rest.push(carried);
     }

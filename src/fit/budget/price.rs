@@ -11,7 +11,7 @@ use crate::svg::{Form, WriteOptions, mark_bytes};
 ///
 /// Squared error below that of the quality counts less and less: of E, the squared error at the quality, and e < E, the
 /// drawing's own, a small gain counts e/E of itself, so that e in all counts E/2 + e²/2E. A drawing that is better than
-/// wanted needs no strokes for what nobody sees. Above E every gain counts in full.
+/// wanted needs no strokes for errors that nobody sees. Above E every gain counts in full.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::fit) struct Price {
     per_byte: f32,
@@ -19,9 +19,9 @@ pub(in crate::fit) struct Price {
     wanted_mse: f64,
     /// The drawing's squared error and that at the quality.
     errors: Option<[f64; 2]>,
-    /// The price of a stroke's bytes, in units of that of a point's.
+    /// The price of a stroke's bytes, in units of the price of a point's.
     of_strokes: f32,
-    /// The price of the bytes of areas and of their points, in units of that of others.
+    /// The price of the bytes of areas and of their points, in units of the price of other bytes.
     of_areas: f32,
     file: WriteOptions,
 }
@@ -63,7 +63,7 @@ impl Price {
             0.0
         };
         let wanted_db = config.budget.psnr_db.map(|db| db + BEYOND_DB);
-        // Unless bytes are limited, the smallest form is that of the plain file's drawing, and not one of more marks.
+        // Price by the plain form unless bytes are limited: cheaper bytes in the smallest form mustn't buy more marks.
         let form = match config.file.form {
             Form::Smallest if config.budget.bytes.is_none() => Form::Plain,
             form => form,
@@ -73,7 +73,7 @@ impl Price {
             ..config.file
         };
         let price = match config.quality_for(pixels) {
-            // A large picture has a lower price for each pixel, but people see as well what is wrong with it.
+            // A large picture has a lower price for each pixel, but people see its errors as well.
             Some(quality) => Self {
                 wanted_mse: mse(config.quality.unwrap_or(DEFAULT_QUALITY) - lost_db),
                 ..Self::new(Some(quality - lost_db), file)
@@ -133,6 +133,8 @@ impl Price {
         let Some([error, wanted]) = self.errors.filter(|_| price > 0.0) else {
             return price;
         };
+        // Adding pays if counted(error) − counted(error − gain) ≥ price, which is solved for the gain. If even a perfect drawing
+        // would gain less, nothing does.
         let left = counted(error, wanted) - f64::from(price);
         uncounted(left, wanted).map_or(f32::INFINITY, |left| (error - left) as f32)
     }
@@ -142,6 +144,8 @@ impl Price {
         let Some([error, wanted]) = self.errors.filter(|_| price > 0.0) else {
             return price;
         };
+        // Removing pays if counted(error + worth) − counted(error) ≤ price. Below the quality a stroke may be worth more than its
+        // price and go: its error counts for less there.
         let without = counted(error, wanted) + f64::from(price);
         uncounted(without, wanted).map_or(0.0, |without| (without - error) as f32)
     }
@@ -208,6 +212,7 @@ impl Price {
         };
         // In the middle of the file's numbers: steps of some px, with one sign of two.
         let points = [[123.46, 78.91], [127.82, 74.57], [134.24, 76.35]];
+        // The bytes of the third point. At least 1, as it is a divisor.
         bytes(&points).saturating_sub(bytes(&points[..2])).max(1)
     }
 }
@@ -220,6 +225,7 @@ fn mse(psnr_db: f64) -> f64 {
 /// Counted part of a squared error; `wanted` is the one at the quality.
 fn counted(error: f64, wanted: f64) -> f64 {
     if error < wanted {
+        // The slope is error / wanted, so it joins the straight part at `wanted` in value and in slope.
         0.5 * (wanted + error * error / wanted)
     } else {
         error
@@ -230,6 +236,7 @@ fn counted(error: f64, wanted: f64) -> f64 {
 fn uncounted(count: f64, wanted: f64) -> Option<f64> {
     match 2.0 * count - wanted {
         _ if count >= wanted => Some(count),
+        // The inverse of ½(wanted + e² / wanted). No error counts less than ½ wanted.
         twice if twice >= 0.0 => Some((twice * wanted).sqrt()),
         _ => None,
     }

@@ -10,7 +10,7 @@ use crate::fit::config::{Budget, Config, SCREEN_PIXELS};
 use crate::image::Image;
 use crate::metrics::{self, psnr_db};
 
-// `docs/accuracy.md` has what was measured.
+// `docs/accuracy.md` has the measurements.
 /// Pixels that a drawing of as many strokes as pay needs: twice the pixels of the screen that it is made for.
 const ENOUGH_PIXELS: usize = 2 * SCREEN_PIXELS;
 /// Fewest pixels that a picture is reduced to, however little detail it has: the price of strokes is that of a screen.
@@ -40,21 +40,25 @@ pub(in crate::fit) fn size(picture: &Image, config: &Config) -> Option<[usize; 2
     let all = pixels(picture);
     let counted = counted(config);
     let enough = counted.max(ENOUGH_PIXELS);
-    // Pens given in px are those of the picture.
+    // Pens given in px are in px of the picture, not of a reduced one.
     if config.pens.is_some() {
         return None;
     }
+    // 1. An enlarged picture of few pixels: its half has all of its detail.
     if is_soft(picture, config) && all / 4 >= counted {
         return Some([picture.width().div_ceil(2), picture.height().div_ceil(2)]);
     }
+    // 2. A picture of about enough pixels stays as it is.
     if all as f64 <= enough as f64 * LEAST_FACTOR * LEAST_FACTOR {
         return None;
     }
+    // 3. Halve as long as nothing is lost that the drawing could show. The last factor may be a fraction, which ends at `enough`.
     let mut factor = 1.0;
     let mut reduced = None;
     loop {
         let now = reduced.as_ref().unwrap_or(picture);
         let half = now.reduced(now.width().div_ceil(2), now.height().div_ceil(2));
+        // How much of the detail the half has is measured by enlarging it again.
         let loss_db = psnr_db(mse_enlarged(&half, now));
         if is_same(loss_db, config) && pixels(&half) >= counted.max(LEAST_PIXELS) {
             factor *= 2.0;
@@ -88,7 +92,7 @@ fn is_same(loss_db: f64, config: &Config) -> bool {
 
 /// True if strokes show no more of `picture` than of its half, from which it can be enlarged again to `loss_db`.
 fn shows_no_more(loss_db: f64, picture: &Image, config: &Config) -> bool {
-    // A fidelity, or a quality of its own, is asked for of all that is in the picture.
+    // A given fidelity or quality covers everything in the picture.
     let is_for_screen = config.budget.psnr_db.is_none() && config.quality.is_none();
     let is_photograph = || !is_flat(picture);
     is_for_screen && (loss_db >= NEARLY_SAME_DB || is_photograph())
@@ -116,6 +120,7 @@ fn mse_enlarged(half: &Image, picture: &Image) -> f64 {
     let [columns, rows] = [half.width(), half.height()];
     // The pixels of the half beside a place between them, and the share of the second.
     let beside = |at: usize, old: usize, new: usize| {
+        // Centres of pixels are at halves: pixel `at` of the large row is at this place of the small one.
         let place = (at as f32 + 0.5) * new as f32 / old as f32 - 0.5;
         let first = (place.max(0.0) as usize).min(new - 1);
         (

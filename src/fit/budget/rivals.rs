@@ -4,7 +4,7 @@
 //! fit of few strokes also draws as the shorter presets would, in a fraction of its time, and keeps the best drawing. A longer preset is
 //! therefore never worse than a shorter one.
 //!
-//! Areas, too, have a rival: where many of them draw what has no flat colours, such as gradients, or draw it badly, strokes
+//! Areas, too, have a rival: where many of them draw gradients or other uneven colours, or draw badly, strokes
 //! alone may be better.
 
 use std::time::Duration;
@@ -44,6 +44,7 @@ pub(in crate::fit) fn of(config: &Config, picture: &Image) -> Vec<Config> {
         Preset::Best => &[Preset::Draft, Preset::Balanced],
     };
     let mut rivals: Vec<Config> = shorter.iter().map(|&p| with(p, config.seed)).collect();
+    // Rivals with areas have rivals by strokes alone in turn.
     let by_strokes: Vec<Config> = rivals.iter().filter_map(by_strokes_alone).collect();
     rivals.extend(by_strokes);
     // Bytes decide which strokes stay, which is chance as well.
@@ -53,7 +54,7 @@ pub(in crate::fit) fn of(config: &Config, picture: &Image) -> Vec<Config> {
     rivals
 }
 
-/// True if a drawing of `picture` by `config` competes with those of what pays at several qualities.
+/// True if a drawing of `picture` by `config` competes with drawings of what pays at several qualities.
 pub(in crate::fit) fn has_priced(config: &Config, picture: &Image) -> bool {
     let Budget {
         strokes,
@@ -67,6 +68,7 @@ pub(in crate::fit) fn has_priced(config: &Config, picture: &Image) -> bool {
         return false;
     }
     let planned = budget::strokes(config, None, picture);
+    // Areas come from tracing, which needs points and no pens that draw lines.
     let may_trace = config.allows_points() && !config.pens_draw_lines();
     let by_areas = may_trace && config.marks != Marks::Strokes;
     planned.is_some_and(|strokes| strokes <= FEW) || by_areas && is_flat(picture)

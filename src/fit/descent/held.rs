@@ -49,7 +49,7 @@ impl Held {
         }
     }
 
-    /// Leaves of slopes the part that changes no form: that of centre and radius, and of all ends of a line alike.
+    /// Projects slopes onto the changes that keep each form: a shape moves and grows, a level line moves as a whole.
     pub(in crate::fit) fn project(&self, strokes: &Strokes, slopes: &mut [f32]) {
         for (i, form, _) in &self.formed {
             let change = slopes[places(strokes, *i)].as_chunks_mut().0;
@@ -69,6 +69,7 @@ impl Held {
         for (i, ..) in &self.formed {
             let points = &mut squares[places(strokes, *i)];
             let most = points.iter().copied().fold(0.0, f32::max);
+            // With one second moment for all points a step is the projected gradient times a constant, which keeps the form.
             points.fill(most);
         }
     }
@@ -117,6 +118,7 @@ fn leveled(band: Band, equal: &[Vec<usize>]) -> Band {
     let points = band.line.points();
     let mut numbers: Vec<f32> = points.iter().flat_map(|p| math::xy(p.at)).collect();
     equal.iter().for_each(|places| level(places, &mut numbers));
+    // Only places change; each point of the middle stays on or off the path.
     let places = numbers.as_chunks::<2>().0.iter();
     let points = points.iter().zip(places).map(|(p, &at)| PathPoint {
         at: math::point(at),
@@ -130,11 +132,12 @@ fn leveled(band: Band, equal: &[Vec<usize>]) -> Band {
 
 /// Gives the numbers at these places their mean.
 fn level(places: &[usize], numbers: &mut [f32]) {
+    // Among lists of equal numbers the mean is the nearest one. So it restores coordinates, and it projects slopes.
     let mean = places.iter().map(|&i| numbers[i]).sum::<f32>() / places.len() as f32;
     places.iter().for_each(|&i| numbers[i] = mean);
 }
 
-/// Places of coordinates that lines of a path have in common, where those of its first point are `start` and the next.
+/// Places of coordinates that lines of a path have in common. The coordinates of its first point are at `start` and behind it.
 fn equal(path: StrokeRef<'_>, start: usize) -> Places {
     let count = path.points.len();
     let mut equal = Vec::new();
@@ -144,7 +147,7 @@ fn equal(path: StrokeRef<'_>, start: usize) -> Places {
             let is_line = !path.off[i] && !path.off[next] && (path.closed || next > 0);
             is_line && path.points[i][axis] == path.points[next][axis]
         };
-        // A closed path may begin amid such lines.
+        // Lines along this axis share the coordinate. A closed path is walked from the end of a run of them, so that none is cut.
         let from = (0..count).find(|&i| !is_along((i + count - 1) % count));
         let mut run = Vec::new();
         for i in (0..count).map(|k| (from.unwrap_or(0) + k) % count) {

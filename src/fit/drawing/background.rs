@@ -50,6 +50,7 @@ pub(in crate::fit) fn choose(background: Background, target: &Image) -> (Rgb, bo
         Background::Auto => {
             let levels = target.to_rgb8();
             let (colors, _) = levels.as_chunks();
+            // The border first: paper reaches it, while what is drawn may cover most of the picture.
             let paper = border_color(colors, target.width());
             let color = paper.unwrap_or_else(|| prevailing_color(target, colors));
             (color, false)
@@ -67,12 +68,13 @@ pub(super) fn paper(picture: &Image) -> Option<Rgb> {
 }
 
 /// The most common colour of the pixels along the border, if that is the colour of enough of them: paper reaches the
-/// border, and what is drawn on it may cover more than half of it.
+/// border, and the drawing on it may cover more than half of it.
 fn border_color(colors: &[[u8; 3]], width: usize) -> Option<Rgb> {
     let height = colors.len() / width;
     let rows = (0..height).flat_map(|y| [y * width, y * width + width - 1]);
     let columns = (0..width).flat_map(|x| [x, (height - 1) * width + x]);
     let border: Vec<[u8; 3]> = rows.chain(columns).map(|i| colors[i]).collect();
+    // An exact colour is better than the mean of spots, and is asked for first.
     common_color(border.iter().copied(), BORDER_SHARE).or_else(|| spotted_color(border))
 }
 
@@ -114,6 +116,7 @@ fn common_color(pixels: impl Iterator<Item = [u8; 3]>, least_share: f64) -> Opti
 
 /// The pixels of the most common colour; `None` of no pixels.
 fn most_common(colors: &mut [[u8; 3]]) -> Option<&[[u8; 3]]> {
+    // Equal colours become neighbours. Of equally common ones the largest is taken, whatever the order of pixels.
     colors.sort_unstable();
     let runs = colors.chunk_by(|a, b| a == b);
     runs.max_by_key(|run| run.len())

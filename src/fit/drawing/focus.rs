@@ -1,7 +1,7 @@
 //! Weights of errors: how much an error counts in each pixel.
 //!
-//! The fit minimises `Σ w·(c − t)²`. It multiplies canvas and target by `√w`, so that all
-//! derivatives, worths and gains are those of the weighted error, exactly; see [`Renderer::set_error_weights`](crate::render::Renderer::set_error_weights).
+//! The fit minimises `Σ w·(c − t)²`. It multiplies canvas and target by `√w`, so that all derivatives, worths and gains are
+//! exactly those of the weighted error; see [`Renderer::set_error_weights`](crate::render::Renderer::set_error_weights).
 
 use std::sync::Arc;
 
@@ -62,6 +62,7 @@ impl Focus {
 
     /// The weights of the pixels, row by row.
     pub(in crate::fit) fn of_weights([width, height]: [usize; 2], weights: Vec<f32>) -> Self {
+        // One weight a pixel, in three equal channels: it multiplies canvases channel by channel.
         let planes = [weights.clone(), weights.clone(), weights];
         Self {
             weights: Arc::new(Pyramid::new(Image::from_planes(width, height, planes))),
@@ -107,6 +108,7 @@ impl Focus {
     /// The roots of the weights of the picture halved `halvings` times.
     pub(in crate::fit) fn roots(&self, halvings: usize) -> Canvas {
         let weights = self.weights.level(halvings);
+        // Weights are reduced before the root is taken: the weight of a larger pixel is a mean of weights.
         let roots = |plane: &Vec<f32>| plane.iter().map(|weight| weight.sqrt()).collect();
         let planes = [0, 1, 2].map(|c| roots(&weights.planes()[c]));
         Canvas::from_image(&Image::from_planes(

@@ -1,4 +1,4 @@
-//! The ground of a drawing: what lies on its background and behind all marks.
+//! The ground of a drawing: gradient and shadows on its background, behind all marks.
 
 use crate::fit::config::Background;
 use crate::fit::drawing::{background, shading, shadows};
@@ -21,12 +21,14 @@ impl Ground {
             let shadows = Vec::new();
             return (Background::None, Self { shade, shadows });
         }
+        // A transparent picture has no page, but may have shadows. An opaque one without paper has neither.
         let page = match picture.alpha() {
             Some(_) => Some(None),
             None => background::paper(picture).map(Some),
         };
         let of = |page| shadows::choose(picture, page, price_per_byte);
         let shadows = page.map_or_else(Vec::new, of);
+        // The blurs were fitted on this colour, so the background has to keep it.
         let background = match page.flatten() {
             Some(color) if !shadows.is_empty() => Background::Color(color),
             _ => Background::Auto,

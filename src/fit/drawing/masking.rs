@@ -37,6 +37,7 @@ const CEILING: f64 = 0.2;
 pub(in crate::fit) fn weights(picture: &Image) -> Focus {
     let size = [picture.width(), picture.height()];
     let mut means = luma(picture);
+    // σ² = mean of squares − square of the mean, both over the window.
     let mut variances: Vec<f64> = means.par_iter().map(|v| v * v).collect();
     rayon::join(
         || average(&mut means, size[0], WINDOW),
@@ -44,10 +45,12 @@ pub(in crate::fit) fn weights(picture: &Image) -> Focus {
     );
     let ceiling = CEILING * CEILING;
     let of_square = |(square, mean): (&mut f64, &f64)| {
+        // Rounding of the difference may leave less than 0 where the picture is flat.
         *square = (*square - mean * mean).clamp(0.0, ceiling);
     };
     variances.par_iter_mut().zip(&means).for_each(of_square);
     let weight = |variance: f64| CONTRAST / (CONTRAST + variance.sqrt());
+    // The mean of w, weighted by σ², is the unit of weights.
     let detail: f64 = variances.iter().sum();
     let seen: f64 = variances.iter().map(|&v| v * weight(v)).sum();
     // A picture of one colour has no detail, and all its errors count alike.

@@ -40,6 +40,7 @@ impl Drawing {
         if memento.halvings != self.surface().halvings() || !self.is_thawed() {
             self.halve(memento.halvings);
         }
+        // All strokes are free at first. Those that were frozen are frozen again, in the same order of renders.
         *self.free_mut() = memento.strokes;
         self.stage_of = memento.stage_of;
         self.counters = memento.counters;

@@ -40,7 +40,7 @@ impl Target {
         }
     }
 
-    /// Forgets what is known of the backdrop, which has changed.
+    /// Forgets the errors of the backdrop, which has changed.
     pub(in crate::fit) fn forget_backdrop(&mut self) {
         self.untouched.fill(Untouched::new());
     }
@@ -75,6 +75,7 @@ impl Moments {
         let grid = target.grid();
         let moments = |(tile, pixels): (usize, &TileRgb)| {
             let (x, y) = grid.origin(tile);
+            // Tiles at the right and lower borders are padded with zeros, which the sums ignore but a count must not.
             let (columns, rows) = (TILE.min(grid.width - x), TILE.min(grid.height - y));
             let mut moments = TileMoments {
                 pixels: (columns * rows) as f64,
@@ -89,6 +90,7 @@ impl Moments {
                 let roots = roots.map_or(&EQUAL, |roots| &roots[i]);
                 for (value, root) in lanes.0.into_iter().zip(roots.0) {
                     let value = f64::from(value);
+                    // The target is √w·t, so √w times that is w·t, and its square w·t².
                     moments.sums[i % 3] += f64::from(root) * value;
                     moments.squares += value * value;
                 }
@@ -151,6 +153,7 @@ impl<'a> Objective<'a> {
             let roots = self.error_weights.map(|roots| &roots.tiles()[tile]);
             self.sum(canvas, roots, &self.target.tiles()[tile])
         };
+        // Tiles are added in their order, so that the sum doesn't depend on the number of threads.
         let sums: Vec<f64> = tiles.map(sum).collect();
         sums.iter().sum::<f64>() * f64::from(self.scale)
     }
@@ -209,11 +212,13 @@ impl CanvasLoss for Objective<'_> {
             squares,
         } = self.moments?.0.get(tile)?;
         let (color, scale) = (color.map(f64::from), f64::from(self.scale));
+        // Σ w(c − t)² = c²·Σw − 2c·Σwt + Σwt², with the derivative 2(c·Σw − Σwt).
         let products = color.iter().zip(sums);
         let error: f64 = products
             .map(|(c, sum)| pixels * c * c - 2.0 * c * sum)
             .sum();
         let slope = |channel: usize| 2.0 * (pixels * color[channel] - sums[channel]) * scale;
+        // Where the colour meets the target, rounding of the difference may leave less than 0.
         let loss = (error + squares).max(0.0) * scale;
         Some((loss, [0, 1, 2].map(|channel| slope(channel) as f32)))
     }

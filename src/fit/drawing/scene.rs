@@ -42,6 +42,7 @@ impl Drawing {
         let mut mses = Vec::new();
         for stage in &scene.stages {
             let strokes = reduced(&stage.marks, halvings);
+            // The canvas of the layer before is the backdrop of this one, so that each stroke is rendered once.
             std::mem::swap(&mut below, &mut canvases);
             for (below, canvas) in below.iter().zip(&mut canvases) {
                 let backdrop = Backdrop::Canvas(below);
@@ -60,6 +61,7 @@ impl Drawing {
             .ground
             .scene(picture.width(), picture.height(), background);
         let mut strokes = self.all();
+        // From px of the current resolution to px of the picture.
         enlarge(&mut strokes, self.surface().halvings());
         for (stroke, &stage) in strokes.iter().zip(&self.stage_of) {
             if scene.stages.len() <= stage {

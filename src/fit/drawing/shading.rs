@@ -10,7 +10,7 @@ use crate::svg::{self, WriteOptions};
 const BLOCKS: usize = 64;
 /// The least share of the blocks that a gradient has to meet.
 const LEAST_SHARE: f32 = 0.5;
-/// Share of the blocks that it has to meet beyond those of the best single colour.
+/// Share of the blocks that it has to meet beyond the share that the best single colour meets.
 const LEAST_GAIN: f32 = 0.25;
 /// Largest change of a page per px: a larger one is the edge of a thing.
 const STEEPEST: f32 = 14.0 / 255.0;
@@ -27,6 +27,7 @@ const FIT: ShadeFit = ShadeFit {
 pub(in crate::fit) fn choose(picture: &Image, price_per_byte: f32) -> Option<Shade> {
     let (blocks, area) = blocks(picture);
     let flat = flat(&blocks);
+    // The flat page is the alternative: a gradient has to explain more of the picture than the best single colour.
     let alone = blocks.met(NEAR, |_| flat);
     // No shade is near more than all of the picture.
     if alone.share + LEAST_GAIN > 1.0 {
@@ -51,6 +52,7 @@ fn has_edge(shade: &Shade) -> bool {
         Axis::Radial { radius, .. } => radius,
     };
     shade.stops().windows(2).any(|ends| {
+        // One px more, so that two stops in one place count as an edge of a pixel and not as infinitely steep.
         let px = 1.0 + length as f32 * (ends[1].offset - ends[0].offset);
         let value = |stop: &ShadeStop, c: usize| match c {
             3 => stop.opacity,
@@ -91,6 +93,7 @@ fn blocks(picture: &Image) -> (Blocks, f32) {
 /// The value that most blocks are near to, of those that blocks have.
 fn flat(blocks: &Blocks) -> Value {
     let key = |block: &Block| block.value.map(|v| (v * 255.0).round() as u8);
+    // In 8-bit levels, so that blocks of one colour are equal.
     let mut keys: Vec<[u8; 4]> = blocks.all.iter().map(key).collect();
     keys.sort_unstable();
     let runs = keys.chunk_by(|a, b| a == b);

@@ -1,8 +1,8 @@
-//! The choice of shadows: soft shadows and glows on the page, each a blur of the shape of what casts it.
+//! The choice of shadows: soft shadows and glows on the page, each a blur of its caster's shape.
 //!
-//! A shadow mixes the page with one colour, by shares that change slowly. What lies among these shares, and is none of the page
-//! either, casts it. Blurs of its shape, at several places, are tried against the shares, which are known where nothing covers
-//! the shadow.
+//! A shadow mixes the page with one colour, by shares that change slowly. The caster lies among these shares
+//! and differs from the page. Blurs of its shape, at several places, are compared with the shares, which are known where
+//! nothing covers the shadow.
 
 mod caster;
 mod shares;
@@ -15,7 +15,7 @@ use crate::trace;
 use caster::{Cast, Search};
 use shares::Shares;
 
-// All of these, and those of shares and casters, are guesses.
+// All of these, and the constants of shares and casters, are guesses.
 /// Most shadows of one thing.
 const MOST: usize = 3;
 /// Of the squared error, no second shadow is looked for below this share.
@@ -53,14 +53,14 @@ pub(in crate::fit) fn choose(
 }
 
 fn found(picture: &Image, page: Option<Rgb>, price_per_byte: f32) -> Option<Vec<Shadow>> {
-    // What is soft, unless a gradient does, and the outline of what casts it.
+    // 1. The soft pixels, unless one gradient explains them, and the outline of their caster.
     let shares = Shares::of(picture, page)?;
     if is_gradient(&shares) {
         return None;
     }
     let rings = rings(&shares, 0.0);
     let mut search = Search::of(&shares, &rings)?;
-    // The blurs of that outline, if they explain it and pay.
+    // 2. Blurs of that outline, if they explain the soft pixels and pay.
     let all = search.error();
     let casts = casts(&mut search);
     let gain = (all - search.error()) * shares.contrast2;
@@ -74,6 +74,7 @@ fn found(picture: &Image, page: Option<Rgb>, price_per_byte: f32) -> Option<Vec<
             [ring] if ring.shape().is_some() => rings.clone(),
             _ => self::rings(&shares, OUTLINE_OF_BLUR * cast.blur),
         };
+        // A blur moves with its outline, so the shift is a shift of the rings.
         let by = math::point(cast.shift).to_vec2();
         let area = Area {
             rings: rings.into_iter().map(|ring| ring.moved(by)).collect(),
@@ -83,6 +84,7 @@ fn found(picture: &Image, page: Option<Rgb>, price_per_byte: f32) -> Option<Vec<
         };
         Shadow::new(area, cast.blur).ok()
     };
+    // The first one found explains most and lies on top.
     casts.iter().rev().map(shadow).collect()
 }
 
@@ -95,6 +97,7 @@ fn casts(search: &mut Search) -> Vec<Cast> {
             break;
         };
         let before = search.error();
+        // Greedy: each blur explains what the ones before it have left.
         search.take(&cast);
         if search.error() > LEAST_GAIN * before {
             break;
@@ -104,7 +107,7 @@ fn casts(search: &mut Search) -> Vec<Cast> {
     casts
 }
 
-/// The outline of what casts a shadow, as exact as `tolerance` px or as the picture tells.
+/// The outline of the caster, within `tolerance` px or as exact as the picture is.
 fn rings(shares: &Shares, tolerance: f32) -> Vec<Path> {
     let rings = trace::rings(&shares.caster.values, shares.width, tolerance);
     let shape = |ring: Path| Shape::like(&ring, SHAPE).map_or(ring, Shape::path);

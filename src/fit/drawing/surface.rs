@@ -66,6 +66,7 @@ impl Prepared {
         ground: Ground,
         scale: f32,
     ) -> Result<Self> {
+        // A drawing on two mattes keeps its alpha in the target; on one it is flattened onto the background.
         let mattes = mattes(picture, background);
         let target = match *mattes {
             [_] => picture.flattened(background::matte(background)),
@@ -73,6 +74,7 @@ impl Prepared {
         };
         let (color, is_fixed) = background::choose(background, &target);
         let surface = |&matte: &Rgb| {
+            // On two mattes, the background is the matte itself.
             let color = if mattes.len() == 1 { color } else { matte };
             let target = target.flattened(matte);
             let backdrop = match ground.is_empty() {
@@ -128,7 +130,7 @@ enum AnyBackdrop {
 }
 
 impl AnyBackdrop {
-    /// A page of the size of `target`, with a ground on `color`, which is that of `background` if it has one.
+    /// A page of the size of `target`, with a ground on `color`, the colour of `background` if it has one.
     fn ground(target: &Image, ground: &Ground, color: Rgb, background: Background) -> Result<Self> {
         let (width, height) = (target.width(), target.height());
         let scene = ground.scene(width, height, None);
@@ -264,6 +266,7 @@ impl Surface {
 
     /// Switches to the picture halved `halvings` times, with nothing frozen.
     pub(in crate::fit) fn halve(&mut self, halvings: usize) {
+        // Every canvas of this resolution depends on the level of the pyramid, the weights included, so all are made anew.
         self.halvings = halvings;
         self.error_weights = self.focus.as_ref().map(|focus| focus.roots(halvings));
         self.target = self.target_of(Canvas::from_image(self.pyramid.level(halvings)));
@@ -279,6 +282,7 @@ impl Surface {
 
     /// Makes the backdrop of all strokes the backdrop of the free ones.
     pub(in crate::fit) fn thaw(&mut self) {
+        // Of a flat background no canvas is kept: renders of all strokes begin with its colour.
         if let Some(pyramid) = self.backdrop.pyramid() {
             self.frozen = Canvas::from_image(pyramid.level(self.halvings));
         }
@@ -372,6 +376,7 @@ pub(in crate::fit) fn transparent(black: &Image, white: &Image) -> Result<Image>
             .map(|(&p, &a)| if a > 0.0 { p / a } else { 0.0 })
             .collect()
     };
+    // On black the picture is premultiplied, and straight colour is P / A.
     let planes = [0, 1, 2].map(|c| straight(&black.planes()[c]));
     Image::new(black.width(), black.height(), planes)?.with_alpha(alpha)
 }

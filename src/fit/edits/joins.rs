@@ -59,10 +59,12 @@ fn pairs(strokes: &Strokes, most: usize, joins: &Joins) -> Vec<Pair> {
             let near = (-1..=1).flat_map(|y| (-1..=1).map(move |x| [column + x, row + y]));
             for &(k, other_is_end) in near.filter_map(|place| cells.get(&place)).flatten() {
                 let other = strokes.get(k);
+                // Of the two ends that meet one point is left.
                 let count = written_points(stroke) + written_points(other) - 1;
                 let gap = distance(at, end(other, other_is_end));
                 let width = stroke.radius() + other.radius();
                 if k != i && count <= most && gap <= joins.reach.min(width * joins.gap) {
+                    // A gap as wide as both radii together counts as much as the largest difference of styles that is allowed.
                     let unlike = unlike(stroke, other) + gap / width * joins.alike;
                     pairs.push(Pair {
                         lower: k,
@@ -127,8 +129,10 @@ fn joined(strokes: &Strokes, pair: Pair) -> Change {
         }
         points
     };
+    // The lower stroke runs towards the meeting point, the upper one away from it.
     let mut all = points(pair.lower, !pair.ends[0]);
     let rest = points(pair.upper, pair.ends[1]);
+    // The path meets halfway between the two ends.
     if let (Some(last), Some((first, _))) = (all.last_mut(), rest.first()) {
         last.0 = [0, 1].map(|axis| 0.5 * (last.0[axis] + first[axis]));
     }
@@ -136,6 +140,7 @@ fn joined(strokes: &Strokes, pair: Pair) -> Change {
     all.extend(&rest[1..]);
     // The style is the mean by length, so that a short piece does not change a long one.
     let (a, b) = (strokes.get(pair.lower), strokes.get(pair.upper));
+    // If neither has a length, the bound of the divisor leaves the style of the lower one.
     let (weight, other) = (a.length(), b.length());
     let share = other / (weight + other).max(f32::MIN_POSITIVE);
     let style: [f32; STYLE] =

@@ -81,10 +81,12 @@ pub(in crate::fit) fn add(terrain: &Terrain<'_>, to_add: f32, points: &Points) -
         });
         insertions.into_iter().flatten().flatten()
     };
+    // A piece is passed over where the chord is too short for one more point.
     let insertions = terrain.pieces.iter().enumerate().flat_map(within);
     let best =
         insertions.reduce(|best, other| if other.gain > best.gain { other } else { best })?;
     let mut changed = Changed::of(terrain.stroke);
+    // The moved point comes first: its index is the one before the insertion.
     if let Some((k, to)) = best.moved {
         changed.points[k] = to;
     }
@@ -101,6 +103,8 @@ pub(in crate::fit) fn drop(terrain: &Terrain<'_>, to_keep: f32) -> Option<Edit> 
     if count < 3 {
         return None;
     }
+    // A control point beside an end may have pulled the curve beyond that end. Without it the stroke would be too short, unless
+    // the end moves to where the curve was farthest out.
     let removal = best_change(terrain, 0..count, to_keep, |changed, k| changed.remove(k));
     let retraction = |(k, end): (usize, usize)| {
         let tip = terrain.tip(end).filter(|_| off[k] && !closed)?;
@@ -130,6 +134,8 @@ pub(in crate::fit) fn toggle(terrain: &Terrain<'_>, to_change: f32) -> Option<Ed
     }
     let inner = if closed { 0..count } else { 1..count - 1 };
     best_change(terrain, inner, -to_change, |changed, k| {
+        // The curve through the point runs from a to b. Beside a control point it ends halfway; for a corner that becomes smooth,
+        // this halfway place is an estimate, as the new control point moves it.
         let neighbours = [(k + count - 1) % count, (k + 1) % count];
         let [a, b] = neighbours.map(|i| match off[i] {
             true => [0, 1].map(|axis| 0.5 * (points[i][axis] + points[k][axis])),
@@ -155,6 +161,7 @@ fn best_change(
     for k in of {
         let mut changed = Changed::of(terrain.stroke);
         change(&mut changed, k);
+        // An open path has to begin and end with on-points.
         if changed.is_path(terrain.stroke.closed) {
             let gain = terrain.gain(changed.on(terrain.stroke), k);
             if best.as_ref().is_none_or(|(most, _)| gain > *most) {
@@ -210,10 +217,13 @@ fn within_line(
         return [None; 2];
     };
     let at = |k: usize| k as f32 / cut.steps as f32;
+    // Shares of the point's shift that the line's vertices take, t = k / steps. A corner: 1 − |2t − 1|. A control point:
+    // 2t(1 − t), its Bernstein polynomial.
     let tent = (0..=cut.steps).map(|k| 1.0 - (2.0 * at(k) - 1.0).abs());
     let parabola = (0..=cut.steps).map(|k| 2.0 * at(k) * (1.0 - at(k)));
     let most = points.reach * chord.length;
     let corner = terrain.shift(cut.first, tent, chord.across, most);
+    // The parabola is at most ½, so that the control point may shift twice as far for the same shift of the curve.
     let control = terrain.shift(cut.first, parabola, chord.across, 2.0 * most);
     let middle = [0, 1].map(|axis| 0.5 * (chord.a[axis] + chord.b[axis]));
     // The line that closes a path ends at a point before its start.
@@ -245,6 +255,7 @@ fn within_curve(
     match (cut.piece.from, cut.piece.to) {
         // De Casteljau: the curve is the same with a control point halfway to each end, and each of them can move.
         (Knot::Point(_), Knot::Point(_)) => {
+            // The curve a, c, b becomes a, (a + c)/2, (c + b)/2, b. The on-point between the halves is implied: it lies halfway.
             let c = terrain.stroke.points[control];
             let halves =
                 [chord.a, chord.b].map(|end| [0, 1].map(|axis| 0.5 * (end[axis] + c[axis])));
@@ -264,6 +275,7 @@ fn within_curve(
         }
         // The new point pulls both curves beside the knot, most at the knot itself.
         (_, Knot::Between(_, next)) => {
+            // It changes about the second half of this curve and the first half of the next one.
             let ahead = terrain.pieces.get(i + 1)?.steps.div_ceil(2);
             let back = cut.steps.div_ceil(2);
             let (p, q) = (terrain.stroke.points[control], terrain.stroke.points[next]);
@@ -273,6 +285,7 @@ fn within_curve(
                     None => (back - k) as f32 / back as f32,
                     Some(beyond) => beyond as f32 / ahead as f32,
                 };
+                // Its curve ends halfway to p and to q, so its middle moves by ¼(½ + ½) + ½ = ¾ of the point's shift.
                 0.75 * (1.0 - away * away)
             };
             let weights = (0..=back + ahead).map(weight);
@@ -292,10 +305,12 @@ fn within_curve(
 
 /// The share that the first of two control points, which cut a curve in two, has in the curve's point at `t`.
 fn of_first_half(t: f32) -> f32 {
+    // By t = ½ it is the control point of the first half, 2s(1 − s), and half of the implied point at its end, s².
     if t < 0.5 {
         let s = 2.0 * t;
         2.0 * s * (1.0 - s) + 0.5 * s * s
     } else {
+        // In the second half it has a share through the implied point alone: ½(1 − s)² for s from 0 to 1.
         let s = 2.0 - 2.0 * t;
         0.5 * s * s
     }

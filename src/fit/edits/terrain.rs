@@ -19,7 +19,7 @@ pub(in crate::fit) const LEAST: usize = 4;
 pub(in crate::fit) struct Terrain<'a> {
     /// The index of the stroke or area that it belongs to.
     pub(super) mark: usize,
-    /// The index among the paths of that.
+    /// The index among the mark's paths.
     pub(super) path: usize,
     /// True if it is a ring of an area.
     pub(in crate::fit) is_ring: bool,
@@ -43,11 +43,12 @@ pub(super) struct Cut {
 }
 
 impl<'a> Terrain<'a> {
-    /// The terrains of all paths whose points may come and go: of each stroke, and of each ring of an area. Those of a band
-    /// come and go in pairs.
+    /// The terrains of all paths whose points may come and go: of each stroke, and of each ring of an area. The points of a band
+    /// come and go in pairs, so bands have none.
     pub(in crate::fit) fn all(survey: &'a Survey, strokes: &'a Strokes) -> Vec<Self> {
         let of_mark = |mark: usize| {
             let stroke = strokes.get(mark);
+            // The survey has the vertices of all paths of a mark one after the other.
             let mut first = survey.firsts[mark] as usize;
             let is_fit = stroke.is_finite() && stroke.form != Some(Form::Band);
             let paths = stroke.paths().enumerate().filter(move |_| is_fit);
@@ -114,13 +115,16 @@ impl<'a> Terrain<'a> {
     ) -> (f32, f32) {
         let (mut slope, mut stiffness) = (0.0, 0.0);
         let vertices = self.slopes.iter().zip(self.stiffness).skip(first);
+        // Vertices shift by w·δ along `across`: the slope in δ is Σ w·(g · across), the stiffness Σ w²·H.
         for ((g, k), w) in vertices.zip(weights) {
             slope += w * (g[0] * across[0] + g[1] * across[1]);
             stiffness += w * w * k;
         }
+        // No pixel depends on these vertices, as where other marks cover them.
         if stiffness <= 0.0 {
             return (0.0, 0.0);
         }
+        // The parabola slope·δ + ½ stiffness·δ² is lowest at δ = −slope / stiffness. The model holds near the path alone.
         let shift = (-slope / stiffness).clamp(-most, most);
         (shift, -(slope * shift + 0.5 * stiffness * shift * shift))
     }
@@ -148,9 +152,12 @@ impl<'a> Terrain<'a> {
         let line = Polyline(flattened(changed));
         // The first vertex is looked for from the first segment on.
         let (mut last, mut segment) = (0, 0);
+        // The other pieces stay as they are, and so does their error.
         let touched = self.pieces.iter().filter(|cut| cut.piece.depends_on(k));
         let vertices = touched.flat_map(|cut| cut.first..=cut.first + cut.steps);
         let growth = |i: usize| {
+            // Neighbouring vertices have neighbouring nearest places, so the search goes on from the last segment. A vertex that
+            // doesn't follow on the last one begins another run of pieces, and is compared with all segments.
             let (v, g) = (self.vertices[i], self.slopes[i]);
             let to;
             (to, segment) = if i == last || i == last + 1 {
@@ -161,6 +168,7 @@ impl<'a> Terrain<'a> {
             last = i;
             let shift = [to[0] - v[0], to[1] - v[1]];
             let length2 = shift[0] * shift[0] + shift[1] * shift[1];
+            // g · δ + ½ H|δ|²
             g[0] * shift[0] + g[1] * shift[1] + 0.5 * self.stiffness[i] * length2
         };
         -vertices.map(growth).sum::<f32>()

@@ -35,6 +35,7 @@ pub(in crate::fit) fn try_base(session: &mut Session<'_>) -> Result<Outcome> {
     if !session.base.is_some_and(may_stay) {
         return Ok(Outcome::Over);
     }
+    // Does the base meet a budget as it is?
     let file = session.writer.render(&session.drawing)?;
     let Some(stop) = budget::met(&session.config.budget, strokes, &file) else {
         let allows = |stroke| session.config.allows(stroke);
@@ -53,7 +54,7 @@ pub(in crate::fit) fn try_base(session: &mut Session<'_>) -> Result<Outcome> {
 /// Removes the strokes of least worth until `most` are left.
 fn keep_best(drawing: &mut Drawing, most: usize) {
     while drawing.len() > most {
-        // The worth is that of a stroke removed alone; with its neighbours gone, a stroke is worth more.
+        // Worth is measured by removing one stroke alone; with its neighbours gone, a stroke is worth more.
         let at_a_time = drawing.len().div_ceil(8);
         let least = edits::least(drawing, at_a_time.min(drawing.len() - most));
         drawing.apply(&least);
@@ -80,6 +81,7 @@ pub(in crate::fit) fn approach_fidelity(session: &mut Session<'_>) -> Outcome {
     let correction = session.recipe.correction;
     let now = (session.drawing.len(), psnr_db(session.drawing.mse()));
     let before = session.history.corrections.approached.replace(now);
+    // Two drawings give the slope; before there are two, doubling is worth a try.
     let missing_db = wanted_db - now.1;
     let leads_there = before.is_none_or(|before| {
         let slope = db_per_doubling(before, now);
@@ -103,6 +105,7 @@ fn is_within_reach(
     most: usize,
     correction: &Correction,
 ) -> bool {
+    // log₂ of the factor that closes the gap, at a slope that may get better by `hope`.
     let doublings = missing_db / (correction.hope * slope);
     strokes < correction.few_strokes || strokes as f64 * math::exp2(doublings) <= most as f64
 }
@@ -118,19 +121,23 @@ pub(in crate::fit) fn meet_fidelity(session: &mut Session<'_>) -> Outcome {
     let corrections = &mut session.history.corrections;
     corrections.measure(strokes, wanted_db, &correction);
     let missing_db = wanted_db - corrections.last_db;
+    // 1. Is the fidelity met, without much more than asked for?
     let is_met = (0.0..=correction.excess_db).contains(&-missing_db);
     // The limit on bytes has taken away what more strokes would add; or there may not be as many as it takes.
     let is_full = missing_db > 0.0 && corrections.shortened;
+    // 2. Has the search used its trials, or its time?
     let is_last = corrections.count >= correction.count || is_cut;
     let slope = corrections.db_per_doubling;
     let is_full =
         is_full || !is_within_reach(strokes, missing_db, slope, session.limit, &correction);
+    // 3. Otherwise take the next number from the measured slope, within the bracket of numbers that missed and reached it.
     let next = corrections.next(strokes, missing_db, &correction);
     corrections.count += 1;
     let outcome = match next {
         Some(next) if !(is_met || is_full || is_last) => resize(session, next),
         _ => Outcome::Over,
     };
+    // The search is over, with the fidelity or without it.
     if outcome == Outcome::Over {
         session.stop_at(wanted_db);
     }
@@ -158,7 +165,7 @@ fn resize(session: &mut Session<'_>, wanted: usize) -> Outcome {
 }
 
 impl Corrections {
-    /// Takes down that the last file has `strokes` strokes, and what these have gained since the file before.
+    /// Records that the last file has `strokes` strokes, and the fidelity that these have gained since the file before.
     fn measure(&mut self, strokes: usize, wanted_db: f64, correction: &Correction) {
         let now = (strokes, self.last_db);
         if let Some(before) = self.before.replace(now) {
@@ -170,6 +177,7 @@ impl Corrections {
             let measured = db_per_doubling(before, now);
             self.db_per_doubling = measured.clamp(correction.least_db_per_doubling(), usual);
         }
+        // Narrow the bracket: the most strokes that missed, and the fewest that reached it.
         if self.last_db < wanted_db {
             self.missed = self.missed.max(strokes);
         } else {
@@ -180,6 +188,7 @@ impl Corrections {
     /// The number of strokes to try after `strokes`, whose file misses `missing_db`: at most twice and at least half as many. `None` if
     /// the numbers that missed and reached the fidelity are too close together for another.
     fn next(&self, strokes: usize, missing_db: f64, correction: &Correction) -> Option<usize> {
+        // A secant step in the logarithm of the number, in which fidelity is about linear.
         let doublings = (missing_db / self.db_per_doubling).clamp(-1.0, 1.0);
         let wanted = (strokes as f64 * math::exp2(doublings)).round() as usize;
         // A file of more strokes may miss what one of fewer reached.
@@ -195,9 +204,11 @@ fn dispensable(drawing: &mut Drawing, least_db: f64) -> usize {
     let gradients = drawing.judge();
     let mut worth = gradients.worth;
     worth.sort_by(f32::total_cmp);
+    // The squared error at `least_db`, summed over pixels and channels, as worths are.
     let most = math::powf(10.0, -least_db / 10.0) * values;
     let mut error = gradients.loss * values;
     let is_spared = |worth: &&f32| {
+        // Worths are added as if strokes were independent. A stroke that does harm may go, too, but makes no room for others.
         error += f64::from(worth.max(0.0));
         error <= most
     };
@@ -215,7 +226,7 @@ fn db_per_doubling((few, few_db): (usize, f64), (many, many_db): (usize, f64)) -
 /// Bytes of a settled file in units of those before, at most; photographs 1.003, flat art 0.994 to 1.005.
 const GROWTH: f64 = 1.005;
 
-/// By how many bytes the drawing will exceed the budget when it has settled; 0 if it will not.
+/// Bytes by which the settled drawing will exceed the budget; 0 if it will not.
 pub(super) fn excess(session: &Session<'_>) -> usize {
     let Some(most) = session.config.budget.bytes else {
         return 0;
@@ -224,6 +235,7 @@ pub(super) fn excess(session: &Session<'_>) -> usize {
         0 => 1.0,
         _ => GROWTH,
     };
+    // The drawing is measured before settling, which may add a few bytes.
     let bytes = growth * session.writer.bytes(&session.drawing) as f64;
     (bytes as usize).saturating_sub(most)
 }
@@ -254,6 +266,7 @@ pub(in crate::fit) fn meet_bytes(session: &mut Session<'_>) -> Outcome {
     let is_cut = session.cut_by().is_some();
     let corrections = &mut session.history.corrections;
     let is_filled = bytes as f64 >= session.recipe.correction.filled * most as f64;
+    // Bytes are refilled once at most, since each refill takes another polish.
     let is_last = std::mem::replace(&mut corrections.refilled, true);
     let may_polish = session.config.polish && session.config.allows_points();
     if is_filled || is_last || is_cut || !may_polish || session.config.budget.psnr_db.is_some() {

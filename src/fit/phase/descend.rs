@@ -56,8 +56,8 @@ fn affordable(session: &Session<'_>) -> usize {
     })
 }
 
-/// Rearranges strokes between the steps of a joint course: it switches to full resolution after its coarse share, and at intervals it
-/// changes the points of strokes and relocates strokes.
+/// Rearranges strokes between the steps of a joint course: it switches to full resolution after its coarse share, and at
+/// intervals it changes the points of strokes and relocates strokes.
 fn rearrange(session: &mut Session<'_>, descent: &mut Descent, step: usize, done: f32) {
     let Some(Joint { limit, .. }) = descent.course.joint else {
         return;
@@ -65,6 +65,7 @@ fn rearrange(session: &mut Session<'_>, descent: &mut Descent, step: usize, done
     let (polish, relocation) = (session.recipe.polish, session.recipe.relocation);
     let drawing = &mut session.drawing;
     if done >= polish.coarse_share && drawing.is_thawed() && drawing.sharpen(0.0) {
+        // Moments of gradients at another resolution are of another size.
         descent.forget(drawing);
     }
     if step == 0 || !step.is_multiple_of(relocation.every) || done >= UNTIL {

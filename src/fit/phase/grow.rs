@@ -44,6 +44,7 @@ pub(in crate::fit) fn next_stage(session: &mut Session<'_>) -> Result<Outcome> {
     let Some(planned) = session.plan.stage(index, session.drawing.len()) else {
         return Ok(top_up(session));
     };
+    // A time limit may leave time for a part of the stage alone.
     let count = session.timer.affordable(planned.count);
     if count == 0 {
         return Ok(Outcome::Over);
@@ -84,6 +85,7 @@ impl OpenStage {
         if before < plan::FIRST * 4 {
             return true;
         }
+        // Stages differ in size, so the gain is compared by doublings of the strokes.
         let doublings = math::log2(strokes.max(1) as f64 / before.max(1) as f64);
         psnr_db - before_db >= LEAST_SLOPE_DB * doublings
     }
@@ -135,6 +137,7 @@ fn seed(session: &mut Session<'_>, planned: PlannedStage) {
         scale,
     } = planned;
     let before = timer.searching(count, || {
+        // Candidates are found in the residual of all that is frozen, at the resolution of their own scale.
         drawing.sharpen(drawing.bounds.drawable(scale));
         drawing.freeze();
         let before = (drawing.len(), psnr_db(drawing.mse()));
@@ -157,6 +160,7 @@ fn seed(session: &mut Session<'_>, planned: PlannedStage) {
 /// Fits the strokes of the stage on the frozen ones, and keeps those that pay.
 pub(in crate::fit) fn stage(session: &mut Session<'_>, purpose: Purpose) -> Result<Outcome> {
     let scale = session.history.stage.map_or(1.0, |s| s.planned.scale);
+    // A stage's strokes are fitted alone, on the canvas of the frozen ones, which is rendered once.
     let stages = session.recipe.stages;
     let course = Course {
         iterations: stages.iterations,
@@ -164,6 +168,7 @@ pub(in crate::fit) fn stage(session: &mut Session<'_>, purpose: Purpose) -> Resu
         of: stages.iterations,
         rates: stages.rates,
         pace: 1.0,
+        // A soft edge gives a stroke a slope from the residual as far away as the edge is wide.
         softness: Some(scale.min(SOFTEST)),
         until: f32::INFINITY,
         joint: None,

@@ -78,6 +78,7 @@ pub(super) fn run(session: &mut Session<'_>, limit: usize, polish: Polish) -> Re
     let mut descent = session.descent(course);
     descend(session, &mut descent, None)?;
     if session.config.allows_points() && session.drawing.counters.traced_until > 0 {
+        // Tracing may have set points that no longer pay, now that the strokes are where they belong.
         let prunings = recipe.points.prunings;
         points::prune(&mut session.drawing, session.price, prunings);
     }
@@ -110,6 +111,7 @@ impl Shares {
         let all = polish + palette + stack + pens;
         Self {
             polish: (polish / all) as f32,
+            // Ends, not lengths: each part begins where the one before it ends.
             palette: ((polish + palette) / all) as f32,
             stack: ((polish + palette + stack) / all) as f32,
         }

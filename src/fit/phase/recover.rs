@@ -4,7 +4,7 @@
 //! byte, which is one for the whole picture, letters go while strokes find their places, and nothing brings them back. People see
 //! what is small and stands alone, though: see [`Details`].
 //!
-//! They are looked for in what resvg makes of the file. An area that has become too thin has no inside there, though our own
+//! They are looked for in the render of the file by resvg. An area that has become too thin has no inside there, though our own
 //! edges, which are soft, show it.
 
 use super::trace;
@@ -16,9 +16,9 @@ use crate::metrics::Details;
 use crate::render::Canvas;
 use crate::scene::Marks;
 
-/// Least contrast of what is recovered. What people see begins here, too: see `details_kept`.
+/// Least contrast of recovered details. `details_kept` counts details from this contrast on, too.
 const CONTRAST: f32 = 10.0 / 255.0;
-/// By how much that contrast has to be larger, levels per level of doubt.
+/// Increase of that contrast, levels per level of doubt.
 const CONTRAST_OF_DOUBT: f32 = 8.0;
 /// Rows and columns beside details that are traced, and weighed, too. A guess.
 const REACH: usize = 4;
@@ -33,18 +33,18 @@ pub(in crate::fit) fn recover(session: &mut Session<'_>) -> Result<Outcome> {
     if is_over {
         return Ok(Outcome::Over);
     }
-    // Where are they?
+    // 1. Find the lost details in the file's render.
     session.drawing.sharpen(0.0);
     let drawn = session.render_file()?.drawn;
     let lost = lost(session, &drawn);
     if !lost.contains(&true) {
         return Ok(Outcome::Over);
     }
-    // Their price is one of what is seen there.
+    // 2. Let errors count more there. The price of a stroke is then measured in weighted errors.
     let places = (0_u32..).zip(&lost).filter(|(_, is_lost)| **is_lost);
     session.history.lost = places.map(|(place, _)| place).collect();
     session.weigh_lost();
-    // Elsewhere nothing is to be traced.
+    // 3. Trace there alone: elsewhere the canvas gets the picture itself, so that the residual is 0.
     let surfaces = session.drawing.surfaces.iter().zip(drawn);
     let canvases: Vec<Canvas> = surfaces
         .map(|(surface, drawn)| inside(drawn, surface.picture(), &lost))
@@ -74,7 +74,7 @@ fn lost(session: &Session<'_>, drawn: &[Image]) -> Vec<bool> {
     lost
 }
 
-/// The picture that was `drawn` where details are lost, and the one that is meant elsewhere.
+/// The picture that was `drawn` where details are lost, and the target elsewhere.
 fn inside(drawn: Image, meant: &Image, lost: &[bool]) -> Canvas {
     let mut planes = drawn.into_planes();
     for (plane, meant) in planes.iter_mut().zip(meant.planes()) {

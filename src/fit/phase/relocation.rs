@@ -41,7 +41,7 @@ pub(in crate::fit) fn relocate(
         let relocation = recipe.relocation;
         let room = limit.saturating_sub(drawing.len());
         let scale = drawing.spacing(drawing.len()) * recipe.stages.scale * relocation.scale;
-        // What is not worth its price goes.
+        // Strokes that are not worth their price go.
         let price = price.in_drawing(drawing);
         let mut edits = drop_marks(drawing, |mark| price.least_worth(mark));
         // Candidates whose gain pays.
@@ -55,6 +55,7 @@ pub(in crate::fit) fn relocate(
         edits.extend(paying.map(|c| {
             let stroke = Strokes::from_iter([&c.stroke]).get(0).to_mark();
             Edit {
+                // A candidate isn't fitted yet. The factor makes its gain comparable with the worth of fitted strokes.
                 gain: c.gain * relocation.gain,
                 growth: 1,
                 ..Edit::replacing(TOP, vec![stroke], 0.0)
@@ -65,6 +66,7 @@ pub(in crate::fit) fn relocate(
             most: usize::MAX,
             swaps: usize::MAX,
         };
+        // Not measured by trials: the descent that follows fits what was added.
         drawing.apply(&choose(edits, room))
     })
 }

@@ -46,6 +46,7 @@ use crate::svg::Group;
 pub(in crate::fit) fn restrict(session: &mut Session<'_>) -> Result<Outcome> {
     session.drawing.thaw();
     session.drawing.sharpen(0.0);
+    // Colours come before widths: strokes of a palette share a pen only if they have one colour.
     if let Some(mut palette) = palette::run(session)?
         && session.config.file.group == Group::Color
     {
@@ -57,6 +58,7 @@ pub(in crate::fit) fn restrict(session: &mut Session<'_>) -> Result<Outcome> {
     if session.config.colors != Colors::Free {
         remove_hidden(&mut session.drawing);
     }
+    // The last changes of single marks; from here on shared numbers are tied.
     let inks = inks::run(session);
     forms::run(session)?;
     let mut ties = share_within_bytes(session);
@@ -77,7 +79,7 @@ fn remove_hidden(drawing: &mut Drawing) {
     drawing.counters.hidden += tried.made.len();
 }
 
-/// About how many pixels a stroke covers; of an area, those of its bounding box.
+/// About how many pixels a stroke covers. An area counts with its bounding box.
 fn pixels(stroke: StrokeRef<'_>) -> f32 {
     if stroke.is_area() {
         let side = |axis: usize| {
@@ -87,6 +89,7 @@ fn pixels(stroke: StrokeRef<'_>) -> f32 {
         return side(0) * side(1);
     }
     let radius = stroke.radius();
+    // A capsule: a rectangle of 2r × length, and two half discs.
     radius * (2.0 * stroke.length() + PI * radius)
 }
 
@@ -94,6 +97,7 @@ fn pixels(stroke: StrokeRef<'_>) -> f32 {
 fn share_within_bytes(session: &mut Session<'_>) -> Ties {
     session.history.corrections.shortened = false;
     session.drawing.join_stages(session.layers_to_join());
+    // Bytes before sharing: their ratio lets the next polish plan with what sharing saves.
     let before = session.writer.bytes(&session.drawing).max(1);
     loop {
         let unshared = session.drawing.memento();
@@ -106,7 +110,7 @@ fn share_within_bytes(session: &mut Session<'_>) -> Ties {
         if excess == 0 || session.drawing.free().is_empty() {
             return ties;
         }
-        // Sharing saves bytes only if it is done again, on what is left.
+        // Sharing saves bytes only if it is done again, on the strokes that are left.
         session.drawing.revert(unshared);
         count::shorten(session, excess);
     }

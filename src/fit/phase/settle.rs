@@ -30,7 +30,7 @@ const LEAST_DB: f64 = 0.02;
 /// resvg and 40.3, 39.7, 39.0 in Chromium; 0, 0.7 for icons: 42.1, 43.1 and 40.2, 40.9. Exact areas as a second judge
 /// draw as 0.35 does.
 const OFFSET_TAKEN: f32 = 0.5;
-/// Step sizes, in units of those of the polish. Half, twice: −0.03, +0.02 dB.
+/// Step sizes, in units of the polish's. Half, twice: −0.03, +0.02 dB.
 const PACE: f32 = 0.02;
 /// Step sizes of the points of areas, px, before that factor. A guess: about as far as traced strokes move.
 const AREA_RATE: f32 = 0.6;
@@ -62,23 +62,26 @@ fn run(session: &mut Session<'_>) -> Result<()> {
         return Ok(());
     }
     let rates = session.restricted_rates();
+    // Rounds may make the file worse, so the best one is kept with the drawing that it was written from.
     let mut best = (file.clone(), session.drawing.memento());
     let (mut round, mut pace) = (0, 1.0);
     while allows_round(session, round) && session.progress.tell(&session.drawing, file.mse()) {
         round += 1;
+        // 1. The offset of the file's render from our own, as of this round.
         let targets = targets(&mut session.drawing, &file);
         let aim = Aim {
             targets: &targets,
             mse: file.mse(),
         };
         let mut descent = session.descent(course(rates, pace));
+        // 2. A few steps towards the corrected target. What strokes share, and their forms, stay.
         descent.ties.clone_from(&session.history.ties);
         descent.held = Held::of(session.drawing.free(), session.drawing.formed());
         descend(session, &mut descent, Some(aim))?;
         if session.progress.is_halted() {
             break;
         }
-        // Look at the file that this has led to.
+        // 3. Measure the file that the steps led to.
         let before = file.mse();
         file = session.render_file()?;
         if file.mse() < best.0.mse() {
@@ -87,6 +90,7 @@ fn run(session: &mut Session<'_>) -> Result<()> {
         if (psnr_db(file.mse()) - psnr_db(before)).abs() < LEAST_DB {
             break;
         }
+        // Each round moves edges less, as the correction holds for edges that stay.
         pace *= NEXT_PACE;
     }
     let (file, memento): (RenderedFile, Memento) = best;
@@ -106,6 +110,7 @@ fn with_fewer_decimals(session: &mut Session<'_>, file: RenderedFile) -> Result<
 
 /// The targets of a round, one per surface: the picture less a part of the offset of resvg's render from our own.
 fn targets(drawing: &mut Drawing, file: &RenderedFile) -> Vec<Target> {
+    // Our own render of the rounded scene, so that rounding to the file's decimals is no part of the offset.
     let own = drawing.soft(&file.rounded.scene);
     let renders = file.drawn.iter().zip(&own);
     let targets = drawing.surfaces.iter().zip(renders);
@@ -125,6 +130,7 @@ fn corrected(picture: &Image, drawn: &Image, own: &Image) -> Image {
         let offsets = drawn.planes()[c].iter().zip(&own.planes()[c]);
         let pixels = picture.planes()[c].iter().zip(offsets);
         pixels
+            // Where our own render meets this target, the file's render is the picture plus the rest of the offset.
             .map(|(pixel, (drawn, own))| pixel - OFFSET_TAKEN * (drawn - own))
             .collect()
     });
@@ -147,6 +153,7 @@ fn course(rates: Rates, pace: f32) -> Course {
         before: 0,
         of: SETTLING_STEPS,
         rates: Rates {
+            // Geometry slows down from round to round; colours don't, as they correct the offset itself.
             position: pace * rates.position,
             area: pace * AREA_RATE,
             radius: pace * rates.radius,

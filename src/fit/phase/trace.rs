@@ -26,7 +26,7 @@ const SCALE: f32 = 2.0;
 
 /// Adds strokes along the lines of the residual, on top of all others.
 pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> {
-    // Traced until nothing pays, or the fidelity is near; once if what is lost is traced later.
+    // Trace until nothing pays, or the fidelity is near; once if lost details are traced later.
     let rounds = match session.recovers() {
         true => 1,
         false => ROUNDS,
@@ -50,7 +50,7 @@ pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> 
     if add(session, traced) {
         return Ok(Outcome::Seeded(Purpose::Trace));
     }
-    // Stages go on with what is left.
+    // Stages go on with the strokes that are left to plan.
     session.history.stage = None;
     session.plan_rest();
     Ok(Outcome::Over)
@@ -85,6 +85,7 @@ pub(super) fn paying(
     };
     let surfaces = surfaces.iter().zip(canvases);
     let residuals: Vec<_> = surfaces.map(|(s, canvas)| s.residual_of(canvas)).collect();
+    // Areas and strokes compete by their bytes alone; whether each is worth its price is asked below.
     let by_bytes = price.of_bytes_alone();
     let mut traced = trace(&residuals, tracing, marks, |mark| by_bytes.least_gain(mark));
     if config.opaque {
@@ -107,6 +108,7 @@ fn make_opaque(mark: &mut Mark) {
         Mark::Stroke(stroke) => (&mut stroke.color, &mut stroke.opacity),
         Mark::Area(area) => (&mut area.color, &mut area.opacity),
     };
+    // On black it looks like αc, on white like αc + 1 − α: the mean is ½ + α(c − ½).
     *color = color.map(|c| 0.5 + *opacity * (c - 0.5));
     *opacity = 1.0;
 }
@@ -115,7 +117,7 @@ fn make_opaque(mark: &mut Mark) {
 /// whether there are any.
 pub(super) fn add(session: &mut Session<'_>, traced: Vec<Traced>) -> bool {
     let index = session.history.records.len();
-    // Bytes plan for strokes, of which an area may take the place of many; what is too much is shed.
+    // A budget of bytes plans for strokes, and an area may take the place of many. Excess is shed later.
     let is_by_bytes = session.config.budget.bytes.is_some()
         && session.config.budget.strokes.is_none()
         && traced.iter().any(|traced| traced.mark.as_area().is_some());
@@ -151,9 +153,11 @@ pub(super) fn add(session: &mut Session<'_>, traced: Vec<Traced>) -> bool {
 /// The strokes of the `count` largest gains, in the order that they have.
 fn most_gaining(traced: Vec<Traced>, count: usize) -> Vec<Mark> {
     let mut order: Vec<usize> = (0..traced.len()).collect();
+    // Equal gains keep their order, so that the choice is the same on every machine.
     order.sort_by(|&i, &k| traced[k].gain.total_cmp(&traced[i].gain).then(i.cmp(&k)));
     let mut keep = vec![false; traced.len()];
     order.iter().take(count).for_each(|&i| keep[i] = true);
+    // In painting order again: marks above others have to stay above them.
     let kept = traced.into_iter().zip(keep).filter(|(_, keep)| *keep);
     kept.map(|(traced, _)| traced.mark).collect()
 }

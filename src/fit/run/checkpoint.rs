@@ -142,6 +142,7 @@ impl Checkpoint {
         let start = Instant::now();
         self.trouble = self.write(fingerprint, state).err();
         let end = Instant::now();
+        // A slow disk lengthens the interval, so that writes never take more than their share of the time.
         self.due = end + self.every.max((end - start) * MAX_SHARE);
     }
 

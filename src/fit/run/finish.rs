@@ -103,6 +103,7 @@ impl Drawn {
             files.is_some_and(|(a, b)| a.mse() <= b.mse()) && a.fit.scene.len() <= b.fit.scene.len()
         };
         match cost(&self).zip(cost(&other)) {
+            // Fewer marks and less error win at any price of bytes.
             _ if is_better(&self, &other) => self,
             Some((own, others)) if others < own => other,
             Some(_) => self,
@@ -114,6 +115,7 @@ impl Drawn {
 /// The result of the fit: the best file or, if no file was looked at and none is to be `compared`, the drawing as it is.
 pub(in crate::fit) fn finish(mut session: Session<'_>, compared: bool) -> Result<Drawn> {
     let file = match session.best.take() {
+        // A drawing that competes needs the fidelity and the bytes of its file.
         None if compared => Some(session.writer.render(&session.drawing)?),
         best => best,
     };
@@ -157,6 +159,7 @@ fn records(session: &mut Session<'_>, rounded: &Quantized) -> Vec<StageRecord> {
         Some(StageRecord {
             index: number + 1,
             strokes: stage.marks.len(),
+            // Rounding may have dropped all strokes of a stage, so layers find their records by their origins.
             layer_psnr_db: psnr_db(mse),
             ..*session.history.records.get(origin)?
         })

@@ -14,7 +14,7 @@ use crate::metrics::psnr_db;
 /// The history of a fit, apart from the drawing.
 #[derive(Debug, Serialize, Deserialize)]
 pub(in crate::fit) struct History {
-    /// One record per stage, those of the base included.
+    /// One record per stage, the base's stages included.
     pub(in crate::fit) records: Vec<StageRecord>,
     /// Layers and strokes that were traced.
     pub(in crate::fit) traced: [usize; 2],
@@ -65,7 +65,7 @@ pub(in crate::fit) struct Corrections {
     pub(in crate::fit) shortened: bool,
     /// Fidelity gained by doubling the strokes, dB.
     pub(in crate::fit) db_per_doubling: f64,
-    /// Bytes of the drawing once strokes share widths and colours, in units of those before.
+    /// Bytes of the drawing once strokes share widths and colours, in units of the bytes before.
     pub(in crate::fit) restricted: f32,
     /// True if bytes that were left have been used.
     pub(in crate::fit) refilled: bool,
@@ -107,6 +107,7 @@ impl History {
         };
         let psnr_db = psnr_db(mse);
         match self.records.get_mut(planned.index) {
+            // A stage that is topped up, or polished once more, keeps its one record.
             Some(topped_up) => {
                 topped_up.iterations += iterations;
                 topped_up.psnr_db = psnr_db;
@@ -126,6 +127,7 @@ impl History {
     pub(in crate::fit) fn stop_at(&mut self, wanted_db: f64, best_db: f64) {
         self.stop = match self.stop {
             _ if best_db >= wanted_db => Stop::Psnr,
+            // The stages ended at a fidelity that the best file doesn't have.
             Stop::Psnr => Stop::Converged,
             other => other,
         };

@@ -21,7 +21,7 @@ pub struct Progress<'a> {
     pub stage: usize,
     /// Number of planned stages; 0 if that depends on how much each of them gains.
     pub stages: usize,
-    /// True if the strokes are being polished: those of all stages or, in a progressive drawing, those of this one.
+    /// True if strokes are being polished: all strokes or, in a progressive drawing, the strokes of this stage.
     pub polishing: bool,
     /// True if the drawing takes its last steps, against renders of its file.
     pub settling: bool,
@@ -41,7 +41,7 @@ impl Progress<'_> {
     }
 }
 
-/// Is told of progress, and may stop the fit. A stopped fit is no error: it returns the drawing as far as it has come.
+/// Gets progress, and may stop the fit. A stopped fit is no error: it returns the drawing as far as it has come.
 pub trait Observer {
     /// Called after every iteration, always on the same thread; it should return soon.
     fn observe(&mut self, progress: &Progress<'_>) -> ControlFlow<()>;
@@ -193,12 +193,14 @@ impl<'a> Tracker<'a> {
     ) {
         let position = &mut self.position;
         position.done += strokes as f64;
+        // The plan grows if more work turns out to come; it shrinks only if the rest is known.
         let least = position.done + rest as f64;
         self.planned = match is_known {
             true => least,
             false => self.planned.max(least),
         };
         let done = (position.done / self.planned).max(f64::from(time_used));
+        // A plan that grows would move the fraction back; it stays instead.
         position.fraction = done.clamp(position.fraction, 1.0);
     }
 

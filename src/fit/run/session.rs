@@ -35,7 +35,7 @@ use crate::svg::Form;
 /// Weight of errors near lost details. 5, 8, 16: a label of a map correlates by 0.957, 0.970, 0.980 with the picture; borders of 1 px
 /// take 8.8, 10.9, 13.2 kB, 75, 82, 84 % of them kept (1, 49 % in 5.6 kB).
 const LOST_WEIGHT: f32 = 8.0;
-/// Iterations of the polish that follows the recovery of details, in units of those of the first one. A guess.
+/// Iterations of the polish that follows the recovery of details, in units of the first polish's. A guess.
 pub(in crate::fit) const RECOVERY_SHARE: f64 = 0.2;
 
 /// A fit under way: first the fields that are fixed, then those that change.
@@ -84,7 +84,7 @@ pub(in crate::fit) type Task<'a> = (
     Option<[u32; 2]>,
 );
 
-/// Who is told of a fit and may stop it, and how long the fit may then go on.
+/// The observer and the token of a fit, and how long the fit may go on once it is stopped.
 pub(in crate::fit) struct Watch<'a> {
     pub(in crate::fit) observer: &'a mut (dyn Observer + Send),
     pub(in crate::fit) token: CancelToken,
@@ -121,7 +121,7 @@ impl<'a> Session<'a> {
         let pens = config.pens.as_ref();
         let radii = pens.map_or(Ok(Vec::new()), |pens| pens.radii(page_width, picture))?;
         let widest = radii.last().copied().unwrap_or(f32::INFINITY);
-        // The picture at the resolution of the first stage, and what lies behind all strokes.
+        // The picture at the resolution of the first stage, and the backdrop of all strokes.
         let coarsest = coarsest(&plan, before, config, base).min(widest);
         let Prepared {
             target,
@@ -191,7 +191,7 @@ impl<'a> Session<'a> {
         })
     }
 
-    /// True if small things that get lost are traced again. Those of a base were.
+    /// True if lost details are traced again. A base has been through that.
     pub(in crate::fit) fn recovers(&self) -> bool {
         self.base.is_none() && self.config.recovers()
     }
@@ -205,6 +205,7 @@ impl<'a> Session<'a> {
                 *weight = LOST_WEIGHT;
             }
         }
+        // On top of the weights so far, by multiplication.
         let near = Focus::of_weights(size, weights);
         self.weights = Some(match &self.weights {
             Some(weights) => weights.times(&near),
@@ -241,6 +242,7 @@ impl<'a> Session<'a> {
     pub(in crate::fit) fn advance(&mut self, left: usize, mse: f64) -> bool {
         self.timer.step(self.drawing.len());
         let strokes = self.drawing.free().len();
+        // Work is counted in iterations of one stroke: what is left of this descent, and the polishes still to come.
         let all = (self.drawing.len() * self.recipe.polish.iterations) as f64;
         let recovery = match self.recovers() {
             true => RECOVERY_SHARE,
@@ -277,6 +279,7 @@ impl<'a> Session<'a> {
         };
         let elapsed = self.timer.elapsed();
         let budget = self.config.budget;
+        // A stop doesn't extend a time limit: whichever ends first counts.
         let left = budget.time.map(|limit| limit.saturating_sub(elapsed));
         let limit = left.map_or(grace, |left| left.min(grace));
         let forecast = forecast(limit, self.config, &self.recipe, &self.drawing);
@@ -342,6 +345,7 @@ impl<'a> Session<'a> {
         };
         let kept = Before::of(self.base).layers.max(1);
         let more = self.drawing.stage_sizes().len().saturating_sub(kept);
+        // Layers show how the drawing came about. They stay as long as they take a small part of the bytes.
         let bytes = (more * budget::LAYER_BYTES) as f64;
         if bytes > self.recipe.correction.layers_share * most as f64 {
             more
@@ -377,11 +381,13 @@ impl<'a> Session<'a> {
             checkpoint::fingerprint(&self.target, self.config, self.base, self.focus.as_ref());
         match checkpoint.load::<State>(fingerprint)? {
             Some((phase, history, drawing, position, elapsed, descent)) => {
+                // The best file isn't in the checkpoint: it is rendered again from its drawing.
                 if let Some(best) = history.best.clone() {
                     self.drawing.restore(best);
                     self.best = Some(self.writer.render(&self.drawing)?);
                 }
                 (self.phase, self.history, self.resumed) = (phase, history, descent);
+                // Weights change with nothing frozen, so they come before the drawing, which may have frozen strokes.
                 if !self.history.lost.is_empty() {
                     self.weigh_lost();
                 }
@@ -444,8 +450,8 @@ impl<'a> Session<'a> {
     }
 }
 
-/// The background and the ground of a new drawing. A ground, with `auto`, has any colours and opacities, so that a drawing of few colours or of given pens has none, and neither has one of opaque strokes that is
-/// transparent.
+/// The background and the ground of a new drawing. A ground, with `auto`, has any colours and opacities. So a drawing of few
+/// colours or of given pens has none, nor has a transparent drawing of opaque strokes.
 fn choose_background(
     picture: &Image,
     config: &Config,

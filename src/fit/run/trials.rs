@@ -1,4 +1,4 @@
-//! The observer of drawings that compete: it is told of all of them, one after the other, as of one piece of work.
+//! The observer of drawings that compete: it sees all of them, one after the other, as one piece of work.
 
 use std::ops::{ControlFlow, Range};
 
@@ -8,7 +8,7 @@ use super::progress::{CancelToken, Observer, Progress};
 pub(in crate::fit) struct Trials<'a> {
     observer: &'a mut (dyn Observer + Send),
     token: CancelToken,
-    /// True if the last drawing may be finished after a stop, and is told of.
+    /// True if the last drawing may be finished after a stop, and reports its progress.
     has_grace: bool,
     /// Drawings before the last one that are still to come, at most.
     left: usize,
@@ -41,6 +41,8 @@ impl<'a> Trials<'a> {
     /// The observer of the next drawing that is tried.
     pub(in crate::fit) fn next(&mut self) -> &mut Self {
         let from = self.part.end;
+        // Each drawing gets an equal part of the work that is left. There may be fewer drawings than planned, so that the last one
+        // takes all of the rest.
         self.part = from..from + (1.0 - from) / (self.left + 1) as f64;
         self.left = self.left.saturating_sub(1);
         self.is_trial = true;
@@ -68,7 +70,7 @@ impl<'a> Trials<'a> {
 
 impl Observer for Trials<'_> {
     fn observe(&mut self, progress: &Progress<'_>) -> ControlFlow<()> {
-        // Whoever has said stop is not asked again.
+        // Don't poll an observer that has stopped the fit.
         if self.stopped && !self.has_grace {
             return ControlFlow::Break(());
         }

@@ -33,6 +33,7 @@ fn halve(out: &mut Vec<Vertex>, curve: [Place; 3], tolerance: f64, depth: u32) {
         return;
     }
     let center = incenter(curve);
+    // The first arc starts in the curve's direction, from a to c, and ends in the incentre.
     let first = bulge(from(a, c), from(a, center));
     // The second arc, seen from its end, turns the other way.
     let second = -bulge(from(b, c), from(b, center));
@@ -55,6 +56,7 @@ fn halve(out: &mut Vec<Vertex>, curve: [Place; 3], tolerance: f64, depth: u32) {
         return;
     }
     let half = |p: Place, q: Place| [0, 1].map(|k| f64::midpoint(p[k], q[k]));
+    // De Casteljau at ½: both halves are quadratic curves again.
     halve(out, [a, half(a, c), middle], tolerance, depth - 1);
     halve(out, [middle, half(c, b), b], tolerance, depth - 1);
 }

@@ -44,7 +44,7 @@ pub(super) struct Page<'d> {
     pub(super) dom: &'d Dom<'d>,
     pub(super) sheets: &'d [Sheet<'d>],
     pub(super) elements: Vec<Element<'d>>,
-    /// Elements that are deeper than [`LIBXML2_LEVELS`], those of other namespaces included.
+    /// Elements that are deeper than [`LIBXML2_LEVELS`], elements of other namespaces included.
     pub(super) deep: Vec<Node<'d>>,
 }
 
@@ -57,6 +57,8 @@ impl<'d> Page<'d> {
             elements: Vec::new(),
             deep: Vec::new(),
         };
+        // A stack of open elements, each with its end and the stroke that its content inherits. Nodes come in the order of the
+        // text, so elements that end before a node are closed.
         let mut open: Vec<(usize, Stroke)> = Vec::new();
         for node in dom.nodes().filter(Node::is_element) {
             while open.pop_if(|(end, _)| *end <= node.bytes().start).is_some() {}

@@ -77,7 +77,7 @@ impl Search {
         })
     }
 
-    /// The squared error of what is not explained, in shares, summed over pixels.
+    /// The squared error of the shares that no cast explains yet, summed over pixels.
     pub(super) fn error(&self) -> f32 {
         let pixels = (self.side * self.side) as f32;
         pixels
@@ -95,6 +95,7 @@ impl Search {
         let mut blurs: Vec<f32> = BLURS.iter().map(|blur| blur / self.side as f32).collect();
         // Coarse ones first, and then ever finer ones beside the best.
         for _ in 0..REFINEMENTS {
+            // Each blur is tried from the best shift so far, as the shift hardly depends on the blur.
             for blur in blurs {
                 let soft = blurred(self.caster.clone(), blur);
                 let from = best.as_ref().map_or([0.0; 2], |(_, cast)| cast.shift);
@@ -123,7 +124,7 @@ impl Search {
         })
     }
 
-    /// Takes away what a cast explains.
+    /// Subtracts the shares that a cast explains.
     pub(super) fn take(&mut self, cast: &Cast) {
         let px = self.side as f32;
         let soft = blurred(self.caster.clone(), cast.blur / px);
@@ -143,8 +144,10 @@ impl Search {
                 own += covered * covered;
                 all += share * share;
             }
+            // For a given shape the error Σ (share − α·covered)² is least at α = Σ share·covered / Σ covered².
             let opacity = (both / own.max(f32::MIN_POSITIVE)).clamp(0.0, 1.0);
             (
+                // all − 2α·both + α²·own
                 f64::from(all - opacity * (2.0 * both - opacity * own)),
                 opacity,
             )

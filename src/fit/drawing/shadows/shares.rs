@@ -1,25 +1,25 @@
-//! The shares of a colour that lies softly on the page, and what they surround.
+//! The shares of a colour that lies softly on the page, and the caster that they surround.
 
 use crate::image::{Image, beside};
 use crate::render::{self, Plane};
 use crate::scene::Rgb;
 
 // Colours are in 0..1.
-/// Largest difference from the page of what is the page.
+/// Pixels at most this far from the page's colour are page.
 const PAGE: f32 = 1.5 / 255.0;
-/// Largest second difference of what is soft.
+/// Largest second difference of soft pixels.
 const BEND: f32 = 10.0 / 255.0;
-/// Largest difference of what is soft from a mixture of the page with one colour.
+/// Largest difference of soft pixels from a mixture of the page with one colour.
 const NEAR: f32 = 4.0 / 255.0;
 /// The least share of the pixels that is soft.
 const LEAST_SHARE: f32 = 0.002;
-/// Number of times that the colour is found, each time by what is near the last one.
+/// Number of times that the colour is found, each time from the pixels near the last one.
 const ROUNDS: usize = 3;
-/// Fewest pixels of what casts a shadow.
+/// Fewest pixels of a caster.
 const LEAST_PIXELS: usize = 60;
 /// The least share of its outline that a shadow is seen along.
 const SURROUNDED: f32 = 0.3;
-/// Blur of the pixels of what casts a shadow before its outline is traced, px: as they are, they have stairs.
+/// Blur of the caster's pixels before its outline is traced, px: unblurred pixels give stairs.
 const OUTLINE_BLUR: f32 = 1.0;
 
 /// Premultiplied colour and opacity.
@@ -34,7 +34,7 @@ pub(super) struct Shares {
     pub(super) contrast2: f32,
     /// For each pixel the share of the colour, where it is seen.
     pub(super) seen: Vec<Option<f32>>,
-    /// The share of each pixel that belongs to what casts the shadow, blurred a little, because pixels have stairs.
+    /// The share of each pixel that belongs to the caster, blurred a little, because pixels have stairs.
     pub(super) caster: Plane,
 }
 
@@ -51,14 +51,14 @@ impl Shares {
     /// The shares of a picture on a page of this colour, or on none, if there are enough of them around something.
     pub(super) fn of(picture: &Image, page: Option<Rgb>) -> Option<Self> {
         let page = page.map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
-        // What is page, and what is soft beside it.
+        // 1. The page, and soft pixels connected with it.
         let values = Values(picture);
         let mut kinds = kinds(&values, page);
         let soft = kinds.iter().filter(|kind| **kind == Kind::Soft).count();
         if (soft as f32) < LEAST_SHARE * kinds.len() as f32 {
             return None;
         }
-        // The one colour that it mixes the page with; what is of another is not soft.
+        // 2. The one colour that soft pixels mix the page with. Pixels off that mixture are not soft.
         let ink = ink(&values, &kinds, page)?;
         let along = |i: usize| share(values.at(i), page, ink);
         for (i, kind) in kinds.iter_mut().enumerate() {
@@ -66,7 +66,7 @@ impl Shares {
                 *kind = Kind::Other;
             }
         }
-        // The rest, where soft pixels surround it.
+        // 3. The caster: parts of the rest that soft pixels surround.
         let seen = |(i, kind): (usize, &Kind)| match kind {
             Kind::Page => Some(0.0),
             Kind::Soft => Some(along(i).0),
@@ -127,13 +127,14 @@ fn away(a: Value, b: Value) -> f32 {
     (0..4).map(|c| (a[c] - b[c]).abs()).fold(0.0, f32::max)
 }
 
-/// Floods the picture from its page through what is smooth.
+/// Floods the picture from its page through smooth pixels.
 fn kinds(values: &Values<'_>, page: Value) -> Vec<Kind> {
     let kind = |i: usize| match away(values.at(i), page) <= PAGE {
         true => Kind::Page,
         false => Kind::Other,
     };
     let mut kinds: Vec<Kind> = (0..values.len()).map(kind).collect();
+    // A flood through smooth pixels: a shadow is connected with the page, and an edge stops it.
     let mut open: Vec<usize> = (0..kinds.len())
         .filter(|&i| kinds[i] == Kind::Page)
         .collect();
@@ -164,10 +165,11 @@ fn ink(values: &Values<'_>, kinds: &[Kind], page: Value) -> Option<Value> {
     ink
 }
 
-/// The direction that differences have on the whole: they are summed by their size, those of the other side turned around.
+/// The direction that differences have on the whole: their sum weighted by size, with opposite ones turned around.
 fn direction(differences: impl Iterator<Item = Value>) -> Option<Value> {
     let differences: Vec<Value> = differences.collect();
     let mut axis = [0.0_f32; 4];
+    // The first sum has no axis yet and takes all signs as they are; the second turns differences against the axis around.
     for _ in 0..2 {
         let mut sum = [0.0_f64; 4];
         for difference in &differences {
@@ -212,16 +214,17 @@ fn share(value: Value, page: Value, ink: Value) -> (f32, f32) {
         whole += full * full;
     }
     let share = along / whole.max(f32::MIN_POSITIVE);
+    // The share is the projection of (value − page) onto (ink − page); the rest is the distance from the mixture.
     let mixed = [0, 1, 2, 3].map(|c| page[c] + share * (ink[c] - page[c]));
     (share, away(value, mixed))
 }
 
-/// The shares of the pixels of what is neither page nor soft, and surrounded by what is soft for the most part.
+/// The coverage of pixels by the caster: parts that are neither page nor soft, and that soft pixels surround for the most part.
 fn caster(values: &Values<'_>, kinds: &[Kind]) -> Vec<f32> {
     let (width, count) = (values.width(), kinds.len());
     let mut is_cast = vec![false; count];
     let mut is_seen: Vec<bool> = kinds.iter().map(|kind| *kind != Kind::Other).collect();
-    // Each connected part, with the number of its borders, and of those to what is soft.
+    // Each connected part, with the number of its borders, and of its borders to soft pixels.
     for start in 0..count {
         if is_seen[start] {
             continue;
@@ -265,6 +268,7 @@ fn eroded(mask: &[bool], width: usize) -> Vec<bool> {
 fn covered(values: &Values<'_>, trimmed: &[bool], inner: &[bool], i: usize) -> f32 {
     let (mut sum, mut number) = (0.0, 0.0);
     for outside in beside(i, values.width(), inner.len()).filter(|&k| !trimmed[k]) {
+        // The pixel on the opposite side: i + (i − outside).
         let inside = (2 * i).checked_sub(outside);
         let Some(inside) = inside.filter(|&k| inner.get(k) == Some(&true)) else {
             continue;

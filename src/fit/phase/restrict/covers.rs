@@ -1,4 +1,4 @@
-//! Covers: what other marks hide of a border.
+//! Covers: the parts of a border that other marks hide.
 
 use kurbo::{BezPath, Line, ParamCurveNearest, Rect, Shape};
 
@@ -15,7 +15,7 @@ pub(super) struct Covers {
     page: Rect,
 }
 
-/// A mark that hides others: all that it lies on if it is opaque, and the border of what has its colour.
+/// A mark that hides others: if it is opaque, all below it, and the border of marks of its colour.
 struct Cover {
     /// The box around all that it covers.
     extent: Rect,
@@ -44,6 +44,7 @@ impl Covers {
         let mut others = self.marks.iter().enumerate().filter(|&(k, _)| k != i);
         let hides = |(k, other): (usize, &Cover)| {
             let is_stroke = other.rings.is_none();
+            // An opaque mark on top hides the border. So does a stroke of the same colour, above or below: the two run together.
             (k > i && other.is_opaque && other.has(p, 0.0))
                 || (is_stroke && other.is_like(&self.marks[i]) && other.has(p, MELTED))
         };
@@ -54,12 +55,12 @@ impl Covers {
 /// Farthest beside a stroke that the border of what it runs into may be bent by it, px. A guess.
 const MELTED: f64 = 1.0;
 
-/// More opacity than this hides what lies below: the last descent has not made all of it full. A guess.
+/// Marks of more opacity than this hide those below: the last descent leaves some a little short of 1. A guess.
 const OPAQUE: f32 = 0.99;
 
 impl Cover {
     fn of(mark: Mark) -> Self {
-        // What is drawn with square ends covers its rings.
+        // A stroke with square ends covers its rings.
         let mark = mark.filled();
         let lines: Vec<Line> = mark
             .paths()
@@ -90,7 +91,7 @@ impl Cover {
             }
     }
 
-    /// True if two marks have colours that nobody tells apart.
+    /// True if two marks have colours that nobody can distinguish.
     fn is_like(&self, other: &Self) -> bool {
         let pairs = self.color.iter().zip(other.color);
         pairs.fold(0.0, |most: f32, (a, b)| most.max((a - b).abs())) < 0.04

@@ -28,13 +28,16 @@ pub(super) fn run(session: &mut Session<'_>) -> Result<()> {
     let room = most.saturating_sub(session.drawing.len());
     let shapes = shapes(session, forms, room);
     let paths = session.drawing.memento();
+    // 1. Circles, ellipses and rectangles. Trials judge them in our own render, so the file's render has the last word.
     if adopt(session, forms, shapes) {
         refuse_losses(session, forms, paths)?;
     }
+    // 2. Square ends for strokes that cover as much with them.
     if session.config.marks() == Marks::Auto {
         let squared = squares(session, forms);
         adopt(session, forms, squared);
     }
+    // 3. Lines of what is left, level and upright.
     let straight = straight(session, forms);
     adopt(session, forms, straight);
     if session.config.marks() == Marks::Areas {
@@ -74,7 +77,7 @@ fn refuse_losses(session: &mut Session<'_>, forms: Forms, paths: Memento) -> Res
     Ok(())
 }
 
-/// Nearest that points of what is not a dot are, px: less than a picture tells.
+/// A path whose points are all nearer to its first one than this is a dot, px: no picture shows more.
 const DOT_PX: f64 = 0.1;
 
 /// For each traced mark the shapes that it is, and at most `room` more marks than before.
@@ -97,6 +100,7 @@ fn shapes(session: &Session<'_>, forms: Forms, mut room: usize) -> Vec<Edit> {
                 parts(area, forms, [is_whole, has_bands], |p| covers.is_seen(i, p))?
             }
         };
+        // A ring of its own is a mark more, and there is a limit on marks.
         *room = room.checked_sub(marks.len() - 1)?;
         Some(marks)
     };
@@ -127,6 +131,7 @@ fn disc(dot: &Stroke) -> Area {
 fn squares(session: &Session<'_>, forms: Forms) -> Vec<Edit> {
     let squared = |_: usize, mark: Mark| {
         let stroke = mark.as_stroke().filter(|stroke| stroke.cap == Cap::Round)?;
+        // A half disc covers ½πr², as much as a rectangle 2r wide and ¼πr long.
         let beyond = [FRAC_PI_4 * stroke.radius; 2];
         let width = 2.0 * stroke.radius;
         let band = Band::along(
@@ -161,6 +166,7 @@ fn parts(
     if let Some(band) = band.flatten() {
         return Some(vec![filled(band, &area)]);
     }
+    // Rings that are shapes become marks of their own; all others stay one area, with its holes.
     let alone = forms_of(&area, forms, has_bands, is_seen);
     let pairs = rings.iter().zip(&alone);
     let rest = pairs.filter(|(_, form)| form.is_none());
@@ -202,11 +208,12 @@ fn forms_of(
     let rings = &area.rings;
     let is_alone = |i: usize| {
         let mut others = rings.iter().enumerate().filter(|&(k, _)| k != i);
+        // A hole and the ring around it are one shape only together.
         others.all(|(_, other)| are_apart(&rings[i], other))
     };
     let formed = |(i, ring): (usize, &Path)| {
         let seen = || Shape::like_seen(ring, forms.tolerance_px.into(), &is_seen);
-        // What other marks hide is bent by them.
+        // The hidden part of a border is bent by the marks that hide it, so the seen part is asked first.
         let shape = seen()
             .filter(|_| ring.shape().is_none())
             .or_else(|| like(ring, forms));
@@ -263,6 +270,7 @@ fn leveled(path: &Path, forms: Forms) -> Path {
     for axis in 0..2 {
         for i in 0..count {
             let next = (i + 1) % count;
+            // A line is nearly level if its ends differ little in px, and little for its length: a short one may be slanted.
             let across = (before[next][axis] - before[i][axis]).abs();
             let along = (before[next][1 - axis] - before[i][1 - axis]).abs();
             let is_line = is_on(i) && is_on(next) && (path.is_closed() || next > 0);

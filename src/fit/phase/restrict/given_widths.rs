@@ -23,6 +23,7 @@ pub(super) fn run(session: &mut Session<'_>) -> Result<()> {
     let rounds = session.recipe.pens.rounds;
     hand_out(&mut session.drawing, &session.radii);
     rounds::best(session, rounds, |session, round| {
+        // Only the drawing after a round with held widths is fitted to them, so only it may be the best.
         let is_held = round % 2 == 1;
         let rates = if is_held { free.without_radius() } else { free };
         rounds::run(session, rounds, round, rates)?;

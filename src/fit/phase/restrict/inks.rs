@@ -1,8 +1,8 @@
 //! Inks: a thin line has the colour that the picture has along its middle.
 //!
 //! A line of a pixel or two looks the same if it is darker and narrower, or less opaque, so a fit may end at any of these. The
-//! picture tells which is meant where the line covers whole pixels: there it has its colour. Of a line between two rows only
-//! its crossings tell.
+//! picture shows which is right where the line covers whole pixels: there it has its colour. A line between two rows shows it
+//! only at crossings.
 
 use super::proposals::{adopt, traced};
 use crate::fit::config::Colors;
@@ -49,6 +49,7 @@ pub(super) fn ties(drawing: &Drawing, inks: &[Rgb]) -> Ties {
     for (i, _) in strokes.filter(|(_, stroke)| !stroke.is_area() && inks.contains(&stroke.color()))
     {
         let end = drawing.free().range(i).end;
+        // All of the style but its first number, the radius.
         (end - STYLE + 1..end).for_each(|place| ties.fix(place));
     }
     ties
@@ -60,14 +61,16 @@ fn inked(stroke: &Stroke, picture: &Image, inks: Inks) -> Option<Stroke> {
         return None;
     }
     let (middle, sides) = seen_along(stroke, picture, inks.beside);
-    // On one colour, or nothing tells how much of a pixel is covered.
+    // The page beside the line has to be of one colour; otherwise the coverage of a pixel can't be measured.
     let page: Rgb = channels(|k| median(sides.iter().map(|side| side[k])))?;
     let is_page = |side: &&Rgb| (0..3).all(|k| (side[k] - page[k]).abs() < inks.alike);
     if (sides.iter().filter(is_page).count() as f32) < inks.least_even * sides.len() as f32 {
         return None;
     }
+    // Coverage of a place: the projection of (seen − page) onto (colour − page), in units of the latter.
     let contrast = [0, 1, 2].map(|k| stroke.color[k] - page[k]);
     let contrast2: f32 = contrast.iter().map(|c| c * c).sum();
+    // A line of the page's colour has no coverage to measure.
     if contrast2 < inks.alike * inks.alike {
         return None;
     }
@@ -77,6 +80,7 @@ fn inked(stroke: &Stroke, picture: &Image, inks: Inks) -> Option<Stroke> {
     };
     // The places that it covers most: a quarter of all.
     let shares = || middle.iter().map(covered);
+    // The median of the upper half is the upper quartile.
     let half = median(shares())?;
     let most = median(shares().filter(|share| *share >= half))?;
     let most = || middle.iter().filter(|seen| covered(seen) >= most);
@@ -85,6 +89,7 @@ fn inked(stroke: &Stroke, picture: &Image, inks: Inks) -> Option<Stroke> {
     if share <= 0.0 || share >= inks.least_change {
         return None;
     }
+    // As much ink as before: width · opacity · contrast is kept, and the contrast becomes `share` times what it was.
     let radius = stroke.radius as f32 * stroke.opacity / share;
     // A narrower line covers no pixel as a whole, and one of 1 px between two rows covers half of both.
     let is_halved = (share - 0.5).abs() < 0.04 && (radius - 1.0).abs() < 0.08;
@@ -112,6 +117,7 @@ fn seen_along(stroke: &Stroke, picture: &Image, beside: f32) -> (Vec<Rgb>, Vec<R
     for pair in stroke.path.flattened(0.1).windows(2) {
         let along = pair[1] - pair[0];
         let length = along.hypot();
+        // Sample about once per px of length, at the middles of equal steps.
         let away = (stroke.radius + f64::from(beside)) / length.max(f64::MIN_POSITIVE);
         for step in 0..length.ceil() as usize {
             let p = pair[0] + along * ((step as f64 + 0.5) / length.ceil());

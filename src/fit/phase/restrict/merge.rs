@@ -32,7 +32,7 @@ pub(super) struct Group {
 pub(super) struct Rule<'a> {
     /// Most merges.
     pub(super) merges: usize,
-    /// Most squared error that all merges add, as far as that can be told in advance.
+    /// Most squared error that all merges may add, estimated in advance.
     pub(super) allowance: f32,
     /// Factor on the cost of radii.
     pub(super) contrast: f32,
@@ -47,6 +47,7 @@ pub(super) struct Rule<'a> {
 impl Group {
     /// The squared error that one colour and one width for both would add.
     fn cost(&self, other: &Self, contrast: f32) -> f32 {
+        // Ward's cost of a common mean, for colour and radius separately: uv / (u + v) · (a − b)².
         let both = |a: f32, b: f32| a * b / (a + b).max(f32::MIN_POSITIVE);
         let channels = self.color.iter().zip(other.color);
         let away2: f32 = channels.map(|(a, b)| (a - b) * (a - b)).sum();
@@ -74,7 +75,7 @@ impl Group {
     }
 }
 
-/// Merges `groups` by `rule`. `join` is told of each merge, by the first strokes of both groups, and may refuse it.
+/// Merges `groups` by `rule`. `join` gets the first strokes of both groups of each merge, and may refuse it.
 pub(super) fn merge(
     groups: Vec<Group>,
     rule: Rule<'_>,
@@ -102,6 +103,7 @@ pub(super) fn merge(
         }
         left -= cost;
         merges += 1;
+        // The lower index stays. Pairs with the old groups remain in the queue, and their sizes show that they are out of date.
         if let (Some(other), Some(group)) = (queue.groups[k].take(), queue.groups[i].as_mut()) {
             group.join(other, rule.grid);
         }
@@ -124,6 +126,7 @@ impl Queue<'_> {
     /// The groups that group `i` may be merged with.
     fn near(&self, i: usize) -> Vec<usize> {
         let is_left = |k: &usize| self.groups[*k].is_some();
+        // Merged groups don't count: a group's neighbours are the nearest that are left.
         let below = (0..i).rev().filter(is_left).take(self.rule.reach);
         let above = (i + 1..self.groups.len()).filter(is_left);
         below.chain(above.take(self.rule.reach)).collect()
@@ -148,6 +151,7 @@ impl Queue<'_> {
     fn cheapest(&mut self) -> Option<(f32, usize, usize)> {
         let size = |group: &Option<Group>| group.as_ref().map_or(0, |group| group.members.len());
         while let Some(Reverse((cost, i, k, sizes))) = self.pairs.pop() {
+            // Groups only grow, so a group of the same size is the same group.
             if [i, k].map(|i| size(&self.groups[i])) == sizes {
                 return Some((f32::from_bits(cost), i, k));
             }

@@ -3,8 +3,8 @@
 //! The drawing has first been fitted in any colours. Each round finds the colour that would suit every stroke best, by a
 //! Newton step on its own colour, gives the stroke the nearest colour of the palette, and then fits everything but
 //! colours. A palette that is not given is found by k-means during these rounds: each of its colours is the weighted
-//! mean of what would suit its strokes best. In this way strokes that overlap make up for colours that the palette lacks,
-//! as far as it allows.
+//! mean of the colours that would suit its strokes best. In this way strokes that overlap make up for colours that the
+//! palette lacks, as far as it allows.
 
 use std::f32::consts::PI;
 
@@ -22,9 +22,8 @@ use crate::render::{AX, AY, BX, BY, OPACITY, RADIUS, RED};
 use crate::scene::{Rgb, color, quantum};
 use crate::seed::Candidate;
 
-/// Restricts the drawing to the configured palette and fits the rest to that. Returns the palette, or nothing if any colours are
-/// allowed.
-/// All strokes must be free.
+/// Restricts the drawing to the configured palette and fits all other numbers again. Returns the palette, or nothing if any
+/// colours are allowed. All strokes must be free.
 pub(super) fn run(session: &mut Session<'_>) -> Result<Option<Palette>> {
     let (config, coloring) = (session.config, session.recipe.coloring);
     let has_background = session.writer.has_background;
@@ -37,6 +36,7 @@ pub(super) fn run(session: &mut Session<'_>) -> Result<Option<Palette>> {
     let rates = session.recipe.polish.rates.without_color();
     palette.recolor(&mut session.drawing, coloring);
     rounds::best(session, coloring.rounds, |session, round| {
+        // The last rounds relocate nothing, so that new strokes are fitted.
         if round + coloring.quiet_rounds < coloring.rounds.count {
             let limit = session.drawing.len();
             relocation::relocate(session, limit, |candidate| palette.adapt(candidate));
@@ -86,6 +86,7 @@ fn is_kept(
     };
     let area = drawing.pixel_area();
     let shown = area * preference.weight / drawing.pixels() as f32;
+    // Summed over three channels, as `dist2` is.
     let far2 = 3.0 * coloring.kept_distance * coloring.kept_distance;
     let is_far = |&c: &[u8; 3]| dist2(color(c), preference.color) > far2;
     shown >= coloring.kept_share && given.iter().all(is_far)
@@ -145,6 +146,7 @@ impl Palette {
         let wanted = [p[RED], p[RED + 1], p[RED + 2]];
         let color = self.nearest(wanted);
         let length = math::hypot(p[BX] - p[AX], p[BY] - p[AY]);
+        // A wrong colour of opacity α adds α²·|Δ|² to each of the pixels that the capsule covers.
         let area = p[RADIUS] * (2.0 * length + PI * p[RADIUS]);
         candidate.gain -= area * p[OPACITY] * p[OPACITY] * dist2(color, wanted);
         p[RED..OPACITY].copy_from_slice(&color);
@@ -159,6 +161,7 @@ impl Palette {
     /// Adds, one by one, the colour whose absence costs most, until there are `most` or none is missing.
     fn spread(&mut self, most: usize, preferences: &[PreferredColor]) {
         while self.colors.len() < most {
+            // The squared error that the nearest colour of the palette leaves. The first colour has the largest weight.
             let missed = |preference: &PreferredColor| match self.index(preference.color) {
                 Some(k) => preference.weight * dist2(self.colors[k], preference.color),
                 None => preference.weight,
@@ -171,6 +174,7 @@ impl Palette {
                 return;
             };
             let color = rounded(worst.color);
+            // Rounded to 8 bits it is in the palette already, so that no further colour would help.
             if self.colors.contains(&color) {
                 return;
             }
@@ -191,6 +195,7 @@ impl Palette {
                     *weight += preference.weight;
                 }
             }
+            // Lloyd's step. A colour that nothing is nearest to stays where it is.
             let moved = self.colors.iter_mut().zip(sums).skip(self.fixed);
             for (color, (sum, weight)) in moved.filter(|(_, (_, weight))| *weight > 0.0) {
                 *color = rounded(sum.map(|s| s / weight));

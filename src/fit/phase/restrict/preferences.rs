@@ -24,7 +24,7 @@ impl CanvasLoss for Shown {
     }
 }
 
-/// The preferences of the strokes of `drawing`, followed by that of the background if there is one, each after a share
+/// The preferences of the strokes of `drawing`, followed by the background's if there is one, each after a share
 /// `damping` of its Newton step. A stroke that shows in fewer than `min_shown` px keeps its colour. All strokes must be
 /// free.
 pub(super) fn preferences(
@@ -39,6 +39,8 @@ pub(super) fn preferences(
     // The loss is a mean over pixels and channels.
     let values = (3 * drawing.pixels()) as f32 / drawing.pixel_area();
     let preference = |color: Rgb, slope: Rgb, weight: f32| {
+        // In the colour c the squared error is w·|c − c*|² and a constant, w the sum of squared shares. Its slope is 2w(c − c*),
+        // so Newton's step is slope / 2w. The loss is a mean; its slope times `values` is the slope of the sum.
         let step = if weight > min_shown {
             damping * values / (2.0 * weight)
         } else {
@@ -50,11 +52,13 @@ pub(super) fn preferences(
     };
     let strokes = drawing.free();
     let preferences = strokes.iter().enumerate().map(|(i, stroke)| {
+        // A style is radius, red, green, blue, opacity; it comes last among a stroke's numbers.
         let red = strokes.range(i).end - STYLE + 1;
         let slope = [0, 1, 2].map(|k| slopes.strokes[red + k]);
         // The square of a share is at most the share times the opacity.
         preference(stroke.color(), slope, shown.strokes[red] * stroke.opacity())
     });
+    // The background's shares aren't squared at all, which overestimates its weight.
     let background = drawing.background();
     let background = background.map(|color| preference(color, slopes.backdrop, shown.backdrop[0]));
     preferences.chain(background).collect()

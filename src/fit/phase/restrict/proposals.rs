@@ -1,4 +1,4 @@
-//! Proposals: marks in the place of one, which are fitted as what they are before they are measured.
+//! Proposals: marks in the place of one. They are fitted, shapes as shapes, before they are measured.
 
 use std::ops::Range;
 
@@ -32,19 +32,21 @@ pub(super) fn adopt(session: &mut Session<'_>, forms: Forms, mut edits: Vec<Edit
     if edits.is_empty() {
         return false;
     }
+    // 1. Make all proposals at once and fit them together, as a fit of all costs as much as a fit of one.
     let home = session.drawing.marks();
     let worth_before = session.drawing.judge().worth;
     let price = session.price.in_drawing(&mut session.drawing);
     session.drawing.apply(&edits);
     let spans = spans(&edits);
     fit(session, forms, &spans);
-    // What they are and what they are worth, as fitted.
+    // 2. The marks as fitted, and the worth of each.
     let worth = session.drawing.judge().worth;
     for (edit, span) in edits.iter_mut().zip(spans) {
         let fitted: Vec<Mark> = span
             .clone()
             .map(|k| session.drawing.free().get(k).to_mark())
             .collect();
+        // 3. Price and gain of each: bytes saved against error added.
         let (i, _) = edit.changes[0];
         let bytes = bytes(&home.0.get(i).to_mark(), &fitted, forms, session);
         edit.price =
@@ -52,6 +54,7 @@ pub(super) fn adopt(session: &mut Session<'_>, forms: Forms, mut edits: Vec<Edit
         edit.gain = worth[span].iter().sum::<f32>() - worth_before[i];
         edit.changes = vec![(i, Change::Marks(fitted))];
     }
+    // 4. Back to the marks before, on which trials of the fitted ones decide.
     session.drawing.set_marks(home);
     edits.sort_by(|a, b| b.surplus().total_cmp(&a.surplus()));
     !apply_priced(&mut session.drawing, edits).made.is_empty()
@@ -82,6 +85,7 @@ const ENDS_BYTES: isize = " stroke-linecap=\"butt\" stroke-linejoin=\"miter\"".l
 fn spans(edits: &[Edit]) -> Vec<Range<usize>> {
     let mut shift = 0;
     let span = |edit: &Edit| {
+        // Every edit before it moves the index by the marks that it adds.
         let start = edit.changes[0].0.saturating_add_signed(shift);
         shift += edit.growth;
         start..(start + 1).saturating_add_signed(edit.growth)
@@ -117,6 +121,7 @@ fn fit(session: &mut Session<'_>, forms: Forms, moving: &[Range<usize>]) {
     moving
         .iter()
         .for_each(|span| moves[span.clone()].fill(true));
+    // All numbers of other marks are fixed, so that gains come from the proposals alone.
     for i in (0..moves.len()).filter(|&i| !moves[i]) {
         let places = drawing.free().range(i);
         places.for_each(|place| descent.ties.fix(place));

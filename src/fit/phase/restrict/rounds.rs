@@ -19,6 +19,7 @@ pub(super) fn run(
     let used = session.timer.used();
     let course = Course {
         iterations,
+        // The rounds share one schedule, so that step sizes go on falling across them.
         before: index * iterations,
         of: rounds.count * iterations,
         rates,

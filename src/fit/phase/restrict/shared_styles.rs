@@ -55,6 +55,7 @@ fn hand_out(
 ) -> Vec<Vec<usize>> {
     let preferences = preferences(drawing, 0.0, recipe.coloring.min_shown);
     let weights: Vec<f32> = preferences.iter().map(|w| w.weight).collect();
+    // Stages are layers of the file, so no pen goes across them. Windows bound the pairs that are compared.
     let windows = windows(&drawing.stage_sizes(), recipe.pens.window);
     let strokes = drawing.free();
     let mut pens = Vec::new();
@@ -156,6 +157,7 @@ fn share(
         stroke.opacity() == 1.0 && !stroke.is_area()
     };
     let (opaque, mut others): (Vec<Group>, Vec<Group>) = pens.partition(may_share);
+    // Merge down to a share of the strokes, whatever that costs: the fit that follows repairs it.
     let kept = (opaque.len() as f64 * recipe.pens.share).ceil() as usize;
     let rule = Rule {
         merges: opaque.len() - kept,
@@ -165,6 +167,7 @@ fn share(
         reach: usize::MAX,
         grid,
     };
+    // A merge is refused where another stroke has to be drawn between the two.
     let mut bundles = bundles(strokes);
     others.extend(merge(opaque, rule, |i, k| bundles.try_join(i, k)));
     others

@@ -18,11 +18,11 @@ use crate::math;
 use crate::render::{STYLE, StrokeMut, Strokes};
 use crate::scene::quantum;
 
-/// Proposes what adds a squared error of at most this, as far as that can be told in advance.
+/// Proposes edits that add at most this squared error, estimated in advance.
 type Step = fn(&mut Drawing, &Recipe, f32) -> Vec<Edit>;
 
-/// Makes strokes of a drawing that was traced opaque, and share widths and colours, as far as these are not given. Returns
-/// what is to stay so. All strokes must be free.
+/// Makes strokes of a drawing that was traced opaque, and share widths and colours unless these are given. Returns
+/// the ties that keep them so. All strokes must be free.
 pub(super) fn run(drawing: &mut Drawing, config: &Config, recipe: &Recipe) -> Ties {
     let mut ties = Ties::default();
     if !drawing.is_of_lines(recipe) {
@@ -36,9 +36,11 @@ pub(super) fn run(drawing: &mut Drawing, config: &Config, recipe: &Recipe) -> Ti
         (shared_colors, 1..4, any_color),
     ];
     for (step, numbers, _) in steps.into_iter().filter(|(_, _, is_allowed)| *is_allowed) {
+        // Measured anew before each step, since every step adds some of its own.
         let values = (3 * drawing.pixels()) as f64;
         let allowance = (recipe.sharing.error * drawing.mse() * values) as f32;
         let mut edits = step(drawing, recipe, allowance);
+        // Divided equally among the edits; a trial of several compares what they add with the sum of their parts.
         let each = allowance / edits.len() as f32;
         edits.iter_mut().for_each(|edit| edit.price = each);
         for edit in apply_priced(drawing, edits).made {
@@ -77,6 +79,7 @@ fn opaque(drawing: &mut Drawing, recipe: &Recipe, allowance: f32) -> Vec<Edit> {
         .filter(|(_, (stroke, _))| stroke.opacity() >= sharing.nearly_opaque)
         .map(|(i, (stroke, shown))| {
             let clear = 1.0 - stroke.opacity();
+            // With opacity α, opaque paint changes a pixel by (1 − α) of its contrast, and the squared error by its square.
             (sharing.off_page * shown.weight * math::powi(clear, 2), i)
         })
         .collect();
@@ -93,6 +96,7 @@ fn opaque(drawing: &mut Drawing, recipe: &Recipe, allowance: f32) -> Vec<Edit> {
         let is_area = stroke.is_area;
         let [radius, color @ .., opacity] = &mut *stroke.style;
         if *radius < sharing.thin && !is_area {
+            // Width · opacity is the ink of a line thinner than a pixel or two.
             *radius *= *opacity;
         } else if let Some(page) = page {
             let mixed = color.iter_mut().zip(page);
@@ -119,6 +123,7 @@ fn shared_widths(drawing: &mut Drawing, recipe: &Recipe, allowance: f32) -> Vec<
             radius_weight: recipe.pens.contrast * outline(stroke),
         })
         .collect();
+    // With a reach of one neighbour, the queue has a pair per group instead of a pair per two groups.
     groups.sort_by(|a, b| a.radius.total_cmp(&b.radius));
     let groups = merge(groups, rule(allowance, 1), |_, _| true);
     shared(drawing, &groups, |group, stroke| {

@@ -43,7 +43,7 @@ pub(super) fn run(session: &mut Session<'_>, palette: &mut Palette) -> Result<()
     Ok(())
 }
 
-/// Sorts the strokes by the colours' place in `order`; those of one colour keep theirs.
+/// Sorts the strokes by their colours' places in `order`. Strokes of one colour keep their order.
 fn arrange(drawing: &mut Drawing, order: &[Color]) {
     let place = |color: Color| {
         let place = order.iter().position(|&c| c == color);
@@ -76,10 +76,11 @@ fn order(drawing: &mut Drawing, coloring: Recoloring, precision: u8) -> Vec<Colo
     )
 }
 
-/// The colours of strokes, each with the pixels in which it shows, in an order that agrees with that of the strokes as far
-/// as possible: again and again, the colour comes next whose strokes lie below the remaining colours rather than above.
+/// The colours of strokes, each with the pixels in which it shows, in an order that agrees with the order of the strokes as
+/// far as possible: the next colour is the one whose strokes lie below the remaining colours rather than above.
 fn stacked(strokes: &[(Mark, f32)], window: usize) -> Vec<Color> {
     let color = |mark: &Mark| mark.color().map(quantum);
+    // For each pair of colours, in how many pixels the first lies below the second: at most as many as either stroke shows in.
     let mut below: BTreeMap<(Color, Color), f32> = BTreeMap::new();
     for window in strokes.chunks(window) {
         let precedence = Precedence::of(window.iter().map(|(stroke, _)| stroke));
@@ -103,6 +104,8 @@ fn stacked(strokes: &[(Mark, f32)], window: usize) -> Vec<Color> {
             pairs.sum::<f32>()
         };
         let pulls: Vec<f32> = left.iter().map(|&color| pull(color)).collect();
+        // Greedy linear ordering: next is the colour with the largest balance of pixels below the others. Ties go to the
+        // smaller colour, so that the order is the same on every machine.
         let lowest = (0..left.len()).max_by(|&i, &j| pulls[i].total_cmp(&pulls[j]).then(j.cmp(&i)));
         order.push(left.remove(lowest.unwrap_or(0)));
     }

@@ -21,7 +21,7 @@ pub(super) enum WidthGrid<'a> {
 }
 
 impl<'a> WidthGrid<'a> {
-    /// The radii of the given pens or, if there are none, those of the recipe.
+    /// The radii of the given pens or, if there are none, the recipe's.
     pub(super) fn of(recipe: &Recipe, given: &'a [f32]) -> Self {
         if !given.is_empty() {
             return Self::Given(given);
