@@ -138,7 +138,7 @@ pub(super) fn shed(
 /// Edits that may add more than foreseen, as descent follows.
 fn tolerated(mut edits: Vec<Edit>) -> Vec<Edit> {
     for edit in &mut edits {
-        edit.price = edit.price.max(0.0) + TOLERANCE * (-edit.gain).max(0.0);
+        edit.price = edit.price.abs() + TOLERANCE * (-edit.gain).max(0.0);
     }
     edits
 }
@@ -200,7 +200,17 @@ fn edit(session: &mut Session<'_>, spare: f32) -> Vec<Option<usize>> {
         most: (points.share * paths).ceil() as usize,
         swaps: (points.swapped * paths) as usize,
     };
-    apply_priced(drawing, tolerated(choose(proposed, room))).sources
+    // A stroke's new point need not pay at once, as the descent that follows moves it. An edge of an area may turn its inside out.
+    let of_area = |edit: &Edit| {
+        edit.changes
+            .iter()
+            .all(|&(i, _)| drawing.free().get(i).is_area())
+    };
+    let (of_areas, of_strokes): (Vec<_>, Vec<_>) =
+        choose(proposed, room).into_iter().partition(of_area);
+    let measured = apply_priced(drawing, tolerated(of_areas)).sources;
+    let moved = drawing.apply(&of_strokes);
+    moved.iter().map(|source| measured[(*source)?]).collect()
 }
 
 /// The bytes that are left for more points and strokes, less than 0 if there are too many; `None` without a budget of bytes.
