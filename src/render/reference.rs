@@ -111,6 +111,7 @@ impl Reference {
         let vertices = |outline: &Outline| vec![Vec2::ZERO; outline.means.len()];
         let mut slopes: Vec<Vec<Vec2>> = outlines.iter().map(vertices).collect();
         for (p, &g) in self.samples(scene).zip(d_canvas) {
+            // T₀: the backdrop shows through the rearmost stroke and all in front of it.
             let layers = self.layers(scene, &outlines, p);
             let through = layers
                 .first()
@@ -125,6 +126,7 @@ impl Reference {
             }
         }
         for ((stroke, outline), slopes) in strokes.iter_mut().zip(&outlines).zip(slopes) {
+            // From vertices to points by the transpose of flattening.
             let mut by_points = vec![Vec2::ZERO; stroke.points.len()];
             for (mean, slope) in outline.means.iter().zip(slopes) {
                 mean.hand_back(slope, &mut by_points);
@@ -165,6 +167,7 @@ impl Reference {
             for (i, layer) in self.layers(scene, &outlines, p).iter().enumerate() {
                 for channel in 0..3 {
                     let e = canvas[k][channel] - target[k][channel];
+                    // Without the stroke, its colour behind shows in its place: (e + δ)² − e² = 2eδ + δ².
                     let delta = -layer.transmittance * layer.m * layer.reach()[channel];
                     changes[i] += 2.0 * e * delta + delta * delta;
                 }
@@ -195,6 +198,7 @@ impl Reference {
 
     /// Coverage and its derivative by the distance.
     fn covered(&self, outline: &Outline, p: Point) -> (f64, f64) {
+        // The cut is made in the fast renderer where blocks end, and here by the distance alone.
         let d = outline.distance(p, self.eps);
         let support = self.coverage.support(self.softness);
         if self.cut && d < -support {
@@ -209,6 +213,7 @@ impl Reference {
 
     /// Each stroke at the sample point `p`, back to front.
     fn layers(&self, scene: &Scene, outlines: &[Outline], p: Point) -> Vec<Layer> {
+        // Back to front: the colour behind each stroke. Then front to back: what those in front let through.
         let mut behind = scene.background;
         let mut layers = Vec::with_capacity(scene.strokes.len());
         for (stroke, outline) in scene.strokes.iter().zip(outlines) {

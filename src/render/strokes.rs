@@ -142,6 +142,7 @@ impl<'a> StrokeRef<'a> {
             };
             (start, path)
         };
+        // Each ring ends where the next one starts. A stroke is one path of all points.
         let only = (!whole.is_area()).then_some(whole.points.len());
         let ends = ends.chain(only);
         ends.scan(0, |start, end| Some((std::mem::replace(start, end), end)))
@@ -311,6 +312,7 @@ impl Strokes {
 
     /// Where the numbers of stroke `i` are.
     pub fn range(&self, i: usize) -> std::ops::Range<usize> {
+        // Two numbers for each point and a style for each stroke before it.
         let start = 2 * self.first_point(i) + STYLE * i;
         start..2 * self.outlines[i].end as usize + STYLE * (i + 1)
     }
@@ -372,6 +374,7 @@ impl Strokes {
     pub fn flatten_paints(&mut self) {
         self.paints.clear();
         let outlines = self.outlines.iter_mut();
+        // Without paints, every stroke's range of them is 0..0.
         outlines.for_each(|outline| outline.paints_end = 0);
     }
 
@@ -420,6 +423,7 @@ impl Strokes {
     pub fn push_mark(&mut self, mark: &Mark) {
         let form = mark.shape().map(|shape| Form::Shape(shape.kind()));
         match mark {
+            // The kernel's capsules have round ends, so a stroke with square ends becomes the area within its outline.
             Mark::Stroke(stroke) if stroke.cap == Cap::Butt => {
                 if let Mark::Area(rings) = mark.clone().filled() {
                     self.push_area(&rings, Some(Form::Band));
@@ -434,6 +438,7 @@ impl Strokes {
     }
 
     fn push_area(&mut self, area: &Area, form: Option<Form>) {
+        // All rings share one list of points, so a ring is the index behind its last point.
         let ends = area.rings.iter().scan(0, |end, ring| {
             *end += ring.points().len() as u32;
             Some(*end)
@@ -474,6 +479,7 @@ impl Strokes {
         self.off.append(&mut others.off);
         self.rings.append(&mut others.rings);
         self.paints.append(&mut others.paints);
+        // Indices of `others` count from their own start.
         let outlines = others.outlines.drain(..);
         self.outlines.extend(outlines.map(|outline| Outline {
             end: outline.end + points,
@@ -489,6 +495,7 @@ impl Strokes {
         let at = at.min(self.len());
         let (first, first_ring) = (self.first_point(at), self.first_ring(at));
         let first_paint = self.first_paint(at);
+        // The indices of the part split off have to count from its own start.
         let outlines = self.outlines.split_off(at).into_iter();
         Self {
             numbers: self.numbers.split_off(2 * first + STYLE * at),

@@ -40,6 +40,7 @@ impl Transmittance {
         rgb: &[f32x16<S>; 3],
         color: &mut BlockRgb,
     ) -> bool {
+        // C ← C + T·m·c, T ← T − T·m.
         let t = load(simd, &self.through);
         let weight = t * alpha;
         for (color, &c) in color.iter_mut().zip(rgb) {
@@ -77,6 +78,7 @@ impl<E: SoftEdge> Shape<E> {
         kept: &mut EdgeBlock,
     ) -> f32x16<S> {
         let length = length(distance2);
+        // d = r − |q| for a stroke. For an area d = ±|q|, + where the rings wind around the pixel.
         let side = inside.map(|inside| {
             let inside = mask32x16::from_bitmask(simd, inside);
             inside.select(f32x16::splat(simd, 1.0), f32x16::splat(simd, -1.0))
@@ -87,6 +89,8 @@ impl<E: SoftEdge> Shape<E> {
         };
         let (mut value, mut derivative) = self.edge.eval(d);
         if let Some(side) = side {
+            // Core blocks have coverage 1, so edge blocks have to have it from the same depth on, or a tail's edge would depend on
+            // the grid.
             let is_deep = d.simd_gt(self.outside);
             value = is_deep.select(f32x16::splat(simd, 1.0), value);
             derivative = is_deep.select(f32x16::splat(simd, 0.0), derivative);

@@ -33,6 +33,7 @@ impl<T: Copy> Stack<T> {
     pub(super) fn push(&mut self, blocks: BlockSet) -> &mut [T] {
         let start = self.len;
         self.len += blocks.count_ones() as usize;
+        // Memory doubles, so that growth costs a constant per item. Old items stay: the caller overwrites them.
         if self.items.len() < self.len {
             self.items.resize(2 * self.len, self.empty);
         }

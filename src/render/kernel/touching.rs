@@ -34,6 +34,7 @@ pub(in crate::render) fn list_segments(
     listed: &mut Vec<Listed>,
     segments: &mut Vec<u32>,
 ) {
+    // One tile's list, built stroke by stroke in drawing order.
     segments.clear();
     let mut kept = 0;
     // Not `retain_mut`: the compiler may build its closure without the instructions of the level.

@@ -126,6 +126,7 @@ impl Outline {
             by_a += (twice - ba - pa) * along;
             by_b += (pa - twice) * along;
         }
+        // An area's distance is ±|q|, and `u` is the derivative of −|q|.
         let side = self.side(p);
         [(a, by_a * side), (b, by_b * side)]
     }
@@ -214,6 +215,7 @@ impl Knots<'_> {
             if knots[at].1 {
                 let (control, to) = (&knots[at].0, &knots[at + 1].0);
                 let [a, b, c] = [from, control, to].map(|mean| mean.place(self.points).to_vec2());
+                // Each curve has one control point between two points on the path, so it takes two knots.
                 let steps = steps((a - b * 2.0 + c).hypot(), flatness);
                 let curve = |k: usize| bernstein([from, control, to], k as f64 / steps as f64);
                 means.extend((1..=steps).map(curve));
@@ -232,6 +234,7 @@ impl Knots<'_> {
         let mut knots = Vec::new();
         for i in 0..count {
             let before = (i + count - 1) % count;
+            // Two points off the path in a row imply one on it, halfway between.
             if self.off[i] && self.off[before] {
                 knots.push((Mean(vec![(before, 0.5), (i, 0.5)]), false));
             }
@@ -239,6 +242,8 @@ impl Knots<'_> {
         }
         if self.closed && count > 1 {
             let is_point = |knot: &(Mean, bool)| !knot.1 && knot.0.0.len() == 1;
+            // Start at the first point that is on the path, and end there, as the fast renderer does, since ties go to the first
+            // segment.
             let start = knots.iter().position(is_point).unwrap_or(0);
             knots.rotate_left(start);
             knots.push(knots[0].clone());
