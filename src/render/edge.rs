@@ -118,7 +118,7 @@ pub(super) enum Edge {
 impl Edge {
     /// The edge of `coverage` at `softness` px, with its reach.
     pub(super) fn new(coverage: Coverage, softness: f32) -> (Self, Reach) {
-        // The renderer looks at no pixel beyond the support, so a tail is cut there.
+        // Coverage beyond the support is dropped, so that blocks farther away need no visit.
         let outside = coverage.support(f64::from(softness)) as f32;
         let tailed = |kind, slope: f32| Self::Tailed(Tailed::new(kind, slope / softness, outside));
         let edge = match coverage {

@@ -46,7 +46,7 @@ pub fn coverage(shadow: &Shadow, width: usize, height: usize) -> Vec<f32> {
         .rings
         .iter()
         .map(|ring| ring.clone().moved(shift));
-    // Fill first, then blur: coverage is linear, and the opacity is applied by the caller.
+    // Fill, then blur, as an SVG filter does. The caller applies the opacity.
     let sharp = filled(rings, size);
     let soft = blurred(sharp, shadow.blur());
     let mut covered = vec![0.0; width * height];

@@ -164,7 +164,7 @@ impl Polylines {
             add(points.as_flattened_mut(), slopes.as_flattened());
             return;
         }
-        // Take the number of segments from the list: the same curve, computed again, could round to another one.
+        // The number of segments of each curve is the one that `flatten` has used, so that slopes and vertices match.
         let mut curves = self.curves[self.first_curves[i] as usize..].iter();
         let mut rest = slopes;
         for (first, path) in stroke.paths() {

@@ -198,7 +198,7 @@ impl Reference {
 
     /// Coverage and its derivative by the distance.
     fn covered(&self, outline: &Outline, p: Point) -> (f64, f64) {
-        // The cut is made in the fast renderer where blocks end, and here by the distance alone.
+        // The fast renderer drops coverage beyond the support, and gives an area full coverage at the same depth inside.
         let d = outline.distance(p, self.eps);
         let support = self.coverage.support(self.softness);
         if self.cut && d < -support {

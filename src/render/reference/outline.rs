@@ -126,7 +126,7 @@ impl Outline {
             by_a += (twice - ba - pa) * along;
             by_b += (pa - twice) * along;
         }
-        // An area's distance is ±|q|, and `u` is the derivative of −|q|.
+        // `by_a` and `by_b` are the derivatives of −|q|. Inside an area d = |q|, hence the sign.
         let side = self.side(p);
         [(a, by_a * side), (b, by_b * side)]
     }
