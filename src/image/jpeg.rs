@@ -40,11 +40,13 @@ pub(super) fn inks(bytes: &[u8]) -> Result<Decoded, Failure> {
         let options = DecoderOptions::default().set_strict_mode(false);
         options.set_max_width(most).set_max_height(most)
     };
+    // Read the headers first: the kind of inks decides what the decoder is asked for, so that it converts nothing.
     decoder.set_options(options());
     decoder.decode_headers().map_err(failed)?;
     let space = decoder.input_colorspace().unwrap_or(ColorSpace::CMYK);
     decoder.set_options(options().jpeg_set_out_colorspace(space));
     let mut samples = decoder.decode().map_err(failed)?;
+    // Adobe's programs store 255 less the amount of ink.
     let is_inverted = header::jpeg_frame(bytes).is_some_and(|frame| frame.is_adobe);
     for pixel in samples.as_chunks_mut().0 {
         *pixel = ink(*pixel, space == ColorSpace::YCCK, is_inverted);

@@ -220,8 +220,7 @@ fn xyb_of(rgb: &[f32; 3], black: f32) -> [f32; 3] {
     };
     let [long, medium, short] = [cone(OPSIN[0]), cone(OPSIN[1]), cone(OPSIN[2])];
     let (x, y) = (0.5 * (long - medium), 0.5 * (long + medium));
-    // X is small and may be negative; these shifts and factors bring all three planes to about 0..1, as the C2 of the structure
-    // term expects.
+    // X is small and may be negative: these shifts and factors bring all three planes to about 0..1.
     [14.0 * x + 0.42, y + 0.01, short - y + 0.55]
 }
 

@@ -53,6 +53,7 @@ fn collect(group: &Group, scale: f32, found: &mut Vec<Element>) {
 
 fn of(path: &Path, scale: f32) -> Element {
     let transform = path.abs_transform();
+    // A stroke that is scaled unevenly has no single width: the geometric mean keeps its area.
     let (sx, sy) = transform.get_scale();
     let stroke = path.stroke();
     let mut element = Element {
@@ -94,6 +95,7 @@ fn of(path: &Path, scale: f32) -> Element {
             let share = |i: u16| f64::from(i) / f64::from(chords);
             line.extend((1..=chords).map(|i| at(&curve, share(i))));
         }
+        // The next segment starts where this one ends.
         here = curve[curve.len() - 1];
         element.nodes.push(here);
     }

@@ -52,6 +52,7 @@ impl Embedded {
             seen.1 = Some("an embedded picture is not a PNG, JPEG, GIF or WebP".into());
             return None;
         };
+        // The sum over all pictures counts: many small ones cost as much as a large one.
         seen.0 = seen.0.saturating_add(u64::from(width) * u64::from(height));
         if seen.0 > MAX_EMBEDDED {
             seen.1 = Some(format!(
@@ -109,6 +110,7 @@ type Reckoned = std::result::Result<(), &'static str>;
 impl Reckoning {
     fn group(&mut self, group: &Group) -> Reckoned {
         if !group.should_isolate() {
+            // Drawn straight onto what is there: no memory of its own.
             return group.children().iter().try_for_each(|node| self.node(node));
         }
         let layer = self.seen(group.abs_layer_bounding_box().to_rect())?;
@@ -140,6 +142,7 @@ impl Reckoning {
     }
 
     fn path(&mut self, path: &Path) -> Reckoned {
+        // A path costs its box, at most, and its points, which count even where nothing shows.
         let points = path.data().points().len() as f64;
         let seen = self.seen(path.abs_stroke_bounding_box())?;
         self.write(seen + points)?;
@@ -174,6 +177,7 @@ impl Reckoning {
     /// A filter's step over a layer of so many pixels.
     fn filter(&mut self, layer: f64, kind: &Kind) -> Reckoned {
         let window = |x: f32, y: f32| {
+            // Each pixel looks at a window whose radius grows with the scale of the render.
             let side = |radius: f32| 1.0 + 2.0 * f64::from(radius) * self.area.sqrt();
             side(x) * side(y)
         };
@@ -199,6 +203,7 @@ impl Reckoning {
         }
         self.write(pixels)?;
         inside(self)?;
+        // The layer is merged and freed, so that layers one after another don't add up.
         self.layered -= pixels;
         Ok(())
     }
@@ -224,6 +229,7 @@ impl Reckoning {
         {
             return Err("a part of it extends more than 2^20 pixels beyond the page");
         }
+        // The box may be larger than the page; the renderer clips it.
         let area = f64::from(bounds.width()) * f64::from(bounds.height()) * self.area;
         Ok(area.min(self.pixels))
     }
