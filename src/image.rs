@@ -3,7 +3,7 @@
 //!
 //! It reads PNG, JPEG, WebP, GIF, BMP, TIFF, ICO, QOI, TGA, DDS, Radiance HDR, farbfeld and PNM (the first
 //! frame or page), with 8 or 16 bits or floats, grey, colour or CMYK, and applies the orientation given by EXIF. It converts
-//! colours to sRGB from those that a file states: by an ICC profile, or the chunks of a PNG. It keeps alpha;
+//! colours to sRGB if a file states others, by an ICC profile or the chunks of a PNG. It keeps alpha;
 //! [`Image::flattened`] composites onto a matte.
 
 #[cfg(feature = "animation")]
@@ -108,7 +108,7 @@ impl Image {
     }
 
     /// The picture whose channel `c` of the pixel in column `x` and row `y` is `sample(x, y, c)`: for samples that do
-    /// not lie in rows. Samples and channels are those of [`Rows`].
+    /// not lie in rows. Samples and channels are as in [`Rows`].
     ///
     /// ```
     /// use strokefit::image::Image;

@@ -54,9 +54,9 @@ pub(crate) struct Blocks {
 /// Likeness of blocks to a shade.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Met {
-    /// The share of the blocks that it has met, of those that take part.
+    /// Share of the blocks that it has met, among the blocks that take part.
     pub(crate) share: f32,
-    /// Squared error, each value as large as that of a block that just fails, at most.
+    /// Squared error, each value cut off at the error of a block that just fails.
     pub(crate) error: f32,
 }
 

@@ -221,7 +221,7 @@ thread_local! {
     static GUARDED: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Keeps the process's panic hook from telling of panics of resvg, which are errors here. For programs: a library
+/// Keeps the process's panic hook from reporting panics of resvg, which are errors here. For programs: a library
 /// leaves the hook as it is.
 pub fn silence_panics() {
     let others = panic::take_hook();

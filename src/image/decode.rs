@@ -87,7 +87,7 @@ pub(super) fn decode(bytes: &[u8], name: &str, limits: Limits) -> Result<(Image,
     image(decoded, format)
 }
 
-/// The picture in sRGB, and what there is to say of it.
+/// The picture in sRGB, and remarks on it.
 fn image(decoded: Decoded, format: ImageFormat) -> Result<(Image, Vec<Remark>)> {
     let (image, clipped) = planar(&decoded.picture, format)?;
     let (image, converted) = match &decoded.coding {
@@ -154,7 +154,7 @@ fn check_size(width: u32, height: u32, limits: Limits) -> Result<()> {
     Ok(())
 }
 
-/// The decoded samples in the orientation given by EXIF. `ran_out` tells whether the file is too short.
+/// The decoded samples in the orientation given by EXIF. Sets `ran_out` if the file is too short.
 fn samples(
     bytes: &[u8],
     ran_out: &Cell<bool>,
@@ -319,7 +319,7 @@ fn levels<T: Sample>(picture: &DynamicImage, samples: &[T]) -> Result<(Image, us
     Ok((rows::image(packed(picture, samples))?, 0))
 }
 
-/// Whatever a file says: what is no number is 0, what is beyond the range at its end.
+/// Floats of any file: NaN becomes 0, and a value beyond the range its nearer end.
 fn floats(picture: &DynamicImage, samples: &[f32], format: ImageFormat) -> Result<(Image, usize)> {
     // Radiance stores light; all else stores encoded values.
     let is_linear = format == ImageFormat::Hdr;

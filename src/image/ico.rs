@@ -43,7 +43,7 @@ pub(super) fn largest(bytes: &[u8]) -> Result<Largest<'_>, Failure> {
     let (length, start) = (le32(entry, 8).unwrap_or(0), le32(entry, 12).unwrap_or(0));
     let whole = bytes.get(start as usize..).unwrap_or_default();
     let picture = whole.get(..length as usize);
-    // Those who read the picture tell if it is cut short.
+    // The decoder of the picture reports if it is cut short.
     let picture = picture.unwrap_or(whole);
     if picture.starts_with(PNG) {
         return Ok(Largest::Png(picture));
@@ -69,7 +69,7 @@ fn cut_short() -> Failure {
 impl<'a> Bitmap<'a> {
     /// The bitmap that begins with its header; `None` if that is cut short.
     fn new(bytes: &'a [u8]) -> Option<Self> {
-        // The height is that of picture and mask together.
+        // The header states the height of picture and mask together.
         let size = (le32(bytes, 4)?, le32(bytes, 8)? / 2);
         let bits = le16(bytes, 14)?;
         Some(Self { bytes, size, bits })

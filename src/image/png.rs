@@ -44,7 +44,7 @@ fn is_stated(primaries: u8, transfer: u8) -> bool {
     matches!(primaries, 1 | 4..=9 | 11 | 12 | 22) && matches!(transfer, 1 | 4..=8 | 11..=16 | 18)
 }
 
-/// The power that encodes light; `None` for that of sRGB, and for nonsense.
+/// The power that encodes light; `None` for sRGB's, and for nonsense.
 fn gamma(body: &[u8]) -> Option<f64> {
     // `gAMA` and `cHRM` store numbers times 100,000.
     let gamma = f64::from(be32(body, 0)?) / 1e5;

@@ -15,7 +15,7 @@ const PROBES: usize = 6;
 /// sRGB have many profiles, which differ in the last digits of their tables.
 const SAME: f32 = 1.5 / 255.0;
 
-/// The picture in sRGB, and what there is to say of that. Colours that are sRGB's stay as they are.
+/// The picture in sRGB, and a remark on the conversion. Colours that are sRGB's stay as they are.
 pub(super) fn to_srgb(image: Image, coding: &Coding) -> (Image, Option<Remark>) {
     let outcome = match coding {
         Coding::Icc(icc) => converted(&image, icc),

@@ -5,7 +5,7 @@ use std::fmt;
 use super::Image;
 use crate::error::{Error, ErrorKind, Result};
 
-/// A picture as rows of interleaved samples: those of a pixel side by side.
+/// A picture as rows of interleaved samples: the samples of a pixel side by side.
 #[derive(Debug, Clone, Copy)]
 pub struct Rows<'a, T> {
     /// Width in px.
@@ -16,7 +16,7 @@ pub struct Rows<'a, T> {
     pub channels: usize,
     /// Samples from the start of a row to the start of the next, `width·channels` or more.
     pub stride: usize,
-    /// The rows; what follows the last pixel of a row is not looked at, and the last row needs nothing there.
+    /// The rows; samples behind the last pixel of a row are skipped, and the last row needs none there.
     pub samples: &'a [T],
 }
 
@@ -77,9 +77,9 @@ impl<'a, T> Rows<'a, T> {
     }
 }
 
-/// A type that samples come in. What a file holds is encoded as sRGB, and so is what is taken here.
+/// A type of samples. They are encoded as sRGB, as in files.
 pub trait Sample: Copy + fmt::Display + sealed::Sealed {
-    /// As a value of 0..1, or `None` where it is on no scale that is known.
+    /// The sample as a value of 0..1; `None` if it is on no known scale.
     fn level(self) -> Option<f32>;
 }
 

@@ -70,7 +70,7 @@ struct Page {
     width: usize,
     height: usize,
     color: ColorType,
-    /// Meaning of the first sample after those of the colour.
+    /// Meaning of the first sample after the colour's samples.
     extra: Option<u16>,
     palette: Option<palette::Palette>,
 }
@@ -129,7 +129,7 @@ impl Page {
         }
     }
 
-    /// The samples of the picture, those of a pixel side by side, alpha straight.
+    /// The samples of the picture, interleaved, with straight alpha.
     fn samples<R: Read + Seek>(&self, file: &mut Decoder<R>) -> Result<Samples, Failure> {
         let stored = self.stored()?;
         let mut read = DecodingResult::U8(Vec::new());

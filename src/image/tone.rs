@@ -69,7 +69,7 @@ fn hlg(sample: f64) -> f64 {
     }
 }
 
-/// The planes of a picture in sRGB. `matrix` leads from light of its primaries to light of those of sRGB.
+/// The planes of a picture in sRGB. `matrix` leads from light of its primaries to light of sRGB's primaries.
 pub(super) fn to_srgb(
     planes: &[Vec<f32>; 3],
     transfer: Transfer,

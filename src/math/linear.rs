@@ -12,7 +12,7 @@ pub(crate) fn solve_symmetric<const N: usize>(
     Some(rights.map(|right| solved(&columns, right)))
 }
 
-/// Turns the lower half of a matrix into that of its factor.
+/// Turns the lower half of a matrix into the lower half of its factor.
 fn decompose(columns: &mut [Vec<f64>]) -> Option<()> {
     for j in 0..columns.len() {
         // Column j of A = LLᵀ, from its diagonal down, is Σ L_k·L_jk over the columns k ≤ j. Take away those before j.
@@ -21,7 +21,7 @@ fn decompose(columns: &mut [Vec<f64>]) -> Option<()> {
         for earlier in before {
             add(column, -earlier[j], &earlier[j..]);
         }
-        // What is left of the diagonal is L_jj². It is above 0 exactly for a positive definite matrix; NaN fails, too.
+        // The rest of the diagonal is L_jj². It is above 0 exactly for a positive definite matrix; NaN fails, too.
         let root = Some(column[0]).filter(|square| *square > 0.0)?.sqrt();
         column[0] = root;
         column[1..].iter_mut().for_each(|number| *number /= root);

@@ -1,6 +1,6 @@
 //! Search for the least value of a function of a few numbers.
 
-/// A place near `start` where `cost` is least, by steps along each number in turn that are halved where none is an
+/// A point near `start` where `cost` is least, by steps along each number in turn that are halved where none is an
 /// improvement.
 pub(crate) fn search<const N: usize>(
     start: [f64; N],

@@ -92,7 +92,7 @@ impl Details {
         near.into_iter().map(|loss| loss > 0.0).collect()
     }
 
-    /// The isolation of each pixel in or beside a detail that is lost: `drawn` is wrong there by more than a part of the contrast.
+    /// The isolation of each pixel in or beside a lost detail, where the error of `drawn` exceeds a share of the contrast.
     pub(crate) fn losses(&self, drawn: &Image) -> Vec<f32> {
         let drawn = drawn.on(WHITE);
         let error = |i: usize| {

@@ -53,7 +53,7 @@ pub(super) fn score(reference: &[u8], picture: &[u8], width: usize) -> f64 {
     let norms: Vec<_> = Scales::new(reference, picture, width)
         .map(|scale| scale.norms())
         .collect();
-    // Scales come one after another, and each keeps its norms alone: two pictures in memory, not twelve.
+    // Scales come one after another, and only the norms of each remain: two pictures in memory, not twelve.
     let weighted = weighted(norms.len()).map(|(weight, [c, s, n, k])| weight * norms[s][c][k][n]);
     of_sum(weighted.sum())
 }
@@ -87,7 +87,7 @@ fn sums(reference: &[u8], picture: &[u8], width: usize) -> Vec<f64> {
 /// The score of a weighted sum of errors: a fitted polynomial, then a fitted power.
 fn of_sum(sum: f64) -> f64 {
     let x = sum * 0.956_238_261_683_484_4;
-    // All constants are those of the reference implementation.
+    // All constants come from the reference implementation.
     let y = ((6.248_496_625_763_138e-5 * x - 0.020_884_521_182_843_837) * x
         + 2.326_765_642_916_932)
         * x;

@@ -70,7 +70,7 @@ impl<T: Real> Adam<T> {
             &mut self.mean_of_one,
             &mut self.square_of_one,
         ] {
-            // Zeros are the state of a new value: its averages, and those of 1, start from 0.
+            // Zeros are the state of a new value: all its averages start from 0.
             let mut moved = vec![T::zero(); group * sources.len()];
             for (to, source) in moved.chunks_exact_mut(group).zip(sources) {
                 if let Some(from) = source.and_then(|i| state.get(i * group..(i + 1) * group)) {

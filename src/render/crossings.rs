@@ -22,7 +22,7 @@ impl Crossings {
         self.rows.iter_mut().for_each(Vec::clear);
     }
 
-    /// Adds the rings of an area, whose index is above those of all areas before.
+    /// Adds the rings of an area, whose index is above the indices of all areas before.
     pub(super) fn add(&mut self, area: u32, vertices: &[[f32; 2]]) {
         for segment in vertices.windows(2) {
             let ends @ [a, b] = [segment[0], segment[1]];

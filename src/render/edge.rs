@@ -185,7 +185,7 @@ fn arctangent<S: Simd>(x: f32x16<S>) -> (f32x16<S>, f32x16<S>) {
     let size = x.abs();
     let far = size.simd_gt(2.414_213_6);
     let near = size.simd_le(0.414_213_57);
-    // Near 0 the series of x itself; beyond tan 3π/8 that of −1/x; between, that of (x − 1)/(x + 1).
+    // Near 0 the series runs in x, beyond tan 3π/8 in −1/x, and between in (x − 1)/(x + 1).
     let reduced = far.select(-1.0 / size.max(1e-30), (size - 1.0) / (size + 1.0));
     let reduced = near.select(size, reduced);
     // The angle that the reduction has taken away: π/2, π/4 or nothing.

@@ -50,11 +50,11 @@ pub(super) fn uniform_tile(color: [f32; 3]) -> TileRgb {
 /// Pixels side by side in one block of a tile.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Run {
-    /// The block, of those of its tile.
+    /// Index of the block in its tile.
     pub block: usize,
     /// Their lanes in the block.
     pub lanes: std::ops::Range<usize>,
-    /// The place of the first of them among all pixels of the picture, which are counted row by row.
+    /// Index of the first pixel of the run in the picture, row by row.
     pub first: usize,
 }
 

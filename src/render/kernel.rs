@@ -186,7 +186,7 @@ impl<'a> TileJob<'a> {
         self.polylines.areas[self.listed[slot].stroke as usize]
     }
 
-    /// The colour and the opacity of a listed stroke in these blocks. Those of a gradient are put into `inks`.
+    /// The colour and the opacity of a listed stroke in these blocks. A gradient is evaluated into `inks`.
     #[inline(always)]
     fn brush<'b, S: Simd>(
         &self,
@@ -309,7 +309,7 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
         } else {
             union.blocks(simd, segments, radius, job.reach, near)
         };
-        // The edge of an area is that of a stroke without radius, which has no core.
+        // The edge of an area is the edge of a stroke without radius, which has no core.
         if is_area {
             // A block whose pixels lie on both sides has a segment through it, so it is touched. The remaining blocks are wholly
             // inside, hence core, or wholly outside. An area that fills the tile has no block on the edge, so nothing reads its

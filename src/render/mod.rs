@@ -518,7 +518,7 @@ trait BackwardPass: Sync {
     fn untouched(&self, level: Level, job: &TileJob<'_>, scratch: &mut Scratch)
     -> Option<TileSums>;
 
-    /// The sums of the tile of `job`, which pass 1 has drawn, and those of its strokes and segments.
+    /// The sums of the tile of `job`, which pass 1 has drawn; `sums` takes the sums of its strokes and segments.
     fn tile(
         &self,
         level: Level,
@@ -662,7 +662,7 @@ impl<L: CanvasLoss> BackwardPass for Double<'_, L> {
     }
 }
 
-/// The sums on two backdrops together, if both are known. Blocks are those of the first.
+/// The sums on two backdrops together, if both are known. The blocks of the first count.
 fn summed([first, second]: [Option<TileSums>; 2]) -> Option<TileSums> {
     let (mut sums, second) = (first?, second?);
     sums.loss += second.loss;

@@ -24,7 +24,7 @@ pub(super) struct Polylines {
     /// The vertices of all polylines, px.
     pub(super) vertices: Vec<[f32; 2]>,
     /// The first vertex of each stroke, and behind the last stroke the number of all vertices. A polyline has at least
-    /// one segment; that of a dot has no length.
+    /// one segment; the segment of a dot has no length.
     pub(super) firsts: Vec<u32>,
     /// Radius, red, green, blue and opacity of each stroke.
     pub(super) styles: Vec<[f32; STYLE]>,
@@ -245,7 +245,7 @@ pub(crate) enum Knot {
 }
 
 impl Knot {
-    /// The place of the knot.
+    /// The point of the knot, px.
     pub(crate) fn place(self, points: &[[f32; 2]]) -> [f32; 2] {
         match self {
             Self::Point(i) => points[i],

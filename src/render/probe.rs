@@ -50,7 +50,7 @@ impl Patch {
         })
     }
 
-    /// Copies what `probes` needs of the surroundings of pixel (x, y), which becomes the centre of the patch.
+    /// Copies the blocks that `probes` needs around pixel (x, y), which becomes the centre of the patch.
     pub fn fill(&mut self, probes: &Probes, target: &Image, canvas: &Image, x: usize, y: usize) {
         let (width, height) = (canvas.width() as isize, canvas.height() as isize);
         for &block in &probes.blocks {
@@ -261,7 +261,7 @@ impl Search<'_> {
         self.best
     }
 
-    /// Tries the directions beside that of the best capsule.
+    /// Tries both neighbours of the best capsule's direction.
     #[inline(always)]
     fn turn<S: Simd>(&mut self, simd: S) {
         match self.best {

@@ -30,7 +30,7 @@
 //! derivative by x of at most `Σ k·w`, `k = 2|∂C/∂d|²` and `∂C/∂d = T·opacity·σ'(d)·(c − B)`, since `w² ≤ w`. Sums of
 //! these bounds also hold for vertices that move together, because the `w` of a pixel add up to 1.
 //!
-//! **Areas.** A stroke with rings is an area: its distance is that of its contours, and all else is as
+//! **Areas.** A stroke with rings is an area: its distance is measured from its contours, and all else is as
 //! for a path, without a radius. A cut makes coverage 1 deep inside it as well as 0 far outside.
 //!
 //! Domain: any finite parameters; a radius of 0 or below leaves what the coverage function has

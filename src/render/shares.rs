@@ -24,7 +24,7 @@ pub(super) struct Share<'a> {
     slopes: &'a mut [[f32; 2]],
 }
 
-/// Shares of all sums, for strokes that are summed up at a time.
+/// Cuts all sums into shares of consecutive strokes.
 pub(super) fn shares<'a>(
     strokes: &Strokes,
     polylines: &Polylines,

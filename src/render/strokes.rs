@@ -55,13 +55,13 @@ pub const STYLE: usize = 5;
 /// Strokes, back to front, as one row of numbers.
 ///
 /// Each stroke has the x and y of its points, px, and then its *style*: radius (px), red, green, blue and opacity. So the
-/// numbers of a stroke of two points are those of [`Params`].
+/// numbers of a stroke of two points are laid out as [`Params`].
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Strokes {
     numbers: Vec<f32>,
     /// For each point of all strokes, true if it is off its path.
     off: Vec<bool>,
-    /// The rings of all areas: each by the index behind its last point, among those of its area.
+    /// The rings of all areas: each by the index behind its last point, counted from the first point of its area.
     rings: Vec<u32>,
     /// The gradients of the areas that have one.
     paints: Vec<Paint>,
@@ -71,9 +71,9 @@ pub struct Strokes {
 /// Meaning of the numbers of a stroke.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 struct Outline {
-    /// The index after its last point, among those of all strokes.
+    /// The index after its last point, among the points of all strokes.
     end: u32,
-    /// The index after its last ring, among those of all areas.
+    /// The index after its last ring, among the rings of all areas.
     rings_end: u32,
     /// The index after its paint, or after the last one before it.
     paints_end: u32,
@@ -128,7 +128,7 @@ impl<'a> StrokeRef<'a> {
         !self.rings.is_empty()
     }
 
-    /// The paths that the points form: those of an area's rings, or one. Each comes with the index of its first point.
+    /// The paths that the points form: one for each ring of an area, or a single one. Each comes with the index of its first point.
     pub fn paths(&self) -> impl Iterator<Item = (usize, StrokeRef<'a>)> + use<'a> {
         let whole = *self;
         let ends = whole.rings.iter().map(|&end| end as usize);
@@ -292,13 +292,13 @@ impl Strokes {
         &mut self.numbers
     }
 
-    /// The index of the first point of stroke `i`, among those of all strokes.
+    /// The index of the first point of stroke `i`, among the points of all strokes.
     fn first_point(&self, i: usize) -> usize {
         i.checked_sub(1)
             .map_or(0, |before| self.outlines[before].end as usize)
     }
 
-    /// The index of the first ring of stroke `i`, among those of all areas.
+    /// The index of the first ring of stroke `i`, among the rings of all areas.
     fn first_ring(&self, i: usize) -> usize {
         i.checked_sub(1)
             .map_or(0, |before| self.outlines[before].rings_end as usize)

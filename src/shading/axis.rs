@@ -28,7 +28,7 @@ pub(super) fn of(blocks: &Blocks, kind: Kind) -> Option<Axis> {
             let cost = |angle: f64| spread(blocks, line(blocks, angle));
             // A degree, down to a hundredth of one.
             let [angle] = math::search([angle], 0.02, 0.0002, |[angle]| cost(angle));
-            // An axis that is meant to be level or upright is exactly so.
+            // If a level or upright axis fits nearly as well, the picture was likely made with it.
             let straight = (angle / FRAC_PI_2).round() * FRAC_PI_2;
             let is_straight = cost(straight) <= f64::from(LEVEL) * cost(angle);
             Some(line(blocks, if is_straight { straight } else { angle }))

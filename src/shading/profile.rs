@@ -213,7 +213,7 @@ impl Profile {
     }
 
     /// Values at `n` offsets, linear between them, that are the least squares of `factor · value − wanted` over all blocks.
-    /// `of` tells factor and wanted value of a group in its segment.
+    /// `of` gives factor and wanted value of a group in its segment.
     fn fitted(
         &self,
         n: usize,

@@ -1,4 +1,4 @@
-//! Gradients on top of each other: what is no shade by itself, as a glow on a sky, may be two.
+//! Gradients on top of each other: a part that no single shade explains, as a glow on a sky, may be two.
 //!
 //! A shade on top changes a value `v` below to `(1 − a)·v + p`, with its opacity `a` and its premultiplied colour `p`. Along a
 //! given axis both are linear between knots, so that the best ones are a linear least-squares problem. Places of the axis are
@@ -259,7 +259,7 @@ impl Blocks {
                 }
             }
         }
-        // Knots that nothing tells about stay clear.
+        // Knots that no block is near stay clear.
         for (i, column) in columns.iter_mut().enumerate() {
             column[i] += RIDGE * weights / KNOTS as f64;
         }

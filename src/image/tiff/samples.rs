@@ -74,7 +74,7 @@ impl Samples {
         }
     }
 
-    /// The samples of so many planes, those of a pixel side by side.
+    /// The samples of so many planes, interleaved.
     pub(super) fn interleaved(self, planes: usize) -> Self {
         fn mixed<T: Copy>(samples: &[T], planes: usize) -> Vec<T> {
             let pixels = samples.len() / planes;

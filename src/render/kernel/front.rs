@@ -15,7 +15,7 @@ const OPAQUE: f32 = 1.0 / 16384.0;
 /// Share of the light that the strokes drawn so far let through.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Transmittance {
-    /// That of all of them.
+    /// Transmittance of all of them.
     pub(super) through: Lanes,
     /// Largest transmittance that leaving out any one stroke gives.
     less_one: Lanes,

@@ -45,7 +45,7 @@ pub(in crate::render) fn list_segments(
             let before = segments.len();
             let first = polylines.firsts[stroke];
             let vertices = &polylines.vertices[first as usize..polylines.firsts[stroke + 1] as usize];
-            // The box of a single segment is that of its stroke, which touches the tile already.
+            // A single segment has the bounding box of its stroke, which touches the tile already.
             if vertices.len() == 2 {
                 segments.push(first);
             } else if polylines.areas[stroke] {
