@@ -164,7 +164,7 @@ impl fmt::Display for Coverage {
     }
 }
 
-/// Reads what [`Display`](fmt::Display) writes: `smoothstep`, `sigmoid`, `tanh`, `atan`, `atan:K`
+/// Reads the words that [`Display`](fmt::Display) writes: `smoothstep`, `sigmoid`, `tanh`, `atan`, `atan:K`
 /// or `raw`.
 ///
 /// # Errors

@@ -201,7 +201,7 @@ impl Image {
         Ok(Self::read_within(path, limits)?.0)
     }
 
-    /// Reads the picture file at `path`, within other limits, and says what was changed or left out.
+    /// Reads the picture file at `path`, within other limits, with remarks on changes and omissions.
     ///
     /// # Errors
     /// As [`Image::open`].
@@ -219,7 +219,7 @@ impl Image {
         Ok(Self::decode_remarking(bytes, name, limits)?.0)
     }
 
-    /// Decodes as [`Image::decode`] does, and says what was changed or left out.
+    /// Decodes as [`Image::decode`] does, with remarks on changes and omissions.
     ///
     /// # Errors
     /// As [`Image::decode`].

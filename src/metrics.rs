@@ -1,4 +1,4 @@
-//! Measures the difference between two pictures: MSE, PSNR, SSIM, L1, and SSIMULACRA2, which predicts what people see.
+//! Measures the difference between two pictures: MSE, PSNR, SSIM, L1, and SSIMULACRA2, which predicts the judgement of people.
 //!
 //! All measures are over 8-bit RGB, as a viewer shows it: both pictures are first flattened onto a white matte and
 //! rounded. Errors are in channel values 0..1, averaged over pixels and channels.
@@ -222,7 +222,7 @@ pub fn ssimulacra2(reference: &Image, picture: &Image) -> Result<f64> {
     Ok(ssimulacra2::score(&a, &b, reference.width()))
 }
 
-/// Where [`fn@ssimulacra2`] is lost, row by row: what the score would be if all of the picture were as bad as it is there.
+/// Where [`fn@ssimulacra2`] is lost, row by row: the score if all of the picture were as bad as it is there.
 ///
 /// # Errors
 /// [`ErrorKind::Picture`] when the sizes differ.

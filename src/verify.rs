@@ -202,7 +202,7 @@ fn check_aspect(tree: &Tree, width: u32, height: u32) -> Result<()> {
     Err(Error::new(ErrorKind::Svg, message))
 }
 
-/// Runs resvg, and makes a panic of it an error: the judge does not fall with what it judges, and resvg's arithmetic
+/// Runs resvg, and turns its panic into an error: no SVG may bring the judge down, and resvg's arithmetic
 /// has corners that no check of ours foresees. Where panics end the program, as in WebAssembly, this one does, too.
 fn guarded<R>(judge: impl FnOnce() -> R) -> Result<R> {
     // The flag is per thread: panics of other threads, at the same time, still reach the hook.

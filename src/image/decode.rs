@@ -63,7 +63,7 @@ fn unreadable(error: io::Error) -> Error {
     Error::new(ErrorKind::Io, remedy).caused_by(error)
 }
 
-/// Decodes the bytes of a picture file, and says what of it is changed or left out. The name decides the format where the bytes
+/// Decodes the bytes of a picture file, with remarks on changes and omissions. The name decides the format where the bytes
 /// don't.
 pub(super) fn decode(bytes: &[u8], name: &str, limits: Limits) -> Result<(Image, Vec<Remark>)> {
     let format = format(bytes, name, limits)?;

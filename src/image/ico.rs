@@ -29,7 +29,7 @@ pub(super) struct Bitmap<'a> {
     bits: u32,
 }
 
-/// The largest picture of an icon, of those the one of most bits.
+/// The largest picture of an icon; among equals the one of most bits.
 pub(super) fn largest(bytes: &[u8]) -> Result<Largest<'_>, Failure> {
     let count = le16(bytes, 4).unwrap_or(0) as usize;
     let entries = (0..count).map_while(|i| bytes.get(6 + 16 * i..22 + 16 * i));
@@ -78,7 +78,7 @@ impl<'a> Bitmap<'a> {
     /// The picture, transparent where the mask is set. Its size is within the limits.
     pub(super) fn picture(&self) -> Result<DynamicImage, Failure> {
         let mut bitmap = self.bytes.to_vec();
-        // The header counts the mask's rows, too: half of that is what the decoder has to read.
+        // The header counts the mask's rows, too: the decoder has to read half of that.
         bitmap[8..12].copy_from_slice(&self.size.1.to_le_bytes());
         let decoder = BmpDecoder::new_without_file_header(Cursor::new(&bitmap))?;
         if decoder.dimensions() != self.size {

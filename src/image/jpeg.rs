@@ -40,7 +40,7 @@ pub(super) fn inks(bytes: &[u8]) -> Result<Decoded, Failure> {
         let options = DecoderOptions::default().set_strict_mode(false);
         options.set_max_width(most).set_max_height(most)
     };
-    // Read the headers first: the kind of inks decides what the decoder is asked for, so that it converts nothing.
+    // Read the headers first: asking for the colour space of the file keeps the decoder from converting.
     decoder.set_options(options());
     decoder.decode_headers().map_err(failed)?;
     let space = decoder.input_colorspace().unwrap_or(ColorSpace::CMYK);
@@ -70,7 +70,7 @@ pub(super) fn inks(bytes: &[u8]) -> Result<Decoded, Failure> {
 fn ink(stored: [u8; 4], is_luma: bool, is_inverted: bool) -> [u8; 4] {
     let [y, cb, cr, black] = stored;
     let [cyan, magenta, yellow] = if is_luma {
-        // Red, green and blue of these are what the inks take away.
+        // JFIF's matrix gives red, green and blue; each ink is 255 less one of these.
         let (y, cb, cr) = (f32::from(y), f32::from(cb) - 128.0, f32::from(cr) - 128.0);
         let green = y - 0.344_136 * cb - 0.714_136 * cr;
         let level = |v: f32| 255 - (v + 0.5) as u8;

@@ -1,4 +1,4 @@
-//! The chunks of a PNG that say what its colours are.
+//! The chunks of a PNG that define its colours.
 
 use super::decoded::Coding;
 use super::header::be32;
@@ -10,7 +10,7 @@ const NEAR: f64 = 0.05;
 const GAMMAS: std::ops::RangeInclusive<f64> = 0.05..=5.0;
 
 /// The colours that the samples encode, where chunks say so: by `cICP`, else `iCCP`, else `sRGB`, else `gAMA` and
-/// `cHRM`. `icc` is what `iCCP` holds.
+/// `cHRM`. `icc` is the profile in `iCCP`.
 pub(super) fn coding(bytes: &[u8], icc: Option<Vec<u8>>) -> Option<Coding> {
     let find = |name: &[u8; 4]| {
         let mut chunks = chunks(bytes);
@@ -26,7 +26,7 @@ pub(super) fn coding(bytes: &[u8], icc: Option<Vec<u8>>) -> Option<Coding> {
     if icc.is_some() {
         return icc.map(Coding::Icc);
     }
-    // sRGB is what pictures have here: nothing to convert.
+    // All pictures here are sRGB: nothing to convert.
     if find(b"sRGB").is_some() {
         return None;
     }

@@ -23,7 +23,7 @@ impl Image {
                 alpha: None,
             };
         };
-        // The mean colour is Σ α·c / Σ α: what is clear has no colour to add. Weighing before and dividing after makes it two
+        // The mean colour is Σ α·c / Σ α: a clear pixel has no colour to add. Weighing before and dividing after makes it two
         // plain means.
         let opacity = reduce(alpha);
         let planes = [0, 1, 2].map(|c| {
@@ -65,7 +65,7 @@ fn spans(old: usize, new: usize) -> Vec<Span> {
         let (from, to) = (i as f64 * step, (i + 1) as f64 * step);
         let first = (from as usize).min(old - 1);
         let end = (to.ceil() as usize).clamp(first + 1, old);
-        // The last one may be the first, too, which then counts by what lies between.
+        // The last one may be the first, too, which then counts by its part within the span.
         let head = ((first + 1) as f64).min(to) - from;
         let tail = to - ((end - 1) as f64).max(from);
         Span {

@@ -26,7 +26,7 @@ const ASSOCIATED: u16 = 1;
 const UNASSOCIATED: u16 = 2;
 
 /// The first page of at most `max_bytes` of samples, if `check` lets its width and height pass. The file is one that
-/// [`unfolded`] has seen, `is_palette` what it said.
+/// [`unfolded`] has returned, together with `is_palette`.
 pub(super) fn read(
     file: impl Read + Seek,
     is_palette: bool,
@@ -65,7 +65,7 @@ fn limits(max_bytes: u64) -> Limits {
     limits
 }
 
-/// The samples of a page, and what they mean.
+/// The layout and the meaning of a page's samples.
 struct Page {
     width: usize,
     height: usize,
@@ -140,7 +140,7 @@ impl Page {
         }
         let samples = Samples::of(read)?;
         // Unpack first, since samples of less than a byte can't be moved; then bring planes together, look up colours, bring to
-        // full scale, drop what is no channel, convert, and divide by alpha.
+        // full scale, drop samples that are no channel, convert, and divide by alpha.
         let samples = match self.color.bit_depth() {
             // A row of a page of planes is one of a plane.
             bits @ (1 | 2 | 4) if layout.planes > 1 => {

@@ -1,4 +1,4 @@
-//! Light beyond white: PQ and HLG, brought to what a page of sRGB can show.
+//! Light beyond white: PQ and HLG, brought to the range of a page of sRGB.
 //!
 //! White of graphics is at 203 cd/m² in both, as ITU-R BT.2408 has it. Light up to that stays as it is, so a
 //! screenshot keeps its colours; brighter light is bent towards white, down to half its light, so that the brightest

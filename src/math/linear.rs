@@ -51,7 +51,7 @@ fn add(sums: &mut [f64], factor: f64, terms: &[f64]) {
     }
 }
 
-/// The scalar product: eight sums side by side, as vector units add, and then what is left.
+/// The scalar product: eight sums side by side, as vector units add, and then the remainder.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let ((a, last_a), (b, last_b)) = (a.as_chunks::<8>(), b.as_chunks::<8>());
     let mut sums = [0.0; 8];

@@ -2,7 +2,7 @@
 //!
 //! A thing is small if it is thinner than a window: opening and closing by the window remove what is brighter or darker than
 //! its surroundings and does not hold the window (the *top-hat* of mathematical morphology: Serra, 1982). It is a detail
-//! if there are few such things around; many of them are texture, which hides what is missing.
+//! if there are few such things around; many of them are texture, which hides a loss.
 
 use rayon::prelude::*;
 
@@ -111,7 +111,7 @@ impl Details {
     }
 }
 
-/// The largest contrast of what is darker or brighter than its surroundings, of each pixel.
+/// For each pixel, the largest contrast of a small thing there with its surroundings.
 fn contrasts(planes: &[Vec<f32>; 3], width: usize) -> Vec<f32> {
     let of_plane = |plane: &Vec<f32>| {
         let least = |of: &[f32]| extremes(of, width, REACH, f32::min);

@@ -81,7 +81,7 @@ impl<T: Real> Adam<T> {
         }
     }
 
-    /// One step at the learning rate `rate · scales[i]` for value `i`, with `squares[i]` in the place of its squared
+    /// One step at the learning rate `rate · scales[i]` for value `i`, with `squares[i]` in place of its squared
     /// gradient. Values that move together, such as the coordinates of a point, share a square: a step then has the
     /// direction of their gradient.
     pub fn step_with_squares(

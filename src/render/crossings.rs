@@ -62,7 +62,7 @@ pub(super) fn is_inside(crossings: &[Crossing], origin: [f32; 2]) -> bool {
 }
 
 impl Crossing {
-    /// The first pixel of a row of a tile whose centre is beyond the segment, and by how much the winding number grows there.
+    /// The first pixel of a row of a tile whose centre is beyond the segment, and the growth of the winding number there.
     #[inline(always)]
     pub(super) fn at(&self, row: usize, [left, top]: [f32; 2]) -> (usize, i32) {
         let [a, b] = self.ends;

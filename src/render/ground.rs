@@ -33,7 +33,7 @@ pub fn ground(scene: &Scene, behind: Rgb) -> [Vec<f32>; 3] {
 /// The share of each pixel of a page that a shadow covers, 0 to 1, without its opacity, row by row.
 pub fn coverage(shadow: &Shadow, width: usize, height: usize) -> Vec<f32> {
     let [low, high] = shadow.extent();
-    // What lies beyond the page is blurred into it, as far as a blur reaches.
+    // A shadow beyond the page is blurred into it, as far as a blur reaches.
     let reach = (4.0 * shadow.blur()).ceil() as i64;
     let page = [width, height].map(|side| side as i64);
     // The rectangle to blur: the shadow, cut where it is too far from the page to show there.

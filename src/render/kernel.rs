@@ -100,7 +100,7 @@ pub(super) struct Scratch {
     kept_transmittance: Stack<Lanes>,
     /// The other kept values of the blocks on a soft edge.
     kept_edges: Stack<EdgeBlock>,
-    /// Where several segments of a stroke can be nearest, which of them is the nearest to each pixel.
+    /// Index of the segment nearest to each pixel, in blocks where several segments compete.
     kept_nearest: Stack<Lanes>,
     /// For each listed segment, the blocks in which it can be nearest.
     near: Vec<BlockSet>,
@@ -466,7 +466,7 @@ fn back_to_front<S: Simd, X: Extras>(
         {
             let (rgb, _) = brush.at(simd, block);
             let (pull, stiffness) = stroke.blend_edge::<X>(simd, kept, t, &rgb, grounds.at(block));
-            // Values that the segments need, in the place of values that nothing needs any more.
+            // The segments need these values; they overwrite values that are used up.
             store(pull, &mut kept.slope);
             if X::STIFFNESS {
                 store(stiffness, &mut kept.inverse);
@@ -618,7 +618,7 @@ fn change_backdrop<S: Simd>(simd: S, from: &TileRgb, to: &TileRgb, scratch: &mut
 }
 
 /// Prepares pass 2 for both losses. In front of it, the colours of a stroke are the same on both backdrops, so that the
-/// derivatives by the canvases add up, and what is different behind it is in [`Matte`].
+/// derivatives by the canvases add up, and [`Matte`] has the difference behind it.
 #[inline(always)]
 fn add_second_loss<S: Simd>(simd: S, first: &TileRgb, other: &TileRgb, scratch: &mut Scratch) {
     let Scratch {

@@ -13,7 +13,7 @@ use super::strokes::{STYLE, Strokes};
 /// Most shares.
 const SHARES: usize = 16;
 
-/// Some strokes, one after another, and what is summed up for them.
+/// Consecutive strokes and their sums.
 pub(super) struct Share<'a> {
     ids: Range<usize>,
     /// The derivatives by their numbers.

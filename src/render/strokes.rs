@@ -362,7 +362,7 @@ impl Strokes {
         }
     }
 
-    /// Moves the points of stroke `i`, of which there are as many as before.
+    /// Moves the points of stroke `i`, whose number stays.
     pub fn move_points(&mut self, i: usize, points: &[[f32; 2]]) {
         let range = self.range(i);
         let numbers = self.numbers[range].iter_mut();
@@ -370,7 +370,7 @@ impl Strokes {
         numbers.zip(points).for_each(|(number, &at)| *number = at);
     }
 
-    /// Gives areas their colours in the place of gradients.
+    /// Replaces the gradients of areas by their colours.
     pub fn flatten_paints(&mut self) {
         self.paints.clear();
         let outlines = self.outlines.iter_mut();

@@ -24,7 +24,7 @@ pub(super) fn of(blocks: &Blocks, kind: Kind) -> Option<Axis> {
     match kind {
         Kind::Linear => {
             let angle = direction(blocks, NEAR)?;
-            // The closed form fits slopes. The values are what counts, so a search on these follows.
+            // The closed form fits slopes. A search then fits the values themselves.
             let cost = |angle: f64| spread(blocks, line(blocks, angle));
             // A degree, down to a hundredth of one.
             let [angle] = math::search([angle], 0.02, 0.0002, |[angle]| cost(angle));

@@ -274,7 +274,7 @@ impl Segment {
     /// The place of `at`.
     fn of(offsets: &[f64], at: f64) -> Self {
         let after = offsets.partition_point(|&offset| offset <= at);
-        // What lies before the first offset or beyond the last belongs to the segment there.
+        // A place before the first offset or beyond the last belongs to the segment there.
         let i = after.clamp(1, offsets.len() - 1) - 1;
         let part = (at - offsets[i]) / (offsets[i + 1] - offsets[i]);
         Self {
@@ -283,7 +283,7 @@ impl Segment {
         }
     }
 
-    /// The value here of what is linear between these values at the offsets.
+    /// The value here, linear between these values at the offsets.
     fn value(self, values: &[f64]) -> f64 {
         values[self.i] + self.part * (values[self.i + 1] - values[self.i])
     }

@@ -23,7 +23,7 @@ const ANGLES: [f64; 4] = [0.0, 0.785, 1.571, 2.356];
 const ROUNDS: usize = 4;
 /// Tolerances of the rounds that fit the lowest shade, in units of the last one: blocks with something on top drop out bit by bit.
 const FACTORS: [f32; 6] = [16.0, 8.0, 4.0, 2.0, 1.0, 1.0];
-/// Radii of circles around what a stack does not explain, in units of its spread.
+/// Radii of circles around the blocks that a stack does not explain, in units of their spread.
 const SPREADS: [f64; 4] = [1.2, 2.0, 3.0, 4.5];
 /// Above this opacity the shade below can't be recovered.
 const HIDING: f32 = 0.8;
@@ -82,7 +82,7 @@ impl Blocks {
         best.map(|(_, stack)| stack)
     }
 
-    /// Fits the lowest shade to what it must be below the others.
+    /// Fits the lowest shade to the values that it must have below the others.
     fn refit(&self, stack: &mut [Shade], fit: &ShadeFit) {
         let Some((lowest, others)) = stack.split_first_mut() else {
             return;
@@ -142,7 +142,7 @@ impl Blocks {
         around.chain(circles).chain(lines).collect()
     }
 
-    /// The middle of what these shades do not explain, and its spread, px.
+    /// The middle of the blocks that these shades do not explain, and their spread, px.
     fn unexplained(&self, below: &[Shade], near: f32) -> Option<(Point, f64)> {
         let missing = |block: &Block| {
             let seen = stacked(below, block.center);

@@ -1,4 +1,4 @@
-//! Limits on what an SVG may cost to draw, checked before it is drawn.
+//! Limits on the cost of drawing an SVG, checked before it is drawn.
 //!
 //! A few lines of SVG can ask for more memory and time than any machine has: pictures that unpack to
 //! terabytes, layers within layers, patterns of patterns. The cost of a tree is estimated from the bounding
@@ -93,7 +93,7 @@ pub(super) fn refusal(reason: impl std::fmt::Display) -> Error {
     Error::new(ErrorKind::Svg, format!("{reason}: simplify the SVG"))
 }
 
-/// The cost of what was looked at so far.
+/// The cost of the parts visited so far.
 struct Reckoning {
     /// Pixels in a square of side 1 of the SVG.
     area: f64,
@@ -110,7 +110,7 @@ type Reckoned = std::result::Result<(), &'static str>;
 impl Reckoning {
     fn group(&mut self, group: &Group) -> Reckoned {
         if !group.should_isolate() {
-            // Drawn straight onto what is there: no memory of its own.
+            // Drawn straight onto the layer below: no memory of its own.
             return group.children().iter().try_for_each(|node| self.node(node));
         }
         let layer = self.seen(group.abs_layer_bounding_box().to_rect())?;
@@ -195,7 +195,7 @@ impl Reckoning {
         self.layer(2.0 * layer, |this| this.write(layer * per_pixel))
     }
 
-    /// Counts a further layer of so many pixels, and what is done `inside` it.
+    /// Counts a further layer of so many pixels, and the work `inside` it.
     fn layer(&mut self, pixels: f64, inside: impl FnOnce(&mut Self) -> Reckoned) -> Reckoned {
         self.layered += pixels;
         if self.layered > MAX_LAYERED {

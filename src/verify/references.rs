@@ -1,4 +1,4 @@
-//! The size of an SVG once every reference is replaced by what it refers to.
+//! The size of an SVG once every reference is replaced by its target.
 //!
 //! Ten patterns that each draw the one before ten times are a dozen lines, and ten thousand million parts.
 //! resvg follows some of these references without counting, so they are counted beforehand: in the tree that resvg draws, whose
@@ -13,7 +13,7 @@ const MAX_PARTS: f64 = 4e6;
 /// Deepest nesting of elements in an unfolded SVG; resvg's own bound is 1024.
 const MAX_DEPTH: usize = 1000;
 
-/// Result of a check, or what is wrong.
+/// Result of a check, or the reason for a refusal.
 type Checked<T> = Result<T, String>;
 
 /// Fails when the unfolded document would be too large or too deep.

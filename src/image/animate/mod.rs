@@ -1,6 +1,6 @@
 //! Animated GIF, PNG and WebP.
 //!
-//! Each frame after the first holds only what changes: the rectangle around the pixels that differ from
+//! Each frame after the first holds only the changes: the rectangle around the pixels that differ from
 //! the previous frame, with equal pixels transparent. GIF allows 256 colours per frame; PNG and WebP are
 //! lossless.
 

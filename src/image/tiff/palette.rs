@@ -15,7 +15,7 @@ use crate::image::header::is_big_tiff;
 const PALETTE: u16 = 3;
 const GREY: u16 = 1;
 
-/// The tag that says what samples are.
+/// The tag with the meaning of samples.
 const INTERPRETATION: u16 = 262;
 
 /// The file with the numbers of a palette called grey, and whether there is a palette.

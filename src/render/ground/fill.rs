@@ -10,7 +10,7 @@ const FLATNESS: f64 = 0.02;
 /// The share of each pixel that the rings fill, where they wind in one direction and holes in the other. Rings are in px from the
 /// plane's corner.
 pub fn filled(rings: impl Iterator<Item = Path>, [width, height]: [usize; 2]) -> Plane {
-    // Sums over a row of what its pixels hold give the covered share; a column more takes what the last one hands on.
+    // A running sum along a row gives the covered shares. One column more takes the last pixel's carry.
     let stride = width + 2;
     let mut turns = vec![0.0_f64; stride * height];
     for ring in rings {

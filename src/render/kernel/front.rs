@@ -1,4 +1,4 @@
-//! Pass 1 in one block: the coverage of a stroke there, and what the strokes so far let through.
+//! Pass 1 in one block: the coverage of a stroke there, and the transmittance of the strokes so far.
 
 use fearless_simd::{f32x16, mask32x16, prelude::*};
 
@@ -30,7 +30,7 @@ impl Transmittance {
         }
     }
 
-    /// Adds one stroke behind the others, and to `color` what is seen of it. Returns true if nothing behind it can matter
+    /// Adds one stroke behind the others, and its visible light to `color`. Returns true if nothing behind it can matter
     /// any more.
     #[inline(always)]
     pub(super) fn add<S: Simd>(
@@ -48,7 +48,7 @@ impl Transmittance {
         }
         let less_one = load(simd, &self.less_one);
         // The largest transmittance with any one stroke left out: `t` if it is the new one; otherwise that of before,
-        // dimmed by the new one. While this shows anything, worth still depends on what lies behind.
+        // dimmed by the new one. While this shows anything, worth still depends on the strokes behind.
         let less_one = (less_one - less_one * alpha).max(t);
         store(t - weight, &mut self.through);
         store(less_one, &mut self.less_one);

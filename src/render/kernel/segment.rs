@@ -147,7 +147,7 @@ pub(super) fn rows_within(outer: f32, [top, bottom]: [f32; 2]) -> Range<usize> {
     let side = (TILE / ROWS) as f32;
     // Centres lie half a block inside their row's outermost edges.
     let margin = outer - 0.5 * BLOCK as f32;
-    // Conversions saturate, and what is no number becomes 0.
+    // Conversions saturate, and NaN becomes 0.
     let first = ((top - margin) / side) as usize;
     let last = ((bottom + margin) / side) as usize;
     first..last.min(ROWS - 1) + 1

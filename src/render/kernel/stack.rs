@@ -2,7 +2,7 @@
 
 use super::super::grid::BlockSet;
 
-/// A stack whose items are written in place. It keeps its memory, and what is in it, when it shrinks.
+/// A stack whose items are written in place. When it shrinks, it keeps its memory and the items there.
 #[derive(Debug)]
 pub(super) struct Stack<T> {
     items: Vec<T>,

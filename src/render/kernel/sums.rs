@@ -194,7 +194,7 @@ impl<S: Simd> Looks<S> {
         }
     }
 
-    /// Lays the stroke on what is behind it in one block; returns `∂L/∂m`, and `|c − B|²` if stiffness is asked for.
+    /// Lays the stroke on the colours behind it in one block; returns `∂L/∂m`, and `|c − B|²` if stiffness is asked for.
     #[inline(always)]
     pub(super) fn blend<X: Extras>(
         &mut self,

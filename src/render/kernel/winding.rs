@@ -15,7 +15,7 @@ const ROW: u32 = (1 << BLOCK) - 1;
 pub(super) struct Windings {
     /// By row: the pixels that are inside, one bit each.
     inside: [u32; TILE],
-    /// By row: by how much the winding number grows at each pixel.
+    /// By row: growth of the winding number at each pixel.
     steps: [[i32; TILE]; TILE],
     /// By row: the pixels at which it may grow.
     places: [u32; TILE],

@@ -253,7 +253,7 @@ impl Knots<'_> {
 }
 
 impl Mean {
-    /// The place of the vertex.
+    /// The point of the vertex.
     fn place(&self, points: &[[f64; 2]]) -> Point {
         let sum = |sum: Vec2, &(i, weight): &(usize, f64)| sum + vector(points[i]) * weight;
         self.0.iter().fold(Vec2::ZERO, sum).to_point()
