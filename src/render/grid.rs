@@ -320,7 +320,6 @@ pub(super) fn edge_weights(grid: &Grid, tile: usize) -> Option<Box<TileWeights>>
         return None;
     }
     let mut weights = Box::new([Lanes::splat(0.0); BLOCKS]);
-    // Start from 0 everywhere, and set the pixels that are on the picture.
     for y in y0..grid.height.min(y0 + TILE) {
         for x in x0..grid.width.min(x0 + TILE) {
             let (_, block, lane) = grid.locate(x, y);

@@ -224,7 +224,7 @@ impl<'a> TileJob<'a> {
 struct Brush<'a, S: Simd> {
     rgb: [f32x16<S>; 3],
     opacity: f32x16<S>,
-    /// The colours and opacities of a gradient, which replace the two above.
+    /// A gradient: its colours replace `rgb`, and its opacities multiply `opacity`.
     inks: Option<&'a InkTile>,
 }
 
@@ -480,7 +480,7 @@ fn back_to_front<S: Simd, X: Extras>(
         // Give each segment the pull of its own blocks, and of those pixels near joints that it is nearest to.
         let mut alone = alone.iter();
         for (k, near) in near.iter().enumerate() {
-            // The segment lies in the core or is hidden: moving it changes no pixel.
+            // No visible block of the edge has this segment as a candidate: moving it changes no pixel.
             if near & visit.edge == 0 {
                 continue;
             }

@@ -351,6 +351,7 @@ impl Renderer {
         survey.vertices.clone_from(&self.polylines.vertices);
         survey.slopes.clone_from(&self.slopes);
         survey.stiffness.clear();
+        // A vertex between two segments gets a part from each, in each tile that they touch.
         survey.stiffness.resize(self.polylines.vertices.len(), 0.0);
         // Only a survey asks for stiffness, so that its sums are made here, on one thread.
         for work in &self.tiles {
@@ -398,6 +399,7 @@ impl Renderer {
                 // Both passes run on one tile at once, while what pass 1 keeps is still in the cache.
                 let job = frame.job(polylines, tile, work, weights);
                 let total = scratch.with(|scratch| {
+                    // Without a stroke the tile shows the backdrop, whose sums the loss may keep as long as the picture stays.
                     let untouched = || pass.untouched(level, &job, scratch);
                     if let Some(total) = job.listed.is_empty().then(untouched).flatten() {
                         return total;

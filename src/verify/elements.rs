@@ -95,7 +95,6 @@ fn of(path: &Path, scale: f32) -> Element {
             let share = |i: u16| f64::from(i) / f64::from(chords);
             line.extend((1..=chords).map(|i| at(&curve, share(i))));
         }
-        // The next segment starts where this one ends.
         here = curve[curve.len() - 1];
         element.nodes.push(here);
     }
