@@ -128,7 +128,7 @@ impl<'a> StrokeRef<'a> {
         !self.rings.is_empty()
     }
 
-    /// The paths that the points form: one for each ring of an area, or a single one. Each comes with the index of its first point.
+    /// The paths that the points form: one for each ring of an area, or one. Each comes with the index of its first point.
     pub fn paths(&self) -> impl Iterator<Item = (usize, StrokeRef<'a>)> + use<'a> {
         let whole = *self;
         let ends = whole.rings.iter().map(|&end| end as usize);

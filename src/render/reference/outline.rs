@@ -28,7 +28,7 @@
 //!
 //! **Degenerate cases.** A segment of no length is a disc: `h = 0`, and the gradient of both ends goes to `a`. On the centre line
 //! `u = 0` if ε > 0; at ε = 0, where no derivative exists, 0 is used as well. A contour of one point or of points in one line has no
-//! inside; its distance is measured from the line. Contours that cross have a distance of 0 on their segments even where area lies on
+//! inside; its distance is to the line. Contours that cross have a distance of 0 on their segments even where area lies on
 //! both sides.
 //!
 //! Source: Inigo Quilez, "2D distance functions" (the segment), with the sign reversed and ε added as in the golden data.
