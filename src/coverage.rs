@@ -120,6 +120,7 @@ impl Coverage {
                 let x = k * d / softness;
                 k / (T::pi() * softness * (one + x * x))
             }
+            // At the kinks the slope of the inside, as autograd gives for `clamp`.
             Self::Raw if d.abs() <= softness => half / softness,
             Self::Raw => T::zero(),
         }
@@ -130,6 +131,8 @@ impl Coverage {
     pub fn support(self, softness: f64) -> f64 {
         match self {
             Self::Smoothstep => softness / 2.0,
+            // The d for which σ(−d) = TAIL. 1/(1 + e^x) = TAIL gives x = ln(1/TAIL − 1); tanh is the sigmoid of 2x; atan(−kx)/π +
+            // ½ = TAIL gives kx = 1/tan(π·TAIL).
             Self::Sigmoid => softness * math::ln(1.0 / TAIL - 1.0),
             Self::Tanh => softness * math::ln(1.0 / TAIL - 1.0) / 2.0,
             Self::Atan { k } => softness / (f64::from(k) * math::tan(PI * TAIL)),
@@ -139,6 +142,7 @@ impl Coverage {
 }
 
 fn smoothstep_parameter<T: Real>(d: T, softness: T) -> T {
+    // The guard is in the denominator alone, so t = ½ is reached a hair inside of the edge.
     let t = (d + softness * T::of(0.5)) / (softness + T::of(SMOOTHSTEP_EPS));
     t.clamp(T::zero(), T::one())
 }
@@ -160,7 +164,7 @@ impl fmt::Display for Coverage {
     }
 }
 
-/// Reads what [`Display`](fmt::Display) writes: `smoothstep`, `sigmoid`, `tanh`, `atan`, `atan:K`
+/// Reads the words that [`Display`](fmt::Display) writes: `smoothstep`, `sigmoid`, `tanh`, `atan`, `atan:K`
 /// or `raw`.
 ///
 /// # Errors

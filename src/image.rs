@@ -3,7 +3,7 @@
 //!
 //! It reads PNG, JPEG, WebP, GIF, BMP, TIFF, ICO, QOI, TGA, DDS, Radiance HDR, farbfeld and PNM (the first
 //! frame or page), with 8 or 16 bits or floats, grey, colour or CMYK, and applies the orientation given by EXIF. It converts
-//! colours to sRGB from those that a file states: by an ICC profile, or the chunks of a PNG. It keeps alpha;
+//! colours to sRGB if a file states others, by an ICC profile or the chunks of a PNG. It keeps alpha;
 //! [`Image::flattened`] composites onto a matte.
 
 #[cfg(feature = "animation")]
@@ -108,7 +108,7 @@ impl Image {
     }
 
     /// The picture whose channel `c` of the pixel in column `x` and row `y` is `sample(x, y, c)`: for samples that do
-    /// not lie in rows. Samples and channels are those of [`Rows`].
+    /// not lie in rows. Samples and channels are as in [`Rows`].
     ///
     /// ```
     /// use strokefit::image::Image;
@@ -136,6 +136,7 @@ impl Image {
         let half = |plane: &Vec<f32>| {
             let mut out = Vec::with_capacity(width * height);
             for pair in plane.chunks(2 * self.width) {
+                // A single last row counts twice, and a single last column is its own mean.
                 let (top, bottom) = pair.split_at(self.width);
                 let bottom = if bottom.is_empty() { top } else { bottom };
                 let mean = |row: &[f32]| row.iter().sum::<f32>() / row.len() as f32;
@@ -178,6 +179,7 @@ impl Image {
     /// [`ErrorKind::Picture`] when there are not `width·height` values or one is not finite.
     pub fn with_alpha(mut self, alpha: Vec<f32>) -> Result<Self> {
         check_plane(&alpha, self.width * self.height)?;
+        // Without a transparent pixel all later steps take the shorter way of opaque pictures.
         self.alpha = alpha.iter().any(|&a| a < 1.0).then_some(alpha);
         Ok(self)
     }
@@ -199,7 +201,7 @@ impl Image {
         Ok(Self::read_within(path, limits)?.0)
     }
 
-    /// Reads the picture file at `path`, within other limits, and says what was changed or left out.
+    /// Reads the picture file at `path`, within other limits, with remarks on changes and omissions.
     ///
     /// # Errors
     /// As [`Image::open`].
@@ -217,7 +219,7 @@ impl Image {
         Ok(Self::decode_remarking(bytes, name, limits)?.0)
     }
 
-    /// Decodes as [`Image::decode`] does, and says what was changed or left out.
+    /// Decodes as [`Image::decode`] does, with remarks on changes and omissions.
     ///
     /// # Errors
     /// As [`Image::decode`].
@@ -285,6 +287,7 @@ impl Image {
         let mut planes = self.planes.clone();
         for (plane, matte) in planes.iter_mut().zip(matte) {
             for (value, &a) in plane.iter_mut().zip(alpha) {
+                // Source-over with the encoded values, C = M + α(c − M).
                 *value = matte + a * (*value - matte);
             }
         }
@@ -355,6 +358,7 @@ fn check_plane(plane: &[f32], pixels: usize) -> Result<()> {
 /// The pixels to the left and right of pixel `i`, above and below, in a picture of `count` pixels, row by row.
 pub(crate) fn beside(i: usize, width: usize, count: usize) -> impl Iterator<Item = usize> {
     let x = i % width;
+    // Pixels are counted row by row, so a row's first pixel follows the last of the row before and is no neighbour of it.
     let left = (x > 0).then(|| i - 1);
     let right = (x + 1 < width).then_some(i + 1);
     let above = i.checked_sub(width);

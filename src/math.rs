@@ -25,13 +25,13 @@ pub fn xy(p: Point) -> [f32; 2] {
     [p.x as f32, p.y as f32]
 }
 
-/// The distance of two places, px.
+/// The distance between two points, px.
 pub(crate) fn distance(a: [f32; 2], b: [f32; 2]) -> f32 {
     let [x, y] = [a[0] - b[0], a[1] - b[1]];
     (x * x + y * y).sqrt()
 }
 
-/// The unit vector from one place to another.
+/// The unit vector from one point to another.
 pub(crate) fn direction(from: [f32; 2], to: [f32; 2]) -> [f32; 2] {
     let length = distance(from, to).max(f32::MIN_POSITIVE);
     [0, 1].map(|k| (to[k] - from[k]) / length)
@@ -44,7 +44,7 @@ pub(crate) fn median(values: impl Iterator<Item = f32>) -> Option<f32> {
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f32::total_cmp).1)
 }
 
-/// The place from `a` to `b` that is nearest to `p`, and the square of its distance.
+/// The point of the segment from `a` to `b` that is nearest to `p`, and its squared distance.
 pub(crate) fn nearest_on_segment(p: [f32; 2], [a, b]: [[f32; 2]; 2]) -> ([f32; 2], f32) {
     let axis = [b[0] - a[0], b[1] - a[1]];
     let length2 = (axis[0] * axis[0] + axis[1] * axis[1]).max(f32::MIN_POSITIVE);

@@ -1,4 +1,4 @@
-//! Measures the difference between two pictures: MSE, PSNR, SSIM, L1, and SSIMULACRA2, which tells what people see.
+//! Measures the difference between two pictures: MSE, PSNR, SSIM, L1, and SSIMULACRA2, which predicts the judgement of people.
 //!
 //! All measures are over 8-bit RGB, as a viewer shows it: both pictures are first flattened onto a white matte and
 //! rounded. Errors are in channel values 0..1, averaged over pixels and channels.
@@ -222,7 +222,7 @@ pub fn ssimulacra2(reference: &Image, picture: &Image) -> Result<f64> {
     Ok(ssimulacra2::score(&a, &b, reference.width()))
 }
 
-/// Where [`fn@ssimulacra2`] is lost, row by row: what the score would be if all of the picture were as bad as it is there.
+/// Where [`fn@ssimulacra2`] is lost, row by row: the score if all of the picture were as bad as it is there.
 ///
 /// # Errors
 /// [`ErrorKind::Picture`] when the sizes differ.
@@ -269,7 +269,7 @@ struct Sums {
     max_abs: u8,
 }
 
-/// So many squares of differences cannot overflow 32 bits, whose sums the compiler turns into vectors.
+/// Number of squared differences whose sum fits 32 bits: 2¹⁶·255² < 2³². The compiler vectorises sums of 32 bits.
 const ADDED_IN_32_BITS: usize = 1 << 16;
 
 impl Sums {
@@ -280,6 +280,7 @@ impl Sums {
     /// The sums over two pictures, without keeping their levels.
     fn between(a: &Image, b: &Image) -> Result<Self> {
         let [a, b] = both_on_white(a, b)?;
+        // Round to levels on the fly, plane by plane, without interleaved copies of both pictures.
         let planes = a.planes().iter().zip(b.planes());
         let planes = planes.map(|(a, b)| Self::of(a, b, |a, b| level(a).abs_diff(level(b))));
         Ok(planes.fold(Self::default(), Self::plus))
@@ -304,6 +305,7 @@ impl Sums {
                 max_abs,
             }
         };
+        // Integer sums are exact, so the order in which threads add them makes no difference.
         chunks.map(of_chunk).reduce(Self::default, Self::plus)
     }
 

@@ -105,6 +105,7 @@ impl Pyramid {
     /// Number of times to halve level `from` so that a length of `scale` px becomes at most `limit`, as far as there are
     /// levels.
     pub fn halvings(&self, from: usize, scale: f32, limit: f32) -> usize {
+        // scale / 2ⁿ ≤ limit for n ≥ log₂(scale / limit).
         let halvings = math::log2(scale / limit).ceil().max(0.0) as usize;
         halvings.min(self.levels.len() - 1 - from)
     }
@@ -122,6 +123,7 @@ pub fn propose(level: Level, residuals: &[Residual<'_>], wanted: Wanted) -> Vec<
         .iter()
         .map(|residual| Reduced::new(residual, wanted.level, halvings))
         .collect();
+    // Probing happens in px of the reduced picture: shapes, cells and energies are all in these.
     let reduction = (1 << halvings) as f32;
     let scale = (wanted.scale / reduction).min(SCALE_LIMIT);
     let radii = RADII.map(|r| (r * scale).max(MIN_RADIUS));
@@ -133,8 +135,11 @@ pub fn propose(level: Level, residuals: &[Residual<'_>], wanted: Wanted) -> Vec<
         wanted.count as f32 * CELLS,
         wanted.key,
     );
+    // A reduced pixel stands for reduction² pixels, and the gain is the mean over the mattes.
     let gain_scale = reduction * reduction / residuals.len() as f32;
     let patches = || -> Vec<_> { residuals.iter().map(|_| Patch::new()).collect() };
+    // Probe the cells in parallel. The order of the cells is kept, and with the stable sort below it decides between equal gains,
+    // whatever the threads.
     let mut candidates: Vec<Candidate> = cells
         .peaks(&energy, PROBED)
         .into_par_iter()
@@ -143,8 +148,10 @@ pub fn propose(level: Level, residuals: &[Residual<'_>], wanted: Wanted) -> Vec<
                 patch.fill(&probes, residual.target, &residual.canvas, x, y);
             }
             let (shape, probe) = probes.best(patches, wanted.min_opacity)?;
+            // The centre of the reduced pixel in px of the canvas.
             let center = [x, y].map(|v| (v as f32 + 0.5) * reduction);
             let stroke = probe.stroke(shape, center, reduction);
+            // A candidate is small, so the weight at its centre stands for all of it.
             let weight = residuals[0].weight(x, y);
             (probe.gain > 0.0 && weight > 0.0).then_some(Candidate {
                 stroke,
@@ -170,6 +177,7 @@ impl<'a> Reduced<'a> {
         Self {
             target: residual.target.level(level + halvings),
             canvas: match halvings {
+                // The first halving reads the tiles, which saves a copy of the whole canvas.
                 0 => residual.canvas.to_image(),
                 _ => (1..halvings).fold(residual.canvas.halved(), |image, _| image.halved()),
             },
@@ -190,6 +198,7 @@ impl<'a> Reduced<'a> {
 fn smoothed_energy(residuals: &[Reduced<'_>], radius: usize) -> Vec<f32> {
     let (width, height) = (residuals[0].canvas.width(), residuals[0].canvas.height());
     let mut energy = vec![0.0; width * height];
+    // |target − canvas|² of each pixel, summed over mattes and channels.
     let planes = residuals.iter().flat_map(|residual| {
         residual
             .target
@@ -206,6 +215,7 @@ fn smoothed_energy(residuals: &[Reduced<'_>], radius: usize) -> Vec<f32> {
         let weights = energy.iter_mut().zip(&weights.planes()[0]);
         weights.for_each(|(energy, weight)| *energy *= weight);
     }
+    // A box is a product of two spans: sum along the rows, and then down the columns.
     let mut rows = vec![0.0; width * height];
     for (out, row) in rows.chunks_exact_mut(width).zip(energy.chunks_exact(width)) {
         box_sums(row.iter().copied(), radius, out.iter_mut());
@@ -220,6 +230,8 @@ fn box_sums<'a>(
     radius: usize,
     out: impl Iterator<Item = &'a mut f32>,
 ) {
+    // A running sum: the value `radius` ahead enters, the one `radius + 1` behind leaves. In `f64`, or what a bright spot leaves
+    // behind by rounding would outweigh dark places after it.
     let mut entering = values.clone().chain(std::iter::repeat_n(0.0, radius));
     let leaving = std::iter::repeat_n(0.0, radius + 1).chain(values);
     let mut sum: f64 = entering.by_ref().take(radius).map(f64::from).sum();
@@ -232,6 +244,7 @@ fn box_sums<'a>(
 /// Sums over windows of `2·radius + 1` rows of `width` values, clipped at both ends.
 fn column_sums(values: &[f32], width: usize, radius: usize, out: &mut [f32]) {
     let row = |y: usize| values.get(y * width..(y + 1) * width).unwrap_or_default();
+    // The same, with a running sum for each column, so that memory is read row by row.
     let mut sums = vec![0.0_f64; width];
     for y in 0..radius {
         sums.iter_mut()
@@ -269,7 +282,9 @@ struct Cells {
 impl Cells {
     fn new(image: &Image, count: f32, [seed, call]: [u64; 2]) -> Self {
         let (width, height) = (image.width(), image.height());
+        // `count` squares of this side have the picture's area; a cell has at least one pixel.
         let side = ((width * height) as f32 / count.max(1.0)).sqrt().max(1.0);
+        // A new shift for each call: the borders of the cells, across which two peaks may be neighbours, fall elsewhere.
         let shift = [0, 1].map(|axis| rng::draw(seed, call, axis, 0) * side);
         let along = |size: usize, shift: f32| ((size as f32 + shift) / side).ceil() as usize;
         Self {
@@ -288,6 +303,7 @@ impl Cells {
 
     /// Cell `i` of a row or column of `size` px; empty where rounding leaves no pixel.
     fn span(&self, i: usize, shift: f32, size: usize) -> Range<usize> {
+        // Neighbours share the expression of their common edge, so cells neither overlap nor leave gaps.
         let edge = |i: usize| ((i as f32 * self.side - shift).max(0.0).ceil() as usize).min(size);
         edge(i)..edge(i + 1)
     }
@@ -299,6 +315,7 @@ impl Cells {
         let cells = 0..self.len();
         let mut peaks: Vec<_> = cells.filter_map(|cell| self.peak(cell, energy)).collect();
         let mut energies: Vec<f32> = peaks.iter().map(energy_at).collect();
+        // A selection, not a sort: only the threshold is needed, and the peaks stay in the order of their cells.
         let dropped = ((1.0 - kept) * peaks.len() as f32) as usize;
         if dropped > 0 {
             let (_, &mut least, _) = energies.select_nth_unstable_by(dropped, f32::total_cmp);

@@ -1,7 +1,7 @@
 //! Shades: the gradient that a picture, or a part of it, is of.
 //!
 //! Two axes are tried, a line and a radius, on the means of some thousand blocks. Level lines of a shade run across the line, or
-//! around the centre. So the colours' gradients point along the line, or through the centre, which tells both in closed form. A
+//! around the centre. So the colours' gradients point along the line, or through the centre, which gives both in closed form. A
 //! pattern search then makes the blocks at equal offsets as equal as possible. Last come the stops: the best colours for given
 //! offsets are a linear least-squares problem, and offsets are added as long as they remove a share of the error. All of this is
 //! repeated on the blocks that the last shade has met, so that things in front of the shade do not bend it.
@@ -54,15 +54,15 @@ pub(crate) struct Blocks {
 /// Likeness of blocks to a shade.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Met {
-    /// The share of the blocks that it has met, of those that take part.
+    /// Share of the blocks that it has met, among the blocks that take part.
     pub(crate) share: f32,
-    /// Squared error, each value as large as that of a block that just fails, at most.
+    /// Squared error, each value cut off at the error of a block that just fails.
     pub(crate) error: f32,
 }
 
 impl Blocks {
-    /// The blocks of a page, at most `most` along its longer side, which `value` tells from their pixels, counted row by row, and
-    /// the side of one, px. Those without a value do not take part.
+    /// The blocks of a page, at most `most` along its longer side, and the side of one, px. `value` gives the value of a block
+    /// from the indices of its pixels, row by row. Blocks without a value do not take part.
     pub(crate) fn of_page(
         [width, height]: [usize; 2],
         most: usize,
@@ -98,6 +98,7 @@ impl Blocks {
     /// As [`Self::best_shade`], fitted so many times, each time to the blocks that the last shade has met within this factor of
     /// what is near.
     fn best_of(&self, fit: &ShadeFit, factors: &[f32]) -> Option<(Shade, Met)> {
+        // Fit both kinds: no cheap test says which one a picture has. The share of blocks that are met decides.
         let candidates = [axis::Kind::Linear, axis::Kind::Radial];
         let candidates = candidates.map(|kind| self.shade(kind, fit, factors));
         let met = |shade: Shade| {
@@ -117,12 +118,15 @@ impl Blocks {
         let mut found = None;
         for factor in factors {
             let near = factor * NEAR;
+            // Axis, then stops along it, both from the blocks that the last round has met; the first round takes all.
             let axis = blocks.seen(axis::of(&blocks, kind)?);
             let shade = profile::of(&blocks, axis, fit)?;
+            // Judge all blocks, so that one that the last round has dropped may come back.
             let met = self.met(near, |block| premultiplied(&shade, block.center));
             if met.share < fit.hopeless_share {
                 return None;
             }
+            // Blocks off the shade are things in front of it. Without them the next fit is closer to the shade behind.
             for block in &mut blocks.all {
                 let meets = is_near(near, block, premultiplied(&shade, block.center));
                 block.weight = if meets { 1.0 } else { 0.0 };
@@ -144,6 +148,7 @@ impl Blocks {
             if is_near(near, block, value) {
                 met.share += 1.0 / count;
             }
+            // Errors are cut off: a thing in front of the shade counts by its size, and not by its contrast.
             let most = near * near;
             let errors = block
                 .value
@@ -161,6 +166,7 @@ impl Blocks {
         let inner = (1..rows.saturating_sub(1))
             .flat_map(move |y| (1..columns.saturating_sub(1)).map(move |x| y * columns + x));
         inner.filter_map(|i| {
+            // Central differences. A block beside one that does not take part has none.
             let near = [i - 1, i + 1, i - self.columns, i + self.columns];
             let [left, right, above, below] = near.map(|i| self.all[i]);
             let weights = [left, right, above, below, self.all[i]].map(|block| block.weight);
@@ -177,11 +183,12 @@ impl Blocks {
         })
     }
 
-    /// The axis without ends that no block which takes part is near: nothing tells of the colours there.
+    /// The axis without its ends where no block takes part, since no data give the colours there.
     fn seen(&self, axis: Axis) -> Axis {
         // About a block.
         const NEAR: f64 = 0.03;
         let taking_part = self.all.iter().filter(|block| block.weight > 0.0);
+        // The range of offsets in which there are blocks.
         let (mut first, mut last) = (1.0_f64, 0.0_f64);
         for offset in taking_part.map(|block| axis.offset(block.center).clamp(0.0, 1.0)) {
             (first, last) = (first.min(offset), last.max(offset));
@@ -189,6 +196,7 @@ impl Blocks {
         let first = if first > NEAR { first } else { 0.0 };
         let last = if last < 1.0 - NEAR { last } else { 1.0 };
         match axis {
+            // A line loses both ends. A radial axis starts at its centre, so it loses the outer end alone.
             Axis::Linear { from, to } if last > first => Axis::Linear {
                 from: from + (to - from) * first,
                 to: from + (to - from) * last,
@@ -201,10 +209,12 @@ impl Blocks {
         }
     }
 
-    /// The largest offset of the part along `axis`, and the smallest.
+    /// The smallest and the largest offset of the part along `axis`.
     fn extent(&self, axis: Axis) -> [f64; 2] {
         let [left, top] = self.low;
         let [right, bottom] = [0, 1].map(|k| self.low[k] + self.size[k]);
+        // On a line an offset is linear in the place, and from a centre it is convex, so the largest is at a corner. The smallest
+        // is used of lines alone.
         let corners = [[left, top], [right, top], [left, bottom], [right, bottom]];
         let offsets = corners.map(|[x, y]| axis.offset(Point::new(x, y)));
         [

@@ -148,6 +148,8 @@ pub struct OnMattes {
 /// # Errors
 /// As [`fidelity`].
 pub fn on_mattes(svg: &str, target: &Image) -> Result<OnMattes> {
+    // On a single matte a wrong alpha can hide: a colour that equals the matte looks clear. Magenta, unlike the other two, differs
+    // between channels.
     let on = |matte: Rgb| -> Result<(f64, f64)> {
         let (target, drawn) = (target.flattened(matte), render_like(svg, target, matte)?);
         let psnr_db = metrics::psnr(&target, &drawn)?;
@@ -188,6 +190,7 @@ fn check_aspect(tree: &Tree, width: u32, height: u32) -> Result<()> {
         f64::from(tree.size().width()),
         f64::from(tree.size().height()),
     );
+    // A px of slack, because both sides of a picture are rounded.
     let scaled = svg_height * f64::from(width) / svg_width;
     if (scaled - f64::from(height)).abs() <= 1.0 {
         return Ok(());
@@ -199,9 +202,10 @@ fn check_aspect(tree: &Tree, width: u32, height: u32) -> Result<()> {
     Err(Error::new(ErrorKind::Svg, message))
 }
 
-/// Runs resvg, and makes a panic of it an error: the judge does not fall with what it judges, and resvg's arithmetic
+/// Runs resvg, and turns its panic into an error: no SVG may bring the judge down, and resvg's arithmetic
 /// has corners that no check of ours foresees. Where panics end the program, as in WebAssembly, this one does, too.
 fn guarded<R>(judge: impl FnOnce() -> R) -> Result<R> {
+    // The flag is per thread: panics of other threads, at the same time, still reach the hook.
     GUARDED.set(true);
     let outcome = panic::catch_unwind(AssertUnwindSafe(judge));
     GUARDED.set(false);
@@ -217,7 +221,7 @@ thread_local! {
     static GUARDED: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Keeps the process's panic hook from telling of panics of resvg, which are errors here. For programs: a library
+/// Keeps the process's panic hook from reporting panics of resvg, which are errors here. For programs: a library
 /// leaves the hook as it is.
 pub fn silence_panics() {
     let others = panic::take_hook();

@@ -49,6 +49,7 @@ pub(super) fn uncompressed(bytes: &[u8]) -> Result<Option<DynamicImage>, Failure
         return Ok(None);
     };
     let row = width as usize * layout.bytes;
+    // Some programs write a stride that is too small or 0: rows then follow without a gap.
     let stride = layout.stride.max(row);
     let rows = bytes.get(layout.start..).unwrap_or_default();
     let rows = rows.chunks(stride).take(height as usize);
@@ -93,6 +94,7 @@ impl Layout {
         let bits = field(88)?;
         let mut masks = [field(92)?, field(96)?, field(100)?, field(104)?];
         if flags & IS_GREY != 0 {
+            // Grey has one mask, the red one.
             masks = [masks[0], masks[0], masks[0], masks[3]];
         }
         if flags & HAS_ALPHA == 0 {
@@ -131,11 +133,15 @@ impl Layout {
     /// Red, green, blue and alpha of a pixel.
     fn color(&self, pixel: &[u8]) -> [u16; 4] {
         let add = |sum: u32, byte: &u8| sum << 8 | u32::from(*byte);
+        // Little-endian: the last byte has the highest bits.
         let pixel = pixel.iter().rev().fold(0, add);
         self.masks.map(|mask| match mask {
+            // A channel without bits is opaque; only alpha may have none.
             0 => u16::MAX,
             _ => {
                 let shift = mask.trailing_zeros();
+                // Any number of bits to 16, rounded: 5 or 6 bits reach both ends of the scale. In 64 bits, since a mask may have
+                // 32.
                 let (value, most) = (u64::from((pixel & mask) >> shift), u64::from(mask >> shift));
                 ((value * 65535 + most / 2) / most) as u16
             }

@@ -63,13 +63,15 @@ fn unreadable(error: io::Error) -> Error {
     Error::new(ErrorKind::Io, remedy).caused_by(error)
 }
 
-/// Decodes the bytes of a picture file, and says what of it is changed or left out. The name tells what nothing else
-/// does.
+/// Decodes the bytes of a picture file, with remarks on changes and omissions. The name decides the format where the bytes
+/// don't.
 pub(super) fn decode(bytes: &[u8], name: &str, limits: Limits) -> Result<(Image, Vec<Remark>)> {
     let format = format(bytes, name, limits)?;
+    // The sides as the header has them: a picture that is too large costs no memory.
     if let Some((width, height)) = header::size(bytes, format) {
         check_size(width, height, limits)?;
     }
+    // The decoder would fill the missing part with grey and report success.
     if format == ImageFormat::Jpeg && !header::jpeg_is_whole(bytes) {
         return Err(truncated(format));
     }
@@ -85,7 +87,7 @@ pub(super) fn decode(bytes: &[u8], name: &str, limits: Limits) -> Result<(Image,
     image(decoded, format)
 }
 
-/// The picture in sRGB, and what there is to say of it.
+/// The picture in sRGB, and remarks on it.
 fn image(decoded: Decoded, format: ImageFormat) -> Result<(Image, Vec<Remark>)> {
     let (image, clipped) = planar(&decoded.picture, format)?;
     let (image, converted) = match &decoded.coding {
@@ -94,6 +96,7 @@ fn image(decoded: Decoded, format: ImageFormat) -> Result<(Image, Vec<Remark>)> 
         Some(coding) => in_srgb(image, coding),
         None => (image, None),
     };
+    // A picture of which nothing can be seen is likely a mistake: draw it, and say so.
     let is_clear = image.alpha().is_some_and(|a| a.iter().all(|&a| a == 0.0));
     let remarks = [
         converted,
@@ -126,6 +129,7 @@ fn format(bytes: &[u8], name: &str, limits: Limits) -> Result<ImageFormat> {
             limits.max_bytes >> 20
         )));
     }
+    // Apple's variant has the signature of PNG, but its rows would be read as other colours.
     let found = formats::detect(bytes, name).filter(|_| !foreign::is_cgbi(bytes));
     found.ok_or_else(|| {
         bad(match foreign::advice(bytes) {
@@ -150,7 +154,7 @@ fn check_size(width: u32, height: u32, limits: Limits) -> Result<()> {
     Ok(())
 }
 
-/// The decoded samples in the orientation given by EXIF. `ran_out` tells whether the file is too short.
+/// The decoded samples in the orientation given by EXIF. Sets `ran_out` if the file is too short.
 fn samples(
     bytes: &[u8],
     ran_out: &Cell<bool>,
@@ -263,6 +267,7 @@ impl<'a> Supply<'a> {
 impl Read for Supply<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.inner.read(buffer)?;
+        // A read of no bytes into a buffer with room is how a reader meets the end.
         if count == 0 && !buffer.is_empty() {
             self.ran_out.set(true);
         }
@@ -314,8 +319,9 @@ fn levels<T: Sample>(picture: &DynamicImage, samples: &[T]) -> Result<(Image, us
     Ok((rows::image(packed(picture, samples))?, 0))
 }
 
-/// Whatever a file says: what is no number is 0, what is beyond the range at its end.
+/// Floats of any file: NaN becomes 0, and a value beyond the range its nearer end.
 fn floats(picture: &DynamicImage, samples: &[f32], format: ImageFormat) -> Result<(Image, usize)> {
+    // Radiance stores light; all else stores encoded values.
     let is_linear = format == ImageFormat::Hdr;
     let level = |v: f32| match v.clamp(0.0, 1.0) {
         v if v.is_nan() => 0.0,

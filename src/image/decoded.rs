@@ -25,13 +25,13 @@ pub(super) struct Decoded {
 pub(super) enum Coding {
     /// An ICC profile.
     Icc(Vec<u8>),
-    /// Code points of ITU-T H.273: those of the primaries and of the transfer function.
+    /// Code points of ITU-T H.273, for the primaries and for the transfer function.
     Cicp(u8, u8),
     /// Light as a power of samples, and where they stand: white, red, green and blue, x and y of each.
     Gamma {
         /// The power that encodes light, as `gAMA` has it; `None` is the curve of sRGB.
         gamma: Option<f64>,
-        /// Those of sRGB if `None`.
+        /// `None` for the chromaticities of sRGB.
         chromaticities: Option<[f64; 8]>,
     },
 }

@@ -47,6 +47,7 @@ pub(super) fn jpeg(image: &Image, quality: u8) -> Result<Vec<u8>> {
 }
 
 fn size(image: &Image) -> Result<(u32, u32)> {
+    // PNG stores a side in 31 bits.
     let side = |n: usize| u32::try_from(n).ok().filter(|&n| n <= i32::MAX as u32);
     side(image.width())
         .zip(side(image.height()))

@@ -53,7 +53,7 @@ const FOREIGN: [Foreign; 20] = [
     CGBI,
 ];
 
-/// A PNG that begins as those that Apple's tools pack for devices: rows of BGRA, without the frame of zlib.
+/// The start of a PNG that Apple's tools have packed for devices: rows of BGRA, without the frame of zlib.
 const CGBI: Foreign = foreign(
     "Apple's optimised PNG (CgBI)",
     0,

@@ -35,8 +35,8 @@ pub(crate) fn stated_size(bytes: &[u8]) -> Option<(Embeddable, u32, u32)> {
     Some((format, width, height))
 }
 
-/// True if the file is a TGA: nothing at the beginning tells. It ends as TGA 2 does, or has a header that makes sense
-/// and is either as long as its samples take or has the name of one.
+/// True if the file is a TGA. It has no signature at the beginning: it ends as TGA 2 does, or has a header that makes sense and is
+/// either as long as its samples take or has the name of one.
 pub(super) fn is_tga(bytes: &[u8], is_named: bool) -> bool {
     let is_exact = || tga_length(bytes).is_some_and(|length| length == bytes.len() as u64);
     bytes.ends_with(b"TRUEVISION-XFILE.\0")
@@ -49,6 +49,7 @@ fn tga_length(bytes: &[u8]) -> Option<u64> {
     let [id, has_map, kind, ..] = *header;
     let (entry, depth, descriptor) = (header[7], header[16], header[17]);
     let is_mapped = matches!(kind, 1 | 9);
+    // Eighteen bytes without a signature: every field that has few legal values is checked.
     let is_sane = matches!(kind, 1..=3 | 9..=11)
         && has_map <= 1
         && (has_map == 1 || !is_mapped)
@@ -61,6 +62,7 @@ fn tga_length(bytes: &[u8]) -> Option<u64> {
     }
     let whole = |bits: u8| u64::from(bits.div_ceil(8));
     let map = u64::from(has_map) * u64::from(le16(bytes, 5)?) * whole(entry);
+    // A palette, if any, lies between the header with its text and the samples.
     let samples = u64::from(width) * u64::from(height) * whole(depth);
     let length = 18 + u64::from(id) + map + samples;
     Some(if kind > 8 { 0 } else { length })
@@ -103,6 +105,7 @@ fn gif_frames(bytes: &[u8]) -> impl Iterator<Item = usize> + '_ {
                 }
                 _ => return None,
             };
+            // Data come in blocks, each behind a byte with its length. A length of 0 ends them.
             while let Some(&length) = bytes.get(at).filter(|&&length| length > 0) {
                 at += 1 + usize::from(length);
             }
@@ -156,6 +159,7 @@ pub(super) struct JpegFrame {
 pub(super) fn jpeg_frame(bytes: &[u8]) -> Option<JpegFrame> {
     let frame = segments(bytes).find(|segment| is_frame(segment.marker))?;
     let is_adobe = |segment: Segment| {
+        // Behind the marker and the length, 2 bytes each.
         let body = bytes.get(segment.at + 4..);
         segment.marker == 0xee && body.is_some_and(|body| body.starts_with(b"Adobe"))
     };
@@ -199,6 +203,7 @@ fn segments(bytes: &[u8]) -> impl Iterator<Item = Segment> + '_ {
         let start = next_marker(bytes, at)?;
         let marker = bytes[start + 1];
         at = match marker {
+            // The end of the picture: nothing behind it counts.
             0xd9 => bytes.len(),
             // Restart markers, TEM and SOI stand alone.
             0x01 | 0xd0..=0xd8 => start + 2,
@@ -211,6 +216,7 @@ fn segments(bytes: &[u8]) -> impl Iterator<Item = Segment> + '_ {
 /// Where the next marker stands at or after `from`: 0xff and a byte that is neither fill (0xff)
 /// nor stuffing (0x00).
 fn next_marker(bytes: &[u8], from: usize) -> Option<usize> {
+    // Scan data are skipped by the same search: in these, each 0xff is followed by 0 or by a restart marker.
     let pairs = bytes.get(from..)?.windows(2);
     let found = pairs
         .into_iter()

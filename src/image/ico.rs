@@ -29,11 +29,12 @@ pub(super) struct Bitmap<'a> {
     bits: u32,
 }
 
-/// The largest picture of an icon, of those the one of most bits.
+/// The largest picture of an icon; among equals the one of most bits.
 pub(super) fn largest(bytes: &[u8]) -> Result<Largest<'_>, Failure> {
     let count = le16(bytes, 4).unwrap_or(0) as usize;
     let entries = (0..count).map_while(|i| bytes.get(6 + 16 * i..22 + 16 * i));
     let entries: Vec<&[u8]> = entries.collect();
+    // A byte can't hold 256, so 0 stands for it.
     let side = |byte: u8| if byte == 0 { 256 } else { u32::from(byte) };
     let worth = |entry: &&&[u8]| (side(entry[0]) * side(entry[1]), le16(entry, 6));
     // Of equal entries the first.
@@ -42,7 +43,7 @@ pub(super) fn largest(bytes: &[u8]) -> Result<Largest<'_>, Failure> {
     let (length, start) = (le32(entry, 8).unwrap_or(0), le32(entry, 12).unwrap_or(0));
     let whole = bytes.get(start as usize..).unwrap_or_default();
     let picture = whole.get(..length as usize);
-    // Those who read the picture tell if it is cut short.
+    // The decoder of the picture reports if it is cut short.
     let picture = picture.unwrap_or(whole);
     if picture.starts_with(PNG) {
         return Ok(Largest::Png(picture));
@@ -68,7 +69,7 @@ fn cut_short() -> Failure {
 impl<'a> Bitmap<'a> {
     /// The bitmap that begins with its header; `None` if that is cut short.
     fn new(bytes: &'a [u8]) -> Option<Self> {
-        // The height is that of picture and mask together.
+        // The header states the height of picture and mask together.
         let size = (le32(bytes, 4)?, le32(bytes, 8)? / 2);
         let bits = le16(bytes, 14)?;
         Some(Self { bytes, size, bits })
@@ -77,12 +78,14 @@ impl<'a> Bitmap<'a> {
     /// The picture, transparent where the mask is set. Its size is within the limits.
     pub(super) fn picture(&self) -> Result<DynamicImage, Failure> {
         let mut bitmap = self.bytes.to_vec();
+        // The header counts the mask's rows, too: the decoder has to read half of that.
         bitmap[8..12].copy_from_slice(&self.size.1.to_le_bytes());
         let decoder = BmpDecoder::new_without_file_header(Cursor::new(&bitmap))?;
         if decoder.dimensions() != self.size {
             return Err(damaged(ImageFormat::Ico, "its sides contradict each other"));
         }
         let mut picture = DynamicImage::from_decoder(decoder)?.into_rgba8();
+        // The mask is stored from the lowest row up, the highest bit of a byte first.
         let rows = picture.rows_mut().rev();
         for (row, mask) in rows.zip(self.mask()) {
             let bits = mask
@@ -102,11 +105,13 @@ impl<'a> Bitmap<'a> {
         let stride = |bits: u32| u64::from(self.size.0) * u64::from(bits);
         let stride = |bits: u32| stride(bits).div_ceil(32) * 4;
         let used = le32(self.bytes, 32).unwrap_or(0);
+        // Of up to 8 bits, 0 stands for a full palette.
         let palette = match (used, self.bits) {
             (0, 1..=8) => 1 << self.bits,
             _ => used,
         };
         let header = u64::from(le32(self.bytes, 0).unwrap_or(0));
+        // Rows of both, pixels and mask, are padded to 4 bytes.
         let pixels = stride(self.bits) * u64::from(self.size.1);
         let start = header + 4 * u64::from(palette) + pixels;
         let start = usize::try_from(start).unwrap_or(usize::MAX);

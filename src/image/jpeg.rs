@@ -40,11 +40,13 @@ pub(super) fn inks(bytes: &[u8]) -> Result<Decoded, Failure> {
         let options = DecoderOptions::default().set_strict_mode(false);
         options.set_max_width(most).set_max_height(most)
     };
+    // Read the headers first: asking for the colour space of the file keeps the decoder from converting.
     decoder.set_options(options());
     decoder.decode_headers().map_err(failed)?;
     let space = decoder.input_colorspace().unwrap_or(ColorSpace::CMYK);
     decoder.set_options(options().jpeg_set_out_colorspace(space));
     let mut samples = decoder.decode().map_err(failed)?;
+    // Adobe's programs store 255 less the amount of ink.
     let is_inverted = header::jpeg_frame(bytes).is_some_and(|frame| frame.is_adobe);
     for pixel in samples.as_chunks_mut().0 {
         *pixel = ink(*pixel, space == ColorSpace::YCCK, is_inverted);
@@ -68,7 +70,7 @@ pub(super) fn inks(bytes: &[u8]) -> Result<Decoded, Failure> {
 fn ink(stored: [u8; 4], is_luma: bool, is_inverted: bool) -> [u8; 4] {
     let [y, cb, cr, black] = stored;
     let [cyan, magenta, yellow] = if is_luma {
-        // Red, green and blue of these are what the inks take away.
+        // JFIF's matrix gives red, green and blue; each ink is 255 less one of these.
         let (y, cb, cr) = (f32::from(y), f32::from(cb) - 128.0, f32::from(cr) - 128.0);
         let green = y - 0.344_136 * cb - 0.714_136 * cr;
         let level = |v: f32| 255 - (v + 0.5) as u8;

@@ -1,22 +1,23 @@
-//! The chunks of a PNG that say what its colours are.
+//! The chunks of a PNG that define its colours.
 
 use super::decoded::Coding;
 use super::header::be32;
 
-/// Gammas this near to 1/2.2 are that of sRGB, which tools round in many ways: what libpng takes for equal.
+/// Gammas this near to 1/2.2 count as sRGB's, which tools round in many ways. libpng has the same tolerance.
 const NEAR: f64 = 0.05;
 
 /// Gammas beyond these are no pictures'; 0 is a known mistake of encoders.
 const GAMMAS: std::ops::RangeInclusive<f64> = 0.05..=5.0;
 
 /// The colours that the samples encode, where chunks say so: by `cICP`, else `iCCP`, else `sRGB`, else `gAMA` and
-/// `cHRM`. `icc` is what `iCCP` holds.
+/// `cHRM`. `icc` is the profile in `iCCP`.
 pub(super) fn coding(bytes: &[u8], icc: Option<Vec<u8>>) -> Option<Coding> {
     let find = |name: &[u8; 4]| {
         let mut chunks = chunks(bytes);
         let found = chunks.find(|(found, _)| *found == name);
         found.map(|(_, body)| body)
     };
+    // A PNG is RGB of the full range, so `cICP` makes sense with the matrix 0 and the full-range flag 1 alone.
     if let Some(&[primaries, transfer, 0, 1]) = find(b"cICP")
         && is_stated(primaries, transfer)
     {
@@ -25,6 +26,7 @@ pub(super) fn coding(bytes: &[u8], icc: Option<Vec<u8>>) -> Option<Coding> {
     if icc.is_some() {
         return icc.map(Coding::Icc);
     }
+    // All pictures here are sRGB: nothing to convert.
     if find(b"sRGB").is_some() {
         return None;
     }
@@ -42,8 +44,9 @@ fn is_stated(primaries: u8, transfer: u8) -> bool {
     matches!(primaries, 1 | 4..=9 | 11 | 12 | 22) && matches!(transfer, 1 | 4..=8 | 11..=16 | 18)
 }
 
-/// The power that encodes light; `None` for that of sRGB, and for nonsense.
+/// The power that encodes light; `None` for sRGB's, and for nonsense.
 fn gamma(body: &[u8]) -> Option<f64> {
+    // `gAMA` and `cHRM` store numbers times 100,000.
     let gamma = f64::from(be32(body, 0)?) / 1e5;
     let is_usual = (gamma * 2.2 - 1.0).abs() < NEAR;
     (GAMMAS.contains(&gamma) && !is_usual).then_some(gamma)
@@ -59,6 +62,7 @@ fn chromaticities(body: &[u8]) -> Option<[f64; 8]> {
     let [red_x, red_y, green_x, green_y] = red;
     // Twice the area of the triangle that the primaries span.
     let area = (green_x - red_x) * (blue_y - red_y) - (blue_x - red_x) * (green_y - red_y);
+    // Conversion divides by y, and inverts the matrix of the primaries: neither may be 0.
     let has_height = places.iter().skip(1).step_by(2).all(|&y| y > 1e-3);
     (has_height && area.abs() > 1e-3 && places.iter().all(|&v| v <= 1.5)).then_some(places)
 }
@@ -70,6 +74,7 @@ fn chunks(bytes: &[u8]) -> impl Iterator<Item = (&[u8], &[u8])> {
         let length = be32(bytes, at)? as usize;
         let name = bytes.get(at + 4..at + 8)?;
         let body = bytes.get(at + 8..)?.get(..length)?;
+        // Length, name and checksum take 4 bytes each.
         at += 12 + length;
         (name != b"IDAT").then_some((name, body))
     })

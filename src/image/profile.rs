@@ -8,14 +8,14 @@ use moxcms::{
 use super::decoded::Coding;
 use super::{Image, Remark, tone};
 
-/// Steps of each channel in the colours that tell whether a profile is that of sRGB.
+/// Steps of each channel in the colours that decide whether a profile counts as sRGB's.
 const PROBES: usize = 6;
 
 /// A profile that changes none of these colours by more than this is taken for sRGB: an 8-bit level and a half. Files of
 /// sRGB have many profiles, which differ in the last digits of their tables.
 const SAME: f32 = 1.5 / 255.0;
 
-/// The picture in sRGB, and what there is to say of that. Colours that are sRGB's stay as they are.
+/// The picture in sRGB, and a remark on the conversion. Colours that are sRGB's stay as they are.
 pub(super) fn to_srgb(image: Image, coding: &Coding) -> (Image, Option<Remark>) {
     let outcome = match coding {
         Coding::Icc(icc) => converted(&image, icc),
@@ -43,6 +43,7 @@ const UNKNOWN: &str = "of an unknown kind";
 /// A picture by its ICC profile.
 fn converted(image: &Image, icc: &[u8]) -> Outcome {
     let profile = ColorProfile::new_from_slice(icc).map_err(|_| "damaged")?;
+    // The samples are RGB by now. A profile of grey then applies to the first of three equal planes.
     let layout = match profile.color_space {
         DataColorSpace::Rgb => Layout::Rgb,
         DataColorSpace::Gray => Layout::Gray,
@@ -64,6 +65,7 @@ fn stated(image: &Image, primaries: u8, transfer: u8) -> Outcome {
     });
     match tone::Transfer::of(transfer) {
         Some(transfer) => {
+            // PQ and HLG go beyond white, which an ICC transform would clip: only the primaries are taken from the profile.
             let matrix = profile.transform_matrix(&ColorProfile::new_srgb()).v;
             Ok(Some(tone::to_srgb(image.planes(), transfer, matrix)))
         }
@@ -97,6 +99,7 @@ fn of_gamma(gamma: Option<f64>, chromaticities: Option<[f64; 8]>) -> ColorProfil
     }
     if let Some(gamma) = gamma {
         let curve = ToneReprCurve::Parametric(vec![(1.0 / gamma) as f32]);
+        // A profile with code points is read by these, and its curves are not looked at.
         profile.cicp = None;
         profile.red_trc = Some(curve.clone());
         profile.green_trc = Some(curve.clone());
@@ -156,6 +159,7 @@ impl Conversion {
 
     /// True if colours stay as they are.
     fn is_none(&self) -> bool {
+        // A lattice of colours through the profile. If none of them changes, the samples stay, without rounding.
         let level = |i: usize| i as f32 / (PROBES - 1) as f32;
         let pixels = 0..if self.channels == 1 {
             PROBES
@@ -178,6 +182,7 @@ impl Conversion {
     fn of(&self, planes: &[Vec<f32>], width: usize) -> Option<[Vec<f32>; 3]> {
         let mut converted = [0, 1, 2].map(|c| Vec::with_capacity(planes[c].len()));
         let (mut row, mut out) = (vec![0.0; self.channels * width], vec![0.0; 3 * width]);
+        // Row by row, since the transform takes interleaved samples: memory for one row, and not for another picture.
         for start in (0..planes[0].len()).step_by(width) {
             for (x, pixel) in row.chunks_exact_mut(self.channels).enumerate() {
                 for (sample, plane) in pixel.iter_mut().zip(planes) {

@@ -23,6 +23,8 @@ impl Image {
                 alpha: None,
             };
         };
+        // The mean colour is Σ α·c / Σ α: a clear pixel has no colour to add. Weighing before and dividing after makes it two
+        // plain means.
         let opacity = reduce(alpha);
         let planes = [0, 1, 2].map(|c| {
             let weighted: Vec<f32> = self.planes[c]
@@ -57,12 +59,13 @@ struct Span {
 
 /// Spans of an axis of `old` values that the values of one of `new` values cover.
 fn spans(old: usize, new: usize) -> Vec<Span> {
+    // A new value covers `step` old ones: the first and the last in part, those between as a whole.
     let step = old as f64 / new as f64;
     let span = |i: usize| {
         let (from, to) = (i as f64 * step, (i + 1) as f64 * step);
         let first = (from as usize).min(old - 1);
         let end = (to.ceil() as usize).clamp(first + 1, old);
-        // The last one may be the first, too, which then counts by what lies between.
+        // The last one may be the first, too, which then counts by its part within the span.
         let head = ((first + 1) as f64).min(to) - from;
         let tail = to - ((end - 1) as f64).max(from);
         Span {
@@ -79,6 +82,7 @@ impl Span {
         let Range { start, end } = self.covered;
         let [head, tail] = self.weights;
         if end - start == 1 {
+            // One old value alone is its own mean, to the bit. The weights would round.
             return at(start);
         }
         let middle: f32 = (start + 1..end - 1).map(&at).sum();
@@ -87,6 +91,7 @@ impl Span {
 }
 
 fn reduced(plane: &[f32], [width, height]: [usize; 2], [columns, rows]: [usize; 2]) -> Vec<f32> {
+    // The area of a pixel is a product of spans: means down the columns, then along the row of these means.
     let (across, down) = (spans(width, columns), spans(height, rows));
     let [step_x, step_y] = [width as f32 / columns as f32, height as f32 / rows as f32];
     let row = |span: &Span| {

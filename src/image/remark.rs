@@ -6,7 +6,7 @@ use std::fmt;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Remark {
-    /// The colours were converted to sRGB from those of the file's profile.
+    /// The colours were converted to sRGB from the colours of the file's profile.
     Converted,
     /// The file's colour profile was not used, for this reason; its colours were taken for sRGB.
     ProfileIgnored(&'static str),

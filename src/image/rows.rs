@@ -5,7 +5,7 @@ use std::fmt;
 use super::Image;
 use crate::error::{Error, ErrorKind, Result};
 
-/// A picture as rows of interleaved samples: those of a pixel side by side.
+/// A picture as rows of interleaved samples: the samples of a pixel side by side.
 #[derive(Debug, Clone, Copy)]
 pub struct Rows<'a, T> {
     /// Width in px.
@@ -16,7 +16,7 @@ pub struct Rows<'a, T> {
     pub channels: usize,
     /// Samples from the start of a row to the start of the next, `width·channels` or more.
     pub stride: usize,
-    /// The rows; what follows the last pixel of a row is not looked at, and the last row needs nothing there.
+    /// The rows; samples behind the last pixel of a row are skipped, and the last row needs none there.
     pub samples: &'a [T],
 }
 
@@ -63,6 +63,7 @@ impl<'a, T> Rows<'a, T> {
                  give a stride of width × channels or more"
             ));
         };
+        // The last row needs its pixels alone, and not a whole stride. Sizes come from the caller, so no product may overflow.
         let needed = stride.checked_mul(height - 1);
         let needed = needed.and_then(|before| before.checked_add(row));
         match needed.filter(|&needed| needed <= samples.len()) {
@@ -76,9 +77,9 @@ impl<'a, T> Rows<'a, T> {
     }
 }
 
-/// A type that samples come in. What a file holds is encoded as sRGB, and so is what is taken here.
+/// A type of samples. They are encoded as sRGB, as in files.
 pub trait Sample: Copy + fmt::Display + sealed::Sealed {
-    /// As a value of 0..1, or `None` where it is on no scale that is known.
+    /// The sample as a value of 0..1; `None` if it is on no known scale.
     fn level(self) -> Option<f32>;
 }
 
@@ -154,6 +155,7 @@ pub(super) fn sampled<T: Sample>(
         let mut plane = Vec::with_capacity(width.saturating_mul(height));
         for y in 0..height {
             plane.extend((0..width).map(|x| {
+                // A closure can't fail, so keep the first error and go on with 0.
                 let sample = sample(x, y, c);
                 sample.level().unwrap_or_else(|| {
                     foreign.get_or_insert_with(|| no_level(x, y, sample));
@@ -201,12 +203,14 @@ fn assembled(
     mut plane: impl FnMut(usize) -> Vec<f32>,
 ) -> Result<Image> {
     let planes = if channels < 3 {
+        // All of the crate works on three planes.
         let grey = plane(0);
         [grey.clone(), grey.clone(), grey]
     } else {
         [plane(0), plane(1), plane(2)]
     };
     let image = Image::new(width, height, planes)?;
+    // 2 and 4 channels end in alpha.
     if channels.is_multiple_of(2) {
         image.with_alpha(plane(channels - 1))
     } else {

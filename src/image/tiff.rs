@@ -26,7 +26,7 @@ const ASSOCIATED: u16 = 1;
 const UNASSOCIATED: u16 = 2;
 
 /// The first page of at most `max_bytes` of samples, if `check` lets its width and height pass. The file is one that
-/// [`unfolded`] has seen, `is_palette` what it said.
+/// [`unfolded`] has returned, together with `is_palette`.
 pub(super) fn read(
     file: impl Read + Seek,
     is_palette: bool,
@@ -65,12 +65,12 @@ fn limits(max_bytes: u64) -> Limits {
     limits
 }
 
-/// The samples of a page, and what they mean.
+/// The layout and the meaning of a page's samples.
 struct Page {
     width: usize,
     height: usize,
     color: ColorType,
-    /// Meaning of the first sample after those of the colour.
+    /// Meaning of the first sample after the colour's samples.
     extra: Option<u16>,
     palette: Option<palette::Palette>,
 }
@@ -129,15 +129,18 @@ impl Page {
         }
     }
 
-    /// The samples of the picture, those of a pixel side by side, alpha straight.
+    /// The samples of the picture, interleaved, with straight alpha.
     fn samples<R: Read + Seek>(&self, file: &mut Decoder<R>) -> Result<Samples, Failure> {
         let stored = self.stored()?;
         let mut read = DecodingResult::U8(Vec::new());
         let layout = file.read_image_to_buffer(&mut read).map_err(explained)?;
+        // A buffer shorter than the whole picture means that the limit has cut it off.
         if read.as_buffer(0).as_bytes().len() < layout.complete_len {
             return Err(too_large());
         }
         let samples = Samples::of(read)?;
+        // Unpack first, since samples of less than a byte can't be moved; then bring planes together, look up colours, bring to
+        // full scale, drop samples that are no channel, convert, and divide by alpha.
         let samples = match self.color.bit_depth() {
             // A row of a page of planes is one of a plane.
             bits @ (1 | 2 | 4) if layout.planes > 1 => {
@@ -183,9 +186,11 @@ fn in_rgb<R: Read + Seek>(samples: Samples, file: &mut Decoder<R>) -> Result<Sam
         numbers(file, Tag::Unknown(532)).unwrap_or(REFERENCE);
     for pixel in samples.as_chunks_mut::<3>().0 {
         let [y, cb, cr] = pixel.map(f64::from);
+        // To the full range: luma 0 to 255, differences −127 to 127 about 0.
         let y = (y - black) * 255.0 / (white - black);
         let cb = (cb - cb_zero) * 127.0 / (cb_one - cb_zero);
         let cr = (cr - cr_zero) * 127.0 / (cr_one - cr_zero);
+        // Cr = (R − Y)/(2 − 2·k_R), Cb likewise, and Y = k_R·R + k_G·G + k_B·B gives G.
         let (r, b) = (y + cr * (2.0 - 2.0 * red), y + cb * (2.0 - 2.0 * blue));
         let g = (y - red * r - blue * b) / green;
         // `as` saturates.

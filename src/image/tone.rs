@@ -1,4 +1,4 @@
-//! Light beyond white: PQ and HLG, brought to what a page of sRGB can show.
+//! Light beyond white: PQ and HLG, brought to the range of a page of sRGB.
 //!
 //! White of graphics is at 203 cd/m² in both, as ITU-R BT.2408 has it. Light up to that stays as it is, so a
 //! screenshot keeps its colours; brighter light is bent towards white, down to half its light, so that the brightest
@@ -53,6 +53,7 @@ impl Transfer {
 
 /// The EOTF of SMPTE ST 2084, 0..1 to 0..1.
 fn pq(sample: f64) -> f64 {
+    // ((V^(1/m₂) − c₁)₊ / (c₂ − c₃·V^(1/m₂)))^(1/m₁), with 1/m₂ = 32/2523 and 1/m₁ = 8192/1305.
     let power = math::powf(sample.max(0.0), 32.0 / 2523.0);
     let ratio = (power - 107.0 / 128.0).max(0.0) / (2413.0 / 128.0 - 2392.0 / 128.0 * power);
     math::powf(ratio, 8192.0 / 1305.0)
@@ -68,7 +69,7 @@ fn hlg(sample: f64) -> f64 {
     }
 }
 
-/// The planes of a picture in sRGB. `matrix` leads from light of its primaries to light of those of sRGB.
+/// The planes of a picture in sRGB. `matrix` leads from light of its primaries to light of sRGB's primaries.
 pub(super) fn to_srgb(
     planes: &[Vec<f32>; 3],
     transfer: Transfer,
@@ -78,11 +79,13 @@ pub(super) fn to_srgb(
         let light = transfer.light([0, 1, 2].map(|c: usize| f64::from(planes[c][i])));
         matrix.map(|row| {
             let sum: f64 = row.iter().zip(light).map(|(a, b)| a * b).sum();
+            // A colour outside sRGB has a negative channel, which no page can show.
             sum.max(0.0)
         })
     };
     let pixels = 0..planes[0].len();
     let brightest = |light: [f64; 3]| light.into_iter().fold(0.0, f64::max);
+    // Two passes: the curve depends on the brightest pixel.
     let peak = pixels
         .clone()
         .map(|i| brightest(pixel(i)))
@@ -93,6 +96,7 @@ pub(super) fn to_srgb(
     for i in pixels {
         let light = pixel(i);
         let most = brightest(light);
+        // One factor for all three channels, from the brightest of them, keeps hue and puts it within 1.
         let scale = if most > 0.0 {
             bent(most, peak) / most
         } else {
@@ -110,6 +114,7 @@ fn bent(light: f64, peak: f64) -> f64 {
     if peak <= 1.0 || light <= KNEE {
         return light;
     }
+    // Above the knee, in units of the room above it: y = x(1 + x/m²)/(1 + x), so y'(0) = 1 and y(m) = 1 at the peak m.
     let (over, most) = ((light - KNEE) / (1.0 - KNEE), (peak - KNEE) / (1.0 - KNEE));
     KNEE + (1.0 - KNEE) * over * (1.0 + over / (most * most)) / (1.0 + over)
 }

@@ -12,14 +12,16 @@ pub(crate) fn solve_symmetric<const N: usize>(
     Some(rights.map(|right| solved(&columns, right)))
 }
 
-/// Turns the lower half of a matrix into that of its factor.
+/// Turns the lower half of a matrix into the lower half of its factor.
 fn decompose(columns: &mut [Vec<f64>]) -> Option<()> {
     for j in 0..columns.len() {
+        // Column j of A = LLᵀ, from its diagonal down, is Σ L_k·L_jk over the columns k ≤ j. Take away those before j.
         let (before, rest) = columns.split_at_mut(j);
         let column = &mut rest[0][j..];
         for earlier in before {
             add(column, -earlier[j], &earlier[j..]);
         }
+        // The rest of the diagonal is L_jj². It is above 0 exactly for a positive definite matrix; NaN fails, too.
         let root = Some(column[0]).filter(|square| *square > 0.0)?.sqrt();
         column[0] = root;
         column[1..].iter_mut().for_each(|number| *number /= root);
@@ -29,11 +31,13 @@ fn decompose(columns: &mut [Vec<f64>]) -> Option<()> {
 
 /// The solution for a right side, by the factor: forwards, then backwards.
 fn solved(factor: &[Vec<f64>], mut right: Vec<f64>) -> Vec<f64> {
+    // L·y = right, column by column.
     for (i, column) in factor.iter().enumerate() {
         right[i] /= column[i];
         let (known, rest) = right.split_at_mut(i + 1);
         add(rest, -known[i], &column[i + 1..]);
     }
+    // Lᵀ·x = y, from the last unknown to the first.
     for (i, column) in factor.iter().enumerate().rev() {
         let rest = dot(&column[i + 1..], &right[i + 1..]);
         right[i] = (right[i] - rest) / column[i];
@@ -47,7 +51,7 @@ fn add(sums: &mut [f64], factor: f64, terms: &[f64]) {
     }
 }
 
-/// The scalar product: eight sums side by side, as vector units add, and then what is left.
+/// The scalar product: eight sums side by side, as vector units add, and then the remainder.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let ((a, last_a), (b, last_b)) = (a.as_chunks::<8>(), b.as_chunks::<8>());
     let mut sums = [0.0; 8];

@@ -2,7 +2,7 @@
 //!
 //! A thing is small if it is thinner than a window: opening and closing by the window remove what is brighter or darker than
 //! its surroundings and does not hold the window (the *top-hat* of mathematical morphology: Serra, 1982). It is a detail
-//! if there are few such things around; many of them are texture, which hides what is missing.
+//! if there are few such things around; many of them are texture, which hides a loss.
 
 use rayon::prelude::*;
 
@@ -37,7 +37,8 @@ const WHITE: Rgb = [1.0; 3];
 pub(crate) struct Details {
     /// The picture on white.
     planes: [Vec<f32>; 3],
-    /// Of each pixel in or beside a detail its isolation, 1 for what stands alone and 0 for texture, and the largest contrast around.
+    /// For each pixel in or beside a detail, its isolation (1 for a thing that stands alone, 0 for texture) and the largest
+    /// contrast around.
     near: Vec<[f32; 2]>,
 }
 
@@ -52,17 +53,19 @@ impl Details {
         let mut shares: Vec<f64> = contrasts.iter().map(is_thing).collect();
         average(&mut shares, width, AROUND);
         let isolation = |(contrast, share): (&f32, &f64)| {
+            // From 1 at `few` down to 0 at `many`, in a line.
             let [few, many] = TEXTURE;
             let isolation = ((many - *share as f32) / (many - few)).clamp(0.0, 1.0);
             if *contrast > least { isolation } else { 0.0 }
         };
         let mut isolations: Vec<f32> = contrasts.iter().zip(&shares).map(isolation).collect();
-        // What has hardly a detail that stands alone is texture.
+        // If hardly any detail stands alone, all of them are texture.
         let things: f64 = contrasts.iter().map(is_thing).sum();
         let isolated: f64 = isolations.iter().map(|v| f64::from(*v)).sum();
         if isolated < LEAST_ISOLATION * things {
             isolations.fill(0.0);
         }
+        // A lost line also shows beside itself, where its antialiasing was: widen the details by a pixel.
         let isolations = extremes(&isolations, width, 1, f32::max);
         let strongest = extremes(&contrasts, width, REACH, f32::max);
         let near = isolations.into_iter().zip(strongest);
@@ -89,7 +92,7 @@ impl Details {
         near.into_iter().map(|loss| loss > 0.0).collect()
     }
 
-    /// The isolation of each pixel in or beside a detail that is lost: `drawn` is wrong there by more than a part of the contrast.
+    /// The isolation of each pixel in or beside a lost detail, where the error of `drawn` exceeds a share of the contrast.
     pub(crate) fn losses(&self, drawn: &Image) -> Vec<f32> {
         let drawn = drawn.on(WHITE);
         let error = |i: usize| {
@@ -100,6 +103,7 @@ impl Details {
         };
         let pixels = self.near.par_iter().enumerate();
         let loss = |(i, [isolation, contrast]): (usize, &[f32; 2])| {
+            // The largest contrast around, and not the pixel's own, which is small on an antialiased border.
             let is_lost = *isolation > 0.0 && error(i) > WRONG * contrast;
             if is_lost { *isolation } else { 0.0 }
         };
@@ -107,11 +111,13 @@ impl Details {
     }
 }
 
-/// The largest contrast of what is darker or brighter than its surroundings, of each pixel.
+/// For each pixel, the largest contrast of a small thing there with its surroundings.
 fn contrasts(planes: &[Vec<f32>; 3], width: usize) -> Vec<f32> {
     let of_plane = |plane: &Vec<f32>| {
         let least = |of: &[f32]| extremes(of, width, REACH, f32::min);
         let most = |of: &[f32]| extremes(of, width, REACH, f32::max);
+        // Opening (least, then most) removes small bright things, closing (most, then least) small dark ones. The distance from
+        // either is the contrast of the thing removed.
         let (opened, closed) = (most(&least(plane)), least(&most(plane)));
         let bounds = opened.into_iter().zip(closed);
         plane
@@ -153,6 +159,7 @@ fn extremes(
             }
         });
     let mut out = across.clone();
+    // A square window is a row of columns: the extremes down the columns of the extremes across.
     let rows = out.par_chunks_exact_mut(width).enumerate();
     rows.for_each(|(y, out)| {
         for other in y.saturating_sub(reach)..(y + reach + 1).min(height) {

@@ -12,6 +12,7 @@ const REACH: usize = 4;
 pub(crate) fn fine_share(picture: &Image) -> Option<f64> {
     let width = picture.width();
     let [_, plane, _] = picture.planes();
+    // Detail that survives halving and enlarging is coarser than two pixels.
     let half = Half::of(plane, width);
     let mut means: Vec<f64> = plane.iter().map(|v| f64::from(*v)).collect();
     average(&mut means, width, REACH);

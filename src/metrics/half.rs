@@ -26,9 +26,11 @@ impl Half {
         }
     }
 
-    /// The value at a place of the whole, between the pixels of the half.
+    /// The value at pixel (x, y) of the whole plane, interpolated between the pixels of the half.
     pub(crate) fn at(&self, x: usize, y: usize) -> f32 {
         let beside = |at: usize, size: usize| {
+            // A pixel's centre is a quarter of a half-size pixel from the centre of the one it lies in, towards the neighbour on
+            // its side: linear weights ¾ and ¼. At the border the neighbour is the pixel itself.
             let own = at / 2;
             let other = if at.is_multiple_of(2) {
                 own.saturating_sub(1)

@@ -13,6 +13,7 @@ pub(super) const SIDE: usize = 5;
 /// Largest absolute difference of a channel's mean over a patch, 0..1, of two pictures of one size.
 pub(super) fn max_abs(a: &Image, b: &Image) -> f32 {
     let (width, side) = (a.width(), SIDE.min(a.width()).min(a.height()));
+    // Patches lie wholly in the picture, so all means are over equally many pixels.
     let starts = a.height() + 1 - side;
     let of_plane = |(a, b): (&Vec<f32>, &Vec<f32>)| {
         let of_row = |top: usize| {

@@ -16,6 +16,8 @@ const C2: f32 = 0.03 * 0.03;
 
 /// The mean over all samples of `a` and `b`, interleaved levels in rows of `width` pixels.
 pub(super) fn mean(a: &[u8], b: &[u8], width: usize) -> f64 {
+    // The window is a product of one down and one across: sum down the columns, then along the row. A row needs no more memory
+    // than its own sums.
     let stride = CHANNELS * width;
     let window = window();
     let across = Cut::new(&window, stride, CHANNELS);
@@ -31,6 +33,7 @@ pub(super) fn mean(a: &[u8], b: &[u8], width: usize) -> f64 {
             },
         )
         .collect();
+    // Row by row in order, so that the mean is the same for every number of threads.
     sums.iter().sum::<f64>() / a.len() as f64
 }
 
@@ -60,6 +63,7 @@ impl<'a> Cut<'a> {
         };
         let mut weight = vec![0.0; len];
         cut.sum(&vec![1.0; len], &mut weight);
+        // The weights that fall on each sample of a row of ones; only near the border less than 1.
         cut.scale = weight.iter().map(|w| 1.0 / w).collect();
         cut
     }
@@ -67,6 +71,8 @@ impl<'a> Cut<'a> {
     /// Adds the weighted samples of `from`, not rescaled, to `to`.
     fn sum(&self, from: &[f32], to: &mut [f32]) {
         for (k, &w) in self.window.iter().enumerate() {
+            // Add the whole row, shifted by each tap's distance, so that the inner loop is a plain multiply-add. Samples of a
+            // channel are `step` apart.
             let shift = self.step * k.abs_diff(REACH);
             if shift >= from.len() {
                 continue;
@@ -98,6 +104,7 @@ impl Moments {
         self.clear();
         let (first, last) = (y.saturating_sub(REACH), (y + REACH).min(rows - 1));
         let tap = |row: usize| window[row + REACH - y];
+        // Where the picture cuts the window off, the remaining weights are scaled to sum 1.
         let scale = 1.0 / (first..=last).map(tap).sum::<f32>();
         let stride = self.0[0].len();
         for row in first..=last {
@@ -151,6 +158,7 @@ impl Moments {
 
 /// SSIM of one window from the means of a, b, a², b² and ab.
 fn similarity(a: f32, b: f32, aa: f32, bb: f32, ab: f32) -> f32 {
+    // Var a = E[a²] − E[a]², Cov = E[ab] − E[a]E[b].
     let (variance_a, variance_b, covariance) = (aa - a * a, bb - b * b, ab - a * b);
     let luminance = (2.0 * a * b + C1) / (a * a + b * b + C1);
     luminance * (2.0 * covariance + C2) / (variance_a + variance_b + C2)

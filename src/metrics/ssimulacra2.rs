@@ -53,6 +53,7 @@ pub(super) fn score(reference: &[u8], picture: &[u8], width: usize) -> f64 {
     let norms: Vec<_> = Scales::new(reference, picture, width)
         .map(|scale| scale.norms())
         .collect();
+    // Scales come one after another, and only the norms of each remain: two pictures in memory, not twelve.
     let weighted = weighted(norms.len()).map(|(weight, [c, s, n, k])| weight * norms[s][c][k][n]);
     of_sum(weighted.sum())
 }
@@ -68,6 +69,7 @@ pub(super) fn map(reference: &[u8], picture: &[u8], width: usize) -> Vec<f32> {
 /// The weighted errors at each pixel, whose mean makes the score.
 fn sums(reference: &[u8], picture: &[u8], width: usize) -> Vec<f64> {
     let pixels = reference.len() / CHANNELS;
+    // The number of scales shifts the weights, so it has to be known before the first scale is weighed.
     let count = Scales::new(reference, picture, width).count();
     let factor = enlargement(width, pixels / width);
     let mut sums = vec![0.0; pixels];
@@ -85,6 +87,7 @@ fn sums(reference: &[u8], picture: &[u8], width: usize) -> Vec<f64> {
 /// The score of a weighted sum of errors: a fitted polynomial, then a fitted power.
 fn of_sum(sum: f64) -> f64 {
     let x = sum * 0.956_238_261_683_484_4;
+    // All constants come from the reference implementation.
     let y = ((6.248_496_625_763_138e-5 * x - 0.020_884_521_182_843_837) * x
         + 2.326_765_642_916_932)
         * x;
@@ -101,6 +104,8 @@ fn weighted(scales: usize) -> impl Iterator<Item = (f64, [usize; 4])> {
         (0..scales)
             .flat_map(move |s| (0..NORMS).flat_map(move |n| (0..KINDS).map(move |k| [c, s, n, k])))
     });
+    // Weights are taken in one run. With fewer scales the run ends early and later channels get weights of earlier ones: the
+    // reference's behaviour, kept so that scores agree.
     let weights = WEIGHTS.as_flattened().as_flattened().as_flattened();
     let all = weights.iter().copied().zip(places);
     all.filter(|(weight, _)| *weight > 0.0)
@@ -123,6 +128,7 @@ impl Scales {
     fn new(reference: &[u8], picture: &[u8], width: usize) -> Self {
         let height = reference.len() / (CHANNELS * width);
         let factor = enlargement(width, height);
+        // There are 256 levels: a table replaces a power per sample.
         let linear: Vec<f32> = (0..=u8::MAX).map(linear_light).collect();
         let enlarged = |levels: &[u8]| -> Vec<[f32; 3]> {
             let (pixels, _) = levels.as_chunks::<3>();
@@ -214,6 +220,7 @@ fn xyb_of(rgb: &[f32; 3], black: f32) -> [f32; 3] {
     };
     let [long, medium, short] = [cone(OPSIN[0]), cone(OPSIN[1]), cone(OPSIN[2])];
     let (x, y) = (0.5 * (long - medium), 0.5 * (long + medium));
+    // X is small and may be negative: these shifts and factors bring all three planes to about 0..1.
     [14.0 * x + 0.42, y + 0.01, short - y + 0.55]
 }
 
@@ -237,6 +244,7 @@ impl Scale {
             let pixels = (self.width * self.height) as f64;
             [0, 1, 2].map(|k| {
                 let mean = |n: usize| sums.iter().map(|row| row[k][n]).sum::<f64>() / pixels;
+                // (Σ e⁴ / n)^¼ by two exact square roots.
                 [mean(0), mean(1).sqrt().sqrt()]
             })
         })
@@ -254,6 +262,7 @@ impl Scale {
                 let norm = norms[k][1];
                 factors[k][n] = match n {
                     0 => weight,
+                    // norm = mean(e⁴)/norm³, so a pixel's part of the norm is e⁴/norm³.
                     _ if norm > 0.0 => weight / math::powi(norm, 3),
                     _ => 0.0,
                 };
@@ -322,6 +331,7 @@ impl Window {
             |plane: &'_ [f32], y: usize| y * self.width..((y + 1) * self.width).min(plane.len());
         self.down.iter_mut().for_each(|sums| sums.fill(0.0));
         let height = reference.len() / self.width;
+        // Beyond the border all is 0, so rows off the picture add nothing, and weights aren't rescaled.
         for near in y.saturating_sub(TAPS.len() - 1)..(y + TAPS.len()).min(height) {
             let (a, b) = (
                 &reference[row(reference, near)],
@@ -380,10 +390,12 @@ fn blur(from: &[f32], to: &mut [f32]) {
 /// Structure, artefact and lost detail at a pixel: its values in both pictures, and the blurred values, squares and product.
 #[inline(always)]
 fn errors_at([a, b]: [f32; 2], [mean_a, mean_b, aa, bb, ab]: [f32; 5]) -> [f32; KINDS] {
+    // The luminance ratio of SSIM is 1 − (μa − μb)²/(μa² + μb² + C). Its denominator is left out: XYB is perceptually uniform.
     let luminance = 1.0 - (mean_a - mean_b) * (mean_a - mean_b);
     let covariance = 2.0 * (ab - mean_a * mean_b) + C2;
     let variances = (aa - mean_a * mean_a) + (bb - mean_b * mean_b) + C2;
     let structure = (1.0 - luminance * covariance / variances).max(0.0);
+    // More deviation from the local mean than in the reference is an artefact, less is lost detail.
     let change = (1.0 + (b - mean_b).abs()) / (1.0 + (a - mean_a).abs()) - 1.0;
     [structure, change.max(0.0), (-change).max(0.0)]
 }

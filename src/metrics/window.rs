@@ -19,6 +19,7 @@ fn average_rows(values: &mut [f64], width: usize, radius: usize) {
     let row = |y: usize| y * width..(y + 1) * width;
     // Rows are needed once more after they are replaced.
     let mut before = VecDeque::new();
+    // A running sum of the rows in reach: the next row enters, the first one leaves.
     let mut sums = vec![0.0; width];
     for y in 0..radius.min(height) {
         add(&mut sums, &values[row(y)]);

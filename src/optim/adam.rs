@@ -70,6 +70,7 @@ impl<T: Real> Adam<T> {
             &mut self.mean_of_one,
             &mut self.square_of_one,
         ] {
+            // Zeros are the state of a new value: all its averages start from 0.
             let mut moved = vec![T::zero(); group * sources.len()];
             for (to, source) in moved.chunks_exact_mut(group).zip(sources) {
                 if let Some(from) = source.and_then(|i| state.get(i * group..(i + 1) * group)) {
@@ -80,7 +81,7 @@ impl<T: Real> Adam<T> {
         }
     }
 
-    /// One step at the learning rate `rate · scales[i]` for value `i`, with `squares[i]` in the place of its squared
+    /// One step at the learning rate `rate · scales[i]` for value `i`, with `squares[i]` in place of its squared
     /// gradient. Values that move together, such as the coordinates of a point, share a square: a step then has the
     /// direction of their gradient.
     pub fn step_with_squares(
@@ -153,6 +154,7 @@ impl<T: Real> Adam<T> {
             square[i] = keep2 * square[i] + share(i, take2, g);
             mean_of_one[i] = keep1 * mean_of_one[i] + take1;
             square_of_one[i] = keep2 * square_of_one[i] + take2;
+            // m/(1−β₁ᵗ) / (√(v/(1−β₂ᵗ)) + ε), with one division for both quotients of m. At g = 0 from the start this is 0/ε.
             let scale = mean_of_one[i] * ((square[i] / square_of_one[i]).sqrt() + eps);
             params[i] -= rate(i) * mean[i] / scale;
         }

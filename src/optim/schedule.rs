@@ -23,6 +23,7 @@ pub enum Schedule {
 impl Schedule {
     /// The factor of step `step`, counted from 0, of `steps`. After the last step it stays constant.
     pub fn factor(self, step: usize, steps: usize) -> f64 {
+        // The last step has the number steps − 1, and reaches the end exactly. A single step starts at 1.
         let last = steps.saturating_sub(1).max(1);
         let done = step.min(last) as f64 / last as f64;
         match self {

@@ -43,6 +43,7 @@ impl SoftEdge for Smoothstep {
     #[inline(always)]
     fn eval<S: Simd>(self, d: f32x16<S>) -> (f32x16<S>, f32x16<S>) {
         let t = ((d + self.half) * self.slope).max(0.0).min(1.0);
+        // σ = 3t² − 2t³, σ' = 6t(1 − t)/(s + 1e-4). Where t is clamped to 0 or 1, σ' is 0 by itself.
         let t2 = t * t;
         let value = t2 * (3.0 - (t + t));
         let derivative = (t - t2) * (6.0 * self.slope);
@@ -117,6 +118,7 @@ pub(super) enum Edge {
 impl Edge {
     /// The edge of `coverage` at `softness` px, with its reach.
     pub(super) fn new(coverage: Coverage, softness: f32) -> (Self, Reach) {
+        // Coverage beyond the support is dropped, so that blocks farther away need no visit.
         let outside = coverage.support(f64::from(softness)) as f32;
         let tailed = |kind, slope: f32| Self::Tailed(Tailed::new(kind, slope / softness, outside));
         let edge = match coverage {
@@ -140,6 +142,7 @@ impl Edge {
 fn raw<S: Simd>(x: f32x16<S>) -> (f32x16<S>, f32x16<S>) {
     let simd = x.token();
     let value = x.max(-1.0).min(1.0) * 0.5 + 0.5;
+    // The derivative at ±1 is ½, as in `Coverage::derivative`.
     let derivative = x
         .abs()
         .simd_le(1.0)
@@ -157,10 +160,13 @@ fn logistic<S: Simd>(x: f32x16<S>) -> (f32x16<S>, f32x16<S>) {
 /// `exp(x)`, relative error below 3e-7 (Cephes `expf`: two-part ln 2, polynomial of degree 5).
 #[inline(always)]
 fn exp<S: Simd>(x: f32x16<S>) -> f32x16<S> {
+    // 2ⁿ has to stay a normal number: e^±87 is near the ends of f32.
     let x = x.max(-87.0).min(87.0);
     // exp(x) = 2ⁿ·exp(r), with n the whole number nearest to x / ln 2, so that |r| ≤ ln 2 / 2.
     let n = (x * std::f32::consts::LOG2_E + 0.5).floor();
+    // ln 2 in two parts: the first has so few bits that n times it is exact, the second is the rest.
     let r = x - n * 0.693_359_4 - n * -2.121_944_4e-4;
+    // exp(r) = 1 + r + r²·p(r).
     let mut p = r * 1.987_569_1e-4 + 1.398_2e-3;
     for coefficient in [8.333_452e-3, 4.166_579_6e-2, 1.666_666_5e-1, 0.5] {
         p = p * r + coefficient;
@@ -179,14 +185,16 @@ fn arctangent<S: Simd>(x: f32x16<S>) -> (f32x16<S>, f32x16<S>) {
     let size = x.abs();
     let far = size.simd_gt(2.414_213_6);
     let near = size.simd_le(0.414_213_57);
-    // Near 0 the series of x itself; beyond tan 3π/8 that of −1/x; between, that of (x − 1)/(x + 1).
+    // Near 0 the series runs in x, beyond tan 3π/8 in −1/x, and between in (x − 1)/(x + 1).
     let reduced = far.select(-1.0 / size.max(1e-30), (size - 1.0) / (size + 1.0));
     let reduced = near.select(size, reduced);
+    // The angle that the reduction has taken away: π/2, π/4 or nothing.
     let base = far.select(
         splat(std::f32::consts::FRAC_PI_2),
         splat(std::f32::consts::FRAC_PI_4),
     );
     let base = near.select(splat(0.0), base);
+    // atan(r) = r + r³·p(r²), for |r| ≤ tan π/8. The sign comes back last, since atan is odd.
     let z = reduced * reduced;
     let mut p = z * 8.053_744_5e-2 - 1.387_768_6e-1;
     p = p * z + 1.997_771_1e-1;

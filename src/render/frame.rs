@@ -58,6 +58,7 @@ impl<'a> Frame<'a> {
         polylines: &Polylines,
         layers: &mut [OfStroke],
     ) -> Option<TileSums> {
+        // Layers that cover the whole tile leave one colour only on a backdrop of one colour.
         let Backdrop::Color(mut color) = self.backdrop else {
             return None;
         };
@@ -69,12 +70,14 @@ impl<'a> Frame<'a> {
             contrasts.push(contrast);
             color = [0, 1, 2].map(|channel| color[channel] + opacity * contrast[channel]);
         }
+        // `slope` is summed over the tile's pixels, so everything below is, too.
         let (loss, slope) = loss.uniform(tile, color)?;
         // Hand the derivatives by the colour of the tile back, front to back.
         let mut through = 1.0;
         for (layer, contrast) in layers.iter_mut().zip(contrasts).rev() {
             let opacity = polylines.styles[layer.id as usize][STYLE - 1];
             for channel in 0..3 {
+                // ∂L/∂c = T·o·g and ∂L/∂o = T·g·(c − B), with a coverage of 1.
                 layer.style[1 + channel] += through * opacity * slope[channel];
                 layer.style[STYLE - 1] += through * slope[channel] * contrast[channel];
             }
@@ -82,6 +85,7 @@ impl<'a> Frame<'a> {
         }
         Some(TileSums {
             loss,
+            // The backdrop shows through all layers: ∂L/∂B = T₀·g.
             backdrop: slope.map(|slope| through * slope),
             ..TileSums::default()
         })
@@ -98,6 +102,7 @@ impl<'a> Frame<'a> {
         let Backdrop::Canvas(_) = self.backdrop else {
             return None;
         };
+        // The first call computes them with the usual two passes; the result is the same bits whichever thread comes first.
         let &(loss, backdrop) = loss.untouched(job.tile)?.get_or_init(|| {
             kernel::draw(level, job, scratch);
             let mut none = Sums::default();

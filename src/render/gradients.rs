@@ -9,7 +9,7 @@ pub struct Gradients {
     pub strokes: Vec<f32>,
     /// `∂L/∂backdrop`, summed over the pixels.
     pub backdrop: [f32; 3],
-    /// By how much the squared error (summed over pixels and channels) grows when the stroke is
+    /// Growth of the squared error (summed over pixels and channels) if the stroke is
     /// left out, exactly; filled by [`Renderer::backward_with_worth`](super::Renderer::backward_with_worth) alone.
     pub worth: Vec<f32>,
     /// Blocks of 16 px that were visited: the work done.

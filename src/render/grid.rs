@@ -50,11 +50,11 @@ pub(super) fn uniform_tile(color: [f32; 3]) -> TileRgb {
 /// Pixels side by side in one block of a tile.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Run {
-    /// The block, of those of its tile.
+    /// Index of the block in its tile.
     pub block: usize,
     /// Their lanes in the block.
     pub lanes: std::ops::Range<usize>,
-    /// The place of the first of them among all pixels of the picture, which are counted row by row.
+    /// Index of the first pixel of the run in the picture, row by row.
     pub first: usize,
 }
 
@@ -127,6 +127,7 @@ impl Grid {
 
     /// The tile, block and lane of a pixel.
     fn locate(&self, x: usize, y: usize) -> (usize, usize, usize) {
+        // Tiles, the blocks of a tile and the lanes of a block are all counted row by row.
         let block = y % TILE / BLOCK * TILE_BLOCKS + x % TILE / BLOCK;
         let lane = y % BLOCK * BLOCK + x % BLOCK;
         (y / TILE * self.columns + x / TILE, block, lane)
@@ -146,6 +147,7 @@ impl Grid {
             if !(lo < size as f32 && hi > 0.0) {
                 return 0..0;
             }
+            // A box that ends on the picture's border divides to one tile too many, hence `min(count)`.
             let first = (lo.max(0.0) as usize) / TILE;
             let last = (hi.min(size as f32) as usize) / TILE;
             first..(last + 1).min(count)
@@ -244,6 +246,7 @@ impl Canvas {
             // Two rows that belong together are in one block; a single last row or column is its own neighbour.
             let below = if y + 1 < height { BLOCK } else { 0 };
             for (tile, block, lanes, _) in self.grid.segments(y) {
+                // A picture of odd width has a last pixel without a neighbour to the right: it counts twice.
                 let last = lanes.end - 1;
                 for (plane, lane) in planes.iter_mut().zip(&self.tiles[tile][block]) {
                     plane.extend(lanes.clone().step_by(2).map(|left| {

@@ -33,9 +33,10 @@ pub fn ground(scene: &Scene, behind: Rgb) -> [Vec<f32>; 3] {
 /// The share of each pixel of a page that a shadow covers, 0 to 1, without its opacity, row by row.
 pub fn coverage(shadow: &Shadow, width: usize, height: usize) -> Vec<f32> {
     let [low, high] = shadow.extent();
-    // What lies beyond the page is blurred into it, as far as a blur reaches.
+    // A shadow beyond the page is blurred into it, as far as a blur reaches.
     let reach = (4.0 * shadow.blur()).ceil() as i64;
     let page = [width, height].map(|side| side as i64);
+    // The rectangle to blur: the shadow, cut where it is too far from the page to show there.
     let origin = low.map(|at| at.max(-reach));
     let end = [0, 1].map(|axis: usize| high[axis].min(page[axis] + reach));
     let size = [0, 1].map(|axis| (end[axis] - origin[axis]).max(0) as usize);
@@ -45,11 +46,13 @@ pub fn coverage(shadow: &Shadow, width: usize, height: usize) -> Vec<f32> {
         .rings
         .iter()
         .map(|ring| ring.clone().moved(shift));
+    // Fill, then blur, as an SVG filter does. The caller applies the opacity.
     let sharp = filled(rings, size);
     let soft = blurred(sharp, shadow.blur());
     let mut covered = vec![0.0; width * height];
     for (y, row) in soft.values.chunks_exact(soft.width.max(1)).enumerate() {
         let y = y as i64 + origin[1];
+        // Copy the part of the row that is on the page.
         let first = origin[0].clamp(0, width as i64);
         let last = end[0].clamp(0, width as i64);
         if (0..height as i64).contains(&y) && first < last {

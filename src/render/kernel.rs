@@ -79,7 +79,7 @@ struct Visit {
     /// Blocks on the soft edge, visited first: those in which several segments can be nearest, and then those of each
     /// segment alone.
     edge: BlockSet,
-    /// Those in which several segments can be nearest.
+    /// The blocks of `edge` in which several segments can be nearest.
     shared: BlockSet,
     /// Blocks in the hard core, where coverage is 1 and no distance is needed.
     core: BlockSet,
@@ -98,9 +98,9 @@ pub(super) struct Scratch {
     visits: Vec<Visit>,
     /// The transmittance before each block that pass 1 visits.
     kept_transmittance: Stack<Lanes>,
-    /// The rest that is kept of those on a soft edge.
+    /// The other kept values of the blocks on a soft edge.
     kept_edges: Stack<EdgeBlock>,
-    /// Where several segments of a stroke can be nearest, which of them is the nearest to each pixel.
+    /// Index of the segment nearest to each pixel, in blocks where several segments compete.
     kept_nearest: Stack<Lanes>,
     /// For each listed segment, the blocks in which it can be nearest.
     near: Vec<BlockSet>,
@@ -147,7 +147,7 @@ pub(super) struct TileJob<'a> {
     pub(super) polylines: &'a Polylines,
     /// The strokes that may touch this tile, back to front.
     pub(super) listed: &'a [Listed],
-    /// Their segments that may, each by its first vertex.
+    /// The segments of these strokes that may touch the tile, each by its first vertex.
     pub(super) segments: &'a [u32],
     /// The tile's number.
     pub(super) tile: usize,
@@ -186,7 +186,7 @@ impl<'a> TileJob<'a> {
         self.polylines.areas[self.listed[slot].stroke as usize]
     }
 
-    /// The colour and the opacity of a listed stroke in these blocks. Those of a gradient are put into `inks`.
+    /// The colour and the opacity of a listed stroke in these blocks. A gradient is evaluated into `inks`.
     #[inline(always)]
     fn brush<'b, S: Simd>(
         &self,
@@ -224,7 +224,7 @@ impl<'a> TileJob<'a> {
 struct Brush<'a, S: Simd> {
     rgb: [f32x16<S>; 3],
     opacity: f32x16<S>,
-    /// Those of a gradient instead.
+    /// A gradient: its colours replace `rgb`, and its opacities multiply `opacity`.
     inks: Option<&'a InkTile>,
 }
 
@@ -288,6 +288,7 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
     kept_transmittance.clear();
     kept_edges.clear();
     kept_nearest.clear();
+    // Each stroke writes its own range of `near` before anything reads it, so old content may stay.
     near.resize(job.segments.len(), 0);
     let mut live = BlockSet::MAX;
     // The list is back to front, so the walk starts at its end.
@@ -300,6 +301,7 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
         let near = &mut near[range];
         let radius = style[0];
         let is_area = job.is_area(slot);
+        // A single capsule has nothing to compare: its only segment is the nearest everywhere.
         let (mut touched, mut core) = if near.len() == 1 && !is_area {
             let (touched, core) = segments.get(0).blocks(simd, radius, job.reach);
             near[0] = touched;
@@ -307,8 +309,11 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
         } else {
             union.blocks(simd, segments, radius, job.reach, near)
         };
-        // The edge of an area is that of a stroke without radius, which has no core.
+        // The edge of an area is the edge of a stroke without radius, which has no core.
         if is_area {
+            // A block whose pixels lie on both sides has a segment through it, so it is touched. The remaining blocks are wholly
+            // inside, hence core, or wholly outside. An area that fills the tile has no block on the edge, so nothing reads its
+            // windings.
             let listed = job.listed[slot];
             let inside = if listed.fills {
                 BlockSet::MAX
@@ -323,9 +328,11 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
         let visit = Visit {
             slot: slot as u32,
             edge: edge_blocks,
+            // Segments compete on the edge alone: coverage in the core is 1 whichever is nearest.
             shared: shared(near) & edge_blocks,
             core: touched & core & live,
         };
+        // Hidden or out of reach: the stroke has no sums in this tile, and its derivatives here are 0.
         if visit.edge | visit.core == 0 {
             continue;
         }
@@ -346,6 +353,7 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
             let nearest = kept_nearest.push(visit.shared).iter_mut();
             let kept = nearest.zip(&mut edges).zip(&mut through);
             for (block, ((nearest, kept), through)) in members(visit.shared).zip(kept) {
+                // Pass 2 sorts the pixels by segment; with the index kept, it compares no distances again.
                 *nearest = union.nearest(block);
                 let inside = windings.inside(is_area, block);
                 let (rgb, opacity) = brush.at(simd, block);
@@ -383,6 +391,7 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
                 live &= !(1 << block);
             }
         }
+        // Every block is opaque: no stroke farther back can show or matter in this tile.
         if live == 0 {
             break;
         }
@@ -457,7 +466,7 @@ fn back_to_front<S: Simd, X: Extras>(
         {
             let (rgb, _) = brush.at(simd, block);
             let (pull, stiffness) = stroke.blend_edge::<X>(simd, kept, t, &rgb, grounds.at(block));
-            // Values that the segments need, in the place of values that nothing needs any more.
+            // The segments need these values; they overwrite values that are used up.
             store(pull, &mut kept.slope);
             if X::STIFFNESS {
                 store(stiffness, &mut kept.inverse);
@@ -471,6 +480,7 @@ fn back_to_front<S: Simd, X: Extras>(
         // Give each segment the pull of its own blocks, and of those pixels near joints that it is nearest to.
         let mut alone = alone.iter();
         for (k, near) in near.iter().enumerate() {
+            // No visible block of the edge has this segment as a candidate: moving it changes no pixel.
             if near & visit.edge == 0 {
                 continue;
             }
@@ -488,6 +498,7 @@ fn back_to_front<S: Simd, X: Extras>(
                 }
             }
             of_shared.pull::<_, X>(simd, &segment, k, *near, &mut shifts);
+            // Segments that were skipped have no row, so a row names its segment by `id`.
             sums.segments.push(OfSegment {
                 id: segments.listed[k],
                 ends: shifts.ends(),
@@ -562,6 +573,7 @@ pub(super) fn differentiate_on_mattes<L: CanvasLoss>(
 ) -> TileSums {
     let loss = dispatch!(level, simd => {
         let Scratch { color, gradient, .. } = scratch;
+        // The first loss reads the canvas before it becomes the canvas on the second backdrop.
         let first = losses[0].tile(job.tile, color, None, gradient);
         // Both canvases have the same strokes, so that one pass 1 serves both.
         change_backdrop(simd, job.backdrop, other, scratch);
@@ -582,6 +594,7 @@ fn differentiate_canvas<X: Extras>(
     scratch: &mut Scratch,
     sums: &mut Sums,
 ) -> TileSums {
+    // Pass 1 kept one transmittance per block it visited. Pass 2 pops them, so count first.
     let blocks = scratch.kept_transmittance.len() as u64;
     let backdrop = dispatch!(level, simd => back_to_front::<_, X>(simd, job, scratch, sums));
     TileSums {
@@ -591,10 +604,11 @@ fn differentiate_canvas<X: Extras>(
     }
 }
 
-/// Makes the canvas on the backdrop `from` that on `to`.
+/// Turns the canvas on the backdrop `from` into the canvas on `to`.
 #[inline(always)]
 fn change_backdrop<S: Simd>(simd: S, from: &TileRgb, to: &TileRgb, scratch: &mut Scratch) {
     for (block, transmittance) in scratch.transmittances.iter().enumerate() {
+        // C₂ = C₁ + T·(B₂ − B₁): the strokes' own light is the same on both backdrops.
         let through = load(simd, &transmittance.through);
         for (channel, color) in scratch.color[block].iter_mut().enumerate() {
             let change = load(simd, &to[block][channel]) - load(simd, &from[block][channel]);
@@ -604,7 +618,7 @@ fn change_backdrop<S: Simd>(simd: S, from: &TileRgb, to: &TileRgb, scratch: &mut
 }
 
 /// Prepares pass 2 for both losses. In front of it, the colours of a stroke are the same on both backdrops, so that the
-/// derivatives by the canvases add up, and what is different behind it is in [`Matte`].
+/// derivatives by the canvases add up, and [`Matte`] has the difference behind it.
 #[inline(always)]
 fn add_second_loss<S: Simd>(simd: S, first: &TileRgb, other: &TileRgb, scratch: &mut Scratch) {
     let Scratch {
@@ -623,6 +637,7 @@ fn add_second_loss<S: Simd>(simd: S, first: &TileRgb, other: &TileRgb, scratch: 
             let sum = &mut gradient[block][channel];
             store(load(simd, sum) + g, sum);
         }
+        // At the rearmost stroke the two colours behind differ by the whole difference of the backdrops: `through` is 1.
         *matte = CLEAR;
         store(by_through, &mut matte.gradient);
     }

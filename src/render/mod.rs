@@ -104,7 +104,7 @@ pub(crate) use polylines::{Knot, Piece, Pieces};
 use polylines::{Polylines, flatten};
 use shares::shares;
 
-/// A differentiable loss over the canvas, told tile by tile while the tile is still in cache.
+/// A differentiable loss over the canvas, evaluated tile by tile while the tile is still in cache.
 pub trait CanvasLoss: Sync {
     /// Writes `∂L/∂canvas` of tile `tile` and, if it is asked for, the signed error `canvas − target`; returns the
     /// tile's share of the loss. On the padding of a tile the canvas is 0.
@@ -155,7 +155,7 @@ pub struct Softness {
 struct TileWork {
     /// The strokes that may touch the tile, back to front.
     listed: Vec<Listed>,
-    /// Those of their segments that may, each by its first vertex.
+    /// The segments of these strokes that may touch the tile, each by its first vertex.
     segments: Vec<u32>,
     sums: Sums,
     total: TileSums,
@@ -203,14 +203,15 @@ impl Renderer {
     }
 
     /// Sets how much errors count, for the backward passes alone: the roots `√w` of the weights, in the first channel of
-    /// `roots`. These passes then multiply the canvas by the roots, and tell the loss of that.
+    /// `roots`. These passes then multiply the canvas by the roots before they evaluate the loss.
     ///
-    /// With a target that is multiplied alike, everything that they tell of a squared error, the worth included, is exactly
-    /// that of the weighted squared error: `(√w·c − √w·t)² = w·(c − t)²`.
+    /// If the target is multiplied by the same roots, the squared error, its derivatives and the worth are exactly those of the
+    /// weighted squared error: `(√w·c − √w·t)² = w·(c − t)²`.
     pub fn set_error_weights(&mut self, roots: &Canvas) {
         for (work, tile) in self.tiles.iter_mut().zip(roots.tiles()) {
             let of = |block: usize| {
                 let mut lanes = tile[block][0];
+                // Pass 1 starts from these weights as transmittance, so the padding has to stay 0 whatever the roots are there.
                 let weights = work.weights.as_deref().unwrap_or(&FULL);
                 for (lane, weight) in lanes.0.iter_mut().zip(weights[block].0) {
                     *lane *= weight;
@@ -238,15 +239,18 @@ impl Renderer {
             ref scratch,
             ..
         } = *self;
+        // Tasks of one tile: tiles differ too much in their number of strokes for longer runs to take equal time.
         let tiles = tiles
             .par_iter_mut()
             .zip(out.tiles_mut())
             .enumerate()
             .with_max_len(1);
         tiles.for_each(|(tile, (work, out))| {
+            // `bin` compared bounding boxes of whole strokes; this drops strokes whose segments all miss the tile.
             work.list_segments(level, polylines, frame.origin(tile), frame.reach);
             let job = frame.job(polylines, tile, work, work.weights.as_deref());
             if job.listed.is_empty() {
+                // The tile shows the backdrop alone. Its padding becomes 0, as in a tile that the kernel draws.
                 out.clone_from(job.backdrop);
                 if let Some(weights) = &work.weights {
                     clear_padding(out, weights);
@@ -276,7 +280,7 @@ impl Renderer {
         self.reduce(strokes, false, gradients);
     }
 
-    /// The `loss` of `strokes` on `backdrop`, with the weights of errors: what [`Self::backward`] tells of it.
+    /// The `loss` of `strokes` on `backdrop` under the error weights, the value that [`Self::backward`] computes.
     pub fn loss<L: CanvasLoss>(
         &mut self,
         strokes: &Strokes,
@@ -290,6 +294,7 @@ impl Renderer {
             loss,
         };
         self.run_backward(strokes, 1, &frame, pass);
+        // A sum in tile order: the same `f64` for every number of threads.
         self.tiles.iter().map(|work| work.total.loss).sum()
     }
 
@@ -303,6 +308,7 @@ impl Renderer {
         losses: [&L; 2],
         gradients: &mut Gradients,
     ) {
+        // Both frames have one softness, so one binning and one pass 1 serve both backdrops.
         let frames = backdrops.map(|backdrop| Frame::new(self.grid, softness, backdrop));
         let pass = Double {
             frames: &frames,
@@ -339,11 +345,13 @@ impl Renderer {
         let frame = Frame::new(self.grid, softness, backdrop);
         let pass = Single::<L, Stiffnesses>::of(&frame, loss);
         self.run_backward(strokes, least, &frame, pass);
+        // The reduction leaves `∂L/∂vertex` in `self.slopes`; a survey has no use for the derivatives by points.
         self.reduce(strokes, false, &mut Gradients::default());
         survey.firsts.clone_from(&self.polylines.firsts);
         survey.vertices.clone_from(&self.polylines.vertices);
         survey.slopes.clone_from(&self.slopes);
         survey.stiffness.clear();
+        // A vertex between two segments gets a part from each, in each tile that they touch.
         survey.stiffness.resize(self.polylines.vertices.len(), 0.0);
         // Only a survey asks for stiffness, so that its sums are made here, on one thread.
         for work in &self.tiles {
@@ -374,6 +382,7 @@ impl Renderer {
             .with_max_len(1)
             .for_each(|(tile, work)| {
                 work.list_segments(level, polylines, frame.origin(tile), frame.reach);
+                // `job` borrows the rest of `work` during the passes, so the sums move out, with their memory, and back in.
                 let mut sums = std::mem::take(&mut work.sums);
                 sums.clear();
                 // A tile of one colour is known without looking at its pixels: most of a page of line art or areas.
@@ -382,6 +391,7 @@ impl Renderer {
                         (work.total, work.sums) = (total, sums);
                         return;
                     }
+                    // The kernel lists the strokes anew, in the order of its visits.
                     sums.clear();
                 }
                 // The weights of errors are 0 on the padding, too.
@@ -389,6 +399,7 @@ impl Renderer {
                 // Both passes run on one tile at once, while what pass 1 keeps is still in the cache.
                 let job = frame.job(polylines, tile, work, weights);
                 let total = scratch.with(|scratch| {
+                    // Without a stroke the tile shows the backdrop, whose sums the loss may keep as long as the picture stays.
                     let untouched = || pass.untouched(level, &job, scratch);
                     if let Some(total) = job.listed.is_empty().then(untouched).flatten() {
                         return total;
@@ -416,6 +427,8 @@ impl Renderer {
             .zip(&self.polylines.boxes)
             .enumerate()
         {
+            // A stroke reaches `radius + soft edge` beyond its centre line, an area (radius 0) the soft edge beyond its contour. A
+            // stroke with a number that is not finite has a NaN margin, which touches no tile.
             let margin = style[0] + reach.outside;
             let [columns, rows] = self.grid.tiles_touched(
                 low[0] - margin,
@@ -447,6 +460,7 @@ impl Renderer {
             values.clear();
             values.resize(count, 0.0);
         }
+        // Totals are few numbers per tile: one thread adds them.
         gradients.loss = 0.0;
         gradients.backdrop = [0.0; 3];
         gradients.blocks = 0;
@@ -467,6 +481,8 @@ impl Renderer {
         // Threads share out strokes, not tiles: each sum has one owner, and adds in tile order whatever the threads.
         let shares = shares(strokes, polylines, slopes, gradients);
         shares.into_par_iter().for_each(|mut share| {
+            // First complete the sums by vertices. Flattening is linear, so one pass per stroke then suffices to go from vertices
+            // to points, instead of one per stroke and tile.
             share.gather(strokes, polylines, tiles);
             share.hand_back(strokes, polylines, least);
         });
@@ -504,7 +520,7 @@ trait BackwardPass: Sync {
     fn untouched(&self, level: Level, job: &TileJob<'_>, scratch: &mut Scratch)
     -> Option<TileSums>;
 
-    /// The sums of the tile of `job`, which pass 1 has drawn, and those of its strokes and segments.
+    /// The sums of the tile of `job`, which pass 1 has drawn; `sums` takes the sums of its strokes and segments.
     fn tile(
         &self,
         level: Level,
@@ -617,6 +633,7 @@ impl<L: CanvasLoss> BackwardPass for Double<'_, L> {
         polylines: &Polylines,
         layers: &mut [OfStroke],
     ) -> Option<TileSums> {
+        // If only one of the two is known, the layers hold half a sum: the caller clears them.
         summed([0, 1].map(|i| self.frames[i].uniform_sums(tile, self.losses[i], polylines, layers)))
     }
 
@@ -627,6 +644,7 @@ impl<L: CanvasLoss> BackwardPass for Double<'_, L> {
         scratch: &mut Scratch,
     ) -> Option<TileSums> {
         summed([0, 1].map(|i| {
+            // Without strokes the two canvases have nothing in common: each is its own backdrop.
             let job = job.on(self.frames[i].backdrop(job.tile));
             self.frames[i].untouched_sums(level, &job, self.losses[i], scratch)
         }))
@@ -639,13 +657,14 @@ impl<L: CanvasLoss> BackwardPass for Double<'_, L> {
         scratch: &mut Scratch,
         sums: &mut Sums,
     ) -> TileSums {
+        // `job` has the first backdrop.
         let other = self.frames[1].backdrop(job.tile);
         let losses = self.losses;
         kernel::differentiate_on_mattes(level, job, other, losses, scratch, sums)
     }
 }
 
-/// The sums on two backdrops together, if both are known. Blocks are those of the first.
+/// The sums on two backdrops together, if both are known. The blocks of the first count.
 fn summed([first, second]: [Option<TileSums>; 2]) -> Option<TileSums> {
     let (mut sums, second) = (first?, second?);
     sums.loss += second.loss;
@@ -653,7 +672,7 @@ fn summed([first, second]: [Option<TileSums>; 2]) -> Option<TileSums> {
     Some(sums)
 }
 
-/// The vertices of the polyline that replaces a stroke, px. That of a dot has two vertices in one place, and that of a
+/// The vertices of the polyline that replaces a stroke, px. The polyline of a dot has two vertices in one place; the polyline of a
 /// closed path ends where it starts.
 pub fn flattened(stroke: StrokeRef<'_>) -> Vec<[f32; 2]> {
     let mut vertices = Vec::new();

@@ -58,6 +58,7 @@ impl Ink {
         let scale = f64::from(*scale);
         let axis = match shade.axis() {
             Axis::Linear { from, to } => {
+                // offset(p) = (p/scale − from)·(to − from)/|to − from|².
                 let along = to - from;
                 let per_px = along / along.hypot2();
                 InkAxis::Linear {
@@ -67,6 +68,7 @@ impl Ink {
             }
             Axis::Radial { center, radius } => InkAxis::Radial {
                 center: math::xy((center.to_vec2() * scale).to_point()),
+                // offset(p) = |p − center·scale| / (radius·scale).
                 slope: (1.0 / (radius * scale)) as f32,
             },
         };
@@ -78,6 +80,7 @@ impl Ink {
         let ramp = |pair: &[ShadeStop]| {
             let [before, after] = [value(&pair[0]), value(&pair[1])];
             Ramp {
+                // A step (two stops at one offset) becomes a very short ramp, so that nothing divides by 0.
                 from: pair[0].offset,
                 per_offset: 1.0 / (pair[1].offset - pair[0].offset).max(Self::SHORTEST),
                 change: std::array::from_fn(|k| after[k] - before[k]),

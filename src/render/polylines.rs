@@ -24,7 +24,7 @@ pub(super) struct Polylines {
     /// The vertices of all polylines, px.
     pub(super) vertices: Vec<[f32; 2]>,
     /// The first vertex of each stroke, and behind the last stroke the number of all vertices. A polyline has at least
-    /// one segment; that of a dot has no length.
+    /// one segment; the segment of a dot has no length.
     pub(super) firsts: Vec<u32>,
     /// Radius, red, green, blue and opacity of each stroke.
     pub(super) styles: Vec<[f32; STYLE]>,
@@ -47,6 +47,7 @@ pub(super) struct Polylines {
 impl Polylines {
     /// Flattens `strokes`, on a page of so many `rows` of tiles. Each line and each curve becomes `least` segments or more.
     pub(super) fn fill(&mut self, strokes: &Strokes, least: usize, rows: usize) {
+        // Flatten chunks of strokes in parallel, each into memory that it keeps from call to call.
         let count = strokes.len().div_ceil(CHUNK);
         self.parts.resize_with(count, Self::default);
         let parts = self.parts.par_iter_mut().enumerate();
@@ -56,6 +57,7 @@ impl Polylines {
                 part.push(strokes.get(i), least);
             }
         });
+        // Join the chunks in their order, so that threads change nothing.
         let parts = std::mem::take(&mut self.parts);
         self.clear();
         for part in &parts {
@@ -75,8 +77,10 @@ impl Polylines {
             self.areas.extend(&part.areas);
             self.boxes.extend(&part.boxes);
         }
+        // One more entry, so that `firsts[i]..firsts[i + 1]` holds for the last stroke, too.
         self.firsts.push(self.vertices.len() as u32);
         self.parts = parts;
+        // Areas wind around pixels far from their contours, so each row of tiles lists the segments that cross it.
         self.crossings.clear(rows);
         for (area, _) in self
             .areas
@@ -124,6 +128,7 @@ impl Polylines {
         } else {
             flatten(stroke, least, &mut self.vertices, &mut self.curves);
         }
+        // `min` and `max` of floats skip NaN, so the vertex between rings doesn't count.
         let (mut low, mut high) = ([f32::INFINITY; 2], [f32::NEG_INFINITY; 2]);
         for vertex in &self.vertices[first..] {
             for axis in 0..2 {
@@ -140,6 +145,7 @@ impl Polylines {
         if self.inks.is_empty() {
             return None;
         }
+        // Inks are added stroke by stroke, so they are sorted.
         let at = self.inks.binary_search_by_key(&i, |(stroke, _)| *stroke);
         at.ok().map(|at| &self.inks[at].1)
     }
@@ -158,6 +164,7 @@ impl Polylines {
             add(points.as_flattened_mut(), slopes.as_flattened());
             return;
         }
+        // The number of segments of each curve is the one that `flatten` has used, so that slopes and vertices match.
         let mut curves = self.curves[self.first_curves[i] as usize..].iter();
         let mut rest = slopes;
         for (first, path) in stroke.paths() {
@@ -212,6 +219,8 @@ pub(super) fn flatten(
             vertices.push(BETWEEN_RINGS);
         }
         let mut pieces = Pieces::of(path).peekable();
+        // Every piece adds the vertices behind its start, so the first knot comes before all. A dot has no piece: its point twice
+        // is a segment of no length.
         match pieces.peek() {
             Some(first) => vertices.push(first.from.place(path.points)),
             None => vertices.extend([path.points[0]; 2]),
@@ -236,7 +245,7 @@ pub(crate) enum Knot {
 }
 
 impl Knot {
-    /// The place of the knot.
+    /// The point of the knot, px.
     pub(crate) fn place(self, points: &[[f32; 2]]) -> [f32; 2] {
         match self {
             Self::Point(i) => points[i],
@@ -287,6 +296,7 @@ impl Piece {
     /// The vertices of the piece behind its start, as one of so many segments.
     fn vertices(self, points: &[[f32; 2]], steps: usize) -> impl Iterator<Item = [f32; 2]> {
         let (a, b) = (self.from.place(points), self.to.place(points));
+        // The control point of a line has weight 0, so any number does in its place.
         let c = self.control.map_or(a, |control| points[control]);
         (1..=steps).map(move |step| {
             let [of_a, of_c, of_b] = self.weights(step, steps);
@@ -296,6 +306,7 @@ impl Piece {
 
     /// The weights of the start, the control point and the end in the vertex after `step` of so many segments.
     fn weights(&self, step: usize, steps: usize) -> [f32; 3] {
+        // A line is (1−t)a + tb; a quadratic Bézier curve is (1−t)²a + 2t(1−t)c + t²b.
         let t = step as f32 / steps as f32;
         let s = 1.0 - t;
         match self.control {
@@ -306,6 +317,7 @@ impl Piece {
 
     /// Adds the derivatives by the vertices behind the start to those by the points that they depend on.
     fn hand_back(&self, slopes: &[[f32; 2]], points: &mut [[f32; 2]]) {
+        // The transpose of `vertices`: each vertex gives its derivative to the three points, by the same weights.
         let mut sums = [[0.0; 2]; 3];
         for (step, slope) in (1..).zip(slopes) {
             for (sum, weight) in sums.iter_mut().zip(self.weights(step, slopes.len())) {
@@ -344,6 +356,7 @@ impl<'a> Pieces<'a> {
     /// The pieces of `stroke`.
     pub(crate) fn of(stroke: StrokeRef<'a>) -> Self {
         let (off, count) = (stroke.off, stroke.off.len());
+        // A closed path may start anywhere: it starts at its first point that is on it.
         let first = off.iter().position(|off| !off);
         // All points of a closed path may be off: it starts halfway between the last one and the first.
         let (from, next) = match first {
@@ -372,8 +385,11 @@ impl Iterator for Pieces<'_> {
             return None;
         }
         let (count, from) = (self.off.len(), self.from);
+        // Ends of an open path are on it, so only a closed path wraps around.
         let point = self.next % count;
         self.next += 1;
+        // A point on the path ends a line. A point off it is the control point of a curve, which ends halfway to the next point if
+        // that is off as well, else at that point.
         let control = self.off[point].then_some(point);
         self.from = match control {
             None => Knot::Point(point),

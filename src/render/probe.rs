@@ -50,7 +50,7 @@ impl Patch {
         })
     }
 
-    /// Copies what `probes` needs of the surroundings of pixel (x, y), which becomes the centre of the patch.
+    /// Copies the blocks that `probes` needs around pixel (x, y), which becomes the centre of the patch.
     pub fn fill(&mut self, probes: &Probes, target: &Image, canvas: &Image, x: usize, y: usize) {
         let (width, height) = (canvas.width() as isize, canvas.height() as isize);
         for &block in &probes.blocks {
@@ -138,6 +138,7 @@ fn cover<S: Simd>(simd: S, shape: &Params) -> Vec<(usize, Lanes)> {
     };
     let edge = Smoothstep::new(1.0);
     let &[ax, ay, bx, by, radius, ..] = shape;
+    // A template has no core: with an infinite `inside`, every touched block keeps its coverage.
     let segment = Segment::new([[ax, ay], [bx, by]], [0.0; 2]);
     let (touched, _) = segment.blocks(simd, radius, reach);
     members(touched)
@@ -194,6 +195,7 @@ impl Probes {
             .map(|shape| Template::new(level, shape))
             .collect();
         let touched = templates.iter().flat_map(|template| &template.blocks);
+        // A patch copies the blocks that any template touches, and no others.
         let set = touched.fold(0, |set: BlockSet, (block, _)| set | 1 << block);
         Self {
             level,
@@ -239,6 +241,7 @@ impl Search<'_> {
     #[inline(always)]
     fn run<S: Simd>(mut self, simd: S) -> Option<(usize, Probe)> {
         let capsules = self.probes.sizes * ANGLES;
+        // The middle size stands for all of them until the direction is known.
         let middle = self.probes.sizes / 2 * ANGLES;
         // Every other direction, then those on both sides of the best.
         for turn in (0..ANGLES).step_by(2) {
@@ -258,7 +261,7 @@ impl Search<'_> {
         self.best
     }
 
-    /// Tries the directions beside that of the best capsule.
+    /// Tries both neighbours of the best capsule's direction.
     #[inline(always)]
     fn turn<S: Simd>(&mut self, simd: S) {
         match self.best {
@@ -274,6 +277,7 @@ impl Search<'_> {
     #[inline(always)]
     fn probe<S: Simd>(&mut self, simd: S, index: usize) {
         let template = &self.probes.templates[index];
+        // One stroke on several backdrops has one colour and opacity, so the sums add up before they are solved.
         let mut total = Sums::default();
         for patch in self.patches {
             total.add(&sums(simd, template, patch));
@@ -300,6 +304,7 @@ fn sums<S: Simd>(simd: S, template: &Template, patch: &Patch) -> Sums {
     let zero = f32x16::splat(simd, 0.0);
     let (mut s, mut x, mut y, mut q, mut z) = (zero, [zero; 3], [zero; 3], zero, zero);
     for (block, coverage) in &template.blocks {
+        // Pixels off the picture drop out of all nine sums.
         let m = load(simd, coverage) * load(simd, &patch.inside[*block]);
         let m2 = m * m;
         s += m2;
@@ -346,6 +351,7 @@ impl Sums {
         let dot = |a: &[f32; 3], b: &[f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         // The variance of the canvas under the shape: without it, opacity and colour cannot be told apart.
         let spread = self.q - dot(&self.x, &self.x) / self.s;
+        // v = (X·Y/S − Z) / (Q − |X|²/S).
         let pull = dot(&self.x, &self.y) / self.s - self.z;
         // On a flat canvas opacity and colour say the same, and the opaque stroke is preferred.
         let free = if spread > 1e-4 * self.s {
@@ -354,8 +360,10 @@ impl Sums {
             1.0
         };
         let opacity = free.clamp(min_opacity, 1.0);
+        // c = u/v = (Y + vX)/(vS), cut to colours that exist.
         let color = [0, 1, 2]
             .map(|k| ((self.y[k] + opacity * self.x[k]) / (self.s * opacity)).clamp(0.0, 1.0));
+        // The gain at the clamped colour and opacity, which may be no gain any more.
         let u = color.map(|c| c * opacity);
         let gain = 2.0 * (dot(&u, &self.y) - opacity * self.z)
             - (dot(&u, &u) * self.s - 2.0 * opacity * dot(&u, &self.x)
@@ -374,6 +382,7 @@ impl Probe {
         let mut p = *shape;
         for end in [0, 2] {
             for axis in 0..2 {
+                // Templates are in px of the reduced picture, about the patch's centre.
                 p[end + axis] = center[axis] + (shape[end + axis] - PATCH_CENTER) * scale;
             }
         }

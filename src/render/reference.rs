@@ -1,5 +1,4 @@
-//! The reference: strokes × pixels, `f64`, no cleverness. Slow, and what every faster path is
-//! compared with.
+//! The reference: strokes × pixels, `f64`, no cleverness. Slow; the oracle of every faster path.
 //!
 //! **Forward.** Source-over with opacity, back to front: with `d` the signed distance of a pixel's
 //! sample point and `σ` the coverage ([`coverage`](crate::coverage)),
@@ -30,10 +29,10 @@
 //! derivative by x of at most `Σ k·w`, `k = 2|∂C/∂d|²` and `∂C/∂d = T·opacity·σ'(d)·(c − B)`, since `w² ≤ w`. Sums of
 //! these bounds also hold for vertices that move together, because the `w` of a pixel add up to 1.
 //!
-//! **Areas.** A stroke with rings is an area: its distance is that of its contours, and all else is as
+//! **Areas.** A stroke with rings is an area: its distance is measured from its contours, and all else is as
 //! for a path, without a radius. A cut makes coverage 1 deep inside it as well as 0 far outside.
 //!
-//! Domain: any finite parameters; a radius of 0 or below leaves what the coverage function has
+//! Domain: any finite parameters; a radius of 0 or below leaves the tail of the coverage function,
 //! outside of the edge.
 //!
 //! Source: the gradient of source-over in two passes is what Kerbl et al., "3D Gaussian splatting
@@ -112,6 +111,7 @@ impl Reference {
         let mut slopes: Vec<Vec<Vec2>> = outlines.iter().map(vertices).collect();
         for (p, &g) in self.samples(scene).zip(d_canvas) {
             let layers = self.layers(scene, &outlines, p);
+            // T₀: the backdrop shows through the rearmost stroke and all in front of it.
             let through = layers
                 .first()
                 .map_or(1.0, |back| back.transmittance * (1.0 - back.m));
@@ -125,6 +125,7 @@ impl Reference {
             }
         }
         for ((stroke, outline), slopes) in strokes.iter_mut().zip(&outlines).zip(slopes) {
+            // From vertices to points by the transpose of flattening.
             let mut by_points = vec![Vec2::ZERO; stroke.points.len()];
             for (mean, slope) in outline.means.iter().zip(slopes) {
                 mean.hand_back(slope, &mut by_points);
@@ -156,8 +157,8 @@ impl Reference {
         stiffness
     }
 
-    /// By how much the sum of squared errors over all values would change if a stroke were removed,
-    /// for each stroke. Positive where a stroke is worth having.
+    /// For each stroke, the change of the sum of squared errors over all values if it were removed.
+    /// Positive where a stroke is worth having.
     pub fn leave_one_out(&self, scene: &Scene, target: &[Rgb]) -> Vec<f64> {
         let mut changes = vec![0.0; scene.strokes.len()];
         let (canvas, outlines) = (self.render(scene), outlines(scene));
@@ -165,6 +166,7 @@ impl Reference {
             for (i, layer) in self.layers(scene, &outlines, p).iter().enumerate() {
                 for channel in 0..3 {
                     let e = canvas[k][channel] - target[k][channel];
+                    // Without the stroke, its colour behind shows in its place: (e + δ)² − e² = 2eδ + δ².
                     let delta = -layer.transmittance * layer.m * layer.reach()[channel];
                     changes[i] += 2.0 * e * delta + delta * delta;
                 }
@@ -195,6 +197,7 @@ impl Reference {
 
     /// Coverage and its derivative by the distance.
     fn covered(&self, outline: &Outline, p: Point) -> (f64, f64) {
+        // The fast renderer drops coverage beyond the support, and gives an area full coverage at the same depth inside.
         let d = outline.distance(p, self.eps);
         let support = self.coverage.support(self.softness);
         if self.cut && d < -support {
@@ -209,6 +212,7 @@ impl Reference {
 
     /// Each stroke at the sample point `p`, back to front.
     fn layers(&self, scene: &Scene, outlines: &[Outline], p: Point) -> Vec<Layer> {
+        // Back to front: the colour behind each stroke. Then front to back: the transmittance in front of it.
         let mut behind = scene.background;
         let mut layers = Vec::with_capacity(scene.strokes.len());
         for (stroke, outline) in scene.strokes.iter().zip(outlines) {
@@ -261,7 +265,7 @@ fn outlines(scene: &Scene) -> Vec<Outline> {
     scene.strokes.iter().map(Stroke::outline).collect()
 }
 
-/// Adds what one pixel with `∂L/∂canvas = g` has to say about the look of `stroke`; returns `∂L/∂d` there.
+/// Adds the derivatives of one pixel, where `∂L/∂canvas = g`, by the style of `stroke`; returns `∂L/∂d` there.
 fn accumulate(sum: &mut Stroke, stroke: &Stroke, layer: &Layer, g: Rgb) -> f64 {
     let d_m = layer.transmittance * dot(g, layer.reach());
     let d_distance = d_m * stroke.opacity * layer.slope;

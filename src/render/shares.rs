@@ -13,7 +13,7 @@ use super::strokes::{STYLE, Strokes};
 /// Most shares.
 const SHARES: usize = 16;
 
-/// Some strokes, one after another, and what is summed up for them.
+/// Consecutive strokes and their sums.
 pub(super) struct Share<'a> {
     ids: Range<usize>,
     /// The derivatives by their numbers.
@@ -24,13 +24,14 @@ pub(super) struct Share<'a> {
     slopes: &'a mut [[f32; 2]],
 }
 
-/// Shares of all sums, for strokes that are summed up at a time.
+/// Cuts all sums into shares of consecutive strokes.
 pub(super) fn shares<'a>(
     strokes: &Strokes,
     polylines: &Polylines,
     mut slopes: &'a mut [[f32; 2]],
     gradients: &'a mut Gradients,
 ) -> Vec<Share<'a>> {
+    // The cut depends on the number of strokes alone, not on the threads. Each share starts at a multiple of `size`.
     let size = CHUNK.max(strokes.len().div_ceil(SHARES));
     let (mut numbers, mut worths) = (
         gradients.strokes.as_mut_slice(),
@@ -70,6 +71,7 @@ impl Share<'_> {
                 .map(|id| styles.partition_point(|row| (row.id as usize) < id));
             for row in &styles[start..end] {
                 let stroke = row.id as usize;
+                // The style is the last numbers of a stroke. Its points get their part in `hand_back`.
                 let end = strokes.range(stroke).end - before;
                 add(&mut self.numbers[end - STYLE..end], &row.style);
                 if let Some(worth) = self.worths.get_mut(stroke - self.ids.start) {
@@ -82,6 +84,7 @@ impl Share<'_> {
                 row.map_or(segments.len(), |row| row.first as usize)
             });
             for row in &segments[start..end] {
+                // The two ends of a segment are neighbours in the list of vertices, so one addition of four numbers serves both.
                 let slopes = &mut self.slopes[(row.id - first) as usize..];
                 add(slopes.as_flattened_mut(), row.ends.as_flattened());
             }

@@ -55,13 +55,13 @@ pub const STYLE: usize = 5;
 /// Strokes, back to front, as one row of numbers.
 ///
 /// Each stroke has the x and y of its points, px, and then its *style*: radius (px), red, green, blue and opacity. So the
-/// numbers of a stroke of two points are those of [`Params`].
+/// numbers of a stroke of two points are laid out as [`Params`].
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Strokes {
     numbers: Vec<f32>,
     /// For each point of all strokes, true if it is off its path.
     off: Vec<bool>,
-    /// The rings of all areas: each by the index behind its last point, among those of its area.
+    /// The rings of all areas: each by the index behind its last point, counted from the first point of its area.
     rings: Vec<u32>,
     /// The gradients of the areas that have one.
     paints: Vec<Paint>,
@@ -71,9 +71,9 @@ pub struct Strokes {
 /// Meaning of the numbers of a stroke.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 struct Outline {
-    /// The index after its last point, among those of all strokes.
+    /// The index after its last point, among the points of all strokes.
     end: u32,
-    /// The index after its last ring, among those of all areas.
+    /// The index after its last ring, among the rings of all areas.
     rings_end: u32,
     /// The index after its paint, or after the last one before it.
     paints_end: u32,
@@ -128,7 +128,7 @@ impl<'a> StrokeRef<'a> {
         !self.rings.is_empty()
     }
 
-    /// The paths that the points form: those of an area's rings, or one. Each comes with the index of its first point.
+    /// The paths that the points form: one for each ring of an area, or one. Each comes with the index of its first point.
     pub fn paths(&self) -> impl Iterator<Item = (usize, StrokeRef<'a>)> + use<'a> {
         let whole = *self;
         let ends = whole.rings.iter().map(|&end| end as usize);
@@ -142,6 +142,7 @@ impl<'a> StrokeRef<'a> {
             };
             (start, path)
         };
+        // Each ring ends where the next one starts. A stroke is one path of all points.
         let only = (!whole.is_area()).then_some(whole.points.len());
         let ends = ends.chain(only);
         ends.scan(0, |start, end| Some((std::mem::replace(start, end), end)))
@@ -291,13 +292,13 @@ impl Strokes {
         &mut self.numbers
     }
 
-    /// The index of the first point of stroke `i`, among those of all strokes.
+    /// The index of the first point of stroke `i`, among the points of all strokes.
     fn first_point(&self, i: usize) -> usize {
         i.checked_sub(1)
             .map_or(0, |before| self.outlines[before].end as usize)
     }
 
-    /// The index of the first ring of stroke `i`, among those of all areas.
+    /// The index of the first ring of stroke `i`, among the rings of all areas.
     fn first_ring(&self, i: usize) -> usize {
         i.checked_sub(1)
             .map_or(0, |before| self.outlines[before].rings_end as usize)
@@ -311,6 +312,7 @@ impl Strokes {
 
     /// Where the numbers of stroke `i` are.
     pub fn range(&self, i: usize) -> std::ops::Range<usize> {
+        // Two numbers for each point and a style for each stroke before it.
         let start = 2 * self.first_point(i) + STYLE * i;
         start..2 * self.outlines[i].end as usize + STYLE * (i + 1)
     }
@@ -360,7 +362,7 @@ impl Strokes {
         }
     }
 
-    /// Moves the points of stroke `i`, of which there are as many as before.
+    /// Moves the points of stroke `i`, whose number stays.
     pub fn move_points(&mut self, i: usize, points: &[[f32; 2]]) {
         let range = self.range(i);
         let numbers = self.numbers[range].iter_mut();
@@ -368,10 +370,11 @@ impl Strokes {
         numbers.zip(points).for_each(|(number, &at)| *number = at);
     }
 
-    /// Gives areas their colours in the place of gradients.
+    /// Replaces the gradients of areas by their colours.
     pub fn flatten_paints(&mut self) {
         self.paints.clear();
         let outlines = self.outlines.iter_mut();
+        // Without paints, every stroke's range of them is 0..0.
         outlines.for_each(|outline| outline.paints_end = 0);
     }
 
@@ -420,6 +423,7 @@ impl Strokes {
     pub fn push_mark(&mut self, mark: &Mark) {
         let form = mark.shape().map(|shape| Form::Shape(shape.kind()));
         match mark {
+            // The kernel's capsules have round ends, so a stroke with square ends becomes the area within its outline.
             Mark::Stroke(stroke) if stroke.cap == Cap::Butt => {
                 if let Mark::Area(rings) = mark.clone().filled() {
                     self.push_area(&rings, Some(Form::Band));
@@ -434,6 +438,7 @@ impl Strokes {
     }
 
     fn push_area(&mut self, area: &Area, form: Option<Form>) {
+        // All rings share one list of points, so a ring is the index behind its last point.
         let ends = area.rings.iter().scan(0, |end, ring| {
             *end += ring.points().len() as u32;
             Some(*end)
@@ -474,6 +479,7 @@ impl Strokes {
         self.off.append(&mut others.off);
         self.rings.append(&mut others.rings);
         self.paints.append(&mut others.paints);
+        // Indices of `others` count from their own start.
         let outlines = others.outlines.drain(..);
         self.outlines.extend(outlines.map(|outline| Outline {
             end: outline.end + points,
@@ -489,6 +495,7 @@ impl Strokes {
         let at = at.min(self.len());
         let (first, first_ring) = (self.first_point(at), self.first_ring(at));
         let first_paint = self.first_paint(at);
+        // The indices of the part split off have to count from its own start.
         let outlines = self.outlines.split_off(at).into_iter();
         Self {
             numbers: self.numbers.split_off(2 * first + STYLE * at),

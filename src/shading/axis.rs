@@ -24,16 +24,18 @@ pub(super) fn of(blocks: &Blocks, kind: Kind) -> Option<Axis> {
     match kind {
         Kind::Linear => {
             let angle = direction(blocks, NEAR)?;
+            // The closed form fits slopes. A search then fits the values themselves.
             let cost = |angle: f64| spread(blocks, line(blocks, angle));
             // A degree, down to a hundredth of one.
             let [angle] = math::search([angle], 0.02, 0.0002, |[angle]| cost(angle));
-            // An axis that is meant to be level or upright is exactly so.
+            // If a level or upright axis fits nearly as well, the picture was likely made with it.
             let straight = (angle / FRAC_PI_2).round() * FRAC_PI_2;
             let is_straight = cost(straight) <= f64::from(LEVEL) * cost(angle);
             Some(line(blocks, if is_straight { straight } else { angle }))
         }
         Kind::Radial => {
             let center = center(blocks, NEAR)?;
+            // From a fiftieth of the longer side down to a twentieth of a pixel.
             let step = blocks.size[0].max(blocks.size[1]) / 50.0;
             let [x, y] = math::search([center.x, center.y], step, 0.05, |[x, y]| {
                 spread(blocks, circle(blocks, Point::new(x, y)))
@@ -63,6 +65,7 @@ fn direction(blocks: &Blocks, near: f32) -> Option<f64> {
 
 /// The point that the gradients g at p point to or away from: the least squares of g⊥·(p − c) over all of them.
 fn center(blocks: &Blocks, near: f32) -> Option<Point> {
+    // With g⊥ = (y, −x) of a gradient (x, y): Σ g⊥g⊥ᵀ · c = Σ g⊥(g⊥·p), two equations for the centre c.
     let [xx, xy, yy] = tensor(blocks, near, |_, [x, y]| [y * y, -x * y, x * x]);
     let [bx, by, _] = tensor(blocks, near, |p, [x, y]| {
         let along = p.x * y - p.y * x;
@@ -73,11 +76,13 @@ fn center(blocks: &Blocks, near: f32) -> Option<Point> {
     if determinant <= 1e-3 * (xx + yy) * (xx + yy) {
         return None;
     }
+    // Cramer's rule.
     let [x, y] = [
         (yy * bx - xy * by) / determinant,
         (xx * by - xy * bx) / determinant,
     ];
     let [[left, top], [width, height]] = [blocks.low, blocks.size];
+    // From a centre farther away the level lines are nearly straight: the linear kind covers these.
     let [right, down] = [x - left - width / 2.0, y - top - height / 2.0];
     let is_near = right.abs() < 2.0 * width && down.abs() < 2.0 * height;
     is_near.then(|| Point::new(x, y))
@@ -89,6 +94,7 @@ fn tensor(blocks: &Blocks, near: f32, term: impl Fn(Point, [f64; 2]) -> [f64; 3]
     let steepest = 4.0 * near;
     let mut sums = [0.0; 3];
     for (place, slopes) in blocks.slopes() {
+        // One steep channel drops the block: an edge bends the direction of all channels.
         let size = |[x, y]: &[f32; 2]| math::hypot(*x, *y);
         if slopes.iter().map(size).fold(0.0, f32::max) > steepest {
             continue;
@@ -113,6 +119,7 @@ pub(super) fn line(blocks: &Blocks, angle: f64) -> Axis {
         from: middle,
         to: middle + along,
     };
+    // On an axis of unit length offsets are px, so the extent gives the distances of both ends from the middle.
     let [first, last] = blocks.extent(unit);
     Axis::Linear {
         from: middle + along * first,
@@ -150,12 +157,14 @@ fn spread(blocks: &Blocks, axis: Axis) -> f64 {
     let knots: Vec<[f64; 5]> = filled
         .map(|&[count, at, r, g, b, a]| [at, r, g, b, a].map(|sum| sum / count))
         .collect();
+    // The difference of each block from the polyline through the knots on both sides of it.
     let apart = |block: &Block| {
         let at = offset(block);
         let after = knots.partition_point(|knot| knot[0] <= at);
         let last = knots.len().saturating_sub(1);
         let [from, to] = [after.saturating_sub(1), after.min(last)].map(|k| knots[k]);
         let width = to[0] - from[0];
+        // Beyond the outermost knots both neighbours are one knot: the polyline goes on level.
         let part = if width > 0.0 {
             (at - from[0]) / width
         } else {

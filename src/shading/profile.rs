@@ -10,15 +10,17 @@ const PLACES: usize = 64;
 const GROUPS: usize = 256;
 /// Squared error per block that is the rounding of the picture to 8 bit: nothing is gained below.
 const ROUNDING: f64 = 4.0 / 12.0 / (255.0 * 255.0);
-/// Pull on stops that nothing tells about, towards the others. A guess.
+/// Pull on stops that no block is near, towards the mean of all. A guess.
 const RIDGE: f64 = 1e-4;
 
 /// The shade along `axis`.
 pub(super) fn of(blocks: &Blocks, axis: Axis, fit: &ShadeFit) -> Option<Shade> {
+    // Greedy: start with a stop at either end, and add the stop that removes most error, as long as that pays.
     let profile = Profile::of(blocks, axis);
     let mut offsets = vec![0.0, 1.0];
     let mut error = profile.error(&offsets);
     while offsets.len() < fit.stops && error >= ROUNDING * profile.count {
+        // Try one more stop at each of the even places. For each, the best colours of all stops are a linear problem.
         let places = (1..PLACES).map(|i| i as f64 / PLACES as f64);
         let with = |place: f64| {
             let mut more = offsets.clone();
@@ -33,6 +35,7 @@ pub(super) fn of(blocks: &Blocks, axis: Axis, fit: &ShadeFit) -> Option<Shade> {
         let Some((_, place)) = tried.min_by(|(a, _), (b, _)| a.total_cmp(b)) else {
             break;
         };
+        // Let all inner stops move before judging: the new one changes where the others are best.
         let (moved, found) = profile.moved(with(place));
         if error - found < fit.stop_share * error {
             break;
@@ -71,6 +74,7 @@ fn trimmed(axis: Axis, mut stops: Vec<ShadeStop>) -> Option<Shade> {
     let (first, last) = (stops.first()?.offset, stops.last()?.offset);
     let first = if is_linear { first } else { 0.0 };
     for stop in &mut stops {
+        // Offsets count from the new start. The division may round a little beyond 1.
         stop.offset = ((stop.offset - first) / (last - first)).clamp(0.0, 1.0);
     }
     let axis = match axis {
@@ -105,6 +109,7 @@ struct Profile {
 
 impl Profile {
     fn of(blocks: &Blocks, axis: Axis) -> Self {
+        // Sum count, offset and value by group. A fit then takes as long as there are groups, however many blocks there are.
         let mut sums = vec![[0.0_f64; 6]; GROUPS];
         for block in blocks.all.iter().filter(|block| block.weight > 0.0) {
             let offset = axis.offset(block.center).clamp(0.0, 1.0);
@@ -150,6 +155,7 @@ impl Profile {
         let opacity = self.fitted(n, segments, |group, _| (1.0, group.value[3]));
         let opacity: Vec<f64> = opacity.iter().map(|v| v.clamp(0.0, 1.0)).collect();
         let channel = |c: usize| {
+            // opacity · color = premultiplied value, with the opacity as the known factor.
             let of = |group: &Group, at: Segment| (at.value(&opacity), group.value[c]);
             self.fitted(n, segments, of)
         };
@@ -172,6 +178,7 @@ impl Profile {
         let colors = [0, 1, 2].map(|c: usize| plane(&|stop| stop.color[c]));
         let opacity = plane(&|stop| stop.opacity);
         let error = |(group, at): (&Group, &Segment)| {
+            // Colour and opacity are interpolated apart and multiplied afterwards, as SVG renderers do.
             let opacity = at.value(&opacity);
             let channel = |c: usize| opacity * at.value(&colors[c]);
             let seen = [channel(0), channel(1), channel(2), opacity];
@@ -186,10 +193,12 @@ impl Profile {
         let mut least = self.error(&offsets);
         let mut step = 0.5 / PLACES as f64;
         while step > 5e-4 {
+            // The ends stay: they are the ends of the axis.
             let inner = 1..offsets.len() - 1;
             for (i, step) in inner.flat_map(|i| [(i, step), (i, -step)]) {
                 let mut tried = offsets.clone();
                 tried[i] += step;
+                // Stops keep their order and a small distance, so no segment has length 0.
                 if tried[i] <= tried[i - 1] + 2e-3 || tried[i] >= tried[i + 1] - 2e-3 {
                     continue;
                 }
@@ -204,13 +213,15 @@ impl Profile {
     }
 
     /// Values at `n` offsets, linear between them, that are the least squares of `factor · value − wanted` over all blocks.
-    /// `of` tells factor and wanted value of a group in its segment.
+    /// `of` gives factor and wanted value of a group in its segment.
     fn fitted(
         &self,
         n: usize,
         segments: &[Segment],
         of: impl Fn(&Group, Segment) -> (f64, f64),
     ) -> Vec<f64> {
+        // The normal equations. A group lies between two neighbouring offsets, so it couples these two unknowns alone, and the
+        // matrix is tridiagonal.
         let (mut diagonal, mut beside, mut wanted) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
         let (mut weight, mut sum) = (1e-12, 0.0);
         for (group, &at) in self.groups.iter().zip(segments) {
@@ -225,6 +236,7 @@ impl Profile {
             weight += group.count * factor * factor;
             sum += group.count * factor * value;
         }
+        // A ridge towards the mean keeps the matrix positive definite where no group is near an offset.
         let (pull, mean) = (RIDGE * weight.max(1e-6), sum / weight);
         for (diagonal, wanted) in diagonal.iter_mut().zip(&mut wanted) {
             *diagonal += pull;
@@ -237,6 +249,7 @@ impl Profile {
 /// The solution of a symmetric tridiagonal system: elimination forwards, substitution backwards.
 fn solved(mut diagonal: Vec<f64>, beside: &[f64], mut wanted: Vec<f64>) -> Vec<f64> {
     for i in 1..diagonal.len() {
+        // The matrix is positive definite, so no pivot is 0 and rows need no exchange.
         let factor = beside[i - 1] / diagonal[i - 1];
         diagonal[i] -= factor * beside[i - 1];
         wanted[i] -= factor * wanted[i - 1];
@@ -261,6 +274,7 @@ impl Segment {
     /// The place of `at`.
     fn of(offsets: &[f64], at: f64) -> Self {
         let after = offsets.partition_point(|&offset| offset <= at);
+        // A place before the first offset or beyond the last belongs to the segment there.
         let i = after.clamp(1, offsets.len() - 1) - 1;
         let part = (at - offsets[i]) / (offsets[i + 1] - offsets[i]);
         Self {
@@ -269,7 +283,7 @@ impl Segment {
         }
     }
 
-    /// The value here of what is linear between these values at the offsets.
+    /// The value here, linear between these values at the offsets.
     fn value(self, values: &[f64]) -> f64 {
         values[self.i] + self.part * (values[self.i + 1] - values[self.i])
     }

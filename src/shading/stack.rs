@@ -1,4 +1,4 @@
-//! Gradients on top of each other: what is no shade by itself, as a glow on a sky, may be two.
+//! Gradients on top of each other: a part that no single shade explains, as a glow on a sky, may be two.
 //!
 //! A shade on top changes a value `v` below to `(1 − a)·v + p`, with its opacity `a` and its premultiplied colour `p`. Along a
 //! given axis both are linear between knots, so that the best ones are a linear least-squares problem. Places of the axis are
@@ -21,11 +21,11 @@ const LENGTHS: [f64; 2] = [0.25, 0.7];
 const ANGLES: [f64; 4] = [0.0, 0.785, 1.571, 2.356];
 /// Number of times that each shade is fitted anew.
 const ROUNDS: usize = 4;
-/// Distances that are near to the lowest shade while it is fitted, in units of the last one: what lies on it goes bit by bit.
+/// Tolerances of the rounds that fit the lowest shade, in units of the last one: blocks with something on top drop out bit by bit.
 const FACTORS: [f32; 6] = [16.0, 8.0, 4.0, 2.0, 1.0, 1.0];
-/// Radii of circles around what a stack does not explain, in units of its spread.
+/// Radii of circles around the blocks that a stack does not explain, in units of their spread.
 const SPREADS: [f64; 4] = [1.2, 2.0, 3.0, 4.5];
-/// Of what lies below a higher opacity, nothing is known.
+/// Above this opacity the shade below can't be recovered.
 const HIDING: f32 = 0.8;
 
 impl Blocks {
@@ -38,6 +38,8 @@ impl Blocks {
     ) -> Option<(Vec<Shade>, Met)> {
         let mut lowest = self.best_shade(fit);
         if most > 1 && lowest.as_ref().is_none_or(|(_, met)| met.share < share) {
+            // A fit to all blocks may follow the shade on top. This one starts with a wide tolerance and narrows it, so it settles
+            // on the shade below.
             let robust = self.best_of(fit, &FACTORS);
             lowest = lowest
                 .into_iter()
@@ -46,6 +48,7 @@ impl Blocks {
         }
         let (shade, met) = lowest?;
         let mut found = (vec![shade], met);
+        // Add shades on top, one at a time, as long as each meets more blocks.
         while found.1.share < share && found.0.len() < most {
             let stack = self.stacked(&found.0, fit)?;
             let met = self.met(NEAR, |block| stacked(&stack, block.center));
@@ -61,10 +64,13 @@ impl Blocks {
     fn stacked(&self, below: &[Shade], fit: &ShadeFit) -> Option<Vec<Shade>> {
         let mut stack = below.to_vec();
         let mut from = self.starts(below);
+        // Alternate: fit the top shade to what the others leave, then the lowest one to what shows through. A round may be worse
+        // than the one before, so keep the best.
         let mut best: Option<(f32, Vec<Shade>)> = None;
         for _ in 0..ROUNDS {
             stack.truncate(below.len());
             let top = self.on_top(&stack, &from, fit)?;
+            // Later rounds search near the axis that was found, and not from all starts again.
             from = vec![top.axis()];
             stack.push(top);
             self.refit(&mut stack, fit);
@@ -76,13 +82,15 @@ impl Blocks {
         best.map(|(_, stack)| stack)
     }
 
-    /// Fits the lowest shade to what it must be below the others.
+    /// Fits the lowest shade to the values that it must have below the others.
     fn refit(&self, stack: &mut [Shade], fit: &ShadeFit) {
         let Some((lowest, others)) = stack.split_first_mut() else {
             return;
         };
         let unmixed = |block: &Block| {
             let above = stacked(others, block.center);
+            // value = (1 − a)·below + p, so below = (value − p)/(1 − a). The division magnifies errors, so nearly opaque places
+            // don't count.
             let through = 1.0 - above[3];
             if through <= 1.0 - HIDING || block.weight == 0.0 {
                 return Block {
@@ -106,6 +114,7 @@ impl Blocks {
     /// part, and lines.
     fn starts(&self, below: &[Shade]) -> Vec<Axis> {
         let side = self.size[0].max(self.size[1]);
+        // The centres of a grid of STARTS × STARTS cells.
         let place = |i: usize| {
             [0, 1].map(|k| {
                 let step = [i % STARTS, i / STARTS][k] as f64 + 0.5;
@@ -133,11 +142,12 @@ impl Blocks {
         around.chain(circles).chain(lines).collect()
     }
 
-    /// The middle of what these shades do not explain, and its spread, px.
+    /// The middle of the blocks that these shades do not explain, and their spread, px.
     fn unexplained(&self, below: &[Shade], near: f32) -> Option<(Point, f64)> {
         let missing = |block: &Block| {
             let seen = stacked(below, block.center);
             let apart = block.value.iter().zip(seen).map(|(a, b)| (a - b).abs());
+            // Differences within the tolerance are explained. The rest counts by its square.
             let beyond = (apart.fold(0.0, f32::max) - near).max(0.0);
             block.weight * beyond * beyond
         };
@@ -152,6 +162,7 @@ impl Blocks {
             sum.sum::<f64>() / weights.iter().sum::<f64>()
         };
         let center = Point::new(mean(&|block| block.center.x), mean(&|block| block.center.y));
+        // The RMS distance from the middle. Without any weight the mean is 0/0, and the comparison below is false.
         let spread = mean(&|block| (block.center - center).hypot2()).sqrt();
         (spread > 0.0).then_some((center, spread))
     }
@@ -200,6 +211,8 @@ impl Blocks {
         if is_short {
             return None;
         }
+        // Unknowns: the premultiplied value of each knot. Each block adds one equation per channel, (1 − a)·seen + p = value, to
+        // the normal equations.
         const N: usize = 4 * KNOTS;
         let (mut columns, mut right) = (vec![vec![0.0; N]; N], vec![0.0; N]);
         let taking_part = || {
@@ -213,6 +226,7 @@ impl Blocks {
         for (block, seen) in taking_part() {
             weights += 1.0;
             let ends = knots(axis, block.center);
+            // The mean colour below each knot, for the choice among equal layers at the end.
             for (knot, share) in ends {
                 counts[knot] += share;
                 (0..3).for_each(|c| below[knot][c] += share * f64::from(seen[c]));
@@ -227,6 +241,7 @@ impl Blocks {
                 let of = |(knot, share): (usize, f64), (c, factor): (usize, f64)| {
                     (4 * knot + c, share * factor)
                 };
+                // Both terms at both knots around the block: four entries of the row.
                 let [first, last] = ends;
                 let entries = [
                     of(first, terms[0]),
@@ -234,6 +249,7 @@ impl Blocks {
                     of(last, terms[0]),
                     of(last, terms[1]),
                 ];
+                // A symmetric matrix: one half is enough for `solve_symmetric`.
                 for (i, a) in entries {
                     right[i] += a * wanted;
                     entries
@@ -243,7 +259,7 @@ impl Blocks {
                 }
             }
         }
-        // Knots that nothing tells about stay clear.
+        // Knots that no block is near stay clear.
         for (i, column) in columns.iter_mut().enumerate() {
             column[i] += RIDGE * weights / KNOTS as f64;
         }
@@ -264,6 +280,7 @@ impl Blocks {
             [value(0), value(1), value(2), opacity as f32]
         });
         let mut layer = Layer { knots, error: 0.0 };
+        // Cut off large differences: things in front of all shades don't decide.
         let most = f64::from(4.0 * near);
         for (block, seen) in taking_part() {
             let shown = over(layer.at(axis, block.center), *seen);
@@ -294,6 +311,7 @@ impl Layer {
 
 /// The two knots that a place lies between, with their shares.
 fn knots(axis: Axis, at: Point) -> [(usize, f64); 2] {
+    // Knots lie at even offsets. The last one closes the last interval, hence the `min`.
     let along = axis.offset(at).clamp(0.0, 1.0) * (KNOTS - 1) as f64;
     let first = (along as usize).min(KNOTS - 2);
     let share = along - first as f64;

@@ -53,6 +53,7 @@ fn collect(group: &Group, scale: f32, found: &mut Vec<Element>) {
 
 fn of(path: &Path, scale: f32) -> Element {
     let transform = path.abs_transform();
+    // A stroke that is scaled unevenly has no single width: the geometric mean keeps its area.
     let (sx, sy) = transform.get_scale();
     let stroke = path.stroke();
     let mut element = Element {

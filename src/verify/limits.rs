@@ -1,4 +1,4 @@
-//! Limits on what an SVG may cost to draw, checked before it is drawn.
+//! Limits on the cost of drawing an SVG, checked before it is drawn.
 //!
 //! A few lines of SVG can ask for more memory and time than any machine has: pictures that unpack to
 //! terabytes, layers within layers, patterns of patterns. The cost of a tree is estimated from the bounding
@@ -52,6 +52,7 @@ impl Embedded {
             seen.1 = Some("an embedded picture is not a PNG, JPEG, GIF or WebP".into());
             return None;
         };
+        // The sum over all pictures counts: many small ones cost as much as a large one.
         seen.0 = seen.0.saturating_add(u64::from(width) * u64::from(height));
         if seen.0 > MAX_EMBEDDED {
             seen.1 = Some(format!(
@@ -92,7 +93,7 @@ pub(super) fn refusal(reason: impl std::fmt::Display) -> Error {
     Error::new(ErrorKind::Svg, format!("{reason}: simplify the SVG"))
 }
 
-/// The cost of what was looked at so far.
+/// The cost of the parts visited so far.
 struct Reckoning {
     /// Pixels in a square of side 1 of the SVG.
     area: f64,
@@ -109,6 +110,7 @@ type Reckoned = std::result::Result<(), &'static str>;
 impl Reckoning {
     fn group(&mut self, group: &Group) -> Reckoned {
         if !group.should_isolate() {
+            // Drawn straight onto the layer below: no memory of its own.
             return group.children().iter().try_for_each(|node| self.node(node));
         }
         let layer = self.seen(group.abs_layer_bounding_box().to_rect())?;
@@ -140,6 +142,7 @@ impl Reckoning {
     }
 
     fn path(&mut self, path: &Path) -> Reckoned {
+        // A path costs its box, at most, and its points, which count even where nothing shows.
         let points = path.data().points().len() as f64;
         let seen = self.seen(path.abs_stroke_bounding_box())?;
         self.write(seen + points)?;
@@ -174,6 +177,7 @@ impl Reckoning {
     /// A filter's step over a layer of so many pixels.
     fn filter(&mut self, layer: f64, kind: &Kind) -> Reckoned {
         let window = |x: f32, y: f32| {
+            // Each pixel looks at a window whose radius grows with the scale of the render.
             let side = |radius: f32| 1.0 + 2.0 * f64::from(radius) * self.area.sqrt();
             side(x) * side(y)
         };
@@ -191,7 +195,7 @@ impl Reckoning {
         self.layer(2.0 * layer, |this| this.write(layer * per_pixel))
     }
 
-    /// Counts a further layer of so many pixels, and what is done `inside` it.
+    /// Counts a further layer of so many pixels, and the work `inside` it.
     fn layer(&mut self, pixels: f64, inside: impl FnOnce(&mut Self) -> Reckoned) -> Reckoned {
         self.layered += pixels;
         if self.layered > MAX_LAYERED {
@@ -199,6 +203,7 @@ impl Reckoning {
         }
         self.write(pixels)?;
         inside(self)?;
+        // The layer is merged and freed, so that layers one after another don't add up.
         self.layered -= pixels;
         Ok(())
     }
@@ -224,6 +229,7 @@ impl Reckoning {
         {
             return Err("a part of it extends more than 2^20 pixels beyond the page");
         }
+        // The box may be larger than the page; the renderer clips it.
         let area = f64::from(bounds.width()) * f64::from(bounds.height()) * self.area;
         Ok(area.min(self.pixels))
     }

@@ -23,6 +23,7 @@ impl Painting {
     /// As [`render`](super::render).
     pub fn new(first: &str, size: Size, matte: Rgb) -> Result<Self> {
         let tree = parse(first)?;
+        // The first part fixes the raster, and is then drawn like all others.
         let mut pixmap = Raster::new(&tree, size)?.pixmap()?;
         pixmap.fill(opaque(matte));
         let mut painting = Self { pixmap, size };

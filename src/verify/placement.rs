@@ -8,7 +8,7 @@ use super::{check_aspect, side};
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
 
-/// Where px of `target` lie in the coordinates at the end of an SVG's root element, told from the stroke
+/// Where px of `target` lie in the coordinates at the end of an SVG's root element, from the transform of the stroke
 /// with the id `probe` there, which is of width 2, colour #010203 and untransformed.
 ///
 /// # Errors
@@ -24,6 +24,8 @@ pub(crate) fn placement(svg: &str, probe: &str, target: &Image) -> Result<[f64; 
                        to that group";
         return Err(Error::new(ErrorKind::Svg, message));
     };
+    // First from px of the target to px of the tree, then by the inverse of the probe's transform to the coordinates in which it
+    // is written.
     let scale = |size: f32, px: usize| f64::from(size) / px as f64;
     let (x, y) = (
         scale(tree.size().width(), target.width()),

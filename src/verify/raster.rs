@@ -53,6 +53,7 @@ impl Raster {
             );
             return Err(Error::new(ErrorKind::Svg, message));
         }
+        // The sides are whole px, so an exact size may stretch one axis by a fraction of a px more than the other.
         let (x, y) = match size {
             Size::Exact { .. } => (width / natural_width, height / natural_height),
             Size::Scale(scale) => (scale, scale),
@@ -66,6 +67,7 @@ impl Raster {
 
     /// Fails when drawing would cost more memory or time than any honest drawing.
     fn afford(&self, tree: &Tree) -> Result<()> {
+        // The larger of both scales makes the estimate an upper bound.
         let scale = f64::from(self.transform.sx.max(self.transform.sy));
         limits::check(tree, scale, f64::from(self.width) * f64::from(self.height))
     }

@@ -1,8 +1,8 @@
-//! The size of an SVG once every reference is replaced by what it refers to.
+//! The size of an SVG once every reference is replaced by its target.
 //!
 //! Ten patterns that each draw the one before ten times are a dozen lines, and ten thousand million parts.
-//! resvg follows some of these references without counting, so they are counted beforehand: in the tree that resvg draws,
-//! whose entities are expanded, and not in that of `svg`, which has the text as it is.
+//! resvg follows some of these references without counting, so they are counted beforehand: in the tree that resvg draws, whose
+//! entities are expanded. The tree of `svg` has the text as it is.
 
 use std::collections::HashMap;
 
@@ -13,7 +13,7 @@ const MAX_PARTS: f64 = 4e6;
 /// Deepest nesting of elements in an unfolded SVG; resvg's own bound is 1024.
 const MAX_DEPTH: usize = 1000;
 
-/// Result of a check, or what is wrong.
+/// Result of a check, or the reason for a refusal.
 type Checked<T> = Result<T, String>;
 
 /// Fails when the unfolded document would be too large or too deep.
@@ -63,6 +63,7 @@ impl<'a, 'input: 'a> Unfolding<'a, 'input> {
             // resvg does not follow an element that refers to itself.
             return Ok(known.unwrap_or(0.0));
         }
+        // Mark the element as under way, so that a cycle of references ends here.
         self.parts.insert(node.id(), None);
         let mut parts = 1.0;
         for child in node.children().filter(Node::is_element) {
@@ -79,6 +80,8 @@ impl<'a, 'input: 'a> Unfolding<'a, 'input> {
                 parts += self.parts(target, depth + 1)?;
             }
         }
+        // Kept: each element is counted once, however many references lead to it. So the count takes linear time for a document
+        // that unfolds to 10¹⁰ parts.
         self.parts.insert(node.id(), Some(parts));
         Ok(parts)
     }
@@ -96,6 +99,7 @@ fn is_vast(d: &str) -> bool {
     let exponents = d.split(['e', 'E']).skip(1).filter(|rest| {
         let rest = rest.strip_prefix('+').unwrap_or(rest);
         let rest = rest.trim_start_matches('0');
+        // Digits of an exponent above 11, or so many that they don't fit a u32.
         let exponent = rest.get(..digits(rest)).unwrap_or_default();
         !exponent.is_empty() && exponent.parse().is_ok_and(|n: u32| n > 11) || exponent.len() > 9
     });

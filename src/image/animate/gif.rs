@@ -19,6 +19,7 @@ pub(super) fn encoded(patches: &mut Patches<'_>) -> Result<Vec<u8>> {
         let (width, height) = (patch.width as u16, patch.height as u16);
         let mut frame = Frame::from_rgba_speed(width, height, &mut patch.rgba, SPEED);
         (frame.left, frame.top) = (patch.x as u16, patch.y as u16);
+        // Hundredths of a second, rounded up: many viewers slow down a frame of 0.
         frame.delay = u16::try_from(patch.ms.div_ceil(10)).unwrap_or(u16::MAX);
         frame.dispose = DisposalMethod::Keep;
         encoder.write_frame(&frame).map_err(unencoded)?;

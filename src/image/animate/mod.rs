@@ -1,6 +1,6 @@
 //! Animated GIF, PNG and WebP.
 //!
-//! Each frame after the first holds only what changes: the rectangle around the pixels that differ from
+//! Each frame after the first holds only the changes: the rectangle around the pixels that differ from
 //! the previous frame, with equal pixels transparent. GIF allows 256 colours per frame; PNG and WebP are
 //! lossless.
 
@@ -61,6 +61,7 @@ pub fn animated(
     let first = first?;
     let [width, height] = [first.0.width(), first.0.height()];
     check(format, [width, height])?;
+    // Frames are made one at a time, and only the one before is kept, so memory doesn't grow with the animation.
     let mut shown: Option<Image> = None;
     let mut patches = std::iter::once(Ok(first)).chain(frames).map(move |frame| {
         let (image, ms) = frame?;

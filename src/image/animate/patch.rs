@@ -32,6 +32,7 @@ impl Patch {
         };
         let differs = |x: usize, y: usize| before[y * width + x] != after[y * width + x];
         let [x, y, right, bottom] = bounds(width, height, differs).unwrap_or([0, 0, 1, 1]);
+        // One column or row more on the left or above, where that makes the corner even: WebP stores half of it.
         let (x, y) = (x & !1, y & !1);
         let mut rgba = Vec::with_capacity((right - x) * (bottom - y) * 4);
         for (x, y) in (y..bottom).flat_map(|y| (x..right).map(move |x| (x, y))) {
@@ -69,6 +70,7 @@ fn bounds(
     height: usize,
     inside: impl Fn(usize, usize) -> bool,
 ) -> Option<[usize; 4]> {
+    // From each side to the first pixel inside. Columns are searched between top and bottom alone.
     let in_row = |y: usize| (0..width).any(|x| inside(x, y));
     let top = (0..height).find(|&y| in_row(y))?;
     let bottom = (top..height).rfind(|&y| in_row(y))? + 1;

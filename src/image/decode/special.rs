@@ -53,6 +53,7 @@ fn surface(bytes: &[u8], ran_out: &Cell<bool>, limits: Limits) -> Result<Decoded
     let decoded = match dds::uncompressed(bytes)? {
         Some(picture) => plain(picture),
         None => {
+            // Compressed blocks are 4×4 px: decode whole blocks, and cut the picture out of them.
             let blocks = general(&dds::padded(bytes), ran_out, ImageFormat::Dds, limits)?;
             plain(blocks.picture.crop_imm(0, 0, width, height))
         }
@@ -98,6 +99,7 @@ pub(super) fn of_inks(image: Image, coding: Option<&Coding>) -> Result<(Image, O
 
 /// Light that ideal inks leave.
 fn taken_away([cyan, magenta, yellow, black]: &[Vec<f32>; 4]) -> [Vec<f32>; 3] {
+    // Cyan takes away red, magenta green, yellow blue, and black a share of all three.
     [cyan, magenta, yellow].map(|ink| {
         let pairs = ink.iter().zip(black);
         pairs

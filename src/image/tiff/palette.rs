@@ -15,7 +15,7 @@ use crate::image::header::is_big_tiff;
 const PALETTE: u16 = 3;
 const GREY: u16 = 1;
 
-/// The tag that says what samples are.
+/// The tag with the meaning of samples.
 const INTERPRETATION: u16 = 262;
 
 /// The file with the numbers of a palette called grey, and whether there is a palette.
@@ -34,7 +34,7 @@ pub(in crate::image) fn unfolded(bytes: &[u8]) -> (Cow<'_, [u8]>, bool) {
     }
 }
 
-/// Where the first page says what its samples are, and that.
+/// Where the first page states the meaning of its samples, and that meaning.
 fn interpretation(bytes: &[u8]) -> Option<(usize, u16)> {
     // Offsets and counts of 4 and 2 bytes, or of 8.
     let (first, count, entry, value) = match is_big_tiff(bytes) {

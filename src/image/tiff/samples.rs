@@ -50,6 +50,7 @@ impl Samples {
         let stride = (count * usize::from(bits)).div_ceil(8).max(1);
         let per_byte = usize::from(8 / bits);
         let sample = |row: &[u8], i: usize| {
+            // The first sample has the highest bits.
             let shift = 8 - usize::from(bits) * (i % per_byte + 1);
             row[i / per_byte] >> shift & ((1 << bits) - 1)
         };
@@ -63,6 +64,7 @@ impl Samples {
 
     /// Samples of fewer bits than 8 on the scale of 8.
     pub(super) fn stretched(self, bits: u8) -> Self {
+        // 255 is a multiple of 1, 3 and 15, so the scale ends at 255 exactly. The product wraps for no sample of so many bits.
         let factor = 255 / ((1 << bits) - 1);
         match self {
             Self::U8(samples) => {
@@ -72,7 +74,7 @@ impl Samples {
         }
     }
 
-    /// The samples of so many planes, those of a pixel side by side.
+    /// The samples of so many planes, interleaved.
     pub(super) fn interleaved(self, planes: usize) -> Self {
         fn mixed<T: Copy>(samples: &[T], planes: usize) -> Vec<T> {
             let pixels = samples.len() / planes;

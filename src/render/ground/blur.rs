@@ -22,6 +22,7 @@ pub fn blurred(plane: Plane, deviation: f32) -> Plane {
         true => convolved(&plane, &gaussian(deviation)),
         false => boxed(plane, deviation),
     };
+    // A Gaussian is a product of one along x and one along y: blur the rows, and then the columns as rows.
     transposed(along(transposed(along(plane))))
 }
 
@@ -32,6 +33,7 @@ fn gaussian(deviation: f32) -> Vec<f32> {
         let x = f32::from(x) / deviation;
         math::exp(-0.5 * x * x)
     };
+    // Beyond four standard deviations lies 6e-5 of the sum; the division makes up for it.
     let half: Vec<f32> = (0..=reach).map(bell).collect();
     let sum = half[0] + 2.0 * half[1..].iter().sum::<f32>();
     half.into_iter().map(|v| v / sum).collect()
@@ -53,9 +55,11 @@ fn convolved(plane: &Plane, half: &[f32]) -> Plane {
 
 /// Each row, blurred by boxes of two odd widths, the wider ones as many as bring the variance nearest to the Gaussian's.
 fn boxed(plane: Plane, deviation: f32) -> Plane {
+    // Variances of boxes in a row add up. A box of w values has (w² − 1)/12.
     let variance = |width: usize| (width * width - 1) as f32 / 12.0;
     let wanted = deviation * deviation;
     let ideal = (12.0 * wanted / BOXES as f32 + 1.0).sqrt();
+    // The largest odd width that is not above the ideal one: a box of odd width shifts nothing.
     let narrow = 2 * ((ideal as usize - 1) / 2) + 1;
     let missing = wanted - BOXES as f32 * variance(narrow);
     let wide = (missing / (variance(narrow + 2) - variance(narrow))).round() as usize;
@@ -65,6 +69,8 @@ fn boxed(plane: Plane, deviation: f32) -> Plane {
 
 /// The mean of each value with so many before and after it in its row.
 fn means(plane: &Plane, reach: usize) -> Plane {
+    // A running sum: a value enters at the front and leaves at the back. In `f64`, so that what leaves cancels what entered. Zeros
+    // lie around the row, so the divisor is the same everywhere.
     let count = (2 * reach + 1) as f64;
     let mut values = Vec::with_capacity(plane.values.len());
     for row in plane.values.chunks_exact(plane.width.max(1)) {

@@ -10,7 +10,7 @@ const FLATNESS: f64 = 0.02;
 /// The share of each pixel that the rings fill, where they wind in one direction and holes in the other. Rings are in px from the
 /// plane's corner.
 pub fn filled(rings: impl Iterator<Item = Path>, [width, height]: [usize; 2]) -> Plane {
-    // Sums over a row of what its pixels hold give the covered share; a column more takes what the last one hands on.
+    // A running sum along a row gives the covered shares. One column more takes the last pixel's carry.
     let stride = width + 2;
     let mut turns = vec![0.0_f64; stride * height];
     for ring in rings {
@@ -23,6 +23,7 @@ pub fn filled(rings: impl Iterator<Item = Path>, [width, height]: [usize; 2]) ->
         let mut sum = 0.0;
         let shares = row[..width].iter().map(|turn| {
             sum += turn;
+            // The sign of the sum is the sense of the rings. Rings of one sense that overlap add up to more than 1.
             sum.abs().min(1.0) as f32
         });
         shares.collect::<Vec<f32>>()
@@ -44,6 +45,7 @@ fn add(turns: &mut [f64], stride: usize, a: Point, b: Point) {
     if y1 <= y0 {
         return;
     }
+    // A level side covers nothing to its right, so only others have a slope and need one.
     let slope = (x1 - x0) / (y1 - y0);
     let rows = turns.len() / stride;
     let (first, last) = (
@@ -51,6 +53,7 @@ fn add(turns: &mut [f64], stride: usize, a: Point, b: Point) {
         (y1.ceil().max(0.0) as usize).min(rows),
     );
     for row in first..last {
+        // The part of the side within this row of pixels.
         let (from, to) = (y0.max(row as f64), y1.min(row as f64 + 1.0));
         let across = [from, to].map(|y| x0 + (y - y0) * slope);
         let row = &mut turns[row * stride..(row + 1) * stride];
@@ -60,6 +63,7 @@ fn add(turns: &mut [f64], stride: usize, a: Point, b: Point) {
 
 /// Adds a side of this signed `height` within a row, between two places across.
 fn add_in_row(row: &mut [f64], height: f64, across: [f64; 2]) {
+    // Beyond the left border a side covers all of the row, beyond the right one nothing: clamping says the same.
     let most = (row.len() - 2) as f64;
     let [left, right] =
         [across[0].min(across[1]), across[0].max(across[1])].map(|x| x.clamp(0.0, most));
@@ -73,6 +77,7 @@ fn add_in_row(row: &mut [f64], height: f64, across: [f64; 2]) {
         }
         false => (x - left).max(0.0),
     };
+    // Store differences between neighbours, whose running sum is the covered share of each pixel.
     let mut before = 0.0;
     let pixels = row.iter_mut().enumerate().skip(first as usize);
     for (k, turn) in pixels.take((last - first) as usize) {

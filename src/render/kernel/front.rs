@@ -1,4 +1,4 @@
-//! Pass 1 in one block: the coverage of a stroke there, and what the strokes so far let through.
+//! Pass 1 in one block: the coverage of a stroke there, and the transmittance of the strokes so far.
 
 use fearless_simd::{f32x16, mask32x16, prelude::*};
 
@@ -15,7 +15,7 @@ const OPAQUE: f32 = 1.0 / 16384.0;
 /// Share of the light that the strokes drawn so far let through.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Transmittance {
-    /// That of all of them.
+    /// Transmittance of all of them.
     pub(super) through: Lanes,
     /// Largest transmittance that leaving out any one stroke gives.
     less_one: Lanes,
@@ -30,7 +30,7 @@ impl Transmittance {
         }
     }
 
-    /// Adds one stroke behind the others, and to `color` what is seen of it. Returns true if nothing behind it can matter
+    /// Adds one stroke behind the others, and its visible light to `color`. Returns true if nothing behind it can matter
     /// any more.
     #[inline(always)]
     pub(super) fn add<S: Simd>(
@@ -40,6 +40,7 @@ impl Transmittance {
         rgb: &[f32x16<S>; 3],
         color: &mut BlockRgb,
     ) -> bool {
+        // C ← C + T·m·c, T ← T − T·m.
         let t = load(simd, &self.through);
         let weight = t * alpha;
         for (color, &c) in color.iter_mut().zip(rgb) {
@@ -47,7 +48,7 @@ impl Transmittance {
         }
         let less_one = load(simd, &self.less_one);
         // The largest transmittance with any one stroke left out: `t` if it is the new one; otherwise that of before,
-        // dimmed by the new one. While this shows anything, worth still depends on what lies behind.
+        // dimmed by the new one. While this shows anything, worth still depends on the strokes behind.
         let less_one = (less_one - less_one * alpha).max(t);
         store(t - weight, &mut self.through);
         store(less_one, &mut self.less_one);
@@ -77,6 +78,7 @@ impl<E: SoftEdge> Shape<E> {
         kept: &mut EdgeBlock,
     ) -> f32x16<S> {
         let length = length(distance2);
+        // d = r − |q| for a stroke. For an area d = ±|q|, + where the rings wind around the pixel.
         let side = inside.map(|inside| {
             let inside = mask32x16::from_bitmask(simd, inside);
             inside.select(f32x16::splat(simd, 1.0), f32x16::splat(simd, -1.0))
@@ -87,6 +89,8 @@ impl<E: SoftEdge> Shape<E> {
         };
         let (mut value, mut derivative) = self.edge.eval(d);
         if let Some(side) = side {
+            // Core blocks have coverage 1, so edge blocks have to have it from the same depth on, or a tail's edge would depend on
+            // the grid.
             let is_deep = d.simd_gt(self.outside);
             value = is_deep.select(f32x16::splat(simd, 1.0), value);
             derivative = is_deep.select(f32x16::splat(simd, 0.0), derivative);

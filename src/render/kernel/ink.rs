@@ -30,6 +30,7 @@ fn ink_at<S: Simd>(simd: S, ink: &Ink, block: usize, origin: [f32; 2]) -> [f32x1
     let top = origin[1] + (block / TILE_BLOCKS * BLOCK) as f32;
     let [x, y]: &[Lanes; 2] = &PIXELS;
     let (x, y) = (load(simd, x) + left, load(simd, y) + top);
+    // The offset along the axis: 0 at its start, 1 at its end, beyond these below 0 and above 1.
     let offset = match ink.axis {
         InkAxis::Linear { start, slope } => x * slope[0] + y * slope[1] + start,
         InkAxis::Radial { center, slope } => {
@@ -44,6 +45,8 @@ fn ink_at<S: Simd>(simd: S, ink: &Ink, block: usize, origin: [f32; 2]) -> [f32x1
         f32x16::splat(simd, ink.first[3]),
     ];
     for ramp in &ink.ramps {
+        // Each ramp adds its change between its two stops and keeps it beyond them. The sum is linear between stops, and constant
+        // before the first and beyond the last, which is SVG's `pad`.
         let part = ((offset - ramp.from) * ramp.per_offset).max(0.0).min(1.0);
         for (value, change) in value.iter_mut().zip(ramp.change) {
             *value += part * change;

@@ -1,4 +1,4 @@
-//! Vectors of 16 pixels: to and from memory, summed, and the sets of blocks that they tell about.
+//! Vectors of 16 pixels: loads, stores and sums, and the members of sets of blocks.
 
 use fearless_simd::{f32x8, f32x16, prelude::*};
 

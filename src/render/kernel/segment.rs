@@ -71,6 +71,7 @@ impl Segment {
         let axis = [b[0] - a[0], b[1] - a[1]];
         let length2 = axis[0] * axis[0] + axis[1] * axis[1];
         Self {
+            // Relative to the tile, so that one table of pixel centres serves all tiles.
             a: [a[0] - origin[0], a[1] - origin[1]],
             axis,
             length2,
@@ -81,6 +82,7 @@ impl Segment {
     /// The nearest points to those at `pa = p − a`.
     #[inline(always)]
     fn nearest<S: Simd>(&self, pa: [f32x16<S>; 2]) -> Nearest<S> {
+        // h = (p−a)·(b−a) / |b−a|². For a dot both are 0, and ε in the denominator makes h = 0.
         let dot = pa[0] * self.axis[0] + pa[1] * self.axis[1];
         // Clamped to the ends: beyond them the nearest point is the end itself.
         let h = (dot * self.inverse_length2).max(0.0).min(1.0);
@@ -115,9 +117,11 @@ impl Segment {
         radius: f32,
         reach: Reach,
     ) -> (BlockSet, BlockSet) {
+        // A disc smaller than a block has inner = 0. No squared distance is below 0, so it has no core.
         let [outer, inner] = limits(radius, reach);
         let (mut touched, mut core) = (0, 0);
         for row in 0..ROWS {
+            // Compare squares: a block needs no root.
             let distance2 = self.at_centers(simd, row).distance2();
             touched |= distance2.simd_lt(outer * outer).to_bitmask() << (row * LANES);
             core |= distance2.simd_lt(inner * inner).to_bitmask() << (row * LANES);
@@ -143,7 +147,7 @@ pub(super) fn rows_within(outer: f32, [top, bottom]: [f32; 2]) -> Range<usize> {
     let side = (TILE / ROWS) as f32;
     // Centres lie half a block inside their row's outermost edges.
     let margin = outer - 0.5 * BLOCK as f32;
-    // Conversions saturate, and what is no number becomes 0.
+    // Conversions saturate, and NaN becomes 0.
     let first = ((top - margin) / side) as usize;
     let last = ((bottom + margin) / side) as usize;
     first..last.min(ROWS - 1) + 1

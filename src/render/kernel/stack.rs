@@ -2,7 +2,7 @@
 
 use super::super::grid::BlockSet;
 
-/// A stack whose items are written in place. It keeps its memory, and what is in it, when it shrinks.
+/// A stack whose items are written in place. When it shrinks, it keeps its memory and the items there.
 #[derive(Debug)]
 pub(super) struct Stack<T> {
     items: Vec<T>,
@@ -33,6 +33,7 @@ impl<T: Copy> Stack<T> {
     pub(super) fn push(&mut self, blocks: BlockSet) -> &mut [T] {
         let start = self.len;
         self.len += blocks.count_ones() as usize;
+        // Memory doubles, so that growth costs a constant per item. Old items stay: the caller overwrites them.
         if self.items.len() < self.len {
             self.items.resize(2 * self.len, self.empty);
         }

@@ -47,12 +47,14 @@ impl Sums {
         polylines: &Polylines,
     ) -> bool {
         for &Listed { stroke, fills, .. } in listed {
+            // A gradient has several colours in the tile, so the tile isn't uniform.
             if !fills || polylines.ink(stroke as usize).is_some() {
                 self.strokes.clear();
                 return false;
             }
             self.strokes.push(OfStroke {
                 id: stroke,
+                // No segment comes near the tile, so the list of segment sums is empty.
                 first: 0,
                 style: [0.0; STYLE],
                 worth: 0.0,
@@ -192,7 +194,7 @@ impl<S: Simd> Looks<S> {
         }
     }
 
-    /// Lays the stroke on what is behind it in one block; returns `∂L/∂m`, and `|c − B|²` if stiffness is asked for.
+    /// Lays the stroke on the colours behind it in one block; returns `∂L/∂m`, and `|c − B|²` if stiffness is asked for.
     #[inline(always)]
     pub(super) fn blend<X: Extras>(
         &mut self,
@@ -209,6 +211,7 @@ impl<S: Simd> Looks<S> {
             matte,
         } = ground;
         let zero = f32x16::splat(simd, 0.0);
+        // T·m: the share of the pixel's light that comes from this stroke.
         let seen = t * alpha;
         // `along` becomes g·(c − B), `change` the stroke's part in worth, `contrast2` |c − B|².
         let (mut along, mut change, mut contrast2) = (zero, zero, zero);
@@ -258,6 +261,7 @@ impl<S: Simd> Looks<S> {
     ) -> (f32x16<S>, f32x16<S>) {
         let (alpha, t) = (load(simd, &kept.alpha), load(simd, t));
         let (d_alpha, contrast2) = self.blend::<X>(simd, alpha, t, rgb, ground);
+        // ∂L/∂d = ∂L/∂m · o·σ'(d), and ∂d/∂r = 1.
         let slope = load(simd, &kept.slope);
         let d_distance = d_alpha * slope;
         self.radius += d_distance;
@@ -315,6 +319,7 @@ impl<S: Simd> Shifts<S> {
     #[inline(always)]
     pub(super) fn pull(&mut self, pull: f32x16<S>, q: [f32x16<S>; 2], h: f32x16<S>) {
         for (axis, &q) in q.iter().enumerate() {
+            // Both ends move the nearest point: b by the share h, a by 1 − h.
             let shift = pull * q;
             self.whole[axis] += shift;
             self.of_b[axis] += shift * h;
@@ -341,6 +346,7 @@ impl<S: Simd> Shifts<S> {
     /// The stiffness at both ends.
     #[inline(always)]
     pub(super) fn stiffness(&self) -> [f32; 2] {
+        // As in `ends`: the shares of k are 1 − h and h.
         let of_b = total(self.stiffness[1]);
         [total(self.stiffness[0]) - of_b, of_b]
     }

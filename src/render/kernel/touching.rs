@@ -34,6 +34,7 @@ pub(in crate::render) fn list_segments(
     listed: &mut Vec<Listed>,
     segments: &mut Vec<u32>,
 ) {
+    // One tile's list, built stroke by stroke in drawing order.
     segments.clear();
     let mut kept = 0;
     // Not `retain_mut`: the compiler may build its closure without the instructions of the level.
@@ -44,7 +45,7 @@ pub(in crate::render) fn list_segments(
             let before = segments.len();
             let first = polylines.firsts[stroke];
             let vertices = &polylines.vertices[first as usize..polylines.firsts[stroke + 1] as usize];
-            // The box of a single segment is that of its stroke, which touches the tile already.
+            // A single segment has the bounding box of its stroke, which touches the tile already.
             if vertices.len() == 2 {
                 segments.push(first);
             } else if polylines.areas[stroke] {

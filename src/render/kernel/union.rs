@@ -116,6 +116,8 @@ impl Union {
             // it.
             for (sight, near) in self.sights.iter().zip(&mut *near).rev() {
                 let is_near = load(simd, &sight.centers).simd_lt(limit2).to_bitmask();
+                // A block before the start belongs to the segment before. A block beyond the end belongs to the next one, unless
+                // it lies before that one's start, too: then neither may pass it on, and this one keeps it.
                 let near_here = is_near & !sight.before & (!sight.after | before_next);
                 before_next = sight.before;
                 *near |= near_here << (row * LANES);
@@ -137,6 +139,8 @@ impl Union {
             let segment = segments.get(k);
             // `(p−a)·(b−a)` differs by at most this between a pixel and the centre of its block.
             let slack = BLOCK_RADIUS * segment.length2.sqrt();
+            // Only a neighbour that is listed in this tile can stand in for the segment. A comparison with NaN is false, so an end
+            // without a neighbour never gives way.
             let (joins_last, joins_next) = (segments.follows(k), segments.follows(k + 1));
             self.sights.push(Sight {
                 segment,
@@ -161,6 +165,7 @@ impl Union {
             let nearest = sight.segment.at_centers(simd, row);
             let distance2 = nearest.distance2();
             store(distance2, &mut sight.centers);
+            // The least is the distance of each centre from the whole stroke.
             least = distance2.simd_lt(least).select(distance2, least);
             sight.before = nearest.dot.simd_le(sight.start).to_bitmask();
             sight.after = nearest.dot.simd_ge(sight.end).to_bitmask();
@@ -174,6 +179,7 @@ impl Union {
         let mut seen = 0;
         for (k, (sight, near)) in self.sights.iter().zip(near).enumerate() {
             let index = f32x16::splat(simd, k as f32);
+            // Blocks that one segment has alone need no memory: the passes measure them where they use them.
             let blocks = near & shared;
             // The first segment of a block writes, so that nothing has to be cleared; later ones compare.
             for block in members(blocks & !seen) {
@@ -185,6 +191,7 @@ impl Union {
                 let distance2 = sight.segment.at_pixels(simd, block).distance2();
                 let least = load(simd, &self.distances2[block]);
                 let nearest = load(simd, &self.nearest[block]);
+                // Strictly nearer: of equally near segments the first stays, as in the reference.
                 let is_nearer = distance2.simd_lt(least);
                 store(
                     is_nearer.select(distance2, least),

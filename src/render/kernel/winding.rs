@@ -15,7 +15,7 @@ const ROW: u32 = (1 << BLOCK) - 1;
 pub(super) struct Windings {
     /// By row: the pixels that are inside, one bit each.
     inside: [u32; TILE],
-    /// By row: by how much the winding number grows at each pixel.
+    /// By row: growth of the winding number at each pixel.
     steps: [[i32; TILE]; TILE],
     /// By row: the pixels at which it may grow.
     places: [u32; TILE],
@@ -35,6 +35,7 @@ impl Windings {
     pub(super) fn inside(&self, is_area: bool, block: usize) -> Option<u64> {
         is_area.then(|| {
             let (row, column) = (block / TILE_BLOCKS * BLOCK, block % TILE_BLOCKS * BLOCK);
+            // From the last row to the first, so that row 0 ends in the lowest bits, as in the lanes of a block.
             let rows = self.inside[row..row + BLOCK].iter().rev();
             rows.fold(0, |bits, row| {
                 bits << BLOCK | u64::from(row >> column & ROW)
@@ -55,6 +56,7 @@ impl Windings {
         }
         let mut full = 0;
         for (y, rows) in self.inside.chunks_exact(BLOCK).enumerate() {
+            // A bit stays 1 if the column is inside in all four rows of these blocks.
             let all = rows.iter().fold(u32::MAX, |all, row| all & row);
             for x in 0..TILE_BLOCKS {
                 let is_full = all >> (x * BLOCK) & ROW == ROW;
@@ -71,6 +73,7 @@ impl Windings {
         while places != 0 {
             let column = places.trailing_zeros();
             places &= places - 1;
+            // The nonzero rule: a pixel is inside if the rings wind around it, in whichever sense.
             let was_inside = winding != 0;
             winding += std::mem::take(&mut self.steps[row][column as usize]);
             // From here on, all pixels are on the other side.
@@ -84,6 +87,7 @@ impl Windings {
     /// Adds a segment's crossings of the rows.
     fn cross(&mut self, crossing: &Crossing, origin @ [left, top]: [f32; 2]) {
         let [a, b] = crossing.ends;
+        // A segment to the right of the tile steps behind its last pixel.
         if a[0].min(b[0]) >= left + TILE as f32 {
             return;
         }

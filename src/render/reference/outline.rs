@@ -28,7 +28,7 @@
 //!
 //! **Degenerate cases.** A segment of no length is a disc: `h = 0`, and the gradient of both ends goes to `a`. On the centre line
 //! `u = 0` if ε > 0; at ε = 0, where no derivative exists, 0 is used as well. A contour of one point or of points in one line has no
-//! inside; its distance is that of the line. Contours that cross have a distance of 0 on their segments even where area lies on
+//! inside; its distance is to the line. Contours that cross have a distance of 0 on their segments even where area lies on
 //! both sides.
 //!
 //! Source: Inigo Quilez, "2D distance functions" (the segment), with the sign reversed and ε added as in the golden data.
@@ -126,6 +126,7 @@ impl Outline {
             by_a += (twice - ba - pa) * along;
             by_b += (pa - twice) * along;
         }
+        // `by_a` and `by_b` are the derivatives of −|q|. Inside an area d = |q|, hence the sign.
         let side = self.side(p);
         [(a, by_a * side), (b, by_b * side)]
     }
@@ -204,7 +205,7 @@ pub(super) struct Knots<'a> {
 }
 
 impl Knots<'_> {
-    /// The vertices of segments that keep within `flatness` of the path, px. Those of a closed path end where they start.
+    /// The vertices of segments that keep within `flatness` of the path, px. The vertices of a closed path end where they start.
     fn flattened(self, flatness: f64) -> Vec<Mean> {
         let knots = self.with_implied();
         let mut means = vec![knots[0].0.clone()];
@@ -214,6 +215,7 @@ impl Knots<'_> {
             if knots[at].1 {
                 let (control, to) = (&knots[at].0, &knots[at + 1].0);
                 let [a, b, c] = [from, control, to].map(|mean| mean.place(self.points).to_vec2());
+                // Each curve has one control point between two points on the path, so it takes two knots.
                 let steps = steps((a - b * 2.0 + c).hypot(), flatness);
                 let curve = |k: usize| bernstein([from, control, to], k as f64 / steps as f64);
                 means.extend((1..=steps).map(curve));
@@ -232,6 +234,7 @@ impl Knots<'_> {
         let mut knots = Vec::new();
         for i in 0..count {
             let before = (i + count - 1) % count;
+            // Two points off the path in a row imply one on it, halfway between.
             if self.off[i] && self.off[before] {
                 knots.push((Mean(vec![(before, 0.5), (i, 0.5)]), false));
             }
@@ -239,6 +242,8 @@ impl Knots<'_> {
         }
         if self.closed && count > 1 {
             let is_point = |knot: &(Mean, bool)| !knot.1 && knot.0.0.len() == 1;
+            // Start at the first point that is on the path, and end there, as the fast renderer does, since ties go to the first
+            // segment.
             let start = knots.iter().position(is_point).unwrap_or(0);
             knots.rotate_left(start);
             knots.push(knots[0].clone());
@@ -248,7 +253,7 @@ impl Knots<'_> {
 }
 
 impl Mean {
-    /// The place of the vertex.
+    /// The point of the vertex.
     fn place(&self, points: &[[f64; 2]]) -> Point {
         let sum = |sum: Vec2, &(i, weight): &(usize, f64)| sum + vector(points[i]) * weight;
         self.0.iter().fold(Vec2::ZERO, sum).to_point()
