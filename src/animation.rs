@@ -5,7 +5,8 @@
 //! use strokefit::image::AnimationFormat;
 //! use strokefit::scene::{Cap, Scene, Path, Stage, Stroke};
 //!
-//! let stroke = |x| Stroke { path: Path::dot((x, 4.0).into()), radius: 2.0, color: [0.1; 3], opacity: 1.0 };
+//! let (cap, color) = (Cap::Round, [0.1; 3]);
+//! let stroke = |x| Stroke { path: Path::dot((x, 4.0).into()), radius: 2.0, cap, color, opacity: 1.0 };
 //! let scene = Scene {
 //!     stages: vec![Stage::from_iter([3.0, 8.0, 13.0].map(stroke))],
 //!     ..Scene::empty(16, 8, Some([1.0; 3]))

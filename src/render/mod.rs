@@ -17,7 +17,7 @@
 //! use strokefit::fit::Simd;
 //! use strokefit::math::Point;
 //! use strokefit::render::{Backdrop, Canvas, Grid, Renderer, Softness, Strokes};
-//! use strokefit::scene::{Path, PathPoint, Stroke};
+//! use strokefit::scene::{Cap, Path, PathPoint, Stroke};
 //!
 //! let [on, off] = [PathPoint::on, PathPoint::off];
 //! let points = vec![
@@ -27,8 +27,9 @@
 //!     on(Point::new(12.0, 20.0)),
 //! ];
 //! let path = Path::new(points, false)?;
-//! let hook = Stroke { path, radius: 2.5, color: [0.0; 3], opacity: 0.9 };
-//! let dot = Stroke { path: Path::dot(Point::new(29.0, 5.0)), radius: 4.5, color: [1.0; 3], opacity: 0.6 };
+//! let cap = Cap::Round;
+//! let hook = Stroke { path, radius: 2.5, cap, color: [0.0; 3], opacity: 0.9 };
+//! let dot = Stroke { path: Path::dot(Point::new(29.0, 5.0)), radius: 4.5, cap, color: [1.0; 3], opacity: 0.6 };
 //! let strokes = Strokes::from_iter([&hook, &dot]);
 //!
 //! let grid = Grid::new(48, 24);

@@ -73,11 +73,11 @@
 //! steps and opaque colours in any spelling of SVG.
 //!
 //! ```
-//! use strokefit::scene::{Scene, Path, Stage, Stroke};
+//! use strokefit::scene::{Cap, Scene, Path, Stage, Stroke};
 //! use strokefit::svg::{self, WriteOptions};
 //!
-//! let path = Path::line([1.25, 2.0].into(), [30.0, 4.0].into());
-//! let stroke = Stroke { path, radius: 1.5, color: [1.0, 0.4, 0.0], opacity: 0.5 };
+//! let path = Path::line((1.25, 2.0).into(), (30.0, 4.0).into());
+//! let stroke = Stroke { path, radius: 1.5, cap: Cap::Round, color: [1.0, 0.4, 0.0], opacity: 0.5 };
 //! let page = Scene::empty(40, 10, Some([1.0; 3]));
 //! let scene = Scene { stages: vec![Stage::from_iter([stroke])], ..page };
 //!

@@ -286,7 +286,8 @@ fn a_frame_is_a_line_with_corners_and_round_ends_stay_round() {
         let is_here = |p: &PathPoint| (p.at.x - x).abs() < 0.1 && (p.at.y - y).abs() < 0.1;
         assert!(frame.path.points().iter().any(is_here), "{text}");
     }
-    assert_eq!(pens(&scene).len(), 1, "{text}");
+    let round = scene.strokes().filter(|stroke| stroke.cap == Cap::Round);
+    assert_eq!(round.count(), 1, "{text}");
     let only_areas = Config {
         marks: Marks::Areas,
         background: Background::Color([1.0; 3]),
