@@ -126,14 +126,14 @@ impl Descent {
             background: Adam::new(3, BACKGROUND),
             scales: scales(&course.rates, drawing),
             ties: Ties::default(),
-            held: Held::bands(drawing.free()),
+            held: Held::forms(drawing.free()),
             gradients: Gradients::default(),
         }
     }
 
     /// The descent that keeps the bands of the drawing bands: a stored descent does not hold them.
-    pub(super) fn holding_bands(self, drawing: &Drawing) -> Self {
-        let held = Held::bands(drawing.free());
+    pub(super) fn holding_forms(self, drawing: &Drawing) -> Self {
+        let held = Held::forms(drawing.free());
         Self { held, ..self }
     }
 
@@ -242,7 +242,7 @@ impl Descent {
     /// is new.
     pub(super) fn follow(&mut self, sources: &[Option<usize>], drawing: &Drawing) {
         self.adam.rearrange(1, sources);
-        self.held = Held::bands(drawing.free());
+        self.held = Held::forms(drawing.free());
         self.scales = scales(&self.course.rates, drawing);
     }
 }

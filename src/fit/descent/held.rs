@@ -22,29 +22,26 @@ type Places = Vec<Vec<usize>>;
 impl Held {
     /// The forms that areas have, and the first `formed` strokes. Others are level by chance.
     pub(in crate::fit) fn of(strokes: &Strokes, formed: usize) -> Self {
-        let mut held = Self::bands(strokes);
+        let mut held = Self::forms(strokes);
         let found = strokes.iter().enumerate();
-        for (i, stroke) in found.filter(|(i, stroke)| *i < formed || stroke.is_area()) {
-            match stroke.form {
-                Some(Form::Band) => {}
-                Some(form) => held.formed.push((i, form, Places::new())),
-                None => {
-                    let start = strokes.range(i).start;
-                    let paths = stroke.paths();
-                    let equal = paths.flat_map(|(first, path)| equal(path, start + 2 * first));
-                    held.equal.extend(equal);
-                }
-            }
+        let free = found.filter(|(i, stroke)| *i < formed || stroke.is_area());
+        for (i, stroke) in free.filter(|(_, stroke)| stroke.form.is_none()) {
+            let start = strokes.range(i).start;
+            let paths = stroke.paths();
+            let equal = paths.flat_map(|(first, path)| equal(path, start + 2 * first));
+            held.equal.extend(equal);
         }
         held
     }
 
-    /// The bands alone, which are none any more once their points have moved each by itself.
-    pub(in crate::fit) fn bands(strokes: &Strokes) -> Self {
-        let bands = strokes.iter().enumerate();
-        let bands = bands.filter_map(|(i, mark)| Some((i, Form::Band, equal_of(&mark.band()?))));
+    /// The forms alone: a shape stays one of its kind, and a band is none any more once its points have moved each by itself.
+    pub(in crate::fit) fn forms(strokes: &Strokes) -> Self {
+        let form = |(i, stroke): (usize, StrokeRef<'_>)| match stroke.form? {
+            Form::Band => Some((i, Form::Band, equal_of(&stroke.band()?))),
+            shape => Some((i, shape, Places::new())),
+        };
         Self {
-            formed: bands.collect(),
+            formed: strokes.iter().enumerate().filter_map(form).collect(),
             equal: Places::new(),
         }
     }

@@ -232,7 +232,7 @@ impl<'a> Session<'a> {
     pub(in crate::fit) fn descent(&mut self, course: Course) -> Descent {
         let (drawing, used) = (&self.drawing, self.timer.used());
         match self.resumed.take() {
-            Some(resumed) => resumed.holding_bands(drawing),
+            Some(resumed) => resumed.holding_forms(drawing),
             None => Descent::new(drawing, course, used),
         }
     }
