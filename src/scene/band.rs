@@ -35,7 +35,8 @@ impl Band {
     /// The rings of an area that looks like the band: one, or two of a closed one.
     pub fn rings(&self) -> Vec<Path> {
         let points = self.line.points();
-        let sides = sides(points, self.line.is_closed()).unwrap_or_default();
+        let is_closed = self.line.is_closed();
+        let sides = sides(points, is_closed).unwrap_or_else(|| any_sides(points, is_closed));
         let beside = |sign: f64| {
             let moved = points.iter().zip(&sides).map(move |(p, side)| PathPoint {
                 at: p.at + 0.5 * sign * self.width * *side,
@@ -278,15 +279,50 @@ const LONG: f64 = 2.5;
 /// For each point of a line the way to its left side, in units of half the width; `None` if there is none, as points
 /// coincide or the line turns back.
 fn sides(points: &[PathPoint], is_closed: bool) -> Option<Vec<Vec2>> {
-    let side = |[before, after]: [Vec2; 2]| {
-        let whole = 1.0 + before.dot(after);
-        // A mitre: the bisector of both normals, 1 / cos(θ/2) long at a turn of θ, as |before + after| = 2 cos(θ/2).
-        (whole > 0.01).then(|| (before + after).turn_90() / whole)
-    };
     directions(points, is_closed)?
         .into_iter()
-        .map(side)
+        .map(mitre)
         .collect()
+}
+
+/// The way to the left side between two directions; `None` if the line turns back.
+fn mitre([before, after]: [Vec2; 2]) -> Option<Vec2> {
+    let whole = 1.0 + before.dot(after);
+    // The bisector of both normals, 1 / cos(θ/2) long at a turn of θ, as |before + after| = 2 cos(θ/2).
+    (whole > 0.01).then(|| (before + after).turn_90() / whole)
+}
+
+/// The sides of a line of any points, for each of them. Points that coincide share the directions of the legs around them. Where
+/// the line turns back or has no direction, both sides meet on it.
+fn any_sides(points: &[PathPoint], is_closed: bool) -> Vec<Vec2> {
+    let count = points.len();
+    let leg = |i: usize| {
+        let way = (points[(i + 1) % count].at - points[i].at).normalize();
+        Some(way).filter(|way| way.is_finite())
+    };
+    // The leg behind each point; there is none behind the last one of an open line.
+    let legs: Vec<Option<Vec2>> = (0..count)
+        .map(|i| (is_closed || i + 1 < count).then(|| leg(i))?)
+        .collect();
+    // A closed line goes around, so what is carried on from its end is where its start begins.
+    let around = |way: Option<&Vec2>| way.copied().filter(|_| is_closed);
+    let mut before = around(legs.iter().flatten().next_back());
+    let mut after = around(legs.iter().flatten().next());
+    let befores = legs.iter().map(|leg| {
+        let own = before;
+        before = leg.or(before);
+        own
+    });
+    let befores: Vec<_> = befores.collect();
+    let afters = legs.iter().rev().map(|leg| {
+        after = leg.or(after);
+        after
+    });
+    let mut afters: Vec<_> = afters.collect();
+    afters.reverse();
+    let pairs = befores.into_iter().zip(afters);
+    let sides = pairs.map(|(before, after)| mitre([before.or(after)?, after.or(before)?]));
+    sides.map(Option::unwrap_or_default).collect()
 }
 
 /// The line amid pairs of points, the first with the last one, and the width that suits them best.
@@ -438,6 +474,29 @@ mod tests {
         assert!(!sound(&short, 3.0));
         assert!(sound(&short, 2.0));
         assert!(!sound(&short, 1.0));
+    }
+
+    #[test]
+    fn every_point_of_a_line_has_one_on_either_side() {
+        let on = |x, y| ([x, y], true);
+        let twice = [on(1.0, 5.0), on(4.0, 5.0), on(4.0, 5.0), on(9.0, 5.0)];
+        let back = [on(1.0, 5.0), on(9.0, 5.0), on(1.0, 5.0)];
+        let places = |points: &[([f64; 2], bool)], closed: bool| {
+            let (line, width) = (line(points, closed), 2.0);
+            let rings = Band { line, width }.rings();
+            let points = rings.iter().flat_map(Path::points).map(|p| p.at);
+            points.map(<(f64, f64)>::from).collect::<Vec<_>>()
+        };
+        let left = [(1.0, 6.0), (4.0, 6.0), (4.0, 6.0), (9.0, 6.0)];
+        let right = [(9.0, 4.0), (4.0, 4.0), (4.0, 4.0), (1.0, 4.0)];
+        assert_eq!(places(&twice, false), [left, right].concat());
+        let forth = [(1.0, 6.0), (9.0, 5.0), (1.0, 4.0)];
+        let reversed = [(1.0, 6.0), (9.0, 5.0), (1.0, 4.0)];
+        assert_eq!(places(&back, false), [forth, reversed].concat());
+        for closed in [false, true] {
+            assert_eq!(places(&[on(3.0, 4.0)], closed), [(3.0, 4.0); 2]);
+        }
+        assert_eq!(places(&[on(f64::NAN, 4.0), on(2.0, 1.0)], true).len(), 4);
     }
 
     #[test]
