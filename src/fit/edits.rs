@@ -222,6 +222,11 @@ pub(super) struct Tried {
 /// paths. All edits that should pay by their surplus are tried at once and, where a group fails, each half of it. The others
 /// are then tried one by one.
 pub(super) fn apply_priced(drawing: &mut Drawing, edits: Vec<Edit>) -> Tried {
+    apply_within(drawing, edits, TRIALS)
+}
+
+/// [`apply_priced`], with so many trials at most.
+pub(super) fn apply_within(drawing: &mut Drawing, edits: Vec<Edit>, trials: usize) -> Tried {
     // The loss is a mean over pixels and channels, prices are sums.
     let values = 3.0 * drawing.pixels() as f64;
     let (before, mut error) = (drawing.marks(), drawing.mse());
@@ -230,7 +235,7 @@ pub(super) fn apply_priced(drawing: &mut Drawing, edits: Vec<Edit>) -> Tried {
         (0..edits.len()).partition(|&i| edits[i].surplus() >= 0.0);
     let groups = std::iter::once(paying).chain(others.into_iter().map(|i| vec![i]));
     // Each trial adds one group to all that were taken, so that interaction between edits is in the measured error.
-    by_halves(groups.collect(), |group| {
+    by_halves(groups.collect(), trials, |group| {
         // Edits have the indices of the original marks, so every trial starts from these.
         let tried = [&taken[..], group].concat();
         drawing.set_marks(before.clone());
@@ -260,11 +265,15 @@ pub(super) fn apply_priced(drawing: &mut Drawing, edits: Vec<Edit>) -> Tried {
 }
 
 /// Offers each group to `accepts`, and each half of a refused group, down to single edits.
-fn by_halves(mut groups: Vec<Vec<usize>>, mut accepts: impl FnMut(&[usize]) -> bool) {
+fn by_halves(
+    mut groups: Vec<Vec<usize>>,
+    trials: usize,
+    mut accepts: impl FnMut(&[usize]) -> bool,
+) {
     groups.retain(|group| !group.is_empty());
     // A stack, whose top is the first group. Of two halves the first comes next, too, so that edits are tried in their order.
     groups.reverse();
-    for _ in 0..TRIALS {
+    for _ in 0..trials {
         let Some(group) = groups.pop() else { return };
         if !accepts(&group) && group.len() > 1 {
             let (first, second) = group.split_at(group.len() / 2);
@@ -428,7 +437,7 @@ mod tests {
     #[test]
     fn what_is_refused_is_found_among_many() {
         let (mut taken, mut trials) = (Vec::new(), 0);
-        by_halves(vec![Vec::new(), (0..64).collect()], |group| {
+        by_halves(vec![Vec::new(), (0..64).collect()], TRIALS, |group| {
             trials += 1;
             let is_good = !group.contains(&17) && !group.contains(&40);
             if is_good {
