@@ -70,6 +70,12 @@ impl Edit {
         self.gain + self.price
     }
 
+    /// True if it gains more than its price. A mark has to be worth more than its bytes, so it goes at that price, too.
+    fn pays(&self) -> bool {
+        let is_drop = matches!(&self.changes[..], [(_, Change::Marks(marks))] if marks.is_empty());
+        self.surplus() > 0.0 || is_drop && self.surplus() >= 0.0
+    }
+
     /// `marks` in the place of mark `i`.
     pub(super) fn replacing(i: usize, marks: Vec<Mark>, price: f32) -> Self {
         Self {
@@ -135,15 +141,14 @@ pub(super) struct Room {
 pub(super) fn choose(mut edits: Vec<Edit>, room: Room) -> Vec<Edit> {
     edits.sort_by(|a, b| b.surplus().total_cmp(&a.surplus()));
     // Edits that pay without growth come first: they need no room, and a loss makes some.
-    let pays = |edit: &Edit| edit.surplus() > 0.0;
     let (adding, others): (Vec<_>, Vec<_>) = edits.into_iter().partition(|edit| edit.growth > 0);
-    let (paying, mut leaving): (Vec<_>, Vec<_>) = others.into_iter().partition(pays);
+    let (paying, mut leaving): (Vec<_>, Vec<_>) = others.into_iter().partition(Edit::pays);
     let mut touched = Touched::default();
     let mut chosen = paying;
     chosen.retain(|edit| touched.takes(edit));
     // Additions fill the room and what the losses freed. The iterator keeps the rest of them for the exchanges.
     let freed: usize = chosen.iter().map(|edit| edit.growth.unsigned_abs()).sum();
-    let adding = adding.into_iter().filter(pays);
+    let adding = adding.into_iter().filter(Edit::pays);
     let adding: Vec<Edit> = adding.filter(|edit| touched.allows(edit)).collect();
     let mut adding = adding.into_iter().take(room.most);
     let coming = adding.by_ref().take(room.free.saturating_add(freed));
