@@ -70,6 +70,12 @@ impl Edit {
         self.gain + self.price
     }
 
+    /// True if it gains more than its price. A mark has to be worth more than its bytes, so it goes at that price, too.
+    fn pays(&self) -> bool {
+        let is_drop = matches!(&self.changes[..], [(_, Change::Marks(marks))] if marks.is_empty());
+        self.surplus() > 0.0 || is_drop && self.surplus() >= 0.0
+    }
+
     /// `marks` in the place of mark `i`.
     pub(super) fn replacing(i: usize, marks: Vec<Mark>, price: f32) -> Self {
         Self {
@@ -135,15 +141,14 @@ pub(super) struct Room {
 pub(super) fn choose(mut edits: Vec<Edit>, room: Room) -> Vec<Edit> {
     edits.sort_by(|a, b| b.surplus().total_cmp(&a.surplus()));
     // Edits that pay without growth come first: they need no room, and a loss makes some.
-    let pays = |edit: &Edit| edit.surplus() > 0.0;
     let (adding, others): (Vec<_>, Vec<_>) = edits.into_iter().partition(|edit| edit.growth > 0);
-    let (paying, mut leaving): (Vec<_>, Vec<_>) = others.into_iter().partition(pays);
+    let (paying, mut leaving): (Vec<_>, Vec<_>) = others.into_iter().partition(Edit::pays);
     let mut touched = Touched::default();
     let mut chosen = paying;
     chosen.retain(|edit| touched.takes(edit));
     // Additions fill the room and what the losses freed. The iterator keeps the rest of them for the exchanges.
     let freed: usize = chosen.iter().map(|edit| edit.growth.unsigned_abs()).sum();
-    let adding = adding.into_iter().filter(pays);
+    let adding = adding.into_iter().filter(Edit::pays);
     let adding: Vec<Edit> = adding.filter(|edit| touched.allows(edit)).collect();
     let mut adding = adding.into_iter().take(room.most);
     let coming = adding.by_ref().take(room.free.saturating_add(freed));
@@ -222,6 +227,11 @@ pub(super) struct Tried {
 /// paths. All edits that should pay by their surplus are tried at once and, where a group fails, each half of it. The others
 /// are then tried one by one.
 pub(super) fn apply_priced(drawing: &mut Drawing, edits: Vec<Edit>) -> Tried {
+    apply_within(drawing, edits, TRIALS)
+}
+
+/// [`apply_priced`], with so many trials at most.
+pub(super) fn apply_within(drawing: &mut Drawing, edits: Vec<Edit>, trials: usize) -> Tried {
     // The loss is a mean over pixels and channels, prices are sums.
     let values = 3.0 * drawing.pixels() as f64;
     let (before, mut error) = (drawing.marks(), drawing.mse());
@@ -230,7 +240,7 @@ pub(super) fn apply_priced(drawing: &mut Drawing, edits: Vec<Edit>) -> Tried {
         (0..edits.len()).partition(|&i| edits[i].surplus() >= 0.0);
     let groups = std::iter::once(paying).chain(others.into_iter().map(|i| vec![i]));
     // Each trial adds one group to all that were taken, so that interaction between edits is in the measured error.
-    by_halves(groups.collect(), |group| {
+    by_halves(groups.collect(), trials, |group| {
         // Edits have the indices of the original marks, so every trial starts from these.
         let tried = [&taken[..], group].concat();
         drawing.set_marks(before.clone());
@@ -260,11 +270,15 @@ pub(super) fn apply_priced(drawing: &mut Drawing, edits: Vec<Edit>) -> Tried {
 }
 
 /// Offers each group to `accepts`, and each half of a refused group, down to single edits.
-fn by_halves(mut groups: Vec<Vec<usize>>, mut accepts: impl FnMut(&[usize]) -> bool) {
+fn by_halves(
+    mut groups: Vec<Vec<usize>>,
+    trials: usize,
+    mut accepts: impl FnMut(&[usize]) -> bool,
+) {
     groups.retain(|group| !group.is_empty());
     // A stack, whose top is the first group. Of two halves the first comes next, too, so that edits are tried in their order.
     groups.reverse();
-    for _ in 0..TRIALS {
+    for _ in 0..trials {
         let Some(group) = groups.pop() else { return };
         if !accepts(&group) && group.len() > 1 {
             let (first, second) = group.split_at(group.len() / 2);
@@ -428,7 +442,7 @@ mod tests {
     #[test]
     fn what_is_refused_is_found_among_many() {
         let (mut taken, mut trials) = (Vec::new(), 0);
-        by_halves(vec![Vec::new(), (0..64).collect()], |group| {
+        by_halves(vec![Vec::new(), (0..64).collect()], TRIALS, |group| {
             trials += 1;
             let is_good = !group.contains(&17) && !group.contains(&40);
             if is_good {

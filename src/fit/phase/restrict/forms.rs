@@ -10,7 +10,7 @@ use std::f64::consts::FRAC_PI_4;
 use kurbo::ParamCurve;
 
 use super::covers::Covers;
-use super::proposals::{adopt, traced};
+use super::proposals::{Each, adopt, traced};
 use crate::error::Result;
 use crate::fit::drawing::{Drawing, Memento};
 use crate::fit::edits::Edit;
@@ -29,17 +29,17 @@ pub(super) fn run(session: &mut Session<'_>) -> Result<()> {
     let shapes = shapes(session, forms, room);
     let paths = session.drawing.memento();
     // 1. Circles, ellipses and rectangles. Trials judge them in our own render, so the file's render has the last word.
-    if adopt(session, forms, shapes) {
+    if adopt(session, forms, shapes, Each::MayLose) {
         refuse_losses(session, forms, paths)?;
     }
     // 2. Square ends for strokes that cover as much with them.
     if session.config.marks() == Marks::Auto {
         let squared = squares(session, forms);
-        adopt(session, forms, squared);
+        adopt(session, forms, squared, Each::Gains);
     }
     // 3. Lines of what is left, level and upright.
     let straight = straight(session, forms);
-    adopt(session, forms, straight);
+    adopt(session, forms, straight, Each::MayLose);
     if session.config.marks() == Marks::Areas {
         fill_bands(&mut session.drawing);
     }

@@ -4,7 +4,7 @@
 //! picture shows which is right where the line covers whole pixels: there it has its colour. A line between two rows shows it
 //! only at crossings.
 
-use super::proposals::{adopt, traced};
+use super::proposals::{Each, adopt, traced};
 use crate::fit::config::Colors;
 use crate::fit::descent::ties::Ties;
 use crate::fit::drawing::Drawing;
@@ -38,7 +38,7 @@ pub(super) fn run(session: &mut Session<'_>) -> Vec<Rgb> {
         colors.push(stroke.color);
         Some(vec![stroke.into()])
     });
-    adopt(session, session.recipe.forms, proposed);
+    adopt(session, session.recipe.forms, proposed, Each::MayLose);
     colors
 }
 

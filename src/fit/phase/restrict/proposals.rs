@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::fit::descent::held::Held;
 use crate::fit::descent::{Course, Descent, TRACED_PACE};
 use crate::fit::drawing::Drawing;
-use crate::fit::edits::{Change, Edit, apply_priced};
+use crate::fit::edits::{Change, Edit, apply_within};
 use crate::fit::recipe::{Forms, Rates};
 use crate::fit::run::session::Session;
 use crate::render::StrokeRef;
@@ -27,8 +27,25 @@ pub(super) fn traced(
     found.filter_map(edit).collect()
 }
 
+/// The demands on each proposal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Each {
+    /// It may cost more than it saves if others pay for that.
+    MayLose,
+    /// It pays by itself. It is one mark for one.
+    Gains,
+}
+
+/// Most proposals that do not seem to pay and are tried one by one. A guess.
+const MOST_SINGLES: usize = 24;
+
 /// Fits the proposals, and makes those that pay. Returns whether any does.
-pub(super) fn adopt(session: &mut Session<'_>, forms: Forms, mut edits: Vec<Edit>) -> bool {
+pub(super) fn adopt(
+    session: &mut Session<'_>,
+    forms: Forms,
+    mut edits: Vec<Edit>,
+    each: Each,
+) -> bool {
     if edits.is_empty() {
         return false;
     }
@@ -51,13 +68,25 @@ pub(super) fn adopt(session: &mut Session<'_>, forms: Forms, mut edits: Vec<Edit
         let bytes = bytes(&home.0.get(i).to_mark(), &fitted, forms, session);
         edit.price =
             price.of_saved(bytes.max(0) as usize) - price.of_saved((-bytes).max(0) as usize);
-        edit.gain = worth[span].iter().sum::<f32>() - worth_before[i];
+        edit.gain = match each {
+            // All are tried at once: no worth of one tells what several parts, or marks that share pixels, are worth.
+            Each::MayLose => f32::INFINITY,
+            Each::Gains => worth[span].iter().sum::<f32>() - worth_before[i],
+        };
         edit.changes = vec![(i, Change::Marks(fitted))];
     }
     // 4. Back to the marks before, on which trials of the fitted ones decide.
     session.drawing.set_marks(home);
-    edits.sort_by(|a, b| b.surplus().total_cmp(&a.surplus()));
-    !apply_priced(&mut session.drawing, edits).made.is_empty()
+    if each == Each::Gains {
+        edits.sort_by(|a, b| b.surplus().total_cmp(&a.surplus()));
+        let paying = edits.partition_point(|edit| edit.surplus() >= 0.0);
+        edits.truncate(paying + MOST_SINGLES);
+    } else {
+        // Those on top are tried first.
+        edits.reverse();
+    }
+    let tried = apply_within(&mut session.drawing, edits, usize::MAX);
+    !tried.made.is_empty()
 }
 
 /// Bytes that `new` marks save in the place of `old`, and those that the form is worth to an editor.
