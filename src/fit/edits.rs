@@ -320,7 +320,12 @@ impl Drawing {
                     continue;
                 }
                 [Change::Marks(marks)] => marks.iter().for_each(|mark| edited.push_mark(mark)),
-                _ => push_with_paths(&mut edited, stroke, changes),
+                _ => {
+                    sources.extend(push_with_paths(&mut edited, stroke, range.start, changes));
+                    sources.extend((range.end - STYLE..range.end).map(Some));
+                    of_stages.push(stages[i]);
+                    continue;
+                }
             }
             // A point that stays where it is keeps its numbers, and so does the style of a mark.
             for k in of_stages.len()..edited.len() {
@@ -341,15 +346,37 @@ impl Drawing {
     }
 }
 
-/// Adds the stroke or area with some of its paths changed.
-fn push_with_paths(strokes: &mut Strokes, stroke: StrokeRef<'_>, changes: &[&Change]) {
+/// Adds the stroke or area, whose numbers begin at `start`, with some of its paths changed. Returns the former index of each
+/// coordinate. Of the points between the first and the last that change, the first ones take the places of the former ones.
+fn push_with_paths(
+    strokes: &mut Strokes,
+    stroke: StrokeRef<'_>,
+    start: usize,
+    changes: &[&Change],
+) -> Vec<Option<usize>> {
     let (mut all_points, mut all_off, mut rings) = (Vec::new(), Vec::new(), Vec::new());
-    for (k, (_, path)) in stroke.paths().enumerate() {
+    let mut sources = Vec::new();
+    for (k, (first, path)) in stroke.paths().enumerate() {
         let changed = changes.iter().find_map(|change| match change {
             Change::Path { index, points, off } if *index == k => Some((&points[..], &off[..])),
             _ => None,
         });
         let (points, off) = changed.unwrap_or((path.points, path.off));
+        let (new, old) = (points.len(), path.points.len());
+        let same = points.iter().zip(path.points);
+        let before = same.take_while(|(a, b)| a == b).count();
+        let same = points.iter().rev().zip(path.points.iter().rev());
+        let behind = same.take_while(|(a, b)| a == b).count();
+        let behind = behind.min(new.min(old) - before);
+        for i in 0..new {
+            let from = match i {
+                _ if i >= new - behind => Some(i + old - new),
+                _ if i < old - behind => Some(i),
+                _ => None,
+            };
+            let at = from.map(|from| start + 2 * (first + from));
+            sources.extend([at, at.map(|at| at + 1)]);
+        }
         all_points.extend(points);
         all_off.extend(off);
         // A ring is stored by the index at which it ends.
@@ -362,6 +389,7 @@ fn push_with_paths(strokes: &mut Strokes, stroke: StrokeRef<'_>, changes: &[&Cha
         form: None,
         ..stroke
     });
+    sources
 }
 
 #[cfg(test)]

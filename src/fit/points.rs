@@ -181,7 +181,7 @@ fn edit(session: &mut Session<'_>, spare: f32) -> Vec<Option<usize>> {
         let fits = |edit: &Edit| terrain.is_ring || terrain.written_points(edit) <= most;
         // One stroke may have most of all points.
         let (loss, (toggle, new)) = rayon::join(
-            || edits::points::drop(terrain, to_keep),
+            || edits::points::remove(terrain, to_keep),
             || {
                 let toggled = toggles.then_some(terrain);
                 let toggle = toggled.and_then(|of| edits::points::toggle(of, to_keep * 0.1));
@@ -190,6 +190,8 @@ fn edit(session: &mut Session<'_>, spare: f32) -> Vec<Option<usize>> {
                 (toggle.filter(fits), new.filter(fits))
             },
         );
+        // A point that does not pay goes first; the corners around it may change later.
+        let toggle = toggle.filter(|_| !loss.as_ref().is_some_and(|loss| loss.surplus() > 0.0));
         [loss, toggle, new].into_iter().flatten()
     };
     let proposed: Vec<Edit> = terrains.par_iter().flat_map_iter(propose).collect();

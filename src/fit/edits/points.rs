@@ -95,6 +95,15 @@ pub(in crate::fit) fn add(terrain: &Terrain<'_>, to_add: f32, points: &Points) -
     Some(changed.edit(terrain, best.gain, -to_add))
 }
 
+/// The point less that costs least; it spares `to_keep`. All others stay where they are.
+pub(in crate::fit) fn remove(terrain: &Terrain<'_>, to_keep: f32) -> Option<Edit> {
+    let count = terrain.stroke.points.len();
+    if count < 3 {
+        return None;
+    }
+    best_change(terrain, 0..count, to_keep, |changed, k| changed.remove(k))
+}
+
 /// The point less that costs least; it spares `to_keep`. An end may move: a curve that turns back beside it ends where it
 /// turned.
 pub(in crate::fit) fn drop(terrain: &Terrain<'_>, to_keep: f32) -> Option<Edit> {
@@ -105,7 +114,7 @@ pub(in crate::fit) fn drop(terrain: &Terrain<'_>, to_keep: f32) -> Option<Edit> 
     }
     // A control point beside an end may have pulled the curve beyond that end. Without it the stroke would be too short, unless
     // the end moves to where the curve was farthest out.
-    let removal = best_change(terrain, 0..count, to_keep, |changed, k| changed.remove(k));
+    let removal = remove(terrain, to_keep);
     let retraction = |(k, end): (usize, usize)| {
         let tip = terrain.tip(end).filter(|_| off[k] && !closed)?;
         best_change(terrain, k..k + 1, to_keep, |changed, k| {
