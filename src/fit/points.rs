@@ -119,18 +119,23 @@ pub(super) fn shed(
             wanted = wanted.saturating_sub(bytes(edit));
             is_wanted
         });
-        let tried = apply_priced(drawing, tolerated(edits));
-        left = left.saturating_sub(tried.made.iter().map(bytes).sum());
-        let kept = match tried.made.is_empty() {
-            true => {
-                // Every trial was refused. The mark of least worth goes unasked, as the bytes have to.
-                let least = edits::least(drawing, 1);
-                left = left.saturating_sub(least.iter().map(bytes).sum());
-                drawing.apply(&least)
-            }
-            false => tried.sources,
+        // An edge of an area may turn its inside out. All other bytes go unasked, as they have to.
+        let of_ring = |edit: &Edit| match edit.changes[..] {
+            [(i, Change::Path { .. })] => drawing.free().get(i).is_area(),
+            _ => false,
         };
-        sources = kept.into_iter().map(|from| sources[from?]).collect();
+        let (of_rings, mut others): (Vec<_>, Vec<_>) = edits.into_iter().partition(of_ring);
+        let tried = apply_priced(drawing, tolerated(of_rings));
+        if tried.made.is_empty() && others.is_empty() {
+            others = edits::least(drawing, 1);
+        }
+        let gone = tried.made.iter().chain(&others).map(bytes).sum();
+        left = left.saturating_sub(gone);
+        let kept = drawing.apply(&others);
+        sources = kept
+            .into_iter()
+            .map(|from| sources[tried.sources[from?]?])
+            .collect();
     }
     sources
 }
