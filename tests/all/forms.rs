@@ -138,7 +138,8 @@ fn an_opaque_capsule_of_the_smallest_file_takes_52_bytes_at_most() {
 #[test]
 fn a_budget_of_bytes_buys_more_in_the_smallest_form() {
     let bought = |form: &str| {
-        let drawn = drawn_with(
+        // Drafts differ by 0.6 dB from one budget to the next, which is more than the form brings.
+        let drawn = fitted(
             "coffee-300",
             &[
                 "--bytes", "9000", "--opaque", "--form", form, "--look", "exact",
