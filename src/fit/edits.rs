@@ -178,14 +178,14 @@ pub(super) fn disjoint(mut edits: Vec<Edit>) -> Vec<Edit> {
 
 /// The paths that edits change, each by its mark and by its index among the mark's paths, or [`ALL`].
 #[derive(Debug, Default)]
-pub(super) struct Touched(BTreeSet<(usize, usize)>);
+struct Touched(BTreeSet<(usize, usize)>);
 
 /// The index of all paths of a mark.
 const ALL: usize = usize::MAX;
 
 impl Touched {
     /// Adds the paths of an edit, unless another edit changes one of them. Returns whether it did.
-    pub(super) fn takes(&mut self, edit: &Edit) -> bool {
+    fn takes(&mut self, edit: &Edit) -> bool {
         let is_free = self.allows(edit);
         if is_free {
             self.0.extend(places(edit));
@@ -194,7 +194,7 @@ impl Touched {
     }
 
     /// True if no other edit changes a path of this one.
-    pub(super) fn allows(&self, edit: &Edit) -> bool {
+    fn allows(&self, edit: &Edit) -> bool {
         places(edit).all(|(mark, path)| {
             let mut others = self.0.range((mark, 0)..=(mark, ALL));
             !others.any(|&(_, other)| other == path || [path, other].contains(&ALL))
@@ -218,7 +218,6 @@ const TRIALS: usize = 64;
 #[derive(Debug, Default)]
 pub(super) struct Tried {
     pub(super) made: Vec<Edit>,
-    pub(super) refused: Vec<Edit>,
     /// The former index of each number of the free strokes, `None` for a new one.
     pub(super) sources: Vec<Option<usize>>,
 }
@@ -258,15 +257,9 @@ pub(super) fn apply_within(drawing: &mut Drawing, edits: Vec<Edit>, trials: usiz
     let sources = drawing.apply(taken.iter().map(|&i| &edits[i]));
     taken.sort_unstable();
     let edits = edits.into_iter().enumerate();
-    let (made, refused): (Vec<_>, Vec<_>) =
-        edits.partition(|(i, _)| taken.binary_search(i).is_ok());
-    let [made, refused] =
-        [made, refused].map(|edits| edits.into_iter().map(|(_, edit)| edit).collect());
-    Tried {
-        made,
-        refused,
-        sources,
-    }
+    let made = edits.filter(|(i, _)| taken.binary_search(i).is_ok());
+    let made = made.map(|(_, edit)| edit).collect();
+    Tried { made, sources }
 }
 
 /// Offers each group to `accepts`, and each half of a refused group, down to single edits.

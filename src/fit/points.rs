@@ -11,9 +11,7 @@ use super::budget::price::Price;
 use super::budget::{self, typical_bytes};
 use super::drawing::Drawing;
 use super::edits::terrain::{LEAST, Terrain};
-use super::edits::{
-    self, Change, Edit, Room, Touched, apply_priced, choose, disjoint, drop_marks, joins,
-};
+use super::edits::{self, Change, Edit, Room, apply_priced, choose, disjoint, drop_marks, joins};
 use super::run::session::Session;
 use crate::render::{StrokeRef, Survey};
 
@@ -51,22 +49,27 @@ pub(super) fn rearrange(session: &mut Session<'_>, done: f32) -> Vec<Option<usiz
 }
 
 /// Takes away points that are not worth their price now that the strokes are where they belong. Each path loses at most one
-/// point at a time, and none any more once a loss has turned out dearer than foreseen.
+/// point at a time. A pass that adds more than it may is taken back, and is the last one.
 pub(super) fn prune(drawing: &mut Drawing, price: Price, prunings: usize) {
-    let mut refused = Touched::default();
+    let values = 3.0 * drawing.pixels() as f64;
     for _ in 0..prunings {
         let price = price.in_drawing(drawing);
-        let mut losses = losses(drawing, price);
-        // A refusal stays one: the strokes don't move between the passes.
-        losses.retain(|edit| refused.allows(edit));
-        let tried = apply_priced(drawing, choose(losses, Room::default()));
-        if tried.made.is_empty() {
+        let losses = choose(losses(drawing, price), Room::default());
+        let of_area = |edit: &Edit| drawing.free().get(edit.changes[0].0).is_area();
+        let (of_areas, of_strokes): (Vec<_>, Vec<_>) = losses.into_iter().partition(of_area);
+        // An edge of an area may turn its inside out, so that each of these is on trial.
+        let is_shorter = !apply_priced(drawing, of_areas).made.is_empty();
+        // Losses of strokes foresee their errors well, and pay together.
+        let (before, error) = (drawing.marks(), drawing.mse());
+        drawing.apply(&of_strokes);
+        let allowed: f64 = of_strokes.iter().map(|edit| f64::from(edit.price)).sum();
+        if (drawing.mse() - error) * values > allowed {
+            drawing.set_marks(before);
             return;
         }
-        tried
-            .refused
-            .iter()
-            .for_each(|edit| _ = refused.takes(edit));
+        if !is_shorter && of_strokes.is_empty() {
+            return;
+        }
     }
 }
 
