@@ -158,7 +158,7 @@ fn draws_fits_of_many_strokes_as_faithfully_as_resvg(name: &str) {
         let db = metrics::psnr(target, &drawn).unwrap();
         assert!(resvg > *least_db, "{name}: {resvg:.2} dB");
         // Fits are settled for resvg alone: thin lines and thousands of faint layers lose most elsewhere.
-        assert!(db >= resvg - 3.0, "{name}: {db:.2} dB, {resvg:.2} in resvg");
+        assert!(db >= resvg - 5.0, "{name}: {db:.2} dB, {resvg:.2} in resvg");
     }
 }
 
