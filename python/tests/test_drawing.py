@@ -75,7 +75,9 @@ def test_strokes_are_those_of_the_file(drawing: strokefit.Drawing, bent: strokef
     for some in (drawing, bent):
         elements = re.findall("<path[^>]*>", some.svg)
         assert len(some.strokes) + len(some.areas) == some.report["strokes"] == len(elements)
-        assert len(some.strokes.points) + len(some.areas.points) == some.report["points"]
+        points = len(some.strokes.points) + len(some.areas.points)
+        # A line with square ends is shown by its outline, which has more points than the line in the file.
+        assert points == some.report["points"] or (some.areas and points > some.report["points"])
         for stroke, element in zip(some.strokes, (elements[i] for i in some.strokes.order)):
             attributes = dict(re.findall(r'(\S+)="([^"]*)"', element))
             expected, closed = pieces_of_data(attributes["d"])
