@@ -8,8 +8,6 @@
 //! not when the recipe of the fit is tuned. All cores are used, as in a fit.
 #![allow(clippy::unwrap_used, reason = "a benchmark that fails may stop")]
 
-mod random;
-
 use std::fs;
 use std::hint::black_box;
 use std::time::Duration;
@@ -17,7 +15,7 @@ use std::time::Duration;
 use criterion::measurement::WallTime;
 use criterion::{BatchSize, BenchmarkGroup, BenchmarkId, Criterion, Throughput};
 
-use rig::bench::measure::go_to_root;
+use rig::bench::measure::{StrokeSize, go_to_root};
 use strokefit::coverage::Coverage;
 use strokefit::fit::{Budget, Config, Fitter, Objective, Simd};
 use strokefit::image::{Image, Limits};
@@ -46,24 +44,20 @@ const EDGE: Softness = Softness {
     width: 1.0,
 };
 
-const THIN: random::Look = random::Look {
-    spread_px: 4.0,
-    radius_px: 0.6..1.2,
-    opacity: 0.3..1.0,
-};
-const MEDIUM: random::Look = random::Look {
-    spread_px: 8.0,
-    radius_px: 1.5..3.5,
-    opacity: 0.3..1.0,
-};
-const LARGE: random::Look = random::Look {
-    spread_px: 40.0,
-    radius_px: 8.0..20.0,
-    opacity: 0.3..1.0,
-};
+const fn strokes_of(radius_px: f32, length_px: f32) -> StrokeSize {
+    StrokeSize {
+        radius_px,
+        length_px,
+        opacity: 0.65,
+    }
+}
 
-/// Distributions of strokes, and the number of strokes in each: about what a stage holds.
-const LOOKS: [(&str, usize, random::Look); 3] = [
+const THIN: StrokeSize = strokes_of(0.9, 5.0);
+const MEDIUM: StrokeSize = strokes_of(2.5, 10.0);
+const LARGE: StrokeSize = strokes_of(14.0, 50.0);
+
+/// Sizes of strokes, and the number of strokes of each: about what a stage holds.
+const LOOKS: [(&str, usize, StrokeSize); 3] = [
     ("thin", 5000, THIN),
     ("medium", 2000, MEDIUM),
     ("large", 200, LARGE),
@@ -132,7 +126,7 @@ fn seed(criterion: &mut Criterion, image: &Image) {
 fn render(criterion: &mut Criterion, image: &Image) {
     for (name, count, look) in &LOOKS {
         let target = Canvas::from_image(image);
-        let strokes = random::strokes(target.grid(), *count, look);
+        let strokes = look.strokes(target.grid(), *count);
         let mut group = criterion.benchmark_group("render");
         passes(&mut group, name, &strokes, &target);
         group.finish();
@@ -178,8 +172,8 @@ fn passes(
 
 fn optim(criterion: &mut Criterion, image: &Image) {
     let grid = Canvas::from_image(image).grid();
-    let mut strokes = random::strokes(grid, STROKES, &THIN);
-    let gradients = random::strokes(grid, STROKES, &MEDIUM);
+    let mut strokes = THIN.strokes(grid, STROKES);
+    let gradients = MEDIUM.strokes(grid, STROKES);
     let scales = [1.0; PARAMS].repeat(STROKES);
     let mut adam = Adam::new(STROKES * PARAMS, AdamParams::default());
     let mut group = criterion.benchmark_group("optim");
@@ -254,7 +248,7 @@ fn fits(criterion: &mut Criterion) {
 
 fn scene(image: &Image) -> Scene {
     let grid = Canvas::from_image(image).grid();
-    let strokes = random::strokes(grid, STROKES, &MEDIUM);
+    let strokes = MEDIUM.strokes(grid, STROKES);
     let stage = Stage::from_iter(strokes.iter().map(|stroke| stroke.to_mark()));
     Scene {
         stages: vec![stage],

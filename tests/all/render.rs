@@ -116,6 +116,15 @@ fn degenerate() -> Vec<Case> {
                 red([9.0, 9.0], [30.0, 20.0], 3.0, 0.5),
             ],
         ),
+        case(
+            "nearly zero length",
+            &[red([20.3, 17.1], [20.3001, 17.1], 4.2, 0.7)],
+        ),
+        case("one end far away", &[red([7.0, 5.0], [1e6, 1e6], 2.0, 0.5)]),
+        case(
+            "a thousand on each other",
+            &[red([3.0, 4.0], [9.0, 7.0], 2.0, 0.001); 1000],
+        ),
         // Its ends are known to 1/128 px only, in f32.
         Case {
             tolerance: 3e-3,

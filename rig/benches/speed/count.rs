@@ -27,71 +27,6 @@ pub(crate) struct Count {
     pub(crate) core: u64,
 }
 
-/// Operations and traffic, per lane or in all.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Work {
-    /// Add, subtract, multiply, divide, root, minimum, maximum and comparison, one each.
-    pub(crate) operations: f64,
-    /// Read and written. Caches hold a tile's scratch, so this is no traffic to memory; what stays in
-    /// registers over a stroke's blocks is not counted.
-    pub(crate) bytes: f64,
-    /// Roots and divisions among the operations, as many of one as of the other.
-    pub(crate) roots: f64,
-}
-
-impl Work {
-    const fn per_lane(operations: u32, bytes: u32, roots: u32) -> Self {
-        Self {
-            operations: operations as f64,
-            bytes: bytes as f64,
-            roots: roots as f64,
-        }
-    }
-
-    /// `p − a` 2; `h` and `q` 10 (dot product 3, scale and clamp 3, foot 4); `|q|` 5; `d` 1; σ and σ' 10;
-    /// `m`, `o·σ'`, `1/|q|` 3; then as in a core, 12.
-    /// Bytes: 12 kept of the edge, then as in a core.
-    const PASS_1_EDGE: Self = Self::per_lane(43, 56, 2);
-
-    /// `T·m` 1; `C ← C + T·m·c` 6; what is left without the most opaque stroke 3; `T` 1; comparison 1.
-    /// Bytes: colour, `T` and the other transmittance read and written 40, `T` kept 4.
-    const PASS_1_CORE: Self = Self::per_lane(12, 44, 0);
-
-    /// As in a core 41; `p − a`, `h` and `q` 12; `∂L/∂d` and its pull 2; sum for the radius 1; sums for the
-    /// two ends 8.
-    /// Bytes: what was kept of the edge 12, then as in a core.
-    const PASS_2_EDGE: Self = Self::per_lane(64, 64, 0);
-
-    /// `T·m` 1; per channel contrast 1, `g·(c − B)` 2, sum for the colour 2, `B` 2, and for the worth 5:
-    /// 36; sum for the worth 1; `∂L/∂m` 1; sum for the opacity 2.
-    /// Bytes: `T` 4, error and gradient 24, colour behind read and written 24.
-    const PASS_2_CORE: Self = Self::per_lane(41, 52, 0);
-
-    /// By name, for print.
-    pub(crate) const TABLE: [(&str, Self); 4] = [
-        ("pass 1, edge", Self::PASS_1_EDGE),
-        ("pass 1, core", Self::PASS_1_CORE),
-        ("pass 2, edge", Self::PASS_2_EDGE),
-        ("pass 2, core", Self::PASS_2_CORE),
-    ];
-
-    fn times(self, lanes: u64) -> Self {
-        Self {
-            operations: self.operations * lanes as f64,
-            bytes: self.bytes * lanes as f64,
-            roots: self.roots * lanes as f64,
-        }
-    }
-
-    fn plus(self, other: Self) -> Self {
-        Self {
-            operations: self.operations + other.operations,
-            bytes: self.bytes + other.bytes,
-            roots: self.roots + other.roots,
-        }
-    }
-}
-
 impl Count {
     /// Counts the work in `strokes` over the picture of `grid`.
     pub(crate) fn of(grid: Grid, strokes: &Strokes) -> Self {
@@ -147,14 +82,6 @@ impl Count {
 
     pub(crate) fn lanes(&self) -> u64 {
         self.blocks() * LANES
-    }
-
-    /// Both passes, with leave-one-out.
-    pub(crate) fn work(&self) -> Work {
-        let edge = Work::PASS_1_EDGE.plus(Work::PASS_2_EDGE);
-        let core = Work::PASS_1_CORE.plus(Work::PASS_2_CORE);
-        edge.times(self.edge * LANES)
-            .plus(core.times(self.core * LANES))
     }
 }
 

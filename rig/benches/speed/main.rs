@@ -1,12 +1,11 @@
-//! The speed of the renderer, and the limits of the machine.
+//! The speed of the renderer.
 //!
 //! ```text
 //! cargo bench -p rig --bench speed [-- PICTURE]
 //! ```
 //!
 //! All in one run, so that figures of different machines can be compared as ratios: pairs per second
-//! by size of stroke, opacity, threads and SIMD level, on random drawings and on finished ones (of capsules, and of paths); what
-//! of it is arithmetic, as counted from the code; and the machine's own limits, measured.
+//! by size of stroke, opacity, threads and SIMD level, on random drawings and on finished ones, of capsules and of paths.
 //!
 //! A *pair* is a stroke and a pixel of the picture where its coverage is above 0. They are counted
 //! apart from the renderer, hidden ones included: what the renderer need not look at is its gain. A pixel that
@@ -18,8 +17,6 @@
 #![allow(clippy::expect_used, reason = "what cannot fail")]
 
 mod count;
-mod limits;
-mod paths;
 
 use rig::bench::measure::{DEPTH, EDGE, StrokeSize, fastest, go_to_root, thread_counts};
 use strokefit::Result;
@@ -28,8 +25,7 @@ use strokefit::image::Image;
 use strokefit::loss::Loss;
 use strokefit::render::{Backdrop, Canvas, Gradients, Renderer, StrokeRef, Strokes, flattened};
 
-use count::{Count, Work};
-use limits::Limits;
+use count::Count;
 
 const PICTURE: &str = "samples/coffee-550x220.png";
 const BACKDROP: [f32; 3] = [0.5; 3];
@@ -58,10 +54,7 @@ fn main() -> Result<()> {
     let mut drawings = random(&target);
     drawings.push(settled("settled 2", Some(2), &image, &options)?);
     drawings.push(settled("settled", None, &image, &options)?);
-    let speeds = speeds(&drawings, &target, options.rounds);
-    paths::print(&target, options.rounds);
-    let limits = limits::measure(&thread_counts(), options.rounds);
-    arithmetic(&drawings, &speeds, &limits);
+    speeds(&drawings, &target, options.rounds);
     let settled = drawings.last().expect("one was pushed");
     levels(settled, &target, options.rounds);
     Ok(())
@@ -175,8 +168,8 @@ struct Speed {
     worth: f64,
 }
 
-/// Prints pairs per second; returns the times by drawing and number of threads.
-fn speeds(drawings: &[Workload], target: &Canvas, rounds: usize) -> Vec<Vec<Speed>> {
+/// Prints pairs per second, by drawing and number of threads.
+fn speeds(drawings: &[Workload], target: &Canvas, rounds: usize) {
     println!(
         "million pairs per second; forward+backward in `backward`, leave-one-out too in `worth`"
     );
@@ -193,20 +186,18 @@ fn speeds(drawings: &[Workload], target: &Canvas, rounds: usize) -> Vec<Vec<Spee
         "worth",
         "speed-up"
     );
-    drawings
-        .iter()
-        .map(|drawing| speed(drawing, target, rounds))
-        .collect()
+    for drawing in drawings {
+        speed(drawing, target, rounds);
+    }
 }
 
-fn speed(drawing: &Workload, target: &Canvas, rounds: usize) -> Vec<Speed> {
+fn speed(drawing: &Workload, target: &Canvas, rounds: usize) {
     let grid = target.grid();
     let count = &drawing.count;
     let pixels = (grid.width * grid.height) as f64;
-    let mut speeds: Vec<Speed> = Vec::new();
-    for times in times(drawing, target, rounds) {
+    let speeds = times(drawing, target, rounds);
+    for times in &speeds {
         let rate = |seconds: f64| count.pairs as f64 / seconds / 1e6;
-        let one = speeds.first().unwrap_or(&times);
         println!(
             "{:<12} {:>7} {:>8.1} {:>9.2} {:>5.0}% {:>7} {:>8.0} {:>9.0} {:>7.0} {:>8.2}×",
             drawing.name,
@@ -218,11 +209,9 @@ fn speed(drawing: &Workload, target: &Canvas, rounds: usize) -> Vec<Speed> {
             rate(times.forward),
             rate(times.backward),
             rate(times.worth),
-            one.worth / times.worth,
+            speeds[0].worth / times.worth,
         );
-        speeds.push(times);
     }
-    speeds
 }
 
 /// Times for every number of threads, which take turns.
@@ -329,72 +318,6 @@ impl<'a> Bench<'a> {
             self.drawing.name
         );
     }
-}
-
-/// Prints what the passes do per lane, what the machine can do, and the share of it that is reached.
-fn arithmetic(drawings: &[Workload], speeds: &[Vec<Speed>], limits: &[Limits]) {
-    println!("\nper lane visited, counted from the code");
-    println!(
-        "{:<14} {:>11} {:>6} {:>10}",
-        "", "operations", "bytes", "sqrt, div"
-    );
-    for (name, work) in Work::TABLE {
-        println!(
-            "{name:<14} {:>11} {:>6} {:>10}",
-            work.operations, work.bytes, work.roots
-        );
-    }
-    limits::print(limits);
-    println!("\nforward+backward+leave-one-out against these limits");
-    println!(
-        "{:<12} {:>7} {:>8} {:>10} {:>7} {:>9} {:>10} {:>7}",
-        "strokes", "threads", "ops/pair", "bytes/pair", "Gop/s", "of FMA", "of mul,add", "GB/s"
-    );
-    for (drawing, speeds) in drawings.iter().zip(speeds) {
-        for (speed, limits) in speeds.iter().zip(limits) {
-            share(drawing, speed, limits);
-        }
-    }
-    println!("\nshare of the time of `worth` for which each unit alone would be busy");
-    println!(
-        "{:<12} {:>7} {:>10} {:>10} {:>10}",
-        "strokes", "threads", "mul, add", "sqrt, div", "L1 copy"
-    );
-    for (drawing, speeds) in drawings.iter().zip(speeds) {
-        for (speed, limits) in speeds.iter().zip(limits) {
-            busy(drawing, speed, limits);
-        }
-    }
-}
-
-fn share(drawing: &Workload, speed: &Speed, limits: &Limits) {
-    let work = drawing.count.work();
-    let pairs = drawing.count.pairs as f64;
-    let rate = work.operations / speed.worth / 1e9;
-    println!(
-        "{:<12} {:>7} {:>8.0} {:>10.0} {:>7.1} {:>8.1}% {:>9.1}% {:>7.1}",
-        drawing.name,
-        speed.threads,
-        work.operations / pairs,
-        work.bytes / pairs,
-        rate,
-        100.0 * rate / limits.fused,
-        100.0 * rate / limits.separate,
-        work.bytes / speed.worth / 1e9
-    );
-}
-
-fn busy(drawing: &Workload, speed: &Speed, limits: &Limits) {
-    let work = drawing.count.work();
-    let share = |amount: f64, limit: f64| 100.0 * amount / (limit * 1e9) / speed.worth;
-    println!(
-        "{:<12} {:>7} {:>9.0}% {:>9.0}% {:>9.0}%",
-        drawing.name,
-        speed.threads,
-        share(work.operations - work.roots, limits.separate),
-        share(work.roots / 2.0, limits.root) + share(work.roots / 2.0, limits.quotient),
-        share(work.bytes, limits.copy[0]),
-    );
 }
 
 /// Prints `backward` of a drawing at every level of this machine.

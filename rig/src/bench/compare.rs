@@ -11,10 +11,11 @@ use std::process::Command;
 use rayon::prelude::*;
 use serde_json::Value;
 
-use super::shapes::{contents, delta_e, large};
+use super::files::digest;
+use super::inverse::{contents, delta_e, large};
 use crate::report::compare::{CompareEntry, CompareReport, Drawn, MOST_DB};
 pub use sets::{Case, Wanted, cases};
-use sets::{Subject, digest, refuse};
+use sets::{Subject, refuse};
 use strokefit::image::Image;
 use strokefit::verify;
 use strokefit::{Error, ErrorKind, Result};

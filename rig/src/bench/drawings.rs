@@ -52,58 +52,6 @@ impl Drawing {
     }
 }
 
-/// The side that is nearest to `px`; `px` itself if there is none.
-pub(super) fn side_nearest(sides: &[u16], px: usize) -> usize {
-    let sides = sides.iter().map(|&side| usize::from(side));
-    sides.min_by_key(|side| side.abs_diff(px)).unwrap_or(px)
-}
-
-/// A result as it comes, with its record.
-#[derive(Debug)]
-pub struct Outcome<'a, Entry> {
-    /// Its record.
-    pub entry: &'a Entry,
-    /// The picture that was drawn.
-    pub picture: &'a Image,
-    /// The SVG that was made of it; empty where none was.
-    pub svg: &'a str,
-}
-
-// Derived ones would ask the record to be copied.
-impl<Entry> Clone for Outcome<'_, Entry> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<Entry> Copy for Outcome<'_, Entry> {}
-
-/// Tells each of the records, and adds it to `entries`; beside each stands the SVG that was made of `picture`.
-pub(super) fn record<Entry>(
-    found: impl IntoIterator<Item = (Entry, String)>,
-    picture: &Image,
-    tell: &mut dyn FnMut(Outcome<'_, Entry>) -> Result<()>,
-    entries: &mut Vec<Entry>,
-) -> Result<()> {
-    for (entry, svg) in found {
-        tell(Outcome {
-            entry: &entry,
-            picture,
-            svg: &svg,
-        })?;
-        entries.push(entry);
-    }
-    Ok(())
-}
-
-/// The record of what `draw` makes, and its SVG; where it fails, the record with the failure, and no SVG.
-pub(super) fn attempt<Entry>(
-    draw: impl FnOnce() -> Result<(Entry, String)>,
-    failed: impl FnOnce(Option<String>) -> Entry,
-) -> (Entry, String) {
-    draw().unwrap_or_else(|error| (failed(Some(error.to_string())), String::new()))
-}
-
 /// Pictures that are made of each drawing.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Pictures {

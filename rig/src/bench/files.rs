@@ -36,3 +36,30 @@ pub(crate) fn stem(path: &Path) -> String {
     let stem = path.file_stem().unwrap_or_default();
     stem.to_string_lossy().into_owned()
 }
+
+/// FNV-1a of all parts, in hexadecimal digits.
+pub(crate) fn digest(parts: &[&[u8]]) -> String {
+    let bytes = parts.iter().copied().flatten();
+    let hash = bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    });
+    format!("{hash:016x}")
+}
+
+/// A few of the files or drawings, at most so many, from all over the list.
+pub(crate) fn few<T>(all: Vec<T>, most: usize) -> Vec<T> {
+    let step = all.len().div_ceil(most).max(1);
+    all.into_iter().step_by(step).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::few;
+
+    #[test]
+    fn a_few_are_from_all_over_the_list() {
+        assert_eq!(few(vec![0, 1], 6), [0, 1]);
+        assert_eq!(few((0..12).collect(), 6), [0, 2, 4, 6, 8, 10]);
+        assert!(few(Vec::<usize>::new(), 6).is_empty());
+    }
+}

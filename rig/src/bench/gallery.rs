@@ -1,7 +1,6 @@
 //! A sheet of pictures, what was made of them, and a look at that.
 
-use super::drawings::Outcome;
-use crate::report::cases::Case;
+use super::inverse::Outcome;
 use crate::report::picture::{self, heat};
 use crate::report::plot::{Panel, Sheet, framed};
 use strokefit::Result;
@@ -9,7 +8,7 @@ use strokefit::image::Image;
 use strokefit::verify::{self, Size};
 
 /// Side of a panel, px.
-pub(super) const PANEL_PX: usize = 256;
+pub(crate) const PANEL_PX: usize = 256;
 
 /// Panels of a row at most, unless one picture has more.
 const COLUMNS: usize = 6;
@@ -28,23 +27,34 @@ impl Gallery {
     ///
     /// # Errors
     /// As [`verify::render`].
-    pub(super) fn show<Entry: Case>(
-        &mut self,
-        outcome: Outcome<'_, Entry>,
-        title: &str,
-        caption: &str,
-    ) -> Result<()> {
+    pub(super) fn show(&mut self, outcome: Outcome<'_>, title: &str, caption: &str) -> Result<()> {
         let Outcome {
             entry,
             picture,
             svg,
         } = outcome;
         if entry.is_own() {
-            self.rows.push(vec![framed_panel(title, picture)?]);
+            self.row(title, picture)?;
         }
-        let by = if entry.is_own() { "" } else { entry.by() };
-        let drawn = verify::render(svg, size(picture), Some([1.0; 3]))?;
-        self.add(&format!("{by} {caption}"), &drawn)
+        let by = if entry.is_own() { "" } else { &entry.by };
+        self.add_drawing(&format!("{by} {caption}"), svg, picture)
+    }
+
+    /// Begins a row with a picture.
+    ///
+    /// # Errors
+    /// As [`Self::add`].
+    pub(super) fn row(&mut self, title: &str, picture: &Image) -> Result<()> {
+        self.rows.push(vec![framed_panel(title, picture)?]);
+        Ok(())
+    }
+
+    /// Adds a drawing of a picture to the last row.
+    ///
+    /// # Errors
+    /// As [`verify::render`].
+    pub(super) fn add_drawing(&mut self, title: &str, svg: &str, picture: &Image) -> Result<()> {
+        self.add(title, &verify::render(svg, size(picture), Some([1.0; 3]))?)
     }
 
     /// Adds a picture to the last row.
@@ -128,8 +138,7 @@ pub(super) fn errors(picture: &Image, drawn: &Image) -> Result<Image> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::cases::OWN;
-    use crate::report::shapes::ShapesEntry;
+    use crate::report::cases::{CaseEntry, OWN};
 
     const SVG: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" width="48" height="24"><rect width="24" height="24"/></svg>"#;
 
@@ -138,9 +147,9 @@ mod tests {
         let picture = verify::render(SVG, Size::Scale(1.0), Some([1.0; 3])).unwrap();
         let mut gallery = Gallery::default();
         for by in [OWN, "potrace", OWN] {
-            let entry = ShapesEntry {
+            let entry = CaseEntry {
                 by: by.into(),
-                ..ShapesEntry::default()
+                ..CaseEntry::default()
             };
             let outcome = Outcome {
                 entry: &entry,

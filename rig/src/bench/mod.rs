@@ -4,9 +4,7 @@
 //! | --- | --- |
 //! | [`pareto`] | how much error is left for how much time, memory, bytes and strokes; who else is there? |
 //! | [`stability`] | does every hard case give a valid drawing, and does `f32` stay close to `f64`? |
-//! | [`inverse`] | how much of a drawing of strokes is found again in its picture? |
-//! | [`shapes`] | how much of any drawing is, in as few numbers as its artist needed? |
-//! | [`robust`] | how much of the damage of a picture is drawn? |
+//! | [`inverse`] | how much of a drawing is found again in its picture, in how many numbers, and how much of its damage is drawn? |
 //! | [`compare`] | what does a change of the program do to drawings of all kinds? |
 //! | [`scaling`] | how do time and memory grow with strokes, pixels and threads? |
 //!
@@ -25,7 +23,5 @@ pub mod measure;
 pub mod pareto;
 pub mod peers;
 pub mod quality;
-pub mod robust;
 pub mod scaling;
-pub mod shapes;
 pub mod stability;

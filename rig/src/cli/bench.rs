@@ -1,21 +1,17 @@
 //! The measurements: `pareto`, `stability`, `inverse`, `robust`, `scaling` and `compare`.
 
 mod compare;
-mod inverse;
-mod robust;
+mod drawings;
 
 use std::path::{Path, PathBuf};
 
 use crate::bench::child::{Runner, perform};
-use crate::bench::drawings::Outcome;
-use crate::bench::gallery::Gallery;
 use crate::bench::pareto::{self, Effort, Sweep, Work};
 use crate::bench::peers::{installed, known, missing};
 use crate::bench::quality;
 use crate::bench::scaling;
 use crate::bench::stability::{self, Extent};
 use crate::lab::{Notice, ResultFolder};
-use crate::report::cases::Case;
 use anyhow::Result;
 use clap::Subcommand;
 use clap::builder::TypedValueParser;
@@ -26,8 +22,7 @@ use strokefit::cli::{Status, Verbosity, input, output};
 
 use super::domain;
 use compare::Compare;
-use inverse::Inverse;
-use robust::Robust;
+use drawings::{Inverse, Robust};
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Benchmark {
@@ -233,36 +228,6 @@ impl Scaling {
         }
         Ok(report.failures())
     }
-}
-
-/// Prints the line of a case, and writes the drawing that was made, if there is one.
-fn told<Entry: Case>(
-    files: &mut ResultFolder<'_>,
-    outcome: Outcome<'_, Entry>,
-) -> strokefit::Result<()> {
-    say(&outcome.entry.line());
-    match outcome.svg {
-        "" => Ok(()),
-        svg => files.text(&outcome.entry.svg_name(), svg),
-    }
-}
-
-/// Writes the report `name`: the table, the summary, all of it, the plots and the gallery.
-fn publish(
-    files: &mut ResultFolder<'_>,
-    name: &str,
-    [csv, md, json]: &[String; 3],
-    charts: &[(&str, String)],
-    gallery: Gallery,
-) -> Result<()> {
-    files.text(&format!("{name}.csv"), csv)?;
-    files.text(&format!("{name}.md"), md)?;
-    files.text(&format!("{name}.json"), json)?;
-    for (plot, svg) in charts {
-        files.text(&format!("{name}-{plot}.svg"), svg)?;
-    }
-    files.picture(&format!("{name}.png"), &gallery.sheet()?)?;
-    Ok(())
 }
 
 /// A line on standard output, which may be closed.

@@ -15,13 +15,12 @@ use super::descent::{Method, Trajectory, descend};
 use super::matching::{Matching, Samples};
 use super::shapes::Circle;
 use super::table::{self, STEPS};
-use super::{COVERAGES, ResultFolder, SIZE, sheet_of_step};
+use super::{COVERAGES, ResultFolder, SIZE, show};
 use crate::report::Table;
 use crate::report::picture::{self, gray};
-use crate::report::plot::{Chart, Panel, Path};
+use crate::report::plot::{Panel, Path};
 use strokefit::Result;
 use strokefit::coverage::Coverage;
-use strokefit::image::Image;
 use strokefit::math::{self, Real};
 
 /// ε of the article's small experiments, px.
@@ -119,7 +118,9 @@ pub fn run(output: &mut ResultFolder<'_>) -> Result<()> {
         let setups = setups(target, start, method);
         let file = format!("circle-target{target}-{name}-{method}");
         let ends = table::tabulated(&mut table, &setups);
-        experiment(output, &file, &setups, &ends)?;
+        let ends: Vec<_> = setups.iter().map(|s| s.coverage).zip(ends).collect();
+        let draw = |coverage, descent: &_, step| panel(target, coverage, descent, step);
+        show(output, &file, &ends, None, method == METHODS[1], draw)?;
     }
     output.text("circle.csv", &table.csv())?;
     output.doing(
@@ -127,28 +128,6 @@ pub fn run(output: &mut ResultFolder<'_>) -> Result<()> {
         "the same from starts that are nudged by rounding errors",
     );
     output.text("circle-nudged.csv", &nudged().csv())
-}
-
-fn experiment(
-    output: &mut ResultFolder<'_>,
-    file: &str,
-    setups: &[Setup],
-    ends: &[Trajectory<f64>],
-) -> Result<()> {
-    output.picture(
-        &format!("{file}-loss.png"),
-        &losses(file, setups, ends).draw()?,
-    )?;
-    output.picture(
-        &format!("{file}-end.png"),
-        &sheet(file, setups, ends, STEPS)?,
-    )?;
-    if setups.iter().all(|setup| setup.method == METHODS[1]) {
-        let frames = (0..=STEPS).step_by(4);
-        let frames = frames.map(|step| sheet(file, setups, ends, step));
-        output.animation(&format!("{file}.gif"), 80, frames)?;
-    }
-    Ok(())
 }
 
 /// Counts how often each centred start finds its target when it is moved by rounding errors: a verdict that a millionth
@@ -201,35 +180,19 @@ fn setups(target: f64, start: f64, method: Method) -> Vec<Setup> {
     coverages.map(setup).collect()
 }
 
-fn losses(title: &str, setups: &[Setup], descents: &[Trajectory<f64>]) -> Chart {
-    let names = setups.iter().map(|setup| setup.coverage.to_string());
-    let losses = descents.iter().map(|descent| descent.losses.as_slice());
-    Chart::of_losses(title, names.zip(losses))
-}
-
-/// The circles after `step` steps, their way there, and the target's outline.
-fn sheet(
-    title: &str,
-    setups: &[Setup],
-    descents: &[Trajectory<f64>],
-    step: usize,
-) -> Result<Image> {
-    let panel = |(setup, descent): (&Setup, &Trajectory<f64>)| {
-        let params = descent.params_at(step);
-        let canvas = grid().draw::<Circle<f64>>(params, setup.coverage);
-        let title = format!("{} {:.5}", setup.coverage, descent.loss_at(step));
-        let mut panel = Panel::new(title, picture::map(SIZE, &canvas, gray)?);
-        let way = descent.params.iter().take(step + 1);
-        panel.paths.push(Path {
-            points: way.map(|p| on_picture([p[0], p[1]])).collect(),
-            color: [0, 114, 178],
-            arrow: true,
-        });
-        panel.paths.push(outline(setup.target));
-        Ok(panel)
+/// The circle after `step` steps, its way there, and the target's outline.
+fn panel(target: f64, coverage: Coverage, descent: &Trajectory<f64>, step: usize) -> Result<Panel> {
+    let canvas = grid().draw::<Circle<f64>>(descent.params_at(step), coverage);
+    let way = descent.params.iter().take(step + 1);
+    let way = Path {
+        points: way.map(|p| on_picture([p[0], p[1]])).collect(),
+        color: [0, 114, 178],
+        arrow: true,
     };
-    let panels = setups.iter().zip(descents).map(panel);
-    sheet_of_step(title, step, panels.collect::<Result<_>>()?)
+    Ok(Panel {
+        paths: vec![way, outline(target)],
+        ..Panel::new("", picture::map(SIZE, &canvas, gray)?)
+    })
 }
 
 fn outline(place: f64) -> Path {

@@ -10,12 +10,11 @@ use super::compose::{GRAY, reference, star};
 use super::descent::{Method, Problem, Trajectory, descend};
 use super::star::START;
 use super::table::{self, STEPS};
-use super::{COVERAGES, ResultFolder, SIZE, sheet_of_step};
+use super::{COVERAGES, ResultFolder, SIZE, show};
 use crate::report::picture;
-use crate::report::plot::{Chart, Panel};
+use crate::report::plot::Panel;
 use strokefit::Result;
 use strokefit::coverage::Coverage;
-use strokefit::image::Image;
 use strokefit::loss::Loss;
 use strokefit::render::OPACITY;
 use strokefit::render::reference::{Reference, Rgb, Scene, Stroke};
@@ -118,32 +117,22 @@ pub fn run(output: &mut ResultFolder<'_>) -> Result<()> {
             ];
             table::push_descent(&mut table, &labels.map(str::to_owned), descent);
         }
-        let losses = descents.iter().map(|descent| descent.losses.as_slice());
-        let names = COVERAGES.iter().map(ToString::to_string);
-        let chart = Chart::of_losses(&name, names.zip(losses));
-        output.picture(&format!("{name}-loss.png"), &chart.draw()?)?;
-        output.picture(&format!("{name}-end.png"), &sheet(&name, &descents, STEPS)?)?;
-        let frames = (0..=STEPS)
-            .step_by(4)
-            .map(|step| sheet(&name, &descents, step));
-        output.animation(&format!("{name}.gif"), 80, frames)?;
+        let descents: Vec<_> = COVERAGES.into_iter().zip(descents).collect();
+        let draw = |coverage, descent: &Trajectory<f64>, step| {
+            panel(coverage, &scene(descent.params_at(step)))
+        };
+        let target = panel(Coverage::Raw, &star(1.0))?;
+        show(output, &name, &descents, Some(&target), true, draw)?;
     }
     output.text("colors.csv", &table.csv())
 }
 
-/// The target, and the drawings after `step` steps.
-fn sheet(title: &str, descents: &[Trajectory<f64>], step: usize) -> Result<Image> {
-    let target = reference(Coverage::Raw).render(&star(1.0));
-    let mut panels = vec![Panel::new(
+fn panel(coverage: Coverage, scene: &Scene) -> Result<Panel> {
+    let canvas = reference(coverage).render(scene);
+    Ok(Panel::new(
         "target",
-        picture::map(SIZE, &target, |rgb| rgb)?,
-    )];
-    for (&coverage, descent) in COVERAGES.iter().zip(descents) {
-        let canvas = reference(coverage).render(&scene(descent.params_at(step)));
-        let title = format!("{coverage} {:.5}", descent.loss_at(step));
-        panels.push(Panel::new(title, picture::map(SIZE, &canvas, |rgb| rgb)?));
-    }
-    sheet_of_step(title, step, panels)
+        picture::map(SIZE, &canvas, |rgb| rgb)?,
+    ))
 }
 
 #[cfg(test)]

@@ -37,10 +37,11 @@ pub mod table;
 
 pub use output::{Notice, ResultFolder, unwritten};
 
-use crate::report::plot::{Panel, Sheet};
+use crate::report::plot::{Chart, Panel, Sheet};
+use descent::Trajectory;
 use strokefit::Result;
 use strokefit::coverage::Coverage;
-use strokefit::image::Image;
+use table::STEPS;
 
 /// Side of the small experiments' pictures, px.
 pub const SIZE: usize = 64;
@@ -54,13 +55,40 @@ pub const COVERAGES: [Coverage; 5] = [
     Coverage::Sigmoid,
 ];
 
-/// Sheet of a small problem after `step` steps, a panel for each function.
-fn sheet_of_step(title: &str, step: usize, panels: Vec<Panel>) -> Result<Image> {
-    let sheet = Sheet {
-        title: format!("{title}, step {step}"),
-        columns: 3,
-        zoom: 4,
-        panels,
+/// Writes `NAME-loss.png`, the losses of descents; `NAME-end.png`, what they drew, after their target if that is given; and, if
+/// asked for, `NAME.gif`, how they got there. `draw` draws what a descent has after a step.
+fn show(
+    output: &mut ResultFolder<'_>,
+    name: &str,
+    descents: &[(Coverage, Trajectory<f64>)],
+    target: Option<&Panel>,
+    is_animated: bool,
+    draw: impl Fn(Coverage, &Trajectory<f64>, usize) -> Result<Panel>,
+) -> Result<()> {
+    let losses = descents.iter();
+    let losses = losses.map(|(coverage, d)| (coverage.to_string(), d.losses.as_slice()));
+    let losses = Chart::of_losses(name, losses).draw()?;
+    output.picture(&format!("{name}-loss.png"), &losses)?;
+    let sheet = |step: usize| {
+        let mut panels: Vec<Panel> = target.cloned().into_iter().collect();
+        for (coverage, descent) in descents {
+            panels.push(Panel {
+                title: format!("{coverage} {:.5}", descent.loss_at(step)),
+                ..draw(*coverage, descent, step)?
+            });
+        }
+        let sheet = Sheet {
+            title: format!("{name}, step {step}"),
+            columns: 3,
+            zoom: 4,
+            panels,
+        };
+        sheet.draw()
     };
-    sheet.draw()
+    output.picture(&format!("{name}-end.png"), &sheet(STEPS)?)?;
+    if is_animated {
+        let frames = (0..=STEPS).step_by(4).map(sheet);
+        output.animation(&format!("{name}.gif"), 80, frames)?;
+    }
+    Ok(())
 }

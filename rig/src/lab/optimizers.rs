@@ -42,15 +42,6 @@ pub struct AdamWParams {
     pub decay: f64,
 }
 
-impl Default for AdamWParams {
-    fn default() -> Self {
-        Self {
-            adam: AdamParams::default(),
-            decay: 0.01,
-        }
-    }
-}
-
 /// The AdamW optimiser.
 #[derive(Debug, Clone)]
 pub struct AdamW<T> {
@@ -87,16 +78,6 @@ pub struct RmsPropParams {
     pub momentum: f64,
     /// Added to the root mean square.
     pub eps: f64,
-}
-
-impl Default for RmsPropParams {
-    fn default() -> Self {
-        Self {
-            alpha: 0.99,
-            momentum: 0.0,
-            eps: 1e-8,
-        }
-    }
 }
 
 /// The RMSprop optimiser.
@@ -136,10 +117,17 @@ impl<T: Real> Optimizer<T> for RmsProp<T> {
 mod tests {
     use super::*;
 
+    fn of_decay(decay: f64) -> AdamWParams {
+        AdamWParams {
+            adam: AdamParams::default(),
+            decay,
+        }
+    }
+
     #[test]
     fn decay_follows_the_scale_of_the_rate() {
         let mut x = [2.0, 2.0];
-        let mut adamw = AdamW::new(2, AdamWParams::default());
+        let mut adamw = AdamW::new(2, of_decay(0.01));
         adamw.step_scaled(&mut x, &[0.0, 0.0], 0.1, &[1.0, 3.0]);
         assert_eq!(
             x,
@@ -150,12 +138,8 @@ mod tests {
     #[test]
     fn without_decay_it_is_adam() {
         let (mut x, mut y) = ([2.0_f32, -1.0], [2.0_f32, -1.0]);
-        let params = AdamWParams {
-            decay: 0.0,
-            ..Default::default()
-        };
         let mut adam = Adam::new(2, AdamParams::default());
-        let mut adamw = AdamW::new(2, params);
+        let mut adamw = AdamW::new(2, of_decay(0.0));
         for i in 0..10 {
             let gradients = [i as f32 - 4.0, 0.3];
             adam.step_scaled(&mut x, &gradients, 0.1, &[1.0; 2]);

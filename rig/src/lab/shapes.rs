@@ -27,8 +27,7 @@
 //! on the centre line. It makes `d` smaller by at most `√ε` there, and by `ε / 2|q|` further away.
 //!
 //! **Degenerate cases.** A capsule of zero length is a circle: `h = 0`, and the gradient of both ends goes to
-//! `a`. On the centre line `u = 0` if ε > 0; at ε = 0, where no derivative exists, 0 is used as well. Where
-//! the operands of a combination tie, each gets half of the derivative.
+//! `a`. On the centre line `u = 0` if ε > 0; at ε = 0, where no derivative exists, 0 is used as well.
 //!
 //! An example, with `#` deep inside, `+` inside and `.` just outside:
 //!
@@ -182,31 +181,6 @@ impl Combination {
             Self::Subtraction => d1.min(-d2),
         }
     }
-
-    /// The derivatives of [`distance`](Self::distance) by `d1` and by `d2`.
-    #[inline]
-    pub fn derivatives<T: Real>(self, d1: T, d2: T) -> (T, T) {
-        match self {
-            Self::Union => shares(d1, d2),
-            Self::Intersection => shares(-d1, -d2),
-            Self::Subtraction => {
-                let (first, second) = shares(-d1, d2);
-                (first, -second)
-            }
-        }
-    }
-}
-
-/// The derivatives of `max(x, y)`; half each at a tie.
-fn shares<T: Real>(x: T, y: T) -> (T, T) {
-    let share = if x > y {
-        T::one()
-    } else if x == y {
-        T::of(0.5)
-    } else {
-        T::zero()
-    };
-    (share, T::one() - share)
 }
 
 fn plus<T: Real>(a: Pair<T>, b: Pair<T>) -> Pair<T> {
@@ -390,22 +364,5 @@ mod tests {
             assert_eq!(inside(Intersection), d1 > 0.0 && d2 > 0.0);
             assert_eq!(inside(Subtraction), d1 > 0.0 && d2 < 0.0);
         }
-    }
-
-    #[test]
-    fn combinations_derive() {
-        use Combination::{Intersection, Subtraction, Union};
-        let mut failures = Vec::new();
-        for combination in [Union, Intersection, Subtraction] {
-            for (d1, d2) in [(1.0, 2.0), (2.0, 1.0), (-1.0, 0.5), (0.5, -3.0)] {
-                let (by_1, by_2) = combination.derivatives(d1, d2);
-                let numeric = differences([d1, d2], |[x, y]| combination.distance(x, y));
-                let name = format!("{combination:?} of {d1} and {d2}");
-                check(&name, &[by_1, by_2], &numeric, &mut failures);
-            }
-        }
-        assert!(failures.is_empty(), "{}", failures.join("\n"));
-        assert_eq!(Union.derivatives(1.0, 1.0), (0.5, 0.5));
-        assert_eq!(Subtraction.derivatives(1.0, -1.0), (0.5, -0.5));
     }
 }

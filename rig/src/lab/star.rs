@@ -7,13 +7,11 @@ use super::descent::{Method, Trajectory, descend};
 use super::matching::{Matching, Samples};
 use super::shapes::Capsule;
 use super::table::{self, STEPS};
-use super::{COVERAGES, ResultFolder, SIZE, sheet_of_step};
-use crate::report::Table;
+use super::{COVERAGES, ResultFolder, SIZE, show};
 use crate::report::picture::{self, gray};
-use crate::report::plot::{Chart, Panel};
+use crate::report::plot::Panel;
 use strokefit::Result;
 use strokefit::coverage::Coverage;
-use strokefit::image::Image;
 use strokefit::math::Real;
 
 /// The star: `[a.x, a.y, b.x, b.y, radius]`, px.
@@ -117,70 +115,31 @@ pub fn run(output: &mut ResultFolder<'_>) -> Result<()> {
             let name = format!("star-eps{eps:e}-{group}");
             let done = (i * groups.len() + j) as f64 / (EPSILONS.len() * groups.len()) as f64;
             output.doing(done, &name);
-            experiment(output, &mut table, &name, &setups(eps, *method, *coverages))?;
+            let setups = coverages.map(|coverage| Setup {
+                eps,
+                coverage,
+                method: *method,
+            });
+            let ends = table::tabulated(&mut table, &setups);
+            let ends: Vec<_> = coverages.iter().copied().zip(ends).collect();
+            let target = panel(setups[0], Coverage::Raw, &flat(&STAR))?;
+            let draw = |coverage, descent: &Trajectory<f64>, step| {
+                panel(setups[0], coverage, descent.params_at(step))
+            };
+            show(
+                output,
+                &name,
+                &ends,
+                Some(&target),
+                *method == METHODS[0],
+                draw,
+            )?;
         }
     }
     output.text("star.csv", &table.csv())
 }
 
-fn setups(eps: f64, method: Method, coverages: [Coverage; 5]) -> Vec<Setup> {
-    let setup = |coverage| Setup {
-        eps,
-        coverage,
-        method,
-    };
-    coverages.map(setup).into()
-}
-
-fn experiment(
-    output: &mut ResultFolder<'_>,
-    table: &mut Table,
-    name: &str,
-    setups: &[Setup],
-) -> Result<()> {
-    let doubles = table::tabulated(table, setups);
-    output.picture(
-        &format!("{name}-loss.png"),
-        &losses(name, setups, &doubles).draw()?,
-    )?;
-    output.picture(
-        &format!("{name}-end.png"),
-        &sheet(name, setups, &doubles, STEPS)?,
-    )?;
-    if setups.iter().all(|setup| setup.method == METHODS[0]) {
-        let frames = (0..=STEPS).step_by(4);
-        let frames = frames.map(|step| sheet(name, setups, &doubles, step));
-        output.animation(&format!("{name}.gif"), 80, frames)?;
-    }
-    Ok(())
-}
-
-fn losses(title: &str, setups: &[Setup], descents: &[Trajectory<f64>]) -> Chart {
-    let names = setups.iter().map(|setup| setup.coverage.to_string());
-    let losses = descents.iter().map(|descent| descent.losses.as_slice());
-    Chart::of_losses(title, names.zip(losses))
-}
-
-/// The target, and the drawings after `step` steps.
-fn sheet(
-    title: &str,
-    setups: &[Setup],
-    descents: &[Trajectory<f64>],
-    step: usize,
-) -> Result<Image> {
-    let mut panels = Vec::new();
-    if let Some(setup) = setups.first() {
-        let target = setup
-            .grid()
-            .draw::<Capsule<f64>>(&flat(&STAR), Coverage::Raw);
-        panels.push(Panel::new("target", picture::map(SIZE, &target, gray)?));
-    }
-    for (setup, descent) in setups.iter().zip(descents) {
-        let canvas = setup
-            .grid()
-            .draw::<Capsule<f64>>(descent.params_at(step), setup.coverage);
-        let title = format!("{} {:.5}", setup.coverage, descent.loss_at(step));
-        panels.push(Panel::new(title, picture::map(SIZE, &canvas, gray)?));
-    }
-    sheet_of_step(title, step, panels)
+fn panel(setup: Setup, coverage: Coverage, params: &[f64]) -> Result<Panel> {
+    let canvas = setup.grid().draw::<Capsule<f64>>(params, coverage);
+    Ok(Panel::new("target", picture::map(SIZE, &canvas, gray)?))
 }

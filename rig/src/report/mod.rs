@@ -3,17 +3,13 @@
 //! The rules of [`strokefit::report`] hold: fields may be added, none is renamed.
 
 pub mod cases;
-mod charts;
 pub mod compare;
 mod damage;
-pub mod inverse;
 pub mod pareto;
 pub mod picture;
 pub mod plot;
 pub mod quality;
-pub mod robust;
 pub mod scaling;
-pub mod shapes;
 pub mod stability;
 pub(crate) mod statistics;
 mod table;

@@ -1,11 +1,11 @@
 //! Sums over cases.
 
-/// Words in the order in which they come first.
-pub(super) fn distinct(words: impl Iterator<Item = String>) -> Vec<String> {
+/// Each once, in the order in which they come first.
+pub(super) fn distinct<T: PartialEq>(items: impl Iterator<Item = T>) -> Vec<T> {
     let mut all = Vec::new();
-    for word in words {
-        if !all.contains(&word) {
-            all.push(word);
+    for item in items {
+        if !all.contains(&item) {
+            all.push(item);
         }
     }
     all

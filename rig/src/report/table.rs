@@ -31,6 +31,18 @@ impl Table {
         table
     }
 
+    /// This table without columns whose cells are all empty.
+    #[must_use]
+    pub fn without_empty_columns(mut self) -> Self {
+        for i in (0..self.head.len()).rev() {
+            if self.rows.iter().all(|row| row[i].is_empty()) {
+                self.head.remove(i);
+                self.rows.iter_mut().for_each(|row| drop(row.remove(i)));
+            }
+        }
+        self
+    }
+
     /// Appends a row, of as many cells as the head has.
     pub fn row<D: Display>(&mut self, cells: impl IntoIterator<Item = D>) {
         let cells: Vec<String> = cells.into_iter().map(|cell| cell.to_string()).collect();
@@ -59,26 +71,9 @@ impl Table {
         head + &rule + &lines.collect::<String>()
     }
 
-    /// As an HTML table.
-    pub fn html(&self) -> String {
-        let line = |tag: &str, cells: &[String]| {
-            let cell = |cell: &String| format!("<{tag}>{}</{tag}>", escaped(cell));
-            let cells: String = cells.iter().map(cell).collect();
-            format!("<tr>{cells}</tr>\n")
-        };
-        let rows: String = self.rows.iter().map(|row| line("td", row)).collect();
-        format!("<table>\n{}{rows}</table>\n", line("th", &self.head))
-    }
-
     fn lines(&self) -> impl Iterator<Item = &Vec<String>> {
         std::iter::once(&self.head).chain(&self.rows)
     }
-}
-
-/// Text as it stands in HTML and XML.
-pub(super) fn escaped(text: &str) -> String {
-    let text = text.replace('&', "&amp;").replace('<', "&lt;");
-    text.replace('>', "&gt;").replace('"', "&quot;")
 }
 
 fn quoted(cell: &str) -> String {
@@ -109,10 +104,5 @@ mod tests {
     fn markdown_keeps_bars_within_their_cell() {
         let expected = "| a | b |\n| --- | --- |\n| 1,2 | say \"x\" |\n| 1.5 | <\\|> |\n";
         assert_eq!(table().markdown(), expected);
-    }
-
-    #[test]
-    fn html_shows_signs_as_they_are() {
-        assert!(table().html().contains("<td>&lt;|&gt;</td>"));
     }
 }

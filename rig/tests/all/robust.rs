@@ -18,7 +18,7 @@ fn damaged_pictures_are_drawn_beside_clean_ones() {
     let lines = lines(&output);
     assert_eq!(lines.len(), 4, "{lines:?}");
     assert!(
-        lines[0].starts_with("zap at 96 px: 1 elements, "),
+        lines[0].starts_with("zap at 96 px: 1 elements of 1, "),
         "{lines:?}"
     );
     assert!(lines[1].contains("left out stairs"), "{lines:?}");
@@ -32,8 +32,8 @@ fn damaged_pictures_are_drawn_beside_clean_ones() {
         "robust.json",
         "robust.md",
         "robust.png",
-        "zap.svg",
-        "zap-noise8.svg",
+        "zap-96.svg",
+        "zap-96-noise8.svg",
     ] {
         assert!(place.path("out").join(name).exists(), "{name}");
     }

@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::bench::damages::damaged;
 use crate::bench::drawings::picture;
-use crate::bench::files::{has_ending, named, stem};
-use crate::bench::shapes::few;
+use crate::bench::files::{digest, few, has_ending, named, stem};
 use crate::report::Damage;
 use crate::report::compare::CompareEntry;
 use strokefit::image::Image;
@@ -311,15 +310,6 @@ impl Case {
             artist: self.artist.clone().map(|(svg, _)| svg),
         })
     }
-}
-
-/// FNV-1a of all parts, in hexadecimal digits.
-pub(super) fn digest(parts: &[&[u8]]) -> String {
-    let bytes = parts.iter().copied().flatten();
-    let hash = bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-    });
-    format!("{hash:016x}")
 }
 
 pub(super) fn refuse(what: String) -> Error {

@@ -7,6 +7,7 @@ use std::{fmt, fs};
 
 use serde::{Deserialize, Serialize};
 
+use crate::bench::files::{self, stem};
 use crate::bench::peers::Peer;
 use crate::lab::article::{Capsules, Reproduction};
 use crate::lab::unwritten;
@@ -403,18 +404,7 @@ pub(super) fn open(path: &Path) -> Result<Image> {
     Ok(Image::open(path)?.flattened(WHITE))
 }
 
-pub(super) fn stem(path: &Path) -> String {
-    path.file_stem()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned()
-}
-
-/// A short hash of the picture's pixels (FNV-1a), which tells pictures of one name apart.
+/// A short hash of the picture's size and pixels, which tells pictures of one name apart.
 pub(super) fn digest(picture: &Image) -> String {
-    let mut hash = 0xcbf2_9ce4_8422_2325_u64 ^ picture.width() as u64;
-    for byte in picture.to_rgb8() {
-        hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-    }
-    format!("{:08x}", (hash >> 32) as u32 ^ hash as u32)
+    files::digest(&[&picture.width().to_le_bytes(), &picture.to_rgb8()])
 }

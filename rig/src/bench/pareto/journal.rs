@@ -5,6 +5,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::{case, unread};
+use crate::bench::files::stem;
 use crate::lab::unwritten;
 use crate::report::pareto::ParetoEntry;
 use strokefit::{Error, ErrorKind, Result};
@@ -86,7 +87,7 @@ impl Journal {
     pub(super) fn current(&self, pictures: &[PathBuf]) -> Result<Vec<ParetoEntry>> {
         let mut digests = Vec::new();
         for path in pictures {
-            digests.push((case::stem(path), case::digest(&case::open(path)?)));
+            digests.push((stem(path), case::digest(&case::open(path)?)));
         }
         let stale = |entry: &&ParetoEntry| {
             let mut same = digests.iter().filter(|(name, _)| *name == entry.picture);

@@ -5,23 +5,29 @@
 //! where it was, since what is in the folder is not measured again.
 
 mod case;
-mod gallery;
 mod journal;
 mod sweep;
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 pub use case::{Case, Effort, Limit, Maker};
 pub use sweep::{Sweep, Work};
 
+use crate::bench::files::{few, stem};
+use crate::bench::gallery::Gallery;
 use crate::bench::peers::Peer;
 use crate::lab::ResultFolder;
 use crate::lab::unwritten;
-use crate::report::pareto::{ParetoEntry, ParetoReport, charts, page};
+use crate::report::pareto::{ARTICLE, OWN, ParetoEntry, ParetoReport, charts, front};
 use journal::Journal;
 use strokefit::image::Image;
+use strokefit::report::json;
 use strokefit::{Error, ErrorKind, Result};
+
+/// Most drawings of ours on the sheet.
+const SHOWN: usize = 6;
 
 /// Measures one case, whose SVG goes to a file of the given name.
 pub type Measure<'a> = &'a dyn Fn(&Case, &Path) -> Result<ParetoEntry>;
@@ -91,7 +97,7 @@ impl Run<'_> {
     }
 }
 
-/// Writes tables, plots and the page of `report` into `output`, whose folder is that of the run.
+/// Writes tables, plots and a sheet of the drawings of `report` into `output`, whose folder is that of the run.
 ///
 /// # Errors
 /// When a file cannot be written or a plot not be drawn.
@@ -103,33 +109,54 @@ pub fn publish(
 ) -> Result<()> {
     output.text("pareto.csv", &report.table().csv())?;
     output.text("pareto.md", &report.markdown())?;
-    let json = serde_json::to_string_pretty(report).map_err(|e| {
-        Error::new(
-            ErrorKind::Io,
-            format!("the report cannot be written as JSON: {e}"),
-        )
-    })?;
-    output.text("pareto.json", &(json + "\n"))?;
-    let mut exhibits = Vec::new();
+    output.text("pareto.json", &json(report)?)?;
+    let mut gallery = Gallery::default();
     for path in pictures {
-        let name = case::stem(path);
+        let name = stem(path);
         for (plot, svg) in charts(&report.entries, &name)? {
             output.text(&format!("{name}-{plot}.svg"), &svg)?;
         }
-        exhibits.extend(gallery::exhibits(
-            folder,
-            &case::open(path)?,
-            &name,
-            &report.entries,
-        )?);
+        let picture = case::open(path)?;
+        gallery.row(&name, &picture)?;
+        for entry in shown(&report.entries, &name) {
+            let svg = folder.join("svg").join(entry.svg_name());
+            let svg = fs::read_to_string(&svg).map_err(|e| unread(&svg, e))?;
+            let by = entry.preset.as_deref().unwrap_or(&entry.family);
+            let db = entry.psnr_db().unwrap_or(f64::NAN);
+            let kilobytes = entry.gzip_bytes as f64 / 1000.0;
+            let caption = format!("{by}: {db:.1} dB, {kilobytes:.1} kB");
+            gallery.add_drawing(&caption, &svg, &picture)?;
+        }
     }
-    output.text("pareto.html", &page(report, &exhibits)?)
+    output.picture("pareto.png", &gallery.sheet()?)
+}
+
+/// Our front by bytes, what the article's recipe made, and the best of each peer.
+fn shown<'a>(entries: &'a [ParetoEntry], name: &str) -> Vec<&'a ParetoEntry> {
+    let here = || {
+        entries
+            .iter()
+            .filter(|e| e.picture == name && e.fidelity.is_some())
+    };
+    let own = here().filter(|e| e.family == OWN);
+    let own = front(own, |e| Some(e.gzip_bytes as f64), ParetoEntry::psnr_db);
+    let mut shown = few(own, SHOWN);
+    shown.extend(here().filter(|e| e.family == ARTICLE));
+    let mut best: BTreeMap<&str, &ParetoEntry> = BTreeMap::new();
+    for entry in here().filter(|e| e.family != OWN && e.family != ARTICLE) {
+        let known = best.entry(&entry.family).or_insert(entry);
+        if entry.psnr_db() > known.psnr_db() {
+            *known = entry;
+        }
+    }
+    shown.extend(best.into_values());
+    shown
 }
 
 fn check_names(pictures: &[PathBuf]) -> Result<()> {
     for (i, path) in pictures.iter().enumerate() {
-        let name = case::stem(path);
-        if pictures[..i].iter().any(|other| case::stem(other) == name) {
+        let name = stem(path);
+        if pictures[..i].iter().any(|other| stem(other) == name) {
             let message = format!("two pictures are called {name}: rename one of them");
             return Err(Error::new(ErrorKind::Config, message));
         }

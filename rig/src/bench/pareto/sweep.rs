@@ -3,8 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::case::{Case, Effort, Limit, Maker, stem};
+use super::case::{Case, Effort, Limit, Maker};
 use super::unread;
+use crate::bench::files::stem;
 use crate::bench::peers::Peer;
 use crate::report::pareto::{OWN, ParetoEntry};
 use strokefit::coverage::CoverageSchedule;

@@ -1,8 +1,7 @@
-//! Hard cases for fits and renderer. Each check gives a figure and a verdict.
+//! Hard cases for fits and renderer. Each check gives a figure and a verdict. Degenerate strokes are cases of `tests/all/render.rs`.
 //!
 //! | group | what is hard |
 //! | --- | --- |
-//! | `strokes` | degenerate and absurd strokes, `f32` against the `f64` reference |
 //! | `kinks` | pixels where a distance or an edge has no derivative |
 //! | `precision` | `f32` against `f64` through thousands of iterations |
 //! | `pictures` | tiny, empty, noisy and extremely shaped pictures |
@@ -18,7 +17,6 @@ mod oracle;
 mod pictures;
 mod precision;
 mod rates;
-mod strokes;
 
 pub use agreement::AgreementMap;
 
@@ -142,7 +140,6 @@ fn checks<'a>(
     map: &'a AgreementMap,
 ) -> impl Iterator<Item = Check<'a>> {
     let groups = [
-        strokes::checks(),
         kinks::checks(),
         precision::checks(),
         pictures::checks(extent, given),

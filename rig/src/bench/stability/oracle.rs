@@ -1,6 +1,6 @@
 //! Compares the fast `f32` renderer with the naive `f64` reference.
 
-use super::{Observation, WITHIN};
+use super::WITHIN;
 use strokefit::coverage::Coverage;
 use strokefit::fit::{Objective, Simd};
 use strokefit::image::Image;
@@ -69,10 +69,6 @@ impl Gap {
 
     pub(super) fn holds(self) -> bool {
         self.canvas_holds() && self.gradients <= WITHIN && self.worth_holds()
-    }
-
-    pub(super) fn finding(self) -> Observation {
-        Observation::new(self.to_string(), self.holds())
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::{ARTICLE, OWN, ParetoEntry, front};
 use crate::report::plot::Chart;
+use crate::report::statistics::distinct;
 use strokefit::Result;
 
 type Number = fn(&ParetoEntry) -> Option<f64>;
@@ -70,13 +71,7 @@ fn scatter(title: &str, here: &[&ParetoEntry], [(x, cost), (y, gain)]: [Axis; 2]
 
 /// Names of lines in the order of their first drawings.
 fn lines(here: &[&ParetoEntry]) -> Vec<String> {
-    let mut names: Vec<String> = Vec::new();
-    for name in here.iter().map(|e| line(e)) {
-        if !names.contains(&name) {
-            names.push(name);
-        }
-    }
-    names
+    distinct(here.iter().map(|e| line(e)))
 }
 
 /// The error after each stage of the largest drawing of each preset, and of its file.

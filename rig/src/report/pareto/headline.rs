@@ -1,9 +1,9 @@
 //! The figures that README and docs quote: a few rows for all pictures.
 
-use super::peers::AgainstPeer;
 use super::recipe::{AtEqualStrokes, AtEqualTime};
 use super::{ARTICLE, ParetoEntry, ParetoReport, pictures};
 use crate::report::Table;
+use crate::report::statistics::distinct;
 
 impl ParetoReport {
     /// Fits of one number of strokes, that which most fits have: a row for each preset, a column for each
@@ -59,23 +59,6 @@ impl ParetoReport {
         table
     }
 
-    /// Other programs: a row for each picture and program.
-    pub fn peer_table(&self) -> Table {
-        let mut table = Table::new(&[
-            "picture",
-            "peer",
-            "its front, after gzip",
-            "our front at equal bytes",
-        ]);
-        for picture in pictures(&self.entries) {
-            for against in AgainstPeer::all(&self.of(picture)) {
-                let name = against.name().to_owned();
-                table.row([picture.to_owned(), name, range(&against), against.words()]);
-            }
-        }
-        table
-    }
-
     fn of(&self, picture: &str) -> Vec<&ParetoEntry> {
         self.entries
             .iter()
@@ -92,17 +75,6 @@ fn usual_strokes(entries: &[ParetoEntry]) -> &str {
         .into_iter()
         .max_by_key(count)
         .unwrap_or("no")
-}
-
-/// Words in the order in which they come first.
-fn distinct<'a>(words: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
-    let mut all = Vec::new();
-    for word in words {
-        if !all.contains(&word) {
-            all.push(word);
-        }
-    }
-    all
 }
 
 /// The options of `strokefit fit` that a preset's word stands for.
@@ -142,23 +114,6 @@ fn seconds(value: Option<f64>) -> String {
 
 fn decibels(gain: f64) -> String {
     format!("{gain:+.1} dB")
-}
-
-/// From the smallest to the largest drawing of a front.
-fn range(against: &AgainstPeer<'_>) -> String {
-    let (Some(first), Some(last)) = (against.front.first(), against.front.last()) else {
-        return String::new();
-    };
-    let kilobytes = |e: &ParetoEntry| e.gzip_bytes as f64 / 1000.0;
-    let psnr_db = |e: &ParetoEntry| e.psnr_db().unwrap_or(f64::NAN);
-    format!(
-        "{} points, {:.1} to {:.1} kB, {:.1} to {:.1} dB",
-        against.front.len(),
-        kilobytes(first),
-        kilobytes(last),
-        psnr_db(first),
-        psnr_db(last)
-    )
 }
 
 #[cfg(test)]
@@ -208,15 +163,9 @@ mod tests {
                 900,
                 20.0,
             ),
-            drawing("vtracer", "x", 0.1, 1000, 23.0),
         ]);
         let recipe = report.recipe_table().csv();
         let row = "cat,\"22.0 dB, 4.0 s\",\"30.0 dB, 0.50 s (draft)\",+8.0 dB,0.12,+10.0 dB\n";
         assert!(recipe.ends_with(row), "{recipe}");
-        let peers = report.peer_table().csv();
-        assert!(
-            peers.contains("cat,vtracer,\"1 points, 1.0 to 1.0 kB"),
-            "{peers}"
-        );
     }
 }

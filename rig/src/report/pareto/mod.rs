@@ -1,13 +1,12 @@
 //! The report of `strokefit-rig pareto`: cost against error of our drawings and others'.
 //!
-//! An entry holds all that is known of one drawing. Fronts, comparisons, tables, plots and the page are made
+//! An entry holds all that is known of one drawing. Fronts, comparisons, tables and plots are made
 //! from entries alone, so they can be made again without a fit.
 
 mod charts;
 mod compare;
 mod front;
 mod headline;
-mod page;
 mod peers;
 mod recipe;
 mod spread;
@@ -20,9 +19,9 @@ use strokefit::report::SCHEMA;
 pub use charts::charts;
 pub use compare::{Comparison, Holds};
 pub use front::front;
-pub use page::{Exhibit, page};
 pub use spread::{Spread, spreads};
 
+use super::statistics::{distinct, optional};
 use peers::AgainstPeer;
 use recipe::{AtEqualStrokes, AtEqualTime};
 use strokefit::metrics::Quality;
@@ -30,7 +29,7 @@ use strokefit::metrics::Quality;
 /// The family of the drawings of the article's recipe.
 pub const ARTICLE: &str = "article";
 /// The family of our own drawings.
-pub const OWN: &str = "strokefit";
+pub use super::cases::OWN;
 
 /// All drawings of a run, and what follows from them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -188,19 +187,9 @@ pub fn comparisons(entries: &[ParetoEntry]) -> Vec<Comparison> {
     all
 }
 
-fn optional(value: Option<f64>, digits: usize) -> String {
-    value.map_or_else(String::new, |v| format!("{v:.digits$}"))
-}
-
 /// Pictures in the order of their first entries.
 pub(super) fn pictures(entries: &[ParetoEntry]) -> Vec<&str> {
-    let mut names: Vec<&str> = Vec::new();
-    for entry in entries {
-        if !names.contains(&entry.picture.as_str()) {
-            names.push(&entry.picture);
-        }
-    }
-    names
+    distinct(entries.iter().map(|entry| entry.picture.as_str()))
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Compares our front with each peer's at equal bytes after gzip.
 
+use super::super::statistics::distinct;
 use super::{ARTICLE, Comparison, Holds, OWN, ParetoEntry, front};
 
 /// A peer's front on one picture, and how far our best drawing of no more bytes is from each of its drawings.
@@ -13,14 +14,11 @@ pub(super) struct AgainstPeer<'a> {
 impl<'a> AgainstPeer<'a> {
     /// One for each peer that has drawings in `here`, the drawings of one picture.
     pub(super) fn all(here: &[&'a ParetoEntry]) -> Vec<Self> {
-        let mut peers: Vec<&str> = Vec::new();
-        for entry in here {
-            let is_peer = entry.family != OWN && entry.family != ARTICLE;
-            if is_peer && !peers.contains(&entry.family.as_str()) {
-                peers.push(&entry.family);
-            }
-        }
-        let against = peers.into_iter().map(|peer| Self::new(here, peer));
+        let families = here.iter().map(|e| e.family.as_str());
+        let peers = families.filter(|family| ![OWN, ARTICLE].contains(family));
+        let against = distinct(peers)
+            .into_iter()
+            .map(|peer| Self::new(here, peer));
         against
             .filter(|against| !against.front.is_empty())
             .collect()

@@ -1,10 +1,11 @@
 //! The report as tables and as Markdown.
 
-use super::{Comparison, ParetoEntry, ParetoReport, Spread, optional};
+use super::super::statistics::optional;
+use super::{Comparison, ParetoEntry, ParetoReport, Spread};
 use crate::report::{Column, Table};
 
 /// Note on the meaning of the figures.
-pub(super) const NOTE: &str = "Fidelity compares resvg's render of the file with the picture, over 8-bit RGB on white. \
+const NOTE: &str = "Fidelity compares resvg's render of the file with the picture, over 8-bit RGB on white. \
                                Times cover making the drawing, not reading the picture or judging the file. CPU \
                                time is the sum over all threads, in hundredths of a second. Each case is a process \
                                of its own, and memory is its maximum, including the picture; the memory of other \
@@ -40,29 +41,19 @@ impl ParetoReport {
         Table::of(&columns, &self.spreads)
     }
 
-    /// Everything as Markdown.
+    /// Everything as Markdown, from tables to quote to those that they rest on.
     pub fn markdown(&self) -> String {
-        let all = self.quoted().into_iter().chain(self.details());
-        let section =
-            |(title, table): (&str, Table)| format!("\n## {title}\n\n{}", table.markdown());
-        let sections: String = all.map(section).collect();
-        format!("# Cost against error\n\n{NOTE}\n{sections}")
-    }
-
-    /// Titles and tables to quote.
-    pub(super) fn quoted(&self) -> [(&'static str, Table); 5] {
-        [
+        let sections = [
             ("Fits", self.preset_table()),
             ("The article's recipe", self.recipe_table()),
-            ("Other programs", self.peer_table()),
             ("Spread over seeds", self.spread_table()),
             ("Comparisons", self.comparison_table()),
-        ]
-    }
-
-    /// Tables that the quoted ones rest on.
-    pub(super) fn details(&self) -> [(&'static str, Table); 1] {
-        [("Drawings", self.table())]
+            ("Drawings", self.table()),
+        ];
+        let section =
+            |(title, table): (&str, Table)| format!("\n## {title}\n\n{}", table.markdown());
+        let sections: String = sections.map(section).concat();
+        format!("# Cost against error\n\n{NOTE}\n{sections}")
     }
 }
 

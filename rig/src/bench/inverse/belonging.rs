@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use super::anatomy::{elements, things};
-use crate::report::shapes::Belonging;
+use crate::report::cases::Belonging;
 use crate::report::statistics::mean;
 use strokefit::Result;
 use strokefit::verify::{self, Size};
