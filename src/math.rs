@@ -1,4 +1,5 @@
-//! Points of the crate, which are `kurbo`'s, and its elementary functions: the one door of `libm`.
+//! Points of the crate, which are `kurbo`'s, its elementary functions, the one door of `libm`, and least
+//! squares.
 
 mod elementary;
 mod linear;
@@ -8,7 +9,7 @@ mod search;
 pub use elementary::{
     Elementary, atan, cbrt, cos, exp, exp2, hypot, ln, log2, log10, powf, sin, sin_cos, tan, tanh,
 };
-pub(crate) use linear::solve_symmetric;
+pub(crate) use linear::Normal;
 pub use real::{Real, powi};
 pub(crate) use search::search;
 

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::planes::Planes;
-use crate::math::{self, median};
+use crate::math::{Normal, median};
 
 /// Numbers of a quadratic field.
 const TERMS: usize = 6;
@@ -164,25 +164,14 @@ impl Field {
     }
 
     fn fitted(cells: &[([f32; 2], f32)]) -> Option<Self> {
-        let mut normal = [[0.0_f64; TERMS]; TERMS];
-        let mut right = [0.0_f64; TERMS];
+        let mut equations = Normal::of(TERMS);
         for (place, value) in cells {
-            let terms = terms(*place).map(f64::from);
-            for (k, row) in normal.iter_mut().enumerate() {
-                row.iter_mut()
-                    .zip(&terms)
-                    .for_each(|(sum, term)| *sum += terms[k] * term);
-                right[k] += terms[k] * f64::from(*value);
-            }
+            let terms = terms(*place);
+            let terms: [(usize, f64); TERMS] = std::array::from_fn(|k| (k, terms[k].into()));
+            equations.add(&terms, [f64::from(*value)], 1.0);
         }
-        let columns = normal.iter().map(|row| row.to_vec()).collect();
-        let [solution] = math::solve_symmetric(columns, [right.to_vec()])?;
-        let mut numbers = [0.0; TERMS];
-        numbers
-            .iter_mut()
-            .zip(solution)
-            .for_each(|(to, from)| *to = from as f32);
-        Some(Self(numbers))
+        let solution = equations.solve()?;
+        Some(Self(std::array::from_fn(|k| solution[k][0] as f32)))
     }
 
     fn at(&self, place: [f32; 2]) -> f32 {

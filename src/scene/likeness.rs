@@ -4,7 +4,7 @@ use kurbo::Rect;
 
 use super::path::{Path, bounds};
 use super::shape::Shape;
-use crate::math::{self, Point, Vec2};
+use crate::math::{self, Normal, Point, Vec2};
 
 /// Farthest that chords are from the path, and that places along it are from each other, px.
 const FLATNESS: f64 = 0.02;
@@ -162,20 +162,13 @@ fn fitted<const N: usize>(
     let count = places.len().max(1) as f64;
     let sum = places.iter().fold(Vec2::ZERO, |sum, p| sum + p.to_vec2());
     let origin = (sum / count).to_point();
-    let mut columns = vec![vec![0.0; N]; N];
-    let mut right = vec![0.0; N];
+    let mut equations = Normal::of(N);
     for p in places {
         let (terms, value) = row(p.x - origin.x, p.y - origin.y);
-        for (i, column) in columns.iter_mut().enumerate() {
-            let products = terms.iter().map(|term| term * terms[i]);
-            column
-                .iter_mut()
-                .zip(products)
-                .for_each(|(sum, product)| *sum += product);
-            right[i] += terms[i] * value;
-        }
+        let terms: [(usize, f64); N] = std::array::from_fn(|k| (k, terms[k]));
+        equations.add(&terms, [value], 1.0);
     }
-    let [factors] = math::solve_symmetric(columns, [right])?;
+    let factors = equations.solve()?.into_flattened();
     Some((origin, factors.try_into().ok()?))
 }
 

@@ -5,7 +5,7 @@
 //! searched for the least error. Then the lower shade is fitted again to what it must have been below the upper one, and so on.
 
 use super::{Block, Blocks, Met, NEAR, ShadeFit, Value, axis, premultiplied, profile};
-use crate::math::{self, Point};
+use crate::math::{self, Normal, Point};
 use crate::scene::{Axis, Shade};
 
 /// Knots of the profile of a shade on top.
@@ -214,7 +214,7 @@ impl Blocks {
         // Unknowns: the premultiplied value of each knot. Each block adds one equation per channel, (1 − a)·seen + p = value, to
         // the normal equations.
         const N: usize = 4 * KNOTS;
-        let (mut columns, mut right) = (vec![vec![0.0; N]; N], vec![0.0; N]);
+        let mut equations = Normal::of(N);
         let taking_part = || {
             self.all
                 .iter()
@@ -249,21 +249,14 @@ impl Blocks {
                     of(last, terms[0]),
                     of(last, terms[1]),
                 ];
-                // A symmetric matrix: one half is enough for `solve_symmetric`.
-                for (i, a) in entries {
-                    right[i] += a * wanted;
-                    entries
-                        .iter()
-                        .filter(|(k, _)| *k >= i)
-                        .for_each(|(k, b)| columns[i][*k] += a * b);
-                }
+                equations.add(&entries, [wanted], 1.0);
             }
         }
         // Knots that no block is near stay clear.
-        for (i, column) in columns.iter_mut().enumerate() {
-            column[i] += RIDGE * weights / KNOTS as f64;
+        for k in 0..N {
+            equations.add(&[(k, 1.0)], [0.0], RIDGE * weights / KNOTS as f64);
         }
-        let [found] = math::solve_symmetric(columns, [right])?;
+        let found = equations.solve()?.into_flattened();
         // Where something opaque shows, any opacity and the colour that goes with it show it alike. The one that is found may
         // need a colour that is none; the least one that does not takes its place.
         let knots = std::array::from_fn(|k| {

@@ -6,7 +6,7 @@
 use std::ops::RangeInclusive;
 
 use super::lines::Line;
-use crate::math::{self, direction, nearest_on_segment};
+use crate::math::{self, Normal, direction, nearest_on_segment};
 use crate::scene::{Path, PathPoint};
 
 /// The cosine of a corner's turn within [`CORNER_REACH`] radii is less than this. A guess.
@@ -347,27 +347,17 @@ fn closed_spline(places: &[Place], shares: &[f32], count: usize) -> Vec<Place> {
 
 /// The points whose weighted sums are nearest to the places.
 fn solve(samples: impl Iterator<Item = (Vec<(usize, f32)>, Place)>, count: usize) -> Vec<Place> {
-    // The normal equations; a little ridge keeps them solvable where no place depends on a point.
-    let mut columns = vec![vec![0.0; count]; count];
-    for (i, column) in columns.iter_mut().enumerate() {
-        column[i] = 1e-6;
+    let mut equations = Normal::of(count);
+    // A little ridge keeps them solvable where no place depends on a point.
+    for k in 0..count {
+        equations.add(&[(k, 1.0)], [0.0; 2], 1e-6);
     }
-    let mut right = [vec![0.0; count], vec![0.0; count]];
     for (weights, place) in samples {
-        for &(i, v) in &weights {
-            for &(k, w) in &weights {
-                columns[k][i] += f64::from(v) * f64::from(w);
-            }
-            for axis in [0, 1] {
-                right[axis][i] += f64::from(v) * f64::from(place[axis]);
-            }
-        }
+        let terms: Vec<_> = weights.iter().map(|&(k, w)| (k, w.into())).collect();
+        equations.add(&terms, place.map(f64::from), 1.0);
     }
-    let Some([x, y]) = math::solve_symmetric(columns, right) else {
-        return Vec::new();
-    };
-    let pairs = x.iter().zip(&y);
-    pairs.map(|(&x, &y)| [x as f32, y as f32]).collect()
+    let solution = equations.solve().unwrap_or_default();
+    solution.iter().map(|xy| xy.map(|v| v as f32)).collect()
 }
 
 /// Places along a spline through `controls`, between the ends of `run` or around: two for each place of the run.

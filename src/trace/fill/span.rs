@@ -1,6 +1,7 @@
 //! Spans: a line or a quadratic spline along some samples of an outline, whose ends are given.
 
 use super::contour::Place;
+use crate::math::Normal;
 
 /// A sample of an outline that a span has to be near to.
 #[derive(Debug, Clone, Copy)]
@@ -141,63 +142,34 @@ fn weights(count: usize, t: f32) -> (usize, [f32; 3]) {
 fn solve(span: &mut Span, samples: &[Sample], at: &[f32]) {
     let count = span.count;
     let last = samples.len() - 1;
-    let mut matrix = [[0.0_f64; MOST]; MOST];
-    let mut right = [[0.0_f64; 2]; MOST];
+    let mut equations = Normal::of(count);
     for (sample, &t) in samples.iter().zip(at).take(last).skip(1) {
         let (first, weights) = weights(count, t);
+        let (mut terms, mut free) = ([(0, 0.0); 3], 0);
         // What the given ends leave.
         let mut rest = sample.at.map(f64::from);
-        for (d, w) in weights.into_iter().enumerate() {
-            let end = match first + d {
+        for (k, w) in (first..).zip(weights) {
+            let end = match k {
                 0 => samples[0].at,
                 k if k == count + 1 => samples[last].at,
-                _ => continue,
-            };
-            rest = [0, 1].map(|k| rest[k] - f64::from(w * end[k]));
-        }
-        for (d, w) in weights.into_iter().enumerate() {
-            let Some(row) = (first + d).checked_sub(1).filter(|&row| row < count) else {
-                continue;
-            };
-            let w = f64::from(w * sample.weight);
-            for (e, v) in weights.into_iter().enumerate() {
-                if let Some(column) = (first + e).checked_sub(1).filter(|&c| c < count) {
-                    matrix[row][column] += w * f64::from(v);
+                _ => {
+                    (terms[free], free) = ((k - 1, w.into()), free + 1);
+                    continue;
                 }
-            }
-            right[row] = [0, 1].map(|k| right[row][k] + w * rest[k]);
+            };
+            rest = [0, 1].map(|axis| rest[axis] - f64::from(w * end[axis]));
         }
+        let terms = terms.get(..free).unwrap_or_default();
+        equations.add(terms, rest, sample.weight.into());
     }
     // A small pull to the samples keeps it regular.
     const PULL: f64 = 1e-4;
-    for row in 0..count {
-        matrix[row][row] += PULL;
-        let near = ((row as f32 + 0.5) / count as f32 * last as f32) as usize;
-        right[row] = [0, 1].map(|k| right[row][k] + PULL * f64::from(samples[near].at[k]));
+    for k in 0..count {
+        let near = ((k as f32 + 0.5) / count as f32 * last as f32) as usize;
+        equations.add(&[(k, 1.0)], samples[near].at.map(f64::from), PULL);
     }
-    eliminate(&mut matrix, &mut right, count);
-    for (off, solved) in span.off.iter_mut().zip(&right).take(count) {
+    let solution = equations.solve().unwrap_or_default();
+    for (off, solved) in span.off.iter_mut().zip(solution) {
         *off = solved.map(|v| v as f32);
-    }
-}
-
-/// Solves equations whose matrix is symmetric, positive definite and has two diagonals to either side of the main one.
-fn eliminate(matrix: &mut [[f64; MOST]; MOST], right: &mut [[f64; 2]; MOST], count: usize) {
-    for i in 0..count {
-        let pivot = matrix[i];
-        for row in i + 1..count.min(i + 3) {
-            let factor = matrix[row][i] / pivot[i];
-            for column in i..count.min(i + 3) {
-                matrix[row][column] -= factor * pivot[column];
-            }
-            right[row] = [0, 1].map(|k| right[row][k] - factor * right[i][k]);
-        }
-    }
-    for i in (0..count).rev() {
-        for column in i + 1..count.min(i + 3) {
-            let known = right[column];
-            right[i] = [0, 1].map(|k| right[i][k] - matrix[i][column] * known[k]);
-        }
-        right[i] = right[i].map(|v| v / matrix[i][i]);
     }
 }
