@@ -25,6 +25,7 @@ pub(crate) use grid::{UNITS_PER_PX, color, px, quantum, units};
 pub(crate) use mark::counted;
 pub use mark::{Area, Mark, Marks};
 pub(crate) use overlap::{Bundles, Precedence};
+pub(crate) use path::is_inside;
 pub use path::{MAX_POINTS, Path, PathPoint};
 pub(crate) use polyline::{polyline, through};
 pub(crate) use quantize::quantized_anywhere;

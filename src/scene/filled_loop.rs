@@ -5,9 +5,9 @@
 //! the pen. An open path that ends where it starts has one ring and no hole, and with round caps it is the same union of
 //! discs. So such paths are written open.
 
-use kurbo::{BezPath, Line, ParamCurveNearest, PathEl, Shape};
+use kurbo::{Line, ParamCurveNearest, PathEl};
 
-use super::path::bounds;
+use super::path::{bounds, is_inside};
 use super::{MAX_POINTS, Path, PathPoint};
 use crate::math::Point;
 
@@ -47,8 +47,6 @@ fn leaves_gap(path: &Path, width: f64) -> bool {
         return false;
     }
     let reach2 = 0.25 * width * width;
-
-    let inside: BezPath = path.bezier();
     let share = |step: u32| (f64::from(step) + 0.5) / f64::from(PLACES);
     let places = (0..PLACES).flat_map(|row| (0..PLACES).map(move |column| [column, row]));
     places
@@ -59,7 +57,7 @@ fn leaves_gap(path: &Path, width: f64) -> bool {
         .any(|p| {
             // The pen covers all places within half of its width of the path.
             let is_clear = |line: &Line| line.nearest(p, 0.0).distance_sq > reach2;
-            inside.winding(p) != 0 && lines.iter().all(is_clear)
+            is_inside(&lines, p) && lines.iter().all(is_clear)
         })
 }
 

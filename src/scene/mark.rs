@@ -1,5 +1,7 @@
 //! Marks: what a scene is made of.
 
+use kurbo::Line;
+
 use super::{Cap, Path, Rgb, Shade, Shape, Stroke};
 use crate::math::Point;
 
@@ -72,6 +74,12 @@ impl Mark {
             Self::Stroke(stroke) => std::slice::from_ref(&stroke.path),
             Self::Area(area) => &area.rings,
         }
+    }
+
+    /// The paths as lines that are at most `tolerance` px away from them. A dot is a line without length.
+    pub(crate) fn lines(&self, tolerance: f64) -> Vec<Line> {
+        let paths = self.paths().iter();
+        paths.flat_map(|path| path.lines(tolerance)).collect()
     }
 
     /// Half the width of a stroke, px; 0 for an area.

@@ -1,8 +1,9 @@
 //! Precedence: which marks may share a pixel, so that their order matters, and what follows for reordering them.
 
-use kurbo::{BezPath, Line, ParamCurveNearest, Rect, Shape};
+use kurbo::{Line, ParamCurveNearest, Rect};
 
-use super::{Mark, Path};
+use super::Mark;
+use super::path::is_inside;
 use crate::math::Point;
 
 /// Precedence of marks: which ones have to be drawn before which.
@@ -174,8 +175,7 @@ struct Swept {
     near: Rect,
     /// Lines at most [`TOLERANCE`] away from its paths. A dot is a line without length.
     lines: Vec<Line>,
-    /// The rings of an area.
-    rings: Option<BezPath>,
+    is_area: bool,
     /// A point of each path.
     starts: Vec<Point>,
 }
@@ -186,12 +186,8 @@ impl Swept {
         Self {
             reach: mark.reach(),
             near: mark.extent().inflate(0.5 * APART, 0.5 * APART),
-            lines: mark
-                .paths()
-                .iter()
-                .flat_map(|path| path.lines(TOLERANCE))
-                .collect(),
-            rings: mark.is_area().then(|| rings(mark)),
+            lines: mark.lines(TOLERANCE),
+            is_area: mark.is_area(),
             starts: starts.map(|p| p.at).collect(),
         }
     }
@@ -209,8 +205,7 @@ impl Swept {
     /// True if it is an area that a path of `other` starts in.
     fn covers(&self, other: &Self) -> bool {
         // One point of each path is enough: outlines don't come near each other, so a path is inside as a whole or not at all.
-        let has = |rings: &BezPath| other.starts.iter().any(|&p| rings.winding(p) != 0);
-        self.rings.as_ref().is_some_and(has)
+        self.is_area && other.starts.iter().any(|&p| is_inside(&self.lines, p))
     }
 }
 
@@ -226,32 +221,15 @@ impl Mark {
         if !self.is_area() {
             return false;
         }
-        let rings = rings(self);
-        let places: Vec<Point> = other
-            .paths()
-            .iter()
-            .flat_map(|path| path.lines(TOLERANCE))
-            .map(|line| line.p0)
-            .collect();
-        let inside = places.iter().filter(|&&p| rings.winding(p) != 0).count();
-        10 * inside >= 9 * places.len()
+        let [rings, lines] = [self, other].map(|mark| mark.lines(TOLERANCE));
+        let is_within = |line: &&Line| is_inside(&rings, line.p0);
+        10 * lines.iter().filter(is_within).count() >= 9 * lines.len()
     }
 }
 
 /// True if two boxes have an inside in common.
 fn overlap(a: Rect, b: Rect) -> bool {
     a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1
-}
-
-/// The rings of an area, as polygons.
-fn rings(area: &Mark) -> BezPath {
-    let polygon = |ring: &Path| {
-        BezPath::from_path_segments(ring.lines(TOLERANCE).into_iter().map(Into::into))
-    };
-    area.paths()
-        .iter()
-        .flat_map(|ring| polygon(ring).into_elements())
-        .collect()
 }
 
 /// Marks farther apart than the diagonal of a pixel, px, have no pixel in common. The rest covers the distance of chords from
@@ -292,7 +270,7 @@ fn cross(a: Line, b: Line) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Area, Cap, PathPoint, Stroke};
+    use crate::scene::{Area, Cap, Path, PathPoint, Stroke};
 
     fn stroke_along(path: Path, width: f64) -> Mark {
         let stroke = Stroke {

@@ -301,6 +301,17 @@ impl Shape {
     }
 }
 
+/// True if closed polygons wind around a place.
+pub(crate) fn is_inside(polygons: &[Line], p: Point) -> bool {
+    // Each line that crosses the ray to the right of the place counts by its direction.
+    let turn = |Line { p0, p1 }: &Line| match (p0.y <= p.y, p1.y <= p.y) {
+        (true, false) if (*p1 - *p0).cross(p - *p0) > 0.0 => 1,
+        (false, true) if (*p1 - *p0).cross(p - *p0) < 0.0 => -1,
+        _ => 0,
+    };
+    polygons.iter().map(turn).sum::<i32>() != 0
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,10 +1,10 @@
 //! Covers: the parts of a border that other marks hide.
 
-use kurbo::{BezPath, Line, ParamCurveNearest, Rect, Shape};
+use kurbo::{Line, ParamCurveNearest, Rect};
 
 use crate::fit::drawing::Drawing;
 use crate::math::Point;
-use crate::scene::{Mark, Rgb};
+use crate::scene::{Mark, Rgb, is_inside};
 
 /// Farthest that chords are from a ring that others may lie in, px. A guess.
 const FLATNESS: f64 = 0.1;
@@ -19,10 +19,9 @@ pub(super) struct Covers {
 struct Cover {
     /// The box around all that it covers.
     extent: Rect,
-    /// The rings of an area, as polygons.
-    rings: Option<BezPath>,
-    /// The middle of a stroke.
-    middle: Vec<Line>,
+    is_area: bool,
+    /// The rings of an area, or the middle of a stroke.
+    lines: Vec<Line>,
     radius: f64,
     color: Rgb,
     is_opaque: bool,
@@ -43,7 +42,7 @@ impl Covers {
     pub(super) fn is_seen(&self, i: usize, p: Point) -> bool {
         let mut others = self.marks.iter().enumerate().filter(|&(k, _)| k != i);
         let hides = |(k, other): (usize, &Cover)| {
-            let is_stroke = other.rings.is_none();
+            let is_stroke = !other.is_area;
             // An opaque mark on top hides the border. So does a stroke of the same colour, above or below: the two run together.
             (k > i && other.is_opaque && other.has(p, 0.0))
                 || (is_stroke && other.is_like(&self.marks[i]) && other.has(p, MELTED))
@@ -62,21 +61,13 @@ impl Cover {
     fn of(mark: Mark) -> Self {
         // A stroke with square ends covers its rings.
         let mark = mark.filled();
-        let lines: Vec<Line> = mark
-            .paths()
-            .iter()
-            .flat_map(|path| path.lines(FLATNESS))
-            .collect();
-        let segments = || lines.iter().copied().map(Into::into);
         Self {
             extent: mark.extent(),
-            rings: mark
-                .is_area()
-                .then(|| BezPath::from_path_segments(segments())),
+            is_area: mark.is_area(),
+            lines: mark.lines(FLATNESS),
             radius: mark.radius(),
             color: mark.color(),
             is_opaque: mark.opacity() > OPAQUE,
-            middle: lines,
         }
     }
 
@@ -85,9 +76,9 @@ impl Cover {
         let reach = self.radius + beside;
         let is_near = |line: &Line| line.nearest(p, 0.0).distance_sq <= reach * reach;
         self.extent.inflate(beside, beside).contains(p)
-            && match &self.rings {
-                Some(rings) => rings.winding(p) != 0,
-                None => self.middle.iter().any(is_near),
+            && match self.is_area {
+                true => is_inside(&self.lines, p),
+                false => self.lines.iter().any(is_near),
             }
     }
 
