@@ -5,8 +5,6 @@
 
 mod details;
 mod fineness;
-mod half;
-mod patch;
 mod similarity;
 mod ssimulacra2;
 mod window;
@@ -21,8 +19,7 @@ use crate::image::{Image, level};
 use crate::math;
 use crate::scene::Rgb;
 pub(crate) use details::Details;
-pub(crate) use fineness::fine_share;
-pub(crate) use half::Half;
+pub(crate) use fineness::{Half, fine_share};
 pub(crate) use window::average;
 
 const WHITE: Rgb = [1.0; 3];
@@ -98,48 +95,13 @@ impl Agreement {
         Ok(Self {
             psnr_db: psnr_db(sums.mse()),
             max_abs: sums.max_abs,
-            patch_abs: level(patch::max_abs(&a, &b)),
+            patch_abs: level(window::max_patch_abs(&a, &b)),
         })
     }
 
     /// True if one render lacks something of a few px that the other has.
     pub fn has_gap(&self) -> bool {
         self.patch_abs > MAX_PATCH_ABS
-    }
-}
-
-/// The largest difference of two pictures, and its place.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Largest {
-    /// Largest difference of a channel of a pixel, 0..=255.
-    pub max_abs: u8,
-    /// Column of the first such pixel, row by row.
-    pub x: usize,
-    /// Row of that pixel.
-    pub y: usize,
-}
-
-impl Largest {
-    /// Compares two pictures.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Picture`] when their sizes differ.
-    pub fn between(a: &Image, b: &Image) -> Result<Self> {
-        let (left, right) = levels_of_both(a, b)?;
-        let mut largest = Self {
-            max_abs: 0,
-            x: 0,
-            y: 0,
-        };
-        for (i, (left, right)) in left.iter().zip(&right).enumerate() {
-            let max_abs = left.abs_diff(*right);
-            if max_abs > largest.max_abs {
-                let pixel = i / CHANNELS;
-                let (x, y) = (pixel % a.width(), pixel / a.width());
-                largest = Self { max_abs, x, y };
-            }
-        }
-        Ok(largest)
     }
 }
 

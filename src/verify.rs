@@ -31,9 +31,7 @@ mod elements;
 mod limits;
 mod painting;
 mod placement;
-mod raster;
 mod references;
-mod tree;
 
 use std::cell::Cell;
 use std::panic::{self, AssertUnwindSafe};
@@ -44,8 +42,7 @@ use serde::{Deserialize, Serialize};
 #[cfg(feature = "cli")]
 pub use elements::{Element, elements};
 pub use painting::Painting;
-use raster::draw;
-use tree::parse;
+use painting::parse;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
@@ -100,7 +97,7 @@ impl Verdict {
 /// [`ErrorKind::Svg`] when the text is no SVG, or its render would have no pixels or more than
 /// 128 million; [`ErrorKind::Config`] when the scale is not a positive number.
 pub fn render(svg: &str, size: Size, matte: Option<Rgb>) -> Result<Image> {
-    draw(&parse(svg)?, size, matte)
+    Painting::of(&parse(svg)?, size, matte)?.image()
 }
 
 /// Renders SVG text at the target's size on white and compares it.
@@ -181,7 +178,7 @@ pub fn render_like(svg: &str, target: &Image, matte: Rgb) -> Result<Image> {
     let tree = parse(svg)?;
     let (width, height) = (side(target.width()), side(target.height()));
     check_aspect(&tree, width, height)?;
-    draw(&tree, Size::Exact { width, height }, Some(matte))
+    Painting::of(&tree, Size::Exact { width, height }, Some(matte))?.image()
 }
 
 /// Checks that scaling the SVG to the target's width misses its height by no more than a px.

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::process::Command;
 
 use anyhow::{Result, anyhow};
-use strokefit::engines::locate;
+use strokefit::engines;
 
 use super::hint::Hint;
 use super::refusal::quoted;
@@ -47,7 +47,7 @@ fn installed() -> Option<PathBuf> {
     let beside = env::current_exe().ok().map(|own| own.with_file_name(name));
     beside
         .filter(|path| path.is_file())
-        .or_else(|| locate::program(RIG))
+        .or_else(|| engines::program(RIG))
 }
 
 fn missing(args: &[OsString]) -> anyhow::Error {

@@ -10,14 +10,12 @@
 //! by whole factors. The reference implementation shifts weights where a picture is too small for six scales
 //! (a side of less than 113 px); so does this one, so that scores are the same.
 
-mod weights;
-
 use fearless_simd::{Level, dispatch};
 use rayon::prelude::*;
 
 use super::CHANNELS;
+use super::window::Moments;
 use crate::math;
-use weights::WEIGHTS;
 
 const SCALES: usize = 6;
 /// The least side that has one more scale, px.
@@ -47,6 +45,43 @@ const KINDS: usize = 3;
 const NORMS: usize = 2;
 /// By kind of error and norm.
 type Norms = [[f64; NORMS]; KINDS];
+
+/// The weights of the reference implementation, to seven digits: by channel (X, Y, B − Y), scale (finest first), norm (mean, fourth) and kind of error (structure, artefact, lost).
+const WEIGHTS: [[[[f64; 3]; 2]; 6]; 3] = [
+    [
+        [[0.0, 0.0007376607, 0.0], [0.0, 0.0007793482, 0.0]],
+        [
+            [0.0, 0.0004371156, 0.0],
+            [1.104173, 0.0006628483, 0.0001523163],
+        ],
+        [[0.0, 0.001640644, 0.0], [1.842246, 11.44117, 0.0]],
+        [[0.0007989109, 0.0001768164, 0.0], [1.878759, 10.94907, 0.0]],
+        [
+            [0.0007289347, 0.9677937, 0.0],
+            [0.0001400342, 0.9981767, 0.0003194976],
+        ],
+        [[0.0004550992, 0.0, 0.0], [0.001364877, 0.0, 0.0]],
+    ],
+    [
+        [[0.0, 0.0, 0.0], [7.46689, 0.0, 17.44583]],
+        [[0.0006235602, 0.0, 0.0], [6.683678, 0.0003772441, 1.02789]],
+        [[225.2052, 0.0, 0.0], [19.21324, 0.001140152, 0.001237756]],
+        [[176.3932, 0.0, 0.0], [24.43301, 0.285208, 0.0004485437]],
+        [[0.0, 0.0, 0.0], [34.77906, 44.83563, 0.0]],
+        [[0.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
+    ],
+    [
+        [[0.0, 0.0008680557, 0.0], [0.0, 0.0, 0.0]],
+        [[0.0, 0.0005313192, 0.0], [0.0001653381, 0.0, 0.0]],
+        [[0.0, 0.0, 0.0], [0.0004179172, 0.001729083, 0.0]],
+        [[0.002082701, 0.0, 0.0], [8.826983, 23.19243, 0.0]],
+        [
+            [95.10805, 0.9863978, 0.9834383],
+            [0.001228641, 171.2667, 0.9807859],
+        ],
+        [[0.0, 0.0, 0.0], [0.0005130065, 0.0, 0.0001085406]],
+    ],
+];
 
 /// The score of `picture` against `reference`, interleaved levels in rows of `width` pixels.
 pub(super) fn score(reference: &[u8], picture: &[u8], width: usize) -> f64 {
@@ -288,102 +323,28 @@ impl Scale {
     fn rows<R: Send>(&self, channel: usize, f: impl Fn(&[[f32; KINDS]]) -> R + Sync) -> Vec<R> {
         let rows = (0..self.height).into_par_iter();
         rows.map_init(
-            || Window::new(self.width),
-            |window, y| {
-                let [reference, picture] = [0, 1].map(|i| &*self.pair[i][channel]);
-                f(window.errors(reference, picture, y))
+            || {
+                let errors = vec![[0.0; KINDS]; self.width];
+                (Moments::new(&TAPS, self.width), errors)
+            },
+            |(moments, errors), y| {
+                let [a, b] = [0, 1].map(|i| &*self.pair[i][channel]);
+                dispatch!(Level::new(), _simd => measure(moments, errors, [a, b], y));
+                f(errors)
             },
         )
         .collect()
     }
 }
 
-/// Blurred values, squares and products of a row.
-struct Window {
-    width: usize,
-    /// Blurred down the columns: both pictures, their squares, and their product.
-    down: [Vec<f32>; 5],
-    /// And along the row.
-    both: [Vec<f32>; 5],
-    errors: Vec<[f32; KINDS]>,
-}
-
-impl Window {
-    fn new(width: usize) -> Self {
-        Self {
-            width,
-            down: std::array::from_fn(|_| vec![0.0; width]),
-            both: std::array::from_fn(|_| vec![0.0; width]),
-            errors: vec![[0.0; KINDS]; width],
-        }
-    }
-
-    /// The errors of row `y` of these planes.
-    fn errors(&mut self, reference: &[f32], picture: &[f32], y: usize) -> &[[f32; KINDS]] {
-        dispatch!(Level::new(), _simd => self.measure(reference, picture, y));
-        &self.errors
-    }
-
-    /// Finds the errors of row `y`, with the instructions of the caller.
-    #[inline(always)]
-    fn measure(&mut self, reference: &[f32], picture: &[f32], y: usize) {
-        let row =
-            |plane: &'_ [f32], y: usize| y * self.width..((y + 1) * self.width).min(plane.len());
-        self.down.iter_mut().for_each(|sums| sums.fill(0.0));
-        let height = reference.len() / self.width;
-        // Beyond the border all is 0, so rows off the picture add nothing, and weights aren't rescaled.
-        for near in y.saturating_sub(TAPS.len() - 1)..(y + TAPS.len()).min(height) {
-            let (a, b) = (
-                &reference[row(reference, near)],
-                &picture[row(picture, near)],
-            );
-            add_row(&mut self.down, a, b, TAPS[near.abs_diff(y)]);
-        }
-        for (down, both) in self.down.iter().zip(&mut self.both) {
-            blur(down, both);
-        }
-        let (a, b) = (&reference[row(reference, y)], &picture[row(picture, y)]);
-        let [mean_a, mean_b, aa, bb, ab] = &self.both;
-        for (x, errors) in self.errors.iter_mut().enumerate() {
-            *errors = errors_at([a[x], b[x]], [mean_a[x], mean_b[x], aa[x], bb[x], ab[x]]);
-        }
-    }
-}
-
+/// Finds the errors of row `y` of the reference and the picture, with the instructions of the caller.
 #[inline(always)]
-fn add_row(sums: &mut [Vec<f32>; 5], a: &[f32], b: &[f32], tap: f32) {
-    let [sum_a, sum_b, sum_aa, sum_bb, sum_ab] = sums;
-    let sums = sum_a
-        .iter_mut()
-        .zip(sum_b)
-        .zip(sum_aa)
-        .zip(sum_bb)
-        .zip(sum_ab);
-    for ((a, b), ((((sum_a, sum_b), sum_aa), sum_bb), sum_ab)) in a.iter().zip(b).zip(sums) {
-        *sum_a += tap * a;
-        *sum_b += tap * b;
-        *sum_aa += tap * (a * a);
-        *sum_bb += tap * (b * b);
-        *sum_ab += tap * (a * b);
-    }
-}
-
-#[inline(always)]
-fn blur(from: &[f32], to: &mut [f32]) {
-    for (t, f) in to.iter_mut().zip(from) {
-        *t = TAPS[0] * f;
-    }
-    for (shift, &tap) in TAPS.iter().enumerate().skip(1) {
-        if shift >= from.len() {
-            break;
-        }
-        let rest = from.len() - shift;
-        for (t, f) in to[..rest].iter_mut().zip(&from[shift..]) {
-            *t += tap * f;
-        }
-        for (t, f) in to[shift..].iter_mut().zip(&from[..rest]) {
-            *t += tap * f;
-        }
+fn measure(moments: &mut Moments<'_>, errors: &mut [[f32; KINDS]], [a, b]: [&[f32]; 2], y: usize) {
+    let start = y * errors.len();
+    let [mean_a, mean_b, aa, bb, ab] = moments.of_row(a, b, y);
+    for (x, errors) in errors.iter_mut().enumerate() {
+        let here = [a[start + x], b[start + x]];
+        *errors = errors_at(here, [mean_a[x], mean_b[x], aa[x], bb[x], ab[x]]);
     }
 }
 

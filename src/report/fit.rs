@@ -1,10 +1,10 @@
-//! The report of `strokefit fit` and `strokefit refine`.
+//! The report of `strokefit fit` and `strokefit refine`, and their events as they run.
 
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Input, Judged, OnFocus, SCHEMA, Usage, gzip_bytes, per_stroke};
+use super::{Input, Judged, OnFocus, SCHEMA, Usage, gzip_bytes};
 use crate::fit::{Base, Config, StageRecord, Stop, rss_bytes_of};
 use crate::metrics::{Agreement, Quality};
 use crate::scene::Dropped;
@@ -144,7 +144,7 @@ impl FitReport {
             stages: fit.stages.clone(),
             svg_bytes: svg.len(),
             svg_gzip_bytes: gzip_bytes(svg),
-            bytes_per_stroke: per_stroke(svg.len(), strokes),
+            bytes_per_stroke: (strokes > 0).then(|| svg.len() as f64 / strokes as f64),
             wall_s: run.wall.as_secs_f64(),
             cpu_s: run.usage.cpu_s,
             peak_rss_bytes: run.usage.peak_rss_bytes,
@@ -171,6 +171,48 @@ impl BaseEntry {
             elements: base.elements(),
         }
     }
+}
+
+/// Something that happened to one picture: a line of JSON.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "event", rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Event {
+    /// The picture was read; work begins.
+    Start(Input),
+    /// The strokes of a stage were fitted.
+    Stage(PhaseEntry),
+    /// The strokes of all stages were fitted jointly; of one stage, where layers are polished alone.
+    Polish(PhaseEntry),
+    /// The files are written: the last event of a picture.
+    Done(Box<FitReport>),
+    /// Nothing was drawn: the last event of a picture.
+    Failed {
+        /// The picture as it was named.
+        path: String,
+        /// Why, in one line.
+        error: String,
+    },
+}
+
+/// A part of a fit that has ended.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PhaseEntry {
+    /// The picture as it was named.
+    pub path: String,
+    /// Index of the stage, from 1; one past the last for the polish of all. A stage that keeps no stroke in the
+    /// end is no layer, and those after it are then numbered otherwise in the report.
+    pub stage: usize,
+    /// Strokes in the drawing.
+    pub strokes: usize,
+    /// Iterations of the optimiser.
+    pub iterations: usize,
+    /// Time since the start of the fit, s.
+    pub elapsed_s: f64,
+    /// Fidelity of the soft render, dB, at the resolution that is fitted at; `null` when perfect.
+    pub psnr_db: Option<f64>,
+    /// Part of the planned work that is done, 0..1.
+    pub done: f64,
 }
 
 #[cfg(test)]
@@ -216,5 +258,23 @@ mod tests {
         former.as_object_mut().unwrap().remove("areas");
         let report: FitReport = serde_json::from_value(former).unwrap();
         assert_eq!(report.areas, 0);
+    }
+
+    #[test]
+    fn an_event_is_a_flat_object_with_its_name() {
+        let phase = PhaseEntry {
+            path: "a.png".into(),
+            stage: 2,
+            strokes: 9,
+            iterations: 40,
+            elapsed_s: 0.5,
+            psnr_db: None,
+            done: 0.25,
+        };
+        let expected = serde_json::json!({
+            "event": "stage", "path": "a.png", "stage": 2, "strokes": 9, "iterations": 40,
+            "elapsed_s": 0.5, "psnr_db": null, "done": 0.25,
+        });
+        assert_eq!(serde_json::to_value(Event::Stage(phase)).unwrap(), expected);
     }
 }

@@ -3,7 +3,7 @@
 use resvg::tiny_skia::{PathSegment, Point as SkiaPoint};
 use resvg::usvg::{Group, Node, Paint, Path};
 
-use super::tree::parse;
+use super::painting::parse;
 use crate::error::Result;
 use crate::math::{self, Point};
 

@@ -3,7 +3,7 @@
 
 use resvg::usvg::{BlendMode, Color, Group, LineCap, Node, Opacity, Paint, Path, Stroke};
 
-use super::tree::parse;
+use super::painting::parse;
 use super::{check_aspect, side};
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;

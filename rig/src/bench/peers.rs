@@ -9,7 +9,7 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
 use super::drawings::Kind;
-use strokefit::engines::locate;
+use strokefit::engines;
 use strokefit::image::Image;
 use strokefit::report::Usage;
 use strokefit::{Error, ErrorKind, Result};
@@ -274,7 +274,7 @@ impl Program {
             output.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).contains(word))
         };
         let can_show = !self.needs_display || has_display();
-        can_show && locate::program(self.name).is_some() && self.can.is_none_or(able)
+        can_show && engines::program(self.name).is_some() && self.can.is_none_or(able)
     }
 
     fn arguments(&self, from: &Path, to: &Path, settings: &str) -> Vec<String> {

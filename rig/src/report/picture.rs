@@ -2,7 +2,7 @@
 
 use strokefit::math;
 
-pub use strokefit::report::picture::{heat, map};
+pub use strokefit::report::{heat, map};
 
 /// 0 is black, 1 white.
 pub fn gray(value: f64) -> [f64; 3] {
