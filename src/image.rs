@@ -20,12 +20,10 @@ mod header;
 mod ico;
 #[cfg(feature = "formats")]
 mod jpeg;
-mod light;
 mod png;
 #[cfg(feature = "formats")]
 mod profile;
 mod reduce;
-mod remark;
 mod rows;
 #[cfg(feature = "formats")]
 mod tiff;
@@ -39,12 +37,13 @@ use std::path::Path;
 #[cfg(feature = "animation")]
 pub use animate::{AnimationFormat, animated};
 pub use decode::Limits;
+pub use decoded::Remark;
 pub use formats::{FORMATS, Format};
 pub(crate) use header::{Embeddable, stated_size};
-pub use remark::Remark;
 pub use rows::{Rows, Sample};
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::math;
 use crate::scene::Rgb;
 
 /// A picture: three planes of sRGB-encoded colour 0..1, and alpha where the source had it.
@@ -336,6 +335,15 @@ impl fmt::Debug for Image {
 pub(crate) fn level(value: f32) -> u8 {
     // `as` saturates, so values beyond 0..1 become the nearer end.
     (value * 255.0 + 0.5) as u8
+}
+
+/// Light of 0..1 as sRGB encodes it.
+fn encoded(light: f32) -> f32 {
+    if light <= 0.003_130_8 {
+        12.92 * light
+    } else {
+        1.055 * math::powf(light, 1.0 / 2.4) - 0.055
+    }
 }
 
 fn check_plane(plane: &[f32], pixels: usize) -> Result<()> {

@@ -13,7 +13,7 @@ use ::image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
 
 use super::decoded::{Coding, Decoded, Failure};
 use super::rows::{self, Rows, Sample};
-use super::{Image, Remark, foreign, formats, header, light, png};
+use super::{Image, Remark, foreign, formats, header, png};
 use crate::error::{Error, ErrorKind, Result};
 
 /// Limits on the size of a picture file. They are checked on the header, before memory is spent.
@@ -325,12 +325,16 @@ fn floats(picture: &DynamicImage, samples: &[f32], format: ImageFormat) -> Resul
     let is_linear = format == ImageFormat::Hdr;
     let level = |v: f32| match v.clamp(0.0, 1.0) {
         v if v.is_nan() => 0.0,
-        v if is_linear => light::encoded(v),
+        v if is_linear => super::encoded(v),
         v => v,
     };
-    let clipped = samples.iter().filter(|v| !(0.0..=1.0).contains(*v));
-    let image = rows::planar(packed(picture, samples), level)?;
-    Ok((image, clipped.count()))
+    let is_clipped = |v: &&f32| !(0.0..=1.0).contains(*v);
+    let clipped = samples.iter().filter(is_clipped).count();
+    let rows = packed(picture, samples);
+    let image = rows::sampled(rows.width, rows.height, rows.channels, |x, y, c| {
+        level(samples[y * rows.stride + x * rows.channels + c])
+    })?;
+    Ok((image, clipped))
 }
 
 fn packed<'a, T>(picture: &DynamicImage, samples: &'a [T]) -> Rows<'a, T> {

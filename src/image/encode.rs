@@ -1,65 +1,57 @@
-//! Encodes a picture as PNG.
-
-use std::borrow::Cow;
+//! Encodes a picture as PNG or JPEG.
 
 use ::image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use ::image::{ExtendedColorType, ImageEncoder};
+use ::image::{ExtendedColorType, ImageEncoder, ImageResult};
 
 use super::{Image, level};
 use crate::error::{Error, ErrorKind, Result};
 
 /// 8-bit RGB, or RGBA where there is alpha.
 pub(super) fn png(image: &Image) -> Result<Vec<u8>> {
-    let (width, height) = size(image)?;
     let rgb = image.to_rgb8();
     let (samples, color) = match image.alpha() {
-        Some(alpha) => (
-            Cow::Owned(with_alpha(&rgb, alpha)),
-            ExtendedColorType::Rgba8,
-        ),
-        None => (Cow::Borrowed(&rgb), ExtendedColorType::Rgb8),
+        Some(alpha) => (with_alpha(&rgb, alpha), ExtendedColorType::Rgba8),
+        None => (rgb, ExtendedColorType::Rgb8),
     };
-    let mut bytes = Vec::new();
-    PngEncoder::new_with_quality(&mut bytes, CompressionType::Default, FilterType::Adaptive)
-        .write_image(&samples, width, height, color)
-        .map_err(|e| {
-            Error::new(
-                ErrorKind::Picture,
-                format!("cannot encode the picture as PNG: {e}"),
-            )
-            .caused_by(e)
-        })?;
-    Ok(bytes)
+    encoded(image, "PNG", |bytes, [width, height]| {
+        PngEncoder::new_with_quality(bytes, CompressionType::Default, FilterType::Adaptive)
+            .write_image(&samples, width, height, color)
+    })
 }
 
 /// 8-bit RGB.
 #[cfg(feature = "cli")]
 pub(super) fn jpeg(image: &Image, quality: u8) -> Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    let (width, height) = size(image)?;
-    ::image::codecs::jpeg::JpegEncoder::new_with_quality(&mut bytes, quality)
-        .write_image(&image.to_rgb8(), width, height, ExtendedColorType::Rgb8)
-        .map_err(|e| {
-            let message = format!("cannot encode the picture as JPEG: {e}");
-            Error::new(ErrorKind::Picture, message).caused_by(e)
-        })?;
-    Ok(bytes)
+    encoded(image, "JPEG", |bytes, [width, height]| {
+        ::image::codecs::jpeg::JpegEncoder::new_with_quality(bytes, quality).write_image(
+            &image.to_rgb8(),
+            width,
+            height,
+            ExtendedColorType::Rgb8,
+        )
+    })
 }
 
-fn size(image: &Image) -> Result<(u32, u32)> {
+/// The file that `encode` makes of a picture of these sides.
+fn encoded(
+    image: &Image,
+    format: &str,
+    encode: impl FnOnce(&mut Vec<u8>, [u32; 2]) -> ImageResult<()>,
+) -> Result<Vec<u8>> {
+    let [width, height] = [image.width(), image.height()];
     // PNG stores a side in 31 bits.
-    let side = |n: usize| u32::try_from(n).ok().filter(|&n| n <= i32::MAX as u32);
-    side(image.width())
-        .zip(side(image.height()))
-        .ok_or_else(|| {
-            let message = format!(
-                "a PNG of {}×{} px is not possible: at most {} px per side",
-                image.width(),
-                image.height(),
-                i32::MAX
-            );
-            Error::new(ErrorKind::Picture, message)
-        })
+    if width.max(height) > i32::MAX as usize {
+        let most = i32::MAX;
+        let message =
+            format!("a PNG of {width}×{height} px is not possible: at most {most} px per side");
+        return Err(Error::new(ErrorKind::Picture, message));
+    }
+    let mut bytes = Vec::new();
+    encode(&mut bytes, [width as u32, height as u32]).map_err(|e| {
+        let message = format!("cannot encode the picture as {format}: {e}");
+        Error::new(ErrorKind::Picture, message).caused_by(e)
+    })?;
+    Ok(bytes)
 }
 
 fn with_alpha(rgb: &[u8], alpha: &[f32]) -> Vec<u8> {

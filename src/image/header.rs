@@ -76,44 +76,21 @@ pub(super) fn is_big_tiff(bytes: &[u8]) -> bool {
 /// True if frames or pages follow the first.
 pub(super) fn has_more(bytes: &[u8], format: ImageFormat) -> bool {
     match format {
-        ImageFormat::Gif => gif_frames(bytes).take(2).count() > 1,
+        #[cfg(feature = "formats")]
+        ImageFormat::Gif => gif_is_animated(bytes),
         ImageFormat::WebP => webp_is_animated(bytes),
         _ => false,
     }
 }
 
-/// The offsets of a GIF's image descriptors.
-fn gif_frames(bytes: &[u8]) -> impl Iterator<Item = usize> + '_ {
-    let table = |flags: u8| match flags & 0x80 {
-        0 => 0,
-        _ => 3 << ((flags & 7) + 1),
-    };
-    // Head and screen descriptor, then a table of colours.
-    let mut at = 13 + bytes.get(10).map_or(0, |&flags| table(flags));
-    std::iter::from_fn(move || {
-        loop {
-            let start = at;
-            // An extension has a label before its blocks; an image a descriptor, a table and a code size.
-            let is_image = match bytes.get(at)? {
-                0x21 => {
-                    at += 2;
-                    false
-                }
-                0x2c => {
-                    at += 11 + table(*bytes.get(at + 9)?);
-                    true
-                }
-                _ => return None,
-            };
-            // Data come in blocks, each behind a byte with its length. A length of 0 ends them.
-            while let Some(&length) = bytes.get(at).filter(|&&length| length > 0) {
-                at += 1 + usize::from(length);
-            }
-            at += 1;
-            if is_image {
-                return Some(start);
-            }
-        }
+/// True if a GIF has two frames or more. No pixel is decoded.
+#[cfg(feature = "formats")]
+fn gif_is_animated(bytes: &[u8]) -> bool {
+    let mut options = ::gif::DecodeOptions::new();
+    options.skip_frame_decoding(true);
+    options.read_info(bytes).is_ok_and(|mut frames| {
+        let mut has_next = || frames.next_frame_info().is_ok_and(|frame| frame.is_some());
+        has_next() && has_next()
     })
 }
 

@@ -32,19 +32,6 @@ impl<'a, T> Rows<'a, T> {
         }
     }
 
-    /// The samples of each pixel, row by row.
-    fn pixels(&self) -> impl Iterator<Item = &'a [T]> {
-        let Self {
-            width,
-            height,
-            channels,
-            stride,
-            samples,
-        } = *self;
-        let rows = samples.chunks(stride).take(height);
-        rows.flat_map(move |row| row.chunks_exact(channels).take(width))
-    }
-
     /// Fails where there can be no such picture.
     fn check(&self) -> Result<()> {
         let Self {
@@ -136,10 +123,9 @@ fn check_shape(width: usize, height: usize, channels: usize) -> Result<()> {
 /// The picture that the rows are.
 pub(super) fn image<T: Sample>(rows: Rows<'_, T>) -> Result<Image> {
     rows.check()?;
-    if let Some(error) = off_scale(rows) {
-        return Err(error);
-    }
-    planar(rows, |sample| sample.level().unwrap_or(0.0))
+    sampled(rows.width, rows.height, rows.channels, |x, y, c| {
+        rows.samples[y * rows.stride + x * rows.channels + c]
+    })
 }
 
 /// The picture whose channel `c` of the pixel (x, y) is `sample(x, y, c)`.
@@ -151,7 +137,7 @@ pub(super) fn sampled<T: Sample>(
 ) -> Result<Image> {
     check_shape(width, height, channels)?;
     let mut foreign = None;
-    let plane = |c: usize| {
+    let mut plane = |c: usize| {
         let mut plane = Vec::with_capacity(width.saturating_mul(height));
         for y in 0..height {
             plane.extend((0..width).map(|x| {
@@ -165,43 +151,6 @@ pub(super) fn sampled<T: Sample>(
         }
         plane
     };
-    let image = assembled(width, height, channels, plane);
-    match foreign {
-        Some(error) => Err(error),
-        None => image,
-    }
-}
-
-/// The first sample that is on no scale.
-fn off_scale<T: Sample>(rows: Rows<'_, T>) -> Option<Error> {
-    rows.pixels().enumerate().find_map(|(i, pixel)| {
-        let sample = pixel.iter().find(|sample| sample.level().is_none())?;
-        Some(no_level(i % rows.width, i / rows.width, sample))
-    })
-}
-
-fn no_level(x: usize, y: usize, sample: impl fmt::Display) -> Error {
-    let message = format!("a sample of the pixel ({x}, {y}) is {sample}: give numbers from 0 to 1");
-    Error::new(ErrorKind::Picture, message)
-}
-
-/// The picture of rows that were checked, each sample as a value of 0..1.
-pub(super) fn planar<T: Copy>(rows: Rows<'_, T>, level: impl Fn(T) -> f32) -> Result<Image> {
-    let plane = |c: usize| {
-        rows.pixels()
-            .map(|pixel| level(pixel[c]))
-            .collect::<Vec<_>>()
-    };
-    assembled(rows.width, rows.height, rows.channels, plane)
-}
-
-/// The picture of the planes of 1 to 4 channels.
-fn assembled(
-    width: usize,
-    height: usize,
-    channels: usize,
-    mut plane: impl FnMut(usize) -> Vec<f32>,
-) -> Result<Image> {
     let planes = if channels < 3 {
         // All of the crate works on three planes.
         let grey = plane(0);
@@ -209,13 +158,21 @@ fn assembled(
     } else {
         [plane(0), plane(1), plane(2)]
     };
-    let image = Image::new(width, height, planes)?;
     // 2 and 4 channels end in alpha.
-    if channels.is_multiple_of(2) {
-        image.with_alpha(plane(channels - 1))
-    } else {
-        Ok(image)
+    let alpha = channels.is_multiple_of(2).then(|| plane(channels - 1));
+    if let Some(error) = foreign {
+        return Err(error);
     }
+    let image = Image::new(width, height, planes)?;
+    match alpha {
+        Some(alpha) => image.with_alpha(alpha),
+        None => Ok(image),
+    }
+}
+
+fn no_level(x: usize, y: usize, sample: impl fmt::Display) -> Error {
+    let message = format!("a sample of the pixel ({x}, {y}) is {sample}: give numbers from 0 to 1");
+    Error::new(ErrorKind::Picture, message)
 }
 
 #[cfg(test)]

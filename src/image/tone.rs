@@ -4,7 +4,6 @@
 //! screenshot keeps its colours; brighter light is bent towards white, down to half its light, so that the brightest
 //! pixel is white. All three channels of a pixel shrink by one factor, which keeps the hue.
 
-use super::light;
 use crate::math;
 
 /// Light of white on a page, cd/m².
@@ -103,7 +102,7 @@ pub(super) fn to_srgb(
             1.0
         };
         for (plane, v) in out.iter_mut().zip(light) {
-            plane.push(light::encoded((v * scale).min(1.0) as f32));
+            plane.push(super::encoded((v * scale).min(1.0) as f32));
         }
     }
     out
