@@ -4,43 +4,19 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
-use strokefit::report::{Event, Judged};
+use strokefit::report::Judged;
+use strokefit::view::Viewer;
 
 use super::events::Events;
-use super::job::{Draw, Drawn, Job, Outputs};
-use super::options::Options;
+use super::job::{Draw, Drawn, Job};
 use super::output::{self, Output};
-use super::pictures;
-use super::view::{self, Watch};
-use super::{Status, Verbosity, fail, input, misuse};
+use super::{Status, Verbosity, fail, input, misuse, view};
 
 /// Placeholder for the name of the picture without its extension.
 const STEM: &str = "{stem}";
 
-/// One job for each input.
-pub(super) fn jobs<'a>(
-    inputs: &'a [PathBuf],
-    outputs: &[PathBuf],
-    report: Option<&Path>,
-    options: &'a Options,
-) -> Result<Vec<Job<'a>>> {
-    let (output, pictures) = pictures::split(outputs)?;
-    let job = |input: &'a PathBuf| {
-        let pictures = pictures.iter().map(|template| named(template, input));
-        Ok(Job {
-            base: None,
-            input,
-            output: named(output, input)?,
-            pictures: pictures.collect::<Result<_>>()?,
-            report: report.map(|report| named(report, input)).transpose()?,
-            options,
-        })
-    };
-    inputs.iter().map(job).collect()
-}
-
 /// The path that `template` means for `input`.
-fn named(template: &Path, input: &Path) -> Result<PathBuf> {
+pub(super) fn named(template: &Path, input: &Path) -> Result<PathBuf> {
     let Some((before, after)) = template.to_str().and_then(|text| text.split_once(STEM)) else {
         return Ok(template.to_owned());
     };
@@ -64,39 +40,39 @@ pub(super) fn run(jobs: &[Job<'_>], verbosity: Verbosity, draw: &Draw<'_>) -> Re
             "--checkpoint saves the state of one fit: give one picture",
         ));
     }
-    let events = jobs.first().and_then(|job| job.options.events.as_deref());
-    let outputs: Vec<Outputs<'_>> = jobs.iter().map(Outputs::open).collect::<Result<_>>()?;
-    keep_apart(jobs, &outputs, events)?;
+    let options = jobs.first().map(|job| job.options);
+    let events = options.and_then(|options| options.events.as_deref());
+    keep_apart(jobs, events)?;
     let mut events = Events::open(events)?;
-    let watch = jobs.first().map(|job| Watch::open(job.options));
-    let watch = watch.transpose()?.flatten();
-    let draw: &Draw<'_> = &|picture, start, observer| match &watch {
-        Some(watch) => watch.fit(picture, start, observer, draw),
+    let is_viewed = options.is_some_and(|options| options.view);
+    let viewer = is_viewed.then(view::open).transpose()?;
+    let draw: &Draw<'_> = &|picture, start, observer| match &viewer {
+        Some(viewer) => view::watched(viewer, picture, start, observer, draw),
         None => draw(picture, start, observer),
     };
-    let status = match (jobs, outputs.as_slice()) {
-        ([job], [outputs]) => one(job, outputs, &mut events, verbosity, draw, watch.as_ref()),
+    let status = match jobs {
+        [job] => one(job, &mut events, verbosity, draw, viewer.as_ref())?,
         _ => {
-            let status = several(jobs, &outputs, &mut events, verbosity, draw);
-            watch.as_ref().and_then(Watch::wait);
-            Ok(status)
+            let status = several(jobs, &mut events, verbosity, draw);
+            viewer.as_ref().and_then(Viewer::wait);
+            status
         }
     };
-    status.and_then(|status| events.close().map(|()| status))
+    events.close()?;
+    Ok(status)
 }
 
 fn one(
     job: &Job<'_>,
-    outputs: &Outputs<'_>,
     events: &mut Events,
     verbosity: Verbosity,
     draw: &Draw<'_>,
-    watch: Option<&Watch>,
+    viewer: Option<&Viewer>,
 ) -> Result<Status> {
     // Standard input cannot be read again for more strokes.
-    let watch = watch.inspect(|watch| watch.offer_more(!input::is_stdin(job.input)));
+    let viewer = viewer.inspect(|viewer| viewer.offer_more(!input::is_stdin(job.input)));
     let mut attempt = |draw: &Draw<'_>| {
-        let drawn = attempt(job, outputs, events, String::new(), verbosity, draw)?;
+        let drawn = job.run(String::new(), events, verbosity, draw)?;
         verbosity.say(job.summary(&drawn));
         anyhow::Ok(drawn)
     };
@@ -106,27 +82,17 @@ fn one(
         if matches!(status, Status::Interrupted(_)) {
             return Ok(status);
         }
-        let Some((watch, more)) = watch.and_then(|watch| Some((watch, watch.wait()?))) else {
+        let Some((viewer, more)) = viewer.and_then(|viewer| Some((viewer, viewer.wait()?))) else {
             return Ok(status);
         };
+        let more = view::more(job.options, &drawn.judged.fit, more);
         drawn = attempt(&|picture, start, observer| {
-            watch.fit(
-                picture,
-                start,
-                observer,
-                &view::more(job.options, &drawn.judged.fit, more),
-            )
+            view::watched(viewer, picture, start, observer, &more)
         })?;
     }
 }
 
-fn several(
-    jobs: &[Job<'_>],
-    outputs: &[Outputs<'_>],
-    events: &mut Events,
-    verbosity: Verbosity,
-    draw: &Draw<'_>,
-) -> Status {
+fn several(jobs: &[Job<'_>], events: &mut Events, verbosity: Verbosity, draw: &Draw<'_>) -> Status {
     let names = jobs.iter().map(|job| job.input.display().to_string());
     let width = names.map(|name| name.chars().count()).max();
     let width = width.unwrap_or(0).max("picture".len());
@@ -135,9 +101,9 @@ fn several(
         "picture"
     ));
     let (mut worst, mut done, mut failed) = (Status::Done, 0, 0);
-    for (i, (job, outputs)) in jobs.iter().zip(outputs).enumerate() {
+    for (i, job) in jobs.iter().enumerate() {
         let heading = format!("{} of {} ", i + 1, jobs.len());
-        let status = match attempt(job, outputs, events, heading, verbosity, draw) {
+        let status = match job.run(heading, events, verbosity, draw) {
             Ok(drawn) => {
                 verbosity.say(format_args!(
                     "{:width$}  {}",
@@ -184,42 +150,19 @@ fn row(drawn: &Drawn) -> String {
     )
 }
 
-/// Does one job; a failure is an event too.
-fn attempt(
-    job: &Job<'_>,
-    outputs: &Outputs<'_>,
-    events: &mut Events,
-    heading: String,
-    verbosity: Verbosity,
-    draw: &Draw<'_>,
-) -> Result<Drawn> {
-    let drawn = job.run(outputs, events, heading, verbosity, draw);
-    if let Err(error) = &drawn {
-        events.tell(&Event::Failed {
-            path: job.input.display().to_string(),
-            error: super::hint::Hint::split(error).0,
-        });
-    }
-    drawn
-}
-
 /// Refuses jobs if one would overwrite what another reads or writes.
-fn keep_apart(jobs: &[Job<'_>], outputs: &[Outputs<'_>], events: Option<&Path>) -> Result<()> {
+fn keep_apart(jobs: &[Job<'_>], events: Option<&Path>) -> Result<()> {
     let events = events.map(|path| Output::open(path).map(|output| (path, output)));
     let events = events.transpose()?;
     let mut taken: Vec<(&Path, &Output)> = events.iter().map(|(path, o)| (*path, o)).collect();
-    for outputs in outputs {
-        for (path, output) in outputs.all() {
-            if taken.iter().any(|(_, other)| *other == output) {
-                return Err(clash(path, jobs.len()));
-            }
-            taken.push((path, output));
+    for (path, output) in jobs.iter().flat_map(Job::outputs) {
+        if taken.iter().any(|(_, other)| *other == output) {
+            return Err(clash(path, jobs.len()));
         }
+        taken.push((path, output));
     }
-    let inputs = jobs
-        .iter()
-        .flat_map(|job| [job.input].into_iter().chain(job.base));
-    for input in inputs.filter(|input| !input::is_stdin(input)) {
+    let inputs = jobs.iter().flat_map(|job| [Some(job.input), job.base]);
+    for input in inputs.flatten().filter(|input| !input::is_stdin(input)) {
         if taken.iter().any(|(_, output)| output.is(input)) {
             let name = input.display();
             return Err(misuse(format!(

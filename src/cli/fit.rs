@@ -6,6 +6,7 @@ use anyhow::Result;
 
 use super::batch;
 use super::hint::Hint;
+use super::job::Job;
 use super::options::Options;
 use super::pictures::Format;
 use super::{Status, Verbosity, input, misuse};
@@ -44,10 +45,16 @@ pub(super) struct Args {
     options: Options,
 }
 
-pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
+pub(super) fn run<'a>(args: &'a Args, verbosity: Verbosity) -> Result<Status> {
     let options = &args.options;
-    let (inputs, output) = places(&args.inputs, &args.output)?;
-    let jobs = batch::jobs(inputs, output, args.report.as_deref(), options)?;
+    let (inputs, outputs) = places(&args.inputs, &args.output)?;
+    let job = |input: &'a PathBuf| {
+        let named = |template: &PathBuf| batch::named(template, input);
+        let outputs: Vec<PathBuf> = outputs.iter().map(named).collect::<Result<_>>()?;
+        let report = args.report.as_ref().map(named).transpose()?;
+        Job::open(None, input, &outputs, report.as_deref(), options)
+    };
+    let jobs: Vec<Job<'_>> = inputs.iter().map(job).collect::<Result<_>>()?;
     batch::run(&jobs, verbosity, &|picture, start, observer| {
         options.fit(0, observer, |fitter| fitter.since(start).fit(picture))
     })

@@ -11,43 +11,85 @@ use strokefit::report::{self, Event, FitReport, Input, Judged, Run, Usage};
 use strokefit::scene::Dropped;
 use strokefit::verify::MIN_AGREEMENT_DB;
 
-use super::events::{Events, Phases};
+use super::events::Events;
+use super::hint::Hint;
 use super::interrupt::Interrupt;
 use super::options::Options;
 use super::output::{self, Output};
-use super::pictures::{Pictures, Subject};
-use super::progress::{FitBar, Narration};
+use super::pictures::{self, Pictures};
+use super::progress::Watching;
 use super::{Status, Verbosity, complain, input};
 
-/// Picture to draw, and places for the results.
+/// Picture to draw, and places for the results, known to be writable.
 pub(super) struct Job<'a> {
     /// The SVG to go on from.
     pub(super) base: Option<&'a Path>,
     pub(super) input: &'a Path,
-    /// The SVG.
-    pub(super) output: PathBuf,
-    /// Pictures and animations beside it.
-    pub(super) pictures: Vec<PathBuf>,
-    pub(super) report: Option<PathBuf>,
     pub(super) options: &'a Options,
+    svg: (PathBuf, Output),
+    report: Option<(PathBuf, Output)>,
+    /// Pictures and animations beside the SVG.
+    pictures: Pictures,
 }
 
 /// Draws a picture; the time budget started at the given instant, and the observer is told of progress.
 pub(super) type Draw<'a> = dyn Fn(&Image, Instant, &mut (dyn Observer + Send)) -> Result<Fit> + 'a;
 
-impl Job<'_> {
-    /// Draws and writes; the bar begins with `heading`.
+impl<'a> Job<'a> {
+    /// The job that writes files of these names.
+    pub(super) fn open(
+        base: Option<&'a Path>,
+        input: &'a Path,
+        outputs: &[PathBuf],
+        report: Option<&Path>,
+        options: &'a Options,
+    ) -> Result<Self> {
+        let (svg, pictures) = pictures::split(outputs)?;
+        let open = |path: &Path| Output::open(path).map(|output| (path.to_owned(), output));
+        Ok(Self {
+            base,
+            input,
+            options,
+            svg: open(svg)?,
+            report: report.map(open).transpose()?,
+            pictures: Pictures::open(&pictures, options.film)?,
+        })
+    }
+
+    /// Every file that is written.
+    pub(super) fn outputs(&self) -> impl Iterator<Item = (&Path, &Output)> {
+        let own = [&self.svg].into_iter().chain(&self.report);
+        own.map(|(path, output)| (path.as_path(), output))
+            .chain(self.pictures.all())
+    }
+
+    /// Draws and writes; the bar begins with `heading`. A failure is an event too.
     pub(super) fn run(
         &self,
-        outputs: &Outputs<'_>,
-        events: &mut Events,
         heading: String,
+        events: &mut Events,
+        verbosity: Verbosity,
+        draw: &Draw<'_>,
+    ) -> Result<Drawn> {
+        let drawn = self.drawn(heading, events, verbosity, draw);
+        if let Err(error) = &drawn {
+            let (path, error) = (self.input.display().to_string(), Hint::split(error).0);
+            events.tell(&Event::Failed { path, error });
+        }
+        drawn
+    }
+
+    fn drawn(
+        &self,
+        heading: String,
+        events: &mut Events,
         verbosity: Verbosity,
         draw: &Draw<'_>,
     ) -> Result<Drawn> {
         let start = Instant::now();
         let (picture, remarks) = input::picture_within(self.input, self.options.limits())?;
-        let input = Input::new(self.input.display().to_string(), &picture).remarking(&remarks);
+        let name = self.input.display().to_string();
+        let input = Input::new(name.clone(), &picture).remarking(&remarks);
         for remark in &remarks {
             let line = format!("{}: {remark}", input::name(self.input));
             if remark.is_warning() {
@@ -59,95 +101,59 @@ impl Job<'_> {
         events.tell(&Event::Start(input.clone()));
         let memory = fit::predicted_rss_bytes(&picture, &self.options.config());
         verbosity.detail(format_args!("needs about {} MiB of memory", memory >> 20));
-        let bar = FitBar::new(verbosity.quiet, heading);
-        let fit = self.watched(&picture, start, events, bar, verbosity, draw)?;
+        // Draws, showing and telling how it goes.
+        let mut watching = Watching::new(heading, name, events, verbosity);
+        let mut interrupt = Interrupt::watch()?;
+        let fit = draw(&picture, start, &mut |progress: &Progress<'_>| {
+            watching.watch(progress);
+            interrupt.observe(progress)
+        });
+        watching.end(matches!(&fit, Ok(fit) if fit.stop != Stop::Interrupted));
+        let fit = fit?;
         tell_omitted(&fit, input::name(self.input), verbosity);
         let mut drawn = Drawn {
             judged: Judged::new(fit)?,
             wall: Duration::ZERO,
         };
-        let product = self.options.product(&drawn.judged)?;
-        let subject = Subject {
-            scene: product.scene.as_deref(),
-            text: &product.text,
-            target: Some(&drawn.judged.fit.target),
-            scale: 1.0,
-        };
-        outputs.svg.1.write(&subject.drawing(&self.output)?)?;
-        drawn.wall = start.elapsed();
+        // The SVG comes first: what goes wrong later leaves the drawing there.
+        let subject = self.options.subject(&drawn.judged)?;
+        self.svg.1.write(&subject.drawing(&self.svg.0)?)?;
+        let wall = start.elapsed();
         let record = FitReport {
             input: Input {
                 damage: drawn.judged.fit.damage,
                 ..input
             },
-            ..self.record(&drawn)
+            ..self.record(&drawn.judged, wall)
         };
-        if let Some((_, output)) = &outputs.report {
+        if let Some((_, output)) = &self.report {
             output.write(report::json(&record)?.as_bytes())?;
         }
-        outputs.pictures.write(&subject)?;
-        drop(product);
+        self.pictures.write(&subject)?;
+        drop(subject);
+        drawn.wall = wall;
         events.tell(&Event::Done(Box::new(record)));
-        self.forget(&drawn)?;
+        // A checkpoint has served, unless there is more to be drawn.
+        if let Some(checkpoint) = self.options.checkpoint()
+            && drawn.judged.fit.stop != Stop::Interrupted
+        {
+            checkpoint.remove()?;
+        }
         Interrupt::rest();
         Ok(drawn)
     }
 
-    /// Draws, showing and telling how it goes.
-    fn watched(
-        &self,
-        picture: &Image,
-        start: Instant,
-        events: &mut Events,
-        mut bar: FitBar,
-        verbosity: Verbosity,
-        draw: &Draw<'_>,
-    ) -> Result<Fit> {
-        let mut interrupt = Interrupt::watch()?;
-        let mut phases = Phases::new(events, self.input.display().to_string());
-        let mut narration = Narration::default();
-        let mut observer = |progress: &Progress<'_>| {
-            bar.show(progress);
-            if let Some(line) = narration.watch(progress).filter(|_| verbosity.verbose) {
-                bar.clear();
-                complain(line);
-            }
-            phases.watch(progress);
-            interrupt.observe(progress)
-        };
-        let fit = draw(picture, start, &mut observer);
-        match &fit {
-            Ok(fit) if fit.stop != Stop::Interrupted => phases.finish(),
-            _ => phases.end(),
-        }
-        bar.clear();
-        if let Some(line) = narration.end() {
-            verbosity.detail(line);
-        }
-        fit
-    }
-
-    /// Removes the checkpoint of a drawing that is written, unless there is more to be drawn of it.
-    fn forget(&self, drawn: &Drawn) -> Result<()> {
-        match self.options.checkpoint() {
-            Some(checkpoint) if drawn.judged.fit.stop != Stop::Interrupted => {
-                Ok(checkpoint.remove()?)
-            }
-            _ => Ok(()),
-        }
-    }
-
-    fn record(&self, drawn: &Drawn) -> FitReport {
+    fn record(&self, judged: &Judged, wall: Duration) -> FitReport {
         let name = |path: &Path| path.display().to_string();
         let (input, base) = (name(self.input), self.base.map(name));
         let run = Run {
             input: &input,
             base: base.as_deref(),
             config: &self.options.config(),
-            wall: drawn.wall,
+            wall,
             usage: Usage::now(),
         };
-        FitReport::of(&drawn.judged, &run)
+        FitReport::of(judged, &run)
     }
 
     /// Outcome in a line.
@@ -157,7 +163,7 @@ impl Job<'_> {
         } = &drawn.judged;
         format!(
             "{}: {}, {} bytes, {:.2} s, fidelity {:.2} dB, agreement {:.2} dB",
-            output::name(&self.output),
+            output::name(&self.svg.0),
             fit.scene.counted(),
             svg.len(),
             drawn.wall.as_secs_f64(),
@@ -168,7 +174,7 @@ impl Job<'_> {
 
     /// The status of a drawing that was written. What is short of the promise is said even when quiet.
     pub(super) fn judge(&self, drawn: &Drawn, verbosity: Verbosity) -> Status {
-        let name = output::name(&self.output);
+        let name = output::name(&self.svg.0);
         let Judged {
             fit, svg, verdict, ..
         } = &drawn.judged;
@@ -241,31 +247,6 @@ impl Job<'_> {
             Stop::Strokes => "allow more strokes, by --strokes".into(),
             _ => "what is missing is finer than strokes: draw the picture at twice its size, or without its noise".into(),
         }
-    }
-}
-
-/// Where the results go, known to be writable.
-pub(super) struct Outputs<'a> {
-    svg: (&'a Path, Output),
-    report: Option<(&'a Path, Output)>,
-    pictures: Pictures<'a>,
-}
-
-impl<'a> Outputs<'a> {
-    pub(super) fn open(job: &'a Job<'_>) -> Result<Self> {
-        let open = |path: &'a PathBuf| Output::open(path).map(|output| (path.as_path(), output));
-        Ok(Self {
-            svg: open(&job.output)?,
-            report: job.report.as_ref().map(open).transpose()?,
-            pictures: Pictures::open(&job.pictures, &job.options.film)?,
-        })
-    }
-
-    /// Every file that is written.
-    pub(super) fn all(&self) -> impl Iterator<Item = (&'a Path, &Output)> {
-        let own = [&self.svg].into_iter().chain(&self.report);
-        own.map(|(path, output)| (*path, output))
-            .chain(self.pictures.all())
     }
 }
 

@@ -6,7 +6,6 @@
 pub mod bar;
 mod batch;
 mod check;
-mod drawing;
 mod events;
 mod fit;
 mod hint;
@@ -17,7 +16,6 @@ mod manual;
 mod options;
 pub mod output;
 mod pictures;
-mod product;
 mod progress;
 mod refine;
 mod refusal;

@@ -1,13 +1,17 @@
-//! Pictures and animations of a drawing; the file name selects the format.
+//! The files of a drawing: as it was fitted, or made for a machine from that, and pictures and animations of it. The file name
+//! selects the format.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use strokefit::animation::{Film, Legend, Step};
+use strokefit::fit::Widths;
 use strokefit::image::{AnimationFormat, Image};
-use strokefit::machine::{self, Sheet};
-use strokefit::scene::Scene;
-use strokefit::svg;
+use strokefit::machine::{self, Hatch, Sheet};
+use strokefit::report::Judged;
+use strokefit::scene::{MIN_WIDTH, Scene};
+use strokefit::svg::{self, Form, Group, WriteOptions};
 use strokefit::verify::{self, Size};
 
 use super::misuse;
@@ -21,8 +25,11 @@ const NOT_WRITTEN: [&str; 9] = [
     "jpg", "jpeg", "bmp", "tif", "tiff", "avif", "eps", "ps", "svgz",
 ];
 
+/// Decimals of cut-outs. Rounded corners on the border of another area leave slivers, in whose width the border's length counts.
+const CUTOUT_PRECISION: u8 = 4;
+
 /// Options of a film of a drawing.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Clone, Copy, clap::Args)]
 #[command(next_help_heading = "Animation (.gif, .webp, .apng, .animated.svg and {n}.png)")]
 pub(super) struct FilmOptions {
     /// Add a stage, or N strokes, with each frame [default: as many as give about 50 frames]
@@ -31,6 +38,22 @@ pub(super) struct FilmOptions {
     /// Write the number of strokes below each frame and, in fit, the PSNR
     #[arg(long)]
     legend: bool,
+}
+
+/// What is made of a drawing before it is written.
+#[derive(Debug, Clone, Copy, clap::Args)]
+pub(super) struct Made {
+    /// Write filled outlines instead of strokes, one for each, for programs that ignore strokes
+    #[arg(long, conflicts_with_all = ["cutout", "hatch"])]
+    pub(super) outline: bool,
+    /// Write what is seen of each colour as one path, for cutters: areas do not overlap, share their borders, and end at the
+    /// page. All is opaque; the background is one of the areas unless it is none
+    #[arg(long, conflicts_with = "hatch")]
+    pub(super) cutout: bool,
+    /// Fill areas with lines for a plotter, so far apart, such as 0.5mm, at an angle, 45 degrees if none is given. The lines
+    /// are as wide as the thinnest pen, or as they are far apart
+    #[arg(long, value_name = "DISTANCE[:ANGLE]", allow_hyphen_values = true)]
+    pub(super) hatch: Option<Hatch>,
 }
 
 /// Content of a file.
@@ -86,18 +109,57 @@ impl Format {
     }
 }
 
-/// A drawing and what is known of it.
+/// A drawing to be written, and what is known of it.
 pub(super) struct Subject<'a> {
-    /// Needed for what moves, PDF and DXF.
-    pub(super) scene: Option<&'a Scene>,
-    pub(super) text: &'a str,
+    /// The marks; `None` if they lie on another SVG and are only a part of the drawing. Needed for what moves, PDF and DXF.
+    scene: Option<Cow<'a, Scene>>,
+    /// The SVG.
+    text: Cow<'a, str>,
     /// Picture that the drawing is to look like.
-    pub(super) target: Option<&'a Image>,
+    target: Option<&'a Image>,
     /// Pixels per px of the drawing.
     pub(super) scale: f64,
 }
 
-impl Subject<'_> {
+impl<'a> Subject<'a> {
+    pub(super) fn new(scene: Option<Cow<'a, Scene>>, text: Cow<'a, str>) -> Self {
+        Self {
+            scene,
+            text,
+            target: None,
+            scale: 1.0,
+        }
+    }
+
+    fn like(self, target: &'a Image) -> Self {
+        let target = Some(target);
+        Self { target, ..self }
+    }
+
+    /// The drawing of a fit with these pens, made into what was asked for.
+    pub(super) fn of(judged: &'a Judged, made: &Made, pens: Option<&Widths>) -> Result<Self> {
+        let page = svg::page_width(&judged.svg);
+        let radii = pens.map(|pens| pens.radii(page, &judged.fit.target));
+        let radii = radii.transpose()?.unwrap_or_default();
+        let pen = radii.first().map(|radius| 2.0 * radius);
+        let file = WriteOptions {
+            width: page,
+            ..judged.fit.file
+        };
+        if !made.is_for_machines() {
+            let outlines = |scene: &'a Scene| match file.form {
+                Form::Outlines => Cow::Owned(machine::outlined(scene)),
+                _ => Cow::Borrowed(scene),
+            };
+            let scene = judged.whole().map(outlines);
+            return Ok(Self::new(scene, Cow::Borrowed(&judged.svg)).like(&judged.fit.target));
+        }
+        let whole = judged.whole().ok_or_else(|| {
+            misuse("the SVG is not made of strokes and areas only: leave out --cutout and --hatch")
+        })?;
+        Ok(made.subject(whole, &file, pen)?.like(&judged.fit.target))
+    }
+
     /// The bytes of the drawing as a file of this name.
     pub(super) fn drawing(&self, path: &Path) -> Result<Vec<u8>> {
         let format = Format::of(path).filter(|format| format.needs_marks());
@@ -105,8 +167,8 @@ impl Subject<'_> {
             return Ok(self.text.as_bytes().to_vec());
         };
         let sheet = Sheet {
-            scene: self.scene.ok_or_else(|| unknown_marks(path))?,
-            width: svg::page_width(self.text),
+            scene: self.scene.as_deref().ok_or_else(|| unknown_marks(path))?,
+            width: svg::page_width(&self.text),
         };
         Ok(match format {
             Format::Dxf => machine::dxf(&sheet).into_bytes(),
@@ -115,23 +177,76 @@ impl Subject<'_> {
     }
 }
 
-/// Pictures and animations, known to be writable.
-#[derive(Debug)]
-pub(super) struct Pictures<'a> {
-    files: Vec<(Format, Output, &'a Path)>,
-    options: &'a FilmOptions,
+impl Made {
+    /// True if a cutter or a plotter reads the file.
+    pub(super) fn is_for_machines(&self) -> bool {
+        self.cutout || self.hatch.is_some()
+    }
+
+    /// The drawing that is made of a scene, in a file with these options; `pen` is the width of the pen that hatches, px of the
+    /// picture.
+    pub(super) fn subject(
+        &self,
+        scene: &Scene,
+        file: &WriteOptions,
+        pen: Option<f32>,
+    ) -> Result<Subject<'static>> {
+        let (made, text) = if let Some(hatch) = self.hatch {
+            let made = hatched(scene, hatch, pen, file)?;
+            let text = svg::write(&made, file);
+            (made, text)
+        } else if self.cutout {
+            let made = machine::cut_out(scene)?;
+            let options = WriteOptions {
+                precision: file.precision.max(CUTOUT_PRECISION),
+                group: Group::Color,
+                ..*file
+            };
+            let text = svg::write(&made, &options);
+            (made, text)
+        } else {
+            // Straight outlines and dots have elements of their own.
+            (machine::outlined(scene), svg::write(scene, file))
+        };
+        Ok(Subject::new(Some(Cow::Owned(made)), Cow::Owned(text)))
+    }
 }
 
-impl<'a> Pictures<'a> {
+/// The drawing with its areas filled by the lines of a pen; without one, lines are as wide as they are far apart.
+fn hatched(scene: &Scene, hatch: Hatch, pen: Option<f32>, file: &WriteOptions) -> Result<Scene> {
+    let sheet = Sheet {
+        scene,
+        width: file.width,
+    };
+    let spacing = hatch.spacing.px() / sheet.px();
+    if spacing < MIN_WIDTH {
+        return Err(misuse(format!(
+            "the lines of --hatch are {spacing:.2} px of the picture apart, and a stroke is {MIN_WIDTH} px or more wide: \
+             enlarge the picture, or give a larger distance"
+        )));
+    }
+    let pen = pen.map_or(spacing, f64::from);
+    Ok(machine::hatched(scene, spacing, pen, hatch.degrees)?)
+}
+
+/// Pictures and animations, known to be writable.
+#[derive(Debug)]
+pub(super) struct Pictures {
+    files: Vec<(Format, Output, PathBuf)>,
+    options: FilmOptions,
+}
+
+impl Pictures {
     /// The files at `paths`, all of them pictures or animations; a name that says nothing is a picture.
-    pub(super) fn open(paths: &'a [PathBuf], options: &'a FilmOptions) -> Result<Self> {
-        let open = |path: &'a PathBuf| {
+    pub(super) fn open(paths: &[impl AsRef<Path>], options: FilmOptions) -> Result<Self> {
+        let open = |path: &Path| {
             expect_written(path)?;
             let format = Format::of(path).unwrap_or(Format::Picture);
             let output = Output::open(&numbered(path, format, "1"))?;
-            Ok((format, output, path.as_path()))
+            Ok((format, output, path.to_owned()))
         };
-        let files = paths.iter().map(open).collect::<Result<Vec<_>>>()?;
+        let paths = paths.iter().map(AsRef::as_ref);
+        let files = paths.map(open).collect::<Result<Vec<_>>>()?;
         let outputs = Self { files, options };
         outputs.check()?;
         Ok(outputs)
@@ -145,7 +260,7 @@ impl<'a> Pictures<'a> {
             }
         }
         let FilmOptions { frames, legend } = self.options;
-        if !self.moves() && (frames.is_some() || *legend) {
+        if !self.moves() && (frames.is_some() || legend) {
             let message =
                 "--frames and --legend apply to animations only: add one, such as -o out.gif";
             return Err(misuse(message));
@@ -163,14 +278,15 @@ impl<'a> Pictures<'a> {
     }
 
     /// Every file that is written.
-    pub(super) fn all(&self) -> impl Iterator<Item = (&'a Path, &Output)> {
-        self.files.iter().map(|(_, output, path)| (*path, output))
+    pub(super) fn all(&self) -> impl Iterator<Item = (&Path, &Output)> {
+        let files = self.files.iter();
+        files.map(|(_, output, path)| (path.as_path(), output))
     }
 
     /// Writes all files.
     pub(super) fn write(&self, subject: &Subject<'_>) -> Result<()> {
         for (format, output, path) in &self.files {
-            match (format, subject.scene) {
+            match (format, subject.scene.as_deref()) {
                 (Format::Frames, Some(scene)) => self.write_frames(path, subject, scene)?,
                 (Format::AnimatedSvg, Some(scene)) => {
                     output.write(self.film(subject).svg(scene).as_bytes())?;
@@ -181,7 +297,7 @@ impl<'a> Pictures<'a> {
                 (format, _) if format.is_drawing() => output.write(&subject.drawing(path)?)?,
                 (format, None) if format.moves() => return Err(unknown_marks(path)),
                 _ => {
-                    let picture = verify::render(subject.text, Size::Scale(subject.scale), None)?;
+                    let picture = verify::render(&subject.text, Size::Scale(subject.scale), None)?;
                     output.write(&picture.encode_png()?)?;
                 }
             }

@@ -1,40 +1,137 @@
-//! The progress of a fit: a bar on a terminal, and with `--verbose` a line for each part as it ends, and now and then for one
-//! that takes long.
+//! The progress of a fit: a bar on a terminal, an event for each phase that has ended, and with `--verbose` a line for each part as
+//! it ends, and now and then for one that takes long.
 
 use std::time::{Duration, Instant};
 
 use strokefit::fit::Progress;
+use strokefit::report::{Event, PhaseEntry};
 
 use super::bar::Bar;
+use super::events::Events;
+use super::{Verbosity, complain};
 
-/// Shows the progress of a fit.
-pub(super) struct FitBar {
+/// Follows one fit.
+pub(super) struct Watching<'a> {
     bar: Bar,
+    verbosity: Verbosity,
+    events: &'a mut Events,
+    /// The picture as it was named.
+    path: String,
     started: Instant,
     /// Strokes moved so far, each once an iteration.
     moves: u64,
+    /// The part under way.
+    part: Option<Part>,
+    /// The phase that the next event is about, and whether that is polish.
+    phase: Option<(bool, PhaseEntry)>,
 }
 
-impl FitBar {
-    /// A bar that begins with `heading`.
-    pub(super) fn new(quiet: bool, heading: String) -> Self {
+/// A part as lines tell of it.
+struct Part {
+    place: String,
+    began: Instant,
+    told: Instant,
+    iterations: usize,
+    strokes: usize,
+    psnr_db: f64,
+}
+
+impl<'a> Watching<'a> {
+    /// Follows the fit of `path`, which starts now; the bar begins with `heading`.
+    pub(super) fn new(
+        heading: String,
+        path: String,
+        events: &'a mut Events,
+        verbosity: Verbosity,
+    ) -> Self {
         Self {
-            bar: Bar::new(quiet, heading),
+            bar: Bar::new(verbosity.quiet, heading),
+            verbosity,
+            events,
+            path,
             started: Instant::now(),
             moves: 0,
+            part: None,
+            phase: None,
         }
     }
 
-    /// Shows how far the fit has come.
-    pub(super) fn show(&mut self, progress: &Progress<'_>) {
+    /// Shows and tells how far the fit has come. Trials have no events.
+    pub(super) fn watch(&mut self, progress: &Progress<'_>) {
         self.moves += progress.strokes as u64;
         let rate = self.moves as f64 / self.started.elapsed().as_secs_f64().max(1e-3);
         self.bar.show(progress.done, || caption(progress, rate));
+        if let Some(line) = self.line(progress).filter(|_| self.verbosity.verbose) {
+            self.bar.clear();
+            complain(line);
+        }
+        if self.events.is_open() && !progress.is_trial {
+            self.count(progress);
+        }
     }
 
-    /// Takes the bar off the screen, until the fit goes on.
-    pub(super) fn clear(&mut self) {
+    /// Ends with the fit, after all of its work if it `is_done`.
+    pub(super) fn end(mut self, is_done: bool) {
+        if let Some((_, phase)) = self.phase.as_mut().filter(|_| is_done) {
+            phase.done = 1.0;
+        }
+        self.tell();
         self.bar.clear();
+        if let Some(part) = &self.part {
+            self.verbosity.detail(part.line());
+        }
+    }
+
+    /// The line that is due, if one is.
+    fn line(&mut self, progress: &Progress<'_>) -> Option<String> {
+        let (place, now) = (place(progress), Instant::now());
+        let ended = self.part.take_if(|part| part.place != place);
+        let part = self.part.get_or_insert(Part {
+            place,
+            began: now,
+            told: now,
+            iterations: 0,
+            strokes: 0,
+            psnr_db: 0.0,
+        });
+        part.iterations += 1;
+        (part.strokes, part.psnr_db) = (progress.strokes, progress.psnr_db);
+        if now - part.told < PATIENCE {
+            return ended.map(|part| part.line());
+        }
+        part.told = now;
+        let percent = 100.0 * progress.done;
+        Some(format!("{}, {percent:.0} % of all", part.line()))
+    }
+
+    /// Counts an iteration of the phase, and tells of the one before if that has ended.
+    fn count(&mut self, progress: &Progress<'_>) {
+        let is_same = |(polish, phase): &(bool, PhaseEntry)| {
+            *polish == progress.polishing && phase.stage == progress.stage
+        };
+        if !self.phase.as_ref().is_some_and(is_same) {
+            self.tell();
+        }
+        let before = self.phase.as_ref().map_or(0, |(_, phase)| phase.iterations);
+        let phase = PhaseEntry {
+            path: self.path.clone(),
+            stage: progress.stage,
+            strokes: progress.strokes,
+            iterations: before + 1,
+            elapsed_s: self.started.elapsed().as_secs_f64(),
+            psnr_db: Some(progress.psnr_db).filter(|db| db.is_finite()),
+            done: progress.done,
+        };
+        self.phase = Some((progress.polishing, phase));
+    }
+
+    /// Tells of the phase under way, which has ended.
+    fn tell(&mut self) {
+        match self.phase.take() {
+            Some((true, phase)) => self.events.tell(&Event::Polish(phase)),
+            Some((false, phase)) => self.events.tell(&Event::Stage(phase)),
+            None => {}
+        }
     }
 }
 
@@ -64,53 +161,6 @@ fn place(progress: &Progress<'_>) -> String {
 
 /// Time after which a part that has not ended is told of, and told of again.
 const PATIENCE: Duration = Duration::from_secs(5);
-
-/// State of the part under way.
-struct Part {
-    place: String,
-    began: Instant,
-    told: Instant,
-    iterations: usize,
-    strokes: usize,
-    psnr_db: f64,
-}
-
-/// Follows one fit.
-#[derive(Default)]
-pub(super) struct Narration(Option<Part>);
-
-impl Narration {
-    /// Notes how far the fit has come, and gives the line that is due, if one is.
-    pub(super) fn watch(&mut self, progress: &Progress<'_>) -> Option<String> {
-        let (place, now) = (place(progress), Instant::now());
-        let ended = if self.0.as_ref().is_some_and(|part| part.place == place) {
-            None
-        } else {
-            self.end()
-        };
-        let part = self.0.get_or_insert(Part {
-            place,
-            began: now,
-            told: now,
-            iterations: 0,
-            strokes: 0,
-            psnr_db: 0.0,
-        });
-        part.iterations += 1;
-        (part.strokes, part.psnr_db) = (progress.strokes, progress.psnr_db);
-        if now - part.told < PATIENCE {
-            return ended;
-        }
-        part.told = now;
-        let percent = 100.0 * progress.done;
-        Some(format!("{}, {percent:.0} % of all", part.line()))
-    }
-
-    /// The line of the last part, which has ended.
-    pub(super) fn end(&mut self) -> Option<String> {
-        self.0.take().map(|part| part.line())
-    }
-}
 
 impl Part {
     fn line(&self) -> String {

@@ -8,7 +8,7 @@ use strokefit::image::Image;
 
 use super::job::Job;
 use super::options::Options;
-use super::{Status, Verbosity, batch, input, misuse, pictures};
+use super::{Status, Verbosity, batch, input, misuse};
 
 /// Add strokes to an SVG to bring it closer to a picture
 ///
@@ -55,15 +55,14 @@ pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
             "--background cannot be chosen when refining: the drawing keeps that of the SVG",
         ));
     }
-    let (output, others) = pictures::split(&args.output)?;
-    let job = Job {
-        base: Some(&args.base),
-        input: &args.input,
-        output: output.to_owned(),
-        pictures: others.into_iter().map(PathBuf::from).collect(),
-        report: args.report.clone(),
-        options: &args.options,
-    };
+    let report = args.report.as_deref();
+    let job = Job::open(
+        Some(&args.base),
+        &args.input,
+        &args.output,
+        report,
+        &args.options,
+    )?;
     let text = input::svg(&args.base)?;
     batch::run(&[job], verbosity, &|picture, start, observer| {
         let base = read(args, text.clone(), picture)?;

@@ -6,8 +6,7 @@ use std::path::PathBuf;
 use anyhow::Result;
 use strokefit::svg::{self, Form, WriteOptions};
 
-use super::pictures::{FilmOptions, Format, Pictures, Subject};
-use super::product::{Made, Product};
+use super::pictures::{FilmOptions, Format, Made, Pictures, Subject};
 use super::{Status, input, misuse};
 
 /// Render an SVG to a PNG or an animation, as resvg draws it, or convert it to PDF or DXF
@@ -50,7 +49,7 @@ fn scale(text: &str) -> Result<f64, &'static str> {
 
 pub(super) fn run(args: &Args) -> Result<Status> {
     let text = input::svg(&args.file)?;
-    let pictures = Pictures::open(&args.output, &args.film)?;
+    let pictures = Pictures::open(&args.output, args.film)?;
     if !input::is_stdin(&args.file) && pictures.all().any(|(_, output)| output.is(&args.file)) {
         return Err(misuse(format!(
             "{}: would be overwritten: name another output",
@@ -70,35 +69,21 @@ pub(super) fn run(args: &Args) -> Result<Status> {
     Ok(Status::Done)
 }
 
-fn write(pictures: &Pictures<'_>, text: &str, args: &Args, is_made: bool) -> Result<()> {
-    let product = match is_made {
-        true => {
-            let form = match args.made.outline {
+fn write(pictures: &Pictures, text: &str, args: &Args, is_made: bool) -> Result<()> {
+    let mut subject = if is_made {
+        let file = WriteOptions {
+            form: match args.made.outline {
                 true => Form::Outlines,
                 false => Form::Plain,
-            };
-            let file = WriteOptions {
-                form,
-                width: svg::page_width(text),
-                ..WriteOptions::default()
-            };
-            args.made.product(&svg::read(text)?, &file, None)?
-        }
-        false => {
-            let scene = pictures
-                .needs_marks()
-                .then(|| svg::read(text))
-                .transpose()?;
-            Product {
-                scene: scene.map(Cow::Owned),
-                text: text.into(),
-            }
-        }
+            },
+            width: svg::page_width(text),
+            ..WriteOptions::default()
+        };
+        args.made.subject(&svg::read(text)?, &file, None)?
+    } else {
+        let scene = pictures.needs_marks().then(|| svg::read(text));
+        Subject::new(scene.transpose()?.map(Cow::Owned), text.into())
     };
-    pictures.write(&Subject {
-        scene: product.scene.as_deref(),
-        text: &product.text,
-        target: None,
-        scale: args.scale,
-    })
+    subject.scale = args.scale;
+    pictures.write(&subject)
 }

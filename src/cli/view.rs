@@ -45,10 +45,9 @@ pub(super) fn run(args: &Args) -> Result<Status> {
         // Refuses a picture of another shape.
         verify::fidelity(&text, picture).map_err(|e| e.within(&name))?;
     }
-    let viewer = Viewer::open()?;
+    let viewer = open()?;
     viewer.begin(&name, picture.as_ref())?;
     viewer.show(&scene, &text);
-    tell(&viewer);
     viewer.wait();
     Ok(Status::Done)
 }
@@ -67,50 +66,26 @@ fn unread(error: strokefit::Error, text: &str, name: &str) -> anyhow::Error {
     )
 }
 
-fn tell(viewer: &Viewer) {
+/// A page, whose address is told.
+pub(super) fn open() -> Result<Viewer> {
+    let viewer = Viewer::open()?;
     complain(format_args!("see {}", viewer.address()));
+    Ok(viewer)
 }
 
-/// A page that fits are watched on.
-pub(super) struct Watch {
-    viewer: Viewer,
-}
-
-impl Watch {
-    /// Tells the address, if the options ask for a page.
-    pub(super) fn open(options: &Options) -> Result<Option<Self>> {
-        if !options.view {
-            return Ok(None);
-        }
-        let viewer = Viewer::open()?;
-        tell(&viewer);
-        Ok(Some(Self { viewer }))
-    }
-
-    /// Lets the page ask for more strokes, or not.
-    pub(super) fn offer_more(&self, offered: bool) {
-        self.viewer.offer_more(offered);
-    }
-
-    /// Draws `picture`, telling the page and `observer`.
-    pub(super) fn fit(
-        &self,
-        picture: &Image,
-        start: Instant,
-        observer: &mut (dyn Observer + Send),
-        draw: &Draw<'_>,
-    ) -> Result<Fit> {
-        let title = format!("{}×{} px", picture.width(), picture.height());
-        self.viewer.begin(&title, Some(picture))?;
-        let fit = draw(picture, start, &mut self.viewer.watch(observer))?;
-        self.viewer.show(&fit.scene, &fit.svg());
-        Ok(fit)
-    }
-
-    /// Stays as long as somebody watches; returns how many more strokes are wanted.
-    pub(super) fn wait(&self) -> Option<usize> {
-        self.viewer.wait()
-    }
+/// Draws `picture`, telling the page and `observer`.
+pub(super) fn watched(
+    viewer: &Viewer,
+    picture: &Image,
+    start: Instant,
+    observer: &mut (dyn Observer + Send),
+    draw: &Draw<'_>,
+) -> Result<Fit> {
+    let title = format!("{}×{} px", picture.width(), picture.height());
+    viewer.begin(&title, Some(picture))?;
+    let fit = draw(picture, start, &mut viewer.watch(observer))?;
+    viewer.show(&fit.scene, &fit.svg());
+    Ok(fit)
 }
 
 /// Function that adds `strokes` to the drawing of `fit`, and fits all of them jointly.
@@ -118,7 +93,7 @@ pub(super) fn more(
     options: &Options,
     fit: &Fit,
     strokes: usize,
-) -> impl Fn(&Image, Instant, &mut (dyn Observer + Send)) -> Result<Fit> {
+) -> impl Fn(&Image, Instant, &mut (dyn Observer + Send)) -> Result<Fit> + use<> {
     let config = Config {
         budget: Budget {
             strokes: Some(fit.scene.len() + strokes),
@@ -134,7 +109,7 @@ pub(super) fn more(
         scene: fit.scene.clone(),
         width: fit.base.as_ref().and_then(|base| base.width),
     };
-    let execution = options.execution();
+    let execution = options.execution;
     move |picture, start, observer| {
         let fitter = Fitter::new(config.clone())
             .execution(execution)

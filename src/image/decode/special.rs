@@ -27,12 +27,22 @@ pub(super) fn samples(
             let supply = Supply::new(&file, ran_out);
             tiff::read(supply, is_palette, limits.max_bytes, check).map(Some)
         }
-        ImageFormat::Ico => {
-            let (file, format) = ico::largest(bytes)?;
-            general(&file, ran_out, format, limits).map(Some)
-        }
+        ImageFormat::Ico => icon(bytes, ran_out, limits).map(Some),
         ImageFormat::Dds => surface(bytes, ran_out, limits).map(Some),
         _ => Ok(None),
+    }
+}
+
+/// The largest picture of an icon.
+fn icon(bytes: &[u8], ran_out: &Cell<bool>, limits: Limits) -> Result<Decoded, Failure> {
+    match ico::largest(bytes)? {
+        ico::Largest::Png(file) => general(file, ran_out, ImageFormat::Png, limits),
+        ico::Largest::Deep(file) => general(&file, ran_out, ImageFormat::Ico, limits),
+        ico::Largest::Bitmap(bitmap) => {
+            let (width, height) = bitmap.size;
+            check_size(width, height, limits)?;
+            Ok(plain(bitmap.picture()?))
+        }
     }
 }
 
