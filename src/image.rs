@@ -78,12 +78,7 @@ impl Image {
         for plane in &planes {
             check_plane(plane, pixels)?;
         }
-        Ok(Self {
-            width,
-            height,
-            planes,
-            alpha: None,
-        })
+        Ok(Self::from_planes(width, height, planes))
     }
 
     /// The picture that interleaved rows of `u8` (0 to 255), `u16` (0 to 65535) or `f32` (0 to 1) hold.
@@ -144,12 +139,7 @@ impl Image {
             }
             out
         };
-        Self {
-            width,
-            height,
-            planes: [0, 1, 2].map(|c| half(&self.planes[c])),
-            alpha: None,
-        }
+        Self::from_planes(width, height, self.planes.each_ref().map(half))
     }
 
     /// As [`Image::new`] without checks, for callers whose sizes agree by construction.
@@ -189,15 +179,7 @@ impl Image {
     /// [`ErrorKind::Io`] when the file cannot be read, else as [`Image::decode`]; every message
     /// names the file.
     pub fn open(path: impl AsRef<Path>) -> Result<Self> {
-        Self::open_within(path, Limits::default())
-    }
-
-    /// Reads the picture file at `path`, within other limits.
-    ///
-    /// # Errors
-    /// As [`Image::open`].
-    pub fn open_within(path: impl AsRef<Path>, limits: Limits) -> Result<Self> {
-        Ok(Self::read_within(path, limits)?.0)
+        Ok(Self::read_within(path, Limits::default())?.0)
     }
 
     /// Reads the picture file at `path`, within other limits, with remarks on changes and omissions.

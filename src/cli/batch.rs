@@ -7,9 +7,9 @@ use anyhow::Result;
 use strokefit::report::Judged;
 use strokefit::view::Viewer;
 
-use super::events::Events;
 use super::job::{Draw, Drawn, Job};
 use super::output::{self, Output};
+use super::progress::Events;
 use super::{Status, Verbosity, fail, input, misuse, view};
 
 /// Placeholder for the name of the picture without its extension.

@@ -11,13 +11,12 @@ use strokefit::report::{self, Event, FitReport, Input, Judged, Run, Usage};
 use strokefit::scene::Dropped;
 use strokefit::verify::MIN_AGREEMENT_DB;
 
-use super::events::Events;
 use super::hint::Hint;
 use super::interrupt::Interrupt;
 use super::options::Options;
 use super::output::{self, Output};
 use super::pictures::{self, Pictures};
-use super::progress::Watching;
+use super::progress::{Events, Watching};
 use super::{Status, Verbosity, complain, input};
 
 /// Picture to draw, and places for the results, known to be writable.

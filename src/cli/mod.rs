@@ -6,13 +6,11 @@
 pub mod bar;
 mod batch;
 mod check;
-mod events;
 mod fit;
 mod hint;
 pub mod input;
 mod interrupt;
 mod job;
-mod manual;
 mod options;
 pub mod output;
 mod pictures;
@@ -71,8 +69,8 @@ enum Command {
     Bench(rig::Rest),
     #[command(hide = true)]
     Lab(rig::Rest),
-    Completions(manual::Completions),
-    Man(manual::Man),
+    Completions(usage::Completions),
+    Man(usage::Man),
 }
 
 const EXAMPLES: &str = "Examples:
@@ -186,8 +184,8 @@ fn run(args: &Args) -> anyhow::Result<Status> {
         Command::View(view) => view::run(view),
         Command::Bench(rest) => rig::run(&[], rest, args.verbosity),
         Command::Lab(rest) => rig::run(&["lab"], rest, args.verbosity),
-        Command::Completions(completions) => manual::complete(completions),
-        Command::Man(man) => manual::man(man, args.verbosity),
+        Command::Completions(completions) => usage::complete(completions),
+        Command::Man(man) => usage::man(man, args.verbosity),
     }
 }
 

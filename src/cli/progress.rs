@@ -1,14 +1,67 @@
 //! The progress of a fit: a bar on a terminal, an event for each phase that has ended, and with `--verbose` a line for each part as
 //! it ends, and now and then for one that takes long.
 
+use std::io::{self, Write};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
+use anyhow::{Result, anyhow};
 use strokefit::fit::Progress;
 use strokefit::report::{Event, PhaseEntry};
 
 use super::bar::Bar;
-use super::events::Events;
+use super::output::{self, Output};
 use super::{Verbosity, complain};
+
+/// Where `--events` go, if anyone wants them: one JSON object per line.
+pub(super) struct Events {
+    name: String,
+    to: Option<Box<dyn Write + Send>>,
+    /// Why events were lost.
+    lost: Option<io::Error>,
+}
+
+impl Events {
+    /// The stream that goes to `path`.
+    pub(super) fn open(path: Option<&Path>) -> Result<Self> {
+        let name = path.map(output::name).unwrap_or_default();
+        let output = path.map(Output::open).transpose()?;
+        let to = output.map(|output| output.stream());
+        let to = to.transpose().map_err(|e| unwritable(&name, &e))?;
+        Ok(Self {
+            name,
+            to,
+            lost: None,
+        })
+    }
+
+    /// Writes one event. The drawing matters more, so a failure to write is reported only at the end.
+    pub(super) fn tell(&mut self, event: &Event) {
+        let Some(to) = &mut self.to else {
+            return;
+        };
+        let line = serde_json::to_string(event).map_err(io::Error::from);
+        let written = line.and_then(|line| writeln!(to, "{line}").and_then(|()| to.flush()));
+        if let Err(error) = written {
+            self.to = None;
+            self.lost = Some(error);
+        }
+    }
+
+    /// Fails unless all events were written. A reader that went away has seen what it wanted.
+    pub(super) fn close(self) -> Result<()> {
+        match self.lost {
+            Some(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+                Err(unwritable(&self.name, &error))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+fn unwritable(name: &str, error: &io::Error) -> anyhow::Error {
+    anyhow!("{name}: events cannot be written ({error}): choose another place")
+}
 
 /// Follows one fit.
 pub(super) struct Watching<'a> {
@@ -65,7 +118,7 @@ impl<'a> Watching<'a> {
             self.bar.clear();
             complain(line);
         }
-        if self.events.is_open() && !progress.is_trial {
+        if self.events.to.is_some() && !progress.is_trial {
             self.count(progress);
         }
     }

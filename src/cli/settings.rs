@@ -57,18 +57,21 @@ fn options() -> [Arg; 2] {
     [config.long("config"), print.long("print-config")]
 }
 
+/// The command that `args` name, and what they say as far as that can be understood.
+fn understood(command: &Command, args: &[OsString]) -> Option<(String, ArgMatches)> {
+    let lenient = command.clone().ignore_errors(true);
+    lenient.try_get_matches_from(args).ok()?.remove_subcommand()
+}
+
 /// `args` with the flags of the file that they name, if they do.
 pub(super) fn expand(command: &Command, mut args: Vec<OsString>) -> Result<Vec<OsString>> {
-    let lenient = command.clone().ignore_errors(true);
-    let Ok(matches) = lenient.try_get_matches_from(&args) else {
-        return Ok(args);
-    };
-    let Some((name, matches)) = matches.subcommand() else {
+    let Some((name, matches)) = understood(command, &args) else {
         return Ok(args);
     };
     let path = matches.try_get_one::<PathBuf>(CONFIG).ok().flatten();
-    let place = args.iter().skip(1).position(|arg| arg == name);
-    if let (Some(path), Some(place), Some(command)) = (path, place, command.find_subcommand(name)) {
+    let place = args.iter().skip(1).position(|arg| *arg == *name);
+    if let (Some(path), Some(place), Some(command)) = (path, place, command.find_subcommand(&name))
+    {
         let ids = command.get_positionals().map(|arg| arg.get_id().as_str());
         let pictures = ids.filter_map(|id| matches.get_raw(id)).flatten();
         let files: Vec<&Path> = pictures.map(Path::new).chain([path.as_path()]).collect();
@@ -81,13 +84,11 @@ pub(super) fn expand(command: &Command, mut args: Vec<OsString>) -> Result<Vec<O
 
 /// Text that `--print-config` prints, if `args` ask for it.
 pub(super) fn printed(command: &Command, args: &[OsString]) -> Result<Option<String>, clap::Error> {
-    let lenient = command.clone().ignore_errors(true);
-    let asked = lenient.try_get_matches_from(args).ok().and_then(|matches| {
-        let (name, matches) = matches.subcommand()?;
+    let is_asked = |(_, matches): &(String, ArgMatches)| {
         let asked = matches.try_get_one::<bool>(PRINT).ok().flatten();
-        asked.is_some_and(|asked| *asked).then(|| name.to_owned())
-    });
-    let Some(name) = asked else {
+        asked.is_some_and(|asked| *asked)
+    };
+    let Some((name, _)) = understood(command, args).filter(is_asked) else {
         return Ok(None);
     };
     // Neither input nor output is needed to print.

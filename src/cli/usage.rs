@@ -1,16 +1,20 @@
-//! Parses the arguments. Help begins with examples; a refusal is one line and a hint.
+//! Parses the arguments, and says what they may be: help, which begins with examples, completion scripts for shells, and manual
+//! pages. A refusal is one line and a hint.
 
 use std::ffi::OsString;
+use std::fs;
 use std::io;
+use std::path::PathBuf;
 
-use anyhow::Result;
+use anyhow::{Result, anyhow};
 use clap::error::ErrorKind;
 use clap::{Command, CommandFactory, FromArgMatches};
+use clap_complete::Shell;
 
 use super::hint::Hint;
 use super::output::Output;
 use super::refusal::parts;
-use super::{Args, Status, fail, misuse, settings};
+use super::{Args, Status, Verbosity, fail, misuse, settings};
 
 /// Examples come before the list of options.
 const TEMPLATE: &str = "{about}{after-help}\n\n{usage-heading} {usage}\n\n{all-args}";
@@ -70,6 +74,49 @@ pub fn refuse(error: &anyhow::Error, args: &[OsString]) -> Status {
 fn told(error: &clap::Error, args: &[OsString]) -> anyhow::Error {
     let (wrong, advice) = parts(error, args);
     Hint::maybe_on(misuse(wrong), advice)
+}
+
+/// Print a completion script for a shell
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  strokefit completions bash > ~/.local/share/bash-completion/completions/strokefit
+  strokefit completions zsh > ~/.zfunc/_strokefit
+  strokefit completions fish > ~/.config/fish/completions/strokefit.fish")]
+pub(super) struct Completions {
+    /// Shell to complete in
+    #[arg(value_enum)]
+    shell: Shell,
+}
+
+/// Write the manual pages
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  strokefit man -o ~/.local/share/man/man1
+  man strokefit-fit")]
+pub(super) struct Man {
+    /// Folder to write to; created if it does not exist
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+}
+
+pub(super) fn complete(args: &Completions) -> Result<Status> {
+    let mut command = command();
+    let mut script = Vec::new();
+    clap_complete::generate(args.shell, &mut command, "strokefit", &mut script);
+    Output::Stdout.write(&script)?;
+    Ok(Status::Done)
+}
+
+pub(super) fn man(args: &Man, verbosity: Verbosity) -> Result<Status> {
+    let folder = args.output.display();
+    let unwritable =
+        |e| anyhow!("{folder}: manual pages cannot be written ({e}): choose another place");
+    fs::create_dir_all(&args.output).map_err(unwritable)?;
+    clap_mangen::generate_to(command(), &args.output).map_err(unwritable)?;
+    verbosity.say(format_args!(
+        "{folder}: wrote the manual pages of strokefit and its commands"
+    ));
+    Ok(Status::Done)
 }
 
 #[cfg(test)]

@@ -1,27 +1,7 @@
 //! Formats that are not read: their names, and a way to make a PNG of such a file.
 
-/// A picture format by its first bytes.
-struct Foreign {
-    name: &'static str,
-    /// Bytes that a file has from `at` on.
-    magic: &'static [u8],
-    at: usize,
-    remedy: &'static str,
-}
-
-const fn foreign(
-    name: &'static str,
-    at: usize,
-    magic: &'static [u8],
-    remedy: &'static str,
-) -> Foreign {
-    Foreign {
-        name,
-        magic,
-        at,
-        remedy,
-    }
-}
+/// A picture format: its name, the bytes that a file has from a place on, and a remedy.
+type Foreign = (&'static str, usize, &'static [u8], &'static str);
 
 const AVIF: &str = "avifdec IN OUT.png";
 const HEIC: &str = "heif-convert IN OUT.png";
@@ -31,30 +11,30 @@ const PDF: &str = "pdftoppm -png -r 150 IN OUT";
 const RAW: &str = "darktable-cli IN OUT.png";
 
 const FOREIGN: [Foreign; 20] = [
-    foreign("AVIF", 4, b"ftypavif", AVIF),
-    foreign("AVIF", 4, b"ftypavis", AVIF),
-    foreign("HEIC", 4, b"ftypheic", HEIC),
-    foreign("HEIC", 4, b"ftypheix", HEIC),
-    foreign("HEIC", 4, b"ftyphevc", HEIC),
-    foreign("HEIC", 4, b"ftypmif1", HEIC),
-    foreign("HEIC", 4, b"ftypmsf1", HEIC),
-    foreign("JPEG XL", 0, b"\xff\x0a", JXL),
-    foreign("JPEG XL", 0, b"\0\0\0\x0cJXL \r\n\x87\n", JXL),
-    foreign("JPEG 2000", 0, b"\0\0\0\x0cjP  \r\n\x87\n", MAGICK),
-    foreign("JPEG 2000", 0, b"\xff\x4f\xff\x51", MAGICK),
-    foreign("OpenEXR", 0, b"\x76\x2f\x31\x01", MAGICK),
-    foreign("Photoshop", 0, b"8BPS", MAGICK),
-    foreign("GIMP", 0, b"gimp xcf", MAGICK),
-    foreign("PDF", 0, b"%PDF-", PDF),
-    foreign("PostScript", 0, b"%!PS", MAGICK),
-    foreign("Canon raw", 4, b"ftypcrx ", RAW),
-    foreign("Fuji raw", 0, b"FUJIFILMCCD-RAW", RAW),
-    foreign("Krita", 30, b"mimetypeapplication/x-krita", MAGICK),
+    ("AVIF", 4, b"ftypavif", AVIF),
+    ("AVIF", 4, b"ftypavis", AVIF),
+    ("HEIC", 4, b"ftypheic", HEIC),
+    ("HEIC", 4, b"ftypheix", HEIC),
+    ("HEIC", 4, b"ftyphevc", HEIC),
+    ("HEIC", 4, b"ftypmif1", HEIC),
+    ("HEIC", 4, b"ftypmsf1", HEIC),
+    ("JPEG XL", 0, b"\xff\x0a", JXL),
+    ("JPEG XL", 0, b"\0\0\0\x0cJXL \r\n\x87\n", JXL),
+    ("JPEG 2000", 0, b"\0\0\0\x0cjP  \r\n\x87\n", MAGICK),
+    ("JPEG 2000", 0, b"\xff\x4f\xff\x51", MAGICK),
+    ("OpenEXR", 0, b"\x76\x2f\x31\x01", MAGICK),
+    ("Photoshop", 0, b"8BPS", MAGICK),
+    ("GIMP", 0, b"gimp xcf", MAGICK),
+    ("PDF", 0, b"%PDF-", PDF),
+    ("PostScript", 0, b"%!PS", MAGICK),
+    ("Canon raw", 4, b"ftypcrx ", RAW),
+    ("Fuji raw", 0, b"FUJIFILMCCD-RAW", RAW),
+    ("Krita", 30, b"mimetypeapplication/x-krita", MAGICK),
     CGBI,
 ];
 
 /// The start of a PNG that Apple's tools have packed for devices: rows of BGRA, without the frame of zlib.
-const CGBI: Foreign = foreign(
+const CGBI: Foreign = (
     "Apple's optimised PNG (CgBI)",
     0,
     b"\x89PNG\r\n\x1a\n\0\0\0\x04CgBI",
@@ -66,18 +46,17 @@ const PROLOG: usize = 4096;
 
 /// True if the file begins as a PNG and is none.
 pub(super) fn is_cgbi(bytes: &[u8]) -> bool {
-    bytes.starts_with(CGBI.magic)
+    bytes.starts_with(CGBI.2)
 }
 
 /// Name of the file's format and a way to convert it, if the format is known.
 pub(super) fn advice(bytes: &[u8]) -> Option<String> {
-    let is = |f: &&Foreign| {
-        bytes
-            .get(f.at..)
-            .is_some_and(|rest| rest.starts_with(f.magic))
+    let is = |(_, at, magic, _): &&Foreign| {
+        let rest = bytes.get(*at..);
+        rest.is_some_and(|rest| rest.starts_with(magic))
     };
     let (name, remedy) = match FOREIGN.iter().find(is) {
-        Some(found) => (found.name, found.remedy),
+        Some((name, .., remedy)) => (*name, *remedy),
         None if is_svg(bytes) => ("SVG", "strokefit render IN -o OUT.png"),
         None => return None,
     };

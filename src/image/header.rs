@@ -202,31 +202,24 @@ fn next_marker(bytes: &[u8], from: usize) -> Option<usize> {
 }
 
 pub(super) fn be32(bytes: &[u8], at: usize) -> Option<u32> {
-    bytes
-        .get(at..)?
-        .first_chunk()
-        .map(|b| u32::from_be_bytes(*b))
+    array(bytes, at).map(u32::from_be_bytes)
 }
 
 pub(super) fn le32(bytes: &[u8], at: usize) -> Option<u32> {
-    bytes
-        .get(at..)?
-        .first_chunk()
-        .map(|b| u32::from_le_bytes(*b))
+    array(bytes, at).map(u32::from_le_bytes)
 }
 
-pub(super) fn be16(bytes: &[u8], at: usize) -> Option<u32> {
-    bytes
-        .get(at..)?
-        .first_chunk()
-        .map(|b| u16::from_be_bytes(*b).into())
+fn be16(bytes: &[u8], at: usize) -> Option<u32> {
+    array(bytes, at).map(|b| u16::from_be_bytes(b).into())
 }
 
 pub(super) fn le16(bytes: &[u8], at: usize) -> Option<u32> {
-    bytes
-        .get(at..)?
-        .first_chunk()
-        .map(|b| u16::from_le_bytes(*b).into())
+    array(bytes, at).map(|b| u16::from_le_bytes(b).into())
+}
+
+/// So many bytes from a place on.
+fn array<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
+    bytes.get(at..)?.first_chunk().copied()
 }
 
 #[cfg(test)]

@@ -16,12 +16,7 @@ impl Image {
         let reduce = |plane: &[f32]| reduced(plane, size, [width, height]);
         let Some(alpha) = &self.alpha else {
             let planes = [0, 1, 2].map(|c| reduce(&self.planes[c]));
-            return Self {
-                width,
-                height,
-                planes,
-                alpha: None,
-            };
+            return Self::from_planes(width, height, planes);
         };
         // The mean colour is Σ α·c / Σ α: a clear pixel has no colour to add. Weighing before and dividing after makes it two
         // plain means.

@@ -6,12 +6,12 @@
 mod arcs;
 mod file;
 
-use kurbo::{ParamCurve, PathSeg};
+use kurbo::{ParamCurve, PathSeg, QuadBez};
 
-use super::sheet::Sheet;
+use super::Sheet;
 use crate::math::Point;
 use crate::scene::{Path, Shape, distinct_colors, quantum};
-use arcs::Vertex;
+use arcs::{DEEPEST, Vertex};
 use file::File;
 
 /// Farthest that arcs are from their curve, mm.
@@ -20,7 +20,8 @@ const TOLERANCE: f64 = 0.01;
 /// The text of a DXF of the drawing.
 pub fn dxf(sheet: &Sheet<'_>) -> String {
     let colors = distinct_colors(sheet.scene.marks().map(|mark| mark.color().map(quantum)));
-    let page = [sheet.scene.width, sheet.scene.height].map(|side| f64::from(side) * sheet.mm());
+    let [width, height] = [sheet.scene.width, sheet.scene.height].map(f64::from);
+    let page = Point::new(width * sheet.mm(), height * sheet.mm());
     let mut file = File::new(page, &colors);
     for mark in sheet.scene.marks() {
         let layer = file::layer(mark.color().map(quantum));
@@ -35,7 +36,7 @@ pub fn dxf(sheet: &Sheet<'_>) -> String {
 fn push(file: &mut File, layer: &str, path: &Path, sheet: &Sheet<'_>) {
     let height = f64::from(sheet.scene.height);
     // Its y axis goes up.
-    let at = |p: Point| [p.x, height - p.y].map(|px| px * sheet.mm());
+    let at = |p: Point| Point::new(p.x * sheet.mm(), (height - p.y) * sheet.mm());
     if let [dot] = path.points() {
         return file.point(layer, at(dot.at));
     }
@@ -52,11 +53,8 @@ fn push(file: &mut File, layer: &str, path: &Path, sheet: &Sheet<'_>) {
     for segment in segments {
         match segment {
             PathSeg::Quad(curve) => {
-                arcs::push(
-                    &mut vertices,
-                    [curve.p0, curve.p1, curve.p2].map(at),
-                    TOLERANCE,
-                );
+                let curve = QuadBez::new(at(curve.p0), at(curve.p1), at(curve.p2));
+                arcs::push(&mut vertices, curve, TOLERANCE, DEEPEST);
             }
             _ => vertices.push(Vertex {
                 at: at(segment.start()),

@@ -8,7 +8,7 @@ use pdf_writer::types::{FunctionShadingType, LineCapStyle, LineJoinStyle, MaskTy
 use pdf_writer::writers::{ExtGraphicsState, Resources};
 use pdf_writer::{Content, Dict, Filter, Finish, Name, Pdf, Rect, Ref, Settings, TextStr};
 
-use super::sheet::Sheet;
+use super::Sheet;
 use crate::math::{self, Point};
 use crate::render;
 use crate::report::deflated;

@@ -7,19 +7,43 @@ use std::collections::BTreeMap;
 use std::ops::{Add, AddAssign};
 use std::panic::{self, AssertUnwindSafe};
 
-use kurbo::{BezPath, Shape};
+use kurbo::{BezPath, CubicBez, PathEl, Point, Shape};
 use linesweeper::topology::{Topology, WindingNumber};
 
-use super::bezier;
 use crate::error::{Error, ErrorKind, Result};
 use crate::outline;
-use crate::scene::{Area, Cap, Mark, Path, Scene, Stroke, color, distinct_colors, quantum};
+use crate::scene::{
+    Area, Cap, Mark, Path, PathPoint, Scene, Stage, Stroke, color, distinct_colors, quantum,
+};
 
 /// Farthest that borders may be moved where outlines touch, px. Files hold a hundredth.
 const NEAR: f64 = 1e-4;
 
+/// Largest distance of quadratic curves from a cubic one that they stand for, px.
+const QUADS: f64 = 1e-3;
+
 /// Smaller pieces are traces of rounding, px².
 const SMALLEST: f64 = 2e-3;
+
+/// Cut-outs, for cutters and for one sheet of foil per colour: the visible parts of the scene as one area per colour, which do not
+/// overlap and share their borders. The background is one of them, if there is
+/// one; so the scene has none.
+///
+/// # Errors
+/// [`ErrorKind::Config`](crate::ErrorKind::Config) when a mark is translucent, and
+/// [`ErrorKind::Svg`](crate::ErrorKind::Svg) when the outlines cannot be told apart.
+pub fn cut_out(scene: &Scene) -> Result<Scene> {
+    let areas = areas(scene)?.into_iter();
+    let areas = areas.filter(|area| !area.rings.is_empty());
+    let cut = Scene {
+        background: None,
+        shade: None,
+        shadows: Vec::new(),
+        stages: areas.map(|area| Stage::from_iter([area])).collect(),
+        ..*scene
+    };
+    Ok(cut.confined())
+}
 
 /// The visible parts of a scene's marks on its page as an area for each colour, in the order in which colours first come. Their
 /// rings do not cross, and holes go the other way round. An area without rings is of a colour that is hidden. The background
@@ -127,12 +151,35 @@ fn seen(page: &BezPath, marks: &[([u8; 3], BezPath)], colors: &[[u8; 3]]) -> Opt
             opacity: 1.0,
             shade: None,
             color: color(*own),
-            rings: large
-                .filter_map(|contour| bezier::ring(&contour.path))
-                .collect(),
+            rings: large.filter_map(|contour| ring(&contour.path)).collect(),
         }
     };
     Some(colors.iter().map(area).collect())
+}
+
+/// A closed path of lines and curves; `None` if it has no inside.
+fn ring(path: &BezPath) -> Option<Path> {
+    let mut points: Vec<PathPoint> = Vec::new();
+    let mut last = Point::ZERO;
+    for element in path.elements() {
+        match *element {
+            PathEl::MoveTo(p) | PathEl::LineTo(p) => points.push(PathPoint::on(p)),
+            PathEl::QuadTo(knee, p) => points.extend([PathPoint::off(knee), PathPoint::on(p)]),
+            PathEl::CurveTo(c, d, p) => {
+                // Scenes have quadratic curves alone.
+                for (_, _, quad) in CubicBez::new(last, c, d, p).to_quads(QUADS) {
+                    points.extend([PathPoint::off(quad.p1), PathPoint::on(quad.p2)]);
+                }
+            }
+            PathEl::ClosePath => {}
+        }
+        last = element.end_point().unwrap_or(last);
+    }
+    // The last point is the first one again.
+    if points.len() > 1 && points.first() == points.last() {
+        points.pop();
+    }
+    Path::new(points, true).ok()
 }
 
 /// The tag of the page's outline; marks have higher ones.

@@ -102,41 +102,45 @@ struct Clock {
 }
 
 impl Clock {
+    /// The animation of the attribute `name` through `values` at `times`.
+    fn animation(&self, name: &str, values: &str, times: &str) -> String {
+        let ms = self.whole_ms;
+        format!(
+            "<animate attributeName=\"{name}\" {values} keyTimes=\"{times}\" dur=\"{ms}ms\" repeatCount=\"indefinite\"/>"
+        )
+    }
+
     /// The animation that makes the group around it appear with part `part`, from 0.
     fn entrance(&self, part: usize) -> String {
         if part == 0 {
             return String::new();
         }
-        let at = self.start(part);
-        format!(
-            "<animate attributeName=\"visibility\" calcMode=\"discrete\" values=\"hidden;visible\" \
-             keyTimes=\"0;{at:.4}\" dur=\"{}ms\" repeatCount=\"indefinite\"/>\n",
-            self.whole_ms
-        )
+        let values = "calcMode=\"discrete\" values=\"hidden;visible\"";
+        let times = format!("0;{:.4}", self.start(part));
+        self.animation("visibility", values, &times) + "\n"
     }
 
     /// The `element` of a stroke of part `part`, with an animation that draws it: a single dash that grows. Only
     /// the animation says so, so that other programs draw no dash.
     fn along(&self, element: &str, part: usize) -> String {
-        let [start, end] = [part, part + 1].map(|part| self.start(part));
         let (open, close) = tags(element);
-        format!(
-            "{open} pathLength=\"1\"><animate attributeName=\"stroke-dasharray\" values=\"0 1;0 1;1 0;1 0\" \
-             keyTimes=\"0;{start:.4};{end:.4};1\" dur=\"{}ms\" repeatCount=\"indefinite\"/>{close}",
-            self.whole_ms
-        )
+        let values = "values=\"0 1;0 1;1 0;1 0\"";
+        let animation = self.animation("stroke-dasharray", values, &self.times(part));
+        format!("{open} pathLength=\"1\">{animation}{close}")
     }
 
     /// The `element` of an area of part `part`, with an animation that fades it in.
     fn fading(&self, element: &str, area: &Area, part: usize) -> String {
-        let [start, end] = [part, part + 1].map(|part| self.start(part));
         let (open, close) = tags(element);
         let opacity = dialect::opacity(quantum(area.opacity));
-        format!(
-            "{open}><animate attributeName=\"fill-opacity\" values=\"0;0;{opacity};{opacity}\" \
-             keyTimes=\"0;{start:.4};{end:.4};1\" dur=\"{}ms\" repeatCount=\"indefinite\"/>{close}",
-            self.whole_ms
-        )
+        let values = format!("values=\"0;0;{opacity};{opacity}\"");
+        let animation = self.animation("fill-opacity", &values, &self.times(part));
+        format!("{open}>{animation}{close}")
+    }
+
+    /// Before, when a part begins and ends to appear, and after.
+    fn times(&self, part: usize) -> String {
+        format!("0;{:.4};{:.4};1", self.start(part), self.start(part + 1))
     }
 
     /// When a part appears, of the whole.

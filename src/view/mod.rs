@@ -24,7 +24,6 @@
 //! # Ok::<(), strokefit::Error>(())
 //! ```
 
-mod curve;
 mod http;
 mod page;
 mod server;
@@ -84,10 +83,17 @@ impl Viewer {
     }
 
     /// An observer that tells the page and `inner`, and stops the fit when either wants to.
-    pub fn watch<'a>(&'a self, inner: &'a mut (dyn Observer + Send)) -> Watched<'a> {
-        Watched {
-            shared: &self.shared,
-            inner,
+    pub fn watch<'a>(
+        &'a self,
+        inner: &'a mut (dyn Observer + Send),
+    ) -> impl FnMut(&Progress<'_>) -> ControlFlow<()> + Send + 'a {
+        |progress: &Progress<'_>| {
+            inner.observe(progress)?;
+            if self.shared.note(progress) {
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
+            }
         }
     }
 
@@ -105,23 +111,6 @@ impl Viewer {
     /// or no page has been heard of for [`PATIENCE`].
     pub fn wait(&self) -> Option<usize> {
         self.shared.wait(PATIENCE)
-    }
-}
-
-/// Reports a fit to the page and to another observer; either may stop it.
-pub struct Watched<'a> {
-    shared: &'a Shared,
-    inner: &'a mut (dyn Observer + Send),
-}
-
-impl Observer for Watched<'_> {
-    fn observe(&mut self, progress: &Progress<'_>) -> ControlFlow<()> {
-        self.inner.observe(progress)?;
-        if self.shared.note(progress) {
-            ControlFlow::Continue(())
-        } else {
-            ControlFlow::Break(())
-        }
     }
 }
 

@@ -2,9 +2,8 @@
 
 use serde::Serialize;
 
-use super::curve::Point;
 use super::http::Response;
-use super::shared::{Numbers, Shared, Shown, State};
+use super::shared::{Numbers, Point, Shared, Shown, State};
 use crate::report::SceneRecord;
 
 /// A file of the page. All but `index.html` and `page.js` are also those of the page of `web/`, which fits by itself.

@@ -5,7 +5,6 @@ use std::time::{Duration, Instant};
 
 use serde::Serialize;
 
-use super::curve::{Curve, Point};
 use crate::fit::Progress;
 use crate::scene::Scene;
 use crate::svg::{self, WriteOptions};
@@ -14,6 +13,47 @@ use crate::svg::{self, WriteOptions};
 const LOOKING: Duration = Duration::from_secs(3);
 /// Least time between two copies of the drawing.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(250);
+
+/// Points that are kept at most.
+const CAPACITY: usize = 1000;
+
+/// One moment of a fit.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub(super) struct Point {
+    /// Since the start, s.
+    pub(super) time_s: f64,
+    pub(super) strokes: usize,
+    /// As the observer was told; `null` in JSON when there is no error.
+    pub(super) psnr_db: f64,
+}
+
+/// Evenly spaced points; the spacing doubles when there are too many.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Curve {
+    points: Vec<Point>,
+    /// Every so many points one is kept, less one.
+    skipped: usize,
+    /// Number of points that were offered.
+    seen: usize,
+}
+
+impl Curve {
+    pub(super) fn push(&mut self, point: Point) {
+        if self.seen.is_multiple_of(self.skipped + 1) {
+            self.points.push(point);
+        }
+        self.seen += 1;
+        if self.points.len() > CAPACITY {
+            let mut even = [true, false].into_iter().cycle();
+            self.points.retain(|_| even.next().unwrap_or(true));
+            self.skipped = 2 * self.skipped + 1;
+        }
+    }
+
+    pub(super) fn points(&self) -> &[Point] {
+        &self.points
+    }
+}
 
 /// Wish of the page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -266,5 +306,22 @@ mod tests {
         assert!(shared.svg().unwrap().contains("viewBox=\"0 0 3 2\""));
         shared.finish(Scene::empty(3, 2, None), "the file".into());
         assert_eq!(&*shared.svg().unwrap(), "the file");
+    }
+
+    #[test]
+    fn a_long_fit_leaves_evenly_spaced_points() {
+        let mut curve = Curve::default();
+        for strokes in 0..100_000 {
+            curve.push(Point {
+                time_s: 0.0,
+                strokes,
+                psnr_db: 0.0,
+            });
+        }
+        let strokes: Vec<usize> = curve.points().iter().map(|p| p.strokes).collect();
+        assert!((CAPACITY / 2..=CAPACITY).contains(&strokes.len()));
+        let step = strokes[1] - strokes[0];
+        assert!(strokes.windows(2).all(|w| w[1] - w[0] == step));
+        assert!(strokes[0] == 0 && 100_000 - strokes[strokes.len() - 1] <= step);
     }
 }

@@ -4,116 +4,94 @@
 //! it at its end, meet in the incentre without a corner (a biarc). Where they are too far from the curve, its halves get
 //! two each.
 
-use crate::math;
+use kurbo::{ParamCurve, Point, QuadBez, Vec2};
 
-/// A place, mm.
-type Place = [f64; 2];
+use crate::math;
 
 /// A corner of a polyline, and the way to the next one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Vertex {
-    pub(super) at: Place,
+    /// In mm.
+    pub(super) at: Point,
     /// Tangent of a quarter of the arc's angle, positive to the left; 0 for a line.
     pub(super) bulge: f64,
 }
 
 /// Most times that a curve is halved.
-const DEEPEST: u32 = 8;
+pub(super) const DEEPEST: u32 = 8;
 
-/// Appends arcs at most `tolerance` away from a curve, without its end.
-pub(super) fn push(out: &mut Vec<Vertex>, curve: [Place; 3], tolerance: f64) {
-    halve(out, curve, tolerance, DEEPEST);
-}
-
-fn halve(out: &mut Vec<Vertex>, curve: [Place; 3], tolerance: f64, depth: u32) {
-    let [a, c, b] = curve;
-    let middle = along(curve, 0.5);
+/// Appends arcs at most `tolerance` away from a curve, without its end. The curve is halved `depth` times at most.
+pub(super) fn push(out: &mut Vec<Vertex>, curve: QuadBez, tolerance: f64, depth: u32) {
+    let QuadBez {
+        p0: a,
+        p1: c,
+        p2: b,
+    } = curve;
     if is_flat(curve, tolerance) {
         out.push(Vertex { at: a, bulge: 0.0 });
         return;
     }
     let center = incenter(curve);
     // The first arc starts in the curve's direction, from a to c, and ends in the incentre.
-    let first = bulge(from(a, c), from(a, center));
+    let first = bulge(c - a, center - a);
     // The second arc, seen from its end, turns the other way.
-    let second = -bulge(from(b, c), from(b, center));
-    let is_near = [0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875]
-        .iter()
-        .all(|&t| {
-            let p = along(curve, t);
-            let gap = gap(p, a, center, first).min(gap(p, center, b, second));
-            gap <= tolerance
-        });
+    let second = -bulge(c - b, center - b);
+    let is_near = (1..8).all(|eighths| {
+        let p = curve.eval(f64::from(eighths) / 8.0);
+        gap(p, a, center, first).min(gap(p, center, b, second)) <= tolerance
+    });
     if is_near || depth == 0 {
-        out.push(Vertex {
-            at: a,
-            bulge: first,
-        });
-        out.push(Vertex {
-            at: center,
-            bulge: second,
-        });
+        out.extend([(a, first), (center, second)].map(|(at, bulge)| Vertex { at, bulge }));
         return;
     }
-    let half = |p: Place, q: Place| [0, 1].map(|k| f64::midpoint(p[k], q[k]));
-    // De Casteljau at ½: both halves are quadratic curves again.
-    halve(out, [a, half(a, c), middle], tolerance, depth - 1);
-    halve(out, [middle, half(c, b), b], tolerance, depth - 1);
+    let (start, end) = curve.subdivide();
+    push(out, start, tolerance, depth - 1);
+    push(out, end, tolerance, depth - 1);
 }
 
-/// The place at `t` of a curve.
-fn along([a, c, b]: [Place; 3], t: f64) -> Place {
-    let u = 1.0 - t;
-    [0, 1].map(|k| u * u * a[k] + 2.0 * u * t * c[k] + t * t * b[k])
-}
-
-fn from(a: Place, b: Place) -> Place {
-    [b[0] - a[0], b[1] - a[1]]
-}
-
-fn length([x, y]: Place) -> f64 {
-    math::hypot(x, y)
+/// Kurbo's length depends on the platform.
+fn length(v: Vec2) -> f64 {
+    math::hypot(v.x, v.y)
 }
 
 /// True if a line is as near to the curve, whose control point lies between its ends.
-fn is_flat([a, c, b]: [Place; 3], tolerance: f64) -> bool {
-    let (chord, knee) = (from(a, b), from(a, c));
+fn is_flat(curve: QuadBez, tolerance: f64) -> bool {
+    let (chord, knee) = (curve.p2 - curve.p0, curve.p1 - curve.p0);
     let side = length(chord);
-    let (across, ahead) = (
-        chord[0] * knee[1] - chord[1] * knee[0],
-        chord[0] * knee[0] + chord[1] * knee[1],
-    );
     // The curve is half as far away as its control point. A tenth of the tolerance keeps curves from becoming lines.
-    across.abs() <= 0.2 * tolerance * side && (0.0..=side * side).contains(&ahead)
+    chord.cross(knee).abs() <= 0.2 * tolerance * side
+        && (0.0..=side * side).contains(&chord.dot(knee))
 }
 
-/// The centre of the circle that touches the three sides.
-fn incenter([a, c, b]: [Place; 3]) -> Place {
-    let sides = [length(from(c, b)), length(from(a, b)), length(from(a, c))];
+/// The centre of the circle that touches the three sides of a curve's points.
+fn incenter(QuadBez { p0, p1, p2 }: QuadBez) -> Point {
+    let sides = [length(p2 - p1), length(p2 - p0), length(p1 - p0)];
     let sum: f64 = sides.iter().sum();
-    [0, 1]
-        .map(|k| (sides[0] * a[k] + sides[1] * c[k] + sides[2] * b[k]) / sum.max(f64::MIN_POSITIVE))
+    let corners = [p0, p1, p2].map(Point::to_vec2).into_iter().zip(sides);
+    let weighted = corners.fold(Vec2::ZERO, |sum, (corner, side)| sum + corner * side);
+    (weighted / sum.max(f64::MIN_POSITIVE)).to_point()
 }
 
 /// The bulge of an arc that starts in a direction and whose chord has another: the tangent of half the angle between.
-fn bulge(direction: Place, chord: Place) -> f64 {
-    let cross = direction[0] * chord[1] - direction[1] * chord[0];
-    let dot = direction[0] * chord[0] + direction[1] * chord[1];
-    let whole = length(direction) * length(chord) + dot;
-    if whole > 0.0 { cross / whole } else { 0.0 }
+fn bulge(direction: Vec2, chord: Vec2) -> f64 {
+    let whole = length(direction) * length(chord) + direction.dot(chord);
+    if whole > 0.0 {
+        direction.cross(chord) / whole
+    } else {
+        0.0
+    }
 }
 
 /// Distance of a place from the circle of an arc.
-fn gap(p: Place, a: Place, b: Place, bulge: f64) -> f64 {
-    let chord = from(a, b);
+fn gap(p: Point, a: Point, b: Point, bulge: f64) -> f64 {
+    let chord = b - a;
     let side = length(chord).max(f64::MIN_POSITIVE);
-    let away = from(a, p);
-    let along = (away[0] * chord[0] + away[1] * chord[1]) / side;
+    let along = (p - a).dot(chord) / side;
     if !(-0.01 * side..=1.01 * side).contains(&along) {
         return f64::INFINITY;
     }
     // Positive to the right of the chord, where an arc with a positive bulge lies.
-    let right = (away[0] * chord[1] - away[1] * chord[0]) / side;
+    let right = (p - a).cross(chord) / side;
     if bulge.abs() < 1e-9 {
         return right.abs();
     }
@@ -129,14 +107,16 @@ mod tests {
     use super::*;
 
     /// The arcs of a curve, with its end.
-    fn arcs(curve: [Place; 3]) -> Vec<Vertex> {
+    fn arcs(points: [[f64; 2]; 3]) -> (QuadBez, Vec<Vertex>) {
+        let [a, b, c] = points.map(Point::from);
+        let curve = QuadBez::new(a, b, c);
         let mut out = Vec::new();
-        push(&mut out, curve, 0.01);
+        push(&mut out, curve, 0.01, DEEPEST);
         out.push(Vertex {
-            at: curve[2],
+            at: curve.p2,
             bulge: 0.0,
         });
-        out
+        (curve, out)
     }
 
     #[test]
@@ -146,10 +126,10 @@ mod tests {
             [[0.0, 0.0], [3.0, 9.0], [12.0, 2.0]],
             [[5.0, 5.0], [-4.0, 6.0], [5.5, 6.5]],
         ] {
-            let arcs = arcs(curve);
+            let (curve, arcs) = arcs(curve);
             assert!(arcs.len() > 2 && arcs.len() < 40, "{}", arcs.len());
             for i in 0..=100 {
-                let p = along(curve, f64::from(i) / 100.0);
+                let p = curve.eval(f64::from(i) / 100.0);
                 let gaps = arcs
                     .windows(2)
                     .map(|w| gap(p, w[0].at, w[1].at, w[0].bulge));
@@ -157,13 +137,13 @@ mod tests {
             }
             for w in arcs.windows(3) {
                 // The direction at the end of an arc is its chord turned on by half its angle.
-                let turned = |v: Place, bulge: f64, on: f64| {
+                let turned = |v: Vec2, bulge: f64, on: f64| {
                     let (sin, cos) = math::sin_cos(on * 2.0 * math::atan(bulge));
-                    [v[0] * cos - v[1] * sin, v[0] * sin + v[1] * cos]
+                    Vec2::new(v.x * cos - v.y * sin, v.x * sin + v.y * cos)
                 };
-                let end = turned(from(w[0].at, w[1].at), w[0].bulge, 1.0);
-                let start = turned(from(w[1].at, w[2].at), w[1].bulge, -1.0);
-                let sin = (end[0] * start[1] - end[1] * start[0]) / length(end) / length(start);
+                let end = turned(w[1].at - w[0].at, w[0].bulge, 1.0);
+                let start = turned(w[2].at - w[1].at, w[1].bulge, -1.0);
+                let sin = end.cross(start) / length(end) / length(start);
                 assert!(sin.abs() < 1e-6, "{sin}");
             }
         }
@@ -171,7 +151,7 @@ mod tests {
 
     #[test]
     fn a_straight_curve_is_a_line() {
-        let arcs = arcs([[0.0, 0.0], [4.0, 0.0], [10.0, 0.0]]);
+        let (_, arcs) = arcs([[0.0, 0.0], [4.0, 0.0], [10.0, 0.0]]);
         assert_eq!(arcs.len(), 2);
         assert_eq!(arcs[0].bulge, 0.0);
     }

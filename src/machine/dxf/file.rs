@@ -2,6 +2,8 @@
 
 use std::fmt::{Display, Write};
 
+use kurbo::Point;
+
 use super::arcs::Vertex;
 
 /// A file whose entities are still to come.
@@ -22,8 +24,8 @@ pub(super) fn layer([r, g, b]: [u8; 3]) -> String {
 }
 
 impl File {
-    /// A file for a page of this size in mm, with a layer for each colour.
-    pub(super) fn new(page: [f64; 2], colors: &[[u8; 3]]) -> Self {
+    /// A file for a page whose sides, in mm, are those of a point, with a layer for each colour.
+    pub(super) fn new(page: Point, colors: &[[u8; 3]]) -> Self {
         let mut file = Self {
             text: String::new(),
             handle: FIRST_ENTITY,
@@ -54,20 +56,20 @@ impl File {
     }
 
     /// A straight line.
-    pub(super) fn line(&mut self, layer: &str, a: [f64; 2], b: [f64; 2]) {
+    pub(super) fn line(&mut self, layer: &str, a: Point, b: Point) {
         self.entity("LINE", layer, "AcDbLine");
         self.place(10, a);
         self.place(11, b);
     }
 
     /// A point.
-    pub(super) fn point(&mut self, layer: &str, at: [f64; 2]) {
+    pub(super) fn point(&mut self, layer: &str, at: Point) {
         self.entity("POINT", layer, "AcDbPoint");
         self.place(10, at);
     }
 
     /// A circle.
-    pub(super) fn circle(&mut self, layer: &str, center: [f64; 2], radius: f64) {
+    pub(super) fn circle(&mut self, layer: &str, center: Point, radius: f64) {
         self.entity("CIRCLE", layer, "AcDbCircle");
         self.place(10, center);
         self.pair(40, &number(radius));
@@ -79,15 +81,15 @@ impl File {
         self.pair(90, &vertices.len());
         self.pair(70, &u8::from(closed));
         for vertex in vertices {
-            self.pair(10, &number(vertex.at[0]));
-            self.pair(20, &number(vertex.at[1]));
+            self.pair(10, &number(vertex.at.x));
+            self.pair(20, &number(vertex.at.y));
             if vertex.bulge != 0.0 {
                 self.pair(42, &format!("{:.6}", vertex.bulge));
             }
         }
     }
 
-    fn header(&mut self, [width, height]: [f64; 2]) {
+    fn header(&mut self, page: Point) {
         self.section("HEADER");
         let variable = |file: &mut Self, name: &str, code: i32, value: &str| {
             file.pair(9, &name);
@@ -98,9 +100,9 @@ impl File {
         // Millimetres.
         variable(self, "$INSUNITS", 70, "4");
         variable(self, "$MEASUREMENT", 70, "1");
-        for (name, x, y) in [("$EXTMIN", 0.0, 0.0), ("$EXTMAX", width, height)] {
+        for (name, at) in [("$EXTMIN", Point::ZERO), ("$EXTMAX", page)] {
             self.pair(9, &name);
-            self.place(10, [x, y]);
+            self.place(10, at);
         }
         self.end_section();
     }
@@ -184,7 +186,7 @@ impl File {
     fn block(&mut self, begin: &str, end: &str, owner: &str, name: &str) {
         self.object("BLOCK", begin, owner, "AcDbEntity");
         self.pairs(&[(8, "0"), (100, "AcDbBlockBegin"), (2, name), (70, "0")]);
-        self.place(10, [0.0; 2]);
+        self.place(10, Point::ZERO);
         self.pairs(&[(3, name), (1, "")]);
         self.object("ENDBLK", end, owner, "AcDbEntity");
         self.pairs(&[(8, "0"), (100, "AcDbBlockEnd")]);
@@ -217,7 +219,7 @@ impl File {
 
     /// A place of three coordinates, the first with this code.
     #[inline(never)]
-    fn place(&mut self, code: i32, [x, y]: [f64; 2]) {
+    fn place(&mut self, code: i32, Point { x, y }: Point) {
         self.pair(code, &number(x));
         self.pair(code + 10, &number(y));
         self.pair(code + 20, &"0.0");

@@ -1,8 +1,6 @@
 //! Values of attributes, as rules need them.
 
-use svgtypes::{Color, PathParser, PathSegment, Transform};
-
-type Point = [f64; 2];
+use svgtypes::{Color, SimplePathSegment, SimplifyingPathParser, Transform};
 
 /// True if a number in the text begins with a dot, as the second one in `1.5.5` does.
 pub(super) fn has_leading_dot(text: &str) -> bool {
@@ -38,29 +36,20 @@ pub(super) fn transform_scale(transform: &str) -> f64 {
 /// True if a subpath has a segment and all its points coincide. A lone `M` draws nothing in any program, so
 /// it does not count.
 pub(super) fn has_zero_length(d: &str) -> bool {
-    use PathSegment as S;
-    let (mut start, mut here): (Point, Point) = ([0.0; 2], [0.0; 2]);
-    let (mut is_drawn, mut is_moved) = (false, false);
-    for segment in PathParser::from(d).map_while(Result::ok) {
-        let [left, top] = if segment.is_abs() { [0.0; 2] } else { here };
-        let at = |x: f64, y: f64| [left + x, top + y];
+    use SimplePathSegment as S;
+    let (mut start, mut is_drawn, mut is_moved) = ([0.0; 2], false, false);
+    for segment in SimplifyingPathParser::from(d).map_while(Result::ok) {
         let points = match segment {
-            S::MoveTo { x, y, .. } => {
+            S::MoveTo { x, y } => {
                 if is_drawn && !is_moved {
                     return true;
                 }
-                here = at(x, y);
-                (start, is_drawn, is_moved) = (here, false, false);
+                (start, is_drawn, is_moved) = ([x, y], false, false);
                 continue;
             }
-            S::ClosePath { .. } => [start; 3],
-            S::HorizontalLineTo { x, .. } => [[left + x, here[1]]; 3],
-            S::VerticalLineTo { y, .. } => [[here[0], top + y]; 3],
-            S::LineTo { x, y, .. }
-            | S::SmoothQuadratic { x, y, .. }
-            | S::EllipticalArc { x, y, .. } => [at(x, y); 3],
-            S::Quadratic { x1, y1, x, y, .. } => [at(x1, y1), at(x, y), at(x, y)],
-            S::SmoothCurveTo { x2, y2, x, y, .. } => [at(x2, y2), at(x, y), at(x, y)],
+            S::ClosePath => [start; 3],
+            S::LineTo { x, y } => [[x, y]; 3],
+            S::Quadratic { x1, y1, x, y } => [[x1, y1], [x, y], [x, y]],
             S::CurveTo {
                 x1,
                 y1,
@@ -68,10 +57,9 @@ pub(super) fn has_zero_length(d: &str) -> bool {
                 y2,
                 x,
                 y,
-                ..
-            } => [at(x1, y1), at(x2, y2), at(x, y)],
+            } => [[x1, y1], [x2, y2], [x, y]],
         };
-        (is_drawn, here) = (true, points[2]);
+        is_drawn = true;
         is_moved |= points.iter().any(|point| *point != start);
     }
     is_drawn && !is_moved
