@@ -26,8 +26,6 @@
 //! # Ok::<(), strokefit::Error>(())
 //! ```
 
-#[cfg(feature = "cli")]
-mod elements;
 mod limits;
 mod painting;
 mod placement;
@@ -39,8 +37,6 @@ use std::panic::{self, AssertUnwindSafe};
 use resvg::usvg::Tree;
 use serde::{Deserialize, Serialize};
 
-#[cfg(feature = "cli")]
-pub use elements::{Element, elements};
 pub use painting::Painting;
 use painting::parse;
 

@@ -3,9 +3,10 @@
 //! The picture of a drawing is rendered at four times its size and averaged, so that it has the drawing's true edges
 //! rather than those of the judge.
 
+use super::elements::{Element, elements};
 use crate::report::Damage;
 use strokefit::image::Image;
-use strokefit::verify::{self, Size, elements};
+use strokefit::verify::{self, Size};
 use strokefit::{Error, ErrorKind, Result};
 
 /// A drawing, and so what is to be found again.
@@ -38,7 +39,7 @@ impl Drawing {
                 "nothing is painted, so that nothing could be found again: give another drawing";
             return Err(Error::new(ErrorKind::Svg, message).within(&self.name));
         }
-        let is_stroke = |element: &verify::Element| element.width_px.is_some() && !element.filled;
+        let is_stroke = |element: &Element| element.width_px.is_some() && !element.filled;
         Ok(if painted.iter().all(is_stroke) {
             Kind::Strokes
         } else {

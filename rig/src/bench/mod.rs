@@ -16,6 +16,7 @@ pub mod child;
 pub mod compare;
 mod damages;
 pub mod drawings;
+mod elements;
 pub(crate) mod files;
 pub mod gallery;
 pub mod inverse;

@@ -2,10 +2,11 @@
 
 use std::fmt::Write as _;
 
+use crate::bench::elements::{Element, elements};
 use crate::bench::gallery::{fitted, size, zoom};
 use strokefit::Result;
 use strokefit::image::Image;
-use strokefit::verify::{self, Element, elements};
+use strokefit::verify;
 
 /// Share of a picture that is left below its centre lines.
 const FADED: f32 = 0.25;

@@ -1,7 +1,7 @@
 //! Distances between centre lines.
 
+use crate::bench::elements::Element;
 use strokefit::math::Point;
-use strokefit::verify::Element;
 
 /// Distances between two sets of centre lines, px: of places on either to the nearest place on the other.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -13,6 +13,7 @@ use std::time::Instant;
 
 use super::damages::{common_colors, damaged};
 use super::drawings::{Drawing, Kind, picture};
+use super::elements::{Element, elements};
 use super::gallery::{BRIGHTEST, Gallery, errors};
 use super::peers::TunedPeer;
 use crate::report::Damage;
@@ -25,7 +26,7 @@ use strokefit::fit::{Config, Fitter};
 use strokefit::image::Image;
 use strokefit::metrics::psnr;
 use strokefit::scene::Marks;
-use strokefit::verify::{self, Element, Size, elements};
+use strokefit::verify::{self, Size};
 use strokefit::{Error, Result};
 
 /// Longer side of the renders whose colours are compared, px.

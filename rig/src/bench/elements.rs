@@ -1,38 +1,41 @@
-//! The painted elements of an SVG, as usvg resolves them: centre lines of strokes, and outlines of filled areas.
+//! The painted elements of an SVG, as usvg resolves them: centre lines of strokes, and outlines of filled areas. The one door
+//! of `resvg`.
 
 use resvg::tiny_skia::{PathSegment, Point as SkiaPoint};
-use resvg::usvg::{Group, Node, Paint, Path};
+use resvg::usvg::{Group, Node, Options, Paint, Path, Tree};
 
-use super::painting::parse;
-use crate::error::Result;
-use crate::math::{self, Point};
+use strokefit::math::Point;
+use strokefit::{Error, ErrorKind, Result};
 
 /// Chords of a curve.
 const CHORDS: u16 = 24;
 
 /// An element with a stroke, or else one that is filled.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Element {
+pub(super) struct Element {
     /// Centre lines where it has a stroke, else outlines: one for each subpath, px; curves are chords.
-    pub lines: Vec<Vec<Point>>,
+    pub(super) lines: Vec<Vec<Point>>,
     /// Ends, corners and control points.
-    pub points: usize,
+    pub(super) points: usize,
     /// Where its segments begin and end, px.
-    pub nodes: Vec<Point>,
+    pub(super) nodes: Vec<Point>,
     /// The stroke's width, px; `None` without a stroke.
-    pub width_px: Option<f32>,
+    pub(super) width_px: Option<f32>,
     /// True if it is filled.
-    pub filled: bool,
+    pub(super) filled: bool,
     /// 8-bit sRGB of the stroke; `None` without one, and where it is a gradient or a pattern.
-    pub color: Option<[u8; 3]>,
+    pub(super) color: Option<[u8; 3]>,
 }
 
 /// All painted elements of SVG text whose longer side has `longer_px` px, back to front.
 ///
 /// # Errors
-/// [`ErrorKind::Svg`](crate::ErrorKind::Svg) when the text is no SVG.
-pub fn elements(svg: &str, longer_px: f32) -> Result<Vec<Element>> {
-    let tree = parse(svg)?;
+/// [`ErrorKind::Svg`] when the text is no SVG.
+pub(super) fn elements(svg: &str, longer_px: f32) -> Result<Vec<Element>> {
+    let tree = Tree::from_str(svg, &Options::default()).map_err(|e| {
+        let message = format!("not an SVG that resvg can read: {e}");
+        Error::new(ErrorKind::Svg, message)
+    })?;
     let scale = longer_px / tree.size().width().max(tree.size().height());
     let mut found = Vec::new();
     collect(tree.root(), scale, &mut found);
@@ -67,7 +70,7 @@ fn of(path: &Path, scale: f32) -> Element {
     };
     let place = |mut p: SkiaPoint| {
         transform.map_point(&mut p);
-        math::point([p.x * scale, p.y * scale])
+        Point::new(f64::from(p.x * scale), f64::from(p.y * scale))
     };
     let mut here = Point::new(0.0, 0.0);
     for segment in path.data().segments() {
