@@ -233,7 +233,8 @@ fn precision(scene: &Scene) -> u8 {
     (0..MAX_PRECISION).find(says_all).unwrap_or(MAX_PRECISION)
 }
 
-#[cfg(all(test, feature = "animation"))]
+#[cfg(test)]
+#[cfg(feature = "animation")]
 mod tests {
     use super::*;
     use crate::scene::{Area, Cap, Path, PathPoint, Stroke};

@@ -40,6 +40,7 @@ pub use decode::Limits;
 pub use decoded::Remark;
 pub use formats::{FORMATS, Format};
 pub(crate) use header::{Embeddable, stated_size};
+pub(crate) use reduce::Half;
 pub use rows::{Rows, Sample};
 
 use crate::error::{Error, ErrorKind, Result};
@@ -121,25 +122,6 @@ impl Image {
         sample: impl Fn(usize, usize, usize) -> T,
     ) -> Result<Self> {
         rows::sampled(width, height, channels, sample)
-    }
-
-    /// The picture at half the size (rounded up), each pixel the mean of up to 2×2; alpha is dropped.
-    #[doc(hidden)]
-    pub fn halved(&self) -> Self {
-        let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
-        let half = |plane: &Vec<f32>| {
-            let mut out = Vec::with_capacity(width * height);
-            for pair in plane.chunks(2 * self.width) {
-                // A single last row counts twice, and a single last column is its own mean.
-                let (top, bottom) = pair.split_at(self.width);
-                let bottom = if bottom.is_empty() { top } else { bottom };
-                let mean = |row: &[f32]| row.iter().sum::<f32>() / row.len() as f32;
-                let columns = top.chunks(2).zip(bottom.chunks(2));
-                out.extend(columns.map(|(top, bottom)| (mean(top) + mean(bottom)) / 2.0));
-            }
-            out
-        };
-        Self::from_planes(width, height, self.planes.each_ref().map(half))
     }
 
     /// As [`Image::new`] without checks, for callers whose sizes agree by construction.

@@ -19,7 +19,7 @@ use crate::image::{Image, level};
 use crate::math;
 use crate::scene::Rgb;
 pub(crate) use details::Details;
-pub(crate) use fineness::{Half, fine_share};
+pub(crate) use fineness::fine_share;
 pub(crate) use window::average;
 
 const WHITE: Rgb = [1.0; 3];

@@ -5,8 +5,8 @@
 use rayon::prelude::*;
 
 use super::planes::Planes;
+use crate::image::Half;
 use crate::math;
-use crate::metrics::Half;
 
 /// Half the side of the window, in px of the half.
 const REACH: isize = 2;

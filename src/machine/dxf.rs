@@ -22,14 +22,14 @@ pub fn dxf(sheet: &Sheet<'_>) -> String {
     let colors = distinct_colors(sheet.scene.marks().map(|mark| mark.color().map(quantum)));
     let [width, height] = [sheet.scene.width, sheet.scene.height].map(f64::from);
     let page = Point::new(width * sheet.mm(), height * sheet.mm());
-    let mut file = File::new(page, &colors);
+    let mut file = File::new();
     for mark in sheet.scene.marks() {
         let layer = file::layer(mark.color().map(quantum));
         for path in mark.paths() {
             push(&mut file, &layer, path, sheet);
         }
     }
-    file.finish()
+    file.finish(page, &colors)
 }
 
 /// Appends a path.

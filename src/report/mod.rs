@@ -133,7 +133,8 @@ pub fn heat(value: f64) -> [f64; 3] {
     std::array::from_fn(|k| STOPS[i][k] + part * (STOPS[i + 1][k] - STOPS[i][k]))
 }
 
-#[cfg(all(test, feature = "animation"))]
+#[cfg(test)]
+#[cfg(feature = "animation")]
 mod tests {
     use super::*;
 
