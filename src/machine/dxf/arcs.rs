@@ -108,7 +108,7 @@ mod tests {
 
     /// The arcs of a curve, with its end.
     fn arcs(points: [[f64; 2]; 3]) -> (QuadBez, Vec<Vertex>) {
-        let [a, b, c] = points.map(Point::from);
+        let [a, b, c] = points.map(|[x, y]| Point::new(x, y));
         let curve = QuadBez::new(a, b, c);
         let mut out = Vec::new();
         push(&mut out, curve, 0.01, DEEPEST);
