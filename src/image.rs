@@ -8,25 +8,17 @@
 
 #[cfg(feature = "animation")]
 mod animate;
-#[cfg(feature = "formats")]
-mod dds;
 mod decode;
 mod decoded;
 mod encode;
 mod foreign;
 mod formats;
 mod header;
-#[cfg(feature = "formats")]
-mod ico;
-#[cfg(feature = "formats")]
-mod jpeg;
 mod png;
 #[cfg(feature = "formats")]
 mod profile;
 mod reduce;
 mod rows;
-#[cfg(feature = "formats")]
-mod tiff;
 #[cfg(feature = "formats")]
 mod tone;
 

@@ -1,7 +1,13 @@
 //! Decodes the bytes of a picture file to an [`Image`].
 
 #[cfg(feature = "formats")]
-mod special;
+mod dds;
+#[cfg(feature = "formats")]
+mod ico;
+#[cfg(feature = "formats")]
+mod jpeg;
+#[cfg(feature = "formats")]
+mod tiff;
 
 use std::cell::Cell;
 use std::fs::File;
@@ -92,7 +98,7 @@ fn image(decoded: Decoded, format: ImageFormat) -> Result<(Image, Vec<Remark>)> 
     let (image, clipped) = planar(&decoded.picture, format)?;
     let (image, converted) = match &decoded.coding {
         #[cfg(feature = "formats")]
-        coding if decoded.is_ink => special::of_inks(image, coding.as_ref())?,
+        coding if decoded.is_ink => super::profile::of_inks(image, coding.as_ref())?,
         Some(coding) => in_srgb(image, coding),
         None => (image, None),
     };
@@ -161,9 +167,18 @@ fn samples(
     format: ImageFormat,
     limits: Limits,
 ) -> Result<Decoded, Failure> {
+    // What the general decoder refuses or reads wrong.
     #[cfg(feature = "formats")]
-    if let Some(decoded) = special::samples(bytes, ran_out, format, limits)? {
-        return Ok(decoded);
+    match format {
+        ImageFormat::Jpeg => {
+            if let Some(inks) = jpeg::inks(bytes)? {
+                return Ok(inks);
+            }
+        }
+        ImageFormat::Tiff => return tiff::read(bytes, ran_out, limits),
+        ImageFormat::Ico => return ico::read(bytes, ran_out, limits),
+        ImageFormat::Dds => return dds::read(bytes, ran_out, limits),
+        _ => {}
     }
     general(bytes, ran_out, format, limits)
 }

@@ -22,6 +22,19 @@ pub(super) struct Decoded {
     pub(super) has_more: bool,
 }
 
+#[cfg(feature = "formats")]
+impl Decoded {
+    /// Samples without further information in the file.
+    pub(super) fn plain(picture: DynamicImage) -> Self {
+        Self {
+            picture,
+            is_ink: false,
+            coding: None,
+            has_more: false,
+        }
+    }
+}
+
 /// The colours that samples encode.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Coding {

@@ -7,6 +7,7 @@ use moxcms::{
 
 use super::decoded::Coding;
 use super::{Image, Remark, tone};
+use crate::error;
 
 /// Steps of each channel in the colours that decide whether a profile counts as sRGB's.
 const PROBES: usize = 6;
@@ -120,7 +121,7 @@ fn through(image: &Image, profile: &ColorProfile, layout: Layout) -> Outcome {
 
 /// Red, green and blue of amounts of cyan, magenta, yellow and black in a picture of this width, if the profile is one of
 /// these inks.
-pub(super) fn of_inks(
+fn converted_inks(
     inks: &[Vec<f32>; 4],
     width: usize,
     icc: &[u8],
@@ -132,6 +133,43 @@ pub(super) fn of_inks(
     // Four channels of any meaning are called so.
     let conversion = Conversion::new(&profile, Layout::Rgba).ok_or(UNKNOWN)?;
     conversion.of(inks, width).ok_or(UNKNOWN)
+}
+
+/// The colours of a picture of inks, which stand where red, green, blue and alpha are: by its profile, or as if each ink
+/// took all the light of one colour.
+pub(super) fn of_inks(
+    image: Image,
+    coding: Option<&Coding>,
+) -> error::Result<(Image, Option<Remark>)> {
+    let (width, height) = (image.width(), image.height());
+    let black = match image.alpha() {
+        Some(black) => black.to_vec(),
+        // Alpha of 1 everywhere is left out.
+        None => vec![1.0; width * height],
+    };
+    let [cyan, magenta, yellow] = image.into_planes();
+    let inks = [cyan, magenta, yellow, black];
+    let converted = match coding {
+        Some(Coding::Icc(icc)) => converted_inks(&inks, width, icc).map(Some),
+        _ => Ok(None),
+    };
+    let (planes, remark) = match converted {
+        Ok(Some(planes)) => (planes, Some(Remark::Converted)),
+        Ok(None) => (taken_away(&inks), Some(Remark::Inks)),
+        Err(why) => (taken_away(&inks), Some(Remark::ProfileIgnored(why))),
+    };
+    Ok((Image::new(width, height, planes)?, remark))
+}
+
+/// Light that ideal inks leave.
+fn taken_away([cyan, magenta, yellow, black]: &[Vec<f32>; 4]) -> [Vec<f32>; 3] {
+    // Cyan takes away red, magenta green, yellow blue, and black a share of all three.
+    [cyan, magenta, yellow].map(|ink| {
+        let pairs = ink.iter().zip(black);
+        pairs
+            .map(|(ink, black)| (1.0 - ink) * (1.0 - black))
+            .collect()
+    })
 }
 
 /// From the colours of a profile to sRGB.

@@ -1,11 +1,13 @@
 //! DDS that the general decoder refuses: uncompressed pictures, and sizes that are no multiple of 4.
 
 use std::borrow::Cow;
+use std::cell::Cell;
 
 use ::image::{DynamicImage, ImageBuffer, ImageFormat};
 
-use super::decoded::{Failure, damaged, unsupported};
-use super::header::le32;
+use super::{Limits, check_size, general};
+use crate::image::decoded::{Decoded, Failure, damaged, unsupported};
+use crate::image::header::le32;
 
 /// Bytes of the header, and of the one that may follow it.
 const HEADER: usize = 128;
@@ -16,19 +18,37 @@ const HAS_ALPHA: u32 = 0x1;
 const IS_NAMED: u32 = 0x4;
 const IS_GREY: u32 = 0x2_0000;
 
+/// The first picture of a DDS.
+pub(super) fn read(bytes: &[u8], ran_out: &Cell<bool>, limits: Limits) -> Result<Decoded, Failure> {
+    let (width, height) = size(bytes).unwrap_or_default();
+    check_size(width, height, limits)?;
+    let decoded = match uncompressed(bytes)? {
+        Some(picture) => Decoded::plain(picture),
+        None => {
+            // Compressed blocks are 4×4 px: decode whole blocks, and cut the picture out of them.
+            let blocks = general(&padded(bytes), ran_out, ImageFormat::Dds, limits)?;
+            Decoded::plain(blocks.picture.crop_imm(0, 0, width, height))
+        }
+    };
+    Ok(Decoded {
+        has_more: has_more(bytes),
+        ..decoded
+    })
+}
+
 /// Width and height.
-pub(super) fn size(bytes: &[u8]) -> Option<(u32, u32)> {
+fn size(bytes: &[u8]) -> Option<(u32, u32)> {
     Some((le32(bytes, 16)?, le32(bytes, 12)?))
 }
 
 /// True if faces of a cube, layers or smaller copies follow the first picture; copies do not count.
-pub(super) fn has_more(bytes: &[u8]) -> bool {
+fn has_more(bytes: &[u8]) -> bool {
     let is_cube_or_volume = |caps: u32| caps & 0x20_0200 != 0;
     le32(bytes, 112).is_some_and(is_cube_or_volume)
 }
 
 /// The file with both sides rounded up to multiples of 4, if they are none: its blocks have that size.
-pub(super) fn padded(bytes: &[u8]) -> Cow<'_, [u8]> {
+fn padded(bytes: &[u8]) -> Cow<'_, [u8]> {
     let Some((width, height)) = size(bytes) else {
         return Cow::Borrowed(bytes);
     };
@@ -43,7 +63,7 @@ pub(super) fn padded(bytes: &[u8]) -> Cow<'_, [u8]> {
 }
 
 /// The picture, if it is not compressed. Its size is within the limits.
-pub(super) fn uncompressed(bytes: &[u8]) -> Result<Option<DynamicImage>, Failure> {
+fn uncompressed(bytes: &[u8]) -> Result<Option<DynamicImage>, Failure> {
     let (width, height) = size(bytes).unwrap_or_default();
     let Some(layout) = Layout::read(bytes)? else {
         return Ok(None);

@@ -8,31 +8,28 @@ use zune_jpeg::zune_core::bytestream::ZCursor;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
-use super::decoded::{Coding, Decoded, Failure, damaged, unsupported};
-use super::header::{self, JpegFrame};
+use crate::image::decoded::{Coding, Decoded, Failure, damaged, unsupported};
+use crate::image::header::{self, JpegFrame};
 
-/// Fails on a kind of JPEG that is not read.
-pub(super) fn check(bytes: &[u8]) -> Result<(), Failure> {
+/// The amounts of ink of a picture of four, that is within its limits; `None` if the picture has other colours. Fails on a kind of
+/// JPEG that is not read.
+pub(super) fn inks(bytes: &[u8]) -> Result<Option<Decoded>, Failure> {
     let Some(frame) = header::jpeg_frame(bytes) else {
-        return Ok(());
+        return Ok(None);
     };
     let kind = match frame {
         JpegFrame { coding: 3, .. } => "lossless JPEG".into(),
         JpegFrame { coding: 9.., .. } => "arithmetic coding".into(),
         JpegFrame { coding: 5..=7, .. } => "hierarchical JPEG".into(),
         JpegFrame { bits, .. } if bits != 8 => format!("{bits} bits per sample"),
-        _ => return Ok(()),
+        _ => String::new(),
     };
-    Err(unsupported(ImageFormat::Jpeg, kind))
-}
-
-/// True if the picture is one of four inks.
-pub(super) fn is_ink(bytes: &[u8]) -> bool {
-    header::jpeg_frame(bytes).is_some_and(|frame| frame.components == 4)
-}
-
-/// The amounts of ink of a picture of four, that is within its limits.
-pub(super) fn inks(bytes: &[u8]) -> Result<Decoded, Failure> {
+    if !kind.is_empty() {
+        return Err(unsupported(ImageFormat::Jpeg, kind));
+    }
+    if frame.components != 4 {
+        return Ok(None);
+    }
     let failed = |error: DecodeErrors| damaged(ImageFormat::Jpeg, error.to_string());
     let mut decoder = JpegDecoder::new(ZCursor::new(bytes));
     let options = || {
@@ -47,9 +44,8 @@ pub(super) fn inks(bytes: &[u8]) -> Result<Decoded, Failure> {
     decoder.set_options(options().jpeg_set_out_colorspace(space));
     let mut samples = decoder.decode().map_err(failed)?;
     // Adobe's programs store 255 less the amount of ink.
-    let is_inverted = header::jpeg_frame(bytes).is_some_and(|frame| frame.is_adobe);
     for pixel in samples.as_chunks_mut().0 {
-        *pixel = ink(*pixel, space == ColorSpace::YCCK, is_inverted);
+        *pixel = ink(*pixel, space == ColorSpace::YCCK, frame.is_adobe);
     }
     let (width, height) = decoder.dimensions().unwrap_or_default();
     let pixels = ImageBuffer::from_raw(width as u32, height as u32, samples);
@@ -58,12 +54,11 @@ pub(super) fn inks(bytes: &[u8]) -> Result<Decoded, Failure> {
     let exif = decoder.exif().map(Vec::as_slice);
     let orientation = exif.and_then(Orientation::from_exif_chunk);
     picture.apply_orientation(orientation.unwrap_or(Orientation::NoTransforms));
-    Ok(Decoded {
-        picture,
+    Ok(Some(Decoded {
         is_ink: true,
         coding: decoder.icc_profile().map(Coding::Icc),
-        has_more: false,
-    })
+        ..Decoded::plain(picture)
+    }))
 }
 
 /// Amounts of ink of a pixel as it is stored: with luma and chroma for the three colours, or inverted.

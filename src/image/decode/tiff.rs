@@ -1,17 +1,18 @@
 //! TIFF: from the samples of the crate `tiff` to a picture. The one door of that crate.
 
 use std::borrow::Cow;
+use std::cell::Cell;
 use std::io::{Read, Seek};
 
 use ::image::metadata::Orientation;
 use ::image::{DynamicImage, ImageBuffer, ImageError, ImageFormat};
-use tiff::decoder::{Decoder, DecodingResult, Limits};
+use tiff::decoder::{self, Decoder, DecodingResult};
 use tiff::tags::Tag;
 use tiff::{ColorType, TiffError};
 
-use super::decoded::{Coding, Decoded, Failure, damaged, unsupported};
-use super::header::is_big_tiff;
-use crate::error::Result;
+use super::{Limits, Supply, check_size};
+use crate::image::decoded::{Coding, Decoded, Failure, damaged, unsupported};
+use crate::image::header::is_big_tiff;
 
 /// Light and colour differences of `YCbCr`, where a file does not say which.
 const LUMA: [f64; 3] = [0.299, 0.587, 0.114];
@@ -28,18 +29,18 @@ const GREY: u16 = 1;
 /// The tag with the meaning of samples.
 const INTERPRETATION: u16 = 262;
 
-/// The first page of at most `max_bytes` of samples, if `check` lets its width and height pass. The file is one that
-/// [`unfolded`] has returned, together with `is_palette`.
-pub(super) fn read(
-    file: impl Read + Seek,
-    is_palette: bool,
-    max_bytes: u64,
-    check: impl Fn(u32, u32) -> Result<()>,
-) -> Result<Decoded, Failure> {
-    let mut file = Decoder::new(file).map_err(explained)?;
+/// The first page.
+pub(super) fn read(bytes: &[u8], ran_out: &Cell<bool>, limits: Limits) -> Result<Decoded, Failure> {
+    let (bytes, is_palette) = unfolded(bytes);
+    let mut file = Decoder::new(Supply::new(&bytes, ran_out)).map_err(explained)?;
     let (width, height) = file.dimensions().map_err(explained)?;
-    check(width, height)?;
-    file = file.with_limits(limits(max_bytes));
+    check_size(width, height, limits)?;
+    let most = usize::try_from(limits.max_bytes).unwrap_or(usize::MAX);
+    let mut limits = decoder::Limits::default();
+    limits.decoding_buffer_size = most;
+    limits.intermediate_buffer_size = most;
+    limits.ifd_value_size = most;
+    file = file.with_limits(limits);
     let color = file.colortype().map_err(explained)?;
     let extras = file.find_tag_unsigned_vec::<u16>(Tag::ExtraSamples);
     let extra = extras.ok().flatten().and_then(|tags| tags.first().copied());
@@ -135,15 +136,6 @@ pub(super) fn read(
     })
 }
 
-fn limits(max_bytes: u64) -> Limits {
-    let most = usize::try_from(max_bytes).unwrap_or(usize::MAX);
-    let mut limits = Limits::default();
-    limits.decoding_buffer_size = most;
-    limits.intermediate_buffer_size = most;
-    limits.ifd_value_size = most;
-    limits
-}
-
 /// The samples as numbers, and the number that stands for 1. Of longer integers the first 16 bits count, which are more than can
 /// be drawn. Rows of `row` samples of fewer bits than 8 begin on a byte.
 fn numbers(read: DecodingResult, bits: u8, row: usize) -> Result<(Vec<f32>, f32), Failure> {
@@ -230,7 +222,7 @@ fn explained(error: TiffError) -> Failure {
 
 /// The file with the numbers of a palette called grey, and whether there is a palette: the crate `tiff` refuses colours by
 /// number, and reads them as grey.
-pub(super) fn unfolded(bytes: &[u8]) -> (Cow<'_, [u8]>, bool) {
+fn unfolded(bytes: &[u8]) -> (Cow<'_, [u8]>, bool) {
     match interpretation(bytes) {
         Some((at, PALETTE)) => {
             let mut changed = bytes.to_vec();

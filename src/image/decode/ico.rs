@@ -1,18 +1,33 @@
 //! ICO: the largest of its pictures, a PNG or a bitmap without a head and with a mask.
 
+use std::cell::Cell;
 use std::io::Cursor;
 
 use ::image::codecs::bmp::BmpDecoder;
 use ::image::{DynamicImage, ImageDecoder, ImageFormat};
 
-use super::decoded::{Failure, damaged};
-use super::header::{le16, le32};
+use super::{Limits, check_size, general};
+use crate::image::decoded::{Decoded, Failure, damaged};
+use crate::image::header::{le16, le32};
 
 /// The bytes that a PNG begins with.
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
 
 /// The largest picture of an icon.
-pub(super) enum Largest<'a> {
+pub(super) fn read(bytes: &[u8], ran_out: &Cell<bool>, limits: Limits) -> Result<Decoded, Failure> {
+    match largest(bytes)? {
+        Largest::Png(file) => general(file, ran_out, ImageFormat::Png, limits),
+        Largest::Deep(file) => general(&file, ran_out, ImageFormat::Ico, limits),
+        Largest::Bitmap(bitmap) => {
+            let (width, height) = bitmap.size;
+            check_size(width, height, limits)?;
+            Ok(Decoded::plain(bitmap.picture()?))
+        }
+    }
+}
+
+/// The largest picture of an icon.
+enum Largest<'a> {
     /// A PNG file.
     Png(&'a [u8]),
     /// An icon of this picture alone, of 32 bits, which the general decoder reads.
@@ -22,15 +37,15 @@ pub(super) enum Largest<'a> {
 }
 
 /// A bitmap without alpha, followed by a mask.
-pub(super) struct Bitmap<'a> {
+struct Bitmap<'a> {
     bytes: &'a [u8],
     /// Width and height in px.
-    pub(super) size: (u32, u32),
+    size: (u32, u32),
     bits: u32,
 }
 
 /// The largest picture of an icon; among equals the one of most bits.
-pub(super) fn largest(bytes: &[u8]) -> Result<Largest<'_>, Failure> {
+fn largest(bytes: &[u8]) -> Result<Largest<'_>, Failure> {
     let count = le16(bytes, 4).unwrap_or(0) as usize;
     let entries = (0..count).map_while(|i| bytes.get(6 + 16 * i..22 + 16 * i));
     let entries: Vec<&[u8]> = entries.collect();
@@ -76,7 +91,7 @@ impl<'a> Bitmap<'a> {
     }
 
     /// The picture, transparent where the mask is set. Its size is within the limits.
-    pub(super) fn picture(&self) -> Result<DynamicImage, Failure> {
+    fn picture(&self) -> Result<DynamicImage, Failure> {
         let mut bitmap = self.bytes.to_vec();
         // The header counts the mask's rows, too: the decoder has to read half of that.
         bitmap[8..12].copy_from_slice(&self.size.1.to_le_bytes());
