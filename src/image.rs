@@ -31,7 +31,7 @@ pub use animate::{AnimationFormat, animated};
 pub use decode::Limits;
 pub use decoded::Remark;
 pub use formats::{FORMATS, Format};
-pub(crate) use header::{Embeddable, stated_size};
+pub(crate) use header::stated_size;
 pub(crate) use reduce::Half;
 pub use rows::{Rows, Sample};
 

@@ -5,30 +5,17 @@ use std::io::Cursor;
 
 use ::image::{ImageFormat, ImageReader};
 
-/// A format that SVG files embed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Embeddable {
-    /// `image/png`.
-    Png,
-    /// `image/jpeg`.
-    Jpeg,
-    /// `image/gif`.
-    Gif,
-    /// `image/webp`.
-    WebP,
-}
-
-/// The format, width and height in the header of a picture file, if SVG can embed this format. No pixel is
+/// The name of the format, and width and height in the header of a picture file, if SVG can embed this format. No pixel is
 /// decoded.
-pub(crate) fn stated_size(bytes: &[u8]) -> Option<(Embeddable, u32, u32)> {
+pub(crate) fn stated_size(bytes: &[u8]) -> Option<(&'static str, u32, u32)> {
     let reader = ImageReader::new(Cursor::new(bytes))
         .with_guessed_format()
         .ok()?;
     let format = match reader.format()? {
-        ImageFormat::Png => Embeddable::Png,
-        ImageFormat::Jpeg => Embeddable::Jpeg,
-        ImageFormat::Gif => Embeddable::Gif,
-        ImageFormat::WebP => Embeddable::WebP,
+        ImageFormat::Png => "png",
+        ImageFormat::Jpeg => "jpeg",
+        ImageFormat::Gif => "gif",
+        ImageFormat::WebP => "webp",
         _ => return None,
     };
     let (width, height) = reader.into_dimensions().ok()?;

@@ -61,10 +61,10 @@ impl Embedded {
             return None;
         }
         match format {
-            image::Embeddable::Png => Some(ImageKind::PNG(data)),
-            image::Embeddable::Jpeg => Some(ImageKind::JPEG(data)),
-            image::Embeddable::Gif => Some(ImageKind::GIF(data)),
-            image::Embeddable::WebP => Some(ImageKind::WEBP(data)),
+            "png" => Some(ImageKind::PNG(data)),
+            "jpeg" => Some(ImageKind::JPEG(data)),
+            "gif" => Some(ImageKind::GIF(data)),
+            _ => Some(ImageKind::WEBP(data)),
         }
     }
 

@@ -115,7 +115,7 @@ pub(super) fn read(bytes: &[u8], ran_out: &Cell<bool>, limits: Limits) -> Result
         }
         pixel
     };
-    // Half the channels have alpha, and the others take no memory for it.
+    // A picture without alpha takes no memory for it.
     let picture = if palette.is_none() && channels.is_multiple_of(2) {
         let samples = (0..pixels).flat_map(pixel).collect();
         ImageBuffer::from_raw(width, height, samples).map(DynamicImage::ImageRgba32F)
@@ -124,7 +124,8 @@ pub(super) fn read(bytes: &[u8], ran_out: &Cell<bool>, limits: Limits) -> Result
         let samples = (0..pixels).flat_map(opaque).collect();
         ImageBuffer::from_raw(width, height, samples).map(DynamicImage::ImageRgb32F)
     };
-    let mut picture = picture.unwrap_or_default();
+    let too_few = || damaged(ImageFormat::Tiff, "its samples are too few");
+    let mut picture = picture.ok_or_else(too_few)?;
     let orientation = file.find_tag_unsigned::<u8>(Tag::Orientation);
     let orientation = orientation.ok().flatten().and_then(Orientation::from_exif);
     picture.apply_orientation(orientation.unwrap_or(Orientation::NoTransforms));
@@ -141,7 +142,7 @@ pub(super) fn read(bytes: &[u8], ran_out: &Cell<bool>, limits: Limits) -> Result
 fn numbers(read: DecodingResult, bits: u8, row: usize) -> Result<(Vec<f32>, f32), Failure> {
     let short = |v: u64| f32::from(v as u16);
     Ok(match read {
-        DecodingResult::U8(bytes) if bits < 8 => {
+        DecodingResult::U8(bytes) if matches!(bits, 1 | 2 | 4) => {
             let per_byte = 8 / bits;
             let most = (1 << bits) - 1;
             // The first sample has the highest bits.
