@@ -2,7 +2,8 @@
 //!
 //! A proposer is a function of a drawing. It foresees the squared error that each of its edits removes, and says what the
 //! bytes are worth that the edit saves. [`choose`] takes the edits that gain most and do not touch each other.
-//! [`apply_priced`] tries them: all at once and, where that adds more squared error than they may add, each half of them.
+//! [`apply_priced`] makes those that need no trial, and tries the others: all at once and, where that adds more squared error
+//! than they may add, each half of them.
 //!
 //! | file | what it proposes |
 //! | --- | --- |
@@ -34,6 +35,8 @@ pub(super) struct Edit {
     pub(super) price: f32,
     /// Growth of the number of points, or of marks.
     pub(super) growth: isize,
+    /// False if it is made without a trial, as the descent that follows mends what it costs.
+    pub(super) is_tried: bool,
 }
 
 /// Replacement of a mark.
@@ -83,6 +86,7 @@ impl Edit {
             changes: vec![(i, Change::Marks(marks))],
             gain: 0.0,
             price,
+            is_tried: true,
         }
     }
 }
@@ -211,8 +215,8 @@ fn places(edit: &Edit) -> impl Iterator<Item = (usize, usize)> {
     })
 }
 
-/// Most trials of one call of [`apply_priced`]. A guess: each renders the drawing.
-const TRIALS: usize = 64;
+/// Most trials of a step of a descent. A guess: each renders the drawing.
+pub(super) const TRIALS: usize = 64;
 
 /// Edits that were tried.
 #[derive(Debug, Default)]
@@ -222,21 +226,22 @@ pub(super) struct Tried {
     pub(super) sources: Vec<Option<usize>>,
 }
 
-/// Makes the edits that pay: rendered, they add no more squared error than their prices allow. The edits change different
-/// paths. All edits that should pay by their surplus are tried at once and, where a group fails, each half of it. The others
-/// are then tried one by one.
-pub(super) fn apply_priced(drawing: &mut Drawing, edits: Vec<Edit>) -> Tried {
-    apply_within(drawing, edits, TRIALS)
-}
-
-/// [`apply_priced`], with so many trials at most.
-pub(super) fn apply_within(drawing: &mut Drawing, edits: Vec<Edit>, trials: usize) -> Tried {
+/// Makes the edits that need no trial, and those that pay: rendered, they add no more squared error than their prices allow.
+/// The edits change different paths. All edits that should pay by their surplus are tried at once and, where a group fails, each
+/// half of it, as long as there are `trials`. The others are then tried one by one.
+pub(super) fn apply_priced(drawing: &mut Drawing, edits: Vec<Edit>, trials: usize) -> Tried {
     // The loss is a mean over pixels and channels, prices are sums.
     let values = 3.0 * drawing.pixels() as f64;
-    let (before, mut error) = (drawing.marks(), drawing.mse());
-    let mut taken: Vec<usize> = Vec::new();
+    let before = drawing.marks();
+    let (tried, mut taken): (Vec<usize>, Vec<usize>) =
+        (0..edits.len()).partition(|&i| edits[i].is_tried);
+    drawing.apply(taken.iter().map(|&i| &edits[i]));
+    let mut error = match tried.is_empty() {
+        true => 0.0,
+        false => drawing.mse(),
+    };
     let (paying, others): (Vec<usize>, Vec<usize>) =
-        (0..edits.len()).partition(|&i| edits[i].surplus() >= 0.0);
+        tried.into_iter().partition(|&i| edits[i].surplus() >= 0.0);
     let groups = std::iter::once(paying).chain(others.into_iter().map(|i| vec![i]));
     // Each trial adds one group to all that were taken, so that interaction between edits is in the measured error.
     by_halves(groups.collect(), trials, |group| {
@@ -396,6 +401,7 @@ mod tests {
             gain,
             price,
             growth: if price > 0.0 { -1 } else { 1 },
+            is_tried: true,
         }
     }
 

@@ -11,7 +11,9 @@ use super::budget::price::Price;
 use super::budget::{self, typical_bytes};
 use super::drawing::Drawing;
 use super::edits::terrain::{LEAST, Terrain};
-use super::edits::{self, Change, Edit, Room, apply_priced, choose, disjoint, drop_marks, joins};
+use super::edits::{
+    self, Change, Edit, Room, TRIALS, apply_priced, choose, disjoint, drop_marks, joins,
+};
 use super::run::session::Session;
 use crate::render::{StrokeRef, Survey};
 
@@ -42,7 +44,7 @@ pub(super) fn rearrange(session: &mut Session<'_>, done: f32) -> Vec<Option<usiz
     let worth = |stroke: StrokeRef<'_>| price.least_worth(stroke).max(spare);
     // Joins first. They free points that the edits of paths can use.
     let joins = joins::joins(drawing.free(), most, &points.joins, worth);
-    let joined = apply_priced(drawing, joins).sources;
+    let joined = apply_priced(drawing, joins, TRIALS).sources;
     let edited = edit(session, spare);
     // Two rearrangements in a row: a number's source is the source of its source.
     edited.iter().map(|source| joined[(*source)?]).collect()
@@ -51,23 +53,17 @@ pub(super) fn rearrange(session: &mut Session<'_>, done: f32) -> Vec<Option<usiz
 /// Takes away points that are not worth their price now that the strokes are where they belong. Each path loses at most one
 /// point at a time. A pass that adds more than it may is taken back, and is the last one.
 pub(super) fn prune(drawing: &mut Drawing, price: Price, prunings: usize) {
-    let values = 3.0 * drawing.pixels() as f64;
     for _ in 0..prunings {
         let price = price.in_drawing(drawing);
         let losses = choose(losses(drawing, price), Room::default());
-        let of_area = |edit: &Edit| drawing.free().get(edit.changes[0].0).is_area();
-        let (of_areas, of_strokes): (Vec<_>, Vec<_>) = losses.into_iter().partition(of_area);
-        // An edge of an area may turn its inside out, so that each of these is on trial.
-        let is_shorter = !apply_priced(drawing, of_areas).made.is_empty();
-        // Losses of strokes foresee their errors well, and pay together.
-        let (before, error) = (drawing.marks(), drawing.mse());
-        drawing.apply(&of_strokes);
-        let allowed: f64 = of_strokes.iter().map(|edit| f64::from(edit.price)).sum();
-        if (drawing.mse() - error) * values > allowed {
-            drawing.set_marks(before);
-            return;
-        }
-        if !is_shorter && of_strokes.is_empty() {
+        let (of_areas, mut of_strokes): (Vec<_>, Vec<_>) =
+            losses.into_iter().partition(|edit| edit.is_tried);
+        let is_shorter = !apply_priced(drawing, of_areas, TRIALS).made.is_empty();
+        // Losses of strokes foresee their errors well, and pay together or not at all: no descent follows that would mend them.
+        of_strokes.iter_mut().for_each(|edit| edit.is_tried = true);
+        let is_over = of_strokes.is_empty() && !is_shorter;
+        let wanted = of_strokes.len();
+        if apply_priced(drawing, of_strokes, 1).made.len() < wanted || is_over {
             return;
         }
     }
@@ -98,7 +94,9 @@ pub(super) fn shed(
     // Every pass removes at least one mark or point, so that the loop ends.
     while left > 0 && !drawing.free().is_empty() {
         let mut edits = losses(drawing, price);
-        edits.extend(drop_marks(drawing, |mark| price.least_worth(mark)));
+        let drops = drop_marks(drawing, |mark| price.least_worth(mark));
+        // Bytes beyond a budget have to go, whatever they are worth.
+        edits.extend(untried(drops));
         let point_bytes = price.point_bytes();
         let bytes: Vec<usize> = drawing
             .free()
@@ -122,25 +120,22 @@ pub(super) fn shed(
             wanted = wanted.saturating_sub(bytes(edit));
             is_wanted
         });
-        // An edge of an area may turn its inside out. All other bytes go unasked, as they have to.
-        let of_ring = |edit: &Edit| match edit.changes[..] {
-            [(i, Change::Path { .. })] => drawing.free().get(i).is_area(),
-            _ => false,
-        };
-        let (of_rings, mut others): (Vec<_>, Vec<_>) = edits.into_iter().partition(of_ring);
-        let tried = apply_priced(drawing, tolerated(of_rings));
-        if tried.made.is_empty() && others.is_empty() {
-            others = edits::least(drawing, 1);
+        let mut tried = apply_priced(drawing, tolerated(edits), TRIALS);
+        if tried.made.is_empty() {
+            let least = untried(edits::least(drawing, 1));
+            tried = apply_priced(drawing, least, 0);
         }
-        let gone = tried.made.iter().chain(&others).map(bytes).sum();
-        left = left.saturating_sub(gone);
-        let kept = drawing.apply(&others);
-        sources = kept
-            .into_iter()
-            .map(|from| sources[tried.sources[from?]?])
-            .collect();
+        left = left.saturating_sub(tried.made.iter().map(bytes).sum());
+        let former = tried.sources.into_iter();
+        sources = former.map(|from| sources[from?]).collect();
     }
     sources
+}
+
+/// Edits that are made without a trial.
+fn untried(mut edits: Vec<Edit>) -> Vec<Edit> {
+    edits.iter_mut().for_each(|edit| edit.is_tried = false);
+    edits
 }
 
 /// Edits that may add more than foreseen, as descent follows.
@@ -210,17 +205,7 @@ fn edit(session: &mut Session<'_>, spare: f32) -> Vec<Option<usize>> {
         most: (points.share * paths).ceil() as usize,
         swaps: (points.swapped * paths) as usize,
     };
-    // A stroke's new point need not pay at once, as the descent that follows moves it. An edge of an area may turn its inside out.
-    let of_area = |edit: &Edit| {
-        edit.changes
-            .iter()
-            .all(|&(i, _)| drawing.free().get(i).is_area())
-    };
-    let (of_areas, of_strokes): (Vec<_>, Vec<_>) =
-        choose(proposed, room).into_iter().partition(of_area);
-    let measured = apply_priced(drawing, tolerated(of_areas)).sources;
-    let moved = drawing.apply(&of_strokes);
-    moved.iter().map(|source| measured[(*source)?]).collect()
+    apply_priced(drawing, tolerated(choose(proposed, room)), TRIALS).sources
 }
 
 /// The bytes that are left for more points and strokes, less than 0 if there are too many; `None` without a budget of bytes.

@@ -23,6 +23,7 @@ pub(in crate::fit) fn joins(
         gain: 0.0,
         price: price(strokes.get(pair.lower)),
         growth: -1,
+        is_tried: true,
     };
     let mut pairs = pairs(strokes, most, joins);
     pairs.truncate((joins.share * strokes.len() as f32).ceil() as usize);

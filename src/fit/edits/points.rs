@@ -55,6 +55,8 @@ impl Changed {
             gain,
             price,
             growth,
+            // An edge of an area may turn its inside out. A point of a stroke need not pay at once.
+            is_tried: terrain.is_ring,
         }
     }
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::fit::descent::held::Held;
 use crate::fit::descent::{Course, Descent, TRACED_PACE};
 use crate::fit::drawing::Drawing;
-use crate::fit::edits::{Change, Edit, apply_within};
+use crate::fit::edits::{Change, Edit, apply_priced};
 use crate::fit::recipe::{Forms, Rates};
 use crate::fit::run::session::Session;
 use crate::render::StrokeRef;
@@ -85,7 +85,7 @@ pub(super) fn adopt(
         // Those on top are tried first.
         edits.reverse();
     }
-    let tried = apply_within(&mut session.drawing, edits, usize::MAX);
+    let tried = apply_priced(&mut session.drawing, edits, usize::MAX);
     !tried.made.is_empty()
 }
 

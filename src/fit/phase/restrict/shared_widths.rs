@@ -12,7 +12,7 @@ use super::width_grid::WidthGrid;
 use crate::fit::config::{Colors, Config};
 use crate::fit::descent::ties::Ties;
 use crate::fit::drawing::Drawing;
-use crate::fit::edits::{Change, Edit, apply_priced};
+use crate::fit::edits::{Change, Edit, TRIALS, apply_priced};
 use crate::fit::recipe::Recipe;
 use crate::math;
 use crate::render::{STYLE, StrokeMut, Strokes};
@@ -43,7 +43,7 @@ pub(super) fn run(drawing: &mut Drawing, config: &Config, recipe: &Recipe) -> Ti
         // Divided equally among the edits; a trial of several compares what they add with the sum of their parts.
         let each = allowance / edits.len() as f32;
         edits.iter_mut().for_each(|edit| edit.price = each);
-        for edit in apply_priced(drawing, edits).made {
+        for edit in apply_priced(drawing, edits, TRIALS).made {
             for number in numbers.clone() {
                 let places = edit.changes.iter();
                 let places = places.map(|(i, _)| drawing.free().range(*i).end - STYLE + number);
@@ -66,6 +66,7 @@ fn restyled(strokes: &Strokes, members: &[usize], style: impl Fn(StrokeMut<'_>))
         gain: 0.0,
         price: 0.0,
         growth: 0,
+        is_tried: true,
     }
 }
 

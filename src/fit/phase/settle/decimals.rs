@@ -4,7 +4,7 @@
 
 use crate::fit::budget::price::Price;
 use crate::fit::drawing::Drawing;
-use crate::fit::edits::{Edit, apply_within};
+use crate::fit::edits::{Edit, apply_priced};
 use crate::render::{StrokeRef, Strokes};
 use crate::scene::{Area, Mark, Scene};
 
@@ -38,7 +38,7 @@ pub(super) fn drop_decimals(
         .enumerate()
         .filter_map(coarse)
         .collect();
-    !apply_within(drawing, edits, usize::MAX).made.is_empty()
+    !apply_priced(drawing, edits, usize::MAX).made.is_empty()
 }
 
 /// The area with fewer decimals; `None` for a stroke, or if nothing would be left.
