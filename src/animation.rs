@@ -205,17 +205,15 @@ fn stage_ends(scene: &Scene) -> Vec<usize> {
 }
 
 #[cfg(feature = "animation")]
-/// Some marks of `scene` as SVG, not rounded any further; on its background, shade and shadows if they are its first.
+/// Some marks of `scene` as SVG, not rounded any further; on its background and ground if they are its first.
 fn part_svg<'a>(scene: &Scene, is_first: bool, marks: impl Iterator<Item = &'a Mark>) -> String {
     let stage = marks.cloned().collect();
     let part = Scene {
         stages: vec![stage],
         background: scene.background.filter(|_| is_first),
-        shade: scene.shade.clone().filter(|_| is_first),
-        shadows: if is_first {
-            scene.shadows.clone()
-        } else {
-            Vec::new()
+        ground: match is_first {
+            true => scene.ground.clone(),
+            false => Vec::new(),
         },
         ..*scene
     };
@@ -326,12 +324,8 @@ mod tests {
     fn a_drawing_of_areas_plays_and_says_how_many_there_are() {
         let corners = [[2.0, 2.0], [30.0, 4.0], [16.0, 22.0]]
             .map(|[x, y]: [f64; 2]| PathPoint::on((x, y).into()));
-        let area = Area {
-            rings: vec![Path::new(corners.into(), true).unwrap()],
-            color: [0.2, 0.4, 0.8],
-            opacity: 0.7,
-            shade: None,
-        };
+        let ring = Path::new(corners.into(), true).unwrap();
+        let area = Area::plain(vec![ring], [0.2, 0.4, 0.8], 0.7);
         let mut scene = scene(&[2]);
         let below = [Mark::from(area.clone()), Mark::from(area)];
         scene.stages[0].marks.splice(1..1, below);

@@ -20,12 +20,10 @@ const SCALE: f64 = 4.0;
 pub(crate) fn of_mark(mark: &Mark) -> Area {
     match mark.clone().filled() {
         Mark::Area(area) => area,
-        Mark::Stroke(stroke) => Area {
-            rings: stroked(&stroke).map_or_else(Vec::new, |path| rings(&path)),
-            color: stroke.color,
-            opacity: stroke.opacity,
-            shade: None,
-        },
+        Mark::Stroke(stroke) => {
+            let rings = stroked(&stroke).map_or_else(Vec::new, |path| rings(&path));
+            Area::plain(rings, stroke.color, stroke.opacity)
+        }
     }
 }
 

@@ -8,6 +8,7 @@ mod canonical;
 mod colors;
 mod filled_loop;
 mod grid;
+mod ground;
 mod likeness;
 mod mark;
 mod overlap;
@@ -15,7 +16,6 @@ mod path;
 mod polyline;
 mod quantize;
 mod shade;
-mod shadow;
 mod shape;
 
 pub use band::Band;
@@ -31,7 +31,6 @@ pub(crate) use polyline::{polyline, through};
 pub(crate) use quantize::quantized_anywhere;
 pub use quantize::{Dropped, Quantized};
 pub use shade::{Axis, MAX_STOPS, Shade, ShadeStop};
-pub use shadow::Shadow;
 pub use shape::{Shape, ShapeKind};
 
 use crate::math::Point;
@@ -90,10 +89,9 @@ pub struct Scene {
     pub page: Option<[u32; 2]>,
     /// The colour behind all marks; `None` if the drawing is transparent.
     pub background: Option<Rgb>,
-    /// A gradient on the background, behind all marks, if there is one.
-    pub shade: Option<Shade>,
-    /// Shadows and glows on both, back to front, behind all marks.
-    pub shadows: Vec<Shadow>,
+    /// Areas on the background, behind all marks, which no fit changes: the gradient of the page if it has one ([`Area::page`]),
+    /// and then soft shadows and glows, back to front ([`Area::blurred`]).
+    pub ground: Vec<Area>,
     /// Back to front.
     pub stages: Vec<Stage>,
 }
@@ -106,8 +104,7 @@ impl Scene {
             height,
             page: None,
             background,
-            shade: None,
-            shadows: Vec::new(),
+            ground: Vec::new(),
             stages: Vec::new(),
         }
     }
@@ -132,11 +129,6 @@ impl Scene {
             stage.marks = marks.map(&f).collect();
         }
         self
-    }
-
-    /// True if a gradient or shadows lie on the background, behind all marks.
-    pub fn has_ground(&self) -> bool {
-        self.shade.is_some() || !self.shadows.is_empty()
     }
 
     /// All marks, back to front.

@@ -52,12 +52,7 @@ impl Source<'_> {
             3 => self.path([PathPoint::on(a), PathPoint::off(b)], true),
             4 => {
                 let rings = self.rings([PathPoint::on(a), PathPoint::off(b)]);
-                return Mark::Area(Area {
-                    rings,
-                    color,
-                    opacity,
-                    shade: None,
-                });
+                return Area::plain(rings, color, opacity).into();
             }
             _ => Path::line(a, b),
         };

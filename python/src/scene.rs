@@ -16,7 +16,7 @@ use crate::failure::Failure;
 use crate::marks::PackedMarks;
 use crate::options;
 
-/// All of a drawing but its marks: its size, background, shade and shadows, and the size that its file says.
+/// All of a drawing but its marks: its size, background and ground, and the size that its file says.
 #[pyclass(frozen, module = "strokefit._native")]
 #[derive(Clone)]
 pub(crate) struct Page {
@@ -34,12 +34,11 @@ impl Page {
         }
     }
 
-    /// This page on another background, without its shade and shadows.
+    /// This page on another background, without its ground.
     fn on(&self, background: Option<Rgb>) -> Self {
         let mut page = self.clone();
         page.scene.background = background;
-        page.scene.shade = None;
-        page.scene.shadows.clear();
+        page.scene.ground.clear();
         page
     }
 
@@ -60,7 +59,7 @@ impl Page {
         py: Python<'py>,
         behind: Rgb,
     ) -> PyResult<Option<Bound<'py, PyArray3<f32>>>> {
-        if !self.scene.has_ground() {
+        if self.scene.ground.is_empty() {
             return Ok(None);
         }
         let [width, height] = [self.scene.width, self.scene.height].map(|side| side as usize);

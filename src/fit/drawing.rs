@@ -3,7 +3,6 @@
 pub(super) mod background;
 pub(super) mod bounds;
 pub(super) mod focus;
-pub(super) mod ground;
 pub(super) mod masking;
 mod memento;
 pub(super) mod objective;
@@ -16,10 +15,9 @@ use fearless_simd::Level;
 
 use super::recipe::Recipe;
 use crate::render::{Canvas, CanvasLoss, Gradients, Params, Renderer, Softness, Strokes, Survey};
-use crate::scene::{Mark, Rgb};
+use crate::scene::{Area, Mark, Rgb};
 use bounds::Bounds;
 use focus::Focus;
-use ground::Ground;
 pub(super) use memento::Memento;
 use objective::Target;
 use scene::enlarge;
@@ -35,8 +33,8 @@ pub(super) struct Drawing {
     pub(super) level: Level,
     /// True if the background keeps its colour.
     pub(super) background_fixed: bool,
-    /// The gradient and the shadows on the background and behind all strokes.
-    pub(super) ground: Ground,
+    /// The areas on the background, behind all strokes.
+    pub(super) ground: Vec<Area>,
     /// The strokes that are kept as they are, back to front, and on top of them those that are fitted.
     frozen: Strokes,
     free: Strokes,
@@ -75,7 +73,7 @@ impl Drawing {
     /// An empty drawing on one or more `surfaces`.
     pub(super) fn new(
         surfaces: Vec<Surface>,
-        (background_fixed, ground): (bool, Ground),
+        (background_fixed, ground): (bool, Vec<Area>),
         bounds: Bounds,
         edge: Softness,
         level: Level,

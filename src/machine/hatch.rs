@@ -59,8 +59,7 @@ pub fn hatched(scene: &Scene, spacing: f64, pen: f64, degrees: f64) -> Result<Sc
     stages.retain(|stage| !stage.marks.is_empty());
     Ok(Scene {
         stages,
-        shade: None,
-        shadows: Vec::new(),
+        ground: Vec::new(),
         ..*scene
     })
 }
@@ -84,8 +83,7 @@ fn areas(scene: &Scene) -> Result<Vec<Area>> {
     let marked = Scene {
         stages: scene.stages.iter().map(stage).collect(),
         background: scene.background,
-        shade: None,
-        shadows: Vec::new(),
+        ground: Vec::new(),
         ..*scene
     };
     let mut areas = visible::areas(&marked)?;

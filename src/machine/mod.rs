@@ -30,8 +30,7 @@ pub fn outlined(scene: &Scene) -> Scene {
     Scene {
         stages: scene.stages.iter().map(stage).collect(),
         background: scene.background,
-        shade: scene.shade.clone(),
-        shadows: scene.shadows.clone(),
+        ground: scene.ground.clone(),
         ..*scene
     }
 }

@@ -12,7 +12,7 @@ use super::Sheet;
 use crate::math::{self, Point};
 use crate::render;
 use crate::report::deflated;
-use crate::scene::{Axis, Cap, Mark, Path, Rgb, Shade, ShadeStop, Shadow, quantum};
+use crate::scene::{Area, Axis, Cap, Mark, Path, Rgb, Shade, ShadeStop, quantum};
 
 /// The bytes of a PDF of the drawing. Colours are those of the screen (`DeviceRGB`), curves are exact, and lengths are those
 /// of the page.
@@ -29,13 +29,12 @@ pub fn pdf(sheet: &Sheet<'_>) -> Vec<u8> {
     if let Some(color) = scene.background {
         file.fill_page(color);
     }
-    if let Some(shade) = &scene.shade {
+    for area in &scene.ground {
         file.content.save_state();
-        file.shade(shade);
-    }
-    for shadow in &scene.shadows {
-        file.content.save_state();
-        file.shadow(shadow, [scene.width, scene.height]);
+        match &area.shade {
+            Some(shade) => file.shade(shade),
+            None => file.shadow(area, [scene.width, scene.height]),
+        }
     }
     for stage in &scene.stages {
         file.layer(&stage.marks);
@@ -164,9 +163,9 @@ impl File {
     }
 
     /// Draws a shadow: PDF has no blur, so that its coverage is an image, which masks its colour. Restores the graphics state.
-    fn shadow(&mut self, shadow: &Shadow, [width, height]: [u32; 2]) {
+    fn shadow(&mut self, shadow: &Area, [width, height]: [u32; 2]) {
         let coverage = render::coverage(shadow, width as usize, height as usize).into_iter();
-        let levels = coverage.map(|covered| (255.0 * shadow.area().opacity * covered + 0.5) as u8);
+        let levels = coverage.map(|covered| (255.0 * shadow.opacity * covered + 0.5) as u8);
         let levels = deflated(&levels.collect::<Vec<_>>());
         let id = self.next.bump();
         let mut image = self.pdf.image_xobject(id, &levels);
@@ -183,7 +182,7 @@ impl File {
         self.mask(&content.finish(), |resources| {
             resources.x_objects().pair(Name(b"Image"), id);
         });
-        self.fill_page(shadow.area().color);
+        self.fill_page(shadow.color);
         self.content.restore_state();
     }
 

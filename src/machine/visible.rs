@@ -37,8 +37,7 @@ pub fn cut_out(scene: &Scene) -> Result<Scene> {
     let areas = areas.filter(|area| !area.rings.is_empty());
     let cut = Scene {
         background: None,
-        shade: None,
-        shadows: Vec::new(),
+        ground: Vec::new(),
         stages: areas.map(|area| Stage::from_iter([area])).collect(),
         ..*scene
     };
@@ -147,12 +146,8 @@ fn seen(page: &BezPath, marks: &[([u8; 3], BezPath)], colors: &[[u8; 3]]) -> Opt
         let large = contours
             .contours()
             .filter(|contour| contour.path.area().abs() > SMALLEST);
-        Area {
-            opacity: 1.0,
-            shade: None,
-            color: color(*own),
-            rings: large.filter_map(|contour| ring(&contour.path)).collect(),
-        }
+        let rings = large.filter_map(|contour| ring(&contour.path));
+        Area::plain(rings.collect(), color(*own), 1.0)
     };
     Some(colors.iter().map(area).collect())
 }

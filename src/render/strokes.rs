@@ -214,11 +214,10 @@ impl<'a> StrokeRef<'a> {
             };
             return stroke.into();
         }
+        let rings = self.paths().map(|(_, ring)| ring.to_path()).collect();
         let area = Area {
-            rings: self.paths().map(|(_, ring)| ring.to_path()).collect(),
-            color: self.color(),
-            opacity: self.opacity(),
             shade: self.paint.map(|paint| paint.shade.clone()),
+            ..Area::plain(rings, self.color(), self.opacity())
         };
         area.into()
     }

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::math;
-use crate::scene::{Mark, Path, PathPoint, Rgb, Scene, Shade, ShadeStop, Shadow};
+use crate::scene::{Area, Mark, Path, PathPoint, Rgb, Scene, Shade, ShadeStop};
 
 /// A scene in numbers and colours that a page can hand to a canvas.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -41,12 +41,14 @@ pub struct MarkRecord(
 impl From<&Scene> for SceneRecord {
     fn from(scene: &Scene) -> Self {
         let stages = scene.stages.iter();
+        let mut shades = scene.ground.iter().filter_map(|area| area.shade.as_ref());
+        let shadows = scene.ground.iter().filter(|area| area.blur > 0.0);
         Self {
             width: scene.width,
             height: scene.height,
             background: scene.background.map(css),
-            shade: scene.shade.as_ref().map(ShadeRecord::from),
-            shadows: scene.shadows.iter().map(shadow).collect(),
+            shade: shades.next().map(ShadeRecord::from),
+            shadows: shadows.map(shadow).collect(),
             stages: stages
                 .map(|stage| stage.marks.iter().map(MarkRecord::from).collect())
                 .collect(),
@@ -92,9 +94,8 @@ impl From<&Mark> for MarkRecord {
     }
 }
 
-fn shadow(shadow: &Shadow) -> (MarkRecord, f32) {
-    let area = Mark::Area(shadow.area().clone());
-    (MarkRecord::from(&area), shadow.blur())
+fn shadow(area: &Area) -> (MarkRecord, f32) {
+    (MarkRecord::from(&Mark::from(area.clone())), area.blur)
 }
 
 fn kinds(path: &Path) -> String {
@@ -113,7 +114,7 @@ fn css(color: Rgb) -> String {
 mod tests {
     use super::*;
     use crate::math::Point;
-    use crate::scene::{Area, Axis, Cap, Stage, Stroke};
+    use crate::scene::{Axis, Cap, Stage, Stroke};
 
     #[test]
     fn a_page_reads_points_radius_colour_opacity_and_kinds() {
@@ -143,15 +144,11 @@ mod tests {
             };
             Path::new(points.iter().map(point).collect(), true).unwrap()
         };
-        let area = Area {
-            rings: vec![
-                ring(&[([0.0, 0.0], true), ([8.0, 0.0], true), ([4.0, 6.0], true)]),
-                ring(&[([3.0, 1.0], true), ([4.0, 5.0], false)]),
-            ],
-            color: [0.0, 0.5, 1.0],
-            opacity: 1.0,
-            shade: None,
-        };
+        let rings = vec![
+            ring(&[([0.0, 0.0], true), ([8.0, 0.0], true), ([4.0, 6.0], true)]),
+            ring(&[([3.0, 1.0], true), ([4.0, 5.0], false)]),
+        ];
+        let area = Area::plain(rings, [0.0, 0.5, 1.0], 1.0);
         let json =
             |area: Area| serde_json::to_string(&MarkRecord::from(&Mark::from(area))).unwrap();
         let expected =

@@ -259,12 +259,7 @@ impl Mark {
     #[must_use]
     pub fn filled(self) -> Self {
         match self.as_stroke().and_then(Stroke::band) {
-            Some(band) => Self::Area(Area {
-                rings: band.rings(),
-                color: self.color(),
-                opacity: self.opacity(),
-                shade: None,
-            }),
+            Some(band) => Area::plain(band.rings(), self.color(), self.opacity()).into(),
             None => self,
         }
     }

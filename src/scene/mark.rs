@@ -38,6 +38,28 @@ pub struct Area {
     pub opacity: f32,
     /// The gradient that it is filled with instead of its colour.
     pub shade: Option<Shade>,
+    /// Standard deviation of its Gaussian blur, px. Areas of a scene's ground alone are blurred.
+    pub blur: f32,
+}
+
+impl Area {
+    /// An area of one colour, with sharp edges.
+    pub fn plain(rings: Vec<Path>, color: Rgb, opacity: f32) -> Self {
+        Self {
+            rings,
+            color,
+            opacity,
+            shade: None,
+            blur: 0.0,
+        }
+    }
+
+    /// Colour and opacity at a place.
+    pub fn ink(&self, at: Point) -> (Rgb, f32) {
+        let shade = self.shade.as_ref().map(|shade| shade.at(at));
+        let (color, opacity) = shade.unwrap_or((self.color, 1.0));
+        (color, self.opacity * opacity)
+    }
 }
 
 impl Mark {
@@ -59,12 +81,9 @@ impl Mark {
 
     /// Colour and opacity at a place.
     pub fn ink(&self, at: Point) -> (Rgb, f32) {
-        match self.shade() {
-            None => (self.color(), self.opacity()),
-            Some(shade) => {
-                let (color, opacity) = shade.at(at);
-                (color, self.opacity() * opacity)
-            }
+        match self {
+            Self::Stroke(stroke) => (stroke.color, stroke.opacity),
+            Self::Area(area) => area.ink(at),
         }
     }
 
@@ -208,10 +227,8 @@ mod tests {
         let corners = [(-3.0, 1.0), (25.0, 1.0), (8.0, 7.0)];
         let points = corners.map(|at: (f64, f64)| PathPoint::on(at.into()));
         let area = Area {
-            rings: vec![Path::new(points.into(), true).unwrap()],
-            color: [0.5; 3],
-            opacity: 1.0,
             shade: Some(shade.clone()),
+            ..Area::plain(vec![Path::new(points.into(), true).unwrap()], [0.5; 3], 1.0)
         };
         let scene = Scene {
             stages: vec![Stage::from_iter([area])],

@@ -338,14 +338,7 @@ mod tests {
             }
             Path::of_points(points.into(), true)
         };
-        let area = |rings| {
-            Mark::Area(Area {
-                rings,
-                color: [0.0; 3],
-                opacity: 1.0,
-                shade: None,
-            })
-        };
+        let area = |rings| Mark::from(Area::plain(rings, [0.0; 3], 1.0));
         let (outer, hole) = (square(0.0, 100.0), square(20.0, 80.0));
         let [whole, holed] = [vec![outer.clone()], vec![outer, hole]].map(area);
         let dot = dot(50.0, 50.0);

@@ -77,8 +77,7 @@ impl Scene {
         let mut quantized = Quantized {
             scene: Self {
                 background: self.background.map(quantized_color),
-                shade: self.shade.clone(),
-                shadows: self.shadows.clone(),
+                ground: self.ground.clone(),
                 stages: Vec::new(),
                 ..*self
             },
@@ -222,6 +221,7 @@ pub(super) fn area(area: &Area, grid: &Grid) -> Result<Area, Unwritable> {
             .map_or_else(|| quantized_color(area.color), color_of),
         opacity: quantized_opacity(area.opacity),
         shade,
+        blur: 0.0,
     })
 }
 

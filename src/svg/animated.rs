@@ -243,12 +243,8 @@ mod tests {
         let mut scene = scene();
         let corners = [[1.0, 1.0], [9.0, 1.0], [5.0, 9.0]]
             .map(|[x, y]: [f64; 2]| PathPoint::on((x, y).into()));
-        scene.stages[1].marks[0] = Mark::from(Area {
-            rings: vec![Path::new(corners.into(), true).unwrap()],
-            color: [0.2, 0.4, 0.6],
-            opacity: 0.5,
-            shade: None,
-        });
+        let ring = Path::new(corners.into(), true).unwrap();
+        scene.stages[1].marks[0] = Area::plain(vec![ring], [0.2, 0.4, 0.6], 0.5).into();
         let text = write_animated(&scene, &[0..2, 2..5, 5..6, 6..7], TIMING, 2);
         let fade = "<animate attributeName=\"fill-opacity\" values=\"0;0;0.502;0.502\" \
                     keyTimes=\"0;0.1000;0.2000;1\"";

@@ -296,16 +296,9 @@ mod tests {
         let mut inner = ring(away - 4.0);
         inner.reverse();
         let rings = [Some(ring(away)), hole.then_some(inner)];
-        let area = Area {
-            rings: rings
-                .into_iter()
-                .flatten()
-                .map(|points| Path::of_points(points, true))
-                .collect(),
-            color: color([level; 3]),
-            opacity: 1.0,
-            shade: None,
-        };
+        let rings = rings.into_iter().flatten();
+        let rings = rings.map(|points| Path::of_points(points, true));
+        let area = Area::plain(rings.collect(), color([level; 3]), 1.0);
         Mark::from(area).into()
     }
 

@@ -323,12 +323,7 @@ mod tests {
         let outer = ring([[1.0, 1.0], [9.0, 1.0], [9.0, 9.0], [1.0, 9.0]]);
         let inner = ring([[3.0, 3.0], [3.0, 7.0], [7.0, 7.0], [7.0, 3.0]]);
         let twice = ring([[1.0, 1.0], [5.0, 1.0], [5.0, 3.0], [1.0, 3.0]]);
-        Area {
-            rings: vec![outer, inner, twice],
-            color: [0.2, 0.4, 0.6],
-            opacity: 1.0,
-            shade: None,
-        }
+        Area::plain(vec![outer, inner, twice], [0.2, 0.4, 0.6], 1.0)
     }
 
     #[test]

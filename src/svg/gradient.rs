@@ -1,8 +1,52 @@
-//! Writes the gradient of a shade.
+//! Writes what areas refer to: gradients, and the filters of soft shadows; and the areas of the ground.
 
 use super::dialect::{self, Unit};
+use super::element;
 use super::layer::Written;
-use crate::scene::{Axis, Shade, ShadeStop, quantum, units};
+use crate::scene::{Area, Axis, Mark, Scene, Shade, ShadeStop, quantum, units};
+
+/// Appends the ground of a scene, in px.
+pub(super) fn push_ground(out: &mut String, scene: &Scene) {
+    let Scene { width, height, .. } = *scene;
+    let mut number = 0;
+    for area in &scene.ground {
+        if let Some(shade) = &area.shade {
+            let id = dialect::SHADE_ID;
+            push(out, shade, id);
+            *out +=
+                &format!("\n<rect width=\"{width}\" height=\"{height}\" fill=\"url(#{id})\"/>\n");
+        } else {
+            number += 1;
+            push_shadow(out, area, number);
+        }
+    }
+}
+
+/// Appends the filter and the element of a shadow, the `number`-th of its file.
+fn push_shadow(out: &mut String, shadow: &Area, number: usize) {
+    let (filter, id) = (dialect::BLUR_ID, dialect::SHADOW_ID);
+    *out += &format!("<filter id=\"{filter}-{number}\"");
+    for (name, value) in dialect::FILTER {
+        *out += &format!(" {name}=\"{value}\"");
+    }
+    for (name, px) in dialect::FILTER_PLACE.iter().zip(place(shadow)) {
+        *out += &format!(" {name}=\"{px}\"");
+    }
+    let (gaussian, deviation) = dialect::GAUSSIAN;
+    *out += &format!("><{gaussian} {deviation}=\"");
+    let hundredths = (f64::from(shadow.blur) * 100.0).round() as i64;
+    Unit::PX.push(out, hundredths * dialect::HUNDREDTH);
+    *out += "\"/></filter>";
+    let names = format!(" id=\"{id}-{number}\" filter=\"url(#{filter}-{number})\"");
+    element::push_alone(out, &Mark::from(shadow.clone()).into(), &names);
+    out.push('\n');
+}
+
+/// The x, y, width and height of the filter of a shadow, px: without them programs cut off the blur far from the shape.
+pub(super) fn place(shadow: &Area) -> [i64; 4] {
+    let extent = shadow.extent();
+    [extent.x0, extent.y0, extent.width(), extent.height()].map(|px| px as i64)
+}
 
 /// Appends the gradient of a mark that has one, and then `end`.
 pub(super) fn push_of(out: &mut String, mark: &Written, end: &str) {

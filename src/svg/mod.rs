@@ -102,7 +102,6 @@ mod options;
 mod outline;
 mod path;
 mod read;
-mod shadow;
 mod shape;
 mod sheet;
 mod tour;

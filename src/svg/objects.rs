@@ -85,13 +85,8 @@ mod tests {
         let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
         let points = corners
             .map(|[dx, dy]: [f64; 2]| PathPoint::on(Point::new(x + away * dx, 50.0 + away * dy)));
-        let area = Area {
-            rings: vec![Path::new(points.into(), true).unwrap()],
-            color: [grey; 3],
-            opacity: 1.0,
-            shade: None,
-        };
-        area.into()
+        let ring = Path::new(points.into(), true).unwrap();
+        Area::plain(vec![ring], [grey; 3], 1.0).into()
     }
 
     fn line([ax, ay]: [f64; 2], [bx, by]: [f64; 2], grey: f32) -> Mark {

@@ -63,12 +63,15 @@ pub(super) fn scene(dom: &Dom<'_>) -> Result<Scene> {
         scene.background = Some(rect.get("fill", dialect::channels).map(rgb)?);
     }
     if let Some(node) = children.next_if(ground::is_gradient) {
-        scene.shade = Some(reader.page_shade(node, children.next(), &scene)?);
+        let page = reader.page_gradient(node, children.next(), &scene)?;
+        scene.ground.push(page);
     }
-    while let Some(node) = children.next_if(|node| node.name() == "filter") {
-        let number = scene.shadows.len() + 1;
+    for number in 1.. {
+        let Some(node) = children.next_if(|node| node.name() == "filter") else {
+            break;
+        };
         let shadow = reader.shadow(node, children.next(), number)?;
-        scene.shadows.push(shadow);
+        scene.ground.push(shadow);
     }
     scene.stages = reader.layers(children, 1)?;
     Ok(scene)
@@ -254,13 +257,9 @@ fn area(element: &Element<'_>, unit: Unit, color: [u8; 3], shade: Option<Shade>)
     let rings = shape.map_or_else(|| element.get("d", rings), |shape| Ok(vec![shape.path()]))?;
     check_counts(element, &rings, "ring")?;
     let opacity = element.either("fill-opacity", dialect::opacity_quantum)?;
-    let area = Area {
-        rings,
-        color: rgb(color),
-        opacity: f32::from(opacity.unwrap_or(u8::MAX)) / 255.0,
-        shade,
-    };
-    Ok(area.into())
+    let opacity = f32::from(opacity.unwrap_or(u8::MAX)) / 255.0;
+    let plain = Area::plain(rings, rgb(color), opacity);
+    Ok(Area { shade, ..plain }.into())
 }
 
 fn strokes(element: &Element<'_>, unit: Unit) -> Result<Vec<Mark>> {

@@ -6,6 +6,7 @@ use super::*;
 use crate::error::ErrorKind;
 use crate::math::Point;
 use crate::metrics::Agreement;
+use crate::render;
 use crate::scene::{
     Area, Axis, Cap, Dropped, MAX_POINTS, Mark, Path, PathPoint, Scene, Shade, ShadeStop, Stage,
     Stroke,
@@ -440,7 +441,7 @@ fn glowing() -> Scene {
     };
     let shade = Shade::new(axis, &[stop(0.0, 1.0), stop(0.5, 0.2), stop(1.0, 0.0)]).unwrap();
     Scene {
-        shade: Some(shade),
+        ground: vec![Area::page(shade, [9, 6])],
         ..Scene::empty(9, 6, None)
     }
 }
@@ -463,7 +464,7 @@ fn a_shade_is_a_gradient_and_a_rectangle() {
 fn a_shade_is_drawn_as_we_draw_it() {
     let text = write(&glowing(), &WriteOptions::default());
     let drawn = verify::render(&text, verify::Size::Scale(1.0), Some([0.0; 3])).unwrap();
-    let planes = glowing().shade.unwrap().planes(9, 6, [0.0; 3]);
+    let planes = render::ground(&glowing(), [0.0; 3]);
     let pairs = drawn.planes().iter().flatten().zip(planes.iter().flatten());
     let largest = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
     assert!(largest < 2.0 / 255.0, "{largest}");
@@ -504,12 +505,8 @@ fn in_classes() -> String {
     };
     let corners =
         [[2.0, 2.0], [8.0, 2.0], [5.0, 8.0]].map(|[x, y]: [f64; 2]| PathPoint::on((x, y).into()));
-    let area = Area {
-        rings: vec![Path::new(corners.into(), true).unwrap()],
-        color: [0.8, 0.0, 0.0],
-        opacity: 1.0,
-        shade: None,
-    };
+    let ring = Path::new(corners.into(), true).unwrap();
+    let area = Area::plain(vec![ring], [0.8, 0.0, 0.0], 1.0);
     let marks = [
         area.into(),
         line(3.0, [0.8, 0.0, 0.0], 1.0),

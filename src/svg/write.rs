@@ -7,7 +7,6 @@ use super::gradient;
 use super::layer::{Layer, LayerKind, Written};
 use super::names;
 use super::options::{Form, Order, WriteOptions};
-use super::shadow;
 use super::sheet::{BACKGROUND, Sheet};
 use crate::scene::{Mark, Path, Scene, counted, quantized_anywhere, quantum};
 
@@ -81,14 +80,7 @@ fn head(scene: &Scene, options: &WriteOptions, sheet: Option<&Sheet>) -> String 
         };
         out += &format!("<rect width=\"{width}\" height=\"{height}\" {paint}/>\n");
     }
-    if let Some(shade) = &scene.shade {
-        gradient::push(&mut out, shade, dialect::SHADE_ID);
-        let id = dialect::SHADE_ID;
-        out += &format!("\n<rect width=\"{width}\" height=\"{height}\" fill=\"url(#{id})\"/>\n");
-    }
-    for (shadow, number) in scene.shadows.iter().zip(1..) {
-        shadow::push(&mut out, shadow, number);
-    }
+    gradient::push_ground(&mut out, scene);
     out
 }
 

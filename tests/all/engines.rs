@@ -19,7 +19,7 @@ use strokefit::fit::{Budget, Config, Fitter};
 use strokefit::image::Image;
 use strokefit::math;
 use strokefit::metrics;
-use strokefit::scene::{self, Axis, Cap, PathPoint, Scene, Shade, ShadeStop, Stage, Stroke};
+use strokefit::scene::{self, Area, Axis, Cap, PathPoint, Scene, Shade, ShadeStop, Stage, Stroke};
 use strokefit::svg::{self, Form, WriteOptions};
 use strokefit::verify::{self, Size};
 
@@ -404,7 +404,7 @@ fn shades_are_drawn_alike() {
         };
         for axis in [linear, radial] {
             let scene = Scene {
-                shade: Some(Shade::new(axis, &stops).unwrap()),
+                ground: vec![Area::page(Shade::new(axis, &stops).unwrap(), [64, 48])],
                 ..Scene::empty(64, 48, None)
             };
             let text = svg::write(&scene, &WriteOptions::default());

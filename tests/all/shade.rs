@@ -4,6 +4,7 @@ use crate::support::drafts::draft;
 use crate::support::fits::{drawn, sample};
 use strokefit::fit::{Background, Base, Colors, Config, Fitter};
 use strokefit::image::Image;
+use strokefit::scene::{Scene, Shade};
 use strokefit::{svg, verify};
 
 /// A ramp with a red square on it.
@@ -24,12 +25,20 @@ fn sign() -> Image {
     Image::new(width, height, planes).unwrap()
 }
 
+/// The gradient of a page.
+fn shade(scene: &Scene) -> Option<&Shade> {
+    scene.ground.iter().find_map(|area| area.shade.as_ref())
+}
+
 #[test]
 fn a_glow_and_a_fade_are_a_gradient_each() {
     for name in ["glow-300", "fade-400"] {
         let picture = sample(name);
         let fit = drawn(&picture, &Config::default());
-        assert!(fit.scene.shade.is_some() && fit.scene.len() <= 40, "{name}");
+        assert!(
+            shade(&fit.scene).is_some() && fit.scene.len() <= 40,
+            "{name}"
+        );
         let seen = verify::on_mattes(&fit.svg(), &picture).unwrap();
         let scores = [
             seen.black_ssimulacra2,
@@ -46,7 +55,7 @@ fn a_glow_and_a_fade_are_a_gradient_each() {
 #[test]
 fn strokes_are_drawn_on_a_shade() {
     let fit = drawn(&sign(), &draft(20));
-    assert!(fit.scene.shade.is_some() && fit.scene.background.is_none());
+    assert!(shade(&fit.scene).is_some() && fit.scene.background.is_none());
     assert!(!fit.scene.is_empty());
     let verdict = verify::verify(&fit.svg(), &fit.target, &fit.soft).unwrap();
     assert!(
@@ -62,32 +71,32 @@ fn a_refined_drawing_keeps_its_shade() {
     let first = drawn(&picture, &draft(5));
     let base = Base::read(first.svg(), &picture, false).unwrap();
     let second = Fitter::new(draft(15)).on(base).fit(&picture).unwrap();
-    assert_eq!(second.scene.shade, first.scene.shade);
+    assert_eq!(second.scene.ground, first.scene.ground);
     assert_eq!(svg::read(&second.svg()).unwrap(), second.scene);
 }
 
 #[test]
 fn a_background_or_colours_that_are_given_leave_no_shade() {
     let picture = sign();
-    let shade = |config: Config| drawn(&picture, &config).scene.shade;
+    let ground = |config: Config| drawn(&picture, &config).scene.ground;
     let background = Background::Color([1.0; 3]);
     assert_eq!(
-        shade(Config {
+        ground(Config {
             background,
             ..draft(5)
         }),
-        None
+        []
     );
     let background = Background::None;
     assert_eq!(
-        shade(Config {
+        ground(Config {
             background,
             ..draft(5)
         }),
-        None
+        []
     );
     let colors = Colors::AtMost(3);
-    assert_eq!(shade(Config { colors, ..draft(5) }), None);
+    assert_eq!(ground(Config { colors, ..draft(5) }), []);
 }
 
 #[test]
@@ -100,6 +109,7 @@ fn other_samples_have_no_shade() {
         "noto-hibiscus",
         "bicycle",
     ] {
-        assert_eq!(drawn(&sample(name), &draft(1)).scene.shade, None, "{name}");
+        let fit = drawn(&sample(name), &draft(1));
+        assert_eq!(shade(&fit.scene), None, "{name}");
     }
 }

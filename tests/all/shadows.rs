@@ -44,11 +44,11 @@ fn judged(picture: &Image, config: &Config) -> (Scene, Quality) {
 fn a_card_casts_the_shadow_that_was_drawn() {
     let card = picture(Some("#e8ecf2"), 6.0, CARD);
     let (scene, fidelity) = judged(&card, &Config::default());
-    let [shadow] = &scene.shadows[..] else {
-        panic!("{:?}", scene.shadows);
+    let [shadow] = &scene.ground[..] else {
+        panic!("{:?}", scene.ground);
     };
-    assert!((shadow.blur() - 6.0).abs() < 0.8, "{shadow:?}");
-    let Some(Shape::Rect { low, high, .. }) = shadow.area().rings[0].shape() else {
+    assert!((shadow.blur - 6.0).abs() < 0.8, "{shadow:?}");
+    let Some(Shape::Rect { low, high, .. }) = shadow.rings[0].shape() else {
         panic!("{shadow:?}");
     };
     let sides = [low.x - 30.0, low.y - 34.0, high.x - 140.0, high.y - 94.0];
@@ -61,7 +61,7 @@ fn a_glow_around_a_star_is_a_blur_of_it_on_a_page_and_on_none() {
     for page in [Some("#101428"), None] {
         let star = picture(page, 7.0, STAR);
         let (scene, fidelity) = judged(&star, &Config::default());
-        assert!(!scene.shadows.is_empty(), "{page:?}");
+        assert!(!scene.ground.is_empty(), "{page:?}");
         assert!(
             scene.len() <= 3 && fidelity.psnr_db > 42.0,
             "{page:?} {fidelity:?}"
@@ -73,16 +73,16 @@ fn a_glow_around_a_star_is_a_blur_of_it_on_a_page_and_on_none() {
 fn a_refined_drawing_keeps_its_shadow() {
     let card = picture(Some("#e8ecf2"), 5.0, CARD);
     let first = drawn(&card, &Config::default());
-    assert_eq!(first.scene.shadows.len(), 1);
+    assert_eq!(first.scene.ground.len(), 1);
     let base = Base::read(first.svg(), &card, false).unwrap();
     let second = Fitter::new(draft(20)).on(base).fit(&card).unwrap();
-    assert_eq!(second.scene.shadows, first.scene.shadows);
+    assert_eq!(second.scene.ground, first.scene.ground);
 }
 
 #[test]
 fn a_background_or_colours_that_are_given_leave_no_shadow() {
     let card = picture(Some("#e8ecf2"), 5.0, CARD);
-    let shadows = |config: Config| drawn(&card, &config).scene.shadows.len();
+    let shadows = |config: Config| drawn(&card, &config).scene.ground.len();
     let background = Background::Color([1.0; 3]);
     assert_eq!(
         shadows(Config {
@@ -98,9 +98,7 @@ fn a_background_or_colours_that_are_given_leave_no_shadow() {
 #[test]
 fn what_is_flat_or_a_gradient_has_no_shadow() {
     for name in ["glow-300", "fade-400", "noto-hibiscus", "rocket-320"] {
-        assert!(
-            drawn(&sample(name), &draft(9)).scene.shadows.is_empty(),
-            "{name}"
-        );
+        let ground = drawn(&sample(name), &draft(9)).scene.ground;
+        assert!(ground.iter().all(|area| area.blur == 0.0), "{name}");
     }
 }

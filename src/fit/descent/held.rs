@@ -164,12 +164,7 @@ mod tests {
     use crate::scene::{Area, Mark, Shape};
 
     fn area(ring: Path) -> Mark {
-        Mark::from(Area {
-            rings: vec![ring],
-            color: [0.5; 3],
-            opacity: 1.0,
-            shade: None,
-        })
+        Area::plain(vec![ring], [0.5; 3], 1.0).into()
     }
 
     /// The mark after each of its numbers has moved, and its forms were restored.

@@ -1,10 +1,11 @@
-//! The choice of the background.
+//! The choice of the background, and of the ground on it.
 
 use std::ops::Range;
 
 use crate::fit::config::Background;
+use crate::fit::drawing::{shading, shadows};
 use crate::image::Image;
-use crate::scene::Rgb;
+use crate::scene::{Area, Rgb};
 
 /// Least share of the pixels that have the most common colour if that becomes the background; otherwise the mean colour does.
 const PREVAILING_SHARE: f64 = 0.25;
@@ -36,6 +37,27 @@ pub(in crate::fit) fn for_strokes(
     }
 }
 
+/// The background and the ground of a new drawing. A gradient replaces the background, and shadows lie on one of one colour that
+/// stays.
+pub(in crate::fit) fn with_ground(picture: &Image, price_per_byte: f32) -> (Background, Vec<Area>) {
+    if let Some(page) = shading::choose(picture, price_per_byte) {
+        return (Background::None, vec![page]);
+    }
+    // A transparent picture has no page, but may have shadows. An opaque one without paper has neither.
+    let page = match picture.alpha() {
+        Some(_) => Some(None),
+        None => paper(picture).map(Some),
+    };
+    let of = |page| shadows::choose(picture, page, price_per_byte);
+    let shadows = page.map_or_else(Vec::new, of);
+    // The blurs were fitted on this colour, so the background has to keep it.
+    let background = match page.flatten() {
+        Some(color) if !shadows.is_empty() => Background::Color(color),
+        _ => Background::Auto,
+    };
+    (background, shadows)
+}
+
 /// The matte that a picture with alpha is flattened onto if the drawing is not transparent.
 pub(in crate::fit) fn matte(background: Background) -> Rgb {
     match background {
@@ -61,7 +83,7 @@ pub(in crate::fit) fn choose(background: Background, target: &Image) -> (Rgb, bo
 }
 
 /// The colour of the paper that is seen along the border of an opaque picture, if there is one.
-pub(super) fn paper(picture: &Image) -> Option<Rgb> {
+fn paper(picture: &Image) -> Option<Rgb> {
     let levels = picture.to_rgb8();
     let (colors, _) = levels.as_chunks();
     border_color(colors, picture.width())

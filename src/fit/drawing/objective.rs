@@ -289,12 +289,7 @@ mod tests {
     fn area(corners: &[[f64; 2]], color: [f32; 3], opacity: f32) -> Mark {
         let place = |&[x, y]: &[f64; 2]| PathPoint::on(Point::new(x, y));
         let ring = Path::new(corners.iter().map(place).collect(), true).unwrap();
-        Mark::Area(Area {
-            rings: vec![ring],
-            color,
-            opacity,
-            shade: None,
-        })
+        Area::plain(vec![ring], color, opacity).into()
     }
 
     #[test]

@@ -53,13 +53,15 @@ impl Drawing {
         mses
     }
 
-    /// The drawing as a scene in px of the picture, unrounded, with its background if `has_background`, and its shade.
+    /// The drawing as a scene in px of the picture, unrounded, with its background if `has_background`, and its ground.
     pub(in crate::fit) fn scene(&self, has_background: bool) -> Scene {
         let picture = self.surface().picture();
         let background = self.background().filter(|_| has_background);
-        let mut scene = self
-            .ground
-            .scene(picture.width(), picture.height(), background);
+        let [width, height] = [picture.width(), picture.height()].map(|side| side as u32);
+        let mut scene = Scene {
+            ground: self.ground.clone(),
+            ..Scene::empty(width, height, background)
+        };
         let mut strokes = self.all();
         // From px of the current resolution to px of the picture.
         enlarge(&mut strokes, self.surface().halvings());

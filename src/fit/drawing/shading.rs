@@ -1,7 +1,7 @@
 //! The choice of a shade: a gradient for a picture whose page is one.
 
 use crate::image::Image;
-use crate::scene::{Axis, Scene, Shade, ShadeStop};
+use crate::scene::{Area, Axis, Scene, Shade, ShadeStop};
 use crate::shading::{Block, Blocks, NEAR, ShadeFit, Value};
 use crate::svg::{self, WriteOptions};
 
@@ -22,9 +22,9 @@ const FIT: ShadeFit = ShadeFit {
     stop_share: 0.1,
 };
 
-/// The shade of `picture`, if more of the picture is near it than near its best single colour, and it removes as much
+/// A page with the gradient of `picture`, if more of the picture is near it than near its best single colour, and it removes as much
 /// squared error as its bytes have to at `price_per_byte`.
-pub(in crate::fit) fn choose(picture: &Image, price_per_byte: f32) -> Option<Shade> {
+pub(in crate::fit) fn choose(picture: &Image, price_per_byte: f32) -> Option<Area> {
     let (blocks, area) = blocks(picture);
     let flat = flat(&blocks);
     // The flat page is the alternative: a gradient has to explain more of the picture than the best single colour.
@@ -38,11 +38,12 @@ pub(in crate::fit) fn choose(picture: &Image, price_per_byte: f32) -> Option<Sha
         return None;
     }
     let gain = (alone.error - met.error) * area;
-    let page = Scene::empty(picture.width() as u32, picture.height() as u32, None);
+    let size = [picture.width(), picture.height()].map(|side| side as u32);
+    let page = Area::page(shade, size);
     let is_worth_it = met.share >= LEAST_SHARE
         && met.share >= alone.share + LEAST_GAIN
-        && gain >= price_per_byte * bytes(&page, &shade) as f32;
-    is_worth_it.then_some(shade)
+        && gain >= price_per_byte * bytes(&page, size) as f32;
+    is_worth_it.then_some(page)
 }
 
 /// True if the shade changes by more than [`STEEPEST`] somewhere: there is the edge of a thing, which is none of the page.
@@ -63,14 +64,13 @@ fn has_edge(shade: &Shade) -> bool {
     })
 }
 
-/// Bytes that `shade` adds to the file of `page`.
-fn bytes(page: &Scene, shade: &Shade) -> usize {
-    let length = |scene: &Scene| svg::write(scene, &WriteOptions::default()).len();
-    let shaded = Scene {
-        shade: Some(shade.clone()),
-        ..page.clone()
+/// Bytes that a page with a gradient adds to the file of an empty scene.
+fn bytes(page: &Area, [width, height]: [u32; 2]) -> usize {
+    let length = |ground: Vec<Area>| {
+        let empty = Scene::empty(width, height, None);
+        svg::write(&Scene { ground, ..empty }, &WriteOptions::default()).len()
     };
-    length(&shaded) - length(page)
+    length(vec![page.clone()]) - length(Vec::new())
 }
 
 /// The means of the picture's blocks, and the pixels of one.
@@ -105,6 +105,7 @@ fn flat(blocks: &Blocks) -> Value {
 mod tests {
     use super::*;
     use crate::math;
+    use crate::shading::premultiplied;
 
     const WIDTH: usize = 120;
     const HEIGHT: usize = 80;
@@ -121,15 +122,19 @@ mod tests {
     }
 
     fn shade(picture: &Image) -> Option<Shade> {
-        choose(picture, 1e-3)
+        choose(picture, 1e-3)?.shade
     }
 
     /// The largest difference of a channel, in levels, on black.
     fn error(picture: &Image, shade: &Shade) -> f32 {
         let seen = picture.flattened([0.0; 3]);
-        let planes = shade.planes(WIDTH, HEIGHT, [0.0; 3]);
-        let pairs = seen.planes().iter().flatten().zip(planes.iter().flatten());
-        255.0 * pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+        let [r, g, b] = seen.planes();
+        let apart = |i: usize| {
+            let at = math::point([(i % WIDTH) as f32 + 0.5, (i / WIDTH) as f32 + 0.5]);
+            let shown = premultiplied(shade, at).into_iter().zip([r[i], g[i], b[i]]);
+            shown.fold(0.0, |most: f32, (a, b)| most.max((a - b).abs()))
+        };
+        255.0 * (0..WIDTH * HEIGHT).map(apart).fold(0.0, f32::max)
     }
 
     #[test]

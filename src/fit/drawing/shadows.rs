@@ -9,7 +9,7 @@ mod shares;
 
 use crate::image::Image;
 use crate::math;
-use crate::scene::{Area, Path, Rgb, Shadow, Shape};
+use crate::scene::{Area, Path, Rgb, Shape};
 use crate::shading::{Blocks, ShadeFit};
 use crate::trace;
 use caster::{Cast, Search};
@@ -44,15 +44,11 @@ const GRADIENT: ShadeFit = ShadeFit {
 
 /// The shadows of `picture` on a page of this colour, or on no page, back to front. None if there is nothing soft on the page,
 /// or the blurs of one shape do not explain it, or their bytes cost more than they gain at `price_per_byte`.
-pub(in crate::fit) fn choose(
-    picture: &Image,
-    page: Option<Rgb>,
-    price_per_byte: f32,
-) -> Vec<Shadow> {
+pub(in crate::fit) fn choose(picture: &Image, page: Option<Rgb>, price_per_byte: f32) -> Vec<Area> {
     found(picture, page, price_per_byte).unwrap_or_default()
 }
 
-fn found(picture: &Image, page: Option<Rgb>, price_per_byte: f32) -> Option<Vec<Shadow>> {
+fn found(picture: &Image, page: Option<Rgb>, price_per_byte: f32) -> Option<Vec<Area>> {
     // 1. The soft pixels, unless one gradient explains them, and the outline of their caster.
     let shares = Shares::of(picture, page)?;
     if is_gradient(&shares) {
@@ -76,13 +72,9 @@ fn found(picture: &Image, page: Option<Rgb>, price_per_byte: f32) -> Option<Vec<
         };
         // A blur moves with its outline, so the shift is a shift of the rings.
         let by = math::point(cast.shift).to_vec2();
-        let area = Area {
-            rings: rings.into_iter().map(|ring| ring.moved(by)).collect(),
-            color: shares.color,
-            opacity: cast.opacity,
-            shade: None,
-        };
-        Shadow::new(area, cast.blur).ok()
+        let rings = rings.into_iter().map(|ring| ring.moved(by)).collect();
+        let area = Area::plain(rings, shares.color, cast.opacity);
+        area.blurred(cast.blur).ok()
     };
     // The first one found explains most and lies on top.
     casts.iter().rev().map(shadow).collect()

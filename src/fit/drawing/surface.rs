@@ -10,11 +10,10 @@ use crate::fit::base::Base;
 use crate::fit::config::Background;
 use crate::fit::drawing::background;
 use crate::fit::drawing::focus::Focus;
-use crate::fit::drawing::ground::Ground;
 use crate::fit::drawing::objective::{Objective, Target};
 use crate::image::Image;
 use crate::render::{self, Backdrop, Canvas, Grid, Renderer, Softness, Strokes};
-use crate::scene::{Rgb, Scene};
+use crate::scene::{Area, Rgb, Scene};
 use crate::seed::{Pyramid, Residual};
 use crate::verify;
 
@@ -34,8 +33,8 @@ pub(in crate::fit) struct Prepared {
     pub(in crate::fit) surfaces: Vec<Surface>,
     /// True if the background keeps its colour.
     pub(in crate::fit) background_fixed: bool,
-    /// The gradient and the shadows on the background, behind all marks.
-    pub(in crate::fit) ground: Ground,
+    /// The areas on the background, behind all marks.
+    pub(in crate::fit) ground: Vec<Area>,
 }
 
 impl Prepared {
@@ -43,7 +42,7 @@ impl Prepared {
     /// scale of `scale` px.
     pub(in crate::fit) fn new(
         picture: &Image,
-        (background, ground): (Background, Ground),
+        (background, ground): (Background, Vec<Area>),
         base: Option<&Base>,
         scale: f32,
     ) -> Result<Self> {
@@ -57,13 +56,13 @@ impl Prepared {
             return Self::on_document(picture, document.text(), scale);
         }
         let background = scene.background.map_or(Background::None, Background::Color);
-        Self::on_page(picture, background, Ground::of(scene), scale)
+        Self::on_page(picture, background, scene.ground.clone(), scale)
     }
 
     fn on_page(
         picture: &Image,
         background: Background,
-        ground: Ground,
+        ground: Vec<Area>,
         scale: f32,
     ) -> Result<Self> {
         // A drawing on two mattes keeps its alpha in the target; on one it is flattened onto the background.
@@ -77,9 +76,17 @@ impl Prepared {
             // On two mattes, the background is the matte itself.
             let color = if mattes.len() == 1 { color } else { matte };
             let target = target.flattened(matte);
-            let backdrop = match ground.is_empty() {
-                false => AnyBackdrop::ground(&target, &ground, color, background)?,
-                true => AnyBackdrop::Color(color),
+            let backdrop = if ground.is_empty() {
+                AnyBackdrop::Color(color)
+            } else {
+                let [width, height] = [target.width(), target.height()];
+                let scene = Scene {
+                    ground: ground.clone(),
+                    ..Scene::empty(width as u32, height as u32, None)
+                };
+                let page = Image::new(width, height, render::ground(&scene, color))?;
+                let color = Some(color).filter(|_| matches!(background, Background::Color(_)));
+                AnyBackdrop::Picture(color, Pyramid::new(page))
             };
             Ok(Surface::new(target, matte, backdrop, scale))
         };
@@ -94,20 +101,16 @@ impl Prepared {
     fn on_document(picture: &Image, svg: &str, scale: f32) -> Result<Self> {
         let surface = |&matte: &Rgb| {
             let target = picture.flattened(matte);
-            let backdrop = Pyramid::new(verify::render_like(svg, &target, matte)?);
-            Ok(Surface::new(
-                target,
-                matte,
-                AnyBackdrop::Document(backdrop),
-                scale,
-            ))
+            let below = Pyramid::new(verify::render_like(svg, &target, matte)?);
+            let backdrop = AnyBackdrop::Picture(None, below);
+            Ok(Surface::new(target, matte, backdrop, scale))
         };
         let mattes = mattes(picture, Background::None);
         Ok(Self {
             target: picture.clone(),
             surfaces: mattes.iter().map(surface).collect::<Result<_>>()?,
             background_fixed: true,
-            ground: Ground::default(),
+            ground: Vec::new(),
         })
     }
 }
@@ -123,39 +126,19 @@ fn mattes(picture: &Image, background: Background) -> Vec<Rgb> {
 /// The backdrop of all strokes, frozen and free, at any resolution.
 enum AnyBackdrop {
     Color(Rgb),
-    /// The render of a base's document.
-    Document(Pyramid),
-    /// The ground on the background of this colour or, if there is none, on the matte.
-    Ground(Option<Rgb>, Pyramid),
+    /// A ground on the background of this colour or, if there is none, on the matte; or the render of a base's document.
+    Picture(Option<Rgb>, Pyramid),
 }
 
 impl AnyBackdrop {
-    /// A page of the size of `target`, with a ground on `color`, the colour of `background` if it has one.
-    fn ground(target: &Image, ground: &Ground, color: Rgb, background: Background) -> Result<Self> {
-        let (width, height) = (target.width(), target.height());
-        let scene = ground.scene(width, height, None);
-        let page = Image::new(width, height, render::ground(&scene, color))?;
-        let has_color = matches!(background, Background::Color(_));
-        Ok(Self::Ground(has_color.then_some(color), Pyramid::new(page)))
-    }
-
-    fn pyramid(&self) -> Option<&Pyramid> {
-        match self {
-            Self::Color(_) => None,
-            Self::Document(pyramid) | Self::Ground(_, pyramid) => Some(pyramid),
-        }
-    }
-
     fn canvas(&self, grid: Grid, halvings: usize) -> Canvas {
         match self {
             Self::Color(color) => Canvas::flat(grid, *color),
-            Self::Document(pyramid) | Self::Ground(_, pyramid) => {
-                Canvas::from_image(pyramid.level(halvings))
-            }
+            Self::Picture(_, pyramid) => Canvas::from_image(pyramid.level(halvings)),
         }
     }
 
-    /// The backdrop of the free strokes: the canvas `below` if it holds `frozen` strokes, a document or a ground.
+    /// The backdrop of the free strokes: the canvas `below` if it holds `frozen` strokes, a ground or a document.
     fn backdrop<'a>(&self, below: &'a Canvas, frozen: usize) -> Backdrop<'a> {
         match self {
             Self::Color(color) if frozen == 0 => Backdrop::Color(*color),
@@ -246,8 +229,7 @@ impl Surface {
     pub(in crate::fit) fn color(&self) -> Option<Rgb> {
         match self.backdrop {
             AnyBackdrop::Color(color) => Some(color),
-            AnyBackdrop::Ground(color, _) => color,
-            AnyBackdrop::Document(_) => None,
+            AnyBackdrop::Picture(color, _) => color,
         }
     }
 
@@ -255,7 +237,7 @@ impl Surface {
     pub(in crate::fit) fn color_mut(&mut self) -> Option<&mut Rgb> {
         match &mut self.backdrop {
             AnyBackdrop::Color(color) => Some(color),
-            AnyBackdrop::Document(_) | AnyBackdrop::Ground(..) => None,
+            AnyBackdrop::Picture(..) => None,
         }
     }
 
@@ -283,8 +265,8 @@ impl Surface {
     /// Makes the backdrop of all strokes the backdrop of the free ones.
     pub(in crate::fit) fn thaw(&mut self) {
         // Of a flat background no canvas is kept: renders of all strokes begin with its colour.
-        if let Some(pyramid) = self.backdrop.pyramid() {
-            self.frozen = Canvas::from_image(pyramid.level(self.halvings));
+        if let AnyBackdrop::Picture(..) = self.backdrop {
+            self.frozen = self.backdrop.canvas(self.grid(), self.halvings);
         }
         self.target.forget_backdrop();
     }
@@ -297,7 +279,7 @@ impl Surface {
     /// The backdrop of the strokes of `scene`, in a drawing without frozen strokes.
     pub(in crate::fit) fn backdrop_of(&self, scene: &Scene) -> Backdrop<'_> {
         match scene.background {
-            Some(color) if !scene.has_ground() => Backdrop::Color(color),
+            Some(color) if scene.ground.is_empty() => Backdrop::Color(color),
             _ => self.backdrop(0),
         }
     }

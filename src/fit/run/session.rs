@@ -15,10 +15,9 @@ use crate::fit::descent::anneal::Annealing;
 use crate::fit::descent::{Course, Descent};
 use crate::fit::drawing::bounds::Bounds;
 use crate::fit::drawing::focus::Focus;
-use crate::fit::drawing::ground::Ground;
 use crate::fit::drawing::masking;
 use crate::fit::drawing::surface::{Prepared, Surface};
-use crate::fit::drawing::{Drawing, Memento};
+use crate::fit::drawing::{Drawing, Memento, background};
 use crate::fit::file::{RenderedFile, Writer};
 use crate::fit::order::{Phase, Purpose};
 use crate::fit::recipe::{Rates, Recipe};
@@ -30,6 +29,7 @@ use crate::fit::time::Forecast;
 use crate::fit::time::Timer;
 use crate::image::Image;
 use crate::metrics::psnr_db;
+use crate::scene::Area;
 use crate::svg::Form;
 
 /// Weight of errors near lost details. 5, 8, 16: a label of a map correlates by 0.957, 0.970, 0.980 with the picture; borders of 1 px
@@ -457,7 +457,7 @@ fn choose_background(
     config: &Config,
     base: Option<&Base>,
     doubt: f32,
-) -> (Background, Ground) {
+) -> (Background, Vec<Area>) {
     let may_be = base.is_none()
         && config.background == Background::Auto
         && config.colors == Colors::Free
@@ -466,8 +466,8 @@ fn choose_background(
     let pixels = picture.width() * picture.height();
     let price = Price::of(config, doubt, pixels);
     match may_be {
-        true => Ground::choose(picture, price.per_byte()),
-        false => (config.background, Ground::default()),
+        true => background::with_ground(picture, price.per_byte()),
+        false => (config.background, Vec::new()),
     }
 }
 

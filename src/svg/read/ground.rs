@@ -4,10 +4,10 @@ use super::element::Element;
 use super::{Reader, elements, painted, unexpected};
 use crate::error::Result;
 use crate::math::Point;
-use crate::scene::{Axis, Mark, Scene, Shade, ShadeStop, Shadow, color, px};
+use crate::scene::{Area, Axis, Mark, Scene, Shade, ShadeStop, color, px};
 use crate::svg::dialect::{self, BLUR_ID, SHADE_ID, SHADOW_ID, Unit};
 use crate::svg::dom::Node;
-use crate::svg::shadow::place;
+use crate::svg::gradient::place;
 
 /// True if the element is a gradient.
 pub(super) fn is_gradient(node: &Node<'_>) -> bool {
@@ -28,12 +28,12 @@ fn whole(text: &str, step: i64) -> Option<i64> {
 
 impl Reader {
     /// The gradient of a page, and the rectangle after it.
-    pub(super) fn page_shade(
+    pub(super) fn page_gradient(
         &self,
         gradient: Node<'_>,
         next: Option<Node<'_>>,
         page: &Scene,
-    ) -> Result<Shade> {
+    ) -> Result<Area> {
         self.element(gradient)?.expect("id", SHADE_ID)?;
         let rect = filled(gradient, next)?;
         if rect.name() != "rect" {
@@ -42,7 +42,8 @@ impl Reader {
         let rect = self.leaf(rect)?;
         rect.expect_page(page)?;
         rect.expect("fill", &format!("url(#{SHADE_ID})"))?;
-        Ok(self.gradient(gradient)?.1)
+        let (_, shade) = self.gradient(gradient)?;
+        Ok(Area::page(shade, [page.width, page.height]))
     }
 
     /// The id of a gradient, and its colours.
@@ -67,7 +68,7 @@ impl Reader {
         node: Node<'_>,
         next: Option<Node<'_>>,
         number: usize,
-    ) -> Result<Shadow> {
+    ) -> Result<Area> {
         let filter = self.element(node)?;
         let known = dialect::FILTER.map(|(name, _)| name);
         filter.only(&[&["id"], &known[..], &dialect::FILTER_PLACE].concat())?;
@@ -93,7 +94,7 @@ impl Reader {
         let [Mark::Area(shape)] = &painted(&area, Unit::PX, None)?[..] else {
             return Err(area.refused("is a shadow and a stroke: make it an area"));
         };
-        let shadow = Shadow::new(shape.clone(), hundredths as f32 / 100.0);
+        let shadow = shape.clone().blurred(hundredths as f32 / 100.0);
         let shadow = shadow.map_err(|error| area.refused(error))?;
         for (name, px) in dialect::FILTER_PLACE.iter().zip(place(&shadow)) {
             filter.expect(name, &px.to_string())?;

@@ -4,8 +4,8 @@ use proptest::prelude::*;
 
 use crate::math::{self, Point, Vec2};
 use crate::scene::{
-    Area, Axis, Cap, MAX_STOPS, Mark, Path, PathPoint, Scene, Shade, ShadeStop, Shadow, Shape,
-    Stage, Stroke,
+    Area, Axis, Cap, MAX_STOPS, Mark, Path, PathPoint, Scene, Shade, ShadeStop, Shape, Stage,
+    Stroke,
 };
 use crate::svg::{Form, Group, WriteOptions};
 
@@ -127,10 +127,8 @@ fn area() -> impl Strategy<Value = Area> {
     let shade = prop::option::weighted(0.3, shade());
     let area = (rings, [unit(), unit(), unit()], unit(), shade);
     area.prop_map(|(rings, color, opacity, shade)| Area {
-        rings,
-        color,
-        opacity,
         shade,
+        ..Area::plain(rings, color, opacity)
     })
 }
 
@@ -171,27 +169,22 @@ pub(super) fn scene() -> impl Strategy<Value = Scene> {
         prop::collection::vec(shadow(), 0..3),
         prop::collection::vec(stage, 0..4),
     )
-        .prop_map(
-            |(width, height, background, shade, shadows, stages)| Scene {
-                width,
-                height,
-                page: None,
-                background,
-                shade,
-                shadows: shadows.into_iter().flatten().collect(),
+        .prop_map(|(width, height, background, shade, shadows, stages)| {
+            let page = shade.map(|shade| Area::page(shade, [width, height]));
+            let shadows = shadows.into_iter().flatten();
+            Scene {
+                ground: page.into_iter().chain(shadows).collect(),
                 stages,
-            },
-        )
+                ..Scene::empty(width, height, background)
+            }
+        })
 }
 
 /// A shadow, unless nothing of it is left.
-fn shadow() -> impl Strategy<Value = Option<Shadow>> {
+fn shadow() -> impl Strategy<Value = Option<Area>> {
     (area(), 0.5..60.0_f32).prop_map(|(area, blur)| {
-        let area = Area {
-            shade: None,
-            ..area
-        };
-        Shadow::new(area, blur).ok()
+        let plain = Area::plain(area.rings, area.color, area.opacity);
+        plain.blurred(blur).ok()
     })
 }
 
@@ -229,11 +222,9 @@ fn area_alike() -> impl Strategy<Value = Area> {
         },
     );
     let style = (0..2_u8, 0..3_u8);
-    (prop::collection::vec(ring, 1..4), style).prop_map(|(rings, (color, opacity))| Area {
-        rings,
-        color: [f32::from(color), 0.2, 0.6],
-        opacity: if opacity == 0 { 0.5 } else { 1.0 },
-        shade: None,
+    (prop::collection::vec(ring, 1..4), style).prop_map(|(rings, (color, opacity))| {
+        let opacity = if opacity == 0 { 0.5 } else { 1.0 };
+        Area::plain(rings, [f32::from(color), 0.2, 0.6], opacity)
     })
 }
 

@@ -153,10 +153,8 @@ impl<'a> Flat<'a> {
         let shades: Vec<_> = fill.shades.iter().cloned().map(Some).collect();
         let rings = fill.rings.clone();
         plain.into_iter().chain(shades).map(move |shade| Area {
-            rings: rings.clone(),
-            color,
-            opacity,
             shade,
+            ..Area::plain(rings.clone(), color, opacity)
         })
     }
 

@@ -119,12 +119,7 @@ fn disc(dot: &Stroke) -> Area {
         center: dot.path.ends().0,
         radius: dot.radius,
     };
-    Area {
-        rings: vec![circle.path()],
-        color: dot.color,
-        opacity: dot.opacity,
-        shade: None,
-    }
+    Area::plain(vec![circle.path()], dot.color, dot.opacity)
 }
 
 /// For each traced stroke a band: its square ends cover as much as round ones that end later.
