@@ -91,7 +91,8 @@
 //! | stage | marks that are added together: seeded where the residual is largest, fitted with all earlier strokes frozen, kept if they pay |
 //! | layer | a group of the SVG, holding the marks of one stage or of one colour |
 //! | background | the colour behind all marks; part of the drawing and of the file; absent if the drawing is transparent |
-//! | shade | a gradient, of an area or over the whole page, on the background and behind all marks; part of the drawing and of the file; see [`scene::Shade`] |
+//! | shade | a gradient of an area; see [`scene::Shade`] |
+//! | ground | areas on the background, behind all marks, which no fit changes: the gradient of the page, and soft shadows; part of the drawing and of the file |
 //! | paint | the shade of an area as the renderer sees it; see [`render::Paint`] |
 //! | backdrop | what marks are composited over: a colour or a picture, such as the canvas of frozen strokes |
 //! | masking | that detail of the picture hides errors from the eye |

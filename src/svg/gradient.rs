@@ -1,31 +1,12 @@
-//! Writes what areas refer to: gradients, and the filters of soft shadows; and the areas of the ground.
+//! Writes what areas refer to: gradients, and filters that blur.
 
 use super::dialect::{self, Unit};
-use super::element;
 use super::layer::Written;
-use crate::scene::{Area, Axis, Mark, Scene, Shade, ShadeStop, quantum, units};
+use crate::scene::{Area, Axis, Shade, ShadeStop, quantum, units};
 
-/// Appends the ground of a scene, in px.
-pub(super) fn push_ground(out: &mut String, scene: &Scene) {
-    let Scene { width, height, .. } = *scene;
-    let mut number = 0;
-    for area in &scene.ground {
-        if let Some(shade) = &area.shade {
-            let id = dialect::SHADE_ID;
-            push(out, shade, id);
-            *out +=
-                &format!("\n<rect width=\"{width}\" height=\"{height}\" fill=\"url(#{id})\"/>\n");
-        } else {
-            number += 1;
-            push_shadow(out, area, number);
-        }
-    }
-}
-
-/// Appends the filter and the element of a shadow, the `number`-th of its file.
-fn push_shadow(out: &mut String, shadow: &Area, number: usize) {
-    let (filter, id) = (dialect::BLUR_ID, dialect::SHADOW_ID);
-    *out += &format!("<filter id=\"{filter}-{number}\"");
+/// Appends the filter of a shadow, the `number`-th of its file, in px.
+pub(super) fn push_blur(out: &mut String, shadow: &Area, number: usize) {
+    *out += &format!("<filter id=\"{}-{number}\"", dialect::BLUR_ID);
     for (name, value) in dialect::FILTER {
         *out += &format!(" {name}=\"{value}\"");
     }
@@ -37,9 +18,6 @@ fn push_shadow(out: &mut String, shadow: &Area, number: usize) {
     let hundredths = (f64::from(shadow.blur) * 100.0).round() as i64;
     Unit::PX.push(out, hundredths * dialect::HUNDREDTH);
     *out += "\"/></filter>";
-    let names = format!(" id=\"{id}-{number}\" filter=\"url(#{filter}-{number})\"");
-    element::push_alone(out, &Mark::from(shadow.clone()).into(), &names);
-    out.push('\n');
 }
 
 /// The x, y, width and height of the filter of a shadow, px: without them programs cut off the blur far from the shape.

@@ -80,8 +80,27 @@ fn head(scene: &Scene, options: &WriteOptions, sheet: Option<&Sheet>) -> String 
         };
         out += &format!("<rect width=\"{width}\" height=\"{height}\" {paint}/>\n");
     }
-    gradient::push_ground(&mut out, scene);
+    push_ground(&mut out, scene);
     out
+}
+
+/// Appends the areas of the ground, in px, each after what it refers to.
+fn push_ground(out: &mut String, scene: &Scene) {
+    let Scene { width, height, .. } = *scene;
+    let (id, shadow, blur) = (dialect::SHADE_ID, dialect::SHADOW_ID, dialect::BLUR_ID);
+    let mut number = 0;
+    for area in &scene.ground {
+        if let Some(shade) = &area.shade {
+            gradient::push(out, shade, id);
+            *out += &format!("\n<rect width=\"{width}\" height=\"{height}\" fill=\"url(#{id})\"/>");
+        } else {
+            number += 1;
+            gradient::push_blur(out, area, number);
+            let names = format!(" id=\"{shadow}-{number}\" filter=\"url(#{blur}-{number})\"");
+            element::push_alone(out, &Mark::from(area.clone()).into(), &names);
+        }
+        out.push('\n');
+    }
 }
 
 /// The layer with numbers in px, or in the unit that makes them shortest, if this saves more than the attribute costs.
