@@ -1,15 +1,17 @@
 //! Several pictures at once: names, tables, failures, events.
 
 use std::fs;
+use std::process::Output;
 
 use crate::support::output::stderr;
 use crate::support::place::{Place, STROKEFIT};
 use crate::support::refusal::assert_refused;
 
-const QUICK: [&str; 4] = ["--strokes", "12", "--preset", "draft"];
+const QUICK: &str = "--strokes 12 --preset draft";
 
-fn with<'a>(args: &[&'a str]) -> Vec<&'a str> {
-    [args, &QUICK].concat()
+/// Runs a quick fit by the words of a line.
+fn fit(place: &Place, words: &str) -> Output {
+    place.run(&format!("fit {words} {QUICK}"))
 }
 
 #[test]
@@ -18,16 +20,11 @@ fn each_picture_has_its_files_and_its_row() {
     place.picture("a.png", 20, 30);
     place.picture("b c.png", 30, 20);
     fs::create_dir(place.path("out")).unwrap();
-    let args = [
-        "fit",
-        "a.png",
-        "b c.png",
-        "-o",
-        "out/{stem}.svg",
-        "--report",
-        "{stem}.json",
-    ];
-    let output = place.done(&with(&args));
+    // A name with a space is no words of a line.
+    let words = format!("-o out/{{stem}}.svg --report {{stem}}.json {QUICK}");
+    let mut args = vec!["fit", "a.png", "b c.png"];
+    args.extend(words.split(' '));
+    let output = place.done(&args);
     assert_eq!(
         place.names(),
         ["a.json", "a.png", "b c.json", "b c.png", "out"]
@@ -56,8 +53,8 @@ fn a_picture_alone_and_among_others_gives_the_same_bytes() {
     let place = Place::new();
     place.picture("a.png", 20, 30);
     place.picture("b.png", 30, 20);
-    place.run(&with(&["fit", "a.png", "b.png", "-o", "{stem}.svg"]));
-    place.run(&with(&["fit", "b.png", "-o", "alone.svg"]));
+    fit(&place, "a.png b.png -o {stem}.svg");
+    fit(&place, "b.png -o alone.svg");
     let read = |name: &str| fs::read(place.path(name)).unwrap();
     assert!(read("b.svg") == read("alone.svg"));
 }
@@ -67,8 +64,7 @@ fn a_failure_does_not_stop_the_others_and_the_status_is_the_worst() {
     let place = Place::new();
     place.file("bad.png", "no picture");
     place.picture("good.png", 20, 30);
-    let args = ["fit", "bad.png", "gone.png", "good.png", "-o", "{stem}.svg"];
-    let output = place.run(&with(&args));
+    let output = fit(&place, "bad.png gone.png good.png -o {stem}.svg");
     assert_eq!(output.status.code(), Some(1));
     assert_eq!(place.names(), ["bad.png", "good.png", "good.svg"]);
     let said = stderr(&output);
@@ -79,27 +75,10 @@ fn a_failure_does_not_stop_the_others_and_the_status_is_the_worst() {
     ] {
         assert!(said.contains(words), "{said}");
     }
-    let args = [
-        "fit",
-        "good.png",
-        "bad.png",
-        "-o",
-        "{stem}.svg",
-        "--psnr",
-        "99",
-    ];
-    assert_eq!(place.run(&with(&args)).status.code(), Some(1));
+    let output = fit(&place, "good.png bad.png -o {stem}.svg --psnr 99");
+    assert_eq!(output.status.code(), Some(1));
     place.picture("other.png", 20, 31);
-    let args = [
-        "fit",
-        "good.png",
-        "other.png",
-        "-o",
-        "{stem}.svg",
-        "--psnr",
-        "99",
-    ];
-    let output = place.run(&with(&args));
+    let output = fit(&place, "good.png other.png -o {stem}.svg --psnr 99");
     assert_eq!(output.status.code(), Some(3));
     assert!(
         stderr(&output).contains("good.svg: target not reached"),
@@ -116,71 +95,32 @@ fn outputs_that_would_collide_are_refused_before_the_work() {
     fs::create_dir(place.path("in")).unwrap();
     place.picture("in/a.png", 20, 30);
     for (args, words) in [
+        ("a.png b.png -o out.svg", ["out.svg", "{stem}"]),
+        ("a.png b.png -o -", ["standard output", "{stem}"]),
+        ("a.png in/a.png -o {stem}.svg", ["a.svg", "different names"]),
         (
-            &["fit", "a.png", "b.png", "-o", "out.svg"][..],
-            ["out.svg", "{stem}"],
-        ),
-        (
-            &["fit", "a.png", "b.png", "-o", "-"],
-            ["standard output", "{stem}"],
-        ),
-        (
-            &["fit", "a.png", "in/a.png", "-o", "{stem}.svg"],
-            ["a.svg", "different names"],
-        ),
-        (
-            &[
-                "fit",
-                "a.png",
-                "b.png",
-                "-o",
-                "{stem}.svg",
-                "--report",
-                "r.json",
-            ],
+            "a.png b.png -o {stem}.svg --report r.json",
             ["r.json", "{stem}"],
         ),
         (
-            &["fit", "a.png", "-o", "{stem}.svg", "--report", "./a.svg"],
+            "a.png -o {stem}.svg --report ./a.svg",
             ["a.svg", "same place"],
         ),
+        ("a.png -o - --events -", ["standard output", "same place"]),
         (
-            &["fit", "a.png", "-o", "-", "--events", "-"],
-            ["standard output", "same place"],
-        ),
-        (
-            &[
-                "fit",
-                "in/a.png",
-                "b.png",
-                "-o",
-                "{stem}.svg",
-                "-o",
-                "{stem}.png",
-            ],
+            "in/a.png b.png -o {stem}.svg -o {stem}.png",
             ["overwritten", "b.png"],
         ),
         (
-            &[
-                "fit",
-                "a.png",
-                "b.png",
-                "-o",
-                "{stem}.svg",
-                "--events",
-                "b.png",
-            ],
+            "a.png b.png -o {stem}.svg --events b.png",
             ["overwritten", "b.png"],
         ),
-        (
-            &["fit", "-", "-o", "{stem}.svg"],
-            ["standard input", "{stem}"],
-        ),
+        ("- -o {stem}.svg", ["standard input", "{stem}"]),
     ] {
-        assert_refused(&place, args, 2, &words);
+        assert_refused(&place, &format!("fit {args}"), 2, &words);
     }
-    let args = ["fit", "a.png", "b.png", "-o", "a.png/{stem}.svg"];
-    assert_refused(&place, &args, 1, &["a.png/a.svg", "is a file"]);
+    let words = ["a.png/a.svg", "is a file"];
+    assert_refused(&place, "fit a.png b.png -o a.png/{stem}.svg", 1, &words);
 }
 
 #[test]
@@ -188,19 +128,8 @@ fn events_tell_of_each_stage_and_end_with_the_report() {
     let place = Place::new();
     place.picture("a.png", 40, 30);
     place.file("bad.png", "no picture");
-    let args = [
-        "fit",
-        "a.png",
-        "bad.png",
-        "-o",
-        "{stem}.svg",
-        "--events",
-        "-",
-        "--report",
-        "{stem}.json",
-        "-q",
-    ];
-    let output = place.run(&with(&args));
+    let words = "a.png bad.png -o {stem}.svg --events - --report {stem}.json -q";
+    let output = fit(&place, words);
     let text = String::from_utf8(output.stdout).unwrap();
     let events: Vec<serde_json::Value> = text
         .lines()
@@ -248,7 +177,8 @@ fn names_that_are_not_unicode_work() {
         .command(STROKEFIT)
         .arg("fit")
         .arg(odd)
-        .args(with(&["-o", "{stem}.svg"]))
+        .args(["-o", "{stem}.svg"])
+        .args(QUICK.split(' '))
         .output()
         .unwrap();
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));

@@ -9,12 +9,14 @@ use crate::support::repository::committed;
 use crate::support::signal::send;
 use strokefit::rng;
 
-/// A photograph of 96 px.
 const PHOTOGRAPH: &str = "samples/rocket-320.png";
 
 /// Pictures, and options of fits of moderate length: all kinds of tasks that a fit has.
-const FITS: [(&str, &[&str]); 4] = [
-    (PHOTOGRAPH, &["--strokes", "220"]),
+const FITS: [(&str, &[&str]); 6] = [
+    // Circles and lines, and lines with square ends.
+    ("tests/data/plans/markers.svg", &[]),
+    ("tests/data/plans/chevrons.svg", &[]),
+    (PHOTOGRAPH, &["--strokes", "90"]),
     (PHOTOGRAPH, &["--psnr", "27", "--preset", "draft"]),
     (
         PHOTOGRAPH,
@@ -25,7 +27,7 @@ const FITS: [(&str, &[&str]); 4] = [
             "--stages",
             "4",
             "--bytes",
-            "4000",
+            "3000",
         ],
     ),
     // Labels are lost, and traced again.
@@ -34,13 +36,17 @@ const FITS: [(&str, &[&str]); 4] = [
 /// The state is kept about every iteration.
 const OFTEN: [&str; 2] = ["--checkpoint-every", "0.001"];
 
-/// A folder with a picture, the photograph at 96 px.
-fn with_picture(name: &str) -> Place {
+/// A folder with a picture: a photograph of so many px, a quarter of the map, or a drawing.
+fn with_picture(name: &str, side: u32) -> Place {
     let place = Place::new();
+    if name.ends_with("svg") {
+        place.done(&["render", &committed(name), "-o", "in.png"]);
+        return place;
+    }
     let picture = image::open(committed(name)).unwrap();
     let picture = match name {
-        PHOTOGRAPH => picture.thumbnail(96, 96),
-        _ => picture,
+        PHOTOGRAPH => picture.thumbnail(side, side),
+        _ => picture.crop_imm(0, 0, picture.width() / 2, picture.height() / 2),
     };
     picture.save(place.path("in.png")).unwrap();
     place
@@ -76,10 +82,10 @@ fn live(place: &Place, options: &[&str], life: Duration) -> Option<ExitStatus> {
 #[test]
 fn fifty_kills_change_no_byte() {
     let (mut kills, mut round) = (0, 0);
-    while kills < 50 {
+    while kills < 50 || round < FITS.len() {
         let (picture, options) = FITS[round % FITS.len()];
         round += 1;
-        let place = with_picture(picture);
+        let place = with_picture(picture, 56);
         let whole = fit(&place, "whole.svg", options).output().unwrap();
         let status = whole.status.code();
         let expected = read(&place, "whole.svg").unwrap();
@@ -115,7 +121,7 @@ fn stderr(mut command: Command) -> (Option<i32>, String) {
 
 /// A checkpoint of a fit that was killed on its way.
 fn killed_fit() -> (Place, Vec<u8>) {
-    let place = with_picture(PHOTOGRAPH);
+    let place = with_picture(PHOTOGRAPH, 96);
     let options = ["--preset", "best", "--strokes", "400"];
     for _ in 0..100 {
         assert!(live(&place, &options, Duration::from_millis(300)).is_none());
@@ -154,7 +160,7 @@ fn foreign_and_damaged_checkpoints_are_refused_and_kept() {
 
 #[test]
 fn a_place_that_cannot_be_written_is_said_at_once() {
-    let place = with_picture(PHOTOGRAPH);
+    let place = with_picture(PHOTOGRAPH, 96);
     let options = [
         "--preset",
         "best",
@@ -171,7 +177,7 @@ fn a_place_that_cannot_be_written_is_said_at_once() {
 /// An interrupted fit writes what it has, and goes on later as if nothing had happened.
 #[test]
 fn an_interrupted_fit_goes_on() {
-    let place = with_picture(PHOTOGRAPH);
+    let place = with_picture(PHOTOGRAPH, 96);
     let options = ["--strokes", "150"];
     let whole = fit(&place, "whole.svg", &options).status().unwrap();
     assert!(whole.success());
@@ -194,7 +200,7 @@ fn an_interrupted_fit_goes_on() {
 /// A refinement that is killed on its way goes on, too.
 #[test]
 fn a_killed_refinement_goes_on() {
-    let place = with_picture(PHOTOGRAPH);
+    let place = with_picture(PHOTOGRAPH, 96);
     let base = ["--strokes", "100", "--preset", "draft"];
     assert!(fit(&place, "base.svg", &base).status().unwrap().success());
     let refine = |output: &str, options: &[&str]| {

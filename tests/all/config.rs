@@ -6,9 +6,8 @@ use crate::support::output::stderr;
 use crate::support::place::Place;
 use crate::support::refusal::assert_refused;
 
-fn draw(place: &Place, options: &[&str]) -> String {
-    let args = [&["fit", "in.png", "-o", "out.svg"], options].concat();
-    place.done(&args);
+fn draw(place: &Place, options: &str) -> String {
+    place.done(&format!("fit in.png -o out.svg {options}"));
     fs::read_to_string(place.path("out.svg")).unwrap()
 }
 
@@ -17,41 +16,14 @@ fn a_printed_file_draws_the_same_bytes_as_the_flags() {
     let place = Place::new();
     place.picture("in.png", 40, 30);
     for flags in [
-        &[
-            "--strokes",
-            "20",
-            "--opaque",
-            "--precision",
-            "1",
-            "--seed",
-            "18446744073709551615",
-        ][..],
-        &[
-            "--psnr",
-            "22.5",
-            "--preset",
-            "draft",
-            "--no-polish",
-            "--background",
-            "#102030",
-        ],
-        &[
-            "--bytes",
-            "2500",
-            "--preset",
-            "draft",
-            "--coverage",
-            "sigmoid>smoothstep",
-            "--stages",
-            "2",
-        ],
+        "--strokes 20 --opaque --precision 1 --seed 18446744073709551615",
+        "--psnr 22.5 --preset draft --no-polish --background #102030",
+        "--bytes 2500 --preset draft --coverage sigmoid>smoothstep --stages 2",
     ] {
-        let printed = place.done(&[&["fit", "--print-config"], flags].concat());
-        fs::write(place.path("fit.toml"), printed.stdout).unwrap();
-        assert!(
-            draw(&place, flags) == draw(&place, &["--config", "fit.toml"]),
-            "{flags:?}"
-        );
+        let printed = place.done(&format!("fit --print-config {flags}"));
+        place.file("fit.toml", printed.stdout);
+        let by_file = draw(&place, "--config fit.toml");
+        assert!(draw(&place, flags) == by_file, "{flags}");
     }
 }
 
@@ -63,19 +35,20 @@ fn flags_override_the_file_wherever_they_stand() {
         "fit.toml",
         "strokes = 5\nopaque = true\nno-polish = true\nseed = 3\n",
     );
-    let expected = draw(&place, &["--strokes", "9", "--no-polish", "--seed", "3"]);
-    assert!(
-        expected
-            == draw(
-                &place,
-                &["--config", "fit.toml", "--strokes", "9", "--no-opaque"]
-            )
-    );
-    assert!(expected == draw(&place, &["--no-opaque", "--strokes=9", "--config=fit.toml"]));
-    assert!(
-        draw(&place, &["--strokes", "5", "--opaque", "--seed", "3"])
-            == draw(&place, &["--config", "fit.toml", "--polish"])
-    );
+    let nine = "--strokes 9 --no-polish --seed 3";
+    for (flags, with_file) in [
+        (nine, "--config fit.toml --strokes 9 --no-opaque"),
+        (nine, "--no-opaque --strokes=9 --config=fit.toml"),
+        (
+            "--strokes 5 --opaque --seed 3",
+            "--config fit.toml --polish",
+        ),
+    ] {
+        assert!(
+            draw(&place, flags) == draw(&place, with_file),
+            "{with_file}"
+        );
+    }
 }
 
 #[test]
@@ -91,6 +64,7 @@ fn a_file_may_name_the_outputs_and_come_by_pipe() {
 
 #[test]
 fn files_that_say_nonsense_are_refused_with_the_line() {
+    let with_file = "fit in.png -o out.svg --config fit.toml";
     let place = Place::new();
     place.picture("in.png", 40, 30);
     for (text, words) in [
@@ -107,32 +81,21 @@ fn files_that_say_nonsense_are_refused_with_the_line() {
         ),
     ] {
         place.file("fit.toml", text);
-        let args = ["fit", "in.png", "-o", "out.svg", "--config", "fit.toml"];
-        assert_refused(&place, &args, 2, &words);
+        assert_refused(&place, with_file, 2, &words);
     }
     for (text, words) in [
         ("strokes 5", ["fit.toml:1", "not TOML"]),
         ("", ["fit.toml", "empty"]),
     ] {
         place.file("fit.toml", text);
-        let args = ["fit", "in.png", "-o", "out.svg", "--config", "fit.toml"];
-        assert_refused(&place, &args, 1, &words);
+        assert_refused(&place, with_file, 1, &words);
     }
-    let args = ["fit", "in.png", "-o", "out.svg", "--config", "fti.toml"];
-    assert_refused(
-        &place,
-        &args,
-        1,
-        &["fti.toml", "no such file", "did you mean fit.toml?"],
-    );
-    let args = ["fit", "-", "-o", "out.svg", "--config", "-"];
-    assert_refused(&place, &args, 2, &["standard input", "both"]);
-    assert_refused(
-        &place,
-        &["fit", "--print-config", "--strokes", "0"],
-        2,
-        &["--strokes", "0"],
-    );
+    let words = ["fti.toml", "no such file", "did you mean fit.toml?"];
+    assert_refused(&place, "fit in.png -o out.svg --config fti.toml", 1, &words);
+    let words = ["standard input", "both"];
+    assert_refused(&place, "fit - -o out.svg --config -", 2, &words);
+    let words = ["--strokes", "0"];
+    assert_refused(&place, "fit --print-config --strokes 0", 2, &words);
 }
 
 #[test]
@@ -143,36 +106,24 @@ fn a_conflict_between_file_and_flag_is_a_refusal() {
         "fit.toml",
         "progressive = true\nstrokes = 5\npreset = 'draft'",
     );
-    let args = [
-        "fit",
-        "in.png",
-        "-o",
-        "out.svg",
-        "--config",
-        "fit.toml",
-        "--no-polish",
-    ];
-    assert_refused(&place, &args, 2, &["--progressive", "--no-polish"]);
-    draw(
-        &place,
-        &["--config", "fit.toml", "--no-polish", "--no-progressive"],
-    );
+    let args = "fit in.png -o out.svg --config fit.toml --no-polish";
+    assert_refused(&place, args, 2, &["--progressive", "--no-polish"]);
+    draw(&place, "--config fit.toml --no-polish --no-progressive");
 }
 
 #[test]
 fn refining_takes_options_from_files_too() {
     let place = Place::new();
     place.picture("in.png", 40, 30);
-    draw(&place, &["--strokes", "5", "--preset", "draft"]);
+    draw(&place, "--strokes 5 --preset draft");
     place.file(
         "more.toml",
         "strokes = 15\npreset = 'draft'\nfreeze-base = true\n",
     );
-    let refine = |name: &str, options: &[&str]| {
-        let args = [&["refine", "out.svg", "in.png", "-o", name], options].concat();
-        place.done(&args);
+    let refine = |name: &str, options: &str| {
+        place.done(&format!("refine out.svg in.png -o {name} {options}"));
         fs::read_to_string(place.path(name)).unwrap()
     };
-    let flags = ["--strokes", "15", "--preset", "draft", "--freeze-base"];
-    assert!(refine("a.svg", &flags) == refine("b.svg", &["--config", "more.toml"]));
+    let flags = "--strokes 15 --preset draft --freeze-base";
+    assert!(refine("a.svg", flags) == refine("b.svg", "--config more.toml"));
 }

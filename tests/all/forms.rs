@@ -24,20 +24,21 @@ fn sample(name: &str) -> String {
 }
 
 /// A draft of a sample in 150 strokes.
-fn drawn(name: &str, options: &[&str]) -> Drawn {
-    drawn_with(name, &[&["--strokes", "150"], options].concat())
+fn drawn(name: &str, options: &str) -> Drawn {
+    drawn_with(name, &format!("--strokes 150 {options}"))
 }
 
 /// A draft of a sample.
-fn drawn_with(name: &str, options: &[&str]) -> Drawn {
-    fitted(name, &[&["--preset", "draft"], options].concat())
+fn drawn_with(name: &str, options: &str) -> Drawn {
+    fitted(name, &format!("--preset draft {options}"))
 }
 
-fn fitted(name: &str, options: &[&str]) -> Drawn {
+fn fitted(name: &str, options: &str) -> Drawn {
     let place = Place::new();
     let input = sample(name);
     let fixed = ["fit", &input, "-o", "a.svg", "--report", "a.json", "-q"];
-    place.done(&[&fixed[..], options].concat());
+    let options: Vec<&str> = options.split_whitespace().collect();
+    place.done(&[&fixed[..], &options].concat());
     Drawn {
         text: fs::read_to_string(place.path("a.svg")).unwrap(),
         report: place.report("a.json"),
@@ -83,29 +84,26 @@ fn agreement(a: &str, b: &str) -> f64 {
 
 /// A refusal whose line of error has `words`.
 #[track_caller]
-fn assert_refused(options: &[&str], words: &str) {
+fn assert_refused(options: &str, words: &str) {
     let place = Place::new();
     place.file("bad.gpl", "GIMP Palette\n1 2 x\n");
     let input = sample("noto-gem");
     let fit = ["fit", &input, "-o", "a.svg"];
-    refusal::assert_refused(&place, &[&fit[..], options].concat(), 2, &[words]);
+    let options: Vec<&str> = options.split(' ').collect();
+    refusal::assert_refused(&place, &[&fit[..], &options].concat(), 2, &[words]);
 }
 
 #[test]
 fn one_element_is_one_stroke() {
-    let drawn = drawn("coffee-300", &[]);
+    let drawn = drawn("coffee-300", "");
     let elements = drawn.text.matches("<path").count();
     assert_eq!(elements as f64, drawn.number("strokes"));
 }
 
 #[test]
 fn the_smallest_file_of_as_many_strokes_is_a_fifth_shorter() {
-    let options = ["--opaque", "--precision", "1"];
-    let plain = drawn("coffee-300", &options);
-    let smallest = drawn(
-        "coffee-300",
-        &[&options[..], &["--form", "smallest"]].concat(),
-    );
+    let plain = drawn("coffee-300", "--opaque --precision 1");
+    let smallest = drawn("coffee-300", "--opaque --precision 1 --form smallest");
     assert!(smallest.number("bytes_per_stroke") < 0.8 * plain.number("bytes_per_stroke"));
     assert!(smallest.number("svg_gzip_bytes") < plain.number("svg_gzip_bytes"));
 }
@@ -113,8 +111,8 @@ fn the_smallest_file_of_as_many_strokes_is_a_fifth_shorter() {
 #[test]
 fn the_smallest_file_of_lines_and_flat_art_looks_like_the_plain_one() {
     for name in ["bicycle", "noto-gem"] {
-        let plain = drawn_with(name, &[]);
-        let smallest = drawn_with(name, &["--form", "smallest"]);
+        let plain = drawn_with(name, "");
+        let smallest = drawn_with(name, "--form smallest");
         assert!(smallest.text.len() < plain.text.len(), "{name}");
         let lost = plain.psnr_db() - smallest.psnr_db();
         assert!(lost < 0.5, "{name}: {lost}");
@@ -124,9 +122,8 @@ fn the_smallest_file_of_lines_and_flat_art_looks_like_the_plain_one() {
 #[test]
 fn an_opaque_capsule_of_the_smallest_file_takes_52_bytes_at_most() {
     for name in ["coffee-300", "noto-hibiscus", "noto-telescope"] {
-        let options = ["--opaque", "--precision", "1", "--form", "smallest"];
-        let capsules = ["--strokes", "600", "--points", "2"];
-        let drawn = fitted(name, &[&capsules, &options[..]].concat());
+        let options = "--opaque --precision 1 --form smallest --strokes 600 --points 2";
+        let drawn = fitted(name, options);
         let bytes = drawn.number("bytes_per_stroke");
         assert_eq!(drawn.number("strokes"), 600.0);
         assert!(bytes <= 52.0, "{name}: {bytes}");
@@ -139,12 +136,8 @@ fn an_opaque_capsule_of_the_smallest_file_takes_52_bytes_at_most() {
 fn a_budget_of_bytes_buys_more_in_the_smallest_form() {
     let bought = |form: &str| {
         // Drafts differ by 0.6 dB from one budget to the next, which is more than the form brings.
-        let drawn = fitted(
-            "coffee-300",
-            &[
-                "--bytes", "9000", "--opaque", "--form", form, "--look", "exact",
-            ],
-        );
+        let options = format!("--bytes 9000 --opaque --form {form} --look exact");
+        let drawn = fitted("coffee-300", &options);
         assert!(drawn.text.len() <= 9000);
         (drawn.number("strokes"), drawn.psnr_db())
     };
@@ -155,8 +148,8 @@ fn a_budget_of_bytes_buys_more_in_the_smallest_form() {
 
 #[test]
 fn a_drawing_in_classes_looks_like_the_plain_one_and_is_refined() {
-    let plain = drawn("coffee-300", &["--colors", "8"]);
-    let classes = drawn("coffee-300", &["--colors", "8", "--form", "css"]);
+    let plain = drawn("coffee-300", "--colors 8");
+    let classes = drawn("coffee-300", "--colors 8 --form css");
     assert_eq!(
         svg::read(&classes.text).unwrap(),
         svg::read(&plain.text).unwrap()
@@ -167,19 +160,10 @@ fn a_drawing_in_classes_looks_like_the_plain_one_and_is_refined() {
     let colors = sheet.matches("{fill:").count() + sheet.matches("{stroke:").count();
     assert!((5..=16).contains(&colors), "{sheet}");
     let picture = sample("coffee-300");
-    let refine = [
-        "refine",
-        "a.svg",
-        &picture,
-        "-q",
-        "--preset",
-        "draft",
-        "--strokes",
-        "170",
-    ];
+    let refine = ["refine", "a.svg", &picture, "-q", "--strokes", "170"];
     for (options, name) in [
-        (&["--form", "css"][..], "b.svg"),
-        (&["--freeze-base"], "c.svg"),
+        (&["--preset", "draft", "--form", "css"][..], "b.svg"),
+        (&["--preset", "draft", "--freeze-base"], "c.svg"),
     ] {
         classes
             .place
@@ -195,7 +179,7 @@ fn a_drawing_in_classes_looks_like_the_plain_one_and_is_refined() {
 
 #[test]
 fn outlines_look_like_the_strokes() {
-    let strokes = drawn("coffee-300", &[]);
+    let strokes = drawn("coffee-300", "");
     let scene = svg::read(&strokes.text).unwrap();
     let options = svg::WriteOptions {
         form: svg::Form::Outlines,
@@ -208,7 +192,7 @@ fn outlines_look_like_the_strokes() {
 
 #[test]
 fn outlines_are_verified_but_not_read_back() {
-    let drawn = drawn("noto-gem", &["--outline"]);
+    let drawn = drawn("noto-gem", "--outline");
     assert!(drawn.report["agreement"]["psnr_db"].as_f64().unwrap() > 36.0);
     let message = svg::read(&drawn.text).unwrap_err().to_string();
     assert!(message.contains("<path> has d=\""), "{message}");
@@ -217,7 +201,7 @@ fn outlines_are_verified_but_not_read_back() {
 
 #[test]
 fn a_page_has_the_width_that_was_asked_for() {
-    let drawn = drawn("coffee-300", &["--width", "120mm"]);
+    let drawn = drawn("coffee-300", "--width 120mm");
     let head = r#"width="120mm" height="80mm" viewBox="0 0 300 200""#;
     assert!(drawn.text.contains(head));
     let input = sample("coffee-300");
@@ -226,18 +210,15 @@ fn a_page_has_the_width_that_was_asked_for() {
 
 #[test]
 fn at_most_so_many_colours_are_used() {
-    for options in [vec!["--colors", "5"], vec!["--colors", "5", "--opaque"]] {
-        assert_eq!(
-            drawn("coffee-300", &options).colors().len(),
-            5,
-            "{options:?}"
-        );
+    for options in ["--colors 5", "--colors 5 --opaque"] {
+        let colors = drawn("coffee-300", options).colors();
+        assert_eq!(colors.len(), 5, "{options}");
     }
 }
 
 #[test]
 fn a_background_that_was_asked_for_is_one_of_the_colours() {
-    let colors = drawn("coffee-300", &["--colors", "3", "--background", "#00ff00"]).colors();
+    let colors = drawn("coffee-300", "--colors 3 --background #00ff00").colors();
     assert_eq!(colors.len(), 3);
     assert!(colors.contains("#00ff00"));
 }
@@ -245,7 +226,7 @@ fn a_background_that_was_asked_for_is_one_of_the_colours() {
 #[test]
 fn only_colours_of_the_palette_are_used() {
     let palette = ["#000000", "#ffffff", "#c0392b", "#d35400"];
-    let drawn = drawn("coffee-300", &["--palette", &palette.join(",")]);
+    let drawn = drawn("coffee-300", &format!("--palette {}", palette.join(",")));
     let palette = palette.map(String::from).into_iter().collect();
     assert!(drawn.colors().is_subset(&palette));
 }
@@ -254,11 +235,8 @@ fn only_colours_of_the_palette_are_used() {
 /// afterwards do not.
 #[test]
 fn a_palette_is_fitted_and_not_only_applied() {
-    let free = drawn("coffee-300", &[]);
-    let fitted = drawn(
-        "coffee-300",
-        &["--palette", "#200804,#f0e0d0,#a03010,#c08050"],
-    );
+    let free = drawn("coffee-300", "");
+    let fitted = drawn("coffee-300", "--palette #20080 f0e0d a0301 c08050");
     let palette = [[32, 8, 4], [240, 224, 208], [160, 48, 16], [192, 128, 80]]
         .map(|rgb| rgb.map(|c: u8| f32::from(c) / 255.0));
     let nearest = |wanted: [f32; 3]| {
@@ -288,8 +266,8 @@ fn a_palette_is_fitted_and_not_only_applied() {
 
 #[test]
 fn every_colour_has_one_layer_and_the_report_says_what_that_costs() {
-    let by_stage = drawn("coffee-300", &["--colors", "6"]);
-    let by_color = drawn("coffee-300", &["--colors", "6", "--group", "color"]);
+    let by_stage = drawn("coffee-300", "--colors 6");
+    let by_color = drawn("coffee-300", "--colors 6 --group color");
     assert!(by_color.text.contains(r#"<g id="color-1""#));
     let scene = svg::read(&by_color.text).unwrap();
     let one_color = |stage: &Stage| {
@@ -344,13 +322,12 @@ fn paper_stays_paper_if_the_palette_has_nothing_like_it() {
 
 #[test]
 fn strokes_that_nobody_can_see_are_left_out_and_counted() {
-    let white = ["--colors", "1", "--background", "#ffffff"];
-    let drawn_white = drawn("coffee-300", &white);
+    let drawn_white = drawn("coffee-300", "--colors 1 --background #ffffff");
     assert_eq!(drawn_white.number("strokes"), 0.0);
     let unseen = &drawn_white.report["dropped_for"]["invisible"];
     assert!(unseen.as_u64() > Some(0) && drawn_white.report["dropped"].as_u64() >= unseen.as_u64());
     // A background of the one colour is all that pays.
-    let plain = drawn("coffee-300", &white[..2]);
+    let plain = drawn("coffee-300", "--colors 1");
     assert_eq!(plain.number("strokes"), 0.0);
 }
 
@@ -367,20 +344,20 @@ fn a_drawing_worse_than_a_page_of_one_colour_is_spoken_of() {
 
 #[test]
 fn options_that_make_no_sense_are_refused() {
-    assert_refused(&["--width", "12"], "such as 120mm");
-    assert_refused(&["--width", "-3mm"], "such as 120mm");
-    assert_refused(&["--outline", "--form", "smallest"], "--outline");
-    assert_refused(&["--form", "tiny"], "smallest");
-    assert_refused(&["--group", "size"], "color");
+    assert_refused("--width 12", "such as 120mm");
+    assert_refused("--width -3mm", "such as 120mm");
+    assert_refused("--outline --form smallest", "--outline");
+    assert_refused("--form tiny", "smallest");
+    assert_refused("--group size", "color");
 }
 
 #[test]
 fn bad_palettes_are_refused() {
-    assert_refused(&["--colors", "0"], "whole number");
-    assert_refused(&["--palette", "#12,#ffffff"], "'#12' is not a colour");
-    assert_refused(&["--palette", "none.gpl"], "no such file");
-    assert_refused(&["--palette", "bad.gpl"], "line 2");
-    assert_refused(&["--palette", "#ffffff", "--colors", "3"], "--colors");
-    let ground = ["--palette", "#ffffff", "--background", "#000000"];
-    assert_refused(&ground, "the background #000000 is not in the palette");
+    assert_refused("--colors 0", "whole number");
+    assert_refused("--palette #12,#ffffff", "'#12' is not a colour");
+    assert_refused("--palette none.gpl", "no such file");
+    assert_refused("--palette bad.gpl", "line 2");
+    assert_refused("--palette #ffffff --colors 3", "--colors");
+    let ground = "--palette #ffffff --background #000000";
+    assert_refused(ground, "the background #000000 is not in the palette");
 }

@@ -38,6 +38,8 @@ mod support {
     pub(crate) mod skip;
     #[cfg(feature = "cli")]
     pub(crate) mod verdicts;
+    #[cfg(feature = "cli")]
+    pub(crate) mod words;
 }
 
 // The library.

@@ -16,22 +16,27 @@ const TRACED: &str = include_str!("../data/chelsea-traced.svg");
 
 const NAMESPACE: &str = "xmlns=\"http://www.w3.org/2000/svg\"";
 
-/// Draws or refines with the options of a draft; returns the fidelity in dB.
+/// A folder with a sample as `in.png`.
+fn with_sample(name: &str) -> Place {
+    let place = Place::new();
+    let sample = fs::read(committed(&format!("samples/{name}.png")));
+    place.file("in.png", sample.unwrap());
+    place
+}
+
+/// A folder with the cat, and what another program traced of it.
+fn traced() -> Place {
+    let place = with_sample("chelsea-cat");
+    place.file("traced.svg", TRACED);
+    place
+}
+
+/// Draws or refines as a draft, by the words of a command; returns the fidelity in dB.
 #[track_caller]
-fn draft(place: &Place, args: &[&str], out: &str) -> f64 {
-    let ends = [
-        "-q",
-        "-o",
-        out,
-        "--preset",
-        "draft",
-        "--report",
-        "report.json",
-    ];
-    place.done(&[args, &ends].concat());
-    place.report("report.json")["fidelity"]["psnr_db"]
-        .as_f64()
-        .unwrap()
+fn draft(place: &Place, words: &str) -> f64 {
+    place.done(&format!("{words} -q --preset draft --report r.json"));
+    let report = place.report("r.json");
+    report["fidelity"]["psnr_db"].as_f64().unwrap()
 }
 
 fn read(place: &Place, name: &str) -> String {
@@ -41,6 +46,10 @@ fn read(place: &Place, name: &str) -> String {
 fn layers(place: &Place, name: &str) -> Vec<usize> {
     let scene = svg::read(&read(place, name)).unwrap();
     scene.stages.iter().map(|stage| stage.marks.len()).collect()
+}
+
+fn strokes(place: &Place, name: &str) -> usize {
+    layers(place, name).iter().sum()
 }
 
 /// The text before and after what was put into it, which is returned.
@@ -53,120 +62,69 @@ fn put_into<'a>(base: &str, refined: &'a str) -> &'a str {
 
 #[test]
 fn strokes_with_a_plus_count_beyond_those_of_the_base() {
-    let place = Place::new();
-    let picture = committed("samples/coffee-300.png");
-    let strokes = |name: &str| layers(&place, name).iter().sum::<usize>();
-    draft(&place, &["fit", &picture, "--strokes", "+60"], "base.svg");
-    assert_eq!(strokes("base.svg"), 60);
-    draft(
-        &place,
-        &["refine", "base.svg", &picture, "--strokes", "+40"],
-        "more.svg",
-    );
-    assert_eq!(strokes("more.svg"), 100);
+    let place = with_sample("coffee-300");
+    draft(&place, "fit in.png --strokes +60 -o base.svg");
+    assert_eq!(strokes(&place, "base.svg"), 60);
+    draft(&place, "refine base.svg in.png --strokes +40 -o more.svg");
+    assert_eq!(strokes(&place, "more.svg"), 100);
     // As many in all as there are is no change, which is said with what would be one.
-    let full = place.done(&[
-        "refine",
-        "base.svg",
-        &picture,
-        "--strokes",
-        "60",
-        "-o",
-        "full.svg",
-    ]);
-    assert_eq!(strokes("full.svg"), 60);
+    let full = place.done("refine base.svg in.png --strokes 60 -o full.svg");
+    assert_eq!(strokes(&place, "full.svg"), 60);
     let line = stderr(&full);
     assert!(
         line.contains("hint:") && line.contains("--strokes +60"),
         "{line}"
     );
-    let layers = put_into(TRACED, &refined_more(&place))
-        .matches("<path")
-        .count();
-    assert_eq!(layers, 30);
-}
-
-/// A file of another program with 20 strokes, and then 10 more.
-fn refined_more(place: &Place) -> String {
-    place.file("traced.svg", TRACED);
-    let picture = committed("samples/chelsea-cat.png");
-    draft(
-        place,
-        &["refine", "traced.svg", &picture, "--strokes", "+20"],
-        "a.svg",
-    );
-    draft(
-        place,
-        &["refine", "a.svg", &picture, "--strokes", "+10"],
-        "b.svg",
-    );
-    read(place, "b.svg")
+    let place = traced();
+    draft(&place, "refine traced.svg in.png --strokes +20 -o a.svg");
+    draft(&place, "refine a.svg in.png --strokes +10 -o b.svg");
+    let more = read(&place, "b.svg");
+    assert_eq!(put_into(TRACED, &more).matches("<path").count(), 30);
 }
 
 #[test]
 fn a_drawing_in_two_goes_is_as_good_as_one_in_one_go() {
-    let place = Place::new();
-    let picture = committed("samples/coffee-300.png");
-    let whole = draft(&place, &["fit", &picture, "--strokes", "300"], "whole.svg");
-    draft(&place, &["fit", &picture, "--strokes", "150"], "half.svg");
-    let both = draft(
-        &place,
-        &["refine", "half.svg", &picture, "--strokes", "300"],
-        "both.svg",
-    );
+    let place = with_sample("coffee-300");
+    let whole = draft(&place, "fit in.png --strokes 300 -o whole.svg");
+    draft(&place, "fit in.png --strokes 150 -o half.svg");
+    let both = draft(&place, "refine half.svg in.png --strokes 300 -o both.svg");
     assert!(both > whole - 0.3, "{both} dB in two goes, {whole} in one");
-    assert_eq!(layers(&place, "both.svg").iter().sum::<usize>(), 300);
-    assert_eq!(place.report("report.json")["base"]["strokes"], 150);
+    assert_eq!(strokes(&place, "both.svg"), 300);
+    assert_eq!(place.report("r.json")["base"]["strokes"], 150);
 }
 
 #[test]
 fn a_drawing_of_too_many_strokes_is_shortened() {
-    let place = Place::new();
-    let picture = committed("samples/coffee-300.png");
-    let few = draft(&place, &["fit", &picture, "--strokes", "60"], "few.svg");
-    draft(&place, &["fit", &picture, "--strokes", "300"], "many.svg");
-    let refine = ["refine", "many.svg", &picture, "--strokes", "60"];
-    let shortened = draft(&place, &refine, "shortened.svg");
+    let place = with_sample("coffee-300");
+    let few = draft(&place, "fit in.png --strokes 60 -o few.svg");
+    draft(&place, "fit in.png --strokes 300 -o many.svg");
+    let shortened = draft(&place, "refine many.svg in.png --strokes 60 -o a.svg");
     assert!(
         shortened > few - 0.5,
         "{shortened} dB of 300 strokes, {few} of as few from the start"
     );
-    assert_eq!(layers(&place, "shortened.svg").iter().sum::<usize>(), 60);
-    assert_eq!(place.report("report.json")["stop"], "strokes");
+    assert_eq!(strokes(&place, "a.svg"), 60);
+    assert_eq!(place.report("r.json")["stop"], "strokes");
     // Other pens do not keep a base from being shortened.
     draft(
         &place,
-        &[&refine[..], &["--pens", "3,8"]].concat(),
-        "pens.svg",
+        "refine many.svg in.png --strokes 60 --pens 3,8 -o b.svg",
     );
-    assert_eq!(layers(&place, "pens.svg").iter().sum::<usize>(), 60);
+    assert_eq!(strokes(&place, "b.svg"), 60);
 }
 
 /// Without polish the first stages of a plan are the same whether or not others follow: the stages that are
 /// there are not planned again, and the drawing ends as good as the whole one.
 #[test]
 fn the_stages_that_are_missing_are_added() {
-    let place = Place::new();
-    let picture = committed("samples/coffee-300.png");
-    let plain = ["fit", &picture, "--no-polish", "--strokes"];
-    let whole = draft(&place, &[&plain[..], &["200"]].concat(), "whole.svg");
+    let place = with_sample("coffee-300");
+    let whole = draft(&place, "fit in.png --no-polish --strokes 200 -o whole.svg");
     let counts = layers(&place, "whole.svg");
     let first: usize = counts[..5].iter().sum();
-    let first = first.to_string();
-    draft(
-        &place,
-        &[&plain[..], &[&first, "--stages", "5"]].concat(),
-        "first.svg",
-    );
-    let refine = [
-        "refine",
-        "first.svg",
-        &picture,
-        "--no-polish",
-        "--strokes",
-        "200",
-    ];
-    let both = draft(&place, &refine, "both.svg");
+    let options = format!("--no-polish --stages 5 --strokes {first}");
+    draft(&place, &format!("fit in.png {options} -o first.svg"));
+    let refine = "refine first.svg in.png --no-polish --strokes 200 -o both.svg";
+    let both = draft(&place, refine);
     assert!(
         (both - whole).abs() < 0.3,
         "{both} dB in two goes, {whole} in one"
@@ -178,7 +136,7 @@ fn the_stages_that_are_missing_are_added() {
 
 #[test]
 fn a_layer_that_nothing_is_seen_of_goes_and_the_others_are_numbered_on() {
-    let place = Place::new();
+    let place = with_sample("coffee-300");
     let head = format!(r#"<svg {NAMESPACE} width="300" height="200" viewBox="0 0 300 200">"#);
     let paths = ["M9 9L40 90", "M-90 9L-40 90", "M200 9L9 190"];
     let layer = |(k, d): (usize, &str)| {
@@ -189,12 +147,10 @@ fn a_layer_that_nothing_is_seen_of_goes_and_the_others_are_numbered_on() {
     };
     let body: String = paths.into_iter().enumerate().map(layer).collect();
     place.file("three.svg", format!("{head}{body}</svg>"));
-    let picture = committed("samples/coffee-300.png");
-    let enough = ["refine", "three.svg", &picture, "--psnr", "1"];
-    draft(&place, &enough, "two.svg");
+    draft(&place, "refine three.svg in.png --psnr 1 -o two.svg");
     assert_eq!(layers(&place, "two.svg"), [1, 1]);
     assert!(!read(&place, "two.svg").contains("M-90 9"));
-    let report = place.report("report.json");
+    let report = place.report("r.json");
     let records = report["stages"].as_array().unwrap().iter();
     let records: Vec<_> = records.map(|s| (&s["index"], &s["strokes"])).collect();
     assert_eq!(
@@ -207,25 +163,18 @@ fn a_layer_that_nothing_is_seen_of_goes_and_the_others_are_numbered_on() {
 
 #[test]
 fn a_base_that_meets_a_budget_is_written_as_it_is() {
-    let place = Place::new();
-    let picture = committed("samples/chelsea-cat.png");
-    place.file("traced.svg", TRACED);
-    draft(&place, &["fit", &picture, "--strokes", "80"], "own.svg");
-    draft(
-        &place,
-        &["refine", "traced.svg", &picture, "--strokes", "20"],
-        "laid.svg",
-    );
+    let place = traced();
+    draft(&place, "fit in.png --strokes 80 -o own.svg");
+    draft(&place, "refine traced.svg in.png --strokes 20 -o laid.svg");
     for (base, budget) in [
-        ("own.svg", ["--strokes", "80"]),
-        ("own.svg", ["--psnr", "20"]),
-        ("laid.svg", ["--strokes", "20"]),
-        ("traced.svg", ["--psnr", "15"]),
+        ("own.svg", "--strokes 80"),
+        ("own.svg", "--psnr 20"),
+        ("laid.svg", "--strokes 20"),
+        ("traced.svg", "--psnr 15"),
     ] {
         draft(
             &place,
-            &[&["refine", base, &picture], &budget[..]].concat(),
-            "again.svg",
+            &format!("refine {base} in.png {budget} -o again.svg"),
         );
         assert!(
             read(&place, "again.svg") == read(&place, base),
@@ -237,43 +186,30 @@ fn a_base_that_meets_a_budget_is_written_as_it_is() {
 /// Fitting anew what a budget leaves little room for may end worse than it began.
 #[test]
 fn a_base_that_is_better_than_its_refinement_is_kept() {
-    let place = Place::new();
-    let picture = committed("samples/rocket-320.png");
+    let place = with_sample("rocket-320");
     for seed in ["0", "1", "2"] {
-        let within = ["--bytes", "3000", "--seed", seed];
-        let base = draft(&place, &[&["fit", &picture], &within[..]].concat(), "a.svg");
-        let refine = ["refine", "a.svg", &picture];
-        let refined = draft(&place, &[&refine, &within[..]].concat(), "b.svg");
+        let within = format!("in.png --bytes 3000 --seed {seed}");
+        let base = draft(&place, &format!("fit {within} -o a.svg"));
+        let refined = draft(&place, &format!("refine a.svg {within} -o b.svg"));
         assert!(
             refined >= base,
             "seed {seed}: {base:.2} dB, then {refined:.2}"
         );
         // The base is translucent, and stays only where it may.
-        draft(
-            &place,
-            &[&refine, &within[..], &["--opaque"]].concat(),
-            "c.svg",
-        );
+        draft(&place, &format!("refine a.svg {within} --opaque -o c.svg"));
         assert!(!read(&place, "c.svg").contains("opacity"));
     }
 }
 
 #[test]
 fn a_traced_picture_gains_and_stays_as_it_is() {
-    let place = Place::new();
-    let picture = committed("samples/chelsea-cat.png");
-    place.file("traced.svg", TRACED);
-    let before = draft(
-        &place,
-        &["refine", "traced.svg", &picture, "--psnr", "1"],
-        "same.svg",
-    );
-    let refine = ["refine", "traced.svg", &picture, "--strokes", "200"];
-    let after = draft(&place, &refine, "refined.svg");
+    let place = traced();
+    let before = draft(&place, "refine traced.svg in.png --psnr 1 -o same.svg");
+    let after = draft(&place, "refine traced.svg in.png --strokes 200 -o a.svg");
     assert!(after > before + 3.0, "from {before} to {after} dB");
-    let refined = read(&place, "refined.svg");
+    let refined = read(&place, "a.svg");
     assert_eq!(put_into(TRACED, &refined).matches("<path").count(), 200);
-    let record = place.report("report.json");
+    let record = place.report("r.json");
     assert_eq!(
         (&record["base"]["elements"], &record["base"]["strokes"]),
         (&59.into(), &0.into())
@@ -283,35 +219,30 @@ fn a_traced_picture_gains_and_stays_as_it_is() {
 
 #[test]
 fn strokes_laid_on_a_file_are_taken_up_again() {
-    let place = Place::new();
-    let picture = committed("samples/chelsea-cat.png");
-    place.file("traced.svg", TRACED);
-    let refine = |base, strokes| ["refine", base, picture.as_str(), "--strokes", strokes];
-    draft(&place, &refine("traced.svg", "100"), "first.svg");
-    let twice = draft(&place, &refine("first.svg", "200"), "second.svg");
-    assert_eq!(place.report("report.json")["base"]["strokes"], 100);
+    let place = traced();
+    draft(
+        &place,
+        "refine traced.svg in.png --strokes 100 -o first.svg",
+    );
+    let twice = draft(
+        &place,
+        "refine first.svg in.png --strokes 200 -o second.svg",
+    );
+    assert_eq!(place.report("r.json")["base"]["strokes"], 100);
     let second = read(&place, "second.svg");
     assert_eq!(put_into(TRACED, &second).matches("<path").count(), 200);
-    let once = draft(&place, &refine("traced.svg", "200"), "once.svg");
+    let once = draft(&place, "refine traced.svg in.png --strokes 200 -o once.svg");
     assert!(twice > once - 0.3, "{twice} dB in two goes, {once} in one");
 }
 
 #[test]
 fn a_frozen_drawing_stays_as_it_is_and_stays_a_drawing() {
-    let place = Place::new();
-    let picture = committed("samples/coffee-300.png");
-    let before = draft(&place, &["fit", &picture, "--strokes", "60"], "own.svg");
-    let refine = [
-        "refine",
-        "own.svg",
-        &picture,
-        "--freeze-base",
-        "--strokes",
-        "60",
-    ];
-    let after = draft(&place, &refine, "more.svg");
+    let place = with_sample("coffee-300");
+    let before = draft(&place, "fit in.png --strokes 60 -o own.svg");
+    let refine = "refine own.svg in.png --freeze-base --strokes 60 -o more.svg";
+    let after = draft(&place, refine);
     put_into(&read(&place, "own.svg"), &read(&place, "more.svg"));
-    assert_eq!(layers(&place, "more.svg").iter().sum::<usize>(), 120);
+    assert_eq!(strokes(&place, "more.svg"), 120);
     assert!(after > before, "from {before} to {after} dB");
 }
 
@@ -328,18 +259,14 @@ fn the_root_does_not_change_the_strokes() {
          <s:rect x=\"-5\" y=\"7\" width=\"30\" height=\"20\" fill=\"#888\"/><s:g id=\"stage-3\"/></s:svg>"
     );
     place.file("base.svg", &base);
-    let db = draft(
-        &place,
-        &["refine", "base.svg", "in.png", "--strokes", "30"],
-        "out.svg",
-    );
+    let db = draft(&place, "refine base.svg in.png --strokes 30 -o out.svg");
     let refined = read(&place, "out.svg");
     let layers = put_into(&base, &refined);
     assert!(
         layers.contains("<g id=\"stage-4\"") && !layers.contains("stage-3"),
         "{layers}"
     );
-    let agreement = &place.report("report.json")["agreement"]["psnr_db"];
+    let agreement = &place.report("r.json")["agreement"]["psnr_db"];
     assert!(
         db > 25.0 && agreement.as_f64().unwrap() > 36.0,
         "{db} {agreement}"
@@ -354,16 +281,7 @@ fn what_is_passed_through_and_what_cannot_be_seen_is_said() {
         "<svg {NAMESPACE} viewBox=\"0 0 30 20\"><text>a</text><image href=\"/etc/hostname\"/><g/></svg>"
     );
     place.file("base.svg", base);
-    let refine = [
-        "refine",
-        "base.svg",
-        "in.png",
-        "-o",
-        "out.svg",
-        "--strokes",
-        "3",
-    ];
-    let said = stderr(&place.done(&refine));
+    let said = stderr(&place.done("refine base.svg in.png -o out.svg --strokes 3"));
     for words in ["keeping 3 elements", "fonts", "other files"] {
         assert!(said.contains(words), "no {words:?} in {said}");
     }
@@ -373,31 +291,18 @@ fn what_is_passed_through_and_what_cannot_be_seen_is_said() {
 fn the_page_keeps_its_width() {
     let place = Place::new();
     place.picture("in.png", 60, 40);
-    draft(
-        &place,
-        &["fit", "in.png", "--strokes", "5", "--width", "120mm"],
-        "own.svg",
-    );
-    draft(
-        &place,
-        &["refine", "own.svg", "in.png", "--strokes", "9"],
-        "more.svg",
-    );
+    draft(&place, "fit in.png --strokes 5 --width 120mm -o own.svg");
+    draft(&place, "refine own.svg in.png --strokes 9 -o more.svg");
     assert!(read(&place, "more.svg").contains("width=\"120mm\" height=\"80mm\""));
 }
 
 /// Parts that are clear in both stay clear, and no background is drawn.
 #[test]
 fn transparency_is_kept() {
-    let place = Place::new();
-    let picture = committed("samples/noto-gem.png");
-    draft(&place, &["fit", &picture, "--strokes", "40"], "own.svg");
-    draft(
-        &place,
-        &["refine", "own.svg", &picture, "--strokes", "60"],
-        "more.svg",
-    );
-    let alpha = &place.report("report.json")["alpha"];
+    let place = with_sample("noto-gem");
+    draft(&place, "fit in.png --strokes 40 -o own.svg");
+    draft(&place, "refine own.svg in.png --strokes 60 -o more.svg");
+    let alpha = &place.report("r.json")["alpha"];
     assert!(alpha["black_db"].as_f64().unwrap() > 25.0, "{alpha}");
     assert!(!read(&place, "more.svg").contains("<rect"));
 }
@@ -478,20 +383,16 @@ fn usage_that_makes_no_sense_is_refused() {
         "base.svg",
         format!("<svg {NAMESPACE} viewBox=\"0 0 30 20\"/>"),
     );
-    let refine = |base, input, output| ["refine", base, input, "-o", output];
-    assert_refused(&place, &refine("-", "-", "out.svg"), 2, &["standard input"]);
-    assert_refused(
-        &place,
-        &refine("base.svg", "in.png", "base.svg"),
-        2,
-        &["overwritten"],
-    );
-    let background = [
-        &refine("base.svg", "in.png", "out.svg")[..],
-        &["--background", "none"],
-    ]
-    .concat();
-    assert_refused(&place, &background, 2, &["--background"]);
+    for (refine, words) in [
+        ("refine - - -o out.svg", "standard input"),
+        ("refine base.svg in.png -o base.svg", "overwritten"),
+        (
+            "refine base.svg in.png -o out.svg --background none",
+            "--background",
+        ),
+    ] {
+        assert_refused(&place, refine, 2, &[words]);
+    }
 }
 
 /// The colours of the strokes of a text, and of its background.
@@ -508,52 +409,41 @@ fn colors(text: &str) -> BTreeSet<&str> {
 
 #[test]
 fn the_strokes_of_a_base_get_the_few_colours_too() {
-    let place = Place::new();
-    let picture = committed("samples/coffee-300.png");
-    draft(&place, &["fit", &picture, "--strokes", "80"], "base.svg");
-    let refine = ["refine", "base.svg", &picture, "--colors", "5", "--strokes"];
+    let place = with_sample("coffee-300");
+    draft(&place, "fit in.png --strokes 80 -o base.svg");
     // Also where no stroke is to be added.
     for (strokes, form) in [("120", "plain"), ("80", "plain"), ("120", "smallest")] {
-        let args = [&refine[..], &[strokes, "--form", form, "--opaque"]].concat();
-        draft(&place, &args, "few.svg");
+        let options = format!("--colors 5 --strokes {strokes} --form {form} --opaque");
+        draft(
+            &place,
+            &format!("refine base.svg in.png {options} -o few.svg"),
+        );
         let few = read(&place, "few.svg");
         assert_eq!(colors(&few).len(), 5, "{strokes} strokes, {form}");
         // In five colours, some strokes are hidden by others of their colour.
-        let hidden = place.report("report.json")["dropped"].as_u64().unwrap();
+        let hidden = place.report("r.json")["dropped"].as_u64().unwrap();
         let drawn = svg::read(&few).unwrap().len() as u64;
         assert_eq!((drawn + hidden).to_string(), strokes);
         assert!(hidden < drawn / 4, "{hidden}");
     }
     // A drawing that has few colours already is left as it is.
-    let strokes = svg::read(&read(&place, "few.svg"))
-        .unwrap()
-        .len()
-        .to_string();
-    let again = [
-        "refine",
-        "few.svg",
-        &picture,
-        "--colors",
-        "5",
-        "--strokes",
-        &strokes,
-    ];
+    let strokes = svg::read(&read(&place, "few.svg")).unwrap().len();
+    let options = format!("--colors 5 --strokes {strokes} --form smallest");
     draft(
         &place,
-        &[&again[..], &["--form", "smallest"]].concat(),
-        "again.svg",
+        &format!("refine few.svg in.png {options} -o again.svg"),
     );
     assert_eq!(read(&place, "again.svg"), read(&place, "few.svg"));
 }
 
 #[test]
 fn only_what_is_laid_on_a_document_gets_few_colours() {
-    let place = Place::new();
-    let picture = committed("samples/chelsea-cat.png");
-    place.file("traced.svg", TRACED);
-    let palette = ["--palette", "#1f130b,#e4caba", "--strokes", "40"];
-    let args = [&["refine", "traced.svg", &picture], &palette[..]].concat();
-    draft(&place, &args, "laid.svg");
+    let place = traced();
+    let options = "--palette #1f130b,#e4caba --strokes 40";
+    draft(
+        &place,
+        &format!("refine traced.svg in.png {options} -o laid.svg"),
+    );
     let laid = read(&place, "laid.svg");
     assert_eq!(
         colors(put_into(TRACED, &laid)),
@@ -563,29 +453,16 @@ fn only_what_is_laid_on_a_document_gets_few_colours() {
 
 #[test]
 fn a_clear_drawing_keeps_few_colours() {
-    let place = Place::new();
-    let picture = committed("samples/noto-gem.png");
-    let few = ["--colors", "4", "--strokes"];
-    draft(
-        &place,
-        &[&["fit", &picture], &few[..], &["60"]].concat(),
-        "clear.svg",
-    );
+    let place = with_sample("noto-gem");
+    draft(&place, "fit in.png --colors 4 --strokes 60 -o clear.svg");
     assert_eq!(colors(&read(&place, "clear.svg")).len(), 4);
-    draft(
-        &place,
-        &[&["refine", "clear.svg", &picture], &few[..], &["90"]].concat(),
-        "more.svg",
-    );
+    let refine = "refine clear.svg in.png --colors 4 --strokes 90 -o more.svg";
+    draft(&place, refine);
     let more = read(&place, "more.svg");
     assert_eq!(colors(&more).len(), 4);
     assert!(!more.contains("<rect"));
-    let palette = ["--palette", "#29b6f6,#ffffff", "--strokes", "60"];
-    draft(
-        &place,
-        &[&["fit", &picture], &palette[..]].concat(),
-        "given.svg",
-    );
+    let options = "--palette #29b6f6,#ffffff --strokes 60";
+    draft(&place, &format!("fit in.png {options} -o given.svg"));
     assert_eq!(
         colors(&read(&place, "given.svg")),
         ["#29b6f6", "#ffffff"].into()
@@ -594,31 +471,17 @@ fn a_clear_drawing_keeps_few_colours() {
 
 #[test]
 fn a_base_whose_background_is_not_in_the_palette_is_refused() {
-    let place = Place::new();
-    let picture = committed("samples/coffee-300.png");
-    let background = ["--background", "#a95327", "--strokes", "20"];
+    let place = with_sample("coffee-300");
+    let options = "--background #a95327 --strokes 20";
+    draft(&place, &format!("fit in.png {options} -o base.svg"));
+    let refine = "refine base.svg in.png -q -o few.svg --palette #ffffff,#000000";
+    let words = ["the background #a95327 is not in the palette: add it"];
+    assert_refused(&place, refine, 2, &words);
+    let options = "--palette #ffffff,#a95327 --strokes 30";
     draft(
         &place,
-        &[&["fit", &picture], &background[..]].concat(),
-        "base.svg",
+        &format!("refine base.svg in.png {options} -o few.svg"),
     );
-    let refine = ["refine", "base.svg", &picture, "-q"];
-    assert_refused(
-        &place,
-        &[
-            &refine[..],
-            &["-o", "few.svg", "--palette", "#ffffff,#000000"],
-        ]
-        .concat(),
-        2,
-        &["the background #a95327 is not in the palette: add it"],
-    );
-    let args = [
-        &refine[..3],
-        &["--palette", "#ffffff,#a95327", "--strokes", "30"],
-    ]
-    .concat();
-    draft(&place, &args, "few.svg");
     assert_eq!(
         colors(&read(&place, "few.svg")),
         ["#a95327", "#ffffff"].into()

@@ -1,10 +1,8 @@
-//! Shapes through the program: refined, resumed, animated, cut out, as DXF.
+//! Shapes through the program: refined, animated, cut out, as DXF.
 
 use std::fs;
-use std::process::Stdio;
-use std::time::Duration;
 
-use crate::support::place::{Place, STROKEFIT};
+use crate::support::place::Place;
 use strokefit::scene::{Mark, Scene, Shape};
 use strokefit::svg;
 use strokefit::verify::{self, Size};
@@ -73,51 +71,11 @@ fn shapes_of_a_base_stay_shapes() {
         _ => false,
     });
     assert!(moved, "{refined}");
-    place.done(&[
-        "refine",
-        "a.svg",
-        "b.png",
-        "-o",
-        "c.svg",
-        "-q",
-        "--freeze-base",
-    ]);
+    place.done("refine a.svg b.png -o c.svg -q --freeze-base");
     let frozen = read(&place, "c.svg");
     for element in elements(&base) {
         assert!(frozen.contains(element), "{element}: {frozen}");
     }
-}
-
-#[test]
-fn a_fit_of_shapes_that_is_killed_goes_on_to_the_same_bytes() {
-    for elements in [SHAPES, BANDS] {
-        killed_again_and_again(elements);
-    }
-}
-
-fn killed_again_and_again(elements: &str) {
-    let place = Place::new();
-    put_picture(&place, "a.png", elements);
-    place.done(&["fit", "a.png", "-o", "a.svg", "-q"]);
-    let whole = read(&place, "a.svg");
-    let kept = ["--checkpoint", "fit.state", "--checkpoint-every", "0.001"];
-    for life in 1.. {
-        let mut command = place.command(STROKEFIT);
-        command
-            .args(["fit", "a.png", "-o", "b.svg", "-q"])
-            .args(kept);
-        command.stdout(Stdio::null()).stderr(Stdio::null());
-        let mut child = command.spawn().unwrap();
-        std::thread::sleep(Duration::from_millis(10 + 10 * life));
-        let has_ended = child.try_wait().unwrap().is_some();
-        child.kill().unwrap();
-        child.wait().unwrap();
-        if has_ended {
-            assert!(life > 1, "the fit was never killed");
-            break;
-        }
-    }
-    assert!(read(&place, "b.svg") == whole);
 }
 
 /// The lines with square ends of a file that strokefit wrote.
@@ -152,17 +110,7 @@ fn bands_are_lines_in_every_file() {
     let css = read(&place, "css.svg");
     assert!(bands(&css) == 2 && css.contains("class="), "{css}");
     // What is read back is written the same way, and frozen ones stay.
-    place.done(&[
-        "refine",
-        "a.svg",
-        "a.png",
-        "-o",
-        "b.svg",
-        "-q",
-        "--freeze-base",
-        "--strokes",
-        "+1",
-    ]);
+    place.done("refine a.svg a.png -o b.svg -q --freeze-base --strokes +1");
     assert!(bands(&read(&place, "b.svg")) >= 2);
     for form in ["--outline", "--cutout"] {
         place.done(&["render", "a.svg", "-o", "c.svg", form]);

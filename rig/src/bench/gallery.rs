@@ -1,6 +1,6 @@
 //! A sheet of pictures, what was made of them, and a look at that.
 
-use super::inverse::Outcome;
+use crate::report::cases::CaseEntry;
 use crate::report::picture::{self, heat};
 use crate::report::plot::{Panel, Sheet, framed};
 use strokefit::Result;
@@ -27,12 +27,13 @@ impl Gallery {
     ///
     /// # Errors
     /// As [`verify::render`].
-    pub(super) fn show(&mut self, outcome: Outcome<'_>, title: &str, caption: &str) -> Result<()> {
-        let Outcome {
-            entry,
-            picture,
-            svg,
-        } = outcome;
+    pub(super) fn show(
+        &mut self,
+        entry: &CaseEntry,
+        [title, caption]: [&str; 2],
+        svg: &str,
+        picture: &Image,
+    ) -> Result<()> {
         if entry.is_own() {
             self.row(title, picture)?;
         }
@@ -138,7 +139,7 @@ pub(super) fn errors(picture: &Image, drawn: &Image) -> Result<Image> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::cases::{CaseEntry, OWN};
+    use crate::report::cases::OWN;
 
     const SVG: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" width="48" height="24"><rect width="24" height="24"/></svg>"#;
 
@@ -151,12 +152,7 @@ mod tests {
                 by: by.into(),
                 ..CaseEntry::default()
             };
-            let outcome = Outcome {
-                entry: &entry,
-                picture: &picture,
-                svg: SVG,
-            };
-            gallery.show(outcome, "a", "b").unwrap();
+            gallery.show(&entry, ["a", "b"], SVG, &picture).unwrap();
         }
         assert_eq!(
             gallery.rows.iter().map(Vec::len).collect::<Vec<_>>(),

@@ -12,8 +12,7 @@
 use rayon::prelude::*;
 
 use super::descent::{Method, Trajectory, descend};
-use super::matching::{Matching, Samples};
-use super::shapes::Circle;
+use super::matching::{Circle, Matching, Samples};
 use super::table::{self, STEPS};
 use super::{COVERAGES, ResultFolder, SIZE, show};
 use crate::report::Table;

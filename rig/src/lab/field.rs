@@ -8,8 +8,7 @@
 use rayon::prelude::*;
 
 use super::descent::Problem;
-use super::matching::{Matching, Samples};
-use super::shapes::Circle;
+use super::matching::{Circle, Matching, Samples};
 use super::{COVERAGES, ResultFolder, SIZE};
 use crate::report::Table;
 use crate::report::picture::{self, heat};

@@ -3,7 +3,7 @@
 use std::marker::PhantomData;
 
 use super::descent::Problem;
-use super::shapes::{Capsule, Circle, Combination};
+use super::shapes::{Capsule, Combination};
 use strokefit::coverage::Coverage;
 use strokefit::loss::Loss;
 use strokefit::math::Real;
@@ -23,23 +23,29 @@ pub trait Parametric<T: Real>: Sized {
     fn accumulate(&self, p: [T; 2], eps: T, weight: T, sum: &mut [T]);
 }
 
+/// A capsule of no length.
+pub struct Circle<T: Real>(Capsule<T>);
+
 /// `[x, y, radius]`.
 impl<T: Real> Parametric<T> for Circle<T> {
     const PARAMS: usize = 3;
 
     fn from_params(params: &[T]) -> Self {
-        Self {
-            center: [params[0], params[1]],
+        let center = [params[0], params[1]];
+        Self(Capsule {
+            a: center,
+            b: center,
             radius: params[2],
-        }
+        })
     }
 
     fn distance(&self, p: [T; 2], eps: T) -> T {
-        Circle::distance(self, p, eps)
+        self.0.distance(p, eps)
     }
 
     fn accumulate(&self, p: [T; 2], eps: T, weight: T, sum: &mut [T]) {
-        let by = self.jet(p, eps).by_center;
+        // All of the derivative goes to the first end.
+        let by = self.0.jet(p, eps).by_a;
         add(sum, weight, [by[0], by[1], T::one()]);
     }
 }

@@ -4,7 +4,7 @@
 //! and of their union, intersection and subtraction; charts and a table of the coverage functions
 //! and their derivatives over the distance.
 
-use super::shapes::{Capsule, Circle, Combination};
+use super::shapes::{Capsule, Combination};
 use super::{ResultFolder, SIZE};
 use crate::report::Table;
 use crate::report::picture::{self, distance, gray};
@@ -108,8 +108,9 @@ fn field(distance: impl Fn([f64; 2]) -> f64) -> Vec<f64> {
 }
 
 fn circle() -> Vec<f64> {
-    let circle = Circle {
-        center: [26.0, 30.0],
+    let circle = Capsule {
+        a: [26.0, 30.0],
+        b: [26.0, 30.0],
         radius: 14.0,
     };
     field(|p| circle.distance(p, EPS))

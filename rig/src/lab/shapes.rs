@@ -1,10 +1,9 @@
-//! Signed distance fields of circles and capsules, and their combinations, over a generic number.
+//! Signed distance fields of capsules, and their combinations, over a generic number.
 //!
 //! **Distances are positive inside** the shape, zero on its edge and negative outside, in px. Much of the
 //! literature, including the source of this file, uses the opposite sign.
 //!
 //! ```text
-//! circle         d = r − √(|p−c|² + ε)
 //! capsule        d = r − √(|q|² + ε)
 //!                q = (p−a) − h(b−a),   h = clamp((p−a)·(b−a) / (|b−a|² + ε), 0, 1)
 //! union          d = max(d₁, d₂)
@@ -66,43 +65,6 @@ use strokefit::math::Real;
 
 /// A point or a displacement, px.
 pub type Pair<T> = [T; 2];
-
-/// A disc.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Circle<T: Real> {
-    /// Centre, px.
-    pub center: Pair<T>,
-    /// Radius, px.
-    pub radius: T,
-}
-
-/// A circle's distance at a point, with its derivatives. The one by the radius is always 1.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CircleJet<T: Real> {
-    /// Signed distance, px, positive inside.
-    pub d: T,
-    /// `∂d/∂center`.
-    pub by_center: Pair<T>,
-}
-
-impl<T: Real> Circle<T> {
-    /// Signed distance from `p` to the edge in px, positive inside.
-    #[inline]
-    pub fn distance(&self, p: Pair<T>, eps: T) -> T {
-        self.radius - length(minus(p, self.center), eps)
-    }
-
-    /// The distance at `p` with its derivatives.
-    #[inline]
-    pub fn jet(&self, p: Pair<T>, eps: T) -> CircleJet<T> {
-        let q = minus(p, self.center);
-        let length = length(q, eps);
-        CircleJet {
-            d: self.radius - length,
-            by_center: direction(q, length),
-        }
-    }
-}
 
 /// A line segment swept by a disc: a segment with round caps.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -270,12 +232,6 @@ mod tests {
 
     #[test]
     fn distances_are_positive_inside() {
-        let circle = Circle {
-            center: [3.0, 4.0],
-            radius: 2.0,
-        };
-        assert_eq!(circle.distance([3.0, 4.0], 0.0), 2.0);
-        assert_eq!(circle.distance([0.0, 0.0], 0.0), -3.0);
         let capsule = capsule([0.0, 0.0, 10.0, 0.0, 1.0]);
         assert_eq!(capsule.distance([5.0, 0.0], 0.0), 1.0);
         assert_eq!(capsule.distance([5.0, 3.0], 0.0), -2.0);
@@ -285,24 +241,14 @@ mod tests {
 
     #[test]
     fn a_capsule_of_zero_length_is_a_circle() {
-        let center = [2.0, 3.0];
-        let circle = Circle {
-            center,
-            radius: 1.5,
-        };
-        let capsule = Capsule {
-            a: center,
-            b: center,
-            radius: 1.5,
-        };
+        let dot = capsule([2.0, 3.0, 2.0, 3.0, 1.5]);
         for i in 0..20 {
-            for eps in [0.0, EPS] {
-                let p = point(i, 0);
-                let (round, long) = (circle.jet(p, eps), capsule.jet(p, eps));
-                assert_eq!(round.d, long.d);
-                let apart = minus(round.by_center, plus(long.by_a, long.by_b));
-                assert!(length(apart, 0.0) < 1e-12);
-            }
+            let p = point(i, 0);
+            let away = minus(p, [2.0, 3.0]);
+            let jet = dot.jet(p, 0.0);
+            assert!((jet.d - (1.5 - length(away, 0.0))).abs() < 1e-12);
+            let towards = direction(away, length(away, 0.0));
+            assert!(length(minus(plus(jet.by_a, jet.by_b), towards), 0.0) < 1e-12);
         }
     }
 
@@ -323,11 +269,6 @@ mod tests {
             let (a, b, p) = (point(i, 0), point(i, 2), point(i, 4));
             let capsule = Capsule { a, b, radius: 1.0 };
             assert_eq!(capsule.jet(p, EPS).d, capsule.distance(p, EPS));
-            let circle = Circle {
-                center: a,
-                radius: 1.0,
-            };
-            assert_eq!(circle.jet(p, EPS).d, circle.distance(p, EPS));
         }
     }
 
@@ -342,15 +283,6 @@ mod tests {
             });
             let analytic = [jet.by_a[0], jet.by_a[1], jet.by_b[0], jet.by_b[1], 1.0];
             check(&format!("capsule {i}"), &analytic, &numeric, &mut failures);
-
-            let circle = |[x, y, radius]: [f64; 3]| Circle {
-                center: [x, y],
-                radius,
-            };
-            let by_center = circle([a[0], a[1], 1.0]).jet(p, EPS).by_center;
-            let numeric = differences([a[0], a[1], 1.0], |x| circle(x).distance(p, EPS));
-            let analytic = [by_center[0], by_center[1], 1.0];
-            check(&format!("circle {i}"), &analytic, &numeric, &mut failures);
         }
         assert!(failures.is_empty(), "{}", failures.join("\n"));
     }

@@ -11,6 +11,8 @@ mod support {
     pub(crate) mod place;
     #[path = "../../../../tests/all/support/program.rs"]
     pub(crate) mod program;
+    #[path = "../../../../tests/all/support/words.rs"]
+    pub(crate) mod words;
 }
 
 mod bench;

@@ -2,12 +2,19 @@
 
 use super::output::stderr;
 use super::place::Place;
+use super::words::Words;
 
 /// A line of error and perhaps one of advice that hold all of `words`, the exit status, and no new file.
 #[track_caller]
-pub(crate) fn assert_refused(place: &Place, args: &[&str], status: i32, words: &[&str]) {
+pub(crate) fn assert_refused(
+    place: &Place,
+    args: &(impl Words + ?Sized),
+    status: i32,
+    words: &[&str],
+) {
+    let args = args.words();
     let before = place.names();
-    let output = place.run(args);
+    let output = place.run(&args);
     let said = stderr(&output);
     assert_eq!(output.status.code(), Some(status), "{args:?}: {said}");
     let mut lines = said.lines();

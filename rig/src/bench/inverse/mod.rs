@@ -227,11 +227,8 @@ pub fn show(gallery: &mut Gallery, outcome: Outcome<'_>) -> Result<()> {
         beside.unwrap_or_default(),
         entry.truth_db.unwrap_or(f64::NAN)
     );
-    gallery.show(
-        outcome,
-        &format!("{}, {}", entry.drawing, entry.kind()),
-        &caption,
-    )?;
+    let title = format!("{}, {}", entry.drawing, entry.kind());
+    gallery.show(entry, [&title, &caption], svg, picture)?;
     if !entry.is_own() {
         return Ok(());
     }
