@@ -1,13 +1,21 @@
-//! Hard cases for fits. Each check gives a figure and a verdict. What is hard for the renderer is in `tests/all/render.rs`.
+//! Hard cases for fits and renderer. Each check gives a figure and a verdict. Degenerate strokes are cases of `tests/all/render.rs`.
 //!
 //! | group | what is hard |
 //! | --- | --- |
+//! | `kinks` | pixels where a distance or an edge has no derivative |
+//! | `precision` | `f32` against `f64` through thousands of iterations |
 //! | `pictures` | tiny, empty, noisy and extremely shaped pictures |
 //! | `rates` | extreme learning rates, non-finite numbers, very long runs |
 //! | `agreement` | thin and slanted strokes as resvg draws them |
+//!
+//! `f32` is *within x of `f64`* when no value differs by more than x times the largest value of its kind
+//! (ends, radius, colour, opacity, worth) in the scene. The bound is [`WITHIN`].
 
 mod agreement;
+mod kinks;
+mod oracle;
 mod pictures;
+mod precision;
 mod rates;
 
 pub use agreement::AgreementMap;
@@ -16,6 +24,9 @@ use crate::report::stability::{CaseVerdict, StabilityEntry, StabilityReport};
 use strokefit::Result;
 use strokefit::image::Image;
 use strokefit::report::Usage;
+
+/// Gradients and worths in `f32` may differ from `f64` by this share of the largest of their kind.
+pub const WITHIN: f64 = 1e-3;
 
 /// Extent of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -129,6 +140,8 @@ fn checks<'a>(
     map: &'a AgreementMap,
 ) -> impl Iterator<Item = Check<'a>> {
     let groups = [
+        kinks::checks(),
+        precision::checks(),
         pictures::checks(extent, given),
         rates::checks(extent),
         agreement::checks(map),
