@@ -23,7 +23,6 @@ pub(crate) use fineness::fine_share;
 pub(crate) use window::average;
 
 const WHITE: Rgb = [1.0; 3];
-const CHANNELS: usize = 3;
 
 /// Largest [`Agreement::patch_abs`] of renders that have the same in them. Photographs, flat art and line art have 3 to 14, a dithered
 /// picture of 5,000 strokes 22; a hole as wide as a patch has its whole contrast, 100 and more.
@@ -56,16 +55,14 @@ impl Quality {
     /// # Errors
     /// [`ErrorKind::Picture`] when their sizes differ.
     pub fn between(reference: &Image, picture: &Image) -> Result<Self> {
-        let (a, b) = levels_of_both(reference, picture)?;
-        let sums = Sums::new(&a, &b);
-        let mse = sums.mse();
-        let ssim = similarity::mean(&a, &b, reference.width());
+        let sums = Sums::between(reference, picture)?;
+        let [a, b] = &both_on_white(reference, picture)?;
         Ok(Self {
-            psnr_db: psnr_db(mse),
-            ssim,
-            mse,
+            psnr_db: psnr_db(sums.mse()),
+            ssim: similarity::mean(a, b),
+            mse: sums.mse(),
             l1: sums.l1(),
-            ssimulacra2: ssimulacra2::score(&a, &b, reference.width()),
+            ssimulacra2: ssimulacra2::score(a, b),
             details_kept: Details::of(reference, details::SEEN).kept(picture),
         })
     }
@@ -135,19 +132,18 @@ pub fn psnr(a: &Image, b: &Image) -> Result<f64> {
 /// # Errors
 /// [`ErrorKind::Picture`] when the sizes differ.
 pub fn psnr_where(a: &Image, b: &Image, counts: impl Fn(usize) -> bool) -> Result<f64> {
-    let (a, b) = levels_of_both(a, b)?;
-    let chosen = |levels: &[u8]| -> Vec<u8> {
-        let pixels = levels.chunks_exact(CHANNELS).enumerate();
-        let chosen = pixels.filter(|(i, _)| counts(*i));
-        chosen
-            .flat_map(|(_, pixel)| pixel.iter().copied())
-            .collect()
-    };
-    let (a, b) = (chosen(&a), chosen(&b));
-    Ok(if a.is_empty() {
-        f64::INFINITY
-    } else {
-        psnr_db(Sums::new(&a, &b).mse())
+    let [a, b] = both_on_white(a, b)?;
+    let (mut squares, mut count) = (0_u64, 0_u64);
+    for (a, b) in a.planes().iter().zip(b.planes()) {
+        let pairs = a.iter().zip(b).enumerate();
+        for (_, (a, b)) in pairs.filter(|(i, _)| counts(*i)) {
+            squares += u64::from(level(*a).abs_diff(level(*b))).pow(2);
+            count += 1;
+        }
+    }
+    Ok(match count {
+        0 => f64::INFINITY,
+        _ => psnr_db(squares as f64 / (count as f64 * 255.0 * 255.0)),
     })
 }
 
@@ -170,8 +166,8 @@ pub fn psnr_db(mse: f64) -> f64 {
 /// # Errors
 /// [`ErrorKind::Picture`] when the sizes differ.
 pub fn ssim(a: &Image, b: &Image) -> Result<f64> {
-    let (left, right) = levels_of_both(a, b)?;
-    Ok(similarity::mean(&left, &right, a.width()))
+    let [a, b] = both_on_white(a, b)?;
+    Ok(similarity::mean(&a, &b))
 }
 
 /// SSIMULACRA2 2.1 of 8-bit RGB on white: how different two pictures look to people. 100 for equal pictures, 90 lossless to
@@ -180,8 +176,8 @@ pub fn ssim(a: &Image, b: &Image) -> Result<f64> {
 /// # Errors
 /// [`ErrorKind::Picture`] when the sizes differ.
 pub fn ssimulacra2(reference: &Image, picture: &Image) -> Result<f64> {
-    let (a, b) = levels_of_both(reference, picture)?;
-    Ok(ssimulacra2::score(&a, &b, reference.width()))
+    let [reference, picture] = both_on_white(reference, picture)?;
+    Ok(ssimulacra2::score(&reference, &picture))
 }
 
 /// Where [`fn@ssimulacra2`] is lost, row by row: the score if all of the picture were as bad as it is there.
@@ -189,8 +185,8 @@ pub fn ssimulacra2(reference: &Image, picture: &Image) -> Result<f64> {
 /// # Errors
 /// [`ErrorKind::Picture`] when the sizes differ.
 pub fn ssimulacra2_map(reference: &Image, picture: &Image) -> Result<Vec<f32>> {
-    let (a, b) = levels_of_both(reference, picture)?;
-    Ok(ssimulacra2::map(&a, &b, reference.width()))
+    let [reference, picture] = both_on_white(reference, picture)?;
+    Ok(ssimulacra2::map(&reference, &picture))
 }
 
 /// Small things of `reference` that `picture` has lost, row by row: 1 in and beside one that stands alone, less among many others,
@@ -201,12 +197,6 @@ pub fn ssimulacra2_map(reference: &Image, picture: &Image) -> Result<Vec<f32>> {
 pub fn details_lost(reference: &Image, picture: &Image) -> Result<Vec<f32>> {
     let [reference, picture] = both_on_white(reference, picture)?;
     Ok(Details::of(&reference, details::SEEN).losses(&picture))
-}
-
-/// Interleaved RGB of both pictures as a viewer shows them on white.
-fn levels_of_both(a: &Image, b: &Image) -> Result<(Vec<u8>, Vec<u8>)> {
-    let [a, b] = both_on_white(a, b)?;
-    Ok((a.to_rgb8(), b.to_rgb8()))
 }
 
 /// Both pictures as a viewer shows them on white, of one size.
@@ -235,27 +225,13 @@ struct Sums {
 const ADDED_IN_32_BITS: usize = 1 << 16;
 
 impl Sums {
-    fn new(a: &[u8], b: &[u8]) -> Self {
-        Self::of(a, b, |a, b| a.abs_diff(b))
-    }
-
-    /// The sums over two pictures, without keeping their levels.
+    /// The sums over two pictures, rounded to levels on the fly.
     fn between(a: &Image, b: &Image) -> Result<Self> {
         let [a, b] = both_on_white(a, b)?;
-        // Round to levels on the fly, plane by plane, without interleaved copies of both pictures.
-        let planes = a.planes().iter().zip(b.planes());
-        let planes = planes.map(|(a, b)| Self::of(a, b, |a, b| level(a).abs_diff(level(b))));
-        Ok(planes.fold(Self::default(), Self::plus))
-    }
-
-    /// The sums over the differences of two rows of numbers of equal length.
-    fn of<T: Copy + Sync>(a: &[T], b: &[T], difference: impl Fn(T, T) -> u8 + Sync) -> Self {
-        let chunks = a.par_chunks(ADDED_IN_32_BITS);
-        let chunks = chunks.zip(b.par_chunks(ADDED_IN_32_BITS));
-        let of_chunk = |(a, b): (&[T], &[T])| {
+        let of_chunk = |(a, b): (&[f32], &[f32])| {
             let (mut squares, mut absolutes, mut max_abs) = (0, 0, 0);
-            for (&a, &b) in a.iter().zip(b) {
-                let d = difference(a, b);
+            for (a, b) in a.iter().zip(b) {
+                let d = level(*a).abs_diff(level(*b));
                 squares += u32::from(d) * u32::from(d);
                 absolutes += u32::from(d);
                 max_abs = d.max(max_abs);
@@ -267,8 +243,14 @@ impl Sums {
                 max_abs,
             }
         };
-        // Integer sums are exact, so the order in which threads add them makes no difference.
-        chunks.map(of_chunk).reduce(Self::default, Self::plus)
+        let of_plane = |(a, b): (&Vec<f32>, &Vec<f32>)| {
+            let chunks = a.par_chunks(ADDED_IN_32_BITS);
+            let chunks = chunks.zip(b.par_chunks(ADDED_IN_32_BITS));
+            // Integer sums are exact, so the order in which threads add them makes no difference.
+            chunks.map(of_chunk).reduce(Self::default, Self::plus)
+        };
+        let planes = a.planes().iter().zip(b.planes());
+        Ok(planes.map(of_plane).fold(Self::default(), Self::plus))
     }
 
     fn plus(self, other: Self) -> Self {

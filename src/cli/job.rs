@@ -101,7 +101,7 @@ impl<'a> Job<'a> {
         let memory = fit::predicted_rss_bytes(&picture, &self.options.config());
         verbosity.detail(format_args!("needs about {} MiB of memory", memory >> 20));
         // Draws, showing and telling how it goes.
-        let mut watching = Watching::new(heading, name, events, verbosity);
+        let mut watching = Watching::new(heading, name.clone(), events, verbosity);
         let mut interrupt = Interrupt::watch()?;
         let fit = draw(&picture, start, &mut |progress: &Progress<'_>| {
             watching.watch(progress);
@@ -110,49 +110,40 @@ impl<'a> Job<'a> {
         watching.end(matches!(&fit, Ok(fit) if fit.stop != Stop::Interrupted));
         let fit = fit?;
         tell_omitted(&fit, input::name(self.input), verbosity);
-        let mut drawn = Drawn {
-            judged: Judged::new(fit)?,
-            wall: Duration::ZERO,
-        };
+        let judged = Judged::new(fit)?;
         // The SVG comes first: what goes wrong later leaves the drawing there.
-        let subject = self.options.subject(&drawn.judged)?;
+        let subject = self.options.subject(&judged)?;
         self.svg.1.write(&subject.drawing(&self.svg.0)?)?;
         let wall = start.elapsed();
+        let base = self.base.map(|path| path.display().to_string());
+        let run = Run {
+            input: &name,
+            base: base.as_deref(),
+            config: &self.options.config(),
+            wall,
+            usage: Usage::now(),
+        };
         let record = FitReport {
             input: Input {
-                damage: drawn.judged.fit.damage,
+                damage: judged.fit.damage,
                 ..input
             },
-            ..self.record(&drawn.judged, wall)
+            ..FitReport::of(&judged, &run)
         };
         if let Some((_, output)) = &self.report {
             output.write(report::json(&record)?.as_bytes())?;
         }
         self.pictures.write(&subject)?;
         drop(subject);
-        drawn.wall = wall;
         events.tell(&Event::Done(Box::new(record)));
         // A checkpoint has served, unless there is more to be drawn.
         if let Some(checkpoint) = self.options.checkpoint()
-            && drawn.judged.fit.stop != Stop::Interrupted
+            && judged.fit.stop != Stop::Interrupted
         {
             checkpoint.remove()?;
         }
         Interrupt::rest();
-        Ok(drawn)
-    }
-
-    fn record(&self, judged: &Judged, wall: Duration) -> FitReport {
-        let name = |path: &Path| path.display().to_string();
-        let (input, base) = (name(self.input), self.base.map(name));
-        let run = Run {
-            input: &input,
-            base: base.as_deref(),
-            config: &self.options.config(),
-            wall,
-            usage: Usage::now(),
-        };
-        FitReport::of(judged, &run)
+        Ok(Drawn { judged, wall })
     }
 
     /// Outcome in a line.

@@ -3,8 +3,8 @@
 use fearless_simd::{Level, dispatch};
 use rayon::prelude::*;
 
-use super::CHANNELS;
 use super::window::Moments;
+use crate::image::{Image, level};
 use crate::math;
 
 /// Half of the SSIM window of 11 × 11 px, the middle included.
@@ -16,21 +16,22 @@ const SIGMA: f64 = 1.5;
 const C1: f32 = 0.01 * 0.01;
 const C2: f32 = 0.03 * 0.03;
 
-/// The mean over all samples of `a` and `b`, interleaved levels in rows of `width` pixels.
-pub(super) fn mean(a: &[u8], b: &[u8], width: usize) -> f64 {
+/// The mean over all samples of two pictures of one size.
+pub(super) fn mean(a: &Image, b: &Image) -> f64 {
     let taps: [f32; TAPS] = std::array::from_fn(|k| {
         let x = k as f64;
         math::exp(-x * x / (2.0 * SIGMA * SIGMA)) as f32
     });
-    let height = a.len() / (CHANNELS * width);
-    let sums = (0..CHANNELS).map(|c| {
-        let plane = |levels: &[u8]| -> Vec<f32> {
-            let levels = levels.iter().skip(c).step_by(CHANNELS);
-            levels.map(|&level| f32::from(level) / 255.0).collect()
+    let (width, height) = (a.width(), a.height());
+    let of_plane = |(a, b): (&Vec<f32>, &Vec<f32>)| {
+        // As a viewer shows it.
+        let shown = |plane: &[f32]| -> Vec<f32> {
+            let levels = plane.iter().map(|value| f32::from(level(*value)));
+            levels.map(|level| level / 255.0).collect()
         };
-        let planes = [plane(a), plane(b)];
-        let rows = (0..height).into_par_iter();
-        let rows: Vec<f64> = rows
+        let planes = [shown(a), shown(b)];
+        let rows: Vec<f64> = (0..height)
+            .into_par_iter()
             .map_init(
                 || Moments::new(&taps, width),
                 |moments, y| dispatch!(Level::new(), _simd => sum(moments, &taps, &planes, y)),
@@ -38,8 +39,9 @@ pub(super) fn mean(a: &[u8], b: &[u8], width: usize) -> f64 {
             .collect();
         // Row by row in order, so that the mean is the same for every number of threads.
         rows.iter().sum::<f64>()
-    });
-    sums.sum::<f64>() / a.len() as f64
+    };
+    let planes = a.planes().iter().zip(b.planes());
+    planes.map(of_plane).sum::<f64>() / (3 * width * height) as f64
 }
 
 /// The sum over a row of samples, with the instructions of the caller.
@@ -74,7 +76,6 @@ fn similarity([a, b, aa, bb, ab]: [f32; 5]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::image::Image;
     use crate::metrics::{ssim, tests::noise};
 
     /// SSIM by its definition, in f64, one window at a time.

@@ -13,8 +13,8 @@
 use fearless_simd::{Level, dispatch};
 use rayon::prelude::*;
 
-use super::CHANNELS;
 use super::window::Moments;
+use crate::image::{Image, level};
 use crate::math;
 
 const SCALES: usize = 6;
@@ -83,9 +83,9 @@ const WEIGHTS: [[[[f64; 3]; 2]; 6]; 3] = [
     ],
 ];
 
-/// The score of `picture` against `reference`, interleaved levels in rows of `width` pixels.
-pub(super) fn score(reference: &[u8], picture: &[u8], width: usize) -> f64 {
-    let norms: Vec<_> = Scales::new(reference, picture, width)
+/// The score of `picture` against `reference`, of one size.
+pub(super) fn score(reference: &Image, picture: &Image) -> f64 {
+    let norms: Vec<_> = Scales::new(reference, picture)
         .map(|scale| scale.norms())
         .collect();
     // Scales come one after another, and only the norms of each remain: two pictures in memory, not twelve.
@@ -96,19 +96,19 @@ pub(super) fn score(reference: &[u8], picture: &[u8], width: usize) -> f64 {
 /// Scores that the picture would have if all of it were as bad as it is at each pixel, row by row.
 ///
 /// The weighted sum that makes the score is a sum over pixels: a mean is, and a fourth norm is shared out by `e⁴`.
-pub(super) fn map(reference: &[u8], picture: &[u8], width: usize) -> Vec<f32> {
-    let sums = sums(reference, picture, width);
+pub(super) fn map(reference: &Image, picture: &Image) -> Vec<f32> {
+    let sums = sums(reference, picture);
     sums.iter().map(|&sum| of_sum(sum) as f32).collect()
 }
 
 /// The weighted errors at each pixel, whose mean makes the score.
-fn sums(reference: &[u8], picture: &[u8], width: usize) -> Vec<f64> {
-    let pixels = reference.len() / CHANNELS;
+fn sums(reference: &Image, picture: &Image) -> Vec<f64> {
+    let (width, height) = (reference.width(), reference.height());
     // The number of scales shifts the weights, so it has to be known before the first scale is weighed.
-    let count = Scales::new(reference, picture, width).count();
-    let factor = enlargement(width, pixels / width);
-    let mut sums = vec![0.0; pixels];
-    for (s, scale) in Scales::new(reference, picture, width).enumerate() {
+    let count = Scales::new(reference, picture).count();
+    let factor = enlargement(width, height);
+    let mut sums = vec![0.0; width * height];
+    for (s, scale) in Scales::new(reference, picture).enumerate() {
         let share = scale.shares(s, count);
         // Each pixel of a scale stands for a square of the picture.
         for (i, sum) in sums.iter_mut().enumerate() {
@@ -135,7 +135,7 @@ fn of_sum(sum: f64) -> f64 {
 
 /// The weights that are not 0 of a picture with `scales` scales: each with its channel, scale, norm and kind of error.
 fn weighted(scales: usize) -> impl Iterator<Item = (f64, [usize; 4])> {
-    let places = (0..CHANNELS).flat_map(move |c| {
+    let places = (0..3).flat_map(move |c| {
         (0..scales)
             .flat_map(move |s| (0..NORMS).flat_map(move |n| (0..KINDS).map(move |k| [c, s, n, k])))
     });
@@ -160,19 +160,21 @@ struct Scales {
 }
 
 impl Scales {
-    fn new(reference: &[u8], picture: &[u8], width: usize) -> Self {
-        let height = reference.len() / (CHANNELS * width);
+    fn new(reference: &Image, picture: &Image) -> Self {
+        let (width, height) = (reference.width(), reference.height());
         let factor = enlargement(width, height);
         // There are 256 levels: a table replaces a power per sample.
         let linear: Vec<f32> = (0..=u8::MAX).map(linear_light).collect();
-        let enlarged = |levels: &[u8]| -> Vec<[f32; 3]> {
-            let (pixels, _) = levels.as_chunks::<3>();
+        let enlarged = |picture: &Image| -> Vec<[f32; 3]> {
             let size = [width * factor, height * factor];
             let at = |i: usize| i / size[0] / factor * width + i % size[0] / factor;
+            let light = |value: f32| linear[usize::from(level(value))];
             let places = (0..size[0] * size[1]).into_par_iter();
-            places
-                .map(|i| pixels[at(i)].map(|level| linear[usize::from(level)]))
-                .collect()
+            let pixel = |i: usize| {
+                let i = at(i);
+                [0, 1, 2].map(|c| light(picture.planes()[c][i]))
+            };
+            places.map(pixel).collect()
         };
         Self {
             width: width * factor,
@@ -366,7 +368,6 @@ mod tests {
     use super::super::tests::noise;
     use super::super::{ssimulacra2, ssimulacra2_map};
     use super::*;
-    use crate::image::Image;
 
     /// Values of a wave and a ramp, with `error` added by a coarser wave.
     fn wave(width: usize, height: usize, error: f32) -> Image {
@@ -437,10 +438,10 @@ mod tests {
 
     #[test]
     fn the_score_is_that_of_the_mean_of_all_pixels() {
-        let (a, b) = (wave(256, 128, 0.0).to_rgb8(), wave(256, 128, 0.1).to_rgb8());
-        let sums = sums(&a, &b, 256);
+        let (a, b) = (wave(256, 128, 0.0), wave(256, 128, 0.1));
+        let sums = sums(&a, &b);
         let mean = sums.iter().sum::<f64>() / sums.len() as f64;
-        let (shared_out, whole) = (of_sum(mean), score(&a, &b, 256));
+        let (shared_out, whole) = (of_sum(mean), score(&a, &b));
         assert!((shared_out - whole).abs() < 1e-6, "{shared_out} {whole}");
     }
 }
