@@ -4,7 +4,6 @@ pub(super) mod memory;
 pub(super) mod plan;
 pub(super) mod price;
 pub(super) mod reduction;
-pub(super) mod rivals;
 
 use super::base::Base;
 use super::config::{Budget, Config, MAX_STROKES};

@@ -160,7 +160,7 @@ impl Descent {
         let by_time = from + (1.0 - from) * by_time;
         // The time is used up: whatever follows this descent has to hurry, too.
         if by_time >= 1.0 {
-            timer.hurry();
+            timer.is_hurried = true;
             return None;
         }
         self.step += 1;

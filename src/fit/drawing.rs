@@ -13,7 +13,6 @@ pub(super) mod surface;
 
 use fearless_simd::Level;
 
-use super::recipe::Recipe;
 use crate::render::{Canvas, CanvasLoss, Gradients, Params, Renderer, Softness, Strokes, Survey};
 use crate::scene::{Area, Mark, Rgb};
 use bounds::Bounds;
@@ -22,6 +21,9 @@ pub(super) use memento::Memento;
 use objective::Target;
 use scene::enlarge;
 use surface::Surface;
+
+/// Most strokes of a drawing of lines; drawings of more are not of a few pens.
+const MOST_LINES: usize = 600;
 
 /// A drawing in progress. The *free* strokes are fitted, judged and relocated; the frozen ones behind them are
 /// rendered once, as their backdrop. Large strokes are fitted to a reduced picture. The parameters of strokes are in
@@ -286,8 +288,8 @@ impl Drawing {
     }
 
     /// True for a traced drawing of few marks, which come to share widths and colours.
-    pub(in crate::fit) fn is_of_lines(&self, recipe: &Recipe) -> bool {
-        self.counters.traced_until > 0 && self.free().len() <= recipe.sharing.most
+    pub(in crate::fit) fn is_of_lines(&self) -> bool {
+        self.counters.traced_until > 0 && self.free().len() <= MOST_LINES
     }
 
     /// Number of free strokes, from the back, that may be held to forms: those that were traced. A photograph, most of whose

@@ -1,17 +1,19 @@
-//! The builder of a fit.
+//! A fit as its caller sees it: the options of a run, and the fit itself.
 
 use std::time::Duration;
 
 use super::base::Base;
 use super::config::{Config, Execution};
-use super::drawing::background;
 use super::drawing::focus::Focus;
+use super::multi_start;
+use super::result::Fit;
 use super::run::checkpoint::Checkpoint;
-use super::run::progress::{CancelToken, Observer};
+use super::run::progress::{CancelToken, Observer, Watch};
+use super::task::Task;
 use crate::clock::Instant;
-use crate::error::{Error, ErrorKind, Result};
+use crate::damage;
+use crate::error::Result;
 use crate::image::Image;
-use crate::scene::Scene;
 
 /// Draws pictures with strokes.
 ///
@@ -31,39 +33,26 @@ use crate::scene::Scene;
 /// # Ok::<(), strokefit::Error>(())
 /// ```
 pub struct Fitter<'a> {
-    pub(super) config: Config,
-    pub(super) execution: Execution,
-    pub(super) base: Option<Base>,
-    pub(super) focus: Option<Focus>,
-    pub(super) observer: Option<&'a mut (dyn Observer + Send)>,
-    pub(super) token: CancelToken,
-    pub(super) checkpoint: Option<&'a mut Checkpoint>,
-    pub(super) since: Option<Instant>,
-    pub(super) grace: Duration,
-    /// Size of the picture, px, if a reduced one is drawn.
-    pub(super) page: Option<[u32; 2]>,
-    /// Estimated RMS distance of the picture from the restored one, in 8-bit levels.
-    pub(super) doubt: f32,
-    /// Most marks of a drawing that areas are split in, if few are wanted.
-    pub(super) most_marks: Option<usize>,
+    task: Task,
+    execution: Execution,
+    observer: Option<&'a mut (dyn Observer + Send)>,
+    token: CancelToken,
+    checkpoint: Option<&'a mut Checkpoint>,
+    since: Option<Instant>,
+    grace: Duration,
 }
 
 impl<'a> Fitter<'a> {
     /// A fitter with this configuration.
     pub fn new(config: Config) -> Self {
         Self {
-            config,
+            task: Task::new(config),
             execution: Execution::default(),
-            base: None,
-            focus: None,
             observer: None,
             token: CancelToken::default(),
             checkpoint: None,
             since: None,
             grace: Duration::ZERO,
-            page: None,
-            doubt: 0.0,
-            most_marks: None,
         }
     }
 
@@ -76,20 +65,16 @@ impl<'a> Fitter<'a> {
     /// Sets the drawing to go on from. Budgets include its strokes and all its bytes, and a base that already meets a
     /// budget stays as it is. The background is that of the base.
     #[must_use]
-    pub fn on(self, base: Base) -> Self {
-        Self {
-            base: Some(base),
-            ..self
-        }
+    pub fn on(mut self, base: Base) -> Self {
+        self.task.base = Some(base);
+        self
     }
 
     /// Sets how much an error counts at each pixel. Strokes go where it counts; budgets of dB still count all pixels alike.
     #[must_use]
-    pub fn focus(self, focus: Focus) -> Self {
-        Self {
-            focus: Some(focus),
-            ..self
-        }
+    pub fn focus(mut self, focus: Focus) -> Self {
+        self.task.focus = Some(focus);
+        self
     }
 
     /// Sets the observer, which is told of progress and may stop the fit. It sees drawings that compete with each other, too:
@@ -137,34 +122,47 @@ impl<'a> Fitter<'a> {
         }
     }
 
-    /// Checks the configuration and the base against `picture`, and decides on the background for opaque strokes.
-    pub(super) fn prepare(&mut self, picture: &Image) -> Result<()> {
-        let config = &mut self.config;
-        config.check()?;
-        config.background = background::for_strokes(config.background, config.opaque, picture);
-        if let Some(focus) = &self.focus {
-            focus.check_size(picture)?;
+    /// Draws `picture`.
+    ///
+    /// A picture with alpha gives a transparent drawing, unless a background colour is set.
+    ///
+    /// # Errors
+    /// - [`ErrorKind::Config`](crate::ErrorKind::Config) when an option is outside its domain, the size of the base
+    ///   differs from that of the picture, the palette lacks the background of the base, or the checkpoint belongs to
+    ///   another fit.
+    /// - [`ErrorKind::Svg`](crate::ErrorKind::Svg) when the base cannot be rendered.
+    /// - [`ErrorKind::Io`](crate::ErrorKind::Io) when the checkpoint is damaged or cannot be written.
+    pub fn fit(self, picture: &Image) -> Result<Fit> {
+        let mut task = self.task;
+        let since = self.since.unwrap_or_else(Instant::now);
+        task.prepare(picture)?;
+        let level = self.execution.simd.require()?;
+        let pool = self.execution.pool()?;
+        // 1. Restore the picture if it is damaged and damage is not to be drawn. A given fidelity covers everything in the picture.
+        let is_literal = task.config.literal || task.config.budget.psnr_db.is_some();
+        let restored = match is_literal {
+            true => None,
+            false => pool.install(|| damage::meant(picture))?,
+        };
+        task.doubt = restored.as_ref().map_or(0.0, |r| r.damage.doubt());
+        let target = restored.as_ref().map_or(picture, |r| &r.picture);
+        // 2. Reduce it to the pixels that its drawing needs.
+        let reduced = pool.install(|| task.reduce(target));
+        let target = reduced.as_ref().unwrap_or(target);
+        // 3. Draw it.
+        let mut nobody = ();
+        let watch = Watch {
+            observer: self.observer.unwrap_or(&mut nobody),
+            token: self.token,
+            grace: self.grace,
+        };
+        let mut fit = pool
+            .install(|| multi_start::draw(&task, target, level, (watch, since), self.checkpoint))?;
+        // The drawing is judged by the picture that was given.
+        if let Some(restored) = restored {
+            fit.target = picture.reduced(fit.target.width(), fit.target.height());
+            fit.damage = Some(restored.damage);
         }
-        if let Some(base) = &self.base {
-            check_size(&base.scene, picture)?;
-            // The palette does not apply to a document, whose background is its own.
-            if let (None, Some(color)) = (&base.document, base.scene.background) {
-                config.check_background(color, ", since the base stays on it")?;
-            }
-        }
-        Ok(())
+        Ok(fit)
     }
-}
-
-fn check_size(scene: &Scene, picture: &Image) -> Result<()> {
-    let (width, height) = (picture.width(), picture.height());
-    let is_of_size = |[w, h]: [u32; 2]| (w as usize, h as usize) == (width, height);
-    if is_of_size([scene.width, scene.height]) || scene.page.is_some_and(is_of_size) {
-        return Ok(());
-    }
-    let message = format!(
-        "the drawing of {}×{} px is no base for a picture of {width}×{height} px: scale the picture",
-        scene.width, scene.height
-    );
-    Err(Error::new(ErrorKind::Config, message))
 }

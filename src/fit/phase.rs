@@ -20,3 +20,29 @@ pub(super) mod restrict;
 mod search;
 pub(super) mod settle;
 pub(super) mod trace;
+
+use super::order::{Outcome, Phase};
+use super::run::session::Session;
+use crate::error::Result;
+
+/// Runs the phase that `session` is in.
+pub(super) fn run(session: &mut Session<'_>) -> Result<Outcome> {
+    Ok(match session.phase {
+        Phase::Base => count::try_base(session)?,
+        Phase::Trace => trace::trace_lines(session)?,
+        Phase::Grow => grow::next_stage(session)?,
+        Phase::Stage(purpose) => grow::stage(session, purpose)?,
+        Phase::StagePolish(_) => grow::stage_polish(session)?,
+        Phase::Polish(purpose) => {
+            polish::polish(session, purpose)?;
+            count::approach_fidelity(session)
+        }
+        Phase::Recover => recover::recover(session)?,
+        Phase::Restrict(_) => restrict::restrict(session)?,
+        Phase::Settle(_) => settle::settle(session)?,
+        Phase::Compare(_) => count::compare(session),
+        Phase::MeetFidelity => count::meet_fidelity(session),
+        Phase::MeetBytes => count::meet_bytes(session),
+        Phase::Done => Outcome::Over,
+    })
+}

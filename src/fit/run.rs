@@ -5,4 +5,3 @@ pub(super) mod finish;
 pub(super) mod history;
 pub(super) mod progress;
 pub(super) mod session;
-pub(super) mod trials;

@@ -63,10 +63,9 @@ fn of_pixels(
     read: Option<[usize; 2]>,
     config: &Config,
 ) -> u64 {
-    let recipe = config.recipe();
     let limit = config.budget.strokes.map(|n| n.min(MAX_STROKES));
     let pixels = |[width, height]: [usize; 2]| width * height;
-    let strokes = Plan::new(config, &recipe, limit, Before::default(), pixels(size)).strokes();
+    let strokes = Plan::new(config, limit, Before::default(), pixels(size)).strokes();
     // Most of the canvases of two rows of pixels is padding.
     let padding = pixels(size.map(|side| side.next_multiple_of(TILE))) - pixels(size);
     BASE + PER_PIXEL_READ * read.map_or(0, pixels) as u64

@@ -4,7 +4,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::fit::base::Base;
 use crate::fit::config::Config;
-use crate::fit::recipe::Recipe;
 use crate::math;
 
 /// Number of stages, unless the configuration sets it. With more stages, seeding sees the residual more often. Half, twice: −0.05,
@@ -67,7 +66,6 @@ impl Plan {
     /// A plan for `limit` strokes, or for as many as will pay, less the strokes that are there `before`.
     pub(in crate::fit) fn new(
         config: &Config,
-        recipe: &Recipe,
         limit: Option<usize>,
         before: Before,
         pixels: usize,
@@ -86,7 +84,7 @@ impl Plan {
             counts: counts.unwrap_or_default(),
             pixels,
             most: config.most_strokes(pixels),
-            scale: recipe.stages.scale,
+            scale: config.recipe().stages.scale,
         }
     }
 
@@ -196,13 +194,7 @@ mod tests {
     #[test]
     fn open_plans_go_on_to_a_stroke_for_sixteen_pixels() {
         let config = Config::default();
-        let plan = Plan::new(
-            &config,
-            &Recipe::of(config.preset),
-            None,
-            Before::default(),
-            3200,
-        );
+        let plan = Plan::new(&config, None, Before::default(), 3200);
         let mut strokes = 0;
         let mut index = 0;
         while let Some(stage) = plan.stage(index, strokes) {

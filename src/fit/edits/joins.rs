@@ -3,16 +3,23 @@
 use std::collections::BTreeMap;
 
 use super::{Change, Edit, written_points};
-use crate::fit::recipe::Joins;
 use crate::math::distance;
 use crate::render::{STYLE, StrokeRef, Strokes};
+
+/// Farthest that two ends may be apart, px.
+const REACH: f32 = 8.0;
+/// Farthest that two ends may be apart, in units of the mean width of both strokes.
+const GAP: f32 = 0.6;
+/// Largest difference of channels, of opacities, and of radii in units of the larger one.
+const ALIKE: f32 = 0.3;
+/// Most pairs at a time, as a share of the strokes.
+const SHARE: f32 = 0.1;
 
 /// Joins of free strokes, the most alike first. A stroke has at most `most` points; without the lower stroke of a pair, as
 /// much is spared as `price` says.
 pub(in crate::fit) fn joins(
     strokes: &Strokes,
     most: usize,
-    joins: &Joins,
     price: impl Fn(StrokeRef<'_>) -> f32,
 ) -> Vec<Edit> {
     let join = |pair: Pair| Edit {
@@ -25,8 +32,8 @@ pub(in crate::fit) fn joins(
         growth: -1,
         is_tried: true,
     };
-    let mut pairs = pairs(strokes, most, joins);
-    pairs.truncate((joins.share * strokes.len() as f32).ceil() as usize);
+    let mut pairs = pairs(strokes, most);
+    pairs.truncate((SHARE * strokes.len() as f32).ceil() as usize);
     pairs.into_iter().map(join).collect()
 }
 
@@ -42,10 +49,10 @@ struct Pair {
 }
 
 /// The pairs of strokes that may be joined, the most alike first, each stroke in one pair at most.
-fn pairs(strokes: &Strokes, most: usize, joins: &Joins) -> Vec<Pair> {
+fn pairs(strokes: &Strokes, most: usize) -> Vec<Pair> {
     // Ends meet only within `reach`, so that those in the cells around are all that could.
     let mut cells: BTreeMap<[i32; 2], Vec<(usize, bool)>> = BTreeMap::new();
-    let cell = |p: [f32; 2]| p.map(|v| (v / joins.reach).floor() as i32);
+    let cell = |p: [f32; 2]| p.map(|v| (v / REACH).floor() as i32);
     let may_join = |stroke: StrokeRef<'_>| {
         !stroke.closed
             && stroke.points.len() > 1
@@ -64,9 +71,9 @@ fn pairs(strokes: &Strokes, most: usize, joins: &Joins) -> Vec<Pair> {
                 let count = written_points(stroke) + written_points(other) - 1;
                 let gap = distance(at, end(other, other_is_end));
                 let width = stroke.radius() + other.radius();
-                if k != i && count <= most && gap <= joins.reach.min(width * joins.gap) {
+                if k != i && count <= most && gap <= REACH.min(width * GAP) {
                     // A gap as wide as both radii together counts as much as the largest difference of styles that is allowed.
-                    let unlike = unlike(stroke, other) + gap / width * joins.alike;
+                    let unlike = unlike(stroke, other) + gap / width * ALIKE;
                     pairs.push(Pair {
                         lower: k,
                         upper: i,
@@ -83,7 +90,7 @@ fn pairs(strokes: &Strokes, most: usize, joins: &Joins) -> Vec<Pair> {
         }
     }
     // The most alike first, each stroke once.
-    pairs.retain(|pair| pair.unlike < joins.alike);
+    pairs.retain(|pair| pair.unlike < ALIKE);
     pairs.sort_by(|a, b| a.unlike.total_cmp(&b.unlike).then(a.upper.cmp(&b.upper)));
     let mut taken = vec![false; strokes.len()];
     pairs.retain(|pair| {
@@ -162,15 +169,13 @@ fn joined(strokes: &Strokes, pair: Pair) -> Change {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::{Preset, Recipe};
 
     fn strokes(capsules: &[[f32; 9]]) -> Strokes {
         capsules.iter().collect()
     }
 
     fn found(capsules: &[[f32; 9]]) -> Vec<(usize, usize)> {
-        let joins = Recipe::of(Preset::Balanced).points.joins;
-        let pairs = pairs(&strokes(capsules), usize::MAX, &joins);
+        let pairs = pairs(&strokes(capsules), usize::MAX);
         pairs.iter().map(|pair| (pair.lower, pair.upper)).collect()
     }
 

@@ -4,8 +4,14 @@ use std::ops::Range;
 
 use super::terrain::{Cut, Terrain};
 use super::{Change, Edit};
-use crate::fit::recipe::Points;
 use crate::render::{Knot, Piece, StrokeRef};
+
+/// Farthest that a new corner moves from its line at once, in units of the line's length.
+const REACH: f32 = 0.5;
+/// Lines and curves shorter than this, px, get no point.
+const SHORTEST: f32 = 0.5;
+/// Expected gain of a control point, in units of the gain that is found.
+const SMOOTHNESS: f32 = 0.7;
 
 /// Points of a path in the place of its own.
 #[derive(Debug, Clone)]
@@ -74,12 +80,12 @@ struct Insertion {
 }
 
 /// The point more that gains most; it has to gain `to_add`.
-pub(in crate::fit) fn add(terrain: &Terrain<'_>, to_add: f32, points: &Points) -> Option<Edit> {
+pub(in crate::fit) fn add(terrain: &Terrain<'_>, to_add: f32) -> Option<Edit> {
     let within = |(i, &cut): (usize, &Cut)| {
-        let chord = Chord::of(terrain, cut.piece).filter(|chord| chord.length > points.shortest);
+        let chord = Chord::of(terrain, cut.piece).filter(|chord| chord.length > SHORTEST);
         let insertions = chord.map(|chord| match cut.piece.control {
-            None => within_line(terrain, cut, chord, points),
-            Some(control) => [within_curve(terrain, i, control, chord, points), None],
+            None => within_line(terrain, cut, chord),
+            Some(control) => [within_curve(terrain, i, control, chord), None],
         });
         insertions.into_iter().flatten().flatten()
     };
@@ -218,12 +224,7 @@ impl Chord {
 
 /// A corner or a control point in the middle of a line. A corner shifts vertices like a tent, a control point like a
 /// parabola.
-fn within_line(
-    terrain: &Terrain<'_>,
-    cut: Cut,
-    chord: Chord,
-    points: &Points,
-) -> [Option<Insertion>; 2] {
+fn within_line(terrain: &Terrain<'_>, cut: Cut, chord: Chord) -> [Option<Insertion>; 2] {
     let (Knot::Point(from), Knot::Point(to)) = (cut.piece.from, cut.piece.to) else {
         return [None; 2];
     };
@@ -232,7 +233,7 @@ fn within_line(
     // 2t(1 − t), its Bernstein polynomial.
     let tent = (0..=cut.steps).map(|k| 1.0 - (2.0 * at(k) - 1.0).abs());
     let parabola = (0..=cut.steps).map(|k| 2.0 * at(k) * (1.0 - at(k)));
-    let most = points.reach * chord.length;
+    let most = REACH * chord.length;
     let corner = terrain.shift(cut.first, tent, chord.across, most);
     // The parabola is at most ½, so that the control point may shift twice as far for the same shift of the curve.
     let control = terrain.shift(cut.first, parabola, chord.across, 2.0 * most);
@@ -248,7 +249,7 @@ fn within_line(
     };
     [
         Some(insertion(corner, false, 1.0)),
-        Some(insertion(control, true, points.smoothness)),
+        Some(insertion(control, true, SMOOTHNESS)),
     ]
 }
 
@@ -259,10 +260,9 @@ fn within_curve(
     i: usize,
     control: usize,
     chord: Chord,
-    points: &Points,
 ) -> Option<Insertion> {
     let cut = terrain.pieces[i];
-    let most = points.reach * chord.length;
+    let most = REACH * chord.length;
     match (cut.piece.from, cut.piece.to) {
         // De Casteljau: the curve is the same with a control point halfway to each end, and each of them can move.
         (Knot::Point(_), Knot::Point(_)) => {

@@ -8,12 +8,35 @@ use crate::fit::drawing::Drawing;
 use crate::fit::edits;
 use crate::fit::order::{Outcome, Purpose};
 use crate::fit::points;
-use crate::fit::recipe::Correction;
 use crate::fit::result::Stop;
-use crate::fit::run::history::Corrections;
+use crate::fit::run::history::{Corrections, DB_PER_DOUBLING};
 use crate::fit::run::session::Session;
 use crate::math;
 use crate::metrics::psnr_db;
+
+/// Fidelity that the polish is expected to regain when strokes are removed, dB.
+const REGAINED_DB: f64 = 1.5;
+/// Most corrections.
+const CORRECTIONS: usize = 6;
+/// Lower bound of the measured gain by doubling the strokes, dB.
+const LEAST_DB_PER_DOUBLING: f64 = DB_PER_DOUBLING / 8.0;
+/// A fidelity is met if it is exceeded by no more than this, dB.
+const EXCESS_DB: f64 = 0.1;
+/// The number of strokes is found if this share more than a number that missed the fidelity reaches it. A guess.
+const PRECISION: f64 = 0.1;
+/// Least share of the missing fidelity that more strokes have to bring, or none of them will bring the rest. Without this end,
+/// parrots-256 at 42 dB takes 23 instead of 10 s for 0.3 dB.
+const LEAST_GAIN: f64 = 0.2;
+/// Gain of doublings to come, in units of that of the last one, at most. A guess: with 1, a photograph whose gains rise again would be
+/// given up.
+const HOPE: f64 = 1.3;
+/// Strokes too few for their gains to tell of those of many. A guess.
+const FEW_STROKES: usize = 400;
+/// Strokes below which one more may be what is missing. A disc without antialiasing needs 9 for 30 dB, and gains nothing by the second
+/// to fourth.
+const VERY_FEW_STROKES: usize = 32;
+/// A file that uses less than this share of its bytes gets more points. A guess.
+const FILLED: f64 = 0.98;
 
 /// Shortens a base of more strokes or bytes than may be, and ends the fit if the base, as it is, already meets a budget. Otherwise
 /// the base is the best file until another one is better.
@@ -32,7 +55,7 @@ pub(in crate::fit) fn try_base(session: &mut Session<'_>) -> Result<Outcome> {
     // A base that uses colours outside the palette, or other pens, cannot stay as it is.
     let config = session.config;
     let may_stay = |base: &Base| config.pens.is_none() && config.colors.allow(&base.scene);
-    if !session.base.is_some_and(may_stay) {
+    if !session.task.base.as_ref().is_some_and(may_stay) {
         return Ok(Outcome::Over);
     }
     // Does the base meet a budget as it is?
@@ -78,17 +101,15 @@ pub(in crate::fit) fn approach_fidelity(session: &mut Session<'_>) -> Outcome {
     let Some(wanted_db) = session.config.budget.psnr_db else {
         return Outcome::Over;
     };
-    let correction = session.recipe.correction;
     let now = (session.drawing.len(), psnr_db(session.drawing.mse()));
     let before = session.history.corrections.approached.replace(now);
     // Two drawings give the slope; before there are two, doubling is worth a try.
     let missing_db = wanted_db - now.1;
     let leads_there = before.is_none_or(|before| {
         let slope = db_per_doubling(before, now);
-        slope >= correction.least_db_per_doubling()
-            && is_within_reach(now.0, missing_db, slope, session.limit, &correction)
+        slope >= LEAST_DB_PER_DOUBLING && is_within_reach(now.0, missing_db, slope, session.limit)
     });
-    let is_far = missing_db >= correction.db_per_doubling;
+    let is_far = missing_db >= DB_PER_DOUBLING;
     if is_far && leads_there && session.cut_by().is_none() {
         resize(session, 2 * now.0)
     } else {
@@ -98,16 +119,10 @@ pub(in crate::fit) fn approach_fidelity(session: &mut Session<'_>) -> Outcome {
 
 /// True if `strokes` strokes, which gain `slope` dB per doubling, gain `missing_db` before there are more than `most`. The next
 /// doublings may gain more than the last one.
-fn is_within_reach(
-    strokes: usize,
-    missing_db: f64,
-    slope: f64,
-    most: usize,
-    correction: &Correction,
-) -> bool {
+fn is_within_reach(strokes: usize, missing_db: f64, slope: f64, most: usize) -> bool {
     // log₂ of the factor that closes the gap, at a slope that may get better by `hope`.
-    let doublings = missing_db / (correction.hope * slope);
-    strokes < correction.few_strokes || strokes as f64 * math::exp2(doublings) <= most as f64
+    let doublings = missing_db / (HOPE * slope);
+    strokes < FEW_STROKES || strokes as f64 * math::exp2(doublings) <= most as f64
 }
 
 /// Adds or removes strokes if the last file misses or exceeds the fidelity asked for.
@@ -116,22 +131,20 @@ pub(in crate::fit) fn meet_fidelity(session: &mut Session<'_>) -> Outcome {
         return Outcome::Over;
     };
     let is_cut = session.cut_by().is_some();
-    let correction = session.recipe.correction;
     let strokes = session.drawing.len();
     let corrections = &mut session.history.corrections;
-    corrections.measure(strokes, wanted_db, &correction);
+    corrections.measure(strokes, wanted_db);
     let missing_db = wanted_db - corrections.last_db;
     // 1. Is the fidelity met, without much more than asked for?
-    let is_met = (0.0..=correction.excess_db).contains(&-missing_db);
+    let is_met = (0.0..=EXCESS_DB).contains(&-missing_db);
     // The limit on bytes has taken away what more strokes would add; or there may not be as many as it takes.
     let is_full = missing_db > 0.0 && corrections.shortened;
     // 2. Has the search used its trials, or its time?
-    let is_last = corrections.count >= correction.count || is_cut;
+    let is_last = corrections.count >= CORRECTIONS || is_cut;
     let slope = corrections.db_per_doubling;
-    let is_full =
-        is_full || !is_within_reach(strokes, missing_db, slope, session.limit, &correction);
+    let is_full = is_full || !is_within_reach(strokes, missing_db, slope, session.limit);
     // 3. Otherwise take the next number from the measured slope, within the bracket of numbers that missed and reached it.
-    let next = corrections.next(strokes, missing_db, &correction);
+    let next = corrections.next(strokes, missing_db);
     corrections.count += 1;
     let outcome = match next {
         Some(next) if !(is_met || is_full || is_last) => resize(session, next),
@@ -154,7 +167,7 @@ fn resize(session: &mut Session<'_>, wanted: usize) -> Outcome {
     }
     // The polish regains this much, so it may go.
     let wanted_db = session.config.budget.psnr_db.unwrap_or(0.0);
-    let least_db = wanted_db - session.recipe.correction.regained_db;
+    let least_db = wanted_db - REGAINED_DB;
     let removed = (strokes - wanted).min(dispensable(&mut session.drawing, least_db));
     if removed == 0 {
         return Outcome::Over;
@@ -166,16 +179,15 @@ fn resize(session: &mut Session<'_>, wanted: usize) -> Outcome {
 
 impl Corrections {
     /// Records that the last file has `strokes` strokes, and the fidelity that these have gained since the file before.
-    fn measure(&mut self, strokes: usize, wanted_db: f64, correction: &Correction) {
+    fn measure(&mut self, strokes: usize, wanted_db: f64) {
         let now = (strokes, self.last_db);
         if let Some(before) = self.before.replace(now) {
             let (missed_db, brought_db) = (wanted_db - before.1, now.1 - before.1);
             // Fewer strokes than before, or a file that reached the fidelity, leave hope.
-            let helps = missed_db <= 0.0 || brought_db >= correction.least_gain * missed_db;
-            self.is_hopeless = strokes > before.0.max(correction.very_few_strokes) && !helps;
-            let usual = correction.db_per_doubling;
+            let helps = missed_db <= 0.0 || brought_db >= LEAST_GAIN * missed_db;
+            self.is_hopeless = strokes > before.0.max(VERY_FEW_STROKES) && !helps;
             let measured = db_per_doubling(before, now);
-            self.db_per_doubling = measured.clamp(correction.least_db_per_doubling(), usual);
+            self.db_per_doubling = measured.clamp(LEAST_DB_PER_DOUBLING, DB_PER_DOUBLING);
         }
         // Narrow the bracket: the most strokes that missed, and the fewest that reached it.
         if self.last_db < wanted_db {
@@ -187,13 +199,13 @@ impl Corrections {
 
     /// The number of strokes to try after `strokes`, whose file misses `missing_db`: at most twice and at least half as many. `None` if
     /// the numbers that missed and reached the fidelity are too close together for another.
-    fn next(&self, strokes: usize, missing_db: f64, correction: &Correction) -> Option<usize> {
+    fn next(&self, strokes: usize, missing_db: f64) -> Option<usize> {
         // A secant step in the logarithm of the number, in which fidelity is about linear.
         let doublings = (missing_db / self.db_per_doubling).clamp(-1.0, 1.0);
         let wanted = (strokes as f64 * math::exp2(doublings)).round() as usize;
         // A file of more strokes may miss what one of fewer reached.
         let [low, high] = [self.missed + 1, self.reached.saturating_sub(1)];
-        let is_narrow = self.reached as f64 <= self.missed as f64 * (1.0 + correction.precision);
+        let is_narrow = self.reached as f64 <= self.missed as f64 * (1.0 + PRECISION);
         (low <= high && !is_narrow && !self.is_hopeless).then(|| wanted.clamp(low, high).max(1))
     }
 }
@@ -242,8 +254,7 @@ pub(super) fn excess(session: &Session<'_>) -> usize {
 
 /// Takes away `excess` bytes of points and strokes, or all strokes.
 pub(super) fn shorten(session: &mut Session<'_>, excess: usize) {
-    let at_a_time = session.recipe.points.at_a_time;
-    points::shed(&mut session.drawing, session.price, at_a_time, excess);
+    points::shed(&mut session.drawing, session.price, excess);
     session.history.stop = Stop::Bytes;
     session.history.corrections.shortened = true;
 }
@@ -265,7 +276,7 @@ pub(in crate::fit) fn meet_bytes(session: &mut Session<'_>) -> Outcome {
     }
     let is_cut = session.cut_by().is_some();
     let corrections = &mut session.history.corrections;
-    let is_filled = bytes as f64 >= session.recipe.correction.filled * most as f64;
+    let is_filled = bytes as f64 >= FILLED * most as f64;
     // Bytes are refilled once at most, since each refill takes another polish.
     let is_last = std::mem::replace(&mut corrections.refilled, true);
     let may_polish = session.config.polish && session.config.allows_points();

@@ -3,6 +3,8 @@
 //! An iteration is one step of the optimiser ([`Descent::step`]). A joint course also switches to full resolution and
 //! relocates strokes between its steps. After every iteration the observer is called, and the state can be kept.
 
+use std::ops::Range;
+
 use crate::error::Result;
 use crate::fit::budget;
 use crate::fit::descent::{Aim, Descent, Joint};
@@ -12,6 +14,8 @@ use crate::fit::run::session::Session;
 
 /// Share of the polish after which nothing is relocated, so that new strokes have time to be fitted. 0.8, 0.95: 0.00 dB.
 const UNTIL: f32 = 0.9;
+/// Share of the polish in which points come and go.
+const POINTS: Range<f32> = 0.1..0.85;
 /// Share of the polish before which nothing is relocated if the drawing has areas. A guess.
 const AFTER_AREAS: f32 = 0.5;
 
@@ -34,7 +38,7 @@ pub(in crate::fit) fn descend(
         let goes_on = match aim {
             None => session.advance(descent.left(), descent.gradients.loss),
             Some(Aim { mse, .. }) => {
-                session.progress.tell(&session.drawing, mse) && session.timer.allows_step()
+                session.progress.tell(&session.drawing, mse) && session.timer.allows_file_after(1)
             }
         };
         session.keep(Some(descent));
@@ -71,7 +75,7 @@ fn rearrange(session: &mut Session<'_>, descent: &mut Descent, step: usize, done
     if step == 0 || !step.is_multiple_of(relocation.every) || done >= UNTIL {
         return;
     }
-    let changes_points = session.recipe.points.lasts(done) && session.config.allows_points();
+    let changes_points = POINTS.contains(&done) && session.config.allows_points();
     if changes_points {
         let sources = points::rearrange(session, done);
         descent.follow(&sources, &session.drawing);

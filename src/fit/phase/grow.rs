@@ -64,7 +64,7 @@ pub(super) fn enough(session: &Session<'_>) -> Option<Stop> {
         gains && stage.accepted.is_none_or(is_worth)
     });
     // A base has been polished before, and gains less from another polish than new stages do.
-    let gains = session.config.polish && session.base.is_none();
+    let gains = session.config.polish && session.task.base.is_none();
     let later_db = if gains { POLISH_GAIN_DB } else { 0.0 };
     let wanted_db = session.config.budget.psnr_db;
     if !pays {

@@ -101,7 +101,7 @@ fn share_within_bytes(session: &mut Session<'_>) -> Ties {
     let before = session.writer.bytes(&session.drawing).max(1);
     loop {
         let unshared = session.drawing.memento();
-        let ties = shared_widths::run(&mut session.drawing, session.config, &session.recipe);
+        let ties = shared_widths::run(&mut session.drawing, session.config);
         let excess = count::excess(session);
         if !session.history.corrections.shortened {
             let bytes = session.writer.bytes(&session.drawing);

@@ -15,9 +15,10 @@ use crate::fit::drawing::{Drawing, Memento};
 use crate::fit::file::RenderedFile;
 use crate::fit::order::Outcome;
 use crate::fit::phase::descend::descend;
-use crate::fit::recipe::{Rates, SETTLING_STEPS};
+use crate::fit::recipe::Rates;
 use crate::fit::result::Stop;
 use crate::fit::run::session::Session;
+use crate::fit::time::{MIN_ROUND, SETTLING_STEPS};
 use crate::image::Image;
 use crate::metrics::psnr_db;
 use crate::render::Canvas;
@@ -45,7 +46,7 @@ pub(in crate::fit) fn settle(session: &mut Session<'_>) -> Result<Outcome> {
     if budget::needs_file(&session.config.budget, &session.recipe) {
         // Errors count as the user's mask says, but not less where detail hides them: resvg differs most at the
         // outlines of strokes, which are detail.
-        session.drawing.focus_on(session.focus.as_ref());
+        session.drawing.focus_on(session.task.focus.as_ref());
         run(session)?;
         session.drawing.focus_on(session.weights.as_ref());
     }
@@ -143,7 +144,7 @@ fn allows_round(session: &Session<'_>, done: usize) -> bool {
     let planned = session.recipe.settling_rounds;
     let is_cut = session.is_leaving() || session.cut_by() == Some(Stop::Time);
     let is_wanted = done < planned || (planned > 0 && is_cut);
-    is_wanted && session.timer.allows_round()
+    is_wanted && session.timer.allows_file_after(MIN_ROUND)
 }
 
 /// The course of a round; `pace` is a factor on the rates of the geometry.

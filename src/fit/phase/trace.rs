@@ -79,7 +79,7 @@ pub(super) fn paying(
     let surfaces = &session.drawing.surfaces;
     // A gradient has many colours, and on a transparent page many opacities.
     let tracing = Tracing {
-        doubt: session.recipe.doubt,
+        doubt: session.task.doubt,
         has_shades: config.colors == Colors::Free && !(config.opaque && surfaces.len() > 1),
         is_of_details,
     };

@@ -11,6 +11,10 @@ use crate::fit::drawing::{Drawing, Memento};
 use crate::fit::result::{StageRecord, Stop};
 use crate::metrics::psnr_db;
 
+/// Fidelity gained by doubling the strokes, dB, until it is measured on two drawings. Kodak ×5 gain 2.2 per doubling from 1,024 to
+/// 2,900 strokes.
+pub(in crate::fit) const DB_PER_DOUBLING: f64 = 2.8;
+
 /// The history of a fit, apart from the drawing.
 #[derive(Debug, Serialize, Deserialize)]
 pub(in crate::fit) struct History {
@@ -74,7 +78,7 @@ pub(in crate::fit) struct Corrections {
 impl History {
     /// The history of a new fit, with the `records` of its base's layers, that ends for `stop` unless something else
     /// ends it first.
-    pub(in crate::fit) fn new(records: Vec<StageRecord>, db_per_doubling: f64, stop: Stop) -> Self {
+    pub(in crate::fit) fn new(records: Vec<StageRecord>, stop: Stop) -> Self {
         Self {
             records,
             traced: [0; 2],
@@ -90,7 +94,7 @@ impl History {
                 is_hopeless: false,
                 last_db: 0.0,
                 shortened: false,
-                db_per_doubling,
+                db_per_doubling: DB_PER_DOUBLING,
                 restricted: 1.0,
                 refilled: false,
             },

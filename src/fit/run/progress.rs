@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
@@ -89,6 +90,13 @@ impl CancelToken {
     pub fn is_cancelled(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
+}
+
+/// The observer and the token of a fit, and how long the fit may go on once it is stopped.
+pub(in crate::fit) struct Watch<'a> {
+    pub(in crate::fit) observer: &'a mut (dyn Observer + Send),
+    pub(in crate::fit) token: CancelToken,
+    pub(in crate::fit) grace: Duration,
 }
 
 /// Position of a fit on its way.

@@ -24,9 +24,9 @@ use crate::fit::recipe::{Rates, Recipe};
 use crate::fit::result::Stop;
 use crate::fit::run::checkpoint::{self, Checkpoint};
 use crate::fit::run::history::{self, History};
-use crate::fit::run::progress::{CancelToken, Observer, Position, Tracker};
-use crate::fit::time::Forecast;
-use crate::fit::time::Timer;
+use crate::fit::run::progress::{Position, Tracker, Watch};
+use crate::fit::task::Task;
+use crate::fit::time::{Forecast, Timer};
 use crate::image::Image;
 use crate::metrics::psnr_db;
 use crate::scene::Area;
@@ -35,15 +35,16 @@ use crate::svg::Form;
 /// Weight of errors near lost details. 5, 8, 16: a label of a map correlates by 0.957, 0.970, 0.980 with the picture; borders of 1 px
 /// take 8.8, 10.9, 13.2 kB, 75, 82, 84 % of them kept (1, 49 % in 5.6 kB).
 const LOST_WEIGHT: f32 = 8.0;
+/// Layers are joined that would take more than this share of the bytes. A guess.
+const LAYERS_SHARE: f64 = 0.03;
 /// Iterations of the polish that follows the recovery of details, in units of the first polish's. A guess.
 pub(in crate::fit) const RECOVERY_SHARE: f64 = 0.2;
 
 /// A fit under way: first the fields that are fixed, then those that change.
 pub(in crate::fit) struct Session<'a> {
     pub(in crate::fit) config: &'a Config,
+    pub(in crate::fit) task: &'a Task,
     pub(in crate::fit) recipe: Recipe,
-    pub(in crate::fit) base: Option<&'a Base>,
-    pub(in crate::fit) focus: Option<Focus>,
     /// Weight of an error at each pixel while strokes are fitted: as `focus` says, and as it is seen.
     pub(in crate::fit) weights: Option<Focus>,
     /// The radii of the pens, px, the thinnest first; none if strokes may have any.
@@ -76,21 +77,6 @@ pub(in crate::fit) struct Session<'a> {
     keeper: Option<Keeper<'a>>,
 }
 
-/// Task of a fit: the configuration, the base, where errors count, and the size of the picture, px, if a reduced one is drawn.
-pub(in crate::fit) type Task<'a> = (
-    &'a Config,
-    Option<&'a Base>,
-    Option<Focus>,
-    Option<[u32; 2]>,
-);
-
-/// The observer and the token of a fit, and how long the fit may go on once it is stopped.
-pub(in crate::fit) struct Watch<'a> {
-    pub(in crate::fit) observer: &'a mut (dyn Observer + Send),
-    pub(in crate::fit) token: CancelToken,
-    pub(in crate::fit) grace: Duration,
-}
-
 /// The checkpoint that the state is written to.
 struct Keeper<'a> {
     checkpoint: &'a mut Checkpoint,
@@ -106,17 +92,18 @@ type State = (Phase, History, Memento, Position, Duration, Option<Descent>);
 impl<'a> Session<'a> {
     pub(in crate::fit) fn new(
         picture: &Image,
-        (config, base, focus, page): Task<'a>,
+        task: &'a Task,
         level: Level,
         watch: Watch<'a>,
         started: Instant,
     ) -> Result<Self> {
+        let (config, base, page) = (&task.config, task.base.as_ref(), task.page);
         // Limit on strokes, their stages and their widths.
         let pixels = picture.width() * picture.height();
         let recipe = budget::recipe(config, base, picture);
         let limit = budget::strokes(config, base, picture);
         let before = Before::of(base);
-        let plan = Plan::new(config, &recipe, limit, before, pixels);
+        let plan = Plan::new(config, limit, before, pixels);
         let page_width = Base::page_width(base, &config.file);
         let pens = config.pens.as_ref();
         let radii = pens.map_or(Ok(Vec::new()), |pens| pens.radii(page_width, picture))?;
@@ -130,11 +117,11 @@ impl<'a> Session<'a> {
             ground,
         } = Prepared::new(
             picture,
-            choose_background(picture, config, base, recipe.doubt),
+            choose_background(picture, config, base, task.doubt),
             base,
             coarsest,
         )?;
-        let weights = weights(config, &target, focus.as_ref());
+        let weights = weights(config, &target, task.focus.as_ref());
         let focus_on = |surface: &mut Surface| surface.focus_on(weights.as_ref());
         surfaces.iter_mut().for_each(focus_on);
         // The drawing, with the strokes of the base.
@@ -154,25 +141,26 @@ impl<'a> Session<'a> {
         // Limit on time, and amount of work.
         let limit_s = config.budget.time;
         let forecast = limit_s.map(|limit| forecast(limit, config, &recipe, &drawing));
-        let planned = (plan.strokes() * recipe.iterations(config.polish)) as f64;
+        // Iterations that a stroke takes part in: those of its stage, and those of the polish.
+        let polish = if config.polish {
+            recipe.polish.iterations
+        } else {
+            0
+        };
+        let planned = (plan.strokes() * (recipe.stages.iterations + polish)) as f64;
         Ok(Self {
             config,
+            task,
             recipe,
-            base,
-            focus,
             weights,
             radii,
             target,
             annealing,
             limit: budget::max_strokes(config, limit, base, pixels),
-            price: Price::of(config, recipe.doubt, pixels),
+            price: Price::of(config, task.doubt, pixels),
             writer: Writer::of(config, base, page),
             drawing,
-            history: History::new(
-                records,
-                recipe.correction.db_per_doubling,
-                budget::planned_stop(&config.budget),
-            ),
+            history: History::new(records, budget::planned_stop(&config.budget)),
             best: None,
             file: None,
             progress: Tracker::new(
@@ -193,7 +181,7 @@ impl<'a> Session<'a> {
 
     /// True if lost details are traced again. A base has been through that.
     pub(in crate::fit) fn recovers(&self) -> bool {
-        self.base.is_none() && self.config.recovers()
+        self.task.base.is_none() && self.config.recovers()
     }
 
     /// Lets errors near lost details count more, for all that follows.
@@ -218,14 +206,14 @@ impl<'a> Session<'a> {
     /// Plans the stages for the strokes that are missing.
     pub(in crate::fit) fn plan_rest(&mut self) {
         let [layers, strokes] = self.history.traced;
-        let before = Before::of(self.base);
+        let before = Before::of(self.task.base.as_ref());
         let before = Before {
             layers: before.layers + layers,
             strokes: before.strokes + strokes,
         };
-        let limit = budget::strokes(self.config, self.base, &self.target);
+        let limit = budget::strokes(self.config, self.task.base.as_ref(), &self.target);
         let pixels = self.drawing.pixels();
-        self.plan = Plan::new(self.config, &self.recipe, limit, before, pixels);
+        self.plan = Plan::new(self.config, limit, before, pixels);
     }
 
     /// The descent in which the fit was cut off, or else a new one that follows `course`.
@@ -318,7 +306,7 @@ impl<'a> Session<'a> {
 
     /// True if the strokes come to share pens of which there are few. A drawing of lines has few pens anyway.
     pub(in crate::fit) fn hands_out_pens(&self) -> bool {
-        self.config.file.form == Form::Smallest && !self.drawing.is_of_lines(&self.recipe)
+        self.config.file.form == Form::Smallest && !self.drawing.is_of_lines()
     }
 
     /// Bytes of the drawing as a file; about, if its strokes will come to share pens, which makes them shorter.
@@ -329,7 +317,11 @@ impl<'a> Session<'a> {
         let strokes = self.drawing.free().iter();
         let strokes: usize = strokes.map(|stroke| self.price.bytes_of(stroke)).sum();
         let layers = self.drawing.stage_sizes().len();
-        let empty = self.base.map_or(budget::FILE_BYTES, Base::bytes);
+        let empty = self
+            .task
+            .base
+            .as_ref()
+            .map_or(budget::FILE_BYTES, Base::bytes);
         empty + layers * budget::LAYER_BYTES + strokes
     }
 
@@ -343,11 +335,11 @@ impl<'a> Session<'a> {
         else {
             return 0;
         };
-        let kept = Before::of(self.base).layers.max(1);
+        let kept = Before::of(self.task.base.as_ref()).layers.max(1);
         let more = self.drawing.stage_sizes().len().saturating_sub(kept);
         // Layers show how the drawing came about. They stay as long as they take a small part of the bytes.
         let bytes = (more * budget::LAYER_BYTES) as f64;
-        if bytes > self.recipe.correction.layers_share * most as f64 {
+        if bytes > LAYERS_SHARE * most as f64 {
             more
         } else {
             0
@@ -371,14 +363,18 @@ impl<'a> Session<'a> {
         if self.is_leaving() {
             return Some(Stop::Interrupted);
         }
-        let hurried = self.timer.is_hurried().then_some(Stop::Time);
+        let hurried = self.timer.is_hurried.then_some(Stop::Time);
         self.progress.stopped().or(hurried)
     }
 
     /// Goes on from the state in `checkpoint`, if it holds one, and keeps the state there from now on.
     pub(in crate::fit) fn resume(&mut self, checkpoint: &'a mut Checkpoint) -> Result<()> {
-        let fingerprint =
-            checkpoint::fingerprint(&self.target, self.config, self.base, self.focus.as_ref());
+        let fingerprint = checkpoint::fingerprint(
+            &self.target,
+            self.config,
+            self.task.base.as_ref(),
+            self.task.focus.as_ref(),
+        );
         match checkpoint.load::<State>(fingerprint)? {
             Some((phase, history, drawing, position, elapsed, descent)) => {
                 // The best file isn't in the checkpoint: it is rendered again from its drawing.
@@ -490,7 +486,8 @@ fn weights(config: &Config, target: &Image, focus: Option<&Focus>) -> Option<Foc
 fn forecast(limit: Duration, config: &Config, recipe: &Recipe, drawing: &Drawing) -> Forecast {
     let is_transparent = drawing.surfaces.len() > 1;
     let needs_file = budget::needs_file(&config.budget, recipe);
-    Forecast::new(limit, drawing.pixels(), is_transparent, needs_file, recipe)
+    let rounds = recipe.settling_rounds;
+    Forecast::new(limit, drawing.pixels(), is_transparent, needs_file, rounds)
 }
 
 /// The scale of the first stage, px, which sets the resolution that the drawing begins at; 0 for full resolution.

@@ -4,9 +4,7 @@ use super::pictures::{Sound, sound};
 use super::{Check, Extent, Observation};
 use crate::lab::article::{Capsules, Reproduction};
 use strokefit::Result;
-use strokefit::fit::{
-    Budget, Config, Execution, Fit, Fitter, Polish, Preset, Rates, Recipe, Stages,
-};
+use strokefit::fit::{Budget, Config, Execution, Fit, Fitter, Preset, Rates, Recipe};
 use strokefit::image::Image;
 use strokefit::math;
 use strokefit::metrics;
@@ -92,7 +90,7 @@ fn fitted(recipe: Recipe) -> Result<(Fit, Sound)> {
 /// Sensible rates, or tiny ones, have to make a useful drawing; others a valid one. Rates that are no
 /// numbers poison every stroke: all have to be dropped and counted.
 fn with_rates(factor: f32) -> Result<Observation> {
-    let recipe = Recipe::of(Preset::Draft);
+    let mut recipe = Recipe::of(Preset::Draft);
     let times = |rates: Rates| Rates {
         position: rates.position * factor,
         radius: rates.radius * factor,
@@ -100,17 +98,9 @@ fn with_rates(factor: f32) -> Result<Observation> {
         opacity: rates.opacity * factor,
         ..rates
     };
-    let (fit, sound) = fitted(Recipe {
-        stages: Stages {
-            rates: times(recipe.stages.rates),
-            ..recipe.stages
-        },
-        polish: Polish {
-            rates: times(recipe.polish.rates),
-            ..recipe.polish
-        },
-        ..recipe
-    })?;
+    recipe.stages.rates = times(recipe.stages.rates);
+    recipe.polish.rates = times(recipe.polish.rates);
+    let (fit, sound) = fitted(recipe)?;
     let sensible = factor <= 1.0;
     let useful = sound.holds() || !sensible;
     let counted = !factor.is_nan() || fit.dropped.total() > 0 && fit.scene.is_empty();

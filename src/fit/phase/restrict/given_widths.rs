@@ -5,6 +5,7 @@
 //! widths stay as they are. The drawing after it is compared with the best one so far.
 
 use super::rounds;
+use super::shared_styles::ROUNDS;
 use super::width_grid::WidthGrid;
 use crate::error::Result;
 use crate::fit::config::Colors;
@@ -20,13 +21,12 @@ pub(super) fn run(session: &mut Session<'_>) -> Result<()> {
         Colors::Free => session.recipe.polish.rates,
         _ => session.recipe.polish.rates.without_color(),
     };
-    let rounds = session.recipe.pens.rounds;
     hand_out(&mut session.drawing, &session.radii);
-    rounds::best(session, rounds, |session, round| {
+    rounds::best(session, ROUNDS, |session, round| {
         // Only the drawing after a round with held widths is fitted to them, so only it may be the best.
         let is_held = round % 2 == 1;
         let rates = if is_held { free.without_radius() } else { free };
-        rounds::run(session, rounds, round, rates)?;
+        rounds::run(session, ROUNDS, round, rates)?;
         hand_out(&mut session.drawing, &session.radii);
         Ok(is_held)
     })?;

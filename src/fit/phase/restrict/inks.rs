@@ -8,13 +8,26 @@ use super::proposals::{Each, adopt, traced};
 use crate::fit::config::Colors;
 use crate::fit::descent::ties::Ties;
 use crate::fit::drawing::Drawing;
-use crate::fit::recipe::Inks;
 use crate::fit::run::session::Session;
 use crate::image::Image;
 use crate::math::{Point, median};
 use crate::render::STYLE;
 use crate::scene::{Cap, Rgb, Stroke};
 use crate::trace;
+
+// All of these are guesses.
+/// Lines of a larger radius, px, have the colours that they were fitted.
+const THIN: f32 = 2.0;
+/// Lines of a smaller one, px, cover no pixel as a whole.
+const LEAST_RADIUS: f32 = 0.85;
+/// Distance from the border of a line to the page beside it, px.
+const BESIDE: f64 = 2.0;
+/// Largest difference of the channels of colours that are one.
+const ALIKE: f32 = 0.06;
+/// The share of the page beside a line that has to be one colour.
+const LEAST_EVEN: f32 = 0.7;
+/// A colour of a larger share of a line's contrast is near enough.
+const LEAST_CHANGE: f32 = 0.95;
 
 /// Gives thin traced lines on one colour the colours of the picture, with as much ink as before, and returns those. All
 /// strokes must be free.
@@ -24,13 +37,12 @@ pub(super) fn run(session: &mut Session<'_>) -> Vec<Rgb> {
     if !is_free || session.drawing.surfaces.len() > 1 || session.drawing.formed() == 0 {
         return Vec::new();
     }
-    let inks = session.recipe.inks;
     let surface = session.drawing.surface();
     let picture = surface.picture();
     let halves = trace::halves(surface.residual_of(&surface.full_backdrop()));
     let inked = |stroke: &Stroke| {
         let drawn = halves.as_ref().and_then(|halves| halves.drawn(stroke));
-        drawn.or_else(|| inked(stroke, picture, inks))
+        drawn.or_else(|| inked(stroke, picture))
     };
     let mut colors = Vec::new();
     let proposed = traced(&session.drawing, |_, mark| {
@@ -38,7 +50,7 @@ pub(super) fn run(session: &mut Session<'_>) -> Vec<Rgb> {
         colors.push(stroke.color);
         Some(vec![stroke.into()])
     });
-    adopt(session, session.recipe.forms, proposed, Each::MayLose);
+    adopt(session, proposed, Each::MayLose);
     colors
 }
 
@@ -56,22 +68,22 @@ pub(super) fn ties(drawing: &Drawing, inks: &[Rgb]) -> Ties {
 }
 
 /// The opaque stroke of as much ink in the colour that the picture has along its middle.
-fn inked(stroke: &Stroke, picture: &Image, inks: Inks) -> Option<Stroke> {
-    if stroke.cap == Cap::Butt || stroke.radius as f32 > inks.thin {
+fn inked(stroke: &Stroke, picture: &Image) -> Option<Stroke> {
+    if stroke.cap == Cap::Butt || stroke.radius as f32 > THIN {
         return None;
     }
-    let (middle, sides) = seen_along(stroke, picture, inks.beside);
+    let (middle, sides) = seen_along(stroke, picture);
     // The page beside the line has to be of one colour; otherwise the coverage of a pixel can't be measured.
     let page: Rgb = channels(|k| median(sides.iter().map(|side| side[k])))?;
-    let is_page = |side: &&Rgb| (0..3).all(|k| (side[k] - page[k]).abs() < inks.alike);
-    if (sides.iter().filter(is_page).count() as f32) < inks.least_even * sides.len() as f32 {
+    let is_page = |side: &&Rgb| (0..3).all(|k| (side[k] - page[k]).abs() < ALIKE);
+    if (sides.iter().filter(is_page).count() as f32) < LEAST_EVEN * sides.len() as f32 {
         return None;
     }
     // Coverage of a place: the projection of (seen − page) onto (colour − page), in units of the latter.
     let contrast = [0, 1, 2].map(|k| stroke.color[k] - page[k]);
     let contrast2: f32 = contrast.iter().map(|c| c * c).sum();
     // A line of the page's colour has no coverage to measure.
-    if contrast2 < inks.alike * inks.alike {
+    if contrast2 < ALIKE * ALIKE {
         return None;
     }
     let covered = |seen: &Rgb| {
@@ -86,14 +98,14 @@ fn inked(stroke: &Stroke, picture: &Image, inks: Inks) -> Option<Stroke> {
     let most = || middle.iter().filter(|seen| covered(seen) >= most);
     let color: Rgb = channels(|k| median(most().map(|seen| seen[k])))?;
     let share = covered(&color);
-    if share <= 0.0 || share >= inks.least_change {
+    if share <= 0.0 || share >= LEAST_CHANGE {
         return None;
     }
     // As much ink as before: width · opacity · contrast is kept, and the contrast becomes `share` times what it was.
     let radius = stroke.radius as f32 * stroke.opacity / share;
     // A narrower line covers no pixel as a whole, and one of 1 px between two rows covers half of both.
     let is_halved = (share - 0.5).abs() < 0.04 && (radius - 1.0).abs() < 0.08;
-    let is_told = radius >= inks.least_radius && radius <= inks.thin && !is_halved;
+    let is_told = (LEAST_RADIUS..=THIN).contains(&radius) && !is_halved;
     is_told.then(|| Stroke {
         radius: radius.into(),
         color,
@@ -102,8 +114,8 @@ fn inked(stroke: &Stroke, picture: &Image, inks: Inks) -> Option<Stroke> {
     })
 }
 
-/// The colours of a picture along the middle of a stroke, and `beside` px beside it on both sides.
-fn seen_along(stroke: &Stroke, picture: &Image, beside: f32) -> (Vec<Rgb>, Vec<Rgb>) {
+/// The colours of a picture along the middle of a stroke, and beside it on both sides.
+fn seen_along(stroke: &Stroke, picture: &Image) -> (Vec<Rgb>, Vec<Rgb>) {
     let (width, height) = (picture.width(), picture.height());
     let at = |p: Point| {
         let Point { x, y } = p.floor();
@@ -118,7 +130,7 @@ fn seen_along(stroke: &Stroke, picture: &Image, beside: f32) -> (Vec<Rgb>, Vec<R
         let along = pair[1] - pair[0];
         let length = along.hypot();
         // Sample about once per px of length, at the middles of equal steps.
-        let away = (stroke.radius + f64::from(beside)) / length.max(f64::MIN_POSITIVE);
+        let away = (stroke.radius + BESIDE) / length.max(f64::MIN_POSITIVE);
         for step in 0..length.ceil() as usize {
             let p = pair[0] + along * ((step as f64 + 0.5) / length.ceil());
             middle.extend(at(p));
@@ -137,7 +149,6 @@ fn channels(channel: impl Fn(usize) -> Option<f32>) -> Option<Rgb> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::{Preset, Recipe};
     use crate::scene::{Path, PathPoint};
 
     /// A picture of 32×16 px with these levels from row 8 on, on white.
@@ -164,7 +175,7 @@ mod tests {
             color: [level; 3],
             opacity: 1.0,
         };
-        inked(&stroke, picture, Recipe::of(Preset::Balanced).inks)
+        inked(&stroke, picture)
     }
 
     #[test]

@@ -14,6 +14,10 @@ use crate::math;
 use crate::render::StrokeRef;
 use crate::scene::Rgb;
 
+/// Squared contrast at the edge of a typical stroke, summed over the channels: the cost of 1 px of wrong radius for each px of edge.
+/// Half, twice: +0.02, −0.04 dB and −0.7, −0.4 % of the bytes.
+pub(super) const CONTRAST: f32 = 0.02;
+
 /// Strokes that share a colour and a width.
 #[derive(Debug, Clone)]
 pub(super) struct Group {

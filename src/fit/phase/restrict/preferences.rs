@@ -4,6 +4,12 @@ use crate::fit::drawing::Drawing;
 use crate::render::{CanvasLoss, Gradients, Lanes, STYLE, TileRgb};
 use crate::scene::Rgb;
 
+/// Share of its Newton step that a colour takes. It is below 1 because the strokes under and over it move as well. Half, twice:
+/// −0.03, −0.05 dB.
+pub(super) const DAMPING: f32 = 0.7;
+/// A stroke keeps its colour if it shows in fewer pixels than this. Half, twice: 0.00 dB.
+const MIN_SHOWN: f32 = 1e-3;
+
 /// The colour of a stroke, or of the background, that minimises the squared error if all others stay as they are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct PreferredColor {
@@ -25,13 +31,8 @@ impl CanvasLoss for Shown {
 }
 
 /// The preferences of the strokes of `drawing`, followed by the background's if there is one, each after a share
-/// `damping` of its Newton step. A stroke that shows in fewer than `min_shown` px keeps its colour. All strokes must be
-/// free.
-pub(super) fn preferences(
-    drawing: &mut Drawing,
-    damping: f32,
-    min_shown: f32,
-) -> Vec<PreferredColor> {
+/// `damping` of its Newton step. All strokes must be free.
+pub(super) fn preferences(drawing: &mut Drawing, damping: f32) -> Vec<PreferredColor> {
     let slopes = drawing.judge();
     // The part of a stroke that shows does not depend on the matte.
     let mut shown = Gradients::default();
@@ -41,7 +42,7 @@ pub(super) fn preferences(
     let preference = |color: Rgb, slope: Rgb, weight: f32| {
         // In the colour c the squared error is w·|c − c*|² and a constant, w the sum of squared shares. Its slope is 2w(c − c*),
         // so Newton's step is slope / 2w. The loss is a mean; its slope times `values` is the slope of the sum.
-        let step = if weight > min_shown {
+        let step = if weight > MIN_SHOWN {
             damping * values / (2.0 * weight)
         } else {
             0.0

@@ -6,7 +6,7 @@ use crate::fit::descent::held::Held;
 use crate::fit::descent::{Course, Descent, TRACED_PACE};
 use crate::fit::drawing::Drawing;
 use crate::fit::edits::{Change, Edit, apply_priced};
-use crate::fit::recipe::{Forms, Rates};
+use crate::fit::recipe::Rates;
 use crate::fit::run::session::Session;
 use crate::render::StrokeRef;
 use crate::scene::{Cap, Mark};
@@ -36,16 +36,18 @@ pub(super) enum Each {
     Gains,
 }
 
+/// Iterations in which what is proposed is fitted. After 30, centres and radii of circles are within 0.005 px.
+const ITERATIONS: usize = 20;
+/// Step sizes of the points of areas and of traced strokes of the usual radius, and of radii, px. With ten times as much, circles stay
+/// 0.1 px beside their places, and are refused.
+const RATE: f32 = 0.03;
+/// Bytes that a form is worth to an editor, besides those that it saves. A guess.
+const WORTH_BYTES: isize = 30;
 /// Most proposals that do not seem to pay and are tried one by one. A guess.
 const MOST_SINGLES: usize = 24;
 
 /// Fits the proposals, and makes those that pay. Returns whether any does.
-pub(super) fn adopt(
-    session: &mut Session<'_>,
-    forms: Forms,
-    mut edits: Vec<Edit>,
-    each: Each,
-) -> bool {
+pub(super) fn adopt(session: &mut Session<'_>, mut edits: Vec<Edit>, each: Each) -> bool {
     if edits.is_empty() {
         return false;
     }
@@ -55,7 +57,7 @@ pub(super) fn adopt(
     let price = session.price.in_drawing(&mut session.drawing);
     session.drawing.apply(&edits);
     let spans = spans(&edits);
-    fit(session, forms, &spans);
+    fit(session, &spans);
     // 2. The marks as fitted, and the worth of each.
     let worth = session.drawing.judge().worth;
     for (edit, span) in edits.iter_mut().zip(spans) {
@@ -65,7 +67,7 @@ pub(super) fn adopt(
             .collect();
         // 3. Price and gain of each: bytes saved against error added.
         let (i, _) = edit.changes[0];
-        let bytes = bytes(&home.0.get(i).to_mark(), &fitted, forms, session);
+        let bytes = bytes(&home.0.get(i).to_mark(), &fitted, session);
         edit.price =
             price.of_saved(bytes.max(0) as usize) - price.of_saved((-bytes).max(0) as usize);
         edit.gain = match each {
@@ -90,19 +92,18 @@ pub(super) fn adopt(
 }
 
 /// Bytes that `new` marks save in the place of `old`, and those that the form is worth to an editor.
-fn bytes(old: &Mark, new: &[Mark], forms: Forms, session: &Session<'_>) -> isize {
+fn bytes(old: &Mark, new: &[Mark], session: &Session<'_>) -> isize {
     let of = |mark: &Mark| mark_bytes(mark, &session.config.file) as isize;
-    let worth = forms.worth_bytes as isize;
     let bands = new.iter().filter(|mark| mark.is_butt()).count() as isize;
     let saved = of(old) - new.iter().map(of).sum::<isize>();
     match old {
         // A stroke with square ends is no better to an editor than one with round ends.
         Mark::Stroke(old) if bands > 0 && old.cap == Cap::Round => saved,
-        Mark::Stroke(_) if bands == 0 => saved + worth,
+        Mark::Stroke(_) if bands == 0 => saved + WORTH_BYTES,
         // Of areas, the attributes of the ends and elements of their own are no loss, and buy no error either.
         _ => {
-            let saved = saved + worth;
-            saved.max((saved + bands * (worth + ENDS_BYTES)).min(0))
+            let saved = saved + WORTH_BYTES;
+            saved.max((saved + bands * (WORTH_BYTES + ENDS_BYTES)).min(0))
         }
     }
 }
@@ -123,18 +124,17 @@ fn spans(edits: &[Edit]) -> Vec<Range<usize>> {
 }
 
 /// Descends with the marks of these indices alone.
-fn fit(session: &mut Session<'_>, forms: Forms, moving: &[Range<usize>]) {
-    let iterations = forms.iterations;
+fn fit(session: &mut Session<'_>, moving: &[Range<usize>]) {
     let restricted = session.restricted_rates().without_color();
     let course = Course {
-        iterations,
+        iterations: ITERATIONS,
         before: 0,
-        of: iterations,
+        of: ITERATIONS,
         rates: Rates {
             // A traced stroke moves as far as an area does.
-            position: forms.rate / TRACED_PACE,
-            radius: forms.rate.min(restricted.radius),
-            area: forms.rate,
+            position: RATE / TRACED_PACE,
+            radius: RATE.min(restricted.radius),
+            area: RATE,
             opacity: 0.0,
             ..restricted
         },
@@ -155,8 +155,8 @@ fn fit(session: &mut Session<'_>, forms: Forms, moving: &[Range<usize>]) {
         let places = drawing.free().range(i);
         places.for_each(|place| descent.ties.fix(place));
     }
-    for step in 0..iterations {
-        let done = step as f32 / iterations as f32;
+    for step in 0..ITERATIONS {
+        let done = step as f32 / ITERATIONS as f32;
         descent.step(drawing, &session.annealing, (step, done), None);
     }
 }

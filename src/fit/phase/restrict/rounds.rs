@@ -3,8 +3,19 @@
 use crate::error::Result;
 use crate::fit::descent::Course;
 use crate::fit::phase::descend::descend;
-use crate::fit::recipe::{Rates, Rounds};
+use crate::fit::recipe::Rates;
 use crate::fit::run::session::Session;
+
+/// Rounds of descent, between which colours or pens are chosen again. One schedule of rates spans all of them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rounds {
+    /// Number of rounds.
+    pub(super) count: usize,
+    /// Iterations of all rounds together, in units of those of the polish.
+    pub(super) iterations: f64,
+    /// Step sizes, in units of those of the polish.
+    pub(super) rate: f32,
+}
 
 /// Runs round `index`, from 0, with the final edge. A time limit may shorten it: what is left is divided equally among
 /// the remaining rounds.

@@ -6,26 +6,35 @@
 
 use std::ops::Range;
 
-use super::merge::{Group, Rule, merge, outline};
+use super::merge::{CONTRAST, Group, Rule, merge, outline};
 use super::preferences::preferences;
 use super::width_grid::WidthGrid;
 use crate::fit::config::{Colors, Config};
 use crate::fit::descent::ties::Ties;
 use crate::fit::drawing::Drawing;
 use crate::fit::edits::{Change, Edit, TRIALS, apply_priced};
-use crate::fit::recipe::Recipe;
 use crate::math;
 use crate::render::{STYLE, StrokeMut, Strokes};
 use crate::scene::quantum;
 
+/// Growth of the squared error that is allowed to each of three steps (opaque strokes, few widths, few colours), in units of that of
+/// the drawing, before the drawing is settled. A guess, as are the other numbers.
+const ERROR: f64 = 0.1;
+/// The least opacity of a stroke that may become opaque. Less is meant to let through what is behind.
+const NEARLY_OPAQUE: f32 = 0.8;
+/// Share of a stroke that lies on other strokes rather than on the page.
+const OFF_PAGE: f32 = 0.1;
+/// A stroke of a smaller radius, px, covers few pixels in full, so that width and opacity look alike.
+const THIN: f32 = 1.0;
+
 /// Proposes edits that add at most this squared error, estimated in advance.
-type Step = fn(&mut Drawing, &Recipe, f32) -> Vec<Edit>;
+type Step = fn(&mut Drawing, f32) -> Vec<Edit>;
 
 /// Makes strokes of a drawing that was traced opaque, and share widths and colours unless these are given. Returns
 /// the ties that keep them so. All strokes must be free.
-pub(super) fn run(drawing: &mut Drawing, config: &Config, recipe: &Recipe) -> Ties {
+pub(super) fn run(drawing: &mut Drawing, config: &Config) -> Ties {
     let mut ties = Ties::default();
-    if !drawing.is_of_lines(recipe) {
+    if !drawing.is_of_lines() {
         return ties;
     }
     let (any_color, any_width) = (config.colors == Colors::Free, config.pens.is_none());
@@ -38,8 +47,8 @@ pub(super) fn run(drawing: &mut Drawing, config: &Config, recipe: &Recipe) -> Ti
     for (step, numbers, _) in steps.into_iter().filter(|(_, _, is_allowed)| *is_allowed) {
         // Measured anew before each step, since every step adds some of its own.
         let values = (3 * drawing.pixels()) as f64;
-        let allowance = (recipe.sharing.error * drawing.mse() * values) as f32;
-        let mut edits = step(drawing, recipe, allowance);
+        let allowance = (ERROR * drawing.mse() * values) as f32;
+        let mut edits = step(drawing, allowance);
         // Divided equally among the edits; a trial of several compares what they add with the sum of their parts.
         let each = allowance / edits.len() as f32;
         edits.iter_mut().for_each(|edit| edit.price = each);
@@ -72,16 +81,15 @@ fn restyled(strokes: &Strokes, members: &[usize], style: impl Fn(StrokeMut<'_>))
 
 /// Makes nearly opaque strokes opaque. A thin one gets thinner by as much, so that it has as much ink; a wider one gets
 /// the colour that it has on the page.
-fn opaque(drawing: &mut Drawing, recipe: &Recipe, allowance: f32) -> Vec<Edit> {
-    let sharing = recipe.sharing;
-    let shown = preferences(drawing, 0.0, recipe.coloring.min_shown);
+fn opaque(drawing: &mut Drawing, allowance: f32) -> Vec<Edit> {
+    let shown = preferences(drawing, 0.0);
     let strokes = drawing.free().iter().zip(&shown).enumerate();
     let mut costs: Vec<(f32, usize)> = strokes
-        .filter(|(_, (stroke, _))| stroke.opacity() >= sharing.nearly_opaque)
+        .filter(|(_, (stroke, _))| stroke.opacity() >= NEARLY_OPAQUE)
         .map(|(i, (stroke, shown))| {
             let clear = 1.0 - stroke.opacity();
             // With opacity α, opaque paint changes a pixel by (1 − α) of its contrast, and the squared error by its square.
-            (sharing.off_page * shown.weight * math::powi(clear, 2), i)
+            (OFF_PAGE * shown.weight * math::powi(clear, 2), i)
         })
         .collect();
     // The cheapest ones, for as much error as is allowed.
@@ -96,7 +104,7 @@ fn opaque(drawing: &mut Drawing, recipe: &Recipe, allowance: f32) -> Vec<Edit> {
     let becomes = |stroke: StrokeMut<'_>| {
         let is_area = stroke.is_area;
         let [radius, color @ .., opacity] = &mut *stroke.style;
-        if *radius < sharing.thin && !is_area {
+        if *radius < THIN && !is_area {
             // Width · opacity is the ink of a line thinner than a pixel or two.
             *radius *= *opacity;
         } else if let Some(page) = page {
@@ -112,7 +120,7 @@ fn opaque(drawing: &mut Drawing, recipe: &Recipe, allowance: f32) -> Vec<Edit> {
 
 /// Merges neighbours in the order of widths: a width between two others is cheaper to merge with one of them than they are
 /// with each other.
-fn shared_widths(drawing: &mut Drawing, recipe: &Recipe, allowance: f32) -> Vec<Edit> {
+fn shared_widths(drawing: &mut Drawing, allowance: f32) -> Vec<Edit> {
     let strokes = drawing.free().iter().enumerate();
     let mut groups: Vec<Group> = strokes
         .filter(|(_, stroke)| !stroke.is_area())
@@ -121,7 +129,7 @@ fn shared_widths(drawing: &mut Drawing, recipe: &Recipe, allowance: f32) -> Vec<
             color: [0.0; 3],
             color_weight: 0.0,
             radius: stroke.radius(),
-            radius_weight: recipe.pens.contrast * outline(stroke),
+            radius_weight: CONTRAST * outline(stroke),
         })
         .collect();
     // With a reach of one neighbour, the queue has a pair per group instead of a pair per two groups.
@@ -132,8 +140,8 @@ fn shared_widths(drawing: &mut Drawing, recipe: &Recipe, allowance: f32) -> Vec<
     })
 }
 
-fn shared_colors(drawing: &mut Drawing, recipe: &Recipe, allowance: f32) -> Vec<Edit> {
-    let shown = preferences(drawing, 0.0, recipe.coloring.min_shown);
+fn shared_colors(drawing: &mut Drawing, allowance: f32) -> Vec<Edit> {
+    let shown = preferences(drawing, 0.0);
     let mut groups: Vec<Group> = Vec::new();
     for (i, (stroke, shown)) in drawing.free().iter().zip(&shown).enumerate() {
         let group = Group {

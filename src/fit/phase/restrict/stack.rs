@@ -6,17 +6,19 @@
 
 use std::collections::BTreeMap;
 
-use super::palette::Palette;
+use super::palette::{Palette, ROUNDS};
 use super::preferences::{PreferredColor, preferences};
 use super::rounds;
 use crate::error::Result;
 use crate::fit::drawing::Drawing;
 use crate::fit::phase::polish::Shares;
-use crate::fit::recipe::Recoloring;
 use crate::fit::run::session::Session;
 use crate::metrics::psnr_db;
 use crate::render::StrokeRef;
 use crate::scene::{Mark, Precedence, quantized_anywhere, quantum};
+
+/// Number of neighbouring strokes that are compared to stack their colours, which takes time with its square. A guess.
+const WINDOW: usize = 4096;
 
 /// An 8-bit colour.
 type Color = [u8; 3];
@@ -24,22 +26,21 @@ type Color = [u8; 3];
 /// Stacks the colours, fits the drawing to that, and takes down by how many dB it is worse than before. All strokes must
 /// be free.
 pub(super) fn run(session: &mut Session<'_>, palette: &mut Palette) -> Result<()> {
-    let until = Shares::of(session.config, &session.recipe).stack;
-    session.timer.give_until(until);
-    let coloring = session.recipe.coloring;
+    let until = Shares::of(session.config).stack;
+    session.timer.until = until;
     let rates = session.recipe.polish.rates.without_color();
     let precision = session.config.file.precision;
     let free_db = psnr_db(session.drawing.mse());
-    let order = order(&mut session.drawing, coloring, precision);
+    let order = order(&mut session.drawing, precision);
     arrange(&mut session.drawing, &order);
-    let mse = rounds::best(session, coloring.rounds, |session, round| {
-        rounds::run(session, coloring.rounds, round, rates)?;
-        palette.recolor(&mut session.drawing, coloring);
+    let mse = rounds::best(session, ROUNDS, |session, round| {
+        rounds::run(session, ROUNDS, round, rates)?;
+        palette.recolor(&mut session.drawing);
         arrange(&mut session.drawing, &order);
         Ok(true)
     })?;
     session.history.stacking_db = Some(free_db - psnr_db(mse));
-    session.timer.give_until(1.0);
+    session.timer.until = 1.0;
     Ok(())
 }
 
@@ -63,17 +64,14 @@ fn arrange(drawing: &mut Drawing, order: &[Color]) {
 }
 
 /// Colours from the back to the front. A stroke counts by the pixels that it shows in; `precision` is the file's.
-fn order(drawing: &mut Drawing, coloring: Recoloring, precision: u8) -> Vec<Color> {
-    let shown = preferences(drawing, 0.0, coloring.min_shown);
+fn order(drawing: &mut Drawing, precision: u8) -> Vec<Color> {
+    let shown = preferences(drawing, 0.0);
     let strokes = drawing.free().iter().zip(&shown);
     let written = |(stroke, shown): (StrokeRef<'_>, &PreferredColor)| {
         let written = quantized_anywhere(&stroke.to_mark(), precision)?;
         Some((written, shown.weight))
     };
-    stacked(
-        &strokes.filter_map(written).collect::<Vec<_>>(),
-        coloring.window,
-    )
+    stacked(&strokes.filter_map(written).collect::<Vec<_>>(), WINDOW)
 }
 
 /// The colours of strokes, each with the pixels in which it shows, in an order that agrees with the order of the strokes as
