@@ -168,9 +168,11 @@ pub(super) fn met(budget: &Budget, strokes: usize, file: &RenderedFile) -> Optio
     }
 }
 
-/// True if `file` has no more bytes than allowed.
-fn fits(budget: &Budget, file: &RenderedFile) -> bool {
-    budget.bytes.is_none_or(|most| file.bytes <= most)
+/// True if `file` has no more strokes and bytes than allowed.
+pub(super) fn fits(budget: &Budget, file: &RenderedFile) -> bool {
+    let strokes = file.rounded.scene.len();
+    budget.strokes.is_none_or(|most| strokes <= most)
+        && budget.bytes.is_none_or(|most| file.bytes <= most)
 }
 
 /// True if a fidelity is asked for, and `file` has it.
@@ -178,7 +180,7 @@ fn reaches(budget: &Budget, file: &RenderedFile) -> bool {
     budget.psnr_db.is_some_and(|db| psnr_db(file.mse()) >= db)
 }
 
-/// True if `new` serves the budget better than `old`. Few enough bytes count first, then enough fidelity. Of two files
+/// True if `new` serves the budget better than `old`. Few enough strokes and bytes count first, then enough fidelity. Of two files
 /// that have both, the one with fewer strokes is better; of two that lack fidelity, the one with less error.
 pub(super) fn is_better(budget: &Budget, new: &RenderedFile, old: &RenderedFile) -> bool {
     match (fits(budget, new), fits(budget, old)) {

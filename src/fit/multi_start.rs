@@ -7,7 +7,8 @@
 //! | the task itself | always | |
 //! | strokes alone | many areas, or unfaithful ones | gradients and other uneven colours |
 //!
-//! [`is_better`](Starts::is_better) says which of two drawings is better.
+//! [`is_better`](Starts::is_better) says which of two drawings is better. A start by strokes alone ends when its drawing
+//! [cannot win](Costs::allow) any more.
 
 use std::ops::{ControlFlow, Range};
 use std::time::Duration;
@@ -19,7 +20,7 @@ use super::budget::price::Price;
 use super::budget::{self, reduction};
 use super::config::{Budget, Config, DEFAULT_QUALITY};
 use super::file::RenderedFile;
-use super::order::{self, Phase};
+use super::order::{self, Phase, Purpose};
 use super::phase;
 use super::recipe::Preset;
 use super::result::{Fit, Stop};
@@ -44,6 +45,11 @@ const BEYOND_DB: f64 = 16.0;
 /// guesses.
 const FEW_MARKS: usize = 30;
 const FAITHFUL_DB: f64 = 38.0;
+/// Least cost of a finished drawing by strokes alone, beyond that of a perfect one of no bytes, in units of that before the polish and
+/// of that after it. Before the polish, strokes are more than will pay. Gem, ninja, text, dashboard: 0.34, 0.78, 0.42, 0.53 and 1.0,
+/// 1.25, 1.04, 1.23.
+const BEFORE_POLISH: f64 = 0.4;
+const AFTER_POLISH: f64 = 0.9;
 /// The share of a limited time after which a drawing by strokes alone is not begun. A guess.
 const LATEST: f64 = 0.5;
 
@@ -65,12 +71,16 @@ pub(super) fn draw<'a>(
     let by_strokes = by_strokes_alone(config).filter(|_| task.base.is_none());
     // The usual quality, those of the search, and the shortened drawing.
     let trials = if at_qualities { HALVINGS + 2 } else { 0 } + shorter.len();
+    let pixels = picture.width() * picture.height();
     let mut starts = Starts {
         task,
         picture,
         level,
         since,
-        price: Price::of(config, task.doubt, picture.width() * picture.height()),
+        costs: Costs {
+            price: Price::of(config, task.doubt, pixels),
+            pixels,
+        },
         watch,
         trials,
         part: 0.0..0.0,
@@ -84,10 +94,13 @@ pub(super) fn draw<'a>(
     }
     for config in shorter {
         if !starts.are_stopped() {
-            let drawn = starts.trial(&Task {
-                config,
-                ..task.clone()
-            })?;
+            let drawn = starts.trial(
+                &Task {
+                    config,
+                    ..task.clone()
+                },
+                None,
+            )?;
             starts.offer(drawn);
         }
     }
@@ -97,7 +110,7 @@ pub(super) fn draw<'a>(
     }
     // 2. The task itself, with which all work is done.
     starts.part = starts.part.end..1.0;
-    let drawn = starts.run(task, false, checkpoint)?;
+    let drawn = starts.run(task, false, None, checkpoint)?;
     let stop = drawn.fit.stop;
     // 3. Strokes alone, where areas are doubtful.
     let has_time = |limit: Duration| since.elapsed() <= limit.mul_f64(LATEST);
@@ -106,10 +119,15 @@ pub(super) fn draw<'a>(
         && config.budget.time.is_none_or(has_time);
     let mut best = starts.better(drawn);
     if let Some(config) = by_strokes.filter(|_| may_compete) {
-        let rival = starts.trial(&Task {
-            config,
-            ..task.clone()
-        })?;
+        let file = best.file.as_ref();
+        let bound = file.and_then(|file| starts.costs.of(file.mse(), file.bytes));
+        let rival = starts.trial(
+            &Task {
+                config,
+                ..task.clone()
+            },
+            bound,
+        )?;
         starts.best = Some(best);
         best = starts.better(rival);
     }
@@ -197,7 +215,7 @@ struct Starts<'a> {
     picture: &'a Image,
     level: Level,
     since: Instant,
-    price: Price,
+    costs: Costs,
     watch: Watch<'a>,
     /// Trials that are still to come, at most.
     trials: usize,
@@ -218,16 +236,11 @@ impl Starts<'_> {
         let [mut low, mut high] = [0.0, usual.unwrap_or(DEFAULT_QUALITY)];
         let (mut quality, mut excessive) = (usual, None);
         for round in 0..=HALVINGS {
-            let drawn = self.trial(&Task {
-                config: Config {
-                    budget: Budget::default(),
-                    quality,
-                    ..self.task.config.clone()
-                },
-                // Whole, a drawing is worth more than one whose shapes are elements of their own.
-                most_marks: budget.strokes.unwrap_or(usize::MAX),
-                ..self.task.clone()
-            })?;
+            let mut task = self.task.clone();
+            (task.config.budget, task.config.quality) = (Budget::default(), quality);
+            // Whole, a drawing is worth more than one whose shapes are elements of their own.
+            task.most_marks = budget.strokes.unwrap_or(usize::MAX);
+            let drawn = self.trial(&task, None)?;
             // A photograph is drawn as well by what gains most. One of a dark sky has much of one colour, too, but needs many strokes
             // for the rest; of a few, each counts.
             let scene = &drawn.fit.scene;
@@ -236,7 +249,8 @@ impl Starts<'_> {
                 || counted <= FEW_STROKES && reduction::is_flat(self.picture);
             // The usual quality first: if it keeps the budget, higher ones are searched, otherwise lower ones.
             let at = quality.unwrap_or(DEFAULT_QUALITY);
-            if self.keeps_budget(&drawn) {
+            let file = drawn.file.as_ref();
+            if file.is_some_and(|file| budget::fits(&budget, file)) {
                 low = at;
                 if round == 0 {
                     high = at + BEYOND_DB;
@@ -257,10 +271,14 @@ impl Starts<'_> {
                 scene,
                 width: None,
             };
-            let mut shortened = self.trial(&Task {
-                base: Some(base),
-                ..self.task.clone()
-            })?;
+            let base = Some(base);
+            let mut shortened = self.trial(
+                &Task {
+                    base,
+                    ..self.task.clone()
+                },
+                None,
+            )?;
             shortened.fit.base = None;
             self.offer(shortened);
         }
@@ -268,25 +286,24 @@ impl Starts<'_> {
     }
 
     /// Draws a task that is not the last one.
-    fn trial(&mut self, task: &Task) -> Result<Drawn> {
+    fn trial(&mut self, task: &Task, bound: Option<f64>) -> Result<Drawn> {
         // Each drawing gets an equal part of the work that is left. There may be fewer drawings than planned, so that the last one
         // takes all of the rest.
         let from = self.part.end;
         self.part = from..from + (1.0 - from) / (self.trials + 1) as f64;
         self.trials = self.trials.saturating_sub(1);
-        self.run(task, true, None)
+        self.run(task, true, bound, None)
     }
-}
 
-impl Starts<'_> {
-    /// Draws a task once.
+    /// Draws a task once, or as far as its drawing can win.
     fn run(
         &mut self,
         task: &Task,
         is_trial: bool,
+        bound: Option<f64>,
         checkpoint: Option<&mut Checkpoint>,
     ) -> Result<Drawn> {
-        let grace = self.watch.grace;
+        let (grace, costs) = (self.watch.grace, self.costs);
         let mut part = Part {
             observer: &mut *self.watch.observer,
             span: self.part.clone(),
@@ -303,7 +320,9 @@ impl Starts<'_> {
         if let Some(checkpoint) = checkpoint {
             session.resume(checkpoint)?;
         }
-        while session.phase != Phase::Done {
+        while session.phase != Phase::Done
+            && bound.is_none_or(|bound| costs.allow(&mut session, bound))
+        {
             let outcome = phase::run(&mut session)?;
             session.mark_as_final();
             session.phase = order::next(session.phase, outcome, &task.config);
@@ -336,13 +355,11 @@ impl Starts<'_> {
         let (Some(file), Some(other)) = (&a.file, &b.file) else {
             return false;
         };
-        match [a, b].map(|drawn| self.keeps_budget(drawn)) {
-            [true, false] => return true,
-            [false, true] => return false,
-            _ => {}
+        let [keeps, other_keeps] = [file, other].map(|f| budget::fits(&self.task.config.budget, f));
+        if keeps != other_keeps {
+            return keeps;
         }
-        let pixels = self.picture.width() * self.picture.height();
-        let cost = |file: &RenderedFile| self.price.cost(file.mse(), pixels, file.bytes);
+        let cost = |file: &RenderedFile| self.costs.of(file.mse(), file.bytes);
         let Some((own, others)) = cost(file).zip(cost(other)) else {
             return budget::is_better(&self.task.config.budget, file, other);
         };
@@ -352,12 +369,31 @@ impl Starts<'_> {
         };
         wins(file, other) || !wins(other, file) && own < others
     }
+}
 
-    /// True if a drawing has no more strokes and bytes than allowed.
-    fn keeps_budget(&self, drawn: &Drawn) -> bool {
-        let Budget { strokes, bytes, .. } = self.task.config.budget;
-        let is_short = |most| drawn.file.as_ref().is_some_and(|file| file.bytes <= most);
-        strokes.is_none_or(|most| drawn.fit.scene.len() <= most) && bytes.is_none_or(is_short)
+/// The costs of drawings of a picture of so many pixels: squared error and bytes, beyond those of a perfect one of no bytes.
+#[derive(Clone, Copy)]
+struct Costs {
+    price: Price,
+    pixels: usize,
+}
+
+impl Costs {
+    /// The cost of a drawing; `None` if bytes have no price.
+    fn of(&self, mse: f64, bytes: usize) -> Option<f64> {
+        let least = self.price.cost(0.0, self.pixels, 0)?;
+        Some(self.price.cost(mse, self.pixels, bytes)? - least)
+    }
+
+    /// True if the drawing may still come to cost less than `bound`.
+    fn allow(&self, session: &mut Session<'_>, bound: f64) -> bool {
+        let share = match session.phase {
+            Phase::Polish(Purpose::Plan) => BEFORE_POLISH,
+            Phase::Recover | Phase::Restrict(_) | Phase::Settle(_) => AFTER_POLISH,
+            _ => return true,
+        };
+        let cost = self.of(session.drawing.mse(), session.bytes());
+        cost.is_none_or(|cost| share * cost < bound)
     }
 }
 

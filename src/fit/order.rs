@@ -11,7 +11,7 @@
 //!   ↓
 //! recover ─→ stage ─→ polish  draw small things that were lost on the way
 //!   ↓
-//! finish                      restrict ─→ settle ─→ compare
+//! finish                      restrict ─→ settle
 //!   ↓
 //! fidelity ─→ stage ─→ polish ─→ finish ─→ fidelity     until the file is as faithful as asked for
 //!   ↓
@@ -19,12 +19,11 @@
 //! bytes ─→ polish ─→ finish                             once, if bytes are left
 //! ```
 //!
-//! To *finish* a drawing takes three phases:
+//! To *finish* a drawing takes two phases:
 //!
 //! ```text
 //! restrict    give strokes the colours and widths that the file may have
-//! settle      fit them to what renderers make of the file
-//! compare     keep the file if it is the best so far
+//! settle      fit them to what renderers make of the file, and keep the file if it is the best so far
 //! ```
 
 use serde::{Deserialize, Serialize};
@@ -50,10 +49,8 @@ pub(super) enum Phase {
     Recover,
     /// Give the strokes the colours and widths that the file may have.
     Restrict(Limit),
-    /// Fit the strokes to what renderers make of the file.
+    /// Fit the strokes to what renderers make of the file, which is kept if it serves the budget better than the best one so far.
     Settle(Limit),
-    /// Keep the file if it serves the budget better than the best one so far.
-    Compare(Limit),
     /// Add or remove strokes if the file misses or exceeds the fidelity asked for.
     MeetFidelity,
     /// Remove strokes if the file has more bytes than asked for.
@@ -147,9 +144,8 @@ pub(super) fn next(phase: Phase, outcome: Outcome, config: &Config) -> Phase {
         (Phase::Recover, _) => FINISH,
 
         (Phase::Restrict(limit), _) => Phase::Settle(limit),
-        (Phase::Settle(limit), _) => Phase::Compare(limit),
-        (Phase::Compare(Limit::Fidelity), _) => Phase::MeetFidelity,
-        (Phase::Compare(Limit::Bytes), _) => Phase::MeetBytes,
+        (Phase::Settle(Limit::Fidelity), _) => Phase::MeetFidelity,
+        (Phase::Settle(Limit::Bytes), _) => Phase::MeetBytes,
 
         (Phase::MeetFidelity, Seeded(purpose)) => Phase::Stage(purpose),
         (Phase::MeetFidelity, Removed) => Phase::Polish(Purpose::Correct),
@@ -183,11 +179,6 @@ impl Phase {
         )
     }
 
-    /// True if a fit can go on from the state before this phase. No state holds the file that settling hands on.
-    pub(super) fn is_resumable(self) -> bool {
-        !matches!(self, Self::Compare(_))
-    }
-
     /// True if a checkpoint keeps the state before this phase even if it is not due: the phase takes long and cannot be
     /// divided, or nothing is left to do.
     pub(super) fn is_milestone(self) -> bool {
@@ -200,11 +191,7 @@ mod tests {
     use super::*;
 
     /// The phases that finish a drawing.
-    const FINISHED: [Phase; 3] = [
-        FINISH,
-        Phase::Settle(Limit::Fidelity),
-        Phase::Compare(Limit::Fidelity),
-    ];
+    const FINISHED: [Phase; 2] = [FINISH, Phase::Settle(Limit::Fidelity)];
 
     /// The phases from the first to the last, each with the outcome that `outcome` gives it.
     fn order(config: &Config, outcome: impl Fn(Phase, usize) -> Outcome) -> Vec<Phase> {

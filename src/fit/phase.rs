@@ -40,7 +40,6 @@ pub(super) fn run(session: &mut Session<'_>) -> Result<Outcome> {
         Phase::Recover => recover::recover(session)?,
         Phase::Restrict(_) => restrict::restrict(session)?,
         Phase::Settle(_) => settle::settle(session)?,
-        Phase::Compare(_) => count::compare(session),
         Phase::MeetFidelity => count::meet_fidelity(session),
         Phase::MeetBytes => count::meet_bytes(session),
         Phase::Done => Outcome::Over,

@@ -84,18 +84,6 @@ fn keep_best(drawing: &mut Drawing, most: usize) {
     }
 }
 
-/// Makes the file of the settled drawing the best one if it serves the budget better than the best one so far.
-pub(in crate::fit) fn compare(session: &mut Session<'_>) -> Outcome {
-    if let Some(file) = session.file.take() {
-        session.history.corrections.last_db = psnr_db(file.mse());
-        let best = session.best.as_ref();
-        if best.is_none_or(|best| budget::is_better(&session.config.budget, &file, best)) {
-            session.set_best(file);
-        }
-    }
-    Outcome::Over
-}
-
 /// Doubles the strokes if the polished drawing is so far below the fidelity asked for that its file need not be looked at.
 pub(in crate::fit) fn approach_fidelity(session: &mut Session<'_>) -> Outcome {
     let Some(wanted_db) = session.config.budget.psnr_db else {

@@ -41,26 +41,25 @@ const COLOR_RATE: f32 = 5.0;
 /// position of the edge, so that a correction holds only for edges that stay where they are. Half, twice: −0.03, +0.01 dB.
 const NEXT_PACE: f32 = 0.1;
 
-/// Settles the restricted drawing if the fit depends on its file, which the session then has.
+/// Settles the restricted drawing if the fit depends on its file, which becomes the best one if it serves the budget better.
 pub(in crate::fit) fn settle(session: &mut Session<'_>) -> Result<Outcome> {
     if budget::needs_file(&session.config.budget, &session.recipe) {
         // Errors count as the user's mask says, but not less where detail hides them: resvg differs most at the
         // outlines of strokes, which are detail.
         session.drawing.focus_on(session.task.focus.as_ref());
-        run(session)?;
+        let file = run(session)?;
         session.drawing.focus_on(session.weights.as_ref());
+        session.offer(file);
     }
     Ok(Outcome::Over)
 }
 
-/// Descends against renders of the file. The session gets the best file, and the drawing becomes the one that it was
-/// written from.
-fn run(session: &mut Session<'_>) -> Result<()> {
+/// Descends against renders of the file. Returns the best file; the drawing becomes the one that it was written from.
+fn run(session: &mut Session<'_>) -> Result<RenderedFile> {
     session.progress.settle();
     let mut file = session.render_file()?;
     if !allows_round(session, 0) {
-        session.file = Some(file);
-        return Ok(());
+        return Ok(file);
     }
     let rates = session.restricted_rates();
     // Rounds may make the file worse, so the best one is kept with the drawing that it was written from.
@@ -96,8 +95,7 @@ fn run(session: &mut Session<'_>) -> Result<()> {
     }
     let (file, memento): (RenderedFile, Memento) = best;
     session.drawing.revert(memento);
-    session.file = Some(with_fewer_decimals(session, file)?);
-    Ok(())
+    with_fewer_decimals(session, file)
 }
 
 /// The file of the drawing with its areas rounded where that pays; `file` if that is nowhere.

@@ -63,8 +63,6 @@ pub(in crate::fit) struct Session<'a> {
     pub(in crate::fit) history: History,
     /// The best file so far.
     pub(in crate::fit) best: Option<RenderedFile>,
-    /// The file of the settled drawing, until it is compared with the best one.
-    pub(in crate::fit) file: Option<RenderedFile>,
     pub(in crate::fit) progress: Tracker<'a>,
     pub(in crate::fit) timer: Timer,
 
@@ -162,7 +160,6 @@ impl<'a> Session<'a> {
             drawing,
             history: History::new(records, budget::planned_stop(&config.budget)),
             best: None,
-            file: None,
             progress: Tracker::new(
                 watch.observer,
                 watch.token,
@@ -346,6 +343,15 @@ impl<'a> Session<'a> {
         }
     }
 
+    /// Makes `file`, of the settled drawing, the best one if it serves the budget better than the best one so far.
+    pub(in crate::fit) fn offer(&mut self, file: RenderedFile) {
+        self.history.corrections.last_db = psnr_db(file.mse());
+        let best = self.best.as_ref();
+        if best.is_none_or(|best| budget::is_better(&self.config.budget, &file, best)) {
+            self.set_best(file);
+        }
+    }
+
     /// Makes `file`, rendered from the current drawing, the best file so far.
     pub(in crate::fit) fn set_best(&mut self, file: RenderedFile) {
         self.history.best = Some(self.drawing.memento());
@@ -422,10 +428,7 @@ impl<'a> Session<'a> {
         let Some(keeper) = self.keeper.take() else {
             return;
         };
-        let is_resumable = match descent {
-            Some(_) => self.phase.is_divisible(),
-            None => self.phase.is_resumable(),
-        };
+        let is_resumable = descent.is_none() || self.phase.is_divisible();
         let is_interrupted = self.progress.is_interrupted();
         let is_due = keeper.checkpoint.is_due() || is_interrupted || self.phase.is_milestone();
         if is_resumable && is_due && !keeper.is_final {
