@@ -45,6 +45,11 @@ impl Error {
         }
     }
 
+    /// An error of [`ErrorKind::Config`].
+    pub(crate) fn config(message: impl Into<String>) -> Self {
+        Self::new(ErrorKind::Config, message)
+    }
+
     /// This error with its cause attached.
     #[must_use]
     pub fn caused_by(

@@ -136,14 +136,7 @@ pub(super) fn needs_file(budget: &Budget, recipe: &Recipe) -> bool {
 
 /// True if two files are compared by the budget rather than by price.
 pub(super) fn compares_files(config: &Config, recipe: &Recipe) -> bool {
-    let Budget {
-        strokes,
-        psnr_db,
-        bytes,
-        ..
-    } = config.budget;
-    let is_limited = strokes.is_some() || bytes.is_some() || psnr_db.is_some();
-    is_limited && config.quality.is_none() && needs_file(&config.budget, recipe)
+    !config.budget.is_open() && config.quality.is_none() && needs_file(&config.budget, recipe)
 }
 
 /// The reason for the end of a fit that has drawn its whole plan.

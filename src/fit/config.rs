@@ -10,7 +10,7 @@ use super::recipe::{Preset, Recipe};
 use super::simd::Simd;
 use super::widths::Widths;
 use crate::coverage::CoverageSchedule;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, Result};
 use crate::math;
 use crate::scene::{MAX_POINTS, MAX_PRECISION, Mark, Marks, Rgb, Scene, Shade, quantum};
 use crate::svg::{Form, Order, WriteOptions};
@@ -166,6 +166,13 @@ pub struct Budget {
     pub time: Option<Duration>,
 }
 
+impl Budget {
+    /// True if it bounds neither strokes nor fidelity nor bytes.
+    pub(super) fn is_open(&self) -> bool {
+        self.strokes.is_none() && self.psnr_db.is_none() && self.bytes.is_none()
+    }
+}
+
 /// The colours that a drawing may have, its background included.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub enum Colors {
@@ -290,15 +297,8 @@ impl Config {
     /// True if small things that get lost are traced again. A limit leaves room for what gains most, a fidelity asks for all alike, and
     /// a palette draws what it can.
     pub(super) fn recovers(&self) -> bool {
-        let Budget {
-            strokes,
-            psnr_db,
-            bytes,
-            ..
-        } = self.budget;
-        let is_free = strokes.is_none() && psnr_db.is_none() && bytes.is_none();
         let is_polished = self.polish && !self.progressive;
-        is_free && is_polished && !matches!(self.colors, Colors::Palette(_))
+        self.budget.is_open() && is_polished && !matches!(self.colors, Colors::Palette(_))
     }
 
     /// True if strokes may have more than two points.
@@ -328,14 +328,7 @@ impl Config {
     /// True if neither a quality nor a budget says how many strokes a drawing may have. It then has at most
     /// [`DEFAULT_STROKES`].
     pub fn is_open(&self) -> bool {
-        let Budget {
-            strokes,
-            psnr_db,
-            bytes,
-            ..
-        } = self.budget;
-        let bounded = strokes.is_some() || psnr_db.is_some() || bytes.is_some();
-        self.quality.is_none() && !bounded
+        self.quality.is_none() && self.budget.is_open()
     }
 
     /// Most strokes that a drawing of `pixels` pixels may have, whatever its budget.
@@ -358,7 +351,7 @@ impl Config {
         if self.marks == Marks::Areas && self.pens_draw_lines() {
             let message =
                 "pens draw strokes, not areas: leave out pens, or ask for marks of strokes";
-            return Err(Error::new(ErrorKind::Config, message));
+            return Err(Error::config(message));
         }
         self.check_colors()
     }
@@ -391,7 +384,7 @@ impl Config {
     }
 
     fn check_colors(&self) -> Result<()> {
-        let refuse = |message: String| Err(Error::new(ErrorKind::Config, message));
+        let refuse = |message: String| Err(Error::config(message));
         let Colors::Palette(palette) = &self.colors else {
             return Ok(());
         };
@@ -412,7 +405,7 @@ impl Config {
                 let message = format!(
                     "the background #{r:02x}{g:02x}{b:02x} is not in the palette: add it{other_remedy}"
                 );
-                Err(Error::new(ErrorKind::Config, message))
+                Err(Error::config(message))
             }
             _ => Ok(()),
         }
@@ -436,7 +429,7 @@ impl Execution {
     /// of the whole process, which a process that was forked does not have.
     ///
     /// # Errors
-    /// [`ErrorKind::Config`] when the system does not start so many threads.
+    /// [`ErrorKind::Config`](crate::ErrorKind::Config) when the system does not start so many threads.
     pub fn install<R: Send>(&self, work: impl FnOnce() -> R + Send) -> Result<R> {
         Ok(self.pool()?.install(work))
     }

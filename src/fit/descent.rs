@@ -248,6 +248,20 @@ impl Descent {
 }
 
 impl Course {
+    /// A course of its own schedule, with the final edge and all the time that there is.
+    pub(super) fn new(iterations: usize, rates: Rates) -> Self {
+        Self {
+            iterations,
+            before: 0,
+            of: iterations,
+            rates,
+            pace: 1.0,
+            softness: None,
+            until: f32::INFINITY,
+            joint: None,
+        }
+    }
+
     /// The factor of the step sizes of iteration `at`.
     fn rate(&self, at: usize) -> f32 {
         let end = self.rates.last;

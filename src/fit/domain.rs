@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use serde::{Deserialize, Deserializer, de};
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, Result};
 
 /// Refuses a whole number that is out of its range.
 pub(super) fn within<N: Display + PartialOrd>(
@@ -27,10 +27,7 @@ pub(super) fn allowed<V: Display>(
     valid: impl FnOnce(&V) -> bool,
 ) -> Result<()> {
     match value.filter(|value| !valid(value)) {
-        Some(value) => Err(Error::new(
-            ErrorKind::Config,
-            format!("{name} is {value}: give {right}"),
-        )),
+        Some(value) => Err(Error::config(format!("{name} is {value}: give {right}"))),
         None => Ok(()),
     }
 }

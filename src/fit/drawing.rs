@@ -4,7 +4,6 @@ pub(super) mod background;
 pub(super) mod bounds;
 pub(super) mod focus;
 pub(super) mod masking;
-mod memento;
 pub(super) mod objective;
 mod scene;
 mod shading;
@@ -17,7 +16,6 @@ use crate::render::{Canvas, CanvasLoss, Gradients, Params, Renderer, Softness, S
 use crate::scene::{Area, Mark, Rgb};
 use bounds::Bounds;
 use focus::Focus;
-pub(super) use memento::Memento;
 use objective::Target;
 use scene::enlarge;
 use surface::Surface;
@@ -418,6 +416,62 @@ impl Drawing {
         let pairs = self.surfaces.iter().zip(canvases);
         let losses = pairs.map(|(surface, canvas)| surface.mse_of(canvas));
         losses.sum::<f64>() / self.surfaces.len() as f64
+    }
+}
+
+/// A copy of a drawing's state, from which it is restored to the bit.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+pub(super) struct Memento {
+    halvings: usize,
+    /// The background's colour, unless the drawing is on top of a document.
+    color: Option<Rgb>,
+    strokes: Strokes,
+    stage_of: Vec<usize>,
+    frozen: usize,
+    counters: Counters,
+}
+
+impl Drawing {
+    /// A copy of the current state.
+    pub(super) fn memento(&self) -> Memento {
+        Memento {
+            halvings: self.surface().halvings(),
+            color: self.surface().color(),
+            strokes: self.all(),
+            stage_of: self.stage_of.clone(),
+            frozen: self.frozen.len(),
+            counters: self.counters,
+        }
+    }
+
+    /// Restores the drawing, its counters included.
+    pub(super) fn restore(&mut self, memento: Memento) {
+        if let (Some(color), Some(was)) = (self.surfaces[0].color_mut(), memento.color) {
+            *color = was;
+        }
+        // The target of the strokes has changed only if the resolution has, or if some of them were frozen.
+        if memento.halvings != self.surface().halvings() || !self.is_thawed() {
+            self.halve(memento.halvings);
+        }
+        // All strokes are free at first. Those that were frozen are frozen again, in the same order of renders.
+        *self.free_mut() = memento.strokes;
+        self.stage_of = memento.stage_of;
+        self.counters = memento.counters;
+        if memento.frozen > 0 {
+            // Only the frozen strokes may be there when they are rendered.
+            let free = self.free_mut().split_off(memento.frozen);
+            self.freeze();
+            *self.free_mut() = free;
+        }
+    }
+
+    /// Restores the drawing, but keeps its counters, so that no search repeats the random draws of an earlier one.
+    pub(super) fn revert(&mut self, memento: Memento) {
+        let counters = self.counters;
+        self.restore(Memento {
+            counters,
+            ..memento
+        });
     }
 }
 

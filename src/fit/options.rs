@@ -4,7 +4,7 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 
 use super::{Config, Execution};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, Result};
 
 /// The names of all options.
 pub const OPTIONS: [&str; 27] = [
@@ -52,12 +52,12 @@ impl Options {
     /// Reads an object of [`OPTIONS`]; what it lacks, and what is `null`, is as by default.
     ///
     /// # Errors
-    /// [`ErrorKind::Config`] when there is no such option, or a value is none of its values. The message names both. The cause
+    /// [`ErrorKind::Config`](crate::ErrorKind::Config) when there is no such option, or a value is none of its values. The message names both. The cause
     /// is an error of `serde_json` if the value is of the wrong type.
     pub fn from_json(mut given: Map<String, Value>) -> Result<Self> {
         given.retain(|_, value| !value.is_null());
         if let Some(name) = given.keys().find(|name| !OPTIONS.contains(&name.as_str())) {
-            return Err(refusal(format!(
+            return Err(Error::config(format!(
                 "no option is called {name}: give {}",
                 OPTIONS.join(", ")
             )));
@@ -78,11 +78,10 @@ fn wrong(given: Map<String, Value>) -> Error {
     for (name, value) in given {
         let setting = format!("{name} is {value}");
         if let Err(cause) = read(Map::from_iter([(name, value)])) {
-            return Error::new(ErrorKind::Config, format!("{setting}: {}", remedy(&cause)))
-                .caused_by(cause);
+            return Error::config(format!("{setting}: {}", remedy(&cause))).caused_by(cause);
         }
     }
-    refusal("colors and palette exclude each other: give one of them".into())
+    Error::config("colors and palette exclude each other: give one of them")
 }
 
 /// What would be right in place of a value of another type.
@@ -96,10 +95,6 @@ fn remedy(error: &serde_json::Error) -> String {
         Some((_, "usize" | "u64")) => "give a whole number of 0 or more".into(),
         _ => message,
     }
-}
-
-fn refusal(message: String) -> Error {
-    Error::new(ErrorKind::Config, message)
 }
 
 #[cfg(test)]

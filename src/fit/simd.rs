@@ -2,7 +2,7 @@
 
 use fearless_simd::Level;
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, Result};
 use crate::words::words;
 
 /// The instruction set of the renderer. All of them give the same bits. A machine that has none of them has `Auto` alone.
@@ -57,7 +57,7 @@ impl Simd {
     /// The level.
     ///
     /// # Errors
-    /// [`ErrorKind::Config`] when this machine does not have it.
+    /// [`ErrorKind::Config`](crate::ErrorKind::Config) when this machine does not have it.
     #[doc(hidden)]
     pub fn require(self) -> Result<Level> {
         self.level().ok_or_else(|| {
@@ -66,7 +66,7 @@ impl Simd {
                 "this machine has no {self}: use auto or one of {}",
                 here.join(", ")
             );
-            Error::new(ErrorKind::Config, message)
+            Error::config(message)
         })
     }
 }

@@ -5,7 +5,7 @@ use super::budget::reduction;
 use super::config::Config;
 use super::drawing::background;
 use super::drawing::focus::Focus;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, Result};
 use crate::image::Image;
 use crate::scene::Scene;
 
@@ -81,5 +81,5 @@ fn check_size(scene: &Scene, picture: &Image) -> Result<()> {
         "the drawing of {}×{} px is no base for a picture of {width}×{height} px: scale the picture",
         scene.width, scene.height
     );
-    Err(Error::new(ErrorKind::Config, message))
+    Err(Error::config(message))
 }

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, Result};
 use crate::image::Image;
 use crate::scene::MIN_WIDTH;
 use crate::svg::Length;
@@ -29,7 +29,7 @@ impl Widths {
     /// The radii of the pens, px of the picture, on a page of this width; the thinnest comes first.
     ///
     /// # Errors
-    /// [`ErrorKind::Config`] when a pen is too thin or too wide for the picture, or the page has no width.
+    /// [`ErrorKind::Config`](crate::ErrorKind::Config) when a pen is too thin or too wide for the picture, or the page has no width.
     pub fn radii(&self, page: Option<Length>, picture: &Image) -> Result<Vec<f32>> {
         let radius = |width: &Width| width.px(page, picture).map(|px| (px / 2.0) as f32);
         let mut radii: Vec<f32> = self.0.iter().map(radius).collect::<Result<_>>()?;
@@ -47,14 +47,14 @@ impl Width {
             (Self::Px(px), _) => px,
             (Self::OnPage(length), Some(page)) => length.px() / page.px() * sides[0],
             (Self::OnPage(_), None) => {
-                return Err(refusal(format!(
+                return Err(Error::config(format!(
                     "the pen {self} needs a page of known width: give that, such as 120mm, or pens in px of the picture"
                 )));
             }
         };
         if px < MIN_WIDTH {
             let enough = (sides[0] * MIN_WIDTH / px).ceil();
-            return Err(refusal(match self {
+            return Err(Error::config(match self {
                 Self::Px(_) => {
                     format!("the pen {self} is thinner than a stroke: give {MIN_WIDTH} px or more")
                 }
@@ -65,7 +65,7 @@ impl Width {
             }));
         }
         if px > sides[0].max(sides[1]) {
-            return Err(refusal(format!(
+            return Err(Error::config(format!(
                 "the pen {self} is wider than the picture, {px:.0} px: give a thinner one"
             )));
         }
@@ -97,7 +97,7 @@ impl FromStr for Width {
             .or_else(|| on_page().map(Self::OnPage))
             .ok_or_else(|| {
                 let short: String = text.chars().take(40).collect();
-                refusal(format!(
+                Error::config(format!(
                     "'{short}' is not a width of a pen: give one such as 0.3mm, or a number above 0 in px of the picture"
                 ))
             })
@@ -126,7 +126,7 @@ impl FromStr for Widths {
             }
             if widths.len() > Self::MAX {
                 let message = format!("more than {} pens: give fewer", Self::MAX);
-                return Err(refusal(message));
+                return Err(Error::config(message));
             }
         }
         Ok(Self(widths))
@@ -134,10 +134,6 @@ impl FromStr for Widths {
 }
 
 from_text!(Widths);
-
-fn refusal(message: String) -> Error {
-    Error::new(ErrorKind::Config, message)
-}
 
 #[cfg(test)]
 mod tests {

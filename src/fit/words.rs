@@ -8,7 +8,7 @@ use std::str::FromStr;
 use serde::{Deserialize, Deserializer, de};
 
 use super::{Background, Colors, ErrorWeighting, Preset};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, Result};
 use crate::scene::{Marks, color, quantum};
 use crate::svg::opaque_color;
 use crate::words::{from_text, short, words};
@@ -37,7 +37,7 @@ impl FromStr for Background {
     /// `auto`, `none`, `#rrggbb`, `#rgb` or the name of a colour, such as `white`.
     fn from_str(text: &str) -> Result<Self> {
         let unknown = || {
-            refusal(format!(
+            Error::config(format!(
                 "'{}' is not a background: give auto, none or a colour such as #ffffff",
                 short(text)
             ))
@@ -63,24 +63,60 @@ impl Colors {
     /// A colour that comes twice counts once.
     ///
     /// # Errors
-    /// [`ErrorKind::Config`] when there is not a colour or more than 4,096, or one is written in another way.
+    /// [`ErrorKind::Config`](crate::ErrorKind::Config) when there is not a colour or more than 4,096, or one is written in another way.
     pub fn palette(text: &str) -> Result<Self> {
         let text = text.trim_start_matches('\u{feff}');
-        if text.starts_with(GIMP) {
-            return gimp(text);
+        let is_gimp = text.starts_with(GIMP);
+        let has_lines = is_gimp || text.trim().lines().count() > 1;
+        let (separator, right) = match (is_gimp, has_lines) {
+            (true, _) => ('\n', "three levels of 0 to 255"),
+            (_, true) => ('\n', "#rrggbb"),
+            _ => (',', "#rrggbb,#rrggbb,..."),
+        };
+        let may_be_empty = has_lines || text.trim().is_empty();
+        let mut palette = Vec::new();
+        for (i, word) in text.split(separator).map(str::trim).enumerate() {
+            // A GIMP palette has a head and comments.
+            let is_head =
+                |word: &str| word.starts_with(GIMP) || word.starts_with('#') || word.contains(':');
+            if may_be_empty && word.is_empty() || is_gimp && is_head(word) {
+                continue;
+            }
+            let color = if is_gimp {
+                levels(word)
+            } else {
+                opaque_color(word)
+            };
+            let color = color.ok_or_else(|| {
+                let place = match has_lines {
+                    true => format!("line {}: ", i + 1),
+                    false => String::new(),
+                };
+                let word = short(word);
+                Error::config(format!("{place}'{word}' is not a colour: give {right}"))
+            })?;
+            if !palette.contains(&color) {
+                palette.push(color);
+            }
+            if palette.len() > Self::MAX {
+                let message = format!(
+                    "the palette has more than {} colours: give fewer",
+                    Self::MAX
+                );
+                return Err(Error::config(message));
+            }
         }
-        if text.trim().lines().count() > 1 {
-            return distinct(lines(text), opaque_color, "#rrggbb");
+        if palette.is_empty() {
+            return Err(Error::config("the palette has no colour: give one or more"));
         }
-        let words = text.split(',').map(str::trim);
-        distinct(
-            words
-                .filter(|_| !text.trim().is_empty())
-                .map(|word| (None, word)),
-            opaque_color,
-            "#rrggbb,#rrggbb,...",
-        )
+        Ok(Self::Palette(palette))
     }
+}
+
+/// The first three numbers of a line of a GIMP palette; a name may follow.
+fn levels(line: &str) -> Option<[u8; 3]> {
+    let mut words = line.split_ascii_whitespace().map(|word| word.parse().ok());
+    Some([words.next()??, words.next()??, words.next()??])
 }
 
 impl fmt::Display for Colors {
@@ -108,7 +144,7 @@ impl FromStr for Colors {
             let count = text.parse().ok();
             let count = count.filter(|count| (1..=Self::MAX).contains(count));
             return count.map(Self::AtMost).ok_or_else(|| {
-                refusal(format!(
+                Error::config(format!(
                     "{} colours cannot be drawn with: give 1 to {}",
                     short(text),
                     Self::MAX
@@ -139,69 +175,8 @@ impl<'de> Deserialize<'de> for Colors {
     }
 }
 
-/// The lines that say something, each with its number.
-fn lines(text: &str) -> impl Iterator<Item = (Option<usize>, &str)> {
-    let numbered = text.lines().map(str::trim).enumerate();
-    numbered
-        .filter(|(_, line)| !line.is_empty())
-        .map(|(i, line)| (Some(i + 1), line))
-}
-
-/// A GIMP palette: after its head and comments, a line for each colour.
-fn gimp(text: &str) -> Result<Colors> {
-    let is_color = |(_, line): &(Option<usize>, &str)| {
-        !(line.starts_with(GIMP) || line.starts_with('#') || line.contains(':'))
-    };
-    distinct(
-        lines(text).filter(is_color),
-        levels,
-        "three levels of 0 to 255",
-    )
-}
-
-/// The first three numbers of a line of a GIMP palette; a name may follow.
-fn levels(line: &str) -> Option<[u8; 3]> {
-    let mut words = line.split_ascii_whitespace().map(|word| word.parse().ok());
-    Some([words.next()??, words.next()??, words.next()??])
-}
-
-/// The palette of these texts, which have a line number where they are lines.
-fn distinct<'a>(
-    texts: impl Iterator<Item = (Option<usize>, &'a str)>,
-    read: impl Fn(&str) -> Option<[u8; 3]>,
-    right: &str,
-) -> Result<Colors> {
-    let mut palette = Vec::new();
-    for (line, text) in texts {
-        let color = read(text).ok_or_else(|| {
-            let place = line.map_or(String::new(), |line| format!("line {line}: "));
-            refusal(format!(
-                "{place}'{}' is not a colour: give {right}",
-                short(text)
-            ))
-        })?;
-        if !palette.contains(&color) {
-            palette.push(color);
-        }
-        if palette.len() > Colors::MAX {
-            return Err(refusal(format!(
-                "the palette has more than {} colours: give fewer",
-                Colors::MAX
-            )));
-        }
-    }
-    if palette.is_empty() {
-        return Err(refusal("the palette has no colour: give one or more"));
-    }
-    Ok(Colors::Palette(palette))
-}
-
 fn write_color(f: &mut fmt::Formatter<'_>, [r, g, b]: [u8; 3]) -> fmt::Result {
     write!(f, "#{r:02x}{g:02x}{b:02x}")
-}
-
-fn refusal(message: impl Into<String>) -> Error {
-    Error::new(ErrorKind::Config, message)
 }
 
 #[cfg(test)]

@@ -163,15 +163,9 @@ pub(in crate::fit) fn stage(session: &mut Session<'_>, purpose: Purpose) -> Resu
     // A stage's strokes are fitted alone, on the canvas of the frozen ones, which is rendered once.
     let stages = session.recipe.stages;
     let course = Course {
-        iterations: stages.iterations,
-        before: 0,
-        of: stages.iterations,
-        rates: stages.rates,
-        pace: 1.0,
         // A soft edge gives a stroke a slope from the residual as far away as the edge is wide.
         softness: Some(scale.min(SOFTEST)),
-        until: f32::INFINITY,
-        joint: None,
+        ..Course::new(stages.iterations, stages.rates)
     };
     let mut descent = session.descent(course);
     descend(session, &mut descent, None)?;

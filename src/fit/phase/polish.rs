@@ -72,13 +72,7 @@ fn of_density(drawing: &Drawing, recipe: &Recipe) -> Polish {
 /// Fits the free strokes jointly, and may add strokes until the drawing has `limit`.
 pub(super) fn run(session: &mut Session<'_>, limit: usize, polish: Polish) -> Result<()> {
     session.progress.polish();
-    let iterations = polish.iterations;
     let course = Course {
-        iterations,
-        before: 0,
-        of: iterations,
-        rates: polish.rates,
-        pace: 1.0,
         // Edges that are softer than in the end would move areas away from where they were traced.
         softness: Some(match session.drawing.free().has_areas() {
             true => 1.0,
@@ -89,6 +83,7 @@ pub(super) fn run(session: &mut Session<'_>, limit: usize, polish: Polish) -> Re
             limit,
             jitter: Jitter { px: polish.jitter },
         }),
+        ..Course::new(polish.iterations, polish.rates)
     };
     let mut descent = session.descent(course);
     descend(session, &mut descent, None)?;

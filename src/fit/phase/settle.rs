@@ -147,23 +147,18 @@ fn allows_round(session: &Session<'_>, done: usize) -> bool {
 
 /// The course of a round; `pace` is a factor on the rates of the geometry.
 fn course(rates: Rates, pace: f32) -> Course {
+    let rates = Rates {
+        // Geometry slows down from round to round; colours don't, as they correct the offset itself.
+        position: pace * rates.position,
+        area: pace * AREA_RATE,
+        radius: pace * rates.radius,
+        color: COLOR_RATE * rates.color,
+        opacity: COLOR_RATE * rates.opacity,
+        ..rates
+    };
     Course {
-        iterations: SETTLING_STEPS,
-        before: 0,
-        of: SETTLING_STEPS,
-        rates: Rates {
-            // Geometry slows down from round to round; colours don't, as they correct the offset itself.
-            position: pace * rates.position,
-            area: pace * AREA_RATE,
-            radius: pace * rates.radius,
-            color: COLOR_RATE * rates.color,
-            opacity: COLOR_RATE * rates.opacity,
-            ..rates
-        },
         pace: PACE,
-        softness: None,
-        until: f32::INFINITY,
-        joint: None,
+        ..Course::new(SETTLING_STEPS, rates)
     }
 }
 

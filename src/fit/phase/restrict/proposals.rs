@@ -126,23 +126,15 @@ fn spans(edits: &[Edit]) -> Vec<Range<usize>> {
 /// Descends with the marks of these indices alone.
 fn fit(session: &mut Session<'_>, moving: &[Range<usize>]) {
     let restricted = session.restricted_rates().without_color();
-    let course = Course {
-        iterations: ITERATIONS,
-        before: 0,
-        of: ITERATIONS,
-        rates: Rates {
-            // A traced stroke moves as far as an area does.
-            position: RATE / TRACED_PACE,
-            radius: RATE.min(restricted.radius),
-            area: RATE,
-            opacity: 0.0,
-            ..restricted
-        },
-        pace: 1.0,
-        softness: None,
-        until: f32::INFINITY,
-        joint: None,
+    let rates = Rates {
+        // A traced stroke moves as far as an area does.
+        position: RATE / TRACED_PACE,
+        radius: RATE.min(restricted.radius),
+        area: RATE,
+        opacity: 0.0,
+        ..restricted
     };
+    let course = Course::new(ITERATIONS, rates);
     let drawing = &mut session.drawing;
     let mut descent = Descent::new(drawing, course, 0.0);
     descent.held = Held::of(drawing.free(), drawing.formed());

@@ -29,15 +29,12 @@ pub(super) fn run(
     let iterations = (polish.iterations as f64 * rounds.iterations) as usize / rounds.count;
     let used = session.timer.used();
     let course = Course {
-        iterations,
         // The rounds share one schedule, so that step sizes go on falling across them.
         before: index * iterations,
         of: rounds.count * iterations,
-        rates,
         pace: rounds.rate,
-        softness: None,
         until: used + (1.0 - used) / (rounds.count - index) as f32,
-        joint: None,
+        ..Course::new(iterations, rates)
     };
     let mut descent = session.descent(course);
     descend(session, &mut descent, None)
