@@ -47,9 +47,9 @@ pub(in crate::fit) fn polish(session: &mut Session<'_>, purpose: Purpose) -> Res
     if purpose == Purpose::Correct {
         // A drawing far from the fidelity asked for is polished again, with more strokes; and bytes that are left need
         // few iterations.
-        let share = match session.history.corrections.before {
-            Some(_) => CORRECTION_SHARE,
-            None => APPROACH_SHARE,
+        let share = match session.history.corrections.files.is_empty() {
+            true => APPROACH_SHARE,
+            false => CORRECTION_SHARE,
         };
         polish.iterations = (polish.iterations as f64 * share) as usize;
     }

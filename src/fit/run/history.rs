@@ -11,10 +11,6 @@ use crate::fit::drawing::{Drawing, Memento};
 use crate::fit::result::{StageRecord, Stop};
 use crate::metrics::psnr_db;
 
-/// Fidelity gained by doubling the strokes, dB, until it is measured on two drawings. Kodak ×5 gain 2.2 per doubling from 1,024 to
-/// 2,900 strokes.
-pub(in crate::fit) const DB_PER_DOUBLING: f64 = 2.8;
-
 /// The history of a fit, apart from the drawing.
 #[derive(Debug, Serialize, Deserialize)]
 pub(in crate::fit) struct History {
@@ -49,26 +45,17 @@ pub(in crate::fit) struct OpenStage {
     pub(in crate::fit) accepted: Option<usize>,
 }
 
-/// Corrections of the number of strokes, towards the fidelity asked for.
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+/// Corrections of the number of strokes, towards the fidelity asked for, and of bytes.
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(in crate::fit) struct Corrections {
-    /// Corrections so far.
-    pub(in crate::fit) count: usize,
     /// Strokes of the last drawing that was far from that fidelity, and its own, dB.
     pub(in crate::fit) approached: Option<(usize, f64)>,
-    /// Strokes of the last file, and its fidelity, dB.
-    pub(in crate::fit) before: Option<(usize, f64)>,
-    /// The most strokes of a file that missed the fidelity, and the fewest of one that reached it.
-    pub(in crate::fit) missed: usize,
-    pub(in crate::fit) reached: usize,
-    /// True if the last strokes that were added brought too little for others to be of use.
-    pub(in crate::fit) is_hopeless: bool,
+    /// Strokes of each file that was measured, and its fidelity, dB.
+    pub(in crate::fit) files: Vec<(usize, f64)>,
     /// Fidelity of the last file, dB.
     pub(in crate::fit) last_db: f64,
     /// True if strokes were removed from the last file for bytes.
     pub(in crate::fit) shortened: bool,
-    /// Fidelity gained by doubling the strokes, dB.
-    pub(in crate::fit) db_per_doubling: f64,
     /// Bytes of the drawing once strokes share widths and colours, in units of the bytes before.
     pub(in crate::fit) restricted: f32,
     /// True if bytes that were left have been used.
@@ -86,15 +73,10 @@ impl History {
             stage: None,
             stop,
             corrections: Corrections {
-                count: 0,
                 approached: None,
-                before: None,
-                missed: 0,
-                reached: usize::MAX,
-                is_hopeless: false,
+                files: Vec::new(),
                 last_db: 0.0,
                 shortened: false,
-                db_per_doubling: DB_PER_DOUBLING,
                 restricted: 1.0,
                 refilled: false,
             },
