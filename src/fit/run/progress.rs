@@ -114,39 +114,31 @@ pub(in crate::fit) struct Position {
 
 /// Counts progress, reports it to the observer, and knows whether the fit has to stop.
 pub(in crate::fit) struct Tracker<'a> {
-    observer: &'a mut (dyn Observer + Send),
-    token: CancelToken,
+    watch: Watch<'a>,
     /// Work planned, in strokes × iterations.
     planned: f64,
     stages: usize,
     pub(in crate::fit) position: Position,
     /// True if the drawing is being settled.
     settling: bool,
-    /// True if a fit that was asked to stop may take time to finish its drawing.
-    has_grace: bool,
     /// True if an observer or a token has asked the fit to stop.
     asked: bool,
+    /// True once a fit that was asked to stop finishes its drawing.
+    is_leaving: bool,
     /// Set once, by whatever stopped the fit first.
     stopped: Option<Stop>,
 }
 
 impl<'a> Tracker<'a> {
-    pub(in crate::fit) fn new(
-        observer: &'a mut (dyn Observer + Send),
-        token: CancelToken,
-        planned: f64,
-        stages: usize,
-        has_grace: bool,
-    ) -> Self {
+    pub(in crate::fit) fn new(watch: Watch<'a>, planned: f64, stages: usize) -> Self {
         Self {
-            observer,
-            token,
+            watch,
             planned,
             stages,
             position: Position::default(),
             settling: false,
-            has_grace,
             asked: false,
+            is_leaving: false,
             stopped: None,
         }
     }
@@ -159,6 +151,13 @@ impl<'a> Tracker<'a> {
     /// True if an observer or a token has asked the fit to stop.
     pub(in crate::fit) fn is_interrupted(&self) -> bool {
         self.asked
+    }
+
+    /// The time that a fit may take to finish its drawing, if it was asked to stop just now.
+    pub(in crate::fit) fn leave(&mut self) -> Option<Duration> {
+        let may_finish = self.asked && !self.watch.grace.is_zero();
+        let is_first = may_finish && !std::mem::replace(&mut self.is_leaving, true);
+        is_first.then_some(self.watch.grace)
     }
 
     /// True if they stopped it at once.
@@ -228,8 +227,11 @@ impl<'a> Tracker<'a> {
             is_trial: false,
             drawing,
         };
-        self.asked |= self.observer.observe(&progress).is_break() || self.token.is_cancelled();
-        if self.asked && !self.has_grace {
+        let Watch {
+            observer, token, ..
+        } = &mut self.watch;
+        self.asked |= observer.observe(&progress).is_break() || token.is_cancelled();
+        if self.asked && self.watch.grace.is_zero() {
             self.stopped = Some(Stop::Interrupted);
         }
         !self.is_halted()

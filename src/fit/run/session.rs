@@ -70,8 +70,6 @@ pub(in crate::fit) struct Session<'a> {
     pub(in crate::fit) phase: Phase,
     /// The descent in which a resumed fit was cut off, until its phase takes it up again.
     pub(in crate::fit) resumed: Option<Descent>,
-    /// Time that the fit may go on once it is asked to stop; `None` since it was.
-    grace: Option<Duration>,
     keeper: Option<Keeper<'a>>,
 }
 
@@ -160,18 +158,11 @@ impl<'a> Session<'a> {
             drawing,
             history: History::new(records, budget::planned_stop(&config.budget)),
             best: None,
-            progress: Tracker::new(
-                watch.observer,
-                watch.token,
-                planned,
-                plan.len(),
-                !watch.grace.is_zero(),
-            ),
+            progress: Tracker::new(watch, planned, plan.len()),
             plan,
             timer: Timer::new(started, forecast),
             phase: Phase::first(base.is_some()),
             resumed: None,
-            grace: Some(watch.grace).filter(|grace| !grace.is_zero()),
             keeper: None,
         })
     }
@@ -256,10 +247,7 @@ impl<'a> Session<'a> {
 
     /// Checks for a stop: sets a time limit when the fit has been asked to stop. Returns whether that happened just now.
     pub(in crate::fit) fn check_for_stop(&mut self) -> bool {
-        if !self.is_leaving() {
-            return false;
-        }
-        let Some(grace) = self.grace.take() else {
+        let Some(grace) = self.progress.leave() else {
             return false;
         };
         let elapsed = self.timer.elapsed();
