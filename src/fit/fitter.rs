@@ -58,8 +58,9 @@ impl<'a> Fitter<'a> {
 
     /// Sets how to run.
     #[must_use]
-    pub fn execution(self, execution: Execution) -> Self {
-        Self { execution, ..self }
+    pub fn execution(mut self, execution: Execution) -> Self {
+        self.execution = execution;
+        self
     }
 
     /// Sets the drawing to go on from. Budgets include its strokes and all its bytes, and a base that already meets a
@@ -80,46 +81,39 @@ impl<'a> Fitter<'a> {
     /// Sets the observer, which is told of progress and may stop the fit. It sees drawings that compete with each other, too:
     /// [`Progress::is_trial`](super::Progress::is_trial) tells them apart.
     #[must_use]
-    pub fn observer(self, observer: &'a mut (dyn Observer + Send)) -> Self {
-        Self {
-            observer: Some(observer),
-            ..self
-        }
+    pub fn observer(mut self, observer: &'a mut (dyn Observer + Send)) -> Self {
+        self.observer = Some(observer);
+        self
     }
 
     /// Sets the token that stops the fit from another thread.
     #[must_use]
-    pub fn cancelled_by(self, token: CancelToken) -> Self {
-        Self { token, ..self }
+    pub fn cancelled_by(mut self, token: CancelToken) -> Self {
+        self.token = token;
+        self
     }
 
     /// Sets the checkpoint that keeps the state. If it already holds a state of the same fit, the fit goes on from
     /// there. The drawing does not depend on it.
     #[must_use]
-    pub fn checkpoint(self, checkpoint: &'a mut Checkpoint) -> Self {
-        Self {
-            checkpoint: Some(checkpoint),
-            ..self
-        }
+    pub fn checkpoint(mut self, checkpoint: &'a mut Checkpoint) -> Self {
+        self.checkpoint = Some(checkpoint);
+        self
     }
 
     /// Sets the start of the time budget, which otherwise starts with the fit.
     #[must_use]
-    pub fn since(self, start: Instant) -> Self {
-        Self {
-            since: Some(start),
-            ..self
-        }
+    pub fn since(mut self, start: Instant) -> Self {
+        self.since = Some(start);
+        self
     }
 
     /// Sets how long a fit that is asked to stop may take to finish its drawing, as if the time were up then. By default it
     /// stops at once, and its latest strokes are as they were seeded. The observer is still told of progress.
     #[must_use]
-    pub fn grace(self, span: Duration) -> Self {
-        Self {
-            grace: span,
-            ..self
-        }
+    pub fn grace(mut self, span: Duration) -> Self {
+        self.grace = span;
+        self
     }
 
     /// Draws `picture`.
