@@ -7,9 +7,9 @@
 //! only a few colours or pens, the strokes are restricted to those. Settling takes the last steps against what the
 //! written file really looks like. Finally the fit adds or removes strokes, and fits them again, until the file is as faithful and as short as the budgets ask for.
 //!
-//! [`Fitter::fit`] restores and reduces the picture; `multi_start` runs the phases: `order` says which follows which, and `phase` has a file for each. The session holds
-//! the whole state of a fit. Between two phases, and between two iterations of most phases, a [`Checkpoint`] can keep
-//! that state, and another process can go on from it.
+//! [`Fitter::fit`] restores and reduces the picture. `multi_start` draws it, once or several times, and runs the phases: `order` says
+//! which follows which, and `phase` has a file for each. The session holds the whole state of a fit. Between two phases, and between
+//! two iterations of most phases, a [`Checkpoint`] can keep that state, and another process can go on from it.
 //!
 //! | module | about |
 //! | --- | --- |

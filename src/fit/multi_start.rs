@@ -94,13 +94,7 @@ pub(super) fn draw<'a>(
     }
     for config in shorter {
         if !starts.are_stopped() {
-            let drawn = starts.trial(
-                &Task {
-                    config,
-                    ..task.clone()
-                },
-                None,
-            )?;
+            let drawn = starts.trial(&task.with(config), None)?;
             starts.offer(drawn);
         }
     }
@@ -121,13 +115,7 @@ pub(super) fn draw<'a>(
     if let Some(config) = by_strokes.filter(|_| may_compete) {
         let file = best.file.as_ref();
         let bound = file.and_then(|file| starts.costs.of(file.mse(), file.bytes));
-        let rival = starts.trial(
-            &Task {
-                config,
-                ..task.clone()
-            },
-            bound,
-        )?;
+        let rival = starts.trial(&task.with(config), bound)?;
         starts.best = Some(best);
         best = starts.better(rival);
     }

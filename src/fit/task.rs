@@ -37,6 +37,14 @@ impl Task {
         }
     }
 
+    /// This task by another configuration.
+    pub(super) fn with(&self, config: Config) -> Self {
+        Self {
+            config,
+            ..self.clone()
+        }
+    }
+
     /// Checks the configuration and the base against `picture`, and decides on the background for opaque strokes.
     pub(super) fn prepare(&mut self, picture: &Image) -> Result<()> {
         let config = &mut self.config;
