@@ -318,6 +318,11 @@ impl Starts<'_> {
             session.phase = order::next(session.phase, outcome, &task.config);
             session.keep(None);
         }
+        // A drawing that cannot win is compared as it is, at full resolution as all files are.
+        if session.phase != Phase::Done {
+            session.drawing.thaw();
+            session.drawing.sharpen(0.0);
+        }
         finish(session, self.is_compared)
     }
 
