@@ -108,33 +108,19 @@ impl History {
             }),
         }
     }
-
-    /// Sets why a fit ends that aims at a fidelity of `wanted_db`, and whose best file has `best_db`.
-    pub(in crate::fit) fn stop_at(&mut self, wanted_db: f64, best_db: f64) {
-        self.stop = match self.stop {
-            _ if best_db >= wanted_db => Stop::Psnr,
-            // The stages ended at a fidelity that the best file doesn't have.
-            Stop::Psnr => Stop::Converged,
-            other => other,
-        };
-    }
 }
 
 /// Adds the strokes of `base` to `drawing`, and returns the records of its layers.
 pub(in crate::fit) fn load(drawing: &mut Drawing, base: &Base) -> Vec<StageRecord> {
     drawing.load(&base.scene);
     let mses = drawing.layer_mses(&base.scene).into_iter();
-    mses.enumerate().map(kept_layer).collect()
-}
-
-/// The record of a layer of the base, from its index and the mean squared error after it.
-fn kept_layer((index, mse): (usize, f64)) -> StageRecord {
-    StageRecord {
+    let record = |(index, mse)| StageRecord {
         index: index + 1,
         strokes: 0,
         iterations: 0,
         wall: Duration::ZERO,
         psnr_db: psnr_db(mse),
         layer_psnr_db: 0.0,
-    }
+    };
+    mses.enumerate().map(record).collect()
 }

@@ -349,7 +349,12 @@ impl<'a> Session<'a> {
     /// Takes down why a fit ends that aims at a fidelity of `wanted_db`.
     pub(in crate::fit) fn stop_at(&mut self, wanted_db: f64) {
         let best_db = self.best.as_ref().map_or(0.0, |best| psnr_db(best.mse()));
-        self.history.stop_at(wanted_db, best_db);
+        self.history.stop = match self.history.stop {
+            _ if best_db >= wanted_db => Stop::Psnr,
+            // The stages ended at a fidelity that the best file doesn't have.
+            Stop::Psnr => Stop::Converged,
+            other => other,
+        };
     }
 
     /// Reason that cut the fit short, if anything did.
