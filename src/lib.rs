@@ -143,7 +143,7 @@
 //! | preferred colour | the colour of a stroke that fits best while all other strokes stay as they are |
 //! | rehearsal | writing and rendering an unfinished drawing only to learn how long that takes |
 //! | plan | how many strokes each stage adds, and their typical radius (px) |
-//! | recipe | the tuned numbers of a fit: iterations, step sizes, shares |
+//! | recipe | the tuned numbers that differ between presets: iterations, step sizes, shares |
 //! | preset | a named recipe: draft, balanced, best |
 //! | budget | limits on strokes, fidelity (dB), bytes and time (s); the first one reached stops |
 //! | palette | the 8-bit colours that a drawing may have |
