@@ -45,9 +45,11 @@ pub(super) fn run(args: &Args) -> Result<Status> {
         // Refuses a picture of another shape.
         verify::fidelity(&text, picture).map_err(|e| e.within(&name))?;
     }
-    let viewer = open()?;
+    let viewer = Viewer::open()?;
     viewer.begin(&name, picture.as_ref())?;
     viewer.show(&scene, &text);
+    // Whoever reads the address finds the drawing there.
+    tell(&viewer);
     viewer.wait();
     Ok(Status::Done)
 }
@@ -66,10 +68,14 @@ fn unread(error: strokefit::Error, text: &str, name: &str) -> anyhow::Error {
     )
 }
 
-/// A page, whose address is told.
+fn tell(viewer: &Viewer) {
+    complain(format_args!("see {}", viewer.address()));
+}
+
+/// A page for fits, whose address is told.
 pub(super) fn open() -> Result<Viewer> {
     let viewer = Viewer::open()?;
-    complain(format_args!("see {}", viewer.address()));
+    tell(&viewer);
     Ok(viewer)
 }
 
